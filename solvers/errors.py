@@ -1,0 +1,21 @@
+"""Failures an animator can act on. Every message is a full sentence for the status bar."""
+
+
+class MocapAssistError(Exception):
+    """Base class; operators and commands report its message and nothing else."""
+
+
+class InvalidMotionError(MocapAssistError, ValueError):
+    """The captured data cannot be used as given."""
+
+
+class InvalidSettingError(MocapAssistError, ValueError):
+    """A setting is outside the range in which the method is defined."""
+
+
+class InvalidFileError(MocapAssistError, ValueError):
+    """A file is not what its reader expects, or is damaged."""
+
+
+class SolveCancelled(MocapAssistError):
+    """The animator pressed Escape."""

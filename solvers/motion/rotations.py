@@ -1,0 +1,242 @@
+"""Rotations as unit quaternions w x y z, arrays of shape (..., 4); leading axes broadcast.
+
+NaN in a rotation gives NaN in whatever is computed from it, and disturbs nothing else.
+SciPy's order x y z w never leaves this module.
+"""
+
+import warnings
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+from scipy.spatial.transform import Rotation
+
+Array = NDArray[np.float64]
+IDENTITY: Array = np.array([1.0, 0.0, 0.0, 0.0])
+SMALL_ANGLE = 1e-6
+
+
+def multiply(a: Array, b: Array) -> Array:
+    """Return the rotation that applies `b` first, then `a` (the matrix product A B)."""
+    aw, ax, ay, az = np.moveaxis(np.asarray(a), -1, 0)
+    bw, bx, by, bz = np.moveaxis(np.asarray(b), -1, 0)
+    w = aw * bw - ax * bx - ay * by - az * bz
+    x = aw * bx + ax * bw + ay * bz - az * by
+    y = aw * by - ax * bz + ay * bw + az * bx
+    z = aw * bz + ax * by - ay * bx + az * bw
+    return np.stack([w, x, y, z], axis=-1)
+
+
+def inverse(rotations: Array) -> Array:
+    """Return the opposite rotations."""
+    return np.asarray(rotations) * (1.0, -1.0, -1.0, -1.0)
+
+
+def rotate(rotations: Array, vectors: ArrayLike) -> Array:
+    """Turn vectors, shape (..., 3), by rotations, shape (..., 4)."""
+    rotations, vectors = np.asarray(rotations), np.asarray(vectors, dtype=np.float64)
+    w, axis = rotations[..., :1], rotations[..., 1:]
+    twice = 2.0 * _cross(axis, vectors)
+    return np.asarray(vectors + w * twice + _cross(axis, twice))
+
+
+def normalize(rotations: Array) -> Array:
+    """Return unit quaternions; raises nothing, zero quaternions become NaN."""
+    norms = np.linalg.norm(rotations, axis=-1, keepdims=True)
+    return np.asarray(rotations / np.where(norms > 0.0, norms, np.nan))
+
+
+def quaternion_from_rotation_vector(vectors: ArrayLike) -> Array:
+    """Exponential map: axis times angle in radians, shape (..., 3), to quaternions.
+
+    Exact at zero: the series of sin(x/2)/x replaces the quotient for small angles.
+    """
+    vectors = np.asarray(vectors, dtype=np.float64)
+    angle = np.linalg.norm(vectors, axis=-1, keepdims=True)
+    small = angle < SMALL_ANGLE
+    quotient = np.sin(angle / 2) / np.where(small, 1.0, angle)
+    scale = np.where(small, 0.5 - angle**2 / 48.0, quotient)
+    return np.concatenate([np.cos(angle / 2), scale * vectors], axis=-1)
+
+
+def rotation_vector_from_quaternion(rotations: Array) -> Array:
+    """Logarithm: quaternions to axis times angle (at most pi) in radians, shape (..., 3)."""
+    rotations = np.asarray(rotations)
+    rotations = np.where(rotations[..., :1] < 0.0, -rotations, rotations)
+    w, axis = rotations[..., :1], rotations[..., 1:]
+    sine = np.linalg.norm(axis, axis=-1, keepdims=True)
+    small = sine < SMALL_ANGLE
+    # 2 atan2(s, w) / s tends to 2/w as s tends to 0, and w is near 1 there.
+    scale = np.where(small, 2.0, 2.0 * np.arctan2(sine, w) / np.where(small, 1.0, sine))
+    return np.asarray(scale * axis)
+
+
+def matrix_from_quaternion(rotations: Array) -> Array:
+    """Return rotation matrices, shape (..., 3, 3), whose columns are the turned axes."""
+    axes = [rotate(rotations, axis) for axis in np.eye(3)]
+    return np.stack(axes, axis=-1)
+
+
+def quaternion_from_matrix(matrices: ArrayLike) -> Array:
+    """Return quaternions, shape (..., 4), w >= 0, of rotation matrices, shape (..., 3, 3).
+
+    A matrix that is not quite orthogonal gives the nearest rotation that SciPy finds; one with
+    NaN gives NaN.
+    """
+    matrices = np.asarray(matrices, dtype=np.float64)
+    flat = matrices.reshape(-1, 3, 3)
+    known = np.isfinite(flat).all(axis=(1, 2))
+    result = np.full((len(flat), 4), np.nan)
+    if known.any():
+        result[known] = _from_scipy(Rotation.from_matrix(flat[known]))
+    return result.reshape(*matrices.shape[:-2], 4)
+
+
+def quaternion_from_euler(angles: ArrayLike, order: str) -> Array:
+    """Compose turns about the moving axes, in the order in which they are listed.
+
+    Parameters
+    ----------
+    angles : shape (..., 3), radians
+        In the order of `order`.
+    order : str
+        Such as "ZYX" for Rz Ry Rx: the order of BVH's channels, and the reverse of the name
+        that Blender gives to the same thing ("XYZ").
+    """
+    angles = np.asarray(angles, dtype=np.float64)
+    result = np.broadcast_to(IDENTITY, (*angles.shape[:-1], 4))
+    for place, axis in enumerate(order):
+        turn = np.zeros((*angles.shape[:-1], 4))
+        turn[..., 0] = np.cos(angles[..., place] / 2)
+        turn[..., 1 + "XYZ".index(axis)] = np.sin(angles[..., place] / 2)
+        result = multiply(result, turn)
+    return result
+
+
+def euler_from_quaternion(rotations: Array, order: str) -> Array:
+    """Return angles in radians, shape (..., 3), that `quaternion_from_euler` turns back.
+
+    At gimbal lock the last angle is zero. Along time, see `unwrap_euler`.
+    """
+    rotations = np.asarray(rotations)
+    flat = rotations.reshape(-1, 4)
+    known = np.isfinite(flat).all(axis=1)
+    result = np.full((len(flat), 3), np.nan)
+    if known.any():
+        with warnings.catch_warnings():  # SciPy warns at gimbal lock: any choice is right.
+            warnings.simplefilter("ignore", UserWarning)
+            turns = Rotation.from_quat(np.roll(flat[known], -1, axis=1))
+            result[known] = turns.as_euler(order)
+    return result.reshape(*rotations.shape[:-1], 3)
+
+
+def unwrap_euler(angles: Array) -> Array:
+    """Choose, frame after frame, the equal Euler angles nearest to the frame before.
+
+    Parameters
+    ----------
+    angles : shape (n_frames, ..., 3), radians, about three different axes
+
+    Returns
+    -------
+    Array
+        Same rotations, without jumps: every triple has the two forms (a, b, c) and
+        (a + pi, pi - b, c + pi), each modulo full turns. NaN frames are passed over.
+    """
+    result = np.array(angles, dtype=np.float64)
+    if not len(result):
+        return result
+    before = result[0]
+    for frame in result:
+        forms = np.stack([frame, frame * (1, -1, 1) + np.pi])
+        forms -= 2 * np.pi * np.round((forms - np.nan_to_num(before)) / (2 * np.pi))
+        distance = np.abs(forms - np.nan_to_num(before)).sum(axis=-1)
+        frame[...] = np.where((distance[1] < distance[0])[..., None], forms[1], forms[0])
+        before = np.where(np.isfinite(frame), frame, before)
+    return result
+
+
+def unroll(rotations: Array) -> Array:
+    """Choose signs along the first axis so that no quaternion jumps to the far hemisphere.
+
+    NaN frames are passed over.
+    """
+    result = np.array(rotations, dtype=np.float64)
+    known = np.isfinite(result).all(axis=-1)
+    frames = np.arange(len(result)).reshape(-1, *[1] * (known.ndim - 1))
+    last = np.maximum.accumulate(np.where(known, frames, -1), axis=0)
+    filled = np.take_along_axis(result, np.maximum(last, 0)[..., None], axis=0)
+    agree = np.einsum("...i,...i->...", filled[1:], filled[:-1])
+    signs = np.cumprod(np.where(agree < 0.0, -1.0, 1.0), axis=0)
+    result[1:] *= signs[..., None]
+    return result
+
+
+def slerp(start: Array, stop: Array, fraction: ArrayLike) -> Array:
+    """Turn from `start` towards `stop` by the shorter way; `fraction`, shape (...), 0 to 1."""
+    between = rotation_vector_from_quaternion(multiply(inverse(start), stop))
+    step = quaternion_from_rotation_vector(np.asarray(fraction)[..., None] * between)
+    return multiply(start, step)
+
+
+def angle_between(a: Array, b: Array) -> Array:
+    """Return the geodesic angle in radians, shape (...), 0 to pi."""
+    return np.asarray(
+        np.linalg.norm(rotation_vector_from_quaternion(multiply(inverse(a), b)), axis=-1)
+    )
+
+
+def mean_rotation(rotations: Array, weights: Array | None = None) -> Array:
+    """Return the mean over the first axis, shape (..., 4): the rotation whose squared chordal
+    distances sum to the least (Markley et al. 2007, doi:10.2514/1.28949).
+
+    NaN rotations are left out; where all are NaN the mean is the identity.
+    """
+    known = np.isfinite(rotations).all(axis=-1)
+    weight = known * (1.0 if weights is None else weights)
+    safe = np.where(known[..., None], rotations, 0.0)
+    outer = np.einsum("f...,f...i,f...j->...ij", weight, safe, safe)
+    mean = np.linalg.eigh(outer)[1][..., -1]
+    mean = np.where(weight.any(axis=0)[..., None], mean, IDENTITY)
+    return np.asarray(np.where(mean[..., :1] < 0.0, -mean, mean))
+
+
+def rotation_between(start: ArrayLike, stop: ArrayLike) -> Array:
+    """Return the smallest turn from directions `start` to directions `stop`, shape (..., 3).
+
+    For opposite directions any perpendicular axis serves; zero vectors give the identity.
+    """
+    start, stop = np.broadcast_arrays(np.asarray(start, float), np.asarray(stop, float))
+    lengths = np.linalg.norm(start, axis=-1) * np.linalg.norm(stop, axis=-1)
+    agree = (lengths + np.einsum("...i,...i->...", start, stop))[..., None]
+    real = np.concatenate([agree, _cross(start, stop)], axis=-1)
+    spare = _cross(start, np.eye(3)[np.abs(start).argmin(axis=-1)])
+    turn_back = np.concatenate([np.zeros_like(lengths)[..., None], spare], axis=-1)
+    opposite = (real[..., 0] <= 1e-12 * lengths) & (lengths > 0.0)
+    result = np.where(opposite[..., None], turn_back, real)
+    result = np.where((lengths == 0.0)[..., None], IDENTITY, result)
+    return normalize(result)
+
+
+def twist_about(rotations: Array, axis: ArrayLike) -> Array:
+    """Return the part of each rotation that turns about `axis`, shape (..., 3), of unit length.
+
+    With `twist`, `multiply(rotations, inverse(twist))` is the swing: it moves the axis the
+    short way. A half turn of the axis itself has no twist and gives the identity.
+    """
+    rotations = np.asarray(rotations)
+    axis = np.asarray(axis, dtype=np.float64)
+    along = np.einsum("...i,...i->...", rotations[..., 1:], axis)[..., None]
+    twist = np.concatenate([rotations[..., :1], along * axis], axis=-1)
+    norms = np.linalg.norm(twist, axis=-1, keepdims=True)
+    return np.where(norms < 1e-12, IDENTITY, twist / np.where(norms < 1e-12, 1.0, norms))
+
+
+def _cross(a: Array, b: Array) -> Array:
+    """`np.cross` of (..., 3) arrays without its overhead: three times faster."""
+    ax, ay, az = a[..., 0], a[..., 1], a[..., 2]
+    bx, by, bz = b[..., 0], b[..., 1], b[..., 2]
+    return np.stack([ay * bz - az * by, az * bx - ax * bz, ax * by - ay * bx], axis=-1)
+
+
+def _from_scipy(rotations: Rotation) -> Array:
+    return np.roll(rotations.as_quat(canonical=True), 1, axis=-1)

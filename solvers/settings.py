@@ -1,0 +1,62 @@
+"""Solver settings, described once: range, unit and help travel with the default value.
+
+From the same description come Blender's properties with their tooltips, the command-line
+flags and the table in the documentation.
+"""
+
+from dataclasses import dataclass, field, fields
+from enum import Enum
+from math import inf
+from typing import Any
+
+from .errors import InvalidSettingError
+
+
+@dataclass(frozen=True)
+class Described:
+    """What is known of one setting besides its name and default value."""
+
+    help: str
+    unit: str = ""
+    minimum: float = -inf
+    maximum: float = inf
+    advanced: bool = False
+    """Folded away in the user interface."""
+
+
+def setting(default: Any, help: str, **limits: Any) -> Any:
+    """Return a dataclass field for a float, int, bool, str or `enum.Enum` setting.
+
+    `limits` are the further attributes of `Described`. The help says what *more* does.
+    """
+    return field(default=default, metadata={"described": Described(help, **limits)})
+
+
+@dataclass(frozen=True, kw_only=True)
+class Settings:
+    """Base of every settings class: values are checked once, when they are built."""
+
+    def __post_init__(self) -> None:
+        wrong = [sentence for item in fields(self) if (sentence := self._fault(item))]
+        if wrong:
+            raise InvalidSettingError(" ".join(wrong))
+
+    def _fault(self, item: Any) -> str:
+        value, described = getattr(self, item.name), item.metadata["described"]
+        kind = type(item.default)
+        if issubclass(kind, (Enum, str)):
+            return "" if isinstance(value, kind) else _not_a(item.name, value, kind)
+        if isinstance(value, (Enum, str)) or value is None:
+            return _not_a(item.name, value, kind)
+        if described.minimum <= value <= described.maximum:
+            return ""
+        unit = f" {described.unit}" if described.unit else ""
+        return (
+            f"{item.name} is {value:g}{unit}; it must lie between"
+            f" {described.minimum:g} and {described.maximum:g}."
+        )
+
+
+def _not_a(name: str, value: object, kind: type) -> str:
+    allowed = [str(one.value) for one in kind] if issubclass(kind, Enum) else [kind.__name__]
+    return f"{name} is {value!r}; it must be one of: {', '.join(allowed)}."

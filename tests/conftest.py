@@ -1,0 +1,43 @@
+"""What every test may ask for."""
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from solvers.motion import Motion, Skeleton
+from solvers.motion.rotations import quaternion_from_rotation_vector
+
+RECORDINGS = Path(__file__).resolve().parents[1].parent / "shared" / "data"
+
+
+@pytest.fixture
+def rng() -> np.random.Generator:
+    return np.random.default_rng(20240229)
+
+
+@pytest.fixture(scope="session")
+def recordings() -> Path:
+    """The folder of real recordings; tests that need it are skipped where it is absent."""
+    if not RECORDINGS.is_dir():
+        pytest.skip(f"no recordings at {RECORDINGS}")
+    return RECORDINGS
+
+
+@pytest.fixture
+def leg() -> Skeleton:
+    """A hip, a knee, an ankle and an end site, hanging down from 0.9 m."""
+    offsets = np.array([[0, 0, 0.9], [0, 0, -0.45], [0, 0, -0.42], [0, -0.15, -0.03]])
+    return Skeleton(("hip", "knee", "ankle", "ankle_end"), (-1, 0, 1, 2), offsets)
+
+
+@pytest.fixture
+def swinging_leg(leg) -> Motion:
+    """Two seconds at 60 Hz: the leg swings once a second and moves forward at 1 m/s."""
+    time = np.arange(120) / 60.0
+    vectors = np.zeros((120, 4, 3))
+    vectors[:, 0, 0] = 0.5 * np.sin(2 * np.pi * time)
+    vectors[:, 1, 0] = -0.4 * (1 + np.cos(2 * np.pi * time))
+    vectors[:, 2, 0] = 0.2 * np.sin(2 * np.pi * time + 1)
+    place = np.stack([0 * time, -time, 0.9 + 0.02 * np.cos(4 * np.pi * time)], axis=-1)
+    return Motion(leg, quaternion_from_rotation_vector(vectors), place, 60.0)
