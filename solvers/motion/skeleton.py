@@ -49,7 +49,8 @@ class Skeleton:
         if len(self.parents) != n_joints or self.offsets.shape != (n_joints, 3):
             faults.append(
                 f"A skeleton of {n_joints} joints needs as many parents"
-                f" (not {len(self.parents)}) and offsets of shape ({n_joints}, 3) (not {self.offsets.shape})."
+                f" (not {len(self.parents)}) and offsets of shape ({n_joints}, 3)"
+                f" (not {self.offsets.shape})."
             )
         elif not np.isfinite(self.offsets).all():
             faults.append("The rest pose has offsets that are not finite numbers.")
