@@ -1,0 +1,147 @@
+"""Build and check the extension's zips, with their wheels, from the manifest.
+
+    python .ci/build_extension.py                         every platform of the manifest
+    python .ci/build_extension.py --platform linux-x64    one of them
+    python .ci/build_extension.py --plain                 without wheels
+
+Needs an installed `bpy`, because Blender's own build tool travels in it; imports nothing of it.
+"""
+
+import argparse
+import json
+import re
+import shutil
+import subprocess
+import sys
+import tempfile
+import tomllib
+from collections.abc import Sequence
+from importlib.util import find_spec
+from itertools import groupby
+from pathlib import Path
+from typing import NamedTuple
+
+ROOT = Path(__file__).resolve().parents[1]
+WHEELS = ROOT / "wheels"
+# What is shipped is for the manifest to say; these are only slow to copy.
+NOT_COPIED = shutil.ignore_patterns(".*", "__pycache__", "build", "dist", "wheels")
+OPERATING_SYSTEMS = {"linux": "linux", "windows": "win", "macos": "macosx"}
+PROCESSORS = {"x64": ("x86_64", "amd64"), "arm64": ("arm64", "aarch64")}
+
+
+class Wheel(NamedTuple):
+    """What the name of a wheel says: `name-version-python-abi-platform.whl`."""
+
+    python: str
+    """Such as cp311, or py3 for any."""
+    platform: str
+    """Such as win_amd64, or several with dots between; any for pure Python."""
+    name: str
+    version: str
+    file: str
+
+    @classmethod
+    def from_path(cls, path: str) -> "Wheel":
+        """Read a name such as ./wheels/c3d-0.6.0-py3-none-any.whl."""
+        name, version, python, _, platform = Path(path).stem.split("-")
+        return cls(python, platform, name, version, Path(path).name)
+
+    def serves(self, blender_platform: str) -> bool:
+        """Whether a Blender platform, such as linux-x64, can use it."""
+        system, processor = blender_platform.split("-")
+        named_system = OPERATING_SYSTEMS[system] in self.platform.split("_")[0]
+        return self.platform == "any" or (
+            named_system and self.platform.endswith(PROCESSORS[processor])
+        )
+
+
+def main(arguments: Sequence[str] | None = None) -> None:
+    """Build what the command line asks for; the paths of the zips are printed."""
+    manifest = tomllib.loads((ROOT / "blender_manifest.toml").read_text(encoding="utf-8"))
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("--platform", action="append", choices=manifest["platforms"])
+    parser.add_argument("--plain", action="store_true", help="leave the wheels out")
+    parser.add_argument("--output", type=Path, default=ROOT / "dist")
+    options = parser.parse_args(arguments)
+
+    platforms = [] if options.plain else options.platform or manifest["platforms"]
+    wheels = [
+        wheel
+        for wheel in map(Wheel.from_path, manifest["wheels"])
+        if any(wheel.serves(platform) for platform in platforms)
+    ]
+    fetch(wheels)
+    options.output.mkdir(parents=True, exist_ok=True)
+    with tempfile.TemporaryDirectory() as folder:
+        staging = Path(folder) / "source"
+        stage(staging, platforms, wheels)
+        build(staging, options.output, f"{manifest['id']}-{manifest['version']}", platforms)
+
+
+def fetch(wheels: Sequence[Wheel]) -> None:
+    """Download the wheels that `wheels/` lacks, in the very files that the manifest names."""
+    missing = sorted(wheel for wheel in wheels if not (WHEELS / wheel.file).is_file())
+    for (python, platform), group in groupby(missing, lambda wheel: wheel[:2]):
+        command = [sys.executable, "-m", "pip", "download", "--quiet", "--no-deps"]
+        command += ["--only-binary=:all:", "--dest", str(WHEELS)]
+        if platform != "any":
+            command += ["--python-version", python.removeprefix("cp")]
+            command += [f"--platform={tag}" for tag in platform.split(".")]
+        subprocess.run(
+            [*command, *(f"{wheel.name}=={wheel.version}" for wheel in group)], check=True
+        )
+    lost = [wheel.file for wheel in wheels if not (WHEELS / wheel.file).is_file()]
+    if lost:
+        sys.exit(
+            f"The package index has other files than the manifest names: {', '.join(lost)}."
+        )
+
+
+def stage(staging: Path, platforms: Sequence[str], wheels: Sequence[Wheel]) -> None:
+    """Copy the checkout, with a manifest that names only these platforms and wheels."""
+    shutil.copytree(ROOT, staging, ignore=NOT_COPIED)
+    (staging / "wheels").mkdir()
+    for wheel in wheels:
+        (staging / "wheels" / wheel.file).symlink_to(WHEELS / wheel.file)
+    text = (ROOT / "blender_manifest.toml").read_text(encoding="utf-8")
+    for key, values in (
+        ("platforms", list(platforms)),
+        ("wheels", [f"./wheels/{wheel.file}" for wheel in wheels]),
+    ):
+        line = f"{key} = {json.dumps(values)}" if values else ""
+        text = re.sub(rf"^{key} = \[.*?\]$", line, text, flags=re.MULTILINE | re.DOTALL)
+    (staging / "blender_manifest.toml").write_text(text, encoding="utf-8")
+
+
+def build(staging: Path, output: Path, stem: str, platforms: Sequence[str]) -> None:
+    """Run Blender's own tool over the staged copy, then over each zip that it made."""
+    tool = [sys.executable, str(build_tool())]
+    if platforms:
+        names = [f"{stem}-{platform.replace('-', '_')}.zip" for platform in platforms]
+        target = ["--output-dir", str(output), "--split-platforms"]
+    else:
+        names = [f"{stem}-plain.zip"]
+        target = ["--output-filepath", str(output / names[0])]
+    for command in (
+        [*tool, "build", "--source-dir", str(staging), *target],
+        *([*tool, "validate", str(output / name)] for name in names),
+    ):
+        done = subprocess.run(command, capture_output=True, text=True, check=False)
+        if done.returncode:
+            sys.exit(f"{done.stdout}{done.stderr}")
+    for name in names:
+        print(output / name)
+
+
+def build_tool() -> Path:
+    """The command-line tool of Blender's extension system, which needs no Blender to run."""
+    bpy = find_spec("bpy")
+    if bpy is None or bpy.origin is None:
+        sys.exit(
+            "There is no bpy in this Python; `make extension` uses one that has it."
+        )
+    return next(Path(bpy.origin).parent.glob("*/scripts/addons_core/bl_pkg/cli/blender_ext.py"))
+
+
+if __name__ == "__main__":
+    main()

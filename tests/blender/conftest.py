@@ -1,0 +1,124 @@
+"""Install the zip into a throw-away Blender, start that Blender, and test what is installed.
+
+    MOCAP_ASSIST_ZIP=dist/mocap_assist-0.1.0-linux_x64.zip \
+        timeout 300 .venv-4.5/bin/python -m pytest tests/blender
+
+The zip is installed by one process and used by the next, as an animator's is from the second
+start on: only then do the extension's wheels come before the libraries of this Python.
+"""
+
+import importlib
+import os
+import shutil
+import subprocess
+import sys
+import tempfile
+from collections.abc import Callable
+from pathlib import Path
+from types import ModuleType
+
+import numpy as np
+import pytest
+
+PACKAGE = "bl_ext.user_default.mocap_assist"
+CHECKOUT = Path(__file__).resolve().parents[2]
+RECORDINGS = CHECKOUT.parent / "shared" / "data"
+RESOURCES = pytest.StashKey[Path]()
+EXIT_STATUS = pytest.StashKey[int]()
+
+# Blender may hang at exit once classes were registered, hence os._exit here and below.
+INSTALL = """
+import os, sys, traceback
+import bpy
+try:
+    bpy.ops.extensions.package_install_files(
+        filepath=sys.argv[1], repo="user_default", enable_on_install=True
+    )
+except BaseException:
+    traceback.print_exc()
+    sys.stderr.flush()
+    os._exit(1)
+os._exit(0)
+"""
+
+
+def pytest_configure(config: pytest.Config) -> None:
+    zipped = Path(os.environ.get("MOCAP_ASSIST_ZIP", "")).resolve()
+    if not zipped.is_file():
+        pytest.exit(
+            "MOCAP_ASSIST_ZIP must name the extension's zip; see `make test-blender`.", 2
+        )
+    sys.path[:] = [path for path in sys.path if Path(path).resolve() != CHECKOUT]
+
+    config.stash[RESOURCES] = Path(tempfile.mkdtemp(prefix="mocap-assist-blender-"))
+    os.environ["BLENDER_USER_RESOURCES"] = str(config.stash[RESOURCES])
+    installed = subprocess.run(
+        [sys.executable, "-c", INSTALL, str(zipped)],
+        capture_output=True,
+        text=True,
+        timeout=120,
+        check=False,
+        cwd=config.stash[RESOURCES],
+    )
+    if installed.returncode:
+        shutil.rmtree(config.stash[RESOURCES])
+        pytest.exit(
+            f"{zipped.name} was not installed.\n{installed.stdout}{installed.stderr}", 1
+        )
+    import bpy  # noqa: F401 - starts Blender, and makes its own modules importable
+    from addon_utils import enable
+
+    assert enable(PACKAGE, default_set=True), f"{PACKAGE} cannot be switched on"
+
+
+def pytest_report_header(config: pytest.Config) -> str:
+    import bpy
+
+    zipped = os.environ["MOCAP_ASSIST_ZIP"]
+    return f"Blender {bpy.app.version_string}, numpy {np.__version__}, {zipped}"
+
+
+def pytest_sessionfinish(session: pytest.Session, exitstatus: int) -> None:
+    session.config.stash[EXIT_STATUS] = int(exitstatus)
+
+
+@pytest.hookimpl(trylast=True)
+def pytest_unconfigure(config: pytest.Config) -> None:
+    shutil.rmtree(config.stash[RESOURCES], ignore_errors=True)
+    sys.stdout.flush()
+    sys.stderr.flush()
+    os._exit(config.stash.get(EXIT_STATUS, 1))
+
+
+@pytest.fixture(scope="session")
+def load() -> Callable[[str], ModuleType]:
+    """Import a module of the installed extension: `load("solvers.denoising").denoise`."""
+    return lambda name: importlib.import_module(f"{PACKAGE}.{name}")
+
+
+@pytest.fixture(scope="session")
+def extension() -> ModuleType:
+    """The installed extension's root package."""
+    return importlib.import_module(PACKAGE)
+
+
+@pytest.fixture
+def blank() -> ModuleType:
+    """`bpy`, with an empty scene; the extension stays switched on."""
+    import bpy
+
+    bpy.ops.wm.read_homefile(use_empty=True, use_factory_startup=True)
+    return bpy
+
+
+@pytest.fixture
+def rng() -> np.random.Generator:
+    return np.random.default_rng(20240229)
+
+
+@pytest.fixture(scope="session")
+def recordings() -> Path:
+    """The folder of real recordings; tests that need it are skipped where it is absent."""
+    if not RECORDINGS.is_dir():
+        pytest.skip(f"no recordings at {RECORDINGS}")
+    return RECORDINGS
