@@ -1,0 +1,6 @@
+"""One reader per file format of recorded motion, and writers for those worth writing."""
+
+from .bvh import read_bvh
+from .bvh_writing import write_bvh
+
+__all__ = ["read_bvh", "write_bvh"]

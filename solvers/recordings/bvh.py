@@ -1,0 +1,103 @@
+"""Read BVH files: the format that most capture software and libraries of clips exchange."""
+
+import re
+from collections.abc import Sequence
+from decimal import Decimal, InvalidOperation
+from pathlib import Path
+
+from ..errors import InvalidFileError
+from ..motion import Motion
+from ..progress import Progress, unwatched, within
+from .bvh_channels import BvhChannels
+from .bvh_hierarchy import read_hierarchy
+from .text import read_bytes, read_rows
+
+USUAL_RATES = (24, 25, 30, 48, 50, 60, 90, 100, 120, 200, 240)
+RATE_WITHOUT_FRAME_TIME = 30.0
+MOTION_LINE = re.compile(rb"^[ \t]*MOTION[ \t]*\r?$", re.MULTILINE | re.IGNORECASE)
+
+
+def read_bvh(
+    path: Path | str, *, scale: float | None = None, progress: Progress = unwatched
+) -> Motion:
+    """Read a BVH file, turned from Y up, facing +Z, to Z up, facing -Y.
+
+    The rest pose is the file's. A joint's position channels stand in place of its OFFSET or,
+    where they would shrink the skeleton to a point, are added to it. A `Motion` has bones of
+    fixed length, so that what they hold beyond the root is used by its median over time,
+    except for a joint that is the only child of the root (or of such a one): there the root
+    carries the movement. The number of frames is that of the rows present, whatever the file
+    claims; a missing frame time means 30 Hz; values that are not numbers are gaps (NaN).
+
+    Parameters
+    ----------
+    path : Path or str
+    scale : float, metres per unit of the file, or None
+        None guesses it from the length of the bones (`axes.guess_unit`): centimetres for most
+        files, 0.0254 / 0.45 for those made from CMU's library.
+    progress : Progress
+
+    Returns
+    -------
+    Motion
+        Names are unique (`hand`, `hand_2`); end sites are joints `<parent>_end`.
+
+    Raises
+    ------
+    InvalidFileError
+        The file is missing, no BVH, damaged, cut short or without a frame.
+    SolveCancelled
+        Raised by `progress`.
+    """
+    content = read_bytes(path)
+    if not content[:4096].lstrip().upper().startswith(b"HIERARCHY"):
+        raise InvalidFileError(f"{path} is no BVH file: it does not begin with HIERARCHY.")
+    motion_line = MOTION_LINE.search(content)
+    if motion_line is None:
+        raise InvalidFileError(f"{path} has no MOTION part: it is cut short. Export it again.")
+    joints = read_hierarchy(content[: motion_line.start()], path)
+    first_line = content.count(b"\n", 0, motion_line.end()) + 2
+    lines = content[motion_line.end() :].lstrip(b"\r").removeprefix(b"\n").splitlines()
+    del content
+    frame_rate, n_head = _frame_rate(lines)
+    width = sum(len(joint.channels) for joint in joints)
+    if not width:
+        raise InvalidFileError(f"{path} has no CHANNELS, so nothing in it moves.")
+    rows = read_rows(
+        lines[n_head:], width, path, first_line + n_head, within(progress, 0.0, 0.7)
+    )
+    del lines
+    if not len(rows):
+        raise InvalidFileError(f"{path} has no frames: nothing follows its Frame Time.")
+    channels = BvhChannels(joints, rows)
+    return channels.motion(frame_rate, scale, within(progress, 0.7, 1.0))
+
+
+def _frame_rate(lines: Sequence[bytes]) -> tuple[float, int]:
+    """Return the rate in hertz, and how many lines stand before the first frame."""
+    rate = RATE_WITHOUT_FRAME_TIME
+    for number, line in enumerate(lines):
+        words = line.lower().replace(b":", b" ").split()
+        if words[:2] == [b"frame", b"time"] and len(words) == 3:
+            rate = _rate_from_time(words[2].decode("ascii", "replace"))
+        elif words and not words[0].startswith(b"frame"):
+            return rate, number
+    return rate, len(lines)
+
+
+def _rate_from_time(word: str) -> float:
+    """Return the usual rate whose frame time rounds to `word`: 0.00833333 means 120 Hz."""
+    try:
+        exact = Decimal(word.replace(",", "."))
+        time = float(exact)
+    except InvalidOperation:
+        return RATE_WITHOUT_FRAME_TIME
+    if not 1e-5 < time < 1e3:
+        return RATE_WITHOUT_FRAME_TIME
+    whole = round(1.0 / time)
+    half_digit = 0.51 * 10.0 ** int(exact.as_tuple().exponent)
+    usual = [(rate, half_digit) for rate in USUAL_RATES]
+    for rate, tolerance in [(whole, 1e-12), *usual, (whole, min(half_digit, 1e-8))]:
+        if rate and abs(1.0 / rate - time) <= tolerance:
+            return float(rate)
+    return 1.0 / time

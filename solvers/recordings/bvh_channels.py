@@ -1,0 +1,125 @@
+"""From the numbers of a BVH file to a motion of rigid bones."""
+
+from collections.abc import Sequence
+from functools import cached_property
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..motion import Motion, Skeleton
+from ..motion.rotations import multiply, quaternion_from_euler, rotate
+from ..progress import Progress
+from .axes import guess_unit, turns_z_up_from_y_up, z_up_from_y_up
+from .bvh_hierarchy import BvhJoint
+
+FRAMES_AT_ONCE = 2000
+
+
+class BvhChannels:
+    """What a BVH file records, in its own axes and units.
+
+    Parameters
+    ----------
+    joints : sequence of BvhJoint
+    rows : float array, shape (n_frames, n_channels)
+        Degrees and units of the file; NaN where nothing was recorded.
+    """
+
+    def __init__(self, joints: Sequence[BvhJoint], rows: NDArray[np.float64]) -> None:
+        self.joints = joints
+        self.rows = rows
+        self.file_offsets = np.array([joint.offset for joint in joints])
+        first = np.cumsum([0, *(len(joint.channels) for joint in joints)])
+        self.columns = [
+            {channel: int(start) + place for place, channel in enumerate(joint.channels)}
+            for joint, start in zip(joints, first, strict=False)
+        ]
+
+    def motion(self, frame_rate: float, scale: float | None, progress: Progress) -> Motion:
+        """Return the motion in metres, Z up, as `read_bvh` describes it."""
+        rotations = self._rotations(progress)
+        offsets = self.file_offsets.copy()
+        for joint in range(1, len(offsets)):
+            offsets[joint] = _median_place(self._places(joint, self.added))
+        root = z_up_from_y_up(self._places(0, self.added))
+        root = np.broadcast_to(root, (len(self.rows), 3))
+        turn = rotations[:, 0]
+        for joint in self._trunk():
+            strayed = self._places(joint, self.added) - offsets[joint]
+            root = root + rotate(turn, z_up_from_y_up(strayed))
+            turn = multiply(turn, rotations[:, joint])
+        parents = tuple(joint.parent for joint in self.joints)
+        if scale is None:
+            scale = guess_unit(parents, offsets)
+        names = tuple(joint.name for joint in self.joints)
+        skeleton = Skeleton(names, parents, scale * z_up_from_y_up(offsets))
+        return Motion(skeleton, rotations, scale * root, frame_rate)
+
+    @cached_property
+    def added(self) -> bool:
+        """Whether position channels count from the OFFSET instead of from the parent.
+
+        The first is a rarer reading of the format. It is the right one where the channels are,
+        all in all, nearer to zero than to the offsets. Of the root only the height tells.
+        """
+        agreement = 0.0
+        for joint, offset in enumerate(self.file_offsets):
+            known = np.array([f"{axis}position" in self.columns[joint] for axis in "xyz"])
+            weights = known * offset * ((1.0, 1.0, 1.0) if joint else (0.0, 1.0, 0.0))
+            agreement += float(weights @ (_median_place(self._places(joint)) - offset / 2))
+        return agreement < 0.0
+
+    def _places(self, joint: int, added: bool = False) -> NDArray[np.float64]:
+        """Return where a joint is, seen from its parent, shape (n_frames, 3).
+
+        A single row stands for all frames where no position channels are recorded.
+        """
+        columns = self.columns[joint]
+        moves = any(channel.endswith("position") for channel in columns)
+        places = np.tile(self.file_offsets[joint], (len(self.rows) if moves else 1, 1))
+        for axis, name in enumerate("xyz"):
+            if (column := columns.get(f"{name}position")) is not None:
+                places[:, axis] = self.rows[:, column] + (places[:, axis] if added else 0.0)
+        return places
+
+    def _rotations(self, progress: Progress) -> NDArray[np.float64]:
+        """Return local quaternions in our axes, shape (n_frames, n_joints, 4).
+
+        Joints with the same order of angles are turned together, in blocks of frames: fast,
+        and little memory beyond the result.
+        """
+        groups: dict[str, tuple[list[int], list[list[int]]]] = {}
+        for joint, columns in enumerate(self.columns):
+            turns = [channel for channel in columns if channel.endswith("rotation")]
+            order = "".join(channel[0].upper() for channel in turns)
+            members, angles = groups.setdefault(order, ([], []))
+            members.append(joint)
+            angles.append([columns[channel] for channel in turns])
+        groups.pop("", None)
+        rotations = np.zeros((len(self.rows), len(self.joints), 4))
+        rotations[..., 0] = 1.0
+        for start in range(0, len(self.rows), FRAMES_AT_ONCE):
+            block = slice(start, start + FRAMES_AT_ONCE)
+            for order, (members, angles) in groups.items():
+                turned = quaternion_from_euler(np.radians(self.rows[block][:, angles]), order)
+                turned[np.isnan(turned).any(axis=-1)] = np.nan
+                rotations[block, members] = turns_z_up_from_y_up(turned)
+            progress(min(1.0, block.stop / len(self.rows)), "Reading")
+        return rotations
+
+    def _trunk(self) -> list[int]:
+        """Return the joints below the root down to where the skeleton first branches."""
+        children: list[list[int]] = [[] for _ in self.joints]
+        for index, joint in enumerate(self.joints):
+            if index and joint.channels:
+                children[joint.parent].append(index)
+        trunk = [0]
+        while len(children[trunk[-1]]) == 1:
+            trunk += children[trunk[-1]]
+        return trunk[1:]
+
+
+def _median_place(places: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Return the median, shape (3,), over the frames where a place is known; else zero."""
+    known = places[np.isfinite(places).all(axis=1)]
+    return np.median(known, axis=0) if len(known) else np.zeros(3)

@@ -1,0 +1,107 @@
+"""Text files of numbers: opened, cut into lines and read fast, whatever their line ends."""
+
+from collections.abc import Sequence
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..errors import InvalidFileError
+from ..progress import Progress, unwatched
+
+ROWS_AT_ONCE = 2000
+BYTE_ORDER_MARK = b"\xef\xbb\xbf"
+MISSING = {b"nan", b"-nan", b"inf", b"-inf", b"null", b"none", b"-"}
+
+
+def read_bytes(path: Path | str) -> bytes:
+    """Return the whole file; raises InvalidFileError where there is none."""
+    path = Path(path)
+    if not path.is_file():
+        raise InvalidFileError(f"There is no file {path}.")
+    try:
+        return path.read_bytes().removeprefix(BYTE_ORDER_MARK)
+    except OSError as error:
+        raise InvalidFileError(f"{path} cannot be read ({error.strerror}).") from None
+
+
+def read_rows(
+    lines: Sequence[bytes],
+    width: int,
+    path: Path | str,
+    first_line: int,
+    progress: Progress = unwatched,
+) -> NDArray[np.float64]:
+    """Read one row of numbers per line; blank lines are passed over.
+
+    Parameters
+    ----------
+    lines : sequence of bytes
+    width : int
+        How many numbers each row must have.
+    path : Path or str
+        For error messages.
+    first_line : int
+        Number of the first of these lines in its file, counted from 1.
+    progress : Progress
+
+    Returns
+    -------
+    float array, shape (n_rows, width)
+        What the file calls not a number or infinite is NaN.
+
+    Raises
+    ------
+    InvalidFileError
+        A row is too short or too long, or holds something that is no number.
+    """
+    parts = [np.empty((0, width))]
+    for start in range(0, len(lines), ROWS_AT_ONCE):
+        block = lines[start : start + ROWS_AT_ONCE]
+        parts.append(_read_block(block, width, path, first_line + start))
+        progress(min(1.0, (start + ROWS_AT_ONCE) / len(lines)), "Reading")
+    rows = np.concatenate(parts)
+    rows[np.isinf(rows)] = np.nan
+    return rows
+
+
+def _read_block(
+    lines: Sequence[bytes], width: int, path: Path | str, first_line: int
+) -> NDArray[np.float64]:
+    filled = [line for line in lines if line.strip()]
+    if not filled:
+        return np.empty((0, width))
+    try:
+        rows = np.loadtxt(filled, comments=None, ndmin=2)
+        if rows.shape[1] == width:
+            return rows
+    except ValueError:
+        pass  # Line by line it is seen which line is wrong, or merely unusual.
+    read = [
+        _read_line(line, width, f"{path}, line {first_line + number}")
+        for number, line in enumerate(lines)
+        if line.strip()
+    ]
+    return np.array(read)
+
+
+def _read_line(line: bytes, width: int, place: str) -> list[float]:
+    words = line.split()
+    if len(words) != width:
+        raise InvalidFileError(
+            f"{place}: {len(words)} numbers stand where {width} belong. The file is damaged or"
+            " cut short; export it again, or delete that line."
+        )
+    return [_number(word, place) for word in words]
+
+
+def _number(word: bytes, place: str) -> float:
+    if word.lower() in MISSING or b"#" in word:  # The old Windows runtime wrote 1.#QNAN.
+        return np.nan
+    try:
+        return float(word.replace(b",", b"."))
+    except ValueError:
+        shown = word[:20].decode("ascii", "backslashreplace")
+        raise InvalidFileError(
+            f"{place}: {shown!r} is not a number. The file is damaged; export it again."
+        ) from None
