@@ -8,17 +8,25 @@
 [0.3, 0.0, 1.4]
 """
 
+from .canonical import canonical_rotations, from_canonical, t_pose_alignment
+from .humanoid import HUMANOID_ROLES, HumanoidMap, find_humanoid_map
 from .kinematics import WorldPoses, forward_kinematics, local_rotations, world_poses
 from .motion import Motion
 from .skeleton import Skeleton
 from .tracks import Tracks
 
 __all__ = [
+    "HUMANOID_ROLES",
+    "HumanoidMap",
     "Motion",
     "Skeleton",
     "Tracks",
     "WorldPoses",
+    "canonical_rotations",
+    "find_humanoid_map",
     "forward_kinematics",
+    "from_canonical",
     "local_rotations",
+    "t_pose_alignment",
     "world_poses",
 ]

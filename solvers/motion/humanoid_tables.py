@@ -1,0 +1,152 @@
+"""What rigs call their joints: one table per family, from humanoid role to joint name.
+
+A name is written without its side: "UpLeg" stands for LeftUpLeg, mixamorig:RightUpLeg or
+UpLeg.L. Case and separators do not count. Where a family has had several names for one role,
+they stand side by side and the first that a skeleton has is taken.
+"""
+
+CENTRAL_ROLES = ("hips", "spine", "chest", "upperChest", "neck", "head")
+ARM_ROLES = ("Shoulder", "UpperArm", "LowerArm", "Hand")
+LEG_ROLES = ("UpperLeg", "LowerLeg", "Foot", "Toes")
+FINGERS = ("Thumb", "Index", "Middle", "Ring", "Little")
+FINGER_ROLES = (
+    "ThumbMetacarpal", "ThumbProximal", "ThumbDistal",
+    *(f"{finger}{part}" for finger in FINGERS[1:]
+      for part in ("Proximal", "Intermediate", "Distal")),
+)  # fmt: skip
+
+# The order of the names in each row below.
+COLUMNS = (*CENTRAL_ROLES, *ARM_ROLES, *LEG_ROLES)
+
+TABLES: dict[str, tuple[str, ...]] = {
+    "VRM roles": (
+        "hips", "spine", "chest", "upperChest", "neck", "head",
+        "shoulder", "upperArm", "lowerArm", "hand",
+        "upperLeg", "lowerLeg", "foot", "toes",
+    ),
+    "VRoid": (
+        "J_Bip_C_Hips", "J_Bip_C_Spine", "J_Bip_C_Chest", "J_Bip_C_UpperChest", "J_Bip_C_Neck",
+        "J_Bip_C_Head",
+        "J_Bip_Shoulder", "J_Bip_UpperArm", "J_Bip_LowerArm", "J_Bip_Hand",
+        "J_Bip_UpperLeg", "J_Bip_LowerLeg", "J_Bip_Foot", "J_Bip_ToeBase",
+    ),
+    "Mixamo": (  # also Perception Neuron and MotionBuilder
+        "Hips", "Spine", "Spine1", "Spine3 Spine2", "Neck", "Head",
+        "Shoulder", "Arm", "ForeArm", "Hand",
+        "UpLeg", "Leg", "Foot", "ToeBase",
+    ),
+    "CMU": (
+        "Hips", "LowerBack", "Spine", "Spine1", "Neck", "Head",
+        "Shoulder", "Arm", "ForeArm", "Hand",
+        "UpLeg", "Leg", "Foot", "ToeBase",
+    ),
+    "Acclaim": (
+        "root", "lowerback", "upperback", "thorax", "lowerneck", "head",
+        "clavicle", "humerus", "radius", "wrist",
+        "femur", "tibia", "foot", "toes",
+    ),
+    "Rokoko": (
+        "Hips", "Spine1 Spine", "Spine2", "Spine4 Spine3", "Neck", "Head",
+        "Shoulder", "Arm UpperArm", "ForeArm LowerArm", "Hand",
+        "Thigh", "Shin", "Foot", "Toe",
+    ),
+    "Xsens": (
+        "Pelvis", "L5", "T12 L3", "T8", "Neck", "Head",
+        "Shoulder", "UpperArm", "ForeArm", "Hand",
+        "UpperLeg", "LowerLeg", "Foot", "Toe",
+    ),
+    "Biovision": (  # also Xsens and OptiTrack, exported as BVH
+        "Hips", "Chest", "Chest2", "Chest4 Chest3", "Neck", "Head",
+        "Collar", "Shoulder", "Elbow", "Wrist",
+        "Hip", "Knee", "Ankle", "Toe",
+    ),
+    "OptiTrack": (
+        "Hip", "Ab", "Chest", "UpperChest", "Neck", "Head",
+        "Shoulder", "UArm", "FArm", "Hand",
+        "Thigh", "Shin", "Foot", "Toe",
+    ),
+    "Vicon": (
+        "Waist", "Spine", "Chest", "", "Neck", "Head",
+        "Collar", "UpArm", "ForeArm", "Hand",
+        "UpLeg", "LowLeg", "Foot", "Toes",
+    ),
+    "Kinect v1": (
+        "HipCenter HipCentre Hip", "Spine", "", "", "ShoulderCenter ShoulderCentre", "Head",
+        "", "Shoulder", "Elbow", "Wrist",
+        "Hip", "Knee", "Ankle", "Foot",
+    ),
+    "Kinect v2": (
+        "SpineBase", "SpineMid", "SpineShoulder", "", "Neck", "Head",
+        "", "Shoulder", "Elbow", "Wrist",
+        "Hip", "Knee", "Ankle", "Foot",
+    ),
+    "Azure Kinect": (
+        "Pelvis", "SpineNavel SpineNaval", "SpineChest", "", "Neck", "Head",
+        "Clavicle", "Shoulder", "Elbow", "Wrist",
+        "Hip", "Knee", "Ankle", "Foot",
+    ),
+    "Unreal 5": (
+        "pelvis", "spine_01", "spine_03", "spine_05", "neck_01", "head",
+        "clavicle", "upperarm", "lowerarm", "hand",
+        "thigh", "calf", "foot", "ball",
+    ),
+    "Unreal 4": (
+        "pelvis", "spine_01", "spine_02", "spine_03", "neck_01", "head",
+        "clavicle", "upperarm", "lowerarm", "hand",
+        "thigh", "calf", "foot", "ball",
+    ),
+    "Biped": (
+        "Pelvis", "Spine", "Spine1", "Spine3 Spine2", "Neck", "Head",
+        "Clavicle", "UpperArm", "Forearm", "Hand",
+        "Thigh", "Calf", "Foot", "Toe0",
+    ),
+    "Character Creator": (
+        "Hip Pelvis", "Waist", "Spine01", "Spine02", "NeckTwist01", "Head",
+        "Clavicle", "Upperarm", "Forearm", "Hand",
+        "Thigh", "Calf", "Foot", "ToeBase",
+    ),
+    "Poser": (
+        "hip", "abdomen", "chest", "", "neck", "head",
+        "Collar", "Shldr", "ForeArm", "Hand",
+        "Thigh", "Shin", "Foot", "Toe",
+    ),
+    "DAZ": (
+        "hip", "abdomenLower", "abdomenUpper chestLower", "chestUpper", "neckLower", "head",
+        "Collar", "ShldrBend", "ForearmBend", "Hand",
+        "ThighBend", "Shin", "Foot", "Toe",
+    ),
+    "Rigify": (
+        "spine", "spine.001", "spine.002", "spine.003", "spine.004", "spine.006",
+        "shoulder", "upper_arm", "forearm", "hand",
+        "thigh", "shin", "foot", "toe",
+    ),
+    "Rigify deform bones": (
+        "DEF-spine", "DEF-spine.001", "DEF-spine.002", "DEF-spine.003", "DEF-spine.004",
+        "DEF-spine.006",
+        "DEF-shoulder", "DEF-upper_arm", "DEF-forearm", "DEF-hand",
+        "DEF-thigh", "DEF-shin", "DEF-foot", "DEF-toe",
+    ),
+    "Rigify controls": (
+        "torso hips", "spine_fk.001", "spine_fk.002", "spine_fk.003", "neck", "head",
+        "shoulder", "upper_arm_fk", "forearm_fk", "hand_fk",
+        "thigh_fk", "shin_fk", "foot_fk", "toe_fk toe_ik toe",
+    ),
+    "Auto-Rig Pro": (
+        "root.x", "spine_01.x", "spine_02.x", "spine_03.x", "neck.x", "head.x",
+        "shoulder", "arm_stretch arm", "forearm_stretch forearm", "hand",
+        "thigh_stretch thigh", "leg_stretch leg", "foot", "toes_01 toes",
+    ),
+    "Auto-Rig Pro controls": (
+        "c_root_master.x c_root.x", "c_spine_01.x", "c_spine_02.x", "c_spine_03.x",
+        "c_neck.x", "c_head.x",
+        "c_shoulder", "c_arm_fk", "c_forearm_fk", "c_hand_fk",
+        "c_thigh_fk", "c_leg_fk", "c_foot_fk", "c_toes_fk",
+    ),
+    "Blender": (
+        "hips hip pelvis", "spine torso abdomen", "chest spine1 spine01 spine001",
+        "upperChest spine2 spine02 spine002", "neck", "head",
+        "shoulder clavicle collar", "upperArm upArm", "lowerArm foreArm loArm", "hand wrist",
+        "upperLeg upLeg thigh", "lowerLeg loLeg shin calf", "foot ankle",
+        "toes toe toeBase ball",
+    ),
+}  # fmt: skip
