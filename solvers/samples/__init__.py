@@ -1,0 +1,14 @@
+"""A walk that the project itself makes, and ways to spoil it: for the demo, tests, benchmarks.
+
+>>> from solvers.samples import CorruptionSettings, GaitSettings, corrupt, walking_gait
+>>> walk = walking_gait(GaitSettings(duration=2.0, frame_rate=30.0))
+>>> spoilt = corrupt(walk, CorruptionSettings(jitter=3.0), missing={"RightArm": range(20, 40)})
+>>> bool(walk.observed.all()), int((~spoilt.observed).any(axis=1).sum())
+(True, 20)
+"""
+
+from .corruption import CorruptionSettings, corrupt
+from .gait import GaitSettings, walking_gait
+from .walker import walker_skeleton
+
+__all__ = ["CorruptionSettings", "GaitSettings", "corrupt", "walker_skeleton", "walking_gait"]

@@ -1,0 +1,107 @@
+"""The noise must be what its settings say, since benchmarks quote them."""
+
+import numpy as np
+import pytest
+from numpy.testing import assert_allclose
+
+from solvers.errors import InvalidMotionError, InvalidSettingError
+from solvers.motion.rotations import inverse, multiply, rotation_vector_from_quaternion
+from solvers.samples import CorruptionSettings, GaitSettings, corrupt, walking_gait
+
+CLEAN = CorruptionSettings(jitter=0.0)
+
+
+@pytest.fixture(scope="module")
+def walk():
+    return walking_gait(GaitSettings(duration=20.0, frame_rate=30.0))
+
+
+def test_jitter_has_the_stated_deviation_on_every_channel(walk):
+    error = noise(corrupt(walk, CorruptionSettings(jitter=3.0)), walk)
+
+    turning = [not walk.skeleton.is_end_site(joint) for joint in range(walk.n_joints)]
+    assert_allclose(error[:, turning].std(axis=0), 3.0, atol=0.5)
+    assert_allclose(np.abs(error[:, turning]).mean(), 3.0 * np.sqrt(2 / np.pi), rtol=0.02)
+    assert_allclose(error[:, np.invert(turning)], 0.0, atol=1e-9)
+
+
+def test_spikes_have_the_stated_share_and_size(walk):
+    """One channel at a time, so that the size can be read off the rotation vector."""
+    settings = CorruptionSettings(jitter=0.0, spikes=0.01)
+
+    error = noise(corrupt(walk, settings), walk)
+    alone = error[np.count_nonzero(np.abs(error) > 1e-6, axis=2) == 1]
+    size = np.abs(alone).max(axis=1)
+
+    rotating = sum(not walk.skeleton.is_end_site(joint) for joint in range(walk.n_joints))
+    share = np.count_nonzero(np.abs(error) > 1e-6) / (walk.n_frames * rotating * 3)
+    assert share == pytest.approx(0.01, rel=0.1)
+    assert 20.0 <= size.min() < 23.0 and 57.0 < size.max() <= 60.0
+    assert abs(np.sign(alone.sum(axis=1)).mean()) < 0.2
+
+
+def test_a_missing_joint_takes_along_what_hangs_on_it(walk):
+    spoilt = corrupt(walk, CLEAN, missing={"RightArm": range(100, 160)})
+
+    names = np.array(walk.skeleton.names)[~spoilt.observed[120]]
+    assert set(names) == {"RightArm", "RightForeArm", "RightHand", "RightHand_end"}
+    frames = np.flatnonzero((~spoilt.observed).any(axis=1))
+    assert (frames[0], frames[-1]) == (100, 159)
+
+
+def test_without_the_root_nothing_is_known(walk):
+    spoilt = corrupt(walk, CLEAN, missing={"Hips": range(5, 6)})
+
+    assert not spoilt.observed[5].any()
+    assert np.isnan(spoilt.root_positions[5]).all()
+    assert spoilt.observed[6].all()
+
+
+def test_the_root_jitters_and_sways_as_stated(walk):
+    jitter = corrupt(walk, CorruptionSettings(jitter=0.0, root_jitter=0.02))
+    sway = corrupt(walk, CorruptionSettings(jitter=0.0, root_sway=0.02))
+
+    assert_allclose((jitter.root_positions - walk.root_positions).std(), 0.02, rtol=0.1)
+    moved = sway.root_positions - walk.root_positions
+    assert 0.01 < moved[:, :2].std() < 0.03
+    assert np.abs(np.diff(moved, axis=0)).max() < 0.006, "slow"
+    assert_allclose(moved[:, 2], 0.0, atol=1e-12)
+
+
+def test_nothing_wrong_leaves_the_motion_as_it_was(walk):
+    same = corrupt(walk, CLEAN)
+
+    assert_allclose(same.rotations, walk.rotations, atol=1e-12)
+    assert_allclose(same.root_positions, walk.root_positions)
+
+
+def test_the_seed_decides_and_the_input_is_left_alone(walk):
+    before = walk.rotations.copy()
+
+    first, again, other = (corrupt(walk, CorruptionSettings(seed=seed)) for seed in (1, 1, 2))
+
+    assert np.array_equal(first.rotations, again.rotations)
+    assert not np.array_equal(first.rotations, other.rotations)
+    assert np.array_equal(walk.rotations, before)
+
+
+@pytest.mark.parametrize("frames", [range(590, 601), range(-1, 4), range(0, 10, 2)])
+def test_names_the_joint_whose_missing_frames_make_no_sense(walk, frames):
+    with pytest.raises(InvalidMotionError, match="frames of Hips must be a plain range within"):
+        corrupt(walk, CLEAN, missing={"Hips": frames})
+
+
+def test_says_when_a_missing_joint_is_not_there(walk):
+    with pytest.raises(InvalidMotionError, match="There is no joint Tail"):
+        corrupt(walk, CLEAN, missing={"Tail": range(2)})
+
+
+def test_refuses_a_share_above_one():
+    with pytest.raises(InvalidSettingError, match="spikes is 2; it must lie between 0 and 1"):
+        CorruptionSettings(spikes=2.0)
+
+
+def noise(spoilt, clean):
+    """Rotation vectors from the clean to the spoilt pose, degrees."""
+    turn = multiply(inverse(clean.rotations), spoilt.rotations)
+    return np.degrees(rotation_vector_from_quaternion(turn))
