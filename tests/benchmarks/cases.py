@@ -1,0 +1,88 @@
+"""One spoilt clip with everything a method may know, and what a method makes of it."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+
+from solvers.motion import Motion
+
+from .noise import METRES_PER_DEGREE, Array, Channels, channel_error, corrupt, seeded
+
+
+@dataclass(frozen=True)
+class Level:
+    """How much a clip is spoilt: degrees, and the fraction of samples that are outliers."""
+
+    sigma: float
+    fraction: float = 0.0
+
+    def __str__(self) -> str:
+        outliers = f"{100 * self.fraction:g} %" if self.fraction else "0"
+        return f"{self.sigma:g}, {outliers}"
+
+
+LEVELS = (
+    *(Level(sigma) for sigma in (1.0, 3.0, 5.0, 7.0)),
+    *(Level(3.0, fraction) for fraction in (0.05, 0.10, 0.15, 0.25, 0.40)),
+)
+
+
+@dataclass(frozen=True, eq=False)
+class Case:
+    """A clip, spoilt, with the clips that a method may learn from."""
+
+    name: str
+    level: Level
+    truth: Motion
+    training: Sequence[Motion]
+    channels: Channels
+    clean_root: bool = False
+
+    @cached_property
+    def clean(self) -> Array:
+        """True angle channels, degrees, and root position in units of METRES_PER_DEGREE."""
+        return with_root(self.channels.values(self.truth), self.truth)
+
+    @cached_property
+    def noisy(self) -> Array:
+        """Spoilt channels, same shape as `clean`."""
+        rng = seeded(self.name, self.level.sigma, self.level.fraction)
+        noisy = corrupt(self.clean, self.level.sigma, self.level.fraction, rng)
+        if self.clean_root:
+            noisy[:, -3:] = self.clean[:, -3:]
+        return noisy
+
+    @cached_property
+    def noisy_motion(self) -> Motion:
+        """What our method is given."""
+        return self.motion(self.noisy)
+
+    @cached_property
+    def training_values(self) -> list[Array]:
+        """Angle channels of the training clips, headings of each about zero."""
+        return [without_heading(self.channels.values(motion)) for motion in self.training]
+
+    def motion(self, values: Array) -> Motion:
+        """Return the motion with these channels, root included."""
+        moved = self.channels.motion(values[:, :-3], self.truth)
+        return moved.with_poses(root_positions=values[:, -3:] * METRES_PER_DEGREE)
+
+    def values(self, motion: Motion) -> Array:
+        """Return the channels of a motion, root included."""
+        return with_root(self.channels.values(motion), motion)
+
+    def error(self, estimate: Array) -> float:
+        """Mean absolute error of the angle channels, degrees."""
+        return channel_error(estimate[:, :-3], self.clean[:, :-3])
+
+
+def with_root(values: Array, motion: Motion) -> Array:
+    """Append the root's position in units of METRES_PER_DEGREE."""
+    return np.hstack([values, motion.root_positions / METRES_PER_DEGREE])
+
+
+def without_heading(values: Array) -> Array:
+    """Return channels whose first, the heading, is about zero in this clip."""
+    return np.hstack([values[:, :1] - values[:, :1].mean(), values[:, 1:]])

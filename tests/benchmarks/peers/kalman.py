@@ -1,0 +1,132 @@
+"""Kalman filters with Rauch-Tung-Striebel smoothing; NaN = not measured."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.linalg import cho_factor, cho_solve
+
+Array = NDArray[np.float64]
+RIDGE = 1e-3
+
+
+@dataclass(frozen=True, eq=False)
+class Dynamics:
+    """x' = F x + offset + N(0, Q); y = H x + N(0, R); x starts as N(start, spread)."""
+
+    F: Array
+    Q: Array
+    H: Array
+    R: Array
+    offset: Array
+    start: Array
+    spread: Array
+
+
+def smooth(dynamics: Dynamics, measured: Array) -> Array:
+    """Return the smoothed states, shape (n_frames, n_states, ...): exact posterior means.
+
+    `measured` is (n_frames, n_measured) with NaN anywhere. Rauch, Tung, Striebel (1965).
+    """
+    F, H = dynamics.F, dynamics.H
+    mean, P = dynamics.start, dynamics.spread
+    predicted, filtered = [], []
+    for frame, y in enumerate(measured):
+        if frame:
+            mean, P = F @ mean + dynamics.offset, F @ P @ F.T + dynamics.Q
+        predicted.append((mean, P))
+        seen = np.isfinite(y)
+        if seen.any():
+            S = H[seen] @ P @ H[seen].T + dynamics.R[np.ix_(seen, seen)]
+            gain = cho_solve(cho_factor(S), H[seen] @ P).T
+            mean = mean + gain @ (y[seen] - H[seen] @ mean)
+            P = P - gain @ H[seen] @ P
+            P = 0.5 * (P + P.T)
+        filtered.append((mean, P))
+    states = [mean]
+    for (m, P), (m_next, P_next) in zip(filtered[-2::-1], predicted[:0:-1], strict=True):
+        gain = cho_solve(cho_factor(P_next), F @ P).T
+        states.append(m + gain @ (states[-1] - m_next))
+    return np.array(states[::-1])
+
+
+def constant_velocity(noisy: Array, frame_rate: float, agility: float) -> Array:
+    """Each channel moves steadily, disturbed by white-noise acceleration.
+
+    `agility` is the ratio of disturbance to measurement noise, per frame; larger follows the
+    data closer. All channels with the same missing frames share one recursion.
+    """
+    F = np.array([[1.0, 1.0], [0.0, 1.0]])
+    Q = agility**2 * np.array([[1 / 3, 1 / 2], [1 / 2, 1.0]])
+    return _each_channel(noisy, F, Q)
+
+
+def constant_acceleration(noisy: Array, frame_rate: float, agility: float) -> Array:
+    """Each channel accelerates steadily, disturbed by white-noise jerk."""
+    F = np.array([[1.0, 1.0, 0.5], [0.0, 1.0, 1.0], [0.0, 0.0, 1.0]])
+    Q = agility**2 * np.array([
+        [1 / 20, 1 / 8, 1 / 6],
+        [1 / 8, 1 / 3, 1 / 2],
+        [1 / 6, 1 / 2, 1.0],
+    ])
+    return _each_channel(noisy, F, Q)
+
+
+def learned_dynamics(
+    noisy: Array, frame_rate: float, sigma: float, training: Sequence[Array]
+) -> Array:
+    """Linear dynamics of all channels together, learned by regression from the training clips.
+
+    The "data-driven Kalman filter" of [LC10] 2.3.2, with smoothing; `sigma` is the
+    measurement noise.
+    """
+    return np.asarray(smooth(learn_dynamics(training, sigma), noisy))
+
+
+def learn_dynamics(training: Sequence[Array], sigma: float) -> Dynamics:
+    """Regress every frame on the frame before, with a little ridge."""
+    before = np.concatenate([clip[:-1] for clip in training])
+    after = np.concatenate([clip[1:] for clip in training])
+    mean = before.mean(axis=0)
+    X, Y = before - mean, after - mean
+    n = X.shape[1]
+    scatter = X.T @ X
+    F = np.linalg.solve(scatter + RIDGE * len(X) * np.eye(n), X.T @ Y).T
+    Q = np.cov((Y - X @ F.T).T) + 1e-6 * np.eye(n)
+    spread = scatter / len(X) + 1e-6 * np.eye(n)
+    eye = np.eye(n)
+    return Dynamics(F, Q, eye, sigma**2 * eye, mean - F @ mean, mean, spread)
+
+
+def _each_channel(noisy: Array, F: Array, Q: Array) -> Array:
+    """Smooth all channels; those that are seen in the same frames share gains."""
+    H = np.eye(1, len(F))
+    result = np.empty_like(noisy)
+    patterns, which = np.unique(np.isfinite(noisy), axis=1, return_inverse=True)
+    for number in range(patterns.shape[1]):
+        columns = np.flatnonzero(which.ravel() == number)
+        result[:, columns] = _shared_gains(noisy[:, columns], patterns[:, number], F, Q, H)
+    return result
+
+
+def _shared_gains(noisy: Array, seen: NDArray[np.bool_], F: Array, Q: Array, H: Array) -> Array:
+    n = len(F)
+    mean = np.zeros((n, noisy.shape[1]))
+    mean[0] = noisy[np.flatnonzero(seen)[0]] if seen.any() else 0.0
+    P = 1e4 * np.eye(n)
+    predicted, filtered = [], []
+    for frame, y in enumerate(noisy):
+        if frame:
+            mean, P = F @ mean, F @ P @ F.T + Q
+        predicted.append((mean, P))
+        if seen[frame]:
+            gain = P @ H.T / (H @ P @ H.T + 1.0)
+            mean = mean + gain @ (y - H @ mean)
+            P = P - gain @ H @ P
+        filtered.append((mean, P))
+    states = [mean]
+    for (m, P), (m_next, P_next) in zip(filtered[-2::-1], predicted[:0:-1], strict=True):
+        gain = np.linalg.solve(P_next, F @ P).T
+        states.append(m + gain @ (states[-1] - m_next))
+    return np.array(states[::-1])[:, 0]
