@@ -1,0 +1,57 @@
+"""The legs of a skeleton, and the points of its feet."""
+
+from dataclasses import dataclass
+
+from ..motion import Motion, Skeleton, Tracks
+from ..motion.humanoid import HumanoidMap, find_humanoid_map
+from ..motion.humanoid_names import roles_by_name
+
+SIDES = ("left", "right")
+
+
+@dataclass(frozen=True)
+class Leg:
+    """Indices of the joints of one leg."""
+
+    side: str
+    hip: int
+    knee: int
+    ankle: int
+    toe: int | None
+    """Ball of the foot; None where the rig has no toes."""
+
+
+def find_legs(skeleton: Skeleton, humanoid_map: HumanoidMap | None = None) -> tuple[Leg, ...]:
+    """Return the legs whose hip, knee and ankle are known, left first."""
+    joints = (humanoid_map or find_humanoid_map(skeleton)).indices(skeleton)
+    found = []
+    for side in SIDES:
+        chain = [joints.get(f"{side}{role}") for role in ("UpperLeg", "LowerLeg", "Foot")]
+        if None in chain:
+            continue
+        hip, knee, ankle = (joint for joint in chain if joint is not None)
+        if knee in skeleton.subtree(hip)[1:] and ankle in skeleton.subtree(knee)[1:]:
+            toe = joints.get(f"{side}Toes")
+            toe = toe if toe in skeleton.subtree(ankle)[1:] else None
+            found.append(Leg(side, hip, knee, ankle, toe))
+    return tuple(found)
+
+
+def foot_points(
+    recording: Motion | Tracks, humanoid_map: HumanoidMap | None = None
+) -> dict[str, list[int]]:
+    """Return, per side, the indices of ankle and toe, as far as they are known.
+
+    Joints of a motion, or points of tracks that are called like joints.
+    """
+    if isinstance(recording, Motion):
+        legs = find_legs(recording.skeleton, humanoid_map)
+        return {leg.side: [leg.ankle, leg.toe or leg.ankle] for leg in legs}
+    roles = humanoid_map.joints if humanoid_map else roles_by_name(recording.names)
+    place = {name: index for index, name in enumerate(recording.names)}
+    found = {
+        side: [place[roles[role]] for role in (f"{side}Foot", f"{side}Toes")
+               if role in roles and roles[role] in place]
+        for side in SIDES
+    }  # fmt: skip
+    return {side: points for side, points in found.items() if points}

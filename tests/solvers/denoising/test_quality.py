@@ -1,0 +1,219 @@
+"""The figures must mean what they say."""
+
+import json
+
+import numpy as np
+import pytest
+from numpy.testing import assert_allclose
+
+from solvers.denoising.bone_lengths import bone_drifts
+from solvers.denoising.foot_slide import foot_slide
+from solvers.denoising.quality import QualitySettings, mean_jitter, measure_quality
+from solvers.denoising.quality_report import compare_quality
+from solvers.errors import InvalidMotionError, InvalidSettingError, SolveCancelled
+from solvers.motion import Motion, Skeleton, Tracks
+from solvers.motion.rotations import multiply, quaternion_from_rotation_vector, rotate
+
+
+def test_jitter_of_a_cubic_is_its_third_derivative():
+    time = np.arange(50) / 120.0
+    positions = (time**3)[:, None, None] * np.array([[[1.0, 2.0, 2.0]]])
+
+    assert_allclose(mean_jitter(positions, 120.0), 6.0 * 3.0, rtol=1e-6)
+
+
+def test_jitter_leaves_out_what_was_not_observed(rng):
+    positions = rng.normal(size=(40, 2, 3))
+    gapped = positions.copy()
+    gapped[20:, 0] = np.nan
+
+    assert_allclose(mean_jitter(gapped, 30.0)[0], mean_jitter(positions[:20], 30.0)[0])
+
+
+def test_jitter_of_three_frames_is_unknown():
+    assert np.isnan(mean_jitter(np.zeros((3, 2, 3)), 30.0)).all()
+
+
+def test_finds_spikes_and_gaps_where_they_are(swinging_leg):
+    rotations = swinging_leg.rotations.copy()
+    jump = quaternion_from_rotation_vector([0.0, 0.7, 0.0])
+    rotations[60, 1] = multiply(rotations[60, 1], jump)
+    rotations[20:30, 2] = np.nan
+
+    quality = measure_quality(swinging_leg.with_poses(rotations))
+
+    assert np.argwhere(quality.spikes).tolist() == [[60, 1]]
+    assert np.argwhere(quality.gaps).tolist() == [[frame, 2] for frame in range(20, 30)]
+    knee = next(signal for signal in quality.signals if signal.joint == "knee")
+    assert_allclose(knee.deviation[60], 0.7, atol=0.01)
+
+
+def test_a_root_that_jumps_is_a_spike_of_the_root(swinging_leg):
+    place = swinging_leg.root_positions.copy()
+    place[40] += [0.0, 0.0, 0.3]
+
+    quality = measure_quality(swinging_leg.with_poses(root_positions=place))
+
+    assert np.argwhere(quality.spikes).tolist() == [[40, 0]]
+
+
+def test_a_clean_take_has_none(swinging_leg):
+    quality = measure_quality(swinging_leg)
+
+    assert not quality.spikes.any()
+    assert not quality.gaps.any()
+
+
+@pytest.mark.parametrize("rate", [30.0, 60.0, 120.0])
+def test_noise_is_reported_in_its_own_size_at_any_frame_rate(rng, leg, rate):
+    time = np.arange(int(4 * rate)) / rate
+    vectors = np.zeros((len(time), 4, 3))
+    vectors[:, 1, 0] = 0.5 * np.sin(2 * np.pi * time)
+    vectors[:, :3] += rng.normal(scale=0.05, size=(len(time), 3, 3))
+    motion = Motion(
+        leg, quaternion_from_rotation_vector(vectors), np.zeros((len(time), 3)), rate
+    )
+
+    noise = [signal.noise for signal in measure_quality(motion).signals if signal.turns]
+
+    assert_allclose(noise, 0.05, rtol=0.3)
+
+
+def test_a_turned_and_moved_take_has_the_same_faults(swinging_leg, rng):
+    turn = quaternion_from_rotation_vector([0.0, 0.0, 1.0])
+    rotations = multiply(
+        swinging_leg.rotations,
+        quaternion_from_rotation_vector(rng.normal(scale=0.03, size=(120, 4, 3))),
+    )
+    take = swinging_leg.with_poses(rotations)
+    turned = rotations.copy()
+    turned[:, 0] = multiply(turn, turned[:, 0])
+    elsewhere = take.with_poses(turned, np.add(take.root_positions, (3.0, -2.0, 0.0)))
+
+    a, b = measure_quality(take), measure_quality(elsewhere)
+
+    assert (a.spikes == b.spikes).all()
+    assert_allclose(a.jitter[1], b.jitter[1], rtol=1e-9)
+
+
+def test_slide_is_the_way_of_a_foot_that_stands():
+    """A foot at 0.3 m/s to the side: 0.3 m/s, and 0.3 m in 100 steps at 100 Hz."""
+    points = np.zeros((201, 2, 3))
+    points[:, :, 0] = 0.003 * np.arange(201)[:, None]
+    contact = np.arange(201) >= 100
+
+    slide = foot_slide("left", "foot", points, contact, 100.0)
+
+    assert_allclose(slide.mean_speed, 0.3, rtol=1e-9)
+    assert_allclose(slide.distance, 0.3, rtol=1e-9)
+
+
+def test_a_foot_that_rolls_over_its_toe_does_not_slide():
+    points = np.zeros((50, 2, 3))
+    points[:, 0, 1] = -0.01 * np.arange(50)
+
+    slide = foot_slide("left", "foot", points, np.ones(50, dtype=bool), 60.0)
+
+    assert slide.distance == 0.0
+
+
+def test_bones_are_found_and_their_drift_measured(rng):
+    """Two rigid rods that wander apart; one point creeps along its rod by 4 cm."""
+    n_frames = 400
+    away = np.cumsum(rng.normal(scale=0.05, size=(n_frames, 2, 3)), axis=0)
+    turns = quaternion_from_rotation_vector(rng.normal(size=(n_frames, 2, 3)))
+    rods = rotate(turns, [0.3, 0.0, 0.0])
+    rods[:, 1] *= np.linspace(1.0, 1.0 + 0.04 / 0.3, n_frames)[:, None]
+    positions = np.stack(
+        [away[:, 0], away[:, 0] + rods[:, 0], away[:, 1], away[:, 1] + rods[:, 1]], axis=1
+    )
+    tracks = Tracks(("a", "b", "c", "d"), positions, 60.0)
+
+    bones = {(bone.first, bone.second): bone for bone in bone_drifts(tracks)}
+
+    assert ("a", "b") in bones and ("c", "d") in bones
+    assert_allclose(bones["a", "b"].length, 0.3, rtol=1e-6)
+    assert bones["a", "b"].drift < 1e-9
+    assert_allclose(bones["c", "d"].drift, 0.9 * 0.04, rtol=0.02)
+
+
+def test_tracks_with_gaps_are_measured(rng):
+    positions = np.cumsum(rng.normal(scale=0.001, size=(200, 3, 3)), axis=0)
+    positions[50:80, 1] = np.nan
+    positions[:, 2] = np.nan
+
+    quality = measure_quality(Tracks(("a", "b", "c"), positions, 60.0))
+
+    assert quality.gaps.sum(axis=0).tolist() == [0, 30, 200]
+    assert "never" not in quality.report()
+    assert [(bone.first, bone.second) for bone in quality.bones] == [("a", "b")]
+
+
+def test_the_report_names_every_joint_and_the_figures_fit_in_json(swinging_leg):
+    quality = measure_quality(swinging_leg)
+
+    report = quality.report()
+    figures = json.loads(json.dumps(quality.figures(), allow_nan=False))
+
+    assert all(name in report for name in ("hip", "knee", "ankle"))
+    assert "120 frames at 60 Hz (2.0 s)" in report
+    assert figures["spikes"] == 0
+    assert set(figures["joints"]) == set(quality.names)
+
+
+def test_two_takes_stand_side_by_side(swinging_leg, rng):
+    noise = quaternion_from_rotation_vector(rng.normal(scale=0.05, size=(120, 4, 3)))
+    noisy = swinging_leg.with_poses(multiply(swinging_leg.rotations, noise))
+
+    table = compare_quality(measure_quality(noisy), measure_quality(swinging_leg))
+
+    assert "before" in table and "after" in table
+    assert "foot slide" in table
+
+
+@pytest.mark.parametrize("n_frames", [1, 2, 3, 5])
+def test_short_takes_are_measured(swinging_leg, n_frames):
+    quality = measure_quality(swinging_leg.slice(0, n_frames))
+
+    assert quality.n_frames == n_frames
+    assert not quality.spikes.any()
+    json.dumps(quality.figures(), allow_nan=False)
+    quality.report()
+
+
+def test_wrong_contacts_are_refused(walker):
+    with pytest.raises(InvalidMotionError, match=r"Contacts need shape \(.*, 2\)"):
+        measure_quality(walker, contacts=np.ones((3, 2), dtype=bool))
+
+
+def test_a_threshold_below_the_noise_is_refused():
+    with pytest.raises(InvalidSettingError, match="spike_threshold is 0"):
+        QualitySettings(spike_threshold=0.0)
+
+
+def test_rises_to_one_and_can_be_cancelled(swinging_leg):
+    told = []
+    measure_quality(swinging_leg, progress=lambda fraction, message="": told.append(fraction))
+
+    assert told == sorted(told) and told[-1] == 1.0
+
+    def stop(fraction, message=""):
+        raise SolveCancelled
+
+    with pytest.raises(SolveCancelled):
+        measure_quality(swinging_leg, progress=stop)
+
+
+@pytest.fixture
+def walker() -> Motion:
+    """Two straight legs under a hip, standing still."""
+    names, parents, offsets = ["Hips"], [-1], [[0, 0, 0.9]]
+    for side, sign in (("Left", 1), ("Right", -1)):
+        start = len(names)
+        names += [f"{side}{part}" for part in ("UpLeg", "Leg", "Foot", "ToeBase")]
+        parents += [0, start, start + 1, start + 2]
+        offsets += [[0.1 * sign, 0, 0], [0, 0, -0.42], [0, 0, -0.4], [0, -0.14, -0.06]]
+    skeleton = Skeleton(tuple(names), tuple(parents), np.array(offsets, dtype=float))
+    return Motion(
+        skeleton, np.tile([1.0, 0, 0, 0], (30, 9, 1)), np.tile([0, 0, 0.9], (30, 1)), 30.0
+    )

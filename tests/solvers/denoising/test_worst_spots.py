@@ -1,0 +1,101 @@
+"""The list must lead the animator to what is wrong, worst first, and to nothing else."""
+
+import numpy as np
+import pytest
+
+from solvers.denoising.quality import measure_quality
+from solvers.denoising.worst_spots import SpotSettings, find_worst_spots
+from solvers.motion import Motion
+from solvers.motion.rotations import multiply, quaternion_from_rotation_vector
+from solvers.recordings.bvh import read_bvh
+
+
+def shaken(motion: Motion, joint: int, frames: slice, scale: float, rng) -> Motion:
+    rotations = motion.rotations.copy()
+    size = (*rotations[frames, joint].shape[:-1], 3)
+    noise = quaternion_from_rotation_vector(rng.normal(scale=scale, size=size))
+    rotations[frames, joint] = multiply(rotations[frames, joint], noise)
+    return motion.with_poses(rotations)
+
+
+def test_a_clean_take_has_no_spots(swinging_leg):
+    assert find_worst_spots(swinging_leg) == ()
+
+
+def test_a_spike_is_named_with_its_place_and_size(swinging_leg):
+    rotations = swinging_leg.rotations.copy()
+    jump = quaternion_from_rotation_vector([0.0, np.radians(40.0), 0.0])
+    rotations[70:72, 1] = multiply(rotations[70:72, 1], jump)
+
+    (spot,) = find_worst_spots(swinging_leg.with_poses(rotations))
+
+    assert (spot.joint, spot.start_frame, spot.stop_frame, spot.kind) == (
+        "knee",
+        70,
+        72,
+        "spike",
+    )
+    assert spot.sentence.startswith("knee jumps by 4")
+    assert spot.severity > 3.0
+
+
+def test_a_gap_is_worse_the_longer_it_is(swinging_leg):
+    rotations = swinging_leg.rotations.copy()
+    rotations[10:20, 2] = np.nan
+    rotations[50:90, 1] = np.nan
+
+    spots = find_worst_spots(swinging_leg.with_poses(rotations))
+
+    assert [(spot.joint, spot.kind) for spot in spots] == [("knee", "gap"), ("ankle", "gap")]
+    assert spots[0].sentence == "knee is missing for 0.67 s."
+
+
+def test_a_joint_that_shakes_for_a_while_is_found(swinging_leg, rng):
+    take = shaken(swinging_leg, 1, slice(60, 110), 0.05, rng)
+
+    spots = [spot for spot in find_worst_spots(take) if spot.kind == "jitter"]
+
+    assert {spot.joint for spot in spots} == {"knee"}
+    assert spots[0].start_frame < 75 and spots[0].stop_frame > 95
+
+
+@pytest.mark.parametrize("scale", [0.005, 0.02, 0.08])
+def test_noise_all_over_the_take_is_no_spot(swinging_leg, rng, scale):
+    """It is the take's own standard; the report states its size."""
+    take = shaken(swinging_leg, slice(0, 3), slice(None), scale, rng)
+
+    assert not [spot for spot in find_worst_spots(take) if spot.kind == "jitter"]
+
+
+def test_a_foot_that_slides_while_it_stands_is_found(recordings):
+    walk = read_bvh(recordings / "mocap" / "cmu_walk" / "07_01.bvh").slice(1, 120)
+    contacts = np.zeros((walk.n_frames, 2), dtype=bool)
+    contacts[20:60, 0] = True
+
+    quality = measure_quality(walk, contacts=contacts)
+
+    spots = [spot for spot in find_worst_spots(walk, quality) if spot.kind == "foot slide"]
+    assert all((spot.start_frame, spot.stop_frame) == (20, 60) for spot in spots)
+
+
+def test_worst_first_and_no_more_than_asked_for(swinging_leg, rng):
+    rotations = swinging_leg.rotations.copy()
+    for frame, angle in ((20, 0.3), (50, 0.9), (80, 0.6)):
+        jump = quaternion_from_rotation_vector([0.0, angle, 0.0])
+        rotations[frame, 1] = multiply(rotations[frame, 1], jump)
+
+    spots = find_worst_spots(
+        swinging_leg.with_poses(rotations), settings=SpotSettings(n_spots=2)
+    )
+
+    assert [spot.start_frame for spot in spots] == [50, 80]
+
+
+def test_a_joint_never_observed_is_one_spot(swinging_leg):
+    rotations = swinging_leg.rotations.copy()
+    rotations[:, 1] = np.nan
+
+    (spot,) = find_worst_spots(swinging_leg.with_poses(rotations))
+
+    assert spot.sentence == "knee is never observed."
+    assert (spot.start_frame, spot.stop_frame) == (0, 120)
