@@ -1,6 +1,7 @@
 """One reader per file format of recorded motion, and writers for those worth writing."""
 
+from .acclaim import read_acclaim
 from .bvh import read_bvh
 from .bvh_writing import write_bvh
 
-__all__ = ["read_bvh", "write_bvh"]
+__all__ = ["read_acclaim", "read_bvh", "write_bvh"]

@@ -63,9 +63,8 @@ def read_bvh(
     width = sum(len(joint.channels) for joint in joints)
     if not width:
         raise InvalidFileError(f"{path} has no CHANNELS, so nothing in it moves.")
-    rows = read_rows(
-        lines[n_head:], width, path, first_line + n_head, within(progress, 0.0, 0.7)
-    )
+    numbers = range(first_line + n_head, first_line + len(lines))
+    rows = read_rows(lines[n_head:], width, path, numbers, within(progress, 0.0, 0.7))
     del lines
     if not len(rows):
         raise InvalidFileError(f"{path} has no frames: nothing follows its Frame Time.")

@@ -29,7 +29,7 @@ def read_rows(
     lines: Sequence[bytes],
     width: int,
     path: Path | str,
-    first_line: int,
+    line_numbers: Sequence[int],
     progress: Progress = unwatched,
 ) -> NDArray[np.float64]:
     """Read one row of numbers per line; blank lines are passed over.
@@ -41,8 +41,8 @@ def read_rows(
         How many numbers each row must have.
     path : Path or str
         For error messages.
-    first_line : int
-        Number of the first of these lines in its file, counted from 1.
+    line_numbers : sequence of int
+        Number of each of these lines in its file, counted from 1; likewise.
     progress : Progress
 
     Returns
@@ -57,8 +57,8 @@ def read_rows(
     """
     parts = [np.empty((0, width))]
     for start in range(0, len(lines), ROWS_AT_ONCE):
-        block = lines[start : start + ROWS_AT_ONCE]
-        parts.append(_read_block(block, width, path, first_line + start))
+        block = slice(start, start + ROWS_AT_ONCE)
+        parts.append(_read_block(lines[block], width, path, line_numbers[block]))
         progress(min(1.0, (start + ROWS_AT_ONCE) / len(lines)), "Reading")
     rows = np.concatenate(parts)
     rows[np.isinf(rows)] = np.nan
@@ -66,7 +66,7 @@ def read_rows(
 
 
 def _read_block(
-    lines: Sequence[bytes], width: int, path: Path | str, first_line: int
+    lines: Sequence[bytes], width: int, path: Path | str, line_numbers: Sequence[int]
 ) -> NDArray[np.float64]:
     filled = [line for line in lines if line.strip()]
     if not filled:
@@ -78,8 +78,8 @@ def _read_block(
     except ValueError:
         pass  # Line by line it is seen which line is wrong, or merely unusual.
     read = [
-        _read_line(line, width, f"{path}, line {first_line + number}")
-        for number, line in enumerate(lines)
+        _read_line(line, width, f"{path}, line {number}")
+        for number, line in zip(line_numbers, lines, strict=True)
         if line.strip()
     ]
     return np.array(read)

@@ -1,6 +1,5 @@
 """A BVH file means what other programs take it to mean, however its exporter spelled it."""
 
-import numpy as np
 import pytest
 from numpy.testing import assert_allclose
 

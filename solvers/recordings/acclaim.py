@@ -1,0 +1,201 @@
+"""Read Acclaim recordings (AMC with the ASF of the actor): CMU's library and HDM05."""
+
+from collections import defaultdict
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..errors import InvalidFileError, InvalidSettingError
+from ..motion import Motion, Skeleton
+from ..motion.rotations import inverse, multiply, quaternion_from_euler
+from ..progress import Progress, unwatched, within
+from .acclaim_skeleton import AcclaimBone, AcclaimSkeleton, read_acclaim_skeleton
+from .axes import turns_z_up_from_y_up, z_up_from_y_up
+from .text import read_bytes, read_rows
+
+FRAMES_AT_ONCE = 2000
+
+
+def read_acclaim(
+    amc_path: Path | str,
+    asf_path: Path | str | None = None,
+    *,
+    frame_rate: float = 120.0,
+    scale: float | None = None,
+    progress: Progress = unwatched,
+) -> Motion:
+    """Read an AMC file and the ASF file of its actor, turned from Y up to Z up.
+
+    In these files a rotation belongs to a bone and is given about the bone's own axes C: with
+    M the turn that is recorded, C M C^-1 turns the bone in rest-pose axes [1]_. Here each bone
+    becomes a joint of the same name that lies where the bone starts, and the last bone of a
+    branch gets an end site. Bones that the recording never mentions stay at rest; a bone that
+    single frames leave out has a gap (NaN) there. CMU's and HDM05's files leave out one of the
+    three angles of the feet, whose toes stray by some centimetres when the ankle bends far.
+
+    Parameters
+    ----------
+    amc_path : Path or str
+    asf_path : Path, str or None
+        None looks beside the AMC file: for the same name, or else for the longest name that
+        the recording's own name starts with.
+    frame_rate : float, hertz
+        AMC files do not say theirs. CMU and HDM05 were recorded at 120 Hz.
+    scale : float, metres per unit of the files, or None
+        None takes it from the ASF file's `length`: 0.0254 / length.
+    progress : Progress
+
+    Returns
+    -------
+    Motion
+
+    Raises
+    ------
+    InvalidFileError
+        A file is missing or damaged, or the two do not belong together.
+    InvalidSettingError
+        The frame rate or scale is not positive.
+    SolveCancelled
+        Raised by `progress`.
+
+    References
+    ----------
+    .. [1] Lander (1998). Working with motion capture file formats. Game Developer, January.
+    """
+    if not (np.isfinite(frame_rate) and frame_rate > 0.0) or (scale is not None and scale <= 0):
+        raise InvalidSettingError("A frame rate and a scale must be positive.")
+    content = read_bytes(amc_path)
+    skeleton = read_acclaim_skeleton(find_skeleton(amc_path) if asf_path is None else asf_path)
+    recorded = _recorded(content.splitlines(), skeleton, amc_path, within(progress, 0.0, 0.7))
+    return _motion(skeleton, recorded, frame_rate, scale, within(progress, 0.7, 1.0))
+
+
+def find_skeleton(amc_path: Path | str) -> Path:
+    """Return the ASF file beside a recording that its name belongs to.
+
+    Raises
+    ------
+    InvalidFileError
+        There is none.
+    """
+    amc_path = Path(amc_path)
+    beside = [path for path in sorted(amc_path.parent.iterdir()) if _is_for(path, amc_path)]
+    if not beside:
+        raise InvalidFileError(
+            f"There is no skeleton for {amc_path}: put the actor's .asf file beside it, under"
+            " the same name or the beginning of it."
+        )
+    return max(beside, key=lambda path: len(path.stem))
+
+
+def _is_for(path: Path, amc_path: Path) -> bool:
+    return path.suffix.lower() == ".asf" and amc_path.stem.startswith(path.stem)
+
+
+def _recorded(
+    lines: Sequence[bytes], skeleton: AcclaimSkeleton, path: Path | str, progress: Progress
+) -> dict[str, NDArray[np.float64]]:
+    """Return what is recorded of each bone, shape (n_frames, n_channels), by its name."""
+    frame_lines, mentions = _mentions(lines, path)
+    known = {bone.name.encode(): bone for bone in skeleton.bones}
+    if strange := [
+        name.decode("ascii", "backslashreplace") for name in mentions.keys() - known
+    ]:
+        raise InvalidFileError(
+            f"{path} moves bones that its skeleton does not have: {', '.join(strange[:5])}."
+            " It belongs to another .asf file, or is damaged."
+        )
+    result = {}
+    for place, (name, numbers) in enumerate(mentions.items()):
+        bone = known[name]
+        texts = [lines[number - 1].lstrip()[len(name) :] for number in numbers]
+        table = np.full((len(frame_lines), len(bone.channels)), np.nan)
+        frames = np.searchsorted(frame_lines, numbers) - 1
+        table[frames] = read_rows(texts, len(bone.channels), path, numbers)
+        result[bone.name] = table
+        progress((place + 1) / len(mentions), "Reading")
+    return result
+
+
+def _mentions(
+    lines: Sequence[bytes], path: Path | str
+) -> tuple[list[int], dict[bytes, list[int]]]:
+    """Return the lines with a frame number, and those that begin with each bone's name.
+
+    Lines are counted from 1.
+    """
+    frame_lines: list[int] = []
+    mentions: defaultdict[bytes, list[int]] = defaultdict(list)
+    for number, line in enumerate(lines, start=1):
+        words = line.split(None, 1)
+        if not words or words[0][:1] in b"#:":
+            continue
+        if len(words) == 1 and words[0].isdigit():
+            frame_lines.append(number)
+        elif frame_lines and len(words) == 2:
+            mentions[words[0]].append(number)
+        else:
+            raise InvalidFileError(
+                f"{path}, line {number}: a frame number or a bone with its angles belongs here."
+                " The file is damaged, cut short or no Acclaim recording."
+            )
+    if not mentions:
+        raise InvalidFileError(f"{path} is no Acclaim recording: nothing moves in it.")
+    return frame_lines, mentions
+
+
+def _motion(
+    skeleton: AcclaimSkeleton,
+    recorded: Mapping[str, NDArray[np.float64]],
+    frame_rate: float,
+    scale: float | None,
+    progress: Progress,
+) -> Motion:
+    n_frames = len(next(iter(recorded.values())))
+    scale = skeleton.unit if scale is None else scale
+    names, parents, offsets = _joints(skeleton)
+    rotations = np.zeros((n_frames, len(names), 4))
+    rotations[..., 0] = 1.0
+    place = np.tile(skeleton.position, (n_frames, 1))
+    for joint, bone in enumerate(skeleton.bones):
+        if bone.name not in recorded:
+            continue
+        columns = dict(zip(bone.channels, recorded[bone.name].T, strict=True))
+        turns = _turns(bone, columns, skeleton.angle_unit)
+        rotations[:, joint] = turns_z_up_from_y_up(turns)
+        if joint == 0:
+            for axis, letter in enumerate("xyz"):
+                place[:, axis] = columns.get(f"t{letter}", place[:, axis])
+        progress((joint + 1) / len(skeleton.bones), "Reading")
+    rest = Skeleton(names, parents, scale * z_up_from_y_up(offsets))
+    return Motion(rest, rotations, scale * z_up_from_y_up(place), frame_rate)
+
+
+def _joints(
+    skeleton: AcclaimSkeleton,
+) -> tuple[tuple[str, ...], tuple[int, ...], NDArray[np.float64]]:
+    """Return names, parents and offsets, Y up, of the bones' starts and of the last ends."""
+    names = [bone.name for bone in skeleton.bones]
+    parents = list(skeleton.parents)
+    offsets = [skeleton.position]
+    offsets += [skeleton.bones[parent].vector for parent in parents[1:]]
+    for last in sorted(set(range(len(names))) - set(parents)):
+        names.append(f"{names[last]}_end")
+        parents.append(last)
+        offsets.append(skeleton.bones[last].vector)
+    return tuple(names), tuple(parents), np.array(offsets)
+
+
+def _turns(
+    bone: AcclaimBone, columns: Mapping[str, NDArray[np.float64]], angle_unit: float
+) -> NDArray[np.float64]:
+    """Return C M C^-1 as quaternions, shape (n_frames, 4), in the file's axes."""
+    n_frames = len(next(iter(columns.values())))
+    order = bone.order[::-1]  # The axis that is turned about first stands last in a product.
+    still = np.zeros(n_frames)
+    angles = np.stack([columns.get(f"r{axis.lower()}", still) for axis in order], axis=-1)
+    turned = quaternion_from_euler(angle_unit * angles, order)
+    turned[np.isnan(turned).any(axis=-1)] = np.nan
+    return multiply(multiply(bone.frame, turned), inverse(bone.frame))
