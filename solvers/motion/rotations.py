@@ -142,17 +142,25 @@ def unwrap_euler(angles: Array) -> Array:
         Same rotations, without jumps: every triple has the two forms (a, b, c) and
         (a + pi, pi - b, c + pi), each modulo full turns. NaN frames are passed over.
     """
-    result = np.array(angles, dtype=np.float64)
-    if not len(result):
-        return result
-    before = result[0]
-    for frame in result:
-        forms = np.stack([frame, frame * (1, -1, 1) + np.pi])
-        forms -= 2 * np.pi * np.round((forms - np.nan_to_num(before)) / (2 * np.pi))
-        distance = np.abs(forms - np.nan_to_num(before)).sum(axis=-1)
-        frame[...] = np.where((distance[1] < distance[0])[..., None], forms[1], forms[0])
-        before = np.where(np.isfinite(frame), frame, before)
-    return result
+    angles = np.array(angles, dtype=np.float64)
+    if not len(angles):
+        return angles
+    known = np.isfinite(angles).all(axis=-1)
+    frames = np.arange(len(angles)).reshape(-1, *[1] * (known.ndim - 1))
+    last = np.maximum.accumulate(np.where(known, frames, -1), axis=0)
+    filled = np.take_along_axis(angles, np.maximum(last, 0)[..., None], axis=0)
+    filled[last < 0] = 0.0
+    # Both forms change alike from one frame to the next, so that whether to change over is
+    # the same question in either: no frame has to wait for the one before.
+    other = filled * (1, -1, 1) + np.pi
+    stay, change = (
+        np.abs(_within_half_turn(form[1:] - filled[:-1])).sum(axis=-1)
+        for form in (filled, other)
+    )
+    changed = np.cumsum(change < stay, axis=0) % 2 == 1
+    filled[1:] = np.where(changed[..., None], other[1:], filled[1:])
+    filled[1:] = filled[0] + np.cumsum(_within_half_turn(np.diff(filled, axis=0)), axis=0)
+    return np.where(known[..., None], filled, np.nan)
 
 
 def unroll(rotations: Array) -> Array:
@@ -236,6 +244,10 @@ def _cross(a: Array, b: Array) -> Array:
     ax, ay, az = a[..., 0], a[..., 1], a[..., 2]
     bx, by, bz = b[..., 0], b[..., 1], b[..., 2]
     return np.stack([ay * bz - az * by, az * bx - ax * bz, ax * by - ay * bx], axis=-1)
+
+
+def _within_half_turn(angles: Array) -> Array:
+    return np.asarray(angles - 2 * np.pi * np.round(angles / (2 * np.pi)))
 
 
 def _from_scipy(rotations: Rotation) -> Array:

@@ -1,0 +1,129 @@
+"""Read an armature's action as a take."""
+
+import bpy
+import numpy as np
+from numpy.typing import NDArray
+
+from ...solvers.errors import InvalidMotionError
+from ...solvers.motion import Tracks
+from ...solvers.motion.rotations import multiply, rotate
+from .body import body_root
+from .bone_channels import animated_curves, read_bone, read_space
+from .frames import FrameRange, key_grid, range_bounds
+from .rig import Placement, Rig, read_rig
+from .take import ArmatureTake, BoneChannels, part_of
+
+Array = NDArray[np.float64]
+
+
+def read_take(
+    armature: bpy.types.Object,
+    scene: bpy.types.Scene,
+    choice: FrameRange = FrameRange.ACTION,
+    action: bpy.types.Action | None = None,
+    slot: bpy.types.ActionSlot | None = None,
+) -> ArmatureTake:
+    """Read an action, by default the armature's own, through its F-Curves in bulk.
+
+    Parameters
+    ----------
+    armature : an armature object
+        May be linked or overridden: nothing is written.
+    scene : bpy.types.Scene
+        Its frame rate and ranges.
+    choice : FrameRange
+    action, slot
+        Another action that fits the armature.
+
+    Returns
+    -------
+    ArmatureTake
+        NaN where a densely keyed bone has no keys (see `gaps.unobserved`). Muted channels
+        count as not keyed, channels without keys have their present value. Constraints,
+        drivers, scale and the bones' inheritance options are not looked at; the way back is
+        exact all the same.
+
+    Raises
+    ------
+    InvalidMotionError
+        There is no action, slot, bone, key or uniform scale, as the sentence says.
+    """
+    if action is None:
+        action, slot = action_of(armature)
+    curves = animated_curves(action, slot)
+    rig = read_rig(armature)
+    keyed = [curve for (path, _), curve in curves.items() if path.startswith("pose.bones[")]
+    frames, step = key_grid(keyed, range_bounds(choice, scene, keyed))
+    channels = tuple(read_bone(armature.pose.bones[bone], curves, frames) for bone in rig.bones)
+    space = read_space(armature, curves, frames)
+    rate = scene.render.fps / scene.render.fps_base / step
+    return _assembled(rig, frames, channels, space, rate)
+
+
+def action_of(armature: bpy.types.Object) -> tuple[bpy.types.Action, bpy.types.ActionSlot]:
+    """Return the action and slot that animate an armature, or say which of them is missing."""
+    animation = armature.animation_data
+    if animation is None or animation.action is None:
+        raise InvalidMotionError(f"{armature.name} has no action. Assign or import one.")
+    if animation.action_slot is None:
+        raise InvalidMotionError(
+            f"{armature.name} uses no slot of its action {animation.action.name}. Choose the"
+            " slot in the Action Editor."
+        )
+    return animation.action, animation.action_slot
+
+
+def _assembled(
+    rig: Rig, frames: Array, channels: tuple[BoneChannels, ...], space: Placement, rate: float
+) -> ArmatureTake:
+    rest = Placement(space.rotations[:1], space.origins[:1], space.scale)
+    root = body_root(rig, [each.travels for each in channels])
+    carrier, above = space, rig.chain_to(root)
+    for bone in above:
+        axes = rig.rest_rotations[bone]
+        turn = multiply(multiply(axes, channels[bone].rotations), axes * (1, -1, -1, -1))
+        shift = rotate(axes, channels[bone].locations)
+        carrier = carrier.moved(_filled(turn), np.nan_to_num(shift), rig.heads[bone])
+    parts = [part_of(rig, rig.subtree(root), channels, carrier, rest, rate)]
+    inside = {*above, *parts[0].bones}
+    for bone, parent in enumerate(rig.parents):
+        if bone in inside or not (parent < 0 or parent in above):
+            continue
+        tree = rig.subtree(bone)
+        inside |= set(tree)
+        if any(channels[each].rotation_keyed or channels[each].travels for each in tree):
+            parts.append(part_of(rig, tree, channels, rest, rest, rate))
+    roots = {part.bones[0] for part in parts} | set(above)
+    offsets = _read_offsets(rig, channels, rest, rate, roots)
+    return ArmatureTake(rig, frames, tuple(parts), offsets, channels, rest)
+
+
+def _read_offsets(
+    rig: Rig,
+    channels: tuple[BoneChannels, ...],
+    rest: Placement,
+    rate: float,
+    roots: set[int],
+) -> Tracks | None:
+    """Locations of the bones that shift within a tree, in their parents' rest axes, metres."""
+    shifting = [
+        bone for bone, each in enumerate(channels) if each.travels and bone not in roots
+    ]
+    if not shifting:
+        return None
+    positions = [
+        rest.scale
+        * rotate(
+            multiply(rest.rotations[0], rig.rest_rotations[bone]), channels[bone].locations
+        )
+        for bone in shifting
+    ]
+    names = tuple(rig.bones[bone] for bone in shifting)
+    return Tracks(names, np.stack(positions, axis=1), rate)
+
+
+def _filled(rotations: Array) -> Array:
+    """Take the last known turn through the gaps of a bone that is not cleaned itself."""
+    known = np.isfinite(rotations).all(axis=-1)
+    last = np.maximum.accumulate(np.where(known, np.arange(len(known)), 0))
+    return np.where(known[last, None], rotations[last], (1.0, 0.0, 0.0, 0.0))

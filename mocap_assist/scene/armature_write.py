@@ -1,0 +1,128 @@
+"""Write a cleaned take into a copy of its action; the source is never touched."""
+
+from collections.abc import Collection, Mapping
+from enum import Enum
+
+import bpy
+import numpy as np
+from numpy.typing import NDArray
+
+from ...solvers.errors import InvalidMotionError
+from . import compat
+from .bone_channels import (
+    animated_curves,
+    location_curves,
+    rotation_curves,
+    sampled_rotation,
+)
+from .curves import write_values
+from .rotation_modes import channels_from_quaternions
+from .take import ArmatureTake
+
+Array = NDArray[np.float64]
+KeyTypes = Mapping[str, NDArray[np.uint8]]
+SUFFIX = ".clean"
+
+
+class Output(Enum):
+    """Where the result goes."""
+
+    ACTION = "action"
+    NLA_TRACK = "NLA track"
+
+
+def write_take(
+    armature: bpy.types.Object,
+    source: tuple[bpy.types.Action, bpy.types.ActionSlot],
+    take: ArmatureTake,
+    bones: Collection[str],
+    key_types: KeyTypes,
+) -> tuple[bpy.types.Action, bpy.types.ActionSlot]:
+    """Copy an action and replace the rotation and location keys of some of its bones.
+
+    Parameters
+    ----------
+    armature : the armature that the take was read from
+    source : action and slot that the take was read from; may be linked
+    take : ArmatureTake
+        The result, over the frames to replace. Keys outside of them stay.
+    bones : names of the bones to change
+        All else is copied bit for bit; so are muted channels, channels of other rotation modes
+        than the bone's own, and Euler or location channels that have no keys.
+    key_types : per bone name, shape (n_frames,)
+        Blender's type of each key.
+
+    Returns
+    -------
+    action, slot
+        Named like the source with `.clean`, and kept by a fake user.
+    """
+    action, slot = _copy(source)
+    curves = animated_curves(action, slot)
+    rotations, locations = take.bone_rotations(), take.bone_locations()
+    for index, name in enumerate(take.rig.bones):
+        if name not in bones:
+            continue
+        bone, types = armature.pose.bones[name], key_types.get(name)
+        if take.channels[index].rotation_keyed and index in rotations:
+            turning = rotation_curves(bone, curves)
+            near = sampled_rotation(bone, turning, take.frames[:1])
+            values = channels_from_quaternions(rotations[index], bone.rotation_mode, near)
+            _write(turning, take.frames, values, types)
+        if take.channels[index].location_keyed and index in locations:
+            _write(location_curves(bone, curves), take.frames, locations[index], types)
+    return action, slot
+
+
+def put_to_use(
+    armature: bpy.types.Object,
+    action: bpy.types.Action,
+    slot: bpy.types.ActionSlot,
+    output: Output,
+) -> None:
+    """Let the armature play a result: as its action, or on an NLA track of its own.
+
+    Raises
+    ------
+    InvalidMotionError
+        The armature is linked without an override, so that nothing can be assigned to it.
+    """
+    check_writable(armature)
+    if output is Output.ACTION:
+        compat.assign(armature, action, slot)
+        return
+    armature.animation_data.action = None
+    track = armature.animation_data.nla_tracks.new()
+    track.name = action.name
+    strip = track.strips.new(action.name, int(action.frame_range[0]), action)
+    strip.action_slot = slot
+    strip.frame_start = action.frame_range[0]
+
+
+def check_writable(armature: bpy.types.Object) -> None:
+    """Raise InvalidMotionError where an armature cannot be given another action."""
+    if armature.library is not None:
+        raise InvalidMotionError(
+            f"{armature.name} is linked from {armature.library.name}. Make a library override"
+            " of it, then it can play the result."
+        )
+
+
+def _copy(
+    source: tuple[bpy.types.Action, bpy.types.ActionSlot],
+) -> tuple[bpy.types.Action, bpy.types.ActionSlot]:
+    original, slot = source
+    action = original.copy()
+    action.name = original.name.removesuffix(SUFFIX) + SUFFIX
+    action.use_fake_user = True
+    return action, next(each for each in action.slots if each.handle == slot.handle)
+
+
+def _write(
+    curves: Mapping[int, bpy.types.FCurve],
+    frames: Array,
+    values: Array,
+    types: NDArray[np.uint8] | None,
+) -> None:
+    for index, curve in curves.items():
+        write_values(curve, frames, values[:, index], types)

@@ -1,0 +1,71 @@
+"""What differs between Blender 4.5 and 5.x, and what its action model leaves unsaid.
+
+One function, one difference; the oldest branch stands first, to be deleted first.
+"""
+
+import bpy
+
+TARGETS = {"OBJECT", "UNSPECIFIED"}  # the second comes from files of Blender 4.3 and older
+
+
+def is_selected(bone: bpy.types.PoseBone) -> bool:
+    """Whether a pose bone is selected: a matter of the pose from Blender 5.0 on."""
+    if bpy.app.version < (5, 0):
+        return bone.bone.select
+    return bone.select
+
+
+def select_bone(bone: bpy.types.PoseBone, selected: bool = True) -> None:
+    """Select a pose bone, or not."""
+    if bpy.app.version < (5, 0):
+        bone.bone.select = selected
+    else:
+        bone.select = selected
+
+
+def slot_called(action: bpy.types.Action, identifier: str) -> bpy.types.ActionSlot | None:
+    """Return the slot of that identifier, or the only one that can animate an object."""
+    fitting = [slot for slot in action.slots if slot.target_id_type in TARGETS]
+    named = [slot for slot in fitting if slot.identifier == identifier]
+    return named[0] if named else fitting[0] if len(fitting) == 1 else None
+
+
+def channelbag(
+    action: bpy.types.Action, slot: bpy.types.ActionSlot, ensure: bool = False
+) -> bpy.types.ActionChannelbag | None:
+    """Return what holds the F-Curves of one slot; None where it has none, unless `ensure`."""
+    if ensure:
+        layer = action.layers[0] if action.layers else action.layers.new("Layer")
+        strip = layer.strips[0] if layer.strips else layer.strips.new(type="KEYFRAME")
+        return strip.channelbag(slot, ensure=True)
+    bags = (strip.channelbag(slot) for layer in action.layers for strip in layer.strips)
+    return next((bag for bag in bags if bag is not None), None)
+
+
+def assign(
+    animated: bpy.types.ID, action: bpy.types.Action, slot: bpy.types.ActionSlot
+) -> None:
+    """Let `slot` of `action` animate `animated`: without its slot an action moves nothing."""
+    animation = animated.animation_data or animated.animation_data_create()
+    animation.action = action
+    animation.action_slot = slot
+
+
+def new_action(
+    name: str, animated: bpy.types.ID
+) -> tuple[bpy.types.Action, bpy.types.ActionSlot]:
+    """Make an action with an empty channelbag for `animated`, kept even when nobody uses it."""
+    action = bpy.data.actions.new(name)
+    action.use_fake_user = True
+    slot = action.slots.new(animated.id_type, animated.name)
+    channelbag(action, slot, ensure=True)
+    return action, slot
+
+
+def new_curve(
+    bag: bpy.types.ActionChannelbag, data_path: str, index: int, group: str
+) -> bpy.types.FCurve:
+    """Add an F-Curve to a channelbag, in the group of that name."""
+    curve = bag.fcurves.new(data_path, index=index)
+    curve.group = bag.groups.get(group) or bag.groups.new(group)
+    return curve

@@ -1,0 +1,108 @@
+"""Which moments of an action are read: a range, on the grid of the action's keys."""
+
+from collections.abc import Sequence
+from enum import Enum
+
+import bpy
+import numpy as np
+from numpy.typing import NDArray
+
+from ...solvers.errors import InvalidMotionError
+from .curves import ON_FRAME, read_keys
+
+Array = NDArray[np.float64]
+WIDEST_STEP = (
+    2.5  # frames between keys up to which a take counts as recorded, not keyed by hand
+)
+ON_GRID = 0.9  # share of keys that must lie on the grid, each
+OFF_GRID = 0.05  # of a step from it at most
+
+
+class FrameRange(Enum):
+    """Frames to work on."""
+
+    ACTION = "action"
+    SCENE = "scene"
+    PREVIEW = "preview"
+    SELECTED_KEYS = "selected keys"
+
+
+def range_bounds(
+    choice: FrameRange, scene: bpy.types.Scene, curves: Sequence[bpy.types.FCurve]
+) -> tuple[float, float]:
+    """Return the first and last frame of a range.
+
+    Raises
+    ------
+    InvalidMotionError
+        There is no preview range, or no key is selected.
+    """
+    if choice is FrameRange.SCENE:
+        return float(scene.frame_start), float(scene.frame_end)
+    if choice is FrameRange.PREVIEW:
+        if not scene.use_preview_range:
+            raise InvalidMotionError(
+                "The scene has no preview range. Set one in the timeline (P), or work on"
+                " another frame range."
+            )
+        return float(scene.frame_preview_start), float(scene.frame_preview_end)
+    if choice is FrameRange.SELECTED_KEYS:
+        selected = [_selected_keys(curve) for curve in curves]
+        times = np.concatenate([np.empty(0), *selected])
+        if not len(times):
+            raise InvalidMotionError(
+                "No keys are selected. Select some in the Dope Sheet, or work on another"
+                " frame range."
+            )
+        return float(times.min()), float(times.max())
+    return -np.inf, np.inf
+
+
+def key_grid(
+    curves: Sequence[bpy.types.FCurve], bounds: tuple[float, float]
+) -> tuple[Array, float]:
+    """Return the frames within `bounds` on which the curves have their keys, and their step.
+
+    A take keyed four times a frame, or at .5 of every frame, or on every second one, is read
+    where its keys are; where keys follow no grid, or are far apart, on every whole frame.
+
+    Raises
+    ------
+    InvalidMotionError
+        There are no keys, or none within the bounds.
+    """
+    times = [read_keys(curve)[:, 0] for curve in curves]
+    longest = max(times, key=len, default=np.empty(0))
+    if not len(longest):
+        raise InvalidMotionError("The action has no keys on this armature's bones.")
+    every = np.concatenate(times)
+    start, stop = every.min(), every.max()
+    step, phase = _grid_of(longest)
+    first, last = max(start, bounds[0]), min(stop, bounds[1])
+    n_steps = np.floor((last - phase + ON_FRAME) / step)
+    place = np.arange(np.ceil((first - phase - ON_FRAME) / step), n_steps + 1)
+    if not len(place):
+        raise InvalidMotionError(
+            f"The action has keys from frame {start:g} to {stop:g}, none of them within the"
+            f" chosen range {bounds[0]:g} to {bounds[1]:g}."
+        )
+    return phase + step * place, step
+
+
+def _grid_of(times: Array) -> tuple[float, float]:
+    """Step and phase of the grid that the keys lie on, or that of the whole frames."""
+    if len(times) == 1:
+        return 1.0, float(times[0])
+    span, spacing = times[-1] - times[0], np.median(np.diff(times))
+    step = float(span / max(np.round(span / spacing), 1.0))
+    places = (times - times[0]) / step
+    regular = (np.abs(places - np.round(places)) < OFF_GRID).mean() >= ON_GRID
+    if step <= WIDEST_STEP and regular:
+        return step, float(times[0])
+    return 1.0, float(np.ceil(times[0] - ON_FRAME))
+
+
+def _selected_keys(curve: bpy.types.FCurve) -> Array:
+    selected = np.empty(len(curve.keyframe_points), bool)
+    curve.keyframe_points.foreach_get("select_control_point", selected)
+    return read_keys(curve)[selected, 0]

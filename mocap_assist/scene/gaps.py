@@ -1,0 +1,48 @@
+"""Where a densely keyed bone has no keys: there the capture did not see it."""
+
+from collections.abc import Sequence
+
+import numpy as np
+from numpy.typing import NDArray
+
+Array = NDArray[np.float64]
+WIDEST_STEP = 2.5  # a median distance of keys, in frames, above which an animator set them
+WIDEST_HOLE = 1.5  # distances between neighbours, in median ones, that are no gap
+
+
+def unobserved(channels: Sequence[Array], frames: Array) -> NDArray[np.bool_]:
+    """Tell the frames at which a bone was not captured, shape (n_frames,).
+
+    A recorded take has keys on every frame; where *all* channels of a bone have none, before
+    the first and after the last key too, the sensor had lost it. No gap is seen in curves that
+    are keyed by hand, which are meant to be interpolated, nor where the values on both sides of
+    the hole are the same: such keys were removed as redundant.
+
+    Parameters
+    ----------
+    channels : arrays of shape (n_keys, 2)
+        Frame and value of each key of each animated channel of one bone.
+    frames : shape (n_frames,)
+    """
+    gap = np.ones(len(frames), bool)
+    held = np.ones(len(frames), bool)
+    for keys in channels:
+        missing, same = _holes(keys, frames)
+        gap &= missing
+        held &= same
+    return np.asarray(gap & ~held)
+
+
+def _holes(keys: Array, frames: Array) -> tuple[NDArray[np.bool_], NDArray[np.bool_]]:
+    """Frames that lie in a hole of one channel, and those with equal values on both sides."""
+    times, values = keys[:, 0], keys[:, 1]
+    spacing = np.median(np.diff(times)) if len(times) > 2 else np.inf
+    if spacing > WIDEST_STEP:
+        return np.zeros(len(frames), bool), np.zeros(len(frames), bool)
+    after = np.searchsorted(times, frames)
+    left, right = (after - 1).clip(min=0), after.clip(max=len(times) - 1)
+    nearest = np.minimum(np.abs(frames - times[left]), np.abs(frames - times[right]))
+    inside = (after > 0) & (after < len(times))
+    wide = ~inside | (times[right] - times[left] > WIDEST_HOLE * spacing)
+    missing = wide & (nearest > 0.25 * spacing)
+    return missing, inside & (values[left] == values[right])

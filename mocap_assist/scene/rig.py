@@ -1,0 +1,117 @@
+"""The rest pose of an armature and where the armature stands, as plain values."""
+
+from dataclasses import dataclass
+
+import bpy
+import numpy as np
+from mathutils import Matrix
+from numpy.typing import NDArray
+
+from ...solvers.errors import InvalidMotionError
+from ...solvers.motion.rotations import inverse, multiply, quaternion_from_matrix, rotate
+
+Array = NDArray[np.float64]
+EVEN = 1e-3
+
+
+@dataclass(frozen=True, eq=False)
+class Rig:
+    """Bones of one armature, parents first.
+
+    Attributes
+    ----------
+    bones : tuple of str
+    parents : tuple of int, -1 for bones without one
+    rest_rotations : shape (n_bones, 4), heads, tails : shape (n_bones, 3)
+        Rest pose in the armature's own space and unit.
+    modes : tuple of str
+        Blender's rotation modes.
+    connected : tuple of bool
+        These bones ignore their location.
+    """
+
+    bones: tuple[str, ...]
+    parents: tuple[int, ...]
+    rest_rotations: Array
+    heads: Array
+    tails: Array
+    modes: tuple[str, ...]
+    connected: tuple[bool, ...]
+
+    def chain_to(self, bone: int) -> list[int]:
+        """Return the bones above `bone`, topmost first."""
+        above: list[int] = []
+        while (bone := self.parents[bone]) >= 0:
+            above.append(bone)
+        return above[::-1]
+
+    def subtree(self, bone: int) -> list[int]:
+        """Return `bone` and all bones below it, parents first."""
+        inside = {bone}
+        for later in range(bone + 1, len(self.bones)):
+            if self.parents[later] in inside:
+                inside.add(later)
+        return sorted(inside)
+
+
+@dataclass(frozen=True, eq=False)
+class Placement:
+    """Where a space lies in the world, at every frame: v goes to scale * turn(v) + origin."""
+
+    rotations: Array
+    """Shape (n_frames, 4)."""
+    origins: Array
+    """Shape (n_frames, 3), metres."""
+    scale: float
+
+    def points(self, points: Array) -> Array:
+        """Take points, shape (n_frames, 3) or (3,), from the space to the world."""
+        return np.asarray(self.scale * rotate(self.rotations, points) + self.origins)
+
+    def points_back(self, points: Array) -> Array:
+        """Take points, shape (n_frames, 3), from the world to the space."""
+        return np.asarray(rotate(inverse(self.rotations), points - self.origins) / self.scale)
+
+    def moved(self, rotations: Array, locations: Array, pivot: Array) -> "Placement":
+        """Return the placement carried by something that turns about `pivot` and shifts."""
+        turned = multiply(self.rotations, rotations)
+        origins = self.points(pivot + locations) - self.scale * rotate(turned, pivot)
+        return Placement(turned, origins, self.scale)
+
+
+def read_rig(armature: bpy.types.Object) -> Rig:
+    """Read the rest pose. Raises InvalidMotionError for an armature without bones."""
+    bones = list(armature.data.bones)  # Blender lists parents before their children
+    if not bones:
+        raise InvalidMotionError(f"The armature {armature.name} has no bones.")
+    place = {bone.name: index for index, bone in enumerate(bones)}
+    rest = np.array([bone.matrix_local for bone in bones])
+    return Rig(
+        bones=tuple(place),
+        parents=tuple(place[bone.parent.name] if bone.parent else -1 for bone in bones),
+        rest_rotations=quaternion_from_matrix(rest[:, :3, :3]),
+        heads=rest[:, :3, 3],
+        tails=np.array([bone.tail_local for bone in bones]),
+        modes=tuple(armature.pose.bones[bone.name].rotation_mode for bone in bones),
+        connected=tuple(bone.use_connect and bone.parent is not None for bone in bones),
+    )
+
+
+def placement_of(matrix: Matrix, name: str) -> tuple[Array, Array, float]:
+    """Split a world matrix into rotation, translation and uniform scale.
+
+    Raises
+    ------
+    InvalidMotionError
+        The scale differs between axes, is zero or mirrors, so that there are no metres.
+    """
+    linear = np.array(matrix, dtype=np.float64)[:3, :3]
+    scale = float(np.cbrt(max(np.linalg.det(linear), 0.0)))
+    turn = linear / scale if scale > 0.0 else linear
+    if np.abs(turn @ turn.T - np.eye(3)).max() > EVEN:
+        sizes = ", ".join(f"{size:.3g}" for size in np.linalg.norm(linear, axis=0))
+        raise InvalidMotionError(
+            f"{name} is scaled unevenly or mirrored ({sizes} along X, Y, Z). Give it one"
+            " positive scale on all axes, or apply the scale."
+        )
+    return quaternion_from_matrix(turn), np.array(matrix.translation), scale

@@ -1,0 +1,93 @@
+"""Blender properties made from settings classes, so that each setting is described once."""
+
+from collections.abc import Callable
+from dataclasses import Field, fields
+from enum import Enum
+from inspect import get_annotations
+from math import isfinite
+from typing import Any, TypeVar
+
+import bpy
+
+from ..solvers.settings import Described, Settings
+
+Class = TypeVar("Class", bound=type)
+SUBTYPES = {"rad": "ANGLE", "m": "DISTANCE", "s": "TIME_ABSOLUTE", "%": "PERCENTAGE"}
+
+
+def settings_from(*classes: type[Settings]) -> Callable[[Class], Class]:
+    """Decorate an operator or property group: a property for each setting of `classes`.
+
+    The decorated class gets `settings_of(settings_class)`, which returns the checked values.
+    Settings of the same name in two classes become one property.
+    """
+    described = {item.name: item for each in classes for item in fields(each)}
+
+    def settings_of(self: Any, settings_class: type[Settings]) -> Settings:
+        values = {
+            item.name: _value(getattr(self, item.name), type(item.default))
+            for item in fields(settings_class)
+        }
+        return settings_class(**values)
+
+    def decorate(cls: Class) -> Class:
+        properties = {name: _property(item) for name, item in described.items()}
+        cls.__annotations__ = properties | get_annotations(cls)
+        cls.settings_of = settings_of
+        return cls
+
+    return decorate
+
+
+def _property(item: "Field[Any]") -> Any:
+    described: Described = item.metadata["described"]
+    kind = type(item.default)
+    shown = {
+        "name": item.name.replace("_", " ").capitalize(),
+        "description": described.help,
+        "default": item.default,
+    }
+    if issubclass(kind, Enum):
+        choices = [(each.name, _words(each), _summary(each), index)
+                   for index, each in enumerate(kind)]  # fmt: skip
+        return bpy.props.EnumProperty(
+            **shown | {"items": choices, "default": item.default.name}
+        )
+    if kind is bool:
+        return bpy.props.BoolProperty(**shown)
+    if kind is str:
+        return bpy.props.StringProperty(**shown)
+    limits = {
+        name: limit
+        for name, limit in (("min", described.minimum), ("max", described.maximum))
+        if isfinite(limit)
+    }
+    if kind is int:
+        return bpy.props.IntProperty(**shown, **limits)
+    return bpy.props.FloatProperty(**shown | _unit(described), **limits, precision=3)
+
+
+def _unit(described: Described) -> dict[str, str]:
+    """Let Blender show the unit where it knows it, and say it in the tooltip where not."""
+    if described.unit in SUBTYPES:
+        return {"subtype": SUBTYPES[described.unit]}
+    if (described.minimum, described.maximum, described.unit) == (0.0, 1.0, ""):
+        return {"subtype": "FACTOR"}
+    unit = f" ({described.unit})" if described.unit else ""
+    return {"description": described.help + unit}
+
+
+def _value(value: Any, kind: type) -> Any:
+    if issubclass(kind, Enum):
+        return kind[value]
+    if kind is float:  # Blender's 32-bit floats return 0.1 as 0.10000000149.
+        return float(f"{value:.7g}")
+    return value
+
+
+def _words(choice: Enum) -> str:
+    return str(choice.value)[:1].upper() + str(choice.value)[1:]
+
+
+def _summary(choice: Enum) -> str:
+    return getattr(choice, "help", "")
