@@ -82,7 +82,7 @@ def fetch(wheels: Sequence[Wheel]) -> None:
     """Download the wheels that `wheels/` lacks, in the very files that the manifest names."""
     missing = sorted(wheel for wheel in wheels if not (WHEELS / wheel.file).is_file())
     for (python, platform), group in groupby(missing, lambda wheel: wheel[:2]):
-        command = [sys.executable, "-m", "pip", "download", "--quiet", "--no-deps"]
+        command = [sys.executable, "-m", "pip", "download", "-qq", "--no-deps"]
         command += ["--only-binary=:all:", "--dest", str(WHEELS)]
         if platform != "any":
             command += ["--python-version", python.removeprefix("cp")]

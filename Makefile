@@ -1,0 +1,103 @@
+# Everything starts here. On a bare Linux machine with Python 3.11, make and git, `make test`
+# and `make demo` set up what they need: one environment per Blender, each a virtual
+# environment that holds Blender as a Python module and the numpy that this Blender bundles.
+
+SHELL := /bin/bash
+.SHELLFLAGS := -eu -o pipefail -c
+.DEFAULT_GOAL := help
+.DELETE_ON_ERROR:
+
+VERSION := $(shell sed -n 's/^version = "\(.*\)"/\1/p' blender_manifest.toml)
+ZIP := dist/mocap_assist-$(VERSION)-linux_x64.zip
+PYTHON_4.5 := .venv-4.5/bin/python
+PYTHON_5.2 := .venv-5.2/bin/python
+NO_PYTHON = no Python $(1) that can make environments was found: not on the PATH, nor in uv's or pyenv's folders
+NO_5.2 := SKIPPED on Blender 5.2: $(call NO_PYTHON,3.13).
+
+# Solves are small, and two suites run side by side: one thread each.
+export OMP_NUM_THREADS := 1
+export OPENBLAS_NUM_THREADS := 1
+# A test that hangs, or a Blender that hangs at its end, must not hold up the rest.
+AT_MOST := timeout --kill-after=10 900
+SUBMAKE := $(MAKE) --no-print-directory --jobs=2
+
+.PHONY: help
+help:  ## this list
+	@sed -n 's/^\([a-z][a-z0-9.-]*\):.*## \(.*\)/  \1|\2/p' Makefile | column -t -s '|'
+
+# --- Tests ---
+
+.PHONY: test lint test-source-4.5 test-source-5.2 test-blender test-blender-4.5 test-blender-5.2
+test: environments  ## every check and test below, on Blender 4.5 and 5.2, two at a time
+	@$(SUBMAKE) --output-sync=target --keep-going \
+	    lint test-blender-4.5 test-blender-5.2 test-source-4.5 test-source-5.2
+	@if [ -e .venv-5.2/ready ]; then echo "All is well, on Blender 4.5 and 5.2."; \
+	else echo "$(NO_5.2)"; echo "All is well, on Blender 4.5."; fi
+
+lint: .venv-4.5/ready  ## ruff, and mypy on the solvers
+	$(PYTHON_4.5) -m ruff check .
+	$(PYTHON_4.5) -m ruff format --check .
+	$(PYTHON_4.5) -m mypy
+
+test-source-4.5: .venv-4.5/ready  ## the checkout: Python 3.11 and the numpy of Blender 4.5
+	$(AT_MOST) $(PYTHON_4.5) -m pytest
+
+test-source-5.2: optional-5.2  ## the solvers: Python 3.13 and the numpy of Blender 5.2
+	@[ ! -e .venv-5.2/ready ] || { set -x; $(AT_MOST) $(PYTHON_5.2) -m pytest tests/solvers; }
+
+test-blender: test-blender-4.5 test-blender-5.2  ## the installed zip, in both Blenders
+
+test-blender-4.5: .venv-4.5/ready zip  ## the installed zip, in Blender 4.5
+	MOCAP_ASSIST_ZIP=$(ZIP) $(AT_MOST) $(PYTHON_4.5) -m pytest tests/blender
+
+test-blender-5.2: optional-5.2 zip  ## the installed zip, in Blender 5.2
+	@[ ! -e .venv-5.2/ready ] || { set -x; \
+	    MOCAP_ASSIST_ZIP=$(ZIP) $(AT_MOST) $(PYTHON_5.2) -m pytest tests/blender; }
+
+# --- What there is to see ---
+
+.PHONY: demo bench-denoise
+demo: .venv-4.5/ready zip  ## clean a sample, or CLIP=path.bvh, in Blender 4.5: build/demo
+	@mkdir -p build/demo
+	MOCAP_ASSIST_ZIP=$(ZIP) $(AT_MOST) $(PYTHON_4.5) .ci/demo.py build/demo $(if $(CLIP),"$(CLIP)")
+
+bench-denoise: .venv-4.5/ready  ## measure denoising against its peers, on ../shared/data
+	$(PYTHON_4.5) -m tests.benchmarks.bench_denoise
+
+# --- The extension ---
+
+.PHONY: extension extension-plain zip
+extension: .venv-4.5/ready  ## the zips of all platforms, with their wheels: dist
+	$(PYTHON_4.5) .ci/build_extension.py
+
+extension-plain: .venv-4.5/ready  ## a zip without wheels, for a Blender of another Python
+	$(PYTHON_4.5) .ci/build_extension.py --plain
+
+zip: .venv-4.5/ready  ## the zip for Linux, which the tests install
+	@$(PYTHON_4.5) .ci/build_extension.py --platform linux-x64
+
+# --- Environments ---
+
+.PHONY: environments libraries optional-5.2 clean
+environments: libraries  ## .venv-4.5 and, where there is a Python 3.13, .venv-5.2
+	@$(SUBMAKE) .venv-4.5/ready optional-5.2
+
+optional-5.2:
+	@if .ci/find_python 3.13 >/dev/null; then $(MAKE) --no-print-directory .venv-5.2/ready; \
+	else echo "$(NO_5.2)"; fi
+
+libraries:
+	@python=$$(.ci/find_python 3.11) || { echo "Stopped: $(call NO_PYTHON,3.11)."; \
+	    echo "On Debian and Ubuntu: sudo apt-get install python3.11-venv"; exit 1; }; \
+	$$python .ci/check_libraries.py $(INSTALL_LIBRARIES)
+
+.venv-4.5/ready: PYTHON := 3.11
+.venv-5.2/ready: PYTHON := 3.13
+.venv-%/ready: .ci/requirements-%.txt .ci/requirements.txt | libraries
+	@echo "Setting up $(@D), once: about a minute and 1.5 GB."
+	@"$$(.ci/find_python $(PYTHON))" -m venv --clear $(@D)
+	@$(@D)/bin/python -m pip install -qq --no-compile --disable-pip-version-check -r $<
+	@touch $@
+
+clean:  ## remove what make made, the environments too
+	rm -rf .venv-4.5 .venv-5.2 build dist wheels
