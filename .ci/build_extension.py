@@ -137,9 +137,7 @@ def build_tool() -> Path:
     """The command-line tool of Blender's extension system, which needs no Blender to run."""
     bpy = find_spec("bpy")
     if bpy is None or bpy.origin is None:
-        sys.exit(
-            "There is no bpy in this Python; `make extension` uses one that has it."
-        )
+        sys.exit("There is no bpy in this Python; `make extension` uses one that has it.")
     return next(Path(bpy.origin).parent.glob("*/scripts/addons_core/bl_pkg/cli/blender_ext.py"))
 
 

@@ -1,7 +1,7 @@
 """Name the system libraries that Blender needs and this machine lacks, before anything fails.
 
-    python .ci/check_libraries.py              say what is missing, with the command to install it
-    python .ci/check_libraries.py --install    as root on Debian or Ubuntu: run that command
+python .ci/check_libraries.py              say what is missing, with the command to install it
+python .ci/check_libraries.py --install    as root on Debian or Ubuntu: run that command
 """
 
 import ctypes
