@@ -1,0 +1,21 @@
+"""What every method says about channels."""
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True, eq=False)
+class Estimate:
+    """Estimated channels; arrays have shape (n_frames, n_channels)."""
+
+    values: Array
+    inliers: Array
+    """Probability that a sample is no outlier; 0 where not observed."""
+    deviation: Array
+    """Standard deviation of the estimate's error."""
+    iterations: int
+    converged: bool

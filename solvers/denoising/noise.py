@@ -1,0 +1,80 @@
+"""What can be said of the noise before any model of the motion is known."""
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.ndimage import median_filter
+
+Array = NDArray[np.float64]
+
+MAD_TO_SIGMA = 1.4826
+"""Standard deviation of a Gaussian over its median absolute deviation."""
+# Third differences pass smooth motion down to almost nothing; on white noise they have the
+# variance 1 + 9 + 9 + 1 times that of one sample.
+DIFFERENCE_ORDER = 3
+DIFFERENCE_GAIN = np.sqrt(20.0)
+
+
+def rough_noise(values: Array) -> Array:
+    """Return the standard deviation of the fast jitter of each channel, shape (n_channels,).
+
+    The robust spread of third differences: spikes and smooth motion count for little.
+
+    Parameters
+    ----------
+    values : shape (n_frames, n_channels)
+        NaN where not observed. Channels with too few neighbouring frames give 0.
+    """
+    if len(values) <= DIFFERENCE_ORDER:
+        return np.zeros(values.shape[1])
+    differences = np.abs(np.diff(values, DIFFERENCE_ORDER, axis=0))
+    return np.asarray(MAD_TO_SIGMA * _nan_median(differences) / DIFFERENCE_GAIN)
+
+
+def hampel(values: Array, half_width: int, tolerance: float) -> Array:
+    """Return the channels with every sample that stands out from its neighbours made NaN.
+
+    Parameters
+    ----------
+    values : shape (n_frames, n_channels)
+        NaN where not observed.
+    half_width : int, frames to either side
+    tolerance : float
+        In robust standard deviations of the neighbourhood.
+    """
+    filled = interpolated(values)
+    size = (2 * half_width + 1, 1)
+    middle = median_filter(filled, size, mode="nearest")
+    departure = np.abs(filled - middle)
+    spread = MAD_TO_SIGMA * median_filter(departure, size, mode="nearest")
+    floor = 1e-9 + 0.1 * np.median(spread, axis=0)
+    return np.where(departure > tolerance * np.maximum(spread, floor), np.nan, values)
+
+
+def interpolated(values: Array) -> Array:
+    """Return the channels with NaN replaced on straight lines between what is observed.
+
+    Before the first and after the last observation its value is held; channels that are never
+    observed become 0.
+    """
+    result = values.copy()
+    frames = np.arange(len(values))
+    for channel in np.flatnonzero(np.isnan(values).any(axis=0)):
+        known = np.isfinite(values[:, channel])
+        if known.any():
+            line = np.interp(frames, frames[known], values[known, channel])
+            result[:, channel] = line
+        else:
+            result[:, channel] = 0.0
+    return result
+
+
+def _nan_median(values: Array) -> Array:
+    """Median over the first axis without NaN; 0 where all are NaN."""
+    known = np.isfinite(values)
+    safe = np.where(known, values, np.inf)
+    ordered = np.sort(safe, axis=0)
+    count = known.sum(axis=0)
+    low = np.take_along_axis(ordered, np.maximum((count - 1) // 2, 0)[None], axis=0)[0]
+    high = np.take_along_axis(ordered, np.minimum(count // 2, len(values) - 1)[None], axis=0)[0]
+    with np.errstate(invalid="ignore"):
+        return np.asarray(np.where(count > 0, (low + high) / 2, 0.0))
