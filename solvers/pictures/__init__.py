@@ -1,0 +1,25 @@
+"""Pictures for documents, tests and reports: stick figures, curves and tables as PNG files.
+
+>>> from solvers.pictures import StickFigureSettings, draw_stick_figures
+>>> from solvers.samples import GaitSettings, walking_gait
+>>> walk = walking_gait(GaitSettings(duration=1.0))
+>>> picture = draw_stick_figures({"walk": walk}, StickFigureSettings(n_figures=5, height=100))
+>>> picture.pixels.shape[2], str(picture.pixels.dtype)
+(3, 'uint8')
+"""
+
+from .curves import CurveSettings, draw_curves
+from .picture import Picture, stack_pictures
+from .stick_figures import StickFigureSettings, View, draw_stick_figures
+from .table import draw_table
+
+__all__ = [
+    "CurveSettings",
+    "Picture",
+    "StickFigureSettings",
+    "View",
+    "draw_curves",
+    "draw_stick_figures",
+    "draw_table",
+    "stack_pictures",
+]

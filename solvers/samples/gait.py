@@ -95,8 +95,8 @@ def walking_gait(settings: GaitSettings = GaitSettings()) -> Motion:
     return Motion(skeleton, rotations, root, settings.frame_rate)
 
 
-# Angles below are degrees. Positive x leans forward, positive y lowers the left side, positive z
-# turns to the left. `_cycle(course, p)` is 1 when the left foot is at phase p of its stride.
+# Angles below are degrees. Positive x leans forward, y lowers the left side, z turns to the left.
+# `_cycle(course, p)` is 1 when the left foot is at phase p of its stride.
 
 
 def _cycle(course: Course, peak: float, per_stride: int = 1) -> Array:

@@ -1,0 +1,43 @@
+"""A finished picture, free of the library that drew it."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..files import written_whole
+
+
+@dataclass(frozen=True, eq=False)
+class Picture:
+    """Red, green and blue of every pixel.
+
+    Attributes
+    ----------
+    pixels : uint8 array, shape (height, width, 3)
+    """
+
+    pixels: NDArray[np.uint8]
+
+    def save(self, path: Path | str) -> None:
+        """Write a PNG file, whole or not at all."""
+        from PIL import Image
+
+        with written_whole(path) as part:
+            Image.fromarray(self.pixels).save(part, format="PNG", optimize=True)
+
+
+def stack_pictures(pictures: Sequence[Picture]) -> Picture:
+    """Return the pictures one below the other, white beside the narrower ones."""
+    width = max(picture.pixels.shape[1] for picture in pictures)
+    rows = [
+        np.pad(
+            picture.pixels,
+            ((0, 0), (0, width - picture.pixels.shape[1]), (0, 0)),
+            constant_values=255,
+        )
+        for picture in pictures
+    ]
+    return Picture(np.concatenate(rows))
