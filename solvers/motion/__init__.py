@@ -9,24 +9,35 @@
 """
 
 from .canonical import canonical_rotations, from_canonical, t_pose_alignment
+from .contacts import ContactSettings, detect_contacts
 from .humanoid import HUMANOID_ROLES, HumanoidMap, find_humanoid_map
 from .kinematics import WorldPoses, forward_kinematics, local_rotations, world_poses
+from .limb_ik import ReachSettings, reach
 from .motion import Motion
+from .resampling import resample
 from .skeleton import Skeleton
 from .tracks import Tracks
+from .velocities import angular_velocities, linear_velocities
 
 __all__ = [
     "HUMANOID_ROLES",
+    "ContactSettings",
     "HumanoidMap",
     "Motion",
+    "ReachSettings",
     "Skeleton",
     "Tracks",
     "WorldPoses",
+    "angular_velocities",
     "canonical_rotations",
+    "detect_contacts",
     "find_humanoid_map",
     "forward_kinematics",
     "from_canonical",
+    "linear_velocities",
     "local_rotations",
+    "reach",
+    "resample",
     "t_pose_alignment",
     "world_poses",
 ]

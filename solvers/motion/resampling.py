@@ -1,0 +1,119 @@
+"""The same recording at another frame rate, with the same seconds."""
+
+from dataclasses import replace
+from typing import TypeVar
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.ndimage import convolve1d
+from scipy.signal import firwin, kaiserord
+
+from ..errors import InvalidMotionError
+from .motion import Motion
+from .rotations import normalize, unroll
+from .tracks import Tracks
+
+STOPBAND = 60.0
+"""Decibels by which what the new rate cannot carry is weakened."""
+
+PASSED = 0.7
+"""Part of the new Nyquist frequency up to which motion is kept."""
+
+STENCIL = 4
+"""Frames that take part in one interpolated value."""
+
+Recording = TypeVar("Recording", Motion, Tracks)
+
+
+def resample(recording: Recording, frame_rate: float) -> Recording:
+    """Return the recording seen at `frame_rate` hertz.
+
+    Frame k is the moment k / `frame_rate`; the last frame is the last such moment that is not
+    after the recording's own last frame. Values between frames come from the cubic through the
+    four frames around them (for rotations: of the unrolled quaternions, normalised), so frames
+    that coincide stay as they are. When the rate falls, a zero-phase low-pass filter comes
+    first (Kaiser-windowed sinc): all below 0.7 of the new Nyquist frequency passes, what
+    would come back as false slow motion is removed. Gaps stay gaps: a moment is observed where
+    the frames on either side of it are. Confidence is interpolated linearly.
+
+    Raises
+    ------
+    InvalidMotionError
+        The frame rate is not positive.
+    """
+    if not (np.isfinite(frame_rate) and frame_rate > 0):
+        raise InvalidMotionError(f"A frame rate of {frame_rate} Hz is not positive.")
+    times = _moments(recording.n_frames, recording.frame_rate, frame_rate)
+    slowdown = frame_rate / recording.frame_rate
+    if isinstance(recording, Motion):
+        rotations = normalize(_sampled(unroll(recording.rotations), times, slowdown))
+        places = _sampled(recording.root_positions, times, slowdown)
+        return Motion(recording.skeleton, rotations, places, frame_rate)
+    confidence = recording.confidence
+    if confidence is not None:
+        frames = np.arange(recording.n_frames)
+        confidence = np.stack([np.interp(times, frames, one) for one in confidence.T], axis=-1)
+    positions = _sampled(recording.positions, times, slowdown)
+    return replace(recording, positions=positions, confidence=confidence, frame_rate=frame_rate)
+
+
+def _moments(n_frames: int, old_rate: float, new_rate: float) -> NDArray[np.float64]:
+    """Return the new frames' times, counted in old frames."""
+    n_new = int(np.floor((n_frames - 1) * new_rate / old_rate + 1e-6)) + 1
+    times = np.arange(n_new) * (old_rate / new_rate)
+    nearest = np.round(times)
+    times = np.where(np.abs(times - nearest) < 1e-6, nearest, times)
+    return np.asarray(np.minimum(times, n_frames - 1))
+
+
+def _sampled(
+    values: NDArray[np.float64], times: NDArray[np.float64], slowdown: float
+) -> NDArray[np.float64]:
+    """Return `values`, shape (n_frames, ..., n), at fractional frames; gaps stay NaN."""
+    observed = np.isfinite(values).all(axis=-1)
+    filled = _bridged(values, observed)
+    if slowdown < 1.0 and len(values) > 1:
+        filled = _low_passed(filled, slowdown)
+    result = _interpolated(filled, times)
+    seen = observed[np.floor(times).astype(int)] & observed[np.ceil(times).astype(int)]
+    result[~seen] = np.nan
+    return result
+
+
+def _bridged(values: NDArray[np.float64], observed: NDArray[np.bool_]) -> NDArray[np.float64]:
+    """Bridge gaps by straight lines, for the filter's sake; what is never seen becomes 0."""
+    flat = values.reshape(len(values), -1).copy()
+    seen = np.repeat(observed.reshape(len(values), -1), values.shape[-1], axis=1)
+    frames = np.arange(len(values))
+    for column in np.flatnonzero(~seen.all(axis=0)):
+        known = seen[:, column]
+        flat[:, column] = (
+            np.interp(frames, frames[known], flat[known, column]) if known.any() else 0.0
+        )
+    return flat.reshape(values.shape)
+
+
+def _low_passed(values: NDArray[np.float64], slowdown: float) -> NDArray[np.float64]:
+    """Remove what lies above the new Nyquist frequency; the ends keep their trend."""
+    n_taps, beta = kaiserord(STOPBAND, (1.0 - PASSED) * slowdown)
+    half = n_taps // 2
+    kernel = firwin(2 * half + 1, (1.0 + PASSED) / 2 * slowdown, window=("kaiser", beta))
+    width = [(half, half)] + [(0, 0)] * (values.ndim - 1)
+    padded = np.pad(values, width, mode="reflect", reflect_type="odd")
+    return np.asarray(convolve1d(padded, kernel, axis=0)[half : half + len(values)])
+
+
+def _interpolated(
+    values: NDArray[np.float64], times: NDArray[np.float64]
+) -> NDArray[np.float64]:
+    """Lagrange's polynomial through the nearest frames, at fractional frames."""
+    n_nodes = min(STENCIL, len(values))
+    first = np.clip(np.floor(times).astype(int) - 1, 0, len(values) - n_nodes)
+    inside = times - first
+    result = np.zeros((len(times), *values.shape[1:]))
+    for node in range(n_nodes):
+        others = [other for other in range(n_nodes) if other != node]
+        weight = np.prod([(inside - other) / (node - other) for other in others], axis=0)
+        weight = np.broadcast_to(weight, times.shape)
+        result += weight.reshape(-1, *[1] * (values.ndim - 1)) * values[first + node]
+    return result

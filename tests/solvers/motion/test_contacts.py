@@ -1,0 +1,189 @@
+"""Feet must be found planted when they are, in spite of jitter, drift and scale."""
+
+import numpy as np
+import pytest
+from numpy.testing import assert_array_equal
+
+from solvers.errors import InvalidMotionError
+from solvers.motion import (
+    ContactSettings,
+    HumanoidMap,
+    Motion,
+    Skeleton,
+    detect_contacts,
+    forward_kinematics,
+    reach,
+)
+from solvers.motion.rotations import (
+    IDENTITY,
+    multiply,
+    quaternion_from_rotation_vector,
+    rotate,
+)
+from solvers.recordings import read_bvh
+
+STANCE = 0.6
+"""Part of each step cycle of one second in which a foot of `walk` stands."""
+
+
+@pytest.fixture
+def walk(body) -> Motion:
+    """Five seconds at 100 Hz of a gait whose contacts are known by construction."""
+    return walking(body)
+
+
+def test_finds_the_stance_phases_of_a_known_gait(walk):
+    found = detect_contacts(walk)
+
+    truth = standing(walk)
+    assert (found == truth).mean() > 0.95
+    assert count_of_runs(found) == count_of_runs(truth)
+
+
+def test_jitter_changes_little(walk, rng):
+    turns = rng.normal(scale=np.radians(1.0), size=(walk.n_frames, walk.n_joints, 3))
+    noisy = walk.with_poses(
+        multiply(walk.rotations, quaternion_from_rotation_vector(turns)),
+        walk.root_positions + rng.normal(scale=0.005, size=(walk.n_frames, 3)),
+    )
+
+    assert (detect_contacts(noisy) == standing(walk)).mean() > 0.92
+
+
+def test_clean_and_noisy_real_walks_agree(recordings, rng):
+    for name in ("07_01", "35_10", "26_01"):
+        clean = read_bvh(recordings / f"mocap/cmu_walk/{name}.bvh")
+        clean = clean.slice(1, 600)
+        turns = rng.normal(scale=np.radians(1.0), size=(clean.n_frames, clean.n_joints, 3))
+        noisy = clean.with_poses(
+            multiply(clean.rotations, quaternion_from_rotation_vector(turns))
+        )
+
+        found = detect_contacts(clean)
+
+        assert (detect_contacts(noisy) == found).mean() > 0.92
+        assert 0.4 < found.mean() < 0.85  # a walker's foot stands 60 % of the time
+
+
+def test_one_leg_hops_are_told_from_two(recordings):
+    """CMU 49_02 hops on the left leg from 8 to 12 s, on the right from 12.5 to 15.5 s."""
+    found = detect_contacts(read_bvh(recordings / "mocap/cmu_hop/49_02.bvh"))
+
+    left, right = found[960:1440].mean(axis=0), found[1500:1860].mean(axis=0)
+    assert left[0] > 0.3 and left[1] < 0.05
+    assert right[1] > 0.3 and right[0] < 0.05
+
+
+@pytest.mark.parametrize("size", [0.01, 0.5, 100.0])
+def test_does_not_depend_on_size(walk, size):
+    skeleton = walk.skeleton
+    scaled = Motion(
+        Skeleton(skeleton.names, skeleton.parents, size * skeleton.offsets),
+        walk.rotations, size * walk.root_positions, walk.frame_rate,
+    )  # fmt: skip
+
+    assert_array_equal(detect_contacts(scaled), detect_contacts(walk))
+
+
+def test_does_not_depend_on_place_or_heading(walk):
+    turn = quaternion_from_rotation_vector([0.0, 0.0, 1.1])
+    rotations = walk.rotations.copy()
+    rotations[:, 0] = multiply(turn, rotations[:, 0])
+    place = rotate(turn, walk.root_positions) + np.array([5.0, 2.0, -3.0])
+    moved = walk.with_poses(rotations, place)
+
+    assert_array_equal(detect_contacts(moved), detect_contacts(walk))
+
+
+def test_a_floor_captured_aslant_is_still_the_floor(walk):
+    """Subject 07 of CMU climbs 5 cm in four metres."""
+    climb = np.zeros((walk.n_frames, 3))
+    climb[:, 2] = 0.02 * np.arange(walk.n_frames) / walk.frame_rate
+
+    found = detect_contacts(walk.with_poses(root_positions=walk.root_positions + climb))
+
+    assert (found == detect_contacts(walk)).mean() > 0.97
+
+
+def test_the_frame_rate_changes_little(body):
+    slow, fast = walking(body, 30.0), walking(body, 120.0)
+
+    every_fourth = detect_contacts(fast)[::4]
+
+    n_changes = np.abs(np.diff(every_fourth.astype(int), axis=0)).sum()
+    assert (detect_contacts(slow) != every_fourth).sum() <= n_changes
+
+
+def test_a_lifted_foot_held_still_does_not_stand(walk):
+    lifted = walk.skeleton.index("RightUpLeg")
+    still = walk.slice(0, 1)
+    rotations = np.repeat(still.rotations, 300, axis=0)
+    rotations[:, lifted] = quaternion_from_rotation_vector([-1.2, 0, 0])
+    posed = walk.with_poses(rotations, np.repeat(still.root_positions, 300, axis=0))
+
+    assert_array_equal(detect_contacts(posed), np.tile([True, False], (300, 1)))
+
+
+def test_unseen_feet_do_not_stand(walk):
+    rotations = walk.rotations.copy()
+    rotations[200:260, walk.skeleton.index("LeftLeg")] = np.nan
+
+    found = detect_contacts(walk.with_poses(rotations))
+
+    assert not found[200:260, 0].any()
+    assert_array_equal(found[:, 1], detect_contacts(walk)[:, 1])
+
+
+def test_all_hidden_or_one_frame_is_answered(walk):
+    hidden = walk.with_poses(root_positions=np.full_like(walk.root_positions, np.nan))
+
+    assert not detect_contacts(hidden).any()
+    assert detect_contacts(walk.slice(0, 1)).shape == (1, 2)
+
+
+def test_lower_thresholds_find_less(walk):
+    strict = detect_contacts(walk, settings=ContactSettings(height=0.02, speed=0.1))
+
+    assert strict.sum() < detect_contacts(walk).sum()
+
+
+def test_asks_for_feet(leg, swinging_leg):
+    with pytest.raises(InvalidMotionError, match="role leftFoot or rightFoot"):
+        detect_contacts(swinging_leg)
+    with pytest.raises(InvalidMotionError, match="role rightFoot"):
+        detect_contacts(swinging_leg, HumanoidMap({"leftFoot": "ankle"}))
+
+
+def walking(body: Skeleton, frame_rate: float = 100.0) -> Motion:
+    """Feet follow a planned path, legs reach for it; step length 0.8 m."""
+    time = np.arange(round(5.0 * frame_rate)) / frame_rate
+    n_frames = len(time)
+    place = np.stack([0 * time, -0.8 * time, 0 * time + 0.93], axis=-1)
+    motion = Motion(body, np.tile(IDENTITY, (n_frames, body.n_joints, 1)), place, frame_rate)
+    for side, lag in (("Left", 0.0), ("Right", 0.5)):
+        joints = tuple(body.index(side + name) for name in ("UpLeg", "Leg", "Foot"))
+        ankle = forward_kinematics(motion).positions[:, joints[2]]
+        ankle[:, 1:] = planned_ankle(time + lag, lag)
+        motion = reach(motion, joints, ankle)
+    return motion
+
+
+def planned_ankle(time: np.ndarray, lag: float) -> np.ndarray:
+    """Forward and upward place of an ankle that rests at 0.08 m while it stands."""
+    cycle, phase = np.divmod(time, 1.0)
+    swing = np.clip((phase - STANCE) / (1.0 - STANCE), 0.0, 1.0)
+    eased = swing * swing * (3.0 - 2.0 * swing)
+    return np.stack(
+        [-0.8 * (cycle + eased + STANCE / 2 - lag), 0.08 + 0.15 * np.sin(np.pi * swing) ** 2],
+        axis=-1,
+    )
+
+
+def standing(walk: Motion) -> np.ndarray:
+    time = np.arange(walk.n_frames) / walk.frame_rate
+    return np.stack([(time + lag) % 1.0 < STANCE for lag in (0.0, 0.5)], axis=-1)
+
+
+def count_of_runs(flags: np.ndarray) -> list[int]:
+    starts = np.diff(flags.astype(int), axis=0, prepend=0) > 0
+    return starts.sum(axis=0).tolist()
