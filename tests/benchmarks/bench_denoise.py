@@ -3,65 +3,128 @@ r"""Denoising and gap filling against every filter that an animator has, side by
     python -m tests.benchmarks.bench_denoise                 # a few minutes, quick selection
     python -m tests.benchmarks.bench_denoise --full          # all scored clips
     python -m tests.benchmarks.bench_denoise --part gaps     # one part only
-    python -m tests.benchmarks.bench_denoise --docs          # also writes docs/benchmarks.md
+    python -m tests.benchmarks.bench_denoise --docs          # also rewrites docs/benchmarks.md
 
 While working on the method, on development clips only, a run of seconds:
 
-    python -m tests.benchmarks.bench_denoise --dev --clips 4 --only ours,published \
-        --levels 3:0,3:0.1
+    python -m tests.benchmarks.bench_denoise --dev --part walks --clips 4 \
+        --only ours,published --levels 3:0,3:0.1
 
-`--only` takes ours, alone (ours without a prior), published, or any part of a peer's name;
+`--only` takes ours, alone (ours without examples), published, or any part of a peer's name;
 `--levels` takes sigma:fraction pairs, `--clean-root` leaves the root's position unspoilt.
 Which clips are for development is fixed in clips.py, what is spoilt in noise.py.
 """
 
 import argparse
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from time import perf_counter
+from typing import Any
 
 from threadpoolctl import threadpool_limits
 
 from . import clips
-from .cases import LEVELS, Level
+from .cases import LEVELS, Case, Level
 from .methods import Method
 from .ours import OURS, SHORT_NAMES
+from .part_classes import class_cases, compare_classes
 from .part_denoise import compare, leave_one_out, peers
+from .part_gaps import FILLERS, compare_gaps
+from .part_windows import compare_priors, compare_windows
+from .report import Report
 from .tables import Scores
+
+MAXIMUM_OF_QUICK_CLASSES = 2
+MAXIMUM_OF_FULL_CLASSES = 6
 
 
 def main() -> None:
-    """Run the chosen parts and print their tables."""
+    """Run the chosen parts, print their tables, and perhaps write them down."""
     chosen = _arguments()
     started = perf_counter()
+    report = Report(chosen.docs)
     with threadpool_limits(1):
         for name, part in PARTS.items():
             if name in chosen.part or "all" in chosen.part:
-                for scores in part(chosen):
-                    print(f"\n{scores.markdown()}", flush=True)
+                began = perf_counter()
+                report.part(name, part(chosen), perf_counter() - began)
     print(f"{perf_counter() - started:.0f} s in all")
 
 
 def walking(chosen: argparse.Namespace) -> list[Scores]:
     """Noise and outliers on CMU walks."""
-    select = clips.development if chosen.dev else clips.scored
-    names = select(chosen.full)[: chosen.clips]
+    names = _walks(chosen)
     cases = leave_one_out(clips.walks(), names, chosen.levels, chosen.clean_root)
     return compare(cases, _wanted(chosen, cases), f"CMU walks, {len(names)} clips")
 
 
-def _wanted(chosen: argparse.Namespace, cases: list) -> dict[str, Method]:
+def strangers(chosen: argparse.Namespace) -> list[Scores]:
+    """CMU walks again, but no example is of the person who is cleaned."""
+    names = _walks(chosen)
+    levels = [Level(3.0), Level(3.0, 0.10)]
+    cases = leave_one_out(clips.walks(), names, levels, chosen.clean_root, whole_subject=True)
+    title = f"CMU walks, {len(names)} clips, leave one subject out"
+    return compare(cases, _wanted(chosen, cases, blender=False), title)[:1]
+
+
+def classes(chosen: argparse.Namespace) -> list[Scores]:
+    """Noise and outliers on HDM05."""
+    most = MAXIMUM_OF_FULL_CLASSES if chosen.full else MAXIMUM_OF_QUICK_CLASSES
+    cases = class_cases(chosen.clips or most, chosen.dev)
+    flat = [case for several in cases.values() for case in several]
+    return compare_classes(cases, _wanted(chosen, flat))
+
+
+def gaps(chosen: argparse.Namespace) -> list[Scores]:
+    """Lost joints on CMU walks."""
+    cases = leave_one_out(clips.walks(), _walks(chosen), [Level(0.0)], clean_root=True)
+    return compare_gaps(cases, _named(chosen, FILLERS))
+
+
+def windows(chosen: argparse.Namespace) -> list[Scores]:
+    """Lengths of the patterns."""
+    return compare_windows(_walks(chosen)[:6])
+
+
+def priors(chosen: argparse.Namespace) -> list[Scores]:
+    """Right and wrong examples."""
+    scores, said = compare_priors(_walks(chosen)[:6])
+    for what, sentence in said.items():
+        print(f"  {what}: {sentence}")
+    return scores
+
+
+PARTS: dict[str, Callable[[argparse.Namespace], list[Scores]]] = {
+    "walks": walking,
+    "strangers": strangers,
+    "classes": classes,
+    "gaps": gaps,
+    "windows": windows,
+    "priors": priors,
+}
+
+
+def _walks(chosen: argparse.Namespace) -> list[str]:
+    select = clips.development if chosen.dev else clips.scored
+    return select(chosen.full)[: chosen.clips]
+
+
+def _wanted(
+    chosen: argparse.Namespace, cases: list[Case], blender: bool = True
+) -> dict[str, Method]:
+    blender = blender and (not chosen.only or "lender" in chosen.only)
+    return _named(chosen, {**peers(cases, blender), **OURS})
+
+
+def _named(chosen: argparse.Namespace, methods: Mapping[str, Any]) -> dict[str, Any]:
+    """Return the methods that `--only` asks for."""
     if not chosen.only:
-        return {**peers(cases), **OURS}
+        return dict(methods)
     asked = [SHORT_NAMES.get(one, one) for one in chosen.only.split(",")]
-    everything = {**peers(cases, blender="lender" in chosen.only), **OURS}
     return {
         name: method
-        for name, method in everything.items()
+        for name, method in methods.items()
         if any(one == name or (one not in OURS and one in name) for one in asked)
     }
-
-
-PARTS: dict[str, Callable[[argparse.Namespace], list[Scores]]] = {"walks": walking}
 
 
 def _levels(text: str) -> tuple[Level, ...]:
@@ -77,6 +140,7 @@ def _arguments() -> argparse.Namespace:
     parser.add_argument("--only", default="", help="methods, separated by commas")
     parser.add_argument("--levels", type=_levels, default=LEVELS, help="such as 3:0,3:0.1")
     parser.add_argument("--clean-root", action="store_true")
+    parser.add_argument("--docs", action="store_true", help="rewrite docs/benchmarks.md")
     return parser.parse_args()
 
 

@@ -44,7 +44,8 @@ def hops() -> dict[str, Motion]:
 
 def read_cmu(path: Path, step: int = STEP) -> Motion:
     """Read a CMU walk in BVH, which starts with a T-pose that is left out."""
-    return every(read_bvh(path).slice(1, None), step)
+    motion = read_bvh(path, scale=CMU_METRES)
+    return every(motion.slice(1, motion.n_frames), step)
 
 
 def every(motion: Motion, step: int) -> Motion:

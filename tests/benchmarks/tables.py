@@ -1,7 +1,8 @@
 """Scores of many methods on many clips, as tables in Markdown."""
 
 from collections import defaultdict
-from collections.abc import Sequence
+from collections.abc import Callable, Iterable, Sequence
+from typing import Any
 
 import numpy as np
 
@@ -24,20 +25,28 @@ class Scores:
             self.columns.append(column)
         self._found[method, column][clip] = figure
 
+    def add_overall(self) -> None:
+        """Add a last column "all" over the clips of all columns."""
+        for method in self.methods:
+            for column in self.columns:
+                for clip, figure in self._found[method, column].items():
+                    self._found[method, "all"][f"{column} {clip}"] = figure
+        self.columns.append("all")
+
     def mean(self, method: str, column: str) -> float:
         """Mean over clips."""
-        return float(np.mean(list(self._found[method, column].values())))
+        return _quietly(np.mean, self._found[method, column].values())
 
     def spread(self, method: str, column: str) -> float:
         """Standard deviation over clips."""
-        return float(np.std(list(self._found[method, column].values())))
+        return _quietly(np.std, self._found[method, column].values())
 
     def paired(self, method: str, column: str) -> tuple[float, float]:
         """Mean and standard deviation over clips of this method's figure less ours."""
         ours = self._found[self.ours, column]
         other = self._found[method, column]
         differences = [other[clip] - ours[clip] for clip in other if clip in ours]
-        return float(np.mean(differences)), float(np.std(differences))
+        return _quietly(np.mean, differences), _quietly(np.std, differences)
 
     def markdown(self) -> str:
         """Mean ± spread, then the paired difference to ours."""
@@ -54,14 +63,14 @@ class Scores:
         return "\n".join(parts) + "\n"
 
     def _cell(self, method: str, column: str) -> str:
-        if not self._found[method, column]:
+        if not np.isfinite(self.mean(method, column)):
             return "-"
         return f"{number(self.mean(method, column))} ± {number(self.spread(method, column))}"
 
     def _pair(self, method: str, column: str) -> str:
-        if not self._found[method, column] or not self._found[self.ours, column]:
-            return "-"
         mean, spread = self.paired(method, column)
+        if not np.isfinite(mean):
+            return "-"
         return f"{'+' if mean >= 0 else '-'}{number(abs(mean))} ± {number(spread)}"
 
 
@@ -82,3 +91,9 @@ def number(value: float) -> str:
     if not np.isfinite(value):
         return "-"
     return f"{value:.0f}" if value >= 100 else f"{value:.1f}" if value >= 10 else f"{value:.2f}"
+
+
+def _quietly(statistic: Callable[[list[float]], Any], figures: Iterable[float]) -> float:
+    """Return the statistic, or NaN where there is no figure."""
+    given = list(figures)
+    return float(statistic(given)) if given else float("nan")

@@ -30,25 +30,49 @@ def smooth(dynamics: Dynamics, measured: Array) -> Array:
     `measured` is (n_frames, n_measured) with NaN anywhere. Rauch, Tung, Striebel (1965).
     """
     F, H = dynamics.F, dynamics.H
-    mean, P = dynamics.start, dynamics.spread
+    mean, P, gain = dynamics.start, dynamics.spread, np.zeros((0, 0))
     predicted, filtered = [], []
     for frame, y in enumerate(measured):
+        settled = frame > 1 and _same(P, filtered[-2][1]) and _same_seen(measured, frame)
         if frame:
-            mean, P = F @ mean + dynamics.offset, F @ P @ F.T + dynamics.Q
+            mean = F @ mean + dynamics.offset
+            P = predicted[-1][1] if settled else F @ P @ F.T + dynamics.Q
         predicted.append((mean, P))
         seen = np.isfinite(y)
-        if seen.any():
+        if settled:
+            P = filtered[-1][1]
+        elif seen.any():
             S = H[seen] @ P @ H[seen].T + dynamics.R[np.ix_(seen, seen)]
             gain = cho_solve(cho_factor(S), H[seen] @ P).T
-            mean = mean + gain @ (y[seen] - H[seen] @ mean)
             P = P - gain @ H[seen] @ P
             P = 0.5 * (P + P.T)
+        if seen.any():
+            mean = mean + gain @ (y[seen] - H[seen] @ mean)
         filtered.append((mean, P))
-    states = [mean]
+    return _backward(F, predicted, filtered)
+
+
+def _backward(
+    F: Array, predicted: list[tuple[Array, Array]], filtered: list[tuple[Array, Array]]
+) -> Array:
+    states = [filtered[-1][0]]
+    pair: tuple[Array, ...] = ()
     for (m, P), (m_next, P_next) in zip(filtered[-2::-1], predicted[:0:-1], strict=True):
-        gain = cho_solve(cho_factor(P_next), F @ P).T
+        if not (pair and pair[0] is P and pair[1] is P_next):
+            gain = cho_solve(cho_factor(P_next), F @ P).T
+            pair = (P, P_next)
         states.append(m + gain @ (states[-1] - m_next))
     return np.array(states[::-1])
+
+
+def _same(P: Array, before: Array) -> bool:
+    """Whether the covariance has settled, so that the gain may be used again."""
+    return P is before or bool(np.abs(P - before).max() < 1e-9 * np.abs(P).max())
+
+
+def _same_seen(measured: Array, frame: int) -> bool:
+    seen = np.isfinite(measured[frame - 2 : frame + 1])
+    return bool((seen == seen[0]).all())
 
 
 def constant_velocity(noisy: Array, frame_rate: float, agility: float) -> Array:

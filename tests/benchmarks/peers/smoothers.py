@@ -4,6 +4,7 @@ from functools import lru_cache
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.interpolate import CubicSpline
 from scipy.linalg import cho_solve_banded, cholesky_banded, eigh
 from scipy.ndimage import gaussian_filter1d, median_filter
 from scipy.optimize import minimize_scalar
@@ -47,8 +48,28 @@ def gcv_spline(noisy: Array, frame_rate: float) -> Array:
     abscissae), in the basis in which the smoother is diagonal (Demmler and Reinsch 1975): a
     hundred times faster. `test_peers.py` compares the two.
     """
-    n_frames = len(noisy)
-    basis, roughness = _demmler_reinsch(n_frames)
+    return _smoothed(noisy, *demmler_reinsch(tuple(np.arange(len(noisy), dtype=float))))
+
+
+def hampel_gcv_spline(noisy: Array, frame_rate: float) -> Array:
+    """Hampel filter, then the spline: the best that an animator could put together."""
+    return gcv_spline(hampel(noisy, frame_rate), frame_rate)
+
+
+def gcv_spline_over_gaps(gapped: Array, frame_rate: float) -> Array:
+    """Smoothing spline through what is seen (NaN = not seen), which also bridges the gaps."""
+    result = gapped.copy()
+    patterns, which = np.unique(np.isfinite(gapped), axis=1, return_inverse=True)
+    for number in np.flatnonzero(patterns.sum(axis=0) > 3):
+        seen, columns = patterns[:, number], np.flatnonzero(which.ravel() == number)
+        times = np.flatnonzero(seen).astype(float)
+        smooth = _smoothed(gapped[np.ix_(seen, columns)], *demmler_reinsch(tuple(times)))
+        natural = CubicSpline(times, smooth, bc_type="natural")
+        result[:, columns] = natural(np.arange(len(gapped)))
+    return result
+
+
+def _smoothed(noisy: Array, basis: Array, roughness: Array) -> Array:
     coefficients = basis.T @ noisy
 
     def score(smoothness: float, power: Array) -> float:
@@ -57,25 +78,24 @@ def gcv_spline(noisy: Array, frame_rate: float) -> Array:
 
     result = np.empty_like(noisy)
     for channel, each in enumerate(coefficients.T):
-        found = minimize_scalar(score, args=(each**2,), bounds=(0, n_frames), method="bounded")
+        bounds = (0, len(noisy))
+        found = minimize_scalar(score, args=(each**2,), bounds=bounds, method="bounded")
         result[:, channel] = basis @ (each / (1.0 + found.x * roughness))
     return result
 
 
-def hampel_gcv_spline(noisy: Array, frame_rate: float) -> Array:
-    """Hampel filter, then the spline: the best that an animator could put together."""
-    return gcv_spline(hampel(noisy, frame_rate), frame_rate)
-
-
 @lru_cache(maxsize=8)
-def _demmler_reinsch(n_frames: int) -> tuple[Array, Array]:
+def demmler_reinsch(times: tuple[float, ...]) -> tuple[Array, Array]:
     """Eigenvectors and eigenvalues of Q R^-1 Q^T (Green and Silverman 1994, section 2.1.2)."""
-    inner = n_frames - 2
-    Q = np.zeros((n_frames, inner))
-    for shift, weight in enumerate((1.0, -2.0, 1.0)):
-        Q[np.arange(inner) + shift, np.arange(inner)] = weight
-    R = np.full((2, inner), 1.0 / 6.0)
-    R[1] = 2.0 / 3.0
+    n_times, steps = len(times), np.diff(times)
+    rows = np.arange(n_times - 2)
+    Q = np.zeros((n_times, n_times - 2))
+    Q[rows, rows] = 1.0 / steps[:-1]
+    Q[rows + 1, rows] = -1.0 / steps[:-1] - 1.0 / steps[1:]
+    Q[rows + 2, rows] = 1.0 / steps[1:]
+    R = np.zeros((2, n_times - 2))
+    R[0, 1:] = steps[1:-1] / 6.0
+    R[1] = (steps[:-1] + steps[1:]) / 3.0
     K = Q @ cho_solve_banded((cholesky_banded(R), False), Q.T)
     roughness, basis = eigh(0.5 * (K + K.T))
     return basis, np.maximum(roughness, 0.0)

@@ -1,0 +1,55 @@
+"""What a run leaves behind: tables on the terminal and, if asked for, in docs/benchmarks.md.
+
+A part's tables replace what stands between its two marks in the document; everything else in
+it is written by hand.
+"""
+
+import platform
+import re
+import sys
+from collections.abc import Sequence
+from datetime import UTC, datetime
+from pathlib import Path
+
+from .plots import draw_scores
+from .tables import Scores
+
+DOCS = Path(__file__).resolve().parents[2] / "docs"
+DOCUMENT = DOCS / "benchmarks.md"
+PICTURES = DOCS / "pictures"
+
+
+class Report:
+    """Where the tables go."""
+
+    def __init__(self, to_document: bool) -> None:
+        self._to_document = to_document
+
+    def part(self, name: str, tables: Sequence[Scores], seconds: float) -> None:
+        """Print the tables of one part; put them into the document with a picture each."""
+        for scores in tables:
+            print(f"\n{scores.markdown()}", flush=True)
+        if self._to_document:
+            text = [_run(seconds)]
+            for number, scores in enumerate(tables):
+                path = PICTURES / f"bench_{name}_{number}.png"
+                draw_scores(scores, path)
+                text += [scores.markdown(), f"![{scores.title}](pictures/{path.name})\n"]
+            _replace(name, "\n".join(text))
+
+
+def _run(seconds: float) -> str:
+    now = datetime.now(UTC).strftime("%Y-%m-%d %H:%M UTC")
+    command = f"python -m tests.benchmarks.bench_denoise {' '.join(sys.argv[1:])}"
+    machine = f"{platform.system()} {platform.machine()}, Python {platform.python_version()}"
+    return f"`{command}`, {now}, {machine}, one BLAS thread, {seconds:.0f} s.\n"
+
+
+def _replace(name: str, text: str) -> None:
+    begin, end = f"<!-- {name} -->", f"<!-- end of {name} -->"
+    document = DOCUMENT.read_text(encoding="utf-8") if DOCUMENT.exists() else ""
+    if begin not in document:
+        document += f"\n{begin}\n{end}\n"
+    pattern = re.compile(f"{re.escape(begin)}.*?{re.escape(end)}", re.DOTALL)
+    filled = pattern.sub(lambda _: f"{begin}\n{text}\n{end}", document)
+    DOCUMENT.write_text(filled, encoding="utf-8")
