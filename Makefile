@@ -23,7 +23,7 @@ SUBMAKE := $(MAKE) --no-print-directory --jobs=2
 
 .PHONY: help
 help:  ## this list
-	@sed -n 's/^\([a-z][a-z0-9.-]*\):.*## \(.*\)/  \1|\2/p' Makefile | column -t -s '|'
+	@awk -F ':.*## ' '/^[a-z][a-z0-9.-]*:.*## / { printf "  %-18s%s\n", $$1, $$2 }' Makefile
 
 # --- Tests ---
 
