@@ -16,7 +16,7 @@ SHARED_ROOMS = {"motion", "errors", "files", "progress", "settings"}
 FAMILIES = [
     folder.name
     for folder in sorted((ROOT / "solvers").iterdir())
-    if folder.is_dir() and folder.name not in {"__pycache__", "workflows"}
+    if folder.is_dir() and folder.name not in {"__pycache__", "workflows", "command_line"}
 ]
 LONGEST_FILE = 300
 

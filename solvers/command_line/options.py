@@ -1,0 +1,107 @@
+"""Command-line options made from settings classes, so that each setting is described once."""
+
+import argparse
+from collections.abc import Callable
+from dataclasses import Field, fields
+from enum import Enum
+from math import degrees, isfinite, radians
+from typing import Any, NoReturn, TypeVar
+
+from ..settings import Described, Settings
+
+SettingsClass = TypeVar("SettingsClass", bound=Settings)
+
+
+class SentenceParser(argparse.ArgumentParser):
+    """A parser that says in one sentence what is wrong, and exits with status 2."""
+
+    def error(self, message: str) -> NoReturn:
+        """Print the sentence on stderr, without the usage."""
+        sentence = message[:1].upper() + message[1:].rstrip(".")
+        self.exit(2, f"{sentence}. See: {self.prog} --help\n")
+
+
+def arguments_from(parser: argparse.ArgumentParser, *classes: type[Settings]) -> None:
+    """Add an option for each setting: `foot_speed` becomes `--foot-speed`.
+
+    Angles are given in degrees. Settings of the same name in two classes become one option.
+
+    Parameters
+    ----------
+    parser : ArgumentParser
+        Or an argument group.
+    *classes : subclasses of Settings
+    """
+    described = {item.name: item for each in classes for item in reversed(fields(each))}
+    for name, item in sorted(described.items()):
+        option = f"--{name.replace('_', '-')}"
+        parser.add_argument(option, **_kind(item), help=_help(item), default=argparse.SUPPRESS)
+
+
+def settings_from_arguments(
+    arguments: argparse.Namespace, settings_class: type[SettingsClass]
+) -> SettingsClass:
+    """Return settings with what was given on the command line, and defaults for the rest.
+
+    Raises
+    ------
+    InvalidSettingError
+        A value is out of its range.
+    """
+    names = [item.name for item in fields(settings_class)]
+    given = {name: getattr(arguments, name) for name in names if hasattr(arguments, name)}
+    return settings_class(**given)
+
+
+def _kind(item: "Field[Any]") -> dict[str, Any]:
+    """Return how argparse is to read a setting."""
+    kind: type = type(item.default)
+    if kind is bool:
+        return {"action": argparse.BooleanOptionalAction}
+    if issubclass(kind, Enum):
+        choices = "|".join(str(one.value) for one in kind)
+        return {"type": _choice_of(kind), "metavar": f"{{{choices}}}"}
+    if item.metadata["described"].unit == "rad":
+        return {"type": _angle, "metavar": "DEGREES"}
+    return {"type": kind, "metavar": {int: "N", float: "X", str: "TEXT"}[kind]}
+
+
+def _choice_of(kind: type[Enum]) -> Callable[[str], Enum]:
+    choices = {str(one.value): one for one in kind}
+
+    def choice(word: str) -> Enum:
+        if word not in choices:
+            raise argparse.ArgumentTypeError(f"{word!r} is none of {', '.join(choices)}")
+        return choices[word]
+
+    return choice
+
+
+def _angle(word: str) -> float:
+    return radians(float(word))
+
+
+_angle.__name__ = "angle"
+
+
+def _help(item: "Field[Any]") -> str:
+    """Return the setting's help with its unit, range and default value."""
+    described: Described = item.metadata["described"]
+    default: Any = item.default
+    kind, in_degrees = type(default), described.unit == "rad"
+
+    def shown(value: float) -> str:
+        return f"{degrees(value) if in_degrees else value:g}"
+
+    facts = ["degrees" if in_degrees else described.unit] if described.unit else []
+    if kind in {int, float}:
+        if isfinite(described.minimum) and isfinite(described.maximum):
+            facts.append(f"{shown(described.minimum)} to {shown(described.maximum)}")
+        facts.append(f"default {shown(default)}")
+    elif kind is bool:
+        facts.append(f"default {'yes' if default else 'no'}")
+    elif issubclass(kind, Enum):
+        facts.append(f"default {default.value}")
+    else:
+        facts.append(f"default {default!r}")
+    return f"{described.help} [{', '.join(facts)}]".replace("%", "%%")

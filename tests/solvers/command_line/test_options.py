@@ -1,0 +1,91 @@
+"""Settings come out of the command line as they were described."""
+
+from dataclasses import dataclass
+from enum import Enum
+from math import pi
+
+import pytest
+
+from solvers.command_line import SentenceParser, arguments_from, settings_from_arguments
+from solvers.errors import InvalidSettingError
+from solvers.settings import Settings, setting
+
+
+class Way(Enum):
+    FAST = "fast"
+    EXACT = "exact"
+
+
+@dataclass(frozen=True, kw_only=True)
+class BowSettings(Settings):
+    string_length: float = setting(0.7, "Longer is lower", unit="m", minimum=0.1, maximum=2.0)
+    tilt: float = setting(pi / 2, "Tilts 100 % more", unit="rad", minimum=0.0, maximum=pi)
+    n_shots: int = setting(3, "More is louder", minimum=1, maximum=10)
+    wet: bool = setting(True, "Whether it rains")
+    way: Way = setting(Way.FAST, "How")
+    label: str = setting("x", "What to call it")
+
+
+@dataclass(frozen=True, kw_only=True)
+class ArrowSettings(Settings):
+    n_shots: int = setting(5, "More is louder", minimum=1, maximum=10)
+
+
+@pytest.fixture
+def parser():
+    parser = SentenceParser(prog="bow")
+    arguments_from(parser, BowSettings, ArrowSettings)
+    return parser
+
+
+def test_each_kind_of_setting_is_read(parser):
+    words = ["--string-length", "1.5", "--tilt", "180", "--n-shots", "7", "--no-wet"]
+    words += ["--way", "exact", "--label", "y"]
+
+    settings = settings_from_arguments(parser.parse_args(words), BowSettings)
+
+    assert settings == BowSettings(
+        string_length=1.5, tilt=pi, n_shots=7, wet=False, way=Way.EXACT, label="y"
+    )
+
+
+def test_what_is_not_given_is_the_default_of_each_class(parser):
+    arguments = parser.parse_args([])
+
+    assert settings_from_arguments(arguments, BowSettings) == BowSettings()
+    assert settings_from_arguments(arguments, ArrowSettings).n_shots == 5
+
+
+def test_help_says_unit_range_and_default(parser):
+    text = " ".join(parser.format_help().split())
+
+    assert "Longer is lower [m, 0.1 to 2, default 0.7]" in text
+    assert "Tilts 100 % more [degrees, 0 to 180, default 90]" in text
+    assert "--way {fast|exact} How [default fast]" in text
+    assert "Whether it rains [default yes]" in text
+
+
+def test_a_value_out_of_range_is_refused_with_the_range(parser):
+    arguments = parser.parse_args(["--string-length", "3"])
+
+    with pytest.raises(InvalidSettingError, match=r"must lie between 0\.1 and 2"):
+        settings_from_arguments(arguments, BowSettings)
+
+
+@pytest.mark.parametrize(
+    ("words", "sentence"),
+    [
+        (["--way", "slow"], "Argument --way: 'slow' is none of fast, exact"),
+        (["--n-shots", "many"], "Argument --n-shots: invalid int value: 'many'"),
+        (["--tilt", "up"], "Argument --tilt: invalid angle value: 'up'"),
+        (["--speed", "1"], "Unrecognized arguments: --speed 1"),
+    ],
+)
+def test_a_slip_is_one_sentence_on_stderr_and_status_2(parser, capsys, words, sentence):
+    with pytest.raises(SystemExit) as stopped:
+        parser.parse_args(words)
+
+    complaint = capsys.readouterr().err
+    assert stopped.value.code == 2
+    assert complaint.startswith(sentence)
+    assert complaint.count("\n") == 1
