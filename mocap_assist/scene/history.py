@@ -2,12 +2,15 @@
 
 import json
 import tomllib
+from dataclasses import asdict
+from enum import Enum
 from functools import cache
 from pathlib import Path
 from typing import Any
 
 import bpy
 
+from ...solvers.settings import Settings
 from . import compat
 
 HISTORY = "mocap_assist_history"
@@ -46,6 +49,28 @@ def raw_of(action: bpy.types.Action) -> tuple[bpy.types.Action, bpy.types.Action
         return None
     slot = compat.slot_called(source, entries[0].get("slot", ""))
     return None if slot is None else (source, slot)
+
+
+def raw_source(
+    armature: bpy.types.Object,
+) -> tuple[bpy.types.Action, bpy.types.ActionSlot] | None:
+    """Return the recorded action behind the result that an armature plays, if it plays one."""
+    animation = armature.animation_data
+    if animation is None:
+        return None
+    strips = [strip for track in animation.nla_tracks for strip in track.strips]
+    played = [animation.action, *(strip.action for strip in reversed(strips))]
+    found = (raw_of(action) for action in played if action is not None)
+    return next((source for source in found if source is not None), None)
+
+
+def plain(*settings: Settings) -> dict[str, Any]:
+    """Return settings as JSON-ready values, by name."""
+    values = {name: value for each in settings for name, value in asdict(each).items()}
+    return {
+        name: value.value if isinstance(value, Enum) else value
+        for name, value in values.items()
+    }
 
 
 @cache

@@ -1,0 +1,58 @@
+"""The other end of job.py: a script for a bare Python, which has no bpy to misuse."""
+
+import importlib
+import pickle
+import sys
+import traceback
+from collections.abc import Callable
+from pathlib import Path
+from time import monotonic
+from types import ModuleType
+from typing import Any
+
+BETWEEN_REPORTS = 0.1  # seconds
+
+
+def main(folder: Path, extension: str) -> None:
+    """Run the request in `folder` and leave the result there, whole or not at all."""
+    make_importable(extension, Path(__file__).parents[2])
+    protocol = importlib.import_module(f"{extension}.mocap_assist.jobs.protocol")
+    solve = pickle.loads((folder / protocol.REQUEST).read_bytes())
+    outcome: Any
+    try:
+        outcome = (solve(progress=reporter(folder, protocol)),)
+    except Exception as error:  # handed over whole, to be raised in Blender
+        error.add_note(traceback.format_exc())
+        outcome = error
+    part = folder / "part"
+    part.write_bytes(pickle.dumps(outcome))
+    part.replace(folder / protocol.RESULT)
+
+
+def make_importable(extension: str, folder: Path) -> None:
+    """Let `bl_ext.user_default.mocap_assist.solvers` be found without running add-on code."""
+    parts = extension.split(".")
+    for n in range(1, len(parts) + 1):
+        package = ModuleType(".".join(parts[:n]))
+        package.__path__ = [str(folder)] if n == len(parts) else []
+        sys.modules[package.__name__] = package
+
+
+def reporter(folder: Path, protocol: ModuleType) -> Callable[..., None]:
+    """Return a Progress that prints now and then, and ends a solve whose Blender is gone."""
+    spoken = -1.0
+
+    def report(fraction: float, message: str = "") -> None:
+        nonlocal spoken
+        if monotonic() - spoken < BETWEEN_REPORTS:
+            return
+        spoken = monotonic()
+        if not folder.exists():
+            sys.exit(1)
+        print(protocol.progress_line(fraction, message), flush=True)
+
+    return report
+
+
+if __name__ == "__main__":
+    main(Path(sys.argv[1]), sys.argv[2])

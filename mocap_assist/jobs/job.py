@@ -1,0 +1,102 @@
+"""A solve running in a process of its own. Knows nothing about Blender."""
+
+import os
+import pickle
+import signal
+import subprocess
+import sys
+from collections.abc import Callable
+from pathlib import Path
+from tempfile import TemporaryDirectory
+from typing import Any, Generic, TypeVar
+
+from ...solvers.errors import MocapAssistError, SolveCancelled
+from .protocol import LOG, REQUEST, RESULT, last_progress, last_words
+
+Result = TypeVar("Result")
+EXTENSION = __name__.rsplit(".", 3)[0]
+CHILD = Path(__file__).with_name("child.py")
+ONE_THREAD = {"OMP_NUM_THREADS": "1", "OPENBLAS_NUM_THREADS": "1"}  # faster on small matrices
+NO_WINDOW = getattr(subprocess, "CREATE_NO_WINDOW", 0)  # no console flashes up on Windows
+
+
+class Job(Generic[Result]):
+    """Start `solve(progress=…)`; ask `done` now and then; fetch `result` once.
+
+    `solve` must be picklable. A crash of its process, or a lack of memory, leaves this one
+    unharmed.
+    """
+
+    def __init__(self, solve: Callable[..., Result]) -> None:
+        self._cancelled = False
+        # On Windows a file that is still open cannot be removed; that is no reason to fail.
+        self._folder = TemporaryDirectory(prefix="mocap_assist_", ignore_cleanup_errors=True)
+        self._path = Path(self._folder.name)
+        (self._path / REQUEST).write_bytes(pickle.dumps(solve))
+        with (self._path / LOG).open("wb") as log:
+            self._process = subprocess.Popen(
+                [_python(), str(CHILD), str(self._path), EXTENSION],
+                stdin=subprocess.DEVNULL,
+                stdout=log,
+                stderr=subprocess.STDOUT,
+                creationflags=NO_WINDOW,
+                env=os.environ | ONE_THREAD | {"PYTHONPATH": _search_path(), "PYTHONUTF8": "1"},
+            )
+
+    def progress(self) -> tuple[float, str]:
+        """Return the last fraction, 0 to 1, and message of the solver."""
+        return last_progress(self._path)
+
+    def done(self) -> bool:
+        """Whether the process has ended, in whatever way."""
+        return self._process.poll() is not None
+
+    def cancel(self) -> None:
+        """End the process at once; `result` then raises SolveCancelled."""
+        self._cancelled = True
+        self._process.kill()
+
+    def result(self) -> Result:
+        """Wait for the end, tidy up, and return what the solver returned.
+
+        Raises
+        ------
+        SolveCancelled
+            `cancel` was called.
+        MocapAssistError
+            The process died; or whatever the solver itself raised.
+        """
+        status = self._process.wait()
+        said, answer = last_words(self._path), self._path / RESULT
+        outcome: Any = None
+        if answer.exists() and not self._cancelled:
+            outcome = pickle.loads(answer.read_bytes())
+        self._folder.cleanup()
+        if self._cancelled:
+            raise SolveCancelled("Cancelled.")
+        if outcome is None:
+            raise MocapAssistError(_obituary(status, said))
+        if isinstance(outcome, Exception):
+            raise outcome
+        return outcome[0]  # type: ignore[no-any-return]
+
+
+def _python() -> str:
+    if not sys.executable:
+        raise MocapAssistError("This Blender does not say where its Python is; reinstall it.")
+    return sys.executable
+
+
+def _search_path() -> str:
+    """Where this process finds modules, the extension's wheels too; not the present folder."""
+    return os.pathsep.join(path for path in sys.path if path)
+
+
+def _obituary(status: int, said: str) -> str:
+    cause = f"with status {status}"
+    if status < 0:
+        cause = f"by signal {signal.Signals(-status).name}"
+        if -status == signal.SIGKILL:
+            cause += ", which often means that memory ran out"
+    said = f" Its last words: {said}" if said else ""
+    return f"The solver process ended early, {cause}. Nothing was changed.{said}"

@@ -1,0 +1,49 @@
+"""The milestone: a real walk, imported by Blender's own importer, is cleaned by the button."""
+
+import contextlib
+import io
+
+import numpy as np
+import pytest
+
+# Blender's importer leaves its file open.
+pytestmark = pytest.mark.filterwarnings("ignore::pytest.PytestUnraisableExceptionWarning")
+INCH = 0.0254 / 0.45  # CMU's unit, in metres
+
+
+@pytest.fixture
+def walk(blank, recordings):
+    """A CMU walk of 2.6 s at 120 Hz; its first frame is a T-pose."""
+    with contextlib.redirect_stdout(io.StringIO()):
+        blank.ops.import_anim.bvh(
+            filepath=str(recordings / "mocap" / "cmu_walk" / "07_01.bvh"),
+            global_scale=INCH,
+            update_scene_fps=True,
+            update_scene_duration=True,
+        )
+    return blank.context.object
+
+
+def test_cleaning_brings_a_noisy_walk_nearer_to_the_truth(walk, blank, load, rng):
+    reading = load("mocap_assist.scene.armature_read")
+    writing = load("mocap_assist.scene.armature_write")
+    turns = load("solvers.motion.rotations")
+    scene = blank.context.scene
+    truth = reading.read_take(walk, scene)
+    motion = truth.parts[0].motion
+    shaken = rng.normal(scale=np.radians(3.0), size=(motion.n_frames, motion.n_joints, 3))
+    noise = turns.quaternion_from_rotation_vector(shaken)
+    noisy = truth.with_recordings((motion.with_poses(turns.multiply(motion.rotations, noise)),))
+    bones = set(truth.rig.bones)
+    raw, slot = writing.write_take(walk, reading.action_of(walk), noisy, bones, {})
+    raw.name = "walk"
+    writing.put_to_use(walk, raw, slot, writing.Output.ACTION)
+
+    assert blank.ops.mocap_assist.denoise() == {"FINISHED"}
+
+    def error(take):
+        angles = turns.angle_between(take.parts[0].motion.rotations, motion.rotations)
+        return float(angles[:, : len(bones)].mean())
+
+    assert walk.animation_data.action.name == "walk.clean"
+    assert error(reading.read_take(walk, scene)) < 0.65 * error(noisy)
