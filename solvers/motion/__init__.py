@@ -8,8 +8,9 @@
 [0.3, 0.0, 1.4]
 """
 
+from .bone_lengths import fit_bone_lengths, transfer_motion
 from .canonical import canonical_rotations, from_canonical, t_pose_alignment
-from .contacts import ContactSettings, detect_contacts
+from .contacts import ContactSettings, detect_contacts, foot_points, leg_length
 from .humanoid import HUMANOID_ROLES, HumanoidMap, find_humanoid_map
 from .kinematics import WorldPoses, forward_kinematics, local_rotations, world_poses
 from .limb_ik import ReachSettings, reach
@@ -18,9 +19,11 @@ from .resampling import resample
 from .skeleton import Skeleton
 from .tracks import Tracks
 from .velocities import angular_velocities, linear_velocities
+from .warping import Alignment, warp
 
 __all__ = [
     "HUMANOID_ROLES",
+    "Alignment",
     "ContactSettings",
     "HumanoidMap",
     "Motion",
@@ -32,12 +35,17 @@ __all__ = [
     "canonical_rotations",
     "detect_contacts",
     "find_humanoid_map",
+    "fit_bone_lengths",
+    "foot_points",
     "forward_kinematics",
     "from_canonical",
+    "leg_length",
     "linear_velocities",
     "local_rotations",
     "reach",
     "resample",
     "t_pose_alignment",
+    "transfer_motion",
+    "warp",
     "world_poses",
 ]
