@@ -45,7 +45,7 @@ class StickFigureSettings(Settings):
     """What of a motion is drawn, and how large."""
 
     n_figures: int = setting(8, "Moments drawn, evenly spaced", minimum=1, maximum=200)
-    view: View = setting(View.SIDE, "Where the onlooker stands")  # noqa: RUF009
+    view: View = setting(View.SIDE, "Where the onlooker stands")
     height: int = setting(
         260, "Height of a figure; more shows more", unit="px", minimum=40, maximum=2000
     )
@@ -61,7 +61,8 @@ def draw_stick_figures(
 
     Each moment stands in its own place from left to right, with the floor (z = 0) as a line.
     The limbs of the left side (+X in the rest pose) are paler. A joint that is not observed,
-    and what hangs on it, is not drawn. The onlooker moves and turns with the last motion.
+    and what hangs on it, is not drawn. The onlooker moves and turns with the last motion, for
+    which there is place; figures of the others may reach beyond theirs.
 
     Parameters
     ----------
@@ -89,7 +90,7 @@ def draw_stick_figures(
     ]
     tall = max(_stature(motion.skeleton) for motion in motions.values())
     scale = settings.height / tall
-    half, top = _extent(points, tall)
+    half, top = _extent(points[-1], tall)
     place = max(2.0 * half * scale, NARROWEST * settings.height) + MARGIN
     floor = TOP + MARGIN + top * scale
     canvas = Canvas(max(place * len(shown), 360.0) + 2 * MARGIN, floor + BOTTOM + MARGIN)
@@ -165,11 +166,10 @@ def _stature(skeleton: Skeleton) -> float:
     return float(np.ptp(skeleton.rest_positions, axis=0).max()) or 1.0
 
 
-def _extent(points: list[Array], tall: float) -> tuple[float, float]:
+def _extent(points: Array, tall: float) -> tuple[float, float]:
     """Greatest distance to a side and above the floor; a pose thrown far off does not count."""
-    flat = np.concatenate([each[..., :2].reshape(-1, 2) for each in points])
-    flat = flat[np.isfinite(flat).all(axis=1)]
-    half, top = (np.abs(flat[:, 0]).max(), flat[:, 1].max()) if len(flat) else (0.0, tall)
+    seen = points[..., :2][np.isfinite(points[..., :2]).all(axis=-1)]
+    half, top = (np.abs(seen[:, 0]).max(), seen[:, 1].max()) if len(seen) else (0.0, tall)
     return float(min(half, FARTHEST * tall)), float(np.clip(top, tall, FARTHEST * tall))
 
 

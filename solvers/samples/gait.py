@@ -95,7 +95,7 @@ def walking_gait(settings: GaitSettings = GaitSettings()) -> Motion:
     return Motion(skeleton, rotations, root, settings.frame_rate)
 
 
-# Angles below are degrees. Positive x leans forward, y lowers the left side, z turns to the left.
+# Angles below are degrees. Positive x leans forward, y lowers the left side, z turns left.
 # `_cycle(course, p)` is 1 when the left foot is at phase p of its stride.
 
 
