@@ -1,5 +1,6 @@
 """Read Acclaim recordings (AMC with the ASF of the actor): CMU's library and HDM05."""
 
+import re
 from collections import defaultdict
 from collections.abc import Mapping, Sequence
 from pathlib import Path
@@ -15,7 +16,7 @@ from .acclaim_skeleton import AcclaimBone, AcclaimSkeleton, read_acclaim_skeleto
 from .axes import turns_z_up_from_y_up, z_up_from_y_up
 from .text import read_bytes, read_rows
 
-FRAMES_AT_ONCE = 2000
+RADIANS = re.compile(rb"^[ \t]*:RADIANS", re.MULTILINE | re.IGNORECASE)
 
 
 def read_acclaim(
@@ -69,7 +70,10 @@ def read_acclaim(
     content = read_bytes(amc_path)
     skeleton = read_acclaim_skeleton(find_skeleton(amc_path) if asf_path is None else asf_path)
     recorded = _recorded(content.splitlines(), skeleton, amc_path, within(progress, 0.0, 0.7))
-    return _motion(skeleton, recorded, frame_rate, scale, within(progress, 0.7, 1.0))
+    angle_unit = 1.0 if RADIANS.search(content[:4096]) else skeleton.angle_unit
+    return _motion(
+        skeleton, recorded, frame_rate, scale, angle_unit, within(progress, 0.7, 1.0)
+    )
 
 
 def find_skeleton(amc_path: Path | str) -> Path:
@@ -151,6 +155,7 @@ def _motion(
     recorded: Mapping[str, NDArray[np.float64]],
     frame_rate: float,
     scale: float | None,
+    angle_unit: float,
     progress: Progress,
 ) -> Motion:
     n_frames = len(next(iter(recorded.values())))
@@ -163,7 +168,7 @@ def _motion(
         if bone.name not in recorded:
             continue
         columns = dict(zip(bone.channels, recorded[bone.name].T, strict=True))
-        turns = _turns(bone, columns, skeleton.angle_unit)
+        turns = _turns(bone, columns, angle_unit)
         rotations[:, joint] = turns_z_up_from_y_up(turns)
         if joint == 0:
             for axis, letter in enumerate("xyz"):

@@ -1,0 +1,110 @@
+"""Read a recording without being told its format."""
+
+import re
+from collections.abc import Callable
+from pathlib import Path
+from typing import NamedTuple, Protocol
+
+from ..errors import InvalidFileError
+from ..motion import Motion, Tracks
+from ..progress import Progress, unwatched
+from .acclaim import read_acclaim
+from .bvh import read_bvh
+from .c3d import read_c3d
+from .text import BYTE_ORDER_MARK
+
+HEAD = 4096
+
+
+class Reader(Protocol):
+    """What every reader of a format takes."""
+
+    def __call__(
+        self, path: Path | str, /, *, scale: float | None = None, progress: Progress = unwatched
+    ) -> Motion | Tracks:
+        """Read a file."""
+
+
+class Format(NamedTuple):
+    """A format that can be read, and how to tell it from the first bytes of a file."""
+
+    name: str
+    fits: Callable[[bytes], bool]
+    read: Reader
+
+
+def _is_bvh(head: bytes) -> bool:
+    return head.lstrip()[:9].upper() == b"HIERARCHY"
+
+
+def _is_acclaim(head: bytes) -> bool:
+    text = re.sub(rb"(?m)^\s*#.*$", b"", head).lstrip()
+    return re.match(rb"(?i):(FULLY-SPECIFIED|DEGREES|RADIANS)|1\s+root\s", text) is not None
+
+
+def _is_acclaim_skeleton(head: bytes) -> bool:
+    text = re.sub(rb"(?m)^\s*#.*$", b"", head).lstrip()
+    return re.match(rb"(?i):(version|name|units|root)\b", text) is not None
+
+
+def _is_c3d(head: bytes) -> bool:
+    return head[1:2] == b"\x50" and b"\0" in head[:512]
+
+
+def _refuse_skeleton(
+    path: Path | str, *, scale: float | None = None, progress: Progress = unwatched
+) -> Motion:
+    raise InvalidFileError(
+        f"{path} is a skeleton without motion. Choose its .amc file instead."
+    )
+
+
+FORMATS = (
+    Format("BVH", _is_bvh, read_bvh),
+    Format("Acclaim AMC", _is_acclaim, read_acclaim),
+    Format("Acclaim ASF", _is_acclaim_skeleton, _refuse_skeleton),
+    Format("C3D", _is_c3d, read_c3d),
+)
+"""A new format is a new line here."""
+
+
+def read_recording(
+    path: Path | str, *, scale: float | None = None, progress: Progress = unwatched
+) -> Motion | Tracks:
+    """Read a recording of any format known here, told by what the file holds.
+
+    Parameters
+    ----------
+    path : Path or str
+        BVH; AMC with the actor's ASF beside it; C3D.
+    scale : float, metres per unit of the file, or None
+        None leaves it to the reader of the format.
+    progress : Progress
+
+    Returns
+    -------
+    Motion or Tracks
+        In metres, Z up; NaN where not observed.
+
+    Raises
+    ------
+    InvalidFileError
+        The file is missing, damaged, or of a format not known here.
+    SolveCancelled
+        Raised by `progress`.
+    """
+    path = Path(path)
+    try:
+        with path.open("rb") as file:
+            head = file.read(HEAD).removeprefix(BYTE_ORDER_MARK)
+    except FileNotFoundError:
+        raise InvalidFileError(f"There is no file {path}.") from None
+    except OSError as error:
+        raise InvalidFileError(f"{path} cannot be read ({error.strerror}).") from None
+    for known in FORMATS:
+        if known.fits(head):
+            return known.read(path, scale=scale, progress=progress)
+    names = ", ".join(known.name for known in FORMATS if known.read is not _refuse_skeleton)
+    raise InvalidFileError(
+        f"{path} is of no known format ({names}). Export it as one of these first."
+    )

@@ -1,0 +1,58 @@
+"""A file is what it holds, whatever it is called."""
+
+import shutil
+
+import pytest
+
+from solvers.errors import InvalidFileError
+from solvers.motion import Motion, Tracks
+from solvers.recordings import read_bvh, read_recording, write_bvh
+
+
+def test_the_name_does_not_matter(swinging_leg, tmp_path):
+    write_bvh(swinging_leg, tmp_path / "leg.bvh")
+    shutil.copy(tmp_path / "leg.bvh", tmp_path / "leg.c3d")
+
+    assert read_recording(tmp_path / "leg.c3d").skeleton.same_joints(swinging_leg.skeleton)
+
+
+def test_scale_reaches_the_reader(swinging_leg, tmp_path):
+    write_bvh(swinging_leg, tmp_path / "leg.bvh")
+
+    twice = read_recording(tmp_path / "leg.bvh", scale=0.02)
+
+    assert twice.skeleton.height == pytest.approx(2 * swinging_leg.skeleton.height)
+
+
+def test_real_files_of_each_format(recordings):
+    mocap = recordings / "mocap"
+
+    assert isinstance(read_recording(mocap / "05_13.amc"), Motion)
+    assert isinstance(read_recording(mocap / "05_13.c3d"), Tracks)
+    assert read_recording(mocap / "cmu_walk" / "05_01.bvh").n_frames == 599
+    for path in sorted((recordings / "formats" / "bvh").iterdir()):
+        assert read_recording(path).n_frames == read_bvh(path).n_frames
+
+
+@pytest.mark.parametrize(
+    ("content", "sentence"),
+    [
+        (b":version 1.10\n:name VICON\n:units\n", r"skeleton without motion.* \.amc"),
+        (b"Kaydara FBX Binary", r"no known format \(BVH, Acclaim AMC, C3D\)"),
+        (b"", "no known format"),
+        (b"HIERARCHY", "no MOTION"),
+    ],
+)
+def test_what_cannot_be_read_says_what_could(tmp_path, content, sentence):
+    path = tmp_path / "take"
+    path.write_bytes(content)
+
+    with pytest.raises(InvalidFileError, match=sentence):
+        read_recording(path)
+
+
+def test_a_missing_file_or_a_folder_is_named(tmp_path):
+    with pytest.raises(InvalidFileError, match=r"There is no file .*nowhere\.bvh"):
+        read_recording(tmp_path / "nowhere.bvh")
+    with pytest.raises(InvalidFileError, match="cannot be read"):
+        read_recording(tmp_path)
