@@ -6,7 +6,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .motion import Motion
-from .rotations import multiply, rotate
+from .quaternion_algebra import product, turned
+from .rotations import inverse, multiply
 from .skeleton import Skeleton
 
 
@@ -43,15 +44,22 @@ def world_poses(
     WorldPoses
         Arrays of shape (..., n_joints, 4) and (..., n_joints, 3).
     """
-    world = np.empty_like(rotations)
-    positions = np.empty((*rotations.shape[:-1], 3))
-    world[..., 0, :] = rotations[..., 0, :]
-    positions[..., 0, :] = root_positions
+    # Components come first and frames last here, so that each step runs over whole arrays.
+    local = np.ascontiguousarray(
+        np.moveaxis(rotations.reshape(-1, *rotations.shape[-2:]), 0, -1)
+    )
+    world = np.empty_like(local)
+    positions = np.empty((local.shape[0], 3, local.shape[2]))
+    world[0] = local[0]
+    positions[0] = root_positions.reshape(-1, 3).T
     for joint, parent in enumerate(skeleton.parents[1:], start=1):
-        world[..., joint, :] = multiply(world[..., parent, :], rotations[..., joint, :])
-        arm = rotate(world[..., parent, :], skeleton.offsets[joint])
-        positions[..., joint, :] = positions[..., parent, :] + arm
-    return WorldPoses(world, positions)
+        world[joint] = product(world[parent], local[joint])
+        positions[joint] = turned(world[parent], skeleton.offsets[joint])
+        positions[joint] += positions[parent]
+    return WorldPoses(
+        np.moveaxis(world, -1, 0).reshape(rotations.shape),
+        np.moveaxis(positions, -1, 0).reshape(*rotations.shape[:-1], 3),
+    )
 
 
 def local_rotations(
@@ -59,7 +67,6 @@ def local_rotations(
 ) -> NDArray[np.float64]:
     """Return local rotations from world ones, both (..., n_joints, 4): undoes `world_poses`."""
     local = np.array(world_rotations, dtype=np.float64)
-    for joint, parent in enumerate(skeleton.parents[1:], start=1):
-        up = world_rotations[..., parent, :] * (1.0, -1.0, -1.0, -1.0)
-        local[..., joint, :] = multiply(up, world_rotations[..., joint, :])
+    above = local[..., list(skeleton.parents[1:]), :]
+    local[..., 1:, :] = multiply(inverse(above), local[..., 1:, :])
     return local

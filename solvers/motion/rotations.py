@@ -4,26 +4,31 @@ NaN in a rotation gives NaN in whatever is computed from it, and disturbs nothin
 SciPy's order x y z w never leaves this module.
 """
 
-import warnings
-
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 from scipy.spatial.transform import Rotation
 
+from .quaternion_algebra import Components, cross, product, turned
+
 Array = NDArray[np.float64]
 IDENTITY: Array = np.array([1.0, 0.0, 0.0, 0.0])
 SMALL_ANGLE = 1e-6
+GIMBAL_LOCK = 1e-7
+"""Cosine of the middle Euler angle below which the other two turn about one axis."""
+BLOCK = 8192
+"""Quaternions that are multiplied at a time: few enough for the processor's cache."""
 
 
 def multiply(a: Array, b: Array) -> Array:
     """Return the rotation that applies `b` first, then `a` (the matrix product A B)."""
-    aw, ax, ay, az = np.moveaxis(np.asarray(a), -1, 0)
-    bw, bx, by, bz = np.moveaxis(np.asarray(b), -1, 0)
-    w = aw * bw - ax * bx - ay * by - az * bz
-    x = aw * bx + ax * bw + ay * bz - az * by
-    y = aw * by - ax * bz + ay * bw + az * bx
-    z = aw * bz + ax * by - ay * bx + az * bw
-    return np.stack([w, x, y, z], axis=-1)
+    a, b = np.broadcast_arrays(np.asarray(a), np.asarray(b))
+    result = np.empty(a.shape)
+    flat_a, flat_b, flat = (x.reshape(-1, 4) for x in (a, b, result))
+    for start in range(0, len(flat), BLOCK):
+        block = slice(start, start + BLOCK)
+        first, second = (np.ascontiguousarray(x[block].T) for x in (flat_a, flat_b))
+        flat[block] = np.stack(product(first, second), axis=-1)
+    return result
 
 
 def inverse(rotations: Array) -> Array:
@@ -34,9 +39,8 @@ def inverse(rotations: Array) -> Array:
 def rotate(rotations: Array, vectors: ArrayLike) -> Array:
     """Turn vectors, shape (..., 3), by rotations, shape (..., 4)."""
     rotations, vectors = np.asarray(rotations), np.asarray(vectors, dtype=np.float64)
-    w, axis = rotations[..., :1], rotations[..., 1:]
-    twice = 2.0 * _cross(axis, vectors)
-    return np.asarray(vectors + w * twice + _cross(axis, twice))
+    components = np.moveaxis(rotations, -1, 0), np.moveaxis(vectors, -1, 0)
+    return np.stack(turned(*components), axis=-1)
 
 
 def normalize(rotations: Array) -> Array:
@@ -72,8 +76,9 @@ def rotation_vector_from_quaternion(rotations: Array) -> Array:
 
 def matrix_from_quaternion(rotations: Array) -> Array:
     """Return rotation matrices, shape (..., 3, 3), whose columns are the turned axes."""
-    axes = [rotate(rotations, axis) for axis in np.eye(3)]
-    return np.stack(axes, axis=-1)
+    components = np.ascontiguousarray(np.moveaxis(np.asarray(rotations), -1, 0))
+    columns = [np.stack(turned(components, axis), axis=-1) for axis in np.eye(3)]
+    return np.stack(columns, axis=-1)
 
 
 def quaternion_from_matrix(matrices: ArrayLike) -> Array:
@@ -102,31 +107,34 @@ def quaternion_from_euler(angles: ArrayLike, order: str) -> Array:
         Such as "ZYX" for Rz Ry Rx: the order of BVH's channels, and the reverse of the name
         that Blender gives to the same thing ("XYZ").
     """
-    angles = np.asarray(angles, dtype=np.float64)
-    result = np.broadcast_to(IDENTITY, (*angles.shape[:-1], 4))
-    for place, axis in enumerate(order):
-        turn = np.zeros((*angles.shape[:-1], 4))
-        turn[..., 0] = np.cos(angles[..., place] / 2)
-        turn[..., 1 + "XYZ".index(axis)] = np.sin(angles[..., place] / 2)
-        result = multiply(result, turn)
-    return result
+    halves = np.moveaxis(np.asarray(angles, dtype=np.float64), -1, 0) / 2
+    result: Components = IDENTITY
+    for axis, half in zip(order, halves, strict=True):
+        turn = np.zeros((4, *half.shape))
+        turn[0], turn[1 + "XYZ".index(axis)] = np.cos(half), np.sin(half)
+        result = product(result, turn)
+    return np.stack(tuple(result), axis=-1)
 
 
 def euler_from_quaternion(rotations: Array, order: str) -> Array:
     """Return angles in radians, shape (..., 3), that `quaternion_from_euler` turns back.
 
-    At gimbal lock the last angle is zero. Along time, see `unwrap_euler`.
+    The order names three different axes. The middle angle lies within a quarter turn; at gimbal
+    lock, the last angle is zero. Along time, see `unwrap_euler`.
     """
-    rotations = np.asarray(rotations)
-    flat = rotations.reshape(-1, 4)
-    known = np.isfinite(flat).all(axis=1)
-    result = np.full((len(flat), 3), np.nan)
-    if known.any():
-        with warnings.catch_warnings():  # SciPy warns at gimbal lock: any choice is right.
-            warnings.simplefilter("ignore", UserWarning)
-            turns = Rotation.from_quat(np.roll(flat[known], -1, axis=1))
-            result[known] = turns.as_euler(order)
-    return result.reshape(*rotations.shape[:-1], 3)
+    i, j, k = ("XYZ".index(axis) for axis in order)
+    sign = 1.0 if (j - i) % 3 == 1 else -1.0
+    matrix = np.moveaxis(matrix_from_quaternion(rotations), (-2, -1), (0, 1))
+    # R = R_i(a) R_j(b) R_k(c): row i is (cos b cos c, -+cos b sin c, +-sin b) in i, j, k.
+    level = np.hypot(matrix[i, i], matrix[i, j])
+    locked = level < GIMBAL_LOCK
+    first = np.where(
+        locked,
+        np.arctan2(sign * matrix[k, j], matrix[j, j]),
+        np.arctan2(-sign * matrix[j, k], matrix[k, k]),
+    )
+    last = np.where(locked, 0.0, np.arctan2(-sign * matrix[i, j], matrix[i, i]))
+    return np.stack([first, np.arctan2(sign * matrix[i, k], level), last], axis=-1)
 
 
 def unwrap_euler(angles: Array) -> Array:
@@ -241,9 +249,7 @@ def twist_about(rotations: Array, axis: ArrayLike) -> Array:
 
 def _cross(a: Array, b: Array) -> Array:
     """`np.cross` of (..., 3) arrays without its overhead: three times faster."""
-    ax, ay, az = a[..., 0], a[..., 1], a[..., 2]
-    bx, by, bz = b[..., 0], b[..., 1], b[..., 2]
-    return np.stack([ay * bz - az * by, az * bx - ax * bz, ax * by - ay * bx], axis=-1)
+    return np.stack(cross(np.moveaxis(a, -1, 0), np.moveaxis(b, -1, 0)), axis=-1)
 
 
 def _within_half_turn(angles: Array) -> Array:

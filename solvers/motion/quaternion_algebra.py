@@ -1,0 +1,42 @@
+"""Quaternion products with the components first: the inner loops of `rotations`.
+
+A quaternion is four arrays w, x, y, z and a vector three, of any shapes that broadcast. numpy
+is several times faster on one array per component than on components that lie side by side.
+"""
+
+from collections.abc import Iterable
+from typing import TypeAlias
+
+import numpy as np
+from numpy.typing import NDArray
+
+Array = NDArray[np.float64]
+Components: TypeAlias = Iterable[Array]
+
+
+def product(a: Components, b: Components) -> tuple[Array, Array, Array, Array]:
+    """Return the rotation that applies `b` first, then `a`."""
+    aw, ax, ay, az = a
+    bw, bx, by, bz = b
+    return (
+        aw * bw - ax * bx - ay * by - az * bz,
+        aw * bx + ax * bw + ay * bz - az * by,
+        aw * by - ax * bz + ay * bw + az * bx,
+        aw * bz + ax * by - ay * bx + az * bw,
+    )
+
+
+def cross(a: Components, b: Components) -> tuple[Array, Array, Array]:
+    """Return the cross product."""
+    ax, ay, az = a
+    bx, by, bz = b
+    return ay * bz - az * by, az * bx - ax * bz, ax * by - ay * bx
+
+
+def turned(rotation: Components, vector: Components) -> tuple[Array, Array, Array]:
+    """Return the vector turned by the rotation: v + 2 w (u x v) + 2 u x (u x v)."""
+    w, *axis = rotation
+    x, y, z = (2.0 * component for component in cross(axis, vector))
+    vx, vy, vz = vector
+    ux, uy, uz = cross(axis, (x, y, z))
+    return vx + w * x + ux, vy + w * y + uy, vz + w * z + uz
