@@ -84,6 +84,8 @@ def pytest_sessionfinish(session: pytest.Session, exitstatus: int) -> None:
 
 @pytest.hookimpl(trylast=True)
 def pytest_unconfigure(config: pytest.Config) -> None:
+    if RESOURCES not in config.stash:
+        return
     shutil.rmtree(config.stash[RESOURCES], ignore_errors=True)
     sys.stdout.flush()
     sys.stderr.flush()
