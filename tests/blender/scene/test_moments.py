@@ -1,0 +1,218 @@
+"""Which frames are read, which of them are gaps, and which bone carries the body."""
+
+import numpy as np
+import pytest
+from numpy.testing import assert_allclose, assert_array_equal
+
+
+def curve_of(action, path, index=0):
+    return (
+        action.layers[0].strips[0].channelbag(action.slots[0]).fcurves.find(path, index=index)
+    )
+
+
+def remove_keys(action, bone, start, stop):
+    bag = action.layers[0].strips[0].channelbag(action.slots[0])
+    for curve in bag.fcurves:
+        if bone in curve.data_path:
+            for key in reversed(curve.keyframe_points):
+                if start <= key.co.x <= stop:
+                    curve.keyframe_points.remove(key)
+
+
+@pytest.mark.parametrize(
+    ("keyed", "expected"),
+    [
+        (np.arange(1.0, 61.0), np.arange(1.0, 61.0)),
+        (np.arange(1.0, 61.0, 0.25), np.arange(1.0, 61.0, 0.25)),  # 120 Hz in a 30 Hz scene
+        (np.arange(1.5, 61.0), np.arange(1.5, 61.0)),
+        (np.arange(2.0, 61.0, 2.0), np.arange(2.0, 61.0, 2.0)),
+        (np.array([1.0, 12.0, 15.0, 40.0]), np.arange(1.0, 41.0)),  # keyed by hand
+    ],
+)
+def test_frames_are_those_of_the_keys(keyed, expected, make_armature, animate, scene_io, blank):
+    armature, scene = make_armature(), blank.context.scene
+    scene.render.fps = 30
+    animate(armature, frames=keyed)
+
+    take = scene_io.reading.read_take(armature, scene)
+
+    assert_allclose(take.frames, expected, atol=1e-4)
+    assert take.parts[0].motion.frame_rate == pytest.approx(30 / (expected[1] - expected[0]))
+    assert take.parts[0].motion.observed.all()
+
+
+@pytest.mark.parametrize("keyed", [np.arange(1.0, 61.0, 0.25), np.arange(1.5, 61.0)])
+def test_keys_between_frames_are_kept_exactly(
+    keyed, make_armature, animate, scene_io, blank, keys_of
+):
+    armature = make_armature(mode="XYZ")
+    action = animate(armature, frames=keyed)
+    take = scene_io.reading.read_take(armature, blank.context.scene)
+
+    source = scene_io.reading.action_of(armature)
+    clean, _ = scene_io.writing.write_take(armature, source, take, take.rig.bones, {})
+
+    for name, keys in keys_of(clean).items():
+        assert_allclose(
+            [key[:2] for key in keys], [key[:2] for key in keys_of(action)[name]], atol=1e-6
+        )
+
+
+def test_ranges_are_those_of_scene_preview_and_selection(
+    make_armature, animate, scene_io, blank
+):
+    armature, scene = make_armature(), blank.context.scene
+    action = animate(armature)
+    ranges, read = scene_io.frames.FrameRange, scene_io.reading.read_take
+    scene.frame_start, scene.frame_end = 10, 500
+    with pytest.raises(scene_io.errors.InvalidMotionError, match="no preview range"):
+        read(armature, scene, ranges.PREVIEW)
+    scene.use_preview_range, scene.frame_preview_start, scene.frame_preview_end = True, 20, 30
+
+    bounds = [
+        read(armature, scene, each).frames[[0, -1]].tolist()
+        for each in ranges
+        if each is not ranges.SELECTED_KEYS
+    ]
+    assert bounds == [[1, 60], [10, 60], [20, 30]]
+    for curve in action.layers[0].strips[0].channelbag(action.slots[0]).fcurves:
+        for key in curve.keyframe_points:
+            key.select_control_point = "Hips" in curve.data_path and 40 <= key.co.x <= 44
+    assert read(armature, scene, ranges.SELECTED_KEYS).frames[[0, -1]].tolist() == [40, 44]
+    scene.frame_start = 100
+    with pytest.raises(
+        scene_io.errors.InvalidMotionError, match="from frame 1 to 60, none of them"
+    ):
+        read(armature, scene, ranges.SCENE)
+
+
+def test_keys_outside_the_range_stay_bit_for_bit(
+    make_armature, animate, scene_io, blank, keys_of
+):
+    armature, scene = make_armature(), blank.context.scene
+    action = animate(armature)
+    scene.frame_start, scene.frame_end = 20, 40
+    take = scene_io.reading.read_take(armature, scene, scene_io.frames.FrameRange.SCENE)
+    still = np.tile([1.0, 0, 0, 0], (21, len(take.parts[0].bones), 1))
+    take = take.with_recordings((take.parts[0].motion.with_poses(still),))
+
+    source = scene_io.reading.action_of(armature)
+    clean, _ = scene_io.writing.write_take(armature, source, take, take.rig.bones, {})
+
+    raw = keys_of(action)
+    for name, keys in keys_of(clean).items():
+        assert len(keys) == 60
+        assert [key[:2] for key in keys[:19] + keys[40:]] == [
+            key[:2] for key in raw[name][:19] + raw[name][40:]
+        ]
+    head = keys_of(clean)["OBActor", 'pose.bones["Head"].rotation_quaternion', 0]
+    assert [key[1] for key in head[19:40]] == [1.0] * 21
+
+
+def test_where_a_recorded_bone_has_no_keys_there_is_a_gap(
+    make_armature, animate, scene_io, blank
+):
+    armature = make_armature()
+    action = animate(armature)
+    remove_keys(action, "LeftArm", 20, 30)
+    remove_keys(action, "RightArm", 50, 60)
+
+    motion = scene_io.reading.read_take(armature, blank.context.scene).parts[0].motion
+
+    for bone, start, stop in (("LeftArm", 20, 31), ("RightArm", 50, 61)):
+        gap = ~motion.observed[:, motion.skeleton.index(bone)]
+        assert_array_equal(np.flatnonzero(gap) + 1, np.arange(start, stop))
+    assert (~motion.observed).sum() == 22
+
+
+def test_a_held_pose_whose_keys_were_removed_is_no_gap(make_armature, animate, scene_io, blank):
+    armature = make_armature()
+    action = animate(armature)
+    for index in range(4):
+        for key in curve_of(
+            action, 'pose.bones["Head"].rotation_quaternion', index
+        ).keyframe_points:
+            if 20 <= key.co.x <= 30:
+                key.co.y = 0.5
+    remove_keys(action, "Head", 21, 29)
+
+    motion = scene_io.reading.read_take(armature, blank.context.scene).parts[0].motion
+
+    assert motion.observed.all()
+
+
+def test_one_channel_without_keys_is_no_gap(make_armature, animate, scene_io, blank):
+    armature = make_armature(mode="XYZ")
+    action = animate(armature)
+    curve = curve_of(action, 'pose.bones["Head"].rotation_euler', 2)
+    for key in list(curve.keyframe_points)[20:30][::-1]:
+        curve.keyframe_points.remove(key)
+
+    assert (
+        scene_io.reading.read_take(armature, blank.context.scene).parts[0].motion.observed.all()
+    )
+
+
+UNREAL = {
+    "root": (None, (0, 0, 0), (0, 0, 0.1), False),
+    "pelvis": ("root", (0, 0, 1), (0, 0, 1.1), False),
+    "spine_01": ("pelvis", (0, 0, 1.1), (0, 0, 1.3), False),
+    "head": ("spine_01", (0, 0, 1.5), (0, 0, 1.7), False),
+    "upperarm_l": ("spine_01", (0.2, 0, 1.4), (0.5, 0, 1.4), False),
+    "hand_l": ("upperarm_l", (0.5, 0, 1.4), (0.8, 0, 1.4), False),
+    "thumb_01_l": ("hand_l", (0.8, 0, 1.4), (0.9, 0, 1.4), False),
+    "thigh_l": ("pelvis", (0.1, 0, 1), (0.1, 0, 0.5), False),
+    "foot_l": ("thigh_l", (0.1, 0, 0.1), (0.1, -0.2, 0), False),
+    "ball_l": ("foot_l", (0.1, -0.2, 0.02), (0.1, -0.3, 0), False),
+    "ik_foot_root": ("root", (0, 0, 0), (0, 0, 0.1), False),
+    "ik_foot_l": ("ik_foot_root", (0.1, 0, 0.1), (0.1, 0, 0.2), False),
+}
+
+
+def test_the_pelvis_below_a_moving_root_is_read_in_the_world_and_written_back(
+    make_armature, animate, poses, scene_io, blank
+):
+    armature = make_armature(UNREAL)
+    action = animate(armature, locations=True)
+    before = poses(armature, range(1, 61))
+
+    take = scene_io.reading.read_take(armature, blank.context.scene)
+
+    names = [part.motion.skeleton.names[0] for part in take.parts]
+    assert names == ["pelvis", "ik_foot_root"]
+    pelvis = take.parts[0].motion
+    assert_allclose(pelvis.root_positions, before["pelvis"][:, :3, 3], atol=2e-5)
+    positions = scene_io.kinematics.forward_kinematics(pelvis).positions
+    shown = before["spine_01"][:, :3, 3]
+    moved = take.offsets.positions[:, take.offsets.names.index("spine_01")]
+    turned = scene_io.rotations.rotate(pelvis.rotations[:, 0], moved)
+    assert_allclose(positions[:, pelvis.skeleton.index("spine_01")] + turned, shown, atol=2e-5)
+    source = scene_io.reading.action_of(armature)
+    clean, slot = scene_io.writing.write_take(armature, source, take, take.rig.bones, {})
+    assert clean != action
+    armature.animation_data.action, armature.animation_data.action_slot = clean, slot
+    for bone, matrices in poses(armature, range(1, 61)).items():
+        assert_allclose(matrices, before[bone], atol=2e-5)
+
+
+def test_a_root_that_alone_moves_is_the_root_of_the_body(
+    make_armature, animate, scene_io, blank
+):
+    armature = make_armature(UNREAL)
+    animate(armature)  # only the root moves
+
+    take = scene_io.reading.read_take(armature, blank.context.scene)
+
+    assert [part.motion.skeleton.names[0] for part in take.parts] == ["root"]
+
+
+def test_a_spine_that_was_tracked_in_place_does_not_become_the_root(
+    make_armature, animate, scene_io, blank
+):
+    armature = make_armature()
+    animate(armature, locations=True)
+
+    take = scene_io.reading.read_take(armature, blank.context.scene)
+
+    assert take.parts[0].motion.skeleton.names[0] == "Hips"
