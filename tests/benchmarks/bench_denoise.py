@@ -16,7 +16,7 @@ Which clips are for development is fixed in clips.py, what is spoilt in noise.py
 """
 
 import argparse
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from time import perf_counter
 from typing import Any
 
@@ -29,12 +29,15 @@ from .ours import OURS, SHORT_NAMES
 from .part_classes import class_cases, compare_classes
 from .part_denoise import compare, leave_one_out, peers
 from .part_gaps import FILLERS, compare_gaps
+from .part_markers import FILLERS as MARKER_FILLERS
+from .part_markers import compare_markers
+from .part_speed import measure_speed
 from .part_windows import compare_priors, compare_windows
 from .report import Report
-from .tables import Scores
+from .tables import Scores, table
 
-MAXIMUM_OF_QUICK_CLASSES = 2
-MAXIMUM_OF_FULL_CLASSES = 6
+QUICK_CLASS_CLIPS, FULL_CLASS_CLIPS = 2, 6
+QUICK_MARKER_GAPS, FULL_MARKER_GAPS = 8, 25
 
 
 def main() -> None:
@@ -68,7 +71,7 @@ def strangers(chosen: argparse.Namespace) -> list[Scores]:
 
 def classes(chosen: argparse.Namespace) -> list[Scores]:
     """Noise and outliers on HDM05."""
-    most = MAXIMUM_OF_FULL_CLASSES if chosen.full else MAXIMUM_OF_QUICK_CLASSES
+    most = FULL_CLASS_CLIPS if chosen.full else QUICK_CLASS_CLIPS
     cases = class_cases(chosen.clips or most, chosen.dev)
     flat = [case for several in cases.values() for case in several]
     return compare_classes(cases, _wanted(chosen, flat))
@@ -80,26 +83,38 @@ def gaps(chosen: argparse.Namespace) -> list[Scores]:
     return compare_gaps(cases, _named(chosen, FILLERS))
 
 
+def markers(chosen: argparse.Namespace) -> list[Scores]:
+    """Lost optical markers."""
+    draws = chosen.clips or (FULL_MARKER_GAPS if chosen.full else QUICK_MARKER_GAPS)
+    return compare_markers(_named(chosen, MARKER_FILLERS), draws)
+
+
+def speed(chosen: argparse.Namespace) -> list[str]:
+    """Seconds and megabytes."""
+    return [measure_speed()]
+
+
 def windows(chosen: argparse.Namespace) -> list[Scores]:
     """Lengths of the patterns."""
     return compare_windows(_walks(chosen)[:6])
 
 
-def priors(chosen: argparse.Namespace) -> list[Scores]:
+def priors(chosen: argparse.Namespace) -> list[Scores | str]:
     """Right and wrong examples."""
     scores, said = compare_priors(_walks(chosen)[:6])
-    for what, sentence in said.items():
-        print(f"  {what}: {sentence}")
-    return scores
+    sentences = {what: [sentence] for what, sentence in said.items()}
+    return [*scores, table(["target, examples", "what it says that it used"], sentences)]
 
 
-PARTS: dict[str, Callable[[argparse.Namespace], list[Scores]]] = {
+PARTS: dict[str, Callable[[argparse.Namespace], Sequence[Scores | str]]] = {
     "walks": walking,
     "strangers": strangers,
     "classes": classes,
     "gaps": gaps,
     "windows": windows,
     "priors": priors,
+    "markers": markers,
+    "speed": speed,
 }
 
 

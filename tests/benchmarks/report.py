@@ -25,17 +25,23 @@ class Report:
     def __init__(self, to_document: bool) -> None:
         self._to_document = to_document
 
-    def part(self, name: str, tables: Sequence[Scores], seconds: float) -> None:
+    def part(self, name: str, tables: Sequence[Scores | str], seconds: float) -> None:
         """Print the tables of one part; put them into the document with a picture each."""
         for scores in tables:
-            print(f"\n{scores.markdown()}", flush=True)
+            print(f"\n{_text(scores)}", flush=True)
         if self._to_document:
             text = [_run(seconds)]
             for number, scores in enumerate(tables):
-                path = PICTURES / f"bench_{name}_{number}.png"
-                draw_scores(scores, path)
-                text += [scores.markdown(), f"![{scores.title}](pictures/{path.name})\n"]
+                text.append(_text(scores))
+                if isinstance(scores, Scores):
+                    path = PICTURES / f"bench_{name}_{number}.png"
+                    draw_scores(scores, path)
+                    text.append(f"![{scores.title}](pictures/{path.name})\n")
             _replace(name, "\n".join(text))
+
+
+def _text(scores: Scores | str) -> str:
+    return scores if isinstance(scores, str) else scores.markdown()
 
 
 def _run(seconds: float) -> str:

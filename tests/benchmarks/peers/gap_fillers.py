@@ -41,8 +41,11 @@ def soft_impute(gapped: Array, frame_rate: float, shrink: float) -> Array:
     filled = np.where(seen, given, linear(gapped, frame_rate) - mean)
     filled = np.nan_to_num(filled)
     for _ in range(40):
-        U, singular, V = np.linalg.svd(filled, full_matrices=False)
-        low = (U * np.maximum(singular - shrink * singular[0], 0.0)) @ V
+        # The right singular vectors from the small Gram matrix: takes are tall.
+        squares, V = np.linalg.eigh(filled.T @ filled)
+        singular = np.sqrt(np.maximum(squares, 1e-12))
+        kept = np.maximum(1.0 - shrink * singular[-1] / singular, 0.0)
+        low = filled @ (V * kept) @ V.T
         change = np.abs(np.where(seen, 0.0, low - filled)).max()
         filled = np.where(seen, given, low)
         if change < 3e-3 * np.abs(given).max():

@@ -1,0 +1,80 @@
+"""Optical markers at 120 Hz: one or five lost for half a second or two, in clean takes."""
+
+from collections.abc import Callable, Mapping
+
+import numpy as np
+
+from solvers.denoising import denoise
+from solvers.motion import Tracks
+from solvers.recordings import read_c3d
+
+from . import clips
+from .noise import Array, seeded
+from .peers import gap_fillers, marker_fillers
+from .peers.model_averaging import model_averaging
+from .tables import Scores
+
+TAKES = ("85_02", "HDM_bd_05-01_01_120")
+GAPS = ((1, 0.5), (1, 2.0), (5, 0.5), (5, 2.0))
+"""Number of markers and seconds."""
+Filler = Callable[[Array, float], Array]
+
+
+def compare_markers(fillers: Mapping[str, Filler], draws: int) -> list[Scores]:
+    """Cut the same random gaps for all methods; distance from the truth where it was cut."""
+    scores = Scores(
+        f"Gaps of optical markers, {draws} in each of {len(TAKES)} takes",
+        "mean distance, millimetres; spread over gaps",
+    )
+    for take in TAKES:
+        tracks = without_copies(read_c3d(clips.DATA / "markers" / f"{take}.c3d"))
+        for n_markers, seconds in GAPS:
+            for draw in range(draws):
+                gapped = _cut(tracks, take, n_markers, seconds, draw)
+                lost = np.isnan(gapped).any(axis=2)
+                for name, fill in fillers.items():
+                    error = fill(gapped, tracks.frame_rate) - tracks.positions
+                    distance = 1000.0 * np.linalg.norm(error, axis=2)[lost].mean()
+                    column = f"{n_markers}, {seconds:g} s"
+                    scores.add(name, column, f"{take} {draw}", float(distance))
+            print(f"  {take}: {n_markers} markers for {seconds:g} s", flush=True)
+    return [scores]
+
+
+def without_copies(tracks: Tracks) -> Tracks:
+    """Leave out *0, *1 and *2 of the HDM05 take: they are copies of three other markers."""
+    kept = [place for place, name in enumerate(tracks.names) if not name.startswith("*")]
+    names = tuple(tracks.names[place] for place in kept)
+    return Tracks(names, tracks.positions[:, kept], tracks.frame_rate)
+
+
+def _cut(tracks: Tracks, take: str, n_markers: int, seconds: float, draw: int) -> Array:
+    rng = seeded(take, n_markers, seconds, draw)
+    length = round(seconds * tracks.frame_rate)
+    start = int(rng.integers(1, tracks.n_frames - length - 1))
+    gapped = tracks.positions.copy()
+    chosen = rng.choice(tracks.n_points, n_markers, replace=False)
+    gapped[start : start + length, chosen] = np.nan
+    return gapped
+
+
+def ours(gapped: Array, frame_rate: float) -> Array:
+    """Denoise without examples; what was seen is trusted."""
+    names = tuple(f"marker {number}" for number in range(gapped.shape[1]))
+    done = denoise(Tracks(names, gapped, frame_rate)).recording
+    assert isinstance(done, Tracks)
+    return np.where(np.isnan(gapped), done.positions, gapped)
+
+
+FILLERS: dict[str, Filler] = {
+    "linear interpolation": marker_fillers.each_coordinate(gap_fillers.linear),
+    "PCHIP": marker_fillers.each_coordinate(gap_fillers.pchip),
+    "cubic spline": marker_fillers.each_coordinate(gap_fillers.cubic),
+    "soft-impute, relative to the mean marker": marker_fillers.centred(
+        marker_fillers.soft_impute
+    ),
+    "subspace Kalman (from the paper)": marker_fillers.centred(marker_fillers.subspace_kalman),
+    "PMA-R2 (from the paper)": marker_fillers.centred(marker_fillers.principal_markers),
+    "model averaging (from the paper)": marker_fillers.centred(model_averaging),
+    "ours": ours,
+}

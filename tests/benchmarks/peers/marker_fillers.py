@@ -1,0 +1,130 @@
+"""Published ways to fill gaps of optical markers, written from their papers.
+
+(gapped (n_frames, n_markers, 3) metres, NaN = missing, frame rate) -> the same without NaN.
+"""
+
+from collections.abc import Callable
+
+import numpy as np
+from numpy.typing import NDArray
+
+from . import gap_fillers
+from .kalman import Dynamics, smooth
+
+Array = NDArray[np.float64]
+WEIGHT_SCALE = 0.2
+MISSING_WEIGHT = 0.02
+DISTAL = 0.5
+KEPT = 0.99
+SUBSPACE_KEPT = 0.9999
+AROUND = 1.0
+"""Seconds on both sides of a gap that the subspace Kalman smoother sees."""
+
+
+def each_coordinate(filler: Callable[[Array, float], Array]) -> Callable[[Array, float], Array]:
+    """Return a filler of markers from one of channels."""
+
+    def fill(gapped: Array, frame_rate: float) -> Array:
+        return filler(gapped.reshape(len(gapped), -1), frame_rate).reshape(gapped.shape)
+
+    return fill
+
+
+def centred(filler: Callable[[Array, float], Array]) -> Callable[[Array, float], Array]:
+    """Return the filler working relative to the mean of the markers that are never lost."""
+
+    def fill(gapped: Array, frame_rate: float) -> Array:
+        centre = centre_of(gapped)
+        return filler(gapped - centre, frame_rate) + centre
+
+    return fill
+
+
+def centre_of(gapped: Array) -> Array:
+    """Mean of the markers that are never lost, shape (n_frames, 1, 3)."""
+    whole = np.isfinite(gapped).all(axis=(0, 2))
+    return np.asarray(gapped[:, whole].mean(axis=1, keepdims=True))
+
+
+def soft_impute(gapped: Array, frame_rate: float) -> Array:
+    """Low-rank completion with a weak threshold."""
+    return each_coordinate(lambda flat, rate: gap_fillers.soft_impute(flat, rate, 0.003))(
+        gapped, frame_rate
+    )
+
+
+def principal_markers(gapped: Array, frame_rate: float) -> Array:
+    """PMA-R2: weighted principal components of the nearby markers.
+
+    Gløersen and Federolf (2016), doi:10.1371/journal.pone.0152616, with the parameters given
+    there. Works relative to the mean marker; see `centred`.
+    """
+    filled = gapped.copy()
+    lost = np.isnan(gapped).any(axis=2)
+    for marker in np.flatnonzero(lost.any(axis=0)):
+        apart = np.linalg.norm(gapped - gapped[:, [marker]], axis=2)
+        distance = np.nanmean(apart, axis=0)
+        overlapping = (lost & lost[:, [marker]]).any(axis=0)
+        distal = lost.any(axis=0) & (distance > DISTAL * distance.mean())
+        dropped = (overlapping | distal) & (np.arange(len(distance)) != marker)
+        data = np.where(dropped[None, :, None], 0.0, gapped)
+        rows = lost[:, marker]
+        whole = ~np.isnan(data).any(axis=(1, 2))
+        weights = np.exp(-(distance**2) / (2 * WEIGHT_SCALE**2))
+        weights[marker] = MISSING_WEIGHT
+        filled[rows, marker] = _from_components(data[whole], data[rows], marker, weights)
+    return filled
+
+
+def _from_components(training: Array, query: Array, marker: int, weights: Array) -> Array:
+    columns = slice(3 * marker, 3 * marker + 3)
+    train, query = training.reshape(len(training), -1), query.reshape(len(query), -1)
+    mean, deviation = train.mean(axis=0), train.std(axis=0)
+    weight = np.repeat(weights, 3) / np.where(deviation > 0, deviation, 1.0)
+    N, N0, M0 = ((each - mean) * weight for each in (train, train, query))
+    N0[:, columns] = 0.0
+    M0[:, columns] = 0.0
+    V, V0 = _components(N), _components(N0)
+    n_kept = max(V[1], V0[1])
+    full, without = V[0][:, :n_kept], V0[0][:, :n_kept]
+    estimate = M0 @ without @ (full.T @ without) @ full.T
+    return np.asarray(mean[columns] + estimate[:, columns] / weight[columns])
+
+
+def _components(data: Array) -> tuple[Array, int]:
+    values, vectors = np.linalg.eigh(data.T @ data)
+    singular = np.sqrt(np.maximum(values[::-1], 0.0))
+    share = np.cumsum(singular) / singular.sum()
+    return vectors[:, ::-1], int(np.argmax(share >= KEPT)) + 1
+
+
+def subspace_kalman(gapped: Array, frame_rate: float) -> Array:
+    """Kalman smoothing of principal-component weights that walk at random.
+
+    Burke and Lasenby (2016), doi:10.1016/j.jbiomech.2016.04.016.
+    """
+    filled = gapped.reshape(len(gapped), -1).copy()
+    seen = np.isfinite(filled)
+    whole = filled[seen.all(axis=1)]
+    mean = whole.mean(axis=0)
+    values, vectors = np.linalg.eigh(np.cov(whole.T))
+    n_kept = int(np.argmax(np.cumsum(values[::-1]) >= SUBSPACE_KEPT * values.sum())) + 1
+    V = vectors[:, ::-1][:, :n_kept]
+    scores = (whole - mean) @ V
+    steps = np.diff(scores, axis=0)
+    rest = max(float(values[:-n_kept].mean()), 1e-8)
+    dynamics = Dynamics(
+        np.eye(n_kept),
+        np.diag((steps**2).mean(axis=0)),
+        V,
+        rest * np.eye(len(mean)),
+        np.zeros(n_kept),
+        np.zeros(n_kept),
+        np.diag(scores.var(axis=0)),
+    )
+    rows = np.flatnonzero(~seen.all(axis=1))
+    margin = round(AROUND * frame_rate)
+    part = slice(max(rows[0] - margin, 0), rows[-1] + margin + 1)
+    estimate = smooth(dynamics, filled[part] - mean) @ V.T + mean
+    filled[part] = np.where(seen[part], filled[part], estimate)
+    return filled.reshape(gapped.shape)
