@@ -13,6 +13,7 @@ from .humanoid import HumanoidMap
 from .motion import Motion
 from .rotations import (
     IDENTITY,
+    angle_between,
     inverse,
     multiply,
     quaternion_from_matrix,
@@ -35,6 +36,9 @@ LIMB_BONES = {
 }  # fmt: skip
 """Role whose joint begins a bone that the T-pose prescribes, and role at the bone's end."""
 
+SAME_DIRECTION = np.radians(1.0)
+"""By so much, feet must point straighter to count as tilted."""
+
 STEEPEST_SOLE = np.sin(np.radians(65.0))
 """A foot bone steeper than this does not stand on its sole: the rest pose points its toes."""
 
@@ -44,7 +48,8 @@ def t_pose_alignment(skeleton: Skeleton, humanoid: HumanoidMap) -> NDArray[np.fl
 
     Bones of arms, legs and fingers turn the short way, on top of the turn of the bone above, so
     that a lowered arm keeps the palm it would have when raised. Feet turn about the vertical
-    only, since the height of the ankle differs between rigs that all stand flat on the floor.
+    only, since the height of the ankle differs between rigs that all stand flat on the floor;
+    where spread legs have tilted feet (Acclaim), about the axis of the shin.
     Trunk, head and collar bones differ in anatomy rather than in pose: they turn together, by
     whole right angles, for rigs whose rest pose faces another way or lies down. Joints without
     a role turn with the nearest role above them.
@@ -66,20 +71,15 @@ def t_pose_alignment(skeleton: Skeleton, humanoid: HumanoidMap) -> NDArray[np.fl
     trunk = _trunk_alignment(rest, joints)
     alignment = np.tile(trunk, (skeleton.n_joints, 1))
     for joint, parent in enumerate(skeleton.parents):
-        role = roles.get(joint, "")
-        side, part = _split(role)
+        side, part = _split(roles.get(joint, ""))
         if parent >= 0:
             alignment[joint] = alignment[parent]
-        if part == "Foot":
-            bone = _foot_bone(skeleton, joint, joints.get(f"{side}Toes"))
-            level = bone - (bone @ rotate(trunk, UP)) * rotate(trunk, UP)
-            stands = np.linalg.norm(bone - level) <= STEEPEST_SOLE * np.linalg.norm(bone)
-            alignment[joint] = _swung(trunk, FORWARD, level if stands else bone)
         end = joints.get(side + LIMB_BONES.get(part, ""))
         if part in LIMB_BONES and end is not None:
             alignment[joint] = _swung(
                 alignment[joint], _t_pose_bone(side, part), rest[end] - rest[joint]
             )
+    _align_feet(alignment, skeleton, joints, trunk)
     return alignment
 
 
@@ -128,7 +128,7 @@ def _nearest_right_angles(
     """Return the signed permutation matrix whose columns are nearest to left, back and up."""
     matrix = np.zeros((3, 3))
     vertical = int(np.abs(up).argmax())
-    matrix[vertical, 2] = np.sign(up[vertical])
+    matrix[vertical, 2] = np.sign(up[vertical]) or 1.0
     across = left * (matrix[:, 2] == 0.0)
     lateral = int(np.abs(across).argmax())
     matrix[lateral, 0] = np.sign(across[lateral]) or 1.0
@@ -141,6 +141,39 @@ def _swung(
 ) -> NDArray[np.float64]:
     """Return `start` followed by the smallest turn that brings the canonical bone to `bone`."""
     return multiply(rotation_between(rotate(start, canonical), bone), start)
+
+
+def _align_feet(
+    alignment: NDArray[np.float64],
+    skeleton: Skeleton,
+    joints: dict[str, int],
+    trunk: NDArray[np.float64],
+) -> None:
+    """Let feet stand level or tilt with their shins: whichever points both more forward."""
+    feet, bones = [], []
+    for side in ("left", "right"):
+        if f"{side}Foot" in joints:
+            feet.append(joints[f"{side}Foot"])
+            bones.append(_foot_bone(skeleton, feet[-1], joints.get(f"{side}Toes")))
+    pairs = list(zip(feet, bones, strict=True))
+    level = [_foot_turned(trunk, bone) for _, bone in pairs]
+    tilted = [_foot_turned(alignment[foot], bone) for foot, bone in pairs]
+    level_aside = sum(float(angle_between(trunk, turn)) for turn in level)
+    tilted_aside = sum(
+        float(angle_between(alignment[foot], turn))
+        for foot, turn in zip(feet, tilted, strict=True)
+    )
+    best = tilted if tilted_aside < level_aside - SAME_DIRECTION else level
+    for foot, turn in zip(feet, best, strict=True):
+        alignment[skeleton.subtree(foot)] = turn
+
+
+def _foot_turned(start: NDArray[np.float64], bone: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Turn a foot that points forward so that it points along the bone, sole level."""
+    up = rotate(start, UP)
+    level = bone - (bone @ up) * up
+    stands = np.linalg.norm(bone - level) <= STEEPEST_SOLE * np.linalg.norm(bone)
+    return _swung(start, FORWARD, level if stands else bone)
 
 
 def _t_pose_bone(side: str, part: str) -> NDArray[np.float64]:

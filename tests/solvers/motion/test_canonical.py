@@ -102,6 +102,20 @@ def test_the_height_of_the_ankle_is_no_pose(body):
     assert_allclose(alignment, np.tile(IDENTITY, (body.n_joints, 1)), atol=1e-12)
 
 
+def test_spread_legs_may_have_tilted_feet(lively):
+    """Acclaim skeletons rest with legs spread by 20 degrees, feet and all."""
+    turns = rest_turns(lively.skeleton, 0.0)
+    for side in ("Left", "Right"):
+        for name in ("Foot", "ToeBase", "ToeBase_end"):
+            joints = lively.skeleton.index(side + name), lively.skeleton.index(f"{side}Leg")
+            turns[joints[0]] = turns[joints[1]]
+    tilted = rested_otherwise(lively, turns)
+
+    canonical = canonical_rotations(tilted, find_humanoid_map(lively.skeleton))
+
+    assert angle_between(canonical, lively.rotations).max() < 1e-7
+
+
 def test_joints_without_a_role_turn_with_the_role_above(body):
     humanoid = find_humanoid_map(body)
     a_pose = Skeleton(body.names, body.parents, turned_offsets(body, rest_turns(body, 0.5)))
@@ -128,7 +142,7 @@ def rest_turns(body: Skeleton, lowered: float) -> np.ndarray:
         for name in ("UpLeg", "Leg"):
             vectors[body.index(side + name), 1] = -sign * 0.3
         for name in ("Foot", "ToeBase", "ToeBase_end"):
-            vectors[body.index(side + name), 2] = sign * 0.3
+            vectors[body.index(side + name), 2] = sign * 0.05
     return quaternion_from_rotation_vector(vectors)
 
 
