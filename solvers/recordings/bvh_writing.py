@@ -60,7 +60,7 @@ def write_bvh(
     angles = np.degrees(unwrap_euler(euler_from_quaternion(rotations, order)))
     places = y_up_from_z_up(motion.root_positions) / scale
     rows = np.concatenate([places, angles.reshape(motion.n_frames, -1)], axis=1)
-    rows += 0.0  # No "-0.000000".
+    rows = np.round(rows, 6) + 0.0  # No "-0.000000".
     row_format = " ".join(["%.6f"] * rows.shape[1]) + "\n"
     with written_whole(path) as part, part.open("w", encoding="utf-8", newline="\n") as file:
         file.write("HIERARCHY\n")

@@ -1,0 +1,124 @@
+"""Work on many files: one after the other or several at a time, and go on after a stop."""
+
+import json
+import os
+import signal
+from collections.abc import Iterator, Sequence
+from concurrent.futures import ProcessPoolExecutor, as_completed
+from concurrent.futures.process import BrokenProcessPool
+from multiprocessing import get_context
+from pathlib import Path
+from typing import Any, NamedTuple
+
+from ..errors import MocapAssistError
+from ..files import written_whole
+from ..progress import Progress, unwatched
+from .screen import Screen
+from .verb import Outcome, Task, Verb
+
+RECORD = "mocap_assist.json"
+NOT_OF_THE_RESULT = {"again", "files", "jobs", "json", "output_folder"}
+ONE_THREAD = {"OMP_NUM_THREADS": "1", "OPENBLAS_NUM_THREADS": "1", "MKL_NUM_THREADS": "1"}
+
+
+class Finished(NamedTuple):
+    """A file that was worked on."""
+
+    task: Task
+    outcome: Outcome | None
+    """None where it failed."""
+    failure: str = ""
+
+
+def work_on(
+    verb: Verb, tasks: Sequence[Task], prepared: Any, n_jobs: int, screen: Screen
+) -> Iterator[Finished]:
+    """Yield every task as it is finished; a failure does not stop the others."""
+    if n_jobs == 1 or len(tasks) == 1:
+        for number, task in enumerate(tasks, start=1):
+            screen.title = f"[{number}/{len(tasks)}] {task.source.name}"
+            yield _attempt(verb, task, prepared, screen.progress)
+        return
+    os.environ.update({name: os.environ.get(name, one) for name, one in ONE_THREAD.items()})
+    n_workers = min(n_jobs, len(tasks))
+    with ProcessPoolExecutor(n_workers, get_context("spawn"), _die_on_interrupt) as pool:
+        waiting = {
+            pool.submit(_attempt, verb, task, prepared, unwatched): task for task in tasks
+        }
+        try:
+            for done in as_completed(waiting):
+                task = waiting[done]
+                try:
+                    yield done.result()
+                except BrokenProcessPool:
+                    died = f"{task.source}: the process that worked on it has died."
+                    yield Finished(task, None, died)
+        finally:
+            pool.shutdown(cancel_futures=True)
+
+
+def _attempt(verb: Verb, task: Task, prepared: Any, progress: Progress) -> Finished:
+    try:
+        return Finished(task, verb.perform(task, prepared, progress))
+    except MocapAssistError as error:
+        sentence = str(error)
+        named = task.source.name in sentence
+        return Finished(task, None, sentence if named else f"{task.source}: {sentence}")
+    except OSError as error:
+        return Finished(task, None, f"{error.filename or task.source}: {error.strerror}.")
+
+
+def _die_on_interrupt() -> None:
+    """Leave Ctrl-C to the parent, which tells it in one sentence; no traceback per worker."""
+    signal.signal(signal.SIGINT, signal.SIG_DFL)
+
+
+class Made:
+    """What is in an output folder already, and from what it was made.
+
+    The file `mocap_assist.json` notes, for each output, the verb, its options, and size and
+    date of the files it was made from.
+    """
+
+    def __init__(self, folder: Path) -> None:
+        self.path = folder / RECORD
+        self.notes: dict[str, Any] = {}
+        try:
+            notes = json.loads(self.path.read_text(encoding="utf-8"))
+        except (OSError, ValueError):
+            notes = None  # None yet, or unreadable: everything is made anew.
+        if isinstance(notes, dict):
+            self.notes = notes
+
+    def has(self, task: Task) -> bool:
+        """Whether the output is there and would come out the same again."""
+        return (
+            task.target is not None
+            and task.target.exists()
+            and self.notes.get(task.target.name) == note_of(task)
+        )
+
+    def add(self, task: Task) -> None:
+        """Note that the output was made."""
+        if task.target is not None:
+            self.notes[task.target.name] = note_of(task)
+            with written_whole(self.path) as part:
+                part.write_text(json.dumps(self.notes, indent=1), encoding="utf-8")
+
+
+def note_of(task: Task) -> dict[str, Any]:
+    """Return what the result depends on, as JSON has it."""
+    options = {
+        name: [_stamp(each) for each in value] if isinstance(value, list) else str(value)
+        for name, value in sorted(vars(task.arguments).items())
+        if name not in NOT_OF_THE_RESULT
+    }
+    return {"source": _stamp(task.source), "options": options}
+
+
+def _stamp(file: Path) -> list[Any]:
+    try:
+        found = file.stat()
+    except OSError:  # Whoever reads it will say so.
+        return [str(file)]
+    return [str(file.resolve()), found.st_size, found.st_mtime_ns]

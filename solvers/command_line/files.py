@@ -1,0 +1,64 @@
+"""Recordings in and out, as the command line names them."""
+
+import argparse
+from pathlib import Path
+
+from ..errors import InvalidFileError, InvalidSettingError
+from ..motion import Motion, Tracks
+from ..progress import Progress
+from ..recordings import read_recording, write_bvh, write_c3d
+
+MOTIONS = ".bvh"
+POINTS = ".c3d"
+
+
+def add_reading_options(parser: argparse.ArgumentParser) -> None:
+    """Add what a file may leave open."""
+    parser.add_argument(
+        "--scale",
+        type=float,
+        metavar="X",
+        help="metres in one unit of the files that are read [default: as the file says, or"
+        " guessed from the size of the body]",
+    )
+
+
+def read(path: Path, arguments: argparse.Namespace, progress: Progress) -> Motion | Tracks:
+    """Read a recording with the options of `add_reading_options`."""
+    scale: float | None = arguments.scale
+    if scale is not None and not 0.0 < scale < float("inf"):
+        raise InvalidSettingError(f"scale is {scale:g}; it must be above 0.")
+    return read_recording(path, scale=scale, progress=progress)
+
+
+def write(recording: Motion | Tracks, path: Path | None, progress: Progress) -> None:
+    """Write a recording in the format that the name's ending stands for."""
+    ending = path.suffix.lower() if path else ""
+    if isinstance(recording, Motion) and path and ending == MOTIONS:
+        write_bvh(recording, path, progress=progress)
+    elif isinstance(recording, Tracks) and path and ending == POINTS:
+        write_c3d(recording, path, progress=progress)
+    else:
+        kind, fit = ("A skeleton's motion", MOTIONS)
+        if isinstance(recording, Tracks):
+            kind, fit = ("Points without a skeleton", POINTS)
+        raise InvalidFileError(f"{kind} cannot be written as {path}; end the name in {fit}.")
+
+
+def refuse_target(path: Path) -> None:
+    """Raise InvalidFileError where nothing could be written, before any work is done."""
+    if path.suffix.lower() not in {MOTIONS, POINTS}:
+        raise InvalidFileError(
+            f"{path} cannot be written; end the name in {MOTIONS} (a skeleton's motion) or"
+            f" {POINTS} (points)."
+        )
+    if path.is_dir() or not path.parent.is_dir():
+        raise InvalidFileError(
+            f"{path} cannot be written: "
+            + ("it is a folder." if path.is_dir() else f"there is no folder {path.parent}.")
+        )
+
+
+def ending_for(source: Path) -> str:
+    """Return the ending of what is made from a file, judging by its name."""
+    return POINTS if source.suffix.lower() == POINTS else MOTIONS

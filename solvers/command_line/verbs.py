@@ -1,0 +1,117 @@
+"""The verbs of `python -m solvers`."""
+
+import argparse
+from pathlib import Path
+
+from ..denoising import (
+    DenoiseSettings,
+    FilterBases,
+    FilterBasesSettings,
+    denoise,
+    learn_filter_bases,
+)
+from ..denoising.quality import QualitySettings, measure_quality
+from ..denoising.quality_report import compare_quality
+from ..motion import Motion
+from ..progress import Progress, within
+from .files import add_reading_options, read, write
+from .options import arguments_from, settings_from_arguments
+from .verb import Outcome, Task, Verb
+
+
+def _denoise_options(parser: argparse.ArgumentParser) -> None:
+    add_reading_options(parser)
+    parser.add_argument(
+        "--train", nargs="+", type=Path, default=[], metavar="FILE",
+        help="clean clips to learn from; without them the take's own patterns guide",
+    )  # fmt: skip
+    arguments_from(parser, DenoiseSettings, FilterBasesSettings)
+
+
+def _learn(arguments: argparse.Namespace, progress: Progress) -> FilterBases | None:
+    if not arguments.train:
+        return None
+    settings = settings_from_arguments(arguments, FilterBasesSettings)
+    share = 0.5 / len(arguments.train)
+    clips = [
+        read(path, arguments, within(progress, share * number, share * (number + 1)))
+        for number, path in enumerate(arguments.train)
+    ]
+    return learn_filter_bases(clips, settings=settings, progress=within(progress, 0.5, 1.0))
+
+
+def _denoise(task: Task, bases: FilterBases | None, progress: Progress) -> Outcome:
+    recording = read(task.source, task.arguments, within(progress, 0.0, 0.1))
+    denoised = denoise(
+        recording,
+        bases,
+        settings=settings_from_arguments(task.arguments, DenoiseSettings),
+        progress=within(progress, 0.1, 0.7),
+    )
+    clean = denoised.recording
+    before = measure_quality(recording, progress=within(progress, 0.8, 0.9))
+    after = measure_quality(clean, progress=within(progress, 0.9, 0.95))
+    write(clean, task.target, within(progress, 0.95, 1.0))
+    text = "\n".join([
+        denoised.prior_used,
+        *([] if denoised.converged else ["The estimate had not settled when it was stopped."]),
+        compare_quality(before, after),
+    ])
+    figures = {
+        "prior_used": denoised.prior_used,
+        "iterations": denoised.iterations,
+        "converged": denoised.converged,
+        "outliers": int(denoised.outliers.sum()),
+        "mean_confidence": float(denoised.confidence.mean()),
+        "before": before.figures(),
+        "after": after.figures(),
+    }
+    return Outcome(text, figures)
+
+
+def _quality_options(parser: argparse.ArgumentParser) -> None:
+    add_reading_options(parser)
+    arguments_from(parser, QualitySettings)
+
+
+def _quality(task: Task, prepared: None, progress: Progress) -> Outcome:
+    recording = read(task.source, task.arguments, within(progress, 0.0, 0.5))
+    settings = settings_from_arguments(task.arguments, QualitySettings)
+    quality = measure_quality(recording, settings=settings, progress=within(progress, 0.5, 1.0))
+    return Outcome(quality.report(), quality.figures())
+
+
+def _convert(task: Task, prepared: None, progress: Progress) -> Outcome:
+    recording = read(task.source, task.arguments, within(progress, 0.0, 0.7))
+    write(recording, task.target, within(progress, 0.7, 1.0))
+    names = recording.skeleton.names if isinstance(recording, Motion) else recording.names
+    kind = "joints" if isinstance(recording, Motion) else "points"
+    figures = {
+        "n_frames": recording.n_frames,
+        "frame_rate_hz": recording.frame_rate,
+        kind: list(names),
+    }
+    text = f"{recording.n_frames} frames at {recording.frame_rate:g} Hz, {len(names)} {kind}."
+    return Outcome(text, figures)
+
+
+VERBS = {
+    "denoise": Verb(
+        "Take jitter, spikes and gaps out of recordings.",
+        _denoise_options,
+        _denoise,
+        prepare=_learn,
+    ),
+    "quality": Verb(
+        "Measure jitter, spikes, gaps and sliding feet.",
+        _quality_options,
+        _quality,
+        writes=False,
+    ),
+    "convert": Verb(
+        "Write recordings of any known format as BVH, or as C3D where they are points.",
+        add_reading_options,
+        _convert,
+    ),
+}
+"""A new verb is a new entry here."""
