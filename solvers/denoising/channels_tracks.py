@@ -63,7 +63,7 @@ def _fit_body(tracks: Tracks, references: Mapping[str, Array]) -> tuple[Path, Ar
         weights = weights * known
         shape = given
     else:
-        shape = filled[0] - np.append(filled[0, :, :2].mean(axis=0), 0.0)
+        shape = _along_x(filled[0])
     places, headings = _rigid_fits(filled, shape, weights)
     for _ in range(N_FITS):
         inside = _seen_from(positions, Path(places, headings))
@@ -75,6 +75,18 @@ def _fit_body(tracks: Tracks, references: Mapping[str, Array]) -> tuple[Path, Ar
     path = smooth_path(places, headings, tracks.frame_rate)
     own = np.nan_to_num(np.nanmedian(_seen_from(positions, path), axis=0))
     return path, own
+
+
+def _along_x(points: Array) -> Array:
+    """Centre points, shape (n_points, 3), over the origin, their main direction along X.
+
+    So the axes of the channels, for each of which outliers are judged, are those of the body
+    and not those of the room.
+    """
+    flat = points[:, 0] + 1j * points[:, 1]
+    flat = flat - flat.mean()
+    flat = flat * np.exp(-0.5j * np.angle((flat**2).sum()))
+    return np.stack([flat.real, flat.imag, points[:, 2]], axis=-1)
 
 
 def _rigid_fits(positions: Array, shape: Array, weights: Array) -> tuple[Array, Array]:
