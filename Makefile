@@ -61,8 +61,8 @@ demo: .venv-4.5/ready zip  ## clean a sample, or CLIP=path.bvh, in Blender 4.5: 
 	@mkdir -p build/demo
 	MOCAP_ASSIST_ZIP=$(ZIP) $(AT_MOST) $(PYTHON_4.5) .ci/demo.py build/demo $(if $(CLIP),"$(CLIP)")
 
-bench-denoise: .venv-4.5/ready  ## measure denoising against its peers, on ../shared/data
-	$(PYTHON_4.5) -m tests.benchmarks.bench_denoise
+bench-denoise: .venv-4.5/ready  ## measure denoising against its peers; ARGUMENTS=--help
+	$(PYTHON_4.5) -m tests.benchmarks.bench_denoise $(ARGUMENTS)
 
 # --- The extension ---
 
