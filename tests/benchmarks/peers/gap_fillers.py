@@ -33,23 +33,20 @@ def cubic(gapped: Array, frame_rate: float) -> Array:
 def soft_impute(gapped: Array, frame_rate: float, shrink: float) -> Array:
     """Low-rank completion of the matrix of frames by channels (Mazumder et al. 2010).
 
-    `shrink` is the threshold on singular values as a fraction of the largest.
+    `shrink` is the last threshold on singular values, as a fraction of the largest; as in the
+    paper, it is reached from larger ones.
     """
     seen = np.isfinite(gapped)
     mean = np.nanmean(np.where(seen.any(axis=0), gapped, 0.0), axis=0)
     given = np.where(seen, gapped - mean, 0.0)
     filled = np.where(seen, given, linear(gapped, frame_rate) - mean)
     filled = np.nan_to_num(filled)
-    for _ in range(40):
+    for level in np.repeat(np.geomspace(0.5, shrink, 15), 5):
         # The right singular vectors from the small Gram matrix: takes are tall.
         squares, V = np.linalg.eigh(filled.T @ filled)
         singular = np.sqrt(np.maximum(squares, 1e-12))
-        kept = np.maximum(1.0 - shrink * singular[-1] / singular, 0.0)
-        low = filled @ (V * kept) @ V.T
-        change = np.abs(np.where(seen, 0.0, low - filled)).max()
-        filled = np.where(seen, given, low)
-        if change < 3e-3 * np.abs(given).max():
-            break
+        kept = np.maximum(1.0 - level * singular[-1] / singular, 0.0)
+        filled = np.where(seen, given, filled @ (V * kept) @ V.T)
     return np.where(seen, gapped, filled + mean)
 
 
