@@ -128,9 +128,8 @@ def _hinge_turn(first: Array, second: Array, wanted: Array, axis: Array, soft: f
     a, b = np.linalg.norm(first, axis=-1), np.linalg.norm(second, axis=-1)
     present = np.linalg.norm(first + second, axis=-1)
     distance = _softened(np.linalg.norm(wanted, axis=-1), present, a + b, soft)
-    distance = np.maximum(distance, np.abs(a - b))
     cosine = (distance**2 - a**2 - b**2) / np.maximum(2 * a * b, 1e-12)
-    after = np.arccos(np.clip(cosine, -1.0, 1.0))
+    after = np.arccos(np.clip(cosine, -1.0, 1.0))  # nearer than it can fold, it folds
 
     along = first / np.maximum(a, 1e-12)[:, None]
     normal = np.cross(along, second / np.maximum(b, 1e-12)[:, None])

@@ -16,6 +16,7 @@ from solvers.motion import (
 )
 from solvers.motion.rotations import (
     IDENTITY,
+    inverse,
     multiply,
     quaternion_from_rotation_vector,
     rotate,
@@ -122,6 +123,46 @@ def test_a_lifted_foot_held_still_does_not_stand(walk):
     posed = walk.with_poses(rotations, np.repeat(still.root_positions, 300, axis=0))
 
     assert_array_equal(detect_contacts(posed), np.tile([True, False], (300, 1)))
+
+
+def test_hanging_feet_do_not_stand(walk):
+    """After two seconds the body is lifted by a metre and hangs still for three."""
+    place = np.repeat(walk.root_positions[:1], walk.n_frames, axis=0)
+    place[200:, 2] += 1.0
+    still = np.repeat(walk.rotations[:1], walk.n_frames, axis=0)
+
+    found = detect_contacts(walk.with_poses(still, place))
+
+    assert found[:190].all()
+    assert not found[210:].any()
+
+
+def test_a_foot_stands_on_its_toes_while_the_heel_rises(walk):
+    """From flat, the foot tilts by 50 degrees about its toes within a second."""
+    n_frames = 200
+    still = walk.slice(0, 1)
+    base = walk.with_poses(
+        np.repeat(still.rotations, n_frames, axis=0),
+        np.repeat(still.root_positions, n_frames, axis=0),
+    )
+    hip, knee, ankle, toes = (
+        walk.skeleton.index(f"Left{name}") for name in ("UpLeg", "Leg", "Foot", "ToeBase")
+    )
+    angle = np.radians(50.0) * np.clip(np.arange(n_frames) / 100.0 - 0.5, 0.0, 1.0)
+    tilt = quaternion_from_rotation_vector(angle[:, None] * np.array([1.0, 0.0, 0.0]))
+    flat = forward_kinematics(base)
+    pivot = flat.positions[:, toes]
+    lifted = pivot + rotate(tilt, flat.positions[:, ankle] - pivot)
+    tiptoe = reach(base, (hip, knee, ankle), lifted)
+    rotations = tiptoe.rotations.copy()
+    above = forward_kinematics(tiptoe).rotations[:, knee]
+    rotations[:, ankle] = multiply(inverse(above), multiply(tilt, flat.rotations[:, ankle]))
+    tiptoe = tiptoe.with_poses(rotations)
+
+    moved = forward_kinematics(tiptoe).positions
+    assert np.abs(moved[:, toes] - pivot).max() < 1e-9
+    assert np.ptp(moved[:, ankle, 2]) > 0.07
+    assert detect_contacts(tiptoe)[:, 0].all()
 
 
 def test_unseen_feet_do_not_stand(walk):

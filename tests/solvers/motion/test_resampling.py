@@ -87,6 +87,23 @@ def test_what_the_new_rate_cannot_carry_is_removed_not_folded_back():
     assert np.abs(result[inner, 1] - slow[inner]).max() < 2e-3
 
 
+def test_a_steady_drift_goes_on_to_the_very_ends():
+    drift = np.arange(121)[:, None, None] / 120.0 * np.array([1.0, -2.0, 0.5])
+
+    slower = resample(Tracks(("a",), drift, 120.0), 30.0).positions
+
+    assert_allclose(slower, drift[::4], atol=1e-12)
+
+
+def test_the_direction_of_time_does_not_matter(rng):
+    noise = Tracks(("a",), rng.normal(size=(41, 1, 3)), 60.0)
+    backwards = noise.with_positions(noise.positions[::-1])
+
+    for rate in (30.0, 120.0):
+        expected = resample(noise, rate).positions[::-1]
+        assert_allclose(resample(backwards, rate).positions, expected, atol=1e-12)
+
+
 @pytest.mark.parametrize(("n_frames", "old", "new", "expected"), [
     (61, 60.0, 30.0, 31), (60, 60.0, 30.0, 30), (11, 10.0, 30.0, 31), (5, 30.0, 29.97, 4),
     (101, 29.97, 59.94, 201), (1, 30.0, 120.0, 1), (2, 120.0, 30.0, 1),
