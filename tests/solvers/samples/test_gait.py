@@ -101,6 +101,16 @@ def test_no_joint_jumps(walk):
     assert turns.max() < 15.0
 
 
+@pytest.mark.parametrize("part", ["Foot", "Hand", "ToeBase_end"])
+def test_no_foot_or_hand_is_thrown(part):
+    """Looked at closely enough, a jump of a millimetre would be 1,000 m/s^2 and more."""
+    walk = walking_gait(GaitSettings(duration=3.0, frame_rate=480.0))
+
+    acceleration = np.diff(positions(walk, f"Left{part}"), n=2, axis=0) * walk.frame_rate**2
+
+    assert np.linalg.norm(acceleration, axis=1).max() < 100.0
+
+
 def test_walks_the_same_way_at_every_frame_rate():
     slow = walking_gait(GaitSettings(duration=3.0, frame_rate=60.0, seed=4))
     fast = walking_gait(GaitSettings(duration=3.0, frame_rate=120.0, seed=4))
