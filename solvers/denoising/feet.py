@@ -2,6 +2,8 @@
 
 from dataclasses import dataclass
 
+import numpy as np
+
 from ..motion import Motion, Skeleton, Tracks
 from ..motion.humanoid import HumanoidMap, find_humanoid_map
 from ..motion.humanoid_names import roles_by_name
@@ -19,6 +21,16 @@ class Leg:
     ankle: int
     toe: int | None
     """Ball of the foot; None where the rig has no toes."""
+
+    @property
+    def chain(self) -> tuple[int, int, int]:
+        """Hip, knee and ankle."""
+        return self.hip, self.knee, self.ankle
+
+    def length(self, skeleton: Skeleton) -> float:
+        """Return the way from hip over knee to ankle in metres."""
+        joints = skeleton.rest_positions[list(self.chain)]
+        return float(np.linalg.norm(np.diff(joints, axis=0), axis=1).sum())
 
 
 def find_legs(skeleton: Skeleton, humanoid_map: HumanoidMap | None = None) -> tuple[Leg, ...]:

@@ -1,0 +1,236 @@
+"""Planted feet stand still, and all else stays as it was."""
+
+import numpy as np
+import pytest
+
+from solvers.denoising.feet import find_legs
+from solvers.denoising.plant_feet import PlantSettings, plant_feet
+from solvers.errors import InvalidMotionError, SolveCancelled
+from solvers.motion import Motion, Skeleton, forward_kinematics
+from solvers.motion.contacts import detect_contacts
+from solvers.motion.rotations import angle_between, multiply, quaternion_from_rotation_vector
+from solvers.recordings.bvh import read_bvh
+from solvers.samples import GaitSettings, walking_gait
+
+
+@pytest.fixture(scope="module")
+def walk() -> Motion:
+    return walking_gait(GaitSettings(duration=3.0, frame_rate=60.0))
+
+
+@pytest.fixture(scope="module")
+def contacts(walk):
+    return detect_contacts(walk)
+
+
+def skated(motion: Motion, share: float = 0.15) -> Motion:
+    """The same steps, but the body travels farther than the feet carry it."""
+    place = motion.root_positions.copy()
+    place[:, :2] += share * (place[:, :2] - place[0, :2])
+    return motion.with_poses(root_positions=place)
+
+
+def balls(motion: Motion) -> np.ndarray:
+    """Positions of the toe joints, (n_frames, left and right, 3)."""
+    toes = [leg.toe for leg in find_legs(motion.skeleton)]
+    return forward_kinematics(motion).positions[:, toes]
+
+
+def middles(contacts: np.ndarray, margin: int) -> np.ndarray:
+    """Steps between frames that are in contact and have been, and will be, for a while."""
+    inner = contacts.copy()
+    for shift in range(1, margin + 1):
+        inner[shift:] &= contacts[:-shift]
+        inner[:-shift] &= contacts[shift:]
+    return inner[1:] & inner[:-1]
+
+
+def test_a_skating_walk_stops_skating(walk, contacts):
+    planted = plant_feet(skated(walk), contacts)
+
+    assert planted.slide_before > 0.3
+    assert planted.slide_after < 0.02 * planted.slide_before
+    assert (planted.contacts == contacts).all()
+
+
+def test_a_ball_in_contact_moves_less_than_a_millimetre(walk, contacts):
+    """Once the foot has rolled onto it, for which the last third of a stance is time enough."""
+    planted = plant_feet(skated(walk), contacts).motion
+
+    steps = np.linalg.norm(np.diff(balls(planted)[..., :2], axis=0), axis=-1)
+    assert (
+        np.linalg.norm(np.diff(balls(skated(walk)), axis=0), axis=-1)[
+            middles(contacts, 9)
+        ].max()
+        > 0.002
+    )
+    assert steps[middles(contacts, 9)].max() < 0.001
+
+
+def test_nothing_above_the_hips_turns(walk, contacts):
+    source = skated(walk)
+
+    planted = plant_feet(source, contacts).motion
+
+    legs = [
+        joint for leg in find_legs(walk.skeleton) for joint in walk.skeleton.subtree(leg.hip)
+    ]
+    above = [joint for joint in range(walk.n_joints) if joint not in legs]
+    assert (planted.rotations[:, above] == source.rotations[:, above]).all()
+    assert planted.skeleton is source.skeleton
+
+
+def test_a_clean_walk_hardly_changes(walk):
+    planted = plant_feet(walk)
+
+    moved = np.linalg.norm(
+        forward_kinematics(planted.motion).positions - forward_kinematics(walk).positions,
+        axis=-1,
+    )
+    feet = [joint for leg in find_legs(walk.skeleton) for joint in (leg.ankle, leg.toe)]
+    assert moved[:, feet].max() < 0.01
+    assert moved.max() < 0.025  # a straight knee moves four times as far as its foot
+    assert moved.mean() < 0.003
+
+
+def test_no_contact_is_no_change(walk):
+    planted = plant_feet(walk, np.zeros((walk.n_frames, 2), dtype=bool))
+
+    assert (planted.motion.rotations == walk.rotations).all()
+    assert (planted.motion.root_positions == walk.root_positions).all()
+    assert planted.slide_after == 0.0
+
+
+def test_contact_throughout_holds_both_feet(walk):
+    """A jittering stand, in contact all the time."""
+    rng = np.random.default_rng(3)
+    stand = walk.with_poses(
+        np.repeat(walk.rotations[:1], 120, axis=0),
+        np.repeat(walk.root_positions[:1], 120, axis=0),
+    )
+    noise = quaternion_from_rotation_vector(
+        rng.normal(scale=0.02, size=(120, walk.n_joints, 3))
+    )
+    shaky = stand.with_poses(multiply(stand.rotations, noise))
+
+    planted = plant_feet(shaky, np.ones((120, 2), dtype=bool))
+
+    assert planted.slide_after < 0.02 * planted.slide_before
+
+
+def test_turns_and_moves_with_its_input(walk, contacts):
+    turn = quaternion_from_rotation_vector([0.0, 0.0, 2.0])
+    source = skated(walk).slice(0, 90)
+    turned = source.rotations.copy()
+    turned[:, 0] = multiply(turn, turned[:, 0])
+    c, s = np.cos(2.0), np.sin(2.0)
+    place = source.root_positions @ np.array([[c, -s, 0], [s, c, 0], [0, 0, 1]]).T
+
+    here = plant_feet(source, contacts[:90]).motion
+    there = plant_feet(
+        source.with_poses(turned, np.add(place, (5.0, -3.0, 0.0))), contacts[:90]
+    ).motion
+
+    assert angle_between(here.rotations[:, 1:], there.rotations[:, 1:]).max() < 1e-5
+
+
+def test_at_twice_the_frame_rate_the_feet_go_the_same_way():
+    fast = skated(walking_gait(GaitSettings(duration=3.0, frame_rate=120.0)))
+    contacts = detect_contacts(fast)
+    slow = Motion(fast.skeleton, fast.rotations[::2], fast.root_positions[::2], 60.0)
+
+    at_120 = forward_kinematics(plant_feet(fast, contacts).motion).positions[::2]
+    at_60 = forward_kinematics(plant_feet(slow, contacts[::2]).motion).positions
+
+    moved = np.linalg.norm(at_60 - forward_kinematics(slow).positions, axis=-1).max()
+    assert np.linalg.norm(at_120 - at_60, axis=-1).max() < 0.2 * moved
+    assert np.linalg.norm(at_120 - at_60, axis=-1).mean() < 0.002
+
+
+def test_hips_come_down_where_a_leg_is_too_short(walk, contacts):
+    """Strides of half a foot more than the legs can make."""
+    source = skated(walk, 0.45)
+
+    planted = plant_feet(source, contacts)
+    without = plant_feet(source, contacts, settings=PlantSettings(move_root=False))
+
+    assert planted.slide_after < 0.05 * planted.slide_before
+    assert planted.slide_after < without.slide_after
+    lowered = source.root_positions[:, 2] - planted.motion.root_positions[:, 2]
+    assert 0.005 < lowered.max() < 0.15
+    assert np.abs(np.diff(lowered, n=2)).max() * 60.0**2 < 20.0
+
+
+def test_knees_of_real_walks_do_not_pop(recordings):
+    walk = read_bvh(recordings / "mocap" / "cmu_walk" / "10_04.bvh").slice(1, 481)
+
+    planted = plant_feet(walk)
+
+    assert planted.slide_after < 0.02 * planted.slide_before
+    for leg in find_legs(walk.skeleton):
+        before, after = (
+            np.abs(np.diff(angle_between(motion.rotations[:, leg.knee], [1.0, 0, 0, 0]), n=2))
+            for motion in (walk, planted.motion)
+        )
+        assert after.mean() < 1.3 * before.mean()
+
+
+def test_uneven_ground_stays_uneven(walk, contacts):
+    """A walk up a ramp of 1 in 10: each plant keeps its height."""
+    place = walk.root_positions.copy()
+    place[:, 2] -= 0.1 * place[:, 1]
+    uphill = walk.with_poses(root_positions=place)
+
+    planted = plant_feet(uphill, contacts).motion
+
+    assert np.abs(balls(planted)[..., 2] - balls(uphill)[..., 2])[contacts].max() < 0.03
+
+
+def test_feet_on_a_level_floor_stand_at_one_height(walk, contacts):
+    place = walk.root_positions.copy()
+    place[:, 2] += 0.008 * np.sin(np.arange(walk.n_frames) / 60.0)
+    planted = plant_feet(walk.with_poses(root_positions=place), contacts).motion
+
+    inner = np.concatenate([[False], middles(contacts, 6)[:, 0]])
+    assert np.ptp(balls(planted)[inner, 0, 2]) < 0.006
+
+
+def test_one_frame_is_planted():
+    walk = walking_gait(GaitSettings(duration=1.0, frame_rate=30.0)).slice(0, 1)
+
+    planted = plant_feet(walk, np.ones((1, 2), dtype=bool))
+
+    assert planted.motion.n_frames == 1
+    assert planted.slide_after == 0.0
+
+
+def test_gaps_are_refused_with_their_joints(walk):
+    rotations = walk.rotations.copy()
+    rotations[3, walk.skeleton.index("LeftArm")] = np.nan
+
+    with pytest.raises(InvalidMotionError, match="these have gaps: LeftArm"):
+        plant_feet(walk.with_poses(rotations))
+
+
+def test_a_skeleton_without_legs_is_refused():
+    arm = Skeleton(("a", "b"), (-1, 0), np.array([[0, 0, 1.0], [0, 0, 0.3]]))
+    with pytest.raises(InvalidMotionError, match="No leg was found"):
+        plant_feet(Motion(arm, np.tile([1.0, 0, 0, 0], (5, 2, 1)), np.zeros((5, 3)), 30.0))
+
+
+def test_contacts_of_another_clip_are_refused(walk):
+    with pytest.raises(InvalidMotionError, match=r"Contacts need shape \(180, 2\)"):
+        plant_feet(walk, np.ones((7, 2), dtype=bool))
+
+
+def test_rises_to_one_and_can_be_cancelled(walk):
+    told = []
+    plant_feet(walk, progress=lambda fraction, message="": told.append(fraction))
+
+    assert told == sorted(told) and told[-1] == 1.0
+
+    def stop(fraction, message=""):
+        raise SolveCancelled
+
+    with pytest.raises(SolveCancelled):
+        plant_feet(walk, progress=stop)
