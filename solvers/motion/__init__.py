@@ -10,7 +10,13 @@
 
 from .bone_lengths import fit_bone_lengths, transfer_motion
 from .canonical import canonical_rotations, from_canonical, t_pose_alignment
-from .contacts import ContactSettings, detect_contacts, foot_points, leg_length
+from .contacts import (
+    ContactSettings,
+    contacts_of_points,
+    detect_contacts,
+    foot_points,
+    leg_length,
+)
 from .humanoid import HUMANOID_ROLES, HumanoidMap, find_humanoid_map
 from .kinematics import WorldPoses, forward_kinematics, local_rotations, world_poses
 from .limb_ik import ReachSettings, reach
@@ -33,6 +39,7 @@ __all__ = [
     "WorldPoses",
     "angular_velocities",
     "canonical_rotations",
+    "contacts_of_points",
     "detect_contacts",
     "find_humanoid_map",
     "fit_bone_lengths",

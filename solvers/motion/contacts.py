@@ -90,19 +90,39 @@ def detect_contacts(
     humanoid = humanoid_map or find_humanoid_map(motion.skeleton)
     feet = foot_points(motion.skeleton, humanoid)
     positions = forward_kinematics(motion).positions[:, feet]
-    positions = _smoothed(positions, settings.smoothing * motion.frame_rate)
     size = leg_length(motion.skeleton, humanoid) / HUMAN_LEG
-    speeds = np.linalg.norm(linear_velocities(positions, motion.frame_rate), axis=-1)
+    return contacts_of_points(positions, motion.frame_rate, size, settings)
+
+
+def contacts_of_points(
+    positions: NDArray[np.float64],
+    frame_rate: float,
+    size: float = 1.0,
+    settings: ContactSettings = ContactSettings(),
+) -> NDArray[np.bool_]:
+    """Tell when feet stand of which only points are known; see `detect_contacts`.
+
+    Parameters
+    ----------
+    positions : shape (n_frames, 2, 2, 3), metres
+        Left and right, ankle and toes (the same point twice where there is but one).
+    frame_rate : float, hertz
+    size : float
+        Length of a leg over 0.9 m.
+    settings : ContactSettings
+    """
+    positions = _smoothed(positions, settings.smoothing * frame_rate)
+    speeds = np.linalg.norm(linear_velocities(positions, frame_rate), axis=-1)
     slow = speeds <= settings.speed * size
     ground = [
-        _ground(positions[:, :, point, 2], slow[:, :, point], motion.frame_rate, size)
+        _ground(positions[:, :, point, 2], slow[:, :, point], frame_rate, size)
         for point in range(2)
     ]
     heights = positions[..., 2] - np.stack(ground, axis=-1)[:, None]
     # 1 is the edge of what the settings call low and slow.
     badness = np.maximum(heights / settings.height, speeds / settings.speed) / size
     badness = np.where(np.isfinite(badness), badness, np.inf).min(axis=2)
-    shortest = settings.minimum_duration * motion.frame_rate
+    shortest = settings.minimum_duration * frame_rate
     return np.stack(
         [_held(foot <= 1.0, foot <= settings.release, shortest) for foot in badness.T], axis=-1
     )

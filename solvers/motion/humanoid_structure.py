@@ -1,7 +1,6 @@
 """Read which joint plays which humanoid role from the rest pose, when names say nothing."""
 
 from collections.abc import Sequence
-from itertools import combinations
 
 import numpy as np
 from numpy.typing import NDArray
@@ -150,14 +149,22 @@ class _Body:
     def limb(self, way: Sequence[int], human: tuple[float, float]) -> tuple[list[int], float]:
         """Return upper joint, hinge and end of a limb, and the joint after; and the misfit.
 
-        The misfit is the sum of both bones' absolute log ratios to human lengths.
+        The misfit is the sum of both bones' absolute log ratios to human lengths. A way of
+        less than three joints is no limb.
         """
-        best, misfit = [], np.inf
-        lengths = np.array(human) * self.height
-        for triple in combinations(self.rotating(way), 3):
-            bones = np.linalg.norm(np.diff(self.positions[list(triple)], axis=0), axis=-1)
-            wrong = float(np.abs(np.log(np.maximum(bones, 1e-9) / lengths)).sum())
-            if wrong < misfit:
-                after = [joint for joint in self.rotating(way) if joint > triple[-1]]
-                best, misfit = [*triple, *after[:1]], wrong
-        return best, misfit
+        joints = self.rotating(way)
+        if len(joints) < 3:
+            return [], 1.0
+        places = self.positions[joints]
+        bones = np.linalg.norm(places[:, None] - places, axis=-1) / self.height
+        ahead = np.triu(np.ones_like(bones, dtype=bool), k=1)
+        upper, lower = (
+            np.where(ahead, np.abs(np.log(np.maximum(bones, 1e-9) / length)), np.inf)
+            for length in human
+        )
+        # Both bones meet at the hinge; given the hinge, each is chosen for itself.
+        misfits = upper.min(axis=0) + lower.min(axis=1)
+        hinge = int(misfits.argmin())
+        end = int(lower[hinge].argmin())
+        chosen = [int(upper[:, hinge].argmin()), hinge, end, end + 1]
+        return [joints[place] for place in chosen if place < len(joints)], float(misfits[hinge])
