@@ -84,9 +84,13 @@ def draw_stick_figures(
     shown = _shown_frames(motions, settings.n_figures, frames)
     last = list(motions.values())[-1]
     center, heading = _onlooker(last, shown)
-    points = [
-        project(forward_kinematics(motion).positions[shown] - center, heading, settings.view)
+    moments = [
+        motion.with_poses(motion.rotations[shown], motion.root_positions[shown])
         for motion in motions.values()
+    ]
+    points = [
+        project(forward_kinematics(motion).positions - center, heading, settings.view)
+        for motion in moments
     ]
     tall = max(_stature(motion.skeleton) for motion in motions.values())
     scale = settings.height / tall
@@ -145,7 +149,7 @@ def _shown_frames(
 
 def _onlooker(motion: Motion, shown: NDArray[np.intp]) -> tuple[Array, Array]:
     """Where the body is on the floor, shape (n, 1, 3), and which way it faces, shape (n,)."""
-    place = np.where(np.isfinite(motion.root_positions), motion.root_positions, np.nan)
+    place = motion.root_positions
     facing = rotate(motion.rotations[:, 0], [0.0, -1.0, 0.0])[:, :2]
     reach = round(STILL / 2.0 * motion.frame_rate)
     center, heading = np.zeros((len(shown), 1, 3)), np.zeros(len(shown))
