@@ -3,6 +3,7 @@
 from dataclasses import dataclass
 
 import numpy as np
+from numpy.typing import NDArray
 
 from ..motion import Motion, Skeleton, Tracks
 from ..motion.humanoid import HumanoidMap, find_humanoid_map
@@ -49,21 +50,23 @@ def find_legs(skeleton: Skeleton, humanoid_map: HumanoidMap | None = None) -> tu
     return tuple(found)
 
 
-def foot_points(
+def foot_joints(
     recording: Motion | Tracks, humanoid_map: HumanoidMap | None = None
-) -> dict[str, list[int]]:
-    """Return, per side, the indices of ankle and toe, as far as they are known.
+) -> NDArray[np.intp] | None:
+    """Return the indices of ankle and toes (columns) of the left and right foot (rows).
 
-    Joints of a motion, or points of tracks that are called like joints.
+    Joints of a motion, or points of tracks that are called like joints. An ankle without toes
+    is there twice. None where not both feet are known.
     """
     if isinstance(recording, Motion):
-        legs = find_legs(recording.skeleton, humanoid_map)
-        return {leg.side: [leg.ankle, leg.toe or leg.ankle] for leg in legs}
-    roles = humanoid_map.joints if humanoid_map else roles_by_name(recording.names)
-    place = {name: index for index, name in enumerate(recording.names)}
-    found = {
-        side: [place[roles[role]] for role in (f"{side}Foot", f"{side}Toes")
-               if role in roles and roles[role] in place]
-        for side in SIDES
-    }  # fmt: skip
-    return {side: points for side, points in found.items() if points}
+        humanoid = humanoid_map or find_humanoid_map(recording.skeleton)
+        known = humanoid.indices(recording.skeleton)
+    else:
+        place = {name: index for index, name in enumerate(recording.names)}
+        roles = humanoid_map.joints if humanoid_map else roles_by_name(recording.names)
+        known = {role: place[name] for role, name in roles.items() if name in place}
+    if any(f"{side}Foot" not in known for side in SIDES):
+        return None
+    ankles = [known[f"{side}Foot"] for side in SIDES]
+    toes = [known.get(f"{side}Toes", ankle) for side, ankle in zip(SIDES, ankles, strict=True)]
+    return np.stack([ankles, toes], axis=1)

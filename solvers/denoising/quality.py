@@ -9,11 +9,12 @@ from numpy.typing import NDArray
 
 from ..errors import InvalidMotionError
 from ..motion import Motion, Tracks, forward_kinematics
+from ..motion.contacts import contacts_of_points, detect_contacts
 from ..motion.humanoid import HumanoidMap
 from ..progress import Progress, unwatched, within
 from ..settings import Settings, setting
 from .bone_lengths import BoneDrift, bone_drifts
-from .feet import SIDES, foot_points
+from .feet import SIDES, foot_joints
 from .foot_slide import FootSlide, foot_slide
 from .joint_limits import JointLimits
 from .keep_within import limit_excess
@@ -202,22 +203,29 @@ def _foot_slides(
     contacts: Flags | None,
     humanoid_map: HumanoidMap | None,
 ) -> tuple[FootSlide, ...]:
-    points = foot_points(recording, humanoid_map)
-    if not points or contacts is None:
-        return ()
-    if contacts.shape != (recording.n_frames, len(SIDES)):
+    if contacts is not None and np.shape(contacts) != (recording.n_frames, len(SIDES)):
         raise InvalidMotionError(
-            f"Contacts need shape ({recording.n_frames}, 2), not {contacts.shape}."
+            f"Contacts need shape ({recording.n_frames}, 2), not {np.shape(contacts)}."
+        )
+    joints = foot_joints(recording, humanoid_map)
+    if joints is None:
+        return ()
+    points = positions[:, joints]
+    if contacts is None:
+        contacts = (
+            detect_contacts(recording, humanoid_map)
+            if isinstance(recording, Motion)
+            else contacts_of_points(points, recording.frame_rate)
         )
     return tuple(
         foot_slide(
             side,
-            names[joints[0]],
-            positions[:, joints],
-            contacts[:, SIDES.index(side)],
+            names[joints[place, 0]],
+            points[:, place],
+            contacts[:, place],
             recording.frame_rate,
         )
-        for side, joints in points.items()
+        for place, side in enumerate(SIDES)
     )
 
 

@@ -11,8 +11,9 @@ from solvers.denoising.foot_slide import foot_slide
 from solvers.denoising.quality import QualitySettings, mean_jitter, measure_quality
 from solvers.denoising.quality_report import compare_quality
 from solvers.errors import InvalidMotionError, InvalidSettingError, SolveCancelled
-from solvers.motion import Motion, Skeleton, Tracks
+from solvers.motion import Motion, Tracks, forward_kinematics
 from solvers.motion.rotations import multiply, quaternion_from_rotation_vector, rotate
+from solvers.samples import GaitSettings, walking_gait
 
 
 def test_jitter_of_a_cubic_is_its_third_derivative():
@@ -117,6 +118,30 @@ def test_a_foot_that_rolls_over_its_toe_does_not_slide():
     assert slide.distance == 0.0
 
 
+def test_a_skating_walk_slides_and_a_planted_one_does_not():
+    walk = walking_gait(GaitSettings(duration=3.0, frame_rate=60.0))
+    place = walk.root_positions.copy()
+    place[:, 1] -= 0.1 * np.arange(walk.n_frames) / 60.0  # everything drifts at 10 cm/s
+
+    clean, skating = (
+        measure_quality(motion) for motion in (walk, walk.with_poses(root_positions=place))
+    )
+
+    assert clean.foot_slide < 0.02
+    assert_allclose(skating.foot_slide, 0.1, atol=0.03)
+    assert [foot.side for foot in skating.feet] == ["left", "right"]
+
+
+def test_points_called_like_joints_have_feet():
+    walk = walking_gait(GaitSettings(duration=3.0, frame_rate=60.0))
+    points = Tracks(walk.skeleton.names, forward_kinematics(walk).positions, 60.0)
+
+    from_points, from_joints = measure_quality(points), measure_quality(walk)
+
+    assert_allclose(from_points.foot_slide, from_joints.foot_slide, atol=0.01)
+    assert from_points.bones and max(bone.drift for bone in from_points.bones) < 1e-9
+
+
 def test_bones_are_found_and_their_drift_measured(rng):
     """Two rigid rods that wander apart; one point creeps along its rod by 4 cm."""
     n_frames = 400
@@ -181,9 +206,9 @@ def test_short_takes_are_measured(swinging_leg, n_frames):
     quality.report()
 
 
-def test_wrong_contacts_are_refused(walker):
+def test_wrong_contacts_are_refused(swinging_leg):
     with pytest.raises(InvalidMotionError, match=r"Contacts need shape \(.*, 2\)"):
-        measure_quality(walker, contacts=np.ones((3, 2), dtype=bool))
+        measure_quality(swinging_leg, contacts=np.ones((3, 2), dtype=bool))
 
 
 def test_a_threshold_below_the_noise_is_refused():
@@ -202,18 +227,3 @@ def test_rises_to_one_and_can_be_cancelled(swinging_leg):
 
     with pytest.raises(SolveCancelled):
         measure_quality(swinging_leg, progress=stop)
-
-
-@pytest.fixture
-def walker() -> Motion:
-    """Two straight legs under a hip, standing still."""
-    names, parents, offsets = ["Hips"], [-1], [[0, 0, 0.9]]
-    for side, sign in (("Left", 1), ("Right", -1)):
-        start = len(names)
-        names += [f"{side}{part}" for part in ("UpLeg", "Leg", "Foot", "ToeBase")]
-        parents += [0, start, start + 1, start + 2]
-        offsets += [[0.1 * sign, 0, 0], [0, 0, -0.42], [0, 0, -0.4], [0, -0.14, -0.06]]
-    skeleton = Skeleton(tuple(names), tuple(parents), np.array(offsets, dtype=float))
-    return Motion(
-        skeleton, np.tile([1.0, 0, 0, 0], (30, 9, 1)), np.tile([0, 0, 0.9], (30, 1)), 30.0
-    )
