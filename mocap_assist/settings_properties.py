@@ -5,38 +5,44 @@ from dataclasses import Field, fields
 from enum import Enum
 from inspect import get_annotations
 from math import isfinite
-from typing import Any, TypeVar
+from typing import Any, NamedTuple, TypeVar, get_type_hints
 
 import bpy
 
 from ..solvers.settings import Described, Settings
 
 Class = TypeVar("Class", bound=type)
+Bundle = TypeVar("Bundle", bound=NamedTuple)
 SUBTYPES = {"rad": "ANGLE", "m": "DISTANCE", "s": "TIME_ABSOLUTE", "%": "PERCENTAGE"}
 
 
-def settings_from(*classes: type[Settings]) -> Callable[[Class], Class]:
-    """Decorate an operator or property group: a property for each setting of `classes`.
+def settings_from(bundle: type[Bundle]) -> Callable[[Class], Class]:
+    """Decorate an operator or property group: a property for each setting of a bundle.
 
-    The decorated class gets `settings_of(settings_class)`, which returns the checked values.
-    Settings of the same name in two classes become one property.
+    A bundle is a NamedTuple of settings classes. The decorated class gets `settings()`, which
+    returns the bundle with the checked values of the properties. Settings of the same name
+    in two classes become one property.
     """
-    described = {item.name: item for each in classes for item in fields(each)}
+    classes = get_type_hints(bundle)
+    described = {item.name: item for each in classes.values() for item in fields(each)}
 
-    def settings_of(self: Any, settings_class: type[Settings]) -> Settings:
-        values = {
-            item.name: _value(getattr(self, item.name), type(item.default))
-            for item in fields(settings_class)
-        }
-        return settings_class(**values)
+    def settings(self: Any) -> Bundle:
+        return bundle(**{name: _settings_of(self, each) for name, each in classes.items()})
 
     def decorate(cls: Class) -> Class:
         properties = {name: _property(item) for name, item in described.items()}
         cls.__annotations__ = properties | get_annotations(cls)
-        cls.settings_of = settings_of
+        cls.settings = settings
         return cls
 
     return decorate
+
+
+def _settings_of(properties: Any, settings_class: type[Settings]) -> Settings:
+    return settings_class(**{
+        item.name: _value(getattr(properties, item.name), type(item.default))
+        for item in fields(settings_class)
+    })
 
 
 def _property(item: "Field[Any]") -> Any:

@@ -1,6 +1,14 @@
-"""What the button Clean has solved for it: every part of a take denoised, then feet planted."""
+"""What the button Clean has solved for it: each part of a take denoised, then feet planted.
 
-from dataclasses import dataclass
+The slow part, `solve`, depends neither on how strongly the result is applied nor on the feet:
+what it returns is kept, so that the redo panel has only `finish` to repeat.
+"""
+
+from dataclasses import dataclass, replace
+from functools import partial
+
+import numpy as np
+from numpy.typing import NDArray
 
 from ...solvers.denoising import (
     Denoised,
@@ -10,11 +18,20 @@ from ...solvers.denoising import (
     learn_filter_bases,
     load_filter_bases,
 )
+from ...solvers.denoising.feet import find_legs
+from ...solvers.denoising.joint_limits import JointLimits
+from ...solvers.denoising.keep_within import keep_within
+from ...solvers.denoising.plant_feet import Planted, PlantSettings, plant_feet
+from ...solvers.denoising.quality import Quality, measure_quality
 from ...solvers.motion import Motion, Tracks
+from ...solvers.motion.rotations import angle_between, slerp
 from ...solvers.progress import Progress, unwatched, within
-from ...solvers.recordings import read_bvh
+from ...solvers.recordings import read_recording
 
-LEARNING = 0.2  # share of the time that learning from examples takes
+Array = NDArray[np.float64]
+Recordings = tuple[Motion | Tracks, ...]
+
+SAME = 1e-6  # radians or metres below which planting did not move a joint
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -29,44 +46,152 @@ class Examples:
         """Learn, or load what was learned."""
         if self.bases_file:
             return load_filter_bases(self.bases_file)
-        clips = [*self.motions, *map(read_bvh, self.files)]
+        clips = [*self.motions, *map(read_recording, self.files)]
         return learn_filter_bases(clips, progress=progress) if clips else None
+
+
+@dataclass(frozen=True, eq=False, kw_only=True)
+class Problem:
+    """All that the slow part depends on."""
+
+    recordings: Recordings
+    """The body first."""
+    settings: DenoiseSettings
+    examples: Examples = Examples()
+
+
+@dataclass(frozen=True, eq=False, kw_only=True)
+class Finish:
+    """How a solution is applied to the take."""
+
+    strength: float
+    """Share of the estimate, 0 to 1; gaps are filled with it all the same."""
+    ease: Array
+    """Shape (n_frames,): 1, and less where the cleaned frames join others."""
+    chosen: frozenset[str]
+    """Names of joints and points to change."""
+    present: Recordings | None = None
+    """What an earlier result made of the others; without it they are as recorded."""
+    limits: JointLimits | None = None
+    planting: PlantSettings | None = None
+    """None leaves the feet alone."""
+    contacts: NDArray[np.bool_] | None = None
+    """When each foot stands, shape (n_frames, 2), as the animator keyed it."""
+
+
+@dataclass(frozen=True, eq=False)
+class Solution:
+    """Each recording of the problem, denoised at full strength."""
+
+    denoised: tuple[Denoised, ...]
+    before: Quality
 
 
 @dataclass(frozen=True, eq=False)
 class Cleaned:
-    """The parts of a take after cleaning, in the order in which they came."""
+    """What is to be written, and what there is to say about it."""
 
-    denoised: tuple[Denoised, ...]
+    recordings: Recordings
+    moved: frozenset[str]
+    """Names of the joints that changed: those chosen, and those that planted the feet."""
+    solution: Solution
+    planted: Planted | None
+    after: Quality
 
-    @property
-    def recordings(self) -> tuple[Motion | Tracks, ...]:
-        """What is to be written."""
-        return tuple(each.recording for each in self.denoised)
+
+def names_of(recording: Motion | Tracks) -> tuple[str, ...]:
+    """Return the names of the joints or points."""
+    return recording.names if isinstance(recording, Tracks) else recording.skeleton.names
+
+
+def solve(problem: Problem, *, progress: Progress = unwatched) -> Solution:
+    """Denoise the body by what the examples teach, and all else by what the take teaches."""
+    body, *others = problem.recordings
+    before = measure_quality(body, progress=within(progress, 0.0, 0.1))
+    bases = problem.examples.bases(within(progress, 0.1, 0.3))
+    settings = replace(problem.settings, strength=1.0)
+    results = [denoise(body, bases, settings=settings, progress=within(progress, 0.3, 0.8))]
+    for index, recording in enumerate(others):
+        share = (0.8 + 0.2 * index / len(others), 0.8 + 0.2 * (index + 1) / len(others))
+        results.append(denoise(recording, settings=settings, progress=within(progress, *share)))
+    return Solution(tuple(results), before)
 
 
 def clean(
-    recordings: tuple[Motion | Tracks, ...],
-    settings: DenoiseSettings,
-    examples: Examples,
+    problem: Problem,
+    finish: Finish,
+    solution: Solution | None = None,
     *,
     progress: Progress = unwatched,
 ) -> Cleaned:
-    """Denoise the body by what the examples teach, and all else by what the take teaches."""
-    start = LEARNING if examples.motions or examples.files else 0.0
-    bases = examples.bases(within(progress, 0.0, start))
-    sizes = [1 if isinstance(each, Tracks) else each.n_joints for each in recordings]
-    denoised = []
-    for index, recording in enumerate(recordings):
-        share = [
-            start + (1.0 - start) * sum(sizes[:n]) / sum(sizes) for n in (index, index + 1)
-        ]
-        denoised.append(
-            denoise(
-                recording,
-                None if index else bases,
-                settings=settings,
-                progress=within(progress, *share),
-            )
-        )
-    return Cleaned(tuple(denoised))
+    """Solve the problem, unless its solution is given, and finish it.
+
+    The estimate is mixed with the recording, held within the joints' limits, and its feet are
+    planted. How far the feet slid, before and after, is in `planted`.
+    """
+    if solution is None:
+        solution = solve(problem, progress=within(progress, 0.0, 0.8))
+    estimates = [each.recording for each in solution.denoised]
+    body, *others = map(
+        partial(_mixed, finish=finish),
+        problem.recordings,
+        finish.present or problem.recordings,
+        estimates,
+    )
+    if finish.limits is not None:
+        body = keep_within(body, finish.limits)
+    planted = _planted(body, finish, within(progress, 0.8, 0.9))
+    moved = finish.chosen
+    if planted is not None:
+        eased = _toward(body, planted.motion, finish.ease[:, None])
+        moved |= _differing(body, eased)
+        body = eased
+    contacts = None if planted is None else planted.contacts
+    after = measure_quality(body, contacts=contacts, progress=within(progress, 0.9, 1.0))
+    return Cleaned((body, *others), moved, solution, planted, after)
+
+
+def _planted(body: Motion, finish: Finish, progress: Progress) -> Planted | None:
+    """Plant the feet of what has legs, if the legs were chosen at all."""
+    legs = find_legs(body.skeleton)
+    joints = {body.skeleton.names[joint] for leg in legs for joint in (leg.hip, leg.knee)}
+    if finish.planting is None or not joints & finish.chosen:
+        return None
+    return plant_feet(body, finish.contacts, settings=finish.planting, progress=progress)
+
+
+def _mixed(
+    raw: Motion | Tracks, present: Motion | Tracks, clean: Motion | Tracks, finish: Finish
+) -> Motion | Tracks:
+    """Go from the recording towards the estimate; where nothing was recorded, all the way."""
+    chosen = np.array([name in finish.chosen for name in names_of(raw)])
+    share = finish.strength * finish.ease[:, None] * chosen
+    if isinstance(raw, Tracks):
+        start = np.where(chosen[:, None], raw.positions, present.positions)
+        known = np.isfinite(start).all(axis=-1, keepdims=True)
+        start = np.where(known, start, clean.positions)
+        return clean.with_positions(start + share[..., None] * (clean.positions - start))
+    turns = np.where(chosen[:, None], raw.rotations, present.rotations)
+    place = raw.root_positions if chosen[0] else present.root_positions
+    start = clean.with_poses(
+        _first_known(turns, clean.rotations), _first_known(place, clean.root_positions)
+    )
+    return _toward(start, clean, share)
+
+
+def _toward(start: Motion, stop: Motion, share: Array) -> Motion:
+    """Turn and shift by a share, shape (n_frames, n_joints or 1), of the way."""
+    moved = start.root_positions + share[:, :1] * (stop.root_positions - start.root_positions)
+    return start.with_poses(slerp(start.rotations, stop.rotations, share), moved)
+
+
+def _first_known(values: Array, otherwise: Array) -> Array:
+    return np.where(np.isfinite(values).all(axis=-1, keepdims=True), values, otherwise)
+
+
+def _differing(before: Motion, after: Motion) -> frozenset[str]:
+    """Names of the joints that were turned or, the root, shifted."""
+    turned = np.abs(angle_between(before.rotations, after.rotations)).max(axis=0) > SAME
+    turned[0] |= np.abs(before.root_positions - after.root_positions).max() > SAME
+    names = before.skeleton.names
+    return frozenset(name for name, turns in zip(names, turned, strict=True) if turns)

@@ -8,8 +8,9 @@ from ...solvers.errors import InvalidMotionError
 from ...solvers.motion import Tracks
 from ...solvers.motion.rotations import multiply, rotate
 from .body import body_root
-from .bone_channels import animated_curves, read_bone, read_space
-from .frames import FrameRange, key_grid, range_bounds
+from .bone_channels import animated_curves, bone_path, read_bone, read_space
+from .compat import Source
+from .frames import FrameRange, Grid, key_grid, range_bounds
 from .rig import Placement, Rig, read_rig
 from .take import ArmatureTake, BoneChannels, part_of
 
@@ -20,8 +21,8 @@ def read_take(
     armature: bpy.types.Object,
     scene: bpy.types.Scene,
     choice: FrameRange = FrameRange.ACTION,
-    action: bpy.types.Action | None = None,
-    slot: bpy.types.ActionSlot | None = None,
+    source: Source | None = None,
+    grid: Grid | None = None,
 ) -> ArmatureTake:
     """Read an action, by default the armature's own, through its F-Curves in bulk.
 
@@ -32,8 +33,10 @@ def read_take(
     scene : bpy.types.Scene
         Its frame rate and ranges.
     choice : FrameRange
-    action, slot
-        Another action that fits the armature.
+    source : action and slot
+        Others that fit the armature.
+    grid : Grid
+        Moments to read at, in the place of those of the keys within `choice`.
 
     Returns
     -------
@@ -48,19 +51,21 @@ def read_take(
     InvalidMotionError
         There is no action, slot, bone, key or uniform scale, as the sentence says.
     """
-    if action is None:
-        action, slot = action_of(armature)
-    curves = animated_curves(action, slot)
+    curves = animated_curves(*(source or action_of(armature)))
     rig = read_rig(armature)
-    keyed = [curve for (path, _), curve in curves.items() if path.startswith("pose.bones[")]
-    frames, step = key_grid(keyed, range_bounds(choice, scene, keyed))
-    channels = tuple(read_bone(armature.pose.bones[bone], curves, frames) for bone in rig.bones)
-    space = read_space(armature, curves, frames)
-    rate = scene.render.fps / scene.render.fps_base / step
-    return _assembled(rig, frames, channels, space, rate)
+    if grid is None:
+        known = {bone_path(bone, "") for bone in rig.bones}
+        keyed = [curve for (path, _), curve in curves.items() if _owner(path) in known]
+        grid = key_grid(keyed, range_bounds(choice, scene, keyed))
+    channels = tuple(
+        read_bone(armature.pose.bones[bone], curves, grid.frames) for bone in rig.bones
+    )
+    space = read_space(armature, curves, grid.frames)
+    rate = scene.render.fps / scene.render.fps_base / grid.step
+    return _assembled(rig, grid, channels, space, rate)
 
 
-def action_of(armature: bpy.types.Object) -> tuple[bpy.types.Action, bpy.types.ActionSlot]:
+def action_of(armature: bpy.types.Object) -> Source:
     """Return the action and slot that animate an armature, or say which of them is missing."""
     animation = armature.animation_data
     if animation is None or animation.action is None:
@@ -74,7 +79,7 @@ def action_of(armature: bpy.types.Object) -> tuple[bpy.types.Action, bpy.types.A
 
 
 def _assembled(
-    rig: Rig, frames: Array, channels: tuple[BoneChannels, ...], space: Placement, rate: float
+    rig: Rig, grid: Grid, channels: tuple[BoneChannels, ...], space: Placement, rate: float
 ) -> ArmatureTake:
     rest = Placement(space.rotations[:1], space.origins[:1], space.scale)
     root = body_root(rig, [each.travels for each in channels])
@@ -95,7 +100,7 @@ def _assembled(
             parts.append(part_of(rig, tree, channels, rest, rest, rate))
     roots = {part.bones[0] for part in parts} | set(above)
     offsets = _read_offsets(rig, channels, rest, rate, roots)
-    return ArmatureTake(rig, frames, tuple(parts), offsets, channels, rest)
+    return ArmatureTake(rig, grid, tuple(parts), offsets, channels, rest)
 
 
 def _read_offsets(
@@ -127,3 +132,8 @@ def _filled(rotations: Array) -> Array:
     known = np.isfinite(rotations).all(axis=-1)
     last = np.maximum.accumulate(np.where(known, np.arange(len(known)), 0))
     return np.where(known[last, None], rotations[last], (1.0, 0.0, 0.0, 0.0))
+
+
+def _owner(path: str) -> str:
+    """Return the part of a channel's data path that names the bone."""
+    return path[: path.rfind(".") + 1]

@@ -15,6 +15,7 @@ from .bone_channels import (
     rotation_curves,
     sampled_rotation,
 )
+from .compat import Source
 from .curves import write_values
 from .rotation_modes import channels_from_quaternions
 from .take import ArmatureTake
@@ -33,11 +34,11 @@ class Output(Enum):
 
 def write_take(
     armature: bpy.types.Object,
-    source: tuple[bpy.types.Action, bpy.types.ActionSlot],
+    source: Source,
     take: ArmatureTake,
     bones: Collection[str],
     key_types: KeyTypes,
-) -> tuple[bpy.types.Action, bpy.types.ActionSlot]:
+) -> Source:
     """Copy an action and replace the rotation and location keys of some of its bones.
 
     Parameters
@@ -109,8 +110,8 @@ def check_writable(armature: bpy.types.Object) -> None:
 
 
 def _copy(
-    source: tuple[bpy.types.Action, bpy.types.ActionSlot],
-) -> tuple[bpy.types.Action, bpy.types.ActionSlot]:
+    source: Source,
+) -> Source:
     original, slot = source
     action = original.copy()
     action.name = original.name.removesuffix(SUFFIX) + SUFFIX

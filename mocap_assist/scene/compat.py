@@ -5,6 +5,8 @@ One function, one difference; the oldest branch stands first, to be deleted firs
 
 import bpy
 
+Source = tuple[bpy.types.Action, bpy.types.ActionSlot]
+"""An action, and the slot of it that animates the object in question."""
 TARGETS = {"OBJECT", "UNSPECIFIED"}  # the second comes from files of Blender 4.3 and older
 
 
@@ -51,9 +53,7 @@ def assign(
     animation.action_slot = slot
 
 
-def new_action(
-    name: str, animated: bpy.types.ID
-) -> tuple[bpy.types.Action, bpy.types.ActionSlot]:
+def new_action(name: str, animated: bpy.types.ID) -> Source:
     """Make an action with an empty channelbag for `animated`, kept even when nobody uses it."""
     action = bpy.data.actions.new(name)
     action.use_fake_user = True

@@ -2,6 +2,7 @@
 
 from collections.abc import Sequence
 from enum import Enum
+from typing import NamedTuple
 
 import bpy
 import numpy as np
@@ -58,10 +59,19 @@ def range_bounds(
     return -np.inf, np.inf
 
 
-def key_grid(
-    curves: Sequence[bpy.types.FCurve], bounds: tuple[float, float]
-) -> tuple[Array, float]:
-    """Return the frames within `bounds` on which the curves have their keys, and their step.
+class Grid(NamedTuple):
+    """Moments that lie evenly in time."""
+
+    frames: Array
+    """Scene frames, shape (n_frames,), not always whole ones."""
+    step: float
+    """Frames from one to the next."""
+    joins: tuple[bool, bool]
+    """Whether the curves go on before the first frame, and after the last."""
+
+
+def key_grid(curves: Sequence[bpy.types.FCurve], bounds: tuple[float, float]) -> Grid:
+    """Return the frames within `bounds` on which the curves have their keys.
 
     A take keyed four times a frame, or at .5 of every frame, or on every second one, is read
     where its keys are; where keys follow no grid, or are far apart, on every whole frame.
@@ -86,7 +96,9 @@ def key_grid(
             f"The action has keys from frame {start:g} to {stop:g}, none of them within the"
             f" chosen range {bounds[0]:g} to {bounds[1]:g}."
         )
-    return phase + step * place, step
+    frames = phase + step * place
+    joins = (bool(start < frames[0] - step / 2), bool(stop > frames[-1] + step / 2))
+    return Grid(frames, step, joins)
 
 
 def _grid_of(times: Array) -> tuple[float, float]:

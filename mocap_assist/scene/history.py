@@ -12,21 +12,18 @@ import bpy
 
 from ...solvers.settings import Settings
 from . import compat
+from .compat import Source
 
 HISTORY = "mocap_assist_history"
 SOURCE = "mocap_assist_source"
 
 
-def record(
-    action: bpy.types.Action,
-    source: bpy.types.Action,
-    slot: bpy.types.ActionSlot,
-    entry: dict[str, Any],
-) -> None:
-    """Note in `action` what was done to `source`, and by which version.
+def record(action: bpy.types.Action, made_from: Source, entry: dict[str, Any]) -> None:
+    """Note in `action` what was done to `made_from`, and by which version.
 
     An action that was made from a result keeps the result's entries and its raw source.
     """
+    source, slot = made_from
     entry = {"version": version(), "source": source.name, "slot": slot.identifier} | entry
     action[HISTORY] = json.dumps([*history(source), entry], ensure_ascii=False)
     # A pointer follows the source through renaming, and keeps it in the saved file.
@@ -42,7 +39,7 @@ def history(action: bpy.types.Action) -> list[dict[str, Any]]:
     return entries if isinstance(entries, list) else []
 
 
-def raw_of(action: bpy.types.Action) -> tuple[bpy.types.Action, bpy.types.ActionSlot] | None:
+def raw_of(action: bpy.types.Action) -> Source | None:
     """Return the recorded action and slot that a result was made from, if both still exist."""
     source, entries = action.get(SOURCE), history(action)
     if not isinstance(source, bpy.types.Action) or not entries:
@@ -51,17 +48,16 @@ def raw_of(action: bpy.types.Action) -> tuple[bpy.types.Action, bpy.types.Action
     return None if slot is None else (source, slot)
 
 
-def raw_source(
-    armature: bpy.types.Object,
-) -> tuple[bpy.types.Action, bpy.types.ActionSlot] | None:
-    """Return the recorded action behind the result that an armature plays, if it plays one."""
+def played_result(armature: bpy.types.Object) -> Source | None:
+    """Return the result of ours that an armature plays, as its action or on an NLA track."""
     animation = armature.animation_data
     if animation is None:
         return None
-    strips = [strip for track in animation.nla_tracks for strip in track.strips]
-    played = [animation.action, *(strip.action for strip in reversed(strips))]
-    found = (raw_of(action) for action in played if action is not None)
-    return next((source for source in found if source is not None), None)
+    strips = [strip for track in reversed(animation.nla_tracks) for strip in track.strips]
+    for player in (animation, *strips):
+        if player.action is not None and player.action_slot and raw_of(player.action):
+            return player.action, player.action_slot
+    return None
 
 
 def plain(*settings: Settings) -> dict[str, Any]:

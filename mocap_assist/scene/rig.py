@@ -85,13 +85,13 @@ def read_rig(armature: bpy.types.Object) -> Rig:
     if not bones:
         raise InvalidMotionError(f"The armature {armature.name} has no bones.")
     place = {bone.name: index for index, bone in enumerate(bones)}
-    rest = np.array([bone.matrix_local for bone in bones])
+    rest = np.array([bone.matrix_local for bone in bones], dtype=np.float64)
     return Rig(
         bones=tuple(place),
         parents=tuple(place[bone.parent.name] if bone.parent else -1 for bone in bones),
         rest_rotations=quaternion_from_matrix(rest[:, :3, :3]),
         heads=rest[:, :3, 3],
-        tails=np.array([bone.tail_local for bone in bones]),
+        tails=np.array([bone.tail_local for bone in bones], dtype=np.float64),
         modes=tuple(armature.pose.bones[bone.name].rotation_mode for bone in bones),
         connected=tuple(bone.use_connect and bone.parent is not None for bone in bones),
     )
@@ -105,7 +105,8 @@ def placement_of(matrix: Matrix, name: str) -> tuple[Array, Array, float]:
     InvalidMotionError
         The scale differs between axes, is zero or mirrors, so that there are no metres.
     """
-    linear = np.array(matrix, dtype=np.float64)[:3, :3]
+    whole = np.array(matrix, dtype=np.float64)
+    linear = whole[:3, :3]
     scale = float(np.cbrt(max(np.linalg.det(linear), 0.0)))
     turn = linear / scale if scale > 0.0 else linear
     if np.abs(turn @ turn.T - np.eye(3)).max() > EVEN:
@@ -114,4 +115,4 @@ def placement_of(matrix: Matrix, name: str) -> tuple[Array, Array, float]:
             f"{name} is scaled unevenly or mirrored ({sizes} along X, Y, Z). Give it one"
             " positive scale on all axes, or apply the scale."
         )
-    return quaternion_from_matrix(turn), np.array(matrix.translation), scale
+    return quaternion_from_matrix(turn), whole[:3, 3], scale

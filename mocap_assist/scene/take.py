@@ -7,6 +7,7 @@ from numpy.typing import NDArray
 
 from ...solvers.motion import Motion, Skeleton, Tracks
 from ...solvers.motion.rotations import inverse, multiply, rotate
+from .frames import Grid
 from .rig import Placement, Rig
 
 Array = NDArray[np.float64]
@@ -55,11 +56,16 @@ class ArmatureTake:
     """
 
     rig: Rig
-    frames: Array
+    grid: Grid
     parts: tuple[Part, ...]
     offsets: Tracks | None
     channels: tuple[BoneChannels, ...]
     rest: Placement
+
+    @property
+    def frames(self) -> Array:
+        """Scene frames, shape (n_frames,)."""
+        return self.grid.frames
 
     @property
     def recordings(self) -> tuple[Motion | Tracks, ...]:

@@ -1,0 +1,77 @@
+"""What an animator chooses for Clean, besides the settings of the solvers themselves."""
+
+from dataclasses import dataclass
+from enum import Enum
+from typing import NamedTuple
+
+from ..solvers.denoising import DenoiseSettings
+from ..solvers.denoising.plant_feet import PlantSettings
+from ..solvers.settings import Settings, setting
+from .scene.armature_write import Output
+from .scene.frames import FrameRange
+
+
+class Bones(Enum):
+    """Bones to clean."""
+
+    ALL = "all"
+    SELECTED = "selected"
+
+
+class Prior(Enum):
+    """Where the patterns of clean motion come from."""
+
+    TAKE = "this take"
+    EXAMPLES = "examples"
+    LEARNED = "learned file"
+
+
+class Limits(Enum):
+    """How far joints may turn."""
+
+    NONE = "none"
+    CONSTRAINTS = "constraints"
+
+
+@dataclass(frozen=True, kw_only=True)
+class CleanChoices(Settings):
+    """What is cleaned, by what, and where the result goes."""
+
+    bones: Bones = setting(
+        Bones.ALL,
+        "Change all bones, or only the selected ones; all of them guide the estimate. Planting"
+        " feet also moves the legs and the hips",
+    )
+    frame_range: FrameRange = setting(
+        FrameRange.ACTION, "Change all frames of the action, or only some of them"
+    )
+    prior: Prior = setting(
+        Prior.TAKE,
+        "Learn how this body moves from the take itself, from clean examples of the same kind"
+        " of motion, or use what was learned before",
+    )
+    examples: str = setting(
+        "",
+        "Clean actions of this file, or recordings on disk, separated by semicolons;"
+        " any rig serves",
+    )
+    learned_file: str = setting("", "File of learned patterns, as written by Learn")
+    plant_feet: bool = setting(
+        True, "Keep standing feet from sliding, by moving legs and hips a little"
+    )
+    joint_limits: Limits = setting(
+        Limits.NONE,
+        "Keep joints softly within the Limit Rotation constraints of their bones",
+    )
+    output: Output = setting(
+        Output.ACTION,
+        "Put the result in the place of the action, or on an NLA track of its own",
+    )
+
+
+class CleanSettings(NamedTuple):
+    """All that the button offers."""
+
+    choices: CleanChoices
+    denoising: DenoiseSettings
+    planting: PlantSettings

@@ -1,0 +1,63 @@
+"""What Clean says about its result: in the status bar, and in the action's history."""
+
+from typing import Any
+
+import numpy as np
+
+from ..solvers.denoising.quality import Quality
+from .clean_choices import CleanSettings
+from .jobs.cleaning import Cleaned
+from .scene import history
+from .scene.take import ArmatureTake
+
+
+def clean_report(raw: ArmatureTake, cleaned: Cleaned, name: str) -> str:
+    """Return a few sentences for the status bar."""
+    body = cleaned.solution.denoised[0]
+    before, after = cleaned.solution.before, cleaned.after
+    said = [
+        f"{name}: {len(raw.frames)} frames, shaking by {_shake(before):.2f} degrees before and"
+        f" {_shake(after):.2f} now, {_count(body.outliers)} spikes and"
+        f" {_count(before.gaps)} gaps mended."
+    ]
+    if cleaned.planted is not None:
+        said.append(
+            f"Feet slid {100 * cleaned.planted.slide_before:.1f} cm, now"
+            f" {100 * cleaned.planted.slide_after:.1f} cm; legs and hips moved for that."
+        )
+    said.append(body.prior_used)
+    if not all(each.converged for each in cleaned.solution.denoised):
+        said.append("The estimate had not settled when it was stopped.")
+    return " ".join(said)
+
+
+def entry_of(operation: str, settings: CleanSettings, cleaned: Cleaned) -> dict[str, Any]:
+    """Return what the action's history keeps, JSON-ready."""
+    body = cleaned.solution.denoised[0]
+    return {
+        "operation": operation,
+        "settings": history.plain(*settings),
+        "prior_used": body.prior_used,
+        "iterations": body.iterations,
+        "converged": body.converged,
+        "before": figures(cleaned.solution.before),
+        "after": figures(cleaned.after),
+    }
+
+
+def figures(quality: Quality) -> dict[str, Any]:
+    """Return the overall figures of a measurement; those of single joints would be too long."""
+    every = quality.figures()
+    return {name: value for name, value in every.items() if isinstance(value, (int, float))}
+
+
+def _shake(quality: Quality) -> float:
+    """Return the mean noise of the rotations, degrees."""
+    noise = [signal.noise for signal in quality.signals if signal.turns]
+    return float(np.degrees(np.nanmean(noise)))
+
+
+def _count(flags: np.ndarray) -> int:
+    """Count the stretches of True along the frames, over all joints."""
+    starts = np.diff(flags.astype(np.int8), axis=0, prepend=0) > 0
+    return int(starts.sum())

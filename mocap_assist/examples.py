@@ -1,0 +1,79 @@
+"""The clean motion that an animator picks to learn from: actions of this file, or files."""
+
+from pathlib import Path
+
+import bpy
+
+from ..solvers.errors import InvalidMotionError
+from ..solvers.motion import Motion
+from .clean_choices import CleanChoices, Prior
+from .jobs.cleaning import Examples
+from .scene import compat
+from .scene.armature_read import read_take
+from .scene.bone_channels import animated_curves, bone_path
+
+SEPARATOR = ";"
+
+
+def read_examples(
+    context: bpy.types.Context, armature: bpy.types.Object, choices: CleanChoices
+) -> Examples:
+    """Read the actions named among the examples; leave files to be read where it is solved.
+
+    Raises
+    ------
+    InvalidMotionError
+        Nothing was picked, or what was picked does not exist or fits no armature.
+    """
+    if choices.prior is Prior.TAKE:
+        return Examples()
+    if choices.prior is Prior.LEARNED:
+        if not choices.learned_file:
+            raise InvalidMotionError("Choose the file of learned patterns, or another prior.")
+        return Examples(bases_file=bpy.path.abspath(choices.learned_file))
+    names = [name.strip() for name in choices.examples.split(SEPARATOR) if name.strip()]
+    if not names:
+        raise InvalidMotionError(
+            "Pick clean actions or recordings to learn from, or let the take guide itself."
+        )
+    actions = [name for name in names if name in bpy.data.actions]
+    files = [bpy.path.abspath(name) for name in names if name not in actions]
+    missing = [path for path in files if not Path(path).is_file()]
+    if missing:
+        raise InvalidMotionError(
+            f"There is neither an action nor a file called {', '.join(missing)}."
+        )
+    motions = [_read_action(context, armature, bpy.data.actions[name]) for name in actions]
+    return Examples(motions=tuple(motions), files=tuple(files))
+
+
+def _read_action(
+    context: bpy.types.Context, armature: bpy.types.Object, action: bpy.types.Action
+) -> Motion:
+    """Read the body's motion from an action, on the armature that plays it or that it fits."""
+    armatures = [each for each in context.scene.objects if each.type == "ARMATURE"]
+    players = [each for each in armatures if plays(each, action)]
+    for other in [*players, armature, *armatures]:
+        for slot in action.slots:
+            if slot.target_id_type in compat.TARGETS and _fits(other, action, slot):
+                return read_take(other, context.scene, source=(action, slot)).parts[0].motion
+    raise InvalidMotionError(
+        f"No armature of this scene has the bones of the action {action.name}. Add the rig that"
+        " it was made for, or pick another example."
+    )
+
+
+def plays(armature: bpy.types.Object, action: bpy.types.Action) -> bool:
+    """Whether the action is the one that the armature plays now."""
+    animation = armature.animation_data
+    return animation is not None and animation.action == action
+
+
+def _fits(
+    armature: bpy.types.Object, action: bpy.types.Action, slot: bpy.types.ActionSlot
+) -> bool:
+    """Whether most animated bones of the action are bones of the armature."""
+    paths = {path.rpartition(".")[0] for path, _ in animated_curves(action, slot)}
+    bones = {bone_path(bone.name, "")[:-1] for bone in armature.pose.bones}
+    animated = {path for path in paths if path.startswith("pose.bones[")}
+    return bool(animated) and 2 * len(animated & bones) > len(animated)

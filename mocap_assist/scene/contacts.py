@@ -1,0 +1,63 @@
+"""When each foot stands, as keys on custom properties that the animator can edit."""
+
+import bpy
+import numpy as np
+from numpy.typing import NDArray
+
+from . import compat
+from .bone_channels import animated_curves
+from .curves import CONSTANT, read_keys, read_values, write_values
+
+PROPERTIES = ("mocap_contact_left", "mocap_contact_right")
+GROUP = "Foot contacts"
+Flags = NDArray[np.bool_]
+
+
+def read_contacts(
+    action: bpy.types.Action, slot: bpy.types.ActionSlot, frames: NDArray[np.float64]
+) -> Flags | None:
+    """Return when the left and the right foot stand, shape (n_frames, 2).
+
+    None where the action has no such keys for all of these frames: they were not cleaned yet.
+    """
+    curves = animated_curves(action, slot)
+    keyed = [curves.get((_path(name), 0)) for name in PROPERTIES]
+    for curve in keyed:
+        times = np.empty(0) if curve is None else read_keys(curve)[:, 0]
+        if not len(times) or times[0] > frames[0] or times[-1] < frames[-1]:
+            return None
+    return np.stack([read_values(curve, frames) > 0.5 for curve in keyed], axis=1)
+
+
+def write_contacts(
+    armature: bpy.types.Object,
+    action: bpy.types.Action,
+    slot: bpy.types.ActionSlot,
+    frames: NDArray[np.float64],
+    contacts: Flags,
+) -> None:
+    """Key the two custom properties of the armature wherever a foot comes down or lifts off.
+
+    The keys are held until the next one: 1 the foot stands, 0 it does not. Few as they are,
+    they are moved, added and removed like any others in the Dope Sheet. The first and the last
+    frame are keyed too, and so tell which frames are meant.
+    """
+    bag = compat.channelbag(action, slot)
+    for name, standing in zip(PROPERTIES, contacts.T, strict=True):
+        armature[name] = int(standing[0])
+        armature.id_properties_ui(name).update(
+            min=0,
+            max=1,
+            description="1 while the foot stands. Clean keeps it from sliding then",
+        )
+        curve = bag.fcurves.find(_path(name), index=0)
+        if curve is None:
+            curve = compat.new_curve(bag, _path(name), 0, GROUP)
+        changes = np.flatnonzero(np.diff(standing)) + 1
+        keyed = np.unique([0, *changes, len(frames) - 1])
+        values = standing[keyed].astype(np.float64)
+        write_values(curve, frames[keyed], values, interpolation=CONSTANT)
+
+
+def _path(name: str) -> str:
+    return f'["{name}"]'
