@@ -35,10 +35,11 @@ def nearest(case: Case, estimates: Iterable[Array]) -> Array:
     return min(estimates, key=case.error)
 
 
-def data_driven_kalman(case: Case) -> Array:
+def data_driven_kalman(case: Case, first: Smoother = smoothers.unchanged) -> Array:
     """Learned dynamics for the angles, constant velocity for the root's position."""
     rate = case.truth.frame_rate
-    angles, root = case.noisy[:, :-3], case.noisy[:, -3:]
+    noisy = first(case.noisy, rate)
+    angles, root = noisy[:, :-3], noisy[:, -3:]
     heading = np.median(angles[:, 0])
     angles = without_heading(angles)
     angles[:, 0] += angles[:, 0].mean() - np.median(angles[:, 0])
@@ -73,6 +74,9 @@ PEERS: dict[str, Method] = {
         kalman.constant_acceleration, AGILITIES
     ),
     "data-driven Kalman RTS, noise tuned on the truth": data_driven_kalman,
+    "Hampel + data-driven Kalman RTS, tuned on the truth": partial(
+        data_driven_kalman, first=smoothers.hampel
+    ),
 }
 
 
