@@ -147,11 +147,12 @@ def body(bpy: Any, armature: Any) -> Any:
 
 def figures(raw: Any, clean: Any, truth: Any) -> list[tuple[str, str, str]]:
     """Return rows of name, before, after: the quality, and the error where it is known."""
-    measure_quality = installed("solvers.denoising").measure_quality
-    compare_quality = installed("solvers.denoising.quality_report").compare_quality
+    denoising = installed("solvers.denoising")
     contacts = installed("solvers.motion").detect_contacts(clean)
-    before, after = (measure_quality(motion, contacts=contacts) for motion in (raw, clean))
-    lines = compare_quality(before, after).splitlines()
+    before, after = (
+        denoising.measure_quality(motion, contacts=contacts) for motion in (raw, clean)
+    )
+    lines = denoising.compare_quality(before, after).splitlines()
     rows = [tuple(re.split(r" {2,}", line)) for line in lines]
     if truth is not None:
         seen = raw.observed

@@ -7,6 +7,9 @@ from .filter_bases import (
     learn_filter_bases,
     load_filter_bases,
 )
+from .plant_feet import Planted, PlantSettings, plant_feet
+from .quality import Quality, QualitySettings, measure_quality
+from .quality_report import compare_quality
 
 __all__ = [
     "DenoiseSettings",
@@ -14,7 +17,14 @@ __all__ = [
     "FilterBases",
     "FilterBasesSettings",
     "Method",
+    "PlantSettings",
+    "Planted",
+    "Quality",
+    "QualitySettings",
+    "compare_quality",
     "denoise",
     "learn_filter_bases",
     "load_filter_bases",
+    "measure_quality",
+    "plant_feet",
 ]

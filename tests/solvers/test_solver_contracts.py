@@ -18,8 +18,9 @@ from solvers.denoising import (
     Method,
     denoise,
     learn_filter_bases,
+    measure_quality,
+    plant_feet,
 )
-from solvers.denoising.quality import measure_quality
 from solvers.errors import SolveCancelled
 from solvers.motion import Motion, Tracks, detect_contacts, forward_kinematics, resample
 from solvers.motion.rotations import angle_between, multiply, quaternion_from_rotation_vector
@@ -81,6 +82,13 @@ VERBS = {
     "measure_quality": Verb(
         lambda motion, progress: measure_quality(motion, progress=progress),
         figures=lambda result: (result.jitter, result.spikes, result.gaps),
+    ),
+    "plant_feet": Verb(
+        lambda motion, progress: plant_feet(motion, progress=progress),
+        recording=lambda result: result.motion,
+        figures=lambda result: (result.contacts, result.slide_before),
+        whole_input=True,
+        any_rate=True,
     ),
     "resample": Verb(
         lambda motion, progress: resample(motion, 40.0),
