@@ -18,6 +18,7 @@ from .contacts import (
     leg_length,
 )
 from .humanoid import HUMANOID_ROLES, HumanoidMap, find_humanoid_map
+from .humanoid_names import roles_by_name
 from .kinematics import WorldPoses, forward_kinematics, local_rotations, world_poses
 from .limb_ik import ReachSettings, reach
 from .motion import Motion
@@ -51,6 +52,7 @@ __all__ = [
     "local_rotations",
     "reach",
     "resample",
+    "roles_by_name",
     "t_pose_alignment",
     "transfer_motion",
     "warp",

@@ -2,11 +2,15 @@
 
 import re
 from collections import Counter
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
+from itertools import accumulate
+from operator import and_, eq
 
 from .humanoid_tables import CENTRAL_ROLES, COLUMNS, FINGERS, TABLES
 
 SIDES = {"left": "left", "right": "right", "l": "left", "r": "right"}
+OTHER = {"left": "right", "right": "left", "l": "r", "r": "l"}
+
 SHARED = 0.75
 """A first word that so many joints have is the rig's prefix ("mixamorig", "Bip01")."""
 
@@ -39,7 +43,7 @@ def roles_by_name(names: Sequence[str]) -> dict[str, str]:
     """
     keys = _keys(names)
     found = max((_looked_up(row, keys) for row in TABLES.values()), key=len)
-    return found | _fingers(names)
+    return found | _fingers(names, found)
 
 
 def _looked_up(row: Sequence[str], keys: dict[Key, str]) -> dict[str, str]:
@@ -96,9 +100,6 @@ def _side_and_words(name: str, all_names: frozenset[str]) -> tuple[str, list[str
     return "", words
 
 
-OTHER = {"left": "right", "right": "left", "l": "r", "r": "l"}
-
-
 def _mirrored(words: list[str], place: int) -> str:
     return "".join([*words[:place], OTHER[words[place]], *words[place + 1 :]])
 
@@ -116,9 +117,13 @@ def _bare_names(names: Sequence[str]) -> frozenset[str]:
     return frozenset("".join(_words(re.split(r"[:|]", name)[-1])) for name in names)
 
 
-def _fingers(names: Sequence[str]) -> dict[str, str]:
-    """Return the finger joints by role; a finger of one joint only (CMU) has no role."""
-    found: dict[tuple[str, str], dict[int, str]] = {}
+def _fingers(names: Sequence[str], found: Mapping[str, str]) -> dict[str, str]:
+    """Return the finger joints by role; a finger of one joint only (CMU) has no role.
+
+    Where several joints claim one role (DEF- and ORG- bones), the one that is named most like
+    the hand has it.
+    """
+    claims: dict[tuple[str, str], dict[int, list[str]]] = {}
     bare = _bare_names(names)
     for name in names:
         side, words = _side_and_words(name, bare)
@@ -126,13 +131,18 @@ def _fingers(names: Sequence[str]) -> dict[str, str]:
         if side and match and not name.endswith("_end"):
             finger = SPELLINGS.get(match[1], match[1].capitalize())
             part = PARTS[match[2].lstrip("0")] + (finger == "Thumb" and match[2] == "proximal")
-            found.setdefault((side, finger), {}).setdefault(part, name)
+            claims.setdefault((side, finger), {}).setdefault(part, []).append(name)
     return {
-        side + finger + _part(finger, part): name
-        for (side, finger), joints in found.items()
+        side + finger + _part(finger, part): _most_like(found.get(f"{side}Hand", ""), alike)
+        for (side, finger), joints in claims.items()
         if len(joints) > 1
-        for part, name in sorted(joints.items())
+        for part, alike in sorted(joints.items())
     }
+
+
+def _most_like(hand: str, names: Sequence[str]) -> str:
+    """Return the name that agrees with the hand's longest from its beginning."""
+    return max(names, key=lambda name: sum(accumulate(map(eq, hand, name), and_)))
 
 
 def _part(finger: str, part: int) -> str:

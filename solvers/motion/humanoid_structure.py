@@ -35,8 +35,10 @@ def roles_by_structure(skeleton: Skeleton) -> tuple[dict[str, str], float]:
     roles, misfits = {"hips": hips}, []
     for side, leg in legs.items():
         found, misfit = body.limb(leg, LEG)
-        names = (f"{side}UpperLeg", f"{side}LowerLeg", f"{side}Foot", f"{side}Toes")
+        names = (f"{side}UpperLeg", f"{side}LowerLeg", f"{side}Foot")
         roles |= dict(zip(names, found, strict=False))
+        if found and (toes := body.toes(found[-1])) is not None:
+            roles[f"{side}Toes"] = toes
         misfits.append(misfit)
     hands = body.outermost(
         np.abs(body.positions[:, 0] - body.positions[hips, 0]),
@@ -139,6 +141,12 @@ class _Body:
         forks = [i for i, joint in enumerate(arm) if len(self.skeleton.children[joint]) > 1]
         return arm[: forks[-1] + 1] if forks and forks[-1] >= 2 else arm
 
+    def toes(self, foot: int) -> int | None:
+        """Return the foremost joint that hangs on the foot, if it is before the ankle."""
+        children = self.rotating(self.skeleton.children[foot])
+        front = min(children, key=lambda joint: self.positions[joint, 1], default=foot)
+        return front if self.positions[front, 1] < self.positions[foot, 1] else None
+
     def below(self, start: int, limbs: dict[str, list[int]]) -> NDArray[np.bool_]:
         """Tell which joints belong to the limbs that leave from `start`."""
         inside = np.zeros(self.skeleton.n_joints, dtype=bool)
@@ -147,7 +155,7 @@ class _Body:
         return inside
 
     def limb(self, way: Sequence[int], human: tuple[float, float]) -> tuple[list[int], float]:
-        """Return upper joint, hinge and end of a limb, and the joint after; and the misfit.
+        """Return upper joint, hinge and end of a limb, and the misfit.
 
         The misfit is the sum of both bones' absolute log ratios to human lengths. A way of
         less than three joints is no limb.
@@ -166,5 +174,5 @@ class _Body:
         misfits = upper.min(axis=0) + lower.min(axis=1)
         hinge = int(misfits.argmin())
         end = int(lower[hinge].argmin())
-        chosen = [int(upper[:, hinge].argmin()), hinge, end, end + 1]
-        return [joints[place] for place in chosen if place < len(joints)], float(misfits[hinge])
+        chosen = int(upper[:, hinge].argmin()), hinge, end
+        return [joints[place] for place in chosen], float(misfits[hinge])

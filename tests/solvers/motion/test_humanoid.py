@@ -4,9 +4,18 @@ import pickle
 
 import numpy as np
 import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+from hypothesis.extra.numpy import arrays
 
 from solvers.errors import InvalidMotionError
-from solvers.motion import HUMANOID_ROLES, HumanoidMap, Skeleton, find_humanoid_map
+from solvers.motion import (
+    HUMANOID_ROLES,
+    HumanoidMap,
+    Skeleton,
+    find_humanoid_map,
+    t_pose_alignment,
+)
 from solvers.motion.humanoid import ESSENTIAL_ROLES
 from solvers.motion.humanoid_names import roles_by_name
 from solvers.motion.humanoid_structure import roles_by_structure
@@ -107,6 +116,36 @@ def test_fingers_are_known_in_every_spelling(style, finger):
     assert found["rightIndexDistal"] == mirrored(names[2])
 
 
+def test_fingers_belong_to_the_hand_that_was_found():
+    """A generated Rigify rig holds every bone several times over."""
+    names = [
+        f"{prefix}{bone}.{side}"
+        for prefix in ("ORG-", "DEF-")
+        for side in "LR"
+        for bone in ("hand", "forearm", "f_ring.01", "f_ring.02", "f_ring.03")
+    ]
+
+    found = roles_by_name(names)
+
+    assert found["leftHand"] == "DEF-hand.L"
+    assert found["rightRingDistal"] == "DEF-f_ring.03.R"
+
+
+def test_a_heel_is_no_toe(body):
+    """Rigify hangs a heel on the foot, as low as the toes and behind them."""
+    parents, offsets, names = list(body.parents), list(body.offsets), list(body.names)
+    for side in ("Left", "Right"):
+        names.append(f"{side}Heel")
+        parents.append(body.index(f"{side}Foot"))
+        offsets.append(np.array([0.0, 0.06, -0.08]))
+    booted = Skeleton(tuple(names), tuple(parents), np.array(offsets))
+
+    roles, _ = roles_by_structure(booted)
+
+    assert roles["leftFoot"] == "LeftFoot"
+    assert roles["rightToes"] == "RightToeBase"
+
+
 def test_shape_answers_when_names_say_nothing(body):
     by_name = find_humanoid_map(body)
 
@@ -144,6 +183,44 @@ def test_nothing_human_gives_an_empty_map():
 
     assert dict(find_humanoid_map(stick).joints) == {}
     assert find_humanoid_map(stick).score == 0.0
+
+
+WORDS = st.sampled_from([
+    "left",
+    "Right",
+    "l",
+    "R",
+    "arm",
+    "Hand",
+    "thumb",
+    "ring",
+    "spine",
+    "01",
+    "2",
+    "_",
+    ".",
+    ":",
+    "腕",
+])
+
+
+@given(st.data())
+def test_any_tree_of_any_names_is_answered(data):
+    n_joints = data.draw(st.integers(1, 14))
+    names = data.draw(
+        st.lists(st.lists(WORDS, min_size=1, max_size=4).map("".join), min_size=n_joints,
+                 max_size=n_joints, unique=True)
+    )  # fmt: skip
+    parents = [-1, *(data.draw(st.integers(0, joint - 1)) for joint in range(1, n_joints))]
+    offsets = data.draw(arrays(float, (n_joints, 3), elements=st.integers(-2, 2).map(float)))
+    skeleton = Skeleton(tuple(names), tuple(parents), offsets)
+
+    found = find_humanoid_map(skeleton)
+
+    assert set(found.joints.values()) <= set(names)
+    assert 0.0 <= found.score <= 1.0
+    assert np.isfinite(t_pose_alignment(skeleton, found)).all()
+    assert HumanoidMap(*roles_by_structure(skeleton)).score <= 1.0
 
 
 def test_an_arm_alone_is_still_known_by_its_names():
