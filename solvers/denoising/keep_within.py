@@ -98,13 +98,15 @@ class _Limit:
         if self.order == ROTATION_VECTOR:
             vectors = rotation_vector_from_quaternion(seen)
             return vectors, self._beyond(vectors)
-        # Every rotation has two triples of Euler angles, each up to full turns: take the one
-        # that breaks the limits least.
+        # Every rotation has two triples of Euler angles, each up to full turns. Take the one
+        # that breaks the limits least and turns least about the axes that are free: else a knee
+        # far beyond its limit could be read as half a turn about both other axes.
         first = euler_from_quaternion(seen, self.order)
         forms = self._near(np.stack([first, first * (1.0, -1.0, 1.0) + np.pi]))
         beyond = self._beyond(forms)
-        better = np.abs(beyond).sum(axis=-1)
-        second = (better[1] < better[0])[:, None]
+        free = np.isinf(self.lower) & np.isinf(self.upper)
+        cost = np.sum(np.abs(beyond) + free * np.abs(forms), axis=-1)
+        second = (cost[1] < cost[0])[:, None]
         return np.where(second, forms[1], forms[0]), np.where(second, beyond[1], beyond[0])
 
     def rotations(self, angles: Array) -> Array:

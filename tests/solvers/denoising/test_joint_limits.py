@@ -1,0 +1,254 @@
+"""Limits hold what is beyond them, softly, and touch nothing else."""
+
+import numpy as np
+import pytest
+from numpy.testing import assert_allclose
+
+from solvers.denoising.joint_limits import JointLimits, load_joint_limits
+from solvers.denoising.keep_within import keep_within, limit_excess
+from solvers.denoising.learn_limits import JointLimitsSettings, learn_joint_limits
+from solvers.errors import InvalidFileError, InvalidMotionError, InvalidSettingError
+from solvers.motion import Motion, Skeleton, find_humanoid_map
+from solvers.motion.canonical import canonical_rotations, from_canonical
+from solvers.motion.rotations import (
+    IDENTITY,
+    angle_between,
+    inverse,
+    multiply,
+    quaternion_from_euler,
+    quaternion_from_rotation_vector,
+    rotate,
+)
+from solvers.samples import GaitSettings, walking_gait
+
+INF = np.inf
+
+
+def turned(skeleton: Skeleton, joint: int, rotations: np.ndarray) -> Motion:
+    """A motion in which one joint turns and the others rest."""
+    all_rotations = np.tile(IDENTITY, (len(rotations), skeleton.n_joints, 1))
+    all_rotations[:, joint] = rotations
+    return Motion(skeleton, all_rotations, np.zeros((len(rotations), 3)), 30.0)
+
+
+def euler_limits(name: str, axes, lower, upper, order: str = "ZYX") -> JointLimits:
+    """As a limit constraint of Blender has them: about the bone's own rest axes."""
+    return JointLimits((name,), np.array([False]), axes, axes, (order,), lower, upper)
+
+
+@pytest.fixture(scope="module")
+def walk() -> Motion:
+    return walking_gait(GaitSettings(duration=3.0, frame_rate=30.0))
+
+
+@pytest.fixture
+def bone_axes(rng):
+    return quaternion_from_rotation_vector(rng.normal(size=3))
+
+
+def about_bone_x(axes, degrees) -> np.ndarray:
+    """Local rotations that turn about the bone's own x axis."""
+    angles = np.radians(np.asarray(degrees, dtype=float))
+    return quaternion_from_rotation_vector(angles[:, None] * rotate(axes, [1.0, 0.0, 0.0]))
+
+
+def test_a_turn_beyond_a_limit_of_the_bones_own_axis_stops_there(leg, bone_axes):
+    motion = turned(leg, 1, about_bone_x(bone_axes, [-20.0, 30.0, 60.0]))
+    limits = euler_limits("knee", bone_axes, [0, 0, 0], np.radians([0, 0, 45]))
+
+    held = keep_within(motion, limits, softness=0.0)
+
+    assert_allclose(
+        angle_between(held.rotations[:, 1], about_bone_x(bone_axes, [0.0, 30.0, 45.0])),
+        0,
+        atol=1e-7,
+    )
+
+
+def test_a_soft_limit_is_left_with_slope_one_and_never_exceeded_by_more_than_its_softness(leg):
+    degrees = np.arange(40.0, 150.0, 0.5)
+    motion = turned(leg, 1, about_bone_x(IDENTITY, degrees))
+    limits = euler_limits("knee", IDENTITY, [-INF, -INF, 0], [INF, INF, np.radians(45)])
+
+    held = keep_within(motion, limits, softness=np.radians(10.0))
+
+    angles = np.degrees(angle_between(held.rotations[:, 1], IDENTITY))
+    slopes = np.diff(angles) / 0.5
+    assert (held.rotations[degrees <= 45.0] == motion.rotations[degrees <= 45.0]).all()
+    assert angles.max() < 55.0
+    assert (slopes > -1e-9).all() and np.abs(np.diff(slopes)).max() < 0.06
+
+
+def test_what_is_within_or_has_no_limit_stays_bit_for_bit(walk):
+    limits = euler_limits("LeftLeg", IDENTITY, [-INF] * 3, np.radians([5.0, 180.0, 180.0]))
+
+    held = keep_within(walk, limits)
+
+    changed = np.flatnonzero((held.rotations != walk.rotations).any(axis=(0, 2)))
+    assert set(changed) <= {walk.skeleton.index("LeftLeg")}
+    inside = limit_excess(walk, limits)[:, walk.skeleton.index("LeftLeg")] == 0.0
+    assert (held.rotations[inside] == walk.rotations[inside]).all()
+    assert (held.root_positions == walk.root_positions).all()
+
+
+def test_limits_beyond_half_a_turn_are_understood(leg):
+    """150 to 210 degrees: 200 is within, though Euler angles call it -160."""
+    motion = turned(leg, 1, about_bone_x(IDENTITY, [200.0, 230.0]))
+    limits = euler_limits(
+        "knee", IDENTITY, np.radians([-30, -30, 150]), np.radians([30, 30, 210])
+    )
+
+    excess = limit_excess(motion, limits)[:, 1]
+
+    assert_allclose(np.degrees(excess), [0.0, 20.0], atol=1e-6)
+
+
+def test_a_middle_angle_beyond_a_right_angle_is_understood(leg):
+    """120 degrees about y alone, which Euler angles may also call (180, 60, 180)."""
+    motion = turned(leg, 1, quaternion_from_euler(np.radians([[0.0, 120.0, 0.0]]), "ZYX"))
+    limits = euler_limits("knee", IDENTITY, np.radians([-5, 0, -5]), np.radians([5, 130, 5]))
+
+    assert limit_excess(motion, limits).max() < 1e-9
+
+
+@pytest.mark.parametrize("order", ["XYZ", "ZXY", "YZX"])
+def test_angles_are_limited_in_the_order_that_lists_them(leg, order):
+    angles = np.radians([[10.0, 20.0, 30.0]])
+    motion = turned(leg, 1, quaternion_from_euler(angles, order))
+    limits = euler_limits("knee", IDENTITY, [-INF] * 3, np.radians([15, 15, 40]), order)
+
+    held = keep_within(motion, limits, softness=0.0)
+
+    wanted = quaternion_from_euler(np.radians([[10.0, 15.0, 30.0]]), order)
+    assert_allclose(angle_between(held.rotations[:, 1], wanted), 0.0, atol=1e-7)
+
+
+def test_gaps_stay_gaps(walk):
+    rotations = walk.rotations.copy()
+    rotations[5:9, 3] = np.nan
+    gapped = walk.with_poses(rotations)
+    limits = learn_joint_limits([walk])
+
+    assert np.isnan(keep_within(gapped, limits).rotations[5:9, 3]).all()
+    assert np.isfinite(limit_excess(gapped, limits)).all()
+
+
+def test_learned_limits_admit_their_examples_and_refuse_a_knee_bent_forwards(walk):
+    limits = learn_joint_limits([walk])
+    knee = walk.skeleton.index("LeftLeg")
+    forwards = walk.rotations.copy()
+    forwards[:, knee] = inverse(forwards[:, knee])
+
+    assert limit_excess(walk, limits).max() == 0.0
+    assert np.degrees(limit_excess(walk.with_poses(forwards), limits)[:, knee].max()) > 20.0
+
+
+def test_learned_limits_are_a_hinge_where_a_joint_is_one(walk):
+    settings = JointLimitsSettings(margin=0.0, stretch=0.0)
+
+    limits = learn_joint_limits([walk], settings=settings)
+
+    place = limits.names.index("leftLowerLeg")
+    widths = np.degrees(limits.upper - limits.lower)[place]
+    assert limits.by_role[place]
+    assert widths[0] > 30.0 and widths[1:].max() < 1.0
+
+
+def test_limits_learned_on_one_rig_hold_on_another(walk):
+    """The other rig rests with lowered arms, and calls its joints otherwise."""
+    lowered, names = rested_otherwise(walk)
+    limits = learn_joint_limits([walk])
+
+    assert limit_excess(lowered, limits).max() < 1e-6
+    assert set(names).isdisjoint(walk.skeleton.names)
+    here = limit_excess(bent_back(walk, "LeftForeArm"), limits)
+    there = limit_excess(bent_back(lowered, "lowerarm_l"), limits)
+    assert here.max() > 0.5
+    assert_allclose(there, here, atol=1e-6)
+
+
+def rested_otherwise(motion: Motion) -> tuple[Motion, list[str]]:
+    """The same poses on a rig whose rest pose has its arms lowered by 50 degrees."""
+    skeleton = motion.skeleton
+    offsets = skeleton.offsets.copy()
+    for side, sign in (("Left", 1.0), ("Right", -1.0)):
+        lower = quaternion_from_rotation_vector([0.0, sign * np.radians(50.0), 0.0])
+        for joint in skeleton.subtree(skeleton.index(f"{side}Arm"))[1:]:
+            offsets[joint] = rotate(lower, offsets[joint])
+    names = [unreal_name(name) for name in skeleton.names]
+    other = Skeleton(tuple(names), skeleton.parents, offsets)
+    canonical = canonical_rotations(motion, find_humanoid_map(skeleton))
+    rotations = from_canonical(canonical, other, find_humanoid_map(other))
+    return Motion(other, rotations, motion.root_positions, motion.frame_rate), names
+
+
+def unreal_name(name: str) -> str:
+    table = {
+        "Hips": "pelvis", "Spine": "spine_01", "Spine1": "spine_02", "Spine2": "spine_03",
+        "Neck": "neck_01", "Head": "head", "Shoulder": "clavicle", "Arm": "upperarm",
+        "ForeArm": "lowerarm", "Hand": "hand", "UpLeg": "thigh", "Leg": "calf",
+        "Foot": "foot", "ToeBase": "ball",
+    }  # fmt: skip
+    end = "_end" if name.endswith("_end") else ""
+    for side, suffix in (("Left", "_l"), ("Right", "_r")):
+        if name.startswith(side):
+            return table[name.removesuffix("_end").removeprefix(side)] + suffix + end
+    return table[name.removesuffix("_end")] + end
+
+
+def bent_back(motion: Motion, name: str) -> Motion:
+    joint = motion.skeleton.index(name)
+    humanoid = find_humanoid_map(motion.skeleton)
+    canonical = canonical_rotations(motion, humanoid)
+    canonical[:, joint] = multiply(
+        canonical[:, joint], quaternion_from_rotation_vector([0.0, 0.0, 2.5])
+    )
+    return motion.with_poses(from_canonical(canonical, motion.skeleton, humanoid))
+
+
+def test_held_motions_are_within_their_limits(walk, rng):
+    limits = learn_joint_limits([walk])
+    noise = quaternion_from_rotation_vector(rng.normal(scale=0.5, size=(90, walk.n_joints, 3)))
+    noisy = walk.with_poses(multiply(walk.rotations, noise))
+
+    held = keep_within(noisy, limits, softness=np.radians(3.0))
+
+    assert np.degrees(limit_excess(noisy, limits).max()) > 20.0
+    assert np.degrees(limit_excess(held, limits).max()) < 3.0 + 1e-9
+
+
+def test_limits_survive_a_file(walk, tmp_path):
+    limits = learn_joint_limits([walk])
+    limits.save(tmp_path / "walk.limits.npz")
+
+    loaded = load_joint_limits(tmp_path / "walk.limits.npz")
+
+    assert (loaded.names, loaded.orders) == (limits.names, limits.orders)
+    for name in ("by_role", "left", "right", "lower", "upper"):
+        assert (getattr(loaded, name) == getattr(limits, name)).all()
+
+
+def test_what_is_no_limits_file_is_refused(tmp_path):
+    (tmp_path / "notes.npz").write_text("not an archive")
+    with pytest.raises(InvalidFileError, match="not a readable archive"):
+        load_joint_limits(tmp_path / "notes.npz")
+
+
+def test_an_empty_range_is_refused_by_name():
+    with pytest.raises(InvalidMotionError, match="must not exceed the upper one: knee"):
+        euler_limits("knee", IDENTITY, [1, 0, 0], [0, 0, 0])
+
+
+def test_an_unknown_order_is_refused():
+    with pytest.raises(InvalidMotionError, match="no such Euler orders: XYX"):
+        euler_limits("knee", IDENTITY, [0, 0, 0], [0, 0, 0], "XYX")
+
+
+def test_negative_softness_is_refused(walk):
+    with pytest.raises(InvalidSettingError, match="softness is -1 rad"):
+        keep_within(walk, learn_joint_limits([walk]), softness=-1.0)
+
+
+def test_no_examples_are_refused():
+    with pytest.raises(InvalidMotionError, match="at least one example"):
+        learn_joint_limits([])
