@@ -1,4 +1,16 @@
-"""Clean recordings: learn how bodies move, and take out jitter, spikes and gaps."""
+"""Clean recordings: learn how bodies move, and take out jitter, spikes and gaps.
+
+>>> from solvers.denoising import find_worst_spots, measure_quality, plant_feet
+>>> from solvers.samples import CorruptionSettings, GaitSettings, corrupt, walking_gait
+>>> walk = walking_gait(GaitSettings(duration=2.0, frame_rate=60.0))
+>>> planted = plant_feet(walk)
+>>> planted.slide_after < planted.slide_before
+True
+>>> spoilt = corrupt(walk, CorruptionSettings(jitter=1.0), missing={"RightArm": range(20, 80)})
+>>> spots = find_worst_spots(spoilt, measure_quality(spoilt))
+>>> next(spot.sentence for spot in spots if spot.kind == "gap")
+'RightArm is missing for 1.00 s.'
+"""
 
 from .denoise import Denoised, DenoiseSettings, Method, denoise
 from .filter_bases import (
@@ -7,24 +19,37 @@ from .filter_bases import (
     learn_filter_bases,
     load_filter_bases,
 )
+from .joint_limits import JointLimits, load_joint_limits
+from .keep_within import keep_within, limit_excess
+from .learn_limits import JointLimitsSettings, learn_joint_limits
 from .plant_feet import Planted, PlantSettings, plant_feet
 from .quality import Quality, QualitySettings, measure_quality
 from .quality_report import compare_quality
+from .worst_spots import Spot, SpotSettings, find_worst_spots
 
 __all__ = [
     "DenoiseSettings",
     "Denoised",
     "FilterBases",
     "FilterBasesSettings",
+    "JointLimits",
+    "JointLimitsSettings",
     "Method",
     "PlantSettings",
     "Planted",
     "Quality",
     "QualitySettings",
+    "Spot",
+    "SpotSettings",
     "compare_quality",
     "denoise",
+    "find_worst_spots",
+    "keep_within",
     "learn_filter_bases",
+    "learn_joint_limits",
+    "limit_excess",
     "load_filter_bases",
+    "load_joint_limits",
     "measure_quality",
     "plant_feet",
 ]
