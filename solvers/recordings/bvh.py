@@ -4,6 +4,7 @@ import re
 from collections.abc import Sequence
 from decimal import Decimal, InvalidOperation
 from pathlib import Path
+from typing import Literal
 
 from ..errors import InvalidFileError
 from ..motion import Motion
@@ -18,16 +19,22 @@ MOTION_LINE = re.compile(rb"^[ \t]*MOTION[ \t]*\r?$", re.MULTILINE | re.IGNORECA
 
 
 def read_bvh(
-    path: Path | str, *, scale: float | None = None, progress: Progress = unwatched
+    path: Path | str,
+    *,
+    scale: float | None = None,
+    up: Literal["Y", "Z"] | None = None,
+    progress: Progress = unwatched,
 ) -> Motion:
     """Read a BVH file, turned from Y up, facing +Z, to Z up, facing -Y.
 
-    The rest pose is the file's. A joint's position channels stand in place of its OFFSET or,
-    where they would shrink the skeleton to a point, are added to it. A `Motion` has bones of
-    fixed length, so that what they hold beyond the root is used by its median over time,
-    except for a joint that is the only child of the root (or of such a one): there the root
-    carries the movement. The number of frames is that of the rows present, whatever the file
-    claims; a missing frame time means 30 Hz; values that are not numbers are gaps (NaN).
+    The rest pose is the file's. The number of frames is that of the rows present, whatever
+    the file claims; a missing frame time means 30 Hz; values that are not numbers are gaps.
+
+    A `Motion` has bones of fixed length, so position channels beyond the root's are rendered
+    as nearly as it can: below a root with a single child, which then carries the body, they
+    move the root; their median stands in place of the joint's OFFSET; and a joint with a
+    single child turns towards it. Channels that would shrink the skeleton to a point are
+    added to the OFFSET instead.
 
     Parameters
     ----------
@@ -35,6 +42,9 @@ def read_bvh(
     scale : float, metres per unit of the file, or None
         None guesses it from the length of the bones (`axes.guess_unit`): centimetres for most
         files, 0.0254 / 0.45 for those made from CMU's library.
+    up : "Y", "Z" or None
+        None means Y, as the format has it, unless the skeleton would lie on its face: Blender
+        writes its own axes, with Z up.
     progress : Progress
 
     Returns
@@ -69,7 +79,7 @@ def read_bvh(
     if not len(rows):
         raise InvalidFileError(f"{path} has no frames: nothing follows its Frame Time.")
     channels = BvhChannels(joints, rows)
-    return channels.motion(frame_rate, scale, within(progress, 0.7, 1.0))
+    return channels.motion(frame_rate, scale, up, within(progress, 0.7, 1.0))
 
 
 def _frame_rate(lines: Sequence[bytes]) -> tuple[float, int]:

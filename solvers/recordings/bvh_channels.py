@@ -1,18 +1,33 @@
 """From the numbers of a BVH file to a motion of rigid bones."""
 
 from collections.abc import Sequence
+from dataclasses import replace
 from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
 
-from ..motion import Motion, Skeleton
-from ..motion.rotations import multiply, quaternion_from_euler, rotate
+from ..motion import Motion, Skeleton, world_poses
+from ..motion.rotations import (
+    inverse,
+    multiply,
+    quaternion_from_euler,
+    rotate,
+    rotation_between,
+)
 from ..progress import Progress
-from .axes import guess_unit, turns_z_up_from_y_up, z_up_from_y_up
+from .axes import (
+    guess_unit,
+    longest_way,
+    turns_y_up_from_z_up,
+    turns_z_up_from_y_up,
+    y_up_from_z_up,
+    z_up_from_y_up,
+)
 from .bvh_hierarchy import BvhJoint
 
 FRAMES_AT_ONCE = 2000
+FRAMES_TO_JUDGE_BY = 40
 
 
 class BvhChannels:
@@ -35,7 +50,9 @@ class BvhChannels:
             for joint, start in zip(joints, first, strict=False)
         ]
 
-    def motion(self, frame_rate: float, scale: float | None, progress: Progress) -> Motion:
+    def motion(
+        self, frame_rate: float, scale: float | None, up: str | None, progress: Progress
+    ) -> Motion:
         """Return the motion in metres, Z up, as `read_bvh` describes it."""
         rotations = self._rotations(progress)
         offsets = self.file_offsets.copy()
@@ -48,12 +65,16 @@ class BvhChannels:
             strayed = self._places(joint, self.added) - offsets[joint]
             root = root + rotate(turn, z_up_from_y_up(strayed))
             turn = multiply(turn, rotations[:, joint])
+        self._turn_towards_only_children(rotations, offsets)
         parents = tuple(joint.parent for joint in self.joints)
         if scale is None:
             scale = guess_unit(parents, offsets)
         names = tuple(joint.name for joint in self.joints)
         skeleton = Skeleton(names, parents, scale * z_up_from_y_up(offsets))
-        return Motion(skeleton, rotations, scale * root, frame_rate)
+        motion = Motion(skeleton, rotations, scale * root, frame_rate)
+        if up is None:
+            up = "Z" if _lies_on_its_face(motion) else "Y"
+        return _raised(motion) if up == "Z" else motion
 
     @cached_property
     def added(self) -> bool:
@@ -107,15 +128,40 @@ class BvhChannels:
             progress(min(1.0, block.stop / len(self.rows)), "Reading")
         return rotations
 
-    def _trunk(self) -> list[int]:
-        """Return the joints below the root down to where the skeleton first branches."""
+    def _turn_towards_only_children(
+        self, rotations: NDArray[np.float64], offsets: NDArray[np.float64]
+    ) -> None:
+        """Change rotations so that joints whose place is recorded stay in its direction.
+
+        Perception Neuron's files put a foot up to 10 cm beside the end of its shank, at the
+        right distance. The turn that brings it there is added to the shank and taken from the
+        foot.
+        """
+        for joint, children in enumerate(self.children):
+            if len(children) != 1 or children[0] in self._trunk():
+                continue
+            places = self._places(children[0], self.added)
+            if len(places) == 1:
+                continue
+            places[~np.isfinite(places).all(axis=1)] = offsets[children[0]]
+            swing = turns_z_up_from_y_up(rotation_between(offsets[children[0]], places))
+            rotations[:, joint] = multiply(rotations[:, joint], swing)
+            rotations[:, children[0]] = multiply(inverse(swing), rotations[:, children[0]])
+
+    @cached_property
+    def children(self) -> list[list[int]]:
+        """Joints below each joint, without end sites."""
         children: list[list[int]] = [[] for _ in self.joints]
         for index, joint in enumerate(self.joints):
             if index and joint.channels:
                 children[joint.parent].append(index)
+        return children
+
+    def _trunk(self) -> list[int]:
+        """Return the joints below the root down to where the skeleton first branches."""
         trunk = [0]
-        while len(children[trunk[-1]]) == 1:
-            trunk += children[trunk[-1]]
+        while len(self.children[trunk[-1]]) == 1:
+            trunk += self.children[trunk[-1]]
         return trunk[1:]
 
 
@@ -123,3 +169,30 @@ def _median_place(places: NDArray[np.float64]) -> NDArray[np.float64]:
     """Return the median, shape (3,), over the frames where a place is known; else zero."""
     known = places[np.isfinite(places).all(axis=1)]
     return np.median(known, axis=0) if len(known) else np.zeros(3)
+
+
+def _lies_on_its_face(motion: Motion) -> bool:
+    """Whether a file with Z up was read as if it had Y up.
+
+    So it is where a body is stretched out flat both in the rest pose and in most frames. Either
+    alone is not enough: actors lie down, and some rest poses are lying or all along one axis.
+    """
+    skeleton = motion.skeleton
+    _, y, z = np.ptp(skeleton.rest_positions, axis=0)
+    if y < 2.0 * z or y < 0.5 * longest_way(skeleton.parents, skeleton.offsets):
+        return False
+    step = max(1, motion.n_frames // FRAMES_TO_JUDGE_BY)
+    some = world_poses(skeleton, motion.rotations[::step], motion.root_positions[::step])
+    _, y, z = np.median(np.ptp(some.positions, axis=1), axis=0)
+    return bool(y > z)
+
+
+def _raised(motion: Motion) -> Motion:
+    """Undo the turn from Y up to Z up."""
+    skeleton = replace(motion.skeleton, offsets=y_up_from_z_up(motion.skeleton.offsets))
+    return Motion(
+        skeleton,
+        turns_y_up_from_z_up(motion.rotations),
+        y_up_from_z_up(motion.root_positions),
+        motion.frame_rate,
+    )
