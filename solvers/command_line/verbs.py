@@ -2,17 +2,22 @@
 
 import argparse
 from pathlib import Path
+from typing import Any
 
 from ..denoising import (
     DenoiseSettings,
     FilterBases,
     FilterBasesSettings,
+    PlantSettings,
+    QualitySettings,
+    compare_quality,
     denoise,
     learn_filter_bases,
+    measure_quality,
+    plant_feet,
 )
-from ..denoising.quality import QualitySettings, measure_quality
-from ..denoising.quality_report import compare_quality
-from ..motion import Motion
+from ..errors import InvalidMotionError
+from ..motion import Motion, Tracks
 from ..progress import Progress, within
 from .files import add_reading_options, read, write
 from .options import arguments_from, settings_from_arguments
@@ -25,7 +30,11 @@ def _denoise_options(parser: argparse.ArgumentParser) -> None:
         "--train", nargs="+", type=Path, default=[], metavar="FILE",
         help="clean clips to learn from; without them the take's own patterns guide",
     )  # fmt: skip
-    arguments_from(parser, DenoiseSettings, FilterBasesSettings)
+    parser.add_argument(
+        "--feet", action=argparse.BooleanOptionalAction,
+        help="whether to keep standing feet from sliding [default: where there are feet]",
+    )  # fmt: skip
+    arguments_from(parser, DenoiseSettings, FilterBasesSettings, PlantSettings)
 
 
 def _learn(arguments: argparse.Namespace, progress: Progress) -> FilterBases | None:
@@ -48,13 +57,16 @@ def _denoise(task: Task, bases: FilterBases | None, progress: Progress) -> Outco
         settings=settings_from_arguments(task.arguments, DenoiseSettings),
         progress=within(progress, 0.1, 0.7),
     )
-    clean = denoised.recording
+    clean, feet = _with_feet_planted(
+        denoised.recording, task.arguments, within(progress, 0.7, 0.8)
+    )
     before = measure_quality(recording, progress=within(progress, 0.8, 0.9))
     after = measure_quality(clean, progress=within(progress, 0.9, 0.95))
     write(clean, task.target, within(progress, 0.95, 1.0))
     text = "\n".join([
         denoised.prior_used,
         *([] if denoised.converged else ["The estimate had not settled when it was stopped."]),
+        *([feet["feet"]] if "feet" in feet else []),
         compare_quality(before, after),
     ])
     figures = {
@@ -63,10 +75,39 @@ def _denoise(task: Task, bases: FilterBases | None, progress: Progress) -> Outco
         "converged": denoised.converged,
         "outliers": int(denoised.outliers.sum()),
         "mean_confidence": float(denoised.confidence.mean()),
+        **feet,
         "before": before.figures(),
         "after": after.figures(),
     }
     return Outcome(text, figures)
+
+
+def _with_feet_planted(
+    clean: Motion | Tracks, arguments: argparse.Namespace, progress: Progress
+) -> tuple[Motion | Tracks, dict[str, Any]]:
+    """Return the recording with feet at rest, and what there is to say about them.
+
+    Unless it was asked for, a recording without legs is left as it is.
+    """
+    settings = settings_from_arguments(arguments, PlantSettings)
+    if arguments.feet is False:
+        return clean, {}
+    if isinstance(clean, Tracks):
+        if arguments.feet:
+            raise InvalidMotionError("Points without a skeleton have no feet to plant.")
+        return clean, {}
+    try:
+        planted = plant_feet(clean, settings=settings, progress=progress)
+    except InvalidMotionError as error:
+        if arguments.feet:
+            raise
+        return clean, {"feet": f"Feet are left as they are. {error}"}
+    said = (
+        f"Feet slid {100 * planted.slide_before:.1f} cm in all before they were planted, and"
+        f" {100 * planted.slide_after:.1f} cm after."
+    )
+    figures = {"slide_before_m": planted.slide_before, "slide_after_m": planted.slide_after}
+    return planted.motion, {"feet": said, **figures}
 
 
 def _quality_options(parser: argparse.ArgumentParser) -> None:

@@ -14,6 +14,7 @@ from solvers.command_line.run import run
 from solvers.command_line.verbs import VERBS
 from solvers.motion import Tracks
 from solvers.recordings import read_bvh, read_c3d, write_bvh, write_c3d
+from solvers.samples import GaitSettings, walking_gait
 
 ROOT = Path(__file__).parents[3]
 
@@ -91,6 +92,23 @@ def test_denoise_learns_from_clips(call, leg_file, tmp_path):
 
     assert status == 0
     assert "1 example clip" in said
+
+
+def test_denoise_plants_the_feet_if_there_are_any(call, leg_file, tmp_path):
+    """The sample has some; a single leg has none that it knows."""
+    walk = walking_gait(GaitSettings(duration=1.5, frame_rate=30.0))
+    write_bvh(walk, tmp_path / "walk.bvh")
+
+    _, said, _ = call("denoise", tmp_path / "walk.bvh", tmp_path / "clean.bvh", "--json")
+    figures = json.loads(said)
+    assert figures["slide_after_m"] < figures["slide_before_m"]
+    _, said, _ = call("denoise", leg_file, tmp_path / "leg-clean.bvh")
+    assert "Feet are left as they are. No leg was found" in said
+    _, said, _ = call("denoise", leg_file, tmp_path / "leg-clean.bvh", "--no-feet")
+    assert "Feet" not in said
+    status, _, complaint = call("denoise", leg_file, tmp_path / "leg-clean.bvh", "--feet")
+    assert status == 2
+    assert "leg.bvh: No leg was found" in complaint
 
 
 def test_many_files_go_to_a_folder_and_a_second_run_goes_on(call, leg_file, tmp_path):
