@@ -5,20 +5,16 @@ Blender is imported only on `register`: a solve in a process of its own passes t
 
 
 def register() -> None:
-    """Make properties known to Blender."""
-    import bpy
+    """Make properties, commands and panels known to Blender."""
+    from . import batch, scene_properties
 
-    from .solver_operator import MOCAP_PG_job
-
-    bpy.utils.register_class(MOCAP_PG_job)
-    bpy.types.WindowManager.mocap_assist_job = bpy.props.PointerProperty(type=MOCAP_PG_job)
+    scene_properties.register()
+    batch.register()
 
 
 def unregister() -> None:
     """Take them away again."""
-    import bpy
+    from . import batch, scene_properties
 
-    from .solver_operator import MOCAP_PG_job
-
-    del bpy.types.WindowManager.mocap_assist_job
-    bpy.utils.unregister_class(MOCAP_PG_job)
+    batch.unregister()
+    scene_properties.unregister()

@@ -63,7 +63,7 @@ class CleanChoices(Settings):
         Limits.NONE,
         "Keep joints softly within the Limit Rotation constraints of their bones",
     )
-    output: Output = setting(
+    result_as: Output = setting(
         Output.ACTION,
         "Put the result in the place of the action, or on an NLA track of its own",
     )

@@ -9,20 +9,20 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..solvers.denoising import Denoised
-from ..solvers.errors import InvalidMotionError
 from . import redo
-from .clean_choices import Bones, CleanChoices, CleanSettings, Limits
+from .clean_choices import CleanChoices, CleanSettings, Limits
 from .clean_report import clean_report, entry_of
 from .examples import read_examples
 from .jobs.cleaning import Cleaned, Finish, Problem, Recordings, clean, names_of
-from .scene import compat, history
-from .scene.armature_read import action_of, read_take
+from .scene import history
+from .scene.armature_read import read_take
 from .scene.armature_write import check_writable, put_to_use, write_take
 from .scene.compat import Source
 from .scene.contacts import read_contacts, write_contacts
 from .scene.curves import GENERATED, MEASURED
 from .scene.limits import read_limits
 from .scene.take import ArmatureTake
+from .selection import chosen_bones, played_source
 
 UNSURE = 0.5  # confidence below which a key counts as generated
 EASE = 5  # frames over which a cleaned range joins the frames outside it
@@ -40,43 +40,21 @@ class Reading(NamedTuple):
     """Those to change."""
 
 
-def selected_armature(context: bpy.types.Context) -> bpy.types.Object | None:
-    """Return the active object if it is an armature."""
-    active = context.view_layer.objects.active
-    return active if active is not None and active.type == "ARMATURE" else None
-
-
-def why_not_clean(context: bpy.types.Context) -> str:
-    """Return why the button is grey, or nothing."""
-    armature = selected_armature(context)
-    if armature is None:
-        return "Select an armature that plays a captured action."
-    try:
-        check_writable(armature)
-        played_source(armature)
-    except InvalidMotionError as error:
-        return str(error)
-    return ""
-
-
-def played_source(armature: bpy.types.Object) -> Source:
-    """Return what the armature plays: a result of ours, or its action."""
-    return history.played_result(armature) or action_of(armature)
-
-
-def read_cleaning(context: bpy.types.Context, settings: CleanSettings) -> "partial[Cleaned]":
-    """Read the active armature; return what is to be solved, which may be pickled."""
+def read_cleaning(
+    scene: bpy.types.Scene, armature: bpy.types.Object, settings: CleanSettings
+) -> "partial[Cleaned]":
+    """Read what an armature plays; return what is to be solved, which may be pickled."""
     choices = settings.choices
-    found = _read(context, choices)
+    found = _read(scene, armature, choices)
     limits = None
     if choices.joint_limits is Limits.CONSTRAINTS:
         limits = read_limits(found.armature, found.raw, found.bones)
-    problem = _problem(context, found, settings)
+    problem = _problem(scene, found, settings)
     finish = Finish(
         strength=settings.denoising.strength,
         ease=_ease(found.raw),
         chosen=found.bones,
-        present=_present(context, found),
+        present=_present(scene, found),
         limits=limits,
         planting=settings.planting if choices.plant_feet else None,
         contacts=read_contacts(*found.played, found.raw.frames),
@@ -84,10 +62,15 @@ def read_cleaning(context: bpy.types.Context, settings: CleanSettings) -> "parti
     return partial(clean, problem, finish, redo.recall(problem))
 
 
-def write_cleaned(context: bpy.types.Context, settings: CleanSettings, cleaned: Cleaned) -> str:
+def write_cleaned(
+    scene: bpy.types.Scene,
+    armature: bpy.types.Object,
+    settings: CleanSettings,
+    cleaned: Cleaned,
+) -> str:
     """Write the result as a new action and put it to use; return a sentence about it."""
-    found = _read(context, settings.choices)
-    redo.remember(_problem(context, found, settings), cleaned.solution)
+    found = _read(scene, armature, settings.choices)
+    redo.remember(_problem(scene, found, settings), cleaned.solution)
     take = found.raw.with_recordings(cleaned.recordings)
     bones = cleaned.moved | found.bones
     types = key_types(found.raw, cleaned.solution.denoised)
@@ -96,21 +79,8 @@ def write_cleaned(context: bpy.types.Context, settings: CleanSettings, cleaned: 
         contacts = cleaned.planted.contacts
         write_contacts(found.armature, action, slot, take.frames, contacts)
     history.record(action, found.played, entry_of("denoise", settings, cleaned))
-    put_to_use(found.armature, action, slot, settings.choices.output)
+    put_to_use(found.armature, action, slot, settings.choices.result_as)
     return clean_report(found.raw, cleaned, action.name)
-
-
-def chosen_bones(armature: bpy.types.Object, choice: Bones) -> frozenset[str]:
-    """Return the names of the bones to change, of which there must be one."""
-    bones = armature.pose.bones
-    if choice is Bones.ALL:
-        return frozenset(bone.name for bone in bones)
-    selected = frozenset(bone.name for bone in bones if compat.is_selected(bone))
-    if not selected:
-        raise InvalidMotionError(
-            "No bones are selected. Select some in Pose Mode, or clean all bones."
-        )
-    return selected
 
 
 def key_types(
@@ -126,29 +96,28 @@ def key_types(
     return types
 
 
-def _read(context: bpy.types.Context, choices: CleanChoices) -> Reading:
-    armature = selected_armature(context)
+def _read(scene: bpy.types.Scene, armature: bpy.types.Object, choices: CleanChoices) -> Reading:
     check_writable(armature)
     bones = chosen_bones(armature, choices.bones)
     played = played_source(armature)
     recorded = history.raw_of(played[0]) or played
-    raw = read_take(armature, context.scene, choices.frame_range, recorded)
+    raw = read_take(armature, scene, choices.frame_range, recorded)
     return Reading(armature, recorded, played, raw, bones)
 
 
-def _problem(context: bpy.types.Context, found: Reading, settings: CleanSettings) -> Problem:
-    examples = read_examples(context, found.armature, settings.choices)
+def _problem(scene: bpy.types.Scene, found: Reading, settings: CleanSettings) -> Problem:
+    examples = read_examples(scene, found.armature, settings.choices)
     denoising = replace(settings.denoising, strength=1.0)
     return Problem(recordings=found.raw.recordings, settings=denoising, examples=examples)
 
 
-def _present(context: bpy.types.Context, found: Reading) -> Recordings | None:
+def _present(scene: bpy.types.Scene, found: Reading) -> Recordings | None:
     """What an earlier result shows of the bones that stay, if it differs from the recording."""
     everything = len(found.bones) == len(found.raw.rig.bones)
     if everything or found.played == found.recorded:
         return None
     grid = found.raw.grid
-    present = read_take(found.armature, context.scene, source=found.played, grid=grid)
+    present = read_take(found.armature, scene, source=found.played, grid=grid)
     same = [names_of(one) for one in present.recordings] == [
         names_of(one) for one in found.raw.recordings
     ]

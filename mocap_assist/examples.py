@@ -16,7 +16,7 @@ SEPARATOR = ";"
 
 
 def read_examples(
-    context: bpy.types.Context, armature: bpy.types.Object, choices: CleanChoices
+    scene: bpy.types.Scene, armature: bpy.types.Object, choices: CleanChoices
 ) -> Examples:
     """Read the actions named among the examples; leave files to be read where it is solved.
 
@@ -43,20 +43,20 @@ def read_examples(
         raise InvalidMotionError(
             f"There is neither an action nor a file called {', '.join(missing)}."
         )
-    motions = [_read_action(context, armature, bpy.data.actions[name]) for name in actions]
+    motions = [_read_action(scene, armature, bpy.data.actions[name]) for name in actions]
     return Examples(motions=tuple(motions), files=tuple(files))
 
 
 def _read_action(
-    context: bpy.types.Context, armature: bpy.types.Object, action: bpy.types.Action
+    scene: bpy.types.Scene, armature: bpy.types.Object, action: bpy.types.Action
 ) -> Motion:
     """Read the body's motion from an action, on the armature that plays it or that it fits."""
-    armatures = [each for each in context.scene.objects if each.type == "ARMATURE"]
+    armatures = [each for each in scene.objects if each.type == "ARMATURE"]
     players = [each for each in armatures if plays(each, action)]
     for other in [*players, armature, *armatures]:
         for slot in action.slots:
             if slot.target_id_type in compat.TARGETS and _fits(other, action, slot):
-                return read_take(other, context.scene, source=(action, slot)).parts[0].motion
+                return read_take(other, scene, source=(action, slot)).parts[0].motion
     raise InvalidMotionError(
         f"No armature of this scene has the bones of the action {action.name}. Add the rig that"
         " it was made for, or pick another example."

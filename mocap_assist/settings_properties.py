@@ -20,8 +20,8 @@ def settings_from(bundle: type[Bundle]) -> Callable[[Class], Class]:
     """Decorate an operator or property group: a property for each setting of a bundle.
 
     A bundle is a NamedTuple of settings classes. The decorated class gets `settings()`, which
-    returns the bundle with the checked values of the properties. Settings of the same name
-    in two classes become one property.
+    returns the bundle with the checked values of the properties, and `setting_names`. Settings
+    of the same name in two classes become one property.
     """
     classes = get_type_hints(bundle)
     described = {item.name: item for each in classes.values() for item in fields(each)}
@@ -33,6 +33,7 @@ def settings_from(bundle: type[Bundle]) -> Callable[[Class], Class]:
         properties = {name: _property(item) for name, item in described.items()}
         cls.__annotations__ = properties | get_annotations(cls)
         cls.settings = settings
+        cls.setting_names = tuple(described)
         return cls
 
     return decorate

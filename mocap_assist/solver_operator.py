@@ -15,14 +15,6 @@ logger = logging.getLogger(__name__)
 BETWEEN_LOOKS = 0.1  # seconds
 
 
-class MOCAP_PG_job(bpy.types.PropertyGroup):
-    """How far the running solve is, for the sidebar: `window_manager.mocap_assist_job`."""
-
-    running: bpy.props.BoolProperty(name="Running", options={"SKIP_SAVE"})
-    fraction: bpy.props.FloatProperty(name="Done", subtype="FACTOR", min=0.0, max=1.0)
-    message: bpy.props.StringProperty(name="Message")
-
-
 class SolverOperator:
     """Mix in before bpy.types.Operator and implement `read` and `write`.
 
@@ -33,6 +25,8 @@ class SolverOperator:
     """
 
     bl_options: ClassVar = {"REGISTER", "UNDO"}
+    settings_group: ClassVar[str]
+    """Where the sidebar keeps the settings: a property of `scene.mocap_assist`."""
 
     def read(self, context: bpy.types.Context) -> Callable[..., Any]:
         raise NotImplementedError
@@ -42,7 +36,11 @@ class SolverOperator:
         raise NotImplementedError
 
     def prepare(self, context: bpy.types.Context) -> None:
-        """Take over the sidebar's settings, when a button was pressed there."""
+        """Take over the sidebar's settings, but for those that the caller gave."""
+        shown = getattr(context.scene.mocap_assist, self.settings_group)
+        for name in type(shown).setting_names:
+            if not self.properties.is_property_set(name):
+                setattr(self, name, getattr(shown, name))
 
     def execute(self, context: bpy.types.Context) -> set[str]:
         try:

@@ -3,8 +3,16 @@
 import bpy
 
 from .denoise import MOCAP_OT_denoise
+from .jump_to_spot import MOCAP_OT_jump_to_spot
+from .measure_quality import MOCAP_OT_measure_quality
+from .revert_to_raw import MOCAP_OT_revert_to_raw
 
-OPERATORS = (MOCAP_OT_denoise,)
+OPERATORS = (
+    MOCAP_OT_denoise,
+    MOCAP_OT_measure_quality,
+    MOCAP_OT_jump_to_spot,
+    MOCAP_OT_revert_to_raw,
+)
 
 
 def register() -> None:

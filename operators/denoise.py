@@ -5,8 +5,9 @@ from collections.abc import Callable
 import bpy
 
 from ..mocap_assist.clean_choices import CleanSettings
-from ..mocap_assist.cleaning import read_cleaning, why_not_clean, write_cleaned
+from ..mocap_assist.cleaning import read_cleaning, write_cleaned
 from ..mocap_assist.jobs.cleaning import Cleaned
+from ..mocap_assist.selection import selected_armature, why_not_clean
 from ..mocap_assist.settings_properties import settings_from
 from ..mocap_assist.solver_operator import SolverOperator
 
@@ -20,6 +21,8 @@ class MOCAP_OT_denoise(SolverOperator, bpy.types.Operator):
         " result is a new action; the recorded one stays as it is"
     )
 
+    settings_group = "clean"
+
     @classmethod
     def poll(cls, context: bpy.types.Context) -> bool:
         if reason := why_not_clean(context):
@@ -27,7 +30,9 @@ class MOCAP_OT_denoise(SolverOperator, bpy.types.Operator):
         return not reason
 
     def read(self, context: bpy.types.Context) -> Callable[..., Cleaned]:
-        return read_cleaning(context, self.settings())
+        armature = selected_armature(context)
+        return read_cleaning(context.scene, armature, self.settings())
 
     def write(self, context: bpy.types.Context, result: Cleaned) -> str:
-        return write_cleaned(context, self.settings(), result)
+        armature = selected_armature(context)
+        return write_cleaned(context.scene, armature, self.settings(), result)

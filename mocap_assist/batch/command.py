@@ -1,0 +1,105 @@
+"""Parse a command line within Blender, work on the armatures of the open file, save it."""
+
+import argparse
+import json
+import sys
+from collections.abc import Sequence
+from pathlib import Path
+
+import bpy
+
+from ...solvers.command_line import SentenceParser
+from ...solvers.command_line.screen import Screen
+from ...solvers.errors import InvalidFileError, MocapAssistError
+from .verbs import VERBS
+
+PROG = "blender FILE --command mocap_assist"
+FAILED = 2
+_commands: list[object] = []
+
+
+def run(words: Sequence[str]) -> int:
+    """Do what the command line says; return the exit status, 0 or 2.
+
+    Each failure is one sentence on stderr. Nothing is saved if anything failed.
+    """
+    screen = Screen()
+    try:
+        arguments = _parser().parse_args(list(words))
+        _work(arguments, screen)
+    except MocapAssistError as error:
+        screen.say(str(error))
+        return FAILED
+    except SystemExit as stop:  # a slip in the command line, or --help
+        return int(stop.code or 0)
+    return 0
+
+
+def register() -> None:
+    """Let `blender --command mocap_assist` find `run`."""
+    _commands.append(bpy.utils.register_cli_command("mocap_assist", run))
+
+
+def unregister() -> None:
+    """Take the command away again."""
+    while _commands:
+        bpy.utils.unregister_cli_command(_commands.pop())
+
+
+def _parser() -> SentenceParser:
+    parser = SentenceParser(prog=PROG, description="Clean up captured motion in a .blend file.")
+    choices = parser.add_subparsers(dest="verb", metavar="VERB", required=True)
+    for name, verb in VERBS.items():
+        described = choices.add_parser(name, help=verb.help, description=verb.help)
+        described.add_argument(
+            "--armature",
+            metavar="NAME",
+            help="work on this one [default: all that are animated]",
+        )
+        described.add_argument(
+            "--json", action="store_true", help="print one line of JSON for each armature"
+        )
+        if verb.writes:
+            described.add_argument(
+                "--output", type=Path, metavar="FILE",
+                help="save the result there [default: in the opened file]",
+            )  # fmt: skip
+        verb.add_options(described)
+    return parser
+
+
+def _work(arguments: argparse.Namespace, screen: Screen) -> None:
+    verb = VERBS[arguments.verb]
+    target = _target(arguments) if verb.writes else None
+    for armature in _armatures(arguments.armature):
+        screen.title = armature.name
+        text, figures = verb.perform(bpy.context.scene, armature, arguments, screen.progress)
+        screen.clear()
+        said = json.dumps({"armature": armature.name} | figures) if arguments.json else text
+        sys.stdout.write(said + "\n")
+        sys.stdout.flush()
+    if target is not None:
+        bpy.ops.wm.save_as_mainfile(filepath=str(target), check_existing=False)
+
+
+def _target(arguments: argparse.Namespace) -> Path:
+    target = arguments.output or (Path(bpy.data.filepath) if bpy.data.filepath else None)
+    if target is None:
+        raise InvalidFileError("No file is open: say which one to save with --output FILE.")
+    if not target.resolve().parent.is_dir():
+        raise InvalidFileError(f"There is no folder {target.resolve().parent} to save in.")
+    return target.resolve()
+
+
+def _armatures(name: str | None) -> list[bpy.types.Object]:
+    armatures = [each for each in bpy.context.scene.objects if each.type == "ARMATURE"]
+    if name is None:
+        found = [each for each in armatures if each.animation_data is not None]
+        missing = "The scene has no animated armature."
+    else:
+        found = [each for each in armatures if each.name == name]
+        there = ", ".join(each.name for each in armatures) or "none"
+        missing = f"There is no armature {name}; the scene has {there}."
+    if not found:
+        raise InvalidFileError(missing)
+    return found

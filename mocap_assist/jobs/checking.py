@@ -1,0 +1,41 @@
+"""What the button Check has solved for it."""
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ...solvers.denoising.joint_limits import JointLimits
+from ...solvers.denoising.quality import Quality, QualitySettings, measure_quality
+from ...solvers.denoising.worst_spots import Spot, SpotSettings, find_worst_spots
+from ...solvers.motion import Motion
+from ...solvers.progress import Progress, unwatched, within
+
+
+@dataclass(frozen=True, eq=False)
+class Checked:
+    """What is wrong with a take, in all and place by place."""
+
+    quality: Quality
+    spots: tuple[Spot, ...]
+
+
+def check(
+    body: Motion,
+    settings: QualitySettings,
+    spots: SpotSettings,
+    *,
+    contacts: NDArray[np.bool_] | None,
+    limits: JointLimits | None,
+    progress: Progress = unwatched,
+) -> Checked:
+    """Measure the body's motion and list its worst spots."""
+    quality = measure_quality(
+        body,
+        settings=settings,
+        contacts=contacts,
+        limits=limits,
+        progress=within(progress, 0.0, 0.9),
+    )
+    found = find_worst_spots(body, quality, settings=spots, progress=within(progress, 0.9, 1.0))
+    return Checked(quality, found)

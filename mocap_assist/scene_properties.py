@@ -1,0 +1,69 @@
+"""What the sidebar shows and a .blend keeps: settings, and what was found on the last check.
+
+`scene.mocap_assist.clean` and `.check` hold the settings of the buttons Clean and Check,
+`scene.mocap_assist.spots` the worst spots; `window_manager.mocap_assist_job` tells how far the
+running solve is.
+"""
+
+import bpy
+
+from .check_choices import CheckSettings
+from .clean_choices import CleanSettings
+from .settings_properties import settings_from
+
+
+@settings_from(CleanSettings)
+class MOCAP_PG_clean(bpy.types.PropertyGroup):
+    """Settings of the button Clean."""
+
+
+@settings_from(CheckSettings)
+class MOCAP_PG_check(bpy.types.PropertyGroup):
+    """Settings of the button Check."""
+
+
+class MOCAP_PG_spot(bpy.types.PropertyGroup):
+    """A place of the take that needs an eye; `name` is the bone's."""
+
+    start: bpy.props.FloatProperty(name="First frame")
+    stop: bpy.props.FloatProperty(name="Last frame")
+    kind: bpy.props.StringProperty(name="What is wrong")
+    severity: bpy.props.FloatProperty(name="Severity")
+    sentence: bpy.props.StringProperty(name="In words")
+
+
+class MOCAP_PG_scene(bpy.types.PropertyGroup):
+    """Everything that Mocap Assist keeps in a scene."""
+
+    clean: bpy.props.PointerProperty(type=MOCAP_PG_clean)
+    check: bpy.props.PointerProperty(type=MOCAP_PG_check)
+    spots: bpy.props.CollectionProperty(type=MOCAP_PG_spot)
+    active_spot: bpy.props.IntProperty(name="Spot", description="Spot that the list shows")
+    report: bpy.props.StringProperty(name="Report", description="Figures of the last check")
+
+
+class MOCAP_PG_job(bpy.types.PropertyGroup):
+    """How far the running solve is."""
+
+    running: bpy.props.BoolProperty(name="Running")
+    fraction: bpy.props.FloatProperty(name="Done", subtype="FACTOR", min=0.0, max=1.0)
+    message: bpy.props.StringProperty(name="Message")
+
+
+CLASSES = (MOCAP_PG_clean, MOCAP_PG_check, MOCAP_PG_spot, MOCAP_PG_scene, MOCAP_PG_job)
+
+
+def register() -> None:
+    """Add the properties to scenes and to the window manager, which is never saved."""
+    for each in CLASSES:
+        bpy.utils.register_class(each)
+    bpy.types.Scene.mocap_assist = bpy.props.PointerProperty(type=MOCAP_PG_scene)
+    bpy.types.WindowManager.mocap_assist_job = bpy.props.PointerProperty(type=MOCAP_PG_job)
+
+
+def unregister() -> None:
+    """Take the properties away again."""
+    del bpy.types.WindowManager.mocap_assist_job
+    del bpy.types.Scene.mocap_assist
+    for each in reversed(CLASSES):
+        bpy.utils.unregister_class(each)

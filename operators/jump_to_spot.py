@@ -1,0 +1,33 @@
+"""Button: show one of the places that Check found."""
+
+import bpy
+
+from ..mocap_assist.checking import jump_to
+
+
+class MOCAP_OT_jump_to_spot(bpy.types.Operator):
+    bl_idname = "mocap_assist.jump_to_spot"
+    bl_label = "Jump to Spot"
+    bl_description = "Move the playhead to this place and select the bone that is wrong there"
+    bl_options = {"REGISTER", "UNDO"}
+
+    index: bpy.props.IntProperty(
+        name="Spot", description="Place in the list, -1 for the one shown there", default=-1
+    )
+    step: bpy.props.IntProperty(
+        name="Step", description="Go on by so many spots from the one shown in the list"
+    )
+
+    @classmethod
+    def poll(cls, context: bpy.types.Context) -> bool:
+        if not context.scene.mocap_assist.spots:
+            cls.poll_message_set("Press Check first; it found no spots yet")
+            return False
+        return True
+
+    def execute(self, context: bpy.types.Context) -> set[str]:
+        found = context.scene.mocap_assist
+        index = found.active_spot + self.step if self.index < 0 else self.index
+        found.active_spot = index % len(found.spots)
+        jump_to(context, found.spots[found.active_spot])
+        return {"FINISHED"}

@@ -1,0 +1,23 @@
+"""Button: play the recorded action again."""
+
+import bpy
+
+from ..mocap_assist.reverting import revert, why_not_revert
+from ..mocap_assist.selection import selected_armature
+
+
+class MOCAP_OT_revert_to_raw(bpy.types.Operator):
+    bl_idname = "mocap_assist.revert_to_raw"
+    bl_label = "Revert to Raw"
+    bl_description = "Play the recorded action again. The cleaned one is kept in the file"
+    bl_options = {"REGISTER", "UNDO"}
+
+    @classmethod
+    def poll(cls, context: bpy.types.Context) -> bool:
+        if reason := why_not_revert(context):
+            cls.poll_message_set(reason)
+        return not reason
+
+    def execute(self, context: bpy.types.Context) -> set[str]:
+        self.report({"INFO"}, revert(selected_armature(context)))
+        return {"FINISHED"}
