@@ -1,0 +1,108 @@
+"""Write into the documents what they quote from the code, so that it cannot go stale.
+
+    python .ci/write_docs.py               tables of settings, in README.md and docs/*.md
+    python .ci/write_docs.py --pictures    and the pictures in docs/pictures
+
+A table stands between `<!-- settings solvers.denoising.DenoiseSettings -->` and `<!-- end -->`.
+"""
+
+import re
+import sys
+from dataclasses import fields
+from enum import Enum
+from importlib import import_module
+from pathlib import Path
+from typing import Any
+
+ROOT = Path(__file__).resolve().parents[1]
+sys.path.insert(0, str(ROOT))
+DOCUMENTS = [ROOT / "README.md", *sorted((ROOT / "docs").glob("*.md"))]
+PICTURES = ROOT / "docs" / "pictures"
+ENDLESS = 1e6
+BLOCK = re.compile(r"(<!-- settings ([\w.]+)\.(\w+) -->\n).*?(<!-- end -->)", re.DOTALL)
+
+
+def renewed(text: str) -> str:
+    """Return the text of a document with all its tables as the code now says."""
+    return BLOCK.sub(
+        lambda found: found[1] + settings_table(found[2], found[3]) + found[4], text
+    )
+
+
+def settings_table(module: str, name: str) -> str:
+    """Return a Markdown table of one settings class."""
+    rows = ["| setting | default | allowed | what it does |", "|---|---|---|---|"]
+    for item in fields(getattr(import_module(module), name)):
+        described = item.metadata["described"]
+        folded = " *(advanced)*" if described.advanced else ""
+        allowed = _allowed(item.default, described)
+        help_text = described.help.replace("|", "\\|")
+        rows.append(
+            f"| {_spoken(item.name)}{folded} | {_shown(item.default)}{_unit(described)}"
+            f" | {allowed} | {help_text}. |"
+        )
+    return "\n".join(rows) + "\n"
+
+
+def _allowed(default: Any, described: Any) -> str:
+    if isinstance(default, bool):
+        return "on, off"
+    if isinstance(default, Enum):
+        return ", ".join(one.value for one in type(default))
+    if isinstance(default, str):
+        return "text"
+    low, high = described.minimum, described.maximum
+    return f"{low:g} to {high:g}" if high < ENDLESS else f"{low:g} or more"
+
+
+def _shown(value: Any) -> str:
+    if isinstance(value, bool):
+        return "on" if value else "off"
+    if isinstance(value, Enum):
+        return str(value.value)
+    return f"{value:.3g}" if isinstance(value, float) else str(value)
+
+
+def _unit(described: Any) -> str:
+    return f" {described.unit}" if described.unit else ""
+
+
+def _spoken(name: str) -> str:
+    return name.replace("_", " ").capitalize()
+
+
+def draw_pictures() -> None:
+    """Clean the sample without Blender and draw it before and after."""
+    from solvers.denoising import denoise, plant_feet
+    from solvers.pictures import (
+        CurveSettings,
+        StickFigureSettings,
+        View,
+        draw_curves,
+        draw_stick_figures,
+    )
+    from solvers.samples import CorruptionSettings, GaitSettings, corrupt, walking_gait
+
+    walk = walking_gait(GaitSettings(duration=8.0, frame_rate=30.0))
+    wrong = CorruptionSettings(jitter=3.0, spikes=0.004, root_jitter=0.004)
+    raw = corrupt(walk, wrong, missing={"RightArm": range(90, 150)})
+    clean = plant_feet(denoise(raw).recording).motion
+    both = {"recorded": raw, "cleaned": clean}
+    PICTURES.mkdir(parents=True, exist_ok=True)
+    size = StickFigureSettings(n_figures=8, view=View.QUARTER)
+    draw_stick_figures(both, size, frames=range(60, 180)).save(PICTURES / "before_after.png")
+    draw_curves(both, ["RightArm", "LeftLeg"], CurveSettings(width=1000)).save(
+        PICTURES / "curves.png"
+    )
+
+
+def main(arguments: list[str]) -> None:
+    """Renew the documents."""
+    for document in DOCUMENTS:
+        document.write_text(renewed(document.read_text(encoding="utf-8")), encoding="utf-8")
+    if "--pictures" in arguments:
+        draw_pictures()
+
+
+if __name__ == "__main__":
+    main(sys.argv[1:])
