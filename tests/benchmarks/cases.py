@@ -17,6 +17,8 @@ class Level:
 
     sigma: float
     fraction: float = 0.0
+    follows: bool = True
+    """Whether a line in a picture leads from the level before to this one."""
 
     def __str__(self) -> str:
         outliers = f"{100 * self.fraction:g} %" if self.fraction else "0"
@@ -25,7 +27,8 @@ class Level:
 
 LEVELS = (
     *(Level(sigma) for sigma in (1.0, 3.0, 5.0, 7.0)),
-    *(Level(3.0, fraction) for fraction in (0.05, 0.10, 0.15, 0.25, 0.40)),
+    Level(3.0, 0.05, follows=False),
+    *(Level(3.0, fraction) for fraction in (0.10, 0.15, 0.25, 0.40)),
 )
 
 

@@ -56,7 +56,8 @@ def compare_classes(cases: dict[str, list[Case]], methods: dict[str, Method]) ->
         for case in several:
             for title, method in methods.items():
                 figure = case.error(method(case))
-                found[str(case.level)].add(title, SHORT.get(name, name), case.name, figure)
+                scores = found[str(case.level)]
+                scores.add(title, SHORT.get(name, name), case.name, figure, follows=False)
         print(f"  HDM05 {name}", flush=True)
     for scores in found.values():
         scores.add_overall()

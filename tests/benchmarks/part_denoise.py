@@ -50,7 +50,7 @@ def compare(cases: list[Case], methods: Mapping[str, Method], title: str) -> lis
             root = abs(estimate[:, -3:] - case.clean[:, -3:]).mean() * METRES_PER_DEGREE
             figures = (case.error(estimate), angles.mean(), 1000.0 * root)
             for scores, figure in zip(found, figures, strict=True):
-                scores.add(name, case.level, case.name, float(figure))
+                scores.add(name, case.level, case.name, float(figure), case.level.follows)
         print(f"  {case.name} at {case.level}: {perf_counter() - started:.1f} s", flush=True)
     return found
 

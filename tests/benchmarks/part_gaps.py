@@ -38,6 +38,7 @@ GAPS = (
     *(Gap("both arms", ARMS, seconds) for seconds in (0.25, 0.5, 1.0, 2.0, WHOLE)),
     *(Gap("left leg", LEG, seconds) for seconds in (0.5, 1.0, 2.0)),
 )
+FIRST_OF_LIMB = (GAPS[0], GAPS[5])
 Filler = Callable[[Case, Array], Array]
 """From a clean case and its channels with NaN to channels without."""
 
@@ -51,7 +52,8 @@ def compare_gaps(cases: list[Case], fillers: Mapping[str, Filler]) -> list[Score
             lost = [cut(case, gap, draw) for draw in range(draws)]
             for name, fill in fillers.items():
                 figures = [score(case, fill, *one) for one in lost]
-                scores.add(name, gap, case.name, float(np.mean(figures)))
+                follows = gap not in FIRST_OF_LIMB
+                scores.add(name, gap, case.name, float(np.mean(figures)), follows)
         print(f"  {case.name} with gaps", flush=True)
     return [scores]
 

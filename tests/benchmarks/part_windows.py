@@ -83,7 +83,8 @@ def _add(
 ) -> None:
     for prior, training in priors.items():
         done = Ours().denoised(case.noisy_motion, training)
-        scores.add(prior, target, case.name, case.error(case.values(done.recording)))
+        error = case.error(case.values(done.recording))
+        scores.add(prior, target, case.name, error, follows=False)
         said[f"{target}, {prior}"] = done.prior_used
     alone = Ours(prior=False).denoised(case.noisy_motion, ())
     scores.add("none", target, case.name, case.error(case.values(alone.recording)))

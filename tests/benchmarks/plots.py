@@ -1,62 +1,97 @@
 """Scores as a picture: one line for each method, the columns from left to right."""
 
+from colorsys import hsv_to_rgb
 from pathlib import Path
 
 import numpy as np
+from numpy.typing import NDArray
 from PIL import Image
 
-from solvers.pictures.canvas import FAINT, GRID, INK, Canvas, series_colors
+from solvers.pictures.canvas import FAINT, GRID, INK, Canvas
 
 from .tables import Scores, number
 
-WIDTH, HEIGHT = 1100, 460
-LEFT, RIGHT, TOP, BOTTOM = 60.0, 420.0, 50.0, 50.0
+WIDTH, LEFT, RIGHT, TOP, BOTTOM, ROW = 1180, 60.0, 420.0, 50.0, 50.0, 22.0
+SMALLEST = 420
 CEILING = 2.5
 """The scale ends at this multiple of our worst figure: what is far off runs out at the top."""
+Color = tuple[int, int, int]
 
 
 def draw_scores(scores: Scores, path: Path) -> None:
-    """Write the means over clips as lines to a PNG file."""
-    canvas = Canvas(WIDTH, HEIGHT)
-    means = {name: _means(scores, name) for name in scores.methods}
-    ours = means.get(scores.ours, np.concatenate(list(means.values())))
-    everything = np.concatenate(list(means.values()))
-    top = min(np.nanmax(everything), CEILING * np.nanmax(ours)) * 1.05
-    canvas.text(LEFT, 20.0, f"{scores.title} ({scores.unit})")
+    """Write the means over clips to a PNG file; ours are black and grey."""
+    height = max(SMALLEST, TOP + BOTTOM + ROW * len(scores.methods))
+    canvas = Canvas(WIDTH, height)
     across = np.linspace(LEFT + 20, WIDTH - RIGHT, max(len(scores.columns), 2))
-    for mark in _ticks(top):
-        y = _height(mark, top)
+    axis = _Axis(height - BOTTOM, _top(scores))
+    canvas.text(LEFT, 20.0, f"{scores.title} ({scores.unit})")
+    for mark in axis.marks():
+        y = axis.height(mark)
         canvas.line([(LEFT, y), (WIDTH - RIGHT + 20, y)], GRID)
         canvas.text(LEFT - 8.0, y, number(mark), FAINT, "rm")
-    for x, column in zip(across, scores.columns, strict=False):
-        canvas.text(x, HEIGHT - BOTTOM + 18.0, column[:18], FAINT, "mm")
-    colors = series_colors(len(means))
-    for place, ((name, values), color) in enumerate(zip(means.items(), colors, strict=True)):
-        mine = name.startswith("ours")
-        points = [
-            (x, _height(v, top)) for x, v in zip(across, values, strict=False) if v <= top
-        ]
-        if len(points) > 1:
-            canvas.line(points, color, 3.0 if mine else 1.5)
-        for point in points:
-            canvas.dot(point, color, 4.0 if mine else 2.5)
-        y = TOP + 10.0 + 22.0 * place
-        canvas.line([(WIDTH - RIGHT + 40, y), (WIDTH - RIGHT + 64, y)], color, 3.0)
+    for place, (x, column) in enumerate(zip(across, scores.columns, strict=False)):
+        lower = 14.0 * (place % 2) if len(scores.columns) > 6 else 0.0
+        canvas.text(x, axis.bottom + 14.0 + lower, column, FAINT, "mm")
+    for place, (name, color) in enumerate(_colors(scores.methods).items()):
+        width = 3.5 if name.startswith("ours") else 1.5
+        for run in _runs(scores, name, across, axis):
+            if len(run) > 1:
+                canvas.line(run, color, width)
+            for point in run:
+                canvas.dot(point, color, width + 1.0)
+        y = TOP + ROW * (place + 0.5)
+        canvas.line([(WIDTH - RIGHT + 40, y), (WIDTH - RIGHT + 64, y)], color, width)
         canvas.text(WIDTH - RIGHT + 72.0, y, name, INK, "lm")
     path.parent.mkdir(parents=True, exist_ok=True)
     Image.fromarray(canvas.picture().pixels).save(path, optimize=True)
 
 
-def _means(scores: Scores, method: str) -> np.ndarray:
-    return np.array([scores.mean(method, column) for column in scores.columns])
+class _Axis:
+    def __init__(self, bottom: float, top: float) -> None:
+        self.bottom, self.top = bottom, top
+
+    def height(self, value: float) -> float:
+        return self.bottom - (self.bottom - TOP) * value / self.top
+
+    def marks(self) -> NDArray[np.float64]:
+        step = 10.0 ** np.floor(np.log10(self.top / 2))
+        while self.top / step > 8:
+            step *= 2
+        return np.arange(0.0, self.top, step)
 
 
-def _height(value: float, top: float) -> float:
-    return HEIGHT - BOTTOM - (HEIGHT - BOTTOM - TOP) * value / top
+def _top(scores: Scores) -> float:
+    def worst(methods: list[str]) -> float:
+        means = [scores.mean(name, column) for name in methods for column in scores.columns]
+        return float(np.nanmax(means))
+
+    mine = [name for name in scores.methods if name == scores.ours] or scores.methods
+    return 1.05 * min(worst(scores.methods), CEILING * worst(mine))
 
 
-def _ticks(top: float) -> np.ndarray:
-    step = 10.0 ** np.floor(np.log10(top / 2))
-    while top / step > 8:
-        step *= 2
-    return np.arange(0.0, top, step)
+def _runs(
+    scores: Scores, name: str, across: NDArray[np.float64], axis: _Axis
+) -> list[list[tuple[float, float]]]:
+    """Points of a method, cut where the table's columns do not follow from each other."""
+    runs: list[list[tuple[float, float]]] = [[]]
+    for x, column in zip(across, scores.columns, strict=False):
+        value = scores.mean(name, column)
+        if column in scores.breaks or not value <= axis.top:
+            runs.append([])
+        if value <= axis.top:
+            runs[-1].append((float(x), axis.height(value)))
+    return [run for run in runs if run]
+
+
+def _colors(methods: list[str]) -> dict[str, Color]:
+    greys = iter([INK, FAINT, FAINT])
+    others = [name for name in methods if not name.startswith("ours")]
+    hues = {name: place / max(len(others), 1) for place, name in enumerate(others)}
+    found: dict[str, Color] = {}
+    for place, name in enumerate(methods):
+        if name in hues:
+            red, green, blue = hsv_to_rgb(hues[name], 0.75, 0.85 if place % 2 else 0.6)
+            found[name] = (round(255 * red), round(255 * green), round(255 * blue))
+        else:
+            found[name] = next(greys)
+    return found

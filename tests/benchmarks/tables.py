@@ -15,10 +15,16 @@ class Scores:
         self._found: dict[tuple[str, str], dict[str, float]] = defaultdict(dict)
         self.methods: list[str] = []
         self.columns: list[str] = []
+        self.breaks: set[str] = set()
+        """Columns that do not follow from the one before them."""
 
-    def add(self, method: str, column: object, clip: str, figure: float) -> None:
-        """Note one figure."""
+    def add(
+        self, method: str, column: object, clip: str, figure: float, follows: bool = True
+    ) -> None:
+        """Note one figure; `follows` is false where a new row of columns begins."""
         column = str(column)
+        if not follows:
+            self.breaks.add(column)
         if method not in self.methods:
             self.methods.append(method)
         if column not in self.columns:
@@ -32,6 +38,7 @@ class Scores:
                 for clip, figure in self._found[method, column].items():
                     self._found[method, "all"][f"{column} {clip}"] = figure
         self.columns.append("all")
+        self.breaks.add("all")
 
     def mean(self, method: str, column: str) -> float:
         """Mean over clips."""
