@@ -23,8 +23,9 @@ from typing import Any
 from threadpoolctl import threadpool_limits
 
 from . import clips
-from .cases import LEVELS, Case, Level
+from .cases import BURSTS, LEVELS, Case, Level
 from .methods import Method
+from .noise import BURSTS as SPAN
 from .ours import OURS, SHORT_NAMES
 from .part_classes import class_cases, compare_classes
 from .part_denoise import compare, leave_one_out, peers
@@ -69,6 +70,14 @@ def strangers(chosen: argparse.Namespace) -> list[Scores]:
     return compare(cases, _wanted(chosen, cases, blender=False), title)[:1]
 
 
+def bursts(chosen: argparse.Namespace) -> list[Scores]:
+    """CMU walks whose joints are thrown off for a few frames at a time."""
+    names = _walks(chosen)
+    cases = leave_one_out(clips.walks(), names, BURSTS, chosen.clean_root)
+    title = f"CMU walks, {len(names)} clips, joints off for {SPAN[0]} to {SPAN[1]} frames"
+    return compare(cases, _wanted(chosen, cases), title)[:1]
+
+
 def classes(chosen: argparse.Namespace) -> list[Scores]:
     """Noise and outliers on HDM05."""
     most = FULL_CLASS_CLIPS if chosen.full else QUICK_CLASS_CLIPS
@@ -109,6 +118,7 @@ def priors(chosen: argparse.Namespace) -> list[Scores | str]:
 PARTS: dict[str, Callable[[argparse.Namespace], Sequence[Scores | str]]] = {
     "walks": walking,
     "strangers": strangers,
+    "bursts": bursts,
     "classes": classes,
     "gaps": gaps,
     "windows": windows,

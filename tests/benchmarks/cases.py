@@ -5,10 +5,19 @@ from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
+from numpy.typing import NDArray
 
 from solvers.motion import Motion
 
-from .noise import METRES_PER_DEGREE, Array, Channels, channel_error, corrupt, seeded
+from .noise import (
+    METRES_PER_DEGREE,
+    Array,
+    Channels,
+    channel_error,
+    corrupt,
+    corrupt_in_bursts,
+    seeded,
+)
 
 
 @dataclass(frozen=True)
@@ -17,12 +26,14 @@ class Level:
 
     sigma: float
     fraction: float = 0.0
+    bursts: bool = False
+    """Whether outliers are whole joints for a few frames instead of single samples."""
     follows: bool = True
     """Whether a line in a picture leads from the level before to this one."""
 
     def __str__(self) -> str:
         outliers = f"{100 * self.fraction:g} %" if self.fraction else "0"
-        return f"{self.sigma:g}, {outliers}"
+        return f"{self.sigma:g}, {outliers}{' in bursts' if self.bursts else ''}"
 
 
 LEVELS = (
@@ -30,6 +41,7 @@ LEVELS = (
     Level(3.0, 0.05, follows=False),
     *(Level(3.0, fraction) for fraction in (0.10, 0.15, 0.25, 0.40)),
 )
+BURSTS = tuple(Level(3.0, fraction, bursts=True) for fraction in (0.02, 0.05, 0.10))
 
 
 @dataclass(frozen=True, eq=False)
@@ -52,10 +64,21 @@ class Case:
     def noisy(self) -> Array:
         """Spoilt channels, same shape as `clean`."""
         rng = seeded(self.name, self.level.sigma, self.level.fraction)
-        noisy = corrupt(self.clean, self.level.sigma, self.level.fraction, rng)
+        sigma, fraction = self.level.sigma, self.level.fraction
+        if self.level.bursts:
+            noisy = corrupt_in_bursts(self.clean, sigma, fraction, self._groups, rng)
+        else:
+            noisy = corrupt(self.clean, sigma, fraction, rng)
         if self.clean_root:
             noisy[:, -3:] = self.clean[:, -3:]
         return noisy
+
+    @property
+    def _groups(self) -> list[NDArray[np.intp]]:
+        """Channels that belong together: each joint's, and the root's position."""
+        moving = np.flatnonzero(self.channels.joints)
+        root = np.arange(-3, 0) + self.clean.shape[1]
+        return [*(self.channels.of_joints([joint]) for joint in moving), root]
 
     @cached_property
     def noisy_motion(self) -> Motion:

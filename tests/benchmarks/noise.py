@@ -28,6 +28,8 @@ STILL = 0.3
 METRES_PER_DEGREE = 0.005
 OUTLIERS = (20.0, 60.0)
 """Degrees; outliers lie this far from the truth, to either side."""
+BURSTS = (2, 8)
+"""Frames, shortest and longest."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -80,6 +82,29 @@ def corrupt(values: Array, sigma: float, fraction: float, rng: np.random.Generat
     outlying = rng.random(values.shape) < fraction
     size = rng.uniform(*OUTLIERS, size=values.shape) * rng.choice([-1, 1], size=values.shape)
     return np.where(outlying, values + size, noisy)
+
+
+def corrupt_in_bursts(
+    values: Array,
+    sigma: float,
+    fraction: float,
+    groups: Sequence[NDArray[np.intp]],
+    rng: np.random.Generator,
+) -> Array:
+    """Add Gaussian noise; turn whole joints away for a few frames, as a swapped marker does.
+
+    Each group of channels is off for about `fraction` of the frames, in runs of BURSTS frames,
+    by one and the same turn of the size of an outlier during a run.
+    """
+    noisy = values + sigma * rng.normal(size=values.shape)
+    n_frames = len(values)
+    for group in groups:
+        n_runs = rng.poisson(fraction * n_frames / np.mean(BURSTS))
+        for start in rng.integers(0, n_frames, size=n_runs):
+            run = slice(start, start + int(rng.integers(BURSTS[0], BURSTS[1] + 1)))
+            way = rng.normal(size=len(group))
+            noisy[run, group] += rng.uniform(*OUTLIERS) * way / np.linalg.norm(way)
+    return noisy
 
 
 def seeded(*what: object) -> np.random.Generator:
