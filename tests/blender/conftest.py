@@ -20,6 +20,8 @@ from types import ModuleType
 import numpy as np
 import pytest
 
+pytest_plugins = ("armature_fixtures",)
+
 PACKAGE = "bl_ext.user_default.mocap_assist"
 CHECKOUT = Path(__file__).resolve().parents[2]
 RECORDINGS = CHECKOUT.parent / "shared" / "data"
