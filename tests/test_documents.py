@@ -1,0 +1,73 @@
+"""What the documents say must be so: tables, links, buttons and commands."""
+
+import ast
+import re
+from importlib.util import module_from_spec, spec_from_file_location
+from pathlib import Path
+
+import pytest
+
+from solvers.command_line.verbs import VERBS
+
+ROOT = Path(__file__).parents[1]
+DOCUMENTS = [ROOT / "README.md", *sorted((ROOT / "docs").glob("*.md"))]
+LINK = re.compile(r"\]\(([^)#\s]+)[^)]*\)")
+
+
+@pytest.fixture(scope="module")
+def write_docs():
+    spec = spec_from_file_location("write_docs", ROOT / ".ci" / "write_docs.py")
+    module = module_from_spec(spec)
+    spec.loader.exec_module(module)
+    return module
+
+
+@pytest.mark.parametrize("document", DOCUMENTS, ids=lambda path: path.name)
+def test_tables_of_settings_say_what_the_code_says(document, write_docs):
+    """After a change: `python .ci/write_docs.py`."""
+    text = document.read_text(encoding="utf-8")
+
+    assert write_docs.renewed(text) == text
+
+
+@pytest.mark.parametrize("document", DOCUMENTS, ids=lambda path: path.name)
+def test_links_lead_somewhere(document):
+    links = LINK.findall(document.read_text(encoding="utf-8"))
+
+    lost = [link for link in links if ":" not in link and not (document.parent / link).exists()]
+    assert not lost
+
+
+def test_the_readme_describes_every_button_and_no_other():
+    readme = (ROOT / "README.md").read_text(encoding="utf-8")
+    described = set(re.findall(r"`mocap_assist\.(\w+)`", readme))
+
+    assert described == set(buttons())
+    for label in buttons().values():
+        assert f"**{label}**" in readme, label
+
+
+def test_commands_in_the_documents_exist():
+    for document in DOCUMENTS:
+        text = document.read_text(encoding="utf-8")
+        named = re.findall(r"python -m solvers (\w+)", text)
+        named += re.findall(r"--command mocap_assist (\w+)", text)
+        assert set(named) <= set(VERBS), document
+
+
+def buttons() -> dict[str, str]:
+    """Name and label of every operator, read from the source, since Blender may be absent."""
+    found = {}
+    for module in sorted((ROOT / "operators").glob("*.py")):
+        for node in ast.walk(ast.parse(module.read_text(encoding="utf-8"))):
+            if isinstance(node, ast.ClassDef):
+                constants = {
+                    statement.targets[0].id: statement.value.value
+                    for statement in node.body
+                    if isinstance(statement, ast.Assign)
+                    and isinstance(statement.value, ast.Constant)
+                }
+                if "bl_idname" in constants:
+                    name = constants["bl_idname"].removeprefix("mocap_assist.")
+                    found[name] = constants["bl_label"]
+    return found
