@@ -78,8 +78,9 @@ class C3dFile:
         frames = words.reshape(n_frames, -1)[:, : 4 * n_points].reshape(n_frames, n_points, 4)
         if kind == "f4" and self.processor == DEC:
             frames = _from_dec(np.ascontiguousarray(frames))
-        points = frames[..., :3].astype(np.float64) * (scale if scale > 0.0 else 1.0)
-        return points, np.asarray(frames[..., 3] >= 0)
+        with np.errstate(invalid="ignore"):  # Damaged floats may be NaN of a kind that warns.
+            points = frames[..., :3].astype(np.float64) * (scale if scale > 0.0 else 1.0)
+            return points, np.asarray(frames[..., 3] >= 0)
 
     def _parameter_start(self) -> int:
         """Return where the parameters begin; also where a broken first byte hides it."""
@@ -197,10 +198,12 @@ class C3dFile:
         values = np.frombuffer(self.content, self.order + "f4", count, at)
         if self.processor == DEC:
             values = _from_dec(values)
-        return values.astype(np.float64)
+        with np.errstate(invalid="ignore"):
+            return values.astype(np.float64)
 
 
 def _from_dec(values: NDArray[np.float32]) -> NDArray[np.float32]:
     """Read VAX F floats: the two halves are swapped, and the exponent is larger by two."""
     halves = values.view("<u2").reshape(*values.shape, 2)[..., ::-1]
-    return np.ascontiguousarray(halves).view("<f4").reshape(values.shape) / np.float32(4.0)
+    with np.errstate(invalid="ignore"):
+        return np.ascontiguousarray(halves).view("<f4").reshape(values.shape) / np.float32(4.0)

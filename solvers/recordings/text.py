@@ -1,5 +1,6 @@
 """Text files of numbers: opened, cut into lines and read fast, whatever their line ends."""
 
+import warnings
 from collections.abc import Sequence
 from pathlib import Path
 
@@ -72,8 +73,10 @@ def _read_block(
     if not filled:
         return np.empty((0, width))
     try:
-        rows = np.loadtxt(filled, comments=None, ndmin=2)
-        if rows.shape[1] == width:
+        with warnings.catch_warnings():  # It warns where it sees nothing but control codes.
+            warnings.simplefilter("ignore", UserWarning)
+            rows = np.loadtxt(filled, comments=None, ndmin=2)
+        if rows.shape == (len(filled), width):
             return rows
     except ValueError:
         pass  # Line by line it is seen which line is wrong, or merely unusual.

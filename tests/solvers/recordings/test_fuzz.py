@@ -1,0 +1,165 @@
+"""Damaged files are read or refused: never a crash, a hang, or more memory than the file.
+
+The bytes that are damaged are made here. To search long:
+`MOCAP_FUZZ=20000 python -m pytest tests/solvers/recordings/test_fuzz.py`.
+"""
+
+import os
+import tracemalloc
+from pathlib import Path
+from tempfile import TemporaryDirectory
+from time import perf_counter
+
+import numpy as np
+import pytest
+from hypothesis import HealthCheck, given, settings
+from hypothesis import strategies as st
+
+from solvers.errors import InvalidFileError, InvalidMotionError
+from solvers.motion import Motion, Skeleton, Tracks
+from solvers.recordings import read_acclaim, read_recording, write_bvh, write_c3d
+
+EXAMPLES = int(os.environ.get("MOCAP_FUZZ", "100"))
+MOST_MEMORY = 64e6
+MOST_SECONDS = 20.0
+"""No measurement: only an endless loop takes so long for a file of some kilobytes."""
+
+SKELETON = b""":units
+ length 0.45
+ angle deg
+:root
+ order TX TY TZ RX RY RZ
+ axis XYZ
+ position 0 0 0
+ orientation 0 0 0
+:bonedata
+ begin
+  id 1
+  name thigh
+  direction 0 -1 0
+  length 7.5
+  axis 0 0 20 XYZ
+  dof rx ry rz
+ end
+ begin
+  id 2
+  name shank
+  direction 0 -1 0
+  length 7
+  axis 0 0 20 XYZ
+  dof rx
+ end
+:hierarchy
+ begin
+  root thigh
+  thigh shank
+ end
+"""
+RECORDING = b":FULLY-SPECIFIED\n:DEGREES\n" + b"".join(
+    b"%d\nroot 0 17 %d 0 5 0\nthigh %d 2 3\nshank %d\n" % (frame, frame, frame, 2 * frame)
+    for frame in range(1, 12)
+)
+
+
+def bvh_bytes() -> bytes:
+    names = ("hips", "thigh", "shank", "shank_end", "spine")
+    offsets = np.array([[0, 0, 0.9], [0.1, 0, 0], [0, 0, -0.4], [0, 0, -0.4], [0, 0, 0.5]])
+    skeleton = Skeleton(names, (-1, 0, 1, 2, 0), offsets)
+    turns = np.tile([1.0, 0, 0, 0], (12, 5, 1))
+    motion = Motion(skeleton, turns, np.tile([0, 0, 0.9], (12, 1)), 30.0)
+    return _written(lambda path: write_bvh(motion, path))
+
+
+def c3d_bytes() -> bytes:
+    positions = np.random.default_rng(3).normal(size=(20, 4, 3))
+    positions[2:5, 1] = np.nan
+    tracks = Tracks(("LASI", "RASI", "C7", "HEAD"), positions, 100.0)
+    return _written(lambda path: write_c3d(tracks, path))
+
+
+def _written(write) -> bytes:
+    with TemporaryDirectory() as folder:
+        path = Path(folder) / "take"
+        write(path)
+        return path.read_bytes()
+
+
+WHOLE = {"bvh": bvh_bytes(), "c3d": c3d_bytes(), "amc": RECORDING, "asf": SKELETON}
+TOKENS = [
+    b"", b"0", b"-1", b"999999999", b"1e308", b"nan", b"inf", b"{", b"}", b"\n", b"\0", b"\xff",
+    b"JOINT", b"ROOT x", b"End Site", b"CHANNELS 6", b"OFFSET", b":bonedata", b"begin", b"end",
+    b"root", b"thigh", b"dof rx", b"axis", b"\x1c", b"\xff\xff", b"\x7f\xff", b"\x00\x80",
+]  # fmt: skip
+
+
+@st.composite
+def damaged(draw, whole: bytes) -> bytes:
+    """Cut, overwrite, insert and repeat, a few times."""
+    content = whole
+    for _ in range(draw(st.integers(1, 4))):
+        at = draw(st.integers(0, len(content)))
+        length = draw(st.integers(0, 40))
+        kind = draw(st.sampled_from(["cut", "replace", "insert", "noise", "repeat"]))
+        token = draw(st.sampled_from(TOKENS))
+        if kind == "cut":
+            content = content[:at]
+        elif kind == "replace":
+            content = content[:at] + token + content[at + len(token) :]
+        elif kind == "insert":
+            content = content[:at] + token + content[at:]
+        elif kind == "noise":
+            content = content[:at] + draw(st.binary(max_size=8)) + content[at + length :]
+        else:
+            content = content[: at + length] + content[at:]
+    return content
+
+
+searching = settings(
+    max_examples=EXAMPLES,
+    deadline=None,
+    derandomize="MOCAP_FUZZ" not in os.environ,
+    database=None,
+    suppress_health_check=list(HealthCheck),
+)
+
+
+@pytest.mark.parametrize("kind", ["bvh", "c3d", "amc"])
+def test_a_damaged_recording(kind, tmp_path):
+    path = tmp_path / f"take.{kind}"
+    (tmp_path / "take.asf").write_bytes(SKELETON)
+
+    @searching
+    @given(damaged(WHOLE[kind]))
+    def search(content: bytes) -> None:
+        path.write_bytes(content)
+        read_or_refuse(lambda: read_recording(path))
+
+    search()
+
+
+def test_a_damaged_skeleton(tmp_path):
+    (tmp_path / "take.amc").write_bytes(RECORDING)
+
+    @searching
+    @given(damaged(SKELETON))
+    def search(content: bytes) -> None:
+        (tmp_path / "take.asf").write_bytes(content)
+        read_or_refuse(lambda: read_acclaim(tmp_path / "take.amc"))
+
+    search()
+
+
+def read_or_refuse(read) -> None:
+    """Read within bounds: a valid recording or a whole sentence comes out."""
+    tracemalloc.start()
+    started = perf_counter()
+    try:
+        found = read()
+        assert isinstance(found, Motion | Tracks)
+    except (InvalidFileError, InvalidMotionError) as error:
+        assert str(error).endswith(".")
+    finally:
+        peak = tracemalloc.get_traced_memory()[1]
+        tracemalloc.stop()
+    assert peak < MOST_MEMORY
+    assert perf_counter() - started < MOST_SECONDS
