@@ -15,6 +15,11 @@ logger = logging.getLogger(__name__)
 BETWEEN_LOOKS = 0.1  # seconds
 
 
+def in_background() -> bool:
+    """Whether there is nobody to press Esc, and no loop of events to wait in."""
+    return bool(bpy.app.background)
+
+
 class SolverOperator:
     """Mix in before bpy.types.Operator and implement `read` and `write`.
 
@@ -50,7 +55,7 @@ class SolverOperator:
 
     def invoke(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
         self.prepare(context)
-        if bpy.app.background:
+        if in_background():
             return self.execute(context)
         try:
             self._job = Job(self.read(context))
@@ -80,6 +85,7 @@ class SolverOperator:
     def cancel(self, context: bpy.types.Context) -> None:
         """Blender ends the operator: another file is loaded, or the window closes."""
         self._job.cancel()
+        self._job.tidy_up()
         self._stop_showing(context)
 
     def _finish(self, context: bpy.types.Context, result: Any) -> set[str]:

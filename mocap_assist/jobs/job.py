@@ -56,6 +56,11 @@ class Job(Generic[Result]):
         self._cancelled = True
         self._process.kill()
 
+    def tidy_up(self) -> None:
+        """Remove the job's folder once its process has ended."""
+        self._process.wait()
+        self._folder.cleanup()
+
     def result(self) -> Result:
         """Wait for the end, tidy up, and return what the solver returned.
 
@@ -71,7 +76,7 @@ class Job(Generic[Result]):
         outcome: Any = None
         if answer.exists() and not self._cancelled:
             outcome = pickle.loads(answer.read_bytes())
-        self._folder.cleanup()
+        self.tidy_up()
         if self._cancelled:
             raise SolveCancelled("Cancelled.")
         if outcome is None:
