@@ -6,15 +6,17 @@ Blender is imported only on `register`: a solve in a process of its own passes t
 
 def register() -> None:
     """Make properties, commands and panels known to Blender."""
-    from . import batch, scene_properties
+    from . import batch, scene_properties, ui
 
     scene_properties.register()
     batch.register()
+    ui.register()
 
 
 def unregister() -> None:
     """Take them away again."""
-    from . import batch, scene_properties
+    from . import batch, scene_properties, ui
 
+    ui.unregister()
     batch.unregister()
     scene_properties.unregister()

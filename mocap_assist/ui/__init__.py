@@ -1,0 +1,17 @@
+"""What the animator sees: panels in the sidebar, menus, preferences and the overlay."""
+
+from . import manual, menus, overlay_switch, preferences, sidebar
+
+PARTS = (preferences, sidebar, menus, overlay_switch, manual)
+
+
+def register() -> None:
+    """Show everything."""
+    for part in PARTS:
+        part.register()
+
+
+def unregister() -> None:
+    """Take everything away again."""
+    for part in reversed(PARTS):
+        part.unregister()

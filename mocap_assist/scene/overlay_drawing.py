@@ -1,0 +1,86 @@
+"""Draw the stick figures over the 3D View; nothing of the scene is touched."""
+
+from collections.abc import Callable
+from typing import Any
+
+import bpy
+import gpu
+import numpy as np
+from bpy.app import handlers
+from bpy.types import SpaceView3D
+
+from . import overlay
+
+Color = tuple[float, float, float, float]
+
+_handle: list[Any] = []
+
+
+def start(draw_all: Callable[[], None]) -> None:
+    """Call `draw_all` whenever a 3D View is drawn."""
+    _handle.append(SpaceView3D.draw_handler_add(draw_all, (), "WINDOW", "POST_VIEW"))
+    handlers.depsgraph_update_post.append(_changed)
+    for each in _REPLACING:
+        each.append(_replaced)
+
+
+def stop() -> None:
+    """Undo `start`."""
+    for each in _REPLACING:
+        each.remove(_replaced)
+    handlers.depsgraph_update_post.remove(_changed)
+    SpaceView3D.draw_handler_remove(_handle.pop(), "WINDOW")
+    forget()
+
+
+def forget() -> None:
+    """Read the actions anew when they are drawn next."""
+    overlay.forget()
+
+
+def draw(context: bpy.types.Context, colors: tuple[Color, Color], width: float) -> None:
+    """Draw what the active armature's actions, raw and clean, show at the present frame."""
+    armature = context.view_layer.objects.active
+    if armature is None or armature.type != "ARMATURE" or not context.space_data.overlay:
+        return
+    frame = context.scene.frame_current_final
+    for source, color in zip(overlay.raw_and_clean(armature), colors, strict=True):
+        if source is not None:
+            lines = overlay.figures_at(armature, source, frame).segments(frame)
+            _draw_lines(lines, armature.matrix_world, color, width)
+
+
+def _draw_lines(lines: np.ndarray, matrix: Any, color: Color, width: float) -> None:
+    """Draw lines of shape (n_lines, 2, 3) in the space of `matrix`, in front of everything."""
+    from gpu_extras.batch import batch_for_shader
+
+    shader = gpu.shader.from_builtin("POLYLINE_UNIFORM_COLOR")
+    points = np.ascontiguousarray(lines.reshape(-1, 3), dtype=np.float32)
+    batch = batch_for_shader(shader, "LINES", {"pos": points})
+    shader.bind()
+    shader.uniform_float("viewportSize", gpu.state.viewport_get()[2:])
+    shader.uniform_float("lineWidth", width)
+    shader.uniform_float("color", color)
+    gpu.state.blend_set("ALPHA")
+    gpu.state.depth_test_set("NONE")
+    with gpu.matrix.push_pop():
+        gpu.matrix.multiply_matrix(matrix)
+        batch.draw(shader)
+    gpu.state.blend_set("NONE")
+
+
+@handlers.persistent
+def _changed(scene: bpy.types.Scene, depsgraph: bpy.types.Depsgraph) -> None:
+    """Keys or rest poses were edited."""
+    kinds = (bpy.types.Action, bpy.types.Armature)
+    if any(isinstance(update.id, kinds) for update in depsgraph.updates):
+        forget()
+
+
+@handlers.persistent
+def _replaced(*_: object) -> None:
+    """Undo, redo and loading put other data in the place of what was read."""
+    forget()
+
+
+_REPLACING = (handlers.undo_post, handlers.redo_post, handlers.load_post)

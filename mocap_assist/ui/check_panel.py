@@ -1,0 +1,98 @@
+"""Panel: what is wrong with the action, in figures and place by place."""
+
+import bpy
+
+from ..scene import history
+from ..selection import selected_armature
+from .drawing import draw_sentence, exists
+from .figures import figure_rows, frames_text
+
+CHECK, JUMP = "mocap_assist.measure_quality", "mocap_assist.jump_to_spot"
+ICONS = {
+    "spike": "IPO_ELASTIC",
+    "gap": "REMOVE",
+    "jitter": "RNDCURVE",
+    "foot slide": "FORWARD",
+    "limit": "CON_ROTLIMIT",
+}
+FEWEST, MOST = 4, 8  # rows of the list
+
+
+class MOCAP_UL_spots(bpy.types.UIList):
+    """Worst spots; a click on one goes there."""
+
+    def draw_item(
+        self, context, layout, data, item, icon, active_data, active_property, index
+    ) -> None:
+        row = layout.split(factor=0.5)
+        frames = frames_text(item.start, item.stop)
+        _jump(row, index, item.name, ICONS.get(item.kind, "ERROR"))
+        row = row.split(factor=0.5)
+        _jump(row, index, frames, "NONE")
+        _jump(row, index, item.kind, "NONE")
+
+
+class CheckPanel:
+    """Figures before and after, and the worst spots."""
+
+    bl_label = "Check"
+
+    @classmethod
+    def poll(cls, context: bpy.types.Context) -> bool:
+        return exists(CHECK)
+
+    def draw(self, context: bpy.types.Context) -> None:
+        layout, found = self.layout, context.scene.mocap_assist
+        row = layout.row()
+        row.scale_y = 1.3
+        row.operator(CHECK, icon="VIEWZOOM")
+        _draw_figures(layout, context)
+        if found.spots:
+            _draw_spots(layout, context)
+        _draw_thresholds(layout, found.check)
+
+
+def _draw_figures(layout: bpy.types.UILayout, context: bpy.types.Context) -> None:
+    armature = selected_armature(context)
+    result = history.played_result(armature) if armature is not None else None
+    rows = figure_rows(history.history(result[0])) if result else []
+    if not rows:
+        return
+    table = layout.box().column(align=True)
+    table.scale_y = 0.9
+    for label, before, after in (("", "Before", "After"), *rows):
+        names = table.split(factor=0.52)
+        names.label(text=label)
+        values = names.split(factor=0.5)
+        values.label(text=before)
+        values.label(text=after)
+
+
+def _draw_spots(layout: bpy.types.UILayout, context: bpy.types.Context) -> None:
+    found = context.scene.mocap_assist
+    rows = min(max(len(found.spots), FEWEST), MOST)
+    layout.template_list(
+        "MOCAP_UL_spots", "", found, "spots", found, "active_spot", rows=rows, maxrows=rows
+    )
+    row = layout.row(align=True)
+    row.operator(JUMP, text="Previous", icon="TRIA_LEFT").step = -1
+    row.operator(JUMP, text="Next", icon="TRIA_RIGHT").step = 1
+    if 0 <= found.active_spot < len(found.spots):
+        draw_sentence(layout, context, found.spots[found.active_spot].sentence)
+
+
+def _draw_thresholds(layout: bpy.types.UILayout, check: bpy.types.PropertyGroup) -> None:
+    header, body = layout.panel("mocap_assist_check_thresholds", default_closed=True)
+    header.label(text="What counts")
+    if body is None:
+        return
+    body.use_property_split = True
+    body.use_property_decorate = False
+    for name in type(check).setting_names:
+        body.prop(check, name)
+
+
+def _jump(layout: bpy.types.UILayout, index: int, text: str, icon: str) -> None:
+    row = layout.row()
+    row.alignment = "LEFT"
+    row.operator(JUMP, text=text, icon=icon, emboss=False, translate=False).index = index

@@ -1,0 +1,64 @@
+"""Panel: take jitter, spikes and gaps out of the action."""
+
+from dataclasses import fields
+
+import bpy
+
+from ...solvers.denoising import DenoiseSettings, PlantSettings
+from ...solvers.settings import Settings
+from ..clean_choices import Prior
+from ..selection import why_not_clean
+from .drawing import draw_job, draw_sentence
+
+MAIN = ("strength", "frame_range", "joint_limits", "result_as")
+WHERE_FROM = {Prior.EXAMPLES.name: "examples", Prior.LEARNED.name: "learned_file"}
+
+
+def folded(settings: type[Settings], shown: tuple[str, ...] = MAIN) -> list[str]:
+    """Return the names of the settings that the panel folds away."""
+    return [item.name for item in fields(settings) if item.name not in shown]
+
+
+class CleanPanel:
+    """Settings of Clean, and its button."""
+
+    bl_label = "Clean"
+
+    def draw(self, context: bpy.types.Context) -> None:
+        layout = self.layout
+        running = draw_job(layout, context)
+        column = layout.column()
+        column.enabled = not running
+        clean = context.scene.mocap_assist.clean
+        column.use_property_split = True
+        column.use_property_decorate = False
+        _draw_main(column, clean)
+        _draw_folded(column, clean)
+        button = layout.row()
+        button.scale_y = 1.6
+        button.operator("mocap_assist.denoise", icon="BRUSH_DATA")
+        if reason := why_not_clean(context):
+            draw_sentence(layout, context, reason, icon="INFO")
+
+
+def _draw_main(column: bpy.types.UILayout, clean: bpy.types.PropertyGroup) -> None:
+    column.row().prop(clean, "bones", expand=True)
+    column.prop(clean, "prior", text="Learn from")
+    if clean.prior in WHERE_FROM:
+        column.prop(clean, WHERE_FROM[clean.prior])
+    for name in MAIN:
+        column.prop(clean, name)
+    column.prop(clean, "plant_feet")
+
+
+def _draw_folded(column: bpy.types.UILayout, clean: bpy.types.PropertyGroup) -> None:
+    header, body = column.panel("mocap_assist_clean_advanced", default_closed=True)
+    header.label(text="Advanced")
+    if body is None:
+        return
+    for name in folded(DenoiseSettings):
+        body.prop(clean, name)
+    feet = body.column()
+    feet.active = clean.plant_feet
+    for name in folded(PlantSettings):
+        feet.prop(clean, name)

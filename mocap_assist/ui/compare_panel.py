@@ -1,0 +1,44 @@
+"""Panel: raw and clean together, and the way back."""
+
+import bpy
+
+from ..scene import history
+from ..selection import selected_armature
+from .drawing import exists
+from .preferences import preferences
+
+REVERT = "mocap_assist.revert_to_raw"
+
+
+class ComparePanel:
+    """The overlay's switch, and Revert."""
+
+    bl_label = "Compare"
+
+    def draw(self, context: bpy.types.Context) -> None:
+        layout = self.layout
+        _draw_actions(layout, context)
+        column = layout.column(align=True)
+        column.prop(context.window_manager, "mocap_assist_overlay", toggle=True, icon="OVERLAY")
+        colors = column.row(align=True)
+        colors.prop(preferences(), "raw_color", text="")
+        colors.prop(preferences(), "clean_color", text="")
+        names = column.row(align=True)
+        for text in ("Raw", "Clean"):
+            name = names.row()
+            name.alignment = "CENTER"
+            name.label(text=text)
+        if exists(REVERT):
+            layout.operator(REVERT, icon="LOOP_BACK")
+
+
+def _draw_actions(layout: bpy.types.UILayout, context: bpy.types.Context) -> None:
+    armature = selected_armature(context)
+    played = history.played_result(armature) if armature is not None else None
+    if played is None:
+        return
+    raw, _ = history.raw_of(played[0])
+    column = layout.column(align=True)
+    column.label(text=played[0].name, icon="ACTION", translate=False)
+    made_from = bpy.app.translations.pgettext_iface("Made from {raw}").format(raw=raw.name)
+    column.label(text=made_from, icon="BLANK1", translate=False)

@@ -1,0 +1,43 @@
+"""What panels say about a result, as plain text."""
+
+from collections.abc import Mapping, Sequence
+from typing import Any, NamedTuple
+
+FIGURES = (
+    ("Jitter (m/s³)", "mean_jitter_m_per_s3", 1.0, ".0f"),
+    ("Spikes", "spikes", 1.0, ".0f"),
+    ("Missing (%)", "missing_share", 100.0, ".1f"),
+    ("Foot slide (cm/s)", "foot_slide_cm_per_s", 1.0, ".1f"),
+)
+UNKNOWN = "–"
+
+
+class Row(NamedTuple):
+    """One figure of a result."""
+
+    label: str
+    before: str
+    after: str
+
+
+def figure_rows(entries: Sequence[Mapping[str, Any]]) -> list[Row]:
+    """Return the figures of the raw action and of its last result, from an action's history."""
+    cleaned = [entry for entry in entries if "before" in entry and "after" in entry]
+    if not cleaned:
+        return []
+    before, after = cleaned[0]["before"], cleaned[-1]["after"]
+    return [
+        Row(label, *(_figure(each.get(key), factor, form) for each in (before, after)))
+        for label, key, factor, form in FIGURES
+        if key in before or key in after
+    ]
+
+
+def frames_text(start: float, stop: float) -> str:
+    """Return the frames of a spot: 12, or 12 – 15."""
+    first, last = f"{start:g}", f"{stop:g}"
+    return first if first == last else f"{first} – {last}"
+
+
+def _figure(value: float | None, factor: float, form: str) -> str:
+    return UNKNOWN if value is None else format(factor * value, form)

@@ -1,0 +1,35 @@
+"""F1 on a button opens its chapter of the manual that came with the extension."""
+
+from pathlib import Path
+
+import bpy
+
+MANUAL = Path(__file__).with_name("manual.html")
+"""The one place that says where the manual is: no network is needed to read it."""
+CHAPTERS = {
+    "bpy.ops.mocap_assist.denoise*": "clean",
+    "bpy.ops.mocap_assist.measure_quality*": "check",
+    "bpy.ops.mocap_assist.jump_to_spot*": "check",
+    "bpy.ops.mocap_assist.revert_to_raw*": "compare",
+    "bpy.ops.mocap_assist.plant_feet*": "feet",
+    "bpy.ops.mocap_assist.reset_preferences*": "preferences",
+    "bpy.types.mocap_pg_clean*": "clean",
+    "bpy.types.mocap_pg_check*": "check",
+    "bpy.types.windowmanager.mocap_assist_overlay*": "compare",
+    "bpy.types.mocap_ap_preferences*": "preferences",
+}
+
+
+def manual_map() -> tuple[str, tuple[tuple[str, str], ...]]:
+    """Return the manual's address and, for each kind of button, its chapter."""
+    return MANUAL.as_uri(), tuple((what, f"#{name}") for what, name in CHAPTERS.items())
+
+
+def register() -> None:
+    """Let F1 find the manual."""
+    bpy.utils.register_manual_map(manual_map)
+
+
+def unregister() -> None:
+    """Forget the manual."""
+    bpy.utils.unregister_manual_map(manual_map)

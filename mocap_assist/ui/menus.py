@@ -1,0 +1,51 @@
+"""Entries in the menus where an animator looks for them."""
+
+import bpy
+
+from .drawing import exists
+
+BUTTONS = (
+    "mocap_assist.denoise",
+    "mocap_assist.measure_quality",
+    "mocap_assist.plant_feet",
+    "mocap_assist.revert_to_raw",
+)
+MENUS = (
+    "VIEW3D_MT_pose",
+    "VIEW3D_MT_pose_context_menu",
+    "GRAPH_MT_key",
+    "GRAPH_MT_context_menu",
+    "DOPESHEET_MT_key",
+    "DOPESHEET_MT_context_menu",
+)
+
+
+class MOCAP_MT_clean(bpy.types.Menu):
+    """All buttons; they take the sidebar's settings."""
+
+    bl_label = "Mocap Assist"
+
+    def draw(self, context: bpy.types.Context) -> None:
+        layout = self.layout
+        layout.operator_context = "INVOKE_REGION_WIN"
+        for idname in filter(exists, BUTTONS):
+            layout.operator(idname)
+
+
+def _draw_entry(self: bpy.types.Menu, context: bpy.types.Context) -> None:
+    self.layout.separator()
+    self.layout.menu("MOCAP_MT_clean")
+
+
+def register() -> None:
+    """Append the entries."""
+    bpy.utils.register_class(MOCAP_MT_clean)
+    for menu in MENUS:
+        getattr(bpy.types, menu).append(_draw_entry)
+
+
+def unregister() -> None:
+    """Remove the entries."""
+    for menu in MENUS:
+        getattr(bpy.types, menu).remove(_draw_entry)
+    bpy.utils.unregister_class(MOCAP_MT_clean)

@@ -1,0 +1,46 @@
+"""The overlay's switch: on the window manager, so that the scene stays as it is."""
+
+import bpy
+
+from ..scene import overlay_drawing
+from .preferences import preferences
+
+
+def redraw(context: bpy.types.Context) -> None:
+    """Draw every 3D View again."""
+    for window in context.window_manager.windows:
+        for area in window.screen.areas:
+            if area.type == "VIEW_3D":
+                area.tag_redraw()
+
+
+def _switched(self: bpy.types.WindowManager, context: bpy.types.Context) -> None:
+    overlay_drawing.forget()
+    redraw(context)
+
+
+def _draw() -> None:
+    context = bpy.context
+    if context.window_manager.mocap_assist_overlay:
+        ours = preferences()
+        colors = (tuple(ours.raw_color), tuple(ours.clean_color))
+        overlay_drawing.draw(context, colors, ours.line_width)
+
+
+def register() -> None:
+    """Add the switch; nothing is drawn until it is on."""
+    bpy.types.WindowManager.mocap_assist_overlay = bpy.props.BoolProperty(
+        name="Raw and Clean Overlay",
+        description=(
+            "Draw stick figures of the recorded and of the clean action over the 3D View. They"
+            " show the keys alone, without constraints"
+        ),
+        update=_switched,
+    )
+    overlay_drawing.start(_draw)
+
+
+def unregister() -> None:
+    """Take the switch and the drawing away."""
+    overlay_drawing.stop()
+    del bpy.types.WindowManager.mocap_assist_overlay

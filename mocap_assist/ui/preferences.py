@@ -1,0 +1,136 @@
+"""The extension's preferences."""
+
+from pathlib import Path
+from typing import ClassVar
+
+import bpy
+
+from ..scene.armature_write import Output
+
+EXTENSION = __package__.rsplit(".", 2)[0]  # Blender knows preferences by the root package
+
+
+def preferences() -> bpy.types.AddonPreferences:
+    """Return the extension's preferences."""
+    return bpy.context.preferences.addons[EXTENSION].preferences
+
+
+def _move_panels(self: bpy.types.AddonPreferences, context: bpy.types.Context) -> None:
+    from .sidebar import move_to_tab
+
+    move_to_tab()
+
+
+def _redraw(self: bpy.types.AddonPreferences, context: bpy.types.Context) -> None:
+    from .overlay_switch import redraw
+
+    redraw(context)
+
+
+class MOCAP_AP_preferences(bpy.types.AddonPreferences):
+    """What holds for every file."""
+
+    bl_idname = EXTENSION
+
+    tab: bpy.props.StringProperty(
+        name="Sidebar tab",
+        description="Tab of the sidebar on which the panels are",
+        default="Mocap",
+        update=_move_panels,
+    )
+    result_as: bpy.props.EnumProperty(
+        name="Results in new scenes",
+        description="Where results go in scenes that do not say otherwise",
+        items=[
+            (Output.ACTION.name, "Action", "Put results in the place of the action"),
+            (Output.NLA_TRACK.name, "NLA track", "Put results on NLA tracks of their own"),
+        ],
+        default=Output.ACTION.name,
+    )
+    raw_color: bpy.props.FloatVectorProperty(
+        name="Raw",
+        description="Color in which the overlay draws the recorded action",
+        subtype="COLOR_GAMMA",
+        size=4,
+        min=0.0,
+        max=1.0,
+        default=(1.0, 0.45, 0.1, 0.8),
+        update=_redraw,
+    )
+    clean_color: bpy.props.FloatVectorProperty(
+        name="Clean",
+        description="Color in which the overlay draws the clean action",
+        subtype="COLOR_GAMMA",
+        size=4,
+        min=0.0,
+        max=1.0,
+        default=(0.2, 0.65, 1.0, 1.0),
+        update=_redraw,
+    )
+    line_width: bpy.props.FloatProperty(
+        name="Line width",
+        description="Width of the overlay's lines; higher is thicker",
+        subtype="PIXEL",
+        min=1.0,
+        max=10.0,
+        default=3.0,
+        update=_redraw,
+    )
+
+    def draw(self, context: bpy.types.Context) -> None:
+        layout = self.layout
+        layout.use_property_split = True
+        layout.use_property_decorate = False
+        for name in ("tab", "result_as"):
+            layout.prop(self, name)
+        overlay = layout.column(heading="Overlay")
+        for name in ("raw_color", "clean_color", "line_width"):
+            overlay.prop(self, name)
+        folder = bpy.utils.extension_path_user(EXTENSION)
+        if Path(folder).is_dir():
+            row = layout.row()
+            row.label(text=folder, icon="FILE_FOLDER", translate=False)
+            row.operator("wm.path_open", text="", icon="FILEBROWSER").filepath = folder
+        layout.operator("mocap_assist.reset_preferences", icon="LOOP_BACK")
+
+
+class MOCAP_OT_reset_preferences(bpy.types.Operator):
+    bl_idname = "mocap_assist.reset_preferences"
+    bl_label = "Reset"
+    bl_description = "Give all preferences of Mocap Assist their first values again"
+    bl_options: ClassVar = {"INTERNAL"}  # preferences have no undo
+
+    def execute(self, context: bpy.types.Context) -> set[str]:
+        ours = preferences()
+        for name in MOCAP_AP_preferences.__annotations__:
+            ours.property_unset(name)
+        _move_panels(ours, context)
+        _redraw(ours, context)
+        return {"FINISHED"}
+
+
+@bpy.app.handlers.persistent
+def _give_default(*_: object) -> None:
+    """Let scenes that do not say where results go, do as the preferences say."""
+    wanted = preferences().result_as
+    for scene in bpy.data.scenes:
+        clean = scene.mocap_assist.clean
+        if wanted != Output.ACTION.name and not clean.is_property_set("result_as"):
+            clean.result_as = wanted
+
+
+CLASSES = (MOCAP_AP_preferences, MOCAP_OT_reset_preferences)
+
+
+def register() -> None:
+    """Add the preferences."""
+    for each in CLASSES:
+        bpy.utils.register_class(each)
+    bpy.app.handlers.load_post.append(_give_default)
+
+
+def unregister() -> None:
+    """Take them away; Blender keeps the values while it runs."""
+    bpy.app.handlers.load_post.remove(_give_default)
+    for each in reversed(CLASSES):
+        bpy.utils.unregister_class(each)

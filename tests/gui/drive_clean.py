@@ -1,0 +1,136 @@
+"""Use the extension as an animator does, in a Blender with a window, and take pictures.
+
+    make extension-plain
+    BG_DEBS="python3-scipy python3-pil" bash ../shared/tools/blender-gui.sh run \
+        dist/mocap_assist-0.1.0-plain.zip tests/gui/drive_clean.py build/gui/clean.png
+
+Runs inside that Blender; `bgui` comes with the tool and moves a real pointer. Not a test of
+pytest's: pictures are for eyes. What can be asserted is.
+"""
+
+import tempfile
+from importlib import import_module
+from pathlib import Path
+
+import bgui
+import bpy
+
+PACKAGE = "bl_ext.user_default.mocap_assist"
+SECONDS = 20.0  # of the take: long enough to be seen being cleaned
+LOST = ("RightArm", range(120, 180))
+UNTIL_DONE = 240  # half seconds
+
+
+def import_noisy_walk():
+    """Make a walk with jitter, spikes, sliding feet and a missing arm, and import it."""
+    samples = import_module(f"{PACKAGE}.solvers.samples")
+    write_bvh = import_module(f"{PACKAGE}.solvers.recordings").write_bvh
+    walk = samples.walking_gait(samples.GaitSettings(duration=SECONDS, frame_rate=30.0))
+    wrong = samples.CorruptionSettings(
+        jitter=3.0, spikes=0.004, root_jitter=0.004, root_sway=0.03
+    )
+    path = Path(tempfile.mkdtemp()) / "walk.bvh"
+    write_bvh(samples.corrupt(walk, wrong), path)
+    with bgui.override("WINDOW"):
+        bpy.ops.import_anim.bvh(
+            filepath=str(path),
+            global_scale=0.01,
+            rotate_mode="NATIVE",
+            update_scene_fps=True,
+            update_scene_duration=True,
+        )
+    return bpy.context.view_layer.objects.active
+
+
+def lose_arm(armature):
+    """Remove the keys of one arm for two seconds."""
+    action, slot = armature.animation_data.action, armature.animation_data.action_slot
+    bone = armature.pose.bones[LOST[0]]
+    names = [bone.name, *(each.name for each in bone.children_recursive)]
+    for curve in action.layers[0].strips[0].channelbag(slot).fcurves:
+        if any(f'bones["{name}"]' in curve.data_path for name in names):
+            for key in reversed(curve.keyframe_points):
+                if round(key.co.x) in LOST[1]:
+                    curve.keyframe_points.remove(key, fast=True)
+            curve.update()
+
+
+def set_the_stage():
+    """Leave the armature alone in the scene, seen from the front, in Pose Mode."""
+    for each in list(bpy.data.objects):
+        bpy.data.objects.remove(each)
+    armature = import_noisy_walk()
+    lose_arm(armature)
+    armature.data.display_type = "STICK"
+    bpy.context.scene.frame_set(150)
+    with bgui.override("WINDOW"):
+        bpy.ops.object.mode_set(mode="POSE")
+    return armature
+
+
+def look_at_figure():
+    """Turn the view to the figure at the present frame."""
+    view = bgui.area().spaces.active.region_3d
+    hips = bpy.context.object.pose.bones[0]
+    view.view_location = bpy.context.object.matrix_world @ hips.head
+    view.view_rotation = (0.76, 0.6, 0.15, 0.2)
+    view.view_distance = 4.0
+    view.view_perspective = "ORTHO"
+
+
+def job():
+    return bpy.context.window_manager.mocap_assist_job
+
+
+def wait_until_done():
+    for _ in range(UNTIL_DONE):
+        yield 0.5
+        if not job().running:
+            return
+    raise TimeoutError("the solve did not end")
+
+
+def press(button):
+    yield from bgui.scan()
+    yield from bgui.click(*bgui.at(button))
+
+
+def names():
+    return sorted(action.name for action in bpy.data.actions)
+
+
+def steps():
+    armature = set_the_stage()
+    look_at_figure()
+    yield 0.5
+    bgui.area().spaces.active.show_region_ui = True
+    yield from bgui.open_sidebar("Mocap")
+    widen_sidebar = bgui.region().width
+    print("bgui: sidebar is", widen_sidebar, "wide")
+    bgui.shot("1-panels.png")
+    raw = armature.animation_data.action
+
+    # Esc leaves the scene as it was.
+    before = names()
+    yield from press("mocap_assist.denoise")
+    yield 1.5
+    assert job().running
+    yield from bgui.key("Escape")
+    yield 0.5
+    assert not job().running
+    assert names() == before
+    assert armature.animation_data.action == raw
+    bgui.shot("2-escaped.png")
+
+    yield from press("mocap_assist.denoise")
+    bgui.move(500, 500)
+    yield 2.5
+    assert job().running
+    bgui.shot("3-running.png")
+    yield from wait_until_done()
+    assert armature.animation_data.action != raw
+    yield 0.5
+    bgui.shot("4-cleaned.png")
+
+
+bgui.run(steps)
