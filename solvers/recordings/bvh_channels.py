@@ -61,7 +61,7 @@ class BvhChannels:
         root = z_up_from_y_up(self._places(0, self.added))
         root = np.broadcast_to(root, (len(self.rows), 3))
         turn = rotations[:, 0]
-        for joint in self._trunk():
+        for joint in self.trunk:
             strayed = self._places(joint, self.added) - offsets[joint]
             root = root + rotate(turn, z_up_from_y_up(strayed))
             turn = multiply(turn, rotations[:, joint])
@@ -138,7 +138,7 @@ class BvhChannels:
         foot.
         """
         for joint, children in enumerate(self.children):
-            if len(children) != 1 or children[0] in self._trunk():
+            if len(children) != 1 or children[0] in self.trunk:
                 continue
             places = self._places(children[0], self.added)
             if len(places) == 1:
@@ -157,12 +157,15 @@ class BvhChannels:
                 children[joint.parent].append(index)
         return children
 
-    def _trunk(self) -> list[int]:
-        """Return the joints below the root down to where the skeleton first branches."""
-        trunk = [0]
-        while len(self.children[trunk[-1]]) == 1:
-            trunk += self.children[trunk[-1]]
-        return trunk[1:]
+    @cached_property
+    def trunk(self) -> dict[int, None]:
+        """Joints below the root down to where the skeleton first branches, in this order."""
+        trunk: dict[int, None] = {}
+        joint = 0
+        while len(self.children[joint]) == 1:
+            joint = self.children[joint][0]
+            trunk[joint] = None
+        return trunk
 
 
 def _median_place(places: NDArray[np.float64]) -> NDArray[np.float64]:
