@@ -2,6 +2,7 @@
 
 import argparse
 import json
+import os
 import sys
 from collections.abc import Mapping, Sequence
 from pathlib import Path
@@ -40,6 +41,9 @@ def run(verbs: Mapping[str, Verb], words: Sequence[str], prog: str) -> int:
         return _work(verbs[arguments.verb], arguments, screen)
     except MocapAssistError as error:
         screen.say(str(error))
+        return FAILED
+    except BrokenPipeError:  # Whoever read our output, such as `head`, has seen enough.
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
         return FAILED
     except OSError as error:
         screen.say(f"{error.filename}: {error.strerror}.")

@@ -1,12 +1,13 @@
 """A file is what it holds, whatever it is called."""
 
 import shutil
+from functools import partial
 
 import pytest
 
-from solvers.errors import InvalidFileError
+from solvers.errors import InvalidFileError, SolveCancelled
 from solvers.motion import Motion, Tracks
-from solvers.recordings import read_bvh, read_recording, write_bvh
+from solvers.recordings import read_bvh, read_recording, write_bvh, write_c3d
 
 
 def test_the_name_does_not_matter(swinging_leg, tmp_path):
@@ -22,6 +23,30 @@ def test_scale_reaches_the_reader(swinging_leg, tmp_path):
     twice = read_recording(tmp_path / "leg.bvh", scale=0.02)
 
     assert twice.skeleton.height == pytest.approx(2 * swinging_leg.skeleton.height)
+
+
+@pytest.mark.parametrize("format", ["bvh", "c3d"])
+def test_progress_rises_to_the_end_and_can_stop_the_work(swinging_leg, tmp_path, format):
+    path = tmp_path / f"leg.{format}"
+    tracks = Tracks(("a",), swinging_leg.root_positions[:, None], 60.0)
+    calls = {
+        "bvh": [partial(write_bvh, swinging_leg, path), partial(read_recording, path)],
+        "c3d": [partial(write_c3d, tracks, path), partial(read_recording, path)],
+    }
+
+    for work in calls[format]:
+        told = []
+        work(progress=lambda fraction, message="", told=told: told.append(fraction))
+        assert told == sorted(told)
+        assert told[-1] == pytest.approx(1.0)
+        before = sorted(tmp_path.iterdir())
+        with pytest.raises(SolveCancelled):
+            work(progress=cancel)
+        assert sorted(tmp_path.iterdir()) == before
+
+
+def cancel(fraction: float, message: str = "") -> None:
+    raise SolveCancelled("Cancelled.")
 
 
 def test_real_files_of_each_format(recordings):
