@@ -12,7 +12,7 @@ from ..solvers.denoising import Denoised
 from . import redo
 from .clean_choices import CleanChoices, CleanSettings, Limits
 from .clean_report import clean_report, entry_of
-from .examples import read_examples
+from .examples import read_prior
 from .jobs.cleaning import Cleaned, Finish, Problem, Recordings, clean, names_of
 from .scene import history
 from .scene.armature_read import read_take
@@ -106,7 +106,7 @@ def _read(scene: bpy.types.Scene, armature: bpy.types.Object, choices: CleanChoi
 
 
 def _problem(scene: bpy.types.Scene, found: Reading, settings: CleanSettings) -> Problem:
-    examples = read_examples(scene, found.armature, settings.choices)
+    examples = read_prior(scene, found.armature, settings.choices)
     denoising = replace(settings.denoising, strength=1.0)
     return Problem(recordings=found.raw.recordings, settings=denoising, examples=examples)
 

@@ -15,23 +15,28 @@ from .scene.bone_channels import animated_curves, bone_path
 SEPARATOR = ";"
 
 
-def read_examples(
+def read_prior(
     scene: bpy.types.Scene, armature: bpy.types.Object, choices: CleanChoices
 ) -> Examples:
-    """Read the actions named among the examples; leave files to be read where it is solved.
-
-    Raises
-    ------
-    InvalidMotionError
-        Nothing was picked, or what was picked does not exist or fits no armature.
-    """
+    """Return what is to be learned from, if anything; see `read_examples`."""
     if choices.prior is Prior.TAKE:
         return Examples()
     if choices.prior is Prior.LEARNED:
         if not choices.learned_file:
             raise InvalidMotionError("Choose the file of learned patterns, or another prior.")
         return Examples(bases_file=bpy.path.abspath(choices.learned_file))
-    names = [name.strip() for name in choices.examples.split(SEPARATOR) if name.strip()]
+    return read_examples(scene, armature, choices.examples)
+
+
+def read_examples(scene: bpy.types.Scene, armature: bpy.types.Object, listed: str) -> Examples:
+    """Read the actions named in a list; leave files to be read where it is solved.
+
+    Raises
+    ------
+    InvalidMotionError
+        Nothing was picked, or what was picked does not exist or fits no armature.
+    """
+    names = [name.strip() for name in listed.split(SEPARATOR) if name.strip()]
     if not names:
         raise InvalidMotionError(
             "Pick clean actions or recordings to learn from, or let the take guide itself."

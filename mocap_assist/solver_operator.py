@@ -32,6 +32,8 @@ class SolverOperator:
     bl_options: ClassVar = {"REGISTER", "UNDO"}
     settings_group: ClassVar[str]
     """Where the sidebar keeps the settings: a property of `scene.mocap_assist`."""
+    setting_names: ClassVar[tuple[str, ...]]
+    """Supplied by the decorator `settings_from`."""
 
     def read(self, context: bpy.types.Context) -> Callable[..., Any]:
         raise NotImplementedError
@@ -43,8 +45,8 @@ class SolverOperator:
     def prepare(self, context: bpy.types.Context) -> None:
         """Take over the sidebar's settings, but for those that the caller gave."""
         shown = getattr(context.scene.mocap_assist, self.settings_group)
-        for name in type(shown).setting_names:
-            if not self.properties.is_property_set(name):
+        for name in type(self).setting_names:
+            if hasattr(shown, name) and not self.properties.is_property_set(name):
                 setattr(self, name, getattr(shown, name))
 
     def execute(self, context: bpy.types.Context) -> set[str]:

@@ -57,7 +57,9 @@ def _parser() -> SentenceParser:
             help="work on this one [default: all that are animated]",
         )
         described.add_argument(
-            "--json", action="store_true", help="print one line of JSON for each armature"
+            "--json",
+            action="store_true",
+            help="print one line of JSON for each armature, among what Blender itself prints",
         )
         if verb.writes:
             described.add_argument(
@@ -70,8 +72,9 @@ def _parser() -> SentenceParser:
 
 def _work(arguments: argparse.Namespace, screen: Screen) -> None:
     verb = VERBS[arguments.verb]
+    armatures = _armatures(arguments.armature)
     target = _target(arguments) if verb.writes else None
-    for armature in _armatures(arguments.armature):
+    for armature in armatures:
         screen.title = armature.name
         text, figures = verb.perform(bpy.context.scene, armature, arguments, screen.progress)
         screen.clear()

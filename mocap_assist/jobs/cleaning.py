@@ -144,7 +144,7 @@ def clean(
     moved = finish.chosen
     if planted is not None:
         eased = _toward(body, planted.motion, finish.ease[:, None])
-        moved |= _differing(body, eased)
+        moved |= differing(body, eased)
         body = eased
     contacts = None if planted is None else planted.contacts
     after = measure_quality(body, contacts=contacts, progress=within(progress, 0.9, 1.0))
@@ -189,7 +189,7 @@ def _first_known(values: Array, otherwise: Array) -> Array:
     return np.where(np.isfinite(values).all(axis=-1, keepdims=True), values, otherwise)
 
 
-def _differing(before: Motion, after: Motion) -> frozenset[str]:
+def differing(before: Motion, after: Motion) -> frozenset[str]:
     """Names of the joints that were turned or, the root, shifted."""
     turned = np.abs(angle_between(before.rotations, after.rotations)).max(axis=0) > SAME
     turned[0] |= np.abs(before.root_positions - after.root_positions).max() > SAME

@@ -1,0 +1,58 @@
+"""What the button Plant Feet reads from the scene, and what it writes back."""
+
+from functools import partial
+from typing import NamedTuple
+
+import bpy
+
+from ..solvers.denoising.plant_feet import PlantSettings
+from .jobs.planting import Replanted, plant
+from .scene import history
+from .scene.armature_read import read_take
+from .scene.armature_write import Output, check_writable, put_to_use, write_take
+from .scene.contacts import read_contacts, write_contacts
+from .selection import played_source
+
+
+class FeetSettings(NamedTuple):
+    """All that the button offers."""
+
+    planting: PlantSettings
+
+
+def read_planting(
+    scene: bpy.types.Scene, armature: bpy.types.Object, settings: FeetSettings
+) -> "partial[Replanted]":
+    """Read what an armature plays; return what is to be solved, which may be pickled."""
+    check_writable(armature)
+    played = played_source(armature)
+    take = read_take(armature, scene, source=played)
+    contacts = read_contacts(*played, take.frames)
+    return partial(plant, take.parts[0].motion, contacts, settings.planting)
+
+
+def write_planted(
+    scene: bpy.types.Scene,
+    armature: bpy.types.Object,
+    settings: FeetSettings,
+    result: Replanted,
+) -> str:
+    """Write the result as a new action and put it to use; return a sentence about it."""
+    played, planted = played_source(armature), result.planted
+    take = read_take(armature, scene, source=played)
+    _, *others = take.recordings
+    take = take.with_recordings((planted.motion, *others))
+    action, slot = write_take(armature, played, take, result.moved, {})
+    write_contacts(armature, action, slot, take.frames, planted.contacts)
+    entry = {
+        "operation": "plant_feet",
+        "settings": history.plain(*settings),
+        "slide_before_cm": 100 * planted.slide_before,
+        "slide_after_cm": 100 * planted.slide_after,
+    }
+    history.record(action, played, entry)
+    put_to_use(armature, action, slot, Output.ACTION)
+    return (
+        f"{action.name}: feet slid {100 * planted.slide_before:.1f} cm while they stood, now"
+        f" {100 * planted.slide_after:.1f} cm. {len(result.moved)} bones moved."
+    )
