@@ -38,7 +38,8 @@ from .report import Report
 from .tables import Scores, table
 
 QUICK_CLASS_CLIPS, FULL_CLASS_CLIPS = 2, 6
-QUICK_MARKER_GAPS, FULL_MARKER_GAPS = 8, 25
+QUICK_MARKER_GAPS, FULL_MARKER_GAPS = 6, 25
+WINDOW_CLIPS, PRIOR_CLIPS = 3, 6
 
 
 def main() -> None:
@@ -105,12 +106,12 @@ def speed(chosen: argparse.Namespace) -> list[str]:
 
 def windows(chosen: argparse.Namespace) -> list[Scores]:
     """Lengths of the patterns."""
-    return compare_windows(_walks(chosen)[:6])
+    return compare_windows(_walks(chosen)[: None if chosen.full else WINDOW_CLIPS])
 
 
 def priors(chosen: argparse.Namespace) -> list[Scores | str]:
     """Right and wrong examples."""
-    scores, said = compare_priors(_walks(chosen)[:6])
+    scores, said = compare_priors(_walks(chosen)[:PRIOR_CLIPS])
     sentences = {what: [sentence] for what, sentence in said.items()}
     return [*scores, table(["target, examples", "what it says that it used"], sentences)]
 

@@ -37,7 +37,7 @@ class Level:
 
 
 LEVELS = (
-    *(Level(sigma) for sigma in (1.0, 3.0, 5.0, 7.0)),
+    *(Level(sigma) for sigma in (0.0, 1.0, 3.0, 5.0, 7.0)),
     Level(3.0, 0.05, follows=False),
     *(Level(3.0, fraction) for fraction in (0.10, 0.15, 0.25, 0.40)),
 )
