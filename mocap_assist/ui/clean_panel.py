@@ -8,10 +8,11 @@ from ...solvers.denoising import DenoiseSettings, PlantSettings
 from ...solvers.settings import Settings
 from ..clean_choices import Prior
 from ..selection import why_not_clean
-from .drawing import draw_job, draw_sentence
+from .drawing import draw_job, draw_sentence, exists
+from .example_list import draw_examples
 
+LEARN = "mocap_assist.learn_patterns"
 MAIN = ("strength", "frame_range", "joint_limits", "result_as")
-WHERE_FROM = {Prior.EXAMPLES.name: "examples", Prior.LEARNED.name: "learned_file"}
 
 
 def folded(settings: type[Settings], shown: tuple[str, ...] = MAIN) -> list[str]:
@@ -44,11 +45,22 @@ class CleanPanel:
 def _draw_main(column: bpy.types.UILayout, clean: bpy.types.PropertyGroup) -> None:
     column.row().prop(clean, "bones", expand=True)
     column.prop(clean, "prior", text="Learn from")
-    if clean.prior in WHERE_FROM:
-        column.prop(clean, WHERE_FROM[clean.prior])
+    if clean.prior == Prior.EXAMPLES.name:
+        draw_examples(column, clean)
+    if clean.prior != Prior.TAKE.name:
+        _draw_learned(column, clean)
     for name in MAIN:
         column.prop(clean, name)
     column.prop(clean, "plant_feet")
+
+
+def _draw_learned(column: bpy.types.UILayout, clean: bpy.types.PropertyGroup) -> None:
+    """Draw the file that patterns are learned from, or that Learn can keep them in."""
+    if clean.prior == Prior.LEARNED.name:
+        column.prop(clean, "learned_file")
+    elif clean.examples and exists(LEARN):
+        column.prop(clean, "learned_file", text="Keep as")
+        column.operator(LEARN, text="Learn and Keep", icon="FILE_TICK")
 
 
 def _draw_folded(column: bpy.types.UILayout, clean: bpy.types.PropertyGroup) -> None:

@@ -6,6 +6,7 @@ import bpy
 
 LETTER = 6.2  # width of a letter of the interface, in pixels at scale 1, on average
 BORDER = 50  # of a panel, likewise
+FEWEST_LETTERS = 24  # in a line
 
 
 def exists(idname: str) -> bool:
@@ -31,8 +32,11 @@ def draw_sentence(
 
 
 def column_lines(text: str, width: float, scale: float) -> list[str]:
-    """Break a sentence into lines for a region of that many pixels."""
-    return wrap(text, max(int((width / scale - BORDER) / LETTER), 24))
+    """Break a sentence into lines for a region of that many pixels.
+
+    `scale` is the interface's; it is 0 where there is no window.
+    """
+    return wrap(text, max(int((width / (scale or 1.0) - BORDER) / LETTER), FEWEST_LETTERS))
 
 
 def draw_job(layout: bpy.types.UILayout, context: bpy.types.Context) -> bool:

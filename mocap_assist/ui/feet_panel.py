@@ -6,10 +6,11 @@ import bpy
 
 from ..scene.contacts import PROPERTIES
 from ..selection import selected_armature
-from .drawing import exists
+from .drawing import draw_sentence, exists
 
 PLANT = "mocap_assist.plant_feet"
 SIDES = ("Left foot stands", "Right foot stands")
+HINT = "Key 1 where a foot stands and 0 where it does not, then plant the feet again."
 
 
 class FeetPanel:
@@ -20,18 +21,13 @@ class FeetPanel:
 
     @classmethod
     def poll(cls, context: bpy.types.Context) -> bool:
-        return exists(PLANT) or _keyed(context)
+        return exists(PLANT)
 
     def draw(self, context: bpy.types.Context) -> None:
         layout, armature = self.layout, selected_armature(context)
-        if _keyed(context):
+        if armature is not None and all(name in armature for name in PROPERTIES):
             column = layout.column(align=True)
             for name, text in zip(PROPERTIES, SIDES, strict=True):
                 column.prop(armature, f'["{name}"]', text=text)
-        if exists(PLANT):
-            layout.operator(PLANT, icon="CON_FLOOR")
-
-
-def _keyed(context: bpy.types.Context) -> bool:
-    armature = selected_armature(context)
-    return armature is not None and all(name in armature for name in PROPERTIES)
+            draw_sentence(layout, context, bpy.app.translations.pgettext_iface(HINT))
+        layout.operator(PLANT, icon="CON_FLOOR")

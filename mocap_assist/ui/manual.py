@@ -8,6 +8,8 @@ MANUAL = Path(__file__).with_name("manual.html")
 """The one place that says where the manual is: no network is needed to read it."""
 CHAPTERS = {
     "bpy.ops.mocap_assist.denoise*": "clean",
+    "bpy.ops.mocap_assist.learn_patterns*": "clean",
+    "bpy.ops.mocap_assist.*_example*": "clean",
     "bpy.ops.mocap_assist.measure_quality*": "check",
     "bpy.ops.mocap_assist.jump_to_spot*": "check",
     "bpy.ops.mocap_assist.revert_to_raw*": "compare",

@@ -99,19 +99,8 @@ def names():
     return sorted(action.name for action in bpy.data.actions)
 
 
-def steps():
-    armature = set_the_stage()
-    look_at_figure()
-    yield 0.5
-    bgui.area().spaces.active.show_region_ui = True
-    yield from bgui.open_sidebar("Mocap")
-    widen_sidebar = bgui.region().width
-    print("bgui: sidebar is", widen_sidebar, "wide")
-    bgui.shot("1-panels.png")
-    raw = armature.animation_data.action
-
-    # Esc leaves the scene as it was.
-    before = names()
+def cancel_leaves_the_scene_as_it_was(armature):
+    raw, before = armature.animation_data.action, names()
     yield from press("mocap_assist.denoise")
     yield 1.5
     assert job().running
@@ -122,15 +111,66 @@ def steps():
     assert armature.animation_data.action == raw
     bgui.shot("2-escaped.png")
 
+
+def clean(armature):
+    raw = armature.animation_data.action
     yield from press("mocap_assist.denoise")
     bgui.move(500, 500)
-    yield 2.5
-    assert job().running
+    while job().fraction < 0.4:
+        assert job().running
+        yield 0.2
     bgui.shot("3-running.png")
     yield from wait_until_done()
-    assert armature.animation_data.action != raw
+    assert armature.animation_data.action.name == f"{raw.name}.clean"
     yield 0.5
     bgui.shot("4-cleaned.png")
 
 
-bgui.run(steps)
+def revert_and_compare(armature):
+    """Back to the recorded action; the overlay still shows both."""
+    yield from press("mocap_assist_overlay")
+    bgui.move(500, 500)
+    yield 0.5
+    bgui.shot("5-overlay.png")
+    yield from press("mocap_assist.revert_to_raw")
+    assert armature.animation_data.action.name == "walk"
+    bgui.move(500, 500)
+    yield 0.5
+    bgui.shot("6-reverted.png")
+    yield from bgui.hover(*bgui.at("mocap_assist.revert_to_raw"))
+    bgui.shot("7-greyed.png")
+
+
+def check():
+    found = bpy.context.scene.mocap_assist
+    yield from press("mocap_assist.measure_quality")
+    yield from wait_until_done()
+    assert found.spots
+    yield 0.5
+    bgui.move(500, 500)
+    bgui.shot("8-checked.png")
+    yield from press("mocap_assist.jump_to_spot(index=2)")
+    bgui.move(500, 500)
+    spot = found.spots[2]
+    assert found.active_spot == 2
+    assert bpy.context.scene.frame_current == int(spot.start)
+    assert bpy.context.active_pose_bone.name == spot.name
+    look_at_figure()
+    yield 0.5
+    bgui.shot("9-jumped.png")
+
+
+def steps():
+    armature = set_the_stage()
+    look_at_figure()
+    yield 0.5
+    bgui.area().spaces.active.show_region_ui = True
+    yield from bgui.open_sidebar("Mocap")
+    bgui.shot("1-panels.png")
+    yield from cancel_leaves_the_scene_as_it_was(armature)
+    yield from clean(armature)
+    yield from revert_and_compare(armature)
+    yield from check()
+
+
+bgui.run(steps, timeout=400)

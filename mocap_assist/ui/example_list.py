@@ -1,0 +1,141 @@
+"""The list of clean actions and recordings to learn from, and the ways to fill it."""
+
+from collections.abc import Iterable
+from pathlib import Path
+from typing import ClassVar
+
+import bpy
+
+from ..examples import SEPARATOR
+from ..scene import history
+from ..selection import selected_armature
+
+ADD, ADD_FILES = "mocap_assist.add_example", "mocap_assist.add_example_files"
+REMOVE = "mocap_assist.remove_example"
+RECORDINGS = "*.bvh;*.amc;*.c3d;*.trc"
+LONGEST_MENU = 30
+
+
+def listed(text: str) -> list[str]:
+    """Return the entries of a list as the settings keep it."""
+    return [entry.strip() for entry in text.split(SEPARATOR) if entry.strip()]
+
+
+def joined(entries: Iterable[str]) -> str:
+    """Return entries as the settings keep them, each once."""
+    return f"{SEPARATOR} ".join(dict.fromkeys(entries))
+
+
+def draw_examples(layout: bpy.types.UILayout, clean: bpy.types.PropertyGroup) -> None:
+    """Draw the examples, each with a button that takes it out."""
+    for index, name in enumerate(listed(clean.examples)):
+        row = layout.row(align=True)
+        action = name in bpy.data.actions
+        shown = name if action else Path(name).name
+        row.label(text=shown, icon="ACTION" if action else "FILE", translate=False)
+        row.operator(REMOVE, text="", icon="X", emboss=False).index = index
+    layout.menu("MOCAP_MT_examples", icon="ADD")
+
+
+def candidates(context: bpy.types.Context) -> list[str]:
+    """Return the actions that may serve: recordings and clean ones, but not the one played."""
+    armature = selected_armature(context)
+    animation = armature.animation_data if armature is not None else None
+    played = animation.action if animation is not None else None
+    taken = listed(context.scene.mocap_assist.clean.examples)
+    return [
+        action.name
+        for action in bpy.data.actions
+        if action not in {played, played and played.get(history.SOURCE)}
+        and action.name not in taken
+        and SEPARATOR not in action.name
+    ]
+
+
+class MOCAP_MT_examples(bpy.types.Menu):
+    """Actions of this file, and recordings on disk."""
+
+    bl_label = "Add Example"
+
+    def draw(self, context: bpy.types.Context) -> None:
+        layout = self.layout
+        for name in candidates(context)[:LONGEST_MENU]:
+            layout.operator(ADD, text=name, translate=False, icon="ACTION").example = name
+        layout.separator()
+        layout.operator(ADD_FILES, icon="FILE_FOLDER")
+
+
+class _ListButton:
+    """A button that changes the list."""
+
+    bl_options: ClassVar = {"INTERNAL", "UNDO"}
+
+    def change(self, entries: list[str]) -> list[str]:
+        raise NotImplementedError
+
+    def execute(self, context: bpy.types.Context) -> set[str]:
+        clean = context.scene.mocap_assist.clean
+        clean.examples = joined(self.change(listed(clean.examples)))
+        return {"FINISHED"}
+
+
+class MOCAP_OT_add_example(_ListButton, bpy.types.Operator):
+    bl_idname = ADD
+    bl_label = "Add Action"
+    bl_description = "Learn from this action too; it must be clean, and may be of another rig"
+
+    example: bpy.props.StringProperty(name="Action", description="Name of the action")
+
+    def change(self, entries: list[str]) -> list[str]:
+        return [*entries, self.example]
+
+
+class MOCAP_OT_remove_example(_ListButton, bpy.types.Operator):
+    bl_idname = REMOVE
+    bl_label = "Remove Example"
+    bl_description = "Do not learn from this one"
+
+    index: bpy.props.IntProperty(name="Example", description="Place in the list", min=0)
+
+    def change(self, entries: list[str]) -> list[str]:
+        return [name for place, name in enumerate(entries) if place != self.index]
+
+
+class MOCAP_OT_add_example_files(_ListButton, bpy.types.Operator):
+    bl_idname = ADD_FILES
+    bl_label = "Recordings on Disk..."
+    bl_description = "Learn from clean recordings on disk too, of any rig"
+
+    directory: bpy.props.StringProperty(subtype="DIR_PATH", options={"HIDDEN"})
+    files: bpy.props.CollectionProperty(
+        type=bpy.types.OperatorFileListElement, options={"HIDDEN"}
+    )
+    filter_glob: bpy.props.StringProperty(default=RECORDINGS, options={"HIDDEN"})
+
+    def invoke(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
+        context.window_manager.fileselect_add(self)
+        return {"RUNNING_MODAL"}
+
+    def change(self, entries: list[str]) -> list[str]:
+        folder = Path(self.directory)
+        return [*entries, *(str(folder / each.name) for each in self.files if each.name)]
+
+
+CLASSES = (
+    MOCAP_MT_examples,
+    MOCAP_OT_add_example,
+    MOCAP_OT_remove_example,
+    MOCAP_OT_add_example_files,
+)
+
+
+def register() -> None:
+    """Add the list's menu and buttons."""
+    for each in CLASSES:
+        bpy.utils.register_class(each)
+
+
+def unregister() -> None:
+    """Take them away."""
+    for each in reversed(CLASSES):
+        bpy.utils.unregister_class(each)

@@ -1,0 +1,138 @@
+"""The overlay's stick figures stand where Blender puts the bones."""
+
+import numpy as np
+import pytest
+from numpy.testing import assert_allclose
+
+FRAMES = (1, 17, 60)
+
+
+@pytest.fixture
+def overlay(load):
+    found = load("mocap_assist.scene.overlay")
+    found.forget()
+    return found
+
+
+def source_of(armature):
+    animation = armature.animation_data
+    return animation.action, animation.action_slot
+
+
+@pytest.mark.parametrize("mode", ["QUATERNION", "XYZ", "ZYX", "AXIS_ANGLE"])
+def test_heads_and_tails_are_those_of_blenders_own_pose(
+    blank, overlay, make_armature, animate, mode
+):
+    armature = make_armature(mode=mode)
+    animate(armature, locations=True)
+
+    figures = overlay.read_figures(armature, source_of(armature), range(1, 61))
+
+    assert set(figures.bones) == set(armature.pose.bones.keys())
+    for frame in FRAMES:
+        blank.context.scene.frame_set(frame)
+        for index, name in enumerate(figures.bones):
+            bone = armature.pose.bones[name]
+            assert_allclose(figures.heads[frame - 1, index], bone.head, atol=2e-6)
+            assert_allclose(figures.tails[frame - 1, index], bone.tail, atol=2e-6)
+
+
+def test_the_lines_are_the_bones_and_what_joins_those_that_hang_free(overlay, actor):
+    figures = overlay.figures_at(actor, source_of(actor), 17)
+
+    lines = figures.segments(17)
+
+    free = [each for each in actor.data.bones if each.parent and not each.use_connect]
+    assert lines.shape == (len(actor.data.bones) + len(free), 2, 3)
+    assert_allclose(lines[0], [figures.heads[16, 0], figures.tails[16, 0]])
+
+
+def test_before_and_after_the_action_its_ends_are_shown(overlay, actor):
+    figures = overlay.figures_at(actor, source_of(actor), 1000)
+
+    assert_allclose(figures.segments(-5), figures.segments(1))
+    assert_allclose(figures.segments(1000), figures.segments(60))
+
+
+def test_a_bone_that_is_not_recorded_and_all_below_it_are_left_out(overlay, actor):
+    action, slot = source_of(actor)
+    for curve in action.layers[0].strips[0].channelbag(slot).fcurves:
+        if '"LeftArm"' in curve.data_path:
+            for key in reversed(curve.keyframe_points):
+                if 20 <= key.co.x < 40:
+                    curve.keyframe_points.remove(key)
+            curve.update()
+
+    figures = overlay.figures_at(actor, (action, slot), 30)
+
+    whole, gapped = figures.segments(10), figures.segments(30)
+    # The tail of the arm, the whole forearm; the arm's head and its join are still known.
+    assert len(whole) - len(gapped) == 2
+
+
+def test_a_long_action_is_read_in_blocks(overlay, make_armature, animate):
+    armature = make_armature()
+    n_frames = overlay.BLOCK + 100
+    animate(armature, range(1, n_frames + 1))
+
+    first = overlay.figures_at(armature, source_of(armature), overlay.BLOCK)
+    second = overlay.figures_at(armature, source_of(armature), overlay.BLOCK + 1)
+
+    assert (len(first.heads), len(second.heads)) == (overlay.BLOCK, 100)
+    assert second.start == overlay.BLOCK + 1
+
+
+def test_raw_and_clean_are_found_from_either(blank, load, overlay, actor):
+    raw = actor.animation_data.action
+    assert overlay.raw_and_clean(actor) == ((raw, raw.slots[0]), None)
+    assert blank.ops.mocap_assist.denoise(plant_feet=False) == {"FINISHED"}
+    clean = actor.animation_data.action
+    pair = ((raw, raw.slots[0]), (clean, clean.slots[0]))
+
+    assert overlay.raw_and_clean(actor) == pair
+    assert blank.ops.mocap_assist.revert_to_raw() == {"FINISHED"}
+    assert overlay.raw_and_clean(actor) == pair
+
+
+def test_what_is_kept_holds_nothing_of_blenders(overlay, actor):
+    overlay.figures_at(actor, source_of(actor), 17)
+
+    ((key, figures),) = overlay._kept.items()
+
+    assert all(type(part) in {int, range} for part in key)
+    assert all(type(name) is str for name in figures.bones)
+
+
+@pytest.mark.parametrize("cause", ["key", "load"])
+def test_edits_and_loading_make_it_read_anew(blank, overlay, actor, cause):
+    old = overlay.figures_at(actor, source_of(actor), 17)
+    assert overlay.figures_at(actor, source_of(actor), 17) is old
+
+    if cause == "load":
+        blank.ops.wm.read_homefile(use_empty=True, use_factory_startup=True)
+        assert not overlay._kept
+        return
+    bone = actor.pose.bones["LeftArm"]
+    bone.rotation_quaternion = (0.0, 1.0, 0.0, 0.0)
+    bone.keyframe_insert("rotation_quaternion", frame=17)
+    blank.context.view_layer.update()
+
+    new = overlay.figures_at(actor, source_of(actor), 17)
+    assert np.abs(new.tails[16] - old.tails[16]).max() > 0.01
+
+
+def test_playing_on_keeps_what_was_read(blank, overlay, actor):
+    overlay.figures_at(actor, source_of(actor), 1)
+
+    for frame in FRAMES:
+        blank.context.scene.frame_set(frame)
+
+    assert len(overlay._kept) == 1
+
+
+def test_only_so_much_is_kept(overlay, actor, animate):
+    for _ in range(overlay.N_KEPT + 3):
+        animate(actor)
+        overlay.figures_at(actor, source_of(actor), 1)
+
+    assert len(overlay._kept) == overlay.N_KEPT

@@ -1,0 +1,167 @@
+"""What the sidebar shows, and when."""
+
+import dataclasses
+import typing
+
+import pytest
+
+EDITORS = {"": "VIEW_3D", "_graph": "GRAPH_EDITOR", "_dopesheet": "DOPESHEET_EDITOR"}
+PANELS = ("clean", "check", "compare", "feet")
+
+
+@pytest.mark.parametrize("suffix", EDITORS)
+@pytest.mark.parametrize("panel", PANELS)
+def test_every_panel_is_on_the_tab_mocap_of_every_editor(blank, panel, suffix):
+    kind = getattr(blank.types, f"MOCAP_PT_{panel}{suffix}")
+
+    assert kind.bl_space_type == EDITORS[suffix]
+    assert kind.bl_region_type == "UI"
+    assert kind.bl_category == "Mocap"
+
+
+def test_without_an_armature_clean_says_what_to_select(draw):
+    shown = draw("MOCAP_PT_clean")
+
+    assert "mocap_assist.denoise" in shown
+    assert "Select an armature" in " ".join(shown)
+
+
+def test_clean_offers_every_setting_of_its_button_once(blank, draw, actor):
+    clean = blank.context.scene.mocap_assist.clean
+    hidden = {"examples", "learned_file"}
+
+    shown = draw("MOCAP_PT_clean")
+
+    assert sorted(set(type(clean).setting_names) - hidden) == sorted(
+        name for name in shown if name in type(clean).setting_names
+    )
+    assert "Select an armature" not in " ".join(shown)
+
+
+def test_where_patterns_come_from_is_asked_for_only_where_it_matters(blank, draw):
+    clean = blank.context.scene.mocap_assist.clean
+    found = {}
+    for prior in ("TAKE", "EXAMPLES", "LEARNED"):
+        clean.prior = prior
+        found[prior] = draw("MOCAP_PT_clean")
+
+    assert [prior for prior in found if "MOCAP_MT_examples" in found[prior]] == ["EXAMPLES"]
+    assert [prior for prior in found if "learned_file" in found[prior]] == ["LEARNED"]
+
+
+def test_examples_are_added_from_a_menu_and_taken_out_again(blank, draw, actor):
+    clean = blank.context.scene.mocap_assist.clean
+    clean.prior = "EXAMPLES"
+    run, jump = (blank.data.actions.new(name) for name in ("run", "jump"))
+    add = blank.ops.mocap_assist.add_example
+    assert draw("MOCAP_MT_examples").count("mocap_assist.add_example") == 2
+
+    for example in (run, jump, run):
+        assert add(example=example.name) == {"FINISHED"}
+    assert clean.examples == "run; jump"
+    assert {"run", "jump", "mocap_assist.learn_patterns"} <= set(draw("MOCAP_PT_clean"))
+    assert "mocap_assist.add_example" not in draw("MOCAP_MT_examples")
+
+    assert blank.ops.mocap_assist.remove_example(index=0) == {"FINISHED"}
+    assert clean.examples == "jump"
+
+
+def test_recordings_on_disk_are_examples_too(blank, draw, tmp_path):
+    clean = blank.context.scene.mocap_assist.clean
+    clean.prior = "EXAMPLES"
+
+    done = blank.ops.mocap_assist.add_example_files(
+        directory=str(tmp_path), files=[{"name": "a.bvh"}, {"name": "b.bvh"}]
+    )
+
+    assert done == {"FINISHED"}
+    assert clean.examples == f"{tmp_path / 'a.bvh'}; {tmp_path / 'b.bvh'}"
+    assert {"a.bvh", "b.bvh"} <= set(draw("MOCAP_PT_clean"))
+
+
+def test_a_running_solve_shows_how_far_it_is(blank, draw, actor):
+    job = blank.context.window_manager.mocap_assist_job
+    job.running, job.fraction, job.message = True, 0.4, "Denoising"
+    try:
+        shown = draw("MOCAP_PT_clean")
+    finally:
+        job.running = False
+
+    assert "Denoising 40%" in shown
+    assert "Esc cancels" in shown
+
+
+def test_a_checked_take_lists_its_spots_and_ways_to_them(blank, draw, actor):
+    assert "mocap_assist.jump_to_spot" not in draw("MOCAP_PT_check")
+    found = blank.context.scene.mocap_assist
+    spot = found.spots.add()
+    spot.name, spot.start, spot.stop, spot.kind = "LeftLeg", 12.0, 15.0, "spike"
+    spot.sentence = "LeftLeg jumps at frame 12."
+
+    shown = draw("MOCAP_PT_check")
+
+    assert shown.count("mocap_assist.jump_to_spot") == 3 + 2
+    assert "LeftLeg jumps at frame 12." in " ".join(shown)
+
+
+def test_a_result_shows_its_figures_its_source_and_its_contacts(blank, draw, actor):
+    assert draw("MOCAP_PT_feet") == ["mocap_assist.plant_feet"]
+    assert blank.ops.mocap_assist.denoise() == {"FINISHED"}
+
+    assert {"Before", "After", "Spikes"} <= set(draw("MOCAP_PT_check"))
+    assert {"walk.clean", "Made from walk"} <= set(draw("MOCAP_PT_compare"))
+    assert {"mocap_contact_left", "mocap_contact_right"} <= set(draw("MOCAP_PT_feet"))
+
+
+def test_the_menu_holds_the_buttons(draw):
+    shown = draw("MOCAP_MT_clean")
+
+    assert shown[:2] == ["mocap_assist.denoise", "mocap_assist.measure_quality"]
+
+
+@pytest.mark.parametrize("group", ["clean", "check"])
+def test_the_sidebar_starts_from_the_defaults_of_the_solvers(blank, load, group):
+    shown = getattr(blank.context.scene.mocap_assist, group)
+    bundle = {
+        "clean": load("mocap_assist.clean_choices").CleanSettings,
+        "check": load("mocap_assist.check_choices").CheckSettings,
+    }[group]
+
+    for name, kind in typing.get_type_hints(bundle).items():
+        for item in dataclasses.fields(kind):
+            value = getattr(getattr(shown.settings(), name), item.name)
+            assert value == pytest.approx(item.default) or value is item.default, item.name
+
+
+def test_figures_compare_the_raw_take_with_the_last_result(load):
+    rows = load("mocap_assist.ui.figures").figure_rows([
+        {"before": {"spikes": 7, "missing_share": 0.013}, "after": {"spikes": 2}},
+        {"operation": "other"},
+        {"before": {"spikes": 2}, "after": {"spikes": 0, "missing_share": 0.0}},
+    ])
+
+    assert rows == [("Spikes", "7", "0"), ("Missing (%)", "1.3", "0.0")]
+
+
+def test_a_figure_that_is_not_known_is_a_dash(load):
+    rows = load("mocap_assist.ui.figures").figure_rows([
+        {"before": {"foot_slide_cm_per_s": None}, "after": {"foot_slide_cm_per_s": 1.25}}
+    ])
+
+    assert rows == [("Foot slide (cm/s)", "–", "1.2")]
+
+
+def test_frames_of_a_spot_are_read_as_one_says_them(load):
+    frames_text = load("mocap_assist.ui.figures").frames_text
+
+    assert frames_text(12.0, 12.0) == "12"
+    assert frames_text(12.0, 15.5) == "12 – 15.5"
+
+
+def test_a_sentence_is_broken_to_fit_the_sidebar(load):
+    lines = load("mocap_assist.ui.drawing").column_lines
+    sentence = "Select an armature that plays a captured action."
+
+    assert len(lines(sentence, 200, 1.0)) > len(lines(sentence, 400, 1.0)) == 1
+    assert lines(sentence, 800, 2.0) == lines(sentence, 400, 1.0)
+    assert " ".join(lines(sentence, 0, 1.0)) == sentence

@@ -1,0 +1,111 @@
+"""What the interface adds to Blender, it takes away again."""
+
+import re
+from fnmatch import fnmatchcase
+from urllib.parse import unquote, urlparse
+
+import bpy
+import pytest
+
+MENUS = ("VIEW3D_MT_pose", "GRAPH_MT_key", "DOPESHEET_MT_key")
+
+
+def traces():
+    """Everything of ours that Blender knows, in a form that can be compared."""
+    handlers = [
+        f"{name}: {function.__module__}"
+        for name in dir(bpy.app.handlers)
+        if isinstance(functions := getattr(bpy.app.handlers, name), list)
+        for function in functions
+        if "mocap_assist" in function.__module__
+    ]
+    entries = [
+        f"{menu}: {function.__module__}"
+        for menu in MENUS
+        for function in getattr(bpy.types, menu)._dyn_ui_initialize()
+        if "mocap_assist" in function.__module__
+    ]
+    manuals = [prefix for prefix, _ in bpy.utils.manual_map() if "mocap_assist" in prefix]
+    classes = [name for name in dir(bpy.types) if name.startswith("MOCAP_")]
+    properties = [
+        f"{owner.__name__}.{name}"
+        for owner in (bpy.types.Scene, bpy.types.WindowManager)
+        for name in dir(owner)
+        if name.startswith("mocap_assist")
+    ]
+    return handlers + entries + manuals + classes + properties
+
+
+def test_switching_off_and_on_twice_leaves_nothing_twice_and_nothing_behind(extension, blank):
+    on = traces()
+    for _ in range(2):
+        extension.unregister()
+        assert traces() == []
+        extension.register()
+        assert traces() == on
+
+
+def test_every_menu_has_one_entry():
+    assert [sum(trace.startswith(f"{menu}:") for trace in traces()) for menu in MENUS] == [
+        1
+    ] * 3
+
+
+@pytest.fixture
+def preferences(load):
+    module = load("mocap_assist.ui.preferences")
+    yield module.preferences()
+    bpy.ops.mocap_assist.reset_preferences()
+
+
+def test_the_panels_move_to_the_tab_that_the_preferences_name(blank, preferences):
+    preferences.tab = "Cleaning"
+    assert bpy.types.MOCAP_PT_clean_graph.bl_category == "Cleaning"
+
+    bpy.ops.mocap_assist.reset_preferences()
+    assert preferences.tab == "Mocap"
+    assert bpy.types.MOCAP_PT_clean_graph.bl_category == "Mocap"
+
+
+def test_scenes_without_a_choice_put_results_where_the_preferences_say(blank, preferences):
+    preferences.result_as = "NLA_TRACK"
+
+    bpy.ops.wm.read_homefile(use_empty=True, use_factory_startup=True)
+
+    assert bpy.context.scene.mocap_assist.clean.result_as == "NLA_TRACK"
+
+
+def test_a_scene_that_has_its_choice_keeps_it(blank, preferences, load):
+    preferences.result_as = "NLA_TRACK"
+    bpy.context.scene.mocap_assist.clean.result_as = "ACTION"
+
+    load("mocap_assist.ui.preferences")._give_default()
+
+    assert bpy.context.scene.mocap_assist.clean.result_as == "ACTION"
+
+
+def test_preferences_draw_each_of_them_and_a_way_back(draw, load):
+    kind = load("mocap_assist.ui.preferences").MOCAP_AP_preferences
+
+    assert draw(kind)[: len(kind.__annotations__)] == list(kind.__annotations__)
+    assert "mocap_assist.reset_preferences" in draw(kind)
+
+
+def test_every_button_has_a_chapter_that_is_in_the_shipped_manual(load):
+    manual = load("mocap_assist.ui.manual")
+    address, chapters = manual.manual_map()
+    page = manual.MANUAL.read_text(encoding="utf-8")
+    buttons = [f"bpy.ops.mocap_assist.{name}" for name in dir(bpy.ops.mocap_assist)]
+
+    assert unquote(urlparse(address).path).endswith("manual.html")
+    assert set(re.findall(r'id="(\w+)"', page)) >= {anchor[1:] for _, anchor in chapters}
+    for button in buttons:
+        assert any(fnmatchcase(button, what) for what, _ in chapters), button
+
+
+def test_tooltips_are_sentences_without_a_full_stop():
+    for name in dir(bpy.ops.mocap_assist):
+        kind = getattr(bpy.ops.mocap_assist, name).get_rna_type()
+        for described in (kind, *kind.properties):
+            assert not described.description.endswith("."), described
+        assert kind.description[:1].isupper(), name
