@@ -25,7 +25,7 @@ SKELETON = """# a made-up arm
      name upper
      direction 1 0 0
      length 10
-     axis 0 0 90 XYZ
+     axis 90 0 90 XYZ
     dof rx rz
     limits (-160.0 20.0)
            (-70.0 70.0)
@@ -82,7 +82,7 @@ def test_bones_become_joints_where_they_start(read):
 
 
 def test_turns_are_about_the_axes_of_each_bone(read):
-    """By hand: `upper` has its X axis along Y, so that rx lifts nothing but turns about Y."""
+    """By hand: C = Rz(90) Rx(90) puts X of `upper` along Y, and Z of it along X."""
     arm = read(scale=UNIT)
 
     elbow = forward_kinematics(arm).positions[:, 2] / UNIT
@@ -91,8 +91,8 @@ def test_turns_are_about_the_axes_of_each_bone(read):
     # Frame 2: Ry(90) of the bone moves X to -Z; the root's Rz(0) Ry(90) Rx(90) takes -Z by Rx
     # to Y, which Ry leaves; and Y up is our Z. The root is at (1, 20, 3), ours (1, -3, 20).
     assert_allclose(elbow[1], [1, -3, 30], atol=1e-12)
-    # Frame 3: rz turns about Z whatever the 90 degrees about Z before it: X moves to Y, up.
-    assert_allclose(elbow[2], [0, 0, 30], atol=1e-12)
+    # Frame 3: rz turns about X, along which the bone lies.
+    assert_allclose(elbow[2], [10, 0, 20], atol=1e-12)
 
 
 def test_joints_agree_with_the_model_recorded_beside_the_markers(recordings):

@@ -33,18 +33,6 @@ Frame Time: 0.0333333
 SECOND_FRAME = [[0.05, -0.07, 1.41], [0.05, -0.07, 1.71], [0.05, 0.18, 1.71]]
 
 
-@pytest.fixture
-def read(tmp_path):
-    """Read a BVH file of this text."""
-
-    def read_text(text: str | bytes, **options):
-        path = tmp_path / "take.bvh"
-        path.write_bytes(text if isinstance(text, bytes) else text.encode())
-        return read_bvh(path, **options)
-
-    return read_text
-
-
 def test_stands_up_and_faces_us(read):
     """Up (Y) becomes Z, and forward (Z) becomes -Y; centimetres become metres."""
     arm = read(ARM)
@@ -127,55 +115,6 @@ def test_a_rounded_frame_time_stands_for_a_whole_rate(read, word, rate):
     assert read(ARM.replace("0.0333333", word)).frame_rate == pytest.approx(rate, rel=1e-6)
 
 
-def test_position_channels_below_the_root(read):
-    """A joint with six channels is where they say, not at its OFFSET; it is so in Blender."""
-    text = ARM.replace("CHANNELS 3 Z", "CHANNELS 6 Xposition Yposition Zposition Z")
-    rows = "0 140 0 0 0 0 33 0 0 0 0 0\n0 140 0 0 0 0 33 0 0 0 0 0\n"
-
-    arm = read(text.split("0 140 0  ")[0] + rows)
-
-    assert_allclose(forward_kinematics(arm).positions[0, 1], [0.33, 0, 1.4], atol=1e-9)
-
-
-def test_a_root_that_stays_behind_carries_its_only_child(read):
-    """Some exporters put a fixed `reference` above the hips, and move those."""
-    text = ARM.replace("CHANNELS 3 Z", "CHANNELS 6 Xposition Yposition Zposition Z")
-    rows = (
-        "0 0 0 90 0 0 30 0 0 0 0 0\n0 0 0 90 0 0 30 500 7 0 0 0\n0 0 0 90 0 0 30 1000 9 0 0 0\n"
-    )
-
-    arm = read(text.replace("OFFSET 0 140", "OFFSET 0 0").split("0 140 0  ")[0] + rows)
-
-    # By hand: Rz(90) takes (30, 500, 7) to (-500, 30, 7).
-    elbow = forward_kinematics(arm).positions[:, 1]
-    assert_allclose(elbow, [[0, 0, 0.3], [-5, -0.07, 0.3], [-10, -0.09, 0.3]], atol=1e-9)
-
-
-def test_a_bone_turns_after_a_child_that_strays(read):
-    """Perception Neuron moves feet about the end of the shank; our shank follows."""
-    text = CHAIN.format(channels=SIX)
-    straight, bent = "0 90 0 0 0 0  0 0 0  {}  0 0 0  0\n", ["0 -40 0", "24 -32 0", "0 -40 0"]
-
-    leg = read(text + "".join(straight.format(place) for place in bent))
-
-    positions = forward_kinematics(leg).positions[1]
-    foot, toe = (positions[leg.skeleton.index(name)] for name in ("foot", "foot_end"))
-    knee = positions[leg.skeleton.index("knee")]
-    assert_allclose(foot - knee, [0.24, 0, -0.32], atol=1e-9)
-    assert_allclose(toe - foot, [0, -0.15, 0], atol=1e-9)  # The foot itself does not turn.
-
-
-def test_position_channels_that_count_from_the_offset(read):
-    """If they stood for places, the skeleton would shrink to a point."""
-    text = ARM.replace("CHANNELS 3 Z", "CHANNELS 6 Xposition Yposition Zposition Z")
-    rows = "0 1 0 0 0 0  1 0 0 0 0 0\n"
-
-    arm = read(text.split("0 140 0  ")[0] + rows)
-
-    positions = forward_kinematics(arm).positions
-    assert_allclose(positions[0, :2], [[0, 0, 1.41], [0.31, 0, 1.41]], atol=1e-9)
-
-
 def test_a_file_of_blender_stands_upright_too(read):
     """Blender writes its own axes, Z up. The same file with Y up must not be touched."""
     lying = BODY.replace("OFFSET 0 {a} {b}", "OFFSET 0 0 {h}")
@@ -185,7 +124,27 @@ def test_a_file_of_blender_stands_upright_too(read):
         body = read(text.replace("{h}", "50"))
         assert body.skeleton.height == pytest.approx(2.0)
         assert np.ptp(forward_kinematics(body).positions[0, :, 2]) == pytest.approx(2.0)
-    assert np.ptp(read(lying.replace("{h}", "50"), up="Y").skeleton.rest_positions[:, 1]) > 1.9
+    assert read(lying.replace("{h}", "50"), up="Y").skeleton.height == 0.0
+    horse = read(
+        BODY.replace("{a} {b}", "40 60"), scale=0.01
+    )  # Longer than high, all the same.
+    assert horse.skeleton.height == pytest.approx(1.6)
+
+
+@pytest.mark.parametrize(
+    ("offset", "frame", "size"),
+    [
+        ("0 50 0", "0 90 0", (0, 2, 0)),  # An actor who lies down.
+        ("0 0 50", "0 -90 0", (0, 0, 2)),  # A lying rest pose that the root stands up.
+        ("50 0 2", "0 0 -90", (0.08, 2, 0)),  # All bones along one axis, and lying down.
+    ],
+)
+def test_what_lies_is_left_lying(read, offset, frame, size):
+    text = BODY.replace("0 {a} {b}", offset).replace("\n0 0 0 0", f"\n{frame} 0")
+
+    body = read(text, scale=0.01)
+
+    assert_allclose(np.ptp(forward_kinematics(body).positions[0], axis=0), size, atol=1e-9)
 
 
 def test_names_are_made_different(read):
@@ -257,40 +216,6 @@ def test_damage_is_one_sentence_with_the_line(read, text, sentence):
         read(text)
 
 
-SIX = "CHANNELS 6 Xposition Yposition Zposition Zrotation Xrotation Yrotation"
-CHAIN = """HIERARCHY
-ROOT hips
-{{
-  OFFSET 0 90 0
-  {channels}
-  JOINT knee
-  {{
-    OFFSET 0 -45 0
-    CHANNELS 3 Zrotation Xrotation Yrotation
-    JOINT foot
-    {{
-      OFFSET 0 -40 0
-      {channels}
-      End Site
-      {{
-        OFFSET 0 0 15
-      }}
-    }}
-  }}
-  JOINT other
-  {{
-    OFFSET 10 0 0
-    CHANNELS 0
-  }}
-  JOINT third
-  {{
-    OFFSET 10 0 0
-    CHANNELS 1 Zrotation
-  }}
-}}
-MOTION
-Frame Time: 0.01
-"""
 BODY = (
     "HIERARCHY\nROOT a\n{\nOFFSET 0 0 0\nCHANNELS 3 Zrotation Xrotation Yrotation\n"
     + "".join(f"JOINT b{n}\n{{\nOFFSET 0 {{a}} {{b}}\nCHANNELS 1 Xrotation\n" for n in range(4))
