@@ -29,6 +29,8 @@ NEAR_FLOOR = 0.03
 """Metres, for a leg of 0.9 m: a foot planted farther above or below stands on something."""
 LIFTING = 0.01
 """Metres, for a leg of 0.9 m, above its usual height at which a planted sole is let rise."""
+FLUNG = 1.0
+"""Metres per second, for a leg of 0.9 m, at which a loaded sole no longer follows its ankle."""
 FLAT_TURNING = 0.6
 """Radians per second: a foot that turns faster is rolling, not resting."""
 
@@ -109,7 +111,9 @@ def planted_path(
     points = ankle[:, None] + arms
     height = np.sum(load * (points[..., 2] - standing), axis=1)
     usual = _usual_heights(height, contact)
-    held = np.repeat(within(contact)[:, None], 3, axis=1).astype(np.float64)
+    steps = _loaded_steps(points, load)
+    held = within(contact) * _sound(steps - np.diff(ankle, axis=0), rate, size)
+    held = np.repeat(held[:, None], 3, axis=1)
     held[:, 2] *= _not_lifting(np.abs(height - usual), size)
     goal, pulled = np.zeros_like(ankle), np.zeros_like(ankle)
     if floor and contact.any():
@@ -118,7 +122,6 @@ def planted_path(
             goal[:, 2] = level - height
             near = contact & (np.abs(usual - level) < NEAR_FLOOR * size)
             pulled[:-1, 2] = near[:-1] * held[:, 2]
-    steps = _loaded_steps(points, load)
     shift = smooth_correction(
         -steps * rate, held, rate, blend, hold=hold, goal=goal, pulled=pulled
     )
@@ -156,6 +159,16 @@ def _usual_heights(height: Array, contact: Flags) -> Array:
     for start, stop in runs(contact):
         usual[start:stop] = np.median(height[start:stop])
     return usual
+
+
+def _sound(turning: Array, rate: float, size: float) -> Array:
+    """Return 1 for steps in which the sole follows the ankle, towards 0 where it is flung.
+
+    No foot that stands swings its sole about the ankle at such a speed: its rotation is wrong,
+    and an ankle that made up for it would be flung in turn.
+    """
+    speed = np.linalg.norm(turning, axis=1) * rate
+    return np.asarray(np.clip(2.0 - speed / (FLUNG * size), 0.0, 1.0))
 
 
 def _not_lifting(rise: Array, size: float) -> Array:

@@ -61,9 +61,8 @@ def disturbance(signal: Array, half_window: int, smallest: float) -> Disturbance
     """Compare a signal with a robust local quadratic through its neighbourhood.
 
     Around each frame a parabola is fitted by iteratively reweighted least squares (Cleveland
-    1979, LOWESS, doi:10.1080/01621459.1979.10481038) with tricube weights over time; the
-    bisquare weights that reject outliers start wide and narrow down, so that a bad start
-    cannot hide a spike. The components of one frame share one weight.
+    1979, LOWESS, doi:10.1080/01621459.1979.10481038) with tricube weights over time and
+    bisquare weights that reject outliers. The components of one frame share one weight.
 
     Parameters
     ----------
@@ -79,12 +78,11 @@ def disturbance(signal: Array, half_window: int, smallest: float) -> Disturbance
     window = (1.0 - np.abs(offsets) ** 3) ** 3
     weights = known.astype(np.float64)
     residual = signal
-    for refit in range(N_REFITS):
+    for _ in range(N_REFITS):
         residual = signal - _local_fit(signal, weights, offsets, window)
         distance = np.linalg.norm(residual, axis=1)
         cut = TUKEY * MAD_TO_SIGMA * _median(distance[known])
-        cut = max(cut, smallest) * 4.0 ** max(0, N_REFITS // 2 - refit)
-        weights = known * np.maximum(0.0, 1.0 - (distance / cut) ** 2) ** 2
+        weights = known * np.maximum(0.0, 1.0 - (distance / max(cut, smallest)) ** 2) ** 2
     residual = np.where(known[:, None], residual, np.nan)
     noise = rough_noise(np.where(weights[:, None] > 0.0, signal, np.nan))
     return Disturbance(residual, float(np.sqrt(np.mean(noise**2))))

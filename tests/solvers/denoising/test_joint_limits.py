@@ -158,8 +158,10 @@ def test_limits_learned_on_one_rig_hold_on_another(walk):
     """The other rig rests with lowered arms, and calls its joints otherwise."""
     lowered, names = rested_otherwise(walk)
     limits = learn_joint_limits([walk])
+    back = learn_joint_limits([lowered])
 
     assert limit_excess(lowered, limits).max() < 1e-6
+    assert limit_excess(walk, back).max() < 1e-6
     assert set(names).isdisjoint(walk.skeleton.names)
     here = limit_excess(bent_back(walk, "LeftForeArm"), limits)
     there = limit_excess(bent_back(lowered, "lowerarm_l"), limits)

@@ -59,6 +59,27 @@ def test_a_quick_but_honest_movement_is_no_spike():
     assert not disturbance(course, 14, smallest=0.1).spikes(0.1).any()
 
 
+@pytest.mark.parametrize("seed", range(8))
+def test_a_lasting_change_is_no_spike(seed):
+    """A cut between two takes jumps, but not back."""
+    noise = np.random.default_rng(seed).normal(scale=0.01, size=(300, 3))
+    course = np.sin(np.arange(300.0) / 30.0)[:, None] + noise
+    course[150:] += [0.5, 0.0, 0.0]
+
+    assert not disturbance(course, 8, smallest=0.05).spikes(0.1).any()
+
+
+def test_spikes_are_told_apart_where_a_third_of_the_frames_are_spikes(rng):
+    course = np.sin(np.arange(1200) / 15.0)[:, None] + rng.normal(scale=0.02, size=(1200, 3))
+    hit = rng.random(1200) < 0.33
+    course[hit] += rng.normal(scale=0.8, size=(hit.sum(), 3))
+
+    found = disturbance(course, 8, smallest=0.05).spikes(0.15)
+
+    assert (found & hit).sum() > 0.75 * hit.sum()
+    assert (found & ~hit).sum() < 0.01 * (~hit).sum()
+
+
 def test_shaking_is_where_the_noise_is(rng):
     """White noise of known size in the second half of a 2 Hz swing sampled at 30 Hz."""
     time = np.arange(600) / 30.0

@@ -39,6 +39,18 @@ def test_a_spike_is_named_with_its_place_and_size(swinging_leg):
     assert spot.severity > 3.0
 
 
+def test_spikes_in_quick_succession_are_one_spot(swinging_leg):
+    rotations = swinging_leg.rotations.copy()
+    jump = quaternion_from_rotation_vector([0.0, np.radians(40.0), 0.0])
+    for frame in (60, 66):
+        rotations[frame, 1] = multiply(rotations[frame, 1], jump)
+
+    (spot,) = find_worst_spots(swinging_leg.with_poses(rotations))
+
+    assert (spot.start_frame, spot.stop_frame) == (60, 67)
+    assert spot.sentence.startswith("knee jumps 2 times, by up to ")
+
+
 def test_a_gap_is_worse_the_longer_it_is(swinging_leg):
     rotations = swinging_leg.rotations.copy()
     rotations[10:20, 2] = np.nan

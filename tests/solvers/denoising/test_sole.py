@@ -1,0 +1,64 @@
+"""Which part of the sole carries the foot."""
+
+import numpy as np
+import pytest
+from numpy.testing import assert_allclose
+
+from solvers.denoising.feet import find_legs
+from solvers.denoising.sole import loads, sole_points, standing_heights
+from solvers.motion import HumanoidMap, Motion, Skeleton, forward_kinematics
+from solvers.samples import GaitSettings, walking_gait
+
+
+def test_heel_ball_and_tip_are_level_in_a_flat_footed_rest_pose():
+    walk = walking_gait(GaitSettings(duration=1.0, frame_rate=30.0))
+    rest = walk.with_poses(np.tile([1.0, 0, 0, 0], (30, walk.n_joints, 1)))
+
+    for leg in find_legs(walk.skeleton):
+        points = sole_points(walk.skeleton, forward_kinematics(rest), leg)[0]
+        assert points.shape == (3, 3)
+        assert np.ptp(points[:, 2]) < 1e-9
+        assert (np.diff(points[:, 1]) < 0).all()  # from heel to tip, facing -Y
+
+
+def test_a_foot_without_toes_ends_in_its_end_site():
+    names = ("hips", "thigh_l", "calf_l", "foot_l", "foot_l_end")
+    offsets = np.array([[0, 0, 0.9], [0.1, 0, 0], [0, 0, -0.4], [0, 0, -0.4], [0, -0.15, -0.1]])
+    skeleton = Skeleton(names, (-1, 0, 1, 2, 3), offsets)
+    still = Motion(skeleton, np.tile([1.0, 0, 0, 0], (1, 5, 1)), offsets[:1], 30.0)
+    roles = {"leftUpperLeg": "thigh_l", "leftLowerLeg": "calf_l", "leftFoot": "foot_l"}
+    (leg,) = find_legs(skeleton, HumanoidMap(roles))
+
+    points = sole_points(skeleton, forward_kinematics(still), leg)
+
+    assert_allclose(points[0], [[0.1, 0.03, 0.0], [0.1, -0.15, 0.0]], atol=1e-9)
+
+
+def test_how_high_a_resting_heel_is_drawn_is_measured():
+    """Still from frame 20 on, with the heel drawn 3 cm too high and the tip 1 cm too low."""
+    points = np.zeros((60, 3, 3))
+    points[..., 2] = [0.03, 0.0, -0.01]
+    points[:20, :, 0] = np.arange(20)[::-1, None] * 0.05
+
+    heights = standing_heights(points, np.arange(60) >= 15, 60.0)
+
+    assert_allclose(heights, [0.03, 0.0, -0.01], atol=1e-9)
+
+
+@pytest.mark.parametrize(
+    ("heights", "carries"),
+    [((0.0, 0.06, 0.08), 0), ((0.06, 0.0, 0.0), 1), ((0.1, 0.05, 0.0), 2)],
+)
+def test_the_lowest_point_carries(heights, carries):
+    load = loads(np.tile(np.array(heights), (10, 1)), 60.0, 1.0)
+
+    assert_allclose(load.sum(axis=1), 1.0)
+    assert (load.argmax(axis=1) == carries).all()
+    assert load[:, carries].min() > 0.8
+
+
+def test_a_level_foot_stands_on_heel_and_ball_rather_than_on_its_trembling_toes():
+    load = loads(np.zeros((10, 3)), 60.0, 1.0)
+
+    assert_allclose(load[:, 0], load[:, 1])
+    assert load[0, 2] < 0.1
