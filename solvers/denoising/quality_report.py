@@ -70,7 +70,7 @@ def _row(signal: Signal, quality: "Quality", jitter: float) -> tuple[str, ...]:
     noise = (
         f"{np.degrees(signal.noise):.2f} deg"
         if signal.turns
-        else f"{1e3 * signal.noise:.1f} mm"
+        else f"{1e3 * signal.noise:.2f} mm"
     )
     missing = signal.gaps.mean()
     return (
