@@ -42,7 +42,7 @@ class Wheel(NamedTuple):
 
     @classmethod
     def from_path(cls, path: str) -> "Wheel":
-        """Read a name such as ./wheels/c3d-0.6.0-py3-none-any.whl."""
+        """Read a name such as ./wheels/scipy-1.15.3-cp311-cp311-win_amd64.whl."""
         name, version, python, _, platform = Path(path).stem.split("-")
         return cls(python, platform, name, version, Path(path).name)
 
