@@ -16,7 +16,7 @@ from .bone_channels import (
     sampled_rotation,
 )
 from .compat import Source
-from .curves import write_values
+from .curves import Channel, write_values
 from .rotation_modes import channels_from_quaternions
 from .take import ArmatureTake
 
@@ -120,10 +120,10 @@ def _copy(
 
 
 def _write(
-    curves: Mapping[int, bpy.types.FCurve],
+    channels: Mapping[int, Channel],
     frames: Array,
     values: Array,
     types: NDArray[np.uint8] | None,
 ) -> None:
-    for index, curve in curves.items():
-        write_values(curve, frames, values[:, index], types)
+    for index, channel in channels.items():
+        write_values(channel.curve, frames, values[:, index], types)

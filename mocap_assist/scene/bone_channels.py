@@ -8,21 +8,23 @@ from numpy.typing import NDArray
 
 from ...solvers.motion.rotations import multiply, rotate
 from . import compat
-from .curves import is_on, read_keys, read_values
+from .curves import Channel
 from .gaps import unobserved
 from .rig import Placement, placement_of
 from .rotation_modes import quaternions_from_channels, rotation_property
 from .take import BoneChannels
 
 Array = NDArray[np.float64]
-Curves = Mapping[tuple[str, int], bpy.types.FCurve]
+Curves = Mapping[tuple[str, int], Channel]
 
 
 def animated_curves(action: bpy.types.Action, slot: bpy.types.ActionSlot) -> Curves:
     """Return the slot's F-Curves that are not muted, by data path and index."""
     bag = compat.channelbag(action, slot)
-    curves = () if bag is None else bag.fcurves
-    return {(curve.data_path, curve.array_index): curve for curve in curves if is_on(curve)}
+    channels = map(Channel, () if bag is None else bag.fcurves)
+    return {
+        (each.curve.data_path, each.curve.array_index): each for each in channels if each.is_on
+    }
 
 
 def bone_path(bone: str, name: str) -> str:
@@ -46,19 +48,19 @@ def read_bone(bone: bpy.types.PoseBone, curves: Curves, frames: Array) -> BoneCh
     return BoneChannels(rotations, locations, bool(turning), bool(shifting))
 
 
-def rotation_curves(bone: bpy.types.PoseBone, curves: Curves) -> dict[int, bpy.types.FCurve]:
+def rotation_curves(bone: bpy.types.PoseBone, curves: Curves) -> dict[int, Channel]:
     """Return the F-Curves of the bone's own rotation mode, by channel."""
     name, n_channels = rotation_property(bone.rotation_mode)
     return _found(curves, bone_path(bone.name, name), n_channels)
 
 
-def location_curves(bone: bpy.types.PoseBone, curves: Curves) -> dict[int, bpy.types.FCurve]:
+def location_curves(bone: bpy.types.PoseBone, curves: Curves) -> dict[int, Channel]:
     """Return the F-Curves of the bone's location, by axis."""
     return _found(curves, bone_path(bone.name, "location"), 3)
 
 
 def sampled_rotation(
-    bone: bpy.types.PoseBone, turning: Mapping[int, bpy.types.FCurve], frames: Array
+    bone: bpy.types.PoseBone, turning: Mapping[int, Channel], frames: Array
 ) -> Array:
     """Return the rotation channels at each frame, shape (n_frames, 3 or 4)."""
     name, _ = rotation_property(bone.rotation_mode)
@@ -88,20 +90,20 @@ def read_space(armature: bpy.types.Object, curves: Curves, frames: Array) -> Pla
     return Placement(multiply(turn, turns), size * rotate(turn, places) + origin, scale)
 
 
-def _found(curves: Curves, path: str, n_channels: int) -> dict[int, bpy.types.FCurve]:
+def _found(curves: Curves, path: str, n_channels: int) -> dict[int, Channel]:
     return {
         index: curves[path, index] for index in range(n_channels) if (path, index) in curves
     }
 
 
-def _sampled(curves: Mapping[int, bpy.types.FCurve], present: object, frames: Array) -> Array:
+def _sampled(curves: Mapping[int, Channel], present: object, frames: Array) -> Array:
     values = np.tile(np.array(present, dtype=np.float64), (len(frames), 1))
-    for index, curve in curves.items():
-        values[:, index] = read_values(curve, frames)
+    for index, channel in curves.items():
+        values[:, index] = channel.values(frames)
     return values
 
 
-def _gaps(curves: Mapping[int, bpy.types.FCurve], frames: Array) -> NDArray[np.bool_]:
-    if not curves:
+def _gaps(curves: Mapping[int, Channel], frames: Array) -> NDArray[np.bool_]:
+    if not curves or all(channel.keyed_at(frames) for channel in curves.values()):
         return np.zeros(len(frames), bool)
-    return unobserved([read_keys(curve) for curve in curves.values()], frames)
+    return unobserved([channel.keys for channel in curves.values()], frames)

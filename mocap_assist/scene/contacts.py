@@ -6,7 +6,7 @@ from numpy.typing import NDArray
 
 from . import compat
 from .bone_channels import animated_curves
-from .curves import CONSTANT, read_keys, read_values, write_values
+from .curves import CONSTANT, write_values
 
 PROPERTIES = ("mocap_contact_left", "mocap_contact_right")
 GROUP = "Foot contacts"
@@ -22,11 +22,11 @@ def read_contacts(
     """
     curves = animated_curves(action, slot)
     keyed = [curves.get((_path(name), 0)) for name in PROPERTIES]
-    for curve in keyed:
-        times = np.empty(0) if curve is None else read_keys(curve)[:, 0]
+    for channel in keyed:
+        times = np.empty(0) if channel is None else channel.keys[:, 0]
         if not len(times) or times[0] > frames[0] or times[-1] < frames[-1]:
             return None
-    return np.stack([read_values(curve, frames) > 0.5 for curve in keyed], axis=1)
+    return np.stack([channel.values(frames) > 0.5 for channel in keyed], axis=1)
 
 
 def write_contacts(

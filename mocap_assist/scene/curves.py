@@ -1,10 +1,13 @@
 """Keys of F-Curves in bulk, as arrays: never one key at a time."""
 
+from functools import cached_property
+
 import bpy
 import numpy as np
 from numpy.typing import NDArray
 
 Array = NDArray[np.float64]
+Rows = dict[str, NDArray[np.generic]]
 
 CONSTANT, LINEAR = 0, 1  # Blender's numbers for interpolation
 MEASURED, GENERATED = 0, 5  # and for its key types KEYFRAME and GENERATED
@@ -19,32 +22,50 @@ KEY = {
 }  # fmt: skip
 
 
-def is_on(curve: bpy.types.FCurve) -> bool:
-    """Whether the curve animates anything: neither it nor its group is muted."""
-    return not (curve.mute or (curve.group is not None and curve.group.mute))
+class Channel:
+    """An F-Curve and its keys, which are read once, when they are asked for."""
 
+    def __init__(self, curve: bpy.types.FCurve) -> None:
+        self.curve = curve
 
-def read_keys(curve: bpy.types.FCurve) -> Array:
-    """Return the keys in order of time, shape (n_keys, 2): frame and value."""
-    keys = np.empty(2 * len(curve.keyframe_points), np.float32)
-    curve.keyframe_points.foreach_get("co", keys)
-    return keys.reshape(-1, 2).astype(np.float64)
+    @property
+    def is_on(self) -> bool:
+        """Whether the curve animates anything: neither it nor its group is muted."""
+        group = self.curve.group
+        return not (self.curve.mute or (group is not None and group.mute))
 
+    @cached_property
+    def keys(self) -> Array:
+        """Frame and value of the keys in order of time, shape (n_keys, 2)."""
+        keys = np.empty(2 * len(self.curve.keyframe_points), np.float32)
+        self.curve.keyframe_points.foreach_get("co", keys)
+        return keys.reshape(-1, 2).astype(np.float64)
 
-def read_values(curve: bpy.types.FCurve, frames: Array) -> Array:
-    """Return the curve's value at each frame, shape (n_frames,).
+    def keyed_at(self, frames: Array) -> bool:
+        """Whether there is one key on each of the frames, and no other."""
+        times = self.keys[:, 0]
+        return len(times) == len(frames) and bool((np.abs(times - frames) <= ON_FRAME).all())
 
-    Keys that lie on the frames are taken as they are. Between keys, beyond them and on curves
-    with modifiers, Blender evaluates.
-    """
-    keys = read_keys(curve)
-    if not len(keys) or len(curve.modifiers):
-        return _evaluated(curve, frames)
-    place = np.searchsorted(keys[:, 0], frames - ON_FRAME).clip(max=len(keys) - 1)
-    values = keys[place, 1]
-    between = np.abs(keys[place, 0] - frames) > ON_FRAME
-    values[between] = _evaluated(curve, frames[between])
-    return values
+    def values(self, frames: Array) -> Array:
+        """Return the value at each frame, shape (n_frames,).
+
+        Keys that lie on the frames are taken as they are. Between keys, beyond them and on
+        curves with modifiers, Blender evaluates.
+        """
+        if len(self.curve.modifiers) or len(frames) == 1 or not len(self.keys):
+            return self._evaluated(frames)
+        if self.keyed_at(frames):
+            return self.keys[:, 1]
+        times, values = self.keys.T
+        place = np.searchsorted(times, frames - ON_FRAME).clip(max=len(times) - 1)
+        between = np.abs(times[place] - frames) > ON_FRAME
+        found = values[place]
+        found[between] = self._evaluated(frames[between])
+        return found
+
+    def _evaluated(self, frames: Array) -> Array:
+        values = map(self.curve.evaluate, frames.tolist())
+        return np.fromiter(values, np.float64, len(frames))
 
 
 def write_values(
@@ -61,29 +82,38 @@ def write_values(
     """
     for modifier in reversed(curve.modifiers):
         curve.modifiers.remove(modifier)
-    points, start, stop = curve.keyframe_points, frames[0] - ON_FRAME, frames[-1] + ON_FRAME
-    times = read_keys(curve)[:, 0]
-    before, after = np.searchsorted(times, [start, stop])
-    kept = np.r_[:before, after : len(times)]
-    columns = {name: _column(points, name)[kept] for name in KEY} if len(kept) else {}
+    points = curve.keyframe_points
+    before, after = _kept_outside(points, frames)
     points.clear()
-    points.add(len(kept) + len(frames))
+    points.add(len(before["co"]) + len(frames) + len(after["co"]))
     new = {
         "co": np.column_stack([frames, values]),
-        "interpolation": np.full(len(frames), interpolation),
-        "type": np.full(len(frames), MEASURED) if types is None else types,
+        "interpolation": np.full((len(frames), 1), interpolation),
     }
-    for name in KEY if len(kept) else new:
+    if types is not None:
+        new["type"] = types[:, None]
+    alone = not (len(before["co"]) or len(after["co"]))
+    for name in new if alone else KEY:
         width, usual = KEY[name]
-        rows = new.get(name, np.full((len(frames), width), usual)).reshape(-1, width)
-        if len(kept):
-            rows = np.concatenate([columns[name][:before], rows, columns[name][before:]])
-        points.foreach_set(name, rows.astype(_kind(name)).ravel())
+        rows = new.get(name, np.full((len(frames), width), usual)).astype(_kind(name))
+        if not alone:
+            rows = np.concatenate([before[name], rows, after[name]])
+        points.foreach_set(name, rows.ravel())
     curve.update()
 
 
-def _evaluated(curve: bpy.types.FCurve, frames: Array) -> Array:
-    return np.fromiter(map(curve.evaluate, frames.tolist()), np.float64, len(frames))
+def _kept_outside(points: bpy.types.FCurveKeyframePoints, frames: Array) -> tuple[Rows, Rows]:
+    """Everything about the keys before and after the frames, by the name in KEY."""
+    start, stop = frames[0] - ON_FRAME, frames[-1] + ON_FRAME
+    if not len(points) or (points[0].co.x >= start and points[-1].co.x <= stop):
+        nothing = {name: np.empty((0, width)) for name, (width, _) in KEY.items()}
+        return nothing, nothing
+    whole = {name: _column(points, name) for name in KEY}
+    first, last = np.searchsorted(whole["co"][:, 0], [start, stop])
+    return (
+        {name: column[:first] for name, column in whole.items()},
+        {name: column[last:] for name, column in whole.items()},
+    )
 
 
 def _column(points: bpy.types.FCurveKeyframePoints, name: str) -> NDArray[np.generic]:

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...solvers.errors import InvalidMotionError
-from .curves import ON_FRAME, read_keys
+from .curves import ON_FRAME, Channel
 
 Array = NDArray[np.float64]
 WIDEST_STEP = (
@@ -29,7 +29,7 @@ class FrameRange(Enum):
 
 
 def range_bounds(
-    choice: FrameRange, scene: bpy.types.Scene, curves: Sequence[bpy.types.FCurve]
+    choice: FrameRange, scene: bpy.types.Scene, channels: Sequence[Channel]
 ) -> tuple[float, float]:
     """Return the first and last frame of a range.
 
@@ -48,7 +48,7 @@ def range_bounds(
             )
         return float(scene.frame_preview_start), float(scene.frame_preview_end)
     if choice is FrameRange.SELECTED_KEYS:
-        selected = [_selected_keys(curve) for curve in curves]
+        selected = [_selected_keys(channel) for channel in channels]
         times = np.concatenate([np.empty(0), *selected])
         if not len(times):
             raise InvalidMotionError(
@@ -67,11 +67,11 @@ class Grid(NamedTuple):
     step: float
     """Frames from one to the next."""
     joins: tuple[bool, bool]
-    """Whether the curves go on before the first frame, and after the last."""
+    """Whether there are keys before the first frame, and after the last."""
 
 
-def key_grid(curves: Sequence[bpy.types.FCurve], bounds: tuple[float, float]) -> Grid:
-    """Return the frames within `bounds` on which the curves have their keys.
+def key_grid(channels: Sequence[Channel], bounds: tuple[float, float]) -> Grid:
+    """Return the frames within `bounds` on which the channels have their keys.
 
     A take keyed four times a frame, or at .5 of every frame, or on every second one, is read
     where its keys are; where keys follow no grid, or are far apart, on every whole frame.
@@ -81,7 +81,7 @@ def key_grid(curves: Sequence[bpy.types.FCurve], bounds: tuple[float, float]) ->
     InvalidMotionError
         There are no keys, or none within the bounds.
     """
-    times = [read_keys(curve)[:, 0] for curve in curves]
+    times = [channel.keys[:, 0] for channel in channels]
     longest = max(times, key=len, default=np.empty(0))
     if not len(longest):
         raise InvalidMotionError("The action has no keys on this armature's bones.")
@@ -114,7 +114,7 @@ def _grid_of(times: Array) -> tuple[float, float]:
     return 1.0, float(np.ceil(times[0] - ON_FRAME))
 
 
-def _selected_keys(curve: bpy.types.FCurve) -> Array:
-    selected = np.empty(len(curve.keyframe_points), bool)
-    curve.keyframe_points.foreach_get("select_control_point", selected)
-    return read_keys(curve)[selected, 0]
+def _selected_keys(channel: Channel) -> Array:
+    selected = np.empty(len(channel.keys), bool)
+    channel.curve.keyframe_points.foreach_get("select_control_point", selected)
+    return channel.keys[selected, 0]

@@ -16,9 +16,9 @@ from .take import BoneChannels
 
 Array = NDArray[np.float64]
 
-BLOCK = 1024
-"""Frames that are read at once: bounded memory, and a short wait on any take."""
-N_KEPT = 8
+BLOCK = 2**19
+"""Poses of one bone that are read at once: 12 MB. Most takes are a single block."""
+N_KEPT = 4
 """Blocks that are kept."""
 
 
@@ -32,13 +32,13 @@ class Figures:
     start: int
     """Scene frame of the first row."""
     bones: tuple[str, ...]
-    heads: Array
+    heads: NDArray[np.float32]
     """Shape (n_frames, n_bones, 3), in the armature's unit."""
-    tails: Array
+    tails: NDArray[np.float32]
     joins: tuple[tuple[int, int], ...]
     """Pairs of bones whose heads are drawn joined: a bone that hangs free, and its parent."""
 
-    def segments(self, frame: float) -> Array:
+    def segments(self, frame: float) -> NDArray[np.float32]:
         """Return the lines at a frame, or at the nearest one: shape (n_lines, 2, 3), no NaN."""
         row = min(max(round(frame) - self.start, 0), len(self.heads) - 1)
         heads, tails = self.heads[row], self.tails[row]
@@ -67,7 +67,8 @@ def read_figures(armature: bpy.types.Object, source: Source, frames: range) -> F
         if rig.parents[bone] in place and not rig.connected[bone]
     )
     names = tuple(rig.bones[bone] for bone in keyed)
-    return Figures(frames.start, names, heads[:, keyed], tails[:, keyed], joins)
+    single = (each[:, keyed].astype(np.float32) for each in (heads, tails))
+    return Figures(frames.start, names, *single, joins)
 
 
 def raw_and_clean(armature: bpy.types.Object) -> tuple[Source | None, Source | None]:
@@ -83,7 +84,11 @@ def raw_and_clean(armature: bpy.types.Object) -> tuple[Source | None, Source | N
     if animation is None or animation.action is None or animation.action_slot is None:
         return None, None
     raw = (animation.action, animation.action_slot)
-    results = [each for each in bpy.data.actions if history.raw_of(each) == raw]
+    results = [
+        each
+        for each in bpy.data.actions
+        if each.get(history.SOURCE) == raw[0] and history.raw_of(each) == raw
+    ]
     newest = max(results, key=lambda each: each.session_uid, default=None)
     if newest is None:
         return raw, None
@@ -106,11 +111,12 @@ _kept: dict[_Key, Figures] = {}
 def figures_at(armature: bpy.types.Object, source: Source, frame: float) -> Figures:
     """Return the figures around a frame; read once, then kept until `forget`."""
     action, slot = source
-    key = _Key(armature.session_uid, action.session_uid, slot.handle, _block(action, frame))
+    frames = _block(action, frame, len(armature.data.bones))
+    key = _Key(armature.session_uid, action.session_uid, slot.handle, frames)
     if key not in _kept:
         while len(_kept) >= N_KEPT:
             del _kept[next(iter(_kept))]
-        _kept[key] = read_figures(armature, source, key.frames)
+        _kept[key] = read_figures(armature, source, frames)
     return _kept[key]
 
 
@@ -119,12 +125,13 @@ def forget() -> None:
     _kept.clear()
 
 
-def _block(action: bpy.types.Action, frame: float) -> range:
+def _block(action: bpy.types.Action, frame: float, n_bones: int) -> range:
     """Return the block of whole frames of the action that a frame is in, or is nearest to."""
+    length = max(BLOCK // n_bones, 1)
     first, last = (round(each) for each in action.curve_frame_range)
     inside = min(max(round(frame), first), last)
-    start = first + (inside - first) // BLOCK * BLOCK
-    return range(start, min(start + BLOCK, last + 1))
+    start = first + (inside - first) // length * length
+    return range(start, min(start + length, last + 1))
 
 
 def _pose(rig: Rig, channels: list[BoneChannels]) -> tuple[Array, Array]:

@@ -13,6 +13,9 @@ from . import overlay
 
 Color = tuple[float, float, float, float]
 
+PAUSE = 0.3
+"""Seconds without an edit after which keys are read anew."""
+
 _handle: list[Any] = []
 
 
@@ -29,6 +32,8 @@ def stop() -> None:
     for each in _REPLACING:
         each.remove(_replaced)
     handlers.depsgraph_update_post.remove(_changed)
+    if bpy.app.timers.is_registered(refresh):
+        bpy.app.timers.unregister(refresh)
     SpaceView3D.draw_handler_remove(_handle.pop(), "WINDOW")
     forget()
 
@@ -41,7 +46,8 @@ def forget() -> None:
 def draw(context: bpy.types.Context, colors: tuple[Color, Color], width: float) -> None:
     """Draw what the active armature's actions, raw and clean, show at the present frame."""
     armature = context.view_layer.objects.active
-    if armature is None or armature.type != "ARMATURE" or not context.space_data.overlay:
+    shown = context.space_data.overlay.show_overlays
+    if armature is None or armature.type != "ARMATURE" or not shown:
         return
     frame = context.scene.frame_current_final
     for source, color in zip(overlay.raw_and_clean(armature), colors, strict=True):
@@ -71,10 +77,22 @@ def _draw_lines(lines: np.ndarray, matrix: Any, color: Color, width: float) -> N
 
 @handlers.persistent
 def _changed(scene: bpy.types.Scene, depsgraph: bpy.types.Depsgraph) -> None:
-    """Keys or rest poses were edited."""
+    """Keys or rest poses were edited: read them anew, but not while they are being dragged."""
     kinds = (bpy.types.Action, bpy.types.Armature)
-    if any(isinstance(update.id, kinds) for update in depsgraph.updates):
-        forget()
+    if not any(isinstance(update.id, kinds) for update in depsgraph.updates):
+        return
+    if bpy.app.timers.is_registered(refresh):
+        bpy.app.timers.unregister(refresh)
+    bpy.app.timers.register(refresh, first_interval=PAUSE)
+
+
+def refresh() -> None:
+    """Read anew, and draw every 3D View again."""
+    forget()
+    for window in bpy.context.window_manager.windows:
+        for area in window.screen.areas:
+            if area.type == "VIEW_3D":
+                area.tag_redraw()
 
 
 @handlers.persistent
