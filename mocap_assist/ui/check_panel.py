@@ -4,7 +4,7 @@ import bpy
 
 from ..scene import history
 from ..selection import selected_armature
-from .drawing import draw_sentence, exists
+from .drawing import draw_sentence, exists, is_wide
 from .figures import figure_rows, frames_text
 
 CHECK, JUMP = "mocap_assist.measure_quality", "mocap_assist.jump_to_spot"
@@ -24,12 +24,13 @@ class MOCAP_UL_spots(bpy.types.UIList):
     def draw_item(
         self, context, layout, data, item, icon, active_data, active_property, index
     ) -> None:
-        row = layout.split(factor=0.5)
+        row = layout.split(factor=0.55)
         frames = frames_text(item.start, item.stop)
         _jump(row, index, item.name, ICONS.get(item.kind, "ERROR"))
-        row = row.split(factor=0.5)
+        if is_wide(context):
+            row = row.split(factor=0.5)
+            _jump(row, index, item.kind, "NONE")
         _jump(row, index, frames, "NONE")
-        _jump(row, index, item.kind, "NONE")
 
 
 class CheckPanel:

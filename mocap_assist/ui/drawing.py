@@ -6,6 +6,7 @@ import bpy
 
 LETTER = 6.2  # width of a letter of the interface, in pixels at scale 1, on average
 BORDER = 50  # of a panel, likewise
+WIDE = 340  # pixels; Blender's sidebars are narrower at first
 FEWEST_LETTERS = 24  # in a line
 
 
@@ -19,8 +20,7 @@ def draw_sentence(
     layout: bpy.types.UILayout, context: bpy.types.Context, text: str, icon: str = "NONE"
 ) -> None:
     """Draw a sentence over as many lines as the sidebar's width asks for."""
-    width = context.region.width if context.region is not None else 0
-    lines = column_lines(text, width, context.preferences.system.ui_scale)
+    lines = column_lines(text, sidebar_width(context))
     column = layout.column(align=True)
     column.scale_y = 0.8
     for index, line in enumerate(lines):
@@ -31,12 +31,20 @@ def draw_sentence(
             column.label(text=line, translate=False, icon=shown)
 
 
-def column_lines(text: str, width: float, scale: float) -> list[str]:
-    """Break a sentence into lines for a region of that many pixels.
+def column_lines(text: str, width: float) -> list[str]:
+    """Break a sentence into lines for a sidebar of that width."""
+    return wrap(text, max(int((width - BORDER) / LETTER), FEWEST_LETTERS))
 
-    `scale` is the interface's; it is 0 where there is no window.
-    """
-    return wrap(text, max(int((width / (scale or 1.0) - BORDER) / LETTER), FEWEST_LETTERS))
+
+def is_wide(context: bpy.types.Context) -> bool:
+    """Whether there is room for a column more than usual."""
+    return sidebar_width(context) >= WIDE
+
+
+def sidebar_width(context: bpy.types.Context) -> float:
+    """Return the width in pixels at scale 1; 0 where there is no window."""
+    scale = context.preferences.system.ui_scale
+    return context.region.width / scale if context.region is not None and scale else 0.0
 
 
 def draw_job(layout: bpy.types.UILayout, context: bpy.types.Context) -> bool:

@@ -6,17 +6,8 @@ from ..scene import overlay_drawing
 from .preferences import preferences
 
 
-def redraw(context: bpy.types.Context) -> None:
-    """Draw every 3D View again."""
-    for window in context.window_manager.windows:
-        for area in window.screen.areas:
-            if area.type == "VIEW_3D":
-                area.tag_redraw()
-
-
 def _switched(self: bpy.types.WindowManager, context: bpy.types.Context) -> None:
-    overlay_drawing.forget()
-    redraw(context)
+    overlay_drawing.refresh()
 
 
 def _draw() -> None:

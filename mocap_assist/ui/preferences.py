@@ -5,6 +5,7 @@ from typing import ClassVar
 
 import bpy
 
+from ..scene import overlay_drawing
 from ..scene.armature_write import Output
 
 EXTENSION = __package__.rsplit(".", 2)[0]  # Blender knows preferences by the root package
@@ -22,9 +23,7 @@ def _move_panels(self: bpy.types.AddonPreferences, context: bpy.types.Context) -
 
 
 def _redraw(self: bpy.types.AddonPreferences, context: bpy.types.Context) -> None:
-    from .overlay_switch import redraw
-
-    redraw(context)
+    overlay_drawing.refresh()
 
 
 class MOCAP_AP_preferences(bpy.types.AddonPreferences):

@@ -70,16 +70,13 @@ def test_a_bone_that_is_not_recorded_and_all_below_it_are_left_out(overlay, acto
     assert len(whole) - len(gapped) == 2
 
 
-def test_a_long_action_is_read_in_blocks(overlay, make_armature, animate):
-    armature = make_armature()
-    n_frames = overlay.BLOCK + 100
-    animate(armature, range(1, n_frames + 1))
+def test_a_long_action_is_read_in_blocks(overlay, actor, monkeypatch):
+    monkeypatch.setattr(overlay, "BLOCK", 25 * len(actor.data.bones))
 
-    first = overlay.figures_at(armature, source_of(armature), overlay.BLOCK)
-    second = overlay.figures_at(armature, source_of(armature), overlay.BLOCK + 1)
+    blocks = [overlay.figures_at(actor, source_of(actor), frame) for frame in (25, 26, 60)]
 
-    assert (len(first.heads), len(second.heads)) == (overlay.BLOCK, 100)
-    assert second.start == overlay.BLOCK + 1
+    assert [block.start for block in blocks] == [1, 26, 51]
+    assert [len(block.heads) for block in blocks] == [25, 25, 10]
 
 
 def test_raw_and_clean_are_found_from_either(blank, load, overlay, actor):
@@ -103,19 +100,24 @@ def test_what_is_kept_holds_nothing_of_blenders(overlay, actor):
     assert all(type(name) is str for name in figures.bones)
 
 
-@pytest.mark.parametrize("cause", ["key", "load"])
-def test_edits_and_loading_make_it_read_anew(blank, overlay, actor, cause):
-    old = overlay.figures_at(actor, source_of(actor), 17)
-    assert overlay.figures_at(actor, source_of(actor), 17) is old
+def test_another_file_makes_it_forget(blank, overlay, actor):
+    overlay.figures_at(actor, source_of(actor), 17)
 
-    if cause == "load":
-        blank.ops.wm.read_homefile(use_empty=True, use_factory_startup=True)
-        assert not overlay._kept
-        return
+    blank.ops.wm.read_homefile(use_empty=True, use_factory_startup=True)
+
+    assert not overlay._kept
+
+
+def test_edited_keys_are_read_anew_after_a_pause(blank, load, overlay, actor):
+    refresh = load("mocap_assist.scene.overlay_drawing").refresh
+    old = overlay.figures_at(actor, source_of(actor), 17)
     bone = actor.pose.bones["LeftArm"]
     bone.rotation_quaternion = (0.0, 1.0, 0.0, 0.0)
     bone.keyframe_insert("rotation_quaternion", frame=17)
     blank.context.view_layer.update()
+    assert overlay.figures_at(actor, source_of(actor), 17) is old
+    assert blank.app.timers.is_registered(refresh)
+    refresh()  # timers run only where there is a window
 
     new = overlay.figures_at(actor, source_of(actor), 17)
     assert np.abs(new.tails[16] - old.tails[16]).max() > 0.01
