@@ -63,7 +63,8 @@ def _property(item: "Field[Any]") -> Any:
     if kind is bool:
         return bpy.props.BoolProperty(**shown)
     if kind is str:
-        return bpy.props.StringProperty(**shown)
+        subtype = "FILE_PATH" if item.name.endswith("_file") else "NONE"
+        return bpy.props.StringProperty(**shown, subtype=subtype)
     limits = {
         name: limit
         for name, limit in (("min", described.minimum), ("max", described.maximum))

@@ -1,8 +1,8 @@
 """What the animator sees: panels in the sidebar, menus, preferences and the overlay."""
 
-from . import example_list, manual, menus, overlay_switch, preferences, sidebar
+from . import example_list, manual, menus, overlay_switch, preferences, sidebar, translations
 
-PARTS = (preferences, example_list, sidebar, menus, overlay_switch, manual)
+PARTS = (translations, preferences, example_list, sidebar, menus, overlay_switch, manual)
 
 
 def register() -> None:

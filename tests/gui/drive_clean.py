@@ -116,29 +116,28 @@ def clean(armature):
     raw = armature.animation_data.action
     yield from press("mocap_assist.denoise")
     bgui.move(500, 500)
-    while job().fraction < 0.4:
+    while job().fraction < 0.3:
         assert job().running
         yield 0.2
+    yield 0.8
     bgui.shot("3-running.png")
     yield from wait_until_done()
     assert armature.animation_data.action.name == f"{raw.name}.clean"
-    yield 0.5
+    yield from settle()
     bgui.shot("4-cleaned.png")
 
 
 def revert_and_compare(armature):
     """Back to the recorded action; the overlay still shows both."""
     yield from press("mocap_assist_overlay")
-    bgui.move(500, 500)
-    yield 0.5
+    yield from settle()
     bgui.shot("5-overlay.png")
     yield from press("mocap_assist.revert_to_raw")
     assert armature.animation_data.action.name == "walk"
-    bgui.move(500, 500)
-    yield 0.5
-    bgui.shot("6-reverted.png")
+    yield from settle()
+    yield from bgui.scan()
     yield from bgui.hover(*bgui.at("mocap_assist.revert_to_raw"))
-    bgui.shot("7-greyed.png")
+    bgui.shot("6-greyed.png")
 
 
 def check():
@@ -146,18 +145,61 @@ def check():
     yield from press("mocap_assist.measure_quality")
     yield from wait_until_done()
     assert found.spots
-    yield 0.5
-    bgui.move(500, 500)
-    bgui.shot("8-checked.png")
-    yield from press("mocap_assist.jump_to_spot(index=2)")
-    bgui.move(500, 500)
+    yield from settle()
+    yield from bgui.scan(columns=(0.25, 0.75))
+    yield from bgui.click(*bgui.at("mocap_assist.jump_to_spot(index=2)"))
     spot = found.spots[2]
     assert found.active_spot == 2
     assert bpy.context.scene.frame_current == int(spot.start)
     assert bpy.context.active_pose_bone.name == spot.name
+    yield from bgui.click(*bgui.at("mocap_assist.jump_to_spot(step=1)"))
+    assert found.active_spot == 3
     look_at_figure()
+    yield from settle()
+    bgui.shot("7-spots.png")
+
+
+def wide_sidebar_with_examples():
+    """Drag the sidebar's edge, learn from examples, and unfold what is folded."""
+    bpy.data.actions.new("run in place")
+    clean = bpy.context.scene.mocap_assist.clean
+    clean.prior, clean.examples = "EXAMPLES", "walk.clean; /captures/day 1/stroll.bvh"
+    sidebar = bgui.region()
+    edge, middle = sidebar.x + 1, sidebar.y + 40
+    bgui.move(edge, middle)
+    yield 0.2
+    bgui.x("mousedown", 1)
+    for step in range(0, 130, 10):
+        bgui.move(edge - step, middle)
+        yield 0.05
+    bgui.x("mouseup", 1)
+    yield from settle()
+    yield from bgui.scan()
+    bgui.shot("8-wide.png")
+    yield from bgui.click(*bgui.at("MOCAP_MT_examples"))
     yield 0.5
-    bgui.shot("9-jumped.png")
+    bgui.shot("9-examples.png")
+    yield from bgui.dismiss()
+
+
+def the_preferences():
+    bpy.ops.screen.userpref_show("INVOKE_DEFAULT")
+    yield 1.0
+    window = bpy.context.window_manager.windows[-1]
+    bpy.context.preferences.active_section = "ADDONS"
+    bpy.context.window_manager.addon_search = "mocap"
+    with bpy.context.temp_override(window=window):
+        bpy.ops.preferences.addon_expand(module=PACKAGE)
+    yield 1.5
+    bgui.shot("10-preferences.png")
+
+
+def settle():
+    """Let panels that grow or move come to rest."""
+    bgui.move(500, 500)
+    for _ in range(6):
+        bgui.redraw()
+        yield 0.25
 
 
 def steps():
@@ -171,6 +213,8 @@ def steps():
     yield from clean(armature)
     yield from revert_and_compare(armature)
     yield from check()
+    yield from wide_sidebar_with_examples()
+    yield from the_preferences()
 
 
 bgui.run(steps, timeout=400)

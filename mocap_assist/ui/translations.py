@@ -1,0 +1,68 @@
+"""What the panels say, in other languages; what is missing here stays English."""
+
+import bpy
+
+LANGUAGES = ("ja_JP", "zh_HANS", "fr_FR", "es")
+TEXTS = {
+    "Clean": ("クリーン", "清理", "Nettoyer", "Limpiar"),
+    "Check": ("チェック", "检查", "Vérifier", "Comprobar"),
+    "Compare": ("比較", "比较", "Comparer", "Comparar"),
+    "Feet": ("足", "脚", "Pieds", "Pies"),
+    "Bones": ("ボーン", "骨骼", "Os", "Huesos"),
+    "Learn from": ("学習元", "学习来源", "Apprendre de", "Aprender de"),
+    "This take": ("このテイク", "此次录制", "Cette prise", "Esta toma"),
+    "Examples": ("お手本", "示例", "Exemples", "Ejemplos"),
+    "Learned file": ("学習済みファイル", "学习文件", "Fichier appris", "Archivo aprendido"),
+    "Add Example": ("お手本を追加", "添加示例", "Ajouter un exemple", "Añadir ejemplo"),
+    "Strength": ("強さ", "强度", "Force", "Intensidad"),
+    "Frame range": ("フレーム範囲", "帧范围", "Plage d’images", "Rango de fotogramas"),
+    "Joint limits": ("関節の制限", "关节限制", "Limites d’articulation", "Límites articulares"),
+    "Result as": ("結果の出力先", "结果输出为", "Résultat comme", "Resultado como"),
+    "Plant feet": ("足を固定", "固定脚", "Ancrer les pieds", "Fijar los pies"),
+    "Plant Feet": ("足を固定", "固定脚", "Ancrer les pieds", "Fijar los pies"),
+    "Advanced": ("詳細設定", "高级", "Avancé", "Avanzado"),
+    "What counts": ("判定基準", "判定标准", "Critères", "Criterios"),
+    "Esc cancels": ("Escで中止", "按 Esc 取消", "Échap annule", "Esc cancela"),
+    "Before": ("前", "之前", "Avant", "Antes"),
+    "After": ("後", "之后", "Après", "Después"),
+    "Jitter (m/s³)": ("揺れ (m/s³)", "抖动 (m/s³)", "Tremblement (m/s³)", "Temblor (m/s³)"),
+    "Spikes": ("スパイク", "尖峰", "Pics", "Picos"),
+    "Missing (%)": ("欠損 (%)", "缺失 (%)", "Manquant (%)", "Ausente (%)"),
+    "Foot slide (cm/s)": (
+        "足の滑り (cm/s)", "脚滑动 (cm/s)", "Glissement (cm/s)", "Deslizamiento (cm/s)",
+    ),
+    "Previous": ("前へ", "上一个", "Précédent", "Anterior"),
+    "Next": ("次へ", "下一个", "Suivant", "Siguiente"),
+    "Raw": ("元データ", "原始", "Brut", "Original"),
+    "Raw and Clean Overlay": (
+        "元と結果を重ねて表示", "叠加显示原始与结果", "Superposer brut et nettoyé",
+        "Superponer original y limpio",
+    ),
+    "Made from {raw}": ("{raw} から作成", "由 {raw} 生成", "Issu de {raw}", "Hecho de {raw}"),
+    "Revert to Raw": ("元に戻す", "恢复原始", "Revenir au brut", "Volver al original"),
+    "Left foot stands": ("左足が接地", "左脚着地", "Pied gauche posé", "Pie izquierdo apoyado"),
+    "Right foot stands": ("右足が接地", "右脚着地", "Pied droit posé", "Pie derecho apoyado"),
+}  # fmt: skip
+CONTEXTS = ("*", "Operator")  # labels and properties, buttons
+
+
+def dictionary() -> dict[str, dict[tuple[str, str], str]]:
+    """Return the texts as Blender wants them: by language, then by context and English."""
+    return {
+        language: {
+            (context, english): texts[place]
+            for english, texts in TEXTS.items()
+            for context in CONTEXTS
+        }
+        for place, language in enumerate(LANGUAGES)
+    }
+
+
+def register() -> None:
+    """Let Blender translate."""
+    bpy.app.translations.register(__package__, dictionary())
+
+
+def unregister() -> None:
+    """Forget the translations."""
+    bpy.app.translations.unregister(__package__)
