@@ -17,7 +17,7 @@ from .errors import InvalidFileError
 
 # What numpy and zipfile were seen to raise on files that are cut short or altered.
 DAMAGE = (
-    OSError, ValueError, EOFError, KeyError, AttributeError, NotImplementedError,
+    OSError, ValueError, EOFError, KeyError, AttributeError, TypeError, NotImplementedError,
     zipfile.BadZipFile, zlib.error, struct.error,
 )  # fmt: skip
 
@@ -27,18 +27,26 @@ def written_whole(path: Path | str) -> Iterator[Path]:
     """Yield a temporary path beside `path`; move it onto `path` if all goes well.
 
     On any exception the temporary file is removed and `path` is as it was.
+
+    Raises
+    ------
+    InvalidFileError
+        The folder is missing or may not be written to, or the disk is full.
     """
     path = Path(path)
-    with NamedTemporaryFile(
-        dir=path.parent, prefix=f".{path.stem}.", suffix=path.suffix, delete=False
-    ) as file:
-        part = Path(file.name)
     try:
-        yield part
-        part.chmod(0o666 & ~_umask())
-        part.replace(path)
-    finally:
-        part.unlink(missing_ok=True)
+        with NamedTemporaryFile(
+            dir=path.parent, prefix=f".{path.stem[:40]}.", suffix=path.suffix, delete=False
+        ) as file:
+            part = Path(file.name)
+        try:
+            yield part
+            part.chmod(0o666 & ~_umask())
+            part.replace(path)
+        finally:
+            part.unlink(missing_ok=True)
+    except OSError as error:
+        raise InvalidFileError(f"{path} cannot be written: {error.strerror}.") from None
 
 
 def write_archive(
@@ -58,7 +66,8 @@ def read_archive(path: Path | str, kind: str, version: int) -> dict[str, NDArray
         The file is missing, damaged, holds something else, or comes from another version.
     """
     try:
-        with np.load(path, allow_pickle=False) as archive:
+        # Opened here, because numpy leaves a file open where it finds no archive in it.
+        with Path(path).open("rb") as file, np.load(file, allow_pickle=False) as archive:
             arrays = {name: np.array(archive[name]) for name in archive.files}
     except FileNotFoundError:
         raise InvalidFileError(f"There is no file {path}.") from None

@@ -66,6 +66,9 @@ def _attempt(verb: Verb, task: Task, prepared: Any, progress: Progress) -> Finis
         return Finished(task, None, sentence if named else f"{task.source}: {sentence}")
     except OSError as error:
         return Finished(task, None, f"{error.filename or task.source}: {error.strerror}.")
+    except MemoryError:
+        sentence = f"{task.source} needs more memory than there is; work on a part of the take."
+        return Finished(task, None, sentence)
 
 
 def _die_on_interrupt() -> None:

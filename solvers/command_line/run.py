@@ -150,6 +150,8 @@ def _pairs(arguments: argparse.Namespace) -> list[tuple[Path, Path]]:
     if len(set(targets)) < len(targets):
         twice = next(target for target in targets if targets.count(target) > 1)
         raise InvalidSettingError(f"Two inputs would both be written to {twice}. Rename one.")
+    if folder is not None and folder.exists() and not folder.is_dir():
+        raise InvalidSettingError(f"{folder} is a file; name a folder to write to.")
     if folder is not None:
         folder.mkdir(parents=True, exist_ok=True)
     for _, target in pairs:

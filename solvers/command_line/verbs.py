@@ -38,9 +38,9 @@ def _denoise_options(parser: argparse.ArgumentParser) -> None:
 
 
 def _learn(arguments: argparse.Namespace, progress: Progress) -> FilterBases | None:
+    settings = settings_from_arguments(arguments, FilterBasesSettings)
     if not arguments.train:
         return None
-    settings = settings_from_arguments(arguments, FilterBasesSettings)
     share = 0.5 / len(arguments.train)
     clips = [
         read(path, arguments, within(progress, share * number, share * (number + 1)))

@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.linalg import eigh
 
-from ..errors import InvalidMotionError
+from ..errors import InvalidFileError, InvalidMotionError
 from ..files import read_archive, write_archive
 from ..motion import Motion, Tracks
 from ..progress import Progress, unwatched
@@ -96,18 +96,46 @@ class FilterBases:
 
 
 def load_filter_bases(path: Path | str) -> FilterBases:
-    """Read what `FilterBases.save` wrote."""
+    """Read what `FilterBases.save` wrote.
+
+    Raises
+    ------
+    InvalidFileError
+        The file is missing, damaged, or holds something else.
+    """
     arrays = read_archive(path, KIND, VERSION)
-    return FilterBases(
-        tuple(str(key) for key in arrays["keys"]),
-        arrays["references"],
-        arrays["mean"],
-        arrays["vectors"],
-        arrays["values"],
-        float(arrays["frame_rate"]),
-        int(arrays["n_clips"]),
-        bool(arrays["of_points"]),
-    )
+    try:
+        bases = FilterBases(
+            tuple(str(key) for key in arrays["keys"]),
+            arrays["references"],
+            arrays["mean"],
+            arrays["vectors"],
+            arrays["values"],
+            float(arrays["frame_rate"]),
+            int(arrays["n_clips"]),
+            bool(arrays["of_points"]),
+        )
+        fault = _fault(bases)
+    except (KeyError, TypeError, ValueError) as error:
+        fault = str(error)
+    if fault:
+        raise InvalidFileError(
+            f"{path} holds damaged filter bases ({fault}). Learn them again."
+        )
+    return bases
+
+
+def _fault(bases: FilterBases) -> str:
+    """Return what keeps bases from a file from being used, or nothing."""
+    n_keys, n_bases = len(bases.keys), len(bases.values)
+    expected = ((n_keys, 4), (3 * n_keys,), (n_bases,))
+    arrays = (bases.references, bases.mean, bases.values)
+    patterns = (n_bases, *bases.vectors.shape[1:2], 3 * n_keys)
+    if (*(array.shape for array in arrays), bases.vectors.shape) != (*expected, patterns):
+        return "their shapes do not fit"
+    if not all(np.isfinite(array).all() for array in (*arrays, bases.vectors)):
+        return "not all numbers are finite"
+    return "" if 0.0 < bases.frame_rate < np.inf else f"a frame rate of {bases.frame_rate:g} Hz"
 
 
 def learn_filter_bases(

@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..errors import InvalidMotionError
-from .skeleton import Skeleton
+from .skeleton import FARTHEST, Skeleton
 
 UNIT_TOLERANCE = 1e-3
 ROUNDING = 1e-14
@@ -51,6 +51,11 @@ class Motion:
             raise InvalidMotionError(f"A frame rate of {self.frame_rate} Hz is not positive.")
         if np.isinf(root_positions).any():
             raise InvalidMotionError("The root has infinite positions; NaN marks missing ones.")
+        if (farthest := np.nanmax(np.abs(root_positions), initial=0.0)) > FARTHEST:
+            raise InvalidMotionError(
+                f"The root goes as far as {farthest:.3g} m; give the scale of the recording, or"
+                " take those frames out."
+            )
         object.__setattr__(self, "rotations", self._normalized(rotations))
         object.__setattr__(self, "root_positions", root_positions)
         object.__setattr__(self, "frame_rate", float(self.frame_rate))

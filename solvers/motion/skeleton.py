@@ -9,6 +9,9 @@ from numpy.typing import NDArray
 
 from ..errors import InvalidMotionError
 
+FARTHEST = 1e9
+"""Metres. Nobody is captured beyond; a unit was misread there, and squares may overflow."""
+
 
 @dataclass(frozen=True, eq=False)
 class Skeleton:
@@ -54,6 +57,11 @@ class Skeleton:
             )
         elif not np.isfinite(self.offsets).all():
             faults.append("The rest pose has offsets that are not finite numbers.")
+        elif np.abs(self.offsets).max() > FARTHEST:
+            faults.append(
+                f"The rest pose has a bone of {np.abs(self.offsets).max():.3g} m; give the"
+                " scale of the file, or mend that bone."
+            )
         if self.parents and self.parents[0] != -1:
             faults.append("The first joint must be the root (parent -1).")
         late = [

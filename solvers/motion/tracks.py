@@ -6,6 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..errors import InvalidMotionError
+from .skeleton import FARTHEST
 
 
 @dataclass(frozen=True, eq=False)
@@ -40,6 +41,11 @@ class Tracks:
             raise InvalidMotionError(f"A frame rate of {self.frame_rate} Hz is not positive.")
         if np.isinf(positions).any():
             raise InvalidMotionError("There are infinite positions; NaN marks missing ones.")
+        if (farthest := np.nanmax(np.abs(positions), initial=0.0)) > FARTHEST:
+            raise InvalidMotionError(
+                f"A point is as far as {farthest:.3g} m; give the scale of the recording, or"
+                " take those frames out."
+            )
         object.__setattr__(self, "names", tuple(self.names))
         object.__setattr__(self, "positions", positions)
         object.__setattr__(self, "frame_rate", float(self.frame_rate))

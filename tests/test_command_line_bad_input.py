@@ -1,0 +1,298 @@
+"""Files that are wrong in every way that users found: written whole, or one sentence."""
+
+import json
+import os
+import signal
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from solvers.command_line.run import run
+from solvers.command_line.verbs import VERBS
+from solvers.denoising import learn_filter_bases, load_filter_bases
+from solvers.errors import InvalidFileError
+from solvers.recordings import read_bvh, write_bvh
+
+ROOT = Path(__file__).parents[1]
+HIERARCHY = """HIERARCHY
+ROOT hip
+{
+OFFSET 0 1 0
+CHANNELS 6 Xposition Yposition Zposition Zrotation Xrotation Yrotation
+JOINT knee
+{
+OFFSET 0 -0.5 0
+CHANNELS 3 Zrotation Xrotation Yrotation
+End Site
+{
+OFFSET 0 -0.5 0
+}
+}
+}
+MOTION
+"""
+
+
+@pytest.fixture
+def call(capsys):
+    """Run a command line in this process; returns exit status, stdout, stderr."""
+
+    def command(*words) -> tuple[int, str, str]:
+        try:
+            status = run(VERBS, [str(word) for word in words], "solvers")
+        except SystemExit as stopped:
+            status = stopped.code
+        captured = capsys.readouterr()
+        return status, captured.out, captured.err
+
+    return command
+
+
+@pytest.fixture
+def bvh(tmp_path, rng):
+    """Write a file of a knee that swings, after something was done to its numbers."""
+
+    def write(spoil=lambda frames: frames, frame_time="0.0333333", name="in.bvh") -> Path:
+        time = np.arange(60) / 30.0
+        frames = np.zeros((60, 9))
+        frames[:, 0], frames[:, 1] = time, 1.0
+        frames[:, 3], frames[:, 6] = 20 * np.sin(6 * time), 30 * np.sin(5 * time)
+        frames = np.asarray(spoil(frames + rng.normal(scale=0.001, size=frames.shape)))
+        rows = "\n".join(" ".join(str(float(number)) for number in row) for row in frames)
+        path = tmp_path / name
+        path.write_text(f"{HIERARCHY}Frames: {len(frames)}\nFrame Time: {frame_time}\n{rows}\n")
+        return path
+
+    return write
+
+
+def at(frames, value):
+    """Frame 5 with another value everywhere."""
+    changed = frames.copy()
+    changed[5] = value
+    return changed
+
+
+@pytest.mark.parametrize(
+    ("spoil", "frame_time"),
+    [
+        (lambda f: f[:1], "0.0333333"),
+        (lambda f: f[:2], "0.0333333"),
+        (lambda f: np.repeat(f[:1], 40, axis=0), "0.0333333"),
+        (lambda f: np.repeat(f[::3], 3, axis=0), "0.0333333"),
+        (lambda f: at(f, np.nan), "0.0333333"),
+        (lambda f: at(f, np.inf), "0.0333333"),
+        (lambda f: at(f, 0.0), "0.0333333"),
+        (lambda f: f + [0, 0, 0, 360, 0, 0, -720, 0, 0] * (np.arange(60) % 2)[:, None], "0.04"),
+        (lambda f: f, "0.0333667"),
+        (lambda f: f, "0"),
+        (lambda f: f, "-1"),
+        (lambda f: f, "nan"),
+        (lambda f: f, "1e-300"),
+        (lambda f: f, "1e9"),
+    ],
+    ids=[
+        "one frame",
+        "two frames",
+        "constant",
+        "repeated frames",
+        "a NaN",
+        "an infinity",
+        "a frame of zeros",
+        "whole turns",
+        "29.97 Hz",
+        "no time",
+        "negative time",
+        "time NaN",
+        "tiny time",
+        "long time",
+    ],
+)
+def test_odd_takes_come_out_whole(call, bvh, tmp_path, spoil, frame_time):
+    source, target = bvh(spoil, frame_time), tmp_path / "out.bvh"
+
+    status, said, complaint = call("denoise", source, target, "--json")
+
+    assert (status, complaint) == (0, "")
+    json.loads(said, parse_constant=pytest.fail)
+    clean = read_bvh(target)
+    assert clean.n_frames == read_bvh(source).n_frames
+    assert clean.observed.all()
+    assert np.isfinite(clean.root_positions).all()
+
+
+@pytest.mark.parametrize("verb", ["denoise", "quality", "convert"])
+@pytest.mark.parametrize(
+    "content",
+    [
+        b"",
+        b"\0" * 10_000,
+        bytes(range(256)) * 40,
+        b"HIERARCHY\n" + b"ROOT a\n{\n" * 50_000,
+        b"HIERARCHY " + b"x" * 1_000_000,
+        f"{HIERARCHY}Frames: 1000000000\nFrame Time: 0.03\n".encode(),
+        f"{HIERARCHY}Frames: 1\nFrame Time: 0.03\n".encode() + b"\0" * 100,
+        f"{HIERARCHY}Frames: 1\nFrame Time: 0.03\n{'1e300 ' * 9}\n".encode(),
+    ],
+    ids=["empty", "zeros", "binary", "endless", "one line", "no frames", "NUL", "huge"],
+)
+def test_what_is_no_take_is_one_sentence(call, tmp_path, verb, content):
+    source = tmp_path / "in.bvh"
+    source.write_bytes(content)
+    target = [] if verb == "quality" else [tmp_path / "out.bvh"]
+
+    status, said, complaint = call(verb, source, *target)
+
+    assert (status, said) == (2, "")
+    assert complaint.count("\n") == 1
+    assert "in.bvh" in complaint
+    assert [path.name for path in tmp_path.iterdir()] == ["in.bvh"]
+
+
+def test_a_folder_is_no_file_to_read_nor_to_write(call, bvh, tmp_path):
+    folder = tmp_path / "folder.bvh"
+    folder.mkdir()
+
+    for words in (["quality", folder], ["convert", bvh(), folder]):
+        status, _, complaint = call(*words)
+
+        assert status == 2
+        assert "folder.bvh" in complaint
+        assert complaint.count("\n") == 1
+
+
+def test_a_file_is_no_folder_to_write_to(call, bvh):
+    status, _, complaint = call("convert", bvh(), "--output-folder", bvh(name="b.bvh"))
+
+    assert status == 2
+    assert "is a file; name a folder to write to." in complaint
+
+
+def test_a_full_disk_is_named_and_leaves_the_old_file(bvh, tmp_path):
+    resource = pytest.importorskip("resource")
+    target = tmp_path / "out.bvh"
+    target.write_text("before")
+
+    def limit() -> None:
+        signal.signal(signal.SIGXFSZ, signal.SIG_IGN)
+        resource.setrlimit(resource.RLIMIT_FSIZE, (1000, 1000))
+
+    done = subprocess.run(
+        [sys.executable, "-B", "-m", "solvers", "convert", bvh(), target],
+        cwd=ROOT, preexec_fn=limit, timeout=120, capture_output=True, text=True,
+    )  # fmt: skip
+
+    assert done.returncode == 2
+    assert done.stderr.count("\n") == 1
+    assert "out.bvh cannot be written: " in done.stderr
+    assert target.read_text() == "before"
+    assert sorted(path.name for path in tmp_path.iterdir()) == ["in.bvh", "out.bvh"]
+
+
+@pytest.mark.parametrize(
+    "words",
+    [
+        ["--strength", "nan"],
+        ["--strength", "-1"],
+        ["--window", "0"],
+        ["--window", "1e9"],
+        ["--frame-rate", "0"],
+        ["--scale", "nan"],
+        ["--jobs", "-3"],
+        ["--feet"],
+    ],
+    ids=" ".join,
+)
+def test_settings_out_of_range_are_one_sentence(call, bvh, tmp_path, words):
+    status, said, complaint = call("denoise", bvh(), tmp_path / "out.bvh", *words)
+
+    assert (status, said) == (2, "")
+    assert complaint.count("\n") == 1
+    assert not (tmp_path / "out.bvh").exists()
+
+
+def test_too_little_memory_is_one_sentence(call, bvh, tmp_path, monkeypatch):
+    def gluttonous(*_, **__):
+        raise MemoryError
+
+    monkeypatch.setattr("solvers.command_line.verbs.denoise", gluttonous)
+
+    status, _, complaint = call("denoise", bvh(), tmp_path / "out.bvh")
+
+    assert status == 2
+    assert "in.bvh needs more memory than there is" in complaint
+
+
+def test_an_interrupt_leaves_whole_files_only(swinging_leg, tmp_path):
+    files = [tmp_path / f"{number}.bvh" for number in range(40)]
+    for file in files:
+        write_bvh(swinging_leg, file)
+    out = tmp_path / "out"
+    with subprocess.Popen(
+        [sys.executable, "-m", "solvers", "denoise", *files, "--output-folder", out],
+        cwd=ROOT, stderr=subprocess.PIPE, stdout=subprocess.DEVNULL, text=True,
+    ) as running:  # fmt: skip
+        while running.poll() is None and not list(out.glob("*.bvh")):
+            time.sleep(0.02)
+        os.kill(running.pid, signal.SIGINT)
+        complaint = running.communicate(timeout=60)[1]
+
+    assert running.returncode == 130
+    assert complaint == "Interrupted. Files that were finished are kept.\n"
+    written = list(out.iterdir())
+    assert not [path for path in written if path.name.startswith(".")]
+    for path in written:
+        if path.suffix == ".bvh":
+            assert read_bvh(path).n_frames == swinging_leg.n_frames
+
+
+def test_damaged_patterns_are_refused_or_read_never_run(swinging_leg, tmp_path, rng):
+    path, bad = tmp_path / "walk.npz", tmp_path / "bad.npz"
+    learn_filter_bases([swinging_leg]).save(path)
+    whole = path.read_bytes()
+    np.save(tmp_path / "array.npy", np.zeros(3))
+    damaged = [(tmp_path / "array.npy").read_bytes(), b""]
+    damaged += [whole[: int(size)] for size in rng.integers(0, len(whole), 60)]
+    for place in rng.integers(0, len(whole), 200):
+        flipped = bytearray(whole)
+        flipped[place] ^= 1 << rng.integers(8)
+        damaged.append(bytes(flipped))
+
+    refused = 0
+    for content in damaged:
+        bad.write_bytes(content)
+        try:
+            load_filter_bases(bad)
+        except InvalidFileError as error:
+            refused += 1
+            assert "bad.npz" in str(error)
+
+    assert refused > 150
+
+
+@pytest.mark.parametrize(
+    ("change", "sentence"),
+    [
+        ({"version": np.array(99)}, "was saved as version 99"),
+        ({"kind": np.array("recipes")}, "holds recipes, not filter bases"),
+        ({"keys": np.array([{}], dtype=object)}, "is not a readable archive"),
+        ({"mean": None}, "damaged filter bases .'mean'"),
+        ({"mean": np.zeros(7)}, "their shapes do not fit"),
+        ({"vectors": np.full((3, 20, 12), np.nan)}, "not all numbers are finite"),
+        ({"frame_rate": np.array(-1.0)}, "a frame rate of -1 Hz"),
+    ],
+    ids=["version", "kind", "pickle", "missing", "shape", "nan", "rate"],
+)
+def test_patterns_of_another_making_are_refused(swinging_leg, tmp_path, change, sentence):
+    path = tmp_path / "walk.npz"
+    learn_filter_bases([swinging_leg]).save(path)
+    with np.load(path) as archive:
+        arrays = {name: archive[name] for name in archive.files} | change
+    np.savez(path, **{name: array for name, array in arrays.items() if array is not None})
+
+    with pytest.raises(InvalidFileError, match=sentence):
+        load_filter_bases(path)
