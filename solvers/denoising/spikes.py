@@ -11,6 +11,8 @@ from .noise import MAD_TO_SIGMA, rough_noise
 Array = NDArray[np.float64]
 
 N_REFITS = 8
+SETTLED = 0.02
+"""Weights that change by less than this are final."""
 TUKEY = 4.685
 """Residuals beyond this many standard deviations lose all weight (95 % efficiency)."""
 
@@ -82,10 +84,17 @@ def disturbance(signal: Array, half_window: int, smallest: float) -> Disturbance
         residual = signal - _local_fit(signal, weights, offsets, window)
         distance = np.linalg.norm(residual, axis=1)
         cut = TUKEY * MAD_TO_SIGMA * _median(distance[known])
-        weights = known * np.maximum(0.0, 1.0 - (distance / max(cut, smallest)) ** 2) ** 2
+        before, weights = weights, known * _bisquare(distance / max(cut, smallest))
+        if np.abs(weights - before).max() < SETTLED:
+            break
     residual = np.where(known[:, None], residual, np.nan)
     noise = rough_noise(np.where(weights[:, None] > 0.0, signal, np.nan))
     return Disturbance(residual, float(np.sqrt(np.mean(noise**2))))
+
+
+def _bisquare(distance: Array) -> Array:
+    """Return Tukey's weights, which vanish from distance 1 on."""
+    return np.asarray(np.maximum(0.0, 1.0 - distance**2) ** 2)
 
 
 def _local_fit(signal: Array, weights: Array, offsets: Array, window: Array) -> Array:

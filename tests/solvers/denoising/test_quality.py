@@ -165,6 +165,18 @@ def test_bones_are_found_and_their_drift_measured(rng):
     assert len(bones) == 2  # what wanders apart is no bone
 
 
+def test_a_steady_bone_is_preferred_to_a_nearer_point_that_wobbles(rng):
+    """A point hovers halfway between the ends of a rod."""
+    start = np.cumsum(rng.normal(scale=0.05, size=(300, 3)), axis=0)
+    stop = start + rotate(
+        quaternion_from_rotation_vector(rng.normal(size=(300, 3))), [0.3, 0, 0]
+    )
+    hovering = 0.5 * (start + stop) + rng.normal(scale=0.01, size=(300, 3))
+    tracks = Tracks(("a", "b", "c"), np.stack([start, stop, hovering], axis=1), 60.0)
+
+    assert ("a", "b") in {(bone.first, bone.second) for bone in bone_drifts(tracks)}
+
+
 def test_tracks_with_gaps_are_measured(rng):
     positions = np.cumsum(rng.normal(scale=0.001, size=(200, 3, 3)), axis=0)
     positions[:, 1] = positions[:, 0] + [0.3, 0.0, 0.0]
