@@ -1,4 +1,4 @@
-"""Recordings as plain columns of numbers that a linear model can speak about, and back."""
+"""Recordings as plain columns of numbers that a linear model can speak about."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass
@@ -6,7 +6,6 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from ..motion import Motion, Tracks
 from .channels_path import Path
 
 Array = NDArray[np.float64]
@@ -21,22 +20,20 @@ class Channels:
 
     Attributes
     ----------
-    recording : Motion or Tracks
-        What was encoded; decoding starts from it.
     keys : tuple of str, length n_parts
-        What each part of three channels tells about: a joint, a point or the root's place.
-        Equal keys mean the same thing in different recordings.
+        What each part of three channels tells about: a joint (by its humanoid role, or else its
+        name), a point, or the root's place. Equal keys mean the same in all recordings.
     values : shape (n_frames, n_parts, 3), degrees or centimetres
         NaN where not observed.
     joints : shape (n_parts,)
         Index of the joint or point that each part belongs to.
     references : mapping of key to array
-        Mean rotation, shape (4,), or position, shape (3,), that a part is told relative to.
+        What each part is told relative to; as many numbers as `channels_motion` or
+        `channels_tracks` need.
     path : Path
         Where the body is.
     """
 
-    recording: Motion | Tracks
     keys: tuple[str, ...]
     values: Array
     joints: NDArray[np.intp]

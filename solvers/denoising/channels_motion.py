@@ -1,12 +1,14 @@
 """Motion as channels: rotation vectors about mean rotations; the root relative to its path."""
 
 from collections.abc import Mapping
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
-from ..motion import Motion
+from ..motion import Motion, Skeleton, find_humanoid_map, t_pose_alignment
 from ..motion.rotations import (
+    IDENTITY,
     inverse,
     mean_rotation,
     multiply,
@@ -20,7 +22,19 @@ from .channels_path import Path, smooth_path
 Array = NDArray[np.float64]
 
 PLACE = "place"
-"""Key of the root's position relative to its path: right of it, behind it, above ground."""
+"""Key of the root's position relative to its path: beside it, along it, above the ground."""
+NOWHERE = np.zeros(3)
+
+
+class Rig(NamedTuple):
+    """The joints that are encoded, and how their rest pose differs from the T-pose."""
+
+    joints: list[int]
+    keys: tuple[str, ...]
+    above: Array
+    """From the T-pose to the rest pose, of each joint's parent, shape (n, 4)."""
+    own: Array
+    """The same of the joint itself."""
 
 
 def encode_motion(motion: Motion, references: Mapping[str, Array] | None = None) -> Channels:
@@ -34,26 +48,30 @@ def encode_motion(motion: Motion, references: Mapping[str, Array] | None = None)
     ----------
     motion : Motion
     references : mapping of key to array, optional
-        Means to use where the key is known; elsewhere, the motion's own.
+        Of another encoding. Joints of the same humanoid role are told about the same mean, as
+        if they rested in the same pose, whatever the rig; joints without one, or unheard of,
+        are told about the motion's own means.
     """
     references = references or {}
-    skeleton = motion.skeleton
-    path = motion_path(motion)
-    joints = [joint for joint in range(motion.n_joints) if not skeleton.is_end_site(joint)]
-    keys = (*(skeleton.names[joint] for joint in joints), PLACE)
-    rotations = motion.rotations[:, joints]
+    rig = _rig(motion.skeleton)
+    path = _path(motion)
+    rotations = motion.rotations[:, rig.joints]
     rotations[:, 0] = multiply(inverse(path.turns), rotations[:, 0])
-    own = mean_rotation(rotations)
-    means = np.array([references.get(key, mean) for key, mean in zip(keys, own, strict=False)])
-    vectors = rotation_vector_from_quaternion(multiply(inverse(means), rotations))
-    place = _relative_place(motion, path)
-    middle = np.median(place[np.isfinite(place).all(axis=1)], axis=0) if _any(place) else 0.0
-    anchor = np.asarray(references.get(PLACE, np.zeros(3) + middle))[:3]
+    own = np.concatenate([mean_rotation(rotations), rig.above, rig.own], axis=1)
+    told = np.array([references.get(key, row) for key, row in zip(rig.keys, own, strict=True)])
+    before, after = _changes(rig, told)
+    moved = multiply(multiply(before, rotations), after)
+    vectors = rotation_vector_from_quaternion(multiply(inverse(told[:, :4]), moved))
+    place = motion.root_positions.copy()
+    place[:, :2] -= path.places
+    place = rotate(inverse(path.turns), place)
+    known = np.isfinite(place).all(axis=1)
+    middle = np.median(place[known], axis=0) if known.any() else NOWHERE
     values = np.concatenate(
-        [np.degrees(vectors), CENTIMETRES * (place - anchor)[:, None]], axis=1
+        [np.degrees(vectors), CENTIMETRES * (place - middle)[:, None]], axis=1
     )
-    used = {**dict(zip(keys, means, strict=False)), PLACE: anchor}
-    return Channels(motion, keys, values, np.array([*joints, 0]), used, path)
+    used = dict(zip(rig.keys, told, strict=True)) | {PLACE: middle}
+    return Channels((*rig.keys, PLACE), values, np.array([*rig.joints, 0]), used, path)
 
 
 def decode_motion(motion: Motion, channels: Channels, values: Array) -> Motion:
@@ -66,34 +84,40 @@ def decode_motion(motion: Motion, channels: Channels, values: Array) -> Motion:
     channels : Channels
     values : shape (n_frames, n_parts, 3)
     """
-    path = channels.path
-    means = np.array([channels.references[key] for key in channels.keys[:-1]])
-    local = multiply(means, quaternion_from_rotation_vector(np.radians(values[:, :-1])))
+    rig, path = _rig(motion.skeleton), channels.path
+    told = np.array([channels.references[key] for key in rig.keys])
+    before, after = _changes(rig, told)
+    moved = multiply(told[:, :4], quaternion_from_rotation_vector(np.radians(values[:, :-1])))
+    local = multiply(multiply(inverse(before), moved), inverse(after))
     local[:, 0] = multiply(path.turns, local[:, 0])
-    rotations = motion.rotations.copy()
-    ends = [joint for joint in range(motion.n_joints) if motion.skeleton.is_end_site(joint)]
-    rotations[:, ends] = np.where(
-        np.isfinite(rotations[:, ends]), rotations[:, ends], (1.0, 0.0, 0.0, 0.0)
-    )
-    rotations[:, channels.joints[:-1]] = local
-    place = values[:, -1] / CENTIMETRES + channels.references[PLACE]
-    roots = rotate(path.turns, place)
+    rotations = np.where(np.isfinite(motion.rotations), motion.rotations, IDENTITY)
+    rotations[:, rig.joints] = local
+    roots = rotate(path.turns, values[:, -1] / CENTIMETRES + channels.references[PLACE])
     roots[:, :2] += path.places
     return motion.with_poses(rotations, roots)
 
 
-def motion_path(motion: Motion) -> Path:
-    """Return the smooth path of the root; its heading is the root's turn about Z."""
+def _rig(skeleton: Skeleton) -> Rig:
+    humanoid = find_humanoid_map(skeleton)
+    alignment = t_pose_alignment(skeleton, humanoid)
+    above = np.concatenate([IDENTITY[None], alignment[list(skeleton.parents[1:])]])
+    joints = [joint for joint in range(skeleton.n_joints) if not skeleton.is_end_site(joint)]
+    names = [skeleton.names[joint] for joint in joints]
+    keys = tuple(humanoid.role(name) or f"joint {name}" for name in names)
+    return Rig(joints, keys, above[joints], alignment[joints])
+
+
+def _changes(rig: Rig, told: Array) -> tuple[Array, Array]:
+    """Return what turns local rotations into those of the rig that the references are of.
+
+    With B and A the alignments of parent and joint, a local rotation L of this rig is
+    B^-1 L A from the T-pose (see `motion.canonical`), and so B' B^-1 L A A'^-1 in the other.
+    """
+    above, own = told[:, 4:8], told[:, 8:12]
+    return multiply(above, inverse(rig.above)), multiply(rig.own, inverse(own))
+
+
+def _path(motion: Motion) -> Path:
     root = motion.rotations[:, 0]
     headings = 2.0 * np.arctan2(root[:, 3], root[:, 0])
     return smooth_path(motion.root_positions[:, :2], headings, motion.frame_rate)
-
-
-def _relative_place(motion: Motion, path: Path) -> Array:
-    place = motion.root_positions.copy()
-    place[:, :2] -= path.places
-    return rotate(inverse(path.turns), place)
-
-
-def _any(values: Array) -> bool:
-    return bool(np.isfinite(values).all(axis=1).any())

@@ -31,13 +31,13 @@ def encode_tracks(tracks: Tracks, references: Mapping[str, Array] | None = None)
     references = references or {}
     path, shape = _fit_body(tracks, references)
     means = {
-        name: np.asarray(references.get(name, place))
+        name: np.asarray(references.get(name, place))[:3]
         for name, place in zip(tracks.names, shape, strict=True)
     }
     inside = _seen_from(tracks.positions, path)
     anchors = np.array([means[name] for name in tracks.names])
     values = CENTIMETRES * (inside - anchors)
-    return Channels(tracks, tracks.names, values, np.arange(tracks.n_points), means, path)
+    return Channels(tracks.names, values, np.arange(tracks.n_points), means, path)
 
 
 def decode_tracks(tracks: Tracks, channels: Channels, values: Array) -> Tracks:
@@ -56,7 +56,7 @@ def _fit_body(tracks: Tracks, references: Mapping[str, Array]) -> tuple[Path, Ar
     positions = tracks.positions
     filled = interpolated(positions.reshape(len(positions), -1)).reshape(positions.shape)
     known = np.array([name in references for name in tracks.names])
-    given = np.array([references.get(name, np.zeros(3)) for name in tracks.names])
+    given = np.array([references.get(name, np.zeros(3))[:3] for name in tracks.names])
     ever_seen = tracks.visible.any(axis=0)
     weights = np.where(tracks.visible, 1.0, 1e-6) * ever_seen
     if (known & ever_seen).sum() >= 2:
@@ -67,14 +67,12 @@ def _fit_body(tracks: Tracks, references: Mapping[str, Array]) -> tuple[Path, Ar
     places, headings = _rigid_fits(filled, shape, weights)
     for _ in range(N_FITS):
         inside = _seen_from(positions, Path(places, headings))
-        middle = np.nanmedian(np.where(np.isnan(inside), np.nan, inside), axis=0)
-        middle = np.nan_to_num(middle)
+        middle = _medians(inside)
         if not (known & ever_seen).any():
             shape = middle
         places, headings = _rigid_fits(filled, shape, weights)
     path = smooth_path(places, headings, tracks.frame_rate)
-    own = np.nan_to_num(np.nanmedian(_seen_from(positions, path), axis=0))
-    return path, own
+    return path, _medians(_seen_from(positions, path))
 
 
 def _along_x(points: Array) -> Array:
@@ -100,6 +98,15 @@ def _rigid_fits(positions: Array, shape: Array, weights: Array) -> tuple[Array, 
     headings = np.angle(agreement + 1e-12)
     places = centre[:, 0] - np.exp(1j * headings) * middle[:, 0]
     return np.stack([places.real, places.imag], axis=-1), headings
+
+
+def _medians(inside: Array) -> Array:
+    """Return the median place of each point; the middle of all where it is never seen."""
+    seen = np.isfinite(inside).all(axis=2)
+    places = [inside[seen[:, point], point] for point in range(inside.shape[1])]
+    found = [np.median(place, axis=0) for place in places if len(place)]
+    middle = np.mean(found, axis=0) if found else np.zeros(3)
+    return np.array([np.median(place, axis=0) if len(place) else middle for place in places])
 
 
 def _seen_from(positions: Array, path: Path) -> Array:

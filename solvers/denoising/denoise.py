@@ -5,30 +5,23 @@ from enum import Enum
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.fft import idct
 
+from ..errors import InvalidMotionError
 from ..motion import Motion, Tracks
-from ..progress import Progress, unwatched
+from ..progress import Progress, unwatched, within
 from ..settings import Settings, setting
 from .channels import Channels
-from .channels_motion import decode_motion
-from .channels_tracks import decode_tracks
-from .denoise_estimate import Estimate
-from .filter_bases import FilterBases, FilterBasesSettings, encode, phases
-from .noise import hampel, interpolated, rough_noise
-from .prior import WindowPrior, prior_from_bases, prior_from_take, with_smooth_rest
+from .channels_encode import decode, encode
+from .denoise_groups import estimate_in_groups
+from .filter_bases import FilterBases
 from .published import filter_as_published
 
 Array = NDArray[np.float64]
 
-OUTLIER_DENSITY = 1.0 / 120.0
-"""Of an outlier's error, per degree: anything within +-60 is as likely."""
-MAX_ITERATIONS = 30
-SETTLED = 0.02
-"""Change, in degrees or centimetres, below which the estimate is taken as settled."""
-SMALLEST_NOISE = 0.01
-SLOW_WAVES = 0.6
-STILL = 0.05
+SMALLEST_SPIKE = 2.0
+"""Degrees or centimetres: what is nearer to the estimate is not called an outlier."""
+UNSURE = 5.0
+"""Standard deviation, degrees or centimetres, at which confidence is one half."""
 
 
 class Method(Enum):
@@ -46,6 +39,7 @@ class DenoiseSettings(Settings):
         Method.DEFAULT,
         "Default estimates the noise and weighs every pattern; published is the filter of"
         " Lou and Chai (2010) as printed",
+        advanced=True,
     )
     strength: float = setting(
         1.0, "How far to go from recording to estimate; gaps are filled at any strength",
@@ -62,7 +56,8 @@ class Denoised:
     outliers: NDArray[np.bool_]
     """Where the input was taken for a spike, shape (n_frames, n_joints)."""
     confidence: Array
-    """0 (a guess) to 1 (as good as measured), shape (n_frames, n_joints)."""
+    """0 (a guess) to 1 (sure) that the cleaned joint is right, shape (n_frames, n_joints): one
+    half where its standard deviation is 5 degrees or centimetres."""
     iterations: int
     converged: bool
     prior_used: str
@@ -77,6 +72,11 @@ def denoise(
     progress: Progress = unwatched,
 ) -> Denoised:
     """Estimate the true movement from a noisy recording with spikes and gaps.
+
+    A Gaussian prior over short windows of all joints together [1]_, mixed with plain smoothness
+    as far as it explains the take (examples of another movement are laid aside), adapts to the
+    take; noise, spikes and missing joints are estimated with it. Bones keep their lengths. It
+    does not keep feet on the ground: see `plant_feet`.
 
     Parameters
     ----------
@@ -93,136 +93,64 @@ def denoise(
 
     Raises
     ------
+    InvalidMotionError
+        The bases were learned from tracks and the recording is a motion, or the reverse.
     SolveCancelled
         Raised by `progress`.
+
+    References
+    ----------
+    .. [1] Lou, Chai (2010). Example-based human motion denoising. IEEE TVCG 16(5).
     """
+    if bases is not None and bool(bases.of_points) != isinstance(recording, Tracks):
+        learned = "points" if bases.of_points else "joints"
+        raise InvalidMotionError(f"The examples are of {learned}, the recording is not.")
+    progress(0.0, "Reading")
     channels = encode(recording, bases.reference_of if bases else None)
-    noisy = channels.flat
-    rate = bases.frame_rate if bases else FilterBasesSettings().frame_rate
-    takes = phases(noisy, recording.frame_rate, rate)
-    noise = np.maximum(rough_noise(takes[0]), SMALLEST_NOISE)
-    rough = [interpolated(hampel(take, 4, 3.5)) for take in takes]
-    prior = prior_from_bases(bases, channels.keys) if bases else None
-    if prior is None:
-        window = max(min(round(FilterBasesSettings().window * rate), len(takes[-1])), 1)
-        prior = prior_from_take(rough, window, noise)
-    prior = with_smooth_rest(prior)
-    estimates = []
-    for index, (take, start) in enumerate(zip(takes, rough, strict=True)):
-        if settings.method is Method.PUBLISHED:
-            estimates.append(filter_as_published(take, prior))
-        else:
-            estimates.append(_filter_moving(take, start, prior, noise))
-        progress((index + 1) / len(takes), "Denoising")
-    step = len(takes)
-    values, inliers, deviation = (np.empty_like(noisy) for _ in range(3))
-    for phase, estimate in enumerate(estimates):
-        values[phase::step] = estimate.values
-        inliers[phase::step] = estimate.inliers
-        deviation[phase::step] = estimate.deviation
-    known = np.isfinite(noisy)
-    values = np.where(known, noisy + settings.strength * (values - noisy), values)
+    inner = within(progress, 0.05, 0.95)
+    if settings.method is Method.PUBLISHED:
+        estimate, used = filter_as_published(channels, recording.frame_rate, bases, inner)
+    else:
+        estimate, used = estimate_in_groups(channels, recording.frame_rate, bases, inner)
+    noisy, known = channels.flat, np.isfinite(channels.flat)
+    spikes = (estimate.inliers < 0.5) & (np.abs(noisy - estimate.values) > SMALLEST_SPIKE)
+    blended = noisy + settings.strength * (estimate.values - noisy)
+    values = np.where(known, blended, estimate.values)
+    cleaned = decode(recording, channels, values.reshape(channels.values.shape))
+    progress(1.0, "Done")
     return Denoised(
-        _decoded(channels, values.reshape(channels.values.shape)),
-        _by_joint(channels, np.where(known & (inliers < 0.5), 1.0, 0.0)) > 0,
-        1.0 - _by_joint(channels, np.where(known, 1.0 - inliers, 0.8)),
-        max(estimate.iterations for estimate in estimates),
-        all(estimate.converged for estimate in estimates),
-        prior.description,
+        _kept_where_unchanged(recording, cleaned, settings),
+        _worst(recording, channels, spikes) > 0.0,
+        1.0 / (1.0 + (_worst(recording, channels, estimate.deviation) / UNSURE) ** 2),
+        estimate.iterations,
+        estimate.converged,
+        used,
     )
 
 
-def _filter_moving(noisy: Array, start: Array, prior: WindowPrior, noise: Array) -> Estimate:
-    """Filter the channels that ever move; the others keep the mean of the prior."""
-    variance = np.diag(prior.covariance).reshape(prior.window, -1).mean(axis=0)
-    moving = np.flatnonzero(variance > STILL**2)
-    if not len(moving):
-        moving = np.array([0])
-    part = prior.restricted(moving)
-    inner = _filter(noisy[:, moving], start[:, moving], part, noise[moving])
-    values = np.tile(prior.mean, (len(noisy), 1))
-    inliers = np.isfinite(noisy).astype(float)
-    deviation = np.tile(noise, (len(noisy), 1))
-    values[:, moving], inliers[:, moving] = inner.values, inner.inliers
-    deviation[:, moving] = inner.deviation
-    return Estimate(values, inliers, deviation, inner.iterations, inner.converged)
+def _kept_where_unchanged(
+    recording: Motion | Tracks, cleaned: Motion | Tracks, settings: DenoiseSettings
+) -> Motion | Tracks:
+    """At strength 0, return what was observed as it was, to the last bit."""
+    if settings.strength > 0.0:
+        return cleaned
+    if isinstance(recording, Motion) and isinstance(cleaned, Motion):
+        rotations, roots = recording.rotations, recording.root_positions
+        return recording.with_poses(
+            np.where(np.isfinite(rotations), rotations, cleaned.rotations),
+            np.where(np.isfinite(roots), roots, cleaned.root_positions),
+        )
+    assert isinstance(recording, Tracks)
+    assert isinstance(cleaned, Tracks)
+    places = recording.positions
+    return recording.with_positions(np.where(np.isfinite(places), places, cleaned.positions))
 
 
-def _filter(noisy: Array, start: Array, prior: WindowPrior, noise: Array) -> Estimate:
-    """Alternate between an outlier mixture and the Wiener filter of all windows."""
-    window = min(prior.window, len(noisy))
-    gain, vectors, back = _gains(prior, window, noise)
-    known = np.isfinite(noisy)
-    observed = np.nan_to_num(noisy - prior.mean)
-    variance = 1.3 * noise**2 + 0.05
-    estimate, rate, converged = start - prior.mean, 0.05, False
-    iteration = 0
-    while iteration < MAX_ITERATIONS and not converged:
-        iteration += 1
-        error = observed - estimate
-        inside = (1 - rate) * np.exp(-0.5 * error**2 / variance) / np.sqrt(2 * np.pi * variance)
-        weight = known * inside / (inside + rate * OUTLIER_DENSITY)
-        if known.any():
-            rate = float(np.clip(1 - weight[known].mean(), 0.001, 0.5))
-        mixed = estimate + weight * error
-        new = _filtered(mixed, window, gain, vectors, back)
-        change = float(np.abs(new - estimate).max())
-        estimate = new
-        converged = change < SETTLED
-    deviation = np.broadcast_to(noise, noisy.shape)
-    return Estimate(estimate + prior.mean, weight, deviation, iteration, converged)
-
-
-def _gains(prior: WindowPrior, window: int, noise: Array) -> tuple[Array, Array, Array]:
-    """Return the Wiener gain of each pattern, and matrices that weigh and rebuild a window."""
-    n_channels = len(noise)
-    size = window * n_channels
-    # Nothing in a body moves faster than the slowest waves of the window can tell.
-    waves = idct(np.eye(window)[:, : max(round(SLOW_WAVES * window), 1)], axis=0, norm="ortho")
-    spread = np.einsum(
-        "jw,jckd,kv->wcvd",
-        waves,
-        prior.covariance.reshape(prior.window, n_channels, prior.window, n_channels)[
-            :window, :, :window, :
-        ],
-        waves,
-        optimize=True,
-    )
-    n_weights = waves.shape[1] * n_channels
-    scale = np.tile(noise, waves.shape[1])
-    values, vectors = np.linalg.eigh(
-        spread.reshape(n_weights, n_weights) / np.outer(scale, scale)
-    )
-    kept = values > 0.05
-    gain = values[kept] / (values[kept] + 1.0)
-    patterns = (waves @ vectors[:, kept].reshape(waves.shape[1], -1)).reshape(size, -1)
-    scale = np.tile(noise, window)[:, None]
-    vectors, back = patterns / scale, patterns * scale
-    return gain, vectors, back
-
-
-def _filtered(motion: Array, window: int, gain: Array, vectors: Array, back: Array) -> Array:
-    """Filter every window and average where they overlap."""
-    windows = np.lib.stride_tricks.sliding_window_view(motion, window, axis=0)
-    flat = windows.transpose(0, 2, 1).reshape(len(windows), -1)
-    fitted = ((flat @ vectors) * gain @ back.T).reshape(len(windows), window, -1)
-    total, count = np.zeros_like(motion), np.zeros((len(motion), 1))
-    for place in range(window):
-        total[place : place + len(fitted)] += fitted[:, place]
-        count[place : place + len(fitted)] += 1.0
-    return np.asarray(total / count)
-
-
-def _decoded(channels: Channels, values: Array) -> Motion | Tracks:
-    if isinstance(channels.recording, Motion):
-        return decode_motion(channels.recording, channels, values)
-    return decode_tracks(channels.recording, channels, values)
-
-
-def _by_joint(channels: Channels, values: Array) -> Array:
-    """Reduce (n_frames, n_channels) to the largest per joint, (n_frames, n_joints)."""
+def _worst(
+    recording: Motion | Tracks, channels: Channels, values: NDArray[np.generic]
+) -> Array:
+    """Return the largest of each joint's channels, shape (n_frames, n_joints)."""
     parts = values.reshape(channels.values.shape).max(axis=2)
-    recording = channels.recording
     n_joints = recording.n_joints if isinstance(recording, Motion) else recording.n_points
     result = np.zeros((len(parts), n_joints))
     for part, joint in enumerate(channels.joints):

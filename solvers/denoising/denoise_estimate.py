@@ -17,5 +17,7 @@ class Estimate:
     """Probability that a sample is no outlier; 0 where not observed."""
     deviation: Array
     """Standard deviation of the estimate's error."""
+    foresight: float
+    """Mean square, capped, of how far samples are from what all others foretell."""
     iterations: int
     converged: bool

@@ -1,12 +1,13 @@
 """Learn which movements over two thirds of a second belong together."""
 
-from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from collections.abc import Sequence
+from dataclasses import dataclass, fields
 from pathlib import Path
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.linalg import eigh
+from scipy.fft import dct
+from scipy.interpolate import CubicSpline
 
 from ..errors import InvalidFileError, InvalidMotionError
 from ..files import read_archive, write_archive
@@ -14,18 +15,23 @@ from ..motion import Motion, Tracks
 from ..progress import Progress, unwatched
 from ..settings import Settings, setting
 from .channels import Channels
-from .channels_motion import encode_motion
-from .channels_tracks import encode_tracks
+from .channels_encode import encode
+from .lag_covariance import lag_products, strongest
 from .noise import interpolated
 
 Array = NDArray[np.float64]
 
 KIND = "filter bases"
-VERSION = 1
-KEPT_ENERGY = 0.9995
-FIRST_GUESS = 240
+VERSION = 2
+KEPT_ENERGY = 0.99
+"""Share of the movement that the stored patterns hold, as in [LC10]."""
 STILL = 0.05
 """Standard deviation, degrees or centimetres, below which a channel does not move."""
+SLOW_SHARE = 0.6
+"""Share of a window's waves, slowest first, whose covariance is kept; of faster ones, which
+hold little, only the variance."""
+NEAR_MULTIPLE = 0.02
+N_REFERENCE = 12
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -41,58 +47,69 @@ class FilterBasesSettings(Settings):
         unit="Hz", minimum=5.0, maximum=240.0, advanced=True,
     )  # fmt: skip
 
+    @property
+    def n_frames(self) -> int:
+        """Length of the patterns in frames."""
+        return max(round(self.window * self.frame_rate), 2)
+
 
 @dataclass(frozen=True, eq=False)
 class FilterBases:
-    """Movement patterns: eigenvectors of the lag covariance of clean recordings.
+    """What was learned of clean recordings: their patterns over a short window.
+
+    Channels are degrees or centimetres; each part (joint, point or the root's place) has three.
 
     Attributes
     ----------
-    keys : tuple of str, length n_parts
-    references : shape (n_parts, 4)
-        Mean rotation, or mean position followed by 0, that each part is told relative to.
+    keys : shape (n_parts,), str
+        What the parts are called: humanoid roles or names.
+    references : shape (n_parts, 12)
+        What each part is told relative to (see `channels_motion`), filled up with 0.
     mean : shape (n_parts * 3,)
     vectors : shape (n_bases, window, n_parts * 3)
-        Orthonormal patterns, strongest first.
+        The filter bases of [LC10]: orthonormal patterns, strongest first, that hold 99 % of
+        the movement.
     values : shape (n_bases,)
-        Mean square of each pattern's weight, degrees or centimetres squared.
-    frame_rate : float, hertz
-    n_clips : int
+        Mean square of each pattern's weight.
+    moving : shape (n_moving,), int
+        Channels that move; `slow` and `fast` tell of these.
+    slow : shape (n_slow, n_moving, n_slow, n_moving)
+        Covariance of the slow cosine waves of a window: all patterns, however weak.
+    fast : shape (window - n_slow, n_moving)
+        Variances of the faster waves.
+    frame_rate : shape (), hertz
+    n_clips : shape (), int
+    of_points : shape (), bool
+        Learned from tracks rather than from motions.
     """
 
-    keys: tuple[str, ...]
+    keys: NDArray[np.str_]
     references: Array
     mean: Array
     vectors: Array
     values: Array
-    frame_rate: float
-    n_clips: int
-    of_points: bool
+    moving: NDArray[np.intp]
+    slow: Array
+    fast: Array
+    frame_rate: Array
+    n_clips: NDArray[np.intp]
+    of_points: NDArray[np.bool_]
 
     @property
     def window(self) -> int:
         """Length of the patterns, frames."""
-        return self.vectors.shape[1]
+        return int(self.vectors.shape[1])
 
     @property
     def reference_of(self) -> dict[str, Array]:
         """Mean rotation or position of each key."""
-        width = 3 if self.of_points else 4
-        return {key: row[:width] for key, row in zip(self.keys, self.references, strict=True)}
+        return dict(zip(map(str, self.keys), self.references, strict=True))
 
     def save(self, path: Path | str) -> None:
         """Write an archive that `load_filter_bases` reads."""
-        arrays = {
-            "keys": np.array(self.keys),
-            "references": self.references,
-            "mean": self.mean,
-            "vectors": self.vectors,
-            "values": self.values,
-            "frame_rate": np.array(self.frame_rate),
-            "n_clips": np.array(self.n_clips),
-            "of_points": np.array(self.of_points),
-        }
-        write_archive(path, KIND, VERSION, arrays)
+        write_archive(
+            path, KIND, VERSION, {one.name: getattr(self, one.name) for one in fields(self)}
+        )
 
 
 def load_filter_bases(path: Path | str) -> FilterBases:
@@ -104,20 +121,12 @@ def load_filter_bases(path: Path | str) -> FilterBases:
         The file is missing, damaged, or holds something else.
     """
     arrays = read_archive(path, KIND, VERSION)
-    try:
-        bases = FilterBases(
-            tuple(str(key) for key in arrays["keys"]),
-            arrays["references"],
-            arrays["mean"],
-            arrays["vectors"],
-            arrays["values"],
-            float(arrays["frame_rate"]),
-            int(arrays["n_clips"]),
-            bool(arrays["of_points"]),
-        )
+    missing = [one.name for one in fields(FilterBases) if one.name not in arrays]
+    if missing:
+        fault = f"{', '.join(map(repr, missing))} missing"
+    else:
+        bases = FilterBases(**{one.name: arrays[one.name] for one in fields(FilterBases)})
         fault = _fault(bases)
-    except (KeyError, TypeError, ValueError) as error:
-        fault = str(error)
     if fault:
         raise InvalidFileError(
             f"{path} holds damaged filter bases ({fault}). Learn them again."
@@ -127,15 +136,37 @@ def load_filter_bases(path: Path | str) -> FilterBases:
 
 def _fault(bases: FilterBases) -> str:
     """Return what keeps bases from a file from being used, or nothing."""
-    n_keys, n_bases = len(bases.keys), len(bases.values)
-    expected = ((n_keys, 4), (3 * n_keys,), (n_bases,))
-    arrays = (bases.references, bases.mean, bases.values)
-    patterns = (n_bases, *bases.vectors.shape[1:2], 3 * n_keys)
-    if (*(array.shape for array in arrays), bases.vectors.shape) != (*expected, patterns):
+    shape = bases.vectors.shape
+    if len(shape) != 3 or not all(shape) or not bases.keys.size or bases.slow.ndim != 4:
         return "their shapes do not fit"
-    if not all(np.isfinite(array).all() for array in (*arrays, bases.vectors)):
+    window, n_parts = shape[1], bases.keys.size
+    n_slow, n_moving = min(len(bases.slow), window), bases.moving.size
+    expected = {
+        "keys": (n_parts,),
+        "references": (n_parts, N_REFERENCE),
+        "mean": (3 * n_parts,),
+        "vectors": (bases.values.size, window, 3 * n_parts),
+        "values": (bases.values.size,),
+        "moving": (n_moving,),
+        "slow": (n_slow, n_moving, n_slow, n_moving),
+        "fast": (window - n_slow, n_moving),
+        **dict.fromkeys(("frame_rate", "n_clips", "of_points"), ()),
+    }
+    arrays = {name: getattr(bases, name) for name in expected}
+    if any(array.shape != expected[name] for name, array in arrays.items()):
+        return "their shapes do not fit"
+    del arrays["keys"]
+    if not all(
+        array.dtype.kind in "fiub" and np.isfinite(array).all() for array in arrays.values()
+    ):
         return "not all numbers are finite"
-    return "" if 0.0 < bases.frame_rate < np.inf else f"a frame rate of {bases.frame_rate:g} Hz"
+    if (
+        bases.moving.dtype.kind != "i"
+        or not np.isin(bases.moving, np.arange(3 * n_parts)).all()
+    ):
+        return "they speak of channels that there are not"
+    rate = float(bases.frame_rate)
+    return "" if rate > 0.0 else f"a frame rate of {rate:g} Hz"
 
 
 def learn_filter_bases(
@@ -147,12 +178,13 @@ def learn_filter_bases(
     """Learn filter bases from clean recordings by multichannel singular spectrum analysis.
 
     The eigenvectors of the lag covariance of all channels [1]_. The covariance comes from a
-    recursion over lags, clip by clip, so the matrix of all windows is never built.
+    recursion over lags, clip by clip, so the matrix of all windows is never built: many frames
+    take no more memory than few. Rigs may differ where their joints have humanoid roles.
 
     Parameters
     ----------
     examples : sequence of Motion or Tracks
-        Of one kind, with the same joints or points. Gaps are bridged by straight lines.
+        Of one kind. Frame rates may differ; gaps are bridged by straight lines.
     settings : FilterBasesSettings
     progress : Progress
 
@@ -163,109 +195,84 @@ def learn_filter_bases(
 
     References
     ----------
-    .. [1] Lou, Chai (2010). Example-based human motion denoising. IEEE TVCG 16(5), section 2.
+    .. [1] Lou, Chai (2010). Example-based human motion denoising. IEEE TVCG 16(5), section 3.
     """
     if not examples:
         raise InvalidMotionError("There is no example to learn from; choose clean clips.")
-    if len({type(example) for example in examples}) > 1:
+    if len({isinstance(example, Motion) for example in examples}) > 1:
         raise InvalidMotionError("Learn from motions or from tracks, not from both at once.")
-    window = max(round(settings.window * settings.frame_rate), 2)
-    references: dict[str, Array] = {}
-    keys: tuple[str, ...] = ()
-    clips = []
-    for index, example in enumerate(examples):
-        channels = encode(example, references)
-        keys = keys or channels.keys
-        references = references or dict(channels.references)
-        clips += phases(_columns(channels, keys), example.frame_rate, settings.frame_rate)
-        progress(0.8 * (index + 1) / len(examples), "Reading examples")
+    first, clips = _columns(examples, settings, progress)
+    window = settings.n_frames
     clips = [clip for clip in clips if len(clip) >= window]
     if not clips:
         raise InvalidMotionError(
-            f"No example is as long as the window of {settings.window:.2g} s; choose longer."
+            f"No example is as long as the window of {settings.window:.2g} s; choose longer"
+            " ones or a shorter window."
         )
-    mean = np.concatenate(clips).mean(axis=0)
+    everything = np.concatenate(clips)
+    mean, spread = everything.mean(axis=0), everything.std(axis=0)
+    moving = np.flatnonzero(spread >= min(STILL, spread.max()))
     n_windows = sum(len(clip) - window + 1 for clip in clips)
-    spread = np.concatenate(clips).std(axis=0)
-    moving = np.flatnonzero(spread > min(STILL, spread.max() / 2))
-    covariance = sum(lag_products(clip[:, moving] - mean[moving], window) for clip in clips)
-    values, vectors = strongest(np.asarray(covariance) / n_windows, KEPT_ENERGY)
+    total = np.zeros((window * len(moving),) * 2)
+    for clip in clips:
+        total += lag_products(clip[:, moving] - mean[moving], window)
+    covariance = total / n_windows
+    progress(0.7, "Finding patterns")
+    values, vectors = strongest(covariance, KEPT_ENERGY)
     patterns = np.zeros((len(values), window, len(mean)))
     patterns[:, :, moving] = vectors.T.reshape(len(values), window, len(moving))
+    slow, fast = _waves(covariance, window)
     progress(1.0, "Learned")
-    rows = [np.append(references[key], 0.0)[:4] for key in keys]
+    rows = np.zeros((len(first.keys), N_REFERENCE))
+    for row, key in zip(rows, first.keys, strict=True):
+        row[: len(first.references[key])] = first.references[key]
     return FilterBases(
-        keys, np.array(rows), mean, patterns, values,
-        settings.frame_rate, len(examples), isinstance(examples[0], Tracks),
+        np.array(first.keys), rows, mean, patterns, values, moving, slow, fast,
+        np.array(settings.frame_rate), np.array(len(examples)),
+        np.array(isinstance(examples[0], Tracks)),
     )  # fmt: skip
 
 
-def strongest(covariance: Array, energy: float) -> tuple[Array, Array]:
-    """Return the largest eigenvalues that hold this share of the trace, and their vectors."""
-    size, total = len(covariance), float(np.trace(covariance))
-    wanted = min(size, FIRST_GUESS)
-    while True:
-        values, vectors = eigh(covariance, subset_by_index=(size - wanted, size - 1))
-        values, vectors = np.maximum(values[::-1], 0.0), vectors[:, ::-1]
-        enough = int(np.searchsorted(np.cumsum(values), energy * total)) + 1
-        if enough <= wanted or wanted == size:
-            return values[:enough], vectors[:, :enough]
-        wanted = min(2 * wanted, size)
+def at_rate(values: Array, frame_rate: float, wanted: float) -> list[Array]:
+    """Return channels at another frame rate.
 
-
-def lag_products(values: Array, window: int) -> Array:
-    """Return the sum over all windows of the outer product of a window with itself.
-
-    The block of lags (j + 1, k + 1) is that of (j, k) without its first frame and with one
-    more at the end, so only the first row of blocks costs a pass over the frames.
-
-    Parameters
-    ----------
-    values : shape (n_frames, n_channels)
-    window : int, frames
-
-    Returns
-    -------
-    Array
-        Shape (window * n_channels, window * n_channels), frames outermost.
+    A multiple of the wanted rate is split into interleaved takes, so that no frame is lost;
+    other rates are interpolated by cubic splines.
     """
-    n_frames, n_channels = values.shape
-    n_windows = n_frames - window + 1
-    blocks = np.empty((window, window, n_channels, n_channels))
-    for lag in range(window):
-        blocks[0, lag] = values[:n_windows].T @ values[lag : lag + n_windows]
-    for row in range(window - 1):
-        for column in range(row, window - 1):
-            first = np.multiply.outer(values[row], values[column])
-            last = np.multiply.outer(values[row + n_windows], values[column + n_windows])
-            blocks[row + 1, column + 1] = blocks[row, column] - first + last
-    for row in range(window):
-        for column in range(row):
-            blocks[row, column] = blocks[column, row].T
-    size = window * n_channels
-    return blocks.transpose(0, 2, 1, 3).reshape(size, size)
+    step = frame_rate / wanted
+    if step >= 1.0 and abs(step - round(step)) < NEAR_MULTIPLE * step:
+        return [values[start :: round(step)] for start in range(round(step))]
+    if len(values) < 2:
+        return [values]
+    times = np.arange(0.0, (len(values) - 1) * wanted / frame_rate + 1e-9) / wanted
+    spline = CubicSpline(np.arange(len(values)) / frame_rate, values, axis=0)
+    return [np.asarray(spline(times))]
 
 
-def encode(
-    recording: Motion | Tracks, references: Mapping[str, Array] | None = None
-) -> Channels:
-    """Turn a recording of either kind into channels."""
-    if isinstance(recording, Motion):
-        return encode_motion(recording, references)
-    return encode_tracks(recording, references)
+def _columns(
+    examples: Sequence[Motion | Tracks], settings: FilterBasesSettings, progress: Progress
+) -> tuple[Channels, list[Array]]:
+    """Encode all examples about the means of the first; columns are in its order."""
+    first = encode(examples[0])
+    clips = []
+    for index, example in enumerate(examples):
+        channels = encode(example, first.references) if index else first
+        place = {key: part for part, key in enumerate(channels.keys)}
+        columns = np.full((len(channels.values), len(first.keys), 3), np.nan)
+        for part, key in enumerate(first.keys):
+            if key in place:
+                columns[:, part] = channels.values[:, place[key]]
+        complete = interpolated(columns.reshape(len(columns), -1))
+        clips += at_rate(complete, example.frame_rate, settings.frame_rate)
+        progress(0.6 * (index + 1) / len(examples), "Reading examples")
+    return first, clips
 
 
-def phases(values: Array, frame_rate: float, wanted: float) -> list[Array]:
-    """Split channels into interleaved ones whose frame rate is about the wanted one."""
-    step = min(max(round(frame_rate / wanted), 1), len(values))
-    return [values[start::step] for start in range(step)]
-
-
-def _columns(channels: Channels, keys: tuple[str, ...]) -> Array:
-    """Put channels in the order of `keys`; NaN bridged, 0 where a key is missing."""
-    place = {key: index for index, key in enumerate(channels.keys)}
-    columns = np.zeros((len(channels.values), len(keys), 3))
-    for index, key in enumerate(keys):
-        if key in place:
-            columns[:, index] = channels.values[:, place[key]]
-    return interpolated(columns.reshape(len(columns), -1))
+def _waves(covariance: Array, window: int) -> tuple[Array, Array]:
+    """Return the covariance of the slow cosine waves, and the variances of the others."""
+    n_channels = len(covariance) // window
+    blocks = covariance.reshape(window, n_channels, window, n_channels)
+    waves = np.asarray(dct(dct(blocks, axis=0, norm="ortho"), axis=2, norm="ortho"))
+    n_slow = max(round(SLOW_SHARE * window), 1)
+    fast = np.einsum("kckc->kc", waves)[n_slow:]
+    return waves[:n_slow, :, :n_slow].copy(), np.maximum(fast, 0.0)

@@ -1,5 +1,7 @@
 """What can be said of the noise before any model of the motion is known."""
 
+from typing import Any
+
 import numpy as np
 from numpy.typing import NDArray
 from scipy.ndimage import median_filter
@@ -30,6 +32,29 @@ def rough_noise(values: Array) -> Array:
     return np.asarray(MAD_TO_SIGMA * _nan_median(differences) / DIFFERENCE_GAIN)
 
 
+def alike(noise: Array, n_samples: NDArray[Any], efficiency: float = 1.0) -> Array:
+    """Draw the noise of all channels together, as far as their spread is mere chance.
+
+    The logarithm of a standard deviation from n samples is uncertain by 1 / (2 n); what spread
+    there is beyond that is real (empirical Bayes, robustly).
+
+    Parameters
+    ----------
+    noise : shape (n_channels,)
+        Estimated standard deviations, positive.
+    n_samples : shape (n_channels,)
+        That each was estimated from.
+    efficiency : float
+        Of the estimate, relative to that of the standard deviation of a Gaussian.
+    """
+    logs = np.log(noise)
+    middle = np.median(logs)
+    chance = 0.5 / np.maximum(efficiency * n_samples, 1.0)
+    spread = (MAD_TO_SIGMA * np.median(np.abs(logs - middle))) ** 2
+    real = max(float(spread - np.median(chance)), 0.0)
+    return np.asarray(np.exp(middle + real / (real + chance) * (logs - middle)))
+
+
 def hampel(values: Array, half_width: int, tolerance: float) -> Array:
     """Return the channels with every sample that stands out from its neighbours made NaN.
 
@@ -46,7 +71,7 @@ def hampel(values: Array, half_width: int, tolerance: float) -> Array:
     middle = median_filter(filled, size, mode="nearest")
     departure = np.abs(filled - middle)
     spread = MAD_TO_SIGMA * median_filter(departure, size, mode="nearest")
-    floor = 1e-9 + 0.1 * np.median(spread, axis=0)
+    floor = 1e-9 + np.median(spread, axis=0)
     return np.where(departure > tolerance * np.maximum(spread, floor), np.nan, values)
 
 

@@ -1,67 +1,103 @@
-"""What is expected of the channels before a recording is seen: a Gaussian over windows."""
+"""What is expected of a window before the take is seen: a Gaussian over its waves."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
-
-from .filter_bases import FilterBases, lag_products
+from scipy.fft import idct
 
 Array = NDArray[np.float64]
 
-SMOOTH_LENGTH = 3.0
-"""Length, in frames, of the Gaussian correlation of what the bases cannot say."""
-LEFT_OVER = 0.01
-"""Share of the energy, per channel, that is always allowed beyond the bases."""
+SMOOTH_LENGTHS = (0.1, 0.3, 1.0)
+"""Correlation times, seconds, of movement of which nothing else is known."""
+SLOW_SHARE = 0.6
+"""Share of the waves, slowest first, that are told together; faster ones are independent."""
+FASTEST = 1e-4
+"""Variance, relative to a channel's own, that any fast wave may have."""
 
 
 @dataclass(frozen=True, eq=False)
-class WindowPrior:
-    """Mean of each channel, and covariance of a window of all channels, frames outermost."""
+class WavePrior:
+    """A Gaussian over the waves of a window of all channels.
+
+    Attributes
+    ----------
+    mean : shape (n_channels,)
+        Constant over the window.
+    slow : shape (n_slow, n_channels, n_slow, n_channels)
+        Covariance of the slow waves.
+    fast : shape (n_waves - n_slow, n_channels)
+        Variances of the faster waves, independent of all else.
+    trust : shape (n_channels,)
+        Share of the take's own covariance in the estimate, 0 to 1: what is told by examples
+        needs less of it than what is not.
+    """
 
     mean: Array
-    covariance: Array
-    window: int
-    description: str
+    slow: Array
+    fast: Array
+    trust: Array
+    trust_alone: Array
 
-    def restricted(self, channels: NDArray[np.intp]) -> "WindowPrior":
-        """Return the prior of some channels only."""
-        n_channels = len(self.mean)
-        columns = (np.arange(self.window)[:, None] * n_channels + channels).ravel()
-        covariance = self.covariance[np.ix_(columns, columns)]
-        return WindowPrior(self.mean[channels], covariance, self.window, self.description)
+    @property
+    def n_slow(self) -> int:
+        """Number of slow waves."""
+        return len(self.slow)
 
+    def at_most(self, n_waves: int) -> "WavePrior":
+        """Return the prior of windows that have only so many waves."""
+        return replace(
+            self,
+            slow=self.slow[:n_waves, :, :n_waves],
+            fast=self.fast[: max(n_waves - self.n_slow, 0)],
+        )
 
-def prior_from_bases(bases: FilterBases, keys: tuple[str, ...]) -> WindowPrior | None:
-    """Return the prior of these parts, all of which the bases must know; else None."""
-    place = {key: index for index, key in enumerate(bases.keys)}
-    if not all(key in place for key in keys):
-        return None
-    columns = np.concatenate([3 * place[key] + np.arange(3) for key in keys])
-    patterns = bases.vectors[:, :, columns].reshape(len(bases.vectors), -1)
-    covariance = (patterns.T * bases.values) @ patterns
-    description = f"Patterns of {bases.n_clips} example clips."
-    return WindowPrior(bases.mean[columns], covariance, bases.window, description)
-
-
-def prior_from_take(takes: list[Array], window: int, noise: Array) -> WindowPrior:
-    """Return a prior made from (roughly cleaned) channels of the take itself."""
-    mean = np.concatenate(takes).mean(axis=0)
-    n_windows = sum(len(take) - window + 1 for take in takes)
-    total = sum(lag_products(take - mean, window) for take in takes)
-    covariance = np.asarray(total) / max(n_windows, 1)
-    # What white noise adds to the covariance stands on its diagonal only.
-    covariance -= np.diag(np.tile(0.9 * noise**2, window))
-    return WindowPrior(mean, covariance, window, "The take's own patterns.")
+    @property
+    def matrix(self) -> Array:
+        """The covariance of the slow waves as a square matrix, waves outermost."""
+        size = self.n_slow * len(self.mean)
+        return self.slow.reshape(size, size)
 
 
-def with_smooth_rest(prior: WindowPrior) -> WindowPrior:
-    """Allow every channel a little smooth movement that the patterns do not contain."""
-    n_channels = len(prior.mean)
-    steps = np.arange(prior.window)
-    smooth = np.exp(-0.5 * (np.subtract.outer(steps, steps) / SMOOTH_LENGTH) ** 2)
-    energy = np.maximum(np.diag(prior.covariance), 0.0)
-    energy = energy.reshape(prior.window, n_channels).mean(axis=0)
-    rest = LEFT_OVER * energy + 1e-4
-    covariance = prior.covariance + np.kron(smooth, np.diag(rest))
-    return WindowPrior(prior.mean, covariance, prior.window, prior.description)
+def n_slow_waves(window: int) -> int:
+    """Return how many waves of a window are told together."""
+    return max(round(SLOW_SHARE * window), 1)
+
+
+def smooth_prior(
+    mean: Array,
+    variance: Array,
+    window: int,
+    frame_rate: float,
+    trust: float,
+    trust_alone: float,
+) -> WavePrior:
+    """Return the prior of channels of which only variance and smoothness are known."""
+    steps = np.subtract.outer(np.arange(window), np.arange(window)) / frame_rate
+    kernels = [np.exp(-0.5 * (steps / length) ** 2) for length in SMOOTH_LENGTHS]
+    waves = idct(np.eye(window), axis=0, norm="ortho")
+    kernel = waves.T @ (sum(kernels) / len(kernels)) @ waves
+    n_slow, n_channels = n_slow_waves(window), len(mean)
+    slow = np.einsum("kj,cd->kcjd", kernel[:n_slow, :n_slow], np.diag(variance))
+    fast = np.outer(np.diag(kernel)[n_slow:] + FASTEST, variance)
+    return WavePrior(
+        mean, slow, fast, np.full(n_channels, trust), np.full(n_channels, trust_alone)
+    )
+
+
+def mixed(examples: WavePrior, smooth: WavePrior, share: float) -> WavePrior:
+    """Return the examples' prior with a share of the one that knows only smoothness."""
+    known = np.isfinite(examples.mean)
+    of_smooth = np.where(known, share, 1.0)
+    rest = np.sqrt(1.0 - of_smooth)
+    both = rest[:, None, None] * np.where(np.isfinite(examples.slow), examples.slow, 0.0) * rest
+    slow = both + smooth.slow * of_smooth
+    fast = np.where(known, (1 - share) * np.nan_to_num(examples.fast), 0.0)
+    return replace(
+        examples,
+        mean=np.where(known, examples.mean, smooth.mean),
+        slow=slow,
+        fast=fast + of_smooth * smooth.fast,
+        trust=np.where(known, examples.trust, smooth.trust),
+        trust_alone=np.where(known, examples.trust_alone, smooth.trust_alone),
+    )

@@ -4,9 +4,12 @@ import numpy as np
 from numpy.lib.stride_tricks import sliding_window_view
 from numpy.typing import NDArray
 
+from ..progress import Progress
+from .channels import Channels
 from .denoise_estimate import Estimate
-from .noise import interpolated
-from .prior import WindowPrior
+from .filter_bases import FilterBases, FilterBasesSettings
+from .lag_covariance import lag_products, strongest
+from .noise import hampel, interpolated
 
 Array = NDArray[np.float64]
 
@@ -21,28 +24,54 @@ SETTLED = 1e-3
 """Relative change of the cost below which the alternation ends."""
 
 
-def filter_as_published(noisy: Array, prior: WindowPrior) -> Estimate:
+def filter_as_published(
+    channels: Channels, frame_rate: float, bases: FilterBases | None, progress: Progress
+) -> tuple[Estimate, str]:
+    """Filter a take with the bases' patterns, or with its own; a sentence says which.
+
+    Takes at a multiple of the bases' frame rate are filtered as interleaved takes at that rate.
+    """
+    noisy = channels.flat
+    wanted = float(bases.frame_rate) if bases else FilterBasesSettings().frame_rate
+    step = max(min(round(frame_rate / wanted), len(noisy)), 1)
+    takes = [noisy[start::step] for start in range(step)]
+    patterns, mean, used = _patterns(channels, takes, frame_rate, bases)
+    values, inliers = noisy.copy(), np.ones_like(noisy)
+    iterations, converged = 0, True
+    for start, take in enumerate(takes):
+        motion, weight, needed, settled = alternate(take - mean, patterns[:, : len(take)])
+        values[start::step], inliers[start::step] = motion + mean, weight
+        iterations, converged = max(iterations, needed), converged and settled
+        progress((start + 1) / step, "Filtering")
+    deviation = np.full(noisy.shape, WELSCH)
+    return Estimate(values, inliers, deviation, 0.0, iterations, converged), used
+
+
+def alternate(noisy: Array, patterns: Array) -> tuple[Array, Array, int, bool]:
     """Minimise eq. 2.16 of [1]_ by alternating between pattern weights and motion.
 
     Eq. 2.15 drops the factor 1/2 of the Welsch function (eq. 2.9); it is kept here, so that
-    each step lowers the cost that is printed. Channels are centred.
+    each step lowers the cost that is printed.
 
     Parameters
     ----------
     noisy : shape (n_frames, n_channels)
-        NaN where not observed: the weights alpha of eq. 2.16 are 0 there.
-    prior : WindowPrior
-        Its covariance gives the patterns that hold 99 % of the energy.
+        Centred; NaN where not observed: the weights alpha of eq. 2.16 are 0 there.
+    patterns : shape (n_bases, window, n_channels)
+
+    Returns
+    -------
+    tuple
+        Motion, weights of the estimator, iterations, and whether the cost has settled.
 
     References
     ----------
     .. [1] Lou (2012). Acquiring 3D full-body motion from noisy and ambiguous input. PhD
        dissertation, Texas A&M, section 2.2.
     """
-    patterns = strongest_patterns(prior, min(prior.window, len(noisy)))
     known = np.isfinite(noisy)
-    observed = np.where(known, noisy - prior.mean, 0.0)
-    motion = interpolated(noisy) - prior.mean
+    observed = np.where(known, noisy, 0.0)
+    motion = interpolated(noisy)
     weight, cost, converged, iteration = known.astype(float), np.inf, False, 0
     while iteration < MAX_ITERATIONS and not converged:
         iteration += 1
@@ -53,18 +82,7 @@ def filter_as_published(noisy: Array, prior: WindowPrior) -> Estimate:
             motion = (weight * observed + pull * fitted) / (weight + pull)
         before, cost = cost, published_cost(motion, observed, known, patterns)
         converged = before - cost < SETTLED * cost
-    deviation = np.full(noisy.shape, WELSCH)
-    return Estimate(motion + prior.mean, weight, deviation, iteration, converged)
-
-
-def strongest_patterns(prior: WindowPrior, window: int) -> Array:
-    """Return the eigenvectors that hold 99 % of the energy, shape (K, window, n_channels)."""
-    n_channels = len(prior.mean)
-    size = window * n_channels
-    values, vectors = np.linalg.eigh(prior.covariance[:size, :size])
-    values = np.maximum(values[::-1], 0.0)
-    n_kept = int(np.searchsorted(np.cumsum(values), ENERGY * values.sum())) + 1
-    return np.asarray(vectors[:, ::-1][:, :n_kept].T.reshape(n_kept, window, n_channels))
+    return motion, weight, iteration, converged
 
 
 def fit_windows(motion: Array, patterns: Array) -> tuple[Array, Array]:
@@ -89,3 +107,26 @@ def published_cost(motion: Array, observed: Array, known: Array, patterns: Array
     outside = (flat**2).sum() - (inside**2).sum()
     robust = WELSCH**2 / 2 * (1 - np.exp(-(((motion - observed) / WELSCH) ** 2)))
     return float((known * robust).sum() + PATTERN_WEIGHT * outside)
+
+
+def _patterns(
+    channels: Channels, takes: list[Array], frame_rate: float, bases: FilterBases | None
+) -> tuple[Array, Array, str]:
+    """Return patterns of the take's channels, their mean, and where they are from."""
+    place = {str(key): part for part, key in enumerate(bases.keys)} if bases else {}
+    if bases is not None and all(key in place for key in channels.keys):
+        columns = np.concatenate([3 * place[key] + np.arange(3) for key in channels.keys])
+        patterns = bases.vectors[:, :, columns]
+        if len(takes[-1]) >= bases.window:
+            return (
+                patterns,
+                bases.mean[columns],
+                f"Patterns of {int(bases.n_clips)} example clips.",
+            )
+    rough = [interpolated(hampel(take, 4, 3.5)) for take in takes]
+    mean = np.concatenate(rough).mean(axis=0)
+    window = min(FilterBasesSettings().n_frames, len(takes[-1]))
+    covariance = sum(lag_products(take - mean, window) for take in rough)
+    _, vectors = strongest(np.asarray(covariance), ENERGY)
+    patterns = vectors.T.reshape(-1, window, len(mean))
+    return patterns, mean, "The take's own patterns."

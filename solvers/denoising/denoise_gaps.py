@@ -1,0 +1,104 @@
+"""Windows in which a channel is missing for long: one exact solve per pattern of gaps."""
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from .denoise_windows import Windows
+
+Array = NDArray[np.float64]
+
+LONG_GAP = 0.2
+"""Share of a window from which on a gap is solved for exactly. Shorter ones fill quickly."""
+
+
+@dataclass(frozen=True, eq=False)
+class GapPattern:
+    """Windows that have the same gaps.
+
+    With the filter G for a window without gaps, and N the part of the identity that is
+    unobserved (in waves, zero but for the channels with gaps), the posterior mean a solves
+    a = G (b + N a), where b are the waves of what is observed. Only the channels with gaps
+    have to be solved for: a small system, by Woodbury's identity.
+    """
+
+    starts: NDArray[np.intp]
+    channels: NDArray[np.intp]
+    """Channels with gaps; none for windows that are complete."""
+    seen: NDArray[np.bool_]
+    """Where these channels are observed, shape (length, n_gap_channels)."""
+    places: NDArray[np.intp]
+    """Of the slow waves of these channels among all, waves outermost."""
+    unseen: Array
+    """N at these places, a square matrix."""
+
+    def solve(self, windows: Windows, frames: Array, gain: Array, noise: Array) -> Array:
+        """Return the posterior slow waves in units of the noise, shape (n_windows, size).
+
+        Parameters
+        ----------
+        windows : Windows
+        frames : shape (n_windows, length, n_channels)
+            Windows of this pattern; whatever stands in the gaps is not looked at.
+        gain : shape (size, size)
+            G.
+        noise : shape (n_channels,)
+            Standard deviation of a wave.
+        """
+        frames = frames.copy()
+        frames[:, :, self.channels] *= self.seen
+        n_slow = len(gain) // len(noise)
+        b = (windows.waves_of(frames)[:, :n_slow] / noise).reshape(len(frames), -1)
+        mean = b @ gain
+        at_gaps = np.linalg.solve(self._system(gain), mean[:, self.places].T)
+        return np.asarray(mean + (self.unseen @ at_gaps).T @ gain[self.places])
+
+    def more_covariance(self, gain: Array) -> Array:
+        """Return what the gaps add to the posterior covariance at `places`, noise units."""
+        inner = gain[np.ix_(self.places, self.places)]
+        return np.asarray(np.linalg.solve(self._system(gain), inner) - inner)
+
+    def _system(self, gain: Array) -> Array:
+        inner = gain[np.ix_(self.places, self.places)]
+        return np.asarray(np.eye(len(inner)) - inner @ self.unseen)
+
+
+def gap_patterns(known: NDArray[np.bool_], windows: Windows, n_slow: int) -> list[GapPattern]:
+    """Sort all windows by the long gaps in them."""
+    gaps = long_gaps(known, max(round(LONG_GAP * windows.length), 2))
+    cut = np.lib.stride_tricks.sliding_window_view(gaps, windows.length, axis=0)
+    groups: dict[bytes, list[int]] = {}
+    for start in windows.starts:
+        groups.setdefault(np.packbits(cut[start]).tobytes(), []).append(int(start))
+    shapes = windows.wave_shapes(n_slow) / np.sqrt(windows.density)
+    patterns = []
+    for starts in groups.values():
+        missing = cut[starts[0]].T
+        channels = np.flatnonzero(missing.any(axis=0))
+        mask = missing[:, channels].astype(float)
+        blocks = np.einsum("tk,tc,tj->ckj", shapes, mask, shapes)
+        unseen = np.zeros((n_slow, len(channels), n_slow, len(channels)))
+        for place in range(len(channels)):
+            unseen[:, place, :, place] = blocks[place]
+        places = np.arange(n_slow)[:, None] * known.shape[1] + channels
+        size = n_slow * len(channels)
+        patterns.append(
+            GapPattern(
+                np.array(starts),
+                channels,
+                mask == 0.0,
+                places.ravel(),
+                unseen.reshape(size, size),
+            )
+        )
+    return patterns
+
+
+def long_gaps(known: NDArray[np.bool_], at_least: int) -> NDArray[np.bool_]:
+    """Return where a channel is unobserved for at least so many frames on end."""
+    n_frames = len(known)
+    frames = np.arange(n_frames)[:, None]
+    before = np.maximum.accumulate(np.where(known, frames, -1), axis=0)
+    after = np.minimum.accumulate(np.where(known, frames, n_frames)[::-1], axis=0)[::-1]
+    return np.asarray(~known & (after - before > at_least))

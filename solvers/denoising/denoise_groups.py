@@ -1,0 +1,120 @@
+"""The default method on whole takes: choose what moves, what to expect, and solve in groups."""
+
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..progress import Progress, within
+from .channels import Channels
+from .denoise_estimate import Estimate
+from .denoise_posterior import estimate_channels
+from .denoise_windows import Windows
+from .filter_bases import FilterBases, FilterBasesSettings
+from .noise import alike, hampel, interpolated, rough_noise
+from .prior_choice import choose_prior, examples_prior, take_prior
+
+Array = NDArray[np.float64]
+
+LARGEST_GROUP = 96
+"""Channels that are solved for together; rigs with more are cut between joints."""
+CONSTANT = 1e-7
+SPIKE_HALF_WIDTH = 4
+SPIKE_TOLERANCE = 3.5
+FIRST_GUESS_EFFICIENCY = 0.2
+"""Of the median of overlapping differences, relative to a standard deviation."""
+SMALLEST_NOISE = 0.01
+UNKNOWN = 30.0
+"""Standard deviation, degrees or centimetres, of what nothing is known of."""
+FOREIGN = 0.2
+"""Share of plain smoothness from which on the examples are said to fit badly."""
+
+
+class Rough(NamedTuple):
+    """A take before anything is known of it, long enough for one window."""
+
+    noisy: Array
+    """NaN where not observed, and beyond the end of a take shorter than a window."""
+    values: Array
+    """Without spikes, bridged by straight lines: no NaN."""
+    noise: Array
+    n_seen: NDArray[np.intp]
+    windows: Windows
+
+
+def estimate_in_groups(
+    channels: Channels, frame_rate: float, bases: FilterBases | None, progress: Progress
+) -> tuple[Estimate, str]:
+    """Estimate all channels; return them with a sentence on the prior."""
+    n_frames, n_channels = channels.flat.shape
+    pattern_rate = float(bases.frame_rate) if bases else FilterBasesSettings().frame_rate
+    window = bases.window if bases else FilterBasesSettings().n_frames
+    take = _roughly(channels.flat, frame_rate, pattern_rate, window)
+    values, inliers = take.values.copy(), np.isfinite(take.noisy).astype(float)
+    deviation = np.where(np.isfinite(take.noisy), 0.0, UNKNOWN)
+    groups = _groups(channels, take.values, bases)
+    iterations, converged, shares = 0, True, []
+    for index, columns in enumerate(groups):
+        step = within(progress, index / len(groups), (index + 1) / len(groups))
+        guess = alike(take.noise[columns], take.n_seen[columns], FIRST_GUESS_EFFICIENCY)
+        part = take._replace(
+            noisy=take.noisy[:, columns], values=take.values[:, columns], noise=guess
+        )
+        prior = take_prior(part.values[:n_frames], guess, window, pattern_rate)
+        if bases is not None:
+            examples = examples_prior(bases, channels.keys, columns)
+            prior, share = choose_prior(examples, prior, *part[:3], take.windows, step)
+            shares += [share] * int(np.isfinite(examples.mean).sum())
+        found = estimate_channels(*part[:3], prior, take.windows, within(step, 0.4, 1.0))
+        values[:, columns], inliers[:, columns] = found.values, found.inliers
+        deviation[:, columns] = found.deviation
+        iterations = max(iterations, found.iterations)
+        converged &= found.converged
+    whole = (values[:n_frames], inliers[:n_frames], deviation[:n_frames])
+    return Estimate(*whole, 0.0, iterations, converged), _sentence(bases, shares, n_channels)
+
+
+def _roughly(noisy: Array, frame_rate: float, pattern_rate: float, window: int) -> Rough:
+    length = max(round(window * frame_rate / pattern_rate), 1)
+    padded = np.full((max(len(noisy), length), noisy.shape[1]), np.nan)
+    padded[: len(noisy)] = noisy
+    tame = hampel(padded, SPIKE_HALF_WIDTH, SPIKE_TOLERANCE)
+    noise = np.maximum(rough_noise(tame), SMALLEST_NOISE)
+    windows = Windows(len(padded), length, length / window)
+    return Rough(padded, interpolated(tame), noise, np.isfinite(tame).sum(axis=0), windows)
+
+
+def _groups(
+    channels: Channels, rough: Array, bases: FilterBases | None
+) -> list[NDArray[np.intp]]:
+    """Sort the channels that move: those of the examples first, then by joints."""
+    moves = np.ptp(rough, axis=0) > CONSTANT
+    moves |= np.isnan(channels.flat).all(axis=0)
+    known = np.zeros(len(moves), dtype=bool)
+    if bases is not None:
+        names = {(str(bases.keys[channel // 3]), channel % 3) for channel in bases.moving}
+        known[:] = [(channels.keys[c // 3], c % 3) in names for c in range(len(moves))]
+    moves |= known & np.isnan(channels.flat).any(axis=0)
+    groups = []
+    for kind in (moves & known, moves & ~known):
+        columns = np.flatnonzero(kind)
+        n_groups = -(-len(columns) // LARGEST_GROUP)
+        groups += [group for group in np.array_split(columns, max(n_groups, 1)) if len(group)]
+    return groups
+
+
+def _sentence(bases: FilterBases | None, shares: list[float], n_channels: int) -> str:
+    if bases is None:
+        return "The take's own patterns: no examples were given."
+    n_clips = int(bases.n_clips)
+    clips = f"{n_clips} example clip" + "s" * (n_clips != 1)
+    if not shares:
+        return f"The take's own patterns: no joint of it is in the {clips}."
+    foreign = float(np.mean(shares))
+    if foreign >= 1.0:
+        return f"The take's own patterns: the {clips} move too differently to help."
+    if foreign > FOREIGN:
+        return f"Patterns of {clips}, at part weight: they fit the take only roughly."
+    if len(shares) < n_channels / 3:
+        return f"Patterns of {clips} for the joints that they have; else the take's own."
+    return f"Patterns of {clips}, adapted to the take."

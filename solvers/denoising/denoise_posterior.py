@@ -1,0 +1,257 @@
+"""The default method: the posterior of all windows under a prior that adapts to the take."""
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.linalg import cho_factor, cho_solve
+
+from ..progress import Progress, unwatched
+from .denoise_estimate import Estimate
+from .denoise_gaps import GapPattern, gap_patterns
+from .denoise_windows import Windows
+from .noise import alike
+from .prior import WavePrior
+
+Array = NDArray[np.float64]
+
+OUTLIER_DENSITY = 1.0 / 120.0
+"""Of an outlier's error, per degree or centimetre: anything within +-60 is as likely."""
+BLOCK = 512
+"""Windows worked on at a time: this bounds the memory, however long the take."""
+SMALL_ERROR = 0.5
+"""Degrees or centimetres: nothing so near to the estimate is called an outlier."""
+FIRST_OUTLIERS = 0.03
+MOST_OUTLIERS = 0.6
+MAX_ITERATIONS = 30
+ADAPTATIONS = 5
+"""Iterations in which the prior still adapts to the take."""
+SETTLED = 0.004
+"""Root mean square change, relative to the noise, below which the estimate is settled."""
+MOST_LEVERAGE = 0.98
+FAR = 4.0
+"""Errors beyond so many standard deviations of the noise all count the same."""
+NOISE_BOUNDS = (0.5, 1.1)
+"""Range, relative to the first guess, in which the noise is estimated."""
+
+
+@dataclass(frozen=True, eq=False)
+class Gains:
+    """What one iteration needs: the filter in units of the noise."""
+
+    slow: Array
+    """Posterior from measured slow waves, both in units of the noise, a square matrix."""
+    fast: Array
+    """Factor of each faster wave, shape (length - n_slow, n_channels)."""
+    noise: Array
+
+
+@dataclass(eq=False)
+class Sweep:
+    """What one pass over all windows adds up."""
+
+    total: Array
+    variance: Array
+    slow_moment: Array
+    fast_power: Array
+
+
+def estimate_channels(
+    noisy: Array,
+    start: Array,
+    noise: Array,
+    prior: WavePrior,
+    windows: Windows,
+    progress: Progress = unwatched,
+    *,
+    at_most: int = MAX_ITERATIONS,
+) -> Estimate:
+    """Alternate between outlier weights, the posterior of all windows, and what they tell.
+
+    Each round: every sample gets its probability of being no outlier; samples are drawn towards
+    the estimate by what is missing to certainty; every window takes its posterior mean given
+    its neighbours in time and all other channels; the noise of each channel, the share of
+    outliers and the covariance are estimated again (expectation maximisation).
+
+    Parameters
+    ----------
+    noisy : shape (n_frames, n_channels)
+        NaN where not observed.
+    start : same shape, without NaN
+    noise : shape (n_channels,)
+        First guess of the standard deviation.
+    prior : WavePrior
+    windows : Windows
+    progress : Progress
+    at_most : int
+        Iterations.
+    """
+    prior = prior.at_most(windows.length)
+    known, observed = np.isfinite(noisy), np.nan_to_num(noisy)
+    patterns = gap_patterns(known, windows, prior.n_slow)
+    has_gaps = any(pattern.channels.size for pattern in patterns)
+    first_guess, estimate = noise, start
+    slow, fast = prior.matrix, _extended(prior.fast, windows.length - prior.n_slow)
+    variance = np.zeros_like(noisy)
+    rate, iteration, change, weight = FIRST_OUTLIERS, 0, np.inf, known.astype(float)
+    while iteration < at_most and change > SETTLED:
+        progress(iteration / at_most, "Denoising")
+        weight = known * _inlier_probability(observed - estimate, weight, variance, noise, rate)
+        if known.any():
+            rate = float(np.clip(1.0 - weight[known].mean(), 1e-4, MOST_OUTLIERS))
+        gains = _gains(slow, fast, noise, windows.density)
+        gapped = _gapped(slow, fast, noise, windows) if has_gaps else gains
+        drawn = estimate + weight * (observed - estimate) - prior.mean
+        sweep = _swept(drawn, gains, gapped, patterns, windows)
+        before, estimate = estimate, sweep.total / windows.weight + prior.mean
+        variance = np.maximum(sweep.variance / windows.weight, 0.0)
+        change = float(np.sqrt(np.mean(((estimate - before) / (noise + SMALL_ERROR)) ** 2)))
+        if iteration < ADAPTATIONS:
+            slow, fast = _adapted(prior, sweep, gains)
+            noise = _noise(observed - estimate, weight, variance, first_guess)
+            change = np.inf
+        iteration += 1
+    settled = change <= SETTLED
+    alone = 1.0 / (1.0 - np.minimum(variance / noise**2, MOST_LEVERAGE))
+    deviation = np.sqrt(variance * (weight + (1.0 - weight) * alone))
+    foresight = _foresight(np.where(known, (observed - estimate) * alone, np.nan), first_guess)
+    return Estimate(estimate, weight, deviation, foresight, iteration, settled)
+
+
+def _foresight(error: Array, noise: Array) -> float:
+    """Return the mean square of errors of samples that had no part in their own estimate.
+
+    For a linear filter these are the errors divided by one less the leverage, which is the
+    posterior variance over that of the noise. NaN where not observed.
+    """
+    square = np.minimum((error / (FAR * noise)) ** 2, 1.0)
+    known = np.isfinite(square)
+    return float(square[known].mean()) if known.any() else 0.0
+
+
+def _inlier_probability(
+    error: Array, weight: Array, variance: Array, noise: Array, rate: float
+) -> Array:
+    """Weigh noise around what all other samples foretell against an outlier."""
+    alone = 1.0 / (1.0 - np.minimum(variance / noise**2, MOST_LEVERAGE))
+    foretold = error * (weight * alone + 1.0 - weight)
+    spread = noise**2 + variance * alone + SMALL_ERROR**2
+    inside = np.exp(-0.5 * foretold**2 / spread) / np.sqrt(2 * np.pi * spread)
+    inside *= 1.0 - rate
+    return np.asarray(inside / (inside + rate * OUTLIER_DENSITY))
+
+
+def _gapped(slow: Array, fast: Array, noise: Array, windows: Windows) -> Gains:
+    """Return the filter of windows with gaps: through a gap, fast waves look like noise."""
+    blur = fast.sum(axis=0) * windows.density / windows.length
+    return _gains(slow, fast, np.sqrt(noise**2 + blur), windows.density)
+
+
+def _gains(slow: Array, fast: Array, noise: Array, density: float) -> Gains:
+    per_wave = noise / np.sqrt(density)
+    scale = np.tile(per_wave, len(slow) // len(noise))
+    size = len(scale)
+    whitened = slow / np.outer(scale, scale)
+    whitened[np.diag_indices(size)] += 1.0
+    factor = cho_factor(whitened, overwrite_a=True, check_finite=False)
+    gain = -cho_solve(factor, np.eye(size), check_finite=False)
+    gain[np.diag_indices(size)] += 1.0
+    return Gains(gain, fast / (fast + per_wave**2), per_wave)
+
+
+def _swept(
+    drawn: Array,
+    complete: Gains,
+    gapped: Gains,
+    patterns: list[GapPattern],
+    windows: Windows,
+) -> Sweep:
+    """Filter every window; sum windows, variances and second moments."""
+    n_channels = drawn.shape[1]
+    size = len(complete.slow)
+    n_slow = size // n_channels
+    sweep = Sweep(
+        np.zeros_like(drawn), np.zeros_like(drawn), np.zeros((size, size)),
+        np.zeros_like(complete.fast),
+    )  # fmt: skip
+    for pattern in patterns:
+        usual = gapped if pattern.channels.size else complete
+        scale = np.tile(usual.noise, n_slow)
+        for first in range(0, len(pattern.starts), BLOCK):
+            starts = pattern.starts[first : first + BLOCK]
+            frames = windows.cut(drawn, starts)
+            waves = windows.waves_of(frames)
+            if pattern.channels.size:
+                slow = pattern.solve(windows, frames, usual.slow, usual.noise)
+            else:
+                slow = (waves[:, :n_slow] / usual.noise).reshape(-1, size) @ usual.slow
+            slow *= scale
+            sweep.slow_moment += slow.T @ slow
+            sweep.fast_power += (waves[:, n_slow:] ** 2).sum(axis=0)
+            waves[:, :n_slow] = slow.reshape(-1, n_slow, n_channels)
+            waves[:, n_slow:] *= usual.fast
+            windows.add(sweep.total, windows.frames_of(waves), starts)
+        covariance = usual.slow.copy()
+        if pattern.channels.size:
+            gaps = np.ix_(pattern.places, pattern.places)
+            covariance[gaps] += pattern.more_covariance(usual.slow)
+        covariance *= np.outer(scale, scale)
+        sweep.slow_moment += len(pattern.starts) * covariance
+        variance = _window_variance(covariance, windows, n_channels)
+        windows.add(sweep.variance, variance, pattern.starts)
+    sweep.slow_moment /= len(windows.starts)
+    sweep.fast_power /= len(windows.starts)
+    return sweep
+
+
+def _window_variance(covariance: Array, windows: Windows, n_channels: int) -> Array:
+    """Return the variance of each frame of a window, shape (length, n_channels)."""
+    n_slow = len(covariance) // n_channels
+    shapes = windows.wave_shapes(n_slow)
+    blocks = covariance.reshape(n_slow, n_channels, n_slow, n_channels)
+    own = np.einsum("kcjc->ckj", blocks)
+    return np.asarray(np.einsum("tk,ckj,tj->tc", shapes, own, shapes))
+
+
+def _adapted(prior: WavePrior, sweep: Sweep, gains: Gains) -> tuple[Array, Array]:
+    """Mix the prior's covariance with that of the take, as it is estimated so far.
+
+    A channel's covariance with itself takes few frames to learn, that with others takes many:
+    each has its own share.
+    """
+    n_slow, n_channels = prior.n_slow, len(prior.mean)
+    moment = sweep.slow_moment
+    together, alone = prior.trust, prior.trust_alone
+    own, rest = (
+        np.tile(np.sqrt(together), n_slow),
+        np.tile(np.sqrt(1 - together - alone), n_slow),
+    )
+    slow = prior.matrix * np.outer(rest, rest) + moment * np.outer(own, own)
+    blocks = slow.reshape(n_slow, n_channels, n_slow, n_channels)
+    channels = np.arange(n_channels)
+    moments = moment.reshape(blocks.shape)[:, channels, :, channels]
+    blocks[:, channels, :, channels] += moments * alone[:, None, None]
+    power = np.maximum(sweep.fast_power - gains.noise**2, 0.0)
+    fast = _extended(prior.fast, len(power))
+    return slow, fast * (1.0 - together - alone) + power * (together + alone)
+
+
+def _noise(error: Array, weight: Array, variance: Array, first_guess: Array) -> Array:
+    """Return the noise of each channel, from what the estimate leaves over."""
+    total = weight.sum(axis=0)
+    square = (weight * (error**2 + variance)).sum(axis=0) / np.maximum(total, 1e-9)
+    noise = np.where(total > 0.0, np.sqrt(square), first_guess)
+    noise = np.sqrt(
+        first_guess
+        * np.clip(noise, NOISE_BOUNDS[0] * first_guess, NOISE_BOUNDS[1] * first_guess)
+    )
+    return alike(noise, total)
+
+
+def _extended(fast: Array, n_waves: int) -> Array:
+    """Return the variances of more (or fewer) fast waves; those unheard of fade away."""
+    if len(fast) >= n_waves:
+        return fast[:n_waves]
+    last = fast[-1:] if len(fast) else np.zeros((1, fast.shape[1]))
+    steps = np.arange(1, n_waves - len(fast) + 1)[:, None]
+    return np.concatenate([fast, last / (1.0 + steps / max(len(fast), 1)) ** 4])

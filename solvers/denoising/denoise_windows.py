@@ -1,0 +1,75 @@
+"""A take cut into overlapping windows, each told by slow and fast waves of every channel."""
+
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+from numpy.lib.stride_tricks import sliding_window_view
+from numpy.typing import NDArray
+from scipy.fft import dct, idct
+
+Array = NDArray[np.float64]
+
+HOPS = 10
+"""Windows that a window overlaps with, to either side."""
+HOPS_LONG = 4
+LONG = 20_000
+"""Frames from which on windows overlap less."""
+
+
+@dataclass(frozen=True)
+class Windows:
+    """The cutting of `n_frames` frames into windows of `length` frames, and its undoing.
+
+    A window is the sum of cosine waves (the orthonormal discrete cosine transform, divided by
+    the root of `density`, so that the same movement has the same waves at any frame rate).
+    """
+
+    n_frames: int
+    length: int
+    density: float
+    """Frames of the take per frame of the patterns that it is compared with."""
+
+    @cached_property
+    def starts(self) -> NDArray[np.intp]:
+        """First frame of every window; the last window ends with the take."""
+        last = self.n_frames - self.length
+        hop = max(self.length // (HOPS if self.n_frames < LONG else HOPS_LONG), 1)
+        return np.asarray(np.unique(np.append(np.arange(0, last, hop), last)), dtype=np.intp)
+
+    @cached_property
+    def _taper(self) -> Array:
+        """A window knows least at its ends, and counts least there."""
+        places = (np.arange(self.length) + 0.5) / self.length
+        return np.asarray(0.1 + np.sin(np.pi * places[:, None]))
+
+    def cut(self, values: Array, starts: NDArray[np.intp]) -> Array:
+        """Return the frames of these windows, shape (n_windows, length, n_channels)."""
+        cut = sliding_window_view(values, self.length, axis=0)[starts]
+        return np.asarray(cut.transpose(0, 2, 1))
+
+    def waves_of(self, frames: Array) -> Array:
+        """Return the waves of windows, both of shape (n_windows, length, n_channels)."""
+        return np.asarray(dct(frames, axis=1, norm="ortho") / np.sqrt(self.density))
+
+    def frames_of(self, waves: Array) -> Array:
+        """Undo `waves_of`."""
+        return np.asarray(idct(waves, axis=1, norm="ortho") * np.sqrt(self.density))
+
+    def add(self, total: Array, frames: Array, starts: NDArray[np.intp]) -> None:
+        """Add windows of frames, or the same one at all starts, to the sum of all."""
+        frames = np.broadcast_to(frames * self._taper, (len(starts), *frames.shape[-2:]))
+        for start, window in zip(starts, frames, strict=True):
+            total[start : start + self.length] += window
+
+    @cached_property
+    def weight(self) -> Array:
+        """What `add` adds up where every window is 1; shape (n_frames, 1)."""
+        weight = np.zeros((self.n_frames, 1))
+        self.add(weight, np.ones((self.length, 1)), self.starts)
+        return weight
+
+    def wave_shapes(self, n_waves: int) -> Array:
+        """Return the slowest waves, shape (length, n_waves): frames = shapes @ waves."""
+        unit = np.eye(self.length)[:, :n_waves]
+        return np.asarray(idct(unit, axis=0, norm="ortho") * np.sqrt(self.density))
