@@ -13,6 +13,7 @@ from .compat import Source
 from .frames import FrameRange, Grid, key_grid, range_bounds
 from .rig import Placement, Rig, read_rig
 from .take import ArmatureTake, BoneChannels, part_of
+from .units import metres_per_unit
 
 Array = NDArray[np.float64]
 
@@ -61,8 +62,10 @@ def read_take(
         read_bone(armature.pose.bones[bone], curves, grid.frames) for bone in rig.bones
     )
     space = read_space(armature, curves, grid.frames)
+    root = body_root(rig, [each.travels for each in channels])
+    space = space.in_unit(metres_per_unit(scene, rig, root, space.scale))
     rate = scene.render.fps / scene.render.fps_base / grid.step
-    return _assembled(rig, grid, channels, space, rate)
+    return _assembled(rig, root, grid, channels, space, rate)
 
 
 def action_of(armature: bpy.types.Object) -> Source:
@@ -79,10 +82,14 @@ def action_of(armature: bpy.types.Object) -> Source:
 
 
 def _assembled(
-    rig: Rig, grid: Grid, channels: tuple[BoneChannels, ...], space: Placement, rate: float
+    rig: Rig,
+    root: int,
+    grid: Grid,
+    channels: tuple[BoneChannels, ...],
+    space: Placement,
+    rate: float,
 ) -> ArmatureTake:
     rest = Placement(space.rotations[:1], space.origins[:1], space.scale)
-    root = body_root(rig, [each.travels for each in channels])
     carrier, above = space, rig.chain_to(root)
     for bone in above:
         axes = rig.rest_rotations[bone]

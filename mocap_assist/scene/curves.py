@@ -87,7 +87,7 @@ def write_values(
     points.clear()
     points.add(len(before["co"]) + len(frames) + len(after["co"]))
     new = {
-        "co": np.column_stack([frames, values]),
+        "co": np.stack([frames, values], axis=1, dtype=np.float32, casting="same_kind"),
         "interpolation": np.full((len(frames), 1), interpolation),
     }
     if types is not None:
@@ -95,7 +95,9 @@ def write_values(
     alone = not (len(before["co"]) or len(after["co"]))
     for name in new if alone else KEY:
         width, usual = KEY[name]
-        rows = new.get(name, np.full((len(frames), width), usual)).astype(_kind(name))
+        rows = new.get(name, np.full((len(frames), width), usual)).astype(
+            _kind(name), copy=False
+        )
         if not alone:
             rows = np.concatenate([before[name], rows, after[name]])
         points.foreach_set(name, rows.ravel())

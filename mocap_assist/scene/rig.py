@@ -64,6 +64,10 @@ class Placement:
     """Shape (n_frames, 3), metres."""
     scale: float
 
+    def in_unit(self, metres: float) -> "Placement":
+        """Return the placement with its metres taken for units of so many metres."""
+        return Placement(self.rotations, metres * self.origins, metres * self.scale)
+
     def points(self, points: Array) -> Array:
         """Take points, shape (n_frames, 3) or (3,), from the space to the world."""
         return np.asarray(self.scale * rotate(self.rotations, points) + self.origins)

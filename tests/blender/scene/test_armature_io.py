@@ -223,6 +223,29 @@ def test_a_linked_rig_is_read_and_an_override_gets_the_result(
     assert override.animation_data.action == clean and clean.library is None
 
 
+@pytest.mark.parametrize(
+    ("scale", "unit_scale", "metres"),
+    [(1.0, 1.0, 1.0), (2.0, 1.0, 2.0), (100.0, 1.0, 1.0), (100.0, 0.01, 1.0), (17.7, 1.0, 1.0)],
+)
+def test_a_body_is_as_large_as_bodies_are(
+    scale, unit_scale, metres, make_armature, animate, poses, rewrite, scene_io, blank
+):
+    """BVH in centimetres or in CMU's unit is often imported as if it were metres."""
+    armature, scene = make_armature(), blank.context.scene
+    animate(armature)
+    armature.scale = (scale,) * 3
+    scene.unit_settings.scale_length = unit_scale
+    before = poses(armature, range(1, 61))
+
+    motion = scene_io.reading.read_take(armature, scene).parts[0].motion
+
+    thigh = np.linalg.norm(motion.skeleton.offsets[motion.skeleton.index("LeftLeg")])
+    assert_allclose(thigh, 0.45 * metres, rtol=0.01)
+    rewrite(armature)
+    for bone, matrices in poses(armature, range(1, 61)).items():
+        assert_allclose(matrices, before[bone], atol=NEAR * scale)
+
+
 def test_unevenly_scaled_armatures_are_refused_with_a_reason(make_armature, animate, scene_io):
     armature = make_armature()
     animate(armature)

@@ -1,0 +1,34 @@
+"""How long one of Blender's units is, in metres."""
+
+import bpy
+
+from ...solvers.recordings.axes import guess_unit, longest_way
+from .rig import Rig
+
+# Metres from foot to hand along the bones: from a cat to a dragon. Beyond it, a recording was
+# imported in the unit of its file, such as centimetres, as happens with BVH every day.
+PLAUSIBLE_REACH = (0.25, 15.0)
+
+
+def metres_per_unit(scene: bpy.types.Scene, rig: Rig, root: int, scale: float) -> float:
+    """Return the scene's unit, or the likely one of the file where the body would be absurd.
+
+    Parameters
+    ----------
+    scene : bpy.types.Scene
+    rig : Rig
+    root : int
+        The bone that carries the body.
+    scale : float
+        Of the armature in the scene.
+    """
+    said = scene.unit_settings.scale_length if scene.unit_settings.system != "NONE" else 1.0
+    bones = rig.subtree(root)
+    place = {bone: index for index, bone in enumerate(bones)}
+    parents = [-1, *(place[rig.parents[bone]] for bone in bones[1:])]
+    offsets = scale * (rig.heads[bones] - rig.heads[[rig.parents[bone] for bone in bones]])
+    low, high = PLAUSIBLE_REACH
+    if low <= said * longest_way(parents, offsets) <= high:
+        return float(said)
+    guessed = guess_unit(parents, offsets)
+    return guessed if low <= guessed * longest_way(parents, offsets) <= high else float(said)
