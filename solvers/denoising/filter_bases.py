@@ -129,7 +129,7 @@ def load_filter_bases(path: Path | str) -> FilterBases:
         fault = _fault(bases)
     if fault:
         raise InvalidFileError(
-            f"{path} holds damaged filter bases ({fault}). Learn them again."
+            f"{path} holds damaged bases ({fault}). Learn them again."
         )
     return bases
 
