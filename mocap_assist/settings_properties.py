@@ -30,7 +30,10 @@ def settings_from(bundle: type[Bundle]) -> Callable[[Class], Class]:
         return bundle(**{name: _settings_of(self, each) for name, each in classes.items()})
 
     def decorate(cls: Class) -> Class:
-        properties = {name: _property(item) for name, item in described.items()}
+        # Blender would fill in what a button did last, and so what the sidebar says now
+        # would seem to be what the caller gave.
+        options = {"SKIP_SAVE"} if issubclass(cls, bpy.types.Operator) else set()
+        properties = {name: _property(item, options) for name, item in described.items()}
         cls.__annotations__ = properties | get_annotations(cls)
         cls.settings = settings
         cls.setting_names = tuple(described)
@@ -46,13 +49,14 @@ def _settings_of(properties: Any, settings_class: type[Settings]) -> Settings:
     })
 
 
-def _property(item: "Field[Any]") -> Any:
+def _property(item: "Field[Any]", options: set[str]) -> Any:
     described: Described = item.metadata["described"]
     kind = type(item.default)
     shown = {
         "name": item.name.replace("_", " ").capitalize(),
         "description": described.help,
         "default": item.default,
+        "options": {"ANIMATABLE"} | options,
     }
     if issubclass(kind, Enum):
         choices = [(each.name, _words(each), _summary(each), index)

@@ -11,11 +11,17 @@ class MOCAP_OT_jump_to_spot(bpy.types.Operator):
     bl_description = "Move the playhead to this place and select the bone that is wrong there"
     bl_options = {"REGISTER", "UNDO"}
 
+    # Without SKIP_SAVE, Blender would fill in the index of the press before.
     index: bpy.props.IntProperty(
-        name="Spot", description="Place in the list, -1 for the one shown there", default=-1
+        name="Spot",
+        description="Place in the list, -1 for the one shown there",
+        default=-1,
+        options={"SKIP_SAVE"},
     )
     step: bpy.props.IntProperty(
-        name="Step", description="Go on by so many spots from the one shown in the list"
+        name="Step",
+        description="Go on by so many spots from the one shown in the list",
+        options={"SKIP_SAVE"},
     )
 
     @classmethod

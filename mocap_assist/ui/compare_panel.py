@@ -20,16 +20,21 @@ class ComparePanel:
         _draw_actions(layout, context)
         column = layout.column(align=True)
         column.prop(context.window_manager, "mocap_assist_overlay", toggle=True, icon="OVERLAY")
-        colors = column.row(align=True)
-        colors.prop(preferences(), "raw_color", text="")
-        colors.prop(preferences(), "clean_color", text="")
-        names = column.row(align=True)
-        for text in ("Raw", "Clean"):
-            name = names.row()
-            name.alignment = "CENTER"
-            name.label(text=text)
+        if preferences() is not None:
+            _draw_colors(column)
         if exists(REVERT):
             layout.operator(REVERT, icon="LOOP_BACK")
+
+
+def _draw_colors(column: bpy.types.UILayout) -> None:
+    colors = column.row(align=True)
+    for color in ("raw_color", "clean_color"):
+        colors.prop(preferences(), color, text="")
+    names = column.row(align=True)
+    for text in ("Raw", "Clean"):
+        name = names.row()
+        name.alignment = "CENTER"
+        name.label(text=text)
 
 
 def _draw_actions(layout: bpy.types.UILayout, context: bpy.types.Context) -> None:

@@ -84,7 +84,9 @@ class MOCAP_OT_add_example(_ListButton, bpy.types.Operator):
     bl_label = "Add Action"
     bl_description = "Learn from this action too; it must be clean, and may be of another rig"
 
-    example: bpy.props.StringProperty(name="Action", description="Name of the action")
+    example: bpy.props.StringProperty(
+        name="Action", description="Name of the action", options={"SKIP_SAVE"}
+    )
 
     def change(self, entries: list[str]) -> list[str]:
         return [*entries, self.example]
@@ -95,7 +97,9 @@ class MOCAP_OT_remove_example(_ListButton, bpy.types.Operator):
     bl_label = "Remove Example"
     bl_description = "Do not learn from this one"
 
-    index: bpy.props.IntProperty(name="Example", description="Place in the list", min=0)
+    index: bpy.props.IntProperty(
+        name="Example", description="Place in the list", min=0, options={"SKIP_SAVE"}
+    )
 
     def change(self, entries: list[str]) -> list[str]:
         return [name for place, name in enumerate(entries) if place != self.index]
@@ -106,11 +110,11 @@ class MOCAP_OT_add_example_files(_ListButton, bpy.types.Operator):
     bl_label = "Recordings on Disk..."
     bl_description = "Learn from clean recordings on disk too, of any rig"
 
-    directory: bpy.props.StringProperty(subtype="DIR_PATH", options={"HIDDEN"})
+    directory: bpy.props.StringProperty(subtype="DIR_PATH", options={"HIDDEN", "SKIP_SAVE"})
     files: bpy.props.CollectionProperty(
-        type=bpy.types.OperatorFileListElement, options={"HIDDEN"}
+        type=bpy.types.OperatorFileListElement, options={"HIDDEN", "SKIP_SAVE"}
     )
-    filter_glob: bpy.props.StringProperty(default=RECORDINGS, options={"HIDDEN"})
+    filter_glob: bpy.props.StringProperty(default=RECORDINGS, options={"HIDDEN", "SKIP_SAVE"})
 
     def invoke(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
         context.window_manager.fileselect_add(self)

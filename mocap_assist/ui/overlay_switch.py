@@ -3,7 +3,7 @@
 import bpy
 
 from ..scene import overlay_drawing
-from .preferences import preferences
+from .preferences import preferred
 
 
 def _switched(self: bpy.types.WindowManager, context: bpy.types.Context) -> None:
@@ -13,9 +13,8 @@ def _switched(self: bpy.types.WindowManager, context: bpy.types.Context) -> None
 def _draw() -> None:
     context = bpy.context
     if context.window_manager.mocap_assist_overlay:
-        ours = preferences()
-        colors = (tuple(ours.raw_color), tuple(ours.clean_color))
-        overlay_drawing.draw(context, colors, ours.line_width)
+        colors = (tuple(preferred("raw_color")), tuple(preferred("clean_color")))
+        overlay_drawing.draw(context, colors, preferred("line_width"))
 
 
 def register() -> None:

@@ -1,7 +1,7 @@
 """The extension's preferences."""
 
 from pathlib import Path
-from typing import ClassVar
+from typing import Any, ClassVar
 
 import bpy
 
@@ -11,9 +11,21 @@ from ..scene.armature_write import Output
 EXTENSION = __package__.rsplit(".", 2)[0]  # Blender knows preferences by the root package
 
 
-def preferences() -> bpy.types.AddonPreferences:
-    """Return the extension's preferences."""
-    return bpy.context.preferences.addons[EXTENSION].preferences
+def preferences() -> bpy.types.AddonPreferences | None:
+    """Return the preferences; none where the extension was switched on for one session alone.
+
+    Blender does so for `--addons`, and keeps preferences of none but the others.
+    """
+    ours = bpy.context.preferences.addons.get(EXTENSION)
+    return None if ours is None else ours.preferences
+
+
+def preferred(name: str) -> Any:
+    """Return one preference, or what it is at first."""
+    ours = preferences()
+    if ours is not None:
+        return getattr(ours, name)
+    return MOCAP_AP_preferences.__annotations__[name].keywords["default"]
 
 
 def _move_panels(self: bpy.types.AddonPreferences, context: bpy.types.Context) -> None:
@@ -99,6 +111,13 @@ class MOCAP_OT_reset_preferences(bpy.types.Operator):
     bl_description = "Give all preferences of Mocap Assist their first values again"
     bl_options: ClassVar = {"INTERNAL"}  # preferences have no undo
 
+    @classmethod
+    def poll(cls, context: bpy.types.Context) -> bool:
+        if preferences() is None:
+            cls.poll_message_set("Switch the extension on in the preferences first")
+            return False
+        return True
+
     def execute(self, context: bpy.types.Context) -> set[str]:
         ours = preferences()
         for name in MOCAP_AP_preferences.__annotations__:
@@ -111,7 +130,7 @@ class MOCAP_OT_reset_preferences(bpy.types.Operator):
 @bpy.app.handlers.persistent
 def _give_default(*_: object) -> None:
     """Let scenes that do not say where results go, do as the preferences say."""
-    wanted = preferences().result_as
+    wanted = preferred("result_as")
     for scene in bpy.data.scenes:
         clean = scene.mocap_assist.clean
         if wanted != Output.ACTION.name and not clean.is_property_set("result_as"):

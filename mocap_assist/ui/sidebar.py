@@ -6,7 +6,7 @@ from .check_panel import CheckPanel, MOCAP_UL_spots
 from .clean_panel import CleanPanel
 from .compare_panel import ComparePanel
 from .feet_panel import FeetPanel
-from .preferences import preferences
+from .preferences import preferred
 
 EDITORS = {"": "VIEW_3D", "_graph": "GRAPH_EDITOR", "_dopesheet": "DOPESHEET_EDITOR"}
 TAB = "Mocap"
@@ -32,7 +32,7 @@ PANELS = [
 def register() -> None:
     """Show the panels, on the tab that the preferences name."""
     bpy.utils.register_class(MOCAP_UL_spots)
-    tab = preferences().tab.strip() or TAB
+    tab = preferred("tab").strip() or TAB
     for panel in PANELS:
         panel.bl_category = tab
         bpy.utils.register_class(panel)

@@ -8,6 +8,7 @@ Runs inside that Blender; `bgui` comes with the tool and moves a real pointer. N
 pytest's: pictures are for eyes. What can be asserted is.
 """
 
+import json
 import tempfile
 from importlib import import_module
 from pathlib import Path
@@ -127,6 +128,19 @@ def clean(armature):
     bgui.shot("4-cleaned.png")
 
 
+def clean_again_with_other_settings(armature):
+    """The second press takes what the sidebar says now, not what the first one took."""
+    settings = bpy.context.scene.mocap_assist.clean
+    settings.strength, settings.plant_feet = 0.5, False
+    yield from press("mocap_assist.denoise")
+    yield 1.0
+    yield from wait_until_done()
+    history = json.loads(armature.animation_data.action["mocap_assist_history"])
+    assert history[-1]["settings"]["strength"] == 0.5
+    assert not history[-1]["settings"]["plant_feet"]
+    settings.strength, settings.plant_feet = 1.0, True
+
+
 def revert_and_compare(armature):
     """Back to the recorded action; the overlay still shows both."""
     yield from press("mocap_assist_overlay")
@@ -153,6 +167,7 @@ def check():
     assert bpy.context.scene.frame_current == int(spot.start)
     assert bpy.context.active_pose_bone.name == spot.name
     yield from bgui.click(*bgui.at("mocap_assist.jump_to_spot(step=1)"))
+    yield from settle()
     assert found.active_spot == 3
     look_at_figure()
     yield from settle()
@@ -213,6 +228,7 @@ def steps():
     yield from clean(armature)
     yield from revert_and_compare(armature)
     yield from check()
+    yield from clean_again_with_other_settings(armature)
     yield from wide_sidebar_with_examples()
     yield from the_preferences()
 

@@ -84,6 +84,23 @@ def test_a_scene_that_has_its_choice_keeps_it(blank, preferences, load):
     assert bpy.context.scene.mocap_assist.clean.result_as == "ACTION"
 
 
+def test_switched_on_for_one_session_alone_it_does_without_preferences(
+    blank, extension, draw, load
+):
+    module, addons = load("mocap_assist.ui.preferences"), bpy.context.preferences.addons
+    addons.remove(addons[module.EXTENSION])
+    try:
+        extension.unregister()
+        extension.register()
+
+        assert bpy.types.MOCAP_PT_clean.bl_category == "Mocap"
+        assert "mocap_assist_overlay" in draw("MOCAP_PT_compare")
+        assert tuple(module.preferred("raw_color")) == (1.0, 0.45, 0.1, 0.8)
+        assert not bpy.ops.mocap_assist.reset_preferences.poll()
+    finally:
+        addons.new().module = module.EXTENSION
+
+
 def test_preferences_draw_each_of_them_and_a_way_back(draw, load):
     kind = load("mocap_assist.ui.preferences").MOCAP_AP_preferences
 

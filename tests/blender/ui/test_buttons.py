@@ -1,0 +1,22 @@
+"""What a button takes from the sidebar. Presses need a window: see tests/gui."""
+
+
+def test_next_goes_on_from_a_spot_that_was_clicked(blank, actor):
+    found = blank.context.scene.mocap_assist
+    for frame in (10.0, 20.0, 30.0):
+        spot = found.spots.add()
+        spot.name, spot.start, spot.stop = "LeftLeg", frame, frame
+    jump = blank.ops.mocap_assist.jump_to_spot
+
+    assert jump(index=1) == {"FINISHED"}
+    assert jump(step=1) == {"FINISHED"}
+
+    assert (found.active_spot, blank.context.scene.frame_current) == (2, 30)
+
+
+def test_nothing_that_a_button_was_given_is_filled_in_at_the_next_press(blank):
+    """Blender fills it in, unless an option says not to: it then looks like a caller's wish."""
+    for name in dir(blank.ops.mocap_assist):
+        for each in getattr(blank.ops.mocap_assist, name).get_rna_type().properties:
+            if each.identifier != "rna_type":
+                assert each.is_skip_save, f"{name}: {each.identifier}"
