@@ -1,0 +1,119 @@
+"""Channels lose nothing, and say the same of the same movement elsewhere or on other rigs."""
+
+import numpy as np
+import pytest
+from numpy.testing import assert_allclose
+
+from solvers.denoising.channels_encode import decode, encode
+from solvers.denoising.channels_path import local_lines, smooth_path, turned
+from solvers.motion import Motion, Skeleton, Tracks, forward_kinematics
+from solvers.motion.rotations import (
+    angle_between,
+    inverse,
+    multiply,
+    quaternion_from_rotation_vector,
+    rotate,
+)
+from solvers.samples import GaitSettings, walking_gait
+
+
+@pytest.fixture(scope="module")
+def walk() -> Motion:
+    return walking_gait(GaitSettings(duration=2.0, frame_rate=30.0))
+
+
+@pytest.fixture
+def dots(walk) -> Tracks:
+    positions = forward_kinematics(walk).positions
+    return Tracks(walk.skeleton.names, positions, walk.frame_rate)
+
+
+def test_a_motion_comes_back_exactly(walk):
+    channels = encode(walk)
+
+    back = decode(walk, channels, channels.values)
+
+    assert angle_between(back.rotations, walk.rotations).max() < 1e-7
+    assert_allclose(back.root_positions, walk.root_positions, atol=1e-12)
+
+
+def test_tracks_come_back_exactly(dots):
+    channels = encode(dots)
+
+    back = decode(dots, channels, channels.values)
+
+    assert_allclose(back.positions, dots.positions, atol=1e-12)
+
+
+def test_a_walk_elsewhere_in_another_direction_has_the_same_channels(walk, dots):
+    angle, shift = 2.0, np.array([3.0, -1.0, 0.0])
+    turn = quaternion_from_rotation_vector([0.0, 0.0, angle])
+    rotations = walk.rotations.copy()
+    rotations[:, 0] = multiply(turn, rotations[:, 0])
+    moved = walk.with_poses(rotations, rotate(turn, walk.root_positions) + shift)
+    moved_dots = dots.with_positions(rotate(turn, dots.positions) + shift)
+
+    assert_allclose(encode(moved).flat, encode(walk).flat, atol=1e-5)
+    assert_allclose(encode(moved_dots).flat, encode(dots).flat, atol=1e-5)
+
+
+def test_the_same_walk_on_a_rig_with_another_rest_pose_has_the_same_channels(walk):
+    """Arms that rest lowered need less turning to hang: the movement is the same."""
+    other = with_lowered_arms(walk)
+    of_walk = encode(walk)
+
+    of_other = encode(other, of_walk.references)
+
+    assert set(of_other.keys) == set(of_walk.keys)
+    for key in ("leftUpperArm", "leftLowerArm", "rightUpperLeg", "head", "hips"):
+        one = of_walk.values[:, of_walk.keys.index(key)]
+        two = of_other.values[:, of_other.keys.index(key)]
+        assert_allclose(two, one, atol=0.5)
+    back = decode(other, of_other, of_other.values)
+    assert angle_between(back.rotations, other.rotations).max() < 1e-7
+
+
+def test_what_is_not_observed_stays_unknown_and_disturbs_nothing_else(walk):
+    rotations = walk.rotations.copy()
+    rotations[10:20, 3] = np.nan
+
+    holed = encode(walk.with_poses(rotations), encode(walk).references)
+
+    unknown = np.isnan(holed.values).any(axis=2)
+    assert unknown.sum() == 10
+    whole = encode(walk).values
+    assert_allclose(holed.values[~unknown], whole[~unknown], atol=1e-9)
+
+
+def test_a_path_is_straight_where_the_walk_is_and_bridges_a_gap():
+    places = np.stack([np.zeros(120), -np.arange(120) / 30.0], axis=-1)
+    seen = places.copy()
+    seen[40:70] = np.nan
+
+    path = smooth_path(seen, np.full(120, 0.4), 30.0)
+
+    assert_allclose(path.places, places, atol=1e-9)
+    assert_allclose(path.headings, 0.4, atol=1e-9)
+
+
+def test_lines_are_their_own_regression(rng):
+    line = np.outer(np.arange(50.0), [1.0, -2.0]) + 3.0
+
+    assert_allclose(local_lines(line, 4.0), line, atol=1e-9)
+    assert_allclose(turned(turned(line, 0.7), -0.7), line, atol=1e-9)
+
+
+def with_lowered_arms(walk: Motion) -> Motion:
+    """The same walk on the same body that rests with its upper arms 40 degrees lower."""
+    skeleton = walk.skeleton
+    rest = np.tile([1.0, 0.0, 0.0, 0.0], (skeleton.n_joints, 1))
+    for name, angle in (("LeftArm", 0.7), ("RightArm", -0.7)):
+        lowered = quaternion_from_rotation_vector([0.0, angle, 0.0])
+        for joint in skeleton.subtree(skeleton.index(name)):
+            rest[joint] = lowered
+    parents = list(skeleton.parents)
+    above = np.concatenate([[[1.0, 0, 0, 0]], rest[parents[1:]]])
+    offsets = rotate(above, skeleton.offsets)
+    other = Skeleton(skeleton.names, skeleton.parents, offsets)
+    rotations = multiply(multiply(above, walk.rotations), inverse(rest))
+    return Motion(other, rotations, walk.root_positions, walk.frame_rate)

@@ -1,0 +1,71 @@
+"""The published filter must minimise the cost that its paper prints."""
+
+import numpy as np
+import pytest
+from numpy.testing import assert_allclose
+from scipy.optimize import minimize
+
+from solvers.denoising.published import PATTERN_WEIGHT, WELSCH, alternate, published_cost
+
+WINDOW = 6
+
+
+@pytest.fixture
+def patterns(rng):
+    """Four orthonormal patterns of windows of two channels."""
+    return np.linalg.qr(rng.normal(size=(WINDOW * 2, 4)))[0].T.reshape(4, WINDOW, 2)
+
+
+@pytest.fixture
+def noisy(rng):
+    values = rng.normal(size=(14, 2)).cumsum(axis=0)
+    values[5, 0] += 25.0
+    values[8:10, 1] = np.nan
+    return values
+
+
+def test_the_cost_is_that_of_the_best_pattern_weights(patterns, noisy, rng):
+    """Eq. 2.16 of [LOU12] by explicit least squares, window after window."""
+    motion = rng.normal(size=noisy.shape)
+    known = np.isfinite(noisy)
+    residual = (motion - noisy)[known]
+    robust = (WELSCH**2 / 2 * (1 - np.exp(-((residual / WELSCH) ** 2)))).sum()
+    E = patterns.reshape(4, -1).T
+    apart = 0.0
+    for start in range(len(motion) - WINDOW + 1):
+        window = motion[start : start + WINDOW].ravel()
+        weights = np.linalg.lstsq(E, window, rcond=None)[0]
+        apart += ((window - E @ weights) ** 2).sum()
+
+    cost = published_cost(motion, np.nan_to_num(noisy), known, patterns)
+
+    assert_allclose(cost, robust + PATTERN_WEIGHT * apart, rtol=1e-12)
+
+
+def test_the_alternation_finds_a_minimum_that_direct_descent_cannot_better(
+    patterns, noisy, monkeypatch
+):
+    monkeypatch.setattr("solvers.denoising.published.MAX_ITERATIONS", 3000)
+    monkeypatch.setattr("solvers.denoising.published.SETTLED", 1e-12)
+    known, observed = np.isfinite(noisy), np.nan_to_num(noisy)
+
+    motion, weight, _, converged = alternate(noisy, patterns)
+
+    def cost(flat):
+        return published_cost(flat.reshape(noisy.shape), observed, known, patterns)
+
+    better = minimize(cost, motion.ravel(), options={"gtol": 1e-9})
+    assert converged
+    assert cost(motion.ravel()) - better.fun < 1e-5 * better.fun
+    assert weight[5, 0] < 1e-6
+
+
+def test_every_round_lowers_the_cost(patterns, noisy, monkeypatch):
+    known, observed = np.isfinite(noisy), np.nan_to_num(noisy)
+    costs = []
+    for rounds in range(1, 8):
+        monkeypatch.setattr("solvers.denoising.published.MAX_ITERATIONS", rounds)
+        motion, _, _, _ = alternate(noisy, patterns)
+        costs.append(published_cost(motion, observed, known, patterns))
+
+    assert (np.diff(costs) <= 1e-9).all()
