@@ -2,8 +2,7 @@
 
 from typing import NamedTuple
 
-from ..solvers.denoising.quality import QualitySettings
-from ..solvers.denoising.worst_spots import SpotSettings
+from ..solvers.denoising import QualitySettings, SpotSettings
 
 
 class CheckSettings(NamedTuple):

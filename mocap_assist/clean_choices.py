@@ -4,8 +4,7 @@ from dataclasses import dataclass
 from enum import Enum
 from typing import NamedTuple
 
-from ..solvers.denoising import DenoiseSettings
-from ..solvers.denoising.plant_feet import PlantSettings
+from ..solvers.denoising import DenoiseSettings, PlantSettings
 from ..solvers.settings import Settings, setting
 from .scene.armature_write import Output
 from .scene.frames import FrameRange
@@ -31,6 +30,7 @@ class Limits(Enum):
 
     NONE = "none"
     CONSTRAINTS = "constraints"
+    EXAMPLES = "examples"
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -61,7 +61,8 @@ class CleanChoices(Settings):
     )
     joint_limits: Limits = setting(
         Limits.NONE,
-        "Keep joints softly within the Limit Rotation constraints of their bones",
+        "Keep joints softly within the Limit Rotation constraints of their bones, or within"
+        " what the examples show",
     )
     result_as: Output = setting(
         Output.ACTION,

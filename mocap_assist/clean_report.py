@@ -4,7 +4,7 @@ from typing import Any
 
 import numpy as np
 
-from ..solvers.denoising.quality import Quality
+from ..solvers.denoising import Quality
 from .clean_choices import CleanSettings
 from .jobs.cleaning import Cleaned
 from .scene import history

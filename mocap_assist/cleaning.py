@@ -9,8 +9,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..solvers.denoising import Denoised
+from ..solvers.errors import InvalidMotionError
 from . import redo
-from .clean_choices import CleanChoices, CleanSettings, Limits
+from .clean_choices import CleanChoices, CleanSettings, Limits, Prior
 from .clean_report import clean_report, entry_of
 from .examples import read_prior
 from .jobs.cleaning import Cleaned, Finish, Problem, Recordings, clean, names_of
@@ -106,9 +107,18 @@ def _read(scene: bpy.types.Scene, armature: bpy.types.Object, choices: CleanChoi
 
 
 def _problem(scene: bpy.types.Scene, found: Reading, settings: CleanSettings) -> Problem:
-    examples = read_prior(scene, found.armature, settings.choices)
-    denoising = replace(settings.denoising, strength=1.0)
-    return Problem(recordings=found.raw.recordings, settings=denoising, examples=examples)
+    choices = settings.choices
+    learn_limits = choices.joint_limits is Limits.EXAMPLES
+    if learn_limits and choices.prior is not Prior.EXAMPLES:
+        raise InvalidMotionError(
+            "Joint limits can only be learned from examples: choose those to learn from."
+        )
+    return Problem(
+        recordings=found.raw.recordings,
+        settings=replace(settings.denoising, strength=1.0),
+        examples=read_prior(scene, found.armature, choices),
+        learn_limits=learn_limits,
+    )
 
 
 def _present(scene: bpy.types.Scene, found: Reading) -> Recordings | None:

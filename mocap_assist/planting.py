@@ -5,7 +5,7 @@ from typing import NamedTuple
 
 import bpy
 
-from ..solvers.denoising.plant_feet import PlantSettings
+from ..solvers.denoising import PlantSettings
 from .jobs.planting import Replanted, plant
 from .scene import history
 from .scene.armature_read import read_take

@@ -5,9 +5,15 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from ...solvers.denoising.joint_limits import JointLimits
-from ...solvers.denoising.quality import Quality, QualitySettings, measure_quality
-from ...solvers.denoising.worst_spots import Spot, SpotSettings, find_worst_spots
+from ...solvers.denoising import (
+    JointLimits,
+    Quality,
+    QualitySettings,
+    Spot,
+    SpotSettings,
+    find_worst_spots,
+    measure_quality,
+)
 from ...solvers.motion import Motion
 from ...solvers.progress import Progress, unwatched, within
 

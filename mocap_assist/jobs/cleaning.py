@@ -6,6 +6,7 @@ what it returns is kept, so that the redo panel has only `finish` to repeat.
 
 from dataclasses import dataclass, replace
 from functools import partial
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -14,15 +15,19 @@ from ...solvers.denoising import (
     Denoised,
     DenoiseSettings,
     FilterBases,
+    JointLimits,
+    Planted,
+    PlantSettings,
+    Quality,
     denoise,
+    keep_within,
     learn_filter_bases,
+    learn_joint_limits,
     load_filter_bases,
+    measure_quality,
+    plant_feet,
 )
 from ...solvers.denoising.feet import find_legs
-from ...solvers.denoising.joint_limits import JointLimits
-from ...solvers.denoising.keep_within import keep_within
-from ...solvers.denoising.plant_feet import Planted, PlantSettings, plant_feet
-from ...solvers.denoising.quality import Quality, measure_quality
 from ...solvers.motion import Motion, Tracks
 from ...solvers.motion.rotations import angle_between, slerp
 from ...solvers.progress import Progress, unwatched, within
@@ -34,6 +39,13 @@ Recordings = tuple[Motion | Tracks, ...]
 SAME = 1e-6  # radians or metres below which planting did not move a joint
 
 
+class Learned(NamedTuple):
+    """What examples teach."""
+
+    bases: FilterBases | None
+    limits: JointLimits | None
+
+
 @dataclass(frozen=True, eq=False, kw_only=True)
 class Examples:
     """Where clean motion to learn from comes from; with nothing given, the take itself."""
@@ -42,12 +54,16 @@ class Examples:
     files: tuple[str, ...] = ()
     bases_file: str = ""
 
-    def bases(self, progress: Progress) -> FilterBases | None:
-        """Learn, or load what was learned."""
+    def learned(self, limits: bool, progress: Progress) -> Learned:
+        """Learn from the examples, or load what was learned."""
         if self.bases_file:
-            return load_filter_bases(self.bases_file)
+            return Learned(load_filter_bases(self.bases_file), None)
         clips = [*self.motions, *map(read_recording, self.files)]
-        return learn_filter_bases(clips, progress=progress) if clips else None
+        if not clips:
+            return Learned(None, None)
+        bases = learn_filter_bases(clips, progress=within(progress, 0.0, 0.9))
+        bodies = [clip for clip in clips if isinstance(clip, Motion)]
+        return Learned(bases, learn_joint_limits(bodies) if limits else None)
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -58,6 +74,8 @@ class Problem:
     """The body first."""
     settings: DenoiseSettings
     examples: Examples = Examples()
+    learn_limits: bool = False
+    """Whether the examples also teach how far joints turn."""
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -73,6 +91,7 @@ class Finish:
     present: Recordings | None = None
     """What an earlier result made of the others; without it they are as recorded."""
     limits: JointLimits | None = None
+    """Of the rig."""
     planting: PlantSettings | None = None
     """None leaves the feet alone."""
     contacts: NDArray[np.bool_] | None = None
@@ -85,6 +104,8 @@ class Solution:
 
     denoised: tuple[Denoised, ...]
     before: Quality
+    limits: JointLimits | None
+    """How far joints turn in the examples."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -108,13 +129,15 @@ def solve(problem: Problem, *, progress: Progress = unwatched) -> Solution:
     """Denoise the body by what the examples teach, and all else by what the take teaches."""
     body, *others = problem.recordings
     before = measure_quality(body, progress=within(progress, 0.0, 0.1))
-    bases = problem.examples.bases(within(progress, 0.1, 0.3))
+    learned = problem.examples.learned(problem.learn_limits, within(progress, 0.1, 0.3))
     settings = replace(problem.settings, strength=1.0)
-    results = [denoise(body, bases, settings=settings, progress=within(progress, 0.3, 0.8))]
+    results = [
+        denoise(body, learned.bases, settings=settings, progress=within(progress, 0.3, 0.8))
+    ]
     for index, recording in enumerate(others):
         share = (0.8 + 0.2 * index / len(others), 0.8 + 0.2 * (index + 1) / len(others))
         results.append(denoise(recording, settings=settings, progress=within(progress, *share)))
-    return Solution(tuple(results), before)
+    return Solution(tuple(results), before, learned.limits)
 
 
 def clean(
@@ -138,8 +161,8 @@ def clean(
         finish.present or problem.recordings,
         estimates,
     )
-    if finish.limits is not None:
-        body = keep_within(body, finish.limits)
+    for limits in (finish.limits, solution.limits):
+        body = body if limits is None else keep_within(body, limits)
     planted = _planted(body, finish, within(progress, 0.8, 0.9))
     moved = finish.chosen
     if planted is not None:

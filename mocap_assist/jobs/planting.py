@@ -5,7 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from ...solvers.denoising.plant_feet import Planted, PlantSettings, plant_feet
+from ...solvers.denoising import Planted, PlantSettings, plant_feet
 from ...solvers.motion import Motion
 from ...solvers.progress import Progress, unwatched
 from .cleaning import differing

@@ -304,3 +304,24 @@ def test_one_frame_is_enough(make_armature, animate, clean, keys_of):
             assert_allclose(
                 [key[:2] for key in keys], [key[:2] for key in raw[name]], atol=1e-4
             )
+
+
+def test_limits_can_be_learned_from_the_examples(noisy, clean, animate, keys_of, blank):
+    raw = noisy.animation_data.action
+    path = "OBActor", 'pose.bones["Head"].rotation_euler', 1
+    example = animate(noisy, frames=range(1, 201))
+    example.name = "rehearsal"
+    bag = example.layers[0].strips[0].channelbag(example.slots[0])
+    for index in range(3):
+        for key in bag.fcurves.find(path[1], index=index).keyframe_points:
+            key.co.y *= 0.1  # in the rehearsal the head hardly moves
+    noisy.animation_data.action = raw
+    noisy.animation_data.action_slot = raw.slots[0]
+    with pytest.raises(RuntimeError, match="Joint limits can only be learned from examples"):
+        clean(joint_limits="EXAMPLES")
+
+    examples = {"prior": "EXAMPLES", "examples": "rehearsal"}
+    free = keys_of(clean(**examples))[path]
+    held = keys_of(clean(joint_limits="EXAMPLES", **examples))[path]
+
+    assert np.ptp([key[1] for key in held]) < 0.9 * np.ptp([key[1] for key in free])
