@@ -4,7 +4,7 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.linalg import cho_factor, cho_solve
+from scipy.linalg.lapack import dpotrf, dpotri
 
 from ..progress import Progress, unwatched
 from .denoise_estimate import Estimate
@@ -153,8 +153,11 @@ def _gains(slow: Array, fast: Array, noise: Array, density: float) -> Gains:
     size = len(scale)
     whitened = slow / np.outer(scale, scale)
     whitened[np.diag_indices(size)] += 1.0
-    factor = cho_factor(whitened, overwrite_a=True, check_finite=False)
-    gain = -cho_solve(factor, np.eye(size), check_finite=False)
+    # LAPACK's own inverse takes a third of the time that solving for the identity does. With
+    # `clean`, the triangles that it leaves alone are zero.
+    lower, _ = dpotrf(whitened, lower=1, clean=1, overwrite_a=1)
+    gain = -dpotri(lower, lower=1, overwrite_c=1)[0]
+    gain += np.tril(gain, -1).T
     gain[np.diag_indices(size)] += 1.0
     return Gains(gain, fast / (fast + per_wave**2), per_wave)
 

@@ -7,7 +7,7 @@ from scipy.sparse.linalg import eigsh
 
 Array = NDArray[np.float64]
 
-FIRST_GUESS = 64
+FIRST_GUESS = 160
 """Number of eigenvectors asked for at first; doubled until they hold enough."""
 
 
