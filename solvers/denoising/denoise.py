@@ -94,7 +94,8 @@ def denoise(
     Raises
     ------
     InvalidMotionError
-        The bases were learned from tracks and the recording is a motion, or the reverse.
+        The bases were learned from tracks and the recording is a motion, or the reverse; or
+        nothing was observed.
     SolveCancelled
         Raised by `progress`.
 
@@ -106,6 +107,11 @@ def denoise(
         learned = "points" if bases.of_points else "joints"
         raise InvalidMotionError(f"The examples are of {learned}, the recording is not.")
     progress(0.0, "Reading")
+    seen = recording.observed if isinstance(recording, Motion) else recording.visible
+    if not seen.any():
+        raise InvalidMotionError(
+            "Nothing was observed in this take; there is nothing to clean."
+        )
     channels = encode(recording, bases.reference_of if bases else None)
     inner = within(progress, 0.05, 0.95)
     if settings.method is Method.PUBLISHED:
