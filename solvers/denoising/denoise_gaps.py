@@ -9,9 +9,6 @@ from .denoise_windows import Windows
 
 Array = NDArray[np.float64]
 
-LONG_GAP = 0.2
-"""Share of a window from which on a gap is solved for exactly. Shorter ones fill quickly."""
-
 
 @dataclass(frozen=True, eq=False)
 class GapPattern:
@@ -66,7 +63,7 @@ class GapPattern:
 
 def gap_patterns(known: NDArray[np.bool_], windows: Windows, n_slow: int) -> list[GapPattern]:
     """Sort all windows by the long gaps in them."""
-    gaps = long_gaps(known, max(round(LONG_GAP * windows.length), 2))
+    gaps = long_gaps(known, windows.long_gap)
     cut = np.lib.stride_tricks.sliding_window_view(gaps, windows.length, axis=0)
     groups: dict[bytes, list[int]] = {}
     for start in windows.starts:

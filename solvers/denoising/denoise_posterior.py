@@ -8,7 +8,7 @@ from scipy.linalg.lapack import dpotrf, dpotri
 
 from ..progress import Progress, unwatched
 from .denoise_estimate import Estimate
-from .denoise_gaps import GapPattern, gap_patterns
+from .denoise_gaps import GapPattern, gap_patterns, long_gaps
 from .denoise_windows import Windows
 from .noise import alike
 from .prior import WavePrior
@@ -28,6 +28,8 @@ ADAPTATIONS = 5
 """Iterations in which the prior still adapts to the take."""
 SETTLED = 0.004
 """Root mean square change, relative to the noise, below which the estimate is settled."""
+CAUTION = 0.3
+"""Share by which channels are taken as independent where one has a long gap."""
 MOST_LEVERAGE = 0.98
 FAR = 4.0
 """Errors beyond so many standard deviations of the noise all count the same."""
@@ -111,11 +113,12 @@ def estimate_channels(
             noise = _noise(observed - estimate, weight, variance, first_guess)
             change = np.inf
         iteration += 1
-    settled = change <= SETTLED
     alone = 1.0 / (1.0 - np.minimum(variance / noise**2, MOST_LEVERAGE))
-    deviation = np.sqrt(variance * (weight + (1.0 - weight) * alone))
     foresight = _foresight(np.where(known, (observed - estimate) * alone, np.nan), first_guess)
-    return Estimate(estimate, weight, deviation, foresight, iteration, settled)
+    # In long gaps the variance is already that without the sample.
+    alone[long_gaps(known, windows.long_gap)] = 1.0
+    deviation = np.sqrt(variance * (weight + (1.0 - weight) * alone))
+    return Estimate(estimate, weight, deviation, foresight, iteration, change <= SETTLED)
 
 
 def _foresight(error: Array, noise: Array) -> float:
@@ -142,9 +145,18 @@ def _inlier_probability(
 
 
 def _gapped(slow: Array, fast: Array, noise: Array, windows: Windows) -> Gains:
-    """Return the filter of windows with gaps: through a gap, fast waves look like noise."""
+    """Return the filter of windows with gaps.
+
+    Through a gap, fast waves look like noise. What other channels say of a missing one is
+    believed less than the covariance has it: another body may hold its limbs differently.
+    """
+    n_slow, n_channels = len(slow) // len(noise), len(noise)
+    cautious = ((1.0 - CAUTION) * slow).reshape(n_slow, n_channels, n_slow, n_channels)
+    channels = np.arange(n_channels)
+    blocks = slow.reshape(cautious.shape)[:, channels, :, channels]
+    cautious[:, channels, :, channels] += CAUTION * blocks
     blur = fast.sum(axis=0) * windows.density / windows.length
-    return _gains(slow, fast, np.sqrt(noise**2 + blur), windows.density)
+    return _gains(cautious.reshape(slow.shape), fast, np.sqrt(noise**2 + blur), windows.density)
 
 
 def _gains(slow: Array, fast: Array, noise: Array, density: float) -> Gains:

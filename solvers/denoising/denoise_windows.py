@@ -16,6 +16,9 @@ HOPS_LONG = 4
 LONG = 20_000
 """Frames from which on windows overlap less."""
 
+LONG_GAP = 0.2
+"""Share of a window from which on a gap is solved for exactly. Shorter ones fill quickly."""
+
 
 @dataclass(frozen=True)
 class Windows:
@@ -29,6 +32,11 @@ class Windows:
     length: int
     density: float
     """Frames of the take per frame of the patterns that it is compared with."""
+
+    @property
+    def long_gap(self) -> int:
+        """Frames from which on a gap is solved for exactly."""
+        return max(round(LONG_GAP * self.length), 2)
 
     @cached_property
     def starts(self) -> NDArray[np.intp]:

@@ -14,6 +14,8 @@ MAD_TO_SIGMA = 1.4826
 # variance 1 + 9 + 9 + 1 times that of one sample.
 DIFFERENCE_ORDER = 3
 DIFFERENCE_GAIN = np.sqrt(20.0)
+FAR_OFF = 3.0
+"""Standard deviations by which chance alone hardly ever moves an estimate."""
 
 
 def rough_noise(values: Array) -> Array:
@@ -36,23 +38,28 @@ def alike(noise: Array, n_samples: NDArray[Any], efficiency: float = 1.0) -> Arr
     """Draw the noise of all channels together, as far as their spread is mere chance.
 
     The logarithm of a standard deviation from n samples is uncertain by 1 / (2 n); what spread
-    there is beyond that is real (empirical Bayes, robustly).
+    there is beyond that is real (empirical Bayes, robustly). A channel that is farther off
+    than chance explains, as a root's place may be among rotations, keeps what is its own.
 
     Parameters
     ----------
     noise : shape (n_channels,)
         Estimated standard deviations, positive.
     n_samples : shape (n_channels,)
-        That each was estimated from.
+        That each was estimated from; where 0, the others tell all.
     efficiency : float
         Of the estimate, relative to that of the standard deviation of a Gaussian.
     """
+    seen = n_samples > 0
+    if not seen.any():
+        return noise
     logs = np.log(noise)
-    middle = np.median(logs)
+    middle = np.median(logs[seen])
     chance = 0.5 / np.maximum(efficiency * n_samples, 1.0)
-    spread = (MAD_TO_SIGMA * np.median(np.abs(logs - middle))) ** 2
-    real = max(float(spread - np.median(chance)), 0.0)
-    return np.asarray(np.exp(middle + real / (real + chance) * (logs - middle)))
+    spread = (MAD_TO_SIGMA * np.median(np.abs(logs[seen] - middle))) ** 2
+    real = max(float(spread - np.median(chance[seen])), 0.0)
+    trust = np.where(seen, real / (real + chance), 0.0)
+    return np.asarray(np.exp(middle + trust * (logs - middle)))
 
 
 def hampel(values: Array, half_width: int, tolerance: float) -> Array:
