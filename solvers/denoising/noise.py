@@ -58,6 +58,7 @@ def alike(noise: Array, n_samples: NDArray[Any], efficiency: float = 1.0) -> Arr
     chance = 0.5 / np.maximum(efficiency * n_samples, 1.0)
     spread = (MAD_TO_SIGMA * np.median(np.abs(logs[seen] - middle))) ** 2
     real = max(float(spread - np.median(chance[seen])), 0.0)
+    real = real + np.maximum((logs - middle) ** 2 - FAR_OFF**2 * chance, 0.0)
     trust = np.where(seen, real / (real + chance), 0.0)
     return np.asarray(np.exp(middle + trust * (logs - middle)))
 
