@@ -101,8 +101,9 @@ def estimate_channels(
         weight = known * _inlier_probability(observed - estimate, weight, variance, noise, rate)
         if known.any():
             rate = float(np.clip(1.0 - weight[known].mean(), 1e-4, MOST_OUTLIERS))
-        gains = _gains(slow, fast, noise, windows.density)
-        gapped = _gapped(slow, fast, noise, windows) if has_gaps else gains
+        if iteration <= ADAPTATIONS:  # from then on nothing changes that they are made of
+            gains = _gains(slow, fast, noise, windows.density)
+            gapped = _gapped(slow, fast, noise, windows) if has_gaps else gains
         drawn = estimate + weight * (observed - estimate) - prior.mean
         sweep = _swept(drawn, gains, gapped, patterns, windows)
         before, estimate = estimate, sweep.total / windows.weight + prior.mean
