@@ -1,4 +1,4 @@
-"""The first guess of the noise decides how much is believed; it must be right for odd channels."""
+"""The first guess of the noise decides how much is believed, of odd channels too."""
 
 import numpy as np
 import pytest
