@@ -28,7 +28,7 @@ ADAPTATIONS = 5
 """Iterations in which the prior still adapts to the take."""
 SETTLED = 0.004
 """Root mean square change, relative to the noise, below which the estimate is settled."""
-CAUTION = 0.3
+CAUTION = 0.5
 """Share by which channels are taken as independent where one has a long gap."""
 MOST_LEVERAGE = 0.98
 FAR = 4.0

@@ -13,6 +13,7 @@ from solvers.denoising import (
 )
 from solvers.motion import Motion, Tracks
 from solvers.motion.rotations import angle_between, multiply, quaternion_from_rotation_vector
+from solvers.recordings import read_bvh
 
 
 @pytest.mark.parametrize("method", Method)
@@ -72,9 +73,97 @@ def test_cleans_points_too(swinging_leg, rng):
     assert np.isfinite(cleaned).all()
 
 
-def shaken(motion: Motion, rng: np.random.Generator, scale: float) -> Motion:
+def shaken(motion: Motion, rng: np.random.Generator, scale: float, n_still: int = 1) -> Motion:
     """The motion with rotation noise of this standard deviation, radians."""
     vectors = rng.normal(scale=scale, size=(motion.n_frames, motion.n_joints, 3))
-    vectors[:, 3:] = 0.0
+    vectors[:, motion.n_joints - n_still :] = 0.0
     noise = quaternion_from_rotation_vector(vectors)
     return motion.with_poses(multiply(motion.rotations, noise))
+
+
+def test_examples_of_another_movement_are_laid_aside(swinging_leg, rng):
+    """They must not cost more than a hair over having no examples."""
+    time = np.arange(240) / 60.0
+    vectors = np.zeros((240, 4, 3))
+    vectors[:, :3] = 1.2 * np.sin(time[:, None, None] * np.array([[11.0], [23.0], [17.0]]))
+    frantic = Motion(
+        swinging_leg.skeleton,
+        quaternion_from_rotation_vector(vectors),
+        np.tile([0.0, 0.0, 0.9], (240, 1)),
+        60.0,
+    )
+    noisy = shaken(swinging_leg, rng, np.radians(3))
+
+    wrong = denoise(noisy, learn_filter_bases([frantic]))
+    alone = denoise(noisy)
+
+    assert error(wrong, swinging_leg) < 1.05 * error(alone, swinging_leg)
+
+
+def test_strength_zero_fills_gaps_and_changes_nothing_else(swinging_leg, rng):
+    noisy = shaken(swinging_leg, rng, np.radians(2))
+    noisy.rotations[30:50, 1] = np.nan
+    observed = np.isfinite(noisy.rotations)
+
+    cleaned = denoise(noisy, settings=DenoiseSettings(strength=0.0)).recording
+
+    assert np.array_equal(cleaned.rotations[observed], noisy.rotations[observed])
+    assert cleaned.observed.all()
+
+
+def test_finds_the_spikes(swinging_leg, rng):
+    noisy = shaken(swinging_leg, rng, np.radians(1))
+    spikes = [20, 57, 58, 90]
+    kick = quaternion_from_rotation_vector([np.radians(40), 0.0, 0.0])
+    noisy.rotations[spikes, 1] = multiply(noisy.rotations[spikes, 1], kick)
+
+    result = denoise(noisy)
+
+    assert np.flatnonzero(result.outliers[:, 1]).tolist() == spikes
+    assert error(result, swinging_leg) < np.radians(1)
+
+
+@pytest.mark.parametrize("frame_rate", [10.0, 24.0, 25.0, 50.0])
+def test_any_frame_rate_will_do(swinging_leg, rng, frame_rate):
+    take = Motion(
+        swinging_leg.skeleton,
+        swinging_leg.rotations,
+        swinging_leg.root_positions,
+        frame_rate,
+    )
+
+    result = denoise(shaken(take, rng, np.radians(2)), learn_filter_bases([take]))
+
+    assert result.recording.n_frames == take.n_frames
+    assert error(result, take) < np.radians(2)
+
+
+def test_beats_the_published_filter_on_a_real_walk(recordings, rng):
+    clips = [
+        real_walk(recordings, name) for name in ("32_01", "07_01", "07_02", "07_04", "10_04")
+    ]
+    truth = clips[0]
+    bases = learn_filter_bases(clips[1:])
+    noisy = shaken(truth, rng, np.radians(3), n_still=0)
+
+    ours = error(denoise(noisy, bases), truth)
+    published = DenoiseSettings(method=Method.PUBLISHED)
+
+    assert ours < 0.9 * error(denoise(noisy, bases, settings=published), truth)
+    assert ours < 0.6 * angle_between(noisy.rotations, truth.rotations)[:, moving(truth)].mean()
+
+
+def moving(motion: Motion) -> list[int]:
+    return [j for j in range(motion.n_joints) if not motion.skeleton.is_end_site(j)]
+
+
+def error(result, truth: Motion) -> float:
+    """Mean angle to the truth, radians, over all joints that turn."""
+    angles = angle_between(result.recording.rotations, truth.rotations)
+    return float(angles[:, moving(truth)].mean())
+
+
+def real_walk(recordings, name: str) -> Motion:
+    """A CMU walk at 30 Hz, without the T-pose of its first frame."""
+    walk = read_bvh(recordings / "mocap" / "cmu_walk" / f"{name}.bvh")
+    return Motion(walk.skeleton, walk.rotations[1::4], walk.root_positions[1::4], 30.0)
