@@ -2,14 +2,17 @@
 
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass
-from functools import partial
+from functools import lru_cache, partial
 
 import numpy as np
 
+from solvers.motion import Motion
+
 from .cases import Case, without_heading
-from .noise import Array
+from .noise import Array, Channels
 from .peers import kalman, smoothers
 from .peers.blender_graph import CUTOFFS, DEFAULTS, WIDTHS, smooth_in_blender
+from .peers.lou_chai import filter_by_patterns, learn_patterns
 
 Method = Callable[[Case], Array]
 Smoother = Callable[[Array, float], Array]
@@ -41,8 +44,7 @@ def data_driven_kalman(case: Case, first: Smoother = smoothers.unchanged) -> Arr
     noisy = first(case.noisy, rate)
     angles, root = noisy[:, :-3], noisy[:, -3:]
     heading = np.median(angles[:, 0])
-    angles = without_heading(angles)
-    angles[:, 0] += angles[:, 0].mean() - np.median(angles[:, 0])
+    angles = angles - np.eye(1, angles.shape[1]) * heading
     estimates = []
     for sigma in (1.0, 2.0, 4.0, 8.0, 16.0, 32.0):
         smooth = kalman.learned_dynamics(angles, rate, sigma, case.training_values)
@@ -55,6 +57,28 @@ PLACE_OF_DEFAULT = {
     "gaussian": WIDTHS.index(DEFAULTS["gaussian"]),
     "butterworth": CUTOFFS.index(DEFAULTS["butterworth"]),
 }
+
+
+def lou_chai(case: Case) -> Array:
+    """[LC10] on the angle channels, constant velocity for the root's position."""
+    angles, root = case.noisy[:, :-3], case.noisy[:, -3:]
+    heading = np.median(angles[:, 0])
+    angles = angles - np.eye(1, angles.shape[1]) * heading
+    smooth = filter_by_patterns(angles, *_patterns(case))
+    smooth[:, 0] += heading
+    rate = case.truth.frame_rate
+    return np.hstack([smooth, kalman.constant_velocity(root, rate, 0.3)])
+
+
+@lru_cache(maxsize=2)
+def _patterns_of(training: tuple[Motion, ...], channels: Channels) -> tuple[Array, Array]:
+    return learn_patterns([without_heading(channels.values(motion)) for motion in training])
+
+
+def _patterns(case: Case) -> tuple[Array, Array]:
+    return _patterns_of(tuple(case.training), case.channels)
+
+
 AGILITIES = tuple(np.geomspace(0.03, 3.0, 9))
 PEERS: dict[str, Method] = {
     "noisy input": Peer(smoothers.unchanged),
@@ -77,6 +101,7 @@ PEERS: dict[str, Method] = {
     "Hampel + data-driven Kalman RTS, tuned on the truth": partial(
         data_driven_kalman, first=smoothers.hampel
     ),
+    "[LC10] written again for the benchmark": lou_chai,
 }
 
 
