@@ -34,6 +34,7 @@ def show_checked(scene: bpy.types.Scene, armature: bpy.types.Object, checked: Ch
     frames, shown = _read(scene, armature).frames, scene.mocap_assist
     shown.spots.clear()
     shown.active_spot = 0
+    shown.checked = played_source(armature)[0].name
     shown.report = checked.quality.report()
     for spot in checked.spots:
         item = shown.spots.add()

@@ -37,6 +37,9 @@ class MOCAP_PG_scene(bpy.types.PropertyGroup):
 
     clean: bpy.props.PointerProperty(type=MOCAP_PG_clean)
     check: bpy.props.PointerProperty(type=MOCAP_PG_check)
+    checked: bpy.props.StringProperty(
+        name="Checked", description="Action that was checked last, whose spots are listed"
+    )
     spots: bpy.props.CollectionProperty(type=MOCAP_PG_spot)
     active_spot: bpy.props.IntProperty(name="Spot", description="Spot that the list shows")
     report: bpy.props.StringProperty(name="Report", description="Figures of the last check")

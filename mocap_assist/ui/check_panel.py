@@ -2,8 +2,9 @@
 
 import bpy
 
+from ...solvers.errors import InvalidMotionError
 from ..scene import history
-from ..selection import selected_armature
+from ..selection import played_source, selected_armature
 from .drawing import draw_sentence, exists, is_wide
 from .figures import figure_rows, frames_text
 
@@ -15,6 +16,7 @@ ICONS = {
     "foot slide": "FORWARD",
     "limit": "CON_ROTLIMIT",
 }
+STALE = "These are the spots of {action}. Press Check again."
 FEWEST, MOST = 4, 8  # rows of the list
 
 
@@ -80,6 +82,18 @@ def _draw_spots(layout: bpy.types.UILayout, context: bpy.types.Context) -> None:
     row.operator(JUMP, text="Next", icon="TRIA_RIGHT").step = 1
     if 0 <= found.active_spot < len(found.spots):
         draw_sentence(layout, context, found.spots[found.active_spot].sentence)
+    armature = selected_armature(context)
+    if armature is not None and is_stale(found.checked, armature):
+        said = bpy.app.translations.pgettext_iface(STALE).format(action=found.checked)
+        draw_sentence(layout, context, said, icon="INFO")
+
+
+def is_stale(checked: str, armature: bpy.types.Object) -> bool:
+    """Whether the armature plays another action than the one that was checked."""
+    try:
+        return played_source(armature)[0].name != checked
+    except InvalidMotionError:
+        return True
 
 
 def _draw_thresholds(layout: bpy.types.UILayout, check: bpy.types.PropertyGroup) -> None:

@@ -104,6 +104,20 @@ def test_a_checked_take_lists_its_spots_and_ways_to_them(blank, draw, actor):
     assert "LeftLeg jumps at frame 12." in " ".join(shown)
 
 
+def test_spots_of_another_action_are_said_to_be_so(blank, draw, actor):
+    action = actor.animation_data.action
+    for curve in action.layers[0].strips[0].channelbag(action.slots[0]).fcurves:
+        curve.keyframe_points[30].co.y += 1.0
+    assert blank.ops.mocap_assist.measure_quality() == {"FINISHED"}
+    assert blank.context.scene.mocap_assist.spots
+    stale = "These are the spots of walk."
+    assert stale not in " ".join(draw("MOCAP_PT_check"))
+
+    assert blank.ops.mocap_assist.denoise(plant_feet=False) == {"FINISHED"}
+
+    assert stale in " ".join(draw("MOCAP_PT_check"))
+
+
 def test_a_result_shows_its_figures_its_source_and_its_contacts(blank, draw, actor):
     assert draw("MOCAP_PT_feet") == ["mocap_assist.plant_feet"]
     assert blank.ops.mocap_assist.denoise() == {"FINISHED"}
