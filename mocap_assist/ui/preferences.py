@@ -59,7 +59,7 @@ class MOCAP_AP_preferences(bpy.types.AddonPreferences):
         default=Output.ACTION.name,
     )
     raw_color: bpy.props.FloatVectorProperty(
-        name="Raw",
+        name="Raw figure",
         description="Color in which the overlay draws the recorded action",
         subtype="COLOR_GAMMA",
         size=4,
@@ -69,7 +69,7 @@ class MOCAP_AP_preferences(bpy.types.AddonPreferences):
         update=_redraw,
     )
     clean_color: bpy.props.FloatVectorProperty(
-        name="Clean",
+        name="Clean figure",
         description="Color in which the overlay draws the clean action",
         subtype="COLOR_GAMMA",
         size=4,
