@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 from ..solvers.denoising import Denoised
 from ..solvers.errors import InvalidMotionError
+from ..solvers.motion import Tracks
 from . import redo
 from .clean_choices import CleanChoices, CleanSettings, Limits, Prior
 from .clean_report import clean_report, entry_of
@@ -90,7 +91,8 @@ def key_types(
     """Paint the keys of each bone: what was filled or corrected is GENERATED, the rest not."""
     types: dict[str, NDArray[np.uint8]] = {}
     for recording, result in zip(raw.recordings, denoised, strict=True):
-        unsure = result.outliers | (result.confidence < UNSURE)
+        seen = recording.visible if isinstance(recording, Tracks) else recording.observed
+        unsure = ~seen | result.outliers | (result.confidence < UNSURE)
         for name, flags in zip(names_of(recording), unsure.T, strict=True):
             painted = np.where(flags, GENERATED, MEASURED).astype(np.uint8)
             types[name] = np.maximum(painted, types.get(name, MEASURED))

@@ -129,6 +129,8 @@ def test_cleaning_part_by_part_keeps_the_parts_already_clean(noisy, clean, keys_
     path = "OBActor", 'pose.bones["Head"].rotation_euler', 0
     assert [key[:2] for key in first[path][:30]] == [key[:2] for key in second[path][:30]]
     assert [key[:2] for key in first[path][30:]] != [key[:2] for key in second[path][30:]]
+    blank.ops.mocap_assist.revert_to_raw()
+    assert blank.context.object.animation_data.action.name == RAW
 
 
 def test_a_cleaned_range_joins_the_rest_without_a_step(noisy, clean, keys_of, blank):
