@@ -128,9 +128,7 @@ def load_filter_bases(path: Path | str) -> FilterBases:
         bases = FilterBases(**{one.name: arrays[one.name] for one in fields(FilterBases)})
         fault = _fault(bases)
     if fault:
-        raise InvalidFileError(
-            f"{path} holds damaged bases ({fault}). Learn them again."
-        )
+        raise InvalidFileError(f"{path} holds damaged bases ({fault}). Learn them again.")
     return bases
 
 
