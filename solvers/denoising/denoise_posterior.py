@@ -94,13 +94,12 @@ def estimate_channels(
     has_gaps = any(pattern.channels.size for pattern in patterns)
     first_guess, estimate = noise, start
     slow, fast = prior.matrix, _extended(prior.fast, windows.length - prior.n_slow)
-    variance = np.zeros_like(noisy)
-    rate, iteration, change, weight = FIRST_OUTLIERS, 0, np.inf, known.astype(float)
+    weight, variance = known.astype(float), np.zeros_like(noisy)
+    rate, iteration, change = FIRST_OUTLIERS, 0, np.inf
     while iteration < at_most and change > SETTLED:
         progress(iteration / at_most, "Denoising")
         weight = known * _inlier_probability(observed - estimate, weight, variance, noise, rate)
-        if known.any():
-            rate = float(np.clip(1.0 - weight[known].mean(), 1e-4, MOST_OUTLIERS))
+        rate = _outlier_rate(weight, known)
         if iteration <= ADAPTATIONS:  # from then on nothing changes that they are made of
             gains = _gains(slow, fast, noise, windows.density)
             gapped = _gapped(slow, fast, noise, windows) if has_gaps else gains
@@ -120,6 +119,11 @@ def estimate_channels(
     alone[long_gaps(known, windows.long_gap)] = 1.0
     deviation = np.sqrt(variance * (weight + (1.0 - weight) * alone))
     return Estimate(estimate, weight, deviation, foresight, iteration, change <= SETTLED)
+
+
+def _outlier_rate(weight: Array, known: NDArray[np.bool_]) -> float:
+    inside = float(weight[known].mean()) if known.any() else 1.0
+    return float(np.clip(1.0 - inside, 1e-4, MOST_OUTLIERS))
 
 
 def _foresight(error: Array, noise: Array) -> float:
