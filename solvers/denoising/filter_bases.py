@@ -27,6 +27,8 @@ KEPT_ENERGY = 0.99
 """Share of the movement that the stored patterns hold, as in [LC10]."""
 STILL = 0.05
 """Standard deviation, degrees or centimetres, below which a channel does not move."""
+AT_REST = 1e-6
+"""The same where no channel moves: what is below is rounding."""
 SLOW_SHARE = 0.6
 """Share of a window's waves, slowest first, whose covariance is kept; of faster ones, which
 hold little, only the variance."""
@@ -186,10 +188,18 @@ def learn_filter_bases(
     settings : FilterBasesSettings
     progress : Progress
 
+    Returns
+    -------
+    FilterBases
+        Its keys are the joints or points of the first example.
+
     Raises
     ------
     InvalidMotionError
-        There is no example, kinds are mixed, or no example is as long as the window.
+        There is no example, kinds are mixed, no example is as long as the window, or nothing
+        in them moves.
+    SolveCancelled
+        Raised by `progress`.
 
     References
     ----------
@@ -209,6 +219,10 @@ def learn_filter_bases(
         )
     everything = np.concatenate(clips)
     mean, spread = everything.mean(axis=0), everything.std(axis=0)
+    if spread.max() < AT_REST:
+        raise InvalidMotionError(
+            "Nothing that was observed in the examples moves; choose clips with movement."
+        )
     moving = np.flatnonzero(spread >= min(STILL, spread.max()))
     n_windows = sum(len(clip) - window + 1 for clip in clips)
     total = np.zeros((window * len(moving),) * 2)

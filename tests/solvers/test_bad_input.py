@@ -3,9 +3,10 @@
 import numpy as np
 import pytest
 
-from solvers.denoising import denoise
+from solvers.denoising import denoise, learn_filter_bases
 from solvers.errors import InvalidMotionError
 from solvers.motion import Tracks
+from solvers.samples import GaitSettings, walking_gait
 
 
 def test_nothing_observed_is_refused(swinging_leg):
@@ -15,3 +16,20 @@ def test_nothing_observed_is_refused(swinging_leg):
     for recording in (blind, tracks):
         with pytest.raises(InvalidMotionError, match="Nothing was observed"):
             denoise(recording)
+
+
+def test_examples_without_movement_teach_nothing_and_say_so():
+    """A whole body: so many channels without movement once stopped the eigenvalue solver."""
+    walk = walking_gait(GaitSettings(duration=1.0, frame_rate=30.0))
+    blind = walk.with_poses(walk.rotations * np.nan, walk.root_positions * np.nan)
+    frozen = walk.with_poses(
+        np.repeat(walk.rotations[:1], 30, axis=0),
+        np.repeat(walk.root_positions[:1], 30, axis=0),
+    )
+    unseen = Tracks(("a", "b"), np.full((60, 2, 3), np.nan), 60.0)
+
+    for example in (blind, frozen, unseen):
+        with pytest.raises(InvalidMotionError, match="moves; choose clips with movement"):
+            learn_filter_bases([example])
+    with pytest.raises(InvalidMotionError, match="No example is as long as the window"):
+        learn_filter_bases([walk.slice(0, 1)])
