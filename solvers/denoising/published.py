@@ -1,7 +1,6 @@
 """The filter of Lou and Chai (2010) as printed, to compare with."""
 
 import numpy as np
-from numpy.lib.stride_tricks import sliding_window_view
 from numpy.typing import NDArray
 
 from ..progress import Progress
@@ -86,25 +85,46 @@ def alternate(noisy: Array, patterns: Array) -> tuple[Array, Array, int, bool]:
 
 
 def fit_windows(motion: Array, patterns: Array) -> tuple[Array, Array]:
-    """Project every window on the patterns; return the mean of all, and their number."""
-    n_bases, window, _ = patterns.shape
-    flat = patterns.reshape(n_bases, -1)
-    windows = sliding_window_view(motion, window, axis=0).transpose(0, 2, 1)
-    fitted = (windows.reshape(len(windows), -1) @ flat.T @ flat).reshape(windows.shape)
+    """Project every window on the patterns; return the mean of all, and their number.
+
+    Parameters
+    ----------
+    motion : shape (n_frames, n_channels)
+    patterns : shape (n_bases, window, n_channels), orthonormal
+
+    Returns
+    -------
+    tuple
+        Shapes (n_frames, n_channels) and (n_frames,).
+    """
+    weights = _pattern_weights(motion, patterns)
     total, count = np.zeros_like(motion), np.zeros(len(motion))
-    for place in range(window):
-        total[place : place + len(fitted)] += fitted[:, place]
-        count[place : place + len(fitted)] += 1.0
+    for place in range(patterns.shape[1]):
+        total[place : place + len(weights)] += weights @ patterns[:, place]
+        count[place : place + len(weights)] += 1.0
     return total / count[:, None], count
+
+
+def _pattern_weights(motion: Array, patterns: Array) -> Array:
+    """Return the weight of each pattern in each window, shape (n_windows, n_bases).
+
+    Frame by frame of the window, so that the windows of a long take are never built.
+    """
+    n_bases, window, _ = patterns.shape
+    weights = np.zeros((len(motion) - window + 1, n_bases))
+    for place in range(window):
+        weights += motion[place : place + len(weights)] @ patterns[:, place].T
+    return weights
 
 
 def published_cost(motion: Array, observed: Array, known: Array, patterns: Array) -> float:
     """Return eq. 2.16 with the best pattern weights; both motions are centred."""
-    n_bases, window, _ = patterns.shape
-    windows = sliding_window_view(motion, window, axis=0).transpose(0, 2, 1)
-    flat = windows.reshape(len(windows), -1)
-    inside = flat @ patterns.reshape(n_bases, -1).T
-    outside = (flat**2).sum() - (inside**2).sum()
+    weights = _pattern_weights(motion, patterns)
+    power = (motion**2).sum(axis=1)
+    in_windows = sum(
+        float(power[place : place + len(weights)].sum()) for place in range(patterns.shape[1])
+    )
+    outside = in_windows - (weights**2).sum()
     robust = WELSCH**2 / 2 * (1 - np.exp(-(((motion - observed) / WELSCH) ** 2)))
     return float((known * robust).sum() + PATTERN_WEIGHT * outside)
 
