@@ -19,12 +19,13 @@ def why_not_revert(context: bpy.types.Context) -> str:
 
 
 def revert(armature: bpy.types.Object) -> str:
-    """Assign the recorded action and slot again, and take the result's NLA tracks away."""
+    """Assign the recorded action and slot again; NLA tracks of results made from it go."""
     result, _ = history.played_result(armature)
     raw, slot = history.raw_of(result)
     tracks = armature.animation_data.nla_tracks
     for track in list(tracks):
-        if [strip.action for strip in track.strips] == [result]:
+        sources = [strip.action and history.raw_of(strip.action) for strip in track.strips]
+        if sources == [(raw, slot)] and not track.mute:
             tracks.remove(track)
     compat.assign(armature, raw, slot)
     return f"{armature.name} plays {raw.name} again; {result.name} is kept."

@@ -1,5 +1,6 @@
 """Write a cleaned take into a copy of its action; the source is never touched."""
 
+import re
 from collections.abc import Collection, Mapping
 from enum import Enum
 
@@ -23,6 +24,7 @@ from .take import ArmatureTake
 Array = NDArray[np.float64]
 KeyTypes = Mapping[str, NDArray[np.uint8]]
 SUFFIX = ".clean"
+NUMBERED = re.compile(r"\.clean(\.\d{3,})?$")  # as Blender names a second result
 
 
 class Output(Enum):
@@ -86,7 +88,7 @@ def put_to_use(
     Raises
     ------
     InvalidMotionError
-        The armature is linked without an override, so that nothing can be assigned to it.
+        Nothing can be assigned to the armature; see `check_writable`.
     """
     check_writable(armature)
     if output is Output.ACTION:
@@ -97,7 +99,7 @@ def put_to_use(
     track.name = action.name
     strip = track.strips.new(action.name, int(action.frame_range[0]), action)
     strip.action_slot = slot
-    strip.frame_start = action.frame_range[0]
+    strip.frame_start, strip.frame_end = action.frame_range  # not always whole frames
 
 
 def check_writable(armature: bpy.types.Object) -> None:
@@ -107,6 +109,11 @@ def check_writable(armature: bpy.types.Object) -> None:
             f"{armature.name} is linked from {armature.library.name}. Make a library override"
             " of it, then it can play the result."
         )
+    if armature.animation_data is not None and armature.animation_data.use_tweak_mode:
+        raise InvalidMotionError(
+            f"{armature.name} is in tweak mode, which locks its action. Leave it in the NLA"
+            " Editor (Tab)."
+        )
 
 
 def _copy(
@@ -114,7 +121,7 @@ def _copy(
 ) -> Source:
     original, slot = source
     action = original.copy()
-    action.name = original.name.removesuffix(SUFFIX) + SUFFIX
+    action.name = NUMBERED.sub("", original.name) + SUFFIX
     action.use_fake_user = True
     return action, next(each for each in action.slots if each.handle == slot.handle)
 

@@ -49,11 +49,15 @@ def raw_of(action: bpy.types.Action) -> Source | None:
 
 
 def played_result(armature: bpy.types.Object) -> Source | None:
-    """Return the result of ours that an armature plays, as its action or on an NLA track."""
+    """Return the result of ours that an armature plays, as its action or on an NLA track.
+
+    Muted tracks and strips play nothing.
+    """
     animation = armature.animation_data
     if animation is None:
         return None
-    strips = [strip for track in reversed(animation.nla_tracks) for strip in track.strips]
+    tracks = [track for track in reversed(animation.nla_tracks) if not track.mute]
+    strips = [strip for track in tracks for strip in track.strips if not strip.mute]
     for player in (animation, *strips):
         if player.action is not None and player.action_slot and raw_of(player.action):
             return player.action, player.action_slot

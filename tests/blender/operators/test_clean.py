@@ -9,33 +9,6 @@ from numpy.testing import assert_allclose
 RAW, CLEAN = "walk", "walk.clean"
 
 
-@pytest.fixture
-def noisy(make_armature, animate, blank, rng):
-    """A figure of 13 bones in smooth motion with 2 degrees of noise, for two seconds."""
-    armature = make_armature(mode="XYZ")
-    action = animate(armature)
-    blank.context.scene.render.fps = 30
-    bag = action.layers[0].strips[0].channelbag(action.slots[0])
-    for curve in bag.fcurves:
-        scale = 0.01 if "location" in curve.data_path else np.radians(2.0)
-        for key in curve.keyframe_points:
-            key.co.y += rng.normal(scale=scale)
-        curve.update()
-    return armature
-
-
-@pytest.fixture
-def clean(blank):
-    """Press Clean; without feet, so that the random dance of the figure is not nailed down."""
-
-    def press(**settings):
-        settings = {"plant_feet": False} | settings
-        assert blank.ops.mocap_assist.denoise(**settings) == {"FINISHED"}
-        return blank.context.object.animation_data.action
-
-    return press
-
-
 def roughness(keys):
     values = np.array([key[1] for key in keys])
     return np.abs(np.diff(values, n=3)).mean()
@@ -95,6 +68,44 @@ def test_a_result_on_an_nla_track_moves_the_bones_and_can_be_reverted(
     assert not noisy.animation_data.nla_tracks
 
 
+def test_results_of_results_are_named_after_the_recording(noisy, clean):
+    assert [clean().name for _ in range(3)] == [CLEAN, f"{CLEAN}.001", f"{CLEAN}.002"]
+
+
+def test_revert_takes_every_result_off_the_nla_and_leaves_other_tracks(noisy, clean, blank):
+    clean(result_as="NLA_TRACK")
+    clean(result_as="NLA_TRACK")
+    layer = noisy.animation_data.nla_tracks.new()
+    layer.strips.new("layer", 1, blank.data.actions[RAW].copy())
+
+    blank.ops.mocap_assist.revert_to_raw()
+
+    assert noisy.animation_data.nla_tracks.values() == [layer]
+    with pytest.raises(RuntimeError, match="Actor plays no result of Mocap Assist"):
+        blank.ops.mocap_assist.revert_to_raw()
+
+
+def test_a_muted_track_is_not_what_the_armature_plays(noisy, clean, blank):
+    clean(result_as="NLA_TRACK")
+    noisy.animation_data.nla_tracks[0].mute = True
+
+    with pytest.raises(RuntimeError, match="Actor plays no result of Mocap Assist"):
+        blank.ops.mocap_assist.revert_to_raw()
+
+
+def test_a_strip_is_as_long_as_its_action_between_frames(noisy, clean):
+    action = noisy.animation_data.action
+    for curve in action.layers[0].strips[0].channelbag(action.slots[0]).fcurves:
+        for key in curve.keyframe_points:
+            key.co.x += 0.5
+        curve.update()
+
+    clean(result_as="NLA_TRACK")
+
+    strip = noisy.animation_data.nla_tracks[0].strips[0]
+    assert (strip.frame_start, strip.frame_end, strip.scale) == (1.5, 60.5, 1.0)
+
+
 def test_only_selected_bones_change(noisy, clean, keys_of, load):
     compat = load("mocap_assist.scene.compat")
     before = keys_of(noisy.animation_data.action)
@@ -107,15 +118,6 @@ def test_only_selected_bones_change(noisy, clean, keys_of, load):
         path for (slot, path, index), keys in after.items() if keys != before[slot, path, index]
     }
     assert changed == {'pose.bones["Head"].rotation_euler'}
-
-
-def test_nothing_selected_is_said(noisy, clean, load):
-    compat = load("mocap_assist.scene.compat")
-    for bone in noisy.pose.bones:
-        compat.select_bone(bone, False)
-
-    with pytest.raises(RuntimeError, match=r"No bones are selected\. Select some in Pose Mode"):
-        clean(bones="SELECTED")
 
 
 def test_cleaning_part_by_part_keeps_the_parts_already_clean(noisy, clean, keys_of, blank):
@@ -195,135 +197,3 @@ def test_the_redo_panel_does_not_solve_again(noisy, clean, load, monkeypatch, bl
     clean(strength=0.8, result_as="NLA_TRACK")
 
     assert not solved
-
-
-def test_the_animators_contacts_are_used_and_kept(noisy, clean, blank, load):
-    contacts = load("mocap_assist.scene.contacts")
-    frames = np.arange(1.0, 61.0)
-    first = clean(plant_feet=True)
-    found = contacts.read_contacts(first, first.slots[0], frames)
-    assert found.shape == (60, 2)
-    keyed = np.zeros((60, 2), bool)
-    keyed[10:20, 0] = True
-    contacts.write_contacts(noisy, first, first.slots[0], frames, keyed)
-
-    second = clean(plant_feet=True)
-
-    assert second != first
-    kept = contacts.read_contacts(second, second.slots[0], frames)
-    assert (kept == keyed).all()
-    left = load("mocap_assist.scene.armature_read").read_take(noisy, blank.context.scene)
-    kinematics = load("solvers.motion.kinematics")
-    motion = left.parts[0].motion
-    foot = kinematics.forward_kinematics(motion).positions[
-        10:20, motion.skeleton.index("LeftFoot_end")
-    ]
-    assert np.ptp(foot[:, :2], axis=0).max() < 1e-3
-
-
-def test_limit_constraints_are_kept(noisy, clean, blank, keys_of):
-    limit = noisy.pose.bones["Head"].constraints.new("LIMIT_ROTATION")
-    limit.owner_space, limit.use_limit_z, limit.min_z, limit.max_z = "LOCAL", True, -0.05, 0.05
-
-    free = keys_of(clean())
-    held = keys_of(clean(joint_limits="CONSTRAINTS"))
-
-    path = "OBActor", 'pose.bones["Head"].rotation_euler', 2
-    beyond = [max(abs(key[1]) for key in keys[path]) for keys in (free, held)]
-    assert beyond[0] > 0.3
-    assert beyond[1] < 0.05 + np.radians(5.0) + 1e-6
-
-
-def test_clean_examples_can_be_actions_of_this_file(noisy, clean, animate, blank):
-    raw = noisy.animation_data.action
-    example = animate(noisy, frames=range(1, 201))
-    example.name = "rehearsal"
-    noisy.animation_data.action = raw
-    noisy.animation_data.action_slot = raw.slots[0]
-
-    result = clean(prior="EXAMPLES", examples="rehearsal")
-
-    entry = json.loads(result["mocap_assist_history"])[-1]
-    assert entry["settings"]["examples"] == "rehearsal"
-    assert entry["prior_used"]
-    with pytest.raises(RuntimeError, match=r"neither an action nor a file .*nowhere.bvh"):
-        clean(prior="EXAMPLES", examples="nowhere.bvh")
-    with pytest.raises(RuntimeError, match="Pick clean actions or recordings"):
-        clean(prior="EXAMPLES")
-
-
-@pytest.mark.parametrize(
-    ("spoil", "sentence"),
-    [
-        (lambda bpy, rig: setattr(rig.animation_data, "action", None), "Actor has no action"),
-        (
-            lambda bpy, rig: setattr(bpy.context.view_layer.objects, "active", None),
-            "Select an armature that plays a captured action",
-        ),
-        (
-            lambda bpy, rig: (
-                rig.animation_data.action.layers[0].strips[0].channelbags[0].fcurves.clear()
-            ),
-            "The action has no keys on this armature's bones",
-        ),
-    ],
-)
-def test_bad_input_gives_one_sentence(spoil, sentence, noisy, clean, blank):
-    spoil(blank, noisy)
-
-    with pytest.raises(RuntimeError, match=sentence):
-        clean()
-
-
-def test_a_bone_without_keys_stays_as_it_is(noisy, clean, keys_of):
-    action = noisy.animation_data.action
-    bag = action.layers[0].strips[0].channelbag(action.slots[0])
-    for curve in [curve for curve in bag.fcurves if "Spine" in curve.data_path]:
-        bag.fcurves.remove(curve)
-
-    assert not any("Spine" in path for _, path, _ in keys_of(clean()))
-
-
-def test_two_bones_are_enough(make_armature, animate, clean, blank):
-    bones = {
-        "upper": (None, (0, 0, 0), (0, 0, 1), False),
-        "lower": ("upper", (0, 0, 1), (0, 0, 2), True),
-    }
-    armature = make_armature(bones)
-    animate(armature)
-
-    assert clean(plant_feet=True).name == CLEAN
-
-
-def test_one_frame_is_enough(make_armature, animate, clean, keys_of):
-    armature = make_armature(mode="XYZ")
-    raw = keys_of(animate(armature, frames=[1]))
-
-    after = keys_of(clean(plant_feet=True))
-
-    for name, keys in after.items():
-        if name in raw:
-            assert_allclose(
-                [key[:2] for key in keys], [key[:2] for key in raw[name]], atol=1e-4
-            )
-
-
-def test_limits_can_be_learned_from_the_examples(noisy, clean, animate, keys_of, blank):
-    raw = noisy.animation_data.action
-    path = "OBActor", 'pose.bones["Head"].rotation_euler', 1
-    example = animate(noisy, frames=range(1, 201))
-    example.name = "rehearsal"
-    bag = example.layers[0].strips[0].channelbag(example.slots[0])
-    for index in range(3):
-        for key in bag.fcurves.find(path[1], index=index).keyframe_points:
-            key.co.y *= 0.1  # in the rehearsal the head hardly moves
-    noisy.animation_data.action = raw
-    noisy.animation_data.action_slot = raw.slots[0]
-    with pytest.raises(RuntimeError, match="Joint limits can only be learned from examples"):
-        clean(joint_limits="EXAMPLES")
-
-    examples = {"prior": "EXAMPLES", "examples": "rehearsal"}
-    free = keys_of(clean(**examples))[path]
-    held = keys_of(clean(joint_limits="EXAMPLES", **examples))[path]
-
-    assert np.ptp([key[1] for key in held]) < 0.9 * np.ptp([key[1] for key in free])

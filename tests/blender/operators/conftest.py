@@ -1,0 +1,31 @@
+"""A noisy take, and the button Clean."""
+
+import numpy as np
+import pytest
+
+
+@pytest.fixture
+def noisy(make_armature, animate, blank, rng):
+    """A figure of 13 bones in smooth motion with 2 degrees of noise, for two seconds."""
+    armature = make_armature(mode="XYZ")
+    action = animate(armature)
+    blank.context.scene.render.fps = 30
+    bag = action.layers[0].strips[0].channelbag(action.slots[0])
+    for curve in bag.fcurves:
+        scale = 0.01 if "location" in curve.data_path else np.radians(2.0)
+        for key in curve.keyframe_points:
+            key.co.y += rng.normal(scale=scale)
+        curve.update()
+    return armature
+
+
+@pytest.fixture
+def clean(blank):
+    """Press Clean; without feet, so that the random dance of the figure is not nailed down."""
+
+    def press(**settings):
+        settings = {"plant_feet": False} | settings
+        assert blank.ops.mocap_assist.denoise(**settings) == {"FINISHED"}
+        return blank.context.object.animation_data.action
+
+    return press
