@@ -1,10 +1,9 @@
 """What every verb promises, whatever it does: one battery, as scikit-learn has for estimators.
 
-To add a verb, add a line to `VERBS`.
+The verbs stand in `contract_verbs.py`; to add one, add a line there.
 """
 
-from collections.abc import Callable
-from dataclasses import dataclass, fields, is_dataclass
+from dataclasses import fields, is_dataclass
 from functools import cache
 from typing import Any
 
@@ -12,123 +11,15 @@ import numpy as np
 import pytest
 from numpy.testing import assert_allclose
 
-from solvers.denoising import (
-    DenoiseSettings,
-    FilterBases,
-    JointLimits,
-    Method,
-    denoise,
-    find_worst_spots,
-    keep_within,
-    learn_filter_bases,
-    learn_joint_limits,
-    measure_quality,
-    plant_feet,
-)
 from solvers.denoising.quality import mean_jitter
 from solvers.errors import SolveCancelled
-from solvers.motion import Motion, Tracks, detect_contacts, forward_kinematics, resample
+from solvers.motion import Motion, Tracks
 from solvers.motion.rotations import angle_between, multiply, quaternion_from_rotation_vector
-from solvers.progress import Progress, unwatched
-from solvers.samples import CorruptionSettings, GaitSettings, corrupt, walking_gait
+from solvers.progress import unwatched
+from solvers.samples import GaitSettings
+from tests.solvers.contract_verbs import VERBS, clean, points_of, spoilt, walk_of_few_joints
 
 QUARTER_TURN, SHIFT = np.radians(100.0), np.array([2.0, -5.0, 0.0])
-
-
-@dataclass(frozen=True)
-class Verb:
-    """How the battery calls a verb, and what of its result the laws are about."""
-
-    call: Callable[[Motion, Progress], Any]
-    recording: Callable[[Any], Motion | Tracks | None] = lambda result: None
-    """What moves with the input and is the same motion at any frame rate."""
-    figures: Callable[[Any], Any] = lambda result: ()
-    """What stays as it is when the input is moved and turned."""
-    whole_input: bool = False
-    """It wants a motion without gaps."""
-    reports: bool = True
-    """It takes `progress`."""
-    any_rate: bool = False
-    """It returns a motion, which must be the same at any frame rate."""
-
-
-VERBS = {
-    "denoise": Verb(
-        lambda motion, progress: denoise(motion, progress=progress),
-        recording=lambda result: result.recording,
-        figures=lambda result: (result.outliers, result.confidence),
-        any_rate=True,
-    ),
-    "denoise tracks": Verb(
-        lambda motion, progress: denoise(points_of(motion), progress=progress),
-        recording=lambda result: result.recording,
-        figures=lambda result: (result.outliers, result.confidence),
-        any_rate=True,
-    ),
-    "denoise with bases": Verb(
-        lambda motion, progress: denoise(motion, bases(), progress=progress),
-        recording=lambda result: result.recording,
-        figures=lambda result: (result.outliers, result.confidence),
-        any_rate=True,
-    ),
-    "denoise as published": Verb(
-        lambda motion, progress: denoise(
-            motion,
-            bases(),
-            settings=DenoiseSettings(method=Method.PUBLISHED),
-            progress=progress,
-        ),
-        recording=lambda result: result.recording,
-    ),
-    "learn_filter_bases": Verb(
-        lambda motion, progress: learn_filter_bases([motion], progress=progress),
-        figures=lambda result: (result.mean, result.values),
-    ),
-    "measure_quality": Verb(
-        lambda motion, progress: measure_quality(motion, progress=progress),
-        figures=lambda result: (result.jitter, result.spikes, result.gaps),
-    ),
-    "find_worst_spots": Verb(
-        lambda motion, progress: find_worst_spots(motion, progress=progress),
-        figures=lambda result: result,
-    ),
-    "learn_joint_limits": Verb(
-        lambda motion, progress: learn_joint_limits([motion], progress=progress),
-        figures=lambda result: (result.names, result.upper - result.lower),
-    ),
-    "keep_within": Verb(
-        lambda motion, progress: keep_within(motion, limits()),
-        recording=lambda result: result,
-        reports=False,
-        any_rate=True,
-    ),
-    "plant_feet": Verb(
-        lambda motion, progress: plant_feet(motion, progress=progress),
-        recording=lambda result: result.motion,
-        figures=lambda result: (result.contacts, result.slide_before),
-        whole_input=True,
-        any_rate=True,
-    ),
-    "resample": Verb(
-        lambda motion, progress: resample(motion, 40.0),
-        recording=lambda result: result,
-        reports=False,
-    ),
-    "detect_contacts": Verb(
-        lambda motion, progress: detect_contacts(motion),
-        figures=lambda result: result,
-        whole_input=True,
-        reports=False,
-    ),
-}
-WALK = GaitSettings(duration=2.0, frame_rate=30.0)
-WRONG = CorruptionSettings(jitter=2.0, spikes=0.003, root_jitter=0.003)
-LOST = {"LeftForeArm": range(20, 40)}
-LEG = ("UpLeg", "Leg", "Foot", "ToeBase", "ToeBase_end")
-JOINTS = {"Hips", "Spine", "Spine2", "Head", "LeftArm", "LeftForeArm"} | {
-    side + part for side in ("Left", "Right") for part in LEG
-}
-"""Enough of a body for every verb, and quick."""
 
 every_verb = pytest.mark.parametrize("name", VERBS)
 every_verb_that_reports = pytest.mark.parametrize(
@@ -228,17 +119,6 @@ def test_does_not_make_a_clean_take_shake(name):
 
 
 @cache
-def bases() -> FilterBases:
-    clips = [GaitSettings(duration=4.0, frame_rate=30.0, seed=seed) for seed in (1, 2)]
-    return learn_filter_bases([walk_of_few_joints(clip) for clip in clips])
-
-
-@cache
-def limits() -> JointLimits:
-    return learn_joint_limits([walk_of_few_joints(WALK)])
-
-
-@cache
 def usual_result(name: str) -> Any:
     return new_result(name)
 
@@ -250,34 +130,6 @@ def new_result(name: str) -> Any:
 def jitter(recording: Motion | Tracks) -> float:
     points = recording if isinstance(recording, Tracks) else points_of(recording)
     return float(mean_jitter(points.positions, points.frame_rate).mean())
-
-
-def spoilt(name: str) -> Motion:
-    missing = {} if VERBS[name].whole_input else LOST
-    return corrupt(walk_of_few_joints(WALK), WRONG, missing=missing)
-
-
-def clean(name: str, frame_rate: float) -> Motion:
-    walk = walk_of_few_joints(GaitSettings(duration=2.0, frame_rate=frame_rate))
-    gap = (
-        {}
-        if VERBS[name].whole_input
-        else {"LeftArm": range(round(frame_rate), round(1.4 * frame_rate))}
-    )
-    return corrupt(walk, CorruptionSettings(jitter=0.0), missing=gap)
-
-
-def walk_of_few_joints(settings: GaitSettings) -> Motion:
-    walk = walking_gait(settings)
-    joints = [n for n, name in enumerate(walk.skeleton.names) if name in JOINTS]
-    skeleton = walk.skeleton.select(joints)
-    return Motion(skeleton, walk.rotations[:, joints], walk.root_positions, walk.frame_rate)
-
-
-def points_of(motion: Motion) -> Tracks:
-    return Tracks(
-        motion.skeleton.names, forward_kinematics(motion).positions, motion.frame_rate
-    )
 
 
 def carried(recording: Motion | Tracks) -> Motion | Tracks:
