@@ -46,6 +46,7 @@ class Gains:
     fast: Array
     """Factor of each faster wave, shape (length - n_slow, n_channels)."""
     noise: Array
+    """Standard deviation of a wave, shape (n_channels,)."""
 
 
 @dataclass(eq=False)
@@ -53,9 +54,13 @@ class Sweep:
     """What one pass over all windows adds up."""
 
     total: Array
+    """Tapered posterior means, shape (n_frames, n_channels)."""
     variance: Array
+    """Tapered posterior variances, same shape."""
     slow_moment: Array
+    """Mean second moment of the slow waves, a square matrix."""
     fast_power: Array
+    """Mean square of the measured fast waves, shape (length - n_slow, n_channels)."""
 
 
 def estimate_channels(

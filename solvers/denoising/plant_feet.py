@@ -1,5 +1,6 @@
 """Stop feet from sliding: foot-skate clean-up."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -94,7 +95,7 @@ def plant_feet(
 ) -> Planted:
     """Return the motion with the feet at rest wherever they stand.
 
-    The aim is that of Kovar, Gleicher and Schreiner [1]_, footplants that are met exactly and
+    The aim is that of Kovar, Schreiner and Gleicher [1]_, footplants that are met exactly and
     a motion that is otherwise close to the original and smooth; the way differs. A foot that
     stands may roll: what must not move is the part of the sole that carries the load, heel,
     ball or both. Subtracting that part's motion leaves one free shift per contact; the shifts,
@@ -113,6 +114,11 @@ def plant_feet(
         Says which joints are legs; found by name and structure where it is not given.
     settings : PlantSettings
     progress : Progress
+
+    Returns
+    -------
+    Planted
+        Of its motion, only the root's place and the legs' rotations differ from the input.
 
     Raises
     ------
@@ -137,30 +143,9 @@ def plant_feet(
         return Planted(motion, contacts, 0.0, 0.0)
     progress(0.2, "Planning the feet")
     poses = forward_kinematics(motion)
-    plants = [
-        planted_path(
-            motion,
-            poses,
-            leg,
-            contacts[:, SIDES.index(leg.side)],
-            blend=settings.blend,
-            hold=settings.hold,
-            hold_rotation=settings.hold_rotation,
-            floor=settings.floor,
-        )
-        for leg in standing
-    ]
+    plants = _plants(motion, poses, standing, contacts, settings)
     progress(0.4, "Moving the hips")
-    shift = np.zeros_like(motion.root_positions)
-    if settings.move_root and motion.n_frames > 1:
-        shift = root_shift(
-            motion.skeleton,
-            poses,
-            plants,
-            motion.frame_rate,
-            softness=settings.softness,
-            blend=settings.blend,
-        )
+    shift = _hips_shift(motion, poses, plants, settings)
     progress(0.6, "Solving the legs")
     if settings.spare_knees:
         plants, shift = knee_relief(plants, poses, shift, motion.frame_rate)
@@ -174,6 +159,45 @@ def plant_feet(
         contacts,
         slide_before=sum(plant.slide(motion.skeleton, poses) for plant in plants),
         slide_after=sum(plant.slide(motion.skeleton, after) for plant in plants),
+    )
+
+
+def _plants(
+    motion: Motion,
+    poses: WorldPoses,
+    legs: Sequence[Leg],
+    contacts: Flags,
+    settings: PlantSettings,
+) -> list[Plant]:
+    """Plan the course of each foot for itself."""
+    return [
+        planted_path(
+            motion,
+            poses,
+            leg,
+            contacts[:, SIDES.index(leg.side)],
+            blend=settings.blend,
+            hold=settings.hold,
+            hold_rotation=settings.hold_rotation,
+            floor=settings.floor,
+        )
+        for leg in legs
+    ]
+
+
+def _hips_shift(
+    motion: Motion, poses: WorldPoses, plants: Sequence[Plant], settings: PlantSettings
+) -> Array:
+    """Return how the root must move for the legs to reach, (n_frames, 3); 0 if it may not."""
+    if not settings.move_root or motion.n_frames == 1:
+        return np.zeros_like(motion.root_positions)
+    return root_shift(
+        motion.skeleton,
+        poses,
+        plants,
+        motion.frame_rate,
+        softness=settings.softness,
+        blend=settings.blend,
     )
 
 

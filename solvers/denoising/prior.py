@@ -31,6 +31,8 @@ class WavePrior:
     trust : shape (n_channels,)
         Share of the take's own covariance in the estimate, 0 to 1: what is told by examples
         needs less of it than what is not.
+    trust_alone : shape (n_channels,)
+        The same of the take's own covariance of the channel with itself, in addition.
     """
 
     mean: Array
