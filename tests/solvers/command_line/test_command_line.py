@@ -12,7 +12,9 @@ from numpy.testing import assert_allclose
 
 from solvers.command_line.run import run
 from solvers.command_line.verbs import VERBS
+from solvers.denoising import learn_joint_limits, limit_excess
 from solvers.motion import Tracks
+from solvers.motion.rotations import multiply, quaternion_from_rotation_vector
 from solvers.recordings import read_bvh, read_c3d, write_bvh, write_c3d
 from solvers.samples import GaitSettings, walking_gait
 
@@ -94,6 +96,27 @@ def test_denoise_learns_from_clips(call, leg_file, tmp_path):
     assert "1 example clip" in said
 
 
+def test_denoise_holds_joints_to_the_angles_of_the_clips(call, swinging_leg, tmp_path):
+    """A knee that is held bent by 60 degrees more is no noise: only limits bring it back."""
+    good, bent = tmp_path / "good.bvh", tmp_path / "bent.bvh"
+    write_bvh(swinging_leg, good)
+    rotations = swinging_leg.rotations.copy()
+    more = quaternion_from_rotation_vector([np.radians(60.0), 0.0, 0.0])
+    rotations[:, 1] = multiply(rotations[:, 1], more)
+    write_bvh(swinging_leg.with_poses(rotations), bent)
+    limits = learn_joint_limits([read_bvh(good)])
+    excess = {}
+
+    for option in ("--joint-limits", "--no-feet"):
+        status, _, _ = call("denoise", bent, tmp_path / "clean.bvh", "--train", good, option)
+        assert status == 0
+        excess[option] = limit_excess(read_bvh(tmp_path / "clean.bvh"), limits).max()
+
+    assert excess["--joint-limits"] < np.radians(5.1) < np.radians(15.0) < excess["--no-feet"]
+    status, _, complaint = call("denoise", bent, tmp_path / "clean.bvh", "--joint-limits")
+    assert (status, "name some with --train" in complaint) == (2, True)
+
+
 def test_denoise_plants_the_feet_if_there_are_any(call, leg_file, tmp_path):
     """The sample has some; a single leg has none that it knows."""
     walk = walking_gait(GaitSettings(duration=1.5, frame_rate=30.0))
@@ -102,6 +125,8 @@ def test_denoise_plants_the_feet_if_there_are_any(call, leg_file, tmp_path):
     _, said, _ = call("denoise", tmp_path / "walk.bvh", tmp_path / "clean.bvh", "--json")
     figures = json.loads(said)
     assert figures["slide_after_m"] < figures["slide_before_m"]
+    steps = [figures[when]["feet"]["left"]["contact_share"] for when in ("before", "after")]
+    assert steps[0] == steps[1] > 0.0, "else the slide is not that of the same steps"
     _, said, _ = call("denoise", leg_file, tmp_path / "leg-clean.bvh")
     assert "Feet are left as they are. No leg was found" in said
     _, said, _ = call("denoise", leg_file, tmp_path / "leg-clean.bvh", "--no-feet")
