@@ -1,6 +1,6 @@
 """What an animator chooses for Clean, besides the settings of the solvers themselves."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
 from enum import Enum
 from typing import NamedTuple
 
@@ -76,3 +76,13 @@ class CleanSettings(NamedTuple):
     choices: CleanChoices
     denoising: DenoiseSettings
     planting: PlantSettings
+
+
+QUICK = (
+    "strength",
+    "bones",
+    "result_as",
+    "plant_feet",
+    *(item.name for item in fields(PlantSettings)),
+)
+"""Names of the settings that can be changed without solving again."""

@@ -4,7 +4,7 @@ from collections.abc import Callable
 
 import bpy
 
-from ..mocap_assist.clean_choices import CleanSettings
+from ..mocap_assist.clean_choices import QUICK, CleanSettings
 from ..mocap_assist.cleaning import read_cleaning, write_cleaned
 from ..mocap_assist.jobs.cleaning import Cleaned
 from ..mocap_assist.selection import selected_armature, why_not_clean
@@ -28,6 +28,12 @@ class MOCAP_OT_denoise(SolverOperator, bpy.types.Operator):
         if reason := why_not_clean(context):
             cls.poll_message_set(reason)
         return not reason
+
+    def draw(self, context: bpy.types.Context) -> None:
+        """Offer in the redo panel what needs no new solve: Blender would stand still for it."""
+        self.layout.use_property_split = True
+        for name in QUICK:
+            self.layout.prop(self, name)
 
     def read(self, context: bpy.types.Context) -> Callable[..., Cleaned]:
         armature = selected_armature(context)

@@ -11,6 +11,7 @@ import bpy
 from ...solvers.command_line import SentenceParser
 from ...solvers.command_line.screen import Screen
 from ...solvers.errors import InvalidFileError, MocapAssistError
+from ..scene import history
 from .verbs import VERBS
 
 PROG = "blender FILE --command mocap_assist"
@@ -82,7 +83,15 @@ def _work(arguments: argparse.Namespace, screen: Screen) -> None:
         sys.stdout.write(said + "\n")
         sys.stdout.flush()
     if target is not None:
+        _save(target)
+
+
+def _save(target: Path) -> None:
+    try:
         bpy.ops.wm.save_as_mainfile(filepath=str(target), check_existing=False)
+    except RuntimeError as error:
+        reason = str(error).strip().removeprefix("Error: ")
+        raise InvalidFileError(f"{target} was not saved: {reason}") from error
 
 
 def _target(arguments: argparse.Namespace) -> Path:
@@ -97,7 +106,7 @@ def _target(arguments: argparse.Namespace) -> Path:
 def _armatures(name: str | None) -> list[bpy.types.Object]:
     armatures = [each for each in bpy.context.scene.objects if each.type == "ARMATURE"]
     if name is None:
-        found = [each for each in armatures if each.animation_data is not None]
+        found = [each for each in armatures if _plays(each)]
         missing = "The scene has no animated armature."
     else:
         found = [each for each in armatures if each.name == name]
@@ -106,3 +115,11 @@ def _armatures(name: str | None) -> list[bpy.types.Object]:
     if not found:
         raise InvalidFileError(missing)
     return found
+
+
+def _plays(armature: bpy.types.Object) -> bool:
+    """Whether it plays an action; drivers alone are animation data too."""
+    animation = armature.animation_data
+    if animation is None:
+        return False
+    return animation.action is not None or history.played_result(armature) is not None

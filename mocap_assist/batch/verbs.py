@@ -2,7 +2,7 @@
 
 import argparse
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any, NamedTuple, TypeVar, get_type_hints
 
 import bpy
@@ -11,8 +11,9 @@ from ...solvers.command_line import arguments_from, settings_from_arguments
 from ...solvers.progress import Progress
 from ..check_choices import CheckSettings
 from ..checking import read_checking, show_checked
-from ..clean_choices import CleanSettings
+from ..clean_choices import CleanSettings, Prior
 from ..cleaning import read_cleaning, write_cleaned
+from ..examples import SEPARATOR
 from ..scene import history
 
 Bundle = TypeVar("Bundle", bound=NamedTuple)
@@ -30,6 +31,10 @@ class Verb:
 
 
 def _clean_options(parser: argparse.ArgumentParser) -> None:
+    parser.add_argument(
+        "--train", nargs="+", default=[], metavar="FILE",
+        help="clean recordings to learn from; short for --prior examples --examples",
+    )  # fmt: skip
     arguments_from(parser, *get_type_hints(CleanSettings).values())
 
 
@@ -40,6 +45,11 @@ def _clean(
     progress: Progress,
 ) -> Said:
     settings = _bundle(arguments, CleanSettings)
+    if arguments.train:
+        choices = replace(
+            settings.choices, prior=Prior.EXAMPLES, examples=SEPARATOR.join(arguments.train)
+        )
+        settings = settings._replace(choices=choices)
     cleaned = read_cleaning(scene, armature, settings)(progress=progress)
     sentence = write_cleaned(scene, armature, settings, cleaned)
     action, _ = history.played_result(armature)

@@ -137,6 +137,39 @@ def test_the_command_cleans_and_saves(bad_arm, blank, command, tmp_path):
     assert blank.data.actions["walk.clean"]["mocap_assist_source"] == blank.data.actions["walk"]
 
 
+def test_the_command_learns_from_files(dancer, blank, command, tmp_path):
+    clips = [str(tmp_path / f"{name}.bvh") for name in ("one", "two")]
+    for clip in clips:
+        blank.ops.export_anim.bvh(filepath=clip, frame_start=1, frame_end=300)
+
+    status, out, _ = command(
+        "denoise", "--output", str(tmp_path / "x.blend"), "--json", "--train", *clips
+    )
+
+    settings = json.loads(next(line for line in out.splitlines() if line[:1] == "{"))[
+        "settings"
+    ]
+    assert (status, settings["prior"], settings["examples"]) == (
+        0, "examples", ";".join(clips),
+    )  # fmt: skip
+
+
+def test_the_command_passes_over_armatures_that_play_nothing(dancer, make_armature, command):
+    make_armature(name="Driven").driver_add("location", 0)
+
+    status, out, _ = command("quality", "--json")
+
+    assert (status, json.loads(out)["armature"]) == (0, "Actor")
+
+
+def test_a_file_that_cannot_be_saved_is_said(dancer, command, tmp_path):
+    (tmp_path / "x.blend").mkdir()
+
+    status, _, err = command("denoise", "--output", str(tmp_path / "x.blend"))
+
+    assert status == 2 and "x.blend was not saved" in err
+
+
 def test_the_command_measures(bad_arm, command):
     status, out, _ = command("quality", "--armature", "Actor")
     assert status == 0 and "LeftArm is missing for 2.00 s." in out

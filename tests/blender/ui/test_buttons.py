@@ -1,5 +1,7 @@
 """What a button takes from the sidebar. Presses need a window: see tests/gui."""
 
+from types import SimpleNamespace
+
 
 def test_next_goes_on_from_a_spot_that_was_clicked(blank, actor):
     found = blank.context.scene.mocap_assist
@@ -20,3 +22,12 @@ def test_nothing_that_a_button_was_given_is_filled_in_at_the_next_press(blank):
         for each in getattr(blank.ops.mocap_assist, name).get_rna_type().properties:
             if each.identifier != "rna_type":
                 assert each.is_skip_save, f"{name}: {each.identifier}"
+
+
+def test_the_redo_panel_offers_only_what_needs_no_new_solve(blank, draw):
+    button = blank.types.MOCAP_ASSIST_OT_denoise
+    properties = blank.ops.mocap_assist.denoise.get_rna_type()
+    shown = set(draw(SimpleNamespace(draw=button.draw, bl_rna=properties)))
+
+    assert {"strength", "bones", "plant_feet", "blend", "result_as"} <= shown
+    assert not {"prior", "examples", "frame_range", "method", "joint_limits"} & shown
