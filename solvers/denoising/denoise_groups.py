@@ -112,7 +112,7 @@ def _sentence(bases: FilterBases | None, shares: list[float], n_channels: int) -
         return f"The take's own patterns: no joint of it is in the {clips}."
     foreign = float(np.mean(shares))
     if foreign >= 1.0:
-        return f"The take's own patterns: the {clips} move too differently to help."
+        return f"The take's own patterns: the movement of {clips} is too different to help."
     if foreign > FOREIGN:
         return f"Patterns of {clips}, at part weight: they fit the take only roughly."
     if len(shares) < n_channels / 3:

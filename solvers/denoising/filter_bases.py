@@ -18,6 +18,7 @@ from .channels import Channels
 from .channels_encode import encode
 from .lag_covariance import lag_products, strongest
 from .noise import interpolated
+from .prior import n_slow_waves
 
 Array = NDArray[np.float64]
 
@@ -29,9 +30,6 @@ STILL = 0.05
 """Standard deviation, degrees or centimetres, below which a channel does not move."""
 AT_REST = 1e-6
 """The same where no channel moves: what is below is rounding."""
-SLOW_SHARE = 0.6
-"""Share of a window's waves, slowest first, whose covariance is kept; of faster ones, which
-hold little, only the variance."""
 NEAR_MULTIPLE = 0.02
 N_REFERENCE = 12
 
@@ -285,6 +283,6 @@ def _waves(covariance: Array, window: int) -> tuple[Array, Array]:
     n_channels = len(covariance) // window
     blocks = covariance.reshape(window, n_channels, window, n_channels)
     waves = np.asarray(dct(dct(blocks, axis=0, norm="ortho"), axis=2, norm="ortho"))
-    n_slow = max(round(SLOW_SHARE * window), 1)
+    n_slow = n_slow_waves(window)
     fast = np.einsum("kckc->kc", waves)[n_slow:]
     return waves[:n_slow, :, :n_slow].copy(), np.maximum(fast, 0.0)

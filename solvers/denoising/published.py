@@ -17,6 +17,8 @@ WELSCH = 3.0
 """p of the Welsch estimator, degrees."""
 PATTERN_WEIGHT = 0.1
 """lambda of eq. 2.10."""
+UNKNOWN = 30.0
+"""Standard deviation said of what was not observed or not believed: the method has none."""
 N_REWEIGHTS = 3
 MAX_ITERATIONS = 20
 SETTLED = 1e-3
@@ -42,7 +44,7 @@ def filter_as_published(
         values[start::step], inliers[start::step] = motion + mean, weight
         iterations, converged = max(iterations, needed), converged and settled
         progress((start + 1) / step, "Filtering")
-    deviation = np.full(noisy.shape, WELSCH)
+    deviation = np.where(inliers > 0.5, WELSCH, UNKNOWN)
     return Estimate(values, inliers, deviation, 0.0, iterations, converged), used
 
 

@@ -30,12 +30,13 @@ def test_removes_most_of_the_noise(swinging_leg, rng, method, with_examples):
     assert after < (0.95 if method is Method.PUBLISHED and not with_examples else 0.6) * before
 
 
-def test_fills_every_gap(swinging_leg, rng):
+@pytest.mark.parametrize("method", Method)
+def test_fills_every_gap_and_says_that_it_is_unsure_there(swinging_leg, rng, method):
     noisy = shaken(swinging_leg, rng, np.radians(1))
     noisy.rotations[30:50, 1] = np.nan
     noisy.root_positions[70:80] = np.nan
 
-    result = denoise(noisy)
+    result = denoise(noisy, settings=DenoiseSettings(method=method))
 
     assert result.recording.observed.all()
     assert result.confidence[40, 1] < result.confidence[10, 1]
