@@ -3,7 +3,7 @@
 import argparse
 from pathlib import Path
 
-from ..errors import InvalidFileError, InvalidSettingError
+from ..errors import InvalidFileError
 from ..motion import Motion, Tracks
 from ..progress import Progress
 from ..recordings import read_recording, write_bvh, write_c3d
@@ -25,10 +25,7 @@ def add_reading_options(parser: argparse.ArgumentParser) -> None:
 
 def read(path: Path, arguments: argparse.Namespace, progress: Progress) -> Motion | Tracks:
     """Read a recording with the options of `add_reading_options`."""
-    scale: float | None = arguments.scale
-    if scale is not None and not 0.0 < scale < float("inf"):
-        raise InvalidSettingError(f"scale is {scale:g}; it must be above 0.")
-    return read_recording(path, scale=scale, progress=progress)
+    return read_recording(path, scale=arguments.scale, progress=progress)
 
 
 def write(recording: Motion | Tracks, path: Path | None, progress: Progress) -> None:

@@ -13,7 +13,7 @@ from ..motion import Motion, Skeleton
 from ..motion.rotations import inverse, multiply, quaternion_from_euler
 from ..progress import Progress, unwatched, within
 from .acclaim_skeleton import AcclaimBone, AcclaimSkeleton, read_acclaim_skeleton
-from .axes import turns_z_up_from_y_up, z_up_from_y_up
+from .axes import check_scale, turns_z_up_from_y_up, z_up_from_y_up
 from .text import read_bytes, read_rows
 
 RADIANS = re.compile(rb"^[ \t]*:RADIANS", re.MULTILINE | re.IGNORECASE)
@@ -65,8 +65,9 @@ def read_acclaim(
     ----------
     .. [1] Lander (1998). Working with motion capture file formats. Game Developer, January.
     """
-    if not (np.isfinite(frame_rate) and frame_rate > 0.0) or (scale is not None and scale <= 0):
-        raise InvalidSettingError("A frame rate and a scale must be positive.")
+    check_scale(scale)
+    if not (np.isfinite(frame_rate) and frame_rate > 0.0):
+        raise InvalidSettingError(f"A frame rate of {frame_rate} Hz is not positive.")
     content = read_bytes(amc_path)
     skeleton = read_acclaim_skeleton(find_skeleton(amc_path) if asf_path is None else asf_path)
     recorded = _recorded(content.splitlines(), skeleton, amc_path, within(progress, 0.0, 0.7))

@@ -5,6 +5,8 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import NDArray
 
+from ..errors import InvalidSettingError
+
 ACCLAIM_UNIT = 0.0254 / 0.45
 """Metres in one unit of an Acclaim file, and of the BVH files made from them."""
 CENTIMETRE = 0.01
@@ -15,6 +17,12 @@ UNITS = (CENTIMETRE, 1.0, 0.001, 0.0254, ACCLAIM_UNIT)
 ADULT_REACH = 2.3
 PLAUSIBLE_REACH = (1.1, 4.6)
 FEWEST_JOINTS_OF_A_BODY = 8
+
+
+def check_scale(scale: float | None) -> None:
+    """Raise InvalidSettingError unless a scale is left open or can be one."""
+    if scale is not None and not 0.0 < scale < float("inf"):
+        raise InvalidSettingError(f"scale is {scale:g}; it must be above 0.")
 
 
 def z_up_from_y_up(vectors: NDArray[np.float64]) -> NDArray[np.float64]:

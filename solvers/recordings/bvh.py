@@ -9,6 +9,7 @@ from typing import Literal
 from ..errors import InvalidFileError
 from ..motion import Motion
 from ..progress import Progress, unwatched, within
+from .axes import check_scale
 from .bvh_channels import BvhChannels
 from .bvh_hierarchy import read_hierarchy
 from .text import read_bytes, read_rows
@@ -56,9 +57,12 @@ def read_bvh(
     ------
     InvalidFileError
         The file is missing, no BVH, damaged, cut short or without a frame.
+    InvalidSettingError
+        The scale is not positive.
     SolveCancelled
         Raised by `progress`.
     """
+    check_scale(scale)
     content = read_bytes(path)
     if not content[:4096].lstrip().upper().startswith(b"HIERARCHY"):
         raise InvalidFileError(f"{path} is no BVH file: it does not begin with HIERARCHY.")

@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 from ..errors import InvalidFileError
 from ..motion import Tracks
 from ..progress import Progress, unwatched
-from .axes import z_up_from_y_up
+from .axes import check_scale, z_up_from_y_up
 from .c3d_file import C3dFile
 
 METRES = {
@@ -50,9 +50,12 @@ def read_c3d(
     ------
     InvalidFileError
         The file is missing, cut short, no C3D file, or has no points.
+    InvalidSettingError
+        The scale is not positive.
     SolveCancelled
         Raised by `progress`.
     """
+    check_scale(scale)
     file = C3dFile(path)
     progress(0.1, "Reading")
     points, seen = file.read_points()

@@ -5,7 +5,7 @@ from functools import partial
 
 import pytest
 
-from solvers.errors import InvalidFileError, SolveCancelled
+from solvers.errors import InvalidFileError, InvalidSettingError, SolveCancelled
 from solvers.motion import Motion, Tracks
 from solvers.recordings import read_bvh, read_recording, write_bvh, write_c3d
 
@@ -23,6 +23,16 @@ def test_scale_reaches_the_reader(swinging_leg, tmp_path):
     twice = read_recording(tmp_path / "leg.bvh", scale=0.02)
 
     assert twice.skeleton.height == pytest.approx(2 * swinging_leg.skeleton.height)
+
+
+@pytest.mark.parametrize("ending", ["bvh", "c3d"])
+@pytest.mark.parametrize("scale", [0.0, -1.0, float("nan"), float("inf")])
+def test_refuses_a_scale_that_is_none(swinging_leg, tmp_path, ending, scale):
+    write_bvh(swinging_leg, tmp_path / "leg.bvh")
+    write_c3d(Tracks(("a",), swinging_leg.root_positions[:, None], 60.0), tmp_path / "leg.c3d")
+
+    with pytest.raises(InvalidSettingError, match="it must be above 0"):
+        read_recording(tmp_path / f"leg.{ending}", scale=scale)
 
 
 @pytest.mark.parametrize("format", ["bvh", "c3d"])
