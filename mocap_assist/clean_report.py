@@ -14,7 +14,7 @@ from .scene.take import ArmatureTake
 def clean_report(raw: ArmatureTake, cleaned: Cleaned, name: str) -> str:
     """Return a few sentences for the status bar."""
     body = cleaned.solution.denoised[0]
-    before, after = cleaned.solution.before, cleaned.after
+    before, after = cleaned.before, cleaned.after
     said = [
         f"{name}: {len(raw.frames)} frames, shaking by {_shake(before):.2f} degrees before and"
         f" {_shake(after):.2f} now, {_count(body.outliers)} spikes and"
@@ -40,7 +40,7 @@ def entry_of(operation: str, settings: CleanSettings, cleaned: Cleaned) -> dict[
         "prior_used": body.prior_used,
         "iterations": body.iterations,
         "converged": body.converged,
-        "before": figures(cleaned.solution.before),
+        "before": figures(cleaned.before),
         "after": figures(cleaned.after),
     }
 

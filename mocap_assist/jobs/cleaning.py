@@ -103,7 +103,6 @@ class Solution:
     """Each recording of the problem, denoised at full strength."""
 
     denoised: tuple[Denoised, ...]
-    before: Quality
     limits: JointLimits | None
     """How far joints turn in the examples."""
 
@@ -117,6 +116,8 @@ class Cleaned:
     """Names of the joints that changed: those chosen, and those that planted the feet."""
     solution: Solution
     planted: Planted | None
+    before: Quality
+    """Of the recording, its feet measured at the contacts at which they were planted."""
     after: Quality
 
 
@@ -128,8 +129,7 @@ def names_of(recording: Motion | Tracks) -> tuple[str, ...]:
 def solve(problem: Problem, *, progress: Progress = unwatched) -> Solution:
     """Denoise the body by what the examples teach, and all else by what the take teaches."""
     body, *others = problem.recordings
-    before = measure_quality(body, progress=within(progress, 0.0, 0.1))
-    learned = problem.examples.learned(problem.learn_limits, within(progress, 0.1, 0.3))
+    learned = problem.examples.learned(problem.learn_limits, within(progress, 0.0, 0.3))
     settings = replace(problem.settings, strength=1.0)
     results = [
         denoise(body, learned.bases, settings=settings, progress=within(progress, 0.3, 0.8))
@@ -137,7 +137,7 @@ def solve(problem: Problem, *, progress: Progress = unwatched) -> Solution:
     for index, recording in enumerate(others):
         share = (0.8 + 0.2 * index / len(others), 0.8 + 0.2 * (index + 1) / len(others))
         results.append(denoise(recording, settings=settings, progress=within(progress, *share)))
-    return Solution(tuple(results), before, learned.limits)
+    return Solution(tuple(results), learned.limits)
 
 
 def clean(
@@ -170,8 +170,11 @@ def clean(
         moved |= differing(body, eased)
         body = eased
     contacts = None if planted is None else planted.contacts
-    after = measure_quality(body, contacts=contacts, progress=within(progress, 0.9, 1.0))
-    return Cleaned((body, *others), moved, solution, planted, after)
+    before, after = (
+        measure_quality(each, contacts=contacts, progress=within(progress, start, start + 0.05))
+        for each, start in ((problem.recordings[0], 0.9), (body, 0.95))
+    )
+    return Cleaned((body, *others), moved, solution, planted, before, after)
 
 
 def _planted(body: Motion, finish: Finish, progress: Progress) -> Planted | None:
