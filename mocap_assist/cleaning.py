@@ -16,6 +16,7 @@ from .clean_choices import CleanChoices, CleanSettings, Limits, Prior
 from .clean_report import clean_report, entry_of
 from .examples import read_prior
 from .jobs.cleaning import Cleaned, Finish, Problem, Recordings, clean, names_of
+from .jobs.job import Quick
 from .scene import history
 from .scene.armature_read import read_take
 from .scene.armature_write import check_writable, put_to_use, write_take
@@ -61,7 +62,8 @@ def read_cleaning(
         planting=settings.planting if choices.plant_feet else None,
         contacts=read_contacts(*found.played, found.raw.frames),
     )
-    return partial(clean, problem, finish, redo.recall(problem))
+    solution = redo.recall(problem)
+    return (partial if solution is None else Quick)(clean, problem, finish, solution)
 
 
 def write_cleaned(

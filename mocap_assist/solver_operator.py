@@ -8,8 +8,7 @@ from typing import Any, ClassVar
 import bpy
 
 from ..solvers.errors import MocapAssistError, SolveCancelled
-from ..solvers.progress import unwatched
-from .jobs.job import Job
+from .jobs.job import Job, Quick, run
 
 logger = logging.getLogger(__name__)
 BETWEEN_LOOKS = 0.1  # seconds
@@ -23,10 +22,10 @@ def in_background() -> bool:
 class SolverOperator:
     """Mix in before bpy.types.Operator and implement `read` and `write`.
 
-    `read` and `write` run in Blender. What `read` returns is called with `progress=`, in a
-    process of its own when the animator pressed a button: it must be picklable and cannot use
-    bpy. While it runs, all input but Esc and the right mouse button is swallowed, so that the
-    scene that was read is the scene that is written.
+    `read` and `write` run in Blender. What `read` returns is called with `progress=` in a
+    process of its own: it must be picklable and cannot use bpy. When the animator pressed a
+    button, all input but Esc and the right mouse button is swallowed meanwhile, so that the
+    scene that was read is the scene that is written; a script waits.
     """
 
     bl_options: ClassVar = {"REGISTER", "UNDO"}
@@ -51,7 +50,7 @@ class SolverOperator:
 
     def execute(self, context: bpy.types.Context) -> set[str]:
         try:
-            return self._finish(context, self.read(context)(progress=unwatched))
+            return self._finish(context, run(self.read(context)))
         except MocapAssistError as error:
             return self._give_up(error)
 
@@ -60,7 +59,10 @@ class SolverOperator:
         if in_background():
             return self.execute(context)
         try:
-            self._job = Job(self.read(context))
+            solve = self.read(context)
+            if isinstance(solve, Quick):
+                return self._finish(context, run(solve))
+            self._job = Job(solve)
         except MocapAssistError as error:
             return self._give_up(error)
         self._started = monotonic()

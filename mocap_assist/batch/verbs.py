@@ -14,6 +14,7 @@ from ..checking import read_checking, show_checked
 from ..clean_choices import CleanSettings, Prior
 from ..cleaning import read_cleaning, write_cleaned
 from ..examples import SEPARATOR
+from ..jobs.job import run
 from ..scene import history
 
 Bundle = TypeVar("Bundle", bound=NamedTuple)
@@ -50,7 +51,7 @@ def _clean(
             settings.choices, prior=Prior.EXAMPLES, examples=SEPARATOR.join(arguments.train)
         )
         settings = settings._replace(choices=choices)
-    cleaned = read_cleaning(scene, armature, settings)(progress=progress)
+    cleaned = run(read_cleaning(scene, armature, settings), progress)
     sentence = write_cleaned(scene, armature, settings, cleaned)
     action, _ = history.played_result(armature)
     return sentence, {"action": action.name} | history.history(action)[-1]
@@ -67,7 +68,7 @@ def _check(
     progress: Progress,
 ) -> Said:
     settings = _bundle(arguments, CheckSettings)
-    checked = read_checking(scene, armature, settings)(progress=progress)
+    checked = run(read_checking(scene, armature, settings), progress)
     sentence = show_checked(scene, armature, checked)
     spots = [spot.sentence for spot in checked.spots]
     text = "\n".join([checked.quality.report(), "", sentence, *spots])

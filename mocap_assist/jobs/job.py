@@ -6,18 +6,50 @@ import signal
 import subprocess
 import sys
 from collections.abc import Callable
+from functools import partial
 from pathlib import Path
 from tempfile import TemporaryDirectory
+from time import sleep
 from typing import Any, Generic, TypeVar
 
 from ...solvers.errors import MocapAssistError, SolveCancelled
+from ...solvers.progress import Progress, unwatched
 from .protocol import LOG, REQUEST, RESULT, last_progress, last_words
 
 Result = TypeVar("Result")
 EXTENSION = __name__.rsplit(".", 3)[0]
 CHILD = Path(__file__).with_name("child.py")
-ONE_THREAD = {"OMP_NUM_THREADS": "1", "OPENBLAS_NUM_THREADS": "1"}  # faster on small matrices
+BETWEEN_LOOKS = 0.05  # seconds
+ONE_THREAD = {
+    "OMP_NUM_THREADS": "1",
+    "OPENBLAS_NUM_THREADS": "1",
+    "VECLIB_MAXIMUM_THREADS": "1",
+}
 NO_WINDOW = getattr(subprocess, "CREATE_NO_WINDOW", 0)  # no console flashes up on Windows
+
+
+class Quick(partial[Result]):
+    """A solve that is so short that it needs no process of its own."""
+
+
+def run(solve: Callable[..., Result], progress: Progress = unwatched) -> Result:
+    """Solve and wait for the result, in a process of its own unless the solve is quick.
+
+    In that process linear algebra has one thread, whatever Blender's has: on matrices of this
+    size two threads were seen to take thirty times as long, and give other last bits.
+    """
+    if isinstance(solve, Quick):
+        return solve(progress=progress)
+    job = Job(solve)
+    try:
+        while not job.done():
+            progress(*job.progress())
+            sleep(BETWEEN_LOOKS)
+    except BaseException:  # such as SolveCancelled, or Ctrl C
+        job.cancel()
+        job.tidy_up()
+        raise
+    return job.result()
 
 
 class Job(Generic[Result]):
