@@ -6,7 +6,6 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 from scipy.ndimage import gaussian_filter1d
-from scipy.signal import savgol_filter
 
 from ..motion import WorldPoses
 from ..motion.rotations import multiply, quaternion_from_rotation_vector, rotate
@@ -98,6 +97,8 @@ def _calmed(bend: Array, frame_rate: float) -> Array:
     window = 2 * round(CALM * frame_rate) + 1
     if window < 5 or len(bend) < window:
         return bend
+    from scipy.signal import savgol_filter  # takes a second to import: not before it is needed
+
     return np.asarray(savgol_filter(bend, window, 2))
 
 

@@ -6,7 +6,6 @@ from typing import TypeVar
 import numpy as np
 from numpy.typing import NDArray
 from scipy.ndimage import convolve1d
-from scipy.signal import firwin, kaiserord
 
 from ..errors import InvalidMotionError
 from .motion import Motion
@@ -95,6 +94,8 @@ def _bridged(values: NDArray[np.float64], observed: NDArray[np.bool_]) -> NDArra
 
 def _low_passed(values: NDArray[np.float64], slowdown: float) -> NDArray[np.float64]:
     """Remove what lies above the new Nyquist frequency; the ends keep their trend."""
+    from scipy.signal import firwin, kaiserord  # takes a second to import: only when needed
+
     n_taps, beta = kaiserord(STOPBAND, (1.0 - PASSED) * slowdown)
     half = n_taps // 2
     kernel = firwin(2 * half + 1, (1.0 + PASSED) / 2 * slowdown, window=("kaiser", beta))
