@@ -8,6 +8,7 @@ from math import isfinite
 from typing import Any, NamedTuple, TypeVar, get_type_hints
 
 import bpy
+import numpy as np
 
 from ..solvers.settings import Described, Settings
 
@@ -44,7 +45,7 @@ def settings_from(bundle: type[Bundle]) -> Callable[[Class], Class]:
 
 def _settings_of(properties: Any, settings_class: type[Settings]) -> Settings:
     return settings_class(**{
-        item.name: _value(getattr(properties, item.name), type(item.default))
+        item.name: _value(getattr(properties, item.name), item)
         for item in fields(settings_class)
     })
 
@@ -59,7 +60,7 @@ def _property(item: "Field[Any]", options: set[str]) -> Any:
         "options": {"ANIMATABLE"} | options,
     }
     if issubclass(kind, Enum):
-        choices = [(each.name, _words(each), _summary(each), index)
+        choices = [(each.name, _words(each), "", index)
                    for index, each in enumerate(kind)]  # fmt: skip
         return bpy.props.EnumProperty(
             **shown | {"items": choices, "default": item.default.name}
@@ -89,17 +90,18 @@ def _unit(described: Described) -> dict[str, str]:
     return {"description": described.help + unit}
 
 
-def _value(value: Any, kind: type) -> Any:
-    if issubclass(kind, Enum):
-        return kind[value]
-    if kind is float:  # Blender's 32-bit floats return 0.1 as 0.10000000149.
-        return float(f"{value:.7g}")
-    return value
+def _value(value: Any, item: "Field[Any]") -> Any:
+    """Undo what Blender does to a value: enums become words, floats lose half their digits."""
+    default, described = item.default, item.metadata["described"]
+    if isinstance(default, Enum):
+        return type(default)[value]
+    if not isinstance(default, float):
+        return value
+    if np.float32(default) == np.float32(value):
+        return default
+    exact = float(f"{value:.7g}")  # 0.1 comes back as 0.10000000149
+    return min(max(exact, described.minimum), described.maximum)
 
 
 def _words(choice: Enum) -> str:
     return str(choice.value)[:1].upper() + str(choice.value)[1:]
-
-
-def _summary(choice: Enum) -> str:
-    return getattr(choice, "help", "")

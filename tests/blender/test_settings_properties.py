@@ -1,0 +1,96 @@
+"""Blender's properties say what the settings say, and give back what was set."""
+
+import math
+from dataclasses import dataclass, fields
+from enum import Enum
+from typing import NamedTuple, get_type_hints
+
+import bpy
+import pytest
+
+
+class Taste(Enum):
+    SWEET = "sweet and sour"
+    BITTER = "bitter"
+
+
+@pytest.fixture
+def dish(load):
+    """A property group made from settings of every kind."""
+    settings = load("solvers.settings")
+
+    @dataclass(frozen=True, kw_only=True)
+    class Recipe(settings.Settings):
+        salt: float = settings.setting(
+            0.1, "More is saltier", unit="g", minimum=0.0, maximum=9.0
+        )
+        angle: float = settings.setting(0.3, "Wider", unit="rad", minimum=0.0, maximum=math.pi)
+        share: float = settings.setting(0.25, "Share", minimum=0.0, maximum=1.0)
+        wait: float = settings.setting(1.0, "Longer", unit="s", minimum=0.0)
+        eggs: int = settings.setting(3, "Eggs", minimum=1, maximum=12)
+        hot: bool = settings.setting(True, "Heat it")
+        taste: Taste = settings.setting(Taste.BITTER, "Taste")
+        name: str = settings.setting("soup", "Name")
+
+    class Menu(NamedTuple):
+        recipe: Recipe
+
+    class DISH_PG_test(bpy.types.PropertyGroup):
+        pass
+
+    load("mocap_assist.settings_properties").settings_from(Menu)(DISH_PG_test)
+    bpy.utils.register_class(DISH_PG_test)
+    bpy.types.WindowManager.dish = bpy.props.PointerProperty(type=DISH_PG_test)
+    group = bpy.context.window_manager.dish
+    for name in DISH_PG_test.setting_names:
+        group.property_unset(name)
+    yield group, Recipe
+    del bpy.types.WindowManager.dish
+    bpy.utils.unregister_class(DISH_PG_test)
+
+
+def test_defaults_come_back_exactly(dish):
+    group, recipe = dish
+    assert group.settings().recipe == recipe()
+
+
+def test_values_come_back_as_they_were_set(dish):
+    group, recipe = dish
+    group.salt, group.angle, group.eggs, group.hot = 0.7, math.pi, 12, False
+    group.taste, group.name = "SWEET", "stew"
+
+    expected = {"salt": 0.7, "angle": math.pi, "eggs": 12, "hot": False}
+    assert group.settings().recipe == recipe(taste=Taste.SWEET, name="stew", **expected)
+
+
+def test_what_is_out_of_range_is_held_at_the_limit(dish):
+    group, _ = dish
+    group.salt, group.angle, group.eggs = 100.0, 7.0, 0
+
+    held = group.settings().recipe
+    assert (held.salt, held.angle, held.eggs) == (9.0, math.pi, 1)
+
+
+def test_units_are_shown_where_blender_knows_them(dish):
+    shown = dish[0].bl_rna.properties
+    subtypes = [shown[name].subtype for name in ("salt", "angle", "share", "wait")]
+
+    assert subtypes == ["NONE", "ANGLE", "FACTOR", "TIME_ABSOLUTE"]
+    assert shown["salt"].description == "More is saltier (g)"
+    assert shown["taste"].enum_items["SWEET"].name == "Sweet and sour"
+
+
+def test_every_button_offers_every_setting_with_a_tooltip(load):
+    bundles = {
+        "denoise": load("mocap_assist.clean_choices").CleanSettings,
+        "measure_quality": load("mocap_assist.check_choices").CheckSettings,
+        "plant_feet": load("mocap_assist.planting").FeetSettings,
+        "learn_patterns": load("mocap_assist.learning").LearnSettings,
+    }
+    for button, bundle in bundles.items():
+        shown = getattr(bpy.ops.mocap_assist, button).get_rna_type().properties
+        for settings in get_type_hints(bundle).values():
+            for item in fields(settings):
+                tooltip = shown[item.name].description
+                assert tooltip.startswith(item.metadata["described"].help), item.name
+                assert not tooltip.endswith("."), item.name
