@@ -74,7 +74,9 @@ FILLERS: dict[str, Filler] = {
         marker_fillers.soft_impute
     ),
     "subspace Kalman (from the paper)": marker_fillers.centred(marker_fillers.subspace_kalman),
-    "PMA-R2 (from the paper)": marker_fillers.centred(marker_fillers.principal_markers),
-    "model averaging (from the paper)": marker_fillers.centred(model_averaging),
+    "PMA-R2 (after the authors' program)": marker_fillers.centred(
+        marker_fillers.principal_markers
+    ),
+    "model averaging (after the authors' program)": marker_fillers.centred(model_averaging),
     "ours": ours,
 }

@@ -1,4 +1,4 @@
-"""Published ways to fill gaps of optical markers, written from their papers.
+"""Published ways to fill gaps of optical markers; PMA-R2 after reading its authors' program.
 
 (gapped (n_frames, n_markers, 3) metres, NaN = missing, frame rate) -> the same without NaN.
 """

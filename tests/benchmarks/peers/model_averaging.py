@@ -1,4 +1,4 @@
-"""Model averaging for lost markers, written from Tits, Tilmanne and Dutoit (2018).
+"""Model averaging for lost markers (Tits, Tilmanne, Dutoit 2018), after reading its program.
 
 "Robust and automatic motion-capture data recovery using soft skeleton constraints and model
 averaging", doi:10.1371/journal.pone.0199744: five estimates of each gap (interpolation,
