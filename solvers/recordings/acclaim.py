@@ -83,10 +83,17 @@ def find_skeleton(amc_path: Path | str) -> Path:
     Raises
     ------
     InvalidFileError
-        There is none.
+        There is none, or the folder is missing or may not be read.
     """
     amc_path = Path(amc_path)
-    beside = [path for path in sorted(amc_path.parent.iterdir()) if _is_for(path, amc_path)]
+    try:
+        others = sorted(amc_path.parent.iterdir())
+    except OSError as error:
+        raise InvalidFileError(
+            f"The folder {amc_path.parent} cannot be searched for the skeleton of"
+            f" {amc_path.name} ({error.strerror}). Name the .asf file, or move both."
+        ) from None
+    beside = [path for path in others if _is_for(path, amc_path)]
     if not beside:
         raise InvalidFileError(
             f"There is no skeleton for {amc_path}: put the actor's .asf file beside it, under"
