@@ -14,6 +14,7 @@ from ..motion.rotations import inverse, multiply, quaternion_from_euler
 from ..progress import Progress, unwatched, within
 from .acclaim_skeleton import AcclaimBone, AcclaimSkeleton, read_acclaim_skeleton
 from .axes import check_scale, turns_z_up_from_y_up, z_up_from_y_up
+from .names import shown
 from .text import read_bytes, read_rows
 
 RADIANS = re.compile(rb"^[ \t]*:RADIANS", re.MULTILINE | re.IGNORECASE)
@@ -113,7 +114,7 @@ def _recorded(
     frame_lines, mentions = _mentions(lines, path)
     known = {bone.name.encode(): bone for bone in skeleton.bones}
     if strange := [
-        name.decode("ascii", "backslashreplace") for name in mentions.keys() - known
+        shown(name.decode("ascii", "backslashreplace")) for name in mentions.keys() - known
     ]:
         raise InvalidFileError(
             f"{path} moves bones that its skeleton does not have: {', '.join(strange[:5])}."

@@ -6,7 +6,7 @@ from pathlib import Path
 from typing import NoReturn
 
 from ..errors import InvalidFileError
-from .names import LONGEST, DifferentNames, printable
+from .names import LONGEST, DifferentNames, printable, shown
 
 CHANNELS = {f"{axis}{kind}" for axis in "xyz" for kind in ("position", "rotation")}
 
@@ -60,10 +60,12 @@ class _Hierarchy:
             elif word == "}":
                 branch.pop()
             else:
-                self._refuse(f"{word[:20]!r} stands where JOINT, End Site or }} belongs")
+                self._refuse(f"{shown(word)!r} stands where JOINT, End Site or }} belongs")
         rest = next(self.words, None)
         if rest is not None:
-            what = "there is a second ROOT" if rest == "ROOT" else f"{rest[:20]!r} is left over"
+            what = (
+                "there is a second ROOT" if rest == "ROOT" else f"{shown(rest)!r} is left over"
+            )
             self._refuse(f"{what}; one file holds one character")
         return self.joints
 
@@ -71,11 +73,11 @@ class _Hierarchy:
         offset = self._offset()
         channels: list[str] = []
         if self._keyword() != "CHANNELS":
-            self._refuse(f"{name} has no CHANNELS")
+            self._refuse(f"{shown(name)} has no CHANNELS")
         for _ in range(int(self._number())):
             channel = self._next().lower()
             if channel not in CHANNELS or channel in channels:
-                self._refuse(f"{name} has a channel {channel[:20]!r}, or has it twice")
+                self._refuse(f"{shown(name)} has a channel {shown(channel)!r}, or has it twice")
             channels.append(channel)
         self.joints.append(BvhJoint(self.names.give(name), parent, offset, tuple(channels)))
         return len(self.joints) - 1
@@ -103,7 +105,7 @@ class _Hierarchy:
             parts.append(word)
         name = printable("_".join(parts))
         if len(name) > LONGEST:
-            self._refuse(f"the name {name[:20]!r}... does not end")
+            self._refuse(f"the name {shown(name)!r} does not end")
         return name or "joint"
 
     def _number(self) -> float:
@@ -113,7 +115,7 @@ class _Hierarchy:
         except ValueError:
             value = float("nan")
         if not abs(value) < 1e9:
-            self._refuse(f"{word[:20]!r} is no sensible number")
+            self._refuse(f"{shown(word)!r} is no sensible number")
         return value
 
     def _keyword(self) -> str:

@@ -1,6 +1,7 @@
 """Names that differ from each other, for formats that let two joints be called the same."""
 
 LONGEST = 200
+LONGEST_SHOWN = 40
 
 
 class DifferentNames:
@@ -28,3 +29,9 @@ class DifferentNames:
 def printable(name: str) -> str:
     """Return a name without the control characters that damaged files have in them."""
     return "".join(letter for letter in name if letter.isprintable())
+
+
+def shown(name: str) -> str:
+    """Return a name, or whatever stands where one belongs, as a sentence may quote it."""
+    name = printable(name)
+    return name if len(name) <= LONGEST_SHOWN else f"{name[:LONGEST_SHOWN]}..."

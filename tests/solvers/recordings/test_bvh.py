@@ -220,7 +220,7 @@ def test_every_real_file_is_a_person_on_or_near_the_floor(recordings):
         (ARM.replace("OFFSET 30", "OFFSET nan"), "'nan' is no sensible number"),
         (
             ARM.replace("elbow", "elbow " * 50),
-            "the name 'elbow_elbow_elbow_el'... does not end",
+            r"the name '(elbow_){6}elbo\.\.\.' does not end",
         ),
         (
             ARM.replace("elbow", "el\x1bbow").replace("S 3", "S 4"),
