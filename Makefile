@@ -56,13 +56,27 @@ test-blender-5.2: optional-5.2 zip  ## the installed zip, in Blender 5.2
 
 # --- What there is to see ---
 
-.PHONY: demo bench-denoise
+.PHONY: demo docs bench-denoise bench-feet bench-bvh bench-scene
 demo: .venv-4.5/ready zip  ## clean a sample, or CLIP=path.bvh, in Blender 4.5: build/demo
 	@mkdir -p build/demo
 	MOCAP_ASSIST_ZIP=$(ZIP) $(AT_MOST) $(PYTHON_4.5) .ci/demo.py build/demo $(if $(CLIP),"$(CLIP)")
 
-bench-denoise: .venv-4.5/ready  ## measure denoising against its peers; ARGUMENTS=--help
+docs: .venv-4.5/ready  ## the tables of settings and the pictures in README.md and docs
+	$(PYTHON_4.5) .ci/write_docs.py --pictures
+
+# Each prints tables; with ARGUMENTS=--docs it rewrites its own part of docs/benchmarks.md, and
+# ARGUMENTS=--help tells what else there is.
+bench-denoise: .venv-4.5/ready  ## measure denoising and gap filling against peers
 	$(PYTHON_4.5) -m tests.benchmarks.bench_denoise $(ARGUMENTS)
+
+bench-feet: .venv-4.5/ready  ## measure planting of feet against pinning them
+	$(PYTHON_4.5) -m tests.benchmarks.bench_feet $(ARGUMENTS)
+
+bench-bvh: .venv-4.5/ready  ## measure reading of BVH against Blender's importer
+	$(PYTHON_4.5) -m tests.benchmarks.bench_bvh_import $(ARGUMENTS)
+
+bench-scene: .venv-4.5/ready  ## measure reading and writing of actions of 120 bones
+	$(PYTHON_4.5) -m tests.benchmarks.bench_scene_io $(ARGUMENTS)
 
 # --- The extension ---
 
