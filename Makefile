@@ -98,7 +98,7 @@ environments: libraries  ## .venv-4.5 and, where there is a Python 3.13, .venv-5
 
 optional-5.2:
 	@if .ci/find_python 3.13 >/dev/null; then $(MAKE) --no-print-directory .venv-5.2/ready; \
-	else echo "$(NO_5.2)"; fi
+	elif [ ! -e .venv-5.2/ready ]; then echo "$(NO_5.2)"; fi
 
 libraries:
 	@python=$$(.ci/find_python 3.11) || { echo "Stopped: $(call NO_PYTHON,3.11)."; \
