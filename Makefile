@@ -103,7 +103,7 @@ optional-5.2:
 libraries:
 	@python=$$(.ci/find_python 3.11) || { echo "Stopped: $(call NO_PYTHON,3.11)."; \
 	    echo "On Debian and Ubuntu: sudo apt-get install python3.11-venv"; exit 1; }; \
-	$$python .ci/check_libraries.py $(INSTALL_LIBRARIES)
+	"$$python" .ci/check_libraries.py $(INSTALL_LIBRARIES)
 
 .venv-4.5/ready: PYTHON := 3.11
 .venv-5.2/ready: PYTHON := 3.13
