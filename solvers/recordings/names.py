@@ -1,6 +1,7 @@
 """Names that differ from each other, for formats that let two joints be called the same."""
 
-LONGEST = 200
+LONGEST = 1000
+"""Letters in a name; what is longer is something else that was damaged."""
 LONGEST_SHOWN = 40
 
 
