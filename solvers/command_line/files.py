@@ -57,7 +57,7 @@ def write(recording: Motion | Tracks, path: Path | None, progress: Progress) -> 
         raise InvalidFileError(f"{kind} cannot be written as {path}; end the name in {fit}.")
 
 
-def refuse_target(path: Path, endings: Mapping[str, str]) -> None:
+def refuse_target(path: Path, endings: Mapping[str, str] = RECORDED) -> None:
     """Raise InvalidFileError where nothing could be written, before any work is done."""
     if path.suffix.lower() not in endings:
         allowed = " or ".join(f"{ending} ({kind})" for ending, kind in endings.items())

@@ -5,7 +5,7 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from ..errors import InvalidSettingError
-from .files import LEARNED, RECORDED, ending_for, refuse_target
+from .files import LEARNED, ending_for, refuse_target
 from .verb import Makes, Task, Verb
 
 
@@ -48,7 +48,7 @@ def _pairs(arguments: argparse.Namespace) -> list[tuple[Path, Path]]:
             raise InvalidSettingError(f"{folder} is a file; name a folder to write to.")
         folder.mkdir(parents=True, exist_ok=True)
     for _, target in pairs:
-        refuse_target(target, RECORDED)
+        refuse_target(target)
     return pairs
 
 

@@ -9,10 +9,10 @@ from ..denoising import (
     learn_filter_bases,
     measure_quality,
 )
-from ..motion import Motion
 from ..progress import Progress, within
+from .convert import convert
 from .denoise_verb import add_denoise_options, learn_once, perform_denoise
-from .files import add_reading_options, read, read_all, write
+from .files import add_reading_options, read, read_all
 from .options import arguments_from, settings_from_arguments
 from .verb import Makes, Outcome, Task, Verb
 
@@ -58,16 +58,7 @@ def _quality(task: Task, prepared: None, progress: Progress) -> Outcome:
 
 def _convert(task: Task, prepared: None, progress: Progress) -> Outcome:
     recording = read(task.source, task.arguments, within(progress, 0.0, 0.7))
-    write(recording, task.target, within(progress, 0.7, 1.0))
-    names = recording.skeleton.names if isinstance(recording, Motion) else recording.names
-    kind = "joints" if isinstance(recording, Motion) else "points"
-    figures = {
-        "n_frames": recording.n_frames,
-        "frame_rate_hz": recording.frame_rate,
-        kind: list(names),
-    }
-    text = f"{recording.n_frames} frames at {recording.frame_rate:g} Hz, {len(names)} {kind}."
-    return Outcome(text, figures)
+    return convert(recording, task.target, within(progress, 0.7, 1.0))
 
 
 VERBS = {
