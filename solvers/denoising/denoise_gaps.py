@@ -12,13 +12,7 @@ Array = NDArray[np.float64]
 
 @dataclass(frozen=True, eq=False)
 class GapPattern:
-    """Windows that have the same gaps.
-
-    With the filter G for a window without gaps, and N the part of the identity that is
-    unobserved (in waves, zero but for the channels with gaps), the posterior mean a solves
-    a = G (b + N a), where b are the waves of what is observed. Only the channels with gaps
-    have to be solved for: a small system, by Woodbury's identity.
-    """
+    """Windows that have the same gaps."""
 
     starts: NDArray[np.intp]
     channels: NDArray[np.intp]
@@ -28,37 +22,45 @@ class GapPattern:
     places: NDArray[np.intp]
     """Of the slow waves of these channels among all, waves outermost."""
     unseen: Array
-    """N at these places, a square matrix."""
+    """The part of the identity that is unobserved, at these places: a square matrix."""
 
-    def solve(self, windows: Windows, frames: Array, gain: Array, noise: Array) -> Array:
-        """Return the posterior slow waves in units of the noise, shape (n_windows, size).
-
-        Parameters
-        ----------
-        windows : Windows
-        frames : shape (n_windows, length, n_channels)
-            Windows of this pattern; whatever stands in the gaps is not looked at.
-        gain : shape (size, size)
-            G.
-        noise : shape (n_channels,)
-            Standard deviation of a wave.
-        """
+    def observed(self, frames: Array) -> Array:
+        """Return windows with zero for whatever stands in the gaps."""
         frames = frames.copy()
         frames[:, :, self.channels] *= self.seen
-        n_slow = len(gain) // len(noise)
-        b = (windows.waves_of(frames)[:, :n_slow] / noise).reshape(len(frames), -1)
-        mean = b @ gain
-        at_gaps = np.linalg.solve(self._system(gain), mean[:, self.places].T)
-        return np.asarray(mean + (self.unseen @ at_gaps).T @ gain[self.places])
+        return frames
 
-    def more_covariance(self, gain: Array) -> Array:
-        """Return what the gaps add to the posterior covariance at `places`, noise units."""
-        inner = gain[np.ix_(self.places, self.places)]
-        return np.asarray(np.linalg.solve(self._system(gain), inner) - inner)
 
-    def _system(self, gain: Array) -> Array:
-        inner = gain[np.ix_(self.places, self.places)]
-        return np.asarray(np.eye(len(inner)) - inner @ self.unseen)
+@dataclass(frozen=True, eq=False)
+class GapSolution:
+    """The filter of windows with the same gaps.
+
+    With the filter G for a window without gaps, and N the part of the identity that is
+    unobserved (in waves, zero but for the channels with gaps), the posterior mean a solves
+    a = G (b + N a), where b are the waves of what is observed. Only the channels with gaps
+    have to be solved for: a small system, by Woodbury's identity.
+    """
+
+    gain: Array
+    """G, shape (size, size)."""
+    lift: Array
+    """N (1 - G N)^-1 at the places of the gaps, a square matrix."""
+    more_covariance: Array
+    """What the gaps add to the posterior covariance there, in units of the noise."""
+
+    @classmethod
+    def of(cls, pattern: GapPattern, gain: Array) -> "GapSolution":
+        """Solve once for all windows of a pattern."""
+        inner = gain[np.ix_(pattern.places, pattern.places)]
+        system = np.eye(len(inner)) - inner @ pattern.unseen
+        both = np.linalg.solve(system, np.hstack([np.eye(len(inner)), inner]))
+        lift = pattern.unseen @ both[:, : len(inner)]
+        return cls(gain, lift, both[:, len(inner) :] - inner)
+
+    def mean(self, observed: Array, places: NDArray[np.intp]) -> Array:
+        """Return posterior waves from those of what is observed, shape (n_windows, size)."""
+        mean = observed @ self.gain
+        return np.asarray(mean + (mean[:, places] @ self.lift.T) @ self.gain[places])
 
 
 def gap_patterns(known: NDArray[np.bool_], windows: Windows, n_slow: int) -> list[GapPattern]:

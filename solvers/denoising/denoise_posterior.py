@@ -4,11 +4,11 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.linalg.lapack import dpotrf, dpotri
 
 from ..progress import Progress, unwatched
 from .denoise_estimate import Estimate
-from .denoise_gaps import GapPattern, gap_patterns, long_gaps
+from .denoise_filters import Filter, filters_of, variance_of
+from .denoise_gaps import gap_patterns, long_gaps
 from .denoise_windows import Windows
 from .noise import alike
 from .prior import WavePrior
@@ -28,25 +28,11 @@ ADAPTATIONS = 5
 """Iterations in which the prior still adapts to the take."""
 SETTLED = 0.004
 """Root mean square change, relative to the noise, below which the estimate is settled."""
-CAUTION = 0.5
-"""Share by which channels are taken as independent where one has a long gap."""
 MOST_LEVERAGE = 0.98
 FAR = 4.0
 """Errors beyond so many standard deviations of the noise all count the same."""
 NOISE_BOUNDS = (0.5, 1.1)
 """Range, relative to the first guess, in which the noise is estimated."""
-
-
-@dataclass(frozen=True, eq=False)
-class Gains:
-    """What one iteration needs: the filter in units of the noise."""
-
-    slow: Array
-    """Posterior from measured slow waves, both in units of the noise, a square matrix."""
-    fast: Array
-    """Factor of each faster wave, shape (length - n_slow, n_channels)."""
-    noise: Array
-    """Standard deviation of a wave, shape (n_channels,)."""
 
 
 @dataclass(eq=False)
@@ -55,8 +41,6 @@ class Sweep:
 
     total: Array
     """Tapered posterior means, shape (n_frames, n_channels)."""
-    variance: Array
-    """Tapered posterior variances, same shape."""
     slow_moment: Array
     """Mean second moment of the slow waves, a square matrix."""
     fast_power: Array
@@ -96,7 +80,6 @@ def estimate_channels(
     prior = prior.at_most(windows.length)
     known, observed = np.isfinite(noisy), np.nan_to_num(noisy)
     patterns = gap_patterns(known, windows, prior.n_slow)
-    has_gaps = any(pattern.channels.size for pattern in patterns)
     first_guess, estimate = noise, start
     slow, fast = prior.matrix, _extended(prior.fast, windows.length - prior.n_slow)
     weight, variance = known.astype(float), np.zeros_like(noisy)
@@ -105,16 +88,16 @@ def estimate_channels(
         progress(iteration / at_most, "Denoising")
         weight = known * _inlier_probability(observed - estimate, weight, variance, noise, rate)
         rate = _outlier_rate(weight, known)
+        adapts = iteration < ADAPTATIONS
         if iteration <= ADAPTATIONS:  # from then on nothing changes that they are made of
-            gains = _gains(slow, fast, noise, windows.density)
-            gapped = _gapped(slow, fast, noise, windows) if has_gaps else gains
+            filters = filters_of(patterns, slow, fast, noise, prior.caution, windows)
+            variance = variance_of(filters, windows, noisy)
         drawn = estimate + weight * (observed - estimate) - prior.mean
-        sweep = _swept(drawn, gains, gapped, patterns, windows)
+        sweep = _swept(drawn, filters, windows, with_moments=adapts)
         before, estimate = estimate, sweep.total / windows.weight + prior.mean
-        variance = np.maximum(sweep.variance / windows.weight, 0.0)
         change = float(np.sqrt(np.mean(((estimate - before) / (noise + SMALL_ERROR)) ** 2)))
-        if iteration < ADAPTATIONS:
-            slow, fast = _adapted(prior, sweep, gains)
+        if adapts:
+            slow, fast = _adapted(prior, sweep, filters[0].gains.noise)
             noise = _noise(observed - estimate, weight, variance, first_guess)
             change = np.inf
         iteration += 1
@@ -154,91 +137,37 @@ def _inlier_probability(
     return np.asarray(inside / (inside + rate * OUTLIER_DENSITY))
 
 
-def _gapped(slow: Array, fast: Array, noise: Array, windows: Windows) -> Gains:
-    """Return the filter of windows with gaps.
-
-    Through a gap, fast waves look like noise. What other channels say of a missing one is
-    believed less than the covariance has it: another body may hold its limbs differently.
-    """
-    n_slow, n_channels = len(slow) // len(noise), len(noise)
-    cautious = ((1.0 - CAUTION) * slow).reshape(n_slow, n_channels, n_slow, n_channels)
-    channels = np.arange(n_channels)
-    blocks = slow.reshape(cautious.shape)[:, channels, :, channels]
-    cautious[:, channels, :, channels] += CAUTION * blocks
-    blur = fast.sum(axis=0) * windows.density / windows.length
-    return _gains(cautious.reshape(slow.shape), fast, np.sqrt(noise**2 + blur), windows.density)
-
-
-def _gains(slow: Array, fast: Array, noise: Array, density: float) -> Gains:
-    per_wave = noise / np.sqrt(density)
-    scale = np.tile(per_wave, len(slow) // len(noise))
-    size = len(scale)
-    whitened = slow / np.outer(scale, scale)
-    whitened[np.diag_indices(size)] += 1.0
-    # LAPACK's own inverse takes a third of the time that solving for the identity does. With
-    # `clean`, the triangles that it leaves alone are zero.
-    lower, _ = dpotrf(whitened, lower=1, clean=1, overwrite_a=1)
-    gain = -dpotri(lower, lower=1, overwrite_c=1)[0]
-    gain += np.tril(gain, -1).T
-    gain[np.diag_indices(size)] += 1.0
-    return Gains(gain, fast / (fast + per_wave**2), per_wave)
-
-
-def _swept(
-    drawn: Array,
-    complete: Gains,
-    gapped: Gains,
-    patterns: list[GapPattern],
-    windows: Windows,
-) -> Sweep:
-    """Filter every window; sum windows, variances and second moments."""
+def _swept(drawn: Array, filters: list[Filter], windows: Windows, with_moments: bool) -> Sweep:
+    """Filter every window; sum windows and, where asked for, second moments."""
     n_channels = drawn.shape[1]
-    size = len(complete.slow)
-    n_slow = size // n_channels
+    size, n_slow = len(filters[0].gains.slow), len(filters[0].gains.slow) // n_channels
     sweep = Sweep(
-        np.zeros_like(drawn), np.zeros_like(drawn), np.zeros((size, size)),
-        np.zeros_like(complete.fast),
-    )  # fmt: skip
-    for pattern in patterns:
-        usual = gapped if pattern.channels.size else complete
-        scale = np.tile(usual.noise, n_slow)
-        for first in range(0, len(pattern.starts), BLOCK):
-            starts = pattern.starts[first : first + BLOCK]
+        np.zeros_like(drawn), np.zeros((size, size)), np.zeros_like(filters[0].gains.fast)
+    )
+    for one in filters:
+        scale = np.tile(one.gains.noise, n_slow)
+        for first in range(0, len(one.pattern.starts), BLOCK):
+            starts = one.pattern.starts[first : first + BLOCK]
             frames = windows.cut(drawn, starts)
             waves = windows.waves_of(frames)
-            if pattern.channels.size:
-                slow = pattern.solve(windows, frames, usual.slow, usual.noise)
-            else:
-                slow = (waves[:, :n_slow] / usual.noise).reshape(-1, size) @ usual.slow
+            seen = windows.waves_of(one.pattern.observed(frames)) if one.gaps else waves
+            slow = seen[:, :n_slow].reshape(-1, size) / scale
+            slow = one.gaps.mean(slow, one.pattern.places) if one.gaps else slow @ one.gains.slow
             slow *= scale
-            sweep.slow_moment += slow.T @ slow
-            sweep.fast_power += (waves[:, n_slow:] ** 2).sum(axis=0)
+            if with_moments:
+                sweep.slow_moment += slow.T @ slow
+                sweep.fast_power += (waves[:, n_slow:] ** 2).sum(axis=0)
             waves[:, :n_slow] = slow.reshape(-1, n_slow, n_channels)
-            waves[:, n_slow:] *= usual.fast
+            waves[:, n_slow:] *= one.gains.fast
             windows.add(sweep.total, windows.frames_of(waves), starts)
-        covariance = usual.slow.copy()
-        if pattern.channels.size:
-            gaps = np.ix_(pattern.places, pattern.places)
-            covariance[gaps] += pattern.more_covariance(usual.slow)
-        covariance *= np.outer(scale, scale)
-        sweep.slow_moment += len(pattern.starts) * covariance
-        variance = _window_variance(covariance, windows, n_channels)
-        windows.add(sweep.variance, variance, pattern.starts)
+        if with_moments:
+            sweep.slow_moment += len(one.pattern.starts) * one.covariance
     sweep.slow_moment /= len(windows.starts)
     sweep.fast_power /= len(windows.starts)
     return sweep
 
 
-def _window_variance(covariance: Array, windows: Windows, n_channels: int) -> Array:
-    """Return the variance of each frame of a window, shape (length, n_channels)."""
-    n_slow = len(covariance) // n_channels
-    shapes = windows.wave_shapes(n_slow)
-    blocks = covariance.reshape(n_slow, n_channels, n_slow, n_channels)
-    own = np.einsum("kcjc->ckj", blocks)
-    return np.asarray(np.einsum("tk,ckj,tj->tc", shapes, own, shapes))
-
-
-def _adapted(prior: WavePrior, sweep: Sweep, gains: Gains) -> tuple[Array, Array]:
+def _adapted(prior: WavePrior, sweep: Sweep, noise: Array) -> tuple[Array, Array]:
     """Mix the prior's covariance with that of the take, as it is estimated so far.
 
     A channel's covariance with itself takes few frames to learn, that with others takes many:
@@ -256,7 +185,7 @@ def _adapted(prior: WavePrior, sweep: Sweep, gains: Gains) -> tuple[Array, Array
     channels = np.arange(n_channels)
     moments = moment.reshape(blocks.shape)[:, channels, :, channels]
     blocks[:, channels, :, channels] += moments * alone[:, None, None]
-    power = np.maximum(sweep.fast_power - gains.noise**2, 0.0)
+    power = np.maximum(sweep.fast_power - noise**2, 0.0)
     fast = _extended(prior.fast, len(power))
     return slow, fast * (1.0 - together - alone) + power * (together + alone)
 

@@ -32,10 +32,14 @@ class Windows:
     length: int
     density: float
     """Frames of the take per frame of the patterns that it is compared with."""
+    solve_gaps: bool = True
+    """Solve for long gaps exactly; otherwise they are filled round by round, like short ones."""
 
     @property
     def long_gap(self) -> int:
         """Frames from which on a gap is solved for exactly."""
+        if not self.solve_gaps:
+            return self.n_frames
         return max(round(LONG_GAP * self.length), 2)
 
     @cached_property

@@ -40,6 +40,8 @@ class WavePrior:
     fast: Array
     trust: Array
     trust_alone: Array
+    caution: float = 0.5
+    """Share by which channels are taken as independent where one of them has a long gap."""
 
     @property
     def n_slow(self) -> int:
@@ -52,6 +54,17 @@ class WavePrior:
             self,
             slow=self.slow[:n_waves, :, :n_waves],
             fast=self.fast[: max(n_waves - self.n_slow, 0)],
+        )
+
+    def of_channels(self, channels: NDArray[np.intp]) -> "WavePrior":
+        """Return the prior of some of the channels."""
+        return replace(
+            self,
+            mean=self.mean[channels],
+            slow=self.slow[:, channels][:, :, :, channels],
+            fast=self.fast[:, channels],
+            trust=self.trust[channels],
+            trust_alone=self.trust_alone[channels],
         )
 
     @property

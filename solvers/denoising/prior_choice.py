@@ -1,9 +1,12 @@
 """Decide what to expect of a take: the examples' patterns, smoothness alone, or a mixture."""
 
+from dataclasses import replace
+
 import numpy as np
 from numpy.typing import NDArray
 
 from ..progress import Progress
+from .denoise_filters import gains_of
 from .denoise_posterior import estimate_channels
 from .denoise_windows import Windows
 from .filter_bases import FilterBases
@@ -18,6 +21,10 @@ TRIAL_ROUNDS = 3
 OWN_HANDICAP = 1.04
 """What is learned from the take itself has seen the samples that it foretells, and so looks
 better than it is: by so much on walks, whatever their noise."""
+MOSTLY = 0.5
+"""Share of a take in which a channel must be observed to judge of examples."""
+BLUR = 0.1
+"""Standard deviation, relative to a channel's own, of what no pattern can say of it."""
 TRUST_IN_TAKE = 0.07
 TRUST_WITHOUT_EXAMPLES = 0.05
 TRUST_ALONE = 0.3
@@ -103,18 +110,59 @@ def choose_prior(
 
     Each candidate adapts to the take in a few rounds; then every sample is compared with what
     all others foretell of it (leave one out). Examples of another movement lose against plain
-    smoothness, and cannot do harm.
+    smoothness, and cannot do harm. Only channels that are mostly observed take part. How far
+    the others can be believed about a lost channel is judged by whole channels.
     """
-    known = np.isfinite(examples.mean)
-    if not known.any():
+    told = np.isfinite(examples.mean)
+    if not told.any():
         return own, 1.0
     candidates = {share: mixed(examples, own, share) for share in SHARES}
     candidates[1.0] = own
+    judges = np.flatnonzero(told & (np.isfinite(noisy).mean(axis=0) > MOSTLY))
+    if not len(judges):
+        return candidates[SHARES[0]], SHARES[0]
+    part = (noisy[:, judges], rough[:, judges], noise[judges])
+    without_gaps = replace(windows, solve_gaps=False)
     foresights = {}
     for index, (share, prior) in enumerate(candidates.items()):
         progress(0.4 * index / len(candidates), "Comparing with the examples")
-        trial = estimate_channels(noisy, rough, noise, prior, windows, at_most=TRIAL_ROUNDS)
+        trial = estimate_channels(
+            *part, prior.of_channels(judges), without_gaps, at_most=TRIAL_ROUNDS
+        )
         handicap = 1.0 if share < 1.0 else OWN_HANDICAP
         foresights[share] = handicap * trial.foresight
     best = min(foresights, key=lambda share: foresights[share])
-    return candidates[best], best
+    unforetold = channel_foresight(
+        candidates[best].of_channels(judges), *part[1:], without_gaps
+    )
+    return replace(candidates[best], caution=float(np.clip(unforetold, 0.0, 1.0))), best
+
+
+def channel_foresight(
+    prior: WavePrior, rough: Array, noise: Array, windows: Windows
+) -> float:
+    """Return how badly the other parts foretell a whole part over a window.
+
+    The mean square of what they leave over, relative to the part's own; 1 where they know
+    nothing of each other, more where they mislead. In closed form: with K the covariance of the
+    observed waves y, the error of the waves J told by all others is (K^-1)_JJ^-1 (K^-1 y)_J.
+    """
+    prior = prior.at_most(windows.length)
+    power = np.einsum("kckc->c", prior.slow) / windows.length
+    blurred = np.sqrt(noise**2 + BLUR**2 * power)
+    gains = gains_of(
+        prior.matrix, prior.fast, blurred, windows.density
+    )
+    n_slow, n_channels = prior.n_slow, len(prior.mean)
+    waves = windows.waves_of(windows.cut(rough - prior.mean, windows.starts))[:, :n_slow]
+    waves = waves / gains.noise
+    solved = waves.reshape(len(waves), -1) @ (np.eye(n_slow * n_channels) - gains.slow)
+    missed, whole = 0.0, 1e-12
+    for part in np.array_split(np.arange(n_channels), max(n_channels // 3, 1)):
+        places = (np.arange(n_slow)[:, None] * n_channels + part).ravel()
+        inside = -gains.slow[np.ix_(places, places)]
+        inside[np.diag_indices(len(places))] += 1.0
+        error = np.linalg.solve(inside, solved[:, places].T).T.reshape(len(waves), n_slow, -1)
+        missed += float(((error * gains.noise[part]) ** 2).sum())
+        whole += float(((waves[:, :, part] * gains.noise[part]) ** 2).sum())
+    return missed / whole
