@@ -26,6 +26,7 @@ from .scene.curves import GENERATED, MEASURED
 from .scene.limits import read_limits
 from .scene.take import ArmatureTake
 from .selection import chosen_bones, played_source
+from .subject import check_unchanged
 
 UNSURE = 0.5  # confidence below which a key counts as generated
 EASE = 5  # frames over which a cleaned range joins the frames outside it
@@ -71,14 +72,20 @@ def write_cleaned(
     armature: bpy.types.Object,
     settings: CleanSettings,
     cleaned: Cleaned,
+    asked: str | None = None,
 ) -> str:
-    """Write the result as a new action and put it to use; return a sentence about it."""
+    """Write the result as a new action and put it to use; return a sentence about it.
+
+    Raises InvalidMotionError if the armature plays something else than what was `asked`, a
+    fingerprint of the problem.
+    """
     found = _read(scene, armature, settings.choices)
-    redo.remember(_problem(scene, found, settings), cleaned.solution)
+    problem = _problem(scene, found, settings)
+    check_unchanged(armature, asked, problem)
+    redo.remember(problem, cleaned.solution)
     take = found.raw.with_recordings(cleaned.recordings)
-    bones = cleaned.moved | found.bones
     types = key_types(found.raw, cleaned.solution.denoised)
-    action, slot = write_take(found.armature, found.played, take, bones, types)
+    action, slot = write_take(found.armature, found.played, take, cleaned.moved, types)
     if cleaned.planted is not None:
         contacts = cleaned.planted.contacts
         write_contacts(found.armature, action, slot, take.frames, contacts)

@@ -12,6 +12,7 @@ from .scene.armature_read import read_take
 from .scene.armature_write import Output, check_writable, put_to_use, write_take
 from .scene.contacts import read_contacts, write_contacts
 from .selection import played_source
+from .subject import check_unchanged
 
 
 class FeetSettings(NamedTuple):
@@ -36,11 +37,13 @@ def write_planted(
     armature: bpy.types.Object,
     settings: FeetSettings,
     result: Replanted,
+    asked: str | None = None,
 ) -> str:
     """Write the result as a new action and put it to use; return a sentence about it."""
     played, planted = played_source(armature), result.planted
     take = read_take(armature, scene, source=played)
-    _, *others = take.recordings
+    body, *others = take.recordings
+    check_unchanged(armature, asked, body)
     take = take.with_recordings((planted.motion, *others))
     action, slot = write_take(armature, played, take, result.moved, {})
     write_contacts(armature, action, slot, take.frames, planted.contacts)

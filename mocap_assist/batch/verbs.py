@@ -69,7 +69,7 @@ def _check(
 ) -> Said:
     settings = _bundle(arguments, CheckSettings)
     checked = run(read_checking(scene, armature, settings), progress)
-    sentence = show_checked(scene, armature, checked)
+    sentence = show_checked(scene, armature, settings, checked)
     spots = [spot.sentence for spot in checked.spots]
     text = "\n".join([checked.quality.report(), "", sentence, *spots])
     return text, checked.quality.figures() | {"spots": spots}

@@ -6,7 +6,6 @@ import tempfile
 import time
 from functools import partial
 from pathlib import Path
-from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -95,89 +94,3 @@ def test_messages_in_the_log_are_told_from_progress(load, tmp_path):
 
     assert protocol.last_progress(tmp_path) == (0.25, "Filtering 1 of 2")
     assert protocol.last_words(tmp_path) == "ImportError: no such module"
-
-
-@pytest.fixture
-def pressed(load, blank, monkeypatch):
-    """A button whose solve takes long, pressed in a Blender that pretends to have windows."""
-    modal = load("mocap_assist.solver_operator")
-    seen = SimpleNamespace(timers=[], status=[], reports=[], written=[])
-    manager = SimpleNamespace(
-        event_timer_add=lambda *_, **__: seen.timers.append("timer") or "timer",
-        event_timer_remove=seen.timers.remove,
-        modal_handler_add=lambda _: None,
-        mocap_assist_job=blank.context.window_manager.mocap_assist_job,
-        windows=[],
-    )
-    seen.context = SimpleNamespace(
-        window_manager=manager,
-        window=None,
-        workspace=SimpleNamespace(status_text_set=seen.status.append),
-    )
-
-    class Button(modal.SolverOperator):
-        bl_idname = "mocap_assist.test"
-
-        def prepare(self, context):
-            pass
-
-        def read(self, context):
-            return seen.solve
-
-        def write(self, context, result):
-            seen.written.append(result)
-            return "Done."
-
-        def report(self, kind, message):
-            seen.reports.append((kind, message))
-
-    seen.button = Button()
-    monkeypatch.setattr(modal, "in_background", lambda: False)
-    return seen
-
-
-def event(kind, value="NOTHING"):
-    return SimpleNamespace(type=kind, value=value)
-
-
-@pytest.mark.parametrize("key", ["ESC", "RIGHTMOUSE"])
-def test_escape_ends_the_solve_and_writes_nothing(pressed, load, problem, key):
-    pressed.solve = partial(load("solvers.denoising").denoise, problem(20_000))
-    before = folders()
-
-    assert pressed.button.invoke(pressed.context, None) == {"RUNNING_MODAL"}
-    state = pressed.context.window_manager.mocap_assist_job
-    assert state.running and pressed.status[-1] == "Starting 0%   Esc: cancel"
-    assert pressed.button.modal(pressed.context, event("TIMER")) == {"RUNNING_MODAL"}
-    assert pressed.button.modal(pressed.context, event("LEFTMOUSE", "PRESS")) == {
-        "RUNNING_MODAL"
-    }
-    assert pressed.button.modal(pressed.context, event(key, "PRESS")) == {"CANCELLED"}
-
-    assert pressed.written == [] and pressed.timers == [] and pressed.status[-1] is None
-    assert not state.running and folders() == before
-    assert pressed.reports == [({"INFO"}, "Cancelled.")]
-
-
-def test_a_finished_solve_is_written(pressed, load, problem):
-    pressed.solve = partial(load("solvers.denoising").denoise, problem(30))
-    pressed.button.invoke(pressed.context, None)
-
-    while (outcome := pressed.button.modal(pressed.context, event("TIMER"))) == {
-        "RUNNING_MODAL"
-    }:
-        time.sleep(0.05)
-
-    assert outcome == {"FINISHED"} and pressed.reports == [({"INFO"}, "Done.")]
-    assert pressed.written[0].recording.n_frames == 30
-    assert pressed.timers == [] and pressed.status[-1] is None
-
-
-def test_closing_blender_ends_the_solve(pressed, load, problem):
-    pressed.solve = partial(load("solvers.denoising").denoise, problem(20_000))
-    before = folders()
-    pressed.button.invoke(pressed.context, None)
-
-    pressed.button.cancel(pressed.context)
-
-    assert pressed.written == [] and folders() == before
