@@ -21,7 +21,7 @@ from .scene import history
 from .scene.armature_read import read_take
 from .scene.armature_write import check_writable, put_to_use, write_take
 from .scene.compat import Source
-from .scene.contacts import read_contacts, write_contacts
+from .scene.contacts import animators_contacts, write_contacts
 from .scene.curves import GENERATED, MEASURED
 from .scene.limits import read_limits
 from .scene.take import ArmatureTake
@@ -61,7 +61,7 @@ def read_cleaning(
         present=_present(scene, found),
         limits=limits,
         planting=settings.planting if choices.plant_feet else None,
-        contacts=read_contacts(*found.played, found.raw.frames),
+        contacts=animators_contacts(found.played, found.raw.frames),
     )
     solution = redo.recall(problem)
     return (partial if solution is None else Quick)(clean, problem, finish, solution)
@@ -88,7 +88,8 @@ def write_cleaned(
     action, slot = write_take(found.armature, found.played, take, cleaned.moved, types)
     if cleaned.planted is not None:
         contacts = cleaned.planted.contacts
-        write_contacts(found.armature, action, slot, take.frames, contacts)
+        detected = animators_contacts(found.played, take.frames) is None
+        write_contacts(found.armature, action, slot, take.frames, contacts, detected=detected)
     history.record(action, found.played, entry_of("denoise", settings, cleaned))
     put_to_use(found.armature, action, slot, settings.choices.result_as)
     return clean_report(found.raw, cleaned, action.name)

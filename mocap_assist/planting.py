@@ -10,7 +10,7 @@ from .jobs.planting import Replanted, plant
 from .scene import history
 from .scene.armature_read import read_take
 from .scene.armature_write import Output, check_writable, put_to_use, write_take
-from .scene.contacts import read_contacts, write_contacts
+from .scene.contacts import animators_contacts, write_contacts
 from .selection import played_source
 from .subject import check_unchanged
 
@@ -28,7 +28,7 @@ def read_planting(
     check_writable(armature)
     played = played_source(armature)
     take = read_take(armature, scene, source=played)
-    contacts = read_contacts(*played, take.frames)
+    contacts = animators_contacts(played, take.frames)
     return partial(plant, take.parts[0].motion, contacts, settings.planting)
 
 
@@ -46,7 +46,8 @@ def write_planted(
     check_unchanged(armature, asked, body)
     take = take.with_recordings((planted.motion, *others))
     action, slot = write_take(armature, played, take, result.moved, {})
-    write_contacts(armature, action, slot, take.frames, planted.contacts)
+    detected = animators_contacts(played, take.frames) is None
+    write_contacts(armature, action, slot, take.frames, planted.contacts, detected=detected)
     entry = {
         "operation": "plant_feet",
         "settings": history.plain(*settings),

@@ -61,8 +61,8 @@ def why_busy() -> str:
 
 @handlers.persistent
 def _abandon_all(*_: object) -> None:
-    for watch in list(_on):
-        watch.abandon(bpy.context)
+    while _on:
+        _on[-1].abandon(bpy.context)
 
 
 @handlers.persistent

@@ -1,4 +1,4 @@
-"""A button that was pressed in a window waits for its solve; Blender here pretends to have one."""
+"""A button that was pressed in a window waits for its solve; here Blender pretends to."""
 
 import tempfile
 import time
