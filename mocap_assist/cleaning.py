@@ -19,7 +19,7 @@ from .jobs.cleaning import Cleaned, Finish, Problem, Recordings, clean, names_of
 from .jobs.job import Quick
 from .scene import history
 from .scene.armature_read import read_take
-from .scene.armature_write import check_writable, put_to_use, write_take
+from .scene.armature_write import check_writable, count_modified, put_to_use, write_take
 from .scene.compat import Source
 from .scene.contacts import animators_contacts, write_contacts
 from .scene.curves import GENERATED, MEASURED
@@ -84,6 +84,7 @@ def write_cleaned(
     check_unchanged(armature, asked, problem)
     redo.remember(problem, cleaned.solution)
     take = found.raw.with_recordings(cleaned.recordings)
+    n_modified = count_modified(found.played, cleaned.moved)
     types = key_types(found.raw, cleaned.solution.denoised)
     action, slot = write_take(found.armature, found.played, take, cleaned.moved, types)
     if cleaned.planted is not None:
@@ -92,7 +93,7 @@ def write_cleaned(
         write_contacts(found.armature, action, slot, take.frames, contacts, detected=detected)
     history.record(action, found.played, entry_of("denoise", settings, cleaned))
     put_to_use(found.armature, action, slot, settings.choices.result_as)
-    return clean_report(found.raw, cleaned, action.name)
+    return clean_report(found.raw, cleaned, action.name, n_modified)
 
 
 def key_types(

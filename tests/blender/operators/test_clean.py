@@ -197,3 +197,25 @@ def test_the_redo_panel_does_not_solve_again(noisy, clean, load, monkeypatch, bl
     clean(strength=0.8, result_as="NLA_TRACK")
 
     assert not solved
+
+
+def test_noise_in_the_rest_of_the_action_stays(noisy, clean, blank, capfd):
+    scene, action = blank.context.scene, noisy.animation_data.action
+    path = 'pose.bones["Head"].rotation_euler'
+
+    def head(action):
+        bag = action.layers[0].strips[0].channelbag(action.slots[0])
+        return bag.fcurves.find(path, index=0)
+
+    head(action).modifiers.new("NOISE").strength = 0.5
+    scene.frame_start, scene.frame_end = 1, 30
+
+    result = clean(frame_range="SCENE")
+
+    outside = range(31, 61)
+    assert_allclose(
+        [head(result).evaluate(frame) for frame in outside],
+        [head(action).evaluate(frame) for frame in outside],
+        atol=1e-5,
+    )
+    assert "The modifiers of 1 curves are part of the new keys now." in capfd.readouterr().out
