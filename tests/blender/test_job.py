@@ -2,6 +2,8 @@
 
 import os
 import signal
+import subprocess
+import sys
 import tempfile
 import time
 from functools import partial
@@ -94,3 +96,77 @@ def test_messages_in_the_log_are_told_from_progress(load, tmp_path):
 
     assert protocol.last_progress(tmp_path) == (0.25, "Filtering 1 of 2")
     assert protocol.last_words(tmp_path) == "ImportError: no such module"
+
+
+class Expression:
+    """A function that can be sent to the child, which cannot import this file."""
+
+    def __init__(self, text):
+        self.text = text
+
+    def __reduce__(self):
+        return eval, (self.text,)
+
+
+def test_the_child_looks_for_modules_where_blender_does_and_nowhere_else(job):
+    asked = (
+        "lambda progress: (lambda sys: (sys.flags.no_user_site, sys.flags.safe_path,"
+        " sys.path))(__import__('sys'))"
+    )
+
+    no_user_site, safe_path, path = job(Expression(asked)).result()
+
+    assert (no_user_site, safe_path) == (1, True)
+    assert path[: len(sys.path)] == [each for each in sys.path if each]
+
+
+WAITING = """
+import sys, time
+from pathlib import Path
+sys.path.insert(0, {jobs!r})
+import child
+child.make_importable({package!r}, Path({extension!r}))
+from {package}.mocap_assist.jobs.job import Job
+
+class Expression:
+    def __reduce__(self):
+        return eval, ("lambda progress: __import__('time').sleep(100)",)
+
+running = Job(Expression())
+print(running._process.pid, flush=True)
+time.sleep(100)
+"""
+
+
+def test_the_child_ends_when_blender_is_killed(job, extension, tmp_path):
+    """Even in the middle of a step that reports no progress."""
+    folder = Path(extension.__file__).parent
+    script = WAITING.format(
+        jobs=str(folder / "mocap_assist" / "jobs"),
+        package=extension.__name__,
+        extension=str(folder),
+    )
+    environment = os.environ | {
+        "TMPDIR": str(tmp_path), "PYTHONPATH": os.pathsep.join(filter(None, sys.path)),
+    }  # fmt: skip
+    with subprocess.Popen(
+        [sys.executable, "-c", script], stdout=subprocess.PIPE, text=True, env=environment
+    ) as blender:
+        child = int(blender.stdout.readline())
+        assert is_running(child) and folders()
+        blender.kill()
+
+    for _ in range(200):
+        if not is_running(child) and not folders():
+            return
+        time.sleep(0.05)
+    os.kill(child, signal.SIGKILL)
+    pytest.fail("the child goes on without Blender")
+
+
+def is_running(process):
+    try:
+        status = Path(f"/proc/{process}/stat").read_text()
+    except FileNotFoundError:
+        return False
+    return status.rpartition(")")[2].split()[0] != "Z"
