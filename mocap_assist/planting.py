@@ -6,6 +6,7 @@ from typing import NamedTuple
 import bpy
 
 from ..solvers.denoising import PlantSettings
+from .jobs.job import Quick
 from .jobs.planting import Replanted, plant
 from .scene import history
 from .scene.armature_read import read_take
@@ -13,6 +14,9 @@ from .scene.armature_write import Output, check_writable, put_to_use, write_take
 from .scene.contacts import animators_contacts, write_contacts
 from .selection import played_source
 from .subject import check_unchanged
+
+N_QUICK = 5000
+"""Frames that are solved in half a second: less than it takes to start another process."""
 
 
 class FeetSettings(NamedTuple):
@@ -29,7 +33,8 @@ def read_planting(
     played = played_source(armature)
     take = read_take(armature, scene, source=played)
     contacts = animators_contacts(played, take.frames)
-    return partial(plant, take.parts[0].motion, contacts, settings.planting)
+    kind = Quick if len(take.frames) <= N_QUICK else partial
+    return kind(plant, take.parts[0].motion, contacts, settings.planting)
 
 
 def write_planted(

@@ -4,9 +4,10 @@ import hashlib
 
 import bpy
 import numpy as np
+from bpy.app import handlers
 from numpy.typing import NDArray
 
-from . import compat
+from . import compat, history
 from .bone_channels import animated_curves
 from .compat import Source
 from .curves import CONSTANT, GENERATED, write_values
@@ -60,12 +61,7 @@ def write_contacts(
     bag = compat.channelbag(action, slot)
     detected &= _untouched(action, slot) or not any(_contact_keys(action, slot))
     for name, standing in zip(PROPERTIES, contacts.T, strict=True):
-        armature[name] = int(standing[0])
-        armature.id_properties_ui(name).update(
-            min=0,
-            max=1,
-            description="1 while the foot stands. Clean keeps it from sliding then",
-        )
+        _declare(armature, name, int(standing[0]))
         curve = bag.fcurves.find(_path(name), index=0)
         if curve is None:
             curve = compat.new_curve(bag, _path(name), 0, GROUP)
@@ -76,6 +72,40 @@ def write_contacts(
         write_values(curve, frames[keyed], values, types, interpolation=CONSTANT)
     if detected:
         action[DETECTED] = _digest(action, slot)
+
+
+def register() -> None:
+    """Give the properties back to overrides when a file is loaded."""
+    handlers.load_post.append(_give_back)
+
+
+def unregister() -> None:
+    """Do so no longer."""
+    handlers.load_post.remove(_give_back)
+
+
+@handlers.persistent
+def _give_back(*_: object) -> None:
+    """A library override loses properties that its library does not have; its keys stay."""
+    for armature in bpy.data.objects:
+        if armature.override_library is None or armature.animation_data is None:
+            continue
+        animation = armature.animation_data
+        played = history.played_result(armature) or (animation.action, animation.action_slot)
+        if None in played:
+            continue
+        curves = animated_curves(*played)
+        for name in PROPERTIES:
+            if (_path(name), 0) in curves and name not in armature:
+                frame = np.array([bpy.context.scene.frame_current_final])
+                _declare(armature, name, int(curves[_path(name), 0].values(frame)[0]))
+
+
+def _declare(armature: bpy.types.Object, name: str, value: int) -> None:
+    armature[name] = value
+    armature.id_properties_ui(name).update(
+        min=0, max=1, description="1 while the foot stands. Clean keeps it from sliding then"
+    )
 
 
 def _untouched(action: bpy.types.Action, slot: bpy.types.ActionSlot) -> bool:

@@ -25,6 +25,7 @@ from ..denoising import (
 from ..errors import InvalidMotionError, InvalidSettingError
 from ..motion import Motion, Tracks
 from ..progress import Progress, within
+from .convert import convert
 from .files import add_reading_options, read, write
 from .options import arguments_from, settings_from_arguments
 from .verb import Outcome, Task, Verb
@@ -154,16 +155,7 @@ def _quality(task: Task, prepared: None, progress: Progress) -> Outcome:
 
 def _convert(task: Task, prepared: None, progress: Progress) -> Outcome:
     recording = read(task.source, task.arguments, within(progress, 0.0, 0.7))
-    write(recording, task.target, within(progress, 0.7, 1.0))
-    names = recording.skeleton.names if isinstance(recording, Motion) else recording.names
-    kind = "joints" if isinstance(recording, Motion) else "points"
-    figures = {
-        "n_frames": recording.n_frames,
-        "frame_rate_hz": recording.frame_rate,
-        kind: list(names),
-    }
-    text = f"{recording.n_frames} frames at {recording.frame_rate:g} Hz, {len(names)} {kind}."
-    return Outcome(text, figures)
+    return convert(recording, task.target, within(progress, 0.7, 1.0))
 
 
 VERBS = {

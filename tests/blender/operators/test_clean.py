@@ -219,3 +219,30 @@ def test_noise_in_the_rest_of_the_action_stays(noisy, clean, blank, capfd):
         atol=1e-5,
     )
     assert "The modifiers of 1 curves are part of the new keys now." in capfd.readouterr().out
+
+
+def test_locations_of_bones_come_nearer_to_the_truth(make_armature, animate, clean, rng):
+    armature = make_armature()
+    action = animate(armature, range(1, 91), locations=True)
+
+    def locations(action):
+        bag = action.layers[0].strips[0].channelbag(action.slots[0])
+        return {
+            (curve.data_path, curve.array_index): curve.keyframe_points
+            for curve in bag.fcurves
+            if curve.data_path.endswith("location")
+            and not armature.pose.bones[curve.data_path.split('"')[1]].bone.use_connect
+        }
+
+    truth = {name: [key.co.y for key in keys] for name, keys in locations(action).items()}
+    for keys in locations(action).values():
+        for key in keys:
+            key.co.y += rng.normal(scale=0.02)
+
+    after = locations(clean())
+
+    errors = {
+        name: np.std(np.array([key.co.y for key in after[name]]) - values)
+        for name, values in truth.items()
+    }
+    assert len(errors) >= 15 and max(errors.values()) < 0.015
