@@ -61,7 +61,8 @@ class SolverOperator:
                 setattr(self, name, getattr(shown, name))
 
     def execute(self, context: bpy.types.Context) -> set[str]:
-        self._subject = Subject.of(context.scene, selected_armature(context))
+        if not hasattr(self, "_subject"):  # else it is done again, to the same armature
+            self._subject = Subject.of(context.scene, selected_armature(context))
         try:
             return self._finish(run(self._read()))
         except MocapAssistError as error:

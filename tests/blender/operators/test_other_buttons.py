@@ -84,3 +84,15 @@ def test_what_was_learned_serves_clean(dancer, blank, tmp_path):
 
     settings = {"prior": "LEARNED", "learned_file": str(learned), "plant_feet": False}
     assert blank.ops.mocap_assist.denoise(**settings) == {"FINISHED"}
+
+
+def test_feet_of_a_short_take_need_no_other_process(dancer, blank, load, monkeypatch):
+    """The redo panel does so at every change of a setting."""
+    monkeypatch.setattr(load("mocap_assist.jobs.job"), "Job", None)
+
+    assert blank.ops.mocap_assist.plant_feet() == {"FINISHED"}
+
+
+def test_check_leaves_no_step_to_undo_nor_a_redo_panel_that_solves_anew(blank):
+    assert blank.types.MOCAP_ASSIST_OT_measure_quality.bl_options == {"REGISTER"}
+    assert blank.types.MOCAP_ASSIST_OT_plant_feet.bl_options == {"REGISTER", "UNDO"}

@@ -135,6 +135,20 @@ def test_the_result_goes_to_the_armature_that_was_read(
     assert window.timers == [] and window.status[-1] is None and not window.job.running
 
 
+def test_what_is_adjusted_afterwards_is_adjusted_on_that_armature(
+    noisy, make_armature, animate, press_clean, window
+):
+    button = press_clean()
+    other = make_armature(name="Other")
+    untouched = animate(other)
+    wait(button, window)
+
+    assert button.execute(window.context) == {"FINISHED"}
+
+    assert noisy.animation_data.action.name == "walk.clean.001"
+    assert other.animation_data.action == untouched
+
+
 def test_bones_that_are_selected_meanwhile_are_not_written(
     noisy, press_clean, window, load, keys_of
 ):
