@@ -1,6 +1,7 @@
 """Keys of F-Curves in bulk, as arrays: never one key at a time."""
 
 from functools import cached_property
+from typing import Any
 
 import bpy
 import numpy as np
@@ -12,13 +13,14 @@ Array = NDArray[np.float64]
 
 CONSTANT, LINEAR = 0, 1  # Blender's numbers for interpolation
 MEASURED, GENERATED = 0, 5  # and for its key types KEYFRAME and GENERATED
+AUTO_CLAMPED = 4  # and for that type of handle
 ON_FRAME = 1e-3  # frames; keys are 32-bit numbers, whose grain at frame 10,000 is this
 
 # Everything that a key is, with its Blender array length and the value of a new key.
 KEY = {
     "co": (2, 0.0), "handle_left": (2, 0.0), "handle_right": (2, 0.0),
     "interpolation": (1, LINEAR), "easing": (1, 0), "type": (1, MEASURED),
-    "handle_left_type": (1, 4), "handle_right_type": (1, 4),  # AUTO_CLAMPED
+    "handle_left_type": (1, AUTO_CLAMPED), "handle_right_type": (1, AUTO_CLAMPED),
     "back": (1, 1.70158), "amplitude": (1, 0.8), "period": (1, 4.1),
     "select_control_point": (1, False), "select_left_handle": (1, False),
     "select_right_handle": (1, False),
@@ -88,29 +90,43 @@ def write_values(
     `types`, shape (n_frames,), are Blender's key types; without it all are MEASURED.
     """
     points = curve.keyframe_points
-    times = _column(points, "co")[:, 0]
+    old = _column(points, "co")
+    times = old[:, 0]
     first, last = np.searchsorted(times, [frames[0] - ON_FRAME, frames[-1] + ON_FRAME])
-    chosen = _chosen(points, times, frames)
+    keep_outside(curve, Written(frames[0], frames[-1], *_neighbours(times, first, last)))
     new = {
         "co": np.stack([frames, values], axis=1, dtype=np.float32, casting="same_kind"),
-        "interpolation": np.full((len(frames), 1), interpolation),
-    } | dict.fromkeys(SELECTED, chosen[:, None])
-    if types is not None:
-        new["type"] = types[:, None]
-    alone = first == 0 and last == len(times)
-    kept = {} if alone else {name: _column(points, name) for name in KEY}
-    keep_outside(curve, Written(frames[0], frames[-1], *_neighbours(times, first, last)))
-    points.clear()
-    points.add(first + len(frames) + len(times) - last)
-    for name in new if alone else KEY:
-        width, usual = KEY[name]
-        rows = new.get(name, np.full((len(frames), width), usual)).astype(
-            _kind(name), copy=False
-        )
-        if not alone:
-            rows = np.concatenate([kept[name][:first], rows, kept[name][last:]])
-        points.foreach_set(name, rows.ravel())
+        "interpolation": interpolation,
+        "type": MEASURED if types is None else types[:, None],
+        "handle_left_type": AUTO_CLAMPED,
+        "handle_right_type": AUTO_CLAMPED,
+    }
+    replaced = times[first:last]
+    if len(replaced) == len(frames) and (np.abs(replaced - frames) <= ON_FRAME).all():
+        for name, rows in new.items():
+            whole = _column(points, name) if name != "co" else old
+            whole[first:last] = rows
+            points.foreach_set(name, whole.ravel())
+    else:
+        chosen = _chosen(points, times, frames)
+        _rebuild(points, first, last, new | dict.fromkeys(SELECTED, chosen[:, None]))
     curve.update()
+
+
+def _rebuild(
+    points: bpy.types.FCurveKeyframePoints, first: int, last: int, new: dict[str, Any]
+) -> None:
+    """Put new keys in the place of those from `first` to `last`, of which there are others."""
+    kept = {name: _column(points, name) for name in KEY}
+    n_new = len(new["co"])
+    n_keys = len(points) - (last - first) + n_new
+    points.clear()
+    points.add(n_keys)
+    for name, (width, usual) in KEY.items():
+        rows = np.empty((n_new, width), _kind(name))
+        rows[:] = new.get(name, usual)
+        whole = np.concatenate([kept[name][:first], rows, kept[name][last:]])
+        points.foreach_set(name, whole.ravel())
 
 
 def _chosen(
