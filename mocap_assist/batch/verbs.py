@@ -148,7 +148,7 @@ VERBS = {
         "Measure jitter, spikes, gaps and sliding feet.", _check_options, _check, writes=False
     ),
     "convert": Verb(
-        "Write what armatures play as BVH, in metres.",
+        "Write what armatures play, raw or clean, as BVH in centimetres, Y up.",
         _convert_options,
         _convert,
         writes=False,
