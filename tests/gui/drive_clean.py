@@ -136,7 +136,8 @@ def the_redo_panel(armature):
     """F9 offers what needs no new solve; a change there is applied to the same recording."""
     bgui.move(500, 500)
     yield 0.3
-    yield from bgui.key("F9")
+    with bgui.override("WINDOW"):  # the function keys do not reach Blender here
+        bpy.ops.screen.redo_last("INVOKE_DEFAULT")
     yield 1.5
     bgui.shot("11-redo.png")
     yield from bgui.dismiss()
@@ -152,7 +153,8 @@ def the_manual():
         yield from bgui.scan()
         yield from bgui.hover(*bgui.at("mocap_assist.denoise"))
         bgui.shot("12-tooltip.png")
-        yield from bgui.key("F1")
+        with bgui.override():
+            bpy.ops.wm.doc_view_manual_ui_context()
         yield 1.0
     finally:
         webbrowser.open = really
