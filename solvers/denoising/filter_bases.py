@@ -23,7 +23,7 @@ from .prior import n_slow_waves
 Array = NDArray[np.float64]
 
 KIND = "filter bases"
-VERSION = 2
+VERSION = 3
 KEPT_ENERGY = 0.99
 """Share of the movement that the stored patterns hold, as in [LC10]."""
 STILL = 0.05
@@ -74,9 +74,12 @@ class FilterBases:
     moving : shape (n_moving,), int
         Channels that move; `slow` and `fast` tell of these.
     slow : shape (n_slow, n_moving, n_slow, n_moving)
-        Covariance of the slow cosine waves of a window: all patterns, however weak.
+        Covariance of the slow cosine waves of a window about the mean of its clip: all
+        patterns, however weak.
     fast : shape (window - n_slow, n_moving)
         Variances of the faster waves.
+    clip_means : shape (n_clips, n_moving)
+        Mean pose of each example.
     frame_rate : shape (), hertz
     n_clips : shape (), int
     of_points : shape (), bool
@@ -91,6 +94,7 @@ class FilterBases:
     moving: NDArray[np.intp]
     slow: Array
     fast: Array
+    clip_means: Array
     frame_rate: Array
     n_clips: NDArray[np.intp]
     of_points: NDArray[np.bool_]
@@ -148,6 +152,7 @@ def _fault(bases: FilterBases) -> str:
         "moving": (n_moving,),
         "slow": (n_slow, n_moving, n_slow, n_moving),
         "fast": (window - n_slow, n_moving),
+        "clip_means": (len(bases.clip_means), n_moving),
         **dict.fromkeys(("frame_rate", "n_clips", "of_points"), ()),
     }
     arrays = {name: getattr(bases, name) for name in expected}
@@ -222,22 +227,20 @@ def learn_filter_bases(
             "Nothing that was observed in the examples moves; choose clips with movement."
         )
     moving = np.flatnonzero(spread >= min(STILL, spread.max()))
-    n_windows = sum(len(clip) - window + 1 for clip in clips)
-    total = np.zeros((window * len(moving),) * 2)
-    for clip in clips:
-        total += lag_products(clip[:, moving] - mean[moving], window)
-    covariance = total / n_windows
+    clips = [clip[:, moving] for clip in clips]
     progress(0.7, "Finding patterns")
-    values, vectors = strongest(covariance, KEPT_ENERGY)
+    values, vectors = strongest(_covariance(clips, [mean[moving]] * len(clips), window), KEPT_ENERGY)
+    own_means = [clip.mean(axis=0) for clip in clips]
     patterns = np.zeros((len(values), window, len(mean)))
     patterns[:, :, moving] = vectors.T.reshape(len(values), window, len(moving))
-    slow, fast = _waves(covariance, window)
+    slow, fast = _waves(_covariance(clips, own_means, window), window)
     progress(1.0, "Learned")
     rows = np.zeros((len(first.keys), N_REFERENCE))
     for row, key in zip(rows, first.keys, strict=True):
         row[: len(first.references[key])] = first.references[key]
     return FilterBases(
         np.array(first.keys), rows, mean, patterns, values, moving, slow, fast,
+        np.array(own_means),
         np.array(settings.frame_rate), np.array(len(examples)),
         np.array(isinstance(examples[0], Tracks)),
     )  # fmt: skip
@@ -276,6 +279,12 @@ def _columns(
         clips += at_rate(complete, example.frame_rate, settings.frame_rate)
         progress(0.6 * (index + 1) / len(examples), "Reading examples")
     return first, clips
+
+
+def _covariance(clips: Sequence[Array], means: Sequence[Array], window: int) -> Array:
+    """Return the lag covariance of clips, each about a mean of its own."""
+    centred = [clip - mean for clip, mean in zip(clips, means, strict=True)]
+    return lag_products(centred, window) / sum(len(clip) - window + 1 for clip in clips)
 
 
 def _waves(covariance: Array, window: int) -> tuple[Array, Array]:
