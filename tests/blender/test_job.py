@@ -117,8 +117,8 @@ def test_the_child_looks_for_modules_where_blender_does_and_nowhere_else(job):
     no_user_site, safe_path, path = job(Expression(asked)).result()
 
     assert (no_user_site, safe_path) == (1, True)
-    expected = [os.path.abspath(each) for each in sys.path if each]
-    assert path[: len(expected)] == expected
+    expected = [Path(each).resolve() for each in sys.path if each]
+    assert [Path(each).resolve() for each in path[: len(expected)]] == expected
 
 
 WAITING = """
