@@ -6,17 +6,23 @@ Blender is imported only on `register`: a solve in a process of its own passes t
 
 def register() -> None:
     """Make properties, commands and panels known to Blender."""
-    from . import batch, scene_properties, ui
+    from . import batch, scene_properties, ui, watch
+    from .scene import contacts
 
     scene_properties.register()
+    contacts.register()
+    watch.register()
     batch.register()
     ui.register()
 
 
 def unregister() -> None:
     """Take them away again."""
-    from . import batch, scene_properties, ui
+    from . import batch, scene_properties, ui, watch
+    from .scene import contacts
 
     ui.unregister()
     batch.unregister()
+    watch.unregister()
+    contacts.unregister()
     scene_properties.unregister()

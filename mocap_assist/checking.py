@@ -12,6 +12,7 @@ from .scene.contacts import read_contacts
 from .scene.limits import read_limits
 from .scene.take import ArmatureTake
 from .selection import played_source, selected_armature
+from .subject import check_unchanged
 
 
 def read_checking(
@@ -29,9 +30,17 @@ def read_checking(
     )
 
 
-def show_checked(scene: bpy.types.Scene, armature: bpy.types.Object, checked: Checked) -> str:
+def show_checked(
+    scene: bpy.types.Scene,
+    armature: bpy.types.Object,
+    settings: CheckSettings,
+    checked: Checked,
+    asked: str | None = None,
+) -> str:
     """List the spots in the scene; return a sentence about them."""
-    frames, shown = _read(scene, armature).frames, scene.mocap_assist
+    take, shown = _read(scene, armature), scene.mocap_assist
+    check_unchanged(armature, asked, take.parts[0].motion)
+    frames = take.frames
     shown.spots.clear()
     shown.active_spot = 0
     shown.checked = played_source(armature)[0].name

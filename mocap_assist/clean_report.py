@@ -11,8 +11,8 @@ from .scene import history
 from .scene.take import ArmatureTake
 
 
-def clean_report(raw: ArmatureTake, cleaned: Cleaned, name: str) -> str:
-    """Return a few sentences for the status bar."""
+def clean_report(raw: ArmatureTake, cleaned: Cleaned, name: str, n_modified: int = 0) -> str:
+    """Return a few sentences for the status bar; `n_modified` curves had modifiers."""
     body = cleaned.solution.denoised[0]
     before, after = cleaned.before, cleaned.after
     said = [
@@ -26,6 +26,8 @@ def clean_report(raw: ArmatureTake, cleaned: Cleaned, name: str) -> str:
             f" {100 * cleaned.planted.slide_after:.1f} cm; legs and hips moved for that."
         )
     said.append(body.prior_used)
+    if n_modified:
+        said.append(f"The modifiers of {n_modified} curves are part of the new keys now.")
     if not all(each.converged for each in cleaned.solution.denoised):
         said.append("The estimate had not settled when it was stopped.")
     return " ".join(said)

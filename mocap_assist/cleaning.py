@@ -19,13 +19,14 @@ from .jobs.cleaning import Cleaned, Finish, Problem, Recordings, clean, names_of
 from .jobs.job import Quick
 from .scene import history
 from .scene.armature_read import read_take
-from .scene.armature_write import check_writable, put_to_use, write_take
+from .scene.armature_write import check_writable, count_modified, put_to_use, write_take
 from .scene.compat import Source
-from .scene.contacts import read_contacts, write_contacts
+from .scene.contacts import animators_contacts, write_contacts
 from .scene.curves import GENERATED, MEASURED
 from .scene.limits import read_limits
 from .scene.take import ArmatureTake
 from .selection import chosen_bones, played_source
+from .subject import check_unchanged
 
 UNSURE = 0.5  # confidence below which a key counts as generated
 EASE = 5  # frames over which a cleaned range joins the frames outside it
@@ -60,7 +61,7 @@ def read_cleaning(
         present=_present(scene, found),
         limits=limits,
         planting=settings.planting if choices.plant_feet else None,
-        contacts=read_contacts(*found.played, found.raw.frames),
+        contacts=animators_contacts(found.played, found.raw.frames),
     )
     solution = redo.recall(problem)
     return (partial if solution is None else Quick)(clean, problem, finish, solution)
@@ -71,20 +72,28 @@ def write_cleaned(
     armature: bpy.types.Object,
     settings: CleanSettings,
     cleaned: Cleaned,
+    asked: str | None = None,
 ) -> str:
-    """Write the result as a new action and put it to use; return a sentence about it."""
+    """Write the result as a new action and put it to use; return a sentence about it.
+
+    Raises InvalidMotionError if the armature plays something else than what was `asked`, a
+    fingerprint of the problem.
+    """
     found = _read(scene, armature, settings.choices)
-    redo.remember(_problem(scene, found, settings), cleaned.solution)
+    problem = _problem(scene, found, settings)
+    check_unchanged(armature, asked, problem)
+    redo.remember(problem, cleaned.solution)
     take = found.raw.with_recordings(cleaned.recordings)
-    bones = cleaned.moved | found.bones
+    n_modified = count_modified(found.played, cleaned.moved)
     types = key_types(found.raw, cleaned.solution.denoised)
-    action, slot = write_take(found.armature, found.played, take, bones, types)
+    action, slot = write_take(found.armature, found.played, take, cleaned.moved, types)
     if cleaned.planted is not None:
         contacts = cleaned.planted.contacts
-        write_contacts(found.armature, action, slot, take.frames, contacts)
+        detected = animators_contacts(found.played, take.frames) is None
+        write_contacts(found.armature, action, slot, take.frames, contacts, detected=detected)
     history.record(action, found.played, entry_of("denoise", settings, cleaned))
     put_to_use(found.armature, action, slot, settings.choices.result_as)
-    return clean_report(found.raw, cleaned, action.name)
+    return clean_report(found.raw, cleaned, action.name, n_modified)
 
 
 def key_types(

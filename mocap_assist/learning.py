@@ -42,7 +42,13 @@ def read_learning(
     return partial(learn, examples, settings.bases)
 
 
-def write_learned(settings: LearnSettings, bases: FilterBases) -> str:
+def write_learned(
+    scene: bpy.types.Scene,
+    armature: bpy.types.Object,
+    settings: LearnSettings,
+    bases: FilterBases,
+    asked: str | None = None,
+) -> str:
     """Save what was learned; return a sentence about it."""
     target = target_of(settings)
     bases.save(target)

@@ -6,12 +6,17 @@ from typing import NamedTuple
 import bpy
 
 from ..solvers.denoising import PlantSettings
+from .jobs.job import Quick
 from .jobs.planting import Replanted, plant
 from .scene import history
 from .scene.armature_read import read_take
 from .scene.armature_write import Output, check_writable, put_to_use, write_take
-from .scene.contacts import read_contacts, write_contacts
+from .scene.contacts import animators_contacts, write_contacts
 from .selection import played_source
+from .subject import check_unchanged
+
+N_QUICK = 5000
+"""Frames that are solved in half a second: less than it takes to start another process."""
 
 
 class FeetSettings(NamedTuple):
@@ -27,8 +32,9 @@ def read_planting(
     check_writable(armature)
     played = played_source(armature)
     take = read_take(armature, scene, source=played)
-    contacts = read_contacts(*played, take.frames)
-    return partial(plant, take.parts[0].motion, contacts, settings.planting)
+    contacts = animators_contacts(played, take.frames)
+    kind = Quick if len(take.frames) <= N_QUICK else partial
+    return kind(plant, take.parts[0].motion, contacts, settings.planting)
 
 
 def write_planted(
@@ -36,14 +42,17 @@ def write_planted(
     armature: bpy.types.Object,
     settings: FeetSettings,
     result: Replanted,
+    asked: str | None = None,
 ) -> str:
     """Write the result as a new action and put it to use; return a sentence about it."""
     played, planted = played_source(armature), result.planted
     take = read_take(armature, scene, source=played)
-    _, *others = take.recordings
+    body, *others = take.recordings
+    check_unchanged(armature, asked, body)
     take = take.with_recordings((planted.motion, *others))
     action, slot = write_take(armature, played, take, result.moved, {})
-    write_contacts(armature, action, slot, take.frames, planted.contacts)
+    detected = animators_contacts(played, take.frames) is None
+    write_contacts(armature, action, slot, take.frames, planted.contacts, detected=detected)
     entry = {
         "operation": "plant_feet",
         "settings": history.plain(*settings),

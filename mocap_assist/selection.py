@@ -39,6 +39,13 @@ def why_not_clean(context: bpy.types.Context) -> str:
     return ""
 
 
+def why_not_learn(context: bpy.types.Context) -> str:
+    """Return why nothing can be learned, or nothing."""
+    if selected_armature(context) is None:
+        return "Select an armature that has the bones of the examples."
+    return ""
+
+
 def played_source(armature: bpy.types.Object) -> Source:
     """Return what the armature plays: a result of ours, or its action."""
     return history.played_result(armature) or action_of(armature)

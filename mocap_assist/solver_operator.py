@@ -2,16 +2,20 @@
 
 import logging
 from collections.abc import Callable
+from functools import partial
 from time import monotonic
 from typing import Any, ClassVar
 
 import bpy
 
 from ..solvers.errors import MocapAssistError, SolveCancelled
-from .jobs.job import Job, Quick, run
+from .jobs.job import Quick, run
+from .redo import fingerprint
+from .selection import selected_armature
+from .subject import Subject
+from .watch import Watch, why_busy
 
 logger = logging.getLogger(__name__)
-BETWEEN_LOOKS = 0.1  # seconds
 
 
 def in_background() -> bool:
@@ -20,26 +24,34 @@ def in_background() -> bool:
 
 
 class SolverOperator:
-    """Mix in before bpy.types.Operator and implement `read` and `write`.
+    """Mix in before bpy.types.Operator and name the functions that read and write.
 
-    `read` and `write` run in Blender. What `read` returns is called with `progress=` in a
-    process of its own: it must be picklable and cannot use bpy. When the animator pressed a
-    button, all input but Esc and the right mouse button is swallowed meanwhile, so that the
-    scene that was read is the scene that is written; a script waits.
+    They run in Blender. What `read_scene` returns is called with `progress=` in a process of
+    its own: it must be picklable and cannot use bpy. When the animator pressed a button, that
+    window swallows all input but Esc and the right mouse button meanwhile; whatever is done in
+    another window, the result goes to the armature that was read, or nowhere. A script waits.
     """
 
     bl_options: ClassVar = {"REGISTER", "UNDO"}
     settings_group: ClassVar[str]
     """Where the sidebar keeps the settings: a property of `scene.mocap_assist`."""
     setting_names: ClassVar[tuple[str, ...]]
-    """Supplied by the decorator `settings_from`."""
+    """Supplied by the decorator `settings_from`, as is the method `settings`."""
+    why_not: ClassVar[Callable[[bpy.types.Context], str]]
+    """Return why the button is grey, or nothing."""
+    read_scene: ClassVar[Callable[..., "partial[Any]"]]
+    """From scene, armature and settings; the first argument of the solve is what is solved."""
+    write_scene: ClassVar[Callable[..., str]]
+    """From scene, armature, settings, result and the fingerprint of what was solved.
 
-    def read(self, context: bpy.types.Context) -> Callable[..., Any]:
-        raise NotImplementedError
+    Returns the sentence to show in the status bar.
+    """
 
-    def write(self, context: bpy.types.Context, result: Any) -> str:
-        """Return the sentence to show in the status bar."""
-        raise NotImplementedError
+    @classmethod
+    def poll(cls, context: bpy.types.Context) -> bool:
+        if reason := why_busy() or cls.why_not(context):
+            cls.poll_message_set(reason)
+        return not reason
 
     def prepare(self, context: bpy.types.Context) -> None:
         """Take over the sidebar's settings, but for those that the caller gave."""
@@ -49,8 +61,10 @@ class SolverOperator:
                 setattr(self, name, getattr(shown, name))
 
     def execute(self, context: bpy.types.Context) -> set[str]:
+        if not hasattr(self, "_subject"):  # else it is done again, to the same armature
+            self._subject = Subject.of(context.scene, selected_armature(context))
         try:
-            return self._finish(context, run(self.read(context)))
+            return self._finish(run(self._read()))
         except MocapAssistError as error:
             return self._give_up(error)
 
@@ -58,59 +72,52 @@ class SolverOperator:
         self.prepare(context)
         if in_background():
             return self.execute(context)
+        self._subject = Subject.of(context.scene, selected_armature(context))
+        self._started = monotonic()
         try:
-            solve = self.read(context)
+            solve = self._read()
             if isinstance(solve, Quick):
-                return self._finish(context, run(solve))
-            self._job = Job(solve)
+                return self._finish(run(solve))
+            self._asked = fingerprint(solve.args[0])
+            self._watch = Watch(context, solve)
         except MocapAssistError as error:
             return self._give_up(error)
-        self._started = monotonic()
-        manager = context.window_manager
-        self._timer = manager.event_timer_add(BETWEEN_LOOKS, window=context.window)
-        manager.modal_handler_add(self)
-        self._show(context, 0.0, "Starting")
+        context.window_manager.modal_handler_add(self)
         return {"RUNNING_MODAL"}
 
     def modal(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
+        watch = self._watch
+        if not watch.is_on:
+            return {"CANCELLED"}
         if event.type in {"ESC", "RIGHTMOUSE"} and event.value == "PRESS":
-            self._job.cancel()
+            watch.job.cancel()
         elif event.type != "TIMER":
             return {"RUNNING_MODAL"}
-        elif not self._job.done():
-            self._show(context, *self._job.progress())
+        elif not watch.job.done():
+            watch.show(context, *watch.job.progress())
             return {"RUNNING_MODAL"}
-        self._stop_showing(context)
+        watch.end(context)
+        logger.info("%s took %.1f s", self.bl_idname, monotonic() - self._started)
         try:
-            return self._finish(context, self._job.result())
+            return self._finish(watch.job.result(), self._asked)
         except MocapAssistError as error:
             return self._give_up(error)
 
     def cancel(self, context: bpy.types.Context) -> None:
         """Blender ends the operator: another file is loaded, or the window closes."""
-        self._job.cancel()
-        self._job.tidy_up()
-        self._stop_showing(context)
+        if self._watch.is_on:
+            self._watch.abandon(context)
 
-    def _finish(self, context: bpy.types.Context, result: Any) -> set[str]:
-        self.report({"INFO"}, self.write(context, result))
+    def _read(self) -> "partial[Any]":
+        return type(self).read_scene(*self._subject.find(), self.settings())
+
+    def _finish(self, result: Any, asked: str | None = None) -> set[str]:
+        scene, armature = self._subject.find()
+        said = type(self).write_scene(scene, armature, self.settings(), result, asked)
+        self.report({"INFO"}, said)
         return {"FINISHED"}
 
     def _give_up(self, error: MocapAssistError) -> set[str]:
         cancelled = isinstance(error, SolveCancelled)
         self.report({"INFO"} if cancelled else {"ERROR"}, str(error))
         return {"CANCELLED"}
-
-    def _show(self, context: bpy.types.Context, fraction: float, message: str) -> None:
-        state = context.window_manager.mocap_assist_job
-        state.running, state.fraction, state.message = True, fraction, message
-        context.workspace.status_text_set(f"{message} {fraction:.0%}   Esc: cancel")
-        for window in context.window_manager.windows:
-            for area in window.screen.areas:
-                area.tag_redraw()
-
-    def _stop_showing(self, context: bpy.types.Context) -> None:
-        context.window_manager.event_timer_remove(self._timer)
-        context.window_manager.mocap_assist_job.running = False
-        context.workspace.status_text_set(None)
-        logger.info("%s took %.1f s", self.bl_idname, monotonic() - self._started)

@@ -1,13 +1,10 @@
 """Button: take jitter, spikes and gaps out of the active armature's action."""
 
-from collections.abc import Callable
-
 import bpy
 
 from ..mocap_assist.clean_choices import QUICK, CleanSettings
 from ..mocap_assist.cleaning import read_cleaning, write_cleaned
-from ..mocap_assist.jobs.cleaning import Cleaned
-from ..mocap_assist.selection import selected_armature, why_not_clean
+from ..mocap_assist.selection import why_not_clean
 from ..mocap_assist.settings_properties import settings_from
 from ..mocap_assist.solver_operator import SolverOperator
 
@@ -22,23 +19,10 @@ class MOCAP_OT_denoise(SolverOperator, bpy.types.Operator):
     )
 
     settings_group = "clean"
-
-    @classmethod
-    def poll(cls, context: bpy.types.Context) -> bool:
-        if reason := why_not_clean(context):
-            cls.poll_message_set(reason)
-        return not reason
+    why_not, read_scene, write_scene = why_not_clean, read_cleaning, write_cleaned
 
     def draw(self, context: bpy.types.Context) -> None:
         """Offer in the redo panel what needs no new solve: Blender would stand still for it."""
         self.layout.use_property_split = True
         for name in QUICK:
             self.layout.prop(self, name)
-
-    def read(self, context: bpy.types.Context) -> Callable[..., Cleaned]:
-        armature = selected_armature(context)
-        return read_cleaning(context.scene, armature, self.settings())
-
-    def write(self, context: bpy.types.Context, result: Cleaned) -> str:
-        armature = selected_armature(context)
-        return write_cleaned(context.scene, armature, self.settings(), result)

@@ -1,14 +1,13 @@
 """Button: learn from clean examples how bodies move, once, for many takes."""
 
-from collections.abc import Callable
+from typing import ClassVar
 
 import bpy
 
 from ..mocap_assist.learning import LearnSettings, read_learning, write_learned
-from ..mocap_assist.selection import selected_armature
+from ..mocap_assist.selection import why_not_learn
 from ..mocap_assist.settings_properties import settings_from
 from ..mocap_assist.solver_operator import SolverOperator
-from ..solvers.denoising import FilterBases
 
 
 @settings_from(LearnSettings)
@@ -19,18 +18,6 @@ class MOCAP_OT_learn_patterns(SolverOperator, bpy.types.Operator):
         "Learn from the examples how this kind of motion goes, and write it to a file that"
         " Clean can use for many takes"
     )
-    bl_options = {"REGISTER"}  # it writes a file, and nothing that could be undone
+    bl_options: ClassVar = {"REGISTER"}  # it writes a file, and nothing that could be undone
     settings_group = "clean"
-
-    @classmethod
-    def poll(cls, context: bpy.types.Context) -> bool:
-        if selected_armature(context) is None:
-            cls.poll_message_set("Select an armature that has the bones of the examples")
-            return False
-        return True
-
-    def read(self, context: bpy.types.Context) -> Callable[..., FilterBases]:
-        return read_learning(context.scene, selected_armature(context), self.settings())
-
-    def write(self, context: bpy.types.Context, result: FilterBases) -> str:
-        return write_learned(self.settings(), result)
+    why_not, read_scene, write_scene = why_not_learn, read_learning, write_learned

@@ -1,13 +1,12 @@
 """Button: list what is wrong with the action that the active armature plays."""
 
-from collections.abc import Callable
+from typing import ClassVar
 
 import bpy
 
 from ..mocap_assist.check_choices import CheckSettings
 from ..mocap_assist.checking import read_checking, show_checked
-from ..mocap_assist.jobs.checking import Checked
-from ..mocap_assist.selection import selected_armature, why_not_read
+from ..mocap_assist.selection import why_not_read
 from ..mocap_assist.settings_properties import settings_from
 from ..mocap_assist.solver_operator import SolverOperator
 
@@ -19,16 +18,7 @@ class MOCAP_OT_measure_quality(SolverOperator, bpy.types.Operator):
     bl_description = (
         "List where the armature's action jumps, shakes, has gaps, or lets feet slide"
     )
+    # A list to look at: nothing to undo, and so no redo panel, which would solve anew.
+    bl_options: ClassVar = {"REGISTER"}
     settings_group = "check"
-
-    @classmethod
-    def poll(cls, context: bpy.types.Context) -> bool:
-        if reason := why_not_read(context):
-            cls.poll_message_set(reason)
-        return not reason
-
-    def read(self, context: bpy.types.Context) -> Callable[..., Checked]:
-        return read_checking(context.scene, selected_armature(context), self.settings())
-
-    def write(self, context: bpy.types.Context, result: Checked) -> str:
-        return show_checked(context.scene, selected_armature(context), result)
+    why_not, read_scene, write_scene = why_not_read, read_checking, show_checked

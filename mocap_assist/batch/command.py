@@ -11,11 +11,13 @@ import bpy
 from ...solvers.command_line import SentenceParser
 from ...solvers.command_line.screen import Screen
 from ...solvers.errors import InvalidFileError, MocapAssistError
+from ...solvers.files import written_whole
 from ..scene import history
 from .verbs import VERBS
 
 PROG = "blender FILE --command mocap_assist"
 FAILED = 2
+STDOUT = Path("-")
 _commands: list[object] = []
 
 
@@ -59,8 +61,12 @@ def _parser() -> SentenceParser:
         )
         described.add_argument(
             "--json",
-            action="store_true",
-            help="print one line of JSON for each armature, among what Blender itself prints",
+            nargs="?",
+            type=Path,
+            const=STDOUT,
+            metavar="FILE",
+            help="write one line of JSON for each armature, and nothing else, to FILE; without"
+            " FILE print the lines, each of which begins with {, among what Blender prints",
         )
         if verb.writes:
             described.add_argument(
@@ -75,15 +81,21 @@ def _work(arguments: argparse.Namespace, screen: Screen) -> None:
     verb = VERBS[arguments.verb]
     armatures = _armatures(arguments.armature)
     target = _target(arguments) if verb.writes else None
+    verb.check(arguments, armatures)
+    figures_file = None if arguments.json in {None, STDOUT} else _in_a_folder(arguments.json)
+    lines = []
     for armature in armatures:
         screen.title = armature.name
         text, figures = verb.perform(bpy.context.scene, armature, arguments, screen.progress)
         screen.clear()
-        said = json.dumps({"armature": armature.name} | figures) if arguments.json else text
-        sys.stdout.write(said + "\n")
+        lines.append(json.dumps({"armature": armature.name} | figures) + "\n")
+        sys.stdout.write(lines[-1] if arguments.json == STDOUT else f"{text}\n")
         sys.stdout.flush()
     if target is not None:
         _save(target)
+    if figures_file is not None:
+        with written_whole(figures_file) as part:
+            part.write_text("".join(lines), encoding="utf-8")
 
 
 def _save(target: Path) -> None:
@@ -98,9 +110,14 @@ def _target(arguments: argparse.Namespace) -> Path:
     target = arguments.output or (Path(bpy.data.filepath) if bpy.data.filepath else None)
     if target is None:
         raise InvalidFileError("No file is open: say which one to save with --output FILE.")
-    if not target.resolve().parent.is_dir():
-        raise InvalidFileError(f"There is no folder {target.resolve().parent} to save in.")
-    return target.resolve()
+    return _in_a_folder(target)
+
+
+def _in_a_folder(path: Path) -> Path:
+    """Return the whole path, whose folder must exist."""
+    if not path.resolve().parent.is_dir():
+        raise InvalidFileError(f"There is no folder {path.resolve().parent} to save in.")
+    return path.resolve()
 
 
 def _armatures(name: str | None) -> list[bpy.types.Object]:

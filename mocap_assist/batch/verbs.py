@@ -1,13 +1,17 @@
 """The verbs of `blender FILE --command mocap_assist`: each does what a button does."""
 
 import argparse
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
+from pathlib import Path
 from typing import Any, NamedTuple, TypeVar, get_type_hints
 
 import bpy
 
 from ...solvers.command_line import arguments_from, settings_from_arguments
+from ...solvers.command_line.convert import convert
+from ...solvers.command_line.files import MOTIONS, refuse_target
+from ...solvers.errors import InvalidSettingError
 from ...solvers.progress import Progress
 from ..check_choices import CheckSettings
 from ..checking import read_checking, show_checked
@@ -16,9 +20,17 @@ from ..cleaning import read_cleaning, write_cleaned
 from ..examples import SEPARATOR
 from ..jobs.job import run
 from ..scene import history
+from ..scene.armature_read import read_take
+from ..selection import played_source
 
 Bundle = TypeVar("Bundle", bound=NamedTuple)
 Said = tuple[str, dict[str, Any]]
+
+
+def nothing_to_check(
+    arguments: argparse.Namespace, armatures: Sequence[bpy.types.Object]
+) -> None:
+    """Check nothing."""
 
 
 @dataclass(frozen=True)
@@ -29,6 +41,9 @@ class Verb:
     add_options: Callable[[argparse.ArgumentParser], None]
     perform: Callable[[bpy.types.Scene, bpy.types.Object, argparse.Namespace, Progress], Said]
     writes: bool = True
+    """Whether it changes the .blend file, which is then saved."""
+    check: Callable[[argparse.Namespace, Sequence[bpy.types.Object]], None] = nothing_to_check
+    """Raise a MocapAssistError where the work would be in vain, before it begins."""
 
 
 def _clean_options(parser: argparse.ArgumentParser) -> None:
@@ -69,10 +84,53 @@ def _check(
 ) -> Said:
     settings = _bundle(arguments, CheckSettings)
     checked = run(read_checking(scene, armature, settings), progress)
-    sentence = show_checked(scene, armature, checked)
+    sentence = show_checked(scene, armature, settings, checked)
     spots = [spot.sentence for spot in checked.spots]
     text = "\n".join([checked.quality.report(), "", sentence, *spots])
     return text, checked.quality.figures() | {"spots": spots}
+
+
+def _convert_options(parser: argparse.ArgumentParser) -> None:
+    parser.add_argument(
+        "target", type=Path, metavar="OUT",
+        help=f"file to write, such as walk{MOTIONS}; or a folder that exists, for a file of"
+        " each armature's name",
+    )  # fmt: skip
+
+
+def _check_targets(
+    arguments: argparse.Namespace, armatures: Sequence[bpy.types.Object]
+) -> None:
+    targets = [_target(arguments, armature) for armature in armatures]
+    if len(set(targets)) < len(targets):
+        named = ", ".join(armature.name for armature in armatures)
+        raise InvalidSettingError(
+            f"{named} cannot all be written to {targets[0]}. Name one with --armature, or a"
+            " folder to write to."
+        )
+    for target in targets:
+        refuse_target(target)
+
+
+def _target(arguments: argparse.Namespace, armature: bpy.types.Object) -> Path:
+    """Return the file to write: in a folder, one with the armature's name."""
+    target: Path = arguments.target
+    if target.is_dir():
+        target /= bpy.path.clean_name(armature.name) + MOTIONS
+    return target
+
+
+def _convert(
+    scene: bpy.types.Scene,
+    armature: bpy.types.Object,
+    arguments: argparse.Namespace,
+    progress: Progress,
+) -> Said:
+    """Write the body's motion as the armature plays it, be it raw or clean."""
+    target = _target(arguments, armature)
+    take = read_take(armature, scene, source=played_source(armature))
+    outcome = convert(take.parts[0].motion, target, progress)
+    return f"{target}: {outcome.text}", {"output": str(target)} | outcome.figures
 
 
 def _bundle(arguments: argparse.Namespace, bundle: type[Bundle]) -> Bundle:
@@ -88,6 +146,13 @@ VERBS = {
     ),
     "quality": Verb(
         "Measure jitter, spikes, gaps and sliding feet.", _check_options, _check, writes=False
+    ),
+    "convert": Verb(
+        "Write what armatures play, raw or clean, as BVH in centimetres, Y up.",
+        _convert_options,
+        _convert,
+        writes=False,
+        check=_check_targets,
     ),
 }
 """A new verb is a new entry here."""

@@ -1,8 +1,11 @@
 """The other end of job.py: a script for a bare Python, which has no bpy to misuse."""
 
 import importlib
+import os
 import pickle
+import shutil
 import sys
+import threading
 import traceback
 from collections.abc import Callable
 from pathlib import Path
@@ -39,7 +42,7 @@ def make_importable(extension: str, folder: Path) -> None:
 
 
 def reporter(folder: Path, protocol: ModuleType) -> Callable[..., None]:
-    """Return a Progress that prints now and then, and ends a solve whose Blender is gone."""
+    """Return a Progress that prints now and then."""
     spoken = -1.0
 
     def report(fraction: float, message: str = "") -> None:
@@ -47,12 +50,18 @@ def reporter(folder: Path, protocol: ModuleType) -> Callable[..., None]:
         if monotonic() - spoken < BETWEEN_REPORTS:
             return
         spoken = monotonic()
-        if not folder.exists():
-            sys.exit(1)
         print(protocol.progress_line(fraction, message), flush=True)
 
     return report
 
 
+def end_with_blender(folder: Path) -> None:
+    """Wait until the pipe from Blender closes, which it does however Blender ends."""
+    sys.stdin.buffer.read()
+    shutil.rmtree(folder, ignore_errors=True)
+    os._exit(1)
+
+
 if __name__ == "__main__":
+    threading.Thread(target=end_with_blender, args=(Path(sys.argv[1]),), daemon=True).start()
     main(Path(sys.argv[1]), sys.argv[2])

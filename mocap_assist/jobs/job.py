@@ -25,6 +25,8 @@ ONE_THREAD = {
     "OPENBLAS_NUM_THREADS": "1",
     "VECLIB_MAXIMUM_THREADS": "1",
 }
+# Neither what the user installed for a Python of his own, nor the script's folder is looked in.
+ALONE = ("-s", "-P")
 NO_WINDOW = getattr(subprocess, "CREATE_NO_WINDOW", 0)  # no console flashes up on Windows
 
 
@@ -67,8 +69,8 @@ class Job(Generic[Result]):
         (self._path / REQUEST).write_bytes(pickle.dumps(solve))
         with (self._path / LOG).open("wb") as log:
             self._process = subprocess.Popen(
-                [_python(), str(CHILD), str(self._path), EXTENSION],
-                stdin=subprocess.DEVNULL,
+                [_python(), *ALONE, str(CHILD), str(self._path), EXTENSION],
+                stdin=subprocess.PIPE,  # nothing is said: it closes when this process ends
                 stdout=log,
                 stderr=subprocess.STDOUT,
                 creationflags=NO_WINDOW,
@@ -91,6 +93,8 @@ class Job(Generic[Result]):
     def tidy_up(self) -> None:
         """Remove the job's folder once its process has ended."""
         self._process.wait()
+        if self._process.stdin is not None:
+            self._process.stdin.close()
         self._folder.cleanup()
 
     def result(self) -> Result:

@@ -12,11 +12,13 @@ from ...solvers.errors import InvalidMotionError
 from . import compat
 from .bone_channels import (
     animated_curves,
+    bone_path,
     location_curves,
     rotation_curves,
     sampled_rotation,
 )
 from .compat import Source
+from .curve_modifiers import act_on_keys
 from .curves import Channel, write_values
 from .rotation_modes import channels_from_quaternions
 from .take import ArmatureTake
@@ -75,6 +77,13 @@ def write_take(
         if take.channels[index].location_keyed and index in locations:
             _write(location_curves(bone, curves), take.frames, locations[index], types)
     return action, slot
+
+
+def count_modified(source: Source, bones: Collection[str]) -> int:
+    """Count the F-Curves of these bones whose modifiers change what their keys say."""
+    owned = tuple(bone_path(bone, "") for bone in bones)
+    curves = animated_curves(*source).items()
+    return sum(act_on_keys(each.curve) for (path, _), each in curves if path.startswith(owned))
 
 
 def put_to_use(

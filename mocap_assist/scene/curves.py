@@ -1,25 +1,31 @@
 """Keys of F-Curves in bulk, as arrays: never one key at a time."""
 
 from functools import cached_property
+from typing import Any
 
 import bpy
 import numpy as np
 from numpy.typing import NDArray
 
+from .curve_modifiers import Written, keep_outside
+
 Array = NDArray[np.float64]
-Rows = dict[str, NDArray[np.generic]]
 
 CONSTANT, LINEAR = 0, 1  # Blender's numbers for interpolation
 MEASURED, GENERATED = 0, 5  # and for its key types KEYFRAME and GENERATED
+AUTO_CLAMPED = 4  # and for that type of handle
 ON_FRAME = 1e-3  # frames; keys are 32-bit numbers, whose grain at frame 10,000 is this
 
 # Everything that a key is, with its Blender array length and the value of a new key.
 KEY = {
     "co": (2, 0.0), "handle_left": (2, 0.0), "handle_right": (2, 0.0),
     "interpolation": (1, LINEAR), "easing": (1, 0), "type": (1, MEASURED),
-    "handle_left_type": (1, 4), "handle_right_type": (1, 4),  # AUTO_CLAMPED
+    "handle_left_type": (1, AUTO_CLAMPED), "handle_right_type": (1, AUTO_CLAMPED),
     "back": (1, 1.70158), "amplitude": (1, 0.8), "period": (1, 4.1),
+    "select_control_point": (1, False), "select_left_handle": (1, False),
+    "select_right_handle": (1, False),
 }  # fmt: skip
+SELECTED = tuple(name for name in KEY if name.startswith("select"))
 
 
 class Channel:
@@ -77,45 +83,71 @@ def write_values(
 ) -> None:
     """Replace the keys from the first to the last of `frames` by one key on each of them.
 
-    Keys outside stay as they are. Modifiers go: the values were read through them.
+    Keys outside stay as they are, and so do modifiers there; within, the values were read
+    through the modifiers, which are not applied a second time. A new key is selected if the
+    key that it replaces was. Between new keys the curve goes straight by default: captured
+    keys lie one frame apart, where handles would only say what the next key says anyway.
     `types`, shape (n_frames,), are Blender's key types; without it all are MEASURED.
     """
-    for modifier in reversed(curve.modifiers):
-        curve.modifiers.remove(modifier)
     points = curve.keyframe_points
-    before, after = _kept_outside(points, frames)
-    points.clear()
-    points.add(len(before["co"]) + len(frames) + len(after["co"]))
+    old = _column(points, "co")
+    times = old[:, 0]
+    first, last = np.searchsorted(times, [frames[0] - ON_FRAME, frames[-1] + ON_FRAME])
+    keep_outside(curve, Written(frames[0], frames[-1], *_neighbours(times, first, last)))
     new = {
         "co": np.stack([frames, values], axis=1, dtype=np.float32, casting="same_kind"),
-        "interpolation": np.full((len(frames), 1), interpolation),
+        "interpolation": interpolation,
+        "type": MEASURED if types is None else types[:, None],
+        "handle_left_type": AUTO_CLAMPED,
+        "handle_right_type": AUTO_CLAMPED,
     }
-    if types is not None:
-        new["type"] = types[:, None]
-    alone = not (len(before["co"]) or len(after["co"]))
-    for name in new if alone else KEY:
-        width, usual = KEY[name]
-        rows = new.get(name, np.full((len(frames), width), usual)).astype(
-            _kind(name), copy=False
-        )
-        if not alone:
-            rows = np.concatenate([before[name], rows, after[name]])
-        points.foreach_set(name, rows.ravel())
+    replaced = times[first:last]
+    if len(replaced) == len(frames) and (np.abs(replaced - frames) <= ON_FRAME).all():
+        for name, rows in new.items():
+            whole = _column(points, name) if name != "co" else old
+            whole[first:last] = rows
+            points.foreach_set(name, whole.ravel())
+    else:
+        chosen = _chosen(points, times, frames)
+        _rebuild(points, first, last, new | dict.fromkeys(SELECTED, chosen[:, None]))
     curve.update()
 
 
-def _kept_outside(points: bpy.types.FCurveKeyframePoints, frames: Array) -> tuple[Rows, Rows]:
-    """Everything about the keys before and after the frames, by the name in KEY."""
-    start, stop = frames[0] - ON_FRAME, frames[-1] + ON_FRAME
-    if not len(points) or (points[0].co.x >= start and points[-1].co.x <= stop):
-        nothing = {name: np.empty((0, width)) for name, (width, _) in KEY.items()}
-        return nothing, nothing
-    whole = {name: _column(points, name) for name in KEY}
-    first, last = np.searchsorted(whole["co"][:, 0], [start, stop])
-    return (
-        {name: column[:first] for name, column in whole.items()},
-        {name: column[last:] for name, column in whole.items()},
-    )
+def _rebuild(
+    points: bpy.types.FCurveKeyframePoints, first: int, last: int, new: dict[str, Any]
+) -> None:
+    """Put new keys in the place of those from `first` to `last`, of which there are others."""
+    kept = {name: _column(points, name) for name in KEY}
+    n_new = len(new["co"])
+    n_keys = len(points) - (last - first) + n_new
+    points.clear()
+    points.add(n_keys)
+    for name, (width, usual) in KEY.items():
+        rows = np.empty((n_new, width), _kind(name))
+        rows[:] = new.get(name, usual)
+        whole = np.concatenate([kept[name][:first], rows, kept[name][last:]])
+        points.foreach_set(name, whole.ravel())
+
+
+def _chosen(
+    points: bpy.types.FCurveKeyframePoints, times: NDArray[np.generic], frames: Array
+) -> NDArray[np.bool_]:
+    """Tell which of the frames have a key that is selected, shape (n_frames,)."""
+    selected = _column(points, SELECTED[0])[:, 0]
+    if not selected.any():
+        return np.zeros(len(frames), bool)
+    marked = times[selected]
+    place = np.searchsorted(marked, frames - ON_FRAME).clip(max=len(marked) - 1)
+    return np.asarray(np.abs(marked[place] - frames) <= ON_FRAME)
+
+
+def _neighbours(
+    times: NDArray[np.generic], first: int, last: int
+) -> tuple[float | None, float | None]:
+    """Return when the keys next to those from `first` to `last` are, where there are any."""
+    before = float(times[first - 1]) if first else None
+    after = float(times[last]) if last < len(times) else None
+    return before, after
 
 
 def _column(points: bpy.types.FCurveKeyframePoints, name: str) -> NDArray[np.generic]:
@@ -127,4 +159,5 @@ def _column(points: bpy.types.FCurveKeyframePoints, name: str) -> NDArray[np.gen
 
 def _kind(name: str) -> type[np.generic]:
     """Blender's own kinds of number; any other takes five times as long."""
-    return np.float32 if isinstance(KEY[name][1], float) else np.uint8
+    usual = KEY[name][1]
+    return {float: np.float32, bool: np.bool_, int: np.uint8}[type(usual)]

@@ -1,7 +1,7 @@
 """Stick figures of an armature's actions, raw and clean, as plain arrays."""
 
 from dataclasses import dataclass
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import bpy
 import numpy as np
@@ -9,17 +9,20 @@ from numpy.typing import NDArray
 
 from ...solvers.motion.rotations import inverse, multiply, rotate
 from . import compat, history
-from .bone_channels import animated_curves, read_bone
+from .bone_channels import read_bone
 from .compat import Source
+from .key_store import Keys, curves_near, read_keys
 from .rig import Rig, read_rig
 from .take import BoneChannels
 
 Array = NDArray[np.float64]
 
-BLOCK = 2**19
-"""Poses of one bone that are read at once: 12 MB. Most takes are a single block."""
-N_KEPT = 4
-"""Blocks that are kept."""
+BLOCK = 2**13
+"""Poses of one bone that are worked out at once: so few that nobody waits for a drawing."""
+N_KEPT = 128
+"""Blocks that are kept, of 200 kB."""
+N_ACTIONS = 4
+"""Actions whose keys are kept: of 120 bones and 10,000 frames, 38 MB each."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -47,14 +50,18 @@ class Figures:
         return lines[np.isfinite(lines).all(axis=(1, 2))]
 
 
-def read_figures(armature: bpy.types.Object, source: Source, frames: range) -> Figures:
+def read_figures(
+    armature: bpy.types.Object, source: Source, frames: range, keys: Keys | None = None
+) -> Figures:
     """Pose the armature by an action alone, over some whole frames.
 
     As in reading takes, constraints, drivers, scale and the bones' inheritance options are
-    not looked at; the armature object's own place is left out.
+    not looked at; the armature object's own place is left out. `keys` are those of the action,
+    if they were read before.
     """
-    rig, curves = read_rig(armature), animated_curves(*source)
+    rig = read_rig(armature)
     grid = np.arange(frames.start, frames.stop, dtype=np.float64)
+    curves = curves_near(source, read_keys(source) if keys is None else keys, grid)
     channels = [read_bone(armature.pose.bones[bone], curves, grid) for bone in rig.bones]
     heads, tails = _pose(rig, channels)
     keyed = [
@@ -106,23 +113,39 @@ class _Key(NamedTuple):
 
 
 _kept: dict[_Key, Figures] = {}
+_keys: dict[tuple[int, int], Keys] = {}
 
 
 def figures_at(armature: bpy.types.Object, source: Source, frame: float) -> Figures:
-    """Return the figures around a frame; read once, then kept until `forget`."""
+    """Return the figures around a frame; keys are read once, then kept until `forget`."""
     action, slot = source
     frames = _block(action, frame, len(armature.data.bones))
     key = _Key(armature.session_uid, action.session_uid, slot.handle, frames)
     if key not in _kept:
-        while len(_kept) >= N_KEPT:
-            del _kept[next(iter(_kept))]
-        _kept[key] = read_figures(armature, source, frames)
+        _make_room(_kept, N_KEPT)
+        _kept[key] = read_figures(armature, source, frames, _keys_of(source))
     return _kept[key]
 
 
 def forget() -> None:
     """Read everything anew when it is drawn next."""
     _kept.clear()
+    _keys.clear()
+
+
+def _keys_of(source: Source) -> Keys:
+    action, slot = source
+    key = (action.session_uid, slot.handle)
+    if key not in _keys:
+        _make_room(_keys, N_ACTIONS)
+        _keys[key] = read_keys(source)
+    return _keys[key]
+
+
+def _make_room(store: dict[Any, Any], n_kept: int) -> None:
+    """Forget what was read first."""
+    while len(store) >= n_kept:
+        del store[next(iter(store))]
 
 
 def _block(action: bpy.types.Action, frame: float, n_bones: int) -> range:
@@ -137,21 +160,20 @@ def _block(action: bpy.types.Action, frame: float, n_bones: int) -> range:
 def _pose(rig: Rig, channels: list[BoneChannels]) -> tuple[Array, Array]:
     """Forward kinematics with bones that shift: heads and tails, (n_frames, n_bones, 3).
 
-    `turn` is a bone's turn out of its rest pose. Gaps spread downwards.
+    All bones of one generation are posed at once. `turns` are out of the rest pose. Gaps
+    spread downwards.
     """
-    n_frames = len(channels[0].rotations)
-    turns = np.empty((n_frames, len(rig.bones), 4))
-    heads, tails = (np.empty((n_frames, len(rig.bones), 3)) for _ in range(2))
-    still, origin = np.array([1.0, 0.0, 0.0, 0.0]), np.zeros(3)
-    for bone, parent in enumerate(rig.parents):
-        rest, each = rig.rest_rotations[bone], channels[bone]
-        own = multiply(multiply(rest, each.rotations), inverse(rest))
-        above = turns[:, parent] if parent >= 0 else still
-        base = heads[:, parent] if parent >= 0 else origin
-        hinge = rig.heads[parent] if parent >= 0 else origin
-        offset = rig.heads[bone] - hinge + rotate(rest, each.locations)
-        turns[:, bone] = multiply(above, own)
-        heads[:, bone] = base + rotate(above, offset)
-        arm = rotate(turns[:, bone], rig.tails[bone] - rig.heads[bone])
-        tails[:, bone] = heads[:, bone] + arm
-    return heads, tails
+    rest, parents = rig.rest_rotations, np.array(rig.parents)
+    own = np.stack([each.rotations for each in channels], axis=1)
+    own = multiply(multiply(rest, own), inverse(rest))
+    hinges = np.where(parents[:, None] < 0, 0.0, rig.heads[parents])
+    shifts = np.stack([each.locations for each in channels], axis=1)
+    offsets = rig.heads - hinges + rotate(rest, shifts)
+    turns, heads = own.copy(), offsets.copy()
+    generations = np.array([len(rig.chain_to(bone)) for bone in range(len(rig.bones))])
+    for generation in range(1, generations.max() + 1):
+        bones = np.flatnonzero(generations == generation)
+        above = turns[:, parents[bones]]
+        turns[:, bones] = multiply(above, own[:, bones])
+        heads[:, bones] = heads[:, parents[bones]] + rotate(above, offsets[:, bones])
+    return heads, heads + rotate(turns, rig.tails - rig.heads)

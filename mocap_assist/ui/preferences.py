@@ -130,11 +130,16 @@ class MOCAP_OT_reset_preferences(bpy.types.Operator):
 @bpy.app.handlers.persistent
 def _give_default(*_: object) -> None:
     """Let scenes that do not say where results go, do as the preferences say."""
-    wanted = preferred("result_as")
     for scene in bpy.data.scenes:
-        clean = scene.mocap_assist.clean
-        if wanted != Output.ACTION.name and not clean.is_property_set("result_as"):
-            clean.result_as = wanted
+        _give_scene_default(scene)
+
+
+@bpy.app.handlers.persistent
+def _give_scene_default(scene: bpy.types.Scene, *_: object) -> None:
+    """Do so for one scene, such as one that was just added."""
+    wanted, clean = preferred("result_as"), scene.mocap_assist.clean
+    if wanted != Output.ACTION.name and not clean.is_property_set("result_as"):
+        clean.result_as = wanted
 
 
 CLASSES = (MOCAP_AP_preferences, MOCAP_OT_reset_preferences)
@@ -145,10 +150,16 @@ def register() -> None:
     for each in CLASSES:
         bpy.utils.register_class(each)
     bpy.app.handlers.load_post.append(_give_default)
+    bpy.app.handlers.depsgraph_update_post.append(_give_scene_default)
+    # Blender hides the scenes from add-ons while it switches them on.
+    bpy.app.timers.register(_give_default, first_interval=0.0)
 
 
 def unregister() -> None:
     """Take them away; Blender keeps the values while it runs."""
+    if bpy.app.timers.is_registered(_give_default):
+        bpy.app.timers.unregister(_give_default)
+    bpy.app.handlers.depsgraph_update_post.remove(_give_scene_default)
     bpy.app.handlers.load_post.remove(_give_default)
     for each in reversed(CLASSES):
         bpy.utils.unregister_class(each)

@@ -2,11 +2,12 @@
 
 import os
 import signal
+import subprocess
+import sys
 import tempfile
 import time
 from functools import partial
 from pathlib import Path
-from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -97,87 +98,76 @@ def test_messages_in_the_log_are_told_from_progress(load, tmp_path):
     assert protocol.last_words(tmp_path) == "ImportError: no such module"
 
 
-@pytest.fixture
-def pressed(load, blank, monkeypatch):
-    """A button whose solve takes long, pressed in a Blender that pretends to have windows."""
-    modal = load("mocap_assist.solver_operator")
-    seen = SimpleNamespace(timers=[], status=[], reports=[], written=[])
-    manager = SimpleNamespace(
-        event_timer_add=lambda *_, **__: seen.timers.append("timer") or "timer",
-        event_timer_remove=seen.timers.remove,
-        modal_handler_add=lambda _: None,
-        mocap_assist_job=blank.context.window_manager.mocap_assist_job,
-        windows=[],
-    )
-    seen.context = SimpleNamespace(
-        window_manager=manager,
-        window=None,
-        workspace=SimpleNamespace(status_text_set=seen.status.append),
+class Expression:
+    """A function that can be sent to the child, which cannot import this file."""
+
+    def __init__(self, text):
+        self.text = text
+
+    def __reduce__(self):
+        return eval, (self.text,)
+
+
+def test_the_child_looks_for_modules_where_blender_does_and_nowhere_else(job):
+    asked = (
+        "lambda progress: (lambda sys: (sys.flags.no_user_site, sys.flags.safe_path,"
+        " sys.path))(__import__('sys'))"
     )
 
-    class Button(modal.SolverOperator):
-        bl_idname = "mocap_assist.test"
+    no_user_site, safe_path, path = job(Expression(asked)).result()
 
-        def prepare(self, context):
-            pass
-
-        def read(self, context):
-            return seen.solve
-
-        def write(self, context, result):
-            seen.written.append(result)
-            return "Done."
-
-        def report(self, kind, message):
-            seen.reports.append((kind, message))
-
-    seen.button = Button()
-    monkeypatch.setattr(modal, "in_background", lambda: False)
-    return seen
+    assert (no_user_site, safe_path) == (1, True)
+    expected = [Path(each).resolve() for each in sys.path if each]
+    assert [Path(each).resolve() for each in path[: len(expected)]] == expected
 
 
-def event(kind, value="NOTHING"):
-    return SimpleNamespace(type=kind, value=value)
+WAITING = """
+import sys, time
+from pathlib import Path
+sys.path.insert(0, {jobs!r})
+import child
+child.make_importable({package!r}, Path({extension!r}))
+from {package}.mocap_assist.jobs.job import Job
+
+class Expression:
+    def __reduce__(self):
+        return eval, ("lambda progress: __import__('time').sleep(100)",)
+
+running = Job(Expression())
+print(running._process.pid, flush=True)
+time.sleep(100)
+"""
 
 
-@pytest.mark.parametrize("key", ["ESC", "RIGHTMOUSE"])
-def test_escape_ends_the_solve_and_writes_nothing(pressed, load, problem, key):
-    pressed.solve = partial(load("solvers.denoising").denoise, problem(20_000))
-    before = folders()
+def test_the_child_ends_when_blender_is_killed(job, extension, tmp_path):
+    """Even in the middle of a step that reports no progress."""
+    folder = Path(extension.__file__).parent
+    script = WAITING.format(
+        jobs=str(folder / "mocap_assist" / "jobs"),
+        package=extension.__name__,
+        extension=str(folder),
+    )
+    environment = os.environ | {
+        "TMPDIR": str(tmp_path), "PYTHONPATH": os.pathsep.join(filter(None, sys.path)),
+    }  # fmt: skip
+    with subprocess.Popen(
+        [sys.executable, "-c", script], stdout=subprocess.PIPE, text=True, env=environment
+    ) as blender:
+        child = int(blender.stdout.readline())
+        assert is_running(child) and folders()
+        blender.kill()
 
-    assert pressed.button.invoke(pressed.context, None) == {"RUNNING_MODAL"}
-    state = pressed.context.window_manager.mocap_assist_job
-    assert state.running and pressed.status[-1] == "Starting 0%   Esc: cancel"
-    assert pressed.button.modal(pressed.context, event("TIMER")) == {"RUNNING_MODAL"}
-    assert pressed.button.modal(pressed.context, event("LEFTMOUSE", "PRESS")) == {
-        "RUNNING_MODAL"
-    }
-    assert pressed.button.modal(pressed.context, event(key, "PRESS")) == {"CANCELLED"}
-
-    assert pressed.written == [] and pressed.timers == [] and pressed.status[-1] is None
-    assert not state.running and folders() == before
-    assert pressed.reports == [({"INFO"}, "Cancelled.")]
-
-
-def test_a_finished_solve_is_written(pressed, load, problem):
-    pressed.solve = partial(load("solvers.denoising").denoise, problem(30))
-    pressed.button.invoke(pressed.context, None)
-
-    while (outcome := pressed.button.modal(pressed.context, event("TIMER"))) == {
-        "RUNNING_MODAL"
-    }:
+    for _ in range(200):
+        if not is_running(child) and not folders():
+            return
         time.sleep(0.05)
-
-    assert outcome == {"FINISHED"} and pressed.reports == [({"INFO"}, "Done.")]
-    assert pressed.written[0].recording.n_frames == 30
-    assert pressed.timers == [] and pressed.status[-1] is None
+    os.kill(child, signal.SIGKILL)
+    pytest.fail("the child goes on without Blender")
 
 
-def test_closing_blender_ends_the_solve(pressed, load, problem):
-    pressed.solve = partial(load("solvers.denoising").denoise, problem(20_000))
-    before = folders()
-    pressed.button.invoke(pressed.context, None)
-
-    pressed.button.cancel(pressed.context)
-
-    assert pressed.written == [] and folders() == before
+def is_running(process):
+    try:
+        status = Path(f"/proc/{process}/stat").read_text()
+    except FileNotFoundError:
+        return False
+    return status.rpartition(")")[2].split()[0] != "Z"

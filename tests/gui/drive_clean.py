@@ -10,8 +10,10 @@ pytest's: pictures are for eyes. What can be asserted is.
 
 import json
 import tempfile
+import webbrowser
 from importlib import import_module
 from pathlib import Path
+from urllib.parse import unquote, urlparse
 
 import bgui
 import bpy
@@ -20,6 +22,7 @@ PACKAGE = "bl_ext.user_default.mocap_assist"
 SECONDS = 8.0  # of the take
 LOST = ("RightArm", range(120, 180))
 ROW = 23  # pixels from one row of a panel to the next
+EDITORS = {"FCURVES": "GRAPH_EDITOR", "DOPESHEET": "DOPESHEET_EDITOR"}
 UNTIL_DONE = 600  # half seconds
 
 
@@ -129,6 +132,60 @@ def clean(armature):
     bgui.shot("4-cleaned.png")
 
 
+def the_redo_panel(armature):
+    """F9 offers what needs no new solve; a change there is applied to the same recording."""
+    bgui.move(500, 500)
+    yield 0.3
+    with bgui.override("WINDOW"):  # the function keys do not reach Blender here
+        bpy.ops.screen.redo_last("INVOKE_DEFAULT")
+    yield 1.5
+    bgui.shot("11-redo.png")
+    yield from bgui.dismiss()
+    with bgui.override("WINDOW"):
+        assert bpy.context.window_manager.operators[-1].bl_idname == "MOCAP_ASSIST_OT_denoise"
+
+
+def the_manual():
+    """F1 over a button opens its chapter of the page that came with the extension."""
+    opened, really = [], webbrowser.open
+    webbrowser.open = lambda address, *_, **__: opened.append(address) or True
+    try:
+        yield from bgui.scan()
+        yield from bgui.hover(*bgui.at("mocap_assist.denoise"))
+        bgui.shot("12-tooltip.png")
+        with bgui.override():
+            bpy.ops.wm.doc_view_manual_ui_context()
+        yield 1.0
+    finally:
+        webbrowser.open = really
+    page, _, chapter = opened[-1].partition("#")
+    assert chapter == "clean", opened
+    assert Path(unquote(urlparse(page).path)).is_file(), opened
+
+
+def other_editors():
+    """The same tab in the Graph Editor and in the Dope Sheet."""
+    view = bgui.area()
+    for number, (editor, kind) in enumerate(EDITORS.items(), start=13):
+        view.ui_type = editor
+        yield 0.5
+        view.spaces.active.show_region_ui = True
+        sidebar = next(each for each in view.regions if each.type == "UI")
+        for _ in range(40):
+            bgui.redraw()
+            yield 0.1
+            try:
+                sidebar.active_panel_category = "Mocap"
+                break
+            except TypeError:  # the tabs exist once they have been drawn
+                continue
+        assert view.type == kind and sidebar.active_panel_category == "Mocap"
+        yield from settle()
+        bgui.shot(f"{number}-{editor.lower()}.png")
+    view.ui_type = "VIEW_3D"
+    yield 0.5
+
+
 def clean_again_with_other_settings(armature):
     """The second press takes what the sidebar says now, not what the first one took."""
     settings = bpy.context.scene.mocap_assist.clean
@@ -229,9 +286,13 @@ def steps():
     bgui.shot("1-panels.png")
     yield from cancel_leaves_the_scene_as_it_was(armature)
     yield from clean(armature)
+    yield from the_redo_panel(armature)
+    yield from the_manual()
     yield from revert_and_compare(armature)
     yield from check()
     yield from clean_again_with_other_settings(armature)
+    yield from other_editors()
+    yield from bgui.open_sidebar("Mocap")
     yield from wide_sidebar_with_examples()
     yield from the_preferences()
 

@@ -29,3 +29,23 @@ def clean(blank):
         return blank.context.object.animation_data.action
 
     return press
+
+
+@pytest.fixture
+def dancer(make_armature, animate, blank):
+    """A figure of 13 bones in smooth motion for ten seconds at 30 Hz."""
+    armature = make_armature()
+    animate(armature, frames=range(1, 301))
+    blank.context.scene.render.fps = 30
+    return armature
+
+
+@pytest.fixture
+def bad_arm(dancer):
+    """Two seconds of it without the left arm, from frame 101 on."""
+    bag = dancer.animation_data.action.layers[0].strips[0].channelbags[0]
+    for curve in bag.fcurves:
+        if "LeftArm" in curve.data_path:
+            for key in list(curve.keyframe_points)[100:160][::-1]:
+                curve.keyframe_points.remove(key)
+    return dancer

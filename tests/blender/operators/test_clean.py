@@ -197,3 +197,52 @@ def test_the_redo_panel_does_not_solve_again(noisy, clean, load, monkeypatch, bl
     clean(strength=0.8, result_as="NLA_TRACK")
 
     assert not solved
+
+
+def test_noise_in_the_rest_of_the_action_stays(noisy, clean, blank, capfd):
+    scene, action = blank.context.scene, noisy.animation_data.action
+    path = 'pose.bones["Head"].rotation_euler'
+
+    def head(action):
+        bag = action.layers[0].strips[0].channelbag(action.slots[0])
+        return bag.fcurves.find(path, index=0)
+
+    head(action).modifiers.new("NOISE").strength = 0.5
+    scene.frame_start, scene.frame_end = 1, 30
+
+    result = clean(frame_range="SCENE")
+
+    outside = range(31, 61)
+    assert_allclose(
+        [head(result).evaluate(frame) for frame in outside],
+        [head(action).evaluate(frame) for frame in outside],
+        atol=1e-5,
+    )
+    assert "The modifiers of 1 curves are part of the new keys now." in capfd.readouterr().out
+
+
+def test_locations_of_bones_come_nearer_to_the_truth(make_armature, animate, clean, rng):
+    armature = make_armature()
+    action = animate(armature, range(1, 91), locations=True)
+
+    def locations(action):
+        bag = action.layers[0].strips[0].channelbag(action.slots[0])
+        return {
+            (curve.data_path, curve.array_index): curve.keyframe_points
+            for curve in bag.fcurves
+            if curve.data_path.endswith("location")
+            and not armature.pose.bones[curve.data_path.split('"')[1]].bone.use_connect
+        }
+
+    truth = {name: [key.co.y for key in keys] for name, keys in locations(action).items()}
+    for keys in locations(action).values():
+        for key in keys:
+            key.co.y += rng.normal(scale=0.02)
+
+    after = locations(clean())
+
+    errors = {
+        name: np.std(np.array([key.co.y for key in after[name]]) - values)
+        for name, values in truth.items()
+    }
+    assert len(errors) >= 15 and max(errors.values()) < 0.015

@@ -1,6 +1,8 @@
 """What guides Clean besides the take: contacts, limits and examples."""
 
+import gc
 import json
+import warnings
 
 import numpy as np
 import pytest
@@ -28,6 +30,82 @@ def test_the_animators_contacts_are_used_and_kept(noisy, clean, blank, load):
         10:20, motion.skeleton.index("LeftFoot_end")
     ]
     assert np.ptp(foot[:, :2], axis=0).max() < 1e-3
+
+
+@pytest.fixture
+def walker(load, blank, tmp_path):
+    """A walk of three seconds that shakes, imported from BVH."""
+    samples = load("solvers.samples")
+    walk = samples.walking_gait(samples.GaitSettings(duration=3.0, frame_rate=30.0))
+    shaking = samples.corrupt(walk, samples.CorruptionSettings(jitter=1.0, root_jitter=0.002))
+    load("solvers.recordings").write_bvh(shaking, tmp_path / "walk.bvh")
+    with warnings.catch_warnings(action="ignore"):  # Blender's importer leaves its file open
+        blank.ops.import_anim.bvh(
+            filepath=str(tmp_path / "walk.bvh"), global_scale=0.01, update_scene_fps=True
+        )
+        gc.collect()
+    return blank.context.object
+
+
+def contact_curve(action):
+    bag = action.layers[0].strips[0].channelbag(action.slots[0])
+    return bag.fcurves.find('["mocap_contact_left"]', index=0)
+
+
+def test_detected_contacts_are_detected_anew_until_one_is_edited(walker, clean, load, blank):
+    contacts = load("mocap_assist.scene.contacts")
+    played = {"frames": np.arange(1.0, walker.animation_data.action.frame_range[1] + 1.0)}
+    result = clean(plant_feet=True)
+    keys = contact_curve(result).keyframe_points
+    assert len(keys) > 4 and {key.type for key in keys} == {"GENERATED"}
+    source = (result, result.slots[0])
+    assert contacts.animators_contacts(source, **played) is None
+    assert contacts.read_contacts(*source, **played).any()
+
+    second = clean(plant_feet=True)
+    assert contacts.animators_contacts((second, second.slots[0]), **played) is None
+    edited = contact_curve(second)
+    edited.keyframe_points[0].co.y = 1.0 - edited.keyframe_points[0].co.y
+    edited.update()
+    mine = contacts.read_contacts(second, second.slots[0], **played)
+    third = clean(plant_feet=True)
+    assert (contacts.read_contacts(third, third.slots[0], **played) == mine).all()
+    assert (contacts.animators_contacts((third, third.slots[0]), **played) == mine).all()
+
+
+def test_plant_feet_detects_anew_too_until_a_key_is_edited(walker, load, blank):
+    contacts = load("mocap_assist.scene.contacts")
+    played = {"frames": np.arange(1.0, walker.animation_data.action.frame_range[1] + 1.0)}
+    blank.ops.mocap_assist.plant_feet()
+    first = walker.animation_data.action
+    edited = contact_curve(first)
+    edited.keyframe_points.remove(edited.keyframe_points[1])
+    edited.update()
+    mine = contacts.read_contacts(first, first.slots[0], **played)
+
+    blank.ops.mocap_assist.plant_feet()
+
+    second = walker.animation_data.action
+    assert second != first
+    assert (contacts.read_contacts(second, second.slots[0], **played) == mine).all()
+
+
+def test_contacts_of_the_animator_stay_his_when_other_frames_are_cleaned(
+    walker, clean, load, blank
+):
+    contacts = load("mocap_assist.scene.contacts")
+    scene = blank.context.scene
+    scene.frame_start, scene.frame_end = 1, 45
+    first = clean(plant_feet=True, frame_range="SCENE")
+    edited = contact_curve(first)
+    edited.keyframe_points[0].co.y = 1.0 - edited.keyframe_points[0].co.y
+    scene.frame_start, scene.frame_end = 46, 90
+
+    both = clean(plant_feet=True, frame_range="SCENE")
+
+    kept = contacts.animators_contacts((both, both.slots[0]), np.arange(1.0, 91.0))
+    mine = contacts.read_contacts(first, first.slots[0], np.arange(1.0, 46.0))
+    assert kept is not None and (kept[:45] == mine).all()
 
 
 def test_limit_constraints_are_kept(noisy, clean, blank, keys_of):

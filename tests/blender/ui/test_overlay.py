@@ -79,6 +79,39 @@ def test_a_long_action_is_read_in_blocks(overlay, actor, monkeypatch):
     assert [len(block.heads) for block in blocks] == [25, 25, 10]
 
 
+def test_keys_are_read_once_however_many_blocks_are_drawn(overlay, actor, monkeypatch):
+    whole = overlay.read_figures(actor, source_of(actor), range(1, 61))
+    read, read_keys = [], overlay.read_keys
+    monkeypatch.setattr(overlay, "BLOCK", 10 * len(actor.data.bones))
+    monkeypatch.setattr(
+        overlay, "read_keys", lambda source: read.append(source) or read_keys(source)
+    )
+
+    for frame in (5, 15, 25, 60, 5):
+        block = overlay.figures_at(actor, source_of(actor), frame)
+        assert_allclose(block.segments(frame), whole.segments(frame), atol=1e-6)
+
+    assert read == [source_of(actor)]
+
+
+@pytest.mark.parametrize("length", [1, 7, 25])
+def test_a_gap_is_one_in_blocks_of_any_length(overlay, actor, monkeypatch, length):
+    action, slot = source_of(actor)
+    for curve in action.layers[0].strips[0].channelbag(slot).fcurves:
+        if '"LeftArm"' in curve.data_path:
+            for key in reversed(curve.keyframe_points):
+                if 10 <= key.co.x < 50:
+                    curve.keyframe_points.remove(key)
+            curve.update()
+    whole = overlay.read_figures(actor, (action, slot), range(1, 61))
+    monkeypatch.setattr(overlay, "BLOCK", length * len(actor.data.bones))
+
+    for frame in (1, 9, 10, 30, 49, 50, 60):
+        block = overlay.figures_at(actor, (action, slot), frame)
+        assert_allclose(block.segments(frame), whole.segments(frame), atol=1e-6)
+    assert len(whole.segments(30)) < len(whole.segments(9))
+
+
 def test_raw_and_clean_are_found_from_either(blank, load, overlay, actor):
     raw = actor.animation_data.action
     assert overlay.raw_and_clean(actor) == ((raw, raw.slots[0]), None)
@@ -96,7 +129,9 @@ def test_what_is_kept_holds_nothing_of_blenders(overlay, actor):
 
     ((key, figures),) = overlay._kept.items()
 
+    (keys,) = overlay._keys.values()
     assert all(type(part) in {int, range} for part in key)
+    assert all(type(each) is np.ndarray for each in keys.values())
     assert all(type(name) is str for name in figures.bones)
 
 
@@ -132,9 +167,11 @@ def test_playing_on_keeps_what_was_read(blank, overlay, actor):
     assert len(overlay._kept) == 1
 
 
-def test_only_so_much_is_kept(overlay, actor, animate):
+def test_only_so_much_is_kept(overlay, actor, animate, monkeypatch):
+    monkeypatch.setattr(overlay, "N_KEPT", 5)
     for _ in range(overlay.N_KEPT + 3):
         animate(actor)
         overlay.figures_at(actor, source_of(actor), 1)
 
     assert len(overlay._kept) == overlay.N_KEPT
+    assert len(overlay._keys) == overlay.N_ACTIONS

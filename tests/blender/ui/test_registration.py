@@ -75,6 +75,34 @@ def test_scenes_without_a_choice_put_results_where_the_preferences_say(blank, pr
     assert bpy.context.scene.mocap_assist.clean.result_as == "NLA_TRACK"
 
 
+def test_so_does_a_scene_that_is_added(blank, preferences):
+    preferences.result_as = "NLA_TRACK"
+
+    bpy.ops.scene.new(type="EMPTY")
+    bpy.context.scene.collection.objects.link(bpy.data.objects.new("Anything", None))
+    bpy.context.view_layer.update()
+
+    assert bpy.context.scene.name == "Scene.001"
+    assert bpy.context.scene.mocap_assist.clean.result_as == "NLA_TRACK"
+
+
+def test_so_does_the_open_scene_when_the_extension_is_switched_on(
+    blank, extension, load, request
+):
+    extension.unregister()
+    module = load("mocap_assist.ui.preferences")
+    give = module._give_default
+    assert not bpy.app.timers.is_registered(give)
+    extension.register()
+    request.addfinalizer(bpy.ops.mocap_assist.reset_preferences)
+    module.preferences().result_as = "NLA_TRACK"
+
+    assert bpy.app.timers.is_registered(give)  # timers run only where there is a window
+    give()
+
+    assert bpy.context.scene.mocap_assist.clean.result_as == "NLA_TRACK"
+
+
 def test_a_scene_that_has_its_choice_keeps_it(blank, preferences, load):
     preferences.result_as = "NLA_TRACK"
     bpy.context.scene.mocap_assist.clean.result_as = "ACTION"

@@ -1,0 +1,85 @@
+"""The one solve that runs beside Blender's work: shown while it runs, ended with its file."""
+
+from collections.abc import Callable
+from typing import Any
+
+import bpy
+from bpy.app import handlers
+
+from .jobs.job import Job
+
+BETWEEN_LOOKS = 0.1  # seconds
+BUSY = (
+    "Another solve is running. Let it end, or press Esc in the window in which it was started."
+)
+
+_on: list["Watch"] = []
+
+
+class Watch:
+    """A job, and what the status bar and the sidebar say about it until it ends."""
+
+    def __init__(self, context: bpy.types.Context, solve: Callable[..., Any]) -> None:
+        self.job: Job[Any] = Job(solve)
+        manager = context.window_manager
+        self._timer = manager.event_timer_add(BETWEEN_LOOKS, window=context.window)
+        _on.append(self)
+        self.show(context, 0.0, "Starting")
+
+    @property
+    def is_on(self) -> bool:
+        """Whether it is still shown; not after another file was loaded."""
+        return self in _on
+
+    def show(self, context: bpy.types.Context, fraction: float, message: str) -> None:
+        """Say how far the job is."""
+        state = context.window_manager.mocap_assist_job
+        state.running, state.fraction, state.message = True, fraction, message
+        context.workspace.status_text_set(f"{message} {fraction:.0%}   Esc: cancel")
+        for window in context.window_manager.windows:
+            for area in window.screen.areas:
+                area.tag_redraw()
+
+    def end(self, context: bpy.types.Context) -> None:
+        """Show nothing more."""
+        _on.remove(self)
+        context.window_manager.event_timer_remove(self._timer)
+        context.window_manager.mocap_assist_job.running = False
+        context.workspace.status_text_set(None)
+
+    def abandon(self, context: bpy.types.Context) -> None:
+        """End the job too, whatever it has found."""
+        self.job.cancel()
+        self.job.tidy_up()
+        self.end(context)
+
+
+def why_busy() -> str:
+    """Return why no other solve can start, or nothing."""
+    return BUSY if _on else ""
+
+
+@handlers.persistent
+def _abandon_all(*_: object) -> None:
+    while _on:
+        _on[-1].abandon(bpy.context)
+
+
+@handlers.persistent
+def _nothing_runs(*_: object) -> None:
+    """A file that was saved while a solve ran says that it still does."""
+    for manager in bpy.data.window_managers:
+        manager.mocap_assist_job.running = False
+
+
+def register() -> None:
+    """End a solve before the file that it works on is replaced."""
+    handlers.load_pre.append(_abandon_all)
+    handlers.load_post.append(_nothing_runs)
+
+
+def unregister() -> None:
+    """End it with the extension, too: Blender forgets the button without a word."""
+    _abandon_all()
+    handlers.load_post.remove(_nothing_runs)
+    handlers.load_pre.remove(_abandon_all)

@@ -1,0 +1,268 @@
+"""A button that was pressed in a window waits for its solve; here Blender pretends to."""
+
+import tempfile
+import time
+from pathlib import Path
+from types import SimpleNamespace
+
+import pytest
+
+BUSY = "Another solve is running"
+
+
+@pytest.fixture(autouse=True)
+def own_temporary_folder(tmp_path, monkeypatch):
+    """Others that solve on this machine at the same time leave their folders elsewhere."""
+    monkeypatch.setattr(tempfile, "tempdir", str(tmp_path))
+
+
+def folders():
+    return set(Path(tempfile.gettempdir()).glob("mocap_assist_*"))
+
+
+@pytest.fixture
+def window(load, blank, monkeypatch):
+    """The context that a button gets there, and what it does to it."""
+    monkeypatch.setattr(load("mocap_assist.solver_operator"), "in_background", lambda: False)
+    monkeypatch.setattr(load("mocap_assist.redo"), "_last", {})  # every solve takes a while
+    seen = SimpleNamespace(timers=[], status=[], reports=[])
+    seen.job = blank.context.window_manager.mocap_assist_job
+    seen.context = SimpleNamespace(
+        scene=blank.context.scene,
+        view_layer=blank.context.view_layer,
+        window=None,
+        window_manager=SimpleNamespace(
+            event_timer_add=lambda *_, **__: seen.timers.append("timer") or "timer",
+            event_timer_remove=seen.timers.remove,
+            modal_handler_add=lambda _: None,
+            mocap_assist_job=seen.job,
+            windows=[],
+        ),
+        workspace=SimpleNamespace(status_text_set=seen.status.append),
+    )
+    return seen
+
+
+@pytest.fixture
+def make_button(load, window):
+    """Make the acts of a button, apart from what only Blender can call."""
+    operator = load("mocap_assist.solver_operator").SolverOperator
+
+    def make(name, settings):
+        acts = load("operators." + name)
+        kind = next(each for each in vars(acts).values() if hasattr(each, "read_scene"))
+
+        class Button(operator):
+            bl_idname = kind.bl_idname
+            why_not, read_scene = kind.why_not, kind.read_scene
+            write_scene = kind.write_scene
+            poll_message_set = window.reports.append
+
+            def prepare(self, context):
+                pass
+
+            def settings(self):
+                return settings
+
+            def report(self, kind, message):
+                window.reports.append((kind, message))
+
+        return Button()
+
+    make.operator = operator
+    return make
+
+
+@pytest.fixture
+def press_clean(make_button, window, load):
+    """Press Clean, without feet; return the button, which waits."""
+    choices = load("mocap_assist.clean_choices")
+    denoising = load("solvers.denoising")
+
+    def press(**chosen):
+        settings = choices.CleanSettings(
+            choices.CleanChoices(plant_feet=False, **chosen),
+            denoising.DenoiseSettings(),
+            denoising.PlantSettings(),
+        )
+        button = make_button("denoise", settings)
+        assert button.invoke(window.context, None) == {"RUNNING_MODAL"}
+        return button
+
+    return press
+
+
+def event(kind, value="NOTHING"):
+    return SimpleNamespace(type=kind, value=value)
+
+
+def wait(button, window):
+    while (outcome := button.modal(window.context, event("TIMER"))) == {"RUNNING_MODAL"}:
+        time.sleep(0.05)
+    return outcome
+
+
+@pytest.mark.parametrize("key", ["ESC", "RIGHTMOUSE"])
+def test_escape_ends_the_solve_and_writes_nothing(noisy, press_clean, window, blank, key):
+    actions = blank.data.actions.keys()
+
+    button = press_clean()
+
+    assert window.job.running and window.status[-1] == "Starting 0%   Esc: cancel"
+    for other in (event("TIMER"), event("LEFTMOUSE", "PRESS")):
+        assert button.modal(window.context, other) == {"RUNNING_MODAL"}
+    assert button.modal(window.context, event(key, "PRESS")) == {"CANCELLED"}
+    assert blank.data.actions.keys() == actions
+    assert window.timers == [] and window.status[-1] is None
+    assert not window.job.running and folders() == set()
+    assert window.reports == [({"INFO"}, "Cancelled.")]
+
+
+def test_the_result_goes_to_the_armature_that_was_read(
+    noisy, make_armature, animate, press_clean, window, blank
+):
+    button = press_clean()
+    other = make_armature(name="Other")  # it is active now, as a second window would have it
+    untouched = animate(other)
+    scene = window.context.scene
+    window.context.scene = blank.data.scenes.new("another")
+
+    assert wait(button, window) == {"FINISHED"}
+
+    assert noisy.animation_data.action.name == "walk.clean"
+    assert other.animation_data.action == untouched
+    assert blank.context.scene == scene and window.reports[-1][1].startswith("walk.clean")
+    assert window.timers == [] and window.status[-1] is None and not window.job.running
+
+
+def test_what_is_adjusted_afterwards_is_adjusted_on_that_armature(
+    noisy, make_armature, animate, press_clean, window
+):
+    button = press_clean()
+    other = make_armature(name="Other")
+    untouched = animate(other)
+    wait(button, window)
+
+    assert button.execute(window.context) == {"FINISHED"}
+
+    assert noisy.animation_data.action.name == "walk.clean.001"
+    assert other.animation_data.action == untouched
+
+
+def test_bones_that_are_selected_meanwhile_are_not_written(
+    noisy, press_clean, window, load, keys_of
+):
+    compat, bones = load("mocap_assist.scene.compat"), load("mocap_assist.clean_choices").Bones
+    before = keys_of(noisy.animation_data.action)
+    for bone in noisy.pose.bones:
+        compat.select_bone(bone, bone.name == "Head")
+    button = press_clean(bones=bones.SELECTED)
+    for bone in noisy.pose.bones:
+        compat.select_bone(bone, bone.name == "Spine")
+
+    assert wait(button, window) == {"FINISHED"}
+
+    after = keys_of(noisy.animation_data.action)
+    changed = {path for slot, path, index in after
+               if after[slot, path, index] != before[slot, path, index]}  # fmt: skip
+    assert changed == {'pose.bones["Head"].rotation_euler'}
+
+
+def move_a_key(bpy, armature):
+    curve = armature.animation_data.action.layers[0].strips[0].channelbags[0].fcurves[0]
+    curve.keyframe_points[10].co.y += 0.1
+
+
+def play_another(bpy, armature):
+    action = armature.animation_data.action.copy()
+    armature.animation_data.action = action
+    move_a_key(bpy, armature)
+
+
+def turn_the_rig(bpy, armature):
+    armature.rotation_euler.z += 1.0
+
+
+@pytest.mark.parametrize("change", [move_a_key, play_another, turn_the_rig])
+def test_what_was_changed_meanwhile_is_not_overwritten(
+    noisy, press_clean, window, blank, change
+):
+    button = press_clean()
+    change(blank, noisy)
+    action, actions = noisy.animation_data.action, blank.data.actions.keys()
+
+    assert wait(button, window) == {"CANCELLED"}
+
+    assert noisy.animation_data.action == action and blank.data.actions.keys() == actions
+    kind, said = window.reports[-1]
+    assert kind == {"ERROR"} and "Actor was changed during the solve; nothing was" in said
+
+
+def test_an_armature_that_was_deleted_meanwhile_is_said(noisy, press_clean, window, blank):
+    button = press_clean()
+    blank.data.objects.remove(noisy)
+
+    assert wait(button, window) == {"CANCELLED"}
+
+    assert "Actor or its scene was deleted during the solve" in window.reports[-1][1]
+
+
+def test_one_solve_at_a_time(noisy, press_clean, window, blank):
+    button = press_clean()
+
+    for name in ("denoise", "measure_quality", "plant_feet", "learn_patterns"):
+        assert not getattr(blank.ops.mocap_assist, name).poll()
+    with pytest.raises(RuntimeError, match=BUSY):
+        blank.ops.mocap_assist.measure_quality()
+
+    button.modal(window.context, event("ESC", "PRESS"))
+    assert blank.ops.mocap_assist.measure_quality.poll()
+
+
+def test_closing_its_window_ends_the_solve(noisy, press_clean, window, blank):
+    button = press_clean()
+
+    button.cancel(window.context)
+    button.cancel(window.context)
+
+    assert folders() == set() and window.timers == [] and not window.job.running
+    assert blank.ops.mocap_assist.denoise.poll()
+
+
+@pytest.fixture
+def real_manager(window, blank, load, monkeypatch):
+    """Let what ends by itself, without the button's context, find the pretended window."""
+    found = SimpleNamespace(**vars(load("mocap_assist.watch").bpy))
+    found.context = window.context
+    monkeypatch.setattr(load("mocap_assist.watch"), "bpy", found)
+
+
+def test_another_file_ends_the_solve(noisy, press_clean, window, blank, real_manager):
+    button = press_clean()
+
+    blank.ops.wm.read_homefile(use_empty=True, use_factory_startup=True)
+
+    assert folders() == set() and window.timers == []
+    assert not blank.context.window_manager.mocap_assist_job.running
+    assert button.modal(window.context, event("TIMER")) == {"CANCELLED"}
+
+
+def test_switching_the_extension_off_ends_the_solve(
+    noisy, press_clean, window, extension, blank, real_manager
+):
+    press_clean()
+
+    extension.unregister()
+    extension.register()
+
+    assert folders() == set() and window.timers == []
+    assert not blank.context.window_manager.mocap_assist_job.running
+    assert blank.ops.mocap_assist.denoise.poll()
+
+
+def test_a_file_saved_during_a_solve_does_not_say_for_ever_that_it_runs(blank, load):
+    blank.context.window_manager.mocap_assist_job.running = True
+
+    blank.ops.wm.read_homefile(use_empty=True, use_factory_startup=True)
+
+    assert not blank.context.window_manager.mocap_assist_job.running
