@@ -16,6 +16,7 @@ from .noise import interpolated
 Array = NDArray[np.float64]
 
 NEAR_MULTIPLE = 0.02
+"""Part by which a frame rate may miss a multiple of another and still count as one."""
 
 
 def encode_examples(

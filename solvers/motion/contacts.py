@@ -132,6 +132,11 @@ def foot_points(skeleton: Skeleton, humanoid: HumanoidMap) -> NDArray[np.intp]:
     """Return the joints that stand: rows left and right, columns ankle and toes.
 
     Without a joint for the toes, the end site of the foot stands for them, or the ankle again.
+
+    Raises
+    ------
+    InvalidMotionError
+        The skeleton has not two feet.
     """
     joints = humanoid.indices(skeleton)
     missing = [role for role in ("leftFoot", "rightFoot") if role not in joints]
