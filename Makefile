@@ -56,13 +56,27 @@ test-blender-5.2: optional-5.2 zip  ## the installed zip, in Blender 5.2
 
 # --- What there is to see ---
 
-.PHONY: demo bench-denoise
+.PHONY: demo docs bench-denoise bench-feet bench-bvh bench-scene
 demo: .venv-4.5/ready zip  ## clean a sample, or CLIP=path.bvh, in Blender 4.5: build/demo
 	@mkdir -p build/demo
 	MOCAP_ASSIST_ZIP=$(ZIP) $(AT_MOST) $(PYTHON_4.5) .ci/demo.py build/demo $(if $(CLIP),"$(CLIP)")
 
-bench-denoise: .venv-4.5/ready  ## measure denoising against its peers; ARGUMENTS=--help
+docs: .venv-4.5/ready  ## the tables of settings and the pictures in README.md and docs
+	$(PYTHON_4.5) .ci/write_docs.py --pictures
+
+# Each prints tables; with ARGUMENTS=--docs it rewrites its own part of docs/benchmarks.md, and
+# ARGUMENTS=--help tells what else there is.
+bench-denoise: .venv-4.5/ready  ## measure denoising and gap filling against peers
 	$(PYTHON_4.5) -m tests.benchmarks.bench_denoise $(ARGUMENTS)
+
+bench-feet: .venv-4.5/ready  ## measure planting of feet against pinning them
+	$(PYTHON_4.5) -m tests.benchmarks.bench_feet $(ARGUMENTS)
+
+bench-bvh: .venv-4.5/ready  ## measure reading of BVH against Blender's importer
+	$(PYTHON_4.5) -m tests.benchmarks.bench_bvh_import $(ARGUMENTS)
+
+bench-scene: .venv-4.5/ready  ## measure reading and writing of actions of 120 bones
+	$(PYTHON_4.5) -m tests.benchmarks.bench_scene_io $(ARGUMENTS)
 
 # --- The extension ---
 
@@ -84,12 +98,12 @@ environments: libraries  ## .venv-4.5 and, where there is a Python 3.13, .venv-5
 
 optional-5.2:
 	@if .ci/find_python 3.13 >/dev/null; then $(MAKE) --no-print-directory .venv-5.2/ready; \
-	else echo "$(NO_5.2)"; fi
+	elif [ ! -e .venv-5.2/ready ]; then echo "$(NO_5.2)"; fi
 
 libraries:
 	@python=$$(.ci/find_python 3.11) || { echo "Stopped: $(call NO_PYTHON,3.11)."; \
 	    echo "On Debian and Ubuntu: sudo apt-get install python3.11-venv"; exit 1; }; \
-	$$python .ci/check_libraries.py $(INSTALL_LIBRARIES)
+	"$$python" .ci/check_libraries.py $(INSTALL_LIBRARIES)
 
 .venv-4.5/ready: PYTHON := 3.11
 .venv-5.2/ready: PYTHON := 3.13

@@ -1,7 +1,5 @@
 """What every test may ask for."""
 
-from pathlib import Path
-
 import numpy as np
 import pytest
 from hypothesis import settings
@@ -9,24 +7,11 @@ from hypothesis import settings
 from solvers.motion import Motion, Skeleton
 from solvers.motion.rotations import quaternion_from_rotation_vector
 
-RECORDINGS = Path(__file__).resolve().parents[1].parent / "shared" / "data"
+pytest_plugins = ("common_fixtures",)
 
 # The same examples every time, and no clock: a busy machine must not fail a test.
 settings.register_profile("steady", deadline=None, derandomize=True, database=None)
 settings.load_profile("steady")
-
-
-@pytest.fixture
-def rng() -> np.random.Generator:
-    return np.random.default_rng(20240229)
-
-
-@pytest.fixture(scope="session")
-def recordings() -> Path:
-    """The folder of real recordings; tests that need it are skipped where it is absent."""
-    if not RECORDINGS.is_dir():
-        pytest.skip(f"no recordings at {RECORDINGS}")
-    return RECORDINGS
 
 
 @pytest.fixture

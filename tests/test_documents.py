@@ -7,6 +7,7 @@ from pathlib import Path
 
 import pytest
 
+from solvers.command_line.run import run
 from solvers.command_line.verbs import VERBS
 
 ROOT = Path(__file__).parents[1]
@@ -47,12 +48,35 @@ def test_the_readme_describes_every_button_and_no_other():
         assert f"**{label}**" in readme, label
 
 
-def test_commands_in_the_documents_exist():
+def test_commands_in_the_documents_exist_and_the_readme_shows_all():
+    shown = {"solvers": set(), "blender": set()}
     for document in DOCUMENTS:
         text = document.read_text(encoding="utf-8")
-        named = re.findall(r"python -m solvers (\w+)", text)
-        named += re.findall(r"--command mocap_assist (\w+)", text)
-        assert set(named) <= set(VERBS), document
+        shown["solvers"] |= set(re.findall(r"python -m solvers (\w+)", text))
+        shown["blender"] |= set(re.findall(r"--command mocap_assist (\w+)", text))
+
+    assert shown["solvers"] == set(VERBS)
+    assert blender_verbs() <= shown["blender"] <= set(VERBS)
+
+
+def blender_verbs() -> set[str]:
+    """The verbs of `blender --command`, read from the source, since Blender may be absent."""
+    source = (ROOT / "mocap_assist" / "batch" / "verbs.py").read_text(encoding="utf-8")
+    table = next(
+        statement.value
+        for statement in ast.parse(source).body
+        if isinstance(statement, ast.Assign) and statement.targets[0].id == "VERBS"
+    )
+    return {key.value for key in table.keys}
+
+
+def test_options_in_the_readme_exist(capsys):
+    readme = (ROOT / "README.md").read_text(encoding="utf-8")
+    for verb, words in re.findall(r"^python -m solvers (\w+)(.*)$", readme, re.MULTILINE):
+        with pytest.raises(SystemExit):
+            run(VERBS, [verb, "--help"], "solvers")
+        text = capsys.readouterr().out
+        assert set(re.findall(r"--[a-z-]+", words)) <= set(re.findall(r"--[a-z-]+", text))
 
 
 def buttons() -> dict[str, str]:

@@ -4,7 +4,7 @@ import json
 import os
 import signal
 from collections.abc import Iterator, Sequence
-from concurrent.futures import ProcessPoolExecutor, as_completed
+from concurrent.futures import Future, ProcessPoolExecutor, as_completed
 from concurrent.futures.process import BrokenProcessPool
 from multiprocessing import get_context
 from pathlib import Path
@@ -18,6 +18,7 @@ from .verb import Outcome, Task, Verb
 
 RECORD = "mocap_assist.json"
 NOT_OF_THE_RESULT = {"again", "files", "jobs", "json", "output_folder"}
+"""Options that do not change what comes out."""
 ONE_THREAD = {"OMP_NUM_THREADS": "1", "OPENBLAS_NUM_THREADS": "1", "MKL_NUM_THREADS": "1"}
 
 
@@ -28,6 +29,8 @@ class Finished(NamedTuple):
     outcome: Outcome | None
     """None where it failed."""
     failure: str = ""
+    died: bool = False
+    """Its process did not live to tell."""
 
 
 def work_on(
@@ -40,21 +43,46 @@ def work_on(
             yield _attempt(verb, task, prepared, screen.progress)
         return
     os.environ.update({name: os.environ.get(name, one) for name, one in ONE_THREAD.items()})
+    lost: list[Task] = []
+    for finished in _work_together(verb, tasks, prepared, n_jobs):
+        if finished.died:
+            lost.append(finished.task)
+        else:
+            yield finished
+    for task in lost:  # One that dies takes the others along; alone it is known which.
+        yield from _work_together(verb, [task], prepared, 1)
+
+
+def _work_together(
+    verb: Verb, tasks: Sequence[Task], prepared: Any, n_jobs: int
+) -> Iterator[Finished]:
     n_workers = min(n_jobs, len(tasks))
     with ProcessPoolExecutor(n_workers, get_context("spawn"), _die_on_interrupt) as pool:
-        waiting = {
-            pool.submit(_attempt, verb, task, prepared, unwatched): task for task in tasks
-        }
+        waiting = {_submitted(pool, verb, task, prepared): task for task in tasks}
         try:
             for done in as_completed(waiting):
                 task = waiting[done]
                 try:
                     yield done.result()
                 except BrokenProcessPool:
-                    died = f"{task.source}: the process that worked on it has died."
-                    yield Finished(task, None, died)
+                    sentence = (
+                        f"{task.subject}: the process that worked on it has died, perhaps for"
+                        " want of memory. Work on a part of the take, or with fewer --jobs."
+                    )
+                    yield Finished(task, None, sentence, died=True)
         finally:
             pool.shutdown(cancel_futures=True)
+
+
+def _submitted(
+    pool: ProcessPoolExecutor, verb: Verb, task: Task, prepared: Any
+) -> "Future[Finished]":
+    try:
+        return pool.submit(_attempt, verb, task, prepared, unwatched)
+    except BrokenProcessPool as error:  # A process has died while others were submitted.
+        failed: Future[Finished] = Future()
+        failed.set_exception(error)
+        return failed
 
 
 def _attempt(verb: Verb, task: Task, prepared: Any, progress: Progress) -> Finished:
@@ -62,12 +90,14 @@ def _attempt(verb: Verb, task: Task, prepared: Any, progress: Progress) -> Finis
         return Finished(task, verb.perform(task, prepared, progress))
     except MocapAssistError as error:
         sentence = str(error)
-        named = task.source.name in sentence
-        return Finished(task, None, sentence if named else f"{task.source}: {sentence}")
+        named = task.subject.name in sentence
+        return Finished(task, None, sentence if named else f"{task.subject}: {sentence}")
     except OSError as error:
-        return Finished(task, None, f"{error.filename or task.source}: {error.strerror}.")
+        return Finished(task, None, f"{error.filename or task.subject}: {error.strerror}.")
     except MemoryError:
-        sentence = f"{task.source} needs more memory than there is; work on a part of the take."
+        sentence = (
+            f"{task.subject} needs more memory than there is; work on a part of the take."
+        )
         return Finished(task, None, sentence)
 
 
@@ -112,11 +142,18 @@ class Made:
 def note_of(task: Task) -> dict[str, Any]:
     """Return what the result depends on, as JSON has it."""
     options = {
-        name: [_stamp(each) for each in value] if isinstance(value, list) else str(value)
+        name: _noted(value)
         for name, value in sorted(vars(task.arguments).items())
         if name not in NOT_OF_THE_RESULT
     }
     return {"source": _stamp(task.source), "options": options}
+
+
+def _noted(value: Any) -> Any:
+    """Return an option as JSON has it; a file by what is in it now."""
+    if isinstance(value, list):
+        return [_noted(each) for each in value]
+    return _stamp(value) if isinstance(value, Path) else str(value)
 
 
 def _stamp(file: Path) -> list[Any]:

@@ -1,15 +1,19 @@
 """Recordings in and out, as the command line names them."""
 
 import argparse
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 
 from ..errors import InvalidFileError
 from ..motion import Motion, Tracks
-from ..progress import Progress
+from ..progress import Progress, within
 from ..recordings import read_recording, write_bvh, write_c3d
 
 MOTIONS = ".bvh"
 POINTS = ".c3d"
+RECORDED = {MOTIONS: "a skeleton's motion", POINTS: "points"}
+"""Endings of recordings that can be written, and what each is for."""
+LEARNED = {".npz": "learned patterns"}
 
 
 def add_reading_options(parser: argparse.ArgumentParser) -> None:
@@ -18,7 +22,7 @@ def add_reading_options(parser: argparse.ArgumentParser) -> None:
         "--scale",
         type=float,
         metavar="X",
-        help="metres in one unit of the files that are read [default: as the file says, or"
+        help="Metres in one unit of the files that are read [default: as the file says, or"
         " guessed from the size of the body]",
     )
 
@@ -26,6 +30,17 @@ def add_reading_options(parser: argparse.ArgumentParser) -> None:
 def read(path: Path, arguments: argparse.Namespace, progress: Progress) -> Motion | Tracks:
     """Read a recording with the options of `add_reading_options`."""
     return read_recording(path, scale=arguments.scale, progress=progress)
+
+
+def read_all(
+    paths: Sequence[Path], arguments: argparse.Namespace, progress: Progress
+) -> list[Motion | Tracks]:
+    """Read recordings with the options of `add_reading_options`."""
+    share = 1.0 / len(paths)
+    return [
+        read(path, arguments, within(progress, share * number, share * (number + 1)))
+        for number, path in enumerate(paths)
+    ]
 
 
 def write(recording: Motion | Tracks, path: Path | None, progress: Progress) -> None:
@@ -42,13 +57,11 @@ def write(recording: Motion | Tracks, path: Path | None, progress: Progress) -> 
         raise InvalidFileError(f"{kind} cannot be written as {path}; end the name in {fit}.")
 
 
-def refuse_target(path: Path) -> None:
+def refuse_target(path: Path, endings: Mapping[str, str] = RECORDED) -> None:
     """Raise InvalidFileError where nothing could be written, before any work is done."""
-    if path.suffix.lower() not in {MOTIONS, POINTS}:
-        raise InvalidFileError(
-            f"{path} cannot be written; end the name in {MOTIONS} (a skeleton's motion) or"
-            f" {POINTS} (points)."
-        )
+    if path.suffix.lower() not in endings:
+        allowed = " or ".join(f"{ending} ({kind})" for ending, kind in endings.items())
+        raise InvalidFileError(f"{path} cannot be written; end the name in {allowed}.")
     if path.is_dir() or not path.parent.is_dir():
         raise InvalidFileError(
             f"{path} cannot be written: "

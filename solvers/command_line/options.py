@@ -21,15 +21,14 @@ class SentenceParser(argparse.ArgumentParser):
         self.exit(2, f"{sentence}. See: {self.prog} --help\n")
 
 
-def arguments_from(parser: argparse.ArgumentParser, *classes: type[Settings]) -> None:
+def arguments_from(parser: argparse._ActionsContainer, *classes: type[Settings]) -> None:
     """Add an option for each setting: `foot_speed` becomes `--foot-speed`.
 
     Angles are given in degrees. Settings of the same name in two classes become one option.
 
     Parameters
     ----------
-    parser : ArgumentParser
-        Or an argument group.
+    parser : ArgumentParser, or a group of its arguments
     *classes : subclasses of Settings
     """
     described = {item.name: item for each in classes for item in reversed(fields(each))}

@@ -3,6 +3,7 @@
 import argparse
 from collections.abc import Callable
 from dataclasses import dataclass, field
+from enum import Enum
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -20,12 +21,31 @@ class Outcome:
 
 
 class Task(NamedTuple):
-    """One file to work on. It can be sent to another process."""
+    """What is done in one go. It can be sent to another process."""
 
-    source: Path
+    sources: tuple[Path, ...]
+    """One file; all of them for a verb that makes one file of all."""
     target: Path | None
     """Where to write; None for verbs that write nothing."""
     arguments: argparse.Namespace
+
+    @property
+    def source(self) -> Path:
+        """The file to read, where it is one."""
+        return self.sources[0]
+
+    @property
+    def subject(self) -> Path:
+        """What a failure is about."""
+        return self.sources[0] if len(self.sources) == 1 else self.target or self.sources[0]
+
+
+class Makes(Enum):
+    """What a verb makes."""
+
+    WORDS = "figures of each file"
+    FILES = "a file of each file"
+    ONE_FILE = "one file of all files"
 
 
 def nothing_to_prepare(arguments: argparse.Namespace, progress: Progress) -> None:
@@ -34,12 +54,12 @@ def nothing_to_prepare(arguments: argparse.Namespace, progress: Progress) -> Non
 
 @dataclass(frozen=True)
 class Verb:
-    """A verb: its options, what it does once, and what it does to each file."""
+    """A verb: its options, what it does once, and what it does in each task."""
 
     help: str
     add_options: Callable[[argparse.ArgumentParser], None]
     perform: Callable[[Task, Any, Progress], Outcome]
     """From a task and what was prepared."""
-    writes: bool = True
+    makes: Makes = Makes.FILES
     prepare: Callable[[argparse.Namespace, Progress], Any] = nothing_to_prepare
-    """Its result serves all files, and must be fit to be sent to another process."""
+    """Its result serves all tasks, and must be fit to be sent to another process."""

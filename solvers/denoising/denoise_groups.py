@@ -62,7 +62,13 @@ def estimate_in_groups(
         )
         prior = take_prior(part.values[:n_frames], guess, window, pattern_rate)
         if bases is not None:
-            examples = examples_prior(bases, channels.keys, columns)
+            seen = np.isfinite(part.noisy).sum(axis=0)
+            own = part.values[:n_frames].mean(axis=0)
+            density = take.windows.density
+            examples = examples_prior(
+                bases, channels.keys, columns, own, seen / density, n_frames / density,
+                guess / np.sqrt(density),
+            )  # fmt: skip
             prior, share = choose_prior(examples, prior, *part[:3], take.windows, step)
             shares += [share] * int(np.isfinite(examples.mean).sum())
         found = estimate_channels(*part[:3], prior, take.windows, within(step, 0.4, 1.0))

@@ -44,17 +44,13 @@ def encode_examples(
     return first, clips
 
 
-def centred(clips: list[Array]) -> tuple[Array, Array, list[Array]]:
-    """Return each channel's mean and standard deviation, and the clips less the mean.
-
-    Clips that lack a channel (NaN) have no part in what is said of it.
-    """
-    known = [np.isfinite(clip).all(axis=0) for clip in clips]
-    count = np.maximum(sum(len(clip) * has for clip, has in zip(clips, known, strict=True)), 1)
+def moments(clips: Sequence[Array]) -> tuple[Array, Array]:
+    """Return each channel's mean and standard deviation over the clips that have it (not NaN)."""
+    n_frames = np.array([len(clip) for clip in clips])
+    count = np.maximum(n_frames @ np.array([np.isfinite(clip[0]) for clip in clips]), 1)
     mean = sum(np.nan_to_num(clip).sum(axis=0) for clip in clips) / count
-    centred = [clip - mean for clip in clips]
-    spread = np.sqrt(sum((np.nan_to_num(clip) ** 2).sum(axis=0) for clip in centred) / count)
-    return np.asarray(mean), spread, centred
+    square = sum((np.nan_to_num(clip - mean) ** 2).sum(axis=0) for clip in clips)
+    return np.asarray(mean), np.sqrt(square / count)
 
 
 def _at_rate(values: Array, frame_rate: float, wanted: float) -> list[Array]:

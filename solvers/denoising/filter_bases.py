@@ -13,14 +13,14 @@ from ..files import read_archive, write_archive
 from ..motion import Motion, Tracks
 from ..progress import Progress, unwatched, within
 from ..settings import Settings, setting
-from .example_channels import centred, encode_examples
+from .example_channels import encode_examples, moments
 from .lag_covariance import lag_products, strongest
 from .prior import n_slow_waves
 
 Array = NDArray[np.float64]
 
 KIND = "filter bases"
-VERSION = 2
+VERSION = 3
 KEPT_ENERGY = 0.99
 """Share of the movement that the stored patterns hold, as in [LC10]."""
 STILL = 0.05
@@ -70,9 +70,12 @@ class FilterBases:
     moving : shape (n_moving,), int
         Channels that move; `slow` and `fast` tell of these.
     slow : shape (n_slow, n_moving, n_slow, n_moving)
-        Covariance of the slow cosine waves of a window: all patterns, however weak.
+        Covariance of the slow cosine waves of a window about the mean of its clip: all
+        patterns, however weak.
     fast : shape (window - n_slow, n_moving)
         Variances of the faster waves.
+    clip_means : shape (n_clips, n_moving)
+        Mean pose of each example; the mean of all for what it lacks.
     frame_rate : shape (), hertz
     n_clips : shape (), int
     of_points : shape (), bool
@@ -87,6 +90,7 @@ class FilterBases:
     moving: NDArray[np.intp]
     slow: Array
     fast: Array
+    clip_means: Array
     frame_rate: Array
     n_clips: NDArray[np.intp]
     of_points: NDArray[np.bool_]
@@ -144,6 +148,7 @@ def _fault(bases: FilterBases) -> str:
         "moving": (n_moving,),
         "slow": (n_slow, n_moving, n_slow, n_moving),
         "fast": (window - n_slow, n_moving),
+        "clip_means": (len(bases.clip_means), n_moving),
         **dict.fromkeys(("frame_rate", "n_clips", "of_points"), ()),
     }
     arrays = {name: getattr(bases, name) for name in expected}
@@ -212,35 +217,46 @@ def learn_filter_bases(
             f"No example is as long as the window of {settings.window:.2g} s; choose longer"
             " ones or a shorter window."
         )
-    mean, spread, clips = centred(clips)
+    mean, spread = moments(clips)
     if spread.max() < AT_REST:
         raise InvalidMotionError(
             "Nothing that was observed in the examples moves; choose clips with movement."
         )
     moving = np.flatnonzero(spread >= min(STILL, spread.max()))
-    n_windows = np.zeros(len(moving))
-    total = np.zeros((window * len(moving),) * 2)
-    for clip in clips:
-        part = clip[:, moving]
-        n_windows += np.isfinite(part).all(axis=0) * (len(clip) - window + 1)
-        total += lag_products(np.nan_to_num(part), window)
-    # This stays a covariance where clips lack channels: pairs seldom seen together weaken.
-    scale = np.tile(np.sqrt(n_windows), window)
-    covariance = total / np.outer(scale, scale)
+    clips = [clip[:, moving] for clip in clips]
     progress(0.7, "Finding patterns")
-    values, vectors = strongest(covariance, KEPT_ENERGY)
+    about_all = _covariance(clips, [mean[moving]] * len(clips), window)
+    values, vectors = strongest(about_all, KEPT_ENERGY)
+    own_means = [clip.mean(axis=0) for clip in clips]
     patterns = np.zeros((len(values), window, len(mean)))
     patterns[:, :, moving] = vectors.T.reshape(len(values), window, len(moving))
-    slow, fast = _waves(covariance, window)
+    slow, fast = _waves(_covariance(clips, own_means, window), window)
     progress(1.0, "Learned")
     rows = np.zeros((len(first.keys), N_REFERENCE))
     for row, key in zip(rows, first.keys, strict=True):
         row[: len(first.references[key])] = first.references[key]
     return FilterBases(
         np.array(first.keys), rows, mean, patterns, values, moving, slow, fast,
+        np.where(np.isfinite(own_means), own_means, mean[moving]),
         np.array(settings.frame_rate), np.array(len(examples)),
         np.array(isinstance(examples[0], Tracks)),
     )  # fmt: skip
+
+
+def _covariance(clips: Sequence[Array], means: Sequence[Array], window: int) -> Array:
+    """Return the lag covariance of clips, each about a mean of its own.
+
+    A channel that a clip lacks (NaN) is judged by the others. So that the result stays a
+    covariance, what two channels have in common weakens where they are seldom seen together.
+    """
+    centred = [np.nan_to_num(clip - mean) for clip, mean in zip(clips, means, strict=True)]
+    total = lag_products(centred, window)
+    has = np.array([np.isfinite(clip[0]) for clip in clips])
+    n_windows = np.array([len(clip) - window + 1 for clip in clips]) @ has
+    scale = np.tile(np.sqrt(n_windows), window)
+    total /= scale
+    total /= scale[:, None]
+    return total
 
 
 def _waves(covariance: Array, window: int) -> tuple[Array, Array]:

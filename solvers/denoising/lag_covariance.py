@@ -1,4 +1,6 @@
-"""The covariance of all windows of a clip, without ever building the windows."""
+"""The covariance of all windows of clips, without ever building the windows."""
+
+from collections.abc import Sequence
 
 import numpy as np
 from numpy.typing import NDArray
@@ -11,16 +13,16 @@ FIRST_GUESS = 160
 """Number of eigenvectors asked for at first; doubled until they hold enough."""
 
 
-def lag_products(values: Array, window: int) -> Array:
-    """Return the sum over all windows of the outer product of a window with itself.
+def lag_products(clips: Sequence[Array], window: int) -> Array:
+    """Return the sum over all windows of all clips of the outer product of a window with itself.
 
-    The block of lags (j + 1, k + 1) is that of (j, k) without its first frame and with one
-    more at the end, so only the first row of blocks costs a pass over the frames.
+    The block of lags (j + 1, k + 1) is that of (j, k) without the first frame and with one
+    more at the end, of every clip, so only the first row of blocks costs a pass over the frames.
 
     Parameters
     ----------
-    values : shape (n_frames, n_channels)
-        At least `window` frames.
+    clips : sequence of arrays, shape (n_frames, n_channels)
+        Each of at least `window` frames.
     window : int, frames
 
     Returns
@@ -29,20 +31,23 @@ def lag_products(values: Array, window: int) -> Array:
         Shape (window * n_channels, window * n_channels), frames outermost: C_D S_N of
         [LC10], eq. 2.3 to 2.5 of [LOU12], with channels and lags interchanged.
     """
-    n_frames, n_channels = values.shape
-    n_windows = n_frames - window + 1
-    blocks = np.empty((window, window, n_channels, n_channels))
+    n_channels = clips[0].shape[1]
+    blocks = np.empty((window, n_channels, window, n_channels))
     for lag in range(window):
-        blocks[0, lag] = values[:n_windows].T @ values[lag : lag + n_windows]
+        blocks[0, :, lag] = sum(
+            clip[: len(clip) - window + 1].T @ clip[lag : len(clip) - window + 1 + lag]
+            for clip in clips
+        )
+    heads = np.stack([clip[: window - 1] for clip in clips])
+    tails = np.stack([clip[len(clip) - window + 1 :] for clip in clips])
     for row in range(window - 1):
-        ahead = slice(row + n_windows, window - 1 + n_windows)
-        first = values[row][None, :, None] * values[row : window - 1, None, :]
-        last = values[row + n_windows][None, :, None] * values[ahead, None, :]
-        blocks[row + 1, row + 1 :] = blocks[row, row:-1] - first + last
+        change = np.tensordot(tails[:, row], tails[:, row:], axes=(0, 0))
+        change -= np.tensordot(heads[:, row], heads[:, row:], axes=(0, 0))
+        blocks[row + 1, :, row + 1 :] = blocks[row, :, row:-1] + change
     for row in range(1, window):
-        blocks[row, :row] = blocks[:row, row].transpose(0, 2, 1)
+        blocks[row, :, :row] = blocks[:row, :, row].transpose(2, 0, 1)
     size = window * n_channels
-    return blocks.transpose(0, 2, 1, 3).reshape(size, size)
+    return blocks.reshape(size, size)
 
 
 def strongest(covariance: Array, energy: float) -> tuple[Array, Array]:

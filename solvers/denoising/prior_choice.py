@@ -7,6 +7,7 @@ from ..progress import Progress
 from .denoise_posterior import estimate_channels
 from .denoise_windows import Windows
 from .filter_bases import FilterBases
+from .offsets import take_offset
 from .prior import WavePrior, mixed, smooth_prior
 
 Array = NDArray[np.float64]
@@ -23,7 +24,13 @@ TRUST_ALONE = 0.3
 
 
 def examples_prior(
-    bases: FilterBases, keys: tuple[str, ...], columns: NDArray[np.intp]
+    bases: FilterBases,
+    keys: tuple[str, ...],
+    columns: NDArray[np.intp],
+    own: Array,
+    n_seen: Array,
+    n_frames: float,
+    noise: Array,
 ) -> WavePrior:
     """Return the examples' prior of some channels of a take; NaN where they tell nothing.
 
@@ -34,6 +41,14 @@ def examples_prior(
         Of the take's parts.
     columns : shape (n_channels,)
         Channels of the take that are asked for.
+    own : shape (n_channels,)
+        Their mean over the frames in which they are observed.
+    n_seen : shape (n_channels,)
+        Number of these frames, at the frame rate of the bases.
+    n_frames : float
+        Of the whole take, at that rate.
+    noise : shape (n_channels,)
+        Standard deviation of what is added to each observation.
     """
     part = {str(key): place for place, key in enumerate(bases.keys)}
     moving = {int(channel): place for place, channel in enumerate(bases.moving)}
@@ -42,9 +57,19 @@ def examples_prior(
     known = np.flatnonzero(places >= 0)
     n_slow, window = len(bases.slow), bases.window
     mean = np.full(len(columns), np.nan)
-    mean[known] = bases.mean[np.array(source)[known]]
+    clip_means = bases.clip_means[:, places[known]]
+    variance = np.einsum("kckc->c", bases.slow) + bases.fast.sum(axis=0)
+    mean[known], unsure = take_offset(
+        clip_means,
+        own[known],
+        n_seen[known],
+        n_frames,
+        variance[places[known]] / window,
+        noise[known] ** 2,
+    )
     slow = np.full((n_slow, len(columns), n_slow, len(columns)), np.nan)
     inside = bases.slow[:, places[known]][:, :, :, places[known]]
+    inside[0, np.arange(len(known)), 0, np.arange(len(known))] += window * unsure
     slow[:, known[:, None], :, known] = inside.transpose(1, 3, 0, 2)
     fast = np.full((window - n_slow, len(columns)), np.nan)
     fast[:, known] = bases.fast[:, places[known]]

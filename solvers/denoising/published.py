@@ -145,8 +145,8 @@ def _patterns(
     rough = [interpolated(hampel(take, 4, 3.5)) for take in takes]
     mean = np.concatenate(rough).mean(axis=0)
     window = min(FilterBasesSettings().n_frames, len(takes[-1]))
-    covariance = sum(lag_products(take - mean, window) for take in rough)
-    _, vectors = strongest(np.asarray(covariance), ENERGY)
+    covariance = lag_products([take - mean for take in rough], window)
+    _, vectors = strongest(covariance, ENERGY)
     patterns = vectors.T.reshape(-1, window, len(mean))
     return patterns, mean, f"The take's own patterns: {unfit}."
 

@@ -64,6 +64,11 @@ def transfer_motion(
         Says where the legs are; found by `find_humanoid_map` where it is not given. Bodies
         without legs are compared by height.
 
+    Returns
+    -------
+    Motion
+        Of `skeleton`, with the frames and gaps of `motion`.
+
     Raises
     ------
     InvalidMotionError

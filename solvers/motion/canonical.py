@@ -129,9 +129,8 @@ def _nearest_right_angles(
     matrix = np.zeros((3, 3))
     vertical = int(np.abs(up).argmax())
     matrix[vertical, 2] = np.sign(up[vertical]) or 1.0
-    across = left * (matrix[:, 2] == 0.0)
-    lateral = int(np.abs(across).argmax())
-    matrix[lateral, 0] = np.sign(across[lateral]) or 1.0
+    lateral = int(np.where(matrix[:, 2] == 0.0, np.abs(left), -1.0).argmax())
+    matrix[lateral, 0] = np.sign(left[lateral]) or 1.0
     matrix[:, 1] = np.cross(matrix[:, 2], matrix[:, 0])
     return matrix
 

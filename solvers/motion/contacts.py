@@ -110,6 +110,11 @@ def contacts_of_points(
     size : float
         Length of a leg over 0.9 m.
     settings : ContactSettings
+
+    Returns
+    -------
+    NDArray of bool, shape (n_frames, 2)
+        Left foot, right foot. False where the foot is not observed.
     """
     positions = _smoothed(positions, settings.smoothing * frame_rate)
     speeds = np.linalg.norm(linear_velocities(positions, frame_rate), axis=-1)
@@ -136,7 +141,7 @@ def foot_points(skeleton: Skeleton, humanoid: HumanoidMap) -> NDArray[np.intp]:
     Raises
     ------
     InvalidMotionError
-        The skeleton has not two feet.
+        A foot is missing.
     """
     joints = humanoid.indices(skeleton)
     missing = [role for role in ("leftFoot", "rightFoot") if role not in joints]

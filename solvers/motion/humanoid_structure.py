@@ -49,8 +49,11 @@ def roles_by_structure(skeleton: Skeleton) -> tuple[dict[str, str], float]:
         roles |= found_above
         misfits += misfits_above
     share = len(misfits) / 4
+    first_role: dict[int, str] = {}
+    for role, joint in roles.items():  # In what is no body, a joint may seem to be two things.
+        first_role.setdefault(joint, role)
     return (
-        {role: skeleton.names[joint] for role, joint in roles.items()},
+        {role: skeleton.names[joint] for joint, role in first_role.items()},
         float(share * np.exp(-np.mean(misfits))),
     )
 

@@ -35,6 +35,16 @@ def resample(recording: Recording, frame_rate: float) -> Recording:
     would come back as false slow motion is removed. Gaps stay gaps: a moment is observed where
     the frames on either side of it are. Confidence is interpolated linearly.
 
+    Parameters
+    ----------
+    recording : Motion or Tracks
+    frame_rate : float, hertz
+
+    Returns
+    -------
+    Motion or Tracks
+        As the recording; one of one frame stays one of one frame.
+
     Raises
     ------
     InvalidMotionError

@@ -205,7 +205,8 @@ def mean_rotation(rotations: Array, weights: Array | None = None) -> Array:
     """Return the mean over the first axis, shape (..., 4): the rotation whose squared chordal
     distances sum to the least (Markley et al. 2007, doi:10.2514/1.28949).
 
-    NaN rotations are left out; where all are NaN the mean is the identity.
+    NaN rotations are left out; where all are NaN the mean is the identity. `weights`, shape
+    (n, ...) as the rotations without their components, are not negative.
     """
     known = np.isfinite(rotations).all(axis=-1)
     weight = known * (1.0 if weights is None else weights)

@@ -1,5 +1,6 @@
 """A tree of named joints with its rest pose."""
 
+from collections import Counter
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
@@ -46,7 +47,7 @@ class Skeleton:
         if not n_joints:
             return ["A skeleton needs at least one joint."]
         faults = []
-        twice = sorted({name for name in self.names if self.names.count(name) > 1})
+        twice = sorted(name for name, times in Counter(self.names).items() if times > 1)
         if twice:
             faults.append(f"Joint names must differ; more than one is {', '.join(twice)}.")
         if len(self.parents) != n_joints or self.offsets.shape != (n_joints, 3):

@@ -1,5 +1,6 @@
 """Point trajectories: what an optical system or a depth camera measures."""
 
+from collections import Counter
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -34,7 +35,7 @@ class Tracks:
                 "Tracks need at least one frame and one point, and positions of shape"
                 f" (n_frames, {len(self.names)}, 3), not {positions.shape}."
             )
-        twice = sorted({name for name in self.names if self.names.count(name) > 1})
+        twice = sorted(name for name, times in Counter(self.names).items() if times > 1)
         if twice:
             raise InvalidMotionError(f"Point names must differ; twice: {', '.join(twice)}.")
         if not (np.isfinite(self.frame_rate) and self.frame_rate > 0):

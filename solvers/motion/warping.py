@@ -42,7 +42,8 @@ def warp(
     Returns
     -------
     Alignment
-        Same cost for `warp(b, a)`. Memory is 16 bytes for each pair of frames.
+        Same cost for `warp(b, a)`. While it works it needs some 45 bytes for each pair of
+        frames: two clips of 3,000 frames take 0.4 GB.
 
     Raises
     ------
@@ -72,6 +73,11 @@ def frame_distances(a: NDArray[np.float64], b: NDArray[np.float64]) -> NDArray[n
     """Return how far each frame of `a` is from each of `b`, shape (n_frames_a, n_frames_b).
 
     The rule of `warp`; pairs without a common joint are as far apart as the mean pair.
+
+    Raises
+    ------
+    InvalidMotionError
+        No pair of frames has a joint in common.
     """
     a, b = (x[:, None] if x.ndim == 2 else x for x in (a, b))
     total = np.zeros((len(a), len(b)))

@@ -14,6 +14,7 @@ from ..motion.rotations import inverse, multiply, quaternion_from_euler
 from ..progress import Progress, unwatched, within
 from .acclaim_skeleton import AcclaimBone, AcclaimSkeleton, read_acclaim_skeleton
 from .axes import check_scale, turns_z_up_from_y_up, z_up_from_y_up
+from .names import shown
 from .text import read_bytes, read_rows
 
 RADIANS = re.compile(rb"^[ \t]*:RADIANS", re.MULTILINE | re.IGNORECASE)
@@ -83,10 +84,17 @@ def find_skeleton(amc_path: Path | str) -> Path:
     Raises
     ------
     InvalidFileError
-        There is none.
+        There is none, or the folder is missing or may not be read.
     """
     amc_path = Path(amc_path)
-    beside = [path for path in sorted(amc_path.parent.iterdir()) if _is_for(path, amc_path)]
+    try:
+        others = sorted(amc_path.parent.iterdir())
+    except OSError as error:
+        raise InvalidFileError(
+            f"The folder {amc_path.parent} cannot be searched for the skeleton of"
+            f" {amc_path.name} ({error.strerror}). Name the .asf file, or move both."
+        ) from None
+    beside = [path for path in others if _is_for(path, amc_path)]
     if not beside:
         raise InvalidFileError(
             f"There is no skeleton for {amc_path}: put the actor's .asf file beside it, under"
@@ -106,7 +114,7 @@ def _recorded(
     frame_lines, mentions = _mentions(lines, path)
     known = {bone.name.encode(): bone for bone in skeleton.bones}
     if strange := [
-        name.decode("ascii", "backslashreplace") for name in mentions.keys() - known
+        shown(name.decode("ascii", "backslashreplace")) for name in mentions.keys() - known
     ]:
         raise InvalidFileError(
             f"{path} moves bones that its skeleton does not have: {', '.join(strange[:5])}."

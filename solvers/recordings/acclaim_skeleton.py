@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 from ..errors import InvalidFileError
 from ..motion.rotations import quaternion_from_euler
 from .axes import PLAUSIBLE_REACH, guess_unit, longest_way
+from .names import shown
 from .text import read_bytes
 
 INCH = 0.0254
@@ -87,7 +88,7 @@ class _SkeletonFile:
         for entries in self._entries():
             name = " ".join(entries.get("name", []))
             if not name or name in bones:
-                self._refuse(f"a bone has no name or a name that is taken ({name!r})")
+                self._refuse(f"a bone has no name or a name that is taken ({shown(name)!r})")
             bones[name] = self._bone(name, entries, angle_unit)
         ordered, parents = self._hierarchy(bones)
         unit = self._unit(ordered, parents, units)
@@ -113,7 +114,7 @@ class _SkeletonFile:
         axis = entries.get("axis", ["0", "0", "0"])
         order = axis[3].upper() if len(axis) > 3 else "XYZ"
         if sorted(order) != ["X", "Y", "Z"]:
-            self._refuse(f"{name} turns about the axes {order!r}")
+            self._refuse(f"{shown(name)} turns about the axes {shown(order)!r}")
         angles = dict(zip("XYZ", self._vector(axis[:3]) * angle_unit, strict=True))
         applied_last_first = order[::-1]
         frame = quaternion_from_euler(
@@ -121,7 +122,9 @@ class _SkeletonFile:
         )
         channels = tuple(word.lower() for word in entries.get("dof", []))
         if not set(channels) <= CHANNELS or len(set(channels)) != len(channels):
-            self._refuse(f"{name} has the degrees of freedom {' '.join(channels)!r}")
+            self._refuse(
+                f"{shown(name)} has the degrees of freedom {shown(' '.join(channels))!r}"
+            )
         return AcclaimBone(name, direction * length, frame, order, channels)
 
     def _hierarchy(
@@ -136,12 +139,14 @@ class _SkeletonFile:
         while waiting:
             name, parent = waiting.pop()
             if name not in bones:
-                self._refuse(f"the hierarchy names a bone {name!r} that is not described")
+                self._refuse(
+                    f"the hierarchy names a bone {shown(name)!r} that is not described"
+                )
             ordered.append(bones[name])
             parents.append(parent)
             children = below.get(name, [])
             if met & set(children):
-                self._refuse(f"a bone below {name} stands in the hierarchy twice")
+                self._refuse(f"a bone below {shown(name)} stands in the hierarchy twice")
             met |= set(children)
             waiting.extend((child, len(ordered) - 1) for child in reversed(children))
         return ordered, parents
@@ -172,7 +177,7 @@ class _SkeletonFile:
         except ValueError:
             values = []
         if len(values) != count or not all(abs(value) < 1e9 for value in values):
-            self._refuse(f"{count} numbers belong where {' '.join(words)[:40]!r} stands")
+            self._refuse(f"{count} numbers belong where {shown(' '.join(words))!r} stands")
         return values
 
     def _refuse(self, what: str) -> NoReturn:

@@ -6,6 +6,7 @@ from pathlib import Path
 from typing import NoReturn
 
 from ..errors import InvalidFileError
+from .names import LONGEST, DifferentNames, printable, shown
 
 CHANNELS = {f"{axis}{kind}" for axis in "xyz" for kind in ("position", "rotation")}
 
@@ -43,7 +44,7 @@ class _Hierarchy:
         self.line = 1
         self.words = self._words(text)
         self.joints: list[BvhJoint] = []
-        self.taken: set[str] = set()
+        self.names = DifferentNames()
 
     def read(self) -> list[BvhJoint]:
         if self._keyword() != "HIERARCHY" or self._keyword() != "ROOT":
@@ -59,10 +60,12 @@ class _Hierarchy:
             elif word == "}":
                 branch.pop()
             else:
-                self._refuse(f"{word[:20]!r} stands where JOINT, End Site or }} belongs")
+                self._refuse(f"{shown(word)!r} stands where JOINT, End Site or }} belongs")
         rest = next(self.words, None)
         if rest is not None:
-            what = "there is a second ROOT" if rest == "ROOT" else f"{rest[:20]!r} is left over"
+            what = (
+                "there is a second ROOT" if rest == "ROOT" else f"{shown(rest)!r} is left over"
+            )
             self._refuse(f"{what}; one file holds one character")
         return self.joints
 
@@ -70,13 +73,13 @@ class _Hierarchy:
         offset = self._offset()
         channels: list[str] = []
         if self._keyword() != "CHANNELS":
-            self._refuse(f"{name} has no CHANNELS")
+            self._refuse(f"{shown(name)} has no CHANNELS")
         for _ in range(int(self._number())):
             channel = self._next().lower()
             if channel not in CHANNELS or channel in channels:
-                self._refuse(f"{name} has a channel {channel[:20]!r}, or has it twice")
+                self._refuse(f"{shown(name)} has a channel {shown(channel)!r}, or has it twice")
             channels.append(channel)
-        self.joints.append(BvhJoint(self._different(name), parent, offset, tuple(channels)))
+        self.joints.append(BvhJoint(self.names.give(name), parent, offset, tuple(channels)))
         return len(self.joints) - 1
 
     def _end_site(self, parent: int) -> None:
@@ -88,11 +91,8 @@ class _Hierarchy:
         if word != "}":
             self._refuse("an End Site is not closed by }")
         if any(offset):
-            stem = self.joints[parent].name
-            name, number = f"{stem}_end", 2
-            while name in self.taken:
-                name, number = f"{stem}_{number}_end", number + 1
-            self.joints.append(BvhJoint(self._different(name), parent, offset, ()))
+            name = self.names.give(self.joints[parent].name, "_end")
+            self.joints.append(BvhJoint(name, parent, offset, ()))
 
     def _offset(self) -> tuple[float, float, float]:
         if self._keyword() != "OFFSET":
@@ -103,14 +103,10 @@ class _Hierarchy:
         parts = []
         while (word := next(self.words, "{")) != "{":
             parts.append(word)
-        return "_".join(parts) or "joint"
-
-    def _different(self, name: str) -> str:
-        found, number = name, 2
-        while found in self.taken:
-            found, number = f"{name}_{number}", number + 1
-        self.taken.add(found)
-        return found
+        name = printable("_".join(parts))
+        if len(name) > LONGEST:
+            self._refuse(f"the name {shown(name)!r} does not end")
+        return name or "joint"
 
     def _number(self) -> float:
         word = self._next()
@@ -119,7 +115,7 @@ class _Hierarchy:
         except ValueError:
             value = float("nan")
         if not abs(value) < 1e9:
-            self._refuse(f"{word[:20]!r} is no sensible number")
+            self._refuse(f"{shown(word)!r} is no sensible number")
         return value
 
     def _keyword(self) -> str:

@@ -48,6 +48,10 @@ def write_bvh(
         The motion has gaps.
     InvalidSettingError
         The scale is not positive, or there is no such order of axes.
+    InvalidFileError
+        The file cannot be written.
+    SolveCancelled
+        Raised by `progress`; the file is as it was.
     """
     if order not in ORDERS or not (np.isfinite(scale) and scale > 0.0):
         raise InvalidSettingError(

@@ -10,6 +10,7 @@ from ..motion import Tracks
 from ..progress import Progress, unwatched
 from .axes import check_scale, z_up_from_y_up
 from .c3d_file import C3dFile
+from .names import DifferentNames, printable
 
 METRES = {
     "mm": 0.001, "millimeters": 0.001, "millimetres": 0.001, "cm": 0.01, "centimeters": 0.01,
@@ -90,14 +91,11 @@ def _names(labels: list[str]) -> tuple[str, ...]:
     prefixes = {label.rpartition(":")[0] for label in labels if ":" in label}
     if len(prefixes) == 1:
         labels = [label.rpartition(":")[2] for label in labels]
-    names: dict[str, None] = {}
-    for place, label in enumerate(labels, start=1):
-        stem = label or f"point_{place}"
-        name, number = stem, 2
-        while name in names:
-            name, number = f"{stem}_{number}", number + 1
-        names[name] = None
-    return tuple(names)
+    names = DifferentNames()
+    return tuple(
+        names.give(printable(label) or f"point_{place}")
+        for place, label in enumerate(labels, start=1)
+    )
 
 
 def _unit(file: C3dFile, points: NDArray[np.float64]) -> float:

@@ -7,6 +7,7 @@ c3d 0.6.0 refuses eleven. This reads all of them, and the tests hold it against 
 The format is described at https://www.c3d.org/HTML/default.htm.
 """
 
+from math import prod
 from pathlib import Path
 
 import numpy as np
@@ -119,7 +120,7 @@ class C3dFile:
         kind, n_dimensions = np.frombuffer(self.content, np.int8, 2, at).tolist()
         sizes = list(self.content[at + 2 : at + 2 + max(0, n_dimensions)])
         start = at + 2 + len(sizes)
-        count = int(np.prod(sizes, dtype=np.int64))
+        count = prod(sizes)  # Of Python's integers: NumPy's would wrap around.
         width = {CHARACTERS: 1, BYTES: 1, INTEGERS: 2, FLOATS: 4}.get(kind, 0)
         if not width or start + count * width > len(self.content):
             return np.empty(0)

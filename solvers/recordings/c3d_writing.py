@@ -36,6 +36,10 @@ def write_c3d(tracks: Tracks, path: Path | str, *, progress: Progress = unwatche
     ------
     InvalidMotionError
         There are more points, or longer names, than the format has room for.
+    InvalidFileError
+        The file cannot be written.
+    SolveCancelled
+        Raised by `progress`, which is called at the end.
     """
     n_blocks = -(-(4 + len(_parameters(tracks, 0))) // BLOCK)
     if n_blocks > MOST_BLOCKS or tracks.n_points > LARGEST_COUNT:

@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 
 from ..errors import InvalidFileError
 from ..progress import Progress, unwatched
+from .names import shown
 
 ROWS_AT_ONCE = 2000
 BYTE_ORDER_MARK = b"\xef\xbb\xbf"
@@ -104,7 +105,7 @@ def _number(word: bytes, place: str) -> float:
     try:
         return float(word.replace(b",", b"."))
     except ValueError:
-        shown = word[:20].decode("ascii", "backslashreplace")
+        what = shown(word.decode("ascii", "backslashreplace"))
         raise InvalidFileError(
-            f"{place}: {shown!r} is not a number. The file is damaged; export it again."
+            f"{place}: {what!r} is not a number. The file is damaged; export it again."
         ) from None

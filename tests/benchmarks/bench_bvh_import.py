@@ -1,12 +1,14 @@
 """Reading BVH: ours against Blender's own importer and against plain Python.
 
-    python -m tests.benchmarks.bench_bvh_import
+    make bench-bvh
+    make bench-bvh ARGUMENTS=--docs    # into docs/benchmarks.md
 
 30 joints x 5000 frames. Ours reads, checks, turns every angle into a quaternion and checks
 again. Blender's importer also makes an armature and its F-curves. Plain Python only turns the
 words of the MOTION part into numbers, line by line.
 """
 
+import argparse
 import json
 import os
 import subprocess
@@ -23,6 +25,9 @@ from solvers.motion import Motion, Skeleton
 from solvers.motion.rotations import quaternion_from_rotation_vector
 from solvers.recordings import read_bvh, write_bvh
 
+from .report import Report
+from .tables import table
+
 N_JOINTS, N_FRAMES = 30, 5000
 REPEATS = 5
 TIMEOUT = 300.0
@@ -31,6 +36,10 @@ IN_BLENDER = "--in-blender"
 
 def main() -> None:
     """Print the table."""
+    parser = argparse.ArgumentParser(description=(__doc__ or "").splitlines()[0])
+    parser.add_argument("--docs", action="store_true", help="rewrite docs/benchmarks.md")
+    chosen = parser.parse_args()
+    started = perf_counter()
     with tempfile.TemporaryDirectory() as folder:
         path = Path(folder) / "take.bvh"
         write_bvh(_take(), path)
@@ -41,12 +50,13 @@ def main() -> None:
         }
         size = path.stat().st_size / 1e6
     ours = seconds["ours (read_bvh)"]
-    print(f"{N_JOINTS} joints x {N_FRAMES} frames, {size:.1f} MB, median of {REPEATS}")
-    for name, time in seconds.items():
-        known = time is not None
-        print(
-            f"{name:40}{time:8.3f} s{time / ours:8.1f} x ours" if known else f"{name:40} none"
-        )
+    title = f"{N_JOINTS} joints x {N_FRAMES} frames, {size:.1f} MB, median of {REPEATS} runs"
+    rows = {
+        name: ["-", "-"] if time is None else [f"{time:.3f}", f"{time / ours:.1f}"]
+        for name, time in seconds.items()
+    }
+    text = f"**{title}**\n\n{table(['reader', 'seconds', 'times ours'], rows)}\n"
+    Report(chosen.docs).part("bvh", [text], perf_counter() - started)
 
 
 def _take() -> Motion:

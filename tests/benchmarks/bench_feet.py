@@ -1,8 +1,8 @@
 """Planting feet against locking them and against leaving them alone, side by side.
 
-    python -m tests.benchmarks.bench_feet            # about a minute
-    python -m tests.benchmarks.bench_feet --full     # all scored clips
-    python -m tests.benchmarks.bench_feet --dev      # clips to tune on
+    make bench-feet                             # about a minute
+    make bench-feet ARGUMENTS="--full --docs"   # all scored clips, into docs/benchmarks.md
+    make bench-feet ARGUMENTS=--dev             # clips to tune on
 
 Every method gets the same contacts, detected on what it is given; what is measured in contact
 uses those of the untouched capture. Slide: mean horizontal speed of the slower of ankle and
@@ -13,7 +13,9 @@ whose heel the ankle may turn: some of its slide is that.
 """
 
 import argparse
+import sys
 from collections.abc import Callable, Sequence
+from time import perf_counter
 
 import numpy as np
 from numpy.typing import NDArray
@@ -27,6 +29,7 @@ from solvers.motion.rotations import IDENTITY, angle_between
 from solvers.samples import CorruptionSettings, corrupt
 
 from . import clips
+from .report import Report
 from .tables import Scores
 
 Array = NDArray[np.float64]
@@ -43,7 +46,10 @@ def main() -> None:
     parser = argparse.ArgumentParser(description=(__doc__ or "").splitlines()[0])
     parser.add_argument("--full", action="store_true", help="all scored clips")
     parser.add_argument("--dev", action="store_true", help="clips to tune on instead")
+    parser.add_argument("--docs", action="store_true", help="rewrite docs/benchmarks.md")
     chosen = parser.parse_args()
+    started = perf_counter()
+    tables = []
     names = (clips.development if chosen.dev else clips.scored)(chosen.full)
     with threadpool_limits(1):
         for title, spoil, step, comparable in INPUTS:
@@ -53,7 +59,9 @@ def main() -> None:
             for name in names:
                 capture = clips.read_cmu(clips.WALKS / f"{name}.bvh", step)
                 measure(scores, name, capture, spoil(name, capture), comparable)
-            print(f"{scores.markdown()}\n", flush=True)
+            tables.append(scores.markdown())
+            print(f"Done: {title}", file=sys.stderr, flush=True)
+    Report(chosen.docs).part("feet", tables, perf_counter() - started)
 
 
 def measure(

@@ -1,6 +1,8 @@
 """How long Mocap Assist takes to read and write an action of 120 bones x 10,000 frames.
 
-    .venv-4.5/bin/python tests/benchmarks/bench_scene_io.py [--bones 120] [--frames 10000]
+    make bench-scene
+    make bench-scene ARGUMENTS="--bones 60 --mode XYZ"
+    make bench-scene ARGUMENTS=--docs    # into docs/benchmarks.md
 
 Beside it, in the same run and on the same curves, the fastest bare way that Blender's API
 offers (`foreach_get`, `foreach_set`, no meaning attached). Each time is the median of three.
@@ -18,16 +20,22 @@ from time import perf_counter
 import bpy
 import numpy as np
 
+from .report import Report
+from .tables import table
+
 CHECKOUT = Path(__file__).resolve().parents[2]
 REPEATS = 3
 
 
 def main() -> None:
+    """Print the table."""
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--bones", type=int, default=120)
     parser.add_argument("--frames", type=int, default=10_000)
     parser.add_argument("--mode", default="QUATERNION", help="rotation mode of the bones")
+    parser.add_argument("--docs", action="store_true", help="rewrite docs/benchmarks.md")
     arguments = parser.parse_args()
+    started = perf_counter()
     load_checkout()
     from mocap_ext.mocap_assist.scene import armature_read, armature_write
 
@@ -41,21 +49,25 @@ def main() -> None:
         made, _ = armature_write.write_take(armature, source, take, take.rig.bones, {})
         bpy.data.actions.remove(made)
 
-    rows = [
-        ("read: bare keys of all curves", lambda: bare_read(curves)),
-        ("read: a take", lambda: armature_read.read_take(armature, bpy.context.scene)),
-        ("write: bare new curves", lambda: bare_write(len(curves), arguments.frames)),
-        ("write: a take into a new action", write),
-    ]
+    work = {
+        "read: bare keys of all curves": lambda: bare_read(curves),
+        "read: a take": lambda: armature_read.read_take(armature, bpy.context.scene),
+        "write: bare new curves": lambda: bare_write(len(curves), arguments.frames),
+        "write: a take into a new action": write,
+    }
     keys = len(curves) * arguments.frames
-    print(f"Blender {bpy.app.version_string}, {arguments.bones} bones, {arguments.mode},")
-    print(f"{arguments.frames} frames, {len(curves)} curves, {keys / 1e6:.1f} million keys\n")
-    times = {title: timed(run) for title, run in rows}
-    for title, seconds in times.items():
-        print(f"{title:36} {seconds:7.2f} s  {1e6 * seconds / keys:6.2f} us per key")
-    bare, ours = list(times.values())[::2], list(times.values())[1::2]
-    for verb, slow, fast in zip(("read", "write"), ours, bare, strict=True):
-        print(f"{verb}: {slow / fast:.1f} times the bare way")
+    title = (
+        f"Blender {bpy.app.version_string}, {arguments.bones} bones, {arguments.mode},"
+        f" {arguments.frames} frames, {len(curves)} curves, {keys / 1e6:.1f} million keys"
+    )
+    rows, bare = {}, 0.0
+    for name, run in work.items():
+        seconds = timed(run)
+        bare = seconds if "bare" in name else bare
+        rows[name] = [f"{seconds:.2f}", f"{1e6 * seconds / keys:.2f}", f"{seconds / bare:.1f}"]
+    header = ["what", "seconds", "microseconds per key", "times the bare way"]
+    text = f"**{title}**, median of {REPEATS} runs\n\n{table(header, rows)}\n"
+    Report(arguments.docs).part("scene", [text], perf_counter() - started)
 
 
 def timed(run: Callable[[], object]) -> float:

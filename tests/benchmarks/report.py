@@ -46,9 +46,9 @@ def _text(scores: Scores | str) -> str:
 
 def _run(seconds: float) -> str:
     now = datetime.now(UTC).strftime("%Y-%m-%d %H:%M UTC")
-    command = f"python -m tests.benchmarks.bench_denoise {' '.join(sys.argv[1:])}"
+    words = [f"python -m tests.benchmarks.{Path(sys.argv[0]).stem}", *sys.argv[1:]]
     machine = f"{platform.system()} {platform.machine()}, Python {platform.python_version()}"
-    return f"`{command}`, {now}, {machine}, one BLAS thread, {seconds:.0f} s.\n"
+    return f"`{' '.join(words)}`, {now}, {machine}, one BLAS thread, {seconds:.0f} s.\n"
 
 
 def _replace(name: str, text: str) -> None:

@@ -20,11 +20,10 @@ from types import ModuleType
 import numpy as np
 import pytest
 
-pytest_plugins = ("armature_fixtures",)
+pytest_plugins = ("armature_fixtures", "common_fixtures")
 
 PACKAGE = "bl_ext.user_default.mocap_assist"
 CHECKOUT = Path(__file__).resolve().parents[2]
-RECORDINGS = CHECKOUT.parent / "shared" / "data"
 RESOURCES = pytest.StashKey[Path]()
 EXIT_STATUS = pytest.StashKey[int]()
 
@@ -113,16 +112,3 @@ def blank() -> ModuleType:
 
     bpy.ops.wm.read_homefile(use_empty=True, use_factory_startup=True)
     return bpy
-
-
-@pytest.fixture
-def rng() -> np.random.Generator:
-    return np.random.default_rng(20240229)
-
-
-@pytest.fixture(scope="session")
-def recordings() -> Path:
-    """The folder of real recordings; tests that need it are skipped where it is absent."""
-    if not RECORDINGS.is_dir():
-        pytest.skip(f"no recordings at {RECORDINGS}")
-    return RECORDINGS

@@ -1,45 +1,19 @@
 """`python -m solvers` does to files what the verbs do to recordings."""
 
 import json
-import os
-import subprocess
-import sys
+import re
 from pathlib import Path
 
 import numpy as np
 import pytest
 from numpy.testing import assert_allclose
 
-from solvers.command_line.run import run
 from solvers.command_line.verbs import VERBS
-from solvers.denoising import learn_joint_limits, limit_excess
+from solvers.denoising import learn_joint_limits, limit_excess, load_filter_bases
 from solvers.motion import Tracks
 from solvers.motion.rotations import multiply, quaternion_from_rotation_vector
 from solvers.recordings import read_bvh, read_c3d, write_bvh, write_c3d
 from solvers.samples import GaitSettings, walking_gait
-
-ROOT = Path(__file__).parents[3]
-
-
-@pytest.fixture
-def call(capsys):
-    """Run a command line in this process; returns exit status, stdout, stderr."""
-
-    def command(*words) -> tuple[int, str, str]:
-        try:
-            status = run(VERBS, [str(word) for word in words], "solvers")
-        except SystemExit as stopped:
-            status = stopped.code
-        captured = capsys.readouterr()
-        return status, captured.out, captured.err
-
-    return command
-
-
-@pytest.fixture
-def leg_file(swinging_leg, tmp_path) -> Path:
-    write_bvh(swinging_leg, tmp_path / "leg.bvh")
-    return tmp_path / "leg.bvh"
 
 
 def test_convert_writes_the_same_motion(call, leg_file, tmp_path):
@@ -96,6 +70,71 @@ def test_denoise_learns_from_clips(call, leg_file, tmp_path):
     assert "1 example clip" in said
 
 
+def test_what_was_learned_once_serves_as_well_as_the_clips(call, leg_file, tmp_path):
+    twin = tmp_path / "twin.bvh"
+    twin.write_bytes(leg_file.read_bytes())
+    learned, out = tmp_path / "legs.npz", [tmp_path / "a.bvh", tmp_path / "b.bvh"]
+    longer = ("--window", 0.8, "--frame-rate", 20)
+
+    status, said, _ = call("learn", leg_file, twin, "--output", learned, *longer, "--json")
+    call("denoise", leg_file, out[0], "--train", leg_file, twin, *longer)
+    call("denoise", leg_file, out[1], "--bases", learned)
+
+    assert status == 0
+    figures = json.loads(said)
+    assert figures.pop("n_patterns") == len(load_filter_bases(learned).values)
+    assert figures == {
+        "inputs": [str(leg_file), str(twin)],
+        "output": str(learned),
+        "n_clips": 2,
+        "window_frames": 16,
+        "frame_rate_hz": 20.0,
+        "parts": ["hips", "joint knee", "joint ankle", "place"],
+    }
+    assert out[0].read_bytes() == out[1].read_bytes()
+    assert call("denoise", leg_file, out[1])[0] == 0
+    assert out[0].read_bytes() != out[1].read_bytes()
+
+
+def test_learn_says_what_it_learned(call, leg_file, tmp_path):
+    learned = tmp_path / "legs.npz"
+
+    status, said, complaint = call("learn", leg_file, "--output", learned)
+
+    assert (status, complaint) == (0, "")
+    assert re.fullmatch(rf"Learned \d+ patterns from 1 clip into {learned}\.\n", said)
+
+
+def test_patterns_of_points_are_not_for_a_skeleton(call, leg_file, tmp_path, rng):
+    steps = rng.normal(scale=0.01, size=(90, 4, 3)).cumsum(axis=0)
+    write_c3d(Tracks(("a", "b", "c", "d"), 1.0 + steps, 30.0), tmp_path / "points.c3d")
+    assert call("learn", tmp_path / "points.c3d", "--output", tmp_path / "points.npz")[0] == 0
+
+    status, _, complaint = call(
+        "denoise", leg_file, tmp_path / "out.bvh", "--bases", tmp_path / "points.npz"
+    )
+
+    assert status == 2
+    assert "The examples are of points, the recording is not." in complaint
+
+
+def test_nothing_in_a_file_of_patterns_is_run(call, leg_file, tmp_path):
+    """A pickle can run any program when it is opened; such a file is refused unopened."""
+    flag, bad = tmp_path / "flag", tmp_path / "bad.npz"
+
+    class Attack:
+        def __reduce__(self):
+            return (Path.touch, (flag,))
+
+    np.savez(bad, kind="filter bases", version=2, keys=np.array([Attack()], dtype=object))
+
+    status, _, complaint = call("denoise", leg_file, tmp_path / "out.bvh", "--bases", bad)
+
+    assert status == 2
+    assert "bad.npz is not a readable archive" in complaint
+    assert not flag.exists()
+
+
 def test_denoise_holds_joints_to_the_angles_of_the_clips(call, swinging_leg, tmp_path):
     """A knee that is held bent by 60 degrees more is no noise: only limits bring it back."""
     good, bent = tmp_path / "good.bvh", tmp_path / "bent.bvh"
@@ -113,8 +152,6 @@ def test_denoise_holds_joints_to_the_angles_of_the_clips(call, swinging_leg, tmp
         excess[option] = limit_excess(read_bvh(tmp_path / "clean.bvh"), limits).max()
 
     assert excess["--joint-limits"] < np.radians(5.1) < np.radians(15.0) < excess["--no-feet"]
-    status, _, complaint = call("denoise", bent, tmp_path / "clean.bvh", "--joint-limits")
-    assert (status, "name some with --train" in complaint) == (2, True)
 
 
 def test_denoise_plants_the_feet_if_there_are_any(call, leg_file, tmp_path):
@@ -136,69 +173,15 @@ def test_denoise_plants_the_feet_if_there_are_any(call, leg_file, tmp_path):
     assert "leg.bvh: No leg was found" in complaint
 
 
-def test_many_files_go_to_a_folder_and_a_second_run_goes_on(call, leg_file, tmp_path):
-    twin = tmp_path / "twin.bvh"
-    twin.write_bytes(leg_file.read_bytes())
-    folder = tmp_path / "out"
-    words = ["convert", leg_file, twin, "--output-folder", folder]
-    assert call(*words)[0] == 0
-    first = (folder / "leg.bvh").stat().st_mtime_ns
-    (folder / "twin.bvh").unlink()
+@pytest.mark.parametrize("verb", [(), *((name,) for name in VERBS)], ids=str)
+def test_help_fits_the_window(call, verb, monkeypatch):
+    monkeypatch.setenv("COLUMNS", "80")
 
-    _, said, _ = call(*words)
+    status, said, complaint = call(*verb, "--help")
 
-    assert said.count("Already made.") == 1
-    assert (folder / "leg.bvh").stat().st_mtime_ns == first
-    assert (folder / "twin.bvh").exists()
-
-
-@pytest.mark.parametrize("change", ["options", "source", "again"])
-def test_what_would_come_out_otherwise_is_made_again(call, leg_file, tmp_path, change):
-    words = ["convert", leg_file, "--output-folder", tmp_path / "out"]
-    call(*words)
-    if change == "options":
-        words += ["--scale", 0.5]
-    if change == "source":
-        leg_file.write_bytes(leg_file.read_bytes() + b"\n")
-    if change == "again":
-        words += ["--again"]
-
-    _, said, _ = call(*words)
-
-    assert "Already made." not in said
-
-
-def test_one_bad_file_does_not_stop_the_others(call, leg_file, tmp_path):
-    bad = tmp_path / "bad.bvh"
-    bad.write_text("HIERARCHY\nMOTION\n")
-    folder = tmp_path / "out"
-
-    status, said, complaint = call(
-        "convert", bad, leg_file, tmp_path / "gone.bvh", "--output-folder", folder, "--json"
-    )
-
-    assert status == 2
-    assert sorted(path.name for path in folder.iterdir()) == ["leg.bvh", "mocap_assist.json"]
-    lines = [json.loads(line) for line in said.splitlines()]
-    assert [("error" in line) for line in lines] == [True, False, True]
-    assert complaint.count("\n") == 2
-    assert "There is no file" in complaint
-
-
-def test_several_at_a_time_give_the_same_files(leg_file, tmp_path):
-    twin = tmp_path / "twin.bvh"
-    twin.write_bytes(leg_file.read_bytes())
-    command = [sys.executable, "-m", "solvers", "convert", leg_file, twin, "--jobs", "2"]
-
-    done = subprocess.run(
-        [*command, "--output-folder", tmp_path / "out"], cwd=ROOT, timeout=120,
-        capture_output=True, text=True, env=os.environ | {"PYTHONWARNINGS": "error"},
-    )  # fmt: skip
-
-    assert (done.returncode, done.stderr) == (0, "")
-    assert done.stdout.count("120 frames at 60 Hz, 4 joints.") == 2
-    for name in ("leg.bvh", "twin.bvh"):
-        assert (tmp_path / "out" / name).read_bytes() == leg_file.read_bytes()
+    assert (status, complaint) == (0, "")
+    assert max(map(len, said.splitlines())) <= 80
+    assert said.startswith("usage: solvers")
 
 
 @pytest.mark.parametrize(
@@ -214,6 +197,22 @@ def test_several_at_a_time_give_the_same_files(leg_file, tmp_path):
         (["convert", "IN", "out.bvh", "--jobs", "0"], "jobs is 0; it must be at least 1."),
         (["denoise", "IN", "out.bvh", "--strength", "7"], "must lie between 0 and 1"),
         (["denoise", "IN", "out.bvh", "--train", "gone.bvh"], "There is no file gone.bvh."),
+        (["denoise", "IN", "out.bvh", "--bases", "gone.npz"], "There is no file gone.npz."),
+        (["denoise", "IN", "out.bvh", "--bases", "IN"], "leg.bvh is not a readable archive"),
+        (
+            ["denoise", "IN", "out.bvh", "--bases", "b.npz", "--train", "IN"],
+            "Argument --train: not allowed with argument --bases",
+        ),
+        (["denoise", "IN", "out.bvh", "--window", "1"], "--window is for learning; name clean"),
+        (["denoise", "IN", "out.bvh", "--joint-limits"], "name some with --train"),
+        (["learn", "IN"], "The following arguments are required: --output"),
+        (["learn", "IN", "--output", "b.bvh"], "end the name in .npz (learned patterns)"),
+        (["learn", "IN", "--output", "no/b.npz"], "there is no folder no"),
+        (["learn", "IN", "--output", "IN"], "would be written over"),
+        (["learn", "IN", "gone.amc", "--output", "b.npz"], "There is no file gone.amc."),
+        (["learn", "IN", "--output", "b.npz", "--window", "3"], "No example is as long as"),
+        (["quality", "gone.bvh"], "There is no file gone.bvh."),
+        (["quality", "IN", "--scale", "x"], "Argument --scale: invalid float value: 'x'"),
         (["sharpen", "IN"], "Argument VERB: invalid choice: 'sharpen'"),
         ([], "The following arguments are required: VERB"),
     ],
@@ -229,4 +228,4 @@ def test_a_mistake_is_one_sentence_and_status_2(
     assert said == ""
     assert sentence in complaint
     assert complaint.count("\n") == 1
-    assert not (tmp_path / "out.bvh").exists()
+    assert [path.name for path in tmp_path.iterdir()] == ["leg.bvh"]

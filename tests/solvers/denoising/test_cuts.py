@@ -95,9 +95,10 @@ def test_frames_that_are_repeated_are_no_cuts(walk, held):
     [
         CorruptionSettings(jitter=1.0),
         CorruptionSettings(jitter=7.0, spikes=0.4),
+        CorruptionSettings(jitter=0.0, spikes=0.15),
         CorruptionSettings(jitter=0.0, spikes=0.3),
     ],
-    ids=["noise", "noise and outliers", "outliers"],
+    ids=["noise", "noise and outliers", "outliers", "many outliers"],
 )
 def test_no_noise_makes_a_cut(walk, spoilt):
     assert not find_cuts(corrupt(walk, spoilt))
@@ -162,13 +163,17 @@ def test_patterns_are_not_learned_across_a_cut(walk):
 
 def test_the_jump_is_named_and_is_no_fault_of_the_body(walk):
     take = joined(pose_apart(walk), walk)
-    quality, plain = measure_quality(take), measure_quality(walk)
+    take = take.with_poses(root_positions=take.root_positions + np.eye(1, 181).T)
+    standing = np.ones((181, 2), dtype=bool)
+    quality = measure_quality(take, contacts=standing)
+    plain = measure_quality(walk, contacts=standing[1:])
 
     spots = find_worst_spots(take, quality)
 
     assert quality.cuts == (1,) and "cut before frame 2" in quality.report()
     assert quality.mean_jitter == pytest.approx(plain.mean_jitter)
     assert not quality.spikes.any()
+    assert quality.feet[0].distance == pytest.approx(plain.feet[0].distance)
     assert [(spot.kind, spot.start_frame) for spot in spots if spot.kind == "cut"] == [
         ("cut", 0)
     ]

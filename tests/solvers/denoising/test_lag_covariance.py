@@ -13,7 +13,7 @@ from solvers.denoising.lag_covariance import lag_products, strongest
 def test_equals_the_product_of_the_trajectory_matrix(rng, n_frames, window):
     values = rng.normal(size=(n_frames, 3)).cumsum(axis=0)
 
-    products = lag_products(values, window)
+    products = lag_products([values], window)
 
     trajectories = sliding_window_view(values, window, axis=0).transpose(0, 2, 1)
     matrix = trajectories.reshape(len(trajectories), -1)

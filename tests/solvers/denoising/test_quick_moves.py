@@ -26,7 +26,9 @@ def test_each_channel_is_judged_for_itself():
 
 
 def test_what_has_one_steep_side_is_a_spike():
-    assert not moves([0.0, 14.0, 10.0, 7.0, 4.0, 2.0, 0.0, 0.0]).any()
+    steep = [0.0, 14.0, 10.0, 7.0, 4.0, 2.0, 0.0, 0.0]
+
+    assert not moves(steep, steep[::-1]).any()
 
 
 def test_at_the_ends_and_beside_gaps_nothing_is_known_of_the_slope():

@@ -127,6 +127,16 @@ def test_joints_without_a_role_turn_with_the_role_above(body):
     assert_allclose(alignment[hand], alignment[arm])
 
 
+@pytest.mark.parametrize("flat", [(0, 0, 0), (1, 0, 0), (0, 0, 1)])
+def test_a_rest_pose_in_one_point_or_line_is_answered(body, flat):
+    """Human names, but no shape to go by: what comes out are rotations all the same."""
+    squashed = Skeleton(body.names, body.parents, body.offsets * flat)
+
+    alignment = t_pose_alignment(squashed, find_humanoid_map(body))
+
+    assert_allclose(np.linalg.norm(alignment, axis=-1), 1.0, atol=1e-12)
+
+
 def test_a_skeleton_without_roles_is_left_as_it_is(leg, swinging_leg):
     assert_allclose(
         canonical_rotations(swinging_leg, HumanoidMap()), swinging_leg.rotations, atol=1e-15

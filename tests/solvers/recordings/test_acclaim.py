@@ -7,6 +7,7 @@ from numpy.testing import assert_allclose
 from solvers.errors import InvalidFileError, InvalidSettingError
 from solvers.motion import forward_kinematics
 from solvers.recordings import read_acclaim
+from solvers.recordings.acclaim import find_skeleton
 
 SKELETON = """# a made-up arm
 :version 1.10
@@ -146,6 +147,11 @@ def test_without_a_skeleton_it_says_what_to_do(tmp_path):
         InvalidFileError, match=r"13_29\.amc: put the actor's \.asf file beside"
     ):
         read_acclaim(tmp_path / "13_29.amc")
+
+
+def test_a_missing_folder_is_one_sentence(tmp_path):
+    with pytest.raises(InvalidFileError, match=r"gone cannot be searched .* of 13_29\.amc"):
+        find_skeleton(tmp_path / "gone" / "13_29.amc")
 
 
 def test_what_a_frame_leaves_out_is_a_gap(read):

@@ -156,6 +156,15 @@ def test_names_are_made_different(read):
     assert read(text).skeleton.names == expected
 
 
+def test_many_equal_names_do_not_hold_up(read):
+    """If each search for a free number began at 2, this would take minutes."""
+    tips = "    End Site\n    {\n      OFFSET 0 9 0\n    }\n" * 8_000
+
+    names = read(ARM.replace("    End Site", f"{tips}    End Site")).skeleton.names
+
+    assert names[-2:] == ("elbow_8000_end", "elbow_8001_end")
+
+
 @pytest.mark.parametrize("name", ["Left  Arm", "Root", "Joint", "End"])
 def test_names_may_be_spaced_or_keywords(read, name):
     assert read(ARM.replace("elbow", name)).skeleton.names[1] == "_".join(name.split())
@@ -209,6 +218,14 @@ def test_every_real_file_is_a_person_on_or_near_the_floor(recordings):
         (ARM.replace("JOINT elbow", "TWIG elbow"), "'TWIG' stands where JOINT"),
         (ARM.replace("CHANNELS 6", "CHANNELS inf"), "'inf' is no sensible number"),
         (ARM.replace("OFFSET 30", "OFFSET nan"), "'nan' is no sensible number"),
+        (
+            ARM.replace("elbow", "elbow " * 200),
+            r"the name '(elbow_){6}elbo\.\.\.' does not end",
+        ),
+        (
+            ARM.replace("elbow", "el\x1bbow").replace("S 3", "S 4"),
+            "line 10: elbow has a channel",
+        ),
     ],
 )
 def test_damage_is_one_sentence_with_the_line(read, text, sentence):

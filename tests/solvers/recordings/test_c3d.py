@@ -161,6 +161,21 @@ def test_damage_is_one_sentence(tracks, tmp_path, spoil, sentence):
         read_c3d(path)
 
 
+@pytest.mark.parametrize("kind", [-1, 1, 2, 4])
+def test_a_parameter_that_claims_more_than_any_number_can_tell_is_passed_over(tmp_path, kind):
+    """Found by fuzzing: 127 sizes of 255 made a product that wrapped around."""
+    whole = c3d_bytes(np.ones((2, 3, 4)), INTEL, -1.0)
+    endless = struct.pack("<bb3sHbB", 3, 1, b"BIG", 132, kind, 127) + b"\xff" * 127 + b"\0"
+    entries = whole[512 + 4 : 1024].rstrip(b"\0") + b"\0"
+    path = tmp_path / "take.c3d"
+    path.write_bytes(whole[:516] + (entries + endless).ljust(508, b"\0") + whole[1024:])
+
+    tracks = read_c3d(path)
+
+    assert "POINT:BIG" in C3dFile(path).parameters
+    assert tracks.names == ("HEAD", "HAND", "HAND_2")
+
+
 def test_more_names_than_fit_are_refused_and_nothing_is_written(tmp_path):
     names = tuple(f"{'M' * 200}{number}" for number in range(700))
     tracks = Tracks(names, np.ones((1, 700, 3)), 100.0)

@@ -11,13 +11,11 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from solvers.command_line.run import run
-from solvers.command_line.verbs import VERBS
 from solvers.denoising import learn_filter_bases, load_filter_bases
 from solvers.errors import InvalidFileError
 from solvers.recordings import read_bvh, write_bvh
 
-ROOT = Path(__file__).parents[1]
+ROOT = Path(__file__).parents[3]
 HIERARCHY = """HIERARCHY
 ROOT hip
 {
@@ -35,21 +33,6 @@ OFFSET 0 -0.5 0
 }
 MOTION
 """
-
-
-@pytest.fixture
-def call(capsys):
-    """Run a command line in this process; returns exit status, stdout, stderr."""
-
-    def command(*words) -> tuple[int, str, str]:
-        try:
-            status = run(VERBS, [str(word) for word in words], "solvers")
-        except SystemExit as stopped:
-            status = stopped.code
-        captured = capsys.readouterr()
-        return status, captured.out, captured.err
-
-    return command
 
 
 @pytest.fixture
@@ -219,7 +202,7 @@ def test_too_little_memory_is_one_sentence(call, bvh, tmp_path, monkeypatch):
     def gluttonous(*_, **__):
         raise MemoryError
 
-    monkeypatch.setattr("solvers.command_line.verbs.denoise", gluttonous)
+    monkeypatch.setattr("solvers.command_line.denoise_verb.denoise", gluttonous)
 
     status, _, complaint = call("denoise", bvh(), tmp_path / "out.bvh")
 

@@ -1,0 +1,22 @@
+"""A recording in another format: the verb `convert`, here and in Blender."""
+
+from pathlib import Path
+
+from ..motion import Motion, Tracks
+from ..progress import Progress
+from .files import write
+from .verb import Outcome
+
+
+def convert(recording: Motion | Tracks, target: Path | None, progress: Progress) -> Outcome:
+    """Write a recording as the target's name says; return what there is to say about it."""
+    write(recording, target, progress)
+    names = recording.skeleton.names if isinstance(recording, Motion) else recording.names
+    kind = "joints" if isinstance(recording, Motion) else "points"
+    figures = {
+        "n_frames": recording.n_frames,
+        "frame_rate_hz": recording.frame_rate,
+        kind: list(names),
+    }
+    text = f"{recording.n_frames} frames at {recording.frame_rate:g} Hz, {len(names)} {kind}."
+    return Outcome(text, figures)

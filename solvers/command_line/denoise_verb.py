@@ -1,0 +1,168 @@
+"""`denoise`: take jitter, spikes and gaps out, guided by clean clips where there are any."""
+
+import argparse
+from dataclasses import fields
+from pathlib import Path
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..denoising import (
+    DenoiseSettings,
+    FilterBases,
+    FilterBasesSettings,
+    JointLimits,
+    PlantSettings,
+    compare_quality,
+    denoise,
+    learn_filter_bases,
+    learn_joint_limits,
+    load_filter_bases,
+    measure_quality,
+    plant_feet,
+)
+from ..errors import InvalidMotionError, InvalidSettingError
+from ..motion import Motion, Tracks
+from ..progress import Progress, within
+from .files import add_reading_options, read, read_all, write
+from .options import arguments_from, settings_from_arguments
+from .verb import Outcome, Task
+
+
+class Learned(NamedTuple):
+    """What the clean clips teach."""
+
+    bases: FilterBases | None = None
+    limits: JointLimits | None = None
+
+
+def add_denoise_options(parser: argparse.ArgumentParser) -> None:
+    """Add the options of `denoise`."""
+    add_reading_options(parser)
+    examples = parser.add_mutually_exclusive_group()
+    examples.add_argument(
+        "--train", nargs="+", type=Path, default=[], metavar="FILE",
+        help="Clean clips to learn from; without them the take's own patterns guide",
+    )  # fmt: skip
+    examples.add_argument(
+        "--bases", type=Path, metavar="FILE",
+        help="What was learned of clean clips before, by the verb learn or the button Learn",
+    )  # fmt: skip
+    parser.add_argument(
+        "--joint-limits", action="store_true",
+        help="Hold joints softly within the angles to which they turn in the clips of --train",
+    )  # fmt: skip
+    parser.add_argument(
+        "--feet", action=argparse.BooleanOptionalAction,
+        help="Whether to keep standing feet from sliding [default: where there are feet]",
+    )  # fmt: skip
+    for title, settings in (
+        ("denoising", DenoiseSettings),
+        ("learning from --train", FilterBasesSettings),
+        ("planting feet", PlantSettings),
+    ):
+        arguments_from(parser.add_argument_group(title), settings)
+
+
+def learn_once(arguments: argparse.Namespace, progress: Progress) -> Learned:
+    """Learn, or load, what guides all files of a run.
+
+    Raises
+    ------
+    InvalidFileError
+        An example or the file of bases is missing or damaged.
+    InvalidMotionError
+        Nothing can be learned from the examples.
+    InvalidSettingError
+        Something was asked for that only examples can give.
+    """
+    settings = settings_from_arguments(arguments, FilterBasesSettings)
+    if not arguments.train:
+        _refuse_what_needs_clips(arguments)
+        return Learned(arguments.bases and load_filter_bases(arguments.bases))
+    clips = read_all(arguments.train, arguments, within(progress, 0.0, 0.5))
+    bases = learn_filter_bases(clips, settings=settings, progress=within(progress, 0.5, 0.9))
+    if not arguments.joint_limits:
+        return Learned(bases)
+    bodies = [clip for clip in clips if isinstance(clip, Motion)]
+    return Learned(bases, learn_joint_limits(bodies, progress=within(progress, 0.9, 1.0)))
+
+
+def _refuse_what_needs_clips(arguments: argparse.Namespace) -> None:
+    if arguments.joint_limits:
+        raise InvalidSettingError(
+            "Joint limits are learned from clean clips; name some with --train."
+        )
+    for item in fields(FilterBasesSettings):
+        if hasattr(arguments, item.name):
+            raise InvalidSettingError(
+                f"--{item.name.replace('_', '-')} is for learning; name clean clips with"
+                " --train, or give it to the verb learn."
+            )
+
+
+def perform_denoise(task: Task, learned: Learned, progress: Progress) -> Outcome:
+    """Clean one recording and write it; tell its quality before and after."""
+    recording = read(task.source, task.arguments, within(progress, 0.0, 0.1))
+    denoised = denoise(
+        recording,
+        learned.bases,
+        limits=learned.limits,
+        settings=settings_from_arguments(task.arguments, DenoiseSettings),
+        progress=within(progress, 0.1, 0.7),
+    )
+    clean = denoised.recording
+    clean, contacts, feet = _with_feet_planted(
+        clean, task.arguments, within(progress, 0.7, 0.8)
+    )
+    before, after = (
+        measure_quality(each, contacts=contacts, progress=within(progress, start, start + 0.07))
+        for each, start in ((recording, 0.8), (clean, 0.87))
+    )
+    write(clean, task.target, within(progress, 0.94, 1.0))
+    text = "\n".join([
+        denoised.prior_used,
+        *([] if denoised.converged else ["The estimate had not settled when it was stopped."]),
+        *([feet["feet"]] if "feet" in feet else []),
+        compare_quality(before, after),
+    ])
+    figures = {
+        "prior_used": denoised.prior_used,
+        "iterations": denoised.iterations,
+        "converged": denoised.converged,
+        "outliers": int(denoised.outliers.sum()),
+        "mean_confidence": float(denoised.confidence.mean()),
+        **feet,
+        "before": before.figures(),
+        "after": after.figures(),
+    }
+    return Outcome(text, figures)
+
+
+def _with_feet_planted(
+    clean: Motion | Tracks, arguments: argparse.Namespace, progress: Progress
+) -> tuple[Motion | Tracks, NDArray[np.bool_] | None, dict[str, Any]]:
+    """Return the recording with feet at rest, when they stand, and what to say about them.
+
+    Unless it was asked for, a recording without legs is left as it is.
+    """
+    settings = settings_from_arguments(arguments, PlantSettings)
+    if arguments.feet is False:
+        return clean, None, {}
+    if isinstance(clean, Tracks):
+        if arguments.feet:
+            raise InvalidMotionError("Points without a skeleton have no feet to plant.")
+        return clean, None, {}
+    try:
+        planted = plant_feet(clean, settings=settings, progress=progress)
+    except InvalidMotionError as error:
+        if arguments.feet:
+            raise
+        return clean, None, {"feet": f"Feet are left as they are. {error}"}
+    said = (
+        f"Feet slid {100 * planted.slide_before:.1f} cm in all before they were planted, and"
+        f" {100 * planted.slide_after:.1f} cm after."
+    )
+    figures = {"slide_before_m": planted.slide_before, "slide_after_m": planted.slide_after}
+    return planted.motion, planted.contacts, {"feet": said, **figures}

@@ -1,0 +1,66 @@
+"""Which file is read, which is written: decided, and refused, before any work is done."""
+
+import argparse
+from collections.abc import Sequence
+from pathlib import Path
+
+from ..errors import InvalidSettingError
+from .files import LEARNED, ending_for, refuse_target
+from .verb import Makes, Task, Verb
+
+
+def tasks_of(verb: Verb, arguments: argparse.Namespace) -> list[Task]:
+    """Return what is to be done, in the order of the command line.
+
+    Raises
+    ------
+    InvalidSettingError
+        A file would be written over, or two would be written to one place.
+    InvalidFileError
+        Something could not be written where it was asked for.
+    """
+    files: list[Path] = arguments.files
+    if verb.makes is Makes.WORDS:
+        return [Task((path,), None, arguments) for path in files]
+    if verb.makes is Makes.ONE_FILE:
+        _refuse_reading_and_writing(files, [arguments.output])
+        refuse_target(arguments.output, LEARNED)
+        return [Task(tuple(files), arguments.output, arguments)]
+    return [Task((path,), target, arguments) for path, target in _pairs(arguments)]
+
+
+def _pairs(arguments: argparse.Namespace) -> list[tuple[Path, Path]]:
+    """Return which file is written from which."""
+    files: list[Path] = arguments.files
+    folder: Path | None = arguments.output_folder
+    if folder is None:
+        if len(files) != 2:
+            raise InvalidSettingError(
+                f"{len(files)} files are named: name one to read and one to write, or say"
+                " where to put many with --output-folder DIR."
+            )
+        pairs = [(files[0], files[1])]
+    else:
+        pairs = [(path, folder / f"{path.stem}{ending_for(path)}") for path in files]
+    _refuse_reading_and_writing(*zip(*pairs, strict=True))
+    if folder is not None:
+        if folder.exists() and not folder.is_dir():
+            raise InvalidSettingError(f"{folder} is a file; name a folder to write to.")
+        folder.mkdir(parents=True, exist_ok=True)
+    for _, target in pairs:
+        refuse_target(target)
+    return pairs
+
+
+def _refuse_reading_and_writing(sources: Sequence[Path], targets: Sequence[Path]) -> None:
+    """Refuse to write over what is read, or twice to one place."""
+    places = [target.resolve() for target in targets]
+    same = [source for source in sources if source.resolve() in places]
+    if same:
+        raise InvalidSettingError(
+            f"{same[0]} would be written over. Recordings are never changed: choose another"
+            " name or folder."
+        )
+    if len(set(places)) < len(places):
+        twice = next(place for place in places if places.count(place) > 1)
+        raise InvalidSettingError(f"Two inputs would both be written to {twice}. Rename one.")

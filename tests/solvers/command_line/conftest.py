@@ -1,0 +1,50 @@
+"""What the tests of the command line share."""
+
+import os
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+from solvers.command_line.run import run
+from solvers.command_line.verbs import VERBS
+from solvers.recordings import write_bvh
+
+ROOT = Path(__file__).parents[3]
+
+
+@pytest.fixture
+def call(capsys):
+    """Run a command line in this process; returns exit status, stdout, stderr."""
+
+    def command(*words) -> tuple[int, str, str]:
+        try:
+            status = run(VERBS, [str(word) for word in words], "solvers")
+        except SystemExit as stopped:
+            status = stopped.code
+        captured = capsys.readouterr()
+        return status, captured.out, captured.err
+
+    return command
+
+
+@pytest.fixture
+def start():
+    """Run `python -m solvers`, or another program of Python, in a process of its own."""
+
+    def command(*words, program=("-m", "solvers"), **options) -> subprocess.CompletedProcess:
+        streams = {"stdout": subprocess.PIPE, "stderr": subprocess.PIPE} | options
+        return subprocess.run(
+            [sys.executable, "-B", *map(str, program), *map(str, words)],
+            cwd=ROOT, timeout=120, text=True, check=False,
+            env=os.environ | {"PYTHONWARNINGS": "error"}, **streams,
+        )  # fmt: skip
+
+    return command
+
+
+@pytest.fixture
+def leg_file(swinging_leg, tmp_path) -> Path:
+    write_bvh(swinging_leg, tmp_path / "leg.bvh")
+    return tmp_path / "leg.bvh"
