@@ -13,8 +13,6 @@ Array = NDArray[np.float64]
 
 AROUND = 8
 """Frames to either side from which it is known how fast each joint moves there."""
-LEVEL = 3
-"""Frames to either side whose median says where a joint stays."""
 HALF_OF_THEM, MOST_OF_THEM = 0.5, 0.7
 """Shares of the joints that have to jump."""
 FAR, NOT_NEAR = 2.5, 1.5
@@ -48,7 +46,7 @@ def find_cuts(recording: Motion | Tracks) -> tuple[int, ...]:
     if moving.sum() < FEWEST_JOINTS:
         return ()
     course, sizes = course[:, moving], sizes[:, moving]
-    cuts = [int(step) + 1 for step in _jumps(course, sizes, smallest)]
+    cuts = [int(step) + 1 for step in _jumps(sizes, smallest)]
     place = 0
     while place + 1 < len(cuts):
         start, stop = cuts[place : place + 2]
@@ -108,8 +106,8 @@ def _course(recording: Motion | Tracks) -> tuple[Array, float]:
     return 2.0 * unroll(recording.rotations[:, joints]), SMALLEST_TURN
 
 
-def _jumps(course: Array, sizes: Array, smallest: float) -> NDArray[np.intp]:
-    """Return the steps, from frame i to i + 1, at which nearly all joints jump for good."""
+def _jumps(sizes: Array, smallest: float) -> NDArray[np.intp]:
+    """Return the steps, from frame i to i + 1, at which nearly all joints jump."""
     # A frame that repeats the one before says nothing of how fast the body moves.
     still = np.nanmax(sizes, axis=1, initial=0.0) == 0.0
     steps = np.where(still[:, None], np.nan, sizes)
@@ -117,7 +115,7 @@ def _jumps(course: Array, sizes: Array, smallest: float) -> NDArray[np.intp]:
     # `_ratios` compares with no less than this: whatever it may find is among these.
     candidates = np.flatnonzero(_share(sizes / usual, HALF_OF_THEM) >= FAR)
     found = [
-        block[_is_cut(_ratios(course, steps, usual, block))]
+        block[_is_cut(_ratios(steps, usual, block))]
         for block in np.array_split(candidates, len(candidates) // BLOCK + 1)
     ]
     return np.concatenate(found)
@@ -129,28 +127,22 @@ def _comes_back(course: Array, start: int, stop: int, smallest: float) -> bool:
     rest = np.delete(course[around], np.arange(start, stop) - around.start, axis=0)
     sizes = np.linalg.norm(np.diff(rest, axis=0), axis=-1)
     usual = np.fmax(_median(sizes, 0), smallest)
-    ratios = _ratios(rest, sizes, usual, np.array([start - 1 - around.start]))
+    ratios = _ratios(sizes, usual, np.array([start - 1 - around.start]))
     return not _is_cut(ratios, max(FAR, stop - start + 1.0))[0]
 
 
-def _ratios(course: Array, steps: Array, usual: Array, at: NDArray[np.intp]) -> Array:
+def _ratios(sizes: Array, usual: Array, at: NDArray[np.intp]) -> Array:
     """Return how many times its usual step each joint jumps at these steps, (n, n_joints).
 
-    0 where it does not stay, and NaN where it is not observed.
+    NaN where it is not observed.
     """
-    n_steps = len(steps)
+    n_steps = len(sizes)
     offsets = np.arange(1, AROUND + 1)
     before, after = (
-        _median(_taken(steps, at[:, None] + way * offsets, n_steps), 1) for way in (-1, 1)
+        _median(_taken(sizes, at[:, None] + way * offsets, n_steps), 1) for way in (-1, 1)
     )
     usual = np.fmax(np.fmax(before, after), usual)
-    offsets = np.arange(LEVEL)
-    left = _median(_taken(course, at[:, None] - offsets, n_steps + 1), 1)
-    right = _median(_taken(course, at[:, None] + 1 + offsets, n_steps + 1), 1)
-    jump = course[at + 1] - course[at]
-    size = np.linalg.norm(jump, axis=-1)
-    stays = np.sum((right - left) * jump, axis=-1) >= 0.5 * size**2
-    return np.where(stays | np.isnan(size), size / usual, 0.0)
+    return np.asarray(sizes[at] / usual)
 
 
 def _is_cut(ratios: Array, far: float = FAR) -> NDArray[np.bool_]:

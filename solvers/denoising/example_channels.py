@@ -45,7 +45,7 @@ def encode_examples(
 
 
 def moments(clips: Sequence[Array]) -> tuple[Array, Array]:
-    """Return each channel's mean and standard deviation over the clips that have it (not NaN)."""
+    """Return mean and standard deviation of each channel over the clips that have it."""
     n_frames = np.array([len(clip) for clip in clips])
     count = np.maximum(n_frames @ np.array([np.isfinite(clip[0]) for clip in clips]), 1)
     mean = sum(np.nan_to_num(clip).sum(axis=0) for clip in clips) / count
