@@ -19,9 +19,10 @@ FAR, NOT_NEAR = 2.5, 1.5
 """Times the usual step of a joint that half, and most, of the joints jump at a cut. The first
 frames of CMU's recordings, T-poses, have 5.6 and 3.0 at 30 Hz, and more at 120 Hz; hops, kicks
 and jumps, however noisy or full of outliers, have at most 2.0 and 1.35."""
-SMALLEST_TURN = np.radians(0.3)
-SMALLEST_MOVE = 0.003
-"""Radians and metres from frame to frame: a joint at rest is taken to move by so much."""
+SMALLEST_TURN = np.radians(1.0)
+SMALLEST_MOVE = 0.04
+"""Radians and metres that any joint is taken to move from frame to frame: a camera that loses
+a frame moves all points of a body at once by a few centimetres."""
 FEWEST_JOINTS = 6
 """Of fewer it cannot be said that nearly all jump together."""
 MOVES = 1e-6
