@@ -132,7 +132,13 @@ def solve(problem: Problem, *, progress: Progress = unwatched) -> Solution:
     learned = problem.examples.learned(problem.learn_limits, within(progress, 0.0, 0.3))
     settings = replace(problem.settings, strength=1.0)
     results = [
-        denoise(body, learned.bases, settings=settings, progress=within(progress, 0.3, 0.8))
+        denoise(
+            body,
+            learned.bases,
+            limits=learned.limits,
+            settings=settings,
+            progress=within(progress, 0.3, 0.8),
+        )
     ]
     for index, recording in enumerate(others):
         share = (0.8 + 0.2 * index / len(others), 0.8 + 0.2 * (index + 1) / len(others))

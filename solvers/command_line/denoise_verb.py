@@ -16,7 +16,6 @@ from ..denoising import (
     PlantSettings,
     compare_quality,
     denoise,
-    keep_within,
     learn_filter_bases,
     learn_joint_limits,
     load_filter_bases,
@@ -109,12 +108,11 @@ def perform_denoise(task: Task, learned: Learned, progress: Progress) -> Outcome
     denoised = denoise(
         recording,
         learned.bases,
+        limits=learned.limits,
         settings=settings_from_arguments(task.arguments, DenoiseSettings),
         progress=within(progress, 0.1, 0.7),
     )
     clean = denoised.recording
-    if learned.limits is not None and isinstance(clean, Motion):
-        clean = keep_within(clean, learned.limits)
     clean, contacts, feet = _with_feet_planted(
         clean, task.arguments, within(progress, 0.7, 0.8)
     )

@@ -14,8 +14,11 @@ Array = NDArray[np.float64]
 SMOOTHING = 0.5
 """Width (standard deviation) of the kernel that takes the gait out of the path, seconds."""
 SPIKE_HALF_WIDTH = 0.15
+"""Neighbourhood to either side that a spike of the path stands out from, seconds."""
 SPIKE_TOLERANCE = 3.5
+"""Robust standard deviations of the neighbourhood from which on it is a spike."""
 GAP_WEIGHT = 1e-3
+"""Of a frame that was not observed, relative to one that was."""
 
 
 @dataclass(frozen=True, eq=False)

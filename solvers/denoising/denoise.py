@@ -1,6 +1,7 @@
 """Take jitter, spikes and gaps out of a recording, guided by how bodies move."""
 
-from dataclasses import dataclass
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
 from enum import Enum
 
 import numpy as np
@@ -12,8 +13,13 @@ from ..progress import Progress, unwatched, within
 from ..settings import Settings, setting
 from .channels import Channels
 from .channels_encode import decode, encode
+from .cuts import find_cuts, is_short, pieces, tell_of_cuts
+from .denoise_estimate import Estimate
 from .denoise_groups import estimate_in_groups
 from .filter_bases import FilterBases
+from .impossible_turns import impossible_turns
+from .joint_limits import JointLimits
+from .keep_within import keep_within
 from .published import filter_as_published
 
 Array = NDArray[np.float64]
@@ -61,13 +67,16 @@ class Denoised:
     iterations: int
     converged: bool
     prior_used: str
-    """A sentence: which patterns guided the estimate, and why."""
+    """Which patterns guided the estimate, and why; and what was taken for a piece apart."""
+    cuts: tuple[int, ...] = ()
+    """First frames of the pieces of which the take was found to be made, but the first."""
 
 
 def denoise(
     recording: Motion | Tracks,
     bases: FilterBases | None = None,
     *,
+    limits: JointLimits | None = None,
     settings: DenoiseSettings = DenoiseSettings(),
     progress: Progress = unwatched,
 ) -> Denoised:
@@ -78,12 +87,20 @@ def denoise(
     take; noise, spikes and missing joints are estimated with it. Bones keep their lengths. It
     does not keep feet on the ground: see `plant_feet`.
 
+    A take that was joined of several is cleaned piece by piece. A piece of less than a quarter
+    of a second, such as the T-pose with which many recordings begin, is kept as it is, but for
+    its gaps.
+
     Parameters
     ----------
     recording : Motion or Tracks
         NaN where not observed.
     bases : FilterBases, optional
         Patterns of clean recordings. Without them the take's own patterns are used.
+    limits : JointLimits, optional
+        How far the joints of a motion may turn. At any strength the result is held softly
+        within them (`keep_within`); with bases, it is estimated again without what is far
+        beyond, where the first estimate believed that.
     settings : DenoiseSettings
     progress : Progress
 
@@ -107,31 +124,110 @@ def denoise(
         learned = "points" if bases.of_points else "joints"
         raise InvalidMotionError(f"The examples are of {learned}, the recording is not.")
     progress(0.0, "Reading")
-    seen = recording.observed if isinstance(recording, Motion) else recording.visible
-    if not seen.any():
+    if not _seen(recording).any():
         raise InvalidMotionError(
             "Nothing was observed in this take; there is nothing to clean."
         )
-    channels = encode(recording, bases.reference_of if bases else None)
-    inner = within(progress, 0.05, 0.95)
-    if settings.method is Method.PUBLISHED:
-        estimate, used = filter_as_published(channels, recording.frame_rate, bases, inner)
-    else:
-        estimate, used = estimate_in_groups(channels, recording.frame_rate, bases, inner)
+    cuts = find_cuts(recording)
+    parts = []
+    for start, stop in pieces(recording, cuts):
+        piece = recording.slice(start, stop) if cuts else recording
+        step = within(progress, start / recording.n_frames, stop / recording.n_frames)
+        if cuts and is_short(stop - start, recording.frame_rate) and _seen(piece).all():
+            parts.append(_as_it_is(piece))
+        else:
+            parts.append(_denoised_piece(piece, bases, limits, settings, step))
+    progress(1.0, "Done")
+    return _joined(recording, parts, cuts) if cuts else parts[0]
+
+
+def _denoised_piece(
+    piece: Motion | Tracks,
+    bases: FilterBases | None,
+    limits: JointLimits | None,
+    settings: DenoiseSettings,
+    progress: Progress,
+) -> Denoised:
+    """Denoise what is of one piece."""
+    channels = encode(piece, bases.reference_of if bases else None)
+    halved = limits is not None and bases is not None
+    first = within(progress, 0.05, 0.5 if halved else 0.95)
+    estimate, used = _estimated(channels, piece.frame_rate, bases, settings, first)
+    if limits is not None and bases is not None and isinstance(piece, Motion):
+        believed = decode(piece, channels, estimate.values.reshape(channels.values.shape))
+        assert isinstance(believed, Motion)
+        impossible = impossible_turns(piece, believed, limits)[:, channels.joints]
+        impossible[:, -1] = False  # the last part is the root's place, which no limit is about
+        if impossible.any():
+            values = np.where(impossible[..., None], np.nan, channels.values)
+            possible = replace(channels, values=values)
+            second = within(progress, 0.5, 0.95)
+            estimate, used = _estimated(possible, piece.frame_rate, bases, settings, second)
     noisy, known = channels.flat, np.isfinite(channels.flat)
     spikes = (estimate.inliers < 0.5) & (np.abs(noisy - estimate.values) > SMALLEST_SPIKE)
     blended = noisy + settings.strength * (estimate.values - noisy)
     values = np.where(known, blended, estimate.values)
-    cleaned = decode(recording, channels, values.reshape(channels.values.shape))
-    progress(1.0, "Done")
+    cleaned = decode(piece, channels, values.reshape(channels.values.shape))
+    cleaned = _kept_where_unchanged(piece, cleaned, settings)
+    if limits is not None and isinstance(cleaned, Motion):
+        cleaned = keep_within(cleaned, limits)
     return Denoised(
-        _kept_where_unchanged(recording, cleaned, settings),
-        _worst(recording, channels, spikes) > 0.0,
-        1.0 / (1.0 + (_worst(recording, channels, estimate.deviation) / UNSURE) ** 2),
+        cleaned,
+        _worst(piece, channels, spikes) > 0.0,
+        1.0 / (1.0 + (_worst(piece, channels, estimate.deviation) / UNSURE) ** 2),
         estimate.iterations,
         estimate.converged,
         used,
     )
+
+
+def _estimated(
+    channels: Channels,
+    frame_rate: float,
+    bases: FilterBases | None,
+    settings: DenoiseSettings,
+    progress: Progress,
+) -> tuple[Estimate, str]:
+    if settings.method is Method.PUBLISHED:
+        return filter_as_published(channels, frame_rate, bases, progress)
+    return estimate_in_groups(channels, frame_rate, bases, progress)
+
+
+def _as_it_is(piece: Motion | Tracks) -> Denoised:
+    shape = _seen(piece).shape
+    return Denoised(piece, np.zeros(shape, dtype=np.bool_), np.ones(shape), 0, True, "")
+
+
+def _joined(
+    recording: Motion | Tracks, parts: Sequence[Denoised], cuts: tuple[int, ...]
+) -> Denoised:
+    """Join the pieces of a take again; the longest tells which patterns were used."""
+    cleaned = [part.recording for part in parts]
+    whole: Motion | Tracks
+    if isinstance(recording, Motion):
+        motions = [each for each in cleaned if isinstance(each, Motion)]
+        whole = recording.with_poses(
+            np.concatenate([motion.rotations for motion in motions]),
+            np.concatenate([motion.root_positions for motion in motions]),
+        )
+    else:
+        tracks = [each for each in cleaned if isinstance(each, Tracks)]
+        whole = recording.with_positions(np.concatenate([each.positions for each in tracks]))
+    longest = max(parts, key=lambda part: part.recording.n_frames * bool(part.prior_used))
+    return Denoised(
+        whole,
+        np.concatenate([part.outliers for part in parts]),
+        np.concatenate([part.confidence for part in parts]),
+        max(part.iterations for part in parts),
+        all(part.converged for part in parts),
+        f"{longest.prior_used} {tell_of_cuts(recording, cuts)}".strip(),
+        cuts,
+    )
+
+
+def _seen(recording: Motion | Tracks) -> NDArray[np.bool_]:
+    """Where each joint or point was observed, shape (n_frames, n_joints)."""
+    return recording.observed if isinstance(recording, Motion) else recording.visible
 
 
 def _kept_where_unchanged(
@@ -157,8 +253,7 @@ def _worst(
 ) -> Array:
     """Return the largest of each joint's channels, shape (n_frames, n_joints)."""
     parts = values.reshape(channels.values.shape).max(axis=2)
-    n_joints = recording.n_joints if isinstance(recording, Motion) else recording.n_points
-    result = np.zeros((len(parts), n_joints))
+    result = np.zeros(_seen(recording).shape)
     for part, joint in enumerate(channels.joints):
         result[:, joint] = np.maximum(result[:, joint], parts[:, part])
     return result

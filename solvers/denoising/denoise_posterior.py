@@ -12,6 +12,7 @@ from .denoise_gaps import gap_patterns, long_gaps
 from .denoise_windows import Windows
 from .noise import alike
 from .prior import WavePrior
+from .quick_moves import quick_moves
 
 Array = NDArray[np.float64]
 
@@ -86,7 +87,7 @@ def estimate_channels(
     rate, iteration, change = FIRST_OUTLIERS, 0, np.inf
     while iteration < at_most and change > SETTLED:
         progress(iteration / at_most, "Denoising")
-        weight = known * _inlier_probability(observed - estimate, weight, variance, noise, rate)
+        weight = _believed(observed - estimate, known, weight, variance, noise, rate)
         rate = _outlier_rate(weight, known)
         adapts = iteration < ADAPTATIONS
         if iteration <= ADAPTATIONS:  # from then on nothing changes that they are made of
@@ -123,6 +124,20 @@ def _foresight(error: Array, noise: Array) -> float:
     square = np.minimum((error / (FAR * noise)) ** 2, 1.0)
     known = np.isfinite(square)
     return float(square[known].mean()) if known.any() else 0.0
+
+
+def _believed(
+    error: Array,
+    known: NDArray[np.bool_],
+    weight: Array,
+    variance: Array,
+    noise: Array,
+    rate: float,
+) -> Array:
+    """Return each sample's probability of being no outlier; quick moves are none."""
+    inside = _inlier_probability(error, weight, variance, noise, rate)
+    quick = quick_moves(np.where(known, error, np.nan), inside, noise, rate)
+    return np.asarray(known * np.where(quick, 1.0, inside))
 
 
 def _inlier_probability(

@@ -7,17 +7,14 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 from scipy.fft import dct
-from scipy.interpolate import CubicSpline
 
 from ..errors import InvalidFileError, InvalidMotionError
 from ..files import read_archive, write_archive
 from ..motion import Motion, Tracks
-from ..progress import Progress, unwatched
+from ..progress import Progress, unwatched, within
 from ..settings import Settings, setting
-from .channels import Channels
-from .channels_encode import encode
+from .example_channels import encode_examples, moments
 from .lag_covariance import lag_products, strongest
-from .noise import interpolated
 from .prior import n_slow_waves
 
 Array = NDArray[np.float64]
@@ -30,7 +27,6 @@ STILL = 0.05
 """Standard deviation, degrees or centimetres, below which a channel does not move."""
 AT_REST = 1e-6
 """The same where no channel moves: what is below is rounding."""
-NEAR_MULTIPLE = 0.02
 N_REFERENCE = 12
 
 
@@ -79,7 +75,7 @@ class FilterBases:
     fast : shape (window - n_slow, n_moving)
         Variances of the faster waves.
     clip_means : shape (n_clips, n_moving)
-        Mean pose of each example.
+        Mean pose of each example; the mean of all for what it lacks.
     frame_rate : shape (), hertz
     n_clips : shape (), int
     of_points : shape (), bool
@@ -182,7 +178,8 @@ def learn_filter_bases(
 
     The eigenvectors of the lag covariance of all channels [1]_. The covariance comes from a
     recursion over lags, clip by clip, so the matrix of all windows is never built: many frames
-    take no more memory than few. Rigs may differ where their joints have humanoid roles.
+    take no more memory than few. Rigs may differ where their joints have humanoid roles; clips
+    that lack a joint tell nothing of it. Nothing is learned across a cut.
 
     Parameters
     ----------
@@ -212,7 +209,7 @@ def learn_filter_bases(
         raise InvalidMotionError("There is no example to learn from; choose clean clips.")
     if len({isinstance(example, Motion) for example in examples}) > 1:
         raise InvalidMotionError("Learn from motions or from tracks, not from both at once.")
-    first, clips = _columns(examples, settings, progress)
+    first, clips = encode_examples(examples, settings.frame_rate, within(progress, 0.0, 0.6))
     window = settings.n_frames
     clips = [clip for clip in clips if len(clip) >= window]
     if not clips:
@@ -220,8 +217,7 @@ def learn_filter_bases(
             f"No example is as long as the window of {settings.window:.2g} s; choose longer"
             " ones or a shorter window."
         )
-    everything = np.concatenate(clips)
-    mean, spread = everything.mean(axis=0), everything.std(axis=0)
+    mean, spread = moments(clips)
     if spread.max() < AT_REST:
         raise InvalidMotionError(
             "Nothing that was observed in the examples moves; choose clips with movement."
@@ -229,7 +225,8 @@ def learn_filter_bases(
     moving = np.flatnonzero(spread >= min(STILL, spread.max()))
     clips = [clip[:, moving] for clip in clips]
     progress(0.7, "Finding patterns")
-    values, vectors = strongest(_covariance(clips, [mean[moving]] * len(clips), window), KEPT_ENERGY)
+    about_all = _covariance(clips, [mean[moving]] * len(clips), window)
+    values, vectors = strongest(about_all, KEPT_ENERGY)
     own_means = [clip.mean(axis=0) for clip in clips]
     patterns = np.zeros((len(values), window, len(mean)))
     patterns[:, :, moving] = vectors.T.reshape(len(values), window, len(moving))
@@ -240,51 +237,26 @@ def learn_filter_bases(
         row[: len(first.references[key])] = first.references[key]
     return FilterBases(
         np.array(first.keys), rows, mean, patterns, values, moving, slow, fast,
-        np.array(own_means),
+        np.where(np.isfinite(own_means), own_means, mean[moving]),
         np.array(settings.frame_rate), np.array(len(examples)),
         np.array(isinstance(examples[0], Tracks)),
     )  # fmt: skip
 
 
-def at_rate(values: Array, frame_rate: float, wanted: float) -> list[Array]:
-    """Return channels at another frame rate.
-
-    A multiple of the wanted rate is split into interleaved takes, so that no frame is lost;
-    other rates are interpolated by cubic splines.
-    """
-    step = frame_rate / wanted
-    if step >= 1.0 and abs(step - round(step)) < NEAR_MULTIPLE * step:
-        return [values[start :: round(step)] for start in range(round(step))]
-    if len(values) < 2:
-        return [values]
-    times = np.arange(0.0, (len(values) - 1) * wanted / frame_rate + 1e-9) / wanted
-    spline = CubicSpline(np.arange(len(values)) / frame_rate, values, axis=0)
-    return [np.asarray(spline(times))]
-
-
-def _columns(
-    examples: Sequence[Motion | Tracks], settings: FilterBasesSettings, progress: Progress
-) -> tuple[Channels, list[Array]]:
-    """Encode all examples about the means of the first; columns are in its order."""
-    first = encode(examples[0])
-    clips = []
-    for index, example in enumerate(examples):
-        channels = encode(example, first.references) if index else first
-        place = {key: part for part, key in enumerate(channels.keys)}
-        columns = np.full((len(channels.values), len(first.keys), 3), np.nan)
-        for part, key in enumerate(first.keys):
-            if key in place:
-                columns[:, part] = channels.values[:, place[key]]
-        complete = interpolated(columns.reshape(len(columns), -1))
-        clips += at_rate(complete, example.frame_rate, settings.frame_rate)
-        progress(0.6 * (index + 1) / len(examples), "Reading examples")
-    return first, clips
-
-
 def _covariance(clips: Sequence[Array], means: Sequence[Array], window: int) -> Array:
-    """Return the lag covariance of clips, each about a mean of its own."""
-    centred = [clip - mean for clip, mean in zip(clips, means, strict=True)]
-    return lag_products(centred, window) / sum(len(clip) - window + 1 for clip in clips)
+    """Return the lag covariance of clips, each about a mean of its own.
+
+    A channel that a clip lacks (NaN) is judged by the others. So that the result stays a
+    covariance, what two channels have in common weakens where they are seldom seen together.
+    """
+    centred = [np.nan_to_num(clip - mean) for clip, mean in zip(clips, means, strict=True)]
+    total = lag_products(centred, window)
+    has = np.array([np.isfinite(clip[0]) for clip in clips])
+    n_windows = np.array([len(clip) - window + 1 for clip in clips]) @ has
+    scale = np.tile(np.sqrt(n_windows), window)
+    total /= scale
+    total /= scale[:, None]
+    return total
 
 
 def _waves(covariance: Array, window: int) -> tuple[Array, Array]:

@@ -47,7 +47,12 @@ class FootSlide:
 
 
 def foot_slide(
-    side: str, joint: str, points: Array, contact: NDArray[np.bool_], frame_rate: float
+    side: str,
+    joint: str,
+    points: Array,
+    contact: NDArray[np.bool_],
+    frame_rate: float,
+    cuts: tuple[int, ...] = (),
 ) -> FootSlide:
     """Measure the horizontal speed of the part of the foot that stands still most.
 
@@ -60,10 +65,13 @@ def foot_slide(
         Ankle and toe, or the ankle alone.
     contact : shape (n_frames,)
         A step between two frames counts where both are in contact.
+    cuts : tuple of int
+        Frames that have nothing to do with those before: no step leads to them.
     """
     steps = np.full((len(points), 2), np.nan)
     moved = np.diff(points[..., :2], axis=0)
     lengths = np.nan_to_num(np.linalg.norm(moved, axis=-1), nan=np.inf)
     slowest = moved[np.arange(len(moved)), lengths.argmin(axis=1)]
     steps[1:] = np.where((contact[1:] & contact[:-1])[:, None], slowest, np.nan)
+    steps[list(cuts)] = np.nan
     return FootSlide(side, joint, contact, steps, frame_rate)

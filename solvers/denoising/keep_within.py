@@ -48,6 +48,10 @@ def keep_within(
     humanoid_map : HumanoidMap
         Who plays the roles that the limits name; found where it is not given.
 
+    Returns
+    -------
+    Motion
+
     Raises
     ------
     InvalidSettingError

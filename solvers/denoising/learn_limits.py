@@ -80,6 +80,11 @@ def learn_joint_limits(
     settings : JointLimitsSettings
     progress : Progress
 
+    Returns
+    -------
+    JointLimits
+        One for each humanoid role, or else joint name, that any of the motions shows.
+
     Raises
     ------
     InvalidMotionError

@@ -12,8 +12,9 @@ from ..motion.contacts import detect_contacts
 from ..motion.humanoid import HumanoidMap, find_humanoid_map
 from ..motion.limb_ik import ReachSettings, reach
 from ..motion.rotations import inverse, multiply
-from ..progress import Progress, unwatched
+from ..progress import Progress, unwatched, within
 from ..settings import Settings, setting
+from .cuts import find_cuts, is_short, pieces
 from .feet import SIDES, Leg, find_legs
 from .knee_relief import knee_relief
 from .planted_path import Plant, planted_path
@@ -102,7 +103,8 @@ def plant_feet(
     and the curve that joins them through the air, are those of least displacement and bending,
     from one banded linear system (`smooth_correction`). Where a leg would be too short the
     root is shifted smoothly; bones never stretch. Then hip and knee are turned so that the
-    ankle follows (`reach`). Nothing above the hips turns.
+    ankle follows (`reach`). Nothing above the hips turns. The pieces of a take that was joined
+    of several are planted apart; in one of less than a quarter of a second no foot stands.
 
     Parameters
     ----------
@@ -134,9 +136,34 @@ def plant_feet(
     """
     humanoid_map = humanoid_map or find_humanoid_map(motion.skeleton)
     legs = _legs(motion, humanoid_map)
-    contacts = _checked(
-        detect_contacts(motion, humanoid_map) if contacts is None else contacts, motion
-    )
+    contacts = None if contacts is None else _checked(contacts, motion)
+    cuts, parts = find_cuts(motion), []
+    for start, stop in pieces(motion, cuts):
+        piece = motion.slice(start, stop) if cuts else motion
+        too_short = bool(cuts) and is_short(stop - start, motion.frame_rate)
+        if contacts is not None:
+            standing = contacts[start:stop]
+        elif too_short:
+            standing = np.zeros((stop - start, len(SIDES)), dtype=np.bool_)
+        else:
+            standing = detect_contacts(piece, humanoid_map)
+        if too_short:
+            parts.append(Planted(piece, standing, 0.0, 0.0))
+        else:
+            step = within(progress, start / motion.n_frames, stop / motion.n_frames)
+            parts.append(_planted_piece(piece, legs, standing, settings, step))
+    progress(1.0, "Planted the feet")
+    return _joined(motion, parts) if cuts else parts[0]
+
+
+def _planted_piece(
+    motion: Motion,
+    legs: Sequence[Leg],
+    contacts: Flags,
+    settings: PlantSettings,
+    progress: Progress,
+) -> Planted:
+    """Plant the feet of a motion without cuts."""
     standing = [leg for leg in legs if contacts[:, SIDES.index(leg.side)].any()]
     if not standing:
         progress(1.0, "No foot stands")
@@ -153,12 +180,22 @@ def plant_feet(
     for plant in plants:
         result = _followed(result, poses, plant, settings.softness)
     after = forward_kinematics(result)
-    progress(1.0, "Planted the feet")
     return Planted(
         result,
         contacts,
         slide_before=sum(plant.slide(motion.skeleton, poses) for plant in plants),
         slide_after=sum(plant.slide(motion.skeleton, after) for plant in plants),
+    )
+
+
+def _joined(motion: Motion, parts: Sequence[Planted]) -> Planted:
+    rotations = np.concatenate([part.motion.rotations for part in parts])
+    roots = np.concatenate([part.motion.root_positions for part in parts])
+    return Planted(
+        motion.with_poses(rotations, roots),
+        np.concatenate([part.contacts for part in parts]),
+        slide_before=sum(part.slide_before for part in parts),
+        slide_after=sum(part.slide_after for part in parts),
     )
 
 

@@ -135,20 +135,30 @@ def _patterns(
     channels: Channels, takes: list[Array], frame_rate: float, bases: FilterBases | None
 ) -> tuple[Array, Array, str]:
     """Return patterns of the take's channels, their mean, and where they are from."""
-    place = {str(key): part for part, key in enumerate(bases.keys)} if bases else {}
-    if bases is not None and all(key in place for key in channels.keys):
+    unfit = _why_not(channels, takes, bases)
+    if bases is not None and not unfit:
+        place = {str(key): part for part, key in enumerate(bases.keys)}
         columns = np.concatenate([3 * place[key] + np.arange(3) for key in channels.keys])
-        patterns = bases.vectors[:, :, columns]
-        if len(takes[-1]) >= bases.window:
-            return (
-                patterns,
-                bases.mean[columns],
-                f"Patterns of {int(bases.n_clips)} example clips.",
-            )
+        n_clips = int(bases.n_clips)
+        said = f"Patterns of {n_clips} example clip{'s' * (n_clips != 1)}."
+        return bases.vectors[:, :, columns], bases.mean[columns], said
     rough = [interpolated(hampel(take, 4, 3.5)) for take in takes]
     mean = np.concatenate(rough).mean(axis=0)
     window = min(FilterBasesSettings().n_frames, len(takes[-1]))
     covariance = lag_products([take - mean for take in rough], window)
     _, vectors = strongest(covariance, ENERGY)
     patterns = vectors.T.reshape(-1, window, len(mean))
-    return patterns, mean, "The take's own patterns."
+    return patterns, mean, f"The take's own patterns: {unfit}."
+
+
+def _why_not(channels: Channels, takes: list[Array], bases: FilterBases | None) -> str:
+    """Return why this method cannot use the bases; nothing where it can."""
+    if bases is None:
+        return "no examples were given"
+    lacking = len(set(channels.keys) - set(map(str, bases.keys)))
+    if lacking:
+        joints = "one joint" if lacking == 1 else f"{lacking} joints"
+        return f"the examples lack {joints} of it, and all are needed"
+    if len(takes[-1]) < bases.window:
+        return "it is shorter than those of the examples"
+    return ""

@@ -13,7 +13,8 @@ from ..motion.contacts import contacts_of_points, detect_contacts
 from ..motion.humanoid import HumanoidMap
 from ..progress import Progress, unwatched, within
 from ..settings import Settings, setting
-from .bone_lengths import BoneDrift, bone_drifts
+from .bone_drift import BoneDrift, bone_drifts
+from .cuts import find_cuts
 from .feet import SIDES, foot_joints
 from .foot_slide import FootSlide, foot_slide
 from .joint_limits import JointLimits
@@ -74,6 +75,9 @@ class Quality:
         Of tracks; the bones of a motion cannot stretch.
     limit_excess : shape (n_frames, n_joints), radians, or None
         How far each joint is beyond its limits, where limits were given.
+    cuts : tuple of int
+        First frames of the pieces of which the take was joined, but the first. What happens
+        there is no jitter, no spike and no slide of the body.
     """
 
     names: tuple[str, ...]
@@ -84,6 +88,7 @@ class Quality:
     feet: tuple[FootSlide, ...]
     bones: tuple[BoneDrift, ...]
     limit_excess: Array | None = None
+    cuts: tuple[int, ...] = ()
 
     @cached_property
     def spikes(self) -> Flags:
@@ -150,6 +155,11 @@ def measure_quality(
         Says which joints are feet; found by name and structure where it is not given.
     limits : JointLimits
         Joints of a motion that are beyond them are reported.
+    progress : Progress
+
+    Returns
+    -------
+    Quality
 
     Raises
     ------
@@ -165,31 +175,37 @@ def measure_quality(
     else:
         names, positions = recording.names, recording.positions
         bones = bone_drifts(recording)
+    cuts = find_cuts(recording)
     quality = Quality(
         names=names,
         n_frames=recording.n_frames,
         frame_rate=recording.frame_rate,
-        jitter=mean_jitter(positions, recording.frame_rate),
-        signals=signals_of(recording, rule, within(progress, 0.0, 0.8)),
-        feet=_foot_slides(recording, names, positions, contacts, humanoid_map),
+        jitter=mean_jitter(positions, recording.frame_rate, cuts),
+        signals=signals_of(recording, rule, within(progress, 0.0, 0.8), cuts),
+        feet=_foot_slides(recording, names, positions, contacts, humanoid_map, cuts),
         bones=bones,
         limit_excess=_excess(recording, limits, humanoid_map),
+        cuts=cuts,
     )
     progress(1.0, "Measured")
     return quality
 
 
-def mean_jitter(positions: Array, frame_rate: float) -> Array:
+def mean_jitter(positions: Array, frame_rate: float, cuts: tuple[int, ...] = ()) -> Array:
     """Return the mean absolute third difference over time, shape (n_joints,), m/s^3.
 
     Parameters
     ----------
     positions : shape (n_frames, n_joints, 3), metres; NaN is left out
     frame_rate : float, hertz
+    cuts : tuple of int
+        Frames that have nothing to do with those before; no difference is taken across.
     """
     if len(positions) < 4:
         return np.full(positions.shape[1], np.nan)
     jerk = np.linalg.norm(np.diff(positions, n=3, axis=0), axis=-1) * frame_rate**3
+    for cut in cuts:
+        jerk[max(cut - 3, 0) : cut] = np.nan
     known = np.isfinite(jerk)
     total = np.where(known, jerk, 0.0).sum(axis=0)
     count = known.sum(axis=0)
@@ -202,6 +218,7 @@ def _foot_slides(
     positions: Array,
     contacts: Flags | None,
     humanoid_map: HumanoidMap | None,
+    cuts: tuple[int, ...],
 ) -> tuple[FootSlide, ...]:
     if contacts is not None and np.shape(contacts) != (recording.n_frames, len(SIDES)):
         raise InvalidMotionError(
@@ -224,6 +241,7 @@ def _foot_slides(
             points[:, place],
             contacts[:, place],
             recording.frame_rate,
+            cuts,
         )
         for place, side in enumerate(SIDES)
     )

@@ -44,6 +44,7 @@ def quality_figures(quality: "Quality") -> dict[str, Any]:
         }
         for bone in quality.bones
     ]
+    figures["cuts"] = list(quality.cuts)
     if quality.limit_excess is not None:
         worst = np.degrees(np.nan_to_num(quality.limit_excess).max(axis=0))
         beyond = zip(quality.names, worst.tolist(), strict=True)

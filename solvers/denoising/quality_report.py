@@ -22,6 +22,10 @@ def quality_report(quality: "Quality") -> str:
     lines = [
         f"{quality.n_frames} frames at {quality.frame_rate:g} Hz ({seconds:.1f} s),"
         f" mean jitter {_number(quality.mean_jitter)} m/s3",
+        *(
+            [f"cut before frame {', '.join(str(cut + 1) for cut in quality.cuts)}"]
+            * bool(quality.cuts)
+        ),
         "",
         *_aligned([("joint", *COLUMNS), *rows]),
     ]

@@ -67,26 +67,44 @@ class SpikeRule:
 
 
 def signals_of(
-    recording: Motion | Tracks, rule: SpikeRule, progress: Progress
+    recording: Motion | Tracks,
+    rule: SpikeRule,
+    progress: Progress,
+    cuts: tuple[int, ...] = (),
 ) -> tuple[Signal, ...]:
     """Return one signal for each joint's rotation or point's position, and one for the root.
 
-    End sites, which never turn, have none.
+    End sites, which never turn, have none. No course leads across a cut.
     """
     half_window = max(FEWEST_FRAMES, round(HALF_WINDOW * recording.frame_rate))
     courses = list(_courses(recording))
     found = []
+    places = _pulled_apart(recording.n_frames, cuts, half_window)
     for place, (joint, turns, course) in enumerate(courses):
+        apart = np.full((places[-1] + 1, course.shape[1]), np.nan)
+        apart[places] = course
         smallest = rule.turn if turns else rule.move
-        told = disturbance(course, half_window, smallest)
+        told = disturbance(apart, half_window, smallest)
         threshold = max(smallest, rule.times_noise * told.scale)
         spikes = told.spikes(threshold)
         deviation = _angle(told.deviation) if turns else told.deviation
-        calm = np.where(spikes[:, None], np.nan, course)
+        calm = np.where(spikes[:, None], np.nan, apart)
         shake = local_shake(calm, round(SHAKE_WINDOW * recording.frame_rate))
-        found.append(Signal(joint, turns, told.scale, deviation, threshold, spikes, shake))
+        found.append(
+            Signal(
+                joint, turns, told.scale, deviation[places], threshold, spikes[places],
+                shake[places],
+            )
+        )  # fmt: skip
         progress((place + 1) / len(courses), "Looking for spikes")
     return tuple(found)
+
+
+def _pulled_apart(n_frames: int, cuts: tuple[int, ...], by: int) -> NDArray[np.intp]:
+    """Return where to put frames so that `by` empty ones are at each cut."""
+    moved = np.zeros(n_frames, dtype=np.intp)
+    moved[list(cuts)] = by
+    return np.asarray(np.arange(n_frames) + np.cumsum(moved))
 
 
 def local_shake(course: Array, window: int) -> Array:

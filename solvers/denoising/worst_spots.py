@@ -15,6 +15,8 @@ from .spikes import runs
 
 LONG_GAP = 0.25
 """Seconds that an animator can still bridge by eye: severity 1."""
+CUT_SEVERITY = 10.0
+"""What is joined should be taken apart before anything else is done."""
 LARGE_EXCESS = np.radians(10.0)
 """Severity 1 of a joint beyond its limits; a fifth of it is not mentioned."""
 
@@ -74,7 +76,7 @@ class Spot:
     stop_frame: int
     """The first frame after the fault."""
     kind: str
-    """"spike", "gap", "jitter", "foot slide" or "limit"."""
+    """"spike", "gap", "jitter", "foot slide", "limit" or "cut"."""
     severity: float
     """1: just worth a look. Faults of all kinds are comparable."""
     sentence: str
@@ -98,6 +100,17 @@ def find_worst_spots(
     quality : Quality
         What `measure_quality` found in this recording; measured here where it is not given.
     settings : SpotSettings
+    progress : Progress
+
+    Returns
+    -------
+    tuple of Spot
+        As many as the settings allow.
+
+    Raises
+    ------
+    SolveCancelled
+        Raised by `progress`.
     """
     if quality is None:
         quality = measure_quality(recording, progress=progress)
@@ -108,6 +121,7 @@ def find_worst_spots(
         *_shaking(quality, settings, pause),
         *_slides(quality, settings),
         *_beyond_limits(quality, pause),
+        *_cuts(quality),
     ]
     found.sort(key=lambda spot: (-spot.severity, spot.start_frame, spot.joint))
     progress(1.0, "Found the worst spots")
@@ -192,6 +206,12 @@ def _beyond_limits(quality: Quality, pause: int) -> Iterator[Spot]:
             angle = float(excess[start:stop].max())
             sentence = f"{name} turns {np.degrees(angle):.0f}° beyond its limits."
             yield Spot(name, start, stop, "limit", angle / LARGE_EXCESS, sentence)
+
+
+def _cuts(quality: Quality) -> Iterator[Spot]:
+    for frame in quality.cuts:
+        sentence = "The whole body jumps: the take is cut here, or begins with a pose apart."
+        yield Spot(quality.names[0], frame - 1, frame + 1, "cut", CUT_SEVERITY, sentence)
 
 
 def _merged(stretches: list[tuple[int, int]], pause: int) -> list[tuple[int, int]]:

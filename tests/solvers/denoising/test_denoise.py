@@ -1,5 +1,7 @@
 """A cleaned recording must be complete, close to the truth, and say what was done."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from numpy.testing import assert_allclose
@@ -9,6 +11,8 @@ from solvers.denoising import (
     Method,
     denoise,
     learn_filter_bases,
+    learn_joint_limits,
+    limit_excess,
     load_filter_bases,
 )
 from solvers.motion import Motion, Tracks
@@ -152,6 +156,28 @@ def test_beats_the_published_filter_on_a_real_walk(recordings, rng):
 
     assert ours < 0.9 * error(denoise(noisy, bases, settings=published), truth)
     assert ours < 0.6 * angle_between(noisy.rotations, truth.rotations)[:, moving(truth)].mean()
+
+
+def test_a_knee_bent_forwards_is_not_believed(swinging_leg, rng):
+    """The patterns of a swinging leg could follow it; its limits say that it cannot be."""
+    bases, limits = learn_filter_bases([swinging_leg]), learn_joint_limits([swinging_leg])
+    noisy = shaken(swinging_leg, rng, np.radians(1))
+    forwards = quaternion_from_rotation_vector(np.tile([1.2, 0.0, 0.0], (7, 1)))
+    noisy.rotations[50:57, 1] = multiply(forwards, noisy.rotations[50:57, 1])
+
+    alone, held = denoise(noisy, bases), denoise(noisy, bases, limits=limits)
+
+    assert limit_excess(held.recording, limits).max() < np.radians(5.0)
+    assert held.outliers[50:57, 1].all()
+    assert error(held, swinging_leg) < 0.9 * error(alone, swinging_leg)
+
+
+def test_limits_of_another_body_do_not_take_the_take_away(swinging_leg, rng):
+    limits = learn_joint_limits([swinging_leg])
+    other = replace(limits, lower=limits.lower + 1.5, upper=limits.upper + 1.5)
+    noisy = shaken(swinging_leg, rng, np.radians(1))
+
+    assert not denoise(noisy, learn_filter_bases([swinging_leg]), limits=other).outliers.any()
 
 
 def moving(motion: Motion) -> list[int]:

@@ -5,6 +5,7 @@ import pytest
 from numpy.lib.stride_tricks import sliding_window_view
 from numpy.testing import assert_allclose
 
+from solvers.denoising import learn_filter_bases
 from solvers.denoising.lag_covariance import lag_products, strongest
 
 
@@ -29,3 +30,18 @@ def test_patterns_hold_the_share_that_is_asked_for(rng):
     n_needed = int(np.searchsorted(everything.cumsum(), 0.99 * everything.sum())) + 1
     assert_allclose(values, everything[:n_needed], rtol=1e-8)
     assert_allclose(covariance @ vectors, vectors * values, atol=1e-6 * values[0])
+
+
+def test_a_clip_that_lacks_a_joint_tells_nothing_of_it(swinging_leg):
+    """As if it had not been given, for the joint's mean, spread and patterns."""
+    lost = swinging_leg.with_poses(swinging_leg.rotations.copy())
+    lost.rotations[:, 1] = np.nan
+
+    alone, both = learn_filter_bases([swinging_leg]), learn_filter_bases([swinging_leg, lost])
+
+    knee = 3 * alone.keys.tolist().index("joint knee") + np.arange(3)
+    assert_allclose(both.mean[knee], alone.mean[knee], atol=1e-9)
+    assert set(both.moving) == set(alone.moving)
+    places = np.flatnonzero(np.isin(alone.moving, knee))
+    own = np.ix_(np.arange(len(alone.slow)), places, np.arange(len(alone.slow)), places)
+    assert_allclose(both.slow[own], alone.slow[own], rtol=1e-6, atol=1e-9)

@@ -1,10 +1,13 @@
 """The published filter must minimise the cost that its paper prints."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from numpy.testing import assert_allclose
 from scipy.optimize import minimize
 
+from solvers.denoising import DenoiseSettings, Method, denoise, learn_filter_bases
 from solvers.denoising.published import PATTERN_WEIGHT, WELSCH, alternate, published_cost
 
 WINDOW = 6
@@ -69,3 +72,25 @@ def test_every_round_lowers_the_cost(patterns, noisy, monkeypatch):
         costs.append(published_cost(motion, observed, known, patterns))
 
     assert (np.diff(costs) <= 1e-9).all()
+
+
+def test_says_why_it_does_not_use_the_examples(swinging_leg, leg):
+    settings = DenoiseSettings(method=Method.PUBLISHED)
+    names = dict(zip(leg.names, ("hip", "knee", "foot", "end"), strict=True))
+    other = replace(leg, names=tuple(names.values()))
+    foreign = learn_filter_bases([replace(swinging_leg, skeleton=other)])
+    bases = learn_filter_bases([swinging_leg])
+
+    said = [
+        denoise(swinging_leg, None, settings=settings).prior_used,
+        denoise(swinging_leg, foreign, settings=settings).prior_used,
+        denoise(swinging_leg.slice(0, 30), bases, settings=settings).prior_used,
+        denoise(swinging_leg, bases, settings=settings).prior_used,
+    ]
+
+    assert said == [
+        "The take's own patterns: no examples were given.",
+        "The take's own patterns: the examples lack one joint of it, and all are needed.",
+        "The take's own patterns: it is shorter than those of the examples.",
+        "Patterns of 1 example clip.",
+    ]

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from numpy.testing import assert_allclose
 
-from solvers.denoising.bone_lengths import bone_drifts
+from solvers.denoising.bone_drift import bone_drifts
 from solvers.denoising.foot_slide import foot_slide
 from solvers.denoising.quality import QualitySettings, mean_jitter, measure_quality
 from solvers.denoising.quality_report import compare_quality

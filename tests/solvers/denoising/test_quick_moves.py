@@ -1,0 +1,41 @@
+"""A hill that is climbed step by step is a move; a tower is a spike."""
+
+import numpy as np
+import pytest
+
+from solvers.denoising.quick_moves import quick_moves
+
+HILL = [0.0, 4.0, 10.0, 14.0, 9.0, 4.0, 0.0, 0.0]
+
+
+def moves(*columns, noise=0.05, rate=0.002):
+    error = np.array(columns).T
+    inlier = np.where(np.abs(error) > 1.0, 0.0, 1.0)
+    return quick_moves(error, inlier, np.full(len(columns), noise), rate)
+
+
+def test_each_channel_is_judged_for_itself():
+    tower = [0.0, 0.0, 0.0, 14.0, 0.0, 0.0, 0.0, 0.0]
+    burst = [0.0, 14.0, 14.0, 14.0, 14.0, 14.0, 0.0, 0.0]
+
+    found = moves(tower, HILL, burst, [-each for each in HILL])
+
+    assert not found[:, [0, 2]].any()
+    assert found[:, [1, 3]].any(axis=1).tolist() == [False] + 5 * [True] + 2 * [False]
+    assert (found[:, 1] == found[:, 3]).all()
+
+
+def test_what_has_one_steep_side_is_a_spike():
+    steep = [0.0, 14.0, 10.0, 7.0, 4.0, 2.0, 0.0, 0.0]
+
+    assert not moves(steep, steep[::-1]).any()
+
+
+def test_at_the_ends_and_beside_gaps_nothing_is_known_of_the_slope():
+    assert not moves([4.0, 10.0, 4.0, 0.0, 0.0]).any()
+    assert not moves([0.0, np.nan, 14.0, 9.0, 4.0, 0.0]).any()
+
+
+@pytest.mark.parametrize(("noise", "rate"), [(0.6, 0.002), (0.05, 0.05)])
+def test_in_noisy_takes_and_among_many_outliers_nothing_is_called_a_move(noise, rate):
+    assert not moves(HILL, noise=noise, rate=rate).any()
