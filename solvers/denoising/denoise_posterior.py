@@ -27,8 +27,8 @@ MOST_OUTLIERS = 0.6
 MAX_ITERATIONS = 30
 ADAPTATIONS = 5
 """Iterations in which the prior still adapts to the take."""
-SETTLED = 0.004
-"""Root mean square change, relative to the noise, below which the estimate is settled."""
+SETTLED = 0.02
+"""Root mean square change, degrees or centimetres, below which the estimate is settled."""
 MOST_LEVERAGE = 0.98
 FAR = 4.0
 """Errors beyond so many standard deviations of the noise all count the same."""
@@ -87,7 +87,9 @@ def estimate_channels(
     rate, iteration, change = FIRST_OUTLIERS, 0, np.inf
     while iteration < at_most and change > SETTLED:
         progress(iteration / at_most, "Denoising")
-        weight = _believed(observed - estimate, known, weight, variance, noise, rate)
+        believed = _believed(observed - estimate, known, weight, variance, noise, rate)
+        # Halfway, lest a sample that is judged by its own estimate goes in and out for ever.
+        weight = believed if iteration <= ADAPTATIONS else 0.5 * (weight + believed)
         rate = _outlier_rate(weight, known)
         adapts = iteration < ADAPTATIONS
         if iteration <= ADAPTATIONS:  # from then on nothing changes that they are made of
@@ -96,7 +98,7 @@ def estimate_channels(
         drawn = estimate + weight * (observed - estimate) - prior.mean
         sweep = _swept(drawn, filters, windows, with_moments=adapts)
         before, estimate = estimate, sweep.total / windows.weight + prior.mean
-        change = float(np.sqrt(np.mean(((estimate - before) / (noise + SMALL_ERROR)) ** 2)))
+        change = float(np.sqrt(np.mean((estimate - before) ** 2)))
         if adapts:
             slow, fast = _adapted(prior, sweep, filters[0].gains.noise)
             noise = _noise(observed - estimate, weight, variance, first_guess)
