@@ -138,9 +138,7 @@ def choose_prior(
     return replace(candidates[best], caution=float(np.clip(unforetold, 0.0, 1.0))), best
 
 
-def channel_foresight(
-    prior: WavePrior, rough: Array, noise: Array, windows: Windows
-) -> float:
+def channel_foresight(prior: WavePrior, rough: Array, noise: Array, windows: Windows) -> float:
     """Return how badly the other parts foretell a whole part over a window.
 
     The mean square of what they leave over, relative to the part's own; 1 where they know
@@ -150,9 +148,7 @@ def channel_foresight(
     prior = prior.at_most(windows.length)
     power = np.einsum("kckc->c", prior.slow) / windows.length
     blurred = np.sqrt(noise**2 + BLUR**2 * power)
-    gains = gains_of(
-        prior.matrix, prior.fast, blurred, windows.density
-    )
+    gains = gains_of(prior.matrix, prior.fast, blurred, windows.density)
     n_slow, n_channels = prior.n_slow, len(prior.mean)
     waves = windows.waves_of(windows.cut(rough - prior.mean, windows.starts))[:, :n_slow]
     waves = waves / gains.noise
