@@ -104,11 +104,10 @@ def estimate_channels(
         drawn = estimate + weight * (observed - estimate) - prior.mean
         sweep = _swept(drawn, filters, windows, with_moments=adapts)
         before, estimate = estimate, sweep.total / total_weight + prior.mean
-        change = float(np.sqrt(np.mean((estimate - before) ** 2)))
+        change = np.inf if adapts else float(np.sqrt(np.mean((estimate - before) ** 2)))
         if adapts:
             slow, fast = _adapted(prior, sweep, filters[0].gains.noise)
             noise = _noise(observed - estimate, weight, variance, first_guess)
-            change = np.inf
         iteration += 1
     alone = 1.0 / (1.0 - np.minimum(variance / noise**2, MOST_LEVERAGE))
     foretold = np.where(known, (observed - estimate) * alone, np.nan)
