@@ -25,7 +25,7 @@ MOSTLY = 0.5
 """Share of a take in which a channel must be observed to judge of examples."""
 BLUR = 0.1
 """Standard deviation, relative to a channel's own, of what no pattern can say of it."""
-TRUST_IN_TAKE = 0.07
+TRUST_IN_TAKE = 0.05
 TRUST_WITHOUT_EXAMPLES = 0.05
 TRUST_ALONE = 0.3
 
