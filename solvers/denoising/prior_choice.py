@@ -15,12 +15,12 @@ from .prior import WavePrior, mixed, smooth_prior
 
 Array = NDArray[np.float64]
 
-SHARES = (0.003, 0.05)
+SHARES = (0.003, 0.05, 0.3)
 """Shares of the prior that knows only smoothness, beside the examples'."""
 TRIAL_ROUNDS = 3
-OWN_HANDICAP = 1.04
+OWN_HANDICAP = 1.02
 """What is learned from the take itself has seen the samples that it foretells, and so looks
-better than it is: by so much on walks, whatever their noise."""
+better than it is."""
 MOSTLY = 0.5
 """Share of a take in which a channel must be observed to judge of examples."""
 BLUR = 0.1
@@ -129,8 +129,7 @@ def choose_prior(
         trial = estimate_channels(
             *part, prior.of_channels(judges), without_gaps, at_most=TRIAL_ROUNDS
         )
-        handicap = 1.0 if share < 1.0 else OWN_HANDICAP
-        foresights[share] = handicap * trial.foresight
+        foresights[share] = trial.foresight * (1.0 if share < 1.0 else OWN_HANDICAP)
     best = min(foresights, key=lambda share: foresights[share])
     unforetold = channel_foresight(
         candidates[best].of_channels(judges), *part[1:], without_gaps
