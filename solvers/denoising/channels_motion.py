@@ -76,7 +76,7 @@ def encode_motion(motion: Motion, references: Mapping[str, Array] | None = None)
 
 
 def _unwrapped(vectors: Array, mean: Array) -> Array:
-    """Tell rotation vectors by the turn that is nearer to their mean's, even beyond 180 degrees.
+    """Tell turns by the rotation vector nearer to their mean's, even beyond 180 degrees.
 
     Joints that are told about the mean of another rig may lie half a turn from it.
 
@@ -89,8 +89,6 @@ def _unwrapped(vectors: Array, mean: Array) -> Array:
     angles = np.linalg.norm(vectors, axis=-1, keepdims=True)
     other = vectors * (1.0 - 2.0 * np.pi / np.maximum(angles, 1e-9))
     farther = ((vectors - centre) ** 2).sum(axis=-1) > ((other - centre) ** 2).sum(axis=-1)
-        other - centre, axis=-1
-    )
     return np.where(farther[..., None], other, vectors)
 
 
