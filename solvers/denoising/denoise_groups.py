@@ -12,6 +12,7 @@ from .denoise_posterior import estimate_channels
 from .denoise_windows import Windows
 from .filter_bases import FilterBases, FilterBasesSettings
 from .noise import alike, hampel, interpolated, rough_noise
+from .prior import WavePrior
 from .prior_choice import choose_prior, examples_prior, take_prior
 
 Array = NDArray[np.float64]
@@ -62,13 +63,7 @@ def estimate_in_groups(
         )
         prior = take_prior(part.values[:n_frames], guess, window, pattern_rate)
         if bases is not None:
-            seen = np.isfinite(part.noisy).sum(axis=0)
-            own = part.values[:n_frames].mean(axis=0)
-            density = take.windows.density
-            examples = examples_prior(
-                bases, channels.keys, columns, own, seen / density, n_frames / density,
-                guess / np.sqrt(density),
-            )  # fmt: skip
+            examples = _examples(part, n_frames, bases, channels.keys, columns)
             prior, share = choose_prior(examples, prior, *part[:3], take.windows, step)
             shares += [share] * int(np.isfinite(examples.mean).sum())
         found = estimate_channels(*part[:3], prior, take.windows, within(step, 0.4, 1.0))
@@ -78,6 +73,25 @@ def estimate_in_groups(
         converged &= found.converged
     whole = (values[:n_frames], inliers[:n_frames], deviation[:n_frames])
     return Estimate(*whole, 0.0, iterations, converged), _sentence(bases, shares, n_channels)
+
+
+def _examples(
+    part: Rough,
+    n_frames: int,
+    bases: FilterBases,
+    keys: tuple[str, ...],
+    columns: NDArray[np.intp],
+) -> WavePrior:
+    """Return what the examples tell of some channels, whose rough values are given."""
+    known, density = np.isfinite(part.noisy[:n_frames]), part.windows.density
+    seen = known.sum(axis=0)
+    own = np.where(known, part.values[:n_frames], 0.0).sum(axis=0) / np.maximum(seen, 1)
+    # What spikes the rough values still hold is in their steps, though not in the noise.
+    steps = np.diff(part.values[:n_frames], axis=0, prepend=part.values[:1])
+    stray = np.maximum(part.noise, np.sqrt((steps**2).mean(axis=0) / 2.0))
+    return examples_prior(
+        bases, keys, columns, own, seen / density, n_frames / density, stray / np.sqrt(density)
+    )
 
 
 def _roughly(noisy: Array, frame_rate: float, pattern_rate: float, window: int) -> Rough:

@@ -83,7 +83,7 @@ def estimate_channels(
     prior = prior.at_most(windows.length)
     known, observed = np.isfinite(noisy), np.nan_to_num(noisy)
     patterns = gap_patterns(known, windows, prior.n_slow)
-    first_guess, estimate = noise, start
+    first_guess, estimate, mean = noise, start, prior.mean
     slow, fast = prior.matrix, _extended(prior.fast, windows.length - prior.n_slow)
     weight, variance = known.astype(float), np.zeros_like(noisy)
     total_weight, filters = weight_of(patterns, windows), list[Filter]()
@@ -96,16 +96,17 @@ def estimate_channels(
         rate = _outlier_rate(weight, known)
         adapts = iteration < ADAPTATIONS
         if iteration <= ADAPTATIONS:  # from then on nothing changes that they are made of
-            stale = filters if adapts and len(patterns) > FEW else []
             filters = filters_of(
-                patterns, slow, fast, noise, prior.caution, windows, stale=stale
-            )
+                patterns, slow, fast, noise, prior.caution, windows,
+                stale=filters if adapts and len(patterns) > FEW else [],
+            )  # fmt: skip
             variance = variance_of(filters, windows, noisy)
-        drawn = estimate + weight * (observed - estimate) - prior.mean
+        drawn = estimate + weight * (observed - estimate) - mean
         sweep = _swept(drawn, filters, windows, with_moments=adapts)
-        before, estimate = estimate, sweep.total / total_weight + prior.mean
+        before, estimate = estimate, sweep.total / total_weight + mean
         change = np.inf if adapts else float(np.sqrt(np.mean((estimate - before) ** 2)))
         if adapts:
+            mean = mean + prior.follows * (estimate.mean(axis=0) - mean)
             slow, fast = _adapted(prior, sweep, filters[0].gains.noise)
             noise = _noise(observed - estimate, weight, variance, first_guess)
         iteration += 1

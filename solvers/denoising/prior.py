@@ -33,6 +33,8 @@ class WavePrior:
         needs less of it than what is not.
     trust_alone : shape (n_channels,)
         The same of the take's own covariance of the channel with itself, in addition.
+    follows : shape (n_channels,)
+        Share of the take's own mean in the mean, as the estimate gets better.
     """
 
     mean: Array
@@ -40,6 +42,7 @@ class WavePrior:
     fast: Array
     trust: Array
     trust_alone: Array
+    follows: Array
     caution: float = 0.5
     """Share by which channels are taken as independent where one of them has a long gap."""
 
@@ -65,6 +68,7 @@ class WavePrior:
             fast=self.fast[:, channels],
             trust=self.trust[channels],
             trust_alone=self.trust_alone[channels],
+            follows=self.follows[channels],
         )
 
     @property
@@ -96,7 +100,12 @@ def smooth_prior(
     slow = np.einsum("kj,cd->kcjd", kernel[:n_slow, :n_slow], np.diag(variance))
     fast = np.outer(np.diag(kernel)[n_slow:] + FASTEST, variance)
     return WavePrior(
-        mean, slow, fast, np.full(n_channels, trust), np.full(n_channels, trust_alone)
+        mean,
+        slow,
+        fast,
+        np.full(n_channels, trust),
+        np.full(n_channels, trust_alone),
+        np.zeros(n_channels),
     )
 
 
@@ -115,4 +124,5 @@ def mixed(examples: WavePrior, smooth: WavePrior, share: float) -> WavePrior:
         fast=fast + of_smooth * smooth.fast,
         trust=np.where(known, examples.trust, smooth.trust),
         trust_alone=np.where(known, examples.trust_alone, smooth.trust_alone),
+        follows=np.where(known, examples.follows, smooth.follows),
     )

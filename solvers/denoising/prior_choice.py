@@ -81,7 +81,8 @@ def examples_prior(
     fast = np.full((window - n_slow, len(columns)), np.nan)
     fast[:, known] = bases.fast[:, places[known]]
     trust = np.full(len(columns), TRUST_IN_TAKE)
-    return WavePrior(mean, slow, fast, trust, np.zeros(len(columns)))
+    follows = np.where(np.isfinite(mean), np.minimum(n_seen / n_frames, 1.0), 0.0)
+    return WavePrior(mean, slow, fast, trust, np.zeros(len(columns)), follows)
 
 
 def take_prior(rough: Array, noise: Array, window: int, frame_rate: float) -> WavePrior:
