@@ -61,7 +61,8 @@ def encode_motion(motion: Motion, references: Mapping[str, Array] | None = None)
     told = np.array([references.get(key, row) for key, row in zip(rig.keys, own, strict=True)])
     before, after = _changes(rig, told)
     moved = multiply(multiply(before, rotations), after)
-    vectors = rotation_vector_from_quaternion(multiply(inverse(told[:, :4]), moved))
+    turned = multiply(inverse(told[:, :4]), moved)
+    vectors = _unwrapped(rotation_vector_from_quaternion(turned), mean_rotation(turned))
     place = motion.root_positions.copy()
     place[:, :2] -= path.places
     place = rotate(inverse(path.turns), place)
@@ -72,6 +73,23 @@ def encode_motion(motion: Motion, references: Mapping[str, Array] | None = None)
     )
     used = dict(zip(rig.keys, told, strict=True)) | {PLACE: middle}
     return Channels((*rig.keys, PLACE), values, np.array([*rig.joints, 0]), used, path)
+
+
+def _unwrapped(vectors: Array, mean: Array) -> Array:
+    """Tell turns by the rotation vector nearer to their mean's, even beyond 180 degrees.
+
+    Joints that are told about the mean of another rig may lie half a turn from it.
+
+    Parameters
+    ----------
+    vectors : shape (n_frames, n_joints, 3)
+    mean : shape (n_joints, 4)
+    """
+    centre = rotation_vector_from_quaternion(mean)
+    angles = np.linalg.norm(vectors, axis=-1, keepdims=True)
+    other = vectors * (1.0 - 2.0 * np.pi / np.maximum(angles, 1e-9))
+    farther = ((vectors - centre) ** 2).sum(axis=-1) > ((other - centre) ** 2).sum(axis=-1)
+    return np.where(farther[..., None], other, vectors)
 
 
 def decode_motion(motion: Motion, channels: Channels, values: Array) -> Motion:

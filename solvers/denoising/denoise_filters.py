@@ -1,5 +1,6 @@
 """What the windows of a take are filtered with, complete or with gaps."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -33,15 +34,15 @@ class Filter:
     gaps: GapSolution | None
     """None where the windows are complete."""
 
-    @property
-    def covariance(self) -> Array:
-        """Posterior covariance of the slow waves."""
-        covariance = self.gains.slow.copy()
+    def add_covariance(self, total: Array) -> None:
+        """Add the posterior covariance of the slow waves of all these windows to a sum."""
+        scale = np.tile(self.gains.noise, len(total) // len(self.gains.noise))
+        n_windows = len(self.pattern.starts)
+        total += n_windows * self.gains.slow * np.outer(scale, scale)
         if self.gaps:
             places = self.pattern.places
-            covariance[np.ix_(places, places)] += self.gaps.more_covariance
-        scale = np.tile(self.gains.noise, len(covariance) // len(self.gains.noise))
-        return np.asarray(covariance * np.outer(scale, scale))
+            more = self.gaps.more_covariance * np.outer(scale[places], scale[places])
+            total[np.ix_(places, places)] += n_windows * more
 
 
 def filters_of(
@@ -51,11 +52,20 @@ def filters_of(
     noise: Array,
     caution: float,
     windows: Windows,
+    *,
+    stale: Sequence[Filter] = (),
 ) -> list[Filter]:
-    """Return the filter of each pattern of gaps."""
+    """Return the filter of each pattern of gaps.
+
+    Where filters of the same patterns are at hand that are nearly right, `stale`, those of
+    windows with gaps are taken from them: they are costly.
+    """
     filters, gains = [], dict[bool, Gains]()
-    for pattern in patterns:
+    for index, pattern in enumerate(patterns):
         has_gaps = bool(pattern.channels.size)
+        if has_gaps and stale:
+            filters.append(stale[index])
+            continue
         if has_gaps not in gains:
             make = _gapped if has_gaps else _complete
             gains[has_gaps] = make(slow, fast, noise, caution, windows)
@@ -67,11 +77,26 @@ def filters_of(
 
 def variance_of(filters: list[Filter], windows: Windows, like: Array) -> Array:
     """Return the posterior variance of every sample, shape (n_frames, n_channels)."""
-    total = np.zeros_like(like)
+    total, weight = np.zeros_like(like), weight_of([one.pattern for one in filters], windows)
+    usual: dict[int, Array] = {}
     for one in filters:
-        variance = _window_variance(one.covariance, windows, like.shape[1])
+        key = id(one.gains)
+        if key not in usual:
+            usual[key] = _window_variance(one.gains.slow, one.gains.noise, windows)
+        variance = usual[key].copy()
+        if one.gaps:
+            gaps, noise = one.pattern.channels, one.gains.noise[one.pattern.channels]
+            variance[:, gaps] += _window_variance(one.gaps.more_covariance, noise, windows)
         windows.add(total, variance, one.pattern.starts)
-    return np.maximum(total / windows.weight, 0.0)
+    return np.maximum(total / weight, 0.0)
+
+
+def weight_of(patterns: list[GapPattern], windows: Windows) -> Array:
+    """Return what all windows add up to where each is 1, shape (n_frames, 1)."""
+    weight = np.zeros((windows.n_frames, 1))
+    for pattern in patterns:
+        windows.add(weight, np.ones((windows.length, 1)), pattern.starts)
+    return weight
 
 
 def _complete(slow: Array, fast: Array, noise: Array, _: float, windows: Windows) -> Gains:
@@ -91,7 +116,9 @@ def _gapped(slow: Array, fast: Array, noise: Array, caution: float, windows: Win
     blocks = slow.reshape(cautious.shape)[:, channels, :, channels]
     cautious[:, channels, :, channels] += caution * blocks
     blur = fast.sum(axis=0) * windows.density / windows.length
-    return gains_of(cautious.reshape(slow.shape), fast, np.sqrt(noise**2 + blur), windows.density)
+    return gains_of(
+        cautious.reshape(slow.shape), fast, np.sqrt(noise**2 + blur), windows.density
+    )
 
 
 def gains_of(slow: Array, fast: Array, noise: Array, density: float) -> Gains:
@@ -122,10 +149,14 @@ def gains_of(slow: Array, fast: Array, noise: Array, density: float) -> Gains:
     return Gains(gain, fast / (fast + per_wave**2), per_wave)
 
 
-def _window_variance(covariance: Array, windows: Windows, n_channels: int) -> Array:
-    """Return the variance of each frame of a window, shape (length, n_channels)."""
+def _window_variance(covariance: Array, noise: Array, windows: Windows) -> Array:
+    """Return the variance of each frame of a window, shape (length, n_channels).
+
+    The covariance of the slow waves is in units of the noise.
+    """
+    n_channels = len(noise)
     n_slow = len(covariance) // n_channels
     shapes = windows.wave_shapes(n_slow)
     blocks = covariance.reshape(n_slow, n_channels, n_slow, n_channels)
     own = np.einsum("kcjc->ckj", blocks)
-    return np.asarray(np.einsum("tk,ckj,tj->tc", shapes, own, shapes))
+    return np.asarray(np.einsum("tk,ckj,tj->tc", shapes, own, shapes) * noise**2)

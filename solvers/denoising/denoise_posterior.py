@@ -7,7 +7,7 @@ from numpy.typing import NDArray
 
 from ..progress import Progress, unwatched
 from .denoise_estimate import Estimate
-from .denoise_filters import Filter, filters_of, variance_of
+from .denoise_filters import Filter, filters_of, variance_of, weight_of
 from .denoise_gaps import gap_patterns, long_gaps
 from .denoise_windows import Windows
 from .noise import alike
@@ -27,8 +27,10 @@ MOST_OUTLIERS = 0.6
 MAX_ITERATIONS = 30
 ADAPTATIONS = 5
 """Iterations in which the prior still adapts to the take."""
-SETTLED = 0.004
-"""Root mean square change, relative to the noise, below which the estimate is settled."""
+SETTLED = 0.02
+"""Root mean square change, degrees or centimetres, below which the estimate is settled."""
+FEW = 4
+"""Patterns of gaps that are solved for again whenever the prior adapts."""
 MOST_LEVERAGE = 0.98
 FAR = 4.0
 """Errors beyond so many standard deviations of the noise all count the same."""
@@ -84,30 +86,40 @@ def estimate_channels(
     first_guess, estimate = noise, start
     slow, fast = prior.matrix, _extended(prior.fast, windows.length - prior.n_slow)
     weight, variance = known.astype(float), np.zeros_like(noisy)
+    total_weight, filters = weight_of(patterns, windows), list[Filter]()
     rate, iteration, change = FIRST_OUTLIERS, 0, np.inf
     while iteration < at_most and change > SETTLED:
         progress(iteration / at_most, "Denoising")
-        weight = _believed(observed - estimate, known, weight, variance, noise, rate)
+        believed = _believed(observed - estimate, known, weight, variance, noise, rate)
+        # Halfway, lest a sample that is judged by its own estimate goes in and out for ever.
+        weight = believed if iteration <= ADAPTATIONS else 0.5 * (weight + believed)
         rate = _outlier_rate(weight, known)
         adapts = iteration < ADAPTATIONS
         if iteration <= ADAPTATIONS:  # from then on nothing changes that they are made of
-            filters = filters_of(patterns, slow, fast, noise, prior.caution, windows)
+            stale = filters if adapts and len(patterns) > FEW else []
+            filters = filters_of(
+                patterns, slow, fast, noise, prior.caution, windows, stale=stale
+            )
             variance = variance_of(filters, windows, noisy)
         drawn = estimate + weight * (observed - estimate) - prior.mean
         sweep = _swept(drawn, filters, windows, with_moments=adapts)
-        before, estimate = estimate, sweep.total / windows.weight + prior.mean
-        change = float(np.sqrt(np.mean(((estimate - before) / (noise + SMALL_ERROR)) ** 2)))
+        before, estimate = estimate, sweep.total / total_weight + prior.mean
+        change = np.inf if adapts else float(np.sqrt(np.mean((estimate - before) ** 2)))
         if adapts:
             slow, fast = _adapted(prior, sweep, filters[0].gains.noise)
             noise = _noise(observed - estimate, weight, variance, first_guess)
-            change = np.inf
         iteration += 1
     alone = 1.0 / (1.0 - np.minimum(variance / noise**2, MOST_LEVERAGE))
-    foresight = _foresight(np.where(known, (observed - estimate) * alone, np.nan), first_guess)
-    # In long gaps the variance is already that without the sample.
-    alone[long_gaps(known, windows.long_gap)] = 1.0
-    deviation = np.sqrt(variance * (weight + (1.0 - weight) * alone))
-    return Estimate(estimate, weight, deviation, foresight, iteration, change <= SETTLED)
+    foretold = np.where(known, (observed - estimate) * alone, np.nan)
+    alone[long_gaps(known, windows.long_gap)] = 1.0  # where the variance is without the sample
+    return Estimate(
+        estimate,
+        weight,
+        np.sqrt(variance * (weight + (1.0 - weight) * alone)),
+        _foresight(foretold, first_guess),
+        iteration,
+        change <= SETTLED,
+    )
 
 
 def _outlier_rate(weight: Array, known: NDArray[np.bool_]) -> float:
@@ -167,7 +179,9 @@ def _swept(drawn: Array, filters: list[Filter], windows: Windows, with_moments: 
             waves = windows.waves_of(frames)
             seen = windows.waves_of(one.pattern.observed(frames)) if one.gaps else waves
             slow = seen[:, :n_slow].reshape(-1, size) / scale
-            slow = one.gaps.mean(slow, one.pattern.places) if one.gaps else slow @ one.gains.slow
+            slow = (
+                one.gaps.mean(slow, one.pattern.places) if one.gaps else slow @ one.gains.slow
+            )
             slow *= scale
             if with_moments:
                 sweep.slow_moment += slow.T @ slow
@@ -176,9 +190,10 @@ def _swept(drawn: Array, filters: list[Filter], windows: Windows, with_moments: 
             waves[:, n_slow:] *= one.gains.fast
             windows.add(sweep.total, windows.frames_of(waves), starts)
         if with_moments:
-            sweep.slow_moment += len(one.pattern.starts) * one.covariance
-    sweep.slow_moment /= len(windows.starts)
-    sweep.fast_power /= len(windows.starts)
+            one.add_covariance(sweep.slow_moment)
+    n_windows = sum(len(one.pattern.starts) for one in filters)
+    sweep.slow_moment /= n_windows
+    sweep.fast_power /= n_windows
     return sweep
 
 

@@ -33,7 +33,7 @@ class Windows:
     density: float
     """Frames of the take per frame of the patterns that it is compared with."""
     solve_gaps: bool = True
-    """Solve for long gaps exactly; otherwise they are filled round by round, like short ones."""
+    """Solve for long gaps exactly; otherwise fill them round by round, like short ones."""
 
     @property
     def long_gap(self) -> int:
@@ -73,13 +73,6 @@ class Windows:
         frames = np.broadcast_to(frames * self._taper, (len(starts), *frames.shape[-2:]))
         for start, window in zip(starts, frames, strict=True):
             total[start : start + self.length] += window
-
-    @cached_property
-    def weight(self) -> Array:
-        """What `add` adds up where every window is 1; shape (n_frames, 1)."""
-        weight = np.zeros((self.n_frames, 1))
-        self.add(weight, np.ones((self.length, 1)), self.starts)
-        return weight
 
     def wave_shapes(self, n_waves: int) -> Array:
         """Return the slowest waves, shape (length, n_waves): frames = shapes @ waves."""

@@ -14,10 +14,10 @@ FIRST_GUESS = 160
 
 
 def lag_products(clips: Sequence[Array], window: int) -> Array:
-    """Return the sum over all windows of all clips of the outer product of a window with itself.
+    """Return the sum over the windows of all clips of their outer products with themselves.
 
     The block of lags (j + 1, k + 1) is that of (j, k) without the first frame and with one
-    more at the end, of every clip, so only the first row of blocks costs a pass over the frames.
+    more at the end, of every clip: only the first row of blocks costs a pass over the frames.
 
     Parameters
     ----------

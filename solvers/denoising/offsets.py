@@ -1,9 +1,9 @@
 """Where a take's mean pose lies, told by the take itself and by the examples like it.
 
-How people hold themselves differs more from clip to clip than a pose varies within one (on walks,
-by 11 degrees at the arms against 4). So the mean pose of a take is a hidden quantity of its own:
-its prior is a Gaussian process over the examples' mean poses, which knows the person again if
-the examples hold clips of them, and says that it does not know where they do not.
+How people hold themselves differs more from clip to clip than a pose varies within one (on
+walks, by 11 degrees at the arms against 4). So the mean pose of a take is a hidden quantity of
+its own: its prior is a Gaussian process over the examples' mean poses, which knows the person
+again if the examples hold clips of them, and says that it does not know where they do not.
 """
 
 import numpy as np

@@ -15,17 +15,17 @@ from .prior import WavePrior, mixed, smooth_prior
 
 Array = NDArray[np.float64]
 
-SHARES = (0.003, 0.05)
+SHARES = (0.003, 0.05, 0.3)
 """Shares of the prior that knows only smoothness, beside the examples'."""
 TRIAL_ROUNDS = 3
-OWN_HANDICAP = 1.04
+OWN_HANDICAP = 1.02
 """What is learned from the take itself has seen the samples that it foretells, and so looks
-better than it is: by so much on walks, whatever their noise."""
+better than it is."""
 MOSTLY = 0.5
 """Share of a take in which a channel must be observed to judge of examples."""
 BLUR = 0.1
 """Standard deviation, relative to a channel's own, of what no pattern can say of it."""
-TRUST_IN_TAKE = 0.07
+TRUST_IN_TAKE = 0.05
 TRUST_WITHOUT_EXAMPLES = 0.05
 TRUST_ALONE = 0.3
 
@@ -129,8 +129,7 @@ def choose_prior(
         trial = estimate_channels(
             *part, prior.of_channels(judges), without_gaps, at_most=TRIAL_ROUNDS
         )
-        handicap = 1.0 if share < 1.0 else OWN_HANDICAP
-        foresights[share] = handicap * trial.foresight
+        foresights[share] = trial.foresight * (1.0 if share < 1.0 else OWN_HANDICAP)
     best = min(foresights, key=lambda share: foresights[share])
     unforetold = channel_foresight(
         candidates[best].of_channels(judges), *part[1:], without_gaps
@@ -138,9 +137,7 @@ def choose_prior(
     return replace(candidates[best], caution=float(np.clip(unforetold, 0.0, 1.0))), best
 
 
-def channel_foresight(
-    prior: WavePrior, rough: Array, noise: Array, windows: Windows
-) -> float:
+def channel_foresight(prior: WavePrior, rough: Array, noise: Array, windows: Windows) -> float:
     """Return how badly the other parts foretell a whole part over a window.
 
     The mean square of what they leave over, relative to the part's own; 1 where they know
@@ -150,9 +147,7 @@ def channel_foresight(
     prior = prior.at_most(windows.length)
     power = np.einsum("kckc->c", prior.slow) / windows.length
     blurred = np.sqrt(noise**2 + BLUR**2 * power)
-    gains = gains_of(
-        prior.matrix, prior.fast, blurred, windows.density
-    )
+    gains = gains_of(prior.matrix, prior.fast, blurred, windows.density)
     n_slow, n_channels = prior.n_slow, len(prior.mean)
     waves = windows.waves_of(windows.cut(rough - prior.mean, windows.starts))[:, :n_slow]
     waves = waves / gains.noise

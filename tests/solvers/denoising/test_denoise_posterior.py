@@ -3,8 +3,14 @@
 import numpy as np
 from numpy.testing import assert_allclose
 
-from solvers.denoising.denoise_gaps import gap_patterns, long_gaps
-from solvers.denoising.denoise_posterior import _gains
+from solvers.denoising.denoise_filters import (
+    Filter,
+    filters_of,
+    gains_of,
+    variance_of,
+    weight_of,
+)
+from solvers.denoising.denoise_gaps import GapSolution, gap_patterns, long_gaps
 from solvers.denoising.denoise_windows import Windows
 
 LENGTH, N_SLOW, N_CHANNELS = 8, 5, 3
@@ -20,18 +26,35 @@ def test_a_window_with_gaps_is_the_conditional_gaussian(rng):
     noisy[2:6, 1] = np.nan
     noisy[:4, 2] = np.nan
     (pattern,) = gap_patterns(np.isfinite(noisy), windows, N_SLOW)
-    gains = _gains(slow, np.zeros((LENGTH - N_SLOW, N_CHANNELS)), noise, 1.0)
+    gains = gains_of(slow, np.zeros((LENGTH - N_SLOW, N_CHANNELS)), noise, 1.0)
+    solution = GapSolution.of(pattern, gains.slow)
+    observed = windows.waves_of(pattern.observed(np.nan_to_num(noisy)[None]))[:, :N_SLOW]
 
-    found = pattern.solve(windows, np.nan_to_num(noisy)[None], gains.slow, gains.noise)[0]
+    found = solution.mean((observed / noise).reshape(1, -1), pattern.places)[0]
     estimate = frames_from(windows, found * np.tile(noise, N_SLOW))
 
     mean, variance = dense_posterior(windows, slow, noise, noisy)
     assert_allclose(estimate, mean, atol=1e-9)
-    covariance = gains.slow.copy()
-    at_gaps = np.ix_(pattern.places, pattern.places)
-    covariance[at_gaps] += pattern.more_covariance(gains.slow)
-    covariance *= np.outer(np.tile(noise, N_SLOW), np.tile(noise, N_SLOW))
+    filters = [Filter(pattern, gains, solution)]
+    assert_allclose(variance_of(filters, windows, noisy)[:, 1:], variance[:, 1:], atol=1e-9)
+    covariance = np.zeros_like(slow)
+    filters[0].add_covariance(covariance)
     assert_allclose(frame_variance(windows, covariance)[:, 1:], variance[:, 1:], atol=1e-9)
+
+
+def test_gapped_windows_keep_their_filter_while_it_is_nearly_right(rng):
+    windows = Windows(30, LENGTH, 1.0)
+    known = np.ones((30, N_CHANNELS), dtype=bool)
+    known[12:20, 1] = False
+    patterns = gap_patterns(known, windows, N_SLOW)
+    parts = (np.zeros((LENGTH - N_SLOW, N_CHANNELS)), np.full(N_CHANNELS, 0.3), 0.5, windows)
+    before = filters_of(patterns, some_covariance(rng), *parts)
+
+    after = filters_of(patterns, some_covariance(rng), *parts, stale=before)
+
+    kept = [one is other for one, other in zip(before, after, strict=True)]
+    assert kept == [bool(pattern.channels.size) for pattern in patterns]
+    assert 0 < sum(kept) < len(kept)
 
 
 def test_waves_and_frames_undo_each_other(rng):
@@ -51,9 +74,18 @@ def test_overlapping_windows_add_up_to_the_take(rng):
     values = rng.normal(size=(57, 2))
     total = np.zeros_like(values)
 
+    patterns = gap_patterns(np.isfinite(values), windows, N_SLOW)
     windows.add(total, windows.cut(values, windows.starts), windows.starts)
 
-    assert_allclose(total / windows.weight, values, atol=1e-12)
+    assert_allclose(total / weight_of(patterns, windows), values, atol=1e-12)
+
+
+def test_all_frames_are_in_a_window_whatever_is_missing(rng):
+    known = rng.random((57, 2)) > 0.4
+    known[:9] = False
+    windows = Windows(57, 20, 1.0)
+
+    assert (weight_of(gap_patterns(known, windows, N_SLOW), windows) > 0.0).all()
 
 
 def test_only_long_gaps_are_long():
