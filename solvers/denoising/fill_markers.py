@@ -10,16 +10,15 @@ from ..progress import Progress, unwatched
 from .companions import find_companions
 from .foretell_point import foretell
 from .gap_borders import bridge, expected_error, frames_to_learn, usual_jitter
-from .noise import hampel, interpolated
+from .noise import interpolated
 from .spikes import runs
+from .stray_points import stray
 
 Array = NDArray[np.float64]
 Flags = NDArray[np.bool_]
 Gap = tuple[int, int, int, int]
 """Length, point, first frame, frame after the last."""
 
-SPIKE_HALF_WIDTH, SPIKE_TOLERANCE, SMALLEST_SPIKE = 4, 3.5, 0.02
-"""Frames, robust standard deviations, metres: nothing is learned from what stands out more."""
 BRIEF = 4
 """Frames: so short a gap is left to the filter; its neighbours tell enough."""
 LIKE_SEEN = 0.25
@@ -97,18 +96,14 @@ def fill_markers(tracks: Tracks, progress: Progress = unwatched) -> FilledMarker
 
 def _read(tracks: Tracks) -> _Take:
     """Take spikes for brief gaps, and bridge all gaps for as long as they are open."""
-    flat = tracks.positions.reshape(tracks.n_frames, -1)
-    tame = hampel(flat, SPIKE_HALF_WIDTH, SPIKE_TOLERANCE)
-    with np.errstate(invalid="ignore"):
-        spiky = np.abs(flat - interpolated(tame)) > SMALLEST_SPIKE
-    visible = tracks.visible & ~spiky.reshape(tracks.positions.shape).any(axis=2)
+    visible = tracks.visible & ~stray(tracks.positions)
     positions = np.where(visible[..., None], tracks.positions, np.nan)
     gap_length = np.zeros(visible.shape, dtype=np.intp)
     for point in np.flatnonzero(~visible.all(axis=0)):
         for start, stop in runs(~visible[:, point]):
             gap_length[start:stop, point] = stop - start
     return _Take(
-        interpolated(positions.reshape(flat.shape)).reshape(positions.shape),
+        interpolated(positions.reshape(len(positions), -1)).reshape(positions.shape),
         gap_length,
         (gap_length <= BRIEF) & visible.any(axis=0),
         np.zeros(visible.shape),

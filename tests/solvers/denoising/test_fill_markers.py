@@ -5,6 +5,7 @@ import pytest
 
 from solvers.denoising import DenoiseSettings, denoise
 from solvers.denoising.fill_markers import fill_markers
+from solvers.denoising.stray_points import stray
 from solvers.errors import SolveCancelled
 from solvers.motion import Tracks
 from solvers.motion.rotations import matrix_from_quaternion, quaternion_from_rotation_vector
@@ -35,7 +36,7 @@ def body():
     place = np.stack([time, np.cos(time), 1 + 0.1 * np.sin(5 * time)], axis=1)[:, None]
     first = np.einsum("fij,pj->fpi", trunk, near) + place
     hinge = np.einsum("fij,j->fi", trunk, [0.0, 0.0, 0.3])[:, None] + place
-    second = np.einsum("fij,fjk,pk->fpi", trunk, bend, far + [0, 0, 0.3]) + hinge
+    second = np.einsum("fij,fjk,pk->fpi", trunk, bend, far + np.array([0, 0, 0.3])) + hinge
     return np.concatenate([first, second], axis=1)
 
 
@@ -169,3 +170,14 @@ def test_five_markers_of_a_dancer_are_found_to_a_centimetre(recordings):
     given[lost] = np.nan
     found = fill_markers(Tracks(take.names[:41], given, take.frame_rate)).tracks.positions
     assert np.linalg.norm((found - truth)[lost], axis=-1).mean() < 0.01
+
+
+def test_only_what_jumps_away_and_back_is_stray(body):
+    given = gapped(body, 7)
+    given[40:42, 3] += [0.0, 0.2, 0.0]
+    given[LOST.start - 1, 7] += 0.3
+    expected = np.zeros(given.shape[:2], dtype=bool)
+    expected[40:42, 3] = True
+    found = stray(given)
+    assert (found == expected).all(axis=0)[:7].all()
+    assert found.sum() <= 3

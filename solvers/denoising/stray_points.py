@@ -1,0 +1,42 @@
+"""Points that jump away for a few frames, found the same from whatever side they are seen."""
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.ndimage import median_filter
+
+Array = NDArray[np.float64]
+
+REACH = (1, 2)
+"""Frames to both sides that a point is compared with."""
+AROUND = 8
+"""Frames to both sides that say what is usual."""
+USUAL = 6.0
+"""Times as far as usual is a jump."""
+SMALLEST = 0.02
+"""Metres: nothing nearer is one."""
+
+
+def stray(positions: Array) -> NDArray[np.bool_]:
+    """Return where points jump away, shape (n_frames, n_points).
+
+    A point is compared with the middles between where it was and where it will be; the median
+    of these distances is small for what moves, and for the neighbours of a jump.
+
+    Parameters
+    ----------
+    positions : shape (n_frames, n_points, 3), metres
+        NaN where not observed.
+    """
+    n_frames = len(positions)
+    away = np.full((len(REACH), *positions.shape[:2]), np.nan)
+    for place, reach in enumerate(REACH):
+        if n_frames > 2 * reach:
+            middle = 0.5 * (positions[: -2 * reach] + positions[2 * reach :])
+            apart = np.linalg.norm(positions[reach:-reach] - middle, axis=2)
+            away[place, reach:-reach] = apart
+    ordered = np.sort(away, axis=0)  # NaN comes last
+    count = np.isfinite(away).sum(axis=0)
+    found = np.take_along_axis(ordered, np.maximum(count - 1, 0)[None] // 2, axis=0)[0]
+    found = np.nan_to_num(found)
+    usual = median_filter(found, (2 * AROUND + 1, 1), mode="nearest")
+    return np.asarray(found > np.maximum(SMALLEST, USUAL * usual))
