@@ -5,6 +5,7 @@ import pytest
 
 from solvers.denoising import DenoiseSettings, denoise
 from solvers.denoising.fill_markers import fill_markers
+from solvers.denoising.gap_borders import bridge
 from solvers.denoising.stray_points import stray
 from solvers.errors import SolveCancelled
 from solvers.motion import Tracks
@@ -98,6 +99,16 @@ def test_the_fill_meets_what_is_seen_without_a_step(body):
     steps = np.linalg.norm(np.diff(found, n=2, axis=0), axis=1)
     assert steps[LOST.start - 2 : LOST.start + 1].max() < 0.01
     assert steps[LOST.stop - 2 : LOST.stop + 1].max() < 0.01
+
+
+def test_what_was_missed_at_a_border_is_made_up_for_and_fades_inside():
+    learned, foretold = np.r_[0:50, 250:300], np.arange(50, 250)
+    missed = np.where(learned[:, None] < 50, [0.01, 0.0, 0.0], [0.0, 0.02, 0.0])
+    step = bridge(missed, learned, foretold, 0.0, RATE)
+    frames = np.arange(1, 201)
+    fading = np.exp(-frames / (0.2 * RATE))
+    assert np.allclose(step[:, 0], 0.01 * fading, atol=1e-6)
+    assert np.allclose(step[:, 1], 0.02 * fading[::-1], atol=1e-6)
 
 
 def test_the_expected_error_is_what_the_error_is(body):
