@@ -11,11 +11,12 @@ from ..errors import InvalidMotionError
 from ..motion import Motion, Tracks
 from ..progress import Progress, unwatched, within
 from ..settings import Settings, setting
-from .channels import Channels
+from .channels import CENTIMETRES, Channels
 from .channels_encode import decode, encode
 from .cuts import find_cuts, is_short, pieces, tell_of_cuts
 from .denoise_estimate import Estimate
 from .denoise_groups import estimate_in_groups
+from .fill_markers import FilledMarkers, fill_markers
 from .filter_bases import FilterBases
 from .impossible_turns import impossible_turns
 from .joint_limits import JointLimits
@@ -84,8 +85,9 @@ def denoise(
 
     A Gaussian prior over short windows of all joints together [1]_, mixed with plain smoothness
     as far as it explains the take (examples of another movement are laid aside), adapts to the
-    take; noise, spikes and missing joints are estimated with it. Bones keep their lengths. It
-    does not keep feet on the ground: see `plant_feet`.
+    take; noise, spikes and missing joints are estimated with it. Bones keep their lengths. Long
+    gaps of points are first filled from the points around them (`fill_markers`). It does not
+    keep feet on the ground: see `plant_feet`.
 
     A take that was joined of several is cleaned piece by piece. A piece of less than a quarter
     of a second, such as the T-pose with which many recordings begin, is kept as it is, but for
@@ -149,7 +151,9 @@ def _denoised_piece(
     progress: Progress,
 ) -> Denoised:
     """Denoise what is of one piece."""
-    channels = encode(piece, bases.reference_of if bases else None)
+    filled = _filled(piece, settings, within(progress, 0.0, 0.05))
+    whole = filled.tracks if filled else piece
+    channels = encode(whole, bases.reference_of if bases else None)
     halved = limits is not None and bases is not None
     first = within(progress, 0.05, 0.5 if halved else 0.95)
     estimate, used = _estimated(channels, piece.frame_rate, bases, settings, first)
@@ -167,18 +171,33 @@ def _denoised_piece(
     spikes = (estimate.inliers < 0.5) & (np.abs(noisy - estimate.values) > SMALLEST_SPIKE)
     blended = noisy + settings.strength * (estimate.values - noisy)
     values = np.where(known, blended, estimate.values)
-    cleaned = decode(piece, channels, values.reshape(channels.values.shape))
+    cleaned = decode(whole, channels, values.reshape(channels.values.shape))
     cleaned = _kept_where_unchanged(piece, cleaned, settings)
     if limits is not None and isinstance(cleaned, Motion):
         cleaned = keep_within(cleaned, limits)
     return Denoised(
         cleaned,
-        _worst(piece, channels, spikes) > 0.0,
-        1.0 / (1.0 + (_worst(piece, channels, estimate.deviation) / UNSURE) ** 2),
+        (_worst(piece, channels, spikes) > 0.0) & _seen(piece),
+        _confidence(_worst(piece, channels, estimate.deviation), filled),
         estimate.iterations,
         estimate.converged,
         used,
     )
+
+
+def _filled(
+    piece: Motion | Tracks, settings: DenoiseSettings, progress: Progress
+) -> FilledMarkers | None:
+    """Fill gaps of points: the filter then takes for seen what their companions foretell."""
+    if isinstance(piece, Tracks) and settings.method is Method.DEFAULT:
+        return fill_markers(piece, progress)
+    return None
+
+
+def _confidence(deviation: Array, filled: FilledMarkers | None) -> Array:
+    if filled is not None:
+        deviation = np.where(filled.filled, CENTIMETRES * filled.deviation, deviation)
+    return np.asarray(1.0 / (1.0 + (deviation / UNSURE) ** 2))
 
 
 def _estimated(
