@@ -18,6 +18,8 @@ UNLIKE = 0.1
 """Variance that two clips of one person in one mood still have, as a share of all clips'."""
 MEMORY = 10.0
 """Frames of the examples' patterns after which a pose tells something new of the mean pose."""
+MOST = 300
+"""Clips, nearest first, that tell of the mean pose: others are too unlike to say anything."""
 SMALLEST = 1e-3
 """Variance below which no mean is known, square degrees or centimetres."""
 WIDEST = 2.0
@@ -56,14 +58,22 @@ def _foretold(means: Array, own: Array, seen: NDArray[np.bool_]) -> tuple[Array,
     middle, spread = means.mean(axis=0), WIDEST * means.var(axis=0) + SMALLEST
     if not seen.any():
         return middle, spread
-    kernel = _alike(means[:, seen], means[:, seen])
-    towards = _alike(means[:, seen], own[None, seen])[:, 0]
-    weights = np.linalg.solve(kernel + UNLIKE * np.eye(len(means)), towards)
+    apart = _apart(means[:, seen], own[None, seen])[:, 0]
+    nearest = np.argsort(apart, kind="stable")[:MOST]
+    near = means[nearest]
+    kernel = _alike(_apart(near[:, seen], near[:, seen]))
+    towards = _alike(apart[nearest])
+    weights = np.linalg.solve(kernel + UNLIKE * np.eye(len(near)), towards)
     unknown = 1.0 + UNLIKE - float(weights @ towards)
-    return middle + weights @ (means - middle), spread * unknown
+    return middle + weights @ (near - middle), spread * unknown
 
 
-def _alike(some: Array, others: Array) -> Array:
-    """Return how much each of some poses tells of each of others, 0 to 1."""
-    square = ((some[:, None] - others[None]) ** 2).mean(axis=2)
-    return np.asarray(np.exp(-0.5 * square / LIKENESS**2))
+def _apart(some: Array, others: Array) -> Array:
+    """Return the mean square difference per channel of each of some poses to each of others."""
+    square = (some**2).sum(axis=1)[:, None] + (others**2).sum(axis=1) - 2.0 * some @ others.T
+    return np.asarray(np.maximum(square, 0.0) / some.shape[1])
+
+
+def _alike(apart: Array) -> Array:
+    """Return how much poses tell of each other, 0 to 1."""
+    return np.asarray(np.exp(-0.5 * apart / LIKENESS**2))

@@ -69,3 +69,14 @@ def test_a_take_that_was_never_seen_has_the_examples_mean(means):
 
     assert_allclose(mean, means.mean(axis=0), atol=1e-6)
     assert_allclose(variance, 2.0 * means.var(axis=0) + 1e-3, rtol=1e-6)
+
+
+def test_clips_that_are_unlike_say_nothing_however_many_they_are(means, rng):
+    seen = np.ones(12)
+    seen[8:] = 0.0
+    own = np.where(seen > 0.0, means[5] + 0.3, 0.0)
+    unlike = means.mean(axis=0) + rng.normal(size=(5000, 12)) * 60.0 + 200.0
+
+    mean, _ = offset(np.concatenate([unlike, means]), own, seen)
+
+    assert_allclose(mean[8:], means[4:8].mean(axis=0)[8:], atol=20.0)
