@@ -87,7 +87,7 @@ def _unwrapped(vectors: Array, mean: Array) -> Array:
     """
     centre = rotation_vector_from_quaternion(mean)
     angles = np.linalg.norm(vectors, axis=-1, keepdims=True)
-    other = vectors * (1.0 - 2.0 * np.pi / np.maximum(angles, 1e-9))
+    other = vectors * (1.0 - 2.0 * np.pi / np.maximum(angles, 1e-150))
     farther = ((vectors - centre) ** 2).sum(axis=-1) > ((other - centre) ** 2).sum(axis=-1)
     return np.where(farther[..., None], other, vectors)
 

@@ -135,8 +135,13 @@ def denoise(
     for start, stop in pieces(recording, cuts):
         piece = recording.slice(start, stop) if cuts else recording
         step = within(progress, start / recording.n_frames, stop / recording.n_frames)
-        if cuts and is_short(stop - start, recording.frame_rate) and _seen(piece).all():
-            parts.append(_as_it_is(piece))
+        if cuts and is_short(stop - start, recording.frame_rate):
+            kept = replace(settings, strength=0.0)
+            parts.append(
+                _as_it_is(piece)
+                if _seen(piece).all()
+                else _denoised_piece(piece, bases, None, kept, step)
+            )
         else:
             parts.append(_denoised_piece(piece, bases, limits, settings, step))
     progress(1.0, "Done")

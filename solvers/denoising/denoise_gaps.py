@@ -1,6 +1,6 @@
 """Windows in which a channel is missing for long: one exact solve per pattern of gaps."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -8,6 +8,9 @@ from numpy.typing import NDArray
 from .denoise_windows import Windows
 
 Array = NDArray[np.float64]
+
+MOST_NUMBERS = 40_000_000
+"""In one matrix of each pattern of gaps, all together; three such are kept, some 1 GB."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -64,7 +67,11 @@ class GapSolution:
 
 
 def gap_patterns(known: NDArray[np.bool_], windows: Windows, n_slow: int) -> list[GapPattern]:
-    """Sort the windows by the long gaps in them; of those with gaps, every second will do."""
+    """Sort the windows by the long gaps in them; of those with gaps, every second will do.
+
+    Gaps of so many patterns that their matrices would fill the memory are filled round by
+    round, like short ones.
+    """
     gaps = long_gaps(known, windows.long_gap)
     cut = np.lib.stride_tricks.sliding_window_view(gaps, windows.length, axis=0)
     groups: dict[bytes, list[int]] = {}
@@ -72,6 +79,9 @@ def gap_patterns(known: NDArray[np.bool_], windows: Windows, n_slow: int) -> lis
         if index % 2 and start != windows.starts[-1] and cut[start].any():
             continue
         groups.setdefault(np.packbits(cut[start]).tobytes(), []).append(int(start))
+    sizes = [n_slow * int(cut[starts[0]].any(axis=-1).sum()) for starts in groups.values()]
+    if sum(size**2 for size in sizes) > MOST_NUMBERS:
+        return gap_patterns(known, replace(windows, solve_gaps=False), n_slow)
     shapes = windows.wave_shapes(n_slow) / np.sqrt(windows.density)
     patterns = []
     for starts in groups.values():

@@ -13,7 +13,7 @@ from .denoise_windows import Windows
 from .filter_bases import FilterBases, FilterBasesSettings
 from .noise import alike, hampel, interpolated, rough_noise
 from .prior import WavePrior
-from .prior_choice import choose_prior, examples_prior, take_prior
+from .prior_choice import UNKNOWN, choose_prior, examples_prior, take_prior
 
 Array = NDArray[np.float64]
 
@@ -25,8 +25,6 @@ SPIKE_TOLERANCE = 3.5
 FIRST_GUESS_EFFICIENCY = 0.2
 """Of the median of overlapping differences, relative to a standard deviation."""
 SMALLEST_NOISE = 0.01
-UNKNOWN = 30.0
-"""Standard deviation, degrees or centimetres, of what nothing is known of."""
 FOREIGN = 0.2
 """Share of plain smoothness from which on the examples are said to fit badly."""
 
@@ -52,7 +50,7 @@ def estimate_in_groups(
     window = bases.window if bases else FilterBasesSettings().n_frames
     take = _roughly(channels.flat, frame_rate, pattern_rate, window)
     values, inliers = take.values.copy(), np.isfinite(take.noisy).astype(float)
-    deviation = np.where(np.isfinite(take.noisy), 0.0, UNKNOWN)
+    deviation = np.where(np.isfinite(take.noisy) | (take.n_seen > 0), 0.0, UNKNOWN)
     groups = _groups(channels, take.values, bases)
     iterations, converged, shares = 0, True, []
     for index, columns in enumerate(groups):
@@ -61,7 +59,9 @@ def estimate_in_groups(
         part = take._replace(
             noisy=take.noisy[:, columns], values=take.values[:, columns], noise=guess
         )
-        prior = take_prior(part.values[:n_frames], guess, window, pattern_rate)
+        prior = take_prior(
+            part.values[:n_frames], guess, take.n_seen[columns] > 0, window, pattern_rate
+        )
         if bases is not None:
             examples = _examples(part, n_frames, bases, channels.keys, columns)
             prior, share = choose_prior(examples, prior, *part[:3], take.windows, step)
@@ -95,7 +95,7 @@ def _examples(
 
 
 def _roughly(noisy: Array, frame_rate: float, pattern_rate: float, window: int) -> Rough:
-    length = max(round(window * frame_rate / pattern_rate), 1)
+    length = max(round(window * frame_rate / pattern_rate), 2)
     padded = np.full((max(len(noisy), length), noisy.shape[1]), np.nan)
     padded[: len(noisy)] = noisy
     tame = hampel(padded, SPIKE_HALF_WIDTH, SPIKE_TOLERANCE)

@@ -135,8 +135,16 @@ def load_filter_bases(path: Path | str) -> FilterBases:
 def _fault(bases: FilterBases) -> str:
     """Return what keeps bases from a file from being used, or nothing."""
     shape = bases.vectors.shape
-    if len(shape) != 3 or not all(shape) or not bases.keys.size or bases.slow.ndim != 4:
+    if (
+        len(shape) != 3
+        or not all(shape)
+        or not bases.keys.size
+        or bases.slow.ndim != 4
+        or bases.clip_means.ndim != 2
+    ):
         return "their shapes do not fit"
+    if not len(bases.clip_means) or not len(bases.slow):
+        return "nothing was learned"
     window, n_parts = shape[1], bases.keys.size
     n_slow, n_moving = min(len(bases.slow), window), bases.moving.size
     expected = {

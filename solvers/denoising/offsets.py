@@ -22,6 +22,8 @@ MOST = 300
 """Clips, nearest first, that tell of the mean pose: others are too unlike to say anything."""
 SMALLEST = 1e-3
 """Variance below which no mean is known, square degrees or centimetres."""
+USUAL = 8.0
+"""Standard deviation of mean poses, degrees or centimetres, which few examples cannot tell."""
 WIDEST = 2.0
 """Of the variance over the examples' mean poses, that a stranger's is expected to have."""
 
@@ -55,7 +57,9 @@ def take_offset(
 
 def _foretold(means: Array, own: Array, seen: NDArray[np.bool_]) -> tuple[Array, Array]:
     """Return mean and variance that the examples' mean poses foretell from what is seen."""
-    middle, spread = means.mean(axis=0), WIDEST * means.var(axis=0) + SMALLEST
+    middle = means.mean(axis=0)
+    n_distinct = len(np.unique(np.round(means), axis=0))
+    spread = WIDEST * np.maximum(means.var(axis=0), (USUAL / n_distinct) ** 2) + SMALLEST
     if not seen.any():
         return middle, spread
     apart = _apart(means[:, seen], own[None, seen])[:, 0]

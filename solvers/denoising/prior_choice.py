@@ -21,6 +21,8 @@ TRIAL_ROUNDS = 3
 OWN_HANDICAP = 1.02
 """What is learned from the take itself has seen the samples that it foretells, and so looks
 better than it is."""
+UNKNOWN = 30.0
+"""Standard deviation, degrees or centimetres, of what nothing is known of."""
 MOSTLY = 0.5
 """Share of a take in which a channel must be observed to judge of examples."""
 BLUR = 0.1
@@ -85,9 +87,15 @@ def examples_prior(
     return WavePrior(mean, slow, fast, trust, np.zeros(len(columns)), follows)
 
 
-def take_prior(rough: Array, noise: Array, window: int, frame_rate: float) -> WavePrior:
-    """Return what is expected of a take by itself: to move as much as it does, smoothly."""
+def take_prior(
+    rough: Array, noise: Array, seen: NDArray[np.bool_], window: int, frame_rate: float
+) -> WavePrior:
+    """Return what is expected of a take by itself: to move as much as it does, smoothly.
+
+    Channels that were never `seen` may be anywhere.
+    """
     variance = np.maximum(rough.var(axis=0) - noise**2, 0.05 * noise**2 + 1e-6)
+    variance = np.where(seen, variance, UNKNOWN**2)
     return smooth_prior(
         np.median(rough, axis=0),
         variance,

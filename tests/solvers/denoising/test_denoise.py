@@ -18,6 +18,7 @@ from solvers.denoising import (
 from solvers.motion import Motion, Tracks
 from solvers.motion.rotations import angle_between, multiply, quaternion_from_rotation_vector
 from solvers.recordings import read_bvh
+from solvers.samples import GaitSettings, walking_gait
 
 
 @pytest.mark.parametrize("method", Method)
@@ -194,3 +195,26 @@ def real_walk(recordings, name: str) -> Motion:
     """A CMU walk at 30 Hz, without the T-pose of its first frame."""
     walk = read_bvh(recordings / "mocap" / "cmu_walk" / f"{name}.bvh")
     return Motion(walk.skeleton, walk.rotations[1::4], walk.root_positions[1::4], 30.0)
+
+
+def test_a_limb_that_was_never_seen_is_a_guess():
+    walk = walking_gait(GaitSettings(duration=2.0, frame_rate=30.0))
+    rotations = walk.rotations.copy()
+    arm = walk.skeleton.subtree(walk.skeleton.index("LeftArm"))
+    rotations[:, arm] = np.nan
+
+    done = denoise(walk.with_poses(rotations, walk.root_positions))
+
+    joints = [joint for joint in arm if not walk.skeleton.is_end_site(joint)]
+    assert (done.confidence[:, joints] < 0.2).all()
+    assert done.confidence.mean() > 0.5
+
+
+def test_at_two_frames_a_second_no_frame_is_left_out(rng):
+    places = rng.normal(size=(40, 3, 3))
+    places[10:20, 0] = np.nan
+
+    done = denoise(Tracks(("a", "b", "c"), places, 2.0))
+
+    assert np.isfinite(done.recording.positions).all()
+    assert np.isfinite(done.confidence).all()

@@ -129,3 +129,15 @@ def dense_posterior(windows, slow, noise, noisy):
 def frame_variance(windows, covariance):
     shapes = map_to_frames(windows)
     return np.diag(shapes @ covariance @ shapes.T).reshape(LENGTH, N_CHANNELS)
+
+
+def test_gaps_of_endless_patterns_do_not_fill_the_memory(rng, monkeypatch):
+    known = rng.random((57, N_CHANNELS)) > 0.1
+    known[20:40, 0] = False
+    windows = Windows(57, 20, 1.0)
+    assert len(gap_patterns(known, windows, N_SLOW)) > 1
+
+    monkeypatch.setattr("solvers.denoising.denoise_gaps.MOST_NUMBERS", 50)
+
+    (pattern,) = gap_patterns(known, windows, N_SLOW)
+    assert not pattern.channels.size

@@ -57,7 +57,7 @@ def test_two_gaussians_are_weighed_by_their_precision():
 
     mean, variance = offset(means, own, seen, noise=4.0)
 
-    before = 2.0 * 9.0 + 1e-3
+    before = 2.0 * (8.0 / 2) ** 2 + 1e-3
     of_own = 16.0 * 10.0 * (1 / 20.0 - 1 / 100.0) + 4.0 / 20.0 + 1e-3
     together = 1.0 / (1.0 / before + 1.0 / of_own)
     assert_allclose(mean[0], together * (0.0 / before + 50.0 / of_own), rtol=1e-9)
@@ -68,7 +68,7 @@ def test_a_take_that_was_never_seen_has_the_examples_mean(means):
     mean, variance = offset(means, np.zeros(12), np.zeros(12))
 
     assert_allclose(mean, means.mean(axis=0), atol=1e-6)
-    assert_allclose(variance, 2.0 * means.var(axis=0) + 1e-3, rtol=1e-6)
+    assert_allclose(variance, 2.0 * np.maximum(means.var(axis=0), (8.0 / 12) ** 2) + 1e-3)
 
 
 def test_clips_that_are_unlike_say_nothing_however_many_they_are(means, rng):
@@ -80,3 +80,12 @@ def test_clips_that_are_unlike_say_nothing_however_many_they_are(means, rng):
     mean, _ = offset(np.concatenate([unlike, means]), own, seen)
 
     assert_allclose(mean[8:], means[4:8].mean(axis=0)[8:], atol=20.0)
+
+
+def test_one_example_does_not_know_how_everybody_holds_themselves(means):
+    own = means[0] + 8.0
+
+    mean, variance = offset(means[:1], own, np.full(12, 0.3))
+
+    assert (np.abs(mean - own) < 4.0).all()
+    assert (variance > 1.0).all()
