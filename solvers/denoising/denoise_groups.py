@@ -14,6 +14,7 @@ from .filter_bases import FilterBases, FilterBasesSettings
 from .noise import alike, hampel, interpolated, rough_noise
 from .prior import WavePrior
 from .prior_choice import UNKNOWN, choose_prior, examples_prior, take_prior
+from .whole_joints import WholeJoints
 
 Array = NDArray[np.float64]
 
@@ -52,6 +53,7 @@ def estimate_in_groups(
     values, inliers = take.values.copy(), np.isfinite(take.noisy).astype(float)
     deviation = np.where(np.isfinite(take.noisy) | (take.n_seen > 0), 0.0, UNKNOWN)
     groups = _groups(channels, take.values, bases)
+    outside = np.zeros((len(values), n_channels // 3))
     iterations, converged, shares = 0, True, []
     for index, columns in enumerate(groups):
         step = within(progress, index / len(groups), (index + 1) / len(groups))
@@ -66,7 +68,12 @@ def estimate_in_groups(
             examples = _examples(part, n_frames, bases, channels.keys, columns)
             prior, share = choose_prior(examples, prior, *part[:3], take.windows, step)
             shares += [share] * int(np.isfinite(examples.mean).sum())
-        found = estimate_channels(*part[:3], prior, take.windows, within(step, 0.4, 1.0))
+        found = estimate_channels(
+            *part[:3], prior, take.windows, within(step, 0.4, 1.0),
+            joints=WholeJoints(columns // 3, outside[:, columns // 3]),
+        )  # fmt: skip
+        lost = np.isfinite(part.noisy) * (1.0 - found.inliers)
+        np.maximum.at(outside.T, columns // 3, lost.T)
         values[:, columns], inliers[:, columns] = found.values, found.inliers
         deviation[:, columns] = found.deviation
         iterations = max(iterations, found.iterations)

@@ -136,7 +136,7 @@ def choose_prior(
     for index, (share, prior) in enumerate(candidates.items()):
         progress(0.4 * index / len(candidates), "Comparing with the examples")
         trial = estimate_channels(
-            *part, prior.of_channels(judges), without_gaps, at_most=TRIAL_ROUNDS
+            *part, prior.of_channels(judges), without_gaps, looks=(), at_most=TRIAL_ROUNDS
         )
         foresights[share] = trial.foresight * (1.0 if share < 1.0 else OWN_HANDICAP)
     best = min(foresights, key=lambda share: foresights[share])

@@ -1,0 +1,92 @@
+"""One pass of the filter over all windows, and what it tells of the take."""
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from .denoise_filters import Filter
+from .denoise_windows import Windows
+from .prior import WavePrior
+
+Array = NDArray[np.float64]
+
+BLOCK = 512
+"""Windows worked on at a time: this bounds the memory, however long the take."""
+
+
+@dataclass(eq=False)
+class Sweep:
+    """What one pass over all windows adds up."""
+
+    total: Array
+    """Tapered posterior means, shape (n_frames, n_channels)."""
+    slow_moment: Array
+    """Mean second moment of the slow waves, a square matrix."""
+    fast_power: Array
+    """Mean square of the measured fast waves, shape (length - n_slow, n_channels)."""
+
+
+def swept(drawn: Array, filters: list[Filter], windows: Windows, with_moments: bool) -> Sweep:
+    """Filter every window; sum windows and, where asked for, second moments."""
+    n_channels = drawn.shape[1]
+    size, n_slow = len(filters[0].gains.slow), len(filters[0].gains.slow) // n_channels
+    sweep = Sweep(
+        np.zeros_like(drawn), np.zeros((size, size)), np.zeros_like(filters[0].gains.fast)
+    )
+    for one in filters:
+        scale = np.tile(one.gains.noise, n_slow)
+        for first in range(0, len(one.pattern.starts), BLOCK):
+            starts = one.pattern.starts[first : first + BLOCK]
+            frames = windows.cut(drawn, starts)
+            waves = windows.waves_of(frames)
+            seen = windows.waves_of(one.pattern.observed(frames)) if one.gaps else waves
+            slow = seen[:, :n_slow].reshape(-1, size) / scale
+            slow = (
+                one.gaps.mean(slow, one.pattern.places) if one.gaps else slow @ one.gains.slow
+            )
+            slow *= scale
+            if with_moments:
+                sweep.slow_moment += slow.T @ slow
+                sweep.fast_power += (waves[:, n_slow:] ** 2).sum(axis=0)
+            waves[:, :n_slow] = slow.reshape(-1, n_slow, n_channels)
+            waves[:, n_slow:] *= one.gains.fast
+            windows.add(sweep.total, windows.frames_of(waves), starts)
+        if with_moments:
+            one.add_covariance(sweep.slow_moment)
+    n_windows = sum(len(one.pattern.starts) for one in filters)
+    sweep.slow_moment /= n_windows
+    sweep.fast_power /= n_windows
+    return sweep
+
+
+def adapted(prior: WavePrior, sweep: Sweep, noise: Array) -> tuple[Array, Array]:
+    """Mix the prior's covariance with that of the take, as it is estimated so far.
+
+    A channel's covariance with itself takes few frames to learn, that with others takes many:
+    each has its own share.
+    """
+    n_slow, n_channels = prior.n_slow, len(prior.mean)
+    moment = sweep.slow_moment
+    together, alone = prior.trust, prior.trust_alone
+    own, rest = (
+        np.tile(np.sqrt(together), n_slow),
+        np.tile(np.sqrt(1 - together - alone), n_slow),
+    )
+    slow = prior.matrix * np.outer(rest, rest) + moment * np.outer(own, own)
+    blocks = slow.reshape(n_slow, n_channels, n_slow, n_channels)
+    channels = np.arange(n_channels)
+    moments = moment.reshape(blocks.shape)[:, channels, :, channels]
+    blocks[:, channels, :, channels] += moments * alone[:, None, None]
+    power = np.maximum(sweep.fast_power - noise**2, 0.0)
+    fast = extended(prior.fast, len(power))
+    return slow, fast * (1.0 - together - alone) + power * (together + alone)
+
+
+def extended(fast: Array, n_waves: int) -> Array:
+    """Return the variances of more (or fewer) fast waves; those unheard of fade away."""
+    if len(fast) >= n_waves:
+        return fast[:n_waves]
+    last = fast[-1:] if len(fast) else np.zeros((1, fast.shape[1]))
+    steps = np.arange(1, n_waves - len(fast) + 1)[:, None]
+    return np.concatenate([fast, last / (1.0 + steps / max(len(fast), 1)) ** 4])
