@@ -67,8 +67,11 @@ def filters_of(
             filters.append(stale[index])
             continue
         if has_gaps not in gains:
-            make = _gapped if has_gaps else _complete
-            gains[has_gaps] = make(slow, fast, noise, caution, windows)
+            gains[has_gaps] = (
+                _gapped(slow, fast, noise, caution, patterns, windows)
+                if has_gaps
+                else gains_of(slow, fast, noise, windows.density)
+            )
         usual = gains[has_gaps]
         solution = GapSolution.of(pattern, usual.slow) if has_gaps else None
         filters.append(Filter(pattern, usual, solution))
@@ -99,12 +102,14 @@ def weight_of(patterns: list[GapPattern], windows: Windows) -> Array:
     return weight
 
 
-def _complete(slow: Array, fast: Array, noise: Array, _: float, windows: Windows) -> Gains:
-    """Return the filter of windows without gaps."""
-    return gains_of(slow, fast, noise, windows.density)
-
-
-def _gapped(slow: Array, fast: Array, noise: Array, caution: float, windows: Windows) -> Gains:
+def _gapped(
+    slow: Array,
+    fast: Array,
+    noise: Array,
+    caution: float,
+    patterns: list[GapPattern],
+    windows: Windows,
+) -> Gains:
     """Return the filter of windows with gaps.
 
     Through a gap, fast waves look like noise. What other channels say of a missing one is
@@ -115,10 +120,10 @@ def _gapped(slow: Array, fast: Array, noise: Array, caution: float, windows: Win
     channels = np.arange(n_channels)
     blocks = slow.reshape(cautious.shape)[:, channels, :, channels]
     cautious[:, channels, :, channels] += caution * blocks
-    blur = fast.sum(axis=0) * windows.density / windows.length
-    return gains_of(
-        cautious.reshape(slow.shape), fast, np.sqrt(noise**2 + blur), windows.density
-    )
+    gaps = np.unique(np.concatenate([pattern.channels for pattern in patterns]))
+    blurred = noise**2
+    blurred[gaps] += fast[:, gaps].sum(axis=0) * windows.density / windows.length
+    return gains_of(cautious.reshape(slow.shape), fast, np.sqrt(blurred), windows.density)
 
 
 def gains_of(slow: Array, fast: Array, noise: Array, density: float) -> Gains:

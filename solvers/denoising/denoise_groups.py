@@ -52,7 +52,8 @@ def estimate_in_groups(
     take = _roughly(channels.flat, frame_rate, pattern_rate, window)
     values, inliers = take.values.copy(), np.isfinite(take.noisy).astype(float)
     deviation = np.where(np.isfinite(take.noisy) | (take.n_seen > 0), 0.0, UNKNOWN)
-    groups = _groups(channels, take.values, bases)
+    told = _told(channels, bases)
+    groups = groups_of(channels.flat, take.values, told)
     outside = np.zeros((len(values), n_channels // 3))
     iterations, converged, shares = 0, True, []
     for index, columns in enumerate(groups):
@@ -64,16 +65,19 @@ def estimate_in_groups(
         prior = take_prior(
             part.values[:n_frames], guess, take.n_seen[columns] > 0, window, pattern_rate
         )
-        if bases is not None:
+        joints = columns // 3
+        if bases is not None and told[columns[0]]:
             examples = _examples(part, n_frames, bases, channels.keys, columns)
-            prior, share = choose_prior(examples, prior, *part[:3], take.windows, step)
-            shares += [share] * int(np.isfinite(examples.mean).sum())
+            prior, share = choose_prior(
+                examples, prior, *part[:3], joints, take.windows, step
+            )  # fmt: skip
+            shares += [share] * len(columns)
         found = estimate_channels(
             *part[:3], prior, take.windows, within(step, 0.4, 1.0),
-            joints=WholeJoints(columns // 3, outside[:, columns // 3]),
+            joints=WholeJoints(joints, outside[:, joints]),
         )  # fmt: skip
         lost = np.isfinite(part.noisy) * (1.0 - found.inliers)
-        np.maximum.at(outside.T, columns // 3, lost.T)
+        np.maximum.at(outside.T, joints, lost.T)
         values[:, columns], inliers[:, columns] = found.values, found.inliers
         deviation[:, columns] = found.deviation
         iterations = max(iterations, found.iterations)
@@ -111,22 +115,28 @@ def _roughly(noisy: Array, frame_rate: float, pattern_rate: float, window: int) 
     return Rough(padded, interpolated(tame), noise, np.isfinite(tame).sum(axis=0), windows)
 
 
-def _groups(
-    channels: Channels, rough: Array, bases: FilterBases | None
-) -> list[NDArray[np.intp]]:
-    """Sort the channels that move: those of the examples first, then by joints."""
-    moves = np.ptp(rough, axis=0) > CONSTANT
-    moves |= np.isnan(channels.flat).all(axis=0)
-    known = np.zeros(len(moves), dtype=bool)
+def _told(channels: Channels, bases: FilterBases | None) -> NDArray[np.bool_]:
+    """Return which channels the examples tell of."""
+    known = set()
     if bases is not None:
-        names = {(str(bases.keys[channel // 3]), channel % 3) for channel in bases.moving}
-        known[:] = [(channels.keys[c // 3], c % 3) in names for c in range(len(moves))]
-    moves |= known & np.isnan(channels.flat).any(axis=0)
+        known = {(str(bases.keys[channel // 3]), channel % 3) for channel in bases.moving}
+    return np.array(
+        [(key, axis) in known for key in channels.keys for axis in range(3)], dtype=bool
+    )
+
+
+def groups_of(noisy: Array, rough: Array, told: NDArray[np.bool_]) -> list[NDArray[np.intp]]:
+    """Sort the channels that move: those of the examples first; joints stay together."""
+    missing = np.isnan(noisy)
+    moves = (np.ptp(rough, axis=0) > CONSTANT) | missing.all(axis=0)
+    moves |= told & missing.any(axis=0)
     groups = []
-    for kind in (moves & known, moves & ~known):
+    for kind in (moves & told, moves & ~told):
         columns = np.flatnonzero(kind)
-        n_groups = -(-len(columns) // LARGEST_GROUP)
-        groups += [group for group in np.array_split(columns, max(n_groups, 1)) if len(group)]
+        joints, first = np.unique(columns // 3, return_index=True)
+        n_groups = -(-3 * len(joints) // LARGEST_GROUP)
+        parts = np.array_split(first, max(n_groups, 1))
+        groups += np.split(columns, [part[0] for part in parts[1:]]) if len(columns) else []
     return groups
 
 

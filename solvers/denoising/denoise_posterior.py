@@ -27,7 +27,7 @@ MOST_OUTLIERS = 0.6
 MAX_ITERATIONS = 30
 ADAPTATIONS = 5
 """Iterations in which the prior still adapts to the take."""
-SETTLED = 0.02
+SETTLED = 0.01
 """Root mean square change, degrees or centimetres, below which the estimate is settled."""
 LOOKS = (8.0, 4.0, 2.0)
 """Times the noise that the first rounds take it for."""
@@ -80,7 +80,7 @@ def estimate_channels(
     at_most : int
         Iterations after them.
     """
-    rounds = _Rounds(noisy, start, noise, prior, windows, joints)
+    rounds = _Rounds(noisy, start, noise, prior, windows.fewer, joints)
     for times in looks:
         progress(0.0, "Denoising")
         rounds.believe()
@@ -92,6 +92,8 @@ def estimate_channels(
         adapts = iteration < ADAPTATIONS
         # Halfway, lest a sample that is judged by its own estimate goes in and out for ever.
         rounds.believe(1.0 if iteration <= ADAPTATIONS else 0.5)
+        if iteration == ADAPTATIONS:
+            rounds.use(windows)
         if iteration <= ADAPTATIONS:
             rounds.tune(nearly=adapts and iteration > 0)
         moved = rounds.filter(adapts=adapts)
@@ -113,9 +115,8 @@ class _Rounds:
         joints: WholeJoints | None,
     ) -> None:
         self.known, self.observed = np.isfinite(noisy), np.nan_to_num(noisy)
-        self.joints, self.windows, self.prior = joints, windows, prior.at_most(windows.length)
-        self.patterns = gap_patterns(self.known, windows, self.prior.n_slow)
-        self.total_weight = weight_of(self.patterns, windows)
+        self.joints, self.prior = joints, prior.at_most(windows.length)
+        self.use(windows)
         self.estimate, self.mean = start, prior.mean
         self.first_guess = self.noise = noise
         self.slow = self.prior.matrix
@@ -125,6 +126,12 @@ class _Rounds:
         self.variance = np.zeros_like(noisy)
         self.alone = np.ones_like(noisy)
         """Variance without the sample over that with it, `variance`."""
+
+    def use(self, windows: Windows) -> None:
+        """Cut the take into these windows."""
+        self.windows = windows
+        self.patterns = gap_patterns(self.known, windows, self.prior.n_slow)
+        self.total_weight = weight_of(self.patterns, windows)
 
     def believe(self, step: float = 1.0) -> None:
         """Go this part of the way to each sample's probability of being no outlier."""

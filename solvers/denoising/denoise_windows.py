@@ -1,6 +1,6 @@
 """A take cut into overlapping windows, each told by slow and fast waves of every channel."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
@@ -10,9 +10,10 @@ from scipy.fft import dct, idct
 
 Array = NDArray[np.float64]
 
-HOPS = 10
+HOPS = 6
 """Windows that a window overlaps with, to either side."""
-HOPS_LONG = 4
+FEW_HOPS = 4
+"""The same where an estimate is not the last, and in long takes."""
 LONG = 20_000
 """Frames from which on windows overlap less."""
 
@@ -32,8 +33,15 @@ class Windows:
     length: int
     density: float
     """Frames of the take per frame of the patterns that it is compared with."""
+    hops: int = HOPS
+    """Windows that a window overlaps with, to either side."""
     solve_gaps: bool = True
     """Solve for long gaps exactly; otherwise fill them round by round, like short ones."""
+
+    @property
+    def fewer(self) -> "Windows":
+        """The same with windows that overlap less."""
+        return replace(self, hops=FEW_HOPS)
 
     @property
     def long_gap(self) -> int:
@@ -46,7 +54,8 @@ class Windows:
     def starts(self) -> NDArray[np.intp]:
         """First frame of every window; the last window ends with the take."""
         last = self.n_frames - self.length
-        hop = max(self.length // (HOPS if self.n_frames < LONG else HOPS_LONG), 1)
+        hops = self.hops if self.n_frames < LONG else FEW_HOPS
+        hop = max(self.length // hops, 1)
         return np.asarray(np.unique(np.append(np.arange(0, last, hop), last)), dtype=np.intp)
 
     @cached_property

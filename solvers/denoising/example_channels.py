@@ -21,14 +21,15 @@ NEAR_MULTIPLE = 0.02
 
 def encode_examples(
     examples: Sequence[Motion | Tracks], frame_rate: float, progress: Progress
-) -> tuple[Channels, list[Array]]:
+) -> tuple[Channels, list[list[Array]]]:
     """Encode all examples about the means of the first; columns are in its order.
 
-    What an example does not have, or never shows, is NaN.
+    Each piece of an example is a list of interleaved takes at the frame rate. What an example
+    does not have, or never shows, is NaN.
     """
     takes = [piece for example in examples for piece in _whole_pieces(example)]
     first = encode(takes[0])
-    clips = []
+    found = []
     for index, take in enumerate(takes):
         channels = encode(take, first.references) if index else first
         place = {key: part for part, key in enumerate(channels.keys)}
@@ -39,9 +40,9 @@ def encode_examples(
         flat = columns.reshape(len(columns), -1)
         seen = np.isfinite(flat).any(axis=0)
         parts = _at_rate(interpolated(flat), take.frame_rate, frame_rate)
-        clips += [np.where(seen, part, np.nan) for part in parts]
+        found.append([np.where(seen, part, np.nan) for part in parts])
         progress((index + 1) / len(takes), "Reading examples")
-    return first, clips
+    return first, found
 
 
 def moments(clips: Sequence[Array]) -> tuple[Array, Array]:

@@ -74,8 +74,8 @@ class FilterBases:
         patterns, however weak.
     fast : shape (window - n_slow, n_moving)
         Variances of the faster waves.
-    clip_means : shape (n_clips, n_moving)
-        Mean pose of each example; the mean of all for what it lacks.
+    clip_means : shape (n_pieces, n_moving)
+        Mean pose of each piece of an example; the mean of all for what it lacks.
     frame_rate : shape (), hertz
     n_clips : shape (), int
     of_points : shape (), bool
@@ -217,9 +217,11 @@ def learn_filter_bases(
         raise InvalidMotionError("There is no example to learn from; choose clean clips.")
     if len({isinstance(example, Motion) for example in examples}) > 1:
         raise InvalidMotionError("Learn from motions or from tracks, not from both at once.")
-    first, clips = encode_examples(examples, settings.frame_rate, within(progress, 0.0, 0.6))
+    first, pieces = encode_examples(examples, settings.frame_rate, within(progress, 0.0, 0.6))
     window = settings.n_frames
-    clips = [clip for clip in clips if len(clip) >= window]
+    pieces = [[clip for clip in piece if len(clip) >= window] for piece in pieces]
+    pieces = [piece for piece in pieces if piece]
+    clips = [clip for piece in pieces for clip in piece]
     if not clips:
         raise InvalidMotionError(
             f"No example is as long as the window of {settings.window:.2g} s; choose longer"
@@ -231,21 +233,23 @@ def learn_filter_bases(
             "Nothing that was observed in the examples moves; choose clips with movement."
         )
     moving = np.flatnonzero(spread >= min(STILL, spread.max()))
-    clips = [clip[:, moving] for clip in clips]
+    pieces = [[clip[:, moving] for clip in piece] for piece in pieces]
+    clips = [clip for piece in pieces for clip in piece]
     progress(0.7, "Finding patterns")
     about_all = _covariance(clips, [mean[moving]] * len(clips), window)
     values, vectors = strongest(about_all, KEPT_ENERGY)
-    own_means = [clip.mean(axis=0) for clip in clips]
+    piece_means = [np.concatenate(piece).mean(axis=0) for piece in pieces]
+    own_means = np.repeat(piece_means, [len(piece) for piece in pieces], axis=0)
     patterns = np.zeros((len(values), window, len(mean)))
     patterns[:, :, moving] = vectors.T.reshape(len(values), window, len(moving))
-    slow, fast = _waves(_covariance(clips, own_means, window), window)
+    slow, fast = _waves(_covariance(clips, list(own_means), window), window)
     progress(1.0, "Learned")
     rows = np.zeros((len(first.keys), N_REFERENCE))
     for row, key in zip(rows, first.keys, strict=True):
         row[: len(first.references[key])] = first.references[key]
     return FilterBases(
         np.array(first.keys), rows, mean, patterns, values, moving, slow, fast,
-        np.where(np.isfinite(own_means), own_means, mean[moving]),
+        np.where(np.isfinite(piece_means), piece_means, mean[moving]),
         np.array(settings.frame_rate), np.array(len(examples)),
         np.array(isinstance(examples[0], Tracks)),
     )  # fmt: skip

@@ -111,18 +111,8 @@ def smooth_prior(
 
 def mixed(examples: WavePrior, smooth: WavePrior, share: float) -> WavePrior:
     """Return the examples' prior with a share of the one that knows only smoothness."""
-    known = np.isfinite(examples.mean)
-    of_smooth = np.where(known, share, 1.0)
-    rest = np.sqrt(1.0 - of_smooth)
-    both = rest[:, None, None] * np.where(np.isfinite(examples.slow), examples.slow, 0.0) * rest
-    slow = both + smooth.slow * of_smooth
-    fast = np.where(known, (1 - share) * np.nan_to_num(examples.fast), 0.0)
     return replace(
         examples,
-        mean=np.where(known, examples.mean, smooth.mean),
-        slow=slow,
-        fast=fast + of_smooth * smooth.fast,
-        trust=np.where(known, examples.trust, smooth.trust),
-        trust_alone=np.where(known, examples.trust_alone, smooth.trust_alone),
-        follows=np.where(known, examples.follows, smooth.follows),
+        slow=(1.0 - share) * examples.slow + share * smooth.slow,
+        fast=(1.0 - share) * examples.fast + share * smooth.fast,
     )

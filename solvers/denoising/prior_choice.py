@@ -41,7 +41,7 @@ def examples_prior(
     n_frames: float,
     noise: Array,
 ) -> WavePrior:
-    """Return the examples' prior of some channels of a take; NaN where they tell nothing.
+    """Return the examples' prior of some channels of a take, of which all must tell.
 
     Parameters
     ----------
@@ -49,7 +49,7 @@ def examples_prior(
     keys : tuple of str
         Of the take's parts.
     columns : shape (n_channels,)
-        Channels of the take that are asked for.
+        Channels of the take that are asked for; all are among those that move in the bases.
     own : shape (n_channels,)
         Their mean over the frames in which they are observed.
     n_seen : shape (n_channels,)
@@ -61,29 +61,16 @@ def examples_prior(
     """
     part = {str(key): place for place, key in enumerate(bases.keys)}
     moving = {int(channel): place for place, channel in enumerate(bases.moving)}
-    source = [3 * part.get(keys[column // 3], -1) + column % 3 for column in columns]
-    places = np.array([moving.get(channel, -1) for channel in source])
-    known = np.flatnonzero(places >= 0)
-    n_slow, window = len(bases.slow), bases.window
-    mean = np.full(len(columns), np.nan)
-    clip_means = bases.clip_means[:, places[known]]
-    variance = np.einsum("kckc->c", bases.slow) + bases.fast.sum(axis=0)
-    mean[known], unsure = take_offset(
-        clip_means,
-        own[known],
-        n_seen[known],
-        n_frames,
-        variance[places[known]] / window,
-        noise[known] ** 2,
+    places = [moving[3 * part[keys[column // 3]] + column % 3] for column in columns]
+    window, channels = bases.window, np.arange(len(columns))
+    slow, fast = bases.slow[:, places][:, :, :, places], bases.fast[:, places]
+    variance = np.einsum("kckc->c", slow) + fast.sum(axis=0)
+    mean, unsure = take_offset(
+        bases.clip_means[:, places], own, n_seen, n_frames, variance / window, noise**2
     )
-    slow = np.full((n_slow, len(columns), n_slow, len(columns)), np.nan)
-    inside = bases.slow[:, places[known]][:, :, :, places[known]]
-    inside[0, np.arange(len(known)), 0, np.arange(len(known))] += window * unsure
-    slow[:, known[:, None], :, known] = inside.transpose(1, 3, 0, 2)
-    fast = np.full((window - n_slow, len(columns)), np.nan)
-    fast[:, known] = bases.fast[:, places[known]]
+    slow[0, channels, 0, channels] += window * unsure
     trust = np.full(len(columns), TRUST_IN_TAKE)
-    follows = np.where(np.isfinite(mean), np.minimum(n_seen / n_frames, 1.0), 0.0)
+    follows = np.minimum(n_seen / n_frames, 1.0)
     return WavePrior(mean, slow, fast, trust, np.zeros(len(columns)), follows)
 
 
@@ -112,6 +99,7 @@ def choose_prior(
     noisy: Array,
     rough: Array,
     noise: Array,
+    joints: NDArray[np.intp],
     windows: Windows,
     progress: Progress,
 ) -> tuple[WavePrior, float]:
@@ -120,14 +108,11 @@ def choose_prior(
     Each candidate adapts to the take in a few rounds; then every sample is compared with what
     all others foretell of it (leave one out). Examples of another movement lose against plain
     smoothness, and cannot do harm. Only channels that are mostly observed take part. How far
-    the others can be believed about a lost channel is judged by whole channels.
+    the others can be believed about a lost joint is judged by whole `joints`.
     """
-    told = np.isfinite(examples.mean)
-    if not told.any():
-        return own, 1.0
     candidates = {share: mixed(examples, own, share) for share in SHARES}
     candidates[1.0] = own
-    judges = np.flatnonzero(told & (np.isfinite(noisy).mean(axis=0) > MOSTLY))
+    judges = np.flatnonzero(np.isfinite(noisy).mean(axis=0) > MOSTLY)
     if not len(judges):
         return candidates[SHARES[0]], SHARES[0]
     part = (noisy[:, judges], rough[:, judges], noise[judges])
@@ -140,21 +125,23 @@ def choose_prior(
         )
         foresights[share] = trial.foresight * (1.0 if share < 1.0 else OWN_HANDICAP)
     best = min(foresights, key=lambda share: foresights[share])
-    unforetold = channel_foresight(
-        candidates[best].of_channels(judges), *part[1:], without_gaps
+    unforetold = joint_foresight(
+        candidates[best].of_channels(judges), *part[1:], joints[judges], windows
     )
     return replace(candidates[best], caution=float(np.clip(unforetold, 0.0, 1.0))), best
 
 
-def channel_foresight(prior: WavePrior, rough: Array, noise: Array, windows: Windows) -> float:
-    """Return how badly the other parts foretell a whole part over a window.
+def joint_foresight(
+    prior: WavePrior, rough: Array, noise: Array, joints: NDArray[np.intp], windows: Windows
+) -> float:
+    """Return how badly the other joints foretell a whole joint over a window.
 
-    The mean square of what they leave over, relative to the part's own; 1 where they know
+    The mean square of what they leave over, relative to the joint's own; 1 where they know
     nothing of each other, more where they mislead. In closed form: with K the covariance of the
     observed waves y, the error of the waves J told by all others is (K^-1)_JJ^-1 (K^-1 y)_J.
     """
     prior = prior.at_most(windows.length)
-    power = np.einsum("kckc->c", prior.slow) / windows.length
+    power = np.einsum("kckc->c", prior.slow) * windows.density / windows.length
     blurred = np.sqrt(noise**2 + BLUR**2 * power)
     gains = gains_of(prior.matrix, prior.fast, blurred, windows.density)
     n_slow, n_channels = prior.n_slow, len(prior.mean)
@@ -162,7 +149,8 @@ def channel_foresight(prior: WavePrior, rough: Array, noise: Array, windows: Win
     waves = waves / gains.noise
     solved = waves.reshape(len(waves), -1) @ (np.eye(n_slow * n_channels) - gains.slow)
     missed, whole = 0.0, 1e-12
-    for part in np.array_split(np.arange(n_channels), max(n_channels // 3, 1)):
+    for joint in np.unique(joints):
+        (part,) = np.nonzero(joints == joint)
         places = (np.arange(n_slow)[:, None] * n_channels + part).ravel()
         inside = -gains.slow[np.ix_(places, places)]
         inside[np.diag_indices(len(places))] += 1.0

@@ -57,6 +57,20 @@ def test_gapped_windows_keep_their_filter_while_it_is_nearly_right(rng):
     assert 0 < sum(kept) < len(kept)
 
 
+def test_only_channels_with_gaps_are_blurred(rng):
+    """A hand that is never seen must not smooth the arm that is."""
+    windows = Windows(30, LENGTH, 1.0)
+    known = np.ones((30, N_CHANNELS), dtype=bool)
+    known[:, 1] = False
+    patterns = gap_patterns(known, windows, N_SLOW)
+    fast, noise = np.ones((LENGTH - N_SLOW, N_CHANNELS)), np.full(N_CHANNELS, 0.3)
+
+    (gapped,) = filters_of(patterns, some_covariance(rng), fast, noise, 0.5, windows)
+
+    assert_allclose(gapped.gains.noise[[0, 2]], 0.3)
+    assert gapped.gains.noise[1] > 0.4
+
+
 def test_waves_and_frames_undo_each_other(rng):
     windows = Windows(30, 12, 2.0)
     frames = rng.normal(size=(4, 12, 3))

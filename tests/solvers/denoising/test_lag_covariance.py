@@ -45,3 +45,11 @@ def test_a_clip_that_lacks_a_joint_tells_nothing_of_it(swinging_leg):
     places = np.flatnonzero(np.isin(alone.moving, knee))
     own = np.ix_(np.arange(len(alone.slow)), places, np.arange(len(alone.slow)), places)
     assert_allclose(both.slow[own], alone.slow[own], rtol=1e-6, atol=1e-9)
+
+
+def test_an_example_has_one_mean_pose_at_any_frame_rate(swinging_leg):
+    """Takes at twice the rate of the patterns are split; the body is one."""
+    bases = learn_filter_bases([swinging_leg, swinging_leg.slice(0, 90)])
+
+    assert swinging_leg.frame_rate == 2 * float(bases.frame_rate)
+    assert len(bases.clip_means) == 2

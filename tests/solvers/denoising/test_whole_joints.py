@@ -1,4 +1,4 @@
-"""Outliers of one channel make those of its joint likely, where the take shows that they are."""
+"""Outliers of one channel make those of its joint likely, if the take shows it."""
 
 import numpy as np
 from numpy.testing import assert_allclose

@@ -1,0 +1,122 @@
+"""How far joints are believed about each other, and which examples are used at all."""
+
+import numpy as np
+from numpy.testing import assert_allclose
+
+from solvers.denoising.denoise_groups import LARGEST_GROUP, groups_of
+from solvers.denoising.denoise_windows import Windows
+from solvers.denoising.prior import WavePrior, mixed, smooth_prior
+from solvers.denoising.prior_choice import BLUR, choose_prior, joint_foresight
+from solvers.progress import unwatched
+
+LENGTH, RATE = 10, 30.0
+JOINTS = np.array([0, 0, 1, 2, 2])
+WINDOWS = Windows(200, LENGTH, 1.0)
+
+
+def test_foresight_is_that_of_leaving_a_joint_out(rng):
+    """Against a dense conditional Gaussian, one window and one joint at a time."""
+    prior, rough, noise = coupled(rng), some_take(rng), np.full(5, 0.2)
+
+    found = joint_foresight(prior, rough, noise, JOINTS, WINDOWS)
+
+    n_slow, n_channels = prior.n_slow, 5
+    power = np.einsum("kckc->c", prior.slow) / LENGTH
+    spread = np.tile(noise**2 + BLUR**2 * power, n_slow)
+    covariance = prior.matrix + np.diag(spread)
+    waves = WINDOWS.waves_of(WINDOWS.cut(rough - prior.mean, WINDOWS.starts))[:, :n_slow]
+    waves = waves.reshape(len(waves), -1)
+    missed = whole = 0.0
+    for joint in range(3):
+        inside = np.flatnonzero(np.tile(joint == JOINTS, n_slow))
+        others = np.setdiff1d(np.arange(n_slow * n_channels), inside)
+        gain = np.linalg.solve(
+            covariance[np.ix_(others, others)], covariance[np.ix_(others, inside)]
+        )
+        missed += ((waves[:, inside] - waves[:, others] @ gain) ** 2).sum()
+        whole += (waves[:, inside] ** 2).sum()
+    assert_allclose(found, missed / whole, rtol=1e-6)
+
+
+def test_channels_that_know_nothing_of_each_other_foretell_nothing(rng):
+    prior = smooth_prior(np.zeros(5), np.ones(5), LENGTH, RATE, 0.0, 0.0)
+
+    found = joint_foresight(prior, some_take(rng), np.full(5, 0.2), JOINTS, WINDOWS)
+
+    assert_allclose(found, 1.0, atol=1e-9)
+
+
+def test_a_mixture_lies_between_both(rng):
+    examples = coupled(rng)
+    smooth = smooth_prior(np.zeros(5), np.ones(5), LENGTH, RATE, 0.0, 0.0)
+
+    both = mixed(examples, smooth, 0.25)
+
+    assert_allclose(both.slow, 0.75 * examples.slow + 0.25 * smooth.slow)
+    assert_allclose(both.fast, 0.75 * examples.fast + 0.25 * smooth.fast)
+    assert_allclose(both.mean, examples.mean)
+
+
+def test_examples_of_the_movement_win_and_of_stillness_lose(rng):
+    prior = coupled(rng)
+    take = drawn(prior, rng)
+    noisy, noise = take + 0.5 * rng.normal(size=take.shape), np.full(5, 0.5)
+    own = smooth_prior(np.zeros(5), take.var(axis=0), LENGTH, RATE, 0.05, 0.3)
+    still = WavePrior(
+        prior.mean, 1e-4 * prior.slow, 1e-4 * prior.fast, prior.trust, prior.trust_alone,
+        prior.follows,
+    )  # fmt: skip
+
+    shares = [
+        choose_prior(examples, own, noisy, take, noise, JOINTS, WINDOWS, unwatched)[1]
+        for examples in (prior, still)
+    ]
+
+    assert shares[0] < 0.1
+    assert shares[1] == 1.0
+
+
+def test_no_group_cuts_through_a_joint(rng):
+    """Of a hundred joints some turn about one axis, some about two, some about three."""
+    values = rng.normal(size=(20, 100, 3))
+    values[:, ::3, 1:] = 0.0
+    values[:, 1::3, 2] = 0.0
+    flat = values.reshape(20, 300)
+
+    groups = groups_of(flat, flat, np.zeros(300, dtype=bool))
+
+    joints = [set((group // 3).tolist()) for group in groups]
+    assert len(groups) > 1
+    assert max(map(len, groups)) <= LARGEST_GROUP
+    assert sum(map(len, joints)) == len(set.union(*joints)) == 100
+    moving = np.flatnonzero(np.ptp(flat, axis=0) > 0)
+    assert np.concatenate(groups).tolist() == moving.tolist()
+
+
+def coupled(rng) -> WavePrior:
+    """Five channels that move as two things do."""
+    smooth = smooth_prior(np.zeros(5), np.ones(5), LENGTH, RATE, 0.0, 0.0)
+    mix = rng.normal(size=(5, 2))
+    together = mix @ mix.T + 0.05 * np.eye(5)
+    kernel = smooth.slow[:, 0, :, 0]
+    return WavePrior(
+        np.array([1.0, -2.0, 0.5, 3.0, 0.0]),
+        np.einsum("kj,cd->kcjd", kernel, together),
+        smooth.fast * np.diag(together),
+        np.full(5, 0.05), np.zeros(5), np.ones(5),
+    )  # fmt: skip
+
+
+def drawn(prior: WavePrior, rng):
+    """A take of the prior's two things, smooth over time."""
+    times = np.arange(200) / RATE
+    steps = np.subtract.outer(times, times)
+    kernel = sum(np.exp(-0.5 * (steps / length) ** 2) for length in (0.1, 0.3, 1.0)) / 3.0
+    together = prior.slow[0, :, 0] / prior.slow[0, 0, 0, 0]
+    both = np.linalg.cholesky(together + 1e-9 * np.eye(5))
+    smooth = np.linalg.cholesky(kernel + 1e-6 * np.eye(200)) @ rng.normal(size=(200, 5))
+    return smooth @ both.T * np.sqrt(prior.slow[0, 0, 0, 0] / LENGTH) + prior.mean
+
+
+def some_take(rng):
+    return np.cumsum(rng.normal(size=(200, 5)), axis=0) * 0.3
