@@ -119,7 +119,8 @@ class Job(Generic[Result]):
             raise MocapAssistError(_obituary(status, said))
         if isinstance(outcome, Exception):
             raise outcome
-        return outcome[0]  # type: ignore[no-any-return]
+        result: Result = outcome[0]
+        return result
 
 
 def _python() -> str:
