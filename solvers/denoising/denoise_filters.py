@@ -78,9 +78,14 @@ def filters_of(
     return filters
 
 
-def variance_of(filters: list[Filter], windows: Windows, like: Array) -> Array:
-    """Return the posterior variance of every sample, shape (n_frames, n_channels)."""
-    total, weight = np.zeros_like(like), weight_of([one.pattern for one in filters], windows)
+def variance_of(filters: list[Filter], windows: Windows, like: Array) -> tuple[Array, Array]:
+    """Return the posterior variance of every sample, and its leverage: its part in itself.
+
+    Both of shape (n_frames, n_channels). The leverage is relative to the noise that each filter
+    was made for; where nothing is observed it means nothing.
+    """
+    total, leverage = np.zeros_like(like), np.zeros_like(like)
+    weight = weight_of([one.pattern for one in filters], windows)
     usual: dict[int, Array] = {}
     for one in filters:
         key = id(one.gains)
@@ -91,7 +96,9 @@ def variance_of(filters: list[Filter], windows: Windows, like: Array) -> Array:
             gaps, noise = one.pattern.channels, one.gains.noise[one.pattern.channels]
             variance[:, gaps] += _window_variance(one.gaps.more_covariance, noise, windows)
         windows.add(total, variance, one.pattern.starts)
-    return np.maximum(total / weight, 0.0)
+        per_sample = one.gains.noise**2 * windows.density
+        windows.add(leverage, variance / per_sample, one.pattern.starts)
+    return np.maximum(total / weight, 0.0), np.maximum(leverage / weight, 0.0)
 
 
 def weight_of(patterns: list[GapPattern], windows: Windows) -> Array:

@@ -126,17 +126,23 @@ def _told(channels: Channels, bases: FilterBases | None) -> NDArray[np.bool_]:
 
 
 def groups_of(noisy: Array, rough: Array, told: NDArray[np.bool_]) -> list[NDArray[np.intp]]:
-    """Sort the channels that move: those of the examples first; joints stay together."""
+    """Sort the channels that move: those of the examples first.
+
+    The channels of a joint stay together, but for those that the examples know nothing of.
+    """
     missing = np.isnan(noisy)
     moves = (np.ptp(rough, axis=0) > CONSTANT) | missing.all(axis=0)
     moves |= told & missing.any(axis=0)
     groups = []
     for kind in (moves & told, moves & ~told):
         columns = np.flatnonzero(kind)
-        joints, first = np.unique(columns // 3, return_index=True)
-        n_groups = -(-3 * len(joints) // LARGEST_GROUP)
-        parts = np.array_split(first, max(n_groups, 1))
-        groups += np.split(columns, [part[0] for part in parts[1:]]) if len(columns) else []
+        if not len(columns):
+            continue
+        starts = np.append(np.unique(columns // 3, return_index=True)[1], len(columns))
+        n_groups = -(-len(columns) // (LARGEST_GROUP - 2))
+        even = np.arange(1, n_groups) * len(columns) / n_groups
+        nearest = np.abs(starts[:, None] - even).argmin(axis=0)
+        groups += np.split(columns, starts[nearest])
     return groups
 
 

@@ -81,14 +81,15 @@ def estimate_channels(
         Iterations after them.
     """
     rounds = _Rounds(noisy, start, noise, prior, windows.fewer, joints)
-    for times in looks:
-        progress(0.0, "Denoising")
+    n_looks, n_rounds = len(looks), len(looks) + at_most
+    for look, times in enumerate(looks):
+        progress(look / n_rounds, "Denoising")
         rounds.believe()
         rounds.tune(times)
         rounds.filter()
     iteration, change = 0, np.inf
     while iteration < at_most and change > SETTLED:
-        progress(iteration / at_most, "Denoising")
+        progress((n_looks + iteration) / n_rounds, "Denoising")
         adapts = iteration < ADAPTATIONS
         # Halfway, lest a sample that is judged by its own estimate goes in and out for ever.
         rounds.believe(1.0 if iteration <= ADAPTATIONS else 0.5)
@@ -103,7 +104,7 @@ def estimate_channels(
 
 
 class _Rounds:
-    """What is believed of a take, from round to round."""
+    """What is believed of a take, from round to round: `believe`, `tune`, `filter`."""
 
     def __init__(
         self,
@@ -160,8 +161,8 @@ class _Rounds:
             self.patterns, self.slow, self.fast, noise, self.prior.caution, self.windows,
             stale=self.filters if nearly and len(self.patterns) > FEW else [],
         )  # fmt: skip
-        self.variance = variance_of(self.filters, self.windows, self.observed)
-        self.alone = 1.0 / (1.0 - np.minimum(self.variance / noise**2, MOST_LEVERAGE))
+        self.variance, leverage = variance_of(self.filters, self.windows, self.observed)
+        self.alone = 1.0 / (1.0 - np.minimum(leverage, MOST_LEVERAGE))
 
     def filter(self, *, adapts: bool = False) -> float:
         """Estimate again, and how noise and prior are; return the root mean square change."""

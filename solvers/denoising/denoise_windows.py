@@ -11,7 +11,7 @@ from scipy.fft import dct, idct
 Array = NDArray[np.float64]
 
 HOPS = 6
-"""Windows that a window overlaps with, to either side."""
+"""Windows that start in the length of one."""
 FEW_HOPS = 4
 """The same where an estimate is not the last, and in long takes."""
 LONG = 20_000
@@ -34,7 +34,7 @@ class Windows:
     density: float
     """Frames of the take per frame of the patterns that it is compared with."""
     hops: int = HOPS
-    """Windows that a window overlaps with, to either side."""
+    """Windows that start in the length of one, as far as frames allow."""
     solve_gaps: bool = True
     """Solve for long gaps exactly; otherwise fill them round by round, like short ones."""
 

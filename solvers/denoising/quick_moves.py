@@ -11,16 +11,18 @@ CALM = 0.5
 FEW = 0.02
 """Share of outliers up to which neighbouring ones that form a hill by chance are rare."""
 STEEP = 0.75
-"""Part of its height that a spike rises, and falls, from one frame to the next."""
+"""Part of its height that a spike rises, or falls, from one frame to the next."""
+LONG = 3
+"""Frames from which on noise cannot give a spike gentle slopes by chance."""
 
 
 def quick_moves(error: Array, inlier: Array, noise: Array, rate: float) -> NDArray[np.bool_]:
     """Return which of the doubted samples belong to a move that the recording resolves.
 
     A spike leaves the estimate with a step and comes back with a step. A hill that is climbed
-    and descended gradually is a move that is quicker than was expected. Only in takes of
-    little noise and few outliers can the two be told apart frame by frame; elsewhere nothing
-    is called a move.
+    and descended gradually is a move that is quicker than was expected: so is one that has no
+    step anywhere, in takes of any noise, where it lasts for LONG frames. In takes of little
+    noise and few outliers its first and last step are enough.
 
     Parameters
     ----------
@@ -34,21 +36,22 @@ def quick_moves(error: Array, inlier: Array, noise: Array, rate: float) -> NDArr
         Share of outliers in the take.
     """
     found = np.zeros(error.shape, dtype=np.bool_)
-    calm = noise < CALM
-    if rate > FEW or not calm.any():
-        return found
     # One long column, with a frame of nothing before and after each channel.
-    height = np.pad(error[:, calm], ((1, 1), (0, 0)), constant_values=np.nan).T.ravel()
-    doubted = np.pad(inlier[:, calm] < DOUBTED, ((1, 1), (0, 0))).T.ravel()
+    height = np.pad(error, ((1, 1), (0, 0)), constant_values=np.nan).T.ravel()
+    doubted = np.pad(inlier < DOUBTED, ((1, 1), (0, 0))).T.ravel()
     doubted &= np.isfinite(height)
     edges = np.flatnonzero(np.diff(doubted))
     if not edges.size:
         return found
-    steps = np.abs(np.diff(height))
+    steps = np.nan_to_num(np.abs(np.diff(height, append=np.nan)), nan=np.inf)
+    first, last = edges[::2], edges[1::2]
     heights = np.maximum.reduceat(np.nan_to_num(np.abs(height)), edges + 1)[::2]
-    gradual = (steps[edges[::2]] < STEEP * heights) & (steps[edges[1::2]] < STEEP * heights)
+    steepest = np.maximum.reduceat(steps, np.stack([first, last + 1], 1).ravel())[::2]
+    calm = np.repeat((noise < CALM) & (rate <= FEW), len(error) + 2)[first]
+    gradual = np.maximum(steps[first], steps[last]) < STEEP * heights
+    smooth = (steepest < STEEP * heights) & (last - first >= LONG)
     moves = np.zeros(len(height), dtype=np.int8)
-    moves[edges[::2] + 1] = gradual
-    moves[edges[1::2] + 1] = -gradual.astype(np.int8)
-    found[:, calm] = np.cumsum(moves).reshape(calm.sum(), -1)[:, 1:-1].T > 0
-    return found
+    is_move = (calm & gradual) | smooth
+    moves[first + 1] = is_move
+    moves[last + 1] = -is_move.astype(np.int8)
+    return np.asarray(np.cumsum(moves).reshape(error.shape[1], -1)[:, 1:-1].T > 0)

@@ -9,6 +9,8 @@ Array = NDArray[np.float64]
 
 MOST = 0.9
 """Probability of being an outlier that no fellow can exceed."""
+LEAST = 1e-4
+"""Probability of being an outlier that every sample has."""
 DOUBT = 0.01
 """Share of a take that must be outliers to tell whether joints are wrong as a whole."""
 
@@ -43,6 +45,12 @@ class WholeJoints:
             second = first + step
             fellows[:, first] = np.maximum(fellows[:, first], outside[:, second])
             fellows[:, second] = np.maximum(fellows[:, second], outside[:, first])
-        of_fellows = float(fellows[known].sum()) + DOUBT * np.count_nonzero(known)
-        together = min(float((outside * fellows).sum()) / max(of_fellows, DOUBT), MOST)
-        return np.asarray(rate + fellows * max(together - rate, 0.0))
+        n_known, of_fellows = np.count_nonzero(known), float(fellows[known].sum())
+        both = float((outside * fellows).sum())
+        together = min(both / max(of_fellows + DOUBT * n_known, DOUBT), MOST)
+        if together <= rate:
+            return np.full(fellows.shape, rate)
+        # So that all together are as likely as before.
+        alone = (rate * n_known - together * of_fellows) / max(n_known - of_fellows, 1.0)
+        alone = max(alone, LEAST)
+        return np.asarray(alone + fellows * (together - alone))

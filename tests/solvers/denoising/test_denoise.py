@@ -15,7 +15,7 @@ from solvers.denoising import (
     limit_excess,
     load_filter_bases,
 )
-from solvers.motion import Motion, Tracks
+from solvers.motion import Motion, Skeleton, Tracks
 from solvers.motion.rotations import angle_between, multiply, quaternion_from_rotation_vector
 from solvers.recordings import read_bvh
 from solvers.samples import GaitSettings, walking_gait
@@ -185,6 +185,55 @@ def test_a_limb_off_for_a_fifth_of_a_second_is_put_back(recordings, rng):
         for take in (noisy, result.recording)
     )
     assert after < 0.25 * before
+
+
+def test_the_other_limbs_tell_that_one_is_off(rng):
+    """The same on a body that has two things in mind, and seven limbs to show them with."""
+    mix = rng.normal(size=(2, 7, 3, 2))
+    bases = learn_filter_bases([dancer(mix, seed) for seed in range(6)])
+    truth = dancer(mix, 6)
+    noisy = shaken(truth, rng, np.radians(1), n_still=0)
+    off = np.zeros((truth.n_frames, 7), dtype=bool)
+    off[30:36, 2] = off[60:66, 4] = off[90:95, 5] = True
+    turn = quaternion_from_rotation_vector([0.5, -0.5, 0.5])
+    noisy.rotations[off] = multiply(turn, noisy.rotations[off])
+
+    result = denoise(noisy, bases)
+
+    assert result.outliers[off].all()
+    assert result.outliers[~off].mean() < 0.02
+    after = angle_between(result.recording.rotations, truth.rotations)[off]
+    assert after.max() < 0.2 * np.linalg.norm([0.5, 0.5, 0.5])
+
+
+def dancer(mix, seed: int) -> Motion:
+    """Seven joints whose turns are mixed from two rhythms, with phases of their own."""
+    names = tuple(f"limb {index}" for index in range(7))
+    offsets = np.tile([0.0, 0.0, 0.3], (7, 1))
+    skeleton = Skeleton(names, (-1, 0, 1, 2, 0, 4, 5), offsets)
+    phases = np.random.default_rng(seed).uniform(0.0, 2 * np.pi, size=2)
+    angles = 2 * np.pi * np.arange(120)[:, None] / 30.0 * [0.7, 1.1] + phases
+    waves = np.stack([np.sin(angles), np.cos(angles)])
+    vectors = 0.15 * np.einsum("wtr,wjar->tja", waves, mix)
+    return Motion(skeleton, quaternion_from_rotation_vector(vectors), np.zeros((120, 3)), 30.0)
+
+
+def test_what_is_quick_again_and_again_is_no_error(rng):
+    """Nobody has seen this body wave before, but it does."""
+    mix = rng.normal(size=(2, 7, 3, 2))
+    bases = learn_filter_bases([dancer(mix, seed) for seed in range(6)])
+    plain = dancer(mix, 6)
+    wave = np.zeros((plain.n_frames, 7, 3))
+    wave[:, 3, 0] = 0.7 * np.sin(2 * np.pi * 2.5 * np.arange(plain.n_frames) / 30.0)
+    waving = plain.with_poses(
+        multiply(plain.rotations, quaternion_from_rotation_vector(wave)), plain.root_positions
+    )
+
+    result = denoise(shaken(waving, rng, np.radians(1), n_still=0), bases)
+
+    assert result.outliers[:, 3].mean() < 0.1
+    left = angle_between(result.recording.rotations, waving.rotations)[:, 3]
+    assert left.mean() < np.radians(2)
 
 
 def test_a_knee_bent_forwards_is_not_believed(swinging_leg, rng):

@@ -36,7 +36,9 @@ def test_a_window_with_gaps_is_the_conditional_gaussian(rng):
     mean, variance = dense_posterior(windows, slow, noise, noisy)
     assert_allclose(estimate, mean, atol=1e-9)
     filters = [Filter(pattern, gains, solution)]
-    assert_allclose(variance_of(filters, windows, noisy)[:, 1:], variance[:, 1:], atol=1e-9)
+    found_variance, leverage = variance_of(filters, windows, noisy)
+    assert_allclose(found_variance[:, 1:], variance[:, 1:], atol=1e-9)
+    assert_allclose(leverage[:, 1:], variance[:, 1:] / noise[1:] ** 2, atol=1e-9)
     covariance = np.zeros_like(slow)
     filters[0].add_covariance(covariance)
     assert_allclose(frame_variance(windows, covariance)[:, 1:], variance[:, 1:], atol=1e-9)

@@ -1,6 +1,7 @@
 """How far joints are believed about each other, and which examples are used at all."""
 
 import numpy as np
+import pytest
 from numpy.testing import assert_allclose
 
 from solvers.denoising.denoise_groups import LARGEST_GROUP, groups_of
@@ -14,17 +15,19 @@ JOINTS = np.array([0, 0, 1, 2, 2])
 WINDOWS = Windows(200, LENGTH, 1.0)
 
 
-def test_foresight_is_that_of_leaving_a_joint_out(rng):
+@pytest.mark.parametrize("density", [1.0, 2.0])
+def test_foresight_is_that_of_leaving_a_joint_out(rng, density):
     """Against a dense conditional Gaussian, one window and one joint at a time."""
     prior, rough, noise = coupled(rng), some_take(rng), np.full(5, 0.2)
+    windows = Windows(200, round(LENGTH * density), density)
 
-    found = joint_foresight(prior, rough, noise, JOINTS, WINDOWS)
+    found = joint_foresight(prior, rough, noise, JOINTS, windows)
 
     n_slow, n_channels = prior.n_slow, 5
     power = np.einsum("kckc->c", prior.slow) / LENGTH
-    spread = np.tile(noise**2 + BLUR**2 * power, n_slow)
+    spread = np.tile((noise**2 + BLUR**2 * power) / density, n_slow)
     covariance = prior.matrix + np.diag(spread)
-    waves = WINDOWS.waves_of(WINDOWS.cut(rough - prior.mean, WINDOWS.starts))[:, :n_slow]
+    waves = windows.waves_of(windows.cut(rough - prior.mean, windows.starts))[:, :n_slow]
     waves = waves.reshape(len(waves), -1)
     missed = whole = 0.0
     for joint in range(3):
@@ -91,6 +94,18 @@ def test_no_group_cuts_through_a_joint(rng):
     assert sum(map(len, joints)) == len(set.union(*joints)) == 100
     moving = np.flatnonzero(np.ptp(flat, axis=0) > 0)
     assert np.concatenate(groups).tolist() == moving.tolist()
+
+
+def test_what_fits_into_one_group_is_one(rng):
+    """Thirty joints, of which most are hinges."""
+    values = np.zeros((20, 30, 3))
+    values[:, :, 0] = rng.normal(size=(20, 30))
+    values[:, :20, 1:] = rng.normal(size=(20, 20, 2))
+    flat = values.reshape(20, 90)
+
+    (group,) = groups_of(flat, flat, np.zeros(90, dtype=bool))
+
+    assert len(group) == 70
 
 
 def coupled(rng) -> WavePrior:

@@ -36,6 +36,22 @@ def test_at_the_ends_and_beside_gaps_nothing_is_known_of_the_slope():
     assert not moves([0.0, np.nan, 14.0, 9.0, 4.0, 0.0]).any()
 
 
-@pytest.mark.parametrize(("noise", "rate"), [(0.6, 0.002), (0.05, 0.05)])
-def test_in_noisy_takes_and_among_many_outliers_nothing_is_called_a_move(noise, rate):
-    assert not moves(HILL, noise=noise, rate=rate).any()
+@pytest.mark.parametrize(("noise", "rate"), [(0.6, 0.002), (0.05, 0.05), (3.0, 0.4)])
+def test_in_noisy_takes_and_among_many_outliers_only_long_hills_are_moves(noise, rate):
+    short = [0.0, 0.0, 8.0, 9.0, 0.5, 0.0, 0.0, 0.0]
+    rough = [0.0, 8.0, -9.0, 12.0, 5.0, -7.0, 0.0, 0.0]
+
+    found = moves(HILL, short, rough, noise=noise, rate=rate)
+
+    assert found[:, 0].tolist() == [False] + 5 * [True] + 2 * [False]
+    assert not found[:, 1:].any()
+
+
+def test_a_wave_is_many_hills():
+    wave = 30.0 * np.sin(np.arange(100) * 2 * np.pi / 11.3)
+
+    found = moves(wave, noise=2.0, rate=0.4)[:, 0]
+
+    doubted = np.abs(wave) > 1.0
+    assert found[doubted][4:-6].all()
+    assert not found[~doubted].any()

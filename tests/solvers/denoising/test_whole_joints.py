@@ -17,8 +17,10 @@ def test_joints_that_are_wrong_as_a_whole_are_known(rng):
     rates = WholeJoints(JOINTS, NOWHERE).rates(outside, KNOWN, RATE)
 
     fellows = outside[:, [1, 0, 0, 3, 5, 4]] * [1, 1, 1, 0, 1, 1]
+    has_fellows = JOINTS != 1
     assert rates[fellows == 1.0].min() > 0.7
-    assert_allclose(rates[fellows == 0.0], RATE)
+    assert rates[:, has_fellows][fellows[:, has_fellows] == 0.0].max() < 0.5 * RATE
+    assert_allclose(rates.mean(), RATE, rtol=0.3)
 
 
 def test_channels_that_are_wrong_by_themselves_say_nothing(rng):
@@ -43,7 +45,17 @@ def test_what_was_found_of_the_joint_before_counts(rng):
     rates = WholeJoints(joints, outside).rates(outside, known, RATE)
 
     assert rates[outside == 1.0].min() > 0.7
-    assert_allclose(rates[outside == 0.0], RATE)
+    assert rates[outside == 0.0].max() < 0.5 * RATE
+
+
+def test_the_first_and_the_last_channel_are_fellows_too(rng):
+    outside = (rng.random((1000, 1)) < RATE) * np.array([1.0, 0.0, 1.0])
+
+    rates = WholeJoints(np.zeros(3, dtype=int), NOWHERE[:, :3]).rates(
+        outside, KNOWN[:, :3], RATE
+    )
+
+    assert rates[:, [0, 2]][outside[:, [0, 2]] == 1.0].min() > 0.4
 
 
 def test_nothing_known_is_no_error():
