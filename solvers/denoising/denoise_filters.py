@@ -91,6 +91,7 @@ def variance_of(filters: list[Filter], windows: Windows, like: Array) -> tuple[A
         key = id(one.gains)
         if key not in usual:
             usual[key] = _window_variance(one.gains.slow, one.gains.noise, windows)
+            usual[key] += _fast_variance(one.gains, windows)
         variance = usual[key].copy()
         if one.gaps:
             gaps, noise = one.pattern.channels, one.gains.noise[one.pattern.channels]
@@ -172,3 +173,10 @@ def _window_variance(covariance: Array, noise: Array, windows: Windows) -> Array
     blocks = covariance.reshape(n_slow, n_channels, n_slow, n_channels)
     own = np.einsum("kcjc->ckj", blocks)
     return np.asarray(np.einsum("tk,ckj,tj->tc", shapes, own, shapes) * noise**2)
+
+
+def _fast_variance(gains: Gains, windows: Windows) -> Array:
+    """Return what the faster waves add to the variance of each frame, as if without gaps."""
+    n_fast = len(gains.fast)
+    shapes = windows.wave_shapes(windows.length)[:, windows.length - n_fast :]
+    return np.asarray(shapes**2 @ gains.fast * gains.noise**2)

@@ -63,11 +63,11 @@ def estimate_in_groups(
             noisy=take.noisy[:, columns], values=take.values[:, columns], noise=guess
         )
         prior = take_prior(
-            part.values[:n_frames], guess, take.n_seen[columns] > 0, window, pattern_rate
+            part.values, guess, take.n_seen[columns] > 0, take.windows, window, pattern_rate
         )
         joints = columns // 3
         if bases is not None and told[columns[0]]:
-            examples = _examples(part, n_frames, bases, channels.keys, columns)
+            examples = _examples(part, n_frames, bases, channels.keys, columns, prior)
             prior, share = choose_prior(
                 examples, prior, *part[:3], joints, take.windows, step
             )  # fmt: skip
@@ -83,7 +83,9 @@ def estimate_in_groups(
         iterations = max(iterations, found.iterations)
         converged &= found.converged
     whole = (values[:n_frames], inliers[:n_frames], deviation[:n_frames])
-    return Estimate(*whole, 0.0, iterations, converged), _sentence(bases, shares, n_channels)
+    unknown = np.full_like(channels.flat, np.nan)
+    estimate = Estimate(*whole, unknown, iterations, converged)
+    return estimate, _sentence(bases, shares, n_channels)
 
 
 def _examples(
@@ -92,6 +94,7 @@ def _examples(
     bases: FilterBases,
     keys: tuple[str, ...],
     columns: NDArray[np.intp],
+    prior: WavePrior,
 ) -> WavePrior:
     """Return what the examples tell of some channels, whose rough values are given."""
     known, density = np.isfinite(part.noisy[:n_frames]), part.windows.density
@@ -101,8 +104,9 @@ def _examples(
     steps = np.diff(part.values[:n_frames], axis=0, prepend=part.values[:1])
     stray = np.maximum(part.noise, np.sqrt((steps**2).mean(axis=0) / 2.0))
     return examples_prior(
-        bases, keys, columns, own, seen / density, n_frames / density, stray / np.sqrt(density)
-    )
+        bases, keys, columns, own, seen / density, n_frames / density,
+        stray / np.sqrt(density), prior.smooth,
+    )  # fmt: skip
 
 
 def _roughly(noisy: Array, frame_rate: float, pattern_rate: float, window: int) -> Rough:

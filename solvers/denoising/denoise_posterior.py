@@ -14,6 +14,7 @@ from .denoise_windows import Windows
 from .noise import alike
 from .prior import WavePrior
 from .quick_moves import quick_moves
+from .smoothness import fit_smoothness
 from .whole_joints import WholeJoints
 
 Array = NDArray[np.float64]
@@ -34,8 +35,6 @@ LOOKS = (8.0, 4.0, 2.0)
 FEW = 4
 """Patterns of gaps that are solved for again whenever the prior adapts."""
 MOST_LEVERAGE = 0.98
-FAR = 4.0
-"""Errors beyond so many standard deviations of the noise all count the same."""
 NOISE_BOUNDS = (0.5, 1.1)
 """Range, relative to the first guess, in which the noise is estimated."""
 
@@ -93,6 +92,8 @@ def estimate_channels(
         adapts = iteration < ADAPTATIONS
         # Halfway, lest a sample that is judged by its own estimate goes in and out for ever.
         rounds.believe(1.0 if iteration <= ADAPTATIONS else 0.5)
+        if iteration == 0:
+            rounds.fit()
         if iteration == ADAPTATIONS:
             rounds.use(windows)
         if iteration <= ADAPTATIONS:
@@ -144,7 +145,8 @@ class _Rounds:
             rates = self.joints.rates(self.known * (1.0 - self.weight), self.known, self.rate)
         inside = _inlier_probability(foretold, spread, rates)
         quick = quick_moves(
-            np.where(self.known, error, np.nan), inside, self.noise, self.rate
+            np.where(self.known, error, np.nan), inside, self.noise, self.rate,
+            self.windows.length,
         )  # fmt: skip
         believed = self.known * np.where(quick, 1.0, inside)
         self.weight = self.weight + step * (believed - self.weight)
@@ -164,6 +166,17 @@ class _Rounds:
         self.variance, leverage = variance_of(self.filters, self.windows, self.observed)
         self.alone = 1.0 / (1.0 - np.minimum(leverage, MOST_LEVERAGE))
 
+    def fit(self) -> None:
+        """Fit how fast the channels move to what is believed of them."""
+        drawn = self.estimate + self.weight * (self.observed - self.estimate) - self.mean
+        noise = self.noise * np.sqrt(self.weight.mean(axis=0))
+        found = fit_smoothness(drawn, noise, self.prior.smooth.kernels, self.windows)
+        seen = self.known.mean(axis=0)
+        weights = seen * found + (1.0 - seen) * self.prior.smooth.weights
+        self.prior = self.prior.with_smoothness(weights)
+        self.slow = self.prior.matrix
+        self.fast = extended(self.prior.fast, self.windows.length - self.prior.n_slow)
+
     def filter(self, *, adapts: bool = False) -> float:
         """Estimate again, and how noise and prior are; return the root mean square change."""
         drawn = self.estimate + self.weight * (self.observed - self.estimate) - self.mean
@@ -181,24 +194,17 @@ class _Rounds:
     def estimated(self, iterations: int, converged: bool) -> Estimate:
         """Return the estimate, and how sure it is."""
         error = np.where(self.known, self.observed - self.estimate, np.nan)
-        foresight = _foresight(error * self.alone, self.first_guess)
         # In long gaps the variance is without the sample.
         alone = np.where(long_gaps(self.known, self.windows.long_gap), 1.0, self.alone)
         variance = self.variance * (self.weight + (1.0 - self.weight) * alone)
         return Estimate(
-            self.estimate, self.weight, np.sqrt(variance), foresight, iterations, converged
+            self.estimate,
+            self.weight,
+            np.sqrt(variance),
+            error * self.alone,
+            iterations,
+            converged,
         )
-
-
-def _foresight(error: Array, noise: Array) -> float:
-    """Return the mean square of errors of samples that had no part in their own estimate.
-
-    For a linear filter these are the errors divided by one less the leverage, which is the
-    posterior variance over that of the noise. NaN where not observed.
-    """
-    square = np.minimum((error / (FAR * noise)) ** 2, 1.0)
-    known = np.isfinite(square)
-    return float(square[known].mean()) if known.any() else 0.0
 
 
 def _inlier_probability(error: Array, spread: Array, rate: float | Array) -> Array:

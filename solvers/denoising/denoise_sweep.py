@@ -61,26 +61,13 @@ def swept(drawn: Array, filters: list[Filter], windows: Windows, with_moments: b
 
 
 def adapted(prior: WavePrior, sweep: Sweep, noise: Array) -> tuple[Array, Array]:
-    """Mix the prior's covariance with that of the take, as it is estimated so far.
-
-    A channel's covariance with itself takes few frames to learn, that with others takes many:
-    each has its own share.
-    """
-    n_slow, n_channels = prior.n_slow, len(prior.mean)
-    moment = sweep.slow_moment
-    together, alone = prior.trust, prior.trust_alone
-    own, rest = (
-        np.tile(np.sqrt(together), n_slow),
-        np.tile(np.sqrt(1 - together - alone), n_slow),
-    )
-    slow = prior.matrix * np.outer(rest, rest) + moment * np.outer(own, own)
-    blocks = slow.reshape(n_slow, n_channels, n_slow, n_channels)
-    channels = np.arange(n_channels)
-    moments = moment.reshape(blocks.shape)[:, channels, :, channels]
-    blocks[:, channels, :, channels] += moments * alone[:, None, None]
+    """Mix the prior's covariance with that of the take, as it is estimated so far."""
+    own, rest = np.sqrt(prior.trust), np.sqrt(1.0 - prior.trust)
+    own, rest = np.tile(own, prior.n_slow), np.tile(rest, prior.n_slow)
+    slow = prior.matrix * np.outer(rest, rest) + sweep.slow_moment * np.outer(own, own)
     power = np.maximum(sweep.fast_power - noise**2, 0.0)
     fast = extended(prior.fast, len(power))
-    return slow, fast * (1.0 - together - alone) + power * (together + alone)
+    return slow, fast * (1.0 - prior.trust) + power * prior.trust
 
 
 def extended(fast: Array, n_waves: int) -> Array:

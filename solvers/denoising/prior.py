@@ -4,16 +4,35 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.fft import idct
 
 Array = NDArray[np.float64]
 
-SMOOTH_LENGTHS = (0.1, 0.3, 1.0)
-"""Correlation times, seconds, of movement of which nothing else is known."""
 SLOW_SHARE = 0.6
 """Share of the waves, slowest first, that are told together; faster ones are independent."""
 FASTEST = 1e-4
 """Variance, relative to a channel's own, that any fast wave may have."""
+
+
+@dataclass(frozen=True, eq=False)
+class Smoothness:
+    """What is expected of channels of which only variance and smoothness are known."""
+
+    kernels: Array
+    """Covariances of waves at each correlation time, shape (n_kernels, n_waves, n_waves)."""
+    weights: Array
+    """Variance of each channel at each correlation time, shape (n_kernels, n_channels)."""
+    share: float = 1.0
+    """Of it in the prior that it is part of."""
+
+    def slow(self, n_slow: int) -> Array:
+        """Return covariances of slow waves, shape (n_channels, n_slow, n_slow)."""
+        inside = self.kernels[:, :n_slow, :n_slow]
+        return np.asarray(np.einsum("lc,lkj->ckj", self.weights, inside))
+
+    def fast(self, n_slow: int) -> Array:
+        """Return variances of the other waves, shape (n_waves - n_slow, n_channels)."""
+        variances = np.einsum("lkk->kl", self.kernels)[n_slow:] + FASTEST
+        return np.asarray(variances @ self.weights)
 
 
 @dataclass(frozen=True, eq=False)
@@ -31,8 +50,6 @@ class WavePrior:
     trust : shape (n_channels,)
         Share of the take's own covariance in the estimate, 0 to 1: what is told by examples
         needs less of it than what is not.
-    trust_alone : shape (n_channels,)
-        The same of the take's own covariance of the channel with itself, in addition.
     follows : shape (n_channels,)
         Share of the take's own mean in the mean, as the estimate gets better.
     """
@@ -41,8 +58,9 @@ class WavePrior:
     slow: Array
     fast: Array
     trust: Array
-    trust_alone: Array
     follows: Array
+    smooth: Smoothness
+    """The part of the covariance that can be fitted to the take."""
     caution: float = 0.5
     """Share by which channels are taken as independent where one of them has a long gap."""
 
@@ -57,6 +75,7 @@ class WavePrior:
             self,
             slow=self.slow[:n_waves, :, :n_waves],
             fast=self.fast[: max(n_waves - self.n_slow, 0)],
+            smooth=replace(self.smooth, kernels=self.smooth.kernels[:, :n_waves, :n_waves]),
         )
 
     def of_channels(self, channels: NDArray[np.intp]) -> "WavePrior":
@@ -67,9 +86,17 @@ class WavePrior:
             slow=self.slow[:, channels][:, :, :, channels],
             fast=self.fast[:, channels],
             trust=self.trust[channels],
-            trust_alone=self.trust_alone[channels],
             follows=self.follows[channels],
+            smooth=replace(self.smooth, weights=self.smooth.weights[:, channels]),
         )
+
+    def with_smoothness(self, weights: Array) -> "WavePrior":
+        """Return the prior with other variances at each correlation time."""
+        more = replace(self.smooth, weights=weights - self.smooth.weights)
+        slow, channels, share = self.slow.copy(), np.arange(len(self.mean)), more.share
+        slow[:, channels, :, channels] += share * more.slow(self.n_slow)
+        fast = self.fast + share * more.fast(self.n_slow)
+        return replace(self, slow=slow, fast=fast, smooth=replace(self.smooth, weights=weights))
 
     @property
     def matrix(self) -> Array:
@@ -83,36 +110,20 @@ def n_slow_waves(window: int) -> int:
     return max(round(SLOW_SHARE * window), 1)
 
 
-def smooth_prior(
-    mean: Array,
-    variance: Array,
-    window: int,
-    frame_rate: float,
-    trust: float,
-    trust_alone: float,
-) -> WavePrior:
+def smooth_prior(mean: Array, smooth: Smoothness, trust: float) -> WavePrior:
     """Return the prior of channels of which only variance and smoothness are known."""
-    steps = np.subtract.outer(np.arange(window), np.arange(window)) / frame_rate
-    kernels = [np.exp(-0.5 * (steps / length) ** 2) for length in SMOOTH_LENGTHS]
-    waves = idct(np.eye(window), axis=0, norm="ortho")
-    kernel = waves.T @ (sum(kernels) / len(kernels)) @ waves
-    n_slow, n_channels = n_slow_waves(window), len(mean)
-    slow = np.einsum("kj,cd->kcjd", kernel[:n_slow, :n_slow], np.diag(variance))
-    fast = np.outer(np.diag(kernel)[n_slow:] + FASTEST, variance)
-    return WavePrior(
-        mean,
-        slow,
-        fast,
-        np.full(n_channels, trust),
-        np.full(n_channels, trust_alone),
-        np.zeros(n_channels),
-    )
+    n_slow, channels = n_slow_waves(smooth.kernels.shape[1]), np.arange(len(mean))
+    slow = np.zeros((n_slow, len(mean), n_slow, len(mean)))
+    slow[:, channels, :, channels] = smooth.slow(n_slow)
+    none = np.zeros(len(mean))
+    return WavePrior(mean, slow, smooth.fast(n_slow), none + trust, none, smooth)
 
 
-def mixed(examples: WavePrior, smooth: WavePrior, share: float) -> WavePrior:
+def mixed(examples: WavePrior, own: WavePrior, share: float) -> WavePrior:
     """Return the examples' prior with a share of the one that knows only smoothness."""
     return replace(
         examples,
-        slow=(1.0 - share) * examples.slow + share * smooth.slow,
-        fast=(1.0 - share) * examples.fast + share * smooth.fast,
+        slow=(1.0 - share) * examples.slow + share * own.slow,
+        fast=(1.0 - share) * examples.fast + share * own.fast,
+        smooth=replace(own.smooth, share=share),
     )

@@ -11,16 +11,19 @@ from .denoise_posterior import estimate_channels
 from .denoise_windows import Windows
 from .filter_bases import FilterBases
 from .offsets import take_offset
-from .prior import WavePrior, mixed, smooth_prior
+from .prior import Smoothness, WavePrior, mixed, smooth_prior
+from .smoothness import smooth_kernels
 
 Array = NDArray[np.float64]
 
 SHARES = (0.003, 0.05, 0.3)
 """Shares of the prior that knows only smoothness, beside the examples'."""
 TRIAL_ROUNDS = 3
-OWN_HANDICAP = 1.02
+HANDICAP = 1.007
 """What is learned from the take itself has seen the samples that it foretells, and so looks
-better than it is."""
+better than it is: with each larger share of it by so much."""
+FAR = 4.0
+"""Errors beyond so many standard deviations of the noise all count the same."""
 UNKNOWN = 30.0
 """Standard deviation, degrees or centimetres, of what nothing is known of."""
 MOSTLY = 0.5
@@ -28,8 +31,10 @@ MOSTLY = 0.5
 BLUR = 0.1
 """Standard deviation, relative to a channel's own, of what no pattern can say of it."""
 TRUST_IN_TAKE = 0.05
-TRUST_WITHOUT_EXAMPLES = 0.05
-TRUST_ALONE = 0.3
+"""Share of the take's own covariance beside that of examples."""
+MANY = 300
+"""Windows from which on a take tells by itself what goes together in it, one half sure."""
+MOST_TRUST = 0.3
 
 
 def examples_prior(
@@ -40,6 +45,7 @@ def examples_prior(
     n_seen: Array,
     n_frames: float,
     noise: Array,
+    smooth: Smoothness,
 ) -> WavePrior:
     """Return the examples' prior of some channels of a take, of which all must tell.
 
@@ -58,6 +64,8 @@ def examples_prior(
         Of the whole take, at that rate.
     noise : shape (n_channels,)
         Standard deviation of what is added to each observation.
+    smooth : Smoothness
+        What is known of the channels without examples: no part of the result yet.
     """
     part = {str(key): place for place, key in enumerate(bases.keys)}
     moving = {int(channel): place for place, channel in enumerate(bases.moving)}
@@ -71,26 +79,29 @@ def examples_prior(
     slow[0, channels, 0, channels] += window * unsure
     trust = np.full(len(columns), TRUST_IN_TAKE)
     follows = np.minimum(n_seen / n_frames, 1.0)
-    return WavePrior(mean, slow, fast, trust, np.zeros(len(columns)), follows)
+    return WavePrior(mean, slow, fast, trust, follows, replace(smooth, share=0.0))
 
 
 def take_prior(
-    rough: Array, noise: Array, seen: NDArray[np.bool_], window: int, frame_rate: float
+    rough: Array,
+    noise: Array,
+    seen: NDArray[np.bool_],
+    windows: Windows,
+    bases_window: int,
+    frame_rate: float,
 ) -> WavePrior:
-    """Return what is expected of a take by itself: to move as much as it does, smoothly.
+    """Return what is expected of a take by itself: to move as much as it does, as smoothly.
 
-    Channels that were never `seen` may be anywhere.
+    Channels that were never `seen` may be anywhere. What goes together in the take is learned
+    from it in the course of the solve, the more so the longer it is.
     """
+    kernels = smooth_kernels(bases_window, frame_rate)
     variance = np.maximum(rough.var(axis=0) - noise**2, 0.05 * noise**2 + 1e-6)
     variance = np.where(seen, variance, UNKNOWN**2)
-    return smooth_prior(
-        np.median(rough, axis=0),
-        variance,
-        window,
-        frame_rate,
-        TRUST_WITHOUT_EXAMPLES,
-        TRUST_ALONE,
-    )
+    weights = np.repeat(variance[None] / len(kernels), len(kernels), axis=0)
+    n_windows = windows.n_frames / windows.length
+    trust = min(n_windows / (n_windows + MANY), MOST_TRUST)
+    return smooth_prior(np.median(rough, axis=0), Smoothness(kernels, weights), trust)
 
 
 def choose_prior(
@@ -106,9 +117,11 @@ def choose_prior(
     """Return the mixture that foretells the take best, and its share of `own`.
 
     Each candidate adapts to the take in a few rounds; then every sample is compared with what
-    all others foretell of it (leave one out). Examples of another movement lose against plain
-    smoothness, and cannot do harm. Only channels that are mostly observed take part. How far
-    the others can be believed about a lost joint is judged by whole `joints`.
+    all others foretell of it (leave one out). What most of them take for an outlier hardly
+    counts, else those that follow bursts of errors would foretell them best. Examples of
+    another movement lose against plain smoothness, and cannot do harm. Only channels that are
+    mostly observed take part. How far the others can be believed about a lost joint is judged
+    by whole `joints`.
     """
     candidates = {share: mixed(examples, own, share) for share in SHARES}
     candidates[1.0] = own
@@ -117,18 +130,42 @@ def choose_prior(
         return candidates[SHARES[0]], SHARES[0]
     part = (noisy[:, judges], rough[:, judges], noise[judges])
     without_gaps = replace(windows, solve_gaps=False)
-    foresights = {}
-    for index, (share, prior) in enumerate(candidates.items()):
+    trials = []
+    for index, prior in enumerate(candidates.values()):
         progress(0.4 * index / len(candidates), "Comparing with the examples")
-        trial = estimate_channels(
-            *part, prior.of_channels(judges), without_gaps, looks=(), at_most=TRIAL_ROUNDS
+        trials.append(
+            estimate_channels(
+                *part, prior.of_channels(judges), without_gaps, at_most=TRIAL_ROUNDS
+            )
         )
-        foresights[share] = trial.foresight * (1.0 if share < 1.0 else OWN_HANDICAP)
-    best = min(foresights, key=lambda share: foresights[share])
+    inside = np.mean([trial.inliers for trial in trials], axis=0)
+    foresights = [
+        HANDICAP**index * foresight(trial.surprise, inside, part[2])
+        for index, trial in enumerate(trials)
+    ]
+    best = list(candidates)[int(np.argmin(foresights))]
     unforetold = joint_foresight(
         candidates[best].of_channels(judges), *part[1:], joints[judges], windows
     )
     return replace(candidates[best], caution=float(np.clip(unforetold, 0.0, 1.0))), best
+
+
+def foresight(surprise: Array, inside: Array, noise: Array) -> float:
+    """Return how badly samples are foretold by all others: their mean square.
+
+    For a linear filter the error of what all others foretell is that of the estimate divided by
+    one less the leverage. In units of FAR times the noise, and never more than 1.
+
+    Parameters
+    ----------
+    surprise : shape (n_frames, n_channels)
+        Error of what all others foretell; NaN where not observed.
+    inside : same shape
+        Probability that the sample is no outlier.
+    noise : shape (n_channels,)
+    """
+    square = np.nan_to_num(np.minimum((surprise / (FAR * noise)) ** 2, 1.0))
+    return float((inside * square).sum() / max(inside.sum(), 1e-9))
 
 
 def joint_foresight(

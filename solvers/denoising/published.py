@@ -45,7 +45,8 @@ def filter_as_published(
         iterations, converged = max(iterations, needed), converged and settled
         progress((start + 1) / step, "Filtering")
     deviation = np.where(inliers > 0.5, WELSCH, UNKNOWN)
-    return Estimate(values, inliers, deviation, 0.0, iterations, converged), used
+    unknown = np.full_like(values, np.nan)
+    return Estimate(values, inliers, deviation, unknown, iterations, converged), used
 
 
 def alternate(noisy: Array, patterns: Array) -> tuple[Array, Array, int, bool]:

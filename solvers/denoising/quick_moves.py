@@ -2,6 +2,7 @@
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.ndimage import uniform_filter1d
 
 Array = NDArray[np.float64]
 
@@ -12,17 +13,22 @@ FEW = 0.02
 """Share of outliers up to which neighbouring ones that form a hill by chance are rare."""
 STEEP = 0.75
 """Part of its height that a spike rises, or falls, from one frame to the next."""
+MOST = 0.6
+"""Share of what is observed in a window that cannot all be errors."""
 LONG = 3
 """Frames from which on noise cannot give a spike gentle slopes by chance."""
 
 
-def quick_moves(error: Array, inlier: Array, noise: Array, rate: float) -> NDArray[np.bool_]:
+def quick_moves(
+    error: Array, inlier: Array, noise: Array, rate: float, window: int
+) -> NDArray[np.bool_]:
     """Return which of the doubted samples belong to a move that the recording resolves.
 
     A spike leaves the estimate with a step and comes back with a step. A hill that is climbed
     and descended gradually is a move that is quicker than was expected: so is one that has no
     step anywhere, in takes of any noise, where it lasts for LONG frames. In takes of little
-    noise and few outliers its first and last step are enough.
+    noise and few outliers its first and last step are enough. And where nearly all that was
+    observed over a whole window is doubted, it is the estimate that is wrong.
 
     Parameters
     ----------
@@ -34,6 +40,7 @@ def quick_moves(error: Array, inlier: Array, noise: Array, rate: float) -> NDArr
         Standard deviation.
     rate : float
         Share of outliers in the take.
+    window : int, frames
     """
     found = np.zeros(error.shape, dtype=np.bool_)
     # One long column, with a frame of nothing before and after each channel.
@@ -54,4 +61,17 @@ def quick_moves(error: Array, inlier: Array, noise: Array, rate: float) -> NDArr
     is_move = (calm & gradual) | smooth
     moves[first + 1] = is_move
     moves[last + 1] = -is_move.astype(np.int8)
-    return np.asarray(np.cumsum(moves).reshape(error.shape[1], -1)[:, 1:-1].T > 0)
+    hills = np.cumsum(moves).reshape(error.shape[1], -1)[:, 1:-1].T > 0
+    return np.asarray(hills | _lasting(inlier < DOUBTED, error, window))
+
+
+def _lasting(doubted: NDArray[np.bool_], error: Array, window: int) -> NDArray[np.bool_]:
+    """Return what is doubted where, over a window, most of what was observed is."""
+    known = np.isfinite(error)
+    doubted = known & doubted
+    share_known, share_doubted = (
+        uniform_filter1d(each.astype(float), window, axis=0, mode="constant")
+        for each in (known, doubted)
+    )
+    lasts = (share_doubted > MOST * share_known) & (share_known > 0.5)
+    return np.asarray(doubted & lasts)

@@ -51,8 +51,8 @@ def class_cases(n_clips: int, dev: bool) -> dict[str, list[Case]]:
 def compare_classes(cases: dict[str, list[Case]], methods: dict[str, Method]) -> list[Scores]:
     """Run all methods on all classes; one table for each level, one column for each class.
 
-    By angles of rotations: actors differ so much that channels about the mean of the others come
-    near half a turn, where they jump.
+    By angles of rotations: actors differ so much that channels about the mean of the others
+    come near half a turn, where they jump.
     """
     unit = "geodesic angle of local rotations, degrees"
     found = {str(level): Scores(f"HDM05 classes at {level}", unit) for level in LEVELS}

@@ -1,13 +1,16 @@
 """How far joints are believed about each other, and which examples are used at all."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from numpy.testing import assert_allclose
 
 from solvers.denoising.denoise_groups import LARGEST_GROUP, groups_of
 from solvers.denoising.denoise_windows import Windows
-from solvers.denoising.prior import WavePrior, mixed, smooth_prior
-from solvers.denoising.prior_choice import BLUR, choose_prior, joint_foresight
+from solvers.denoising.prior import Smoothness, WavePrior, mixed, smooth_prior
+from solvers.denoising.prior_choice import BLUR, choose_prior, foresight, joint_foresight
+from solvers.denoising.smoothness import LENGTHS, smooth_kernels
 from solvers.progress import unwatched
 
 LENGTH, RATE = 10, 30.0
@@ -41,8 +44,17 @@ def test_foresight_is_that_of_leaving_a_joint_out(rng, density):
     assert_allclose(found, missed / whole, rtol=1e-6)
 
 
+def test_foretelling_outliers_does_not_count():
+    noise, surprise = np.array([1.0, 2.0]), np.array([[1.0, 2.0], [50.0, np.nan], [0.0, 4.0]])
+    inside = np.array([[1.0, 1.0], [0.0, 0.0], [1.0, 0.5]])
+
+    found = foresight(surprise, inside, noise)
+
+    assert_allclose(found, (1.0 + 1.0 + 0.0 + 0.5 * 4.0) / 16.0 / 3.5)
+
+
 def test_channels_that_know_nothing_of_each_other_foretell_nothing(rng):
-    prior = smooth_prior(np.zeros(5), np.ones(5), LENGTH, RATE, 0.0, 0.0)
+    prior = smooth(np.ones(5))
 
     found = joint_foresight(prior, some_take(rng), np.full(5, 0.2), JOINTS, WINDOWS)
 
@@ -51,24 +63,34 @@ def test_channels_that_know_nothing_of_each_other_foretell_nothing(rng):
 
 def test_a_mixture_lies_between_both(rng):
     examples = coupled(rng)
-    smooth = smooth_prior(np.zeros(5), np.ones(5), LENGTH, RATE, 0.0, 0.0)
+    plain = smooth(np.ones(5))
 
-    both = mixed(examples, smooth, 0.25)
+    both = mixed(examples, plain, 0.25)
 
-    assert_allclose(both.slow, 0.75 * examples.slow + 0.25 * smooth.slow)
-    assert_allclose(both.fast, 0.75 * examples.fast + 0.25 * smooth.fast)
+    assert_allclose(both.slow, 0.75 * examples.slow + 0.25 * plain.slow)
+    assert_allclose(both.fast, 0.75 * examples.fast + 0.25 * plain.fast)
     assert_allclose(both.mean, examples.mean)
+
+
+def test_only_the_smooth_share_is_fitted(rng):
+    """Twice the smoothness is a share of it more, on each channel by itself."""
+    plain = smooth(np.ones(5))
+    both = mixed(coupled(rng), plain, 0.25)
+
+    fitted = both.with_smoothness(2.0 * both.smooth.weights)
+
+    assert_allclose(fitted.slow - both.slow, 0.25 * plain.slow, atol=1e-12)
+    assert_allclose(fitted.fast - both.fast, 0.25 * plain.fast, atol=1e-12)
+    again = fitted.with_smoothness(both.smooth.weights)
+    assert_allclose(again.slow, both.slow, atol=1e-12)
 
 
 def test_examples_of_the_movement_win_and_of_stillness_lose(rng):
     prior = coupled(rng)
     take = drawn(prior, rng)
     noisy, noise = take + 0.5 * rng.normal(size=take.shape), np.full(5, 0.5)
-    own = smooth_prior(np.zeros(5), take.var(axis=0), LENGTH, RATE, 0.05, 0.3)
-    still = WavePrior(
-        prior.mean, 1e-4 * prior.slow, 1e-4 * prior.fast, prior.trust, prior.trust_alone,
-        prior.follows,
-    )  # fmt: skip
+    own = smooth(take.var(axis=0))
+    still = replace(prior, slow=1e-4 * prior.slow, fast=1e-4 * prior.fast)
 
     shares = [
         choose_prior(examples, own, noisy, take, noise, JOINTS, WINDOWS, unwatched)[1]
@@ -108,17 +130,24 @@ def test_what_fits_into_one_group_is_one(rng):
     assert len(group) == 70
 
 
+def smooth(variance) -> WavePrior:
+    """Five channels that move smoothly, each by itself."""
+    kernels = smooth_kernels(LENGTH, RATE)
+    weights = np.repeat(variance[None] / len(kernels), len(kernels), axis=0)
+    return smooth_prior(np.zeros(5), Smoothness(kernels, weights), 0.05)
+
+
 def coupled(rng) -> WavePrior:
     """Five channels that move as two things do."""
-    smooth = smooth_prior(np.zeros(5), np.ones(5), LENGTH, RATE, 0.0, 0.0)
+    plain = smooth(np.ones(5))
     mix = rng.normal(size=(5, 2))
     together = mix @ mix.T + 0.05 * np.eye(5)
-    kernel = smooth.slow[:, 0, :, 0]
+    kernel = plain.slow[:, 0, :, 0]
     return WavePrior(
         np.array([1.0, -2.0, 0.5, 3.0, 0.0]),
         np.einsum("kj,cd->kcjd", kernel, together),
-        smooth.fast * np.diag(together),
-        np.full(5, 0.05), np.zeros(5), np.ones(5),
+        plain.fast * np.diag(together),
+        np.full(5, 0.05), np.ones(5), replace(plain.smooth, share=0.0),
     )  # fmt: skip
 
 
@@ -126,7 +155,7 @@ def drawn(prior: WavePrior, rng):
     """A take of the prior's two things, smooth over time."""
     times = np.arange(200) / RATE
     steps = np.subtract.outer(times, times)
-    kernel = sum(np.exp(-0.5 * (steps / length) ** 2) for length in (0.1, 0.3, 1.0)) / 3.0
+    kernel = sum(np.exp(-0.5 * (steps / length) ** 2) for length in LENGTHS) / len(LENGTHS)
     together = prior.slow[0, :, 0] / prior.slow[0, 0, 0, 0]
     both = np.linalg.cholesky(together + 1e-9 * np.eye(5))
     smooth = np.linalg.cholesky(kernel + 1e-6 * np.eye(200)) @ rng.normal(size=(200, 5))

@@ -11,7 +11,7 @@ HILL = [0.0, 4.0, 10.0, 14.0, 9.0, 4.0, 0.0, 0.0]
 def moves(*columns, noise=0.05, rate=0.002):
     error = np.array(columns).T
     inlier = np.where(np.abs(error) > 1.0, 0.0, 1.0)
-    return quick_moves(error, inlier, np.full(len(columns), noise), rate)
+    return quick_moves(error, inlier, np.full(len(columns), noise), rate, window=20)
 
 
 def test_each_channel_is_judged_for_itself():
@@ -55,3 +55,15 @@ def test_a_wave_is_many_hills():
     doubted = np.abs(wave) > 1.0
     assert found[doubted][4:-6].all()
     assert not found[~doubted].any()
+
+
+def test_what_is_doubted_for_as_long_as_a_window_is_believed():
+    """Errors of either sign without a slope between them: only how long it lasts can tell."""
+    for_long, for_a_moment = np.zeros(100), np.zeros(100)
+    for_long[20:80] = 30.0 * (-1.0) ** np.arange(60)
+    for_a_moment[20:28] = 30.0 * (-1.0) ** np.arange(8)
+
+    found = moves(for_long, for_a_moment, noise=2.0, rate=0.3)
+
+    assert found[25:75, 0].all()
+    assert not found[:, 1].any()
