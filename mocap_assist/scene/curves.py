@@ -103,8 +103,9 @@ def write_values(
     }
     replaced = times[first:last]
     if len(replaced) == len(frames) and (np.abs(replaced - frames) <= ON_FRAME).all():
+        all_new = last - first == len(times)
         for name, rows in new.items():
-            whole = _column(points, name) if name != "co" else old
+            whole = old if name == "co" else _column(points, name, blank=all_new)
             whole[first:last] = rows
             points.foreach_set(name, whole.ravel())
     else:
@@ -150,10 +151,14 @@ def _neighbours(
     return before, after
 
 
-def _column(points: bpy.types.FCurveKeyframePoints, name: str) -> NDArray[np.generic]:
+def _column(
+    points: bpy.types.FCurveKeyframePoints, name: str, *, blank: bool = False
+) -> NDArray[np.generic]:
+    """Return one property of all keys, or room for it: shape (n_keys, width)."""
     width = KEY[name][0]
     column = np.empty(width * len(points), _kind(name))
-    points.foreach_get(name, column)
+    if not blank:
+        points.foreach_get(name, column)
     return column.reshape(-1, width)
 
 
