@@ -7,6 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.linalg.lapack import dpotrf, dpotri
 
+from .denoise_covariance import Covariance
 from .denoise_gaps import GapPattern, GapSolution
 from .denoise_windows import Windows
 
@@ -47,8 +48,7 @@ class Filter:
 
 def filters_of(
     patterns: list[GapPattern],
-    slow: Array,
-    fast: Array,
+    covariance: Covariance,
     noise: Array,
     caution: float,
     windows: Windows,
@@ -68,9 +68,9 @@ def filters_of(
             continue
         if has_gaps not in gains:
             gains[has_gaps] = (
-                _gapped(slow, fast, noise, caution, patterns, windows)
+                _gapped(covariance, noise, caution, patterns, windows)
                 if has_gaps
-                else gains_of(slow, fast, noise, windows.density)
+                else gains_of(covariance.slow, covariance.fast, noise, windows.density)
             )
         usual = gains[has_gaps]
         solution = GapSolution.of(pattern, usual.slow) if has_gaps else None
@@ -111,8 +111,7 @@ def weight_of(patterns: list[GapPattern], windows: Windows) -> Array:
 
 
 def _gapped(
-    slow: Array,
-    fast: Array,
+    covariance: Covariance,
     noise: Array,
     caution: float,
     patterns: list[GapPattern],
@@ -123,6 +122,7 @@ def _gapped(
     Through a gap, fast waves look like noise. What other channels say of a missing one is
     believed less than the covariance has it: another body may hold its limbs differently.
     """
+    slow, fast = covariance.slow_in_gaps, covariance.fast
     n_slow, n_channels = len(slow) // len(noise), len(noise)
     cautious = ((1.0 - caution) * slow).reshape(n_slow, n_channels, n_slow, n_channels)
     channels = np.arange(n_channels)

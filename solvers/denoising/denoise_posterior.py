@@ -6,10 +6,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..progress import Progress, unwatched
+from .denoise_covariance import adapted, expected
 from .denoise_estimate import Estimate
 from .denoise_filters import Filter, filters_of, variance_of, weight_of
 from .denoise_gaps import gap_patterns, long_gaps
-from .denoise_sweep import adapted, extended, swept
+from .denoise_sweep import swept
 from .denoise_windows import Windows
 from .noise import alike
 from .prior import WavePrior
@@ -121,8 +122,7 @@ class _Rounds:
         self.use(windows)
         self.estimate, self.mean = start, prior.mean
         self.first_guess = self.noise = noise
-        self.slow = self.prior.matrix
-        self.fast = extended(self.prior.fast, windows.length - self.prior.n_slow)
+        self.covariance = expected(self.prior, windows.length)
         self.filters = list[Filter]()
         self.weight, self.rate = self.known.astype(float), FIRST_OUTLIERS
         self.variance = np.zeros_like(noisy)
@@ -160,7 +160,7 @@ class _Rounds:
         """
         noise = times * self.noise
         self.filters = filters_of(
-            self.patterns, self.slow, self.fast, noise, self.prior.caution, self.windows,
+            self.patterns, self.covariance, noise, self.prior.caution, self.windows,
             stale=self.filters if nearly and len(self.patterns) > FEW else [],
         )  # fmt: skip
         self.variance, leverage = variance_of(self.filters, self.windows, self.observed)
@@ -174,8 +174,7 @@ class _Rounds:
         seen = self.known.mean(axis=0)
         weights = seen * found + (1.0 - seen) * self.prior.smooth.weights
         self.prior = self.prior.with_smoothness(weights)
-        self.slow = self.prior.matrix
-        self.fast = extended(self.prior.fast, self.windows.length - self.prior.n_slow)
+        self.covariance = expected(self.prior, self.windows.length)
 
     def filter(self, *, adapts: bool = False) -> float:
         """Estimate again, and how noise and prior are; return the root mean square change."""
@@ -186,7 +185,9 @@ class _Rounds:
             shift = self.estimate.mean(axis=0) - self.mean
             self.mean = self.mean + self.prior.follows * shift
             wave_noise = self.noise / np.sqrt(self.windows.density)
-            self.slow, self.fast = adapted(self.prior, sweep, wave_noise)
+            self.covariance = adapted(
+                self.prior, sweep.slow_moment, sweep.fast_power, wave_noise
+            )
             error = self.observed - self.estimate
             self.noise = _noise(error, self.weight, self.variance, self.first_guess)
         return float(np.sqrt(np.mean((self.estimate - before) ** 2)))

@@ -7,7 +7,6 @@ from numpy.typing import NDArray
 
 from .denoise_filters import Filter
 from .denoise_windows import Windows
-from .prior import WavePrior
 
 Array = NDArray[np.float64]
 
@@ -58,22 +57,3 @@ def swept(drawn: Array, filters: list[Filter], windows: Windows, with_moments: b
     sweep.slow_moment /= n_windows
     sweep.fast_power /= n_windows
     return sweep
-
-
-def adapted(prior: WavePrior, sweep: Sweep, noise: Array) -> tuple[Array, Array]:
-    """Mix the prior's covariance with that of the take, as it is estimated so far."""
-    own, rest = np.sqrt(prior.trust), np.sqrt(1.0 - prior.trust)
-    own, rest = np.tile(own, prior.n_slow), np.tile(rest, prior.n_slow)
-    slow = prior.matrix * np.outer(rest, rest) + sweep.slow_moment * np.outer(own, own)
-    power = np.maximum(sweep.fast_power - noise**2, 0.0)
-    fast = extended(prior.fast, len(power))
-    return slow, fast * (1.0 - prior.trust) + power * prior.trust
-
-
-def extended(fast: Array, n_waves: int) -> Array:
-    """Return the variances of more (or fewer) fast waves; those unheard of fade away."""
-    if len(fast) >= n_waves:
-        return fast[:n_waves]
-    last = fast[-1:] if len(fast) else np.zeros((1, fast.shape[1]))
-    steps = np.arange(1, n_waves - len(fast) + 1)[:, None]
-    return np.concatenate([fast, last / (1.0 + steps / max(len(fast), 1)) ** 4])

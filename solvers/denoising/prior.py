@@ -50,6 +50,8 @@ class WavePrior:
     trust : shape (n_channels,)
         Share of the take's own covariance in the estimate, 0 to 1: what is told by examples
         needs less of it than what is not.
+    trust_in_gaps : shape (n_channels,)
+        The same where channels have long gaps, which other channels of this body fill best.
     follows : shape (n_channels,)
         Share of the take's own mean in the mean, as the estimate gets better.
     """
@@ -58,6 +60,7 @@ class WavePrior:
     slow: Array
     fast: Array
     trust: Array
+    trust_in_gaps: Array
     follows: Array
     smooth: Smoothness
     """The part of the covariance that can be fitted to the take."""
@@ -86,6 +89,7 @@ class WavePrior:
             slow=self.slow[:, channels][:, :, :, channels],
             fast=self.fast[:, channels],
             trust=self.trust[channels],
+            trust_in_gaps=self.trust_in_gaps[channels],
             follows=self.follows[channels],
             smooth=replace(self.smooth, weights=self.smooth.weights[:, channels]),
         )
@@ -110,13 +114,17 @@ def n_slow_waves(window: int) -> int:
     return max(round(SLOW_SHARE * window), 1)
 
 
-def smooth_prior(mean: Array, smooth: Smoothness, trust: float) -> WavePrior:
+def smooth_prior(
+    mean: Array, smooth: Smoothness, trust: float, trust_in_gaps: float
+) -> WavePrior:
     """Return the prior of channels of which only variance and smoothness are known."""
     n_slow, channels = n_slow_waves(smooth.kernels.shape[1]), np.arange(len(mean))
     slow = np.zeros((n_slow, len(mean), n_slow, len(mean)))
     slow[:, channels, :, channels] = smooth.slow(n_slow)
     none = np.zeros(len(mean))
-    return WavePrior(mean, slow, smooth.fast(n_slow), none + trust, none, smooth)
+    return WavePrior(
+        mean, slow, smooth.fast(n_slow), none + trust, none + trust_in_gaps, none, smooth
+    )
 
 
 def mixed(examples: WavePrior, own: WavePrior, share: float) -> WavePrior:

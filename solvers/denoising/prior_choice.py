@@ -30,11 +30,13 @@ MOSTLY = 0.5
 """Share of a take in which a channel must be observed to judge of examples."""
 BLUR = 0.1
 """Standard deviation, relative to a channel's own, of what no pattern can say of it."""
-TRUST_IN_TAKE = 0.05
-"""Share of the take's own covariance beside that of examples."""
+TRUST_IN_TAKE, TRUST_BESIDE_GAPS = 0.05, 0.2
+"""Share of the take's own covariance beside that of examples, and where limbs are missing."""
 MANY = 300
-"""Windows from which on a take tells by itself what goes together in it, one half sure."""
+"""Windows that it takes to learn from a take by itself what goes together in it."""
 MOST_TRUST = 0.3
+TRUST_IN_GAPS = 0.5
+"""The same without examples: a missing limb is best told by the others of this body."""
 
 
 def examples_prior(
@@ -77,9 +79,11 @@ def examples_prior(
         bases.clip_means[:, places], own, n_seen, n_frames, variance / window, noise**2
     )
     slow[0, channels, 0, channels] += window * unsure
-    trust = np.full(len(columns), TRUST_IN_TAKE)
+    trust, in_gaps = (
+        np.full(len(columns), each) for each in (TRUST_IN_TAKE, TRUST_BESIDE_GAPS)
+    )
     follows = np.minimum(n_seen / n_frames, 1.0)
-    return WavePrior(mean, slow, fast, trust, follows, replace(smooth, share=0.0))
+    return WavePrior(mean, slow, fast, trust, in_gaps, follows, replace(smooth, share=0.0))
 
 
 def take_prior(
@@ -101,7 +105,9 @@ def take_prior(
     weights = np.repeat(variance[None] / len(kernels), len(kernels), axis=0)
     n_windows = windows.n_frames / windows.length
     trust = min(n_windows / (n_windows + MANY), MOST_TRUST)
-    return smooth_prior(np.median(rough, axis=0), Smoothness(kernels, weights), trust)
+    return smooth_prior(
+        np.median(rough, axis=0), Smoothness(kernels, weights), trust, TRUST_IN_GAPS
+    )
 
 
 def choose_prior(

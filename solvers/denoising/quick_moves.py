@@ -13,10 +13,13 @@ FEW = 0.02
 """Share of outliers up to which neighbouring ones that form a hill by chance are rare."""
 STEEP = 0.75
 """Part of its height that a spike rises, or falls, from one frame to the next."""
-MOST = 0.6
-"""Share of what is observed in a window that cannot all be errors."""
-LONG = 3
-"""Frames from which on noise cannot give a spike gentle slopes by chance."""
+GENTLE = 0.5
+"""The same, of the way from its lowest to its highest, that no step of a move makes up."""
+LONG, LONG_PART = 3, 0.15
+"""Frames, and part of a window, from which on noise cannot give a spike gentle slopes."""
+MOST, LASTING = 0.6, 15
+"""Share of what is observed around a frame, over a window but at least so many frames, that
+cannot all be errors."""
 
 
 def quick_moves(
@@ -24,11 +27,11 @@ def quick_moves(
 ) -> NDArray[np.bool_]:
     """Return which of the doubted samples belong to a move that the recording resolves.
 
-    A spike leaves the estimate with a step and comes back with a step. A hill that is climbed
-    and descended gradually is a move that is quicker than was expected: so is one that has no
-    step anywhere, in takes of any noise, where it lasts for LONG frames. In takes of little
-    noise and few outliers its first and last step are enough. And where nearly all that was
-    observed over a whole window is doubted, it is the estimate that is wrong.
+    A spike leaves the estimate with a step and comes back with a step; also one that a filter
+    softened a little. A hill that is climbed and descended gradually is a move that is quicker
+    than was expected. In takes of little noise and few outliers its first and last step tell,
+    elsewhere it must last and have no steep step at all. And where most of what was observed
+    around a frame is doubted, it is the estimate that is wrong.
 
     Parameters
     ----------
@@ -53,16 +56,20 @@ def quick_moves(
     steps = np.nan_to_num(np.abs(np.diff(height, append=np.nan)), nan=np.inf)
     first, last = edges[::2], edges[1::2]
     heights = np.maximum.reduceat(np.nan_to_num(np.abs(height)), edges + 1)[::2]
+    highest = np.maximum.reduceat(np.nan_to_num(height), edges + 1)[::2]
+    lowest = np.minimum.reduceat(np.nan_to_num(height), edges + 1)[::2]
+    spans = np.maximum(highest, 0.0) - np.minimum(lowest, 0.0)
     steepest = np.maximum.reduceat(steps, np.stack([first, last + 1], 1).ravel())[::2]
+    long = max(LONG, round(LONG_PART * window))
     calm = np.repeat((noise < CALM) & (rate <= FEW), len(error) + 2)[first]
     gradual = np.maximum(steps[first], steps[last]) < STEEP * heights
-    smooth = (steepest < STEEP * heights) & (last - first >= LONG)
+    smooth = (steepest < GENTLE * spans) & (last - first >= long)
     moves = np.zeros(len(height), dtype=np.int8)
     is_move = (calm & gradual) | smooth
     moves[first + 1] = is_move
     moves[last + 1] = -is_move.astype(np.int8)
     hills = np.cumsum(moves).reshape(error.shape[1], -1)[:, 1:-1].T > 0
-    return np.asarray(hills | _lasting(inlier < DOUBTED, error, window))
+    return np.asarray(hills | _lasting(inlier < DOUBTED, error, max(window, LASTING)))
 
 
 def _lasting(doubted: NDArray[np.bool_], error: Array, window: int) -> NDArray[np.bool_]:

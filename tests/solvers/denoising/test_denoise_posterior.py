@@ -3,6 +3,7 @@
 import numpy as np
 from numpy.testing import assert_allclose
 
+from solvers.denoising.denoise_covariance import Covariance
 from solvers.denoising.denoise_filters import (
     Filter,
     filters_of,
@@ -49,10 +50,10 @@ def test_gapped_windows_keep_their_filter_while_it_is_nearly_right(rng):
     known = np.ones((30, N_CHANNELS), dtype=bool)
     known[12:20, 1] = False
     patterns = gap_patterns(known, windows, N_SLOW)
-    parts = (np.zeros((LENGTH - N_SLOW, N_CHANNELS)), np.full(N_CHANNELS, 0.3), 0.5, windows)
-    before = filters_of(patterns, some_covariance(rng), *parts)
+    parts = (np.full(N_CHANNELS, 0.3), 0.5, windows)
+    before = filters_of(patterns, whole_covariance(rng), *parts)
 
-    after = filters_of(patterns, some_covariance(rng), *parts, stale=before)
+    after = filters_of(patterns, whole_covariance(rng), *parts, stale=before)
 
     kept = [one is other for one, other in zip(before, after, strict=True)]
     assert kept == [bool(pattern.channels.size) for pattern in patterns]
@@ -65,9 +66,9 @@ def test_only_channels_with_gaps_are_blurred(rng):
     known = np.ones((30, N_CHANNELS), dtype=bool)
     known[:, 1] = False
     patterns = gap_patterns(known, windows, N_SLOW)
-    fast, noise = np.ones((LENGTH - N_SLOW, N_CHANNELS)), np.full(N_CHANNELS, 0.3)
+    noise = np.full(N_CHANNELS, 0.3)
 
-    (gapped,) = filters_of(patterns, some_covariance(rng), fast, noise, 0.5, windows)
+    (gapped,) = filters_of(patterns, whole_covariance(rng, 1.0), noise, 0.5, windows)
 
     assert_allclose(gapped.gains.noise[[0, 2]], 0.3)
     assert gapped.gains.noise[1] > 0.4
@@ -120,6 +121,11 @@ def some_covariance(rng):
     factors = rng.normal(size=(N_SLOW * N_CHANNELS, 6))
     fading = np.repeat(0.6 ** np.arange(N_SLOW), N_CHANNELS)[:, None]
     return (factors * fading) @ (factors * fading).T + 0.01 * np.eye(len(factors))
+
+
+def whole_covariance(rng, fast=0.0):
+    slow = some_covariance(rng)
+    return Covariance(slow, slow, np.full((LENGTH - N_SLOW, N_CHANNELS), fast))
 
 
 def frames_from(windows, waves):

@@ -134,7 +134,7 @@ def smooth(variance) -> WavePrior:
     """Five channels that move smoothly, each by itself."""
     kernels = smooth_kernels(LENGTH, RATE)
     weights = np.repeat(variance[None] / len(kernels), len(kernels), axis=0)
-    return smooth_prior(np.zeros(5), Smoothness(kernels, weights), 0.05)
+    return smooth_prior(np.zeros(5), Smoothness(kernels, weights), 0.05, 0.5)
 
 
 def coupled(rng) -> WavePrior:
@@ -147,7 +147,7 @@ def coupled(rng) -> WavePrior:
         np.array([1.0, -2.0, 0.5, 3.0, 0.0]),
         np.einsum("kj,cd->kcjd", kernel, together),
         plain.fast * np.diag(together),
-        np.full(5, 0.05), np.ones(5), replace(plain.smooth, share=0.0),
+        np.full(5, 0.05), np.full(5, 0.05), np.ones(5), replace(plain.smooth, share=0.0),
     )  # fmt: skip
 
 

@@ -2,16 +2,17 @@
 
 import numpy as np
 import pytest
+from scipy.ndimage import gaussian_filter1d
 
 from solvers.denoising.quick_moves import quick_moves
 
 HILL = [0.0, 4.0, 10.0, 14.0, 9.0, 4.0, 0.0, 0.0]
 
 
-def moves(*columns, noise=0.05, rate=0.002):
+def moves(*columns, noise=0.05, rate=0.002, window=20):
     error = np.array(columns).T
     inlier = np.where(np.abs(error) > 1.0, 0.0, 1.0)
-    return quick_moves(error, inlier, np.full(len(columns), noise), rate, window=20)
+    return quick_moves(error, inlier, np.full(len(columns), noise), rate, window)
 
 
 def test_each_channel_is_judged_for_itself():
@@ -45,6 +46,30 @@ def test_in_noisy_takes_and_among_many_outliers_only_long_hills_are_moves(noise,
 
     assert found[:, 0].tolist() == [False] + 5 * [True] + 2 * [False]
     assert not found[:, 1:].any()
+
+
+def test_a_softened_spike_is_none():
+    soft = gaussian_filter1d(np.repeat([0.0, 30.0, 0.0], [20, 3, 20]), 0.6)
+
+    assert not moves(soft, noise=2.0, rate=0.1).any()
+
+
+def test_short_windows_do_not_make_spikes_of_two_frames_moves():
+    spikes = np.tile([0.0, 0.0, 0.0, 0.0, 30.0, 31.0, 0.0, 0.0], 8)
+
+    assert not moves(spikes, noise=2.0, rate=0.3, window=3).any()
+
+
+def test_what_swings_through_zero_is_one_move():
+    swing = np.concatenate([
+        np.zeros(9),
+        [12, 24, 28, 16, 2, -13, -25, -28, -17, -3],
+        np.zeros(9),
+    ])
+
+    found = moves(swing, noise=2.0, rate=0.1)[:, 0]
+
+    assert found[np.abs(swing) > 1.0].all()
 
 
 def test_a_wave_is_many_hills():
