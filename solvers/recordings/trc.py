@@ -18,6 +18,9 @@ from .time_stamps import at_constant_rate
 
 FIRST_LINES = 30
 """Within these the header ends."""
+TITLE_OF_TIMES = r'(?i)[\s"]*frame\s*#?"?\s*"?(time\w*)?[ "]*\t?'
+TITLE = rb'[\s"]*[A-Za-z]'
+"""How the line begins that says X1, Y1, Z1 and so on."""
 FULL_TURN = 2.0 * np.pi
 ROWS_PER_REPORT = 1000
 SLOWEST, FASTEST = 1e-3, 1e6
@@ -112,7 +115,7 @@ def _read_header(lines: list[bytes], path: Path | str) -> _Header:
         rate = read_number(word.encode(), f"{path}, line {(keys or 0) + 2}, DataRate")
     return _Header(
         rate=rate if rate is not None and SLOWEST < rate < FASTEST else None,
-        unit=said.get("units", ""),
+        unit=said.get("units", "").partition(" ")[0],
         up=up[1].upper() if up else "",
         labels=_labels(texts[named]),
         n_lines=named + 1,
@@ -142,8 +145,13 @@ def _said(keys: str, values: str) -> dict[str, str]:
 
 
 def _labels(text: str) -> list[str]:
-    """Return the names: each above the first of its three columns, or without space between."""
-    names = _cells(text)[2:]
+    """Return the names: each above the first of its three columns, or without space between.
+
+    Some programs put a space instead of a tab between `Time` and the first name.
+    """
+    title = re.match(TITLE_OF_TIMES, text)
+    rest = text[title.end() :] if title else ""
+    names = _cells(f"-\t{rest}")[1:] if "\t" in text.rstrip() else rest.split()
     filled = [place for place, name in enumerate(names) if name]
     if all(place % 3 == 0 for place in filled):
         return names[::3]
@@ -159,7 +167,7 @@ def _read_rows(
         line = lines[place].rstrip()
         if not place % ROWS_PER_REPORT:
             progress(place / len(lines), "Reading")
-        if not line or (not rows and re.match(rb'(?i)[\s"]*x\d*\b', line)):
+        if not line or (not rows and re.match(TITLE, line)):
             continue
         rows.append(_read_row(line, f"{path}, line {place + 1}"))
     if not rows:
