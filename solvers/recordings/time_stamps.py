@@ -25,10 +25,11 @@ def at_constant_rate(
 ) -> tuple[NDArray[np.float64], float]:
     """Return positions at a constant frame rate, and that rate.
 
-    Where the stamps run evenly nothing is changed, and the rate is the one the file says if
-    the stamps bear it out, or else theirs. Where frames were left out, they come back as NaN.
-    Where the stamps are uneven, positions are interpolated linearly between neighbours in time,
-    but not across more than two frames, nor next to what was not seen.
+    Where the stamps run evenly to within half a frame, as rounded ones do, nothing is changed,
+    and the rate is the one the file says if the stamps bear it out, or else theirs. Where
+    frames were left out, they come back as NaN. Where the stamps are uneven, positions are
+    interpolated linearly between neighbours in time, but not across more than two frames, nor
+    next to what was not seen.
 
     Parameters
     ----------

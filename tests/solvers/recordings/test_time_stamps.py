@@ -34,7 +34,7 @@ def test_even_stamps_change_nothing(times, said, rate):
     assert found_rate == pytest.approx(rate, rel=1e-12)
 
 
-@pytest.mark.parametrize("said", [100.0, 60.0, None])
+@pytest.mark.parametrize("said", [100.0, 70.0, None])
 def test_frames_that_were_left_out_are_gaps(said):
     kept = np.r_[0:40, 43:80, 81:100]
     times = kept / 100.0
@@ -49,7 +49,8 @@ def test_frames_that_were_left_out_are_gaps(said):
 
 def test_uneven_stamps_are_resampled(rng):
     """The stamps wander by a third of a frame, and two frames in a row are missing."""
-    times = np.delete((np.arange(100) + rng.uniform(-0.4, 0.4, size=100)) / 30.0, [50, 51])
+    wander = np.r_[0.0, rng.uniform(-0.35, 0.35, size=99)]
+    times = np.delete((np.arange(100) + wander) / 30.0, [50, 51])
 
     found, rate = at_constant_rate(line(times), times, 30.0, "take")
 

@@ -1,5 +1,7 @@
 """TRC files of all makers come out as what was measured, or as one sentence."""
 
+import re
+
 import numpy as np
 import pytest
 from numpy.testing import assert_allclose, assert_array_equal
@@ -157,6 +159,15 @@ def test_columns_beyond_the_names_are_markers_without_one(read):
     assert tracks.names == ("HEAD", "HAND", "point_3")
     assert_array_equal(tracks.visible[:, 2], [False, False, True, False])
     assert_allclose(tracks.positions[2, 2], (0.005, -0.007, 0.006))
+
+
+def test_frame_numbers_serve_where_the_times_do_not(read):
+    tracks = read(re.sub(r"\t0\.0\d\t", "\t0.00\t", FILE).replace("\n3\t", "\n4\t"))
+
+    assert tracks.frame_rate == 100.0
+    assert_allclose(tracks.positions, PLACES)  # 1 2 4 4: neither of them increases.
+    tracks = read(re.sub(r"\t0\.0\d\t", "\t0.00\t", FILE).replace("\n4\t", "\n5\t"))
+    assert_array_equal(tracks.visible[:, 0], [True, True, True, False, True])
 
 
 @pytest.mark.parametrize(

@@ -35,7 +35,10 @@ def test_what_is_written_is_read_back_to_the_last_digit(tmp_path_factory, data):
 
 
 def test_gaps_are_written_blank_and_no_nan_in_words(tmp_path):
-    positions = np.array([[[0.011, -0.021, 1.501], [np.nan] * 3], [[np.nan] * 3, [1, 2, 3]]])
+    positions = np.array([
+        [[0.011, -0.021, 1.501], [np.nan] * 3],
+        [[np.nan] * 3, [-1e-12, 2, 3]],
+    ])
 
     write_trc(Tracks(("HEAD", "HA\tND"), positions, 100.0), tmp_path / "take.trc")
 
@@ -47,5 +50,5 @@ def test_gaps_are_written_blank_and_no_nan_in_words(tmp_path):
         "\t\tX1\tY1\tZ1\tX2\tY2\tZ2",
         "",
         "1\t0.0000000\t11.000000\t1501.000000\t21.000000\t\t\t",
-        "2\t0.0100000\t\t\t\t1000.000000\t3000.000000\t-2000.000000",
+        "2\t0.0100000\t\t\t\t0.000000\t3000.000000\t-2000.000000",
     ]
