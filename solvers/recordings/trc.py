@@ -22,6 +22,8 @@ TITLE_OF_TIMES = r'(?i)[\s"]*frame\s*#?"?\s*"?(time\w*)?[ "]*\t?'
 TITLE = rb'[\s"]*[A-Za-z]'
 """How the line begins that says X1, Y1, Z1 and so on."""
 FULL_TURN = 2.0 * np.pi
+LARGEST = 1e12
+"""What is larger is no measurement; some programs write so what they did not see."""
 ROWS_PER_REPORT = 1000
 SLOWEST, FASTEST = 1e-3, 1e6
 MOST_BLANKS = 10
@@ -182,7 +184,7 @@ def _read_row(line: bytes, place: str) -> NDArray[np.float64]:
     except ValueError:  # Blanks, or other ways to write a number or that there is none.
         words = [cell.strip(b' "') for cell in cells]
         row = np.array([read_number(word, place) if word else np.nan for word in words])
-    if len(row) < 2 or not np.isfinite(row[:2]).all():
+    if len(row) < 2 or not (np.abs(row[:2]) < LARGEST).all():
         begin = shown(line[:80].decode("ascii", "backslashreplace").replace("\t", " "))
         raise InvalidFileError(
             f"{place} begins with {begin!r} where the number and the time of a frame belong."
@@ -207,7 +209,7 @@ def _in_columns(
     table = np.full((len(rows), width), np.nan)
     for filled, row in zip(table, rows, strict=True):
         filled[: len(row)] = row[:width]
-    table[np.isinf(table)] = np.nan
+    table[~(np.abs(table) < LARGEST)] = np.nan
     return table[:, 0], table[:, 1], table[:, 2:].reshape(len(rows), n_points, 3)
 
 

@@ -136,7 +136,7 @@ def test_what_differs_between_makers_changes_nothing(read, old, new):
 @pytest.mark.parametrize(
     "gap",
     ["\t\t", "nan\tNaN\tNAN", "   NaN\t NaN  \t  nan", " \t  \t", "0.0\t0\t-0", "11\t\t21",
-     "1.#QNAN\t1.#IND\t-1.#IND", "inf\t-inf\t1e999", "null\tnone\t-"],
+     "1.#QNAN\t1.#IND\t-1.#IND", "inf\t-inf\t1e999", "3.4e38\t1\t2", "null\tnone\t-"],
 )  # fmt: skip
 def test_what_was_not_seen_is_a_gap_there_and_nowhere_else(read, gap):
     tracks = read(FILE.replace("11\t1501\t21", gap))
@@ -227,6 +227,7 @@ def test_a_body_stands_upright(tmp_path, rng, axes):
         (lambda text: text.replace("2\t0.01", "Events"), "line 8.*'Events' is not a number"),
         (lambda text: text.replace("\n100\t200", "\nfast\t200"), "line 3, DataRate: 'fast'"),
         (lambda text: text[: text.index("\t10\t1500")], "no markers that are seen"),
+        (lambda text: text.replace("4\t0.03", "4\t1e308"), "line 10 begins with '4 1e308"),
         (lambda text: text.replace("4\t0.03", "4\t9999999"), "spread over 1e.07 s"),
         (lambda text: text.replace("\n100\t", "\n0\t").replace("0.0", "0\t"), "frame rate"),
         (
