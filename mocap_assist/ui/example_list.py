@@ -12,7 +12,7 @@ from ..selection import selected_armature
 
 ADD, ADD_FILES = "mocap_assist.add_example", "mocap_assist.add_example_files"
 REMOVE = "mocap_assist.remove_example"
-RECORDINGS = "*.bvh;*.amc;*.c3d"
+RECORDINGS = "*.bvh;*.amc;*.c3d;*.trc"
 LONGEST_MENU = 30
 
 

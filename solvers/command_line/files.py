@@ -7,11 +7,11 @@ from pathlib import Path
 from ..errors import InvalidFileError
 from ..motion import Motion, Tracks
 from ..progress import Progress, within
-from ..recordings import read_recording, write_bvh, write_c3d
+from ..recordings import read_recording, write_bvh, write_c3d, write_trc
 
 MOTIONS = ".bvh"
-POINTS = ".c3d"
-RECORDED = {MOTIONS: "a skeleton's motion", POINTS: "points"}
+POINTS = {".c3d": write_c3d, ".trc": write_trc}
+RECORDED = {MOTIONS: "a skeleton's motion", **dict.fromkeys(POINTS, "points")}
 """Endings of recordings that can be written, and what each is for."""
 LEARNED = {".npz": "learned patterns"}
 
@@ -48,12 +48,12 @@ def write(recording: Motion | Tracks, path: Path | None, progress: Progress) -> 
     ending = path.suffix.lower() if path else ""
     if isinstance(recording, Motion) and path and ending == MOTIONS:
         write_bvh(recording, path, progress=progress)
-    elif isinstance(recording, Tracks) and path and ending == POINTS:
-        write_c3d(recording, path, progress=progress)
+    elif isinstance(recording, Tracks) and path and ending in POINTS:
+        POINTS[ending](recording, path, progress=progress)
     else:
         kind, fit = ("A skeleton's motion", MOTIONS)
         if isinstance(recording, Tracks):
-            kind, fit = ("Points without a skeleton", POINTS)
+            kind, fit = ("Points without a skeleton", " or ".join(POINTS))
         raise InvalidFileError(f"{kind} cannot be written as {path}; end the name in {fit}.")
 
 
@@ -71,4 +71,5 @@ def refuse_target(path: Path, endings: Mapping[str, str] = RECORDED) -> None:
 
 def ending_for(source: Path) -> str:
     """Return the ending of what is made from a file, judging by its name."""
-    return POINTS if source.suffix.lower() == POINTS else MOTIONS
+    ending = source.suffix.lower()
+    return ending if ending in POINTS else MOTIONS

@@ -57,7 +57,7 @@ def run(verbs: Mapping[str, Verb], words: Sequence[str], prog: str) -> int:
 def _parser(verbs: Mapping[str, Verb], prog: str) -> SentenceParser:
     parser = SentenceParser(
         prog=prog,
-        description="Clean up captured motion: BVH, Acclaim (AMC with ASF) and C3D files.",
+        description="Clean up captured motion: BVH, Acclaim (AMC with ASF), C3D and TRC files.",
         epilog=f"For the options of a verb: {prog} VERB --help",
     )
     choices = parser.add_subparsers(dest="verb", metavar="VERB", required=True)

@@ -81,7 +81,7 @@ VERBS = {
         Makes.WORDS,
     ),
     "convert": Verb(
-        "Write recordings of any known format as BVH, or as C3D where they are points.",
+        "Write recordings of any known format as BVH, or as C3D or TRC where they are points.",
         add_reading_options,
         _convert,
     ),

@@ -18,12 +18,16 @@ from .bvh_writing import write_bvh
 from .c3d import read_c3d
 from .c3d_writing import write_c3d
 from .read_recording import read_recording
+from .trc import read_trc
+from .trc_writing import write_trc
 
 __all__ = [
     "read_acclaim",
     "read_bvh",
     "read_c3d",
     "read_recording",
+    "read_trc",
     "write_bvh",
     "write_c3d",
+    "write_trc",
 ]

@@ -66,6 +66,8 @@ def read_bvh(
     content = read_bytes(path)
     if not content[:4096].lstrip().upper().startswith(b"HIERARCHY"):
         raise InvalidFileError(f"{path} is no BVH file: it does not begin with HIERARCHY.")
+    if b"\n" not in content:  # The line ends of old Macs.
+        content = content.replace(b"\r", b"\n")
     motion_line = MOTION_LINE.search(content)
     if motion_line is None:
         raise InvalidFileError(f"{path} has no MOTION part: it is cut short. Export it again.")

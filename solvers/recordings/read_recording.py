@@ -12,6 +12,7 @@ from .acclaim import read_acclaim
 from .bvh import read_bvh
 from .c3d import read_c3d
 from .text import BYTE_ORDER_MARK
+from .trc import read_trc
 
 HEAD = 4096
 
@@ -51,6 +52,11 @@ def _is_c3d(head: bytes) -> bool:
     return head[1:2] == b"\x50" and b"\0" in head[:512]
 
 
+def _is_trc(head: bytes) -> bool:
+    """Some programs leave the first line out, or write it in small letters."""
+    return re.match(rb"(?i)[\s\"]*(PathFileType|DataRate\W+CameraRate)\b", head) is not None
+
+
 def _refuse_skeleton(
     path: Path | str, *, scale: float | None = None, progress: Progress = unwatched
 ) -> Motion:
@@ -64,6 +70,7 @@ FORMATS = (
     Format("Acclaim AMC", _is_acclaim, read_acclaim),
     Format("Acclaim ASF", _is_acclaim_skeleton, _refuse_skeleton),
     Format("C3D", _is_c3d, read_c3d),
+    Format("TRC", _is_trc, read_trc),
 )
 """A new format is a new line here."""
 
@@ -76,7 +83,7 @@ def read_recording(
     Parameters
     ----------
     path : Path or str
-        BVH; AMC with the actor's ASF beside it; C3D.
+        BVH; AMC with the actor's ASF beside it; C3D; TRC.
     scale : float, metres per unit of the file, or None
         None leaves it to the reader of the format.
     progress : Progress

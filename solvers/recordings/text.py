@@ -96,10 +96,17 @@ def _read_line(line: bytes, width: int, place: str) -> list[float]:
             f"{place}: {len(words)} numbers stand where {width} belong. The file is damaged or"
             " cut short; export it again, or delete that line."
         )
-    return [_number(word, place) for word in words]
+    return [read_number(word, place) for word in words]
 
 
-def _number(word: bytes, place: str) -> float:
+def read_number(word: bytes, place: str) -> float:
+    """Return the number that a word means, with a decimal point or comma; NaN for none.
+
+    Raises
+    ------
+    InvalidFileError
+        It is no number; `place` says where it stands.
+    """
     if word.lower() in MISSING or b"#" in word:  # The old Windows runtime wrote 1.#QNAN.
         return np.nan
     try:

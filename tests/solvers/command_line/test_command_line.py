@@ -12,7 +12,7 @@ from solvers.command_line.verbs import VERBS
 from solvers.denoising import learn_joint_limits, limit_excess, load_filter_bases
 from solvers.motion import Tracks
 from solvers.motion.rotations import multiply, quaternion_from_rotation_vector
-from solvers.recordings import read_bvh, read_c3d, write_bvh, write_c3d
+from solvers.recordings import read_bvh, read_c3d, read_trc, write_bvh, write_c3d, write_trc
 from solvers.samples import GaitSettings, walking_gait
 
 
@@ -32,6 +32,23 @@ def test_convert_takes_points_too(call, tmp_path, rng):
     assert status == 0
     copied = read_c3d(tmp_path / "copy.c3d").positions
     assert_allclose(copied, 1000 * tracks.positions, rtol=1e-6)
+
+
+def test_markers_go_from_trc_to_c3d_and_back_and_are_cleaned(call, tmp_path, rng):
+    steps = rng.normal(scale=0.01, size=(60, 3, 3)).cumsum(axis=0)
+    steps[20:23, 1] = np.nan
+    tracks = Tracks(("a", "b", "c"), 1.0 + steps, 50.0)
+    first, second, third = (tmp_path / name for name in ("1.trc", "2.c3d", "3.trc"))
+    write_trc(tracks, first)
+
+    assert call("convert", first, second)[0] == 0
+    assert call("convert", second, third)[0] == 0
+    assert call("denoise", first, "--output-folder", tmp_path / "clean")[0] == 0
+
+    assert_allclose(read_trc(third).positions, tracks.positions, atol=1e-6)
+    clean = read_trc(tmp_path / "clean" / "1.trc")
+    assert clean.names == tracks.names
+    assert clean.visible.all()
 
 
 def test_quality_prints_the_report_or_its_figures(call, leg_file):

@@ -49,6 +49,7 @@ def test_stands_up_and_faces_us(read):
     "spelled",
     [
         ARM.replace("\n", "\r\n"),
+        ARM.replace("\n", "\r"),
         ARM.replace("  ", "\t"),
         ARM.replace("\n", "\n\n"),
         ARM.replace("\n", " \n"),

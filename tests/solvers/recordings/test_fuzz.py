@@ -17,7 +17,7 @@ from hypothesis import strategies as st
 
 from solvers.errors import InvalidFileError, InvalidMotionError
 from solvers.motion import Motion, Skeleton, Tracks
-from solvers.recordings import read_acclaim, read_recording, write_bvh, write_c3d
+from solvers.recordings import read_acclaim, read_recording, write_bvh, write_c3d, write_trc
 
 EXAMPLES = int(os.environ.get("MOCAP_FUZZ", "100"))
 MOST_MEMORY = 64e6
@@ -70,11 +70,10 @@ def bvh_bytes() -> bytes:
     return _written(lambda path: write_bvh(motion, path))
 
 
-def c3d_bytes() -> bytes:
+def tracks() -> Tracks:
     positions = np.random.default_rng(3).normal(size=(20, 4, 3))
     positions[2:5, 1] = np.nan
-    tracks = Tracks(("LASI", "RASI", "C7", "HEAD"), positions, 100.0)
-    return _written(lambda path: write_c3d(tracks, path))
+    return Tracks(("LASI", "RASI", "C7", "HEAD"), positions, 100.0)
 
 
 def _written(write) -> bytes:
@@ -84,11 +83,18 @@ def _written(write) -> bytes:
         return path.read_bytes()
 
 
-WHOLE = {"bvh": bvh_bytes(), "c3d": c3d_bytes(), "amc": RECORDING, "asf": SKELETON}
+WHOLE = {
+    "bvh": bvh_bytes(),
+    "c3d": _written(lambda path: write_c3d(tracks(), path)),
+    "trc": _written(lambda path: write_trc(tracks(), path)),
+    "amc": RECORDING,
+    "asf": SKELETON,
+}
 TOKENS = [
     b"", b"0", b"-1", b"999999999", b"1e308", b"nan", b"inf", b"{", b"}", b"\n", b"\0", b"\xff",
     b"JOINT", b"ROOT x", b"End Site", b"CHANNELS 6", b"OFFSET", b":bonedata", b"begin", b"end",
     b"root", b"thigh", b"dof rx", b"axis", b"\x1c", b"\xff\xff", b"\x7f\xff", b"\x00\x80",
+    b"\t", b"\t" * 300, b"Frame#\tTime\t", b"\nDataRate\t", b",", b"\r", b"mm", b"1\t0.01\t",
 ]  # fmt: skip
 
 
@@ -123,7 +129,7 @@ searching = settings(
 )
 
 
-@pytest.mark.parametrize("kind", ["bvh", "c3d", "amc"])
+@pytest.mark.parametrize("kind", ["bvh", "c3d", "trc", "amc"])
 def test_a_damaged_recording(kind, tmp_path):
     path = tmp_path / f"take.{kind}"
     (tmp_path / "take.asf").write_bytes(SKELETON)

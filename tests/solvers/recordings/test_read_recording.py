@@ -7,7 +7,7 @@ import pytest
 
 from solvers.errors import InvalidFileError, InvalidSettingError, SolveCancelled
 from solvers.motion import Motion, Tracks
-from solvers.recordings import read_bvh, read_recording, write_bvh, write_c3d
+from solvers.recordings import read_bvh, read_recording, write_bvh, write_c3d, write_trc
 
 
 def test_the_name_does_not_matter(swinging_leg, tmp_path):
@@ -25,23 +25,26 @@ def test_scale_reaches_the_reader(swinging_leg, tmp_path):
     assert twice.skeleton.height == pytest.approx(2 * swinging_leg.skeleton.height)
 
 
-@pytest.mark.parametrize("ending", ["bvh", "c3d"])
+@pytest.mark.parametrize("ending", ["bvh", "c3d", "trc"])
 @pytest.mark.parametrize("scale", [0.0, -1.0, float("nan"), float("inf")])
 def test_refuses_a_scale_that_is_none(swinging_leg, tmp_path, ending, scale):
     write_bvh(swinging_leg, tmp_path / "leg.bvh")
-    write_c3d(Tracks(("a",), swinging_leg.root_positions[:, None], 60.0), tmp_path / "leg.c3d")
+    tracks = Tracks(("a",), swinging_leg.root_positions[:, None], 60.0)
+    write_c3d(tracks, tmp_path / "leg.c3d")
+    write_trc(tracks, tmp_path / "leg.trc")
 
     with pytest.raises(InvalidSettingError, match="it must be above 0"):
         read_recording(tmp_path / f"leg.{ending}", scale=scale)
 
 
-@pytest.mark.parametrize("format", ["bvh", "c3d"])
+@pytest.mark.parametrize("format", ["bvh", "c3d", "trc"])
 def test_progress_rises_to_the_end_and_can_stop_the_work(swinging_leg, tmp_path, format):
     path = tmp_path / f"leg.{format}"
     tracks = Tracks(("a",), swinging_leg.root_positions[:, None], 60.0)
     calls = {
         "bvh": [partial(write_bvh, swinging_leg, path), partial(read_recording, path)],
         "c3d": [partial(write_c3d, tracks, path), partial(read_recording, path)],
+        "trc": [partial(write_trc, tracks, path), partial(read_recording, path)],
     }
 
     for work in calls[format]:
@@ -73,7 +76,7 @@ def test_real_files_of_each_format(recordings):
     ("content", "sentence"),
     [
         (b":version 1.10\n:name VICON\n:units\n", r"skeleton without motion.* \.amc"),
-        (b"Kaydara FBX Binary", r"no known format \(BVH, Acclaim AMC, C3D\)"),
+        (b"Kaydara FBX Binary", r"no known format \(BVH, Acclaim AMC, C3D, TRC\)"),
         (b"", "no known format"),
         (b"HIERARCHY", "no MOTION"),
     ],
