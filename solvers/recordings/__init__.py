@@ -17,12 +17,15 @@ from .bvh import read_bvh
 from .bvh_writing import write_bvh
 from .c3d import read_c3d
 from .c3d_writing import write_c3d
-from .read_recording import read_recording
+from .irds import read_irds
+from .read_recording import read_motion_or_tracks, read_recording
 
 __all__ = [
     "read_acclaim",
     "read_bvh",
     "read_c3d",
+    "read_irds",
+    "read_motion_or_tracks",
     "read_recording",
     "write_bvh",
     "write_c3d",

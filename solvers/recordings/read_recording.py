@@ -6,11 +6,12 @@ from pathlib import Path
 from typing import NamedTuple, Protocol
 
 from ..errors import InvalidFileError
-from ..motion import Motion, Tracks
+from ..motion import JointRecording, Motion, Tracks
 from ..progress import Progress, unwatched
 from .acclaim import read_acclaim
 from .bvh import read_bvh
 from .c3d import read_c3d
+from .irds import is_irds, read_irds
 from .text import BYTE_ORDER_MARK
 
 HEAD = 4096
@@ -21,7 +22,7 @@ class Reader(Protocol):
 
     def __call__(
         self, path: Path | str, /, *, scale: float | None = None, progress: Progress = unwatched
-    ) -> Motion | Tracks:
+    ) -> Motion | Tracks | JointRecording:
         """Read a file."""
 
 
@@ -64,13 +65,14 @@ FORMATS = (
     Format("Acclaim AMC", _is_acclaim, read_acclaim),
     Format("Acclaim ASF", _is_acclaim_skeleton, _refuse_skeleton),
     Format("C3D", _is_c3d, read_c3d),
+    Format("IRDS", is_irds, read_irds),
 )
 """A new format is a new line here."""
 
 
 def read_recording(
     path: Path | str, *, scale: float | None = None, progress: Progress = unwatched
-) -> Motion | Tracks:
+) -> Motion | Tracks | JointRecording:
     """Read a recording of any format known here, told by what the file holds.
 
     Parameters
@@ -83,7 +85,7 @@ def read_recording(
 
     Returns
     -------
-    Motion or Tracks
+    Motion, Tracks or JointRecording
         In metres, Z up; NaN where not observed.
 
     Raises
@@ -108,3 +110,11 @@ def read_recording(
     raise InvalidFileError(
         f"{path} is of no known format ({names}). Export it as one of these first."
     )
+
+
+def read_motion_or_tracks(
+    path: Path | str, *, scale: float | None = None, progress: Progress = unwatched
+) -> Motion | Tracks:
+    """Read a recording as `read_recording` does, and take the joints of a camera as points."""
+    recording = read_recording(path, scale=scale, progress=progress)
+    return recording.tracks if isinstance(recording, JointRecording) else recording

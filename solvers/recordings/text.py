@@ -96,11 +96,17 @@ def _read_line(line: bytes, width: int, place: str) -> list[float]:
             f"{place}: {len(words)} numbers stand where {width} belong. The file is damaged or"
             " cut short; export it again, or delete that line."
         )
-    return [_number(word, place) for word in words]
+    return [number(word, place) for word in words]
 
 
-def _number(word: bytes, place: str) -> float:
-    if word.lower() in MISSING or b"#" in word:  # The old Windows runtime wrote 1.#QNAN.
+def number(word: bytes, place: str) -> float:
+    """Return what a word says; NaN where it says that it is none, or nothing.
+
+    Raises InvalidFileError, which begins with `place`, where it is something else.
+    """
+    if (
+        not word or word.lower() in MISSING or b"#" in word
+    ):  # The old Windows runtime wrote 1.#QNAN.
         return np.nan
     try:
         return float(word.replace(b",", b"."))

@@ -73,7 +73,7 @@ def test_real_files_of_each_format(recordings):
     ("content", "sentence"),
     [
         (b":version 1.10\n:name VICON\n:units\n", r"skeleton without motion.* \.amc"),
-        (b"Kaydara FBX Binary", r"no known format \(BVH, Acclaim AMC, C3D\)"),
+        (b"Kaydara FBX Binary", r"no known format \(BVH, Acclaim AMC, C3D"),
         (b"", "no known format"),
         (b"HIERARCHY", "no MOTION"),
     ],
