@@ -9,10 +9,19 @@ from ..errors import InvalidFileError
 from ..motion import JointRecording, Motion, Tracks
 from ..progress import Progress, unwatched
 from .acclaim import read_acclaim
+from .azure_csv import is_azure_csv, read_azure_csv
+from .azure_json import is_azure_json, read_azure_json
 from .bvh import read_bvh
 from .c3d import read_c3d
+from .freemocap import is_npy, read_freemocap
 from .irds import is_irds, read_irds
+from .joint_csv import is_joint_csv, read_joint_csv
+from .joint_json import is_joint_json, read_joint_json
+from .kinect_csv import is_kinect_csv, read_kinect_csv
+from .msr_action3d import is_msr_action3d, read_msr_action3d
+from .ntu_skeleton import is_ntu_skeleton, read_ntu_skeleton
 from .text import BYTE_ORDER_MARK
+from .ui_prmd import is_ui_prmd, read_ui_prmd
 
 HEAD = 4096
 
@@ -66,6 +75,15 @@ FORMATS = (
     Format("Acclaim ASF", _is_acclaim_skeleton, _refuse_skeleton),
     Format("C3D", _is_c3d, read_c3d),
     Format("IRDS", is_irds, read_irds),
+    Format("Kinect v2 CSV", is_kinect_csv, read_kinect_csv),
+    Format("Azure Kinect CSV", is_azure_csv, read_azure_csv),
+    Format("Azure Kinect JSON", is_azure_json, read_azure_json),
+    Format("NTU RGB+D", is_ntu_skeleton, read_ntu_skeleton),
+    Format("MSR Action3D", is_msr_action3d, read_msr_action3d),
+    Format("UI-PRMD", is_ui_prmd, read_ui_prmd),
+    Format("freemocap", is_npy, read_freemocap),
+    Format("joint CSV", is_joint_csv, read_joint_csv),
+    Format("joint JSON", is_joint_json, read_joint_json),
 )
 """A new format is a new line here."""
 
@@ -78,7 +96,7 @@ def read_recording(
     Parameters
     ----------
     path : Path or str
-        BVH; AMC with the actor's ASF beside it; C3D.
+        BVH; AMC with the actor's ASF beside it; C3D; joints of depth cameras (docs/formats).
     scale : float, metres per unit of the file, or None
         None leaves it to the reader of the format.
     progress : Progress
