@@ -11,7 +11,7 @@ from ..motion import JOINTS, JointRecording, Sensor
 from ..progress import Progress, unwatched, within
 from .axes import check_scale
 from .sensor_axes import from_azure_space
-from .text import number, read_bytes, read_rows
+from .text import number, parted_by_blanks, read_bytes, read_rows
 from .time_stamps import USUAL_RATE
 from .tracked_joints import joint_recording
 
@@ -144,7 +144,7 @@ def _read_frame_lines(
     if not names:
         raise InvalidFileError(f"{path} has no columns x, y and z of any joint.")
     rows = read_rows(
-        [b" ".join(word.strip() or b"nan" for word in line.split(b",")) for line in lines[1:]],
+        [parted_by_blanks(line) for line in lines[1:]],
         len(header),
         path,
         range(2, len(lines) + 1),

@@ -16,7 +16,7 @@ from ..progress import Progress, unwatched, within
 from .axes import check_scale
 from .joint_header import FORMAT, VERSION, check_names, joint_header, told_recording
 from .names import shown
-from .text import read_bytes, read_rows
+from .text import parted_by_blanks, read_bytes, read_rows
 
 TIME = "time"
 AXES = ("x", "y", "z")
@@ -67,7 +67,7 @@ def read_joint_csv(
     header = joint_header(_said(lines[0]), f"{path}, line 1")
     columns = _columns(lines[1], f"{path}, line 2")
     rows = read_rows(
-        [b" ".join(word.strip() or b"nan" for word in line.split(b",")) for line in lines[2:]],
+        [parted_by_blanks(line) for line in lines[2:]],
         len(columns),
         path,
         range(3, len(lines) + 1),
@@ -76,16 +76,17 @@ def read_joint_csv(
     names = [column[:-2] for column in columns if column.endswith(".x")]
     table = dict(zip(columns, rows.T, strict=True))
     fields = {field: _field(table, names, field, path) for field in FIELDS}
-    if not names or not len(rows) or any(fields[axis] is None for axis in AXES):
+    axes = [values for axis in AXES if (values := fields[axis]) is not None]
+    if len(axes) < len(AXES) or not len(rows):
         raise InvalidFileError(
             f"{path} has no frames, or no joints with columns .x, .y and .z."
         )
     if header.frame_rate is None and TIME not in table:
         raise InvalidFileError(
-            f"{path}: neither a frame_rate in its first line nor a column {TIME} tells when each"
-            " frame was seen."
+            f"{path}: neither a frame_rate in its first line nor a column {TIME} tells when"
+            " each frame was seen."
         )
-    positions = np.stack([fields[axis] for axis in AXES], axis=-1)
+    positions = np.stack(axes, axis=-1)
     return told_recording(
         path,
         names,

@@ -24,7 +24,11 @@ UP = ("x", "y", "z", "-x", "-y", "-z")
 
 @dataclass(frozen=True)
 class JointHeader:
-    """Frame rate in hertz, or None where each frame has its time; metres per unit; up; sensor."""
+    """What the numbers mean.
+
+    Frame rate in hertz, or None where each frame has its time; metres per unit; the axis that
+    is up; the sensor.
+    """
 
     frame_rate: float | None
     unit: float

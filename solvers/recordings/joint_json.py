@@ -183,5 +183,5 @@ def _stacked(values: list[NDArray[np.float64] | None]) -> NDArray[np.float64] | 
     given = next((value for value in values if value is not None), None)
     if given is None:
         return None
-    nothing = np.full(given.shape, np.nan)
-    return np.stack([nothing if value is None else value for value in values])
+    nothing = np.full_like(given, np.nan)
+    return np.asarray(np.stack([nothing if value is None else value for value in values]))

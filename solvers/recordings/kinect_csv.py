@@ -10,7 +10,7 @@ from ..motion import JOINTS, JointRecording, Sensor
 from ..progress import Progress, unwatched, within
 from .axes import check_scale
 from .sensor_axes import from_kinect_space
-from .text import read_bytes, read_rows
+from .text import parted_by_blanks, read_bytes, read_rows
 from .time_stamps import USUAL_RATE
 from .tracked_joints import joint_recording
 
@@ -24,7 +24,7 @@ def is_kinect_csv(head: bytes) -> bool:
     """Tell from the first bytes."""
     lines = head.split(b"\n")
     first = next((line for line in lines if line.strip()), b"")
-    words = _words(first)
+    words = first.strip().removesuffix(b",").split(b",")
     if len(words) not in {WITHOUT_TIME, WITHOUT_TIME + 1}:
         return False
     states = words[len(words) - WITHOUT_TIME :][3::4]
@@ -77,7 +77,10 @@ def read_kinect_csv(
        doi:10.1109/TNSRE.2019.2923060
     """
     check_scale(scale)
-    lines = [b" ".join(_words(line)) for line in read_bytes(path).split(b"\n")]
+    lines = [
+        parted_by_blanks(line.strip().removesuffix(b","))
+        for line in read_bytes(path).split(b"\n")
+    ]
     width = next((len(line.split()) for line in lines if line), 0)
     if width not in {WITHOUT_TIME, WITHOUT_TIME + 1}:
         raise InvalidFileError(
@@ -107,9 +110,3 @@ def checked_states(values: NDArray[np.float64], path: Path | str) -> NDArray[np.
             " are not x, y, z and state."
         )
     return values.astype(np.int8)
-
-
-def _words(line: bytes) -> list[bytes]:
-    """Return what stands between commas, without the comma after the last."""
-    words = line.strip().removesuffix(b",").split(b",")
-    return [word.strip() or b"nan" for word in words] if line.strip() else []

@@ -149,7 +149,9 @@ def _frame_rate(path: Path | str, steps: NDArray[np.float64]) -> float:
 
 
 def _measured_rate(steps: NDArray[np.float64]) -> float:
-    quarter, half = np.quantile(steps, [0.25, 0.5])  # The half: unless every other is lost.
+    quarter, half = np.quantile(
+        steps, [0.25, 0.5], method="lower"
+    )  # The half: unless every other is lost.
     usual = min((half, quarter), key=lambda step: _unevenness(steps / step))
     steps = steps[steps <= LONGEST_COUNTED * usual]
     return float(np.round(steps / usual).sum() / steps.sum())  # A late one makes a short one.
