@@ -78,7 +78,7 @@ def read_azure_csv(
     """
     check_scale(scale)
     content = read_bytes(path)
-    lines = content.splitlines()
+    lines = content.splitlines() or [b""]
     read = _read_joint_lines if PER_JOINT.match(content) else _read_frame_lines
     names, values = read(lines, path, within(progress, 0.0, 0.9))
     states = values[..., 3].astype(np.int8) if values.shape[-1] > 3 else None

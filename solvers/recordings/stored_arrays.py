@@ -1,5 +1,6 @@
 """NumPy's files, read without believing what their headers promise, and without unpickling."""
 
+import warnings
 import zipfile
 from math import prod
 from pathlib import Path
@@ -52,7 +53,9 @@ def _read(file: IO[bytes], size: int) -> NDArray[np.float64]:
     formats: Any = np.lib.format  # which has no types
     version = formats.read_magic(file)
     headers = {(1, 0): formats.read_array_header_1_0, (2, 0): formats.read_array_header_2_0}
-    shape, by_column, kind = headers[version](file)
+    with warnings.catch_warnings():  # of headers that only an old Python or NumPy would read
+        warnings.simplefilter("ignore")
+        shape, by_column, kind = headers[version](file)
     if kind.kind not in "fiu" or prod(shape) * kind.itemsize > size:
         raise ValueError(kind)
     content: Any = file.read(prod(shape) * kind.itemsize)

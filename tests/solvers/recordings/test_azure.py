@@ -121,6 +121,15 @@ def test_a_line_per_joint_of_two_bodies(write, values):
     assert_allclose(recording.tracks.positions, upright(values[1:]))
 
 
+def test_a_joint_that_comes_again_begins_a_frame(write, values):
+    lines = azure_lines([{1: frame[:1]} for frame in values])
+
+    recording = read_azure_csv(write(lines))
+
+    assert_allclose(recording.tracks.positions[:, 0], upright(values)[:, 0])
+    assert recording.tracks.visible.sum() == 4
+
+
 def test_a_line_per_frame(write, values):
     recording = read_recording(write(azure_columns(values)))
 

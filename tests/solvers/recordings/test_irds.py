@@ -71,7 +71,7 @@ def test_the_body_seen_longest_is_taken(read):
     recording = read(irds([(body, 33 * n, other if body == 2 else {}) for n, body in
                            enumerate([1, 1, 2, 1, 1, 2, 1])]))  # fmt: skip
 
-    assert np.nanmax(recording.tracks.positions) < 9
+    assert np.nanmax(recording.tracks.positions) < 3
     assert recording.n_frames == 7
 
 

@@ -122,6 +122,7 @@ def test_kinect_csv_with_times_keeps_holes(write):
 
     recording = read_recording(write(kinect_csv(moving(5, 25), ticks)))
 
+    assert recording.frame_rate == 30.0
     assert recording.tracks.visible[:, 0].tolist() == [True] * 3 + [False] * 4 + [True] * 2
 
 

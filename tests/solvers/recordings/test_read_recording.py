@@ -7,7 +7,13 @@ import pytest
 
 from solvers.errors import InvalidFileError, InvalidSettingError, SolveCancelled
 from solvers.motion import Motion, Tracks
-from solvers.recordings import read_bvh, read_recording, write_bvh, write_c3d
+from solvers.recordings import (
+    read_bvh,
+    read_motion_or_tracks,
+    read_recording,
+    write_bvh,
+    write_c3d,
+)
 
 
 def test_the_name_does_not_matter(swinging_leg, tmp_path):
@@ -67,6 +73,15 @@ def test_real_files_of_each_format(recordings):
     assert read_recording(mocap / "cmu_walk" / "05_01.bvh").n_frames == 599
     for path in sorted((recordings / "formats" / "bvh").iterdir()):
         assert read_recording(path).n_frames == read_bvh(path).n_frames
+
+
+def test_joints_of_a_camera_serve_as_points(recordings):
+    path = recordings / "kinect" / "laban" / "joints.csv"
+
+    tracks = read_motion_or_tracks(path)
+
+    assert isinstance(tracks, Tracks)
+    assert tracks.names == read_recording(path).names
 
 
 @pytest.mark.parametrize(

@@ -98,7 +98,8 @@ def test_what_is_no_ui_prmd_take(write, content, sentence):
 @pytest.fixture
 def person() -> np.ndarray:
     """MediaPipe's body and hands, metres, Z up, facing -Y; the wrists apart by 1 m."""
-    points = np.random.default_rng(5).normal(scale=0.02, size=(20, 75, 3)) + (0, 0, 1)
+    points = np.random.default_rng(5).normal(scale=0.02, size=(20, 75, 3))
+    points += (0, 0, 1)
     points[:, NOSE] += (0, -0.1, 0.65)
     points[:, list(ANKLES)] -= (0, 0, 0.9)
     points[:, LEFT_WRIST] += (0.5, 0, 0)
