@@ -8,6 +8,7 @@ from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
 from pathlib import Path
 from tempfile import NamedTemporaryFile
+from tokenize import TokenError
 from typing import Any
 
 import numpy as np
@@ -18,7 +19,8 @@ from .errors import InvalidFileError
 # What numpy and zipfile were seen to raise on files that are cut short or altered.
 DAMAGE = (
     OSError, ValueError, EOFError, KeyError, AttributeError, TypeError, NotImplementedError,
-    zipfile.BadZipFile, zlib.error, struct.error,
+    OverflowError, RecursionError, SyntaxError, TokenError, zipfile.BadZipFile, zlib.error,
+    struct.error,
 )  # fmt: skip
 
 

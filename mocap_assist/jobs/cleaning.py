@@ -31,7 +31,7 @@ from ...solvers.denoising.feet import find_legs
 from ...solvers.motion import Motion, Tracks
 from ...solvers.motion.rotations import angle_between, slerp
 from ...solvers.progress import Progress, unwatched, within
-from ...solvers.recordings import read_recording
+from ...solvers.recordings import read_motion_or_tracks
 
 Array = NDArray[np.float64]
 Recordings = tuple[Motion | Tracks, ...]
@@ -58,7 +58,7 @@ class Examples:
         """Learn from the examples, or load what was learned."""
         if self.bases_file:
             return Learned(load_filter_bases(self.bases_file), None)
-        clips = [*self.motions, *map(read_recording, self.files)]
+        clips = [*self.motions, *map(read_motion_or_tracks, self.files)]
         if not clips:
             return Learned(None, None)
         bases = learn_filter_bases(clips, progress=within(progress, 0.0, 0.9))

@@ -2,7 +2,7 @@
 
 from ...solvers.denoising import FilterBases, FilterBasesSettings, learn_filter_bases
 from ...solvers.progress import Progress, unwatched, within
-from ...solvers.recordings import read_recording
+from ...solvers.recordings import read_motion_or_tracks
 from .cleaning import Examples
 
 
@@ -13,6 +13,6 @@ def learn(
     files = []
     for index, path in enumerate(examples.files):
         share = (0.5 * index / len(examples.files), 0.5 * (index + 1) / len(examples.files))
-        files.append(read_recording(path, progress=within(progress, *share)))
+        files.append(read_motion_or_tracks(path, progress=within(progress, *share)))
     clips = [*examples.motions, *files]
     return learn_filter_bases(clips, settings=settings, progress=within(progress, 0.5, 1.0))

@@ -7,7 +7,7 @@ from pathlib import Path
 from ..errors import InvalidFileError
 from ..motion import Motion, Tracks
 from ..progress import Progress, within
-from ..recordings import read_recording, write_bvh, write_c3d, write_trc
+from ..recordings import read_motion_or_tracks, write_bvh, write_c3d, write_trc
 
 MOTIONS = ".bvh"
 POINTS = {".c3d": write_c3d, ".trc": write_trc}
@@ -29,7 +29,7 @@ def add_reading_options(parser: argparse.ArgumentParser) -> None:
 
 def read(path: Path, arguments: argparse.Namespace, progress: Progress) -> Motion | Tracks:
     """Read a recording with the options of `add_reading_options`."""
-    return read_recording(path, scale=arguments.scale, progress=progress)
+    return read_motion_or_tracks(path, scale=arguments.scale, progress=progress)
 
 
 def read_all(

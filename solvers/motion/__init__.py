@@ -17,8 +17,10 @@ from .contacts import (
     foot_points,
     leg_length,
 )
+from .depth_sensors import JOINTS, Sensor, joint_parents
 from .humanoid import HUMANOID_ROLES, HumanoidMap, find_humanoid_map
 from .humanoid_names import roles_by_name
+from .joint_recording import JointRecording
 from .kinematics import WorldPoses, forward_kinematics, local_rotations, world_poses
 from .limb_ik import ReachSettings, reach
 from .motion import Motion
@@ -30,11 +32,14 @@ from .warping import Alignment, warp
 
 __all__ = [
     "HUMANOID_ROLES",
+    "JOINTS",
     "Alignment",
     "ContactSettings",
     "HumanoidMap",
+    "JointRecording",
     "Motion",
     "ReachSettings",
+    "Sensor",
     "Skeleton",
     "Tracks",
     "WorldPoses",
@@ -47,6 +52,7 @@ __all__ = [
     "foot_points",
     "forward_kinematics",
     "from_canonical",
+    "joint_parents",
     "leg_length",
     "linear_velocities",
     "local_rotations",

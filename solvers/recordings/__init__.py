@@ -13,21 +13,48 @@
 """
 
 from .acclaim import read_acclaim
+from .azure_csv import read_azure_csv
+from .azure_json import read_azure_json
 from .bvh import read_bvh
 from .bvh_writing import write_bvh
 from .c3d import read_c3d
 from .c3d_writing import write_c3d
-from .read_recording import read_recording
+from .freemocap import read_freemocap
+from .irds import read_irds
+from .joint_csv import read_joint_csv, write_joint_csv
+from .joint_json import read_joint_json, write_joint_json
+from .joints import read_joints, write_joints
+from .kinect_csv import read_kinect_csv
+from .msr_action3d import read_msr_action3d
+from .ntu_skeleton import read_ntu_skeleton
+from .read_recording import read_motion_or_tracks, read_recording
 from .trc import read_trc
 from .trc_writing import write_trc
+from .ui_prmd import read_ui_prmd, read_ui_prmd_pair
 
 __all__ = [
     "read_acclaim",
+    "read_azure_csv",
+    "read_azure_json",
     "read_bvh",
     "read_c3d",
+    "read_freemocap",
+    "read_irds",
+    "read_joint_csv",
+    "read_joint_json",
+    "read_joints",
+    "read_kinect_csv",
+    "read_motion_or_tracks",
+    "read_msr_action3d",
+    "read_ntu_skeleton",
     "read_recording",
     "read_trc",
+    "read_ui_prmd",
+    "read_ui_prmd_pair",
     "write_bvh",
     "write_c3d",
+    "write_joint_csv",
+    "write_joint_json",
+    "write_joints",
     "write_trc",
 ]

@@ -6,13 +6,23 @@ from pathlib import Path
 from typing import NamedTuple, Protocol
 
 from ..errors import InvalidFileError
-from ..motion import Motion, Tracks
+from ..motion import JointRecording, Motion, Tracks
 from ..progress import Progress, unwatched
 from .acclaim import read_acclaim
+from .azure_csv import is_azure_csv, read_azure_csv
+from .azure_json import is_azure_json, read_azure_json
 from .bvh import read_bvh
 from .c3d import read_c3d
+from .freemocap import is_npy, read_freemocap
+from .irds import is_irds, read_irds
+from .joint_csv import is_joint_csv, read_joint_csv
+from .joint_json import is_joint_json, read_joint_json
+from .kinect_csv import is_kinect_csv, read_kinect_csv
+from .msr_action3d import is_msr_action3d, read_msr_action3d
+from .ntu_skeleton import is_ntu_skeleton, read_ntu_skeleton
 from .text import BYTE_ORDER_MARK
 from .trc import read_trc
+from .ui_prmd import is_ui_prmd, read_ui_prmd
 
 HEAD = 4096
 
@@ -22,7 +32,7 @@ class Reader(Protocol):
 
     def __call__(
         self, path: Path | str, /, *, scale: float | None = None, progress: Progress = unwatched
-    ) -> Motion | Tracks:
+    ) -> Motion | Tracks | JointRecording:
         """Read a file."""
 
 
@@ -71,26 +81,37 @@ FORMATS = (
     Format("Acclaim ASF", _is_acclaim_skeleton, _refuse_skeleton),
     Format("C3D", _is_c3d, read_c3d),
     Format("TRC", _is_trc, read_trc),
+    Format("IRDS", is_irds, read_irds),
+    Format("Kinect v2 CSV", is_kinect_csv, read_kinect_csv),
+    Format("Azure Kinect CSV", is_azure_csv, read_azure_csv),
+    Format("Azure Kinect JSON", is_azure_json, read_azure_json),
+    Format("NTU RGB+D", is_ntu_skeleton, read_ntu_skeleton),
+    Format("MSR Action3D", is_msr_action3d, read_msr_action3d),
+    Format("UI-PRMD", is_ui_prmd, read_ui_prmd),
+    Format("freemocap", is_npy, read_freemocap),
+    Format("joint CSV", is_joint_csv, read_joint_csv),
+    Format("joint JSON", is_joint_json, read_joint_json),
 )
 """A new format is a new line here."""
 
 
 def read_recording(
     path: Path | str, *, scale: float | None = None, progress: Progress = unwatched
-) -> Motion | Tracks:
+) -> Motion | Tracks | JointRecording:
     """Read a recording of any format known here, told by what the file holds.
 
     Parameters
     ----------
     path : Path or str
-        BVH; AMC with the actor's ASF beside it; C3D; TRC.
+        BVH; AMC with the actor's ASF beside it; C3D; TRC; joints of depth cameras
+        (docs/formats).
     scale : float, metres per unit of the file, or None
         None leaves it to the reader of the format.
     progress : Progress
 
     Returns
     -------
-    Motion or Tracks
+    Motion, Tracks or JointRecording
         In metres, Z up; NaN where not observed.
 
     Raises
@@ -115,3 +136,11 @@ def read_recording(
     raise InvalidFileError(
         f"{path} is of no known format ({names}). Export it as one of these first."
     )
+
+
+def read_motion_or_tracks(
+    path: Path | str, *, scale: float | None = None, progress: Progress = unwatched
+) -> Motion | Tracks:
+    """Read a recording as `read_recording` does, and take the joints of a camera as points."""
+    recording = read_recording(path, scale=scale, progress=progress)
+    return recording.tracks if isinstance(recording, JointRecording) else recording

@@ -27,6 +27,13 @@ def read_bytes(path: Path | str) -> bytes:
         raise InvalidFileError(f"{path} cannot be read ({error.strerror}).") from None
 
 
+def parted_by_blanks(line: bytes) -> bytes:
+    """Return a line parted by commas, parted by blanks; empty places are not a number."""
+    if not line.strip():
+        return b""
+    return b" ".join(word.strip() or b"nan" for word in line.split(b","))
+
+
 def read_rows(
     lines: Sequence[bytes],
     width: int,
@@ -107,7 +114,8 @@ def read_number(word: bytes, place: str) -> float:
     InvalidFileError
         It is no number; `place` says where it stands.
     """
-    if word.lower() in MISSING or b"#" in word:  # The old Windows runtime wrote 1.#QNAN.
+    # The old Windows runtime wrote 1.#QNAN.
+    if not word or word.lower() in MISSING or b"#" in word:
         return np.nan
     try:
         return float(word.replace(b",", b"."))

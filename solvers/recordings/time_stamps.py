@@ -1,4 +1,4 @@
-"""Recordings whose frames have time stamps, brought to a constant frame rate."""
+"""From the moments at which a camera happened to see something to a constant frame rate."""
 
 from pathlib import Path
 
@@ -7,78 +7,167 @@ from numpy.typing import NDArray
 
 from ..errors import InvalidFileError
 
-DRIFT = 0.5
-"""Frames by which stamps may be off a constant rate before they count as something else."""
-ON_THE_GRID = 0.25
-ALIKE = 0.05
-LONGEST_STEP = 2.0
-"""Frames between two stamps beyond which nothing is known in between."""
-MOST_TIMES_LONGER = 20
-FREE_FRAMES = 1000
+USUAL_RATE = 30.0
+"""Hertz, of every Kinect in good light."""
+COMMON_RATES = (5.0, 10.0, 15.0, 24.0, 25.0, 30.0, 50.0, 60.0, 90.0, 100.0, 120.0)
+NEAR = 0.03
+"""Share by which a measured rate may differ from the common one that is meant."""
+SLOWEST, FASTEST = 0.1, 10_000.0
+LATEST = 1e11
+"""Seconds; thousands of years."""
+HOLE = 1.6
+"""Frame times between two frames from which on one is missing, rather than late."""
+LONGEST_COUNTED = 5.0
+"""Usual steps in a step between two frames that still tells something of the rate."""
+NEARBY = 0.5
+"""Frame times around a frame up to which it stands for moments in a gap."""
+COINCIDES = 1e-6
+MOST_TIMES_LONGER, MOST_SPARE_FRAMES = 10, 1000
 
 
-def at_constant_rate(
-    positions: NDArray[np.float64],
-    times: NDArray[np.float64],
-    said: float | None,
-    path: Path | str,
-) -> tuple[NDArray[np.float64], float]:
-    """Return positions at a constant frame rate, and that rate.
+class ConstantRate:
+    """The moments of a constant frame rate, told by the frames of a file around them.
 
-    Where the stamps run evenly to within half a frame, as rounded ones do, nothing is changed,
-    and the rate is the one the file says if the stamps bear it out, or else theirs. Where
-    frames were left out, they come back as NaN. Where the stamps are uneven, positions are
-    interpolated linearly between neighbours in time, but not across more than two frames, nor
-    next to what was not seen.
+    Values between two frames come from the cubic through the four frames around them or, near
+    gaps, from the straight line. Where frames are missing between two (`HOLE`), or one of them
+    does not see a point, the nearer one counts alone, up to half a frame time away; farther
+    from it nothing is observed: gaps stay gaps. Frames that are not later than all before them
+    are left out.
 
     Parameters
     ----------
-    positions : float array, shape (n_frames, n_points, 3)
-    times : float array, shape (n_frames,), seconds, at least two, always increasing
-    said : float, hertz, or None
-        The frame rate that the file states.
     path : Path or str
         For error messages.
+    times : float array, shape (n_in_file,), seconds
 
     Raises
     ------
     InvalidFileError
-        The stamps leap so far that hardly anything but gaps would come out.
+        The time stamps run backwards, or leave holes beyond reason.
     """
-    n_frames = len(times)
-    since = times - times[0]
-    for rate in (said, (n_frames - 1) / since[-1]):
-        if rate is not None and np.abs(since * rate - np.arange(n_frames)).max() < DRIFT:
-            return positions, float(rate)
-    rate = _usual_rate(np.diff(times), said)
-    since = since * rate
-    if since[-1] > MOST_TIMES_LONGER * n_frames + FREE_FRAMES:
+
+    frame_rate: float
+    """The one that was measured, in hertz, or the common one within 3 % of it."""
+
+    def __init__(self, path: Path | str, times: NDArray[np.float64]) -> None:
+        usable = np.isfinite(times) & (np.abs(np.nan_to_num(times)) < LATEST)
+        latest = np.maximum.accumulate(np.where(usable, times, -np.inf))
+        earlier = np.concatenate([[-np.inf], latest[:-1]])
+        self._kept = np.flatnonzero(usable & (np.nan_to_num(times) > earlier))
+        if 2 * len(self._kept) <= len(times) > 1 or not len(self._kept):
+            raise InvalidFileError(
+                f"{path}: most of its time stamps are not later than those before them, so"
+                " nobody can tell its frame rate. Mend the column of time stamps."
+            )
+        seen = times[self._kept] - times[self._kept[0]]
+        steps = np.diff(seen)
+        self.frame_rate = _frame_rate(path, steps)
+        n_frames = int(np.floor(seen[-1] * self.frame_rate + NEARBY)) + 1
+        if n_frames > MOST_TIMES_LONGER * len(seen) + MOST_SPARE_FRAMES:
+            raise InvalidFileError(
+                f"{path}: its {len(seen)} frames are spread over {seen[-1]:.3g} s, though they"
+                f" come at {self.frame_rate:.3g} Hz. Cut it where it pauses, or mend its time"
+                " stamps."
+            )
+        moments = np.minimum(np.arange(n_frames) / self.frame_rate, seen[-1])
+        self._place(moments, seen, self.frame_rate * steps)
+
+    def positions(self, values: NDArray[np.float64]) -> NDArray[np.float64]:
+        """Interpolate values of shape (n_in_file, n_points, n); gaps stay NaN."""
+        result = self._weighted(values, self._curved)
+        broken = np.isnan(result).any(axis=-1)
+        result[broken] = self._weighted(values, self._straight)[broken]
+        broken = np.isnan(result).any(axis=-1) | ~self._whole[:, None]
+        result[broken] = values[self._nearest][broken]
+        result[broken & ~self._near[:, None]] = np.nan
+        return result
+
+    def confidence(self, values: NDArray[np.float64]) -> NDArray[np.float64]:
+        """Interpolate values of shape (n_in_file, n_points) linearly; 0 inside holes."""
+        result = self._weighted(values[..., None], self._straight)[..., 0]
+        result[~self._whole & ~self._near] = 0.0
+        return np.asarray(np.clip(result, 0.0, 1.0))
+
+    def states(self, values: NDArray[np.int8]) -> NDArray[np.int8]:
+        """Return the worse state, the smaller, of those that `positions` go by; 0 in gaps."""
+        counts = self._straight > 0.0
+        around = values[self._kept[self._nodes]]
+        worst = np.where(counts[..., None], around, np.int8(127)).min(axis=1)
+        broken = (worst == 0) | ~self._whole[:, None]
+        worst[broken] = values[self._nearest][broken]
+        worst[broken & ~self._near[:, None]] = 0
+        return np.asarray(worst)
+
+    def _place(
+        self, moments: NDArray[np.float64], seen: NDArray[np.float64], gaps: NDArray[np.float64]
+    ) -> None:
+        """Set nodes, shape (n_frames, 4), and their weights; gaps are in frame times."""
+        last = len(seen) - 1
+        before = np.clip(np.searchsorted(seen, moments, side="right") - 1, 0, max(last - 1, 0))
+        self._nodes = np.clip(before[:, None] + (-1, 0, 1, 2), 0, last)
+        at = seen[self._nodes]
+        span = at[:, 2] - at[:, 1]
+        share = (moments - at[:, 1]) / np.where(span > 0.0, span, 1.0)
+        share = np.where(np.minimum(share, 1.0 - share) < COINCIDES, np.round(share), share)
+        nothing = np.zeros_like(share)
+        self._straight = np.stack([nothing, 1.0 - share, share, nothing], axis=1)
+        whole = np.concatenate([[False], gaps <= HOLE, [False, False]])
+        smooth = whole[before] & whole[before + 1] & whole[before + 2]
+        smooth &= (share > 0.0) & (share < 1.0)
+        self._curved = self._straight.copy()
+        self._curved[smooth] = _cubic(at[smooth], moments[smooth])
+        distance = np.abs(at - moments[:, None])
+        nearest = distance.argmin(axis=1)[:, None]
+        self._nearest = self._kept[np.take_along_axis(self._nodes, nearest, axis=1)[:, 0]]
+        near = np.take_along_axis(distance, nearest, axis=1)[:, 0] * self.frame_rate
+        self._near = near <= NEARBY + COINCIDES
+        self._whole = whole[before + 1]
+
+    def _weighted(
+        self, values: NDArray[np.float64], weights: NDArray[np.float64]
+    ) -> NDArray[np.float64]:
+        result = np.zeros((len(self._nodes), *values.shape[1:]))
+        for nodes, weight in zip(self._nodes.T, weights.T, strict=True):
+            part = values[self._kept[nodes]]
+            part[weight == 0.0] = 0.0  # NaN of frames that do not count must not spread.
+            result += weight[:, None, None] * part
+        return result
+
+
+def _frame_rate(path: Path | str, steps: NDArray[np.float64]) -> float:
+    if not len(steps):
+        return USUAL_RATE
+    with np.errstate(over="ignore"):
+        rate = _measured_rate(steps)
+    if not SLOWEST <= rate <= FASTEST:
         raise InvalidFileError(
-            f"{path}: {n_frames} frames are spread over {since[-1] / rate:g} s, from"
-            f" {times[0]:g} to {times[-1]:g}. The times are damaged; export the file again."
+            f"{path}: by its time stamps it has {rate:.3g} frames per second, which cannot be."
+            " Mend the column of time stamps."
         )
-    slots = np.rint(since).astype(int)
-    if np.abs(since - slots).max() < ON_THE_GRID and (np.diff(slots) > 0).all():
-        spread = np.full((slots[-1] + 1, *positions.shape[1:]), np.nan)
-        spread[slots] = positions
-        return spread, rate
-    return _interpolated(positions, since), rate
+    nearest = min(COMMON_RATES, key=lambda common: abs(common - rate))
+    return nearest if abs(rate / nearest - 1.0) <= NEAR else rate
 
 
-def _usual_rate(steps: NDArray[np.float64], said: float | None) -> float:
-    """Return the rate within unbroken stretches: the one that is said, if it is about right."""
-    usual = float(1.0 / steps[steps < LONGEST_STEP * np.median(steps)].mean())
-    return usual if said is None or abs(usual / said - 1.0) > ALIKE else said
+def _measured_rate(steps: NDArray[np.float64]) -> float:
+    quarter, half = np.quantile(
+        steps, [0.25, 0.5], method="lower"
+    )  # The half: unless every other is lost.
+    usual = min((half, quarter), key=lambda step: _unevenness(steps / step))
+    steps = steps[steps <= LONGEST_COUNTED * usual]
+    return float(np.round(steps / usual).sum() / steps.sum())  # A late one makes a short one.
 
 
-def _interpolated(
-    positions: NDArray[np.float64], since: NDArray[np.float64]
-) -> NDArray[np.float64]:
-    """Return positions at 0, 1, 2... from positions at `since`, in frames from 0."""
-    grid = np.arange(int(since[-1]) + 1)
-    after = np.searchsorted(since, grid).clip(1, len(since) - 1)
-    step = since[after] - since[after - 1]
-    share = ((grid - since[after - 1]) / step)[:, None, None]
-    between = (1.0 - share) * positions[after - 1] + share * positions[after]
-    between[step > LONGEST_STEP] = np.nan
-    return np.asarray(between)
+def _unevenness(counts: NDArray[np.float64]) -> float:
+    """How far numbers of frame times are from whole ones above 0."""
+    short = counts[counts <= LONGEST_COUNTED]
+    return float(np.abs(short - np.maximum(1.0, np.round(short))).mean())
+
+
+def _cubic(at: NDArray[np.float64], moments: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Weights of Lagrange's polynomial through four times, shape (n, 4)."""
+    weights = np.ones_like(at)
+    for node in range(at.shape[1]):
+        for other in range(at.shape[1]):
+            if other != node:
+                weights[:, node] *= (moments - at[:, other]) / (at[:, node] - at[:, other])
+    return weights

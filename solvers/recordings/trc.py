@@ -11,10 +11,10 @@ from ..errors import InvalidFileError
 from ..motion import Tracks
 from ..progress import Progress, unwatched, within
 from .axes import FEWEST_JOINTS_OF_A_BODY, check_scale
+from .marker_times import at_constant_rate
 from .names import shown
 from .points import guess_unit_of_points, point_names, points_z_up, said_unit
 from .text import read_bytes, read_number
-from .time_stamps import at_constant_rate
 
 FIRST_LINES = 30
 """Within these the header ends."""

@@ -7,7 +7,14 @@ import pytest
 
 from solvers.errors import InvalidFileError, InvalidSettingError, SolveCancelled
 from solvers.motion import Motion, Tracks
-from solvers.recordings import read_bvh, read_recording, write_bvh, write_c3d, write_trc
+from solvers.recordings import (
+    read_bvh,
+    read_motion_or_tracks,
+    read_recording,
+    write_bvh,
+    write_c3d,
+    write_trc,
+)
 
 
 def test_the_name_does_not_matter(swinging_leg, tmp_path):
@@ -72,11 +79,20 @@ def test_real_files_of_each_format(recordings):
         assert read_recording(path).n_frames == read_bvh(path).n_frames
 
 
+def test_joints_of_a_camera_serve_as_points(recordings):
+    path = recordings / "kinect" / "laban" / "joints.csv"
+
+    tracks = read_motion_or_tracks(path)
+
+    assert isinstance(tracks, Tracks)
+    assert tracks.names == read_recording(path).names
+
+
 @pytest.mark.parametrize(
     ("content", "sentence"),
     [
         (b":version 1.10\n:name VICON\n:units\n", r"skeleton without motion.* \.amc"),
-        (b"Kaydara FBX Binary", r"no known format \(BVH, Acclaim AMC, C3D, TRC\)"),
+        (b"Kaydara FBX Binary", r"no known format \(BVH, Acclaim AMC, C3D, TRC, "),
         (b"", "no known format"),
         (b"HIERARCHY", "no MOTION"),
     ],

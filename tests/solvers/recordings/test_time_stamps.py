@@ -1,69 +1,123 @@
-"""Stamps decide when a frame was; the rate that comes out is constant."""
+"""A constant rate from uneven time stamps: exact where theory is, and gaps stay gaps."""
 
 import numpy as np
 import pytest
 from numpy.testing import assert_allclose, assert_array_equal
 
 from solvers.errors import InvalidFileError
-from solvers.recordings.time_stamps import at_constant_rate
+from solvers.recordings.time_stamps import ConstantRate
+
+FRAME = 1.0 / 30.0
 
 
-def line(times) -> np.ndarray:
-    """A point that moves evenly in time, so that interpolation must be exact."""
-    return np.asarray(times)[:, None, None] * (1.0, -2.0, 0.5)
+def test_even_stamps_change_nothing(rng):
+    values = rng.normal(size=(50, 4, 3))
+
+    clock = ConstantRate("take", 8000.0 + np.arange(50) * FRAME)
+
+    assert clock.frame_rate == 30.0
+    assert_allclose(clock.positions(values), values, atol=1e-9)
+
+
+def test_a_cubic_is_followed_exactly_through_uneven_stamps(rng):
+    """Independent derivation: interpolation of third order reproduces cubics."""
+    times = (np.arange(60) + rng.uniform(-0.2, 0.2, 60)) * FRAME
+    times -= times[0]
+
+    clock = ConstantRate("take", times)
+    moments = np.arange(len(clock.positions(np.zeros((60, 1, 1))))) / clock.frame_rate
+
+    inner = slice(2, -2)
+    assert_allclose(
+        clock.positions(cubic(times))[inner, 0, 0], cubic(moments)[inner, 0, 0], atol=1e-12
+    )
+
+
+def cubic(times):
+    return (1.0 - 2.0 * times + 0.7 * times**2 + 3.0 * times**3)[:, None, None]
+
+
+def test_late_frames_are_bridged_and_lost_frames_are_gaps():
+    times = np.array([0, 1, 2.4, 3, 4, 14, 15, 16]) * FRAME
+    values = times[:, None, None] + np.zeros((1, 2, 3))
+
+    clock = ConstantRate("take", times)
+    found = clock.positions(values)
+
+    expected = [True] * 5 + [False] * 9 + [True] * 3
+    assert_array_equal(np.isfinite(found[:, 0, 0]), expected)
+    assert_allclose(found[expected, 0, 0], np.flatnonzero(expected) * FRAME, atol=1e-12)
+
+
+def test_no_seen_frame_is_lost_beside_a_hole(rng):
+    """However the clock drifts: each frame has a moment within half a frame time of it."""
+    steps = np.where(rng.uniform(size=300) < 0.2, 2.0, 1.0) + rng.normal(scale=0.05, size=300)
+    times = np.cumsum(steps) * FRAME
+
+    clock = ConstantRate("take", times)
+    seen = np.flatnonzero(np.isfinite(clock.positions(np.zeros((300, 1, 3)))[:, 0, 0]))
+
+    away = np.abs((times - times[0])[:, None] - seen / clock.frame_rate).min(axis=1)
+    assert away.max() <= 0.5 * FRAME + 1e-9
+
+
+def test_states_are_the_worse_of_both_neighbours_and_confidence_between_them():
+    times = np.array([0.0, 1.0, 2.25, 3.0, 4.0, 9.0, 10.0]) * FRAME
+    states = np.array([[2], [2], [1], [2], [2], [2], [0]], dtype=np.int8)
+    confidence = np.array([[1.0], [1.0], [0.0], [1.0], [1.0], [1.0], [0.5]])
+
+    clock = ConstantRate("take", times)
+
+    assert clock.states(states)[:, 0].tolist() == [2, 2, 1, 2, 2, 0, 0, 0, 0, 2, 0]
+    assert_allclose(clock.confidence(confidence)[:5, 0], [1, 1, 0.2, 1, 1], atol=1e-9)
+    assert_allclose(clock.confidence(confidence)[5:9, 0], 0.0)
+
+
+def test_what_is_not_observed_does_not_spread():
+    values = np.arange(10.0)[:, None, None] * np.ones((1, 2, 3))
+    values[4, 0] = np.nan
+
+    found = ConstantRate("take", np.arange(10) * FRAME).positions(values)
+
+    assert_array_equal(np.isnan(found), np.isnan(values))
 
 
 @pytest.mark.parametrize(
-    ("times", "said", "rate"),
+    ("step", "rate"),
+    [(0.0333, 30.0), (0.034, 30.0), (0.0667, 15.0), (0.04, 25.0), (0.0125, 80.0)],
+)
+def test_the_rate_is_the_common_one_if_there_is_one_nearby(step, rate):
+    assert ConstantRate("take", np.arange(100) * step).frame_rate == pytest.approx(rate)
+
+
+def test_a_frame_told_twice_counts_once():
+    times = np.array([0, 1, 1, 2, 1.5, 3, 4]) * FRAME
+    values = np.array([0, 1, 9, 2, 9, 3, 4.0])[:, None, None]
+
+    found = ConstantRate("take", times).positions(values)
+
+    assert_allclose(found[:, 0, 0], [0, 1, 2, 3, 4], atol=1e-9)
+
+
+@pytest.mark.parametrize(
+    ("times", "sentence"),
     [
-        (np.arange(300) / 120.0, 120.0, 120.0),
-        (5.0 + np.arange(300) / 120.0, None, 120.0),
-        (np.round(np.arange(900) / 400.0, 3), 400.0, 400.0),
-        (np.round(np.arange(900) / 59.94, 2), 59.94, 59.94),
-        (np.arange(300) / 100.0, 60.0, 100.0),
-        (np.arange(300) / 100.0, 200.0, 100.0),
-        (np.array([0.0, 0.02]), None, 50.0),
+        (np.arange(20)[::-1] * FRAME, "not later than those before"),
+        (np.full(20, 7.0), "not later than those before"),
+        (np.full(5, np.nan), "not later than those before"),
+        (np.full(5, 1e300), "not later than those before"),
+        (np.concatenate([np.arange(20) * FRAME, [1e9]]), r"21 frames are spread over 1e\+09 s"),
+        (np.arange(20) * 1e-7, "which cannot be"),
+        (np.arange(20) * 1e7, "which cannot be"),
     ],
 )
-def test_even_stamps_change_nothing(times, said, rate):
-    positions = line(times)
-
-    found, found_rate = at_constant_rate(positions, times, said, "take")
-
-    assert found is positions
-    assert found_rate == pytest.approx(rate, rel=1e-12)
+def test_refuses_stamps_that_make_no_sense(times, sentence):
+    with pytest.raises(InvalidFileError, match=sentence):
+        ConstantRate("take", times)
 
 
-@pytest.mark.parametrize("said", [100.0, 70.0, None])
-def test_frames_that_were_left_out_are_gaps(said):
-    kept = np.r_[0:40, 43:80, 81:100]
-    times = kept / 100.0
+@pytest.mark.parametrize("n_frames", [1, 2, 3])
+def test_very_short_takes(n_frames):
+    values = np.arange(float(n_frames))[:, None, None]
 
-    found, rate = at_constant_rate(line(times), times, said, "take")
-
-    assert rate == pytest.approx(100.0)
-    assert len(found) == 100
-    assert_array_equal(np.isnan(found).all(axis=(1, 2)), ~np.isin(np.arange(100), kept))
-    assert_allclose(found[kept], line(times))
-
-
-def test_uneven_stamps_are_resampled(rng):
-    """The stamps wander by a third of a frame, and two frames in a row are missing."""
-    wander = np.r_[0.0, rng.uniform(-0.35, 0.35, size=99)]
-    times = np.delete((np.arange(100) + wander) / 30.0, [50, 51])
-
-    found, rate = at_constant_rate(line(times), times, 30.0, "take")
-
-    assert rate == 30.0
-    expected = line(times[0] + np.arange(len(found)) / 30.0)
-    known = np.isfinite(found)
-    assert_allclose(found[known], expected[known], atol=1e-12)
-    assert 1 <= np.isnan(found).all(axis=(1, 2)).sum() <= 4
-    assert len(found) in (99, 100)
-
-
-def test_a_leap_in_time_is_refused():
-    times = np.array([0.0, 0.01, 0.02, 1e9])
-
-    with pytest.raises(InvalidFileError, match=r"take: 4 frames are spread over 1e.09 s"):
-        at_constant_rate(line(times), times, 100.0, "take")
+    assert_allclose(ConstantRate("take", np.arange(n_frames) * FRAME).positions(values), values)

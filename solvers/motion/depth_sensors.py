@@ -1,0 +1,95 @@
+"""Which joints the makers' trackers find in the picture of a depth camera, in their order.
+
+Sources: NuiSensor.h of the Kinect for Windows SDK 1.8 (NUI_SKELETON_POSITION_INDEX), Kinect.h
+of the SDK 2.0 (JointType), k4abttypes.h of the Azure Kinect Body Tracking SDK 1.1
+(k4abt_joint_id_t), whose names are spelt here as the other two are.
+"""
+
+from collections.abc import Sequence
+from enum import Enum
+
+
+class Sensor(Enum):
+    """The camera, and with it the tracker, that a joint recording comes from."""
+
+    KINECT_V1 = "kinect_v1"
+    KINECT_V2 = "kinect_v2"
+    AZURE_KINECT = "azure_kinect"
+    OTHER = "other"
+
+
+# Each row is a joint and its parent, in the order of the tracker's own numbers.
+KINECT_V1 = {
+    "HipCenter": "", "Spine": "HipCenter", "ShoulderCenter": "Spine", "Head": "ShoulderCenter",
+    "ShoulderLeft": "ShoulderCenter", "ElbowLeft": "ShoulderLeft", "WristLeft": "ElbowLeft",
+    "HandLeft": "WristLeft",
+    "ShoulderRight": "ShoulderCenter", "ElbowRight": "ShoulderRight",
+    "WristRight": "ElbowRight", "HandRight": "WristRight",
+    "HipLeft": "HipCenter", "KneeLeft": "HipLeft", "AnkleLeft": "KneeLeft",
+    "FootLeft": "AnkleLeft",
+    "HipRight": "HipCenter", "KneeRight": "HipRight", "AnkleRight": "KneeRight",
+    "FootRight": "AnkleRight",
+}  # fmt: skip
+KINECT_V2 = {
+    "SpineBase": "", "SpineMid": "SpineBase", "Neck": "SpineShoulder", "Head": "Neck",
+    "ShoulderLeft": "SpineShoulder", "ElbowLeft": "ShoulderLeft", "WristLeft": "ElbowLeft",
+    "HandLeft": "WristLeft",
+    "ShoulderRight": "SpineShoulder", "ElbowRight": "ShoulderRight", "WristRight": "ElbowRight",
+    "HandRight": "WristRight",
+    "HipLeft": "SpineBase", "KneeLeft": "HipLeft", "AnkleLeft": "KneeLeft",
+    "FootLeft": "AnkleLeft",
+    "HipRight": "SpineBase", "KneeRight": "HipRight", "AnkleRight": "KneeRight",
+    "FootRight": "AnkleRight",
+    "SpineShoulder": "SpineMid",
+    "HandTipLeft": "HandLeft", "ThumbLeft": "WristLeft",
+    "HandTipRight": "HandRight", "ThumbRight": "WristRight",
+}  # fmt: skip
+AZURE_KINECT = {
+    "Pelvis": "", "SpineNavel": "Pelvis", "SpineChest": "SpineNavel", "Neck": "SpineChest",
+    "ClavicleLeft": "SpineChest", "ShoulderLeft": "ClavicleLeft", "ElbowLeft": "ShoulderLeft",
+    "WristLeft": "ElbowLeft", "HandLeft": "WristLeft", "HandTipLeft": "HandLeft",
+    "ThumbLeft": "WristLeft",
+    "ClavicleRight": "SpineChest", "ShoulderRight": "ClavicleRight",
+    "ElbowRight": "ShoulderRight", "WristRight": "ElbowRight", "HandRight": "WristRight",
+    "HandTipRight": "HandRight", "ThumbRight": "WristRight",
+    "HipLeft": "Pelvis", "KneeLeft": "HipLeft", "AnkleLeft": "KneeLeft",
+    "FootLeft": "AnkleLeft",
+    "HipRight": "Pelvis", "KneeRight": "HipRight", "AnkleRight": "KneeRight",
+    "FootRight": "AnkleRight",
+    "Head": "Neck", "Nose": "Head", "EyeLeft": "Head", "EarLeft": "Head", "EyeRight": "Head",
+    "EarRight": "Head",
+}  # fmt: skip
+UI_PRMD = {  # Kinect v2, as that data set keeps it
+    "Waist": "", "Spine": "Waist", "Chest": "Spine", "Neck": "Chest", "Head": "Neck",
+    "HeadTip": "Head",
+    "LCollar": "Chest", "LUpArm": "LCollar", "LForeArm": "LUpArm", "LHand": "LForeArm",
+    "RCollar": "Chest", "RUpArm": "RCollar", "RForeArm": "RUpArm", "RHand": "RForeArm",
+    "LUpLeg": "Waist", "LLowLeg": "LUpLeg", "LFoot": "LLowLeg", "LToes": "LFoot",
+    "RUpLeg": "Waist", "RLowLeg": "RUpLeg", "RFoot": "RLowLeg", "RToes": "RFoot",
+}  # fmt: skip
+
+JOINTS = {
+    Sensor.KINECT_V1: tuple(KINECT_V1),
+    Sensor.KINECT_V2: tuple(KINECT_V2),
+    Sensor.AZURE_KINECT: tuple(AZURE_KINECT),
+}
+"""Names of the joints of each sensor, in the order of the tracker's own numbers."""
+
+
+def joint_parents(names: Sequence[str]) -> tuple[int, ...]:
+    """Return which joint each joint hangs on, as a place among `names`; -1: on none of them.
+
+    The tree is that of the tracker which knows most of the names. A joint whose parent is left
+    out hangs on its nearest ancestor that is there. In the order of the Kinect v2 a parent may
+    come after its children.
+    """
+    tables = (KINECT_V2, KINECT_V1, AZURE_KINECT, UI_PRMD)
+    table = max(tables, key=lambda known: len(known.keys() & set(names)))
+    places = {name: place for place, name in enumerate(names)}
+    parents = []
+    for name in names:
+        above = table.get(name, "")
+        while above and above not in places:
+            above = table[above]
+        parents.append(places.get(above, -1))
+    return tuple(parents)

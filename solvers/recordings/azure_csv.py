@@ -1,0 +1,156 @@
+"""Read tables of Azure Kinect joints: a line per joint, or a line per frame."""
+
+import re
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..errors import InvalidFileError
+from ..motion import JOINTS, JointRecording, Sensor
+from ..progress import Progress, unwatched, within
+from .axes import check_scale
+from .sensor_axes import from_azure_space
+from .text import parted_by_blanks, read_bytes, read_number, read_rows
+from .time_stamps import USUAL_RATE
+from .tracked_joints import joint_recording
+
+NAMES = JOINTS[Sensor.AZURE_KINECT]
+MILLIMETRE = 0.001
+PER_JOINT = re.compile(rb"(?i)[^\n]*\n?[ \t]*body id\s*,\s*joint #\s*,\s*x\s*,\s*y\s*,\s*z")
+PER_FRAME = re.compile(rb"(?i)[^\n]*\bpelvis\.x\s*,")
+LEAST_WORDS = 10
+SPELLINGS = {name.upper(): name for name in NAMES} | {"SPINENAVAL": "SpineNavel"}
+STATES = (  # What the SDK calls its levels of confidence, and what a state is.
+    (rb"out of range|\bnone\b|^0$", 0),
+    (rb"not observed|\blow\b|^1$", 1),
+    (rb"\bmedium\b|\bhigh\b|^[23]$", 2),
+)
+
+
+def is_azure_csv(head: bytes) -> bool:
+    """Tell from the first bytes."""
+    return bool(PER_JOINT.match(head) or PER_FRAME.match(head))
+
+
+def azure_joint(name: str) -> str:
+    """Return a joint's name in our spelling; names that are not the SDK's stay."""
+    return SPELLINGS.get(name.strip().replace("_", "").upper(), name.strip())
+
+
+def read_azure_csv(
+    path: Path | str,
+    *,
+    scale: float | None = None,
+    frame_rate: float = USUAL_RATE,
+    progress: Progress = unwatched,
+) -> JointRecording:
+    """Read a table of Azure Kinect joints, in metres, Z up; joints not tracked are NaN.
+
+    Two layouts are known. A line per joint, under the headings `Body ID, Joint #, x, y, z, x,
+    y, z, w, Confidence Level`: a frame of a body ends where its joint numbers begin again, and
+    the body seen in most frames is taken. A line per frame, under `PELVIS.x, PELVIS.y, ...`.
+    Neither has times: `frame_rate` counts. Orientations are not read. Medium and high
+    confidence are state 2, low (predicted) is 1, none is 0.
+
+    Parameters
+    ----------
+    path : Path or str
+    scale : float, metres per unit of the file, or None
+        None: millimetres.
+    frame_rate : float, hertz
+    progress : Progress
+
+    Returns
+    -------
+    JointRecording
+        All 32 joints in the SDK's order, or those of the columns; the camera looks along +Y.
+        No tracking state from a line per frame.
+
+    Raises
+    ------
+    InvalidFileError
+        The file is missing, damaged or has no joints.
+    InvalidSettingError
+        The scale is not positive.
+    SolveCancelled
+        Raised by `progress`.
+    """
+    check_scale(scale)
+    content = read_bytes(path)
+    lines = content.splitlines() or [b""]
+    read = _read_joint_lines if PER_JOINT.match(content) else _read_frame_lines
+    names, values = read(lines, path, within(progress, 0.0, 0.9))
+    states = values[..., 3].astype(np.int8) if values.shape[-1] > 3 else None
+    return joint_recording(
+        path,
+        names,
+        from_azure_space(values[..., :3]) * (MILLIMETRE if scale is None else scale),
+        Sensor.AZURE_KINECT,
+        states=states,
+        frame_rate=frame_rate,
+        progress=progress,
+    )
+
+
+def _read_joint_lines(
+    lines: list[bytes], path: Path | str, progress: Progress
+) -> tuple[tuple[str, ...], NDArray[np.float64]]:
+    """Return the joints' names, and x y z state, shape (n_frames, n_joints, 4)."""
+    bodies: dict[bytes, list[NDArray[np.float64]]] = {}
+    last: dict[bytes, int] = {}
+    for count, line in enumerate(lines, start=1):
+        words = line.split(b",")
+        body = words[0].strip()
+        if not line.strip() or not body or not body[:1].isdigit():
+            continue  # headings
+        joint, values = _joint(words, f"{path}, line {count}")
+        frames = bodies.setdefault(body, [])
+        if joint <= last.get(body, len(NAMES)):
+            frames.append(np.full((len(NAMES), 4), (np.nan, np.nan, np.nan, 0.0)))
+        frames[-1][joint] = values
+        last[body] = joint
+        progress(count / len(lines), "Reading")
+    if not bodies:
+        raise InvalidFileError(f"{path} has headings but no joints.")
+    return NAMES, np.stack(max(bodies.values(), key=len))
+
+
+def _joint(words: list[bytes], place: str) -> tuple[int, list[float]]:
+    """Return the joint's number, and x, y, z and state."""
+    joint = words[1].strip() if len(words) >= LEAST_WORDS else b""
+    if not joint.isdigit() or len(joint) > 2 or int(joint) >= len(NAMES):
+        raise InvalidFileError(
+            f"{place}: a body, one of {len(NAMES)} joints, its place, turn and confidence"
+            " belong there. The file is damaged or cut short; delete that line."
+        )
+    said = b",".join(words[9:]).strip(b", \t").lower()
+    states = [state for pattern, state in STATES if re.search(pattern, said)]
+    if not states:
+        raise InvalidFileError(
+            f"{place}: no level of confidence ends it. The file is damaged or cut short; delete"
+            " that line."
+        )
+    return int(joint), [*(read_number(word.strip(), place) for word in words[2:5]), states[0]]
+
+
+def _read_frame_lines(
+    lines: list[bytes], path: Path | str, progress: Progress
+) -> tuple[tuple[str, ...], NDArray[np.float64]]:
+    """Return the joints' names, and x y z, shape (n_frames, n_joints, 3)."""
+    header = [word.strip() for word in lines[0].decode("latin-1").split(",")]
+    columns = {azure_joint(word[:-2]) + word[-2:].lower(): at for at, word in enumerate(header)}
+    names = [name for name in NAMES if all(f"{name}.{axis}" in columns for axis in "xyz")]
+    if not names:
+        raise InvalidFileError(f"{path} has no columns x, y and z of any joint.")
+    rows = read_rows(
+        [parted_by_blanks(line) for line in lines[1:]],
+        len(header),
+        path,
+        range(2, len(lines) + 1),
+        progress,
+    )
+    if not len(rows):
+        raise InvalidFileError(f"{path} has headings but no joints.")
+    used = [columns[f"{name}.{axis}"] for name in names for axis in "xyz"]
+    return tuple(names), rows[:, used].reshape(len(rows), len(names), 3)

@@ -1,0 +1,135 @@
+"""Read freemocap's arrays of points, shape (n_frames, n_points, 3)."""
+
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..errors import InvalidFileError
+from ..motion import Tracks
+from ..progress import Progress, unwatched
+from .axes import check_scale, z_up_from_y_up
+from .stored_arrays import MAGIC, read_array
+from .time_stamps import USUAL_RATE
+
+BODY = (
+    "nose", "left_eye_inner", "left_eye", "left_eye_outer", "right_eye_inner", "right_eye",
+    "right_eye_outer", "left_ear", "right_ear", "mouth_left", "mouth_right", "left_shoulder",
+    "right_shoulder", "left_elbow", "right_elbow", "left_wrist", "right_wrist", "left_pinky",
+    "right_pinky", "left_index", "right_index", "left_thumb", "right_thumb", "left_hip",
+    "right_hip", "left_knee", "right_knee", "left_ankle", "right_ankle", "left_heel",
+    "right_heel", "left_foot_index", "right_foot_index",
+)  # fmt: skip
+FINGERS = ("thumb", "index", "middle", "ring", "pinky")
+HAND = ("wrist", *(f"{finger}_{part}" for finger in FINGERS for part in (1, 2, 3, 4)))
+WITH_HANDS = len(BODY) + 2 * len(HAND)
+FACES = (0, 468, 478)
+MILLIMETRE = 0.001
+LARGEST_IN_METRES = 20.0
+"""Extent of a body in its file's units, above which they are no metres."""
+
+
+def is_npy(head: bytes) -> bool:
+    """Tell from the first bytes."""
+    return head.startswith(MAGIC)
+
+
+def read_freemocap(
+    path: Path | str,
+    *,
+    scale: float | None = None,
+    frame_rate: float = USUAL_RATE,
+    progress: Progress = unwatched,
+) -> Tracks:
+    """Read a `.npy` file of freemocap, in metres, Z up; what was not observed is NaN.
+
+    The array tells neither names, unit, axes nor frame rate. Arrays of 33, 75, 543 or 553
+    points are MediaPipe's: body, two hands, face; which hand comes first has changed, so the
+    one nearer to the left wrist is the left. Others are called `point_<number>`. Millimetres,
+    unless the extent is a body's in metres. Up is where a known body has its nose, seen from
+    its ankles; of other points, Z. Which way the actor faces is not changed otherwise.
+
+    Parameters
+    ----------
+    path : Path or str
+    scale : float, metres per unit of the file, or None
+        None: millimetres or metres, as said above.
+    frame_rate : float, hertz
+    progress : Progress
+
+    Returns
+    -------
+    Tracks
+
+    Raises
+    ------
+    InvalidFileError
+        The file is missing, damaged, or holds no points.
+    InvalidSettingError
+        The scale is not positive.
+    SolveCancelled
+        Raised by `progress`.
+    """
+    check_scale(scale)
+    points = read_array(path)
+    if points.ndim != 3 or points.shape[2] != 3:
+        raise InvalidFileError(
+            f"{path} holds an array of shape {points.shape}; points over time have the shape"
+            " (frames, points, 3)."
+        )
+    points = np.where(np.isfinite(points).all(axis=-1)[..., None], points, np.nan)
+    if np.isnan(points).all():
+        raise InvalidFileError(f"{path} has no points that are seen in any frame.")
+    progress(0.5, "Reading")
+    names = _names(points)
+    points = _z_up(points) if names[0] == BODY[0] else points
+    tracks = Tracks(names, points * (_unit(points) if scale is None else scale), frame_rate)
+    progress(1.0, "Reading")
+    return tracks
+
+
+def _names(points: NDArray[np.float64]) -> tuple[str, ...]:
+    n_points = points.shape[1]
+    if n_points == len(BODY):
+        return BODY
+    if n_points - WITH_HANDS not in FACES:
+        return tuple(f"point_{number}" for number in range(1, n_points + 1))
+    first, second = points[:, len(BODY)], points[:, len(BODY) + len(HAND)]
+    left, right = points[:, BODY.index("left_wrist")], points[:, BODY.index("right_wrist")]
+    straight = _apart(first, left) + _apart(second, right)
+    crossed = _apart(first, right) + _apart(second, left)
+    sides = ("left", "right") if straight < crossed else ("right", "left")
+    hands = (f"{side}_hand_{part}" for side in sides for part in HAND)
+    face = (f"face_{number}" for number in range(1, n_points - WITH_HANDS + 1))
+    return (*BODY, *hands, *face)
+
+
+def _apart(one: NDArray[np.float64], other: NDArray[np.float64]) -> float:
+    """Return the usual distance of two points; 0 where they are never seen together."""
+    with np.errstate(over="ignore"):
+        distances = np.linalg.norm(one - other, axis=-1)
+    known = distances[np.isfinite(distances)]
+    return float(np.median(known)) if len(known) else 0.0
+
+
+def _z_up(points: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Turn a known body so that its nose is above its ankles, if they are seen."""
+    ankles = [BODY.index("left_ankle"), BODY.index("right_ankle")]
+    way = points[:, :1] - points[:, ankles]
+    known = way[np.isfinite(way).all(axis=-1)]
+    if not len(known):
+        return points
+    up = np.median(known, axis=0)
+    axis = int(np.argmax(np.abs(up)))
+    if axis == 0:
+        points = np.roll(points, -1, axis=-1)  # x y z -> y z x
+    elif axis == 1:
+        points = z_up_from_y_up(points)
+    return points * (1.0, -1.0, -1.0) if up[axis] < 0.0 else points
+
+
+def _unit(points: NDArray[np.float64]) -> float:
+    """Return metres per unit, of points in the file's units."""
+    spread = np.nanquantile(points, [0.05, 0.95], axis=(0, 1))
+    with np.errstate(over="ignore"):
+        return MILLIMETRE if float(np.ptp(spread, axis=0).max()) > LARGEST_IN_METRES else 1.0

@@ -1,0 +1,181 @@
+"""NumPy's files: UI-PRMD pairs and freemocap's points; headers are not believed."""
+
+import numpy as np
+import pytest
+from joint_files import npy, npz, ui_prmd
+from numpy.testing import assert_allclose, assert_array_equal
+
+from solvers.errors import InvalidFileError
+from solvers.motion import JointRecording, Sensor, Tracks
+from solvers.recordings import (
+    read_freemocap,
+    read_recording,
+    read_ui_prmd,
+    read_ui_prmd_pair,
+)
+from solvers.recordings.freemocap import BODY
+
+NOSE, LEFT_WRIST, RIGHT_WRIST, ANKLES = 0, 15, 16, (27, 28)
+TRIPLE = [NOSE, LEFT_WRIST, RIGHT_WRIST]
+
+
+@pytest.fixture
+def write(tmp_path):
+    def write_bytes(content: bytes):
+        (tmp_path / "take.np").write_bytes(content)
+        return tmp_path / "take.np"
+
+    return write_bytes
+
+
+def test_ui_prmd_is_a_pair_in_one_world(recordings):
+    path = recordings / "kinect" / "ui_prmd" / "m01_s01_e01.npz"
+    with np.load(path, allow_pickle=False) as archive:
+        expected = {name: archive[name] * 0.0002 for name in ("kinect", "markers")}
+
+    recording, markers = read_ui_prmd_pair(path)
+
+    assert_allclose(recording.tracks.positions, expected["kinect"])
+    assert_allclose(markers.positions, expected["markers"])
+    assert (recording.frame_rate, markers.frame_rate) == (30.0, 30.0)
+    assert recording.sensor is Sensor.KINECT_V2
+    apart = recording.tracks.positions[:, 4] - markers.positions[:, :4].mean(axis=1)
+    assert np.linalg.norm(apart, axis=-1).mean() < 0.25  # the head, and the markers around it
+    assert_array_equal(read_ui_prmd(path).tracks.positions, recording.tracks.positions)
+
+
+def test_every_ui_prmd_take_stands_upright_with_left_on_the_left(recordings):
+    paths = sorted((recordings / "kinect" / "ui_prmd").iterdir())
+    for path in paths[::12]:
+        recording = read_recording(path)
+        assert isinstance(recording, JointRecording)
+        usual = dict(
+            zip(recording.names, np.nanmedian(recording.tracks.positions, axis=0), strict=True)
+        )
+        forward = usual["LToes"] - usual["LFoot"] + usual["RToes"] - usual["RFoot"]
+        to_left = usual["LUpArm"] - usual["RUpArm"]
+        assert usual["Head"][2] > usual["Waist"][2] > usual["LFoot"][2], path
+        assert np.cross((0, 0, 1), forward) @ to_left > 0, path
+
+
+def test_ui_prmd_at_the_origin_is_not_observed(write):
+    kinect, markers = np.ones((4, 22, 3), np.int16), np.ones((4, 39, 3), np.int16)
+    kinect[1, 2], markers[3, 5] = 0, 0
+
+    recording, tracks = read_ui_prmd_pair(
+        write(npz(kinect=kinect, markers=markers, unit_m=0.01, frame_rate=30.0)), scale=0.5
+    )
+
+    assert np.argwhere(~recording.tracks.visible).tolist() == [[1, 2]]
+    assert np.argwhere(~tracks.visible).tolist() == [[3, 5]]
+    assert np.nanmax(tracks.positions) == 0.5
+
+
+def pair(n_kinect: int, n_markers: int, unit: float) -> bytes:
+    kinect, markers = np.ones((n_kinect, 22, 3)), np.ones((n_markers, 39, 3))
+    return npz(kinect=kinect, markers=markers, unit_m=unit, frame_rate=30.0)
+
+
+@pytest.mark.parametrize(
+    ("content", "sentence"),
+    [
+        (ui_prmd()[:-30], "cut short or of another kind"),
+        (npz(kinect=np.zeros((3, 22, 3))), "cut short or of another kind"),
+        (npz(kinect=np.zeros(3), markers=np.zeros(3), unit_m=1.0, frame_rate=1.0), "22 joints"),
+        (pair(3, 2, 1.0),
+         "in as many frames"),
+        (pair(3, 3, 0.0),
+         "a unit and a frame rate"),
+        (npz(kinect=np.zeros(20_000_000, np.int8), markers=1.0, unit_m=1.0, frame_rate=1.0),
+         "cut short or of another kind"),
+    ],
+)  # fmt: skip
+def test_what_is_no_ui_prmd_take(write, content, sentence):
+    with pytest.raises(InvalidFileError, match=sentence):
+        read_ui_prmd(write(content))
+
+
+@pytest.fixture
+def person() -> np.ndarray:
+    """MediaPipe's body and hands, metres, Z up, facing -Y; the wrists apart by 1 m."""
+    points = np.random.default_rng(5).normal(scale=0.02, size=(20, 75, 3))
+    points += (0, 0, 1)
+    points[:, NOSE] += (0, -0.1, 0.65)
+    points[:, list(ANKLES)] -= (0, 0, 0.9)
+    points[:, LEFT_WRIST] += (0.5, 0, 0)
+    points[:, RIGHT_WRIST] -= (0.5, 0, 0)
+    points[:, 33:54] += points[:, [RIGHT_WRIST]] - (0, 0, 1)
+    points[:, 54:] += points[:, [LEFT_WRIST]] - (0, 0, 1)
+    points[3, 5] = np.nan
+    return points
+
+
+TURNS = {
+    "z up": np.eye(3),
+    "y up": np.array([[1, 0, 0], [0, 0, -1], [0, 1, 0.0]]),  # x, -z, y
+    "y down, as a camera sees it": np.array([[1, 0, 0], [0, 0, 1], [0, -1, 0.0]]),
+    "upside down": np.diag([1.0, -1, -1]),
+    "x up": np.roll(np.eye(3), -1, axis=0),
+}
+
+
+@pytest.mark.parametrize("unit", [1.0, 0.001])
+@pytest.mark.parametrize("axes", TURNS)
+def test_freemocap_comes_out_upright_in_metres(write, person, unit, axes):
+    """In all axes and units that versions of freemocap had; never mirrored."""
+    into_file = np.linalg.inv(TURNS[axes])
+
+    tracks = read_recording(write(npy(person @ into_file.T / unit)))
+
+    assert isinstance(tracks, Tracks)
+    up = tracks.positions[:, NOSE] - tracks.positions[:, list(ANKLES)].mean(axis=1)
+    assert_allclose(np.median(up, axis=0)[2], 1.55, atol=0.05)
+    before, after = person[0, TRIPLE], tracks.positions[0, TRIPLE]
+    assert np.linalg.det(after) * np.linalg.det(before) > 0
+    assert np.isnan(tracks.positions[3, 5]).all()
+    assert tracks.visible.sum() == 20 * 75 - 1
+
+
+def test_freemocap_hands_are_told_by_the_wrists(write, person):
+    swapped = person.copy()
+    swapped[:, 33:54], swapped[:, 54:] = person[:, 54:], person[:, 33:54]
+
+    right_first = read_freemocap(write(npy(person)))
+    left_first = read_freemocap(write(npy(swapped)))
+
+    assert right_first.names[:33] == BODY
+    assert (right_first.names[33], right_first.names[54]) == (
+        "right_hand_wrist",
+        "left_hand_wrist",
+    )
+    assert (left_first.names[33], left_first.names[54]) == (
+        "left_hand_wrist",
+        "right_hand_wrist",
+    )
+
+
+@pytest.mark.parametrize(
+    ("n_points", "last"), [(33, BODY[-1]), (553, "face_478"), (7, "point_7")]
+)
+def test_freemocap_names_by_the_number_of_points(write, rng, n_points, last):
+    tracks = read_freemocap(write(npy(rng.normal(size=(4, n_points, 3)))), frame_rate=24.0)
+
+    assert tracks.names[-1] == last
+    assert tracks.frame_rate == 24.0
+
+
+@pytest.mark.parametrize(
+    ("content", "sentence"),
+    [
+        (npy(np.zeros((3, 5, 3)))[:-1], "damaged, cut short"),
+        (npy(np.zeros((3, 5, 3))).replace(b"(3, 5, 3)", b"(9, 9, 9)"), "damaged, cut short"),
+        (npy(np.zeros((3, 5, 3))).replace(b"'<f8'", b"'|O8'"), "damaged, cut short"),
+        (npy(np.zeros((3, 5, 3))).replace(b"(3, 5, 3)", b"(-1,-1,3)"), "damaged, cut short"),
+        (npy(np.array(["a", "b"])), "damaged, cut short"),
+        (npy(np.zeros((3, 5, 2))), r"shape \(3, 5, 2\); points over time"),
+        (npy(np.full((3, 5, 3), np.nan)), "no points that are seen"),
+    ],
+)
+def test_what_are_no_points(write, content, sentence):
+    with pytest.raises(InvalidFileError, match=sentence):
+        read_freemocap(write(content))
