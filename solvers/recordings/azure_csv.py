@@ -19,6 +19,7 @@ NAMES = JOINTS[Sensor.AZURE_KINECT]
 MILLIMETRE = 0.001
 PER_JOINT = re.compile(rb"(?i)[^\n]*\n?[ \t]*body id\s*,\s*joint #\s*,\s*x\s*,\s*y\s*,\s*z")
 PER_FRAME = re.compile(rb"(?i)[^\n]*\bpelvis\.x\s*,")
+ONLY_AZURE = re.compile(rb"(?i)[^\n]*(\bspine_?(chest|nav[ae]l)\b|\bclavicle)")
 LEAST_WORDS = 10
 SPELLINGS = {name.upper(): name for name in NAMES} | {"SPINENAVAL": "SpineNavel"}
 STATES = (  # What the SDK calls its levels of confidence, and what a state is.
@@ -30,7 +31,8 @@ STATES = (  # What the SDK calls its levels of confidence, and what a state is.
 
 def is_azure_csv(head: bytes) -> bool:
     """Tell from the first bytes."""
-    return bool(PER_JOINT.match(head) or PER_FRAME.match(head))
+    per_frame = PER_FRAME.match(head) and ONLY_AZURE.match(head)
+    return bool(PER_JOINT.match(head) or per_frame)
 
 
 def azure_joint(name: str) -> str:

@@ -53,7 +53,7 @@ def joint_header(said: Mapping[str, Any], place: str) -> JointHeader:
         )
     rate = said.get("frame_rate")
     try:
-        frame_rate = None if rate in {None, ""} else float(str(rate))
+        frame_rate = None if rate is None or rate == "" else float(str(rate))
     except ValueError:
         frame_rate = 0.0
     if frame_rate is not None and not 0.0 < frame_rate < float("inf"):

@@ -5,7 +5,7 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import NamedTuple, Protocol
 
-from ..errors import InvalidFileError
+from ..errors import InvalidFileError, InvalidMotionError
 from ..motion import JointRecording, Motion, Tracks
 from ..progress import Progress, unwatched
 from .acclaim import read_acclaim
@@ -131,7 +131,10 @@ def read_recording(
         raise InvalidFileError(f"{path} cannot be read ({error.strerror}).") from None
     for known in FORMATS:
         if known.fits(head):
-            return known.read(path, scale=scale, progress=progress)
+            try:
+                return known.read(path, scale=scale, progress=progress)
+            except InvalidMotionError as error:  # Read as it says, but no recording.
+                raise InvalidFileError(f"{path}: {error}") from None
     names = ", ".join(known.name for known in FORMATS if known.read is not _refuse_skeleton)
     raise InvalidFileError(
         f"{path} is of no known format ({names}). Export it as one of these first."

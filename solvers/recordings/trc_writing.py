@@ -10,6 +10,8 @@ from ..progress import Progress, unwatched
 from .axes import y_up_from_z_up
 
 MILLIMETRES_PER_METRE = 1000.0
+NOT_ORIGIN = 1e-6
+"""Millimetres: readers take what is exactly at the origin for not seen."""
 FRAMES_AT_ONCE = 500
 KEYS = (
     "DataRate", "CameraRate", "NumFrames", "NumMarkers", "Units", "OrigDataRate",
@@ -44,6 +46,7 @@ def write_trc(tracks: Tracks, path: Path | str, *, progress: Progress = unwatche
     axes = "\t".join(f"X{number}\tY{number}\tZ{number}" for number in range(1, n_points + 1))
     places = MILLIMETRES_PER_METRE * y_up_from_z_up(tracks.positions)
     places = np.round(places, 6) + 0.0  # No "-0.000000".
+    places[(places == 0.0).all(axis=-1), 0] = NOT_ORIGIN
     places[~tracks.visible] = np.nan
     rows = places.reshape(n_frames, -1)
     with written_whole(path) as part, part.open("w", encoding="utf-8", newline="\n") as file:

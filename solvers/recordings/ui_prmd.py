@@ -75,7 +75,7 @@ def read_ui_prmd_pair(
     n_frames = len(kinect) if kinect.ndim else 0
     shapes = ((n_frames, len(NAMES), 3), (n_frames, len(MARKERS), 3), (), ())
     found = tuple(array.shape for array in (kinect, markers, unit, frame_rate))
-    if found != shapes or not (unit > 0.0 and frame_rate > 0.0):
+    if found != shapes or not (0.0 < unit < np.inf and 0.0 < frame_rate < np.inf):
         raise InvalidFileError(
             f"{path} holds arrays of shapes {', '.join(map(str, found))}; a UI-PRMD take has"
             f" {len(NAMES)} joints and {len(MARKERS)} markers in as many frames, a unit and a"

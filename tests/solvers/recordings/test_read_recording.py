@@ -3,6 +3,7 @@
 import shutil
 from functools import partial
 
+import numpy as np
 import pytest
 
 from solvers.errors import InvalidFileError, InvalidSettingError, SolveCancelled
@@ -110,3 +111,31 @@ def test_a_missing_file_or_a_folder_is_named(tmp_path):
         read_recording(tmp_path / "nowhere.bvh")
     with pytest.raises(InvalidFileError, match="cannot be read"):
         read_recording(tmp_path)
+
+
+def test_four_numbers_in_a_line_are_not_a_body_for_that(tmp_path, rng):
+    """The same data set has joints in pixels too."""
+    pixels = tmp_path / "pixels.txt"
+    rows = np.column_stack([rng.uniform(0, 640, (60, 3)), np.ones(60)])
+    np.savetxt(pixels, rows, fmt="%.2f")
+
+    with pytest.raises(InvalidFileError, match=r"pixels\.txt .* no joints of a body in metres"):
+        read_recording(pixels)
+
+
+def test_a_pelvis_alone_does_not_make_a_table_azures(tmp_path):
+    table = tmp_path / "take.csv"
+    table.write_text(
+        "Frame,Time,Pelvis.x,Pelvis.y,Pelvis.z,Neck.x,Neck.y,Neck.z\n1,0,0,0,1,0,0,2\n"
+    )
+
+    with pytest.raises(InvalidFileError, match="no known format"):
+        read_recording(table)
+
+
+def test_what_no_recording_can_be_is_told_with_the_name_of_the_file(tmp_path):
+    far = tmp_path / "far.npy"
+    np.save(far, np.full((4, 33, 3), 1e30))
+
+    with pytest.raises(InvalidFileError, match=r"far\.npy"):
+        read_recording(far)

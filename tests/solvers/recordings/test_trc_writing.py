@@ -52,3 +52,15 @@ def test_gaps_are_written_blank_and_no_nan_in_words(tmp_path):
         "1\t0.0000000\t11.000000\t1501.000000\t21.000000\t\t\t",
         "2\t0.0100000\t\t\t\t0.000000\t3000.000000\t-2000.000000",
     ]
+
+
+def test_a_point_at_the_origin_stays_seen(tmp_path):
+    """Though others mean by the origin that a point was not seen."""
+    tracks = Tracks(
+        ("root", "head"), np.tile([[[0.0, 0.0, 0.0], [0.0, 0.0, 1.5]]], (5, 1, 1)), 50.0
+    )
+    write_trc(tracks, tmp_path / "take.trc")
+
+    found = read_recording(tmp_path / "take.trc")
+
+    assert_allclose(found.positions, tracks.positions, atol=2e-9)
