@@ -41,18 +41,24 @@ def find_cuts(recording: Motion | Tracks) -> tuple[int, ...]:
     cut, nor does a body that jumps away for less than a quarter of a second and comes back;
     nor does one that is moved as a whole in the same pose (of tracks it does).
     """
-    course, smallest = _course(recording)
-    sizes = np.linalg.norm(np.diff(course, axis=0), axis=-1)
-    moving = np.nanmax(sizes, axis=0, initial=0.0) > MOVES
+    smallest = SMALLEST_MOVE if isinstance(recording, Tracks) else SMALLEST_TURN
+    steps = _all_steps(recording)
+    moving = np.nanmax(steps, axis=0, initial=0.0) > MOVES
     if moving.sum() < FEWEST_JOINTS:
         return ()
-    course, sizes = course[:, moving], sizes[:, moving]
-    cuts = [int(step) + 1 for step in _jumps(sizes, smallest)]
+    # A frame that repeats the one before says nothing of how fast the body moves.
+    steps[np.nanmax(steps, axis=1, initial=0.0) == 0.0] = np.nan
+    cuts = [int(step) + 1 for step in _jumps(steps[:, moving], smallest)]
     place = 0
     while place + 1 < len(cuts):
         start, stop = cuts[place : place + 2]
         brief = is_short(stop - start, recording.frame_rate)
-        if brief and _comes_back(course, start, stop, smallest):
+        before, after = max(start - 2 * AROUND, 0), stop + 2 * AROUND
+        if brief and _comes_back(
+            _course(recording, slice(before, after))[:, moving],
+            slice(start - before, stop - before),
+            smallest,
+        ):
             del cuts[place : place + 2]
         else:
             place += 1
@@ -97,39 +103,50 @@ def _listed(names: list[str]) -> str:
     return " and ".join([", ".join(names[:-1]), names[-1]] if names[:-1] else names)
 
 
-def _course(recording: Motion | Tracks) -> tuple[Array, float]:
-    """Return what jumps, (n_frames, n_joints, n_components), and the smallest usual step."""
+def _course(recording: Motion | Tracks, frames: slice) -> Array:
+    """Return what jumps, in some of the frames, shape (n_frames, n_joints, n_components)."""
     if isinstance(recording, Tracks):
-        return recording.positions, SMALLEST_MOVE
+        return recording.positions[frames]
     skeleton = recording.skeleton
     joints = [joint for joint in range(skeleton.n_joints) if not skeleton.is_end_site(joint)]
     # Twice the quaternion: neighbouring ones are then as far apart as their angle in radians.
-    return 2.0 * unroll(recording.rotations[:, joints]), SMALLEST_TURN
+    return 2.0 * unroll(recording.rotations[frames][:, joints])
 
 
-def _jumps(sizes: Array, smallest: float) -> NDArray[np.intp]:
+def _all_steps(recording: Motion | Tracks) -> Array:
+    n_steps = recording.n_frames - 1
+    n_joints = _course(recording, slice(1)).shape[1]
+    steps = np.empty((n_steps, n_joints))
+    for start in range(0, n_steps, BLOCK):
+        steps[start : start + BLOCK] = _steps(
+            _course(recording, slice(start, start + BLOCK + 1))
+        )
+    return steps
+
+
+def _steps(course: Array) -> Array:
+    """Return how far each joint goes from frame to frame, shape (n_frames - 1, n_joints)."""
+    return np.asarray(np.linalg.norm(np.diff(course, axis=0), axis=-1))
+
+
+def _jumps(steps: Array, smallest: float) -> NDArray[np.intp]:
     """Return the steps, from frame i to i + 1, at which nearly all joints jump."""
-    # A frame that repeats the one before says nothing of how fast the body moves.
-    still = np.nanmax(sizes, axis=1, initial=0.0) == 0.0
-    steps = np.where(still[:, None], np.nan, sizes)
-    usual = np.fmax(_median(steps, 0), smallest)
-    # `_ratios` compares with no less than this: whatever it may find is among these.
-    candidates = np.flatnonzero(_share(sizes / usual, HALF_OF_THEM) >= FAR)
-    found = [
-        block[_is_cut(_ratios(steps, usual, block))]
-        for block in np.array_split(candidates, len(candidates) // BLOCK + 1)
-    ]
+    usual = np.fmax([_median(joint, 0) for joint in steps.T], smallest)
+    found = [np.empty(0, dtype=np.intp)]
+    for start in range(0, len(steps), BLOCK):
+        # `_ratios` compares with no less than this: whatever it may find is among these.
+        ratios = steps[start : start + BLOCK] / usual
+        some = start + np.flatnonzero(_share(ratios, HALF_OF_THEM) >= FAR)
+        found.append(some[_is_cut(_ratios(steps, usual, some))])
     return np.concatenate(found)
 
 
-def _comes_back(course: Array, start: int, stop: int, smallest: float) -> bool:
-    """Tell whether without these frames a body goes no farther than in their time it can."""
-    around = slice(max(start - 2 * AROUND, 0), stop + 2 * AROUND)
-    rest = np.delete(course[around], np.arange(start, stop) - around.start, axis=0)
-    sizes = np.linalg.norm(np.diff(rest, axis=0), axis=-1)
+def _comes_back(course: Array, brief: slice, smallest: float) -> bool:
+    """Tell whether without the brief part a body goes no farther than in that time it can."""
+    sizes = _steps(np.delete(course, brief, axis=0))
     usual = np.fmax(_median(sizes, 0), smallest)
-    ratios = _ratios(sizes, usual, np.array([start - 1 - around.start]))
-    return not _is_cut(ratios, max(FAR, stop - start + 1.0))[0]
+    ratios = _ratios(sizes, usual, np.array([brief.start - 1]))
+    return not _is_cut(ratios, max(FAR, brief.stop - brief.start + 1.0))[0]
 
 
 def _ratios(sizes: Array, usual: Array, at: NDArray[np.intp]) -> Array:

@@ -1,6 +1,7 @@
 """Clean recordings as channels to learn from, all of the same parts and at one frame rate."""
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
+from itertools import pairwise
 
 import numpy as np
 from numpy.typing import NDArray
@@ -8,50 +9,89 @@ from scipy.interpolate import CubicSpline
 
 from ..motion import Motion, Tracks
 from ..progress import Progress
-from .channels import Channels
 from .channels_encode import encode
 from .cuts import find_cuts, is_short, pieces
 from .noise import interpolated
 
 Array = NDArray[np.float64]
 
+MINUTE = 60.0
+"""Seconds, encoded at a time. The few windows across two of them are left out."""
 NEAR_MULTIPLE = 0.02
 """Part by which a frame rate may miss a multiple of another and still count as one."""
 
 
-def encode_examples(
-    examples: Sequence[Motion | Tracks], frame_rate: float, progress: Progress
-) -> tuple[Channels, list[list[Array]]]:
-    """Encode all examples about the means of the first; columns are in its order.
+class ExampleChannels:
+    """All examples as channels, about the means of the first and in its order.
 
-    Each piece of an example is a list of interleaved takes at the frame rate. What an example
-    does not have, or never shows, is NaN.
+    They are encoded whenever they are asked for, a minute at a time, and not kept: many frames
+    take no more memory than few.
     """
-    takes = [piece for example in examples for piece in _whole_pieces(example)]
-    first = encode(takes[0])
-    found = []
-    for index, take in enumerate(takes):
-        channels = encode(take, first.references) if index else first
-        place = {key: part for part, key in enumerate(channels.keys)}
-        columns = np.full((len(channels.values), len(first.keys), 3), np.nan)
-        for part, key in enumerate(first.keys):
-            if key in place:
-                columns[:, part] = channels.values[:, place[key]]
-        flat = columns.reshape(len(columns), -1)
-        seen = np.isfinite(flat).any(axis=0)
-        parts = _at_rate(interpolated(flat), take.frame_rate, frame_rate)
-        found.append([np.where(seen, part, np.nan) for part in parts])
-        progress((index + 1) / len(takes), "Reading examples")
-    return first, found
+
+    def __init__(
+        self, examples: Sequence[Motion | Tracks], frame_rate: float, window: int
+    ) -> None:
+        self._frame_rate, self._window = frame_rate, window
+        self._takes = [
+            (example, *part) for example in examples for part in _whole_pieces(example)
+        ]
+        example, start, stop = self._takes[0]
+        first = encode(example.slice(start, stop))
+        self.keys, self.references = first.keys, first.references
+
+    @property
+    def n_channels(self) -> int:
+        """Number of channels."""
+        return 3 * len(self.keys)
+
+    def read(self, progress: Progress) -> Iterator[list[Array]]:
+        """Yield each take as a list of interleaved clips, shape (n_frames, n_channels).
+
+        Those that are shorter than a window are left out, and so are takes that have no other.
+        What an example does not have, or never shows, is NaN.
+        """
+        for index, (example, start, stop) in enumerate(self._takes):
+            take = example.slice(start, stop)
+            channels = encode(take, self.references)
+            place = {key: part for part, key in enumerate(channels.keys)}
+            columns = np.full((len(channels.values), len(self.keys), 3), np.nan)
+            for part, key in enumerate(self.keys):
+                if key in place:
+                    columns[:, part] = channels.values[:, place[key]]
+            flat = columns.reshape(len(columns), -1)
+            seen = np.isfinite(flat).any(axis=0)
+            clips = _at_rate(interpolated(flat), take.frame_rate, self._frame_rate)
+            if long := [clip for clip in clips if len(clip) >= self._window]:
+                yield [np.where(seen, clip, np.nan) for clip in long]
+            progress((index + 1) / len(self._takes), "Reading examples")
 
 
-def moments(clips: Sequence[Array]) -> tuple[Array, Array]:
-    """Return mean and standard deviation of each channel over the clips that have it."""
-    n_frames = np.array([len(clip) for clip in clips])
-    count = np.maximum(n_frames @ np.array([np.isfinite(clip[0]) for clip in clips]), 1)
-    mean = sum(np.nan_to_num(clip).sum(axis=0) for clip in clips) / count
-    square = sum((np.nan_to_num(clip - mean) ** 2).sum(axis=0) for clip in clips)
-    return np.asarray(mean), np.sqrt(square / count)
+class Moments:
+    """Means and standard deviations of channels over the takes that have them."""
+
+    def __init__(self, n_channels: int) -> None:
+        self.means = np.empty((0, n_channels))
+        """Of each take; NaN where it lacks the channel."""
+        self._counts, self._squares = np.empty((0, 1)), np.empty((0, n_channels))
+
+    def add(self, clips: Sequence[Array]) -> None:
+        """Add a take, a list of clips."""
+        count = sum(map(len, clips))
+        mean = sum(clip.sum(axis=0) for clip in clips) / count
+        square = sum(((clip - mean) ** 2).sum(axis=0) for clip in clips)
+        self.means = np.vstack([self.means, mean])
+        self._squares = np.vstack([self._squares, square])
+        self._counts = np.vstack([self._counts, [[count]]])
+
+    def total(self) -> tuple[Array, Array]:
+        """Return mean and standard deviation of each channel over all takes."""
+        has = np.isfinite(self.means)
+        counts = self._counts * has
+        n_frames = np.maximum(counts.sum(axis=0), 1)
+        mean = (counts * np.nan_to_num(self.means)).sum(axis=0) / n_frames
+        between = counts * (np.nan_to_num(self.means) - mean) ** 2
+        square = (np.nan_to_num(self._squares) + between).sum(axis=0)
+        return mean, np.sqrt(square / n_frames)
 
 
 def _at_rate(values: Array, frame_rate: float, wanted: float) -> list[Array]:
@@ -70,11 +110,23 @@ def _at_rate(values: Array, frame_rate: float, wanted: float) -> list[Array]:
     return [np.asarray(spline(times))]
 
 
-def _whole_pieces(example: Motion | Tracks) -> list[Motion | Tracks]:
-    """Return the pieces of which an example was joined, without those that show no movement."""
+def _whole_pieces(example: Motion | Tracks) -> list[tuple[int, int]]:
+    """Return first and last-but-one frames of the pieces of an example that show movement.
+
+    Pieces are those of which it was joined, and of long ones each minute.
+    """
     found = [
-        example.slice(start, stop)
+        (start, stop)
         for start, stop in pieces(example, find_cuts(example))
         if not is_short(stop - start, example.frame_rate)
     ]
-    return found or [example]
+    return [
+        part for piece in found or [(0, example.n_frames)] for part in _minutes(*piece, example)
+    ]
+
+
+def _minutes(start: int, stop: int, example: Motion | Tracks) -> Iterator[tuple[int, int]]:
+    """Yield parts of at most two minutes and, but for a whole piece, at least one."""
+    n_parts = max(int((stop - start) / (MINUTE * example.frame_rate)), 1)
+    edges = np.linspace(start, stop, n_parts + 1).astype(int)
+    yield from pairwise(edges.tolist())

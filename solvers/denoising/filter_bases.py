@@ -13,8 +13,8 @@ from ..files import read_archive, write_archive
 from ..motion import Motion, Tracks
 from ..progress import Progress, unwatched, within
 from ..settings import Settings, setting
-from .example_channels import encode_examples, moments
-from .lag_covariance import lag_products, strongest
+from .example_channels import ExampleChannels, Moments
+from .lag_covariance import LagCovariance, strongest
 from .prior import n_slow_waves
 
 Array = NDArray[np.float64]
@@ -185,9 +185,10 @@ def learn_filter_bases(
     """Learn filter bases from clean recordings by multichannel singular spectrum analysis.
 
     The eigenvectors of the lag covariance of all channels [1]_. The covariance comes from a
-    recursion over lags, clip by clip, so the matrix of all windows is never built: many frames
-    take no more memory than few. Rigs may differ where their joints have humanoid roles; clips
-    that lack a joint tell nothing of it. Nothing is learned across a cut.
+    recursion over lags, clip by clip, so the matrix of all windows is never built, and clips
+    are encoded a minute at a time: many frames take no more memory than few. Rigs may differ
+    where their joints have humanoid roles; clips that lack a joint tell nothing of it. Nothing
+    is learned across a cut.
 
     Parameters
     ----------
@@ -213,62 +214,52 @@ def learn_filter_bases(
     ----------
     .. [1] Lou, Chai (2010). Example-based human motion denoising. IEEE TVCG 16(5), section 3.
     """
-    if not examples:
-        raise InvalidMotionError("There is no example to learn from; choose clean clips.")
-    if len({isinstance(example, Motion) for example in examples}) > 1:
-        raise InvalidMotionError("Learn from motions or from tracks, not from both at once.")
-    first, pieces = encode_examples(examples, settings.frame_rate, within(progress, 0.0, 0.6))
+    _check(examples)
     window = settings.n_frames
-    pieces = [[clip for clip in piece if len(clip) >= window] for piece in pieces]
-    pieces = [piece for piece in pieces if piece]
-    clips = [clip for piece in pieces for clip in piece]
-    if not clips:
+    channels = ExampleChannels(examples, settings.frame_rate, window)
+    moments = Moments(channels.n_channels)
+    for clips in channels.read(within(progress, 0.0, 0.4)):
+        moments.add(clips)
+    if not len(moments.means):
         raise InvalidMotionError(
             f"No example is as long as the window of {settings.window:.2g} s; choose longer"
             " ones or a shorter window."
         )
-    mean, spread = moments(clips)
+    mean, spread = moments.total()
     if spread.max() < AT_REST:
         raise InvalidMotionError(
             "Nothing that was observed in the examples moves; choose clips with movement."
         )
     moving = np.flatnonzero(spread >= min(STILL, spread.max()))
-    pieces = [[clip[:, moving] for clip in piece] for piece in pieces]
-    clips = [clip for piece in pieces for clip in piece]
-    progress(0.7, "Finding patterns")
-    about_all = _covariance(clips, [mean[moving]] * len(clips), window)
-    values, vectors = strongest(about_all, KEPT_ENERGY)
-    piece_means = [np.concatenate(piece).mean(axis=0) for piece in pieces]
-    own_means = np.repeat(piece_means, [len(piece) for piece in pieces], axis=0)
+    about_all, about_own = (LagCovariance(len(moving), window) for _ in range(2))
+    reading = channels.read(within(progress, 0.4, 0.8))
+    for clips, own in zip(reading, moments.means, strict=True):
+        for clip in clips:
+            about_all.add(clip[:, moving], mean[moving])
+            about_own.add(clip[:, moving], own[moving])
+    progress(0.8, "Finding patterns")
+    values, vectors = strongest(about_all.total(), KEPT_ENERGY)
     patterns = np.zeros((len(values), window, len(mean)))
     patterns[:, :, moving] = vectors.T.reshape(len(values), window, len(moving))
-    slow, fast = _waves(_covariance(clips, list(own_means), window), window)
+    slow, fast = _waves(about_own.total(), window)
     progress(1.0, "Learned")
-    rows = np.zeros((len(first.keys), N_REFERENCE))
-    for row, key in zip(rows, first.keys, strict=True):
-        row[: len(first.references[key])] = first.references[key]
+    rows = np.zeros((len(channels.keys), N_REFERENCE))
+    for row, key in zip(rows, channels.keys, strict=True):
+        row[: len(channels.references[key])] = channels.references[key]
+    means = moments.means[:, moving]
     return FilterBases(
-        np.array(first.keys), rows, mean, patterns, values, moving, slow, fast,
-        np.where(np.isfinite(piece_means), piece_means, mean[moving]),
+        np.array(channels.keys), rows, mean, patterns, values, moving, slow, fast,
+        np.where(np.isfinite(means), means, mean[moving]),
         np.array(settings.frame_rate), np.array(len(examples)),
         np.array(isinstance(examples[0], Tracks)),
     )  # fmt: skip
 
 
-def _covariance(clips: Sequence[Array], means: Sequence[Array], window: int) -> Array:
-    """Return the lag covariance of clips, each about a mean of its own.
-
-    A channel that a clip lacks (NaN) is judged by the others. So that the result stays a
-    covariance, what two channels have in common weakens where they are seldom seen together.
-    """
-    centred = [np.nan_to_num(clip - mean) for clip, mean in zip(clips, means, strict=True)]
-    total = lag_products(centred, window)
-    has = np.array([np.isfinite(clip[0]) for clip in clips])
-    n_windows = np.array([len(clip) - window + 1 for clip in clips]) @ has
-    scale = np.tile(np.sqrt(n_windows), window)
-    total /= scale
-    total /= scale[:, None]
-    return total
+def _check(examples: Sequence[Motion | Tracks]) -> None:
+    if not examples:
+        raise InvalidMotionError("There is no example to learn from; choose clean clips.")
+    if len({isinstance(example, Motion) for example in examples}) > 1:
+        raise InvalidMotionError("Learn from motions or from tracks, not from both at once.")
 
 
 def _waves(covariance: Array, window: int) -> tuple[Array, Array]:

@@ -1,7 +1,5 @@
 """The covariance of all windows of clips, without ever building the windows."""
 
-from collections.abc import Sequence
-
 import numpy as np
 from numpy.typing import NDArray
 from scipy.linalg import eigh
@@ -9,45 +7,84 @@ from scipy.sparse.linalg import eigsh
 
 Array = NDArray[np.float64]
 
+MOST_ENDS = 64
+"""Clips whose first and last frames are kept until they are summed up."""
 FIRST_GUESS = 160
 """Number of eigenvectors asked for at first; doubled until they hold enough."""
 
 
-def lag_products(clips: Sequence[Array], window: int) -> Array:
-    """Return the sum over the windows of all clips of their outer products with themselves.
+class LagProducts:
+    """The sum over the windows of all clips of their outer products with themselves.
 
     The block of lags (j + 1, k + 1) is that of (j, k) without the first frame and with one
-    more at the end, of every clip: only the first row of blocks costs a pass over the frames.
-
-    Parameters
-    ----------
-    clips : sequence of arrays, shape (n_frames, n_channels)
-        Each of at least `window` frames.
-    window : int, frames
-
-    Returns
-    -------
-    Array
-        Shape (window * n_channels, window * n_channels), frames outermost: C_D S_N of
-        [LC10], eq. 2.3 to 2.5 of [LOU12], with channels and lags interchanged.
+    more at the end, of every clip: only the first row of blocks costs a pass over the frames,
+    and only the ends of clips have to be kept.
     """
-    n_channels = clips[0].shape[1]
-    blocks = np.empty((window, n_channels, window, n_channels))
-    for lag in range(window):
-        blocks[0, :, lag] = sum(
-            clip[: len(clip) - window + 1].T @ clip[lag : len(clip) - window + 1 + lag]
-            for clip in clips
-        )
-    heads = np.stack([clip[: window - 1] for clip in clips])
-    tails = np.stack([clip[len(clip) - window + 1 :] for clip in clips])
-    for row in range(window - 1):
-        change = np.tensordot(tails[:, row], tails[:, row:], axes=(0, 0))
-        change -= np.tensordot(heads[:, row], heads[:, row:], axes=(0, 0))
-        blocks[row + 1, :, row + 1 :] = blocks[row, :, row:-1] + change
-    for row in range(1, window):
-        blocks[row, :, :row] = blocks[:row, :, row].transpose(2, 0, 1)
-    size = window * n_channels
-    return blocks.reshape(size, size)
+
+    def __init__(self, n_channels: int, window: int) -> None:
+        size = window * n_channels
+        self._window, self._sum = window, np.zeros((size, size))
+        self._first = np.zeros((n_channels, window, n_channels))
+        self._heads, self._tails = list[Array](), list[Array]()
+
+    def add(self, clip: Array) -> None:
+        """Add the windows of a clip, shape (n_frames, n_channels), of at least one window."""
+        last = len(clip) - self._window + 1
+        for lag in range(self._window):
+            self._first[:, lag] += clip[:last].T @ clip[lag : last + lag]
+        self._heads.append(clip[: self._window - 1].copy())
+        self._tails.append(clip[last:].copy())
+        if len(self._heads) == MOST_ENDS:
+            self._sum_up()
+
+    def total(self) -> Array:
+        """Return the sum.
+
+        Shape (window * n_channels, window * n_channels), frames outermost: C_D S_N of [LC10],
+        eq. 2.3 to 2.5 of [LOU12], with channels and lags interchanged.
+        """
+        if self._heads:
+            self._sum_up()
+        return self._sum
+
+    def _sum_up(self) -> None:
+        """Add what came since the last time, and forget it."""
+        n_channels, window, _ = self._first.shape
+        blocks = np.empty((window, n_channels, window, n_channels))
+        blocks[0] = self._first
+        heads, tails = np.stack(self._heads), np.stack(self._tails)
+        for row in range(window - 1):
+            change = np.tensordot(tails[:, row], tails[:, row:], axes=(0, 0))
+            change -= np.tensordot(heads[:, row], heads[:, row:], axes=(0, 0))
+            blocks[row + 1, :, row + 1 :] = blocks[row, :, row:-1] + change
+        for row in range(1, window):
+            blocks[row, :, :row] = blocks[:row, :, row].transpose(2, 0, 1)
+        self._sum += blocks.reshape(self._sum.shape)
+        self._first[:] = 0.0
+        self._heads, self._tails = [], []
+
+
+class LagCovariance:
+    """The lag covariance of clips, each about a mean that is given with it.
+
+    A channel that a clip lacks (NaN) is judged by the others. So that the result stays a
+    covariance, what two channels have in common weakens where they are seldom seen together.
+    """
+
+    def __init__(self, n_channels: int, window: int) -> None:
+        self._products, self._window = LagProducts(n_channels, window), window
+        self._n_windows = np.zeros(n_channels)
+
+    def add(self, clip: Array, mean: Array) -> None:
+        """Add a clip, shape (n_frames, n_channels)."""
+        self._products.add(np.nan_to_num(clip - mean))
+        self._n_windows += (len(clip) - self._window + 1) * np.isfinite(clip[0])
+
+    def total(self) -> Array:
+        """Return the covariance, as `LagProducts` does."""
+        scale = np.tile(np.sqrt(self._n_windows), self._window)
+        total = self._products.total() / scale
+        return np.asarray(total / scale[:, None])
 
 
 def strongest(covariance: Array, energy: float) -> tuple[Array, Array]:

@@ -7,7 +7,7 @@ from ..progress import Progress
 from .channels import Channels
 from .denoise_estimate import Estimate
 from .filter_bases import FilterBases, FilterBasesSettings
-from .lag_covariance import lag_products, strongest
+from .lag_covariance import LagProducts, strongest
 from .noise import hampel, interpolated
 
 Array = NDArray[np.float64]
@@ -146,8 +146,10 @@ def _patterns(
     rough = [interpolated(hampel(take, 4, 3.5)) for take in takes]
     mean = np.concatenate(rough).mean(axis=0)
     window = min(FilterBasesSettings().n_frames, len(takes[-1]))
-    covariance = lag_products([take - mean for take in rough], window)
-    _, vectors = strongest(covariance, ENERGY)
+    products = LagProducts(len(mean), window)
+    for take in rough:
+        products.add(take - mean)
+    _, vectors = strongest(products.total(), ENERGY)
     patterns = vectors.T.reshape(-1, window, len(mean))
     return patterns, mean, f"The take's own patterns: {unfit}."
 

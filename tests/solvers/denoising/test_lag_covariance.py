@@ -1,23 +1,66 @@
 """The covariance of all windows must be exact, though the windows are never built."""
 
+import tracemalloc
+
 import numpy as np
 import pytest
 from numpy.lib.stride_tricks import sliding_window_view
 from numpy.testing import assert_allclose
 
 from solvers.denoising import learn_filter_bases
-from solvers.denoising.lag_covariance import lag_products, strongest
+from solvers.denoising.lag_covariance import MOST_ENDS, LagProducts, strongest
+from solvers.samples import GaitSettings, walking_gait
 
 
 @pytest.mark.parametrize(("n_frames", "window"), [(40, 7), (9, 9), (10, 9), (30, 1)])
 def test_equals_the_product_of_the_trajectory_matrix(rng, n_frames, window):
     values = rng.normal(size=(n_frames, 3)).cumsum(axis=0)
 
-    products = lag_products([values], window)
+    products = LagProducts(3, window)
+    products.add(values)
 
     trajectories = sliding_window_view(values, window, axis=0).transpose(0, 2, 1)
     matrix = trajectories.reshape(len(trajectories), -1)
-    assert_allclose(products, matrix.T @ matrix, rtol=1e-10, atol=1e-9)
+    assert_allclose(products.total(), matrix.T @ matrix, rtol=1e-10, atol=1e-9)
+
+
+def test_many_clips_are_summed_up_as_they_come(rng):
+    clips = [rng.normal(size=(rng.integers(5, 12), 2)) for _ in range(2 * MOST_ENDS + 3)]
+    products = LagProducts(2, 5)
+    for clip in clips:
+        products.add(clip)
+
+    windows = [sliding_window_view(clip, 5, axis=0).transpose(0, 2, 1) for clip in clips]
+    matrix = np.concatenate(windows).reshape(-1, 10)
+    assert_allclose(products.total(), matrix.T @ matrix, rtol=1e-10, atol=1e-9)
+
+
+def test_many_frames_take_no_more_memory_than_few():
+    few, many = (
+        walking_gait(GaitSettings(duration=seconds, frame_rate=30.0)) for seconds in (60, 600)
+    )
+
+    assert peak_of_learning(many) < 1.1 * peak_of_learning(few)
+
+
+def peak_of_learning(example) -> int:
+    tracemalloc.start()
+    learn_filter_bases([example])
+    peak = tracemalloc.get_traced_memory()[1]
+    tracemalloc.stop()
+    return peak
+
+
+def test_a_long_example_is_learned_from_minute_by_minute():
+    """It has one mean pose for each, and the same patterns but for those across the minutes."""
+    walk = walking_gait(GaitSettings(duration=130.0, frame_rate=30.0))
+    halves = [walk.slice(0, 1950), walk.slice(1950, 3900)]
+
+    whole, parts = learn_filter_bases([walk]), learn_filter_bases(halves)
+
+    assert len(whole.clip_means) == 2
+    assert_allclose(whole.clip_means, parts.clip_means, atol=1e-6)
+    assert_allclose(whole.slow, parts.slow, rtol=1e-6, atol=1e-9)
 
 
 def test_patterns_hold_the_share_that_is_asked_for(rng):
