@@ -10,6 +10,8 @@ from ..errors import InvalidFileError
 USUAL_RATE = 30.0
 """Hertz, of every Kinect in good light."""
 COMMON_RATES = (5.0, 10.0, 15.0, 24.0, 25.0, 30.0, 50.0, 60.0, 90.0, 100.0, 120.0)
+DRIFT = 0.5
+"""Frames by which stamps may be off a constant rate and still be rounded ones."""
 NEAR = 0.03
 """Share by which a measured rate may differ from the common one that is meant."""
 SLOWEST, FASTEST = 0.1, 10_000.0
@@ -23,6 +25,27 @@ NEARBY = 0.5
 """Frame times around a frame up to which it stands for moments in a gap."""
 COINCIDES = 1e-6
 MOST_TIMES_LONGER, MOST_SPARE_FRAMES = 10, 1000
+
+
+def even_rate(times: NDArray[np.float64], said: float | None) -> float | None:
+    """Return the rate of stamps that run evenly to within half a frame, as rounded ones do.
+
+    Parameters
+    ----------
+    times : float array, shape (n_frames,), seconds, at least two, always increasing
+    said : float, hertz, or None
+        The frame rate that the file states: it counts if the stamps bear it out.
+
+    Returns
+    -------
+    float or None
+        None where they are uneven, or frames were left out: see `ConstantRate`.
+    """
+    since, frames = times - times[0], np.arange(len(times))
+    for rate in (said, frames[-1] / since[-1]):
+        if rate is not None and np.abs(since * rate - frames).max() < DRIFT:
+            return float(rate)
+    return None
 
 
 class ConstantRate:
@@ -39,6 +62,8 @@ class ConstantRate:
     path : Path or str
         For error messages.
     times : float array, shape (n_in_file,), seconds
+    said : float, hertz, or None
+        The frame rate that the file states: it counts if the stamps come near it.
 
     Raises
     ------
@@ -47,9 +72,11 @@ class ConstantRate:
     """
 
     frame_rate: float
-    """The one that was measured, in hertz, or the common one within 3 % of it."""
+    """The one that was measured, in hertz, or the stated or a common one within 3 % of it."""
 
-    def __init__(self, path: Path | str, times: NDArray[np.float64]) -> None:
+    def __init__(
+        self, path: Path | str, times: NDArray[np.float64], said: float | None = None
+    ) -> None:
         usable = np.isfinite(times) & (np.abs(np.nan_to_num(times)) < LATEST)
         latest = np.maximum.accumulate(np.where(usable, times, -np.inf))
         earlier = np.concatenate([[-np.inf], latest[:-1]])
@@ -61,7 +88,7 @@ class ConstantRate:
             )
         seen = times[self._kept] - times[self._kept[0]]
         steps = np.diff(seen)
-        self.frame_rate = _frame_rate(path, steps)
+        self.frame_rate = _frame_rate(path, steps, said)
         n_frames = int(np.floor(seen[-1] * self.frame_rate + NEARBY)) + 1
         if n_frames > MOST_TIMES_LONGER * len(seen) + MOST_SPARE_FRAMES:
             raise InvalidFileError(
@@ -134,9 +161,9 @@ class ConstantRate:
         return result
 
 
-def _frame_rate(path: Path | str, steps: NDArray[np.float64]) -> float:
+def _frame_rate(path: Path | str, steps: NDArray[np.float64], said: float | None) -> float:
     if not len(steps):
-        return USUAL_RATE
+        return said or USUAL_RATE
     with np.errstate(over="ignore"):
         rate = _measured_rate(steps)
     if not SLOWEST <= rate <= FASTEST:
@@ -144,6 +171,8 @@ def _frame_rate(path: Path | str, steps: NDArray[np.float64]) -> float:
             f"{path}: by its time stamps it has {rate:.3g} frames per second, which cannot be."
             " Mend the column of time stamps."
         )
+    if said is not None and abs(rate / said - 1.0) <= NEAR:
+        return said
     nearest = min(COMMON_RATES, key=lambda common: abs(common - rate))
     return nearest if abs(rate / nearest - 1.0) <= NEAR else rate
 

@@ -11,10 +11,10 @@ from ..errors import InvalidFileError
 from ..motion import Tracks
 from ..progress import Progress, unwatched, within
 from .axes import FEWEST_JOINTS_OF_A_BODY, check_scale
-from .marker_times import at_constant_rate
 from .names import shown
 from .points import guess_unit_of_points, point_names, points_z_up, said_unit
 from .text import read_bytes, read_number
+from .time_stamps import ConstantRate, even_rate
 
 FIRST_LINES = 30
 """Within these the header ends."""
@@ -28,6 +28,7 @@ ROWS_PER_REPORT = 1000
 SLOWEST, FASTEST = 1e-3, 1e6
 MOST_BLANKS = 10
 FREE_CELLS = 1_000_000
+MILLISECOND = 0.001
 
 
 class _Header(NamedTuple):
@@ -50,11 +51,11 @@ def read_trc(
     counted, whatever the header says; columns beyond the last name are markers without one.
 
     The frame rate is the DataRate of the header if the times of the frames bear it out, else
-    that of the times; frames that were left out are gaps, and uneven times are resampled
-    (`at_constant_rate`). Up is what the first line says in a cell such as `Y up`, as our own
-    files do; else it is guessed to be Y or Z from a body's points (`points_z_up`), and is Y, as
-    the format has it, where they are too few for a body. Which way the actor faces is not
-    changed.
+    that of the times, in seconds or, where only they fit it, milliseconds; frames that were
+    left out are gaps, and uneven times are resampled (`ConstantRate`). Up is what the first
+    line says in a cell such as `Y up`, as our own files do; else it is guessed to be Y or Z
+    from a body's points (`points_z_up`), and is Y, as the format has it, where they are too few
+    for a body. Which way the actor faces is not changed.
 
     Parameters
     ----------
@@ -235,10 +236,19 @@ def _at_constant_rate(
 ) -> tuple[NDArray[np.float64], float]:
     """Go by the times; where they do not increase, by the frame numbers; else by neither."""
     rate = said
-    if len(times) > 1 and (np.diff(times) > 0.0).all():
-        points, rate = at_constant_rate(points, times, said, path)
-    elif said is not None and len(times) > 1 and (np.diff(frames) > 0.0).all():
-        points, rate = at_constant_rate(points, frames / said, said, path)
+    if said is not None and not _increases(times) and _increases(frames):
+        times = frames / said
+    if _increases(times):
+        if said is not None and even_rate(MILLISECOND * times, said) == said:
+            times = MILLISECOND * times
+        rate = even_rate(times, said)
+        if rate is None:
+            clock = ConstantRate(path, times, said)
+            points, rate = clock.positions(points), clock.frame_rate
     if rate is None or not SLOWEST < rate < FASTEST:
         raise InvalidFileError(f"{path} does not say its frame rate.")
     return points, rate
+
+
+def _increases(values: NDArray[np.float64]) -> bool:
+    return len(values) > 1 and bool((np.diff(values) > 0.0).all())

@@ -161,6 +161,13 @@ def test_columns_beyond_the_names_are_markers_without_one(read):
     assert_allclose(tracks.positions[2, 2], (0.005, -0.007, 0.006))
 
 
+def test_times_in_milliseconds_are_seen_by_the_stated_rate(read):
+    tracks = read(re.sub(r"\t0\.0(\d)\t", r"\t\g<1>0\t", FILE))
+
+    assert tracks.frame_rate == 100.0
+    assert_array_equal(tracks.positions, read(FILE).positions)
+
+
 def test_frame_numbers_serve_where_the_times_do_not(read):
     tracks = read(re.sub(r"\t0\.0\d\t", "\t0.00\t", FILE).replace("\n3\t", "\n4\t"))
 
