@@ -59,7 +59,8 @@ class Denoised:
     """A clean recording, and how sure each part of it is."""
 
     recording: Motion | Tracks
-    """Same joints or points, same frames; no NaN is left."""
+    """Same joints or points, same frames; no NaN is left, but of points that neither the take
+    nor the examples ever show."""
     outliers: NDArray[np.bool_]
     """Where the input was taken for a spike, shape (n_frames, n_joints)."""
     confidence: Array
@@ -180,14 +181,27 @@ def _denoised_piece(
     cleaned = _kept_where_unchanged(piece, cleaned, settings)
     if limits is not None and isinstance(cleaned, Motion):
         cleaned = keep_within(cleaned, limits)
+    confidence = _confidence(_worst(piece, channels, estimate.deviation), filled)
+    if isinstance(cleaned, Tracks):
+        unknown = _never_shown(cleaned.names, piece, bases)
+        confidence[:, unknown] = 0.0
+        cleaned = cleaned.with_positions(np.where(unknown[:, None], np.nan, cleaned.positions))
     return Denoised(
         cleaned,
         (_worst(piece, channels, spikes) > 0.0) & _seen(piece),
-        _confidence(_worst(piece, channels, estimate.deviation), filled),
+        confidence,
         estimate.iterations,
         estimate.converged,
         used,
     )
+
+
+def _never_shown(
+    names: Sequence[str], piece: Motion | Tracks, bases: FilterBases | None
+) -> NDArray[np.bool_]:
+    """Tell which points neither this piece nor the examples show, shape (n_points,)."""
+    told = bases.reference_of if bases else {}
+    return np.asarray(~_seen(piece).any(axis=0) & [name not in told for name in names])
 
 
 def _filled(
