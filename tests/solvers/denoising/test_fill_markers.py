@@ -182,6 +182,22 @@ def test_a_marker_that_nothing_shows_stays_unknown(body):
     assert (done.confidence[:, 4] == 0.0).all()
 
 
+def test_a_point_that_blinks_between_long_gaps_does_not_drift_away():
+    rng = np.random.default_rng(1)
+    time = np.arange(900) / 400.0
+    way = np.stack([np.sin(3 * time), np.cos(2 * time), 1 + 0.3 * np.sin(5 * time)], axis=1)
+    places = np.full((900, 1, 3), np.nan)
+    for start in rng.integers(0, 860, 12):
+        blinks = start + np.arange(0, 30, 3)
+        places[blinks, 0] = way[blinks] + rng.normal(0.0, 0.001, (10, 3))
+
+    found = denoise(Tracks(("slot",), places, 400.0)).recording.positions
+
+    error = np.linalg.norm(found[:, 0] - way, axis=1)
+    assert np.median(error) < 0.15
+    assert error.max() < 4.0
+
+
 def test_a_marker_that_only_examples_show_is_known_from_them(recordings):
     take = read_c3d(recordings / "mocap" / "05_13.c3d")
     truth = take.positions[:1200:4, :41]
