@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..errors import InvalidMotionError
-from ..motion import Motion, Tracks
+from ..motion import JointLimits, Motion, Tracks
 from ..progress import Progress, unwatched, within
 from ..settings import Settings, setting
 from .channels import CENTIMETRES, Channels
@@ -19,7 +19,6 @@ from .denoise_groups import estimate_in_groups
 from .fill_markers import FilledMarkers, fill_markers
 from .filter_bases import FilterBases
 from .impossible_turns import impossible_turns
-from .joint_limits import JointLimits
 from .keep_within import keep_within
 from .published import filter_as_published
 

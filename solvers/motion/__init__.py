@@ -20,6 +20,7 @@ from .contacts import (
 from .depth_sensors import JOINTS, Sensor, joint_parents
 from .humanoid import HUMANOID_ROLES, HumanoidMap, find_humanoid_map
 from .humanoid_names import roles_by_name
+from .joint_limits import JointLimits, load_joint_limits
 from .joint_recording import JointRecording
 from .kinematics import WorldPoses, forward_kinematics, local_rotations, world_poses
 from .limb_ik import ReachSettings, reach
@@ -36,6 +37,7 @@ __all__ = [
     "Alignment",
     "ContactSettings",
     "HumanoidMap",
+    "JointLimits",
     "JointRecording",
     "Motion",
     "ReachSettings",
@@ -55,6 +57,7 @@ __all__ = [
     "joint_parents",
     "leg_length",
     "linear_velocities",
+    "load_joint_limits",
     "local_rotations",
     "reach",
     "resample",

@@ -13,6 +13,7 @@
 """
 
 from .acclaim import read_acclaim
+from .acclaim_limits import read_acclaim_limits
 from .azure_csv import read_azure_csv
 from .azure_json import read_azure_json
 from .bvh import read_bvh
@@ -40,6 +41,7 @@ from .ui_prmd import read_ui_prmd, read_ui_prmd_pair
 __all__ = [
     "format_of",
     "read_acclaim",
+    "read_acclaim_limits",
     "read_azure_csv",
     "read_azure_json",
     "read_bvh",

@@ -11,7 +11,6 @@ from typing import Any
 from solvers.denoising import (
     DenoiseSettings,
     FilterBases,
-    JointLimits,
     Method,
     denoise,
     find_worst_spots,
@@ -21,7 +20,14 @@ from solvers.denoising import (
     measure_quality,
     plant_feet,
 )
-from solvers.motion import Motion, Tracks, detect_contacts, forward_kinematics, resample
+from solvers.motion import (
+    JointLimits,
+    Motion,
+    Tracks,
+    detect_contacts,
+    forward_kinematics,
+    resample,
+)
 from solvers.progress import Progress
 from solvers.samples import CorruptionSettings, GaitSettings, corrupt, walking_gait
 
