@@ -7,7 +7,7 @@ import zlib
 from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
 from pathlib import Path
-from tempfile import NamedTemporaryFile
+from tempfile import mkstemp
 from tokenize import TokenError
 from typing import Any
 
@@ -37,10 +37,10 @@ def written_whole(path: Path | str) -> Iterator[Path]:
     """
     path = Path(path)
     try:
-        with NamedTemporaryFile(
-            dir=path.parent, prefix=f".{path.stem[:40]}.", suffix=path.suffix, delete=False
-        ) as file:
-            part = Path(file.name)
+        # No NamedTemporaryFile: a Ctrl-C that falls into its __del__ is lost.
+        descriptor, name = mkstemp(path.suffix, f".{path.stem[:40]}.", path.parent)
+        os.close(descriptor)
+        part = Path(name)
         try:
             yield part
             part.chmod(0o666 & ~_umask())
