@@ -11,7 +11,19 @@
 60
 """
 
+from .key_curves import KeyCurve
+from .reduce_keys import SparseMotion, UnbakeSettings, reduce_keys
 from .retarget import RetargetSettings, RootMotion, retarget
 from .root_motion import GroundPath, ground_path
 
-__all__ = ["GroundPath", "RetargetSettings", "RootMotion", "ground_path", "retarget"]
+__all__ = [
+    "GroundPath",
+    "KeyCurve",
+    "RetargetSettings",
+    "RootMotion",
+    "SparseMotion",
+    "UnbakeSettings",
+    "ground_path",
+    "reduce_keys",
+    "retarget",
+]

@@ -153,7 +153,9 @@ def retarget(
     everywhere[:, list(target.kept)] = rotations
     result = Motion(target_skeleton, everywhere, places, motion.frame_rate)
     progress(0.9, "Carrying the travel")
-    return _with_travel(result, target_map, settings)
+    result = _with_travel(result, target_map, settings)
+    progress(1.0, "Retargeted")
+    return result
 
 
 def _contacts(motion: Motion, humanoid: HumanoidMap) -> Flags | None:

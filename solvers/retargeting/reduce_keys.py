@@ -1,0 +1,133 @@
+"""Unbake: replace a key on every frame by few keys with handles."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from ..errors import InvalidMotionError, InvalidSettingError
+from ..motion import Motion, Skeleton
+from ..motion.rotations import IDENTITY, normalize
+from ..progress import Progress, unwatched, within
+from ..settings import Settings, setting
+from .key_curves import KeyCurve
+from .thinning import ROOT, Thinning
+
+
+@dataclass(frozen=True, kw_only=True)
+class UnbakeSettings(Settings):
+    """How keys are thinned out."""
+
+    key_poses: bool = setting(
+        False, "Key all joints at the same frames, as an animator blocks poses; takes more keys"
+    )
+
+
+@dataclass(frozen=True, eq=False)
+class SparseMotion:
+    """A motion by few keys.
+
+    Attributes
+    ----------
+    skeleton : Skeleton
+    rotations : tuple of KeyCurve, one for each joint
+        Local quaternions, four channels w x y z; without keys for joints that rest throughout.
+        Between keys the quaternion is that of the four curves, brought to length one.
+    root : KeyCurve
+        Root positions, three channels, metres.
+    n_frames : int
+    frame_rate : float, hertz
+    error : float, metres
+        By how much any end of a limb is off at most.
+    """
+
+    skeleton: Skeleton
+    rotations: tuple[KeyCurve, ...]
+    root: KeyCurve
+    n_frames: int
+    frame_rate: float
+    error: float
+
+    @property
+    def n_keys(self) -> int:
+        """Number of keys, each channel counted, as Blender's Graph Editor does."""
+        curves = (*self.rotations, self.root)
+        return sum(curve.values.size for curve in curves)
+
+    def dense(self) -> Motion:
+        """Return the motion with a pose at every frame, as F-Curves would give it."""
+        frames = np.arange(self.n_frames)
+        rotations = np.tile(IDENTITY, (self.n_frames, self.skeleton.n_joints, 1))
+        for joint, curve in enumerate(self.rotations):
+            if len(curve.frames):
+                rotations[:, joint] = normalize(curve.at(frames))
+        return Motion(self.skeleton, rotations, self.root.at(frames), self.frame_rate)
+
+
+def reduce_keys(
+    motion: Motion,
+    tolerance: float,
+    *,
+    settings: UnbakeSettings = UnbakeSettings(),
+    progress: Progress = unwatched,
+) -> SparseMotion:
+    """Replace a key on every frame by few keys, no end of a limb being off by more.
+
+    Each joint's curves are fitted by least squares through their keys, values and slopes. At
+    first a joint gets keys until it alone moves the ends of its limbs by less than half the
+    tolerance; then, wherever an end of a limb is off by more than the tolerance, the joint
+    above it that does most of that gets another key, until none is. This is the splitting of
+    [1]_ with the error measured where it is seen, at hands, feet and head.
+
+    Parameters
+    ----------
+    motion : Motion
+        Without gaps.
+    tolerance : float, metres
+        Greatest distance by which an end may be off: the ends of the tree, and points that
+        show how hands and feet without further joints are turned.
+    settings : UnbakeSettings
+    progress : Progress
+
+    Returns
+    -------
+    SparseMotion
+
+    Raises
+    ------
+    InvalidMotionError
+        The motion has gaps.
+    InvalidSettingError
+        The tolerance is not positive.
+    SolveCancelled
+        Raised by `progress`.
+
+    References
+    ----------
+    .. [1] Schneider (1990). An algorithm for automatically fitting digitized curves. Graphics
+       Gems, 612-626.
+    """
+    _check(motion, tolerance)
+    thinning = Thinning(motion, tolerance, settings.key_poses)
+    thinning.begin(within(progress, 0.0, 0.3))
+    error = thinning.finish(within(progress, 0.3, 1.0))
+    progress(1.0, "Unbaked")
+    return SparseMotion(
+        motion.skeleton,
+        tuple(thinning.curves[joint] for joint in range(motion.n_joints)),
+        thinning.curves[ROOT],
+        motion.n_frames,
+        motion.frame_rate,
+        error,
+    )
+
+
+def _check(motion: Motion, tolerance: float) -> None:
+    if not (np.isfinite(tolerance) and tolerance > 0.0):
+        raise InvalidSettingError(f"A tolerance of {tolerance} m is not positive.")
+    gaps = ~motion.observed
+    if gaps.any():
+        names = [motion.skeleton.names[joint] for joint in np.flatnonzero(gaps.any(axis=0))]
+        raise InvalidMotionError(
+            "Keys can be thinned out only where all is known; these have gaps:"
+            f" {', '.join(names)}. Clean the take first."
+        )

@@ -1,0 +1,185 @@
+"""Choose the frames of keys by what the ends of the limbs lose."""
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..motion import Motion, forward_kinematics
+from ..motion.kinematics import world_poses
+from ..motion.rotations import IDENTITY, normalize, unroll
+from ..progress import Progress
+from .end_points import find_end_points
+from .key_curves import KeyCurve, fit_curve
+
+Array = NDArray[np.float64]
+Frames = NDArray[np.intp]
+Place = tuple[int, int]
+"""A joint, and the frame of a new key."""
+
+STILL = 1e-7
+"""A joint that turns less, in radians, and a root that moves less, in metres, needs one key."""
+LOOSE = 3.0
+"""Part of the tolerance by which each joint alone may be off to begin with."""
+SAMPLED = 100
+"""Poses at which the reach of the joints is measured."""
+ROOT = -1
+
+
+class Thinning:
+    """Curves of all joints with the keys that they have so far. -1 stands for the root's place.
+
+    Attributes
+    ----------
+    curves : dict of joint to KeyCurve
+    """
+
+    def __init__(self, motion: Motion, tolerance: float, together: bool) -> None:
+        self.motion = motion
+        self.tolerance = tolerance
+        self.together = together
+        self.points = find_end_points(motion.skeleton)
+        poses = forward_kinematics(motion)
+        self.truth = self.points.positions(poses)
+        self.joints = poses.positions
+        quaternions = unroll(motion.rotations)
+        self.samples = {
+            ROOT: motion.root_positions,
+            **{joint: quaternions[:, joint] for joint in range(motion.n_joints)},
+        }
+        self.reach = self._reach()
+        self.curves: dict[int, KeyCurve] = {}
+        self.errors: dict[int, Array] = {}
+        for joint, samples in self.samples.items():
+            self._refit(joint, _first_keys(joint, samples))
+
+    def begin(self, progress: Progress) -> None:
+        """Give each joint so many keys that it alone is off by little."""
+        for number, joint in enumerate(self.samples):
+            while places := self._too_far(joint):
+                self._add({(joint, frame) for frame in places})
+            progress((number + 1) / len(self.samples), "Thinning out the keys of each joint")
+
+    def finish(self, progress: Progress) -> float:
+        """Add keys until no end is off by more than the tolerance; return what is left."""
+        start = None
+        while True:
+            off = np.linalg.norm(self._positions() - self.truth, axis=-1)
+            worst = float(off.max())
+            if worst <= self.tolerance or not self._add(self._wanted(off)):
+                return worst
+            start = start or worst
+            done = (start - worst) / max(start - self.tolerance, 1e-12)
+            progress(float(np.clip(done, 0.0, 1.0)), "Adding keys where limbs are off")
+
+    def _reach(self) -> dict[int, float]:
+        """Return how far from each joint the points are that it moves, at most."""
+        step = max(len(self.truth) // SAMPLED, 1)
+        reach = {ROOT: 1.0, **dict.fromkeys(range(self.motion.n_joints), 0.0)}
+        for point, chain in enumerate(self.points.chains):
+            ways = self.truth[::step, None, point] - self.joints[::step, chain]
+            farthest = np.linalg.norm(ways, axis=-1).max(axis=0)
+            for joint, far in zip(chain, farthest, strict=True):
+                # A quaternion's error is half that of its angle.
+                reach[int(joint)] = max(reach[int(joint)], 2.0 * float(far))
+        return reach
+
+    def _too_far(self, joint: int) -> list[int]:
+        """Return the worst frame of each segment in which a joint alone is off by too much."""
+        keys, away = self.curves[joint].frames, self.errors[joint] * self.reach[joint]
+        if len(keys) < 2:
+            return []
+        found = []
+        for segment in np.flatnonzero(
+            np.maximum.reduceat(away, keys[:-1]) > LOOSE * self.tolerance
+        ):
+            inside = away[keys[segment] + 1 : keys[segment + 1]]
+            if len(inside) and inside.max() > LOOSE * self.tolerance:
+                found.append(int(keys[segment] + 1 + inside.argmax()))
+        return found
+
+    def _wanted(self, off: Array) -> set[Place]:
+        """Return where keys would help most: one place for each time that a point is off."""
+        places = set()
+        for point, chain in enumerate(self.points.chains):
+            for frame in _peaks(off[:, point], self.tolerance):
+                if (place := self._culprit(point, chain, frame)) is not None:
+                    places.add(place)
+        return places
+
+    def _culprit(self, point: int, chain: Frames, frame: int) -> Place | None:
+        """Return a new key for the joint that moves a point away most, or None."""
+        arms = np.linalg.norm(self.truth[frame, point] - self.joints[frame, chain], axis=-1)
+        shares = [
+            (2.0 * arm * self.errors[int(joint)][frame], int(joint))
+            for joint, arm in zip(chain, arms, strict=True)
+        ]
+        shares.append((self.errors[ROOT][frame], ROOT))
+        for _, joint in sorted(shares, reverse=True):
+            if (new := self._worst_near(joint, frame)) is not None:
+                return joint, new
+        return None
+
+    def _worst_near(self, joint: int, frame: int) -> int | None:
+        """Return the frame without a key that is worst, in the segment here or next to it."""
+        keys = self.curves[joint].frames
+        if len(keys) < 2:
+            return None
+        segment = min(int(np.searchsorted(keys, frame, side="right")), len(keys) - 1)
+        for wider in (0, 1):
+            start = int(keys[max(segment - 1 - wider, 0)])
+            stop = int(keys[min(segment + wider, len(keys) - 1)])
+            errors = self.errors[joint][start:stop].copy()
+            errors[keys[(keys >= start) & (keys < stop)] - start] = 0.0
+            if errors.any():
+                return start + int(errors.argmax())
+        return None
+
+    def _add(self, places: set[Place]) -> bool:
+        """Add keys; tell whether there were any to add."""
+        if self.together:
+            frames = {frame for _, frame in places}
+            moving = [joint for joint, curve in self.curves.items() if len(curve.frames) > 1]
+            places = {(joint, frame) for joint in moving for frame in frames}
+        for joint in sorted({joint for joint, _ in places}):
+            new = [frame for one, frame in places if one == joint]
+            self._refit(joint, np.union1d(self.curves[joint].frames, new).astype(np.intp))
+        return bool(places)
+
+    def _refit(self, joint: int, keys: Frames) -> None:
+        samples = self.samples[joint]
+        curve = fit_curve(samples, keys)
+        fitted = self._evaluated(joint, curve)
+        self.curves[joint] = curve
+        self.errors[joint] = np.linalg.norm(fitted - samples, axis=-1)
+
+    def _evaluated(self, joint: int, curve: KeyCurve) -> Array:
+        frames = np.arange(self.motion.n_frames)
+        if joint == ROOT:
+            return curve.at(frames)
+        if not len(curve.frames):
+            return np.tile(IDENTITY, (len(frames), 1))
+        return normalize(curve.at(frames))
+
+    def _positions(self) -> Array:
+        curves = [self.curves[joint] for joint in range(self.motion.n_joints)]
+        rotations = [self._evaluated(joint, curve) for joint, curve in enumerate(curves)]
+        places = self._evaluated(ROOT, self.curves[ROOT])
+        skeleton = self.motion.skeleton
+        return self.points.positions(world_poses(skeleton, np.stack(rotations, 1), places))
+
+
+def _first_keys(joint: int, samples: Array) -> Frames:
+    """Return no key for a joint at rest, one for what keeps still, both ends for all else."""
+    if joint != ROOT and np.abs(np.abs(samples[:, 0]) - 1.0).max() < STILL**2 / 8.0:
+        return np.array([], dtype=np.intp)
+    if np.abs(samples - samples[0]).max() < STILL / 2.0:
+        return np.array([0], dtype=np.intp)
+    return np.unique([0, len(samples) - 1]).astype(np.intp)
+
+
+def _peaks(off: Array, tolerance: float) -> list[int]:
+    """Return the worst frame of each run of frames beyond the tolerance."""
+    beyond = np.flatnonzero(off > tolerance)
+    if not len(beyond):
+        return []
+    runs = np.split(beyond, np.flatnonzero(np.diff(beyond) > 1) + 1)
+    return [int(run[off[run].argmax()]) for run in runs]
