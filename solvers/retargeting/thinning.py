@@ -19,6 +19,7 @@ STILL = 1e-7
 """A joint that turns less, in radians, and a root that moves less, in metres, needs one key."""
 LOOSE = 3.0
 """Part of the tolerance by which each joint alone may be off to begin with."""
+SAME = 1e-12
 SAMPLED = 100
 """Poses at which the reach of the joints is measured."""
 ROOT = -1
@@ -48,6 +49,9 @@ class Thinning:
         self.reach = self._reach()
         self.curves: dict[int, KeyCurve] = {}
         self.errors: dict[int, Array] = {}
+        self.fitted = {joint: np.zeros_like(each) for joint, each in self.samples.items()}
+        self.changed = np.ones(motion.n_frames, dtype=np.bool_)
+        self.off = np.zeros(self.truth.shape[:2])
         for joint, samples in self.samples.items():
             self._refit(joint, _first_keys(joint, samples))
 
@@ -60,15 +64,15 @@ class Thinning:
 
     def finish(self, progress: Progress) -> float:
         """Add keys until no end is off by more than the tolerance; return what is left."""
-        start = None
+        start, done = 0.0, 0.0
         while True:
-            off = np.linalg.norm(self._positions() - self.truth, axis=-1)
-            worst = float(off.max())
-            if worst <= self.tolerance or not self._add(self._wanted(off)):
+            self._measure()
+            worst = float(self.off.max())
+            if worst <= self.tolerance or not self._add(self._wanted()):
                 return worst
-            start = start or worst
-            done = (start - worst) / max(start - self.tolerance, 1e-12)
-            progress(float(np.clip(done, 0.0, 1.0)), "Adding keys where limbs are off")
+            start = max(start, worst)
+            done = max(done, (start - worst) / (start - self.tolerance))
+            progress(done, "Adding keys where limbs are off")
 
     def _reach(self) -> dict[int, float]:
         """Return how far from each joint the points are that it moves, at most."""
@@ -96,11 +100,11 @@ class Thinning:
                 found.append(int(keys[segment] + 1 + inside.argmax()))
         return found
 
-    def _wanted(self, off: Array) -> set[Place]:
+    def _wanted(self) -> set[Place]:
         """Return where keys would help most: one place for each time that a point is off."""
         places = set()
         for point, chain in enumerate(self.points.chains):
-            for frame in _peaks(off[:, point], self.tolerance):
+            for frame in _peaks(self.off[:, point], self.tolerance):
                 if (place := self._culprit(point, chain, frame)) is not None:
                     places.add(place)
         return places
@@ -136,19 +140,21 @@ class Thinning:
     def _add(self, places: set[Place]) -> bool:
         """Add keys; tell whether there were any to add."""
         if self.together:
-            frames = {frame for _, frame in places}
             moving = [joint for joint, curve in self.curves.items() if len(curve.frames) > 1]
-            places = {(joint, frame) for joint in moving for frame in frames}
-        for joint in sorted({joint for joint, _ in places}):
-            new = [frame for one, frame in places if one == joint]
-            self._refit(joint, np.union1d(self.curves[joint].frames, new).astype(np.intp))
+            places = {(joint, frame) for joint in moving for _, frame in places}
+        new: dict[int, list[int]] = {}
+        for joint, frame in sorted(places):
+            new.setdefault(joint, []).append(frame)
+        for joint, frames in new.items():
+            self._refit(joint, np.union1d(self.curves[joint].frames, frames).astype(np.intp))
         return bool(places)
 
     def _refit(self, joint: int, keys: Frames) -> None:
         samples = self.samples[joint]
         curve = fit_curve(samples, keys)
         fitted = self._evaluated(joint, curve)
-        self.curves[joint] = curve
+        self.changed |= (np.abs(fitted - self.fitted[joint]) > SAME).any(axis=1)
+        self.curves[joint], self.fitted[joint] = curve, fitted
         self.errors[joint] = np.linalg.norm(fitted - samples, axis=-1)
 
     def _evaluated(self, joint: int, curve: KeyCurve) -> Array:
@@ -159,12 +165,16 @@ class Thinning:
             return np.tile(IDENTITY, (len(frames), 1))
         return normalize(curve.at(frames))
 
-    def _positions(self) -> Array:
-        curves = [self.curves[joint] for joint in range(self.motion.n_joints)]
-        rotations = [self._evaluated(joint, curve) for joint, curve in enumerate(curves)]
-        places = self._evaluated(ROOT, self.curves[ROOT])
-        skeleton = self.motion.skeleton
-        return self.points.positions(world_poses(skeleton, np.stack(rotations, 1), places))
+    def _measure(self) -> None:
+        """Find out anew how far off the points are, in the frames that have changed."""
+        here = self.changed
+        rotations = [self.fitted[joint][here] for joint in range(self.motion.n_joints)]
+        poses = world_poses(
+            self.motion.skeleton, np.stack(rotations, axis=1), self.fitted[ROOT][here]
+        )
+        away = self.points.positions(poses) - self.truth[here]
+        self.off[here] = np.linalg.norm(away, axis=-1)
+        self.changed = np.zeros_like(here)
 
 
 def _first_keys(joint: int, samples: Array) -> Frames:
