@@ -1,14 +1,17 @@
 """Choose the frames of keys by what the ends of the limbs lose."""
 
+from collections.abc import Sequence
+
 import numpy as np
 from numpy.typing import NDArray
 
 from ..motion import Motion, forward_kinematics
 from ..motion.kinematics import world_poses
-from ..motion.rotations import IDENTITY, normalize, unroll
+from ..motion.rotations import IDENTITY
 from ..progress import Progress
 from .end_points import find_end_points
 from .key_curves import KeyCurve, fit_curve
+from .rotation_channels import RotationChannels
 
 Array = NDArray[np.float64]
 Frames = NDArray[np.intp]
@@ -33,27 +36,38 @@ class Thinning:
     curves : dict of joint to KeyCurve
     """
 
-    def __init__(self, motion: Motion, tolerance: float, together: bool) -> None:
+    def __init__(
+        self,
+        motion: Motion,
+        tolerance: float,
+        channels: Sequence[RotationChannels],
+        *,
+        together: bool,
+    ) -> None:
         self.motion = motion
+        self.channels = channels
         self.tolerance = tolerance
         self.together = together
         self.points = find_end_points(motion.skeleton)
         poses = forward_kinematics(motion)
         self.truth = self.points.positions(poses)
         self.joints = poses.positions
-        quaternions = unroll(motion.rotations)
-        self.samples = {
-            ROOT: motion.root_positions,
-            **{joint: quaternions[:, joint] for joint in range(motion.n_joints)},
+        self.samples = {ROOT: motion.root_positions} | {
+            joint: each.from_rotations(motion.rotations[:, joint])
+            for joint, each in enumerate(channels)
+        }
+        self.wanted = {ROOT: motion.root_positions} | {
+            joint: each.to_rotations(self.samples[joint]) for joint, each in enumerate(channels)
         }
         self.reach = self._reach()
         self.curves: dict[int, KeyCurve] = {}
         self.errors: dict[int, Array] = {}
-        self.fitted = {joint: np.zeros_like(each) for joint, each in self.samples.items()}
+        self.fitted = {joint: np.zeros_like(each) for joint, each in self.wanted.items()}
         self.changed = np.ones(motion.n_frames, dtype=np.bool_)
         self.off = np.zeros(self.truth.shape[:2])
         for joint, samples in self.samples.items():
-            self._refit(joint, _first_keys(joint, samples))
+            rests = joint != ROOT and _rests(motion.rotations[:, joint])
+            self._refit(joint, _first_keys(samples, rests))
 
     def begin(self, progress: Progress) -> None:
         """Give each joint so many keys that it alone is off by little."""
@@ -150,12 +164,11 @@ class Thinning:
         return bool(places)
 
     def _refit(self, joint: int, keys: Frames) -> None:
-        samples = self.samples[joint]
-        curve = fit_curve(samples, keys)
+        curve = fit_curve(self.samples[joint], keys)
         fitted = self._evaluated(joint, curve)
         self.changed |= (np.abs(fitted - self.fitted[joint]) > SAME).any(axis=1)
         self.curves[joint], self.fitted[joint] = curve, fitted
-        self.errors[joint] = np.linalg.norm(fitted - samples, axis=-1)
+        self.errors[joint] = np.linalg.norm(fitted - self.wanted[joint], axis=-1)
 
     def _evaluated(self, joint: int, curve: KeyCurve) -> Array:
         frames = np.arange(self.motion.n_frames)
@@ -163,7 +176,7 @@ class Thinning:
             return curve.at(frames)
         if not len(curve.frames):
             return np.tile(IDENTITY, (len(frames), 1))
-        return normalize(curve.at(frames))
+        return self.channels[joint].to_rotations(curve.at(frames))
 
     def _measure(self) -> None:
         """Find out anew how far off the points are, in the frames that have changed."""
@@ -177,9 +190,14 @@ class Thinning:
         self.changed = np.zeros_like(here)
 
 
-def _first_keys(joint: int, samples: Array) -> Frames:
+def _rests(rotations: Array) -> bool:
+    """Tell whether all rotations are the identity, but for rounding."""
+    return bool(np.linalg.norm(rotations[:, 1:], axis=1).max() < STILL / 2.0)
+
+
+def _first_keys(samples: Array, rests: bool) -> Frames:
     """Return no key for a joint at rest, one for what keeps still, both ends for all else."""
-    if joint != ROOT and np.abs(np.abs(samples[:, 0]) - 1.0).max() < STILL**2 / 8.0:
+    if rests:
         return np.array([], dtype=np.intp)
     if np.abs(samples - samples[0]).max() < STILL / 2.0:
         return np.array([0], dtype=np.intp)
