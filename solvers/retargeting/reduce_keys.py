@@ -143,10 +143,11 @@ def reduce_keys(
     """Replace a key on every frame by few keys, no end of a limb being off by more.
 
     Each joint's curves are fitted by least squares through their keys, values and slopes. At
-    first a joint gets keys until it alone moves the ends of its limbs by less than half the
-    tolerance; then, wherever an end of a limb is off by more than the tolerance, the joint
-    above it that does most of that gets another key, until none is. This is the splitting of
-    [1]_ with the error measured where it is seen, at hands, feet and head.
+    first the curves of each joint alone are split until it moves the ends of its limbs by not
+    much more than the tolerance; then, wherever an end of a limb is off by more than that, the
+    joint above it that does most of it gets another key, until none is. This is the splitting
+    of [1]_, in the middle of the worst segment, with the error measured where it is seen: at
+    hands, feet and head.
 
     Parameters
     ----------

@@ -101,18 +101,13 @@ class Thinning:
         return reach
 
     def _too_far(self, joint: int) -> list[int]:
-        """Return the worst frame of each segment in which a joint alone is off by too much."""
+        """Return the middles of the segments in which a joint alone is off by too much."""
         keys, away = self.curves[joint].frames, self.errors[joint] * self.reach[joint]
         if len(keys) < 2:
             return []
-        found = []
-        for segment in np.flatnonzero(
-            np.maximum.reduceat(away, keys[:-1]) > LOOSE * self.tolerance
-        ):
-            inside = away[keys[segment] + 1 : keys[segment + 1]]
-            if len(inside) and inside.max() > LOOSE * self.tolerance:
-                found.append(int(keys[segment] + 1 + inside.argmax()))
-        return found
+        far = np.maximum.reduceat(away, keys[:-1]) > LOOSE * self.tolerance
+        far &= np.diff(keys) > 1
+        return [int(middle) for middle in (keys[:-1] + keys[1:])[far] // 2]
 
     def _wanted(self) -> set[Place]:
         """Return where keys would help most: one place for each time that a point is off."""
@@ -132,12 +127,12 @@ class Thinning:
         ]
         shares.append((self.errors[ROOT][frame], ROOT))
         for _, joint in sorted(shares, reverse=True):
-            if (new := self._worst_near(joint, frame)) is not None:
+            if (new := self._place_near(joint, frame)) is not None:
                 return joint, new
         return None
 
-    def _worst_near(self, joint: int, frame: int) -> int | None:
-        """Return the frame without a key that is worst, in the segment here or next to it."""
+    def _place_near(self, joint: int, frame: int) -> int | None:
+        """Return the middle of the worst segment here or next to it; None if all are short."""
         keys = self.curves[joint].frames
         if len(keys) < 2:
             return None
@@ -148,7 +143,9 @@ class Thinning:
             errors = self.errors[joint][start:stop].copy()
             errors[keys[(keys >= start) & (keys < stop)] - start] = 0.0
             if errors.any():
-                return start + int(errors.argmax())
+                worst = start + int(errors.argmax())
+                after = int(np.searchsorted(keys, worst))
+                return int(keys[after - 1] + keys[after]) // 2
         return None
 
     def _add(self, places: set[Place]) -> bool:

@@ -46,7 +46,7 @@ def mapped_trees(draw):
     return Skeleton(names, tuple(parents), np.array(offsets)), HumanoidMap(joints)
 
 
-@settings(max_examples=150)
+@settings(max_examples=60)
 @given(mapped_trees(), mapped_trees(), st.sampled_from(list(RootMotion)), st.integers(0, 99))
 def test_any_tree_gives_numbers_or_a_sentence(source, target, root_motion, seed):
     rng = np.random.default_rng(seed)
@@ -67,7 +67,7 @@ def test_any_tree_gives_numbers_or_a_sentence(source, target, root_motion, seed)
     assert np.isfinite(given_motion.root_positions).all()
 
 
-@settings(max_examples=60)
+@settings(max_examples=20)
 @given(st.sets(st.sampled_from([role for role in MAP.joints if role != "hips"]), max_size=21))
 def test_any_part_of_the_roles_may_be_missing(lost):
     rig = unreal()
@@ -82,7 +82,7 @@ def test_any_part_of_the_roles_may_be_missing(lost):
         assert height.min() > 0.6 and height.max() < 1.4
 
 
-@settings(max_examples=40)
+@settings(max_examples=20)
 @given(st.data())
 def test_gaps_anywhere_leave_the_rest_finite(data):
     """What is unknown in the source is unknown in the joints that it concerns, no more."""
