@@ -44,7 +44,7 @@ class SparseMotion:
     n_frames : int
     frame_rate : float, hertz
     error : float, metres
-        By how much any end of a limb is off at most.
+        By how much any joint is off at most.
     """
 
     skeleton: Skeleton
@@ -140,22 +140,21 @@ def reduce_keys(
     settings: UnbakeSettings = UnbakeSettings(),
     progress: Progress = unwatched,
 ) -> SparseMotion:
-    """Replace a key on every frame by few keys, no end of a limb being off by more.
+    """Replace a key on every frame by few keys, nothing being off by more than the tolerance.
 
     Each joint's curves are fitted by least squares through their keys, values and slopes. At
-    first the curves of each joint alone are split until it moves the ends of its limbs by not
-    much more than the tolerance; then, wherever an end of a limb is off by more than that, the
-    joint above it that does most of it gets another key, until none is. This is the splitting
-    of [1]_, in the middle of the worst segment, with the error measured where it is seen: at
-    hands, feet and head.
+    first the curves of each joint alone are split until it moves what hangs on it by not much
+    more than the tolerance; then, wherever a joint is off by more than that, the joint above it
+    that does most of it gets another key, until none is. This is the splitting of [1]_, in the
+    middle of the worst segment, with the error measured where it is seen: in the world.
 
     Parameters
     ----------
     motion : Motion
         Without gaps.
     tolerance : float, metres
-        Greatest distance by which an end may be off: the ends of the tree, and points that
-        show how hands and feet without further joints are turned.
+        Greatest distance by which any joint may be off, and with it two points that show how
+        a hand, foot or head is turned that has no further joints.
     channels : sequence of RotationChannels, one for each joint
         How the rig keys its rotations; quaternions in the world's axes where not given.
     settings : UnbakeSettings

@@ -1,4 +1,4 @@
-"""Choose the frames of keys by what the ends of the limbs lose."""
+"""Choose the frames of keys by what joints lose in the world."""
 
 from collections.abc import Sequence
 
@@ -9,7 +9,7 @@ from ..motion import Motion, forward_kinematics
 from ..motion.kinematics import world_poses
 from ..motion.rotations import IDENTITY
 from ..progress import Progress
-from .end_points import find_end_points
+from .judged_points import find_judged_points
 from .key_curves import KeyCurve, fit_curve
 from .rotation_channels import RotationChannels
 
@@ -48,7 +48,7 @@ class Thinning:
         self.channels = channels
         self.tolerance = tolerance
         self.together = together
-        self.points = find_end_points(motion.skeleton)
+        self.points = find_judged_points(motion.skeleton)
         poses = forward_kinematics(motion)
         self.truth = self.points.positions(poses)
         self.joints = poses.positions
