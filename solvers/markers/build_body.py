@@ -109,7 +109,6 @@ def _offset(joint: JointOf, centres: Centres, frames: Mapping[str, Array]) -> Ar
         "hips": np.zeros(3),
         "head_end": np.array([0.0, 0.0, HEAD_END]),
         "Hand_end": np.array([sign * HAND_END, 0.0, 0.0]),
-        "Toes": np.zeros(3),
         "Toes_end": np.array([0.0, -TOES_END, -TOE_ABOVE_SOLE / 2]),
     }
     if part in fixed:
@@ -119,7 +118,7 @@ def _offset(joint: JointOf, centres: Centres, frames: Mapping[str, Array]) -> Ar
     axis = 2 if part in {"LowerLeg", "Foot"} else axis
     if axis is None:
         local = np.einsum("fji,fj->fi", frames[joint.parent], stop - start)
-        return median(local)
+        return median(local)  # of toes: their markers
     length = float(median(np.linalg.norm(stop - start, axis=-1)[:, None])[0])
     down = -1.0 if part in {"LowerLeg", "Foot"} else sign
     return np.asarray(down * length * np.eye(3)[axis])

@@ -22,7 +22,7 @@ USUAL_LEG = 0.83
 """Metres from hip to ankle of a body with the widths below."""
 HALF_KNEE, HALF_ELBOW, HALF_ANKLE = 0.06, 0.045, 0.045
 """Metres from the middle of a joint to the middle of the marker beside it."""
-BELOW_SHOULDER = 0.05
+BELOW_SHOULDER, BELOW_WRIST = 0.05, 0.03
 HIPS_ABOVE = 0.05
 BELOW_HEADBAND = 0.07
 CHEST = 0.4
@@ -112,6 +112,8 @@ def _leg(
     places[f"{side}LowerLeg"] = chord(hip, knee, outward, scale * HALF_KNEE)
     beside = unit(across(outward, unit(ankle - places[f"{side}LowerLeg"])))
     places[f"{side}Foot"] = ankle - scale * HALF_ANKLE * beside
+    toes = [spots[letter + spot] for spot in ("TOE", "MT5") if letter + spot in spots]
+    places[f"{side}Toes"] = np.mean(toes, axis=0)
 
 
 def _bend_axis(
@@ -182,7 +184,9 @@ def _arm(
     if not {f"{letter}WRA", f"{letter}WRB"} <= set(spots):
         places[f"{side}LowerArm"] = elbow
         return
-    wrist = (spots[f"{letter}WRA"] + spots[f"{letter}WRB"]) / 2
+    inner, outer = spots[f"{letter}WRA"], spots[f"{letter}WRB"]
+    back = unit(sign * np.cross(elbow - (inner + outer) / 2, inner - outer))
+    wrist = (inner + outer) / 2 - scale * BELOW_WRIST * back
     out, up = np.array([sign, 0.0, 0.0]), np.array([0.0, 0.0, 1.0])
     upward = _bend_axis((shoulder, elbow, wrist), -sign, thorax, out, up)
     places[f"{side}LowerArm"] = chord(shoulder, elbow, upward, scale * HALF_ELBOW)

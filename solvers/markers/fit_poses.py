@@ -29,6 +29,8 @@ class Wrong(NamedTuple):
     """Shape (n_frames, n_residuals)."""
     slopes: Array
     """By the pose, shape (n_frames, n_residuals, n_unknowns)."""
+    weights: Array
+    """Of the markers, per metre, shape (n_frames, n_markers, 1)."""
     placed: Placed
 
 
@@ -130,6 +132,7 @@ def wrong_by(body: Body, seen: Array, poses: Poses) -> Wrong:
     return Wrong(
         np.concatenate([residuals, eases], axis=1),
         np.concatenate([moved.reshape(n_frames, 3 * n_markers, -1), ease_slopes], axis=1),
+        weight,
         placed,
     )
 
