@@ -54,10 +54,10 @@ CENTRE = (
 SIDE = (
     JointOf("Shoulder", "chest", (TIGHT, TIGHT, TIGHT), (0.05, 0.5, 0.5)),
     JointOf("UpperArm", "Shoulder", (FIRM, 0.0, 0.0)),
-    JointOf("LowerArm", "UpperArm", (ANY, 0.0, 0.0), hinge=(0.0, 0.0, 0.1)),
-    JointOf("Hand", "LowerArm", (ANY, 0.0, 0.0), (0.15, 1.0, 1.0)),
+    JointOf("LowerArm", "UpperArm", (FIRM, 0.0, 0.0), hinge=(0.0, 0.0, 0.1)),
+    JointOf("Hand", "LowerArm", (FIRM, 0.0, 0.0), (0.15, 1.0, 1.0)),
     JointOf("Hand_end", "Hand", turns=False),
-    JointOf("UpperLeg", "hips", (FIRM, FIRM, FIRM)),
+    JointOf("UpperLeg", "hips", (LOOSE, LOOSE, LOOSE)),
     JointOf("LowerLeg", "UpperLeg", (0.0, 0.0, ANY), hinge=(0.0, 0.1, 0.1)),
     JointOf("Foot", "LowerLeg", (0.0, 0.0, ANY), (1.0, 1.0, 1.0)),
     JointOf("Toes", "Foot", turns=False),

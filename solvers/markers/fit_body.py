@@ -10,7 +10,7 @@ from .body import Body, Placed, Poses
 from .fit_poses import cost_of, stepped, wrong_by
 
 Array = NDArray[np.float64]
-INDEPENDENT = 20.0
+INDEPENDENT = 10.0
 """Frames that tell as much as a whole take: skin moves alike in frames of like poses."""
 MOST_STEPS = 25
 DAMPING = 1e-3
