@@ -10,8 +10,10 @@ Array = NDArray[np.float64]
 NEIGHBOURS = 6
 LEAST_SPREAD = 0.004
 """Metres: a distance is never held to be known better."""
+FIRM = 0.02
+"""Metres by which a distance varies at most that alone tells a marker."""
 MOST_FRAMES = 400
-FEWEST_FRAMES = 10
+FEWEST_FRAMES = 30
 GREATEST_SURPRISE = 8.0
 NORMAL = 1.4826
 """Standard deviations in a median absolute deviation of a normal distribution."""
@@ -32,6 +34,11 @@ class Distances:
         spread[[marker, *without]] = np.nan
         order = np.argsort(spread, kind="stable")
         return order[np.isfinite(spread[order])][:NEIGHBOURS]
+
+    def firm_neighbours(self, marker: int, without: tuple[int, ...] = ()) -> NDArray[np.intp]:
+        """Return those neighbours whose distance hardly varies."""
+        near = self.neighbours(marker, without)
+        return near[self.spread[marker, near] <= FIRM]
 
     def surprise(self, marker: int, places: Array, others: Array, near: NDArray[np.intp]) -> Array:
         """Return how odd it is to find a marker at these places, shape (n_frames,).

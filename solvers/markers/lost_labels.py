@@ -25,7 +25,7 @@ def mistaken_runs(
     lost = ~np.isfinite(positions).all(axis=-1)
     found = []
     for marker in range(positions.shape[1]):
-        near = distances.neighbours(marker)
+        near = distances.firm_neighbours(marker)
         if len(near) < FEWEST_NEIGHBOURS:
             continue
         surprise = distances.surprise(marker, positions[:, marker], positions, near)
@@ -45,8 +45,9 @@ def mistaken_runs(
 
 def _fit(positions: Array, marker: int, other: int, distances: Distances) -> float:
     """Return how odd a marker is, over a stretch, if it is another; infinite if unknown."""
-    near = distances.neighbours(other, (marker,))
-    if len(near) < FEWEST_NEIGHBOURS:
+    near = distances.firm_neighbours(other, (marker,))
+    there = np.isfinite(positions[:, near]).all(axis=-1).sum(axis=1)
+    if np.median(there) < FEWEST_NEIGHBOURS:
         return np.inf
     fit = _median(distances.surprise(other, positions[:, marker], positions, near))
     return fit if np.isfinite(fit) else np.inf

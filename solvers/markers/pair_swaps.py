@@ -14,8 +14,9 @@ SWITCH = 3.0
 """What each beginning and end of a swap costs."""
 FRAME = 0.3
 """How much a frame's distances count: neighbouring frames tell nearly the same."""
-USUAL_STEP, STEP_FLOOR = 99.0, 0.004
-"""Percentile of a pair's relative steps that is taken for usual, and metres added to it."""
+USUAL_STEP, TIMES, STEP_FLOOR = 90.0, 2.0, 0.004
+"""Percentile of a pair's relative steps, as often as which, and metres added, is usual; so low
+that swaps themselves hardly change it even in short takes."""
 LONGEST_GAP = 0.25
 """Seconds: beyond, nothing is known of where a marker comes back."""
 
@@ -70,7 +71,8 @@ def _steps(relative: Array, frame_rate: float) -> tuple[Array, Array, Array]:
     some = np.isfinite(single).any(axis=0)
     usual = np.full(known.shape[1], np.inf)
     if some.any():
-        usual[some] = np.nanpercentile(single[:, some], USUAL_STEP, axis=0) + STEP_FLOOR
+        usual[some] = TIMES * np.nanpercentile(single[:, some], USUAL_STEP, axis=0)
+        usual[some] += STEP_FLOOR
     return kept, turned, usual * gap
 
 
