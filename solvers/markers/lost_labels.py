@@ -14,43 +14,79 @@ JUMP = 0.06
 """Metres a marker moves against its neighbours in one frame, if it is another from there on."""
 
 
-def mistaken_runs(
-    positions: Array, distances: Distances, frame_rate: float
-) -> list[PairSwap]:
+def mistaken_runs(positions: Array, distances: Distances) -> list[PairSwap]:
     """Return the stretches in which a marker has the label of another that is lost.
 
-    A stretch lies between gaps or jumps of the label. All of it must fit the lost marker's
-    distances well, and its own badly.
+    A stretch lies between gaps or jumps of the label. It must fit the distances of the lost
+    marker well, and its own badly; or fit those better, and begin or end where that was.
     """
     lost = ~np.isfinite(positions).all(axis=-1)
     found = []
     for marker in range(positions.shape[1]):
-        near = distances.firm_neighbours(marker)
+        near = distances.neighbours(marker)
         if len(near) < FEWEST_NEIGHBOURS:
             continue
-        surprise = distances.surprise(marker, positions[:, marker], positions, near)
         for start, stop in _stretches(positions, marker, near):
-            if not _median(surprise[start:stop]) > ODD:
-                continue
             free = np.flatnonzero(lost[start:stop].all(axis=0))
+            if not len(free) or stop - start == len(positions):
+                continue
             fits = [
-                (_fit(positions[start:stop], marker, int(other), distances), int(other))
+                (_gain(positions, (marker, int(other)), (start, stop), distances), int(other))
                 for other in free
             ]
-            best = min(fits, default=(np.inf, -1))
-            if best[0] < WELL:
-                found.append(PairSwap(0.0, marker, best[1], start, stop))
-    return _apart(found)
+            gain, other = max(fits)
+            if gain > 0.0:
+                found.append(PairSwap(gain, marker, other, start, stop))
+    return _apart(sorted(found, reverse=True))
 
 
-def _fit(positions: Array, marker: int, other: int, distances: Distances) -> float:
-    """Return how odd a marker is, over a stretch, if it is another; infinite if unknown."""
-    near = distances.firm_neighbours(other, (marker,))
+def _gain(
+    positions: Array, pair: tuple[int, int], stretch: tuple[int, int], distances: Distances
+) -> float:
+    """Return how much better the second label fits a stretch of the first; 0 if unsure."""
+    first, second = pair
+    some = slice(*stretch)
+    handed = _handed_over(positions, pair, stretch)
+    near = [
+        distances.neighbours(one, (other,)) if handed else distances.firm_neighbours(one, (other,))
+        for one, other in ((first, second), (second, first))
+    ]
+    own, fit = (
+        _oddness(positions[some], label, first, nearest, distances)
+        for label, nearest in zip(pair, near, strict=True)
+    )
+    if (handed and fit < own) or (own > ODD and fit < WELL):
+        return own - fit
+    return 0.0
+
+
+def _oddness(
+    positions: Array,
+    label: int,
+    marker: int,
+    near: NDArray[np.intp],
+    distances: Distances,
+) -> float:
+    """Return how odd a marker is, over a stretch, under a label; NaN if unknown."""
     there = np.isfinite(positions[:, near]).all(axis=-1).sum(axis=1)
     if np.median(there) < FEWEST_NEIGHBOURS:
-        return np.inf
-    fit = _median(distances.surprise(other, positions[:, marker], positions, near))
-    return fit if np.isfinite(fit) else np.inf
+        return np.nan
+    return _median(distances.surprise(label, positions[:, marker], positions, near))
+
+
+def _handed_over(
+    positions: Array, pair: tuple[int, int], stretch: tuple[int, int]
+) -> bool:
+    """Whether the first marker is, where the stretch begins or ends, where the second was."""
+    first, second = pair
+    for inside, outside in ((stretch[0], stretch[0] - 1), (stretch[1] - 1, stretch[1])):
+        if not 0 <= outside < len(positions):
+            continue
+        to_other = np.linalg.norm(positions[inside, first] - positions[outside, second])
+        to_own = np.linalg.norm(positions[inside, first] - positions[outside, first])
+        if to_other < JUMP / 2 and not to_own < 2.0 * to_other:
+            return True
+    return False
 
 
 def _median(values: Array) -> float:

@@ -8,8 +8,8 @@ from numpy.typing import NDArray
 from .distances import Distances
 
 Array = NDArray[np.float64]
-SURE = 10.0
-"""The most that one jump counts."""
+SURE, NEVER = 10.0, 100.0
+"""The most that one jump counts, and one that only a change of labels would make."""
 SWITCH = 3.0
 """What each beginning and end of a swap costs."""
 FRAME = 0.3
@@ -17,6 +17,8 @@ FRAME = 0.3
 USUAL_STEP, TIMES, STEP_FLOOR = 90.0, 2.0, 0.004
 """Percentile of a pair's relative steps, as often as which, and metres added, is usual; so low
 that swaps themselves hardly change it even in short takes."""
+ODD, FEWEST_ODD = 3.0, 5
+"""Surprise from which on a marker does not fit, and frames in which two do not."""
 LONGEST_GAP = 0.25
 """Seconds: beyond, nothing is known of where a marker comes back."""
 
@@ -32,16 +34,38 @@ class PairSwap(NamedTuple):
     stop: int
 
 
-def candidates(positions: Array, frame_rate: float) -> list[tuple[int, int]]:
-    """Return the pairs that at some frame seem to jump into each other's place."""
+def candidates(
+    positions: Array, distances: Distances, frame_rate: float
+) -> list[tuple[int, int]]:
+    """Return the pairs that may be swapped somewhere.
+
+    They seem to jump into each other's place, or both are where they do not fit at one time.
+    """
     n_markers = positions.shape[1]
-    found = []
+    odd_together = _odd_runs(positions, distances)
+    found = [
+        (first, second)
+        for first in range(n_markers - 1)
+        for second in range(first + 1, n_markers)
+        if (odd_together[:, first] & odd_together[:, second]).sum() >= FEWEST_ODD
+    ]
     for first in range(n_markers - 1):
         relative = positions[:, first + 1 :] - positions[:, [first]]
         kept, turned, usual = _steps(relative, frame_rate)
         odd = (kept > usual) & (turned < 0.5 * kept)
         found += [(first, first + 1 + int(other)) for other in np.flatnonzero(odd.any(axis=0))]
-    return found
+    return sorted(set(found))
+
+
+def _odd_runs(positions: Array, distances: Distances) -> NDArray[np.bool_]:
+    """Return where each marker does not fit its label, shape (n_frames, n_markers)."""
+    odd = np.zeros(positions.shape[:2], dtype=bool)
+    for marker in range(positions.shape[1]):
+        near = distances.neighbours(marker)
+        if len(near):
+            surprise = distances.surprise(marker, positions[:, marker], positions, near)
+            odd[:, marker] = np.nan_to_num(surprise) > ODD
+    return odd
 
 
 def _steps(relative: Array, frame_rate: float) -> tuple[Array, Array, Array]:
@@ -88,14 +112,16 @@ def most_likely_swap(
     first, second = pair
     relative = (positions[:, second] - positions[:, first])[:, None]
     kept, turned, usual = (part[:, 0] for part in _steps(relative, frame_rate))
-    stay, change = (
-        np.nan_to_num(np.minimum(0.5 * (step / usual) ** 2, SURE)) for step in (kept, turned)
-    )
+    stay, change = (np.nan_to_num(0.5 * (step / usual) ** 2) for step in (kept, turned))
+    change = np.minimum(change, np.where(stay > SURE, SURE, NEVER))
+    stay = np.minimum(stay, SURE)
     swapped = FRAME * _evidence(positions, pair, distances)
     course = _viterbi(stay, change + SWITCH, swapped)
     best: PairSwap | None = None
     edges = np.flatnonzero(np.diff(np.concatenate([[0], course, [0]])))
     for start, stop in zip(edges[::2], edges[1::2], strict=True):
+        if not np.isfinite(positions[start:stop, pair]).all(axis=-1).any():
+            continue
         gain = -float(swapped[start:stop].sum())
         for edge in (start, stop):
             if 0 < edge < len(course):

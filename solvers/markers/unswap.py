@@ -101,7 +101,7 @@ def _round(
     made: list[PairSwap] = []
     open_swaps = {
         pair: most_likely_swap(positions, pair, distances, frame_rate)
-        for pair in candidates(positions, frame_rate)
+        for pair in candidates(positions, distances, frame_rate)
     }
     while len(made) < MOST_SWAPS:
         sure = [one for one in open_swaps.values() if one and one.gain >= settings.evidence]
@@ -113,7 +113,7 @@ def _round(
         for pair in open_swaps:
             if {best.first, best.second} & set(pair):
                 open_swaps[pair] = most_likely_swap(positions, pair, distances, frame_rate)
-    for change in mistaken_runs(positions, distances, frame_rate):
+    for change in mistaken_runs(positions, distances):
         _exchange(positions, change)
         made.append(change)
     return made
