@@ -5,7 +5,7 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from ..errors import InvalidSettingError
-from .files import LEARNED, ending_for, refuse_target
+from .files import FOR_MOTIONS, LEARNED, MOTIONS, RECORDED, ending_for, refuse_target
 from .verb import Makes, Task, Verb
 
 
@@ -26,10 +26,10 @@ def tasks_of(verb: Verb, arguments: argparse.Namespace) -> list[Task]:
         _refuse_reading_and_writing(files, [arguments.output])
         refuse_target(arguments.output, LEARNED)
         return [Task(tuple(files), arguments.output, arguments)]
-    return [Task((path,), target, arguments) for path, target in _pairs(arguments)]
+    return [Task((path,), target, arguments) for path, target in _pairs(verb, arguments)]
 
 
-def _pairs(arguments: argparse.Namespace) -> list[tuple[Path, Path]]:
+def _pairs(verb: Verb, arguments: argparse.Namespace) -> list[tuple[Path, Path]]:
     """Return which file is written from which."""
     files: list[Path] = arguments.files
     folder: Path | None = arguments.output_folder
@@ -41,14 +41,20 @@ def _pairs(arguments: argparse.Namespace) -> list[tuple[Path, Path]]:
             )
         pairs = [(files[0], files[1])]
     else:
-        pairs = [(path, folder / f"{path.stem}{ending_for(path)}") for path in files]
+        pairs = [
+            (
+                path,
+                folder / f"{path.stem}{MOTIONS if verb.writes_motions else ending_for(path)}",
+            )
+            for path in files
+        ]
     _refuse_reading_and_writing(*zip(*pairs, strict=True))
     if folder is not None:
         if folder.exists() and not folder.is_dir():
             raise InvalidSettingError(f"{folder} is a file; name a folder to write to.")
         folder.mkdir(parents=True, exist_ok=True)
     for _, target in pairs:
-        refuse_target(target)
+        refuse_target(target, FOR_MOTIONS if verb.writes_motions else RECORDED)
     return pairs
 
 

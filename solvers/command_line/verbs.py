@@ -14,6 +14,7 @@ from .convert import convert
 from .denoise_verb import add_denoise_options, learn_once, perform_denoise
 from .files import add_reading_options, read, read_all
 from .options import arguments_from, settings_from_arguments
+from .solve_verb import add_solve_options, perform_solve
 from .verb import Makes, Outcome, Task, Verb
 
 
@@ -79,6 +80,12 @@ VERBS = {
         _quality_options,
         _quality,
         Makes.WORDS,
+    ),
+    "solve": Verb(
+        "Solve the motion of a skeleton from the labelled markers of optical takes.",
+        add_solve_options,
+        perform_solve,
+        writes_motions=True,
     ),
     "convert": Verb(
         "Write recordings of any known format as BVH, or as C3D or TRC where they are points.",

@@ -80,9 +80,7 @@ def _pelvis(spots: Mapping[str, Array], places: Named) -> Array:
     """Place the hips; return the axes of the pelvis."""
     left, right = spots["LASI"], spots["RASI"]
     behind = (
-        (spots["LPSI"] + spots["RPSI"]) / 2
-        if {"LPSI", "RPSI"} <= set(spots)
-        else spots["SACR"]
+        (spots["LPSI"] + spots["RPSI"]) / 2 if {"LPSI", "RPSI"} <= set(spots) else spots["SACR"]
     )
     front = (left + right) / 2
     axes = frame(0, left - right, 1, behind - front)
@@ -147,9 +145,7 @@ def chord(start: Array, marker: Array, outward: Array, half_width: float) -> Arr
     aside = unit(across(outward, along))
     sine = np.minimum(half_width / length, 0.9)
     bone = length * np.sqrt(1.0 - sine**2)
-    return np.asarray(
-        start + bone * (np.sqrt(1.0 - sine**2) * along - sine * aside)
-    )
+    return np.asarray(start + bone * (np.sqrt(1.0 - sine**2) * along - sine * aside))
 
 
 def _trunk(spots: Mapping[str, Array], places: Named, pelvis: Array, scale: float) -> Array:

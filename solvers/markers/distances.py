@@ -40,7 +40,9 @@ class Distances:
         near = self.neighbours(marker, without)
         return near[self.spread[marker, near] <= FIRM]
 
-    def surprise(self, marker: int, places: Array, others: Array, near: NDArray[np.intp]) -> Array:
+    def surprise(
+        self, marker: int, places: Array, others: Array, near: NDArray[np.intp]
+    ) -> Array:
         """Return how odd it is to find a marker at these places, shape (n_frames,).
 
         Half the squared deviation of its distances to neighbours, in units of their spread, on

@@ -44,7 +44,11 @@ def _between(start: Array, stop: Array) -> Array:
 
 
 def _leg(
-    centres: Centres, spots: Mapping[str, Array], frames: dict[str, Array], side: str, letter: str
+    centres: Centres,
+    spots: Mapping[str, Array],
+    frames: dict[str, Array],
+    side: str,
+    letter: str,
 ) -> None:
     hip, knee, ankle = (
         centres.places[side + joint] for joint in ("UpperLeg", "LowerLeg", "Foot")
@@ -55,7 +59,9 @@ def _leg(
     if f"{letter}HEE" in spots:
         heel, toe = spots[f"{letter}HEE"], spots[f"{letter}TOE"]
         level = _levelled(heel, toe)
-        frames[f"{side}Foot"] = frame(0, frames[f"{side}LowerLeg"][..., 0], 1, heel - toe) @ level
+        frames[f"{side}Foot"] = (
+            frame(0, frames[f"{side}LowerLeg"][..., 0], 1, heel - toe) @ level
+        )
 
 
 def _levelled(heel: Array, toe: Array) -> Array:

@@ -113,9 +113,7 @@ def cost_of(body: Body, seen: Array, poses: Poses) -> Array:
     off = _off(body, seen, body.place_in(poses))
     square = (off**2).sum(axis=-1) / STRAY**2
     eases, _ = _ease(body, poses)
-    return np.asarray(
-        STRAY**2 * np.log1p(square).sum(axis=1) + (eases**2).sum(axis=1)
-    )
+    return np.asarray(STRAY**2 * np.log1p(square).sum(axis=1) + (eases**2).sum(axis=1))
 
 
 def wrong_by(body: Body, seen: Array, poses: Poses) -> Wrong:

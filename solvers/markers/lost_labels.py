@@ -48,7 +48,9 @@ def _gain(
     some = slice(*stretch)
     handed = _handed_over(positions, pair, stretch)
     near = [
-        distances.neighbours(one, (other,)) if handed else distances.firm_neighbours(one, (other,))
+        distances.neighbours(one, (other,))
+        if handed
+        else distances.firm_neighbours(one, (other,))
         for one, other in ((first, second), (second, first))
     ]
     own, fit = (
@@ -74,9 +76,7 @@ def _oddness(
     return _median(distances.surprise(label, positions[:, marker], positions, near))
 
 
-def _handed_over(
-    positions: Array, pair: tuple[int, int], stretch: tuple[int, int]
-) -> bool:
+def _handed_over(positions: Array, pair: tuple[int, int], stretch: tuple[int, int]) -> bool:
     """Whether the first marker is, where the stretch begins or ends, where the second was."""
     first, second = pair
     for inside, outside in ((stretch[0], stretch[0] - 1), (stretch[1] - 1, stretch[1])):
@@ -93,9 +93,7 @@ def _median(values: Array) -> float:
     return float(nan_median(values[:, None])[0])
 
 
-def _stretches(
-    positions: Array, marker: int, near: NDArray[np.intp]
-) -> list[tuple[int, int]]:
+def _stretches(positions: Array, marker: int, near: NDArray[np.intp]) -> list[tuple[int, int]]:
     """Return first and last-but-one frames of what may be one marker all along."""
     seen = np.isfinite(positions[:, marker]).all(axis=-1)
     relative = positions[:, [marker]] - positions[:, near]

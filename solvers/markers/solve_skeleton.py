@@ -32,7 +32,8 @@ class SolveSettings(Settings):
     """How a skeleton is solved from markers."""
 
     subject: str = setting(
-        "", "Whose markers, where a take has several people: Anna, for markers such as Anna:LFHD"
+        "",
+        "Whose markers, where a take has several people: Anna, for markers such as Anna:LFHD",
     )
     measured_frames: int = setting(
         80, "Frames from which the body is measured; more take longer and see more poses",
@@ -111,9 +112,7 @@ def solve_skeleton(
 def _spots(tracks: Tracks, found: MarkerSet) -> dict[str, Array]:
     """Return the positions of the markers of a set, by spot, without those never seen."""
     place = {name: index for index, name in enumerate(tracks.names)}
-    positions = {
-        spot: tracks.positions[:, place[name]] for spot, name in found.markers.items()
-    }
+    positions = {spot: tracks.positions[:, place[name]] for spot, name in found.markers.items()}
     pelvis = [_seen(positions[spot]) for spot in PELVIS[:2] if spot in positions]
     together = np.logical_and.reduce([np.ones(tracks.n_frames, dtype=bool), *pelvis])
     spots = {
@@ -210,9 +209,7 @@ def _solved(
     """Put the result together; what is not known becomes NaN."""
     placed = body.place_in(poses)
     known = known_joints(body, seen, poses)
-    skeleton = Skeleton(
-        tuple(joint.name for joint in body.joints), body.parents, body.offsets
-    )
+    skeleton = Skeleton(tuple(joint.name for joint in body.joints), body.parents, body.offsets)
     rotations = unroll(quaternion_from_matrix(poses.turns))
     motion = Motion(
         skeleton,
@@ -220,11 +217,15 @@ def _solved(
         np.where(known[:, :1], poses.roots, np.nan),
         tracks.frame_rate,
     )
-    above = np.stack([known[:, body.path(j)[1:]].all(axis=1) for j in range(len(body.joints))], 1)
+    above = np.stack(
+        [known[:, body.path(j)[1:]].all(axis=1) for j in range(len(body.joints))], 1
+    )
     above[:, 0] = known[:, 0]
     return SolvedSkeleton(
         motion,
-        Tracks(skeleton.names, np.where(above[..., None], placed.joints, np.nan), tracks.frame_rate),
+        Tracks(
+            skeleton.names, np.where(above[..., None], placed.joints, np.nan), tracks.frame_rate
+        ),
         np.linalg.norm(placed.markers - seen, axis=-1),
         tuple(found.markers[marker.spot] for marker in body.markers),
         found,
