@@ -5,7 +5,7 @@ import argparse
 import numpy as np
 
 from ..errors import InvalidMotionError
-from ..markers import SolveSettings, UnswapSettings
+from ..markers import SolveSettings
 from ..motion import Tracks
 from ..progress import Progress, within
 from ..workflows import MarkerMotion, MarkerMotionSettings, motion_from_markers
@@ -20,11 +20,7 @@ def add_solve_options(parser: argparse.ArgumentParser) -> None:
     """Add the options of `solve`."""
     add_reading_options(parser)
     arguments_from(parser, MarkerMotionSettings)
-    for title, settings in (
-        ("putting labels right", UnswapSettings),
-        ("solving", SolveSettings),
-    ):
-        arguments_from(parser.add_argument_group(title), settings)
+    arguments_from(parser.add_argument_group("solving"), SolveSettings)
 
 
 def perform_solve(task: Task, prepared: None, progress: Progress) -> Outcome:
@@ -38,8 +34,7 @@ def perform_solve(task: Task, prepared: None, progress: Progress) -> Outcome:
     result = motion_from_markers(
         recording,
         settings=settings_from_arguments(task.arguments, MarkerMotionSettings),
-        unswap_settings=settings_from_arguments(task.arguments, UnswapSettings),
-        solve_settings=settings_from_arguments(task.arguments, SolveSettings),
+        solving=settings_from_arguments(task.arguments, SolveSettings),
         progress=within(progress, 0.1, 0.95),
     )
     write(result.motion, task.target, within(progress, 0.95, 1.0))

@@ -6,6 +6,8 @@ written for the left side holds for the right one, mirrored.
 
 from typing import NamedTuple
 
+from .marker_sets import HEAD, PELVIS, TRUNK
+
 LOOSE, FIRM, TIGHT = 0.03, 0.012, 0.006
 """Metres by which a joint or a marker may lie elsewhere than where it usually is."""
 ANY = 1.0
@@ -20,7 +22,7 @@ class JointOf(NamedTuple):
     name: str
     parent: str
     play: Triple = NOTHING
-    """Standard deviation of each coordinate of the offset from the parent, metres; 0 is fixed."""
+    """Standard deviation of each coordinate of the offset from the parent, metres; 0: fixed."""
     ease: Triple = NOTHING
     """How far it usually turns about each axis (rotation vector), radians; 0 is any turn."""
     hinge: Triple = NOTHING
@@ -64,9 +66,9 @@ SIDE = (
     JointOf("Toes_end", "Toes", turns=False),
 )
 CENTRE_MARKERS = (
-    *(MarkerOf(spot, "hips", "hips", TIGHT) for spot in ("LASI", "RASI", "LPSI", "RPSI", "SACR")),
-    *(MarkerOf(spot, "chest", "neck", TIGHT) for spot in ("C7", "T10", "CLAV", "STRN", "RBAK")),
-    *(MarkerOf(spot, "head", "head", TIGHT) for spot in ("LFHD", "RFHD", "LBHD", "RBHD")),
+    *(MarkerOf(spot, "hips", "hips", TIGHT) for spot in PELVIS),
+    *(MarkerOf(spot, "chest", "neck", TIGHT) for spot in TRUNK),
+    *(MarkerOf(spot, "head", "head", TIGHT) for spot in HEAD),
 )  # fmt: skip
 SIDE_MARKERS = (
     MarkerOf("SHO", "Shoulder", "UpperArm", FIRM, (0.0, 0.0, 0.05)),

@@ -159,4 +159,4 @@ def median(values: Array) -> Array:
     """Return the median over frames, leaving out NaN; 0 where there is nothing else."""
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", RuntimeWarning)  # of all-NaN columns
-        return np.nan_to_num(np.nanmedian(values, axis=0))
+        return np.asarray(np.nan_to_num(np.nanmedian(values, axis=0)))

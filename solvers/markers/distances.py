@@ -33,12 +33,12 @@ class Distances:
         spread = self.spread[marker].copy()
         spread[[marker, *without]] = np.nan
         order = np.argsort(spread, kind="stable")
-        return order[np.isfinite(spread[order])][:NEIGHBOURS]
+        return np.asarray(order[np.isfinite(spread[order])][:NEIGHBOURS])
 
     def firm_neighbours(self, marker: int, without: tuple[int, ...] = ()) -> NDArray[np.intp]:
         """Return those neighbours whose distance hardly varies."""
         near = self.neighbours(marker, without)
-        return near[self.spread[marker, near] <= FIRM]
+        return np.asarray(near[self.spread[marker, near] <= FIRM])
 
     def surprise(
         self, marker: int, places: Array, others: Array, near: NDArray[np.intp]

@@ -127,9 +127,9 @@ def _step(
     solved = np.linalg.solve(poses_normal, np.concatenate([cross, gradient[..., None]], axis=2))
     flat = by_body.reshape(-1, len(play))
     normal = flat.T @ flat + np.diag(play**-2.0) * (1.0 + damping)
-    normal -= np.einsum("fus,fut->st", cross, solved[..., :-1], optimize=True)
+    normal = normal - np.einsum("fus,fut->st", cross, solved[..., :-1], optimize=True)
     slope = flat.T @ wrong.residuals.ravel() + values / play**2
-    slope -= np.einsum("fus,fu->s", cross, solved[..., -1])
+    slope = slope - np.einsum("fus,fu->s", cross, solved[..., -1])
     step = -np.linalg.solve(normal, slope)
     return step, -solved[..., -1] - solved[..., :-1] @ step
 

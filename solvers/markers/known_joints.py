@@ -8,7 +8,7 @@ from .fit_poses import wrong_by
 
 Array = NDArray[np.float64]
 FRAMES_AT_ONCE = 256
-UNSURE = 0.5
+UNSURE = 0.8
 """Radians: the standard deviation from which on a joint's rotation is not known."""
 LOST = 0.05
 """Metres, likewise of the hips' position."""

@@ -8,8 +8,8 @@ from numpy.typing import NDArray
 from .distances import Distances
 
 Array = NDArray[np.float64]
-SURE, NEVER = 10.0, 100.0
-"""The most that one jump counts, and one that only a change of labels would make."""
+SURE, NEVER = 10.0, 1e9
+"""The most that one jump counts, and a change of labels where a pair moves smoothly."""
 SWITCH = 3.0
 """What each beginning and end of a swap costs."""
 FRAME = 0.3
@@ -113,7 +113,8 @@ def most_likely_swap(
     relative = (positions[:, second] - positions[:, first])[:, None]
     kept, turned, usual = (part[:, 0] for part in _steps(relative, frame_rate))
     stay, change = (np.nan_to_num(0.5 * (step / usual) ** 2) for step in (kept, turned))
-    change = np.minimum(change, np.where(stay > SURE, SURE, NEVER))
+    smooth = (stay <= SURE) & ~(turned <= kept) & np.isfinite(turned)
+    change = np.where(smooth, NEVER, np.minimum(change, SURE))
     stay = np.minimum(stay, SURE)
     swapped = FRAME * _evidence(positions, pair, distances)
     course = _viterbi(stay, change + SWITCH, swapped)

@@ -17,14 +17,13 @@ from .centres import joint_centres
 from .fit_body import fit_body
 from .fit_poses import fit_poses
 from .known_joints import known_joints
-from .marker_sets import MarkerSet, find_marker_set
+from .marker_sets import PELVIS, MarkerSet, find_marker_set
 
 Array = NDArray[np.float64]
-PELVIS = ("LASI", "RASI", "LPSI", "RPSI", "SACR")
 NEARLY_ALL = 0.95
 """Of the markers seen at best: frames with so many may tell the body's measures."""
 FAR_OFF, FAR_OFF_AT_LEAST = 3.0, 0.02
-"""Times the usual error, and metres, from which on a pose is sought again from another start."""
+"""Times the usual error, and metres, from which on a pose is sought again."""
 
 
 @dataclass(frozen=True, kw_only=True)

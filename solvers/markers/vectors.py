@@ -19,7 +19,7 @@ def across(vectors: Array, axis: Array) -> Array:
 
 def dot(a: Array, b: Array) -> Array:
     """Return the scalar products, shape (...)."""
-    return np.einsum("...i,...i->...", a, b)
+    return np.asarray(np.einsum("...i,...i->...", a, b))
 
 
 def frame(first: int, along: Array, second: int, hint: Array) -> Array:
@@ -60,7 +60,7 @@ def skewed(vectors: Array) -> Array:
     x, y, z = np.moveaxis(vectors, -1, 0)
     zero = np.zeros_like(x)
     rows = [zero, -z, y, z, zero, -x, -y, x, zero]
-    return np.stack(rows, axis=-1).reshape(*vectors.shape, 3)
+    return np.asarray(np.stack(rows, axis=-1).reshape(*vectors.shape, 3))
 
 
 def turned_by(vectors: Array) -> Array:

@@ -12,6 +12,7 @@ from ..markers import (
     SolveSettings,
     Swap,
     UnswapSettings,
+    find_marker_set,
     keep_rigid,
     rigid_clusters,
     solve_skeleton,
@@ -21,12 +22,18 @@ from ..motion import Motion, Tracks
 from ..progress import Progress, unwatched, within
 from ..settings import Settings, setting
 
+SOLVE_SETTINGS = SolveSettings()
+
 
 @dataclass(frozen=True, kw_only=True)
 class MarkerMotionSettings(Settings):
     """Which steps are taken."""
 
     unswap: bool = setting(True, "Put swapped and mistaken markers right first")
+    evidence: float = setting(
+        8.0, "How strongly jumps and distances must speak for a swap; higher leaves more alone",
+        minimum=1.0, maximum=100.0,
+    )  # fmt: skip
     fill: bool = setting(True, "Fill gaps of markers from the markers about them")
     smooth: bool = setting(
         False, "Take jitter out of the solved motion; else only what no marker shows is filled"
@@ -41,18 +48,17 @@ class MarkerMotion:
     solved: SolvedSkeleton
     """Before what no marker shows was filled."""
     markers: Tracks
-    """As they were solved from."""
+    """The markers of the set, as they were solved from."""
     swaps: tuple[Swap, ...]
     filled: NDArray[np.bool_]
-    """Where a marker was found from others, shape (n_frames, n_points)."""
+    """Where one of `markers` was found from others, shape (n_frames, n_points)."""
 
 
 def motion_from_markers(
     tracks: Tracks,
     *,
     settings: MarkerMotionSettings = MarkerMotionSettings(),
-    unswap_settings: UnswapSettings = UnswapSettings(),
-    solve_settings: SolveSettings = SolveSettings(),
+    solving: SolveSettings = SOLVE_SETTINGS,
     progress: Progress = unwatched,
 ) -> MarkerMotion:
     """Put labels right, fill gaps, solve the skeleton and fill what is left.
@@ -65,7 +71,7 @@ def motion_from_markers(
     tracks : Tracks
         Labelled markers of a set known to `find_marker_set`.
     settings : MarkerMotionSettings
-    unswap_settings, solve_settings : settings of the steps
+    solving : SolveSettings
     progress : Progress
 
     Raises
@@ -75,18 +81,19 @@ def motion_from_markers(
     SolveCancelled
         Raised by `progress`.
     """
-    markers, swaps = tracks, ()
+    markers = _of_the_set(tracks, solving.subject)
+    swaps: tuple[Swap, ...] = ()
     if settings.unswap:
         unswapped = unswap_markers(
-            tracks, settings=unswap_settings, progress=within(progress, 0.0, 0.2)
+            markers,
+            settings=UnswapSettings(evidence=settings.evidence),
+            progress=within(progress, 0.0, 0.2),
         )
         markers, swaps = unswapped.tracks, unswapped.swaps
     labelled = markers.visible
     if settings.fill:
         markers = _filled(markers, within(progress, 0.2, 0.5))
-    solved = solve_skeleton(
-        markers, settings=solve_settings, progress=within(progress, 0.5, 0.85)
-    )
+    solved = solve_skeleton(markers, settings=solving, progress=within(progress, 0.5, 0.85))
     motion = solved.motion
     if settings.smooth or not motion.observed.all():
         done = denoise(motion, progress=within(progress, 0.85, 1.0)).recording
@@ -94,6 +101,17 @@ def motion_from_markers(
         motion = done if settings.smooth else _gaps_only(motion, done)
     progress(1.0, "Done")
     return MarkerMotion(motion, solved, markers, swaps, markers.visible & ~labelled)
+
+
+def _of_the_set(tracks: Tracks, subject: str) -> Tracks:
+    """Leave out points that no marker set knows, such as joints that a program computed."""
+    known = set(find_marker_set(tracks.names, subject or None).markers.values())
+    kept = [index for index, name in enumerate(tracks.names) if name in known]
+    if not kept:
+        return tracks  # Whose lack of markers the solver tells best.
+    names = tuple(tracks.names[index] for index in kept)
+    confidence = None if tracks.confidence is None else tracks.confidence[:, kept]
+    return Tracks(names, tracks.positions[:, kept], tracks.frame_rate, confidence)
 
 
 def _filled(tracks: Tracks, progress: Progress) -> Tracks:
