@@ -119,6 +119,7 @@ def _groups(usual: Array, spread: Array, settings: ClusterSettings) -> list[list
     if not len(above) or np.median(above) < MOVES:
         return []
     apart = np.where(usual <= settings.widest, np.nan_to_num(spread, nan=APART), APART)
+    apart = np.round(apart, 6)  # Rounding must not choose between what is equal.
     np.fill_diagonal(apart, 0.0)
     tree = linkage(squareform(np.maximum(apart, apart.T), checks=False), "complete")
     labels = fcluster(tree, settings.slack, "distance")

@@ -5,8 +5,9 @@ from numpy.typing import NDArray
 
 Array = NDArray[np.float64]
 N_WEIGHTS = 8
-STRAY = 0.004
-"""Metres from its place in the shape from which on a point counts less and less."""
+STRAY, LEAST_STRAY = 3.0, 0.004
+"""Times the usual distance from its place in the shape, and metres at least, from which on a
+point counts less and less."""
 
 
 def fit_rigidly(template: Array, places: Array) -> tuple[Array, Array]:
@@ -38,7 +39,9 @@ def fit_rigidly(template: Array, places: Array) -> tuple[Array, Array]:
     if len(template) > 3:
         for _ in range(N_WEIGHTS):
             off = np.linalg.norm(moved(template, turns, shifts) - known, axis=-1)
-            weights = seen / (1.0 + (np.nan_to_num(off) / STRAY) ** 2)
+            usual = float(np.median(off[seen])) if seen.any() else 0.0
+            stray = max(LEAST_STRAY, STRAY * usual)
+            weights = seen / (1.0 + (np.nan_to_num(off) / stray) ** 2)
             turns, shifts = _weighted(template, known, weights)
     return turns, shifts
 

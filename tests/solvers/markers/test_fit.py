@@ -21,7 +21,9 @@ def started():
     """A body, the markers seen, and poses that are a little off."""
     tracks = markers_on(walking_gait(GaitSettings(duration=0.5, frame_rate=20.0)))
     found = find_marker_set(tracks.names).markers
-    spots = {spot: tracks.positions[:, tracks.names.index(name)] for spot, name in found.items()}
+    spots = {
+        spot: tracks.positions[:, tracks.names.index(name)] for spot, name in found.items()
+    }
     centres = joint_centres(spots)
     body, turns = build_body(centres, spots)
     seen = np.stack([spots[marker.spot] for marker in body.markers], axis=1)
