@@ -55,8 +55,8 @@ CENTRE = (
 )
 SIDE = (
     JointOf("Shoulder", "chest", (TIGHT, TIGHT, TIGHT), (0.05, 0.5, 0.5)),
-    JointOf("UpperArm", "Shoulder", (FIRM, 0.0, 0.0)),
-    JointOf("LowerArm", "UpperArm", (FIRM, 0.0, 0.0), hinge=(0.0, 0.0, 0.1)),
+    JointOf("UpperArm", "Shoulder", (FIRM, FIRM, FIRM)),
+    JointOf("LowerArm", "UpperArm", (FIRM, 0.0, 0.0), hinge=(0.0, 0.0, 0.5)),
     JointOf("Hand", "LowerArm", (FIRM, 0.0, 0.0), (0.15, 1.0, 1.0)),
     JointOf("Hand_end", "Hand", turns=False),
     JointOf("UpperLeg", "hips", (LOOSE, LOOSE, LOOSE)),

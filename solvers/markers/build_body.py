@@ -1,6 +1,5 @@
 """Measure a first body from joint centres: its build, its bones and where its markers sit."""
 
-import warnings
 from collections.abc import Collection, Mapping
 
 import numpy as np
@@ -20,6 +19,7 @@ from .body_tables import (
 )
 from .centres import Centres
 from .first_poses import bone_frames
+from .vectors import median
 
 Array = NDArray[np.float64]
 TOES_END, HAND_END, HEAD_END = 0.06, 0.17, 0.17
@@ -114,10 +114,11 @@ def _offset(joint: JointOf, centres: Centres, frames: Mapping[str, Array]) -> Ar
     if part in fixed:
         return scale * fixed[part]
     start, stop = centres.places[joint.parent], centres.places[joint.name]
-    axis = {"chest": 2, "neck": 2, "UpperArm": 0, "LowerArm": 0, "Hand": 0}.get(part)
+    axis = {"chest": 2, "neck": 2, "LowerArm": 0, "Hand": 0}.get(part)
     axis = 2 if part in {"LowerLeg", "Foot"} else axis
     if axis is None:
-        local = np.einsum("fji,fj->fi", frames[joint.parent], stop - start)
+        parent = "chest" if part == "UpperArm" else joint.parent  # The collar bone's own rest.
+        local = np.einsum("fji,fj->fi", frames[parent], stop - start)
         return median(local)  # of toes: their markers
     length = float(median(np.linalg.norm(stop - start, axis=-1)[:, None])[0])
     down = -1.0 if part in {"LowerLeg", "Foot"} else sign
@@ -153,10 +154,3 @@ def _seat(
         return centres.scale * np.array(marker.offset)
     away = spots[marker.spot] - centres.places[marker.anchor]
     return median(np.einsum("fji,fj->fi", frames[marker.bone], away))
-
-
-def median(values: Array) -> Array:
-    """Return the median over frames, leaving out NaN; 0 where there is nothing else."""
-    with warnings.catch_warnings():
-        warnings.simplefilter("ignore", RuntimeWarning)  # of all-NaN columns
-        return np.asarray(np.nan_to_num(np.nanmedian(values, axis=0)))

@@ -13,7 +13,7 @@ from ..motion.rotations import (
 )
 from .body_tables import SIDES
 from .centres import Centres
-from .vectors import frame
+from .vectors import frame, median, swung, unit
 
 Array = NDArray[np.float64]
 
@@ -23,7 +23,8 @@ def bone_frames(
 ) -> dict[str, Array]:
     """Return the axes of the bones named, each of shape (n_frames, 3, 3).
 
-    The spine shares the turn from pelvis to thorax, the neck that from thorax to head.
+    Collar bones swing from where they are on average. The spine shares the turn from pelvis to
+    thorax, the neck that from thorax to head.
     """
     frames = dict(centres.frames)
     if "chest" in frames:
@@ -91,7 +92,8 @@ def _arm(
     collar, shoulder, elbow = (
         places[side + joint] for joint in ("Shoulder", "UpperArm", "LowerArm")
     )
-    frames[f"{side}Shoulder"] = frame(0, sign * (shoulder - collar), 2, thorax[..., 2])
+    local = np.einsum("fji,fj->fi", thorax, shoulder - collar)
+    frames[f"{side}Shoulder"] = swung(thorax, unit(median(local)), shoulder - collar)
     upward = spots[f"{letter}ELB"] - elbow
     frames[f"{side}UpperArm"] = frame(0, sign * (elbow - shoulder), 2, upward)
     if f"{side}Hand" not in places:

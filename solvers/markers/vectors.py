@@ -1,5 +1,7 @@
 """Directions and frames of many vectors at once; arrays of shape (..., 3)."""
 
+import warnings
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -72,3 +74,10 @@ def turned_by(vectors: Array) -> Array:
     first = np.where(small, 1.0, np.sin(angle) / safe)
     second = np.where(small, 0.5, (1.0 - np.cos(angle)) / safe**2)
     return np.asarray(np.eye(3) + first * skew + second * skew @ skew)
+
+
+def median(values: Array) -> Array:
+    """Return the median over frames, leaving out NaN; 0 where there is nothing else."""
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", RuntimeWarning)  # of all-NaN columns
+        return np.asarray(np.nan_to_num(np.nanmedian(values, axis=0)))
