@@ -18,7 +18,8 @@ from ..recordings import (
 
 MOTIONS = ".bvh"
 POINTS = {".c3d": write_c3d, ".trc": write_trc}
-RECORDED = {MOTIONS: "a skeleton's motion", **dict.fromkeys(POINTS, "points")}
+FOR_MOTIONS = {MOTIONS: "a skeleton's motion"}
+RECORDED = {**FOR_MOTIONS, **dict.fromkeys(POINTS, "points")}
 """Endings of recordings that can be written, and what each is for."""
 POINTS_BY_DEFAULT = ".trc"
 LEARNED = {".npz": "learned patterns"}
@@ -94,10 +95,13 @@ def write(recording: Motion | Tracks, path: Path | None, progress: Progress) -> 
     elif isinstance(recording, Tracks) and path and ending in POINTS:
         POINTS[ending](recording, path, progress=progress)
     else:
-        kind, fit = ("A skeleton's motion", MOTIONS)
+        kind, fit, else_ = ("A skeleton's motion", MOTIONS, "")
         if isinstance(recording, Tracks):
             kind, fit = ("Points without a skeleton", " or ".join(POINTS))
-        raise InvalidFileError(f"{kind} cannot be written as {path}; end the name in {fit}.")
+            else_ = ", or make a skeleton of labelled markers with the verb solve"
+        raise InvalidFileError(
+            f"{kind} cannot be written as {path}; end the name in {fit}{else_}."
+        )
 
 
 def refuse_target(path: Path, endings: Mapping[str, str] = RECORDED) -> None:

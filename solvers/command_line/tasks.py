@@ -5,7 +5,15 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from ..errors import InvalidSettingError
-from .files import LEARNED, ending_for, found_in, refuse_target
+from .files import (
+    FOR_MOTIONS,
+    LEARNED,
+    MOTIONS,
+    RECORDED,
+    ending_for,
+    found_in,
+    refuse_target,
+)
 from .verb import Makes, Task, Verb
 
 
@@ -27,10 +35,10 @@ def tasks_of(verb: Verb, arguments: argparse.Namespace) -> list[Task]:
         _refuse_reading_and_writing(sources, [arguments.output])
         refuse_target(arguments.output, LEARNED)
         return [Task(sources, arguments.output, arguments)]
-    return [Task((path,), target, arguments) for path, target in _pairs(arguments)]
+    return [Task((path,), target, arguments) for path, target in _pairs(verb, arguments)]
 
 
-def _pairs(arguments: argparse.Namespace) -> list[tuple[Path, Path]]:
+def _pairs(verb: Verb, arguments: argparse.Namespace) -> list[tuple[Path, Path]]:
     """Return which file is written from which."""
     files: list[Path] = arguments.files
     folder: Path | None = arguments.output_folder
@@ -45,15 +53,19 @@ def _pairs(arguments: argparse.Namespace) -> list[tuple[Path, Path]]:
         if folder.exists() and not folder.is_dir():
             raise InvalidSettingError(f"{folder} is a file; name a folder to write to.")
         pairs = [
-            (path, folder / place.with_suffix(ending_for(path)))
+            (path, folder / place.with_suffix(_ending(verb, path)))
             for path, place in found_in(files, not_in=folder)
         ]
     _refuse_reading_and_writing(*zip(*pairs, strict=True))
     for _, target in pairs:
         if folder is not None:
             target.parent.mkdir(parents=True, exist_ok=True)
-        refuse_target(target)
+        refuse_target(target, FOR_MOTIONS if verb.writes_motions else RECORDED)
     return pairs
+
+
+def _ending(verb: Verb, source: Path) -> str:
+    return MOTIONS if verb.writes_motions else ending_for(source)
 
 
 def _refuse_reading_and_writing(sources: Sequence[Path], targets: Sequence[Path]) -> None:
