@@ -5,9 +5,16 @@ from typing import NamedTuple
 
 import bpy
 
-from ..solvers.motion import JointRecording, Motion, Skeleton, Tracks, resample
+from ..solvers.motion import (
+    JointRecording,
+    Motion,
+    Skeleton,
+    Tracks,
+    motion_from_points,
+    resample,
+)
 from ..solvers.progress import Progress, unwatched
-from .import_choices import ImportChoices
+from .import_choices import ImportChoices, Target
 from .scene.armature_build import build_armature
 from .scene.empties_build import build_empties, write_tracks
 from .scene.new_action import write_motion
@@ -37,14 +44,24 @@ def make_objects(
     """Add what moves as the recording does; only `Update Scene FPS` is left to the caller."""
     scene = context.scene
     when = timing(scene, choices.frame_rate, recording.frame_rate, choices.frame_start)
-    moving = recording.tracks if isinstance(recording, JointRecording) else recording
-    moving = scaled(moving, choices.global_scale)
+    moving = scaled(_as_target(recording, choices.target), choices.global_scale)
     if choices.frame_rate is FrameRate.RESAMPLE:
         moving = resample(moving, scene_rate(scene))
         when = when._replace(step=1.0)
     if isinstance(moving, Motion):
         return _make_armature(context, name, moving, when, choices, progress)
     return _make_empties(context, name, moving, when, progress)
+
+
+def _as_target(recording: Motion | Tracks | JointRecording, target: Target) -> Motion | Tracks:
+    """Turn the joints of a camera into a motion, where an armature is wanted and they hang
+    together; into points otherwise.
+    """
+    if not isinstance(recording, JointRecording):
+        return recording
+    if target is Target.ARMATURE and recording.parents.count(-1) == 1 < recording.n_joints:
+        return motion_from_points(recording.tracks, recording.parents)
+    return recording.tracks
 
 
 def scaled(recording: Motion | Tracks, factor: float) -> Motion | Tracks:

@@ -24,6 +24,8 @@ from .joint_recording import JointRecording
 from .kinematics import WorldPoses, forward_kinematics, local_rotations, world_poses
 from .limb_ik import ReachSettings, reach
 from .motion import Motion
+from .points_motion import motion_from_points
+from .points_skeleton import skeleton_from_points
 from .resampling import resample
 from .skeleton import Skeleton
 from .tracks import Tracks
@@ -56,9 +58,11 @@ __all__ = [
     "leg_length",
     "linear_velocities",
     "local_rotations",
+    "motion_from_points",
     "reach",
     "resample",
     "roles_by_name",
+    "skeleton_from_points",
     "t_pose_alignment",
     "transfer_motion",
     "warp",
