@@ -109,7 +109,8 @@ def import_files(
         except SolveCancelled:
             raise
         except MocapAssistError as error:
-            failed.append(str(error))
+            said_where = path.name in str(error)
+            failed.append(str(error) if said_where else f"{path.name}: {error}")
         else:
             made.append(thing)
             said.append(sentence)
@@ -126,7 +127,7 @@ def import_file(
     made = make_objects(
         context, path.stem, recording, choices, progress=within(progress, READING, 1.0)
     )
-    for owner in (made.top, *made.actions):
+    for owner in (made.top, made.action):
         note_origin(owner, origin_of_file(path, recording))
     if choices.frame_rate is FrameRate.UPDATE:
         set_scene_rate(context.scene, recording.frame_rate)

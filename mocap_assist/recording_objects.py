@@ -4,7 +4,10 @@ from dataclasses import replace
 from typing import NamedTuple
 
 import bpy
+import numpy as np
+from numpy.typing import NDArray
 
+from ..solvers.errors import InvalidMotionError
 from ..solvers.motion import (
     JointRecording,
     Motion,
@@ -15,11 +18,28 @@ from ..solvers.motion import (
 )
 from ..solvers.progress import Progress, unwatched
 from .import_choices import ImportChoices, Target
+from .scene import compat
 from .scene.armature_build import build_armature
 from .scene.empties_build import build_empties, write_tracks
 from .scene.new_action import write_motion
-from .scene.scene_rate import FrameRate, Timing, scene_rate, timing
+from .scene.scene_rate import FrameRate, scene_rate, timing
+from .scene.sensor_words import words_of, write_words
 from .scene.units import unit_of
+
+Array = NDArray[np.float64]
+
+
+class Words(NamedTuple):
+    """What the sensor said, at its own samples even where the motion is resampled."""
+
+    frames: Array
+    """Scene frames, shape (n_samples,)."""
+    said: dict[str, dict[str, Array]]
+    """By joint or marker."""
+
+    def of(self, name: str) -> tuple[Array, dict[str, Array]]:
+        """Return the frames and what was said of one joint or marker."""
+        return self.frames, self.said.get(name, {})
 
 
 class Made(NamedTuple):
@@ -27,7 +47,7 @@ class Made(NamedTuple):
 
     top: bpy.types.Object
     """The armature, or the empty that holds the markers."""
-    actions: tuple[bpy.types.Action, ...]
+    action: bpy.types.Action
     last_frame: float
     what: str
     """In words."""
@@ -41,16 +61,20 @@ def make_objects(
     *,
     progress: Progress = unwatched,
 ) -> Made:
-    """Add what moves as the recording does; only `Update Scene FPS` is left to the caller."""
+    """Add what moves as the recording does; the scene's settings stay as they are."""
     scene = context.scene
-    when = timing(scene, choices.frame_rate, recording.frame_rate, choices.frame_start)
+    samples = timing(scene, choices.frame_rate, recording.frame_rate, choices.frame_start)
     moving = scaled(_as_target(recording, choices.target), choices.global_scale)
+    when = samples
     if choices.frame_rate is FrameRate.RESAMPLE:
         moving = resample(moving, scene_rate(scene))
-        when = when._replace(step=1.0)
+        when = samples._replace(step=1.0)
+    frames = when.frames(moving.n_frames)
+    words = Words(samples.frames(recording.n_frames), words_of(recording))
     if isinstance(moving, Motion):
-        return _make_armature(context, name, moving, when, choices, progress)
-    return _make_empties(context, name, moving, when, progress)
+        mode = choices.rotate_mode.name
+        return _make_armature(context, name, moving, mode, frames, words, progress)
+    return _make_empties(context, name, moving, frames, words, progress)
 
 
 def _as_target(recording: Motion | Tracks | JointRecording, target: Target) -> Motion | Tracks:
@@ -75,27 +99,50 @@ def scaled(recording: Motion | Tracks, factor: float) -> Motion | Tracks:
     return replace(recording, skeleton=larger, root_positions=factor * recording.root_positions)
 
 
+def _seen(tracks: Tracks) -> Tracks:
+    """Leave out points that were never seen: they would stand at the origin, seen for sure."""
+    seen = np.flatnonzero(tracks.visible.any(axis=0))
+    if not len(seen):
+        raise InvalidMotionError("No point is ever seen.")
+    confidence = None if tracks.confidence is None else tracks.confidence[:, seen]
+    names = tuple(tracks.names[point] for point in seen)
+    return Tracks(names, tracks.positions[:, seen], tracks.frame_rate, confidence)
+
+
 def _make_armature(
     context: bpy.types.Context,
     name: str,
     motion: Motion,
-    when: Timing,
-    choices: ImportChoices,
+    mode: str,
+    frames: Array,
+    words: Words,
     progress: Progress,
 ) -> Made:
-    metres, mode = unit_of(context.scene), choices.rotate_mode.name
+    metres = unit_of(context.scene)
     armature, bones = build_armature(context, name, motion.skeleton, metres, mode)
-    frames = when.frames(motion.n_frames)
-    action, _ = write_motion(armature, bones, motion, frames, metres, progress=progress)
+    action, slot = write_motion(armature, bones, motion, frames, metres, progress=progress)
+    bag = compat.channelbag(action, slot)
+    for joint, bone in zip(motion.skeleton.names, bones, strict=True):
+        if bone:
+            write_words(bag, armature.pose.bones[bone], *words.of(joint))
     what = f"an armature of {len(armature.data.bones)} bones"
-    return Made(armature, (action,), float(frames[-1]), what)
+    return Made(armature, action, float(frames[-1]), what)
 
 
 def _make_empties(
-    context: bpy.types.Context, name: str, tracks: Tracks, when: Timing, progress: Progress
+    context: bpy.types.Context,
+    name: str,
+    tracks: Tracks,
+    frames: Array,
+    words: Words,
+    progress: Progress,
 ) -> Made:
     metres = unit_of(context.scene)
+    tracks = _seen(tracks)
     holder, empties = build_empties(context, name, tracks.names, metres)
-    frames = when.frames(tracks.n_frames)
     action = write_tracks(name, empties, tracks, frames, metres, progress=progress)
-    return Made(holder, (action,), float(frames[-1]), f"{tracks.n_points} empties")
+    for point, empty in zip(tracks.names, empties, strict=True):
+        write_words(
+            compat.channelbag(action, empty.animation_data.action_slot), empty, *words.of(point)
+        )
+    return Made(holder, action, float(frames[-1]), f"{tracks.n_points} empties")

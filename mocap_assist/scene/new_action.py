@@ -9,7 +9,7 @@ from ...solvers.progress import Progress, unwatched
 from . import compat
 from .bone_channels import bone_path
 from .compat import Source
-from .curves import write_values
+from .curves import write_first
 from .rig import Placement, read_rig
 from .rotation_modes import channels_from_quaternions, rotation_property
 from .take import Part, basis_rotations, root_locations
@@ -83,4 +83,4 @@ def write_channels(
     if not seen.any():
         return
     for index, column in enumerate(values[seen].T):
-        write_values(compat.new_curve(bag, path, index, group), frames[seen], column)
+        write_first(compat.new_curve(bag, path, index, group), frames[seen], column)
