@@ -38,8 +38,6 @@ class Imported(NamedTuple):
     @property
     def sentence(self) -> str:
         """What to say in the status bar: what failed first."""
-        if not (self.made or self.failed):
-            return "No file was chosen."
         several = [f"{len(self.failed)} of {len(self.made) + len(self.failed)} files failed."]
         return " ".join([*several * bool(self.failed and self.made), *self.failed, *self.said])
 
@@ -96,7 +94,8 @@ def import_files(
 
     A file that fails leaves nothing behind. Raises SolveCancelled by `progress`.
     """
-    made, said, failed = [], [], []
+    made, said = [], []
+    failed = [] if paths else ["No file was chosen."]
     for index, path in enumerate(paths):
         share = within(progress, index / len(paths), (index + 1) / len(paths))
         rate = choices.frame_rate
