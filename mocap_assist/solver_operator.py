@@ -11,7 +11,7 @@ import bpy
 from ..solvers.errors import MocapAssistError, SolveCancelled
 from .jobs.job import Quick, run
 from .redo import fingerprint
-from .selection import selected_armature
+from .selection import selected_subject
 from .subject import Subject
 from .watch import Watch, why_busy
 
@@ -62,7 +62,7 @@ class SolverOperator:
 
     def execute(self, context: bpy.types.Context) -> set[str]:
         if not hasattr(self, "_subject"):  # else it is done again, to the same armature
-            self._subject = Subject.of(context.scene, selected_armature(context))
+            self._subject = Subject.of(context.scene, selected_subject(context))
         try:
             return self._finish(run(self._read()))
         except MocapAssistError as error:
@@ -72,7 +72,7 @@ class SolverOperator:
         self.prepare(context)
         if in_background():
             return self.execute(context)
-        self._subject = Subject.of(context.scene, selected_armature(context))
+        self._subject = Subject.of(context.scene, selected_subject(context))
         self._started = monotonic()
         try:
             solve = self._read()
