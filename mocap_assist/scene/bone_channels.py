@@ -32,19 +32,21 @@ def bone_path(bone: str, name: str) -> str:
     return f'pose.bones["{bpy.utils.escape_identifier(bone)}"].{name}'
 
 
-def read_bone(bone: bpy.types.PoseBone, curves: Curves, frames: Array) -> BoneChannels:
+def read_bone(
+    bone: bpy.types.PoseBone, curves: Curves, frames: Array, step: float | None = None
+) -> BoneChannels:
     """Read the rotation channels of the bone's own mode, and its location.
 
-    Channels without keys have the pose's present value.
+    Channels without keys have the pose's present value. `step` is that of `unobserved`.
     """
     turning, shifting = rotation_curves(bone, curves), location_curves(bone, curves)
     angles = sampled_rotation(bone, turning, frames)
     rotations = quaternions_from_channels(angles, bone.rotation_mode)
-    rotations[gaps_of(turning, frames)] = np.nan
+    rotations[gaps_of(turning, frames, step)] = np.nan
     if bone.bone.use_connect and bone.parent:
         return BoneChannels(rotations, np.zeros((len(frames), 3)), bool(turning), False)
     locations = sampled(shifting, bone.location, frames)
-    locations[gaps_of(shifting, frames)] = np.nan
+    locations[gaps_of(shifting, frames, step)] = np.nan
     return BoneChannels(rotations, locations, bool(turning), bool(shifting))
 
 
@@ -105,8 +107,10 @@ def sampled(curves: Mapping[int, Channel], present: object, frames: Array) -> Ar
     return values
 
 
-def gaps_of(curves: Mapping[int, Channel], frames: Array) -> NDArray[np.bool_]:
+def gaps_of(
+    curves: Mapping[int, Channel], frames: Array, step: float | None = None
+) -> NDArray[np.bool_]:
     """Tell the frames at which a property was not captured; see `unobserved`."""
     if not curves or all(channel.keyed_at(frames) for channel in curves.values()):
         return np.zeros(len(frames), bool)
-    return unobserved([channel.keys for channel in curves.values()], frames)
+    return unobserved([channel.keys for channel in curves.values()], frames, step)

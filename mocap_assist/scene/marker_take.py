@@ -84,11 +84,11 @@ def read_markers(
     every = [animated_curves(*source) for source in sources]
     if grid is None:
         keyed = [curve for curves in every for curve in curves_of(curves, PATH, 3).values()]
-        grid = key_grid(keyed, range_bounds(choice, scene, keyed))
+        grid = key_grid(keyed, range_bounds(choice, scene, keyed), recorded=True)
     bpy.context.view_layer.update()
     spaces = tuple(_space(marker, unit_of(scene)) for marker in markers)
     places = [
-        space.points(_locations(marker, curves, grid.frames))
+        space.points(_locations(marker, curves, grid))
         for marker, curves, space in zip(markers, every, spaces, strict=True)
     ]
     rate = scene.render.fps / scene.render.fps_base / grid.step
@@ -144,10 +144,10 @@ def _space(marker: bpy.types.Object, metres: float) -> Placement:
     return Placement(turn[None], origin[None], scale).in_unit(metres)
 
 
-def _locations(marker: bpy.types.Object, curves: Curves, frames: Array) -> Array:
+def _locations(marker: bpy.types.Object, curves: Curves, grid: Grid) -> Array:
     found = curves_of(curves, PATH, 3)
-    locations = sampled(found, marker.location, frames)
-    locations[gaps_of(found, frames)] = np.nan
+    locations = sampled(found, marker.location, grid.frames)
+    locations[gaps_of(found, grid.frames, grid.step)] = np.nan
     return locations
 
 

@@ -27,6 +27,7 @@ def bad_tracks(true_tracks, rng):
         scale=0.003, size=true_tracks.positions.shape
     )
     positions[LOST, 1] = np.nan
+    positions[:10, 2] = positions[11:, 2] = np.nan  # seen once
     return true_tracks.with_positions(positions)
 
 
@@ -79,7 +80,7 @@ def test_clean_fills_and_calms_markers_and_revert_brings_the_raw_ones_back(
     misses = np.linalg.norm(found - true_tracks.positions, axis=-1)
     noise = np.linalg.norm(bad_tracks.positions - true_tracks.positions, axis=-1)
     assert np.isfinite(found).all()
-    assert misses.mean() < 0.75 * np.nanmean(noise)
+    assert np.delete(misses, 2, axis=1).mean() < 0.75 * np.nanmean(noise)
     assert misses[LOST, 1].mean() < 0.05
     assert keys_of(raw) == recorded
 
