@@ -12,7 +12,7 @@ Array = NDArray[np.float64]
 SHORT = 1e-3  # of the body's extent: a bone that short has no direction to speak of
 STUB = 0.05  # of the body's extent: length of a bone that has no way to go
 LAST = 0.4  # of its parent's length: length of a bone whose tail was never captured
-BALANCED = 0.5  # of the mean way to a child: so far from the joint their middle may lie
+STRAIGHT = 0.5  # cosine of the angle up to which a bone goes on in a child
 
 
 def build_armature(
@@ -20,9 +20,9 @@ def build_armature(
 ) -> tuple[bpy.types.Object, tuple[str, ...]]:
     """Add an armature to the scene, in its rest pose, selected and active.
 
-    A bone goes from its joint to its child, or to the middle of its children; an end site is
-    the tail of its bone rather than a bone. What `read_take` reads of the armature is the
-    skeleton again.
+    A bone goes from its joint to its child; among several to the one that goes straight on, as
+    the neck does above the shoulders, or else to the middle of all. An end site is the tail of
+    its bone rather than a bone. What `read_take` reads of the armature is the skeleton again.
 
     Parameters
     ----------
@@ -105,18 +105,21 @@ def _tails(skeleton: Skeleton, tips: set[int]) -> Array:
 
 
 def _way(skeleton: Skeleton, joint: int) -> Array:
-    """From a joint to its child, to the middle of its children, or to the main one of them."""
-    children = list(skeleton.children[joint])
+    """From a joint to its child, to the one that goes straight on, or to the middle of all."""
+    far = SHORT * _extent(skeleton)
+    lengths = np.linalg.norm(skeleton.offsets, axis=-1)
+    children = [child for child in skeleton.children[joint] if lengths[child] > far]
     if not children:
         return np.zeros(3)
     ways = skeleton.offsets[children]
-    lengths = np.linalg.norm(ways, axis=-1)
-    middle = ways.mean(axis=0)
-    if np.linalg.norm(middle) >= BALANCED * lengths.mean():
-        return np.asarray(middle)
-    far = lengths > SHORT * _extent(skeleton)
-    sizes = [len(skeleton.subtree(child)) for child in children]
-    return np.asarray(ways[int(np.argmax(far * np.array(sizes)))])
+    if skeleton.parents[joint] < 0:  # the spine, since arms and head are above it
+        return np.asarray(
+            ways[int(np.argmax([len(skeleton.subtree(one)) for one in children]))]
+        )
+    cosines = ways @ skeleton.offsets[joint] / lengths[children] / max(lengths[joint], far)
+    if len(children) == 1 or cosines.max() > STRAIGHT:
+        return np.asarray(ways[int(np.argmax(cosines))])
+    return np.asarray(ways.mean(axis=0))
 
 
 def _extent(skeleton: Skeleton) -> float:

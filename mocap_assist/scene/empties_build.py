@@ -14,6 +14,7 @@ Array = NDArray[np.float64]
 POINT = "mocap_assist_point"
 """Custom property of an empty: the name of its point, which Blender may have to change."""
 SIZE = 0.015  # metres: radius of the sphere that shows a marker
+CROSS = 0.2  # metres: half the length of the cross that shows what holds them
 
 
 def build_empties(
@@ -25,6 +26,7 @@ def build_empties(
     """
     in_object_mode(context)
     holder = bpy.data.objects.new(name, None)
+    holder.empty_display_size = CROSS / metres
     made = []
     for point in points:
         empty = bpy.data.objects.new(point, None)
