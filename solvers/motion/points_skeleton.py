@@ -89,7 +89,7 @@ def _seen_tree(tracks: Tracks, parents: Sequence[int]) -> list[int]:
 
 
 def _mean_shape(ways: Array, lengths: Array, usual: Array) -> Array:
-    """Places of children about their joint, shape (n_children, 3), turned towards `usual`."""
+    """Places of children about their joint, shape (n_children, 3), turned as `usual` is."""
     whole = ways[np.isfinite(ways).all(axis=(1, 2))]
     shape = usual
     for _ in range(ROUNDS if len(whole) else 0):
@@ -100,8 +100,4 @@ def _mean_shape(ways: Array, lengths: Array, usual: Array) -> Array:
             return usual
         shape = np.median(laid, axis=0)
     sizes = np.linalg.norm(shape, axis=-1, keepdims=True)
-    shape = lengths[:, None] * shape / np.where(sizes > 0.0, sizes, 1.0)
-    turn = best_turns(shape, usual[None])[0]
-    if np.isnan(turn).any():
-        return usual
-    return np.asarray(shape @ matrix_from_quaternion(turn).T)
+    return np.asarray(lengths[:, None] * shape / np.where(sizes > 0.0, sizes, 1.0))

@@ -97,25 +97,55 @@ def test_turning_the_recording_turns_the_root_alone(body, dance):
     assert_allclose(moved.root_positions - (1, 2, 3), turn.apply(found.root_positions))
 
 
-def test_a_lost_elbow_leaves_the_arm_unknown_and_the_rest_as_it_was():
+@pytest.mark.parametrize(
+    ("lost_joint", "expected"),
+    [
+        ("ElbowLeft", {"ShoulderLeft", "ElbowLeft", "WristLeft"}),
+        ("HandLeft", {"WristLeft", "HandLeft"}),
+        ("FootRight", {"AnkleRight"}),
+    ],
+)
+def test_a_lost_joint_leaves_its_bones_unknown_and_the_rest_as_it_was(lost_joint, expected):
     names = JOINTS[Sensor.KINECT_V2]
     parents = joint_parents(names)
     rng = np.random.default_rng(1)
     points = Tracks(names, rng.normal(size=(20, 25, 3)), 30.0)
     whole = motion_from_points(points, parents)
     lost = np.array(points.positions)
-    lost[5:9, names.index("ElbowLeft")] = np.nan
+    lost[5:9, names.index(lost_joint)] = np.nan
 
     found = motion_from_points(points.with_positions(lost), parents, whole.skeleton)
 
     unknown = {
         found.skeleton.names[joint] for joint in np.flatnonzero(~found.observed.all(axis=0))
     }
-    assert unknown == {"ShoulderLeft", "ElbowLeft", "WristLeft"}
-    assert not found.observed[5:9, found.skeleton.index("ElbowLeft")].any()
+    assert unknown == expected
+    assert not found.observed[5:9, [found.skeleton.index(name) for name in expected]].any()
     assert_allclose(
         found.rotations[found.observed], whole.rotations[found.observed], atol=1e-12
     )
+
+
+def test_a_bone_is_as_long_as_the_median(body, dance):
+    points = points_of(dance)
+    joint = points.names.index("Head")
+    parent = body.parents[joint]
+    stretched = np.array(points.positions)
+    stretched[:19, joint] += 3.0 * (stretched[:19, joint] - stretched[:19, parent])
+
+    found = skeleton_from_points(points.with_positions(stretched), body.parents)
+
+    length = np.linalg.norm(found.offsets[found.index("Head")])
+    assert length == pytest.approx(np.linalg.norm(body.offsets[joint]))
+
+
+def test_joints_in_the_same_place_tell_no_direction():
+    points = np.tile([[0.0, 0, 1.0], [0.0, 0, 1.3], [0.0, 0, 1.5]], (4, 1, 1))
+    points[2, 1] = points[2, 0]
+
+    found = motion_from_points(Tracks(("a", "b", "c"), points, 30.0), (-1, 0, 1))
+
+    assert found.observed[:, 0].tolist() == [True, True, False, True]
 
 
 def test_the_rest_pose_is_a_t_pose_of_the_measured_lengths(recordings):
