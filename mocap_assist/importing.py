@@ -15,6 +15,7 @@ from .scene.origin import note_origin, origin_of_file
 from .scene.scene_objects import all_or_nothing, choose
 from .scene.scene_rate import FrameRate, extend_duration, scene_rate, set_scene_rate
 
+NOTED = 3  # recordings that the redo panel lists
 READING = 0.6  # share of the time that goes into reading
 
 
@@ -34,6 +35,12 @@ class Imported(NamedTuple):
     """A sentence for each file that was read."""
     failed: tuple[str, ...]
     """A sentence for each that was not."""
+
+    @property
+    def note(self) -> str:
+        """What the redo panel says: the first few recordings."""
+        more = len(self.said) - NOTED
+        return " ".join([*self.said[:NOTED], *[f"And {more} more."] * (more > 0)])
 
     @property
     def sentence(self) -> str:

@@ -74,7 +74,15 @@ def make_objects(
     if isinstance(moving, Motion):
         mode = choices.rotate_mode.name
         return _make_armature(context, name, moving, mode, frames, words, progress)
-    return _make_empties(context, name, moving, frames, words, progress)
+    made = _make_empties(context, name, moving, frames, words, progress)
+    if choices.target is Target.OBJECT or isinstance(recording, Tracks):
+        return made
+    return made._replace(what=f"{made.what}, since nothing tells which joint hangs on which")
+
+
+def in_one_tree(recording: JointRecording) -> bool:
+    """Whether it is known which joint hangs on which, so that they can become an armature."""
+    return recording.parents.count(-1) == 1 < recording.n_joints
 
 
 def _as_target(recording: Motion | Tracks | JointRecording, target: Target) -> Motion | Tracks:
@@ -83,7 +91,7 @@ def _as_target(recording: Motion | Tracks | JointRecording, target: Target) -> M
     """
     if not isinstance(recording, JointRecording):
         return recording
-    if target is Target.ARMATURE and recording.parents.count(-1) == 1 < recording.n_joints:
+    if target is Target.ARMATURE and in_one_tree(recording):
         return motion_from_points(recording.tracks, recording.parents)
     return recording.tracks
 

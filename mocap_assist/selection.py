@@ -9,7 +9,7 @@ from .scene.armature_read import action_of
 from .scene.armature_write import check_writable
 from .scene.compat import Source
 from .scene.marker_take import MarkerTake
-from .scene.markers import holder_of, markers_of
+from .scene.markers import first_marker_of, holder_of, markers_of
 
 
 def selected_armature(context: bpy.types.Context) -> bpy.types.Object | None:
@@ -40,8 +40,7 @@ def why_not_clean(context: bpy.types.Context) -> str:
     if reason := why_not_read(context):
         return reason
     try:
-        for player in players(selected_subject(context)):
-            check_writable(player)
+        check_writable(first_player(selected_subject(context)))
     except InvalidMotionError as error:
         return str(error)
     return ""
@@ -66,15 +65,20 @@ def players(subject: bpy.types.Object) -> tuple[bpy.types.Object, ...]:
     return (subject,) if subject.type == "ARMATURE" else markers_of(subject)
 
 
+def first_player(subject: bpy.types.Object) -> bpy.types.Object:
+    """Return the armature itself, or one of the markers."""
+    return subject if subject.type == "ARMATURE" else first_marker_of(subject)
+
+
 def played_source(subject: bpy.types.Object) -> Source:
     """Return what the armature, or the first of the markers, plays: a result, or its action."""
-    player = players(subject)[0]
+    player = first_player(subject)
     return history.played_result(player) or action_of(player)
 
 
 def played_result(subject: bpy.types.Object | None) -> Source | None:
     """Return the result of ours that the armature or the first of the markers plays."""
-    return None if subject is None else history.played_result(players(subject)[0])
+    return None if subject is None else history.played_result(first_player(subject))
 
 
 def chosen_bones(armature: bpy.types.Object, choice: Bones) -> frozenset[str]:

@@ -24,21 +24,29 @@ def markers_of(holder: bpy.types.Object) -> tuple[bpy.types.Object, ...]:
     return tuple(filter(is_marker, holder.children))
 
 
+def first_marker_of(holder: bpy.types.Object) -> bpy.types.Object:
+    """Return one of the markers: what it plays they all play. Panels ask at every redraw."""
+    return next(filter(is_marker, holder.children))
+
+
 def is_marker(each: bpy.types.Object) -> bool:
     """Whether an object is an empty whose location is keyed."""
-    source = played_by(each) if each.type == "EMPTY" else None
+    if each.type != "EMPTY" or each.animation_data is None:
+        return False
+    source = assigned_to(each) or played_by(each)
     bag = None if source is None else compat.channelbag(*source)
     return bag is not None and bag.fcurves.find(PATH) is not None
 
 
 def played_by(marker: bpy.types.Object) -> Source | None:
     """Return what a marker plays: a result of ours, or its action."""
+    return history.played_result(marker) or assigned_to(marker)
+
+
+def assigned_to(marker: bpy.types.Object) -> Source | None:
+    """Return the action and slot of a marker, without a look at NLA tracks."""
     animation = marker.animation_data
-    if animation is None:
-        return None
-    if result := history.played_result(marker):
-        return result
-    if animation.action is None or animation.action_slot is None:
+    if animation is None or animation.action is None or animation.action_slot is None:
         return None
     return animation.action, animation.action_slot
 

@@ -85,6 +85,43 @@ def test_a_walk_is_cleaned_after_it_was_imported(recordings, bring, blank):
     assert armature.animation_data.action.name == "07_01.clean"
 
 
+def test_odd_names_and_bones_without_length_are_no_obstacle(bring, load, blank, tmp_path):
+    motion = load("solvers.motion")
+    names = (
+        'Hip "left"',
+        "hip.L",
+        "Спина",
+        "a" * 70,
+        "a" * 69 + "b",
+        "lone",
+        "lone_end",
+        "x_end",
+    )
+    parents = (-1, 0, 1, 1, 1, 0, 5, 0)
+    offsets = np.array([
+        [0, 0, 1.0], [0, 0, 0], [0, 0, 0.3], [0.2, 0, 0], [-0.2, 0, 0],
+        [0, 0, -0.5], [0, 0, 0], [0, 0.1, 0],
+    ])  # fmt: skip
+    skeleton = motion.Skeleton(names, parents, offsets)
+    turns = load("solvers.motion.rotations").quaternion_from_rotation_vector(
+        0.3 * np.sin(np.arange(20 * 8 * 3.0)).reshape(20, 8, 3)
+    )
+    turns[:, 6:] = (1.0, 0.0, 0.0, 0.0)
+    dance = motion.Motion(skeleton, turns, np.ones((20, 3)) * np.arange(20)[:, None], 24.0)
+    make = load("mocap_assist.recording_objects").make_objects
+    choices = load("mocap_assist.import_choices").ImportChoices()
+
+    armature = make(blank.context, "odd", dance, choices).top
+
+    take = load("mocap_assist.scene.armature_read").read_take(armature, blank.context.scene)
+    read = motion.forward_kinematics(take.parts[0].motion).positions
+    expected = motion.forward_kinematics(dance).positions
+    assert read.shape == expected.shape
+    for place in np.moveaxis(expected, 1, 0):
+        nearest = np.abs(read - place[:, None]).max(axis=(0, 2)).min()
+        assert nearest < 10 * NEAR
+
+
 def channelbag(animated):
     action, slot = animated.animation_data.action, animated.animation_data.action_slot
     return action.layers[0].strips[0].channelbag(slot)

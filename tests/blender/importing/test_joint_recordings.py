@@ -85,6 +85,48 @@ def test_the_file_and_the_sensor_are_noted(lossy, bring, load):
         assert (noted["sensor"], noted["frame_rate"]) == ("kinect_v2", 30.0)
 
 
+@pytest.fixture
+def kinect(load, rng):
+    """A short recording of all joints of a Kinect v2 that wander about."""
+    motion = load("solvers.motion")
+    names = motion.JOINTS[motion.Sensor.KINECT_V2]
+    places = rng.normal(size=(1, 25, 3)) + np.cumsum(
+        rng.normal(scale=0.01, size=(40, 25, 3)), 0
+    )
+    tracks = motion.Tracks(names, places, 30.0, rng.uniform(size=(40, 25)))
+    state = rng.integers(0, 3, size=(40, 25))
+    return motion.JointRecording(tracks, state, motion.Sensor.KINECT_V2)
+
+
+@pytest.mark.parametrize("extension", [".csv", ".json"])
+def test_our_own_tables_of_joints_become_armatures(extension, kinect, bring, load, tmp_path):
+    path = tmp_path / f"joints{extension}"
+    load("solvers.recordings").write_joints(kinect, path)
+    again = load("solvers.recordings").read_recording(path)
+
+    armature = bring(path, frame_rate="ONE")
+
+    assert set(armature.pose.bones.keys()) == set(kinect.names)
+    channels = armature.animation_data.action.layers[0].strips[0].channelbags[0].fcurves
+    for joint, name in enumerate(kinect.names):
+        curve = channels.find(f'pose.bones["{name}"]["mocap_confidence"]')
+        values = [curve.evaluate(frame) for frame in range(1, 41)]
+        assert_allclose(values, again.tracks.confidence[:, joint], atol=1e-6)
+
+
+def test_joints_of_unknown_parents_become_empties_and_it_is_said(
+    bring, blank, rng, tmp_path, capfd
+):
+    path = tmp_path / "skeleton_3d.npy"
+    np.save(path, 1000.0 * rng.uniform(size=(50, 21, 3)))
+
+    holder = bring(path)
+
+    assert holder.type == "EMPTY"
+    assert len(holder.children) == 21
+    assert "nothing tells which joint hangs on which" in capfd.readouterr().out
+
+
 @pytest.mark.parametrize(
     "file",
     [

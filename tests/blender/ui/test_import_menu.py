@@ -43,6 +43,19 @@ def test_the_file_menu_has_the_entry(blank, draw):
     assert len(entries) == 1
 
 
+def test_clean_offers_markers_nothing_that_only_joints_have(blank, draw, load, rng, tmp_path):
+    joints = {"joint_limits", "plant_feet", "contact_height"}
+    assert joints - {"contact_height"} <= set(draw("MOCAP_PT_clean"))
+    tracks = load("solvers.motion").Tracks(("a", "b"), rng.normal(size=(30, 2, 3)), 24.0)
+    load("solvers.recordings").write_trc(tracks, tmp_path / "two.trc")
+
+    blank.ops.mocap_assist.import_recording(filepath=str(tmp_path / "two.trc"))
+
+    shown = set(draw("MOCAP_PT_clean"))
+    assert not joints & shown
+    assert {"strength", "frame_range", "mocap_assist.denoise"} <= shown
+
+
 def test_the_panel_tells_where_the_selected_take_came_from(blank, draw, load, tmp_path):
     samples = load("solvers.samples")
     walk = samples.walking_gait(samples.GaitSettings(duration=1.0, frame_rate=25.0))
