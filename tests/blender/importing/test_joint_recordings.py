@@ -115,16 +115,25 @@ def test_our_own_tables_of_joints_become_armatures(extension, kinect, bring, loa
 
 
 def test_joints_of_unknown_parents_become_empties_and_it_is_said(
-    bring, blank, rng, tmp_path, capfd
+    kinect, bring, load, tmp_path, capfd
 ):
-    path = tmp_path / "skeleton_3d.npy"
-    np.save(path, 1000.0 * rng.uniform(size=(50, 21, 3)))
+    motion, path = load("solvers.motion"), tmp_path / "three.json"
+    tracks = motion.Tracks(("a", "b", "c"), kinect.tracks.positions[:, :3], 30.0)
+    unknown = motion.JointRecording(tracks, None, motion.Sensor.OTHER)
+    load("solvers.recordings").write_joints(unknown, path)
 
     holder = bring(path)
 
     assert holder.type == "EMPTY"
-    assert len(holder.children) == 21
+    assert len(holder.children) == 3
     assert "nothing tells which joint hangs on which" in capfd.readouterr().out
+
+
+def test_points_of_freemocap_become_empties(bring, rng, tmp_path):
+    path = tmp_path / "skeleton_3d.npy"
+    np.save(path, 1000.0 * rng.uniform(size=(50, 21, 3)))
+
+    assert len(bring(path).children) == 21
 
 
 @pytest.mark.parametrize(
