@@ -8,7 +8,7 @@ from ..solvers.progress import Progress, unwatched
 from ..solvers.recordings import read_recording
 from ..solvers.recordings.acclaim import find_skeleton
 
-MOST = 50_000_000  # numbers that are kept
+MOST = 20_000_000  # numbers that are kept
 
 Recording = Motion | Tracks | JointRecording
 State = tuple[tuple[str, int, int], ...]

@@ -11,8 +11,9 @@ KINDS = ("objects", "armatures", "actions", "collections")
 def in_object_mode(context: bpy.types.Context) -> None:
     """Leave Pose or Edit Mode, in which no other object can become active."""
     active = context.view_layer.objects.active
-    if active is not None and active.mode != "OBJECT":
-        bpy.ops.object.mode_set(mode="OBJECT")
+    switch = bpy.ops.object.mode_set
+    if active is not None and active.mode != "OBJECT" and switch.poll():
+        switch(mode="OBJECT")
 
 
 def add_object(context: bpy.types.Context, made: bpy.types.Object) -> None:

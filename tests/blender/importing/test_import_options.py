@@ -110,6 +110,21 @@ def test_many_files_come_at_once_and_stand_for_themselves(walk, recordings, brin
     assert len({each.animation_data.action for each in chosen}) == len(others)
 
 
+def test_the_first_file_sets_the_rate_and_others_are_scaled(
+    walk, recordings, bring, key_times, blank, tmp_path
+):
+    other = recordings / "formats" / "bvh" / "test_mocapbank.bvh"  # 455 frames at 30 Hz
+    for path in (other, walk):
+        (tmp_path / path.name).write_bytes(path.read_bytes())
+
+    bring(tmp_path / other.name, tmp_path / walk.name, frame_rate="UPDATE")
+
+    first, second = (blank.data.objects[name] for name in ("test_mocapbank", "07_01"))
+    assert blank.context.scene.render.fps == 30
+    assert key_times(first)[-1] == 455.0
+    assert key_times(second)[-1] == pytest.approx(1.0 + (N_FRAMES - 1) * 30.0 / RATE)
+
+
 def test_one_bad_file_does_not_keep_the_others_out(walk, tmp_path, blank):
     good = tmp_path / "good.bvh"
     good.write_bytes(walk.read_bytes())

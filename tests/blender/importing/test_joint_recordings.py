@@ -74,12 +74,25 @@ def test_confidence_is_kept_and_survives_cleaning(lossy, bring, load, target, bl
     assert (states == 0).any()
 
 
-def test_the_file_and_the_sensor_are_noted(lossy, bring, load):
+def test_empties_give_back_what_the_camera_measured(lossy, bring, load, blank):
+    recording = load("solvers.recordings").read_recording(lossy)
+    read = load("mocap_assist.scene.marker_take").read_markers
+
+    tracks = read(bring(lossy, target="OBJECT"), blank.context.scene).tracks
+
+    order = [recording.names.index(name) for name in tracks.names]
+    assert len(order) == recording.n_joints
+    assert_allclose(tracks.positions, recording.tracks.positions[:, order], atol=NEAR)
+
+
+@pytest.mark.parametrize("target", ["ARMATURE", "OBJECT"])
+def test_the_file_and_the_sensor_are_noted(target, lossy, bring, load):
     origin = load("mocap_assist.scene.origin")
 
-    armature = bring(lossy)
+    made = bring(lossy, target=target)
 
-    for owner in (armature, armature.animation_data.action):
+    player = made if target == "ARMATURE" else made.children[0]
+    for owner in (made, player.animation_data.action):
         noted = origin.origin_of(owner)
         assert noted["file"].endswith(lossy.name)
         assert (noted["sensor"], noted["frame_rate"]) == ("kinect_v2", 30.0)
