@@ -32,10 +32,15 @@ def bad_tracks(true_tracks, rng):
 
 
 @pytest.fixture
-def holder(bad_tracks, bring, load, tmp_path):
+def file(bad_tracks, load, tmp_path):
     path = tmp_path / "walk.trc"
     load("solvers.recordings").write_trc(bad_tracks, path)
-    return bring(path)
+    return path
+
+
+@pytest.fixture
+def holder(file, bring):
+    return bring(file)
 
 
 @pytest.fixture
@@ -48,7 +53,17 @@ def in_order(take, tracks):
     return [take.tracks.names.index(name) for name in tracks.names]
 
 
-def test_markers_read_back_as_they_were_recorded(holder, bad_tracks, read):
+@pytest.mark.parametrize(("fps", "unit"), [(24, 1.0), (60, 0.01), (240, 1.0)])
+def test_markers_read_back_as_they_were_recorded(
+    fps, unit, file, bad_tracks, bring, read, blank
+):
+    blank.context.scene.render.fps = fps
+    blank.context.scene.unit_settings.scale_length = unit
+
+    holder = bring(file)
+
+    size = holder.children[0].matrix_world.translation.length * unit
+    assert 0.1 < size < 10.0
     take = read(holder)
 
     found = take.tracks.positions[:, in_order(take, bad_tracks)]
