@@ -3,6 +3,7 @@
 import bpy
 
 from .denoise import MOCAP_OT_denoise
+from .import_recording import MOCAP_OT_import_recording
 from .jump_to_spot import MOCAP_OT_jump_to_spot
 from .learn_patterns import MOCAP_OT_learn_patterns
 from .measure_quality import MOCAP_OT_measure_quality
@@ -10,6 +11,7 @@ from .plant_feet import MOCAP_OT_plant_feet
 from .revert_to_raw import MOCAP_OT_revert_to_raw
 
 OPERATORS = (
+    MOCAP_OT_import_recording,
     MOCAP_OT_denoise,
     MOCAP_OT_measure_quality,
     MOCAP_OT_jump_to_spot,

@@ -182,11 +182,13 @@ def clean(
     return Cleaned((body, *others), moved, solution, planted, before, after)
 
 
-def _planted(body: Motion, finish: Finish, progress: Progress) -> Planted | None:
+def _planted(body: Motion | Tracks, finish: Finish, progress: Progress) -> Planted | None:
     """Plant the feet of what has legs, if the legs were chosen at all."""
+    if finish.planting is None or isinstance(body, Tracks):
+        return None
     legs = find_legs(body.skeleton)
     joints = {body.skeleton.names[joint] for leg in legs for joint in (leg.hip, leg.knee)}
-    if finish.planting is None or not joints & finish.chosen:
+    if not joints & finish.chosen:
         return None
     return plant_feet(body, finish.contacts, settings=finish.planting, progress=progress)
 

@@ -1,8 +1,26 @@
 """What the animator sees: panels in the sidebar, menus, preferences and the overlay."""
 
-from . import example_list, manual, menus, overlay_switch, preferences, sidebar, translations
+from . import (
+    example_list,
+    import_menu,
+    manual,
+    menus,
+    overlay_switch,
+    preferences,
+    sidebar,
+    translations,
+)
 
-PARTS = (translations, preferences, example_list, sidebar, menus, overlay_switch, manual)
+PARTS = (
+    translations,
+    preferences,
+    example_list,
+    sidebar,
+    menus,
+    import_menu,
+    overlay_switch,
+    manual,
+)
 
 
 def register() -> None:

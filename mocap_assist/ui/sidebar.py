@@ -6,6 +6,7 @@ from .check_panel import CheckPanel, MOCAP_UL_spots
 from .clean_panel import CleanPanel
 from .compare_panel import ComparePanel
 from .feet_panel import FeetPanel
+from .import_panel import ImportPanel
 from .preferences import preferred
 
 EDITORS = {"": "VIEW_3D", "_graph": "GRAPH_EDITOR", "_dopesheet": "DOPESHEET_EDITOR"}
@@ -24,7 +25,7 @@ def _in_every_editor(body: type) -> list[type[bpy.types.Panel]]:
 
 PANELS = [
     panel
-    for body in (CleanPanel, CheckPanel, ComparePanel, FeetPanel)
+    for body in (ImportPanel, CleanPanel, CheckPanel, ComparePanel, FeetPanel)
     for panel in _in_every_editor(body)
 ]
 

@@ -26,6 +26,8 @@ from .joint_recording import JointRecording
 from .kinematics import WorldPoses, forward_kinematics, local_rotations, world_poses
 from .limb_ik import ReachSettings, reach
 from .motion import Motion
+from .points_motion import motion_from_points
+from .points_skeleton import skeleton_from_points
 from .resampling import resample
 from .skeleton import Skeleton
 from .tracks import Tracks
@@ -60,10 +62,12 @@ __all__ = [
     "linear_velocities",
     "load_joint_limits",
     "local_rotations",
+    "motion_from_points",
     "reach",
     "read_humanoid_map",
     "resample",
     "roles_by_name",
+    "skeleton_from_points",
     "t_pose_alignment",
     "transfer_motion",
     "warp",

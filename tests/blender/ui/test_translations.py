@@ -4,7 +4,7 @@ from string import Formatter
 
 import pytest
 
-PANELS = [f"MOCAP_PT_{name}" for name in ("clean", "check", "compare", "feet")]
+PANELS = [f"MOCAP_PT_{name}" for name in ("import", "clean", "check", "compare", "feet")]
 
 
 @pytest.fixture
