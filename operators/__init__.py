@@ -7,6 +7,7 @@ from .jump_to_spot import MOCAP_OT_jump_to_spot
 from .learn_patterns import MOCAP_OT_learn_patterns
 from .measure_quality import MOCAP_OT_measure_quality
 from .plant_feet import MOCAP_OT_plant_feet
+from .retarget import MOCAP_OT_retarget
 from .revert_to_raw import MOCAP_OT_revert_to_raw
 
 OPERATORS = (
@@ -15,6 +16,7 @@ OPERATORS = (
     MOCAP_OT_jump_to_spot,
     MOCAP_OT_plant_feet,
     MOCAP_OT_learn_patterns,
+    MOCAP_OT_retarget,
     MOCAP_OT_revert_to_raw,
 )
 
