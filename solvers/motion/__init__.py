@@ -20,6 +20,7 @@ from .contacts import (
 from .depth_sensors import JOINTS, Sensor, joint_parents
 from .humanoid import HUMANOID_ROLES, HumanoidMap, find_humanoid_map
 from .humanoid_names import roles_by_name
+from .humanoid_presets import read_humanoid_map, write_humanoid_map
 from .joint_recording import JointRecording
 from .kinematics import WorldPoses, forward_kinematics, local_rotations, world_poses
 from .limb_ik import ReachSettings, reach
@@ -57,10 +58,12 @@ __all__ = [
     "linear_velocities",
     "local_rotations",
     "reach",
+    "read_humanoid_map",
     "resample",
     "roles_by_name",
     "t_pose_alignment",
     "transfer_motion",
     "warp",
     "world_poses",
+    "write_humanoid_map",
 ]

@@ -12,7 +12,7 @@
 """
 
 from .key_curves import KeyCurve
-from .reduce_keys import SparseMotion, UnbakeSettings, reduce_keys
+from .reduce_keys import SparseMotion, UnbakeSettings, load_sparse_motion, reduce_keys
 from .retarget import RetargetSettings, RootMotion, retarget
 from .root_motion import GroundPath, ground_path
 
@@ -24,6 +24,7 @@ __all__ = [
     "SparseMotion",
     "UnbakeSettings",
     "ground_path",
+    "load_sparse_motion",
     "reduce_keys",
     "retarget",
 ]

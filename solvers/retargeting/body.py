@@ -10,6 +10,7 @@ from ..motion import HumanoidMap, Motion, Skeleton, t_pose_alignment
 
 Array = NDArray[np.float64]
 SIDES = ("left", "right")
+LIMB_ROOTS = tuple(f"{side}{part}" for side in SIDES for part in ("UpperLeg", "UpperArm"))
 
 
 @dataclass(frozen=True, eq=False)
@@ -65,10 +66,12 @@ def find_body(skeleton: Skeleton, humanoid: HumanoidMap, whose: str) -> Body:
     Raises
     ------
     InvalidMotionError
-        No joint plays the hips. `whose` skeleton it is stands in the sentence.
+        No joint plays the hips, or a limb does not hang on them. `whose` skeleton it is stands
+        in the sentence.
     """
-    hips_of(skeleton, humanoid, whose)
+    hips = hips_of(skeleton, humanoid, whose)
     joints = humanoid.indices(skeleton)
+    _check_limbs(skeleton, joints, hips)
     above = {up for joint in joints.values() for up in skeleton.ancestors(joint)}
     kept = tuple(sorted({*joints.values(), *above, 0}))
     place = {joint: index for index, joint in enumerate(kept)}
@@ -88,6 +91,17 @@ def hips_of(skeleton: Skeleton, humanoid: HumanoidMap, whose: str) -> int:
             " map."
         )
     return hips
+
+
+def _check_limbs(skeleton: Skeleton, joints: dict[str, int], hips: int) -> None:
+    for role in LIMB_ROOTS:
+        joint = joints.get(role, hips)
+        if joint != hips and hips not in skeleton.ancestors(joint):
+            raise InvalidMotionError(
+                f"{skeleton.names[joint]} ({role}) does not hang below {skeleton.names[hips]}"
+                " (hips) and would not follow it. Map bones of one tree, such as a rig's"
+                " controls."
+            )
 
 
 def without_gaps(motion: Motion, body: Body) -> tuple[Motion, NDArray[np.bool_]]:

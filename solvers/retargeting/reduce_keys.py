@@ -1,16 +1,20 @@
 """Unbake: replace a key on every frame by few keys with handles."""
 
 from dataclasses import dataclass
+from pathlib import Path
 
 import numpy as np
 
-from ..errors import InvalidMotionError, InvalidSettingError
+from ..errors import InvalidFileError, InvalidMotionError, InvalidSettingError
+from ..files import read_archive, write_archive
 from ..motion import Motion, Skeleton
 from ..motion.rotations import IDENTITY, normalize
 from ..progress import Progress, unwatched, within
 from ..settings import Settings, setting
 from .key_curves import KeyCurve
 from .thinning import ROOT, Thinning
+
+KIND, VERSION = "keys of a motion", 1
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -53,6 +57,23 @@ class SparseMotion:
         curves = (*self.rotations, self.root)
         return sum(curve.values.size for curve in curves)
 
+    def save(self, path: Path | str) -> None:
+        """Save as npz, whole or not at all; `load_sparse_motion` reads it."""
+        curves = (*self.rotations, self.root)
+        arrays = {
+            "names": np.array(self.skeleton.names),
+            "parents": np.array(self.skeleton.parents),
+            "offsets": self.skeleton.offsets,
+            "counts": np.array([len(curve.frames) for curve in curves]),
+            "frames": np.concatenate([curve.frames for curve in curves]),
+            "rotations": np.concatenate([curve.values for curve in self.rotations]),
+            "turning": np.concatenate([curve.slopes for curve in self.rotations]),
+            "places": self.root.values,
+            "moving": self.root.slopes,
+            "length": np.array([self.n_frames, self.frame_rate, self.error]),
+        }
+        write_archive(path, KIND, VERSION, arrays)
+
     def dense(self) -> Motion:
         """Return the motion with a pose at every frame, as F-Curves would give it."""
         frames = np.arange(self.n_frames)
@@ -61,6 +82,37 @@ class SparseMotion:
             if len(curve.frames):
                 rotations[:, joint] = normalize(curve.at(frames))
         return Motion(self.skeleton, rotations, self.root.at(frames), self.frame_rate)
+
+
+def load_sparse_motion(path: Path | str) -> SparseMotion:
+    """Load what `SparseMotion.save` saved.
+
+    Raises
+    ------
+    InvalidFileError
+        The file is missing, damaged, or holds something else.
+    """
+    arrays = read_archive(path, KIND, VERSION)
+    try:
+        skeleton = Skeleton(
+            tuple(arrays["names"].tolist()), tuple(arrays["parents"]), arrays["offsets"]
+        )
+        stops = np.cumsum(arrays["counts"])[:-1]
+        frames = np.split(arrays["frames"], stops)
+        parts = zip(
+            frames[:-1],
+            np.split(arrays["rotations"], stops[:-1]),
+            np.split(arrays["turning"], stops[:-1]),
+            strict=True,
+        )
+        curves = tuple(KeyCurve(*part) for part in parts)
+        root = KeyCurve(frames[-1], arrays["places"], arrays["moving"])
+        n_frames, frame_rate, error = arrays["length"].tolist()
+        sparse = SparseMotion(skeleton, curves, root, int(n_frames), frame_rate, error)
+        sparse.dense()
+    except (KeyError, ValueError, IndexError, TypeError) as fault:
+        raise InvalidFileError(f"{path} holds no whole set of keys ({fault}).") from None
+    return sparse
 
 
 def reduce_keys(

@@ -45,7 +45,7 @@ class RetargetSettings(Settings):
         RootMotion.KEEP, "Keep the travel on the hips, take it out so that the body moves on"
         " the spot, or put it on the bone above the hips"
     )  # fmt: skip
-    scale: float = setting(
+    travel_scale: float = setting(
         0.0, "The way over the ground is multiplied by this; higher goes farther, 1 hits the"
         " source's marks, 0 lets it grow with the legs",
         minimum=0.0, maximum=1000.0,
@@ -138,7 +138,7 @@ def retarget(
     contacts = _contacts(motion, source_map)
     progress(0.3, "Turning the joints")
     rotations, missing = transfer_pose(source, seen.rotations, unknown, target)
-    placement = find_placement(source, target, seen.positions, contacts, settings.scale)
+    placement = find_placement(source, target, seen.positions, contacts, settings.travel_scale)
     places = _root_places(source, target, seen, rotations, placement)
     transfer = Transfer(source, target, seen, placement, motion.frame_rate)
     progress(0.5, "Placing the feet")
