@@ -33,10 +33,13 @@ class RetargetChoices(Settings):
         "Key the FK or the IK controls of arms and legs, where the target has both; with both,"
         " either can be switched to",
     )
-    map_file: str = setting(
+    source_map_file: str = setting(
         "",
-        "Preset that says which bone plays which part; without it the list of bones is used, or"
-        " bones are found by their names and places",
+        "Preset that says which bone of the source plays which part; without it the list of"
+        " bones is used, or bones are found by their names and places",
+    )
+    target_map_file: str = setting(
+        "", "Preset that says which bone of the target is keyed for which part"
     )
 
 
@@ -52,7 +55,7 @@ class UnbakeChoices(Settings):
     """How exact the sparse keys are."""
 
     tolerance: float = setting(
-        0.005,
+        0.01,
         "Greatest distance by which hands, feet and head may be off; higher leaves fewer keys",
         unit="m", minimum=0.0001, maximum=1.0,
     )  # fmt: skip

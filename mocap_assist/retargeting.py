@@ -90,9 +90,7 @@ def chosen_sources(source: bpy.types.Object, choices: RetargetChoices) -> tuple[
     if choices.takes is Takes.PLAYED:
         return (played_source(source),)
     if choices.takes is Takes.ALL:
-        found = [(each, _fitting_slot(each, source)) for each in bpy.data.actions]
-        fitting = tuple((action, slot) for action, slot in found if slot is not None)
-        if not fitting:
+        if not (fitting := fitting_actions(source)):
             raise InvalidMotionError(f"No action has keys for the bones of {source.name}.")
         return fitting
     names = [name.strip() for name in choices.actions.split(SEPARATOR) if name.strip()]
@@ -108,6 +106,12 @@ def chosen_sources(source: bpy.types.Object, choices: RetargetChoices) -> tuple[
             )
         listed.append((action, slot))
     return tuple(listed)
+
+
+def fitting_actions(armature: bpy.types.Object) -> tuple[Source, ...]:
+    """Return all actions, linked ones too, that key any of the armature's bones."""
+    found = [(each, _fitting_slot(each, armature)) for each in bpy.data.actions]
+    return tuple((action, slot) for action, slot in found if slot is not None)
 
 
 def _fitting_slot(
@@ -129,7 +133,8 @@ def _read(
     choices = settings.choices
     target = target_called(scene, choices.target, source)
     sources = chosen_sources(source, choices)
-    maps = maps_for(scene, source, target, choices.map_file)
+    files = (choices.source_map_file, choices.target_map_file)
+    maps = maps_for(scene, source, target, files)
     takes = tuple(read_take(source, scene, source=each) for each in sources)
     on_root = settings.retargeting.root_motion is RootMotion.ROOT_BONE
     roles = _wanted(maps)

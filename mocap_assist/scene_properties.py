@@ -9,7 +9,7 @@ import bpy
 
 from .check_choices import CheckSettings
 from .clean_choices import CleanSettings
-from .retarget_choices import RetargetBundle
+from .retarget_choices import RetargetBundle, UnbakeBundle
 from .settings_properties import settings_from
 
 
@@ -26,6 +26,11 @@ class MOCAP_PG_check(bpy.types.PropertyGroup):
 @settings_from(RetargetBundle)
 class MOCAP_PG_retarget(bpy.types.PropertyGroup):
     """Settings of the button Retarget."""
+
+
+@settings_from(UnbakeBundle)
+class MOCAP_PG_unbake(bpy.types.PropertyGroup):
+    """Settings of the button Unbake."""
 
 
 class MOCAP_PG_bone_pair(bpy.types.PropertyGroup):
@@ -66,6 +71,7 @@ class MOCAP_PG_scene(bpy.types.PropertyGroup):
     clean: bpy.props.PointerProperty(type=MOCAP_PG_clean)
     check: bpy.props.PointerProperty(type=MOCAP_PG_check)
     retarget: bpy.props.PointerProperty(type=MOCAP_PG_retarget)
+    unbake: bpy.props.PointerProperty(type=MOCAP_PG_unbake)
     bone_map: bpy.props.PointerProperty(type=MOCAP_PG_bone_map)
     checked: bpy.props.StringProperty(
         name="Checked", description="Action that was checked last, whose spots are listed"
@@ -87,6 +93,7 @@ CLASSES = (
     MOCAP_PG_clean,
     MOCAP_PG_check,
     MOCAP_PG_retarget,
+    MOCAP_PG_unbake,
     MOCAP_PG_bone_pair,
     MOCAP_PG_bone_map,
     MOCAP_PG_spot,

@@ -23,7 +23,7 @@ ROOT_NAMES = ("root", "Root", "c_traj", "c_pos", "master", "Armature", "referenc
 SIDES = ("left", "right")
 
 
-def find_target_map(armature: bpy.types.Object) -> HumanoidMap:
+def find_roles(armature: bpy.types.Object) -> HumanoidMap:
     """Find out which bone of a rig is to be keyed for which role.
 
     Of rigs by Rigify only the controls are asked.

@@ -1,8 +1,28 @@
 """What the animator sees: panels in the sidebar, menus, preferences and the overlay."""
 
-from . import example_list, manual, menus, overlay_switch, preferences, sidebar, translations
+from . import (
+    bone_list,
+    example_list,
+    manual,
+    menus,
+    overlay_switch,
+    preferences,
+    retarget_panel,
+    sidebar,
+    translations,
+)
 
-PARTS = (translations, preferences, example_list, sidebar, menus, overlay_switch, manual)
+PARTS = (
+    translations,
+    preferences,
+    example_list,
+    bone_list,
+    retarget_panel,
+    sidebar,
+    menus,
+    overlay_switch,
+    manual,
+)
 
 
 def register() -> None:

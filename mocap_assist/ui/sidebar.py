@@ -7,6 +7,7 @@ from .clean_panel import CleanPanel
 from .compare_panel import ComparePanel
 from .feet_panel import FeetPanel
 from .preferences import preferred
+from .retarget_panel import RetargetPanel
 
 EDITORS = {"": "VIEW_3D", "_graph": "GRAPH_EDITOR", "_dopesheet": "DOPESHEET_EDITOR"}
 TAB = "Mocap"
@@ -24,7 +25,7 @@ def _in_every_editor(body: type) -> list[type[bpy.types.Panel]]:
 
 PANELS = [
     panel
-    for body in (CleanPanel, CheckPanel, ComparePanel, FeetPanel)
+    for body in (CleanPanel, CheckPanel, ComparePanel, FeetPanel, RetargetPanel)
     for panel in _in_every_editor(body)
 ]
 
