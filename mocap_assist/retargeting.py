@@ -74,8 +74,10 @@ def target_called(
     """Return the armature of that name; raise InvalidMotionError where it cannot be used."""
     if not name:
         raise InvalidMotionError("Choose the armature that is to make the motion.")
-    target = scene.objects.get(name)
-    if target is None or target.type != "ARMATURE":
+    named = [each for each in scene.objects if each.name == name and each.type == "ARMATURE"]
+    # A linked armature and its override may have one name; only the override can be animated.
+    target = min(named, key=lambda each: each.library is not None, default=None)
+    if target is None:
         raise InvalidMotionError(f"The scene has no armature {name}.")
     if target == source:
         raise InvalidMotionError(
