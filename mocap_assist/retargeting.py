@@ -12,6 +12,7 @@ from ..solvers.motion import HumanoidMap
 from ..solvers.retargeting import RootMotion
 from .bone_map import BoneMaps, is_finger, maps_for
 from .examples import SEPARATOR
+from .jobs.job import Quick
 from .jobs.retargeting import Clip, Retargeted, RetargetProblem, retarget_clips
 from .retarget_choices import RetargetBundle, RetargetChoices, Takes
 from .scene import compat, history
@@ -24,6 +25,9 @@ from .scene.take import ArmatureTake
 from .scene.target_read import read_target, vertical_part
 from .selection import played_source
 from .subject import check_unchanged
+
+N_QUICK = 5000
+"""Frames that are solved in half a second: less than it takes to start another process."""
 
 
 class Reading(NamedTuple):
@@ -41,7 +45,9 @@ def read_retarget(
     scene: bpy.types.Scene, source: bpy.types.Object, settings: RetargetBundle
 ) -> "partial[Retargeted]":
     """Read source and target; return what is to be solved, which may be pickled."""
-    return partial(retarget_clips, _read(scene, source, settings).problem)
+    problem = _read(scene, source, settings).problem
+    n_frames = sum(clip.motion.n_frames for clip in problem.clips)
+    return (Quick if n_frames <= N_QUICK else partial)(retarget_clips, problem)
 
 
 def write_retargeted(
@@ -51,20 +57,26 @@ def write_retargeted(
     results: Retargeted,
     asked: str | None = None,
 ) -> str:
-    """Write an action for each clip, let the target play the last; return a sentence."""
+    """Write an action for each clip, let the target play the last; return a sentence.
+
+    A linked target plays nothing: its actions are for its override.
+    """
     found = _read(scene, source, settings)
     check_unchanged(source, asked, found.problem)
     for made_from, take, keys in zip(found.sources, found.takes, results, strict=True):
         name = f"{made_from[0].name}.{found.target.name}"
         action, slot = write_action(found.target, name, take.frames, keys, found.switches)
         history.record(action, made_from, _entry(source, found, settings))
-    compat.assign(found.target, action, slot)
+    linked = found.target.library is not None
+    if not linked:
+        compat.assign(found.target, action, slot)
     n_bones, n_frames = len(results[-1]), sum(len(take.frames) for take in found.takes)
     made = action.name if len(results) == 1 else f"{len(results)} actions"
     score = min(found.maps.source.score, found.maps.target.score)
     return (
         f"{made}: {n_frames} frames on {n_bones} bones of {found.target.name}"
         f" (bones matched {score:.0%})."
+        + (" It is linked: let its library override play the action." if linked else "")
     )
 
 
@@ -83,7 +95,8 @@ def target_called(
         raise InvalidMotionError(
             f"{name} is the source itself. Choose another armature to make the motion."
         )
-    check_writable(target)
+    if target.library is None:
+        check_writable(target)
     return target
 
 

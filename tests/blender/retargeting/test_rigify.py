@@ -141,11 +141,15 @@ def test_a_hero_that_stands_and_faces_elsewhere_walks_there(how, bring, walker, 
     assert np.linalg.norm(heads(poses, hero, names) - moved, axis=-1).max() < 0.001
 
 
-def test_a_linked_rig_cannot_be_given_an_action(bring, walker, blank):
+def test_a_linked_rig_gets_actions_but_does_not_play_them(bring, walker, blank, keys_of, give):
     hero = bring("linked")
+    blank.context.view_layer.objects.active = walker
 
-    with pytest.raises(RuntimeError, match="Make a library override"):
-        blank.ops.mocap_assist.retarget(target=hero.name)
+    assert blank.ops.mocap_assist.retarget(target=hero.name) == {"FINISHED"}
+
+    made = blank.data.actions[f"{walker.animation_data.action.name}.Hero"]
+    assert made.library is None and keys_of(made)
+    assert hero.animation_data is None or hero.animation_data.action is None
 
 
 def numbers(bone):
