@@ -86,7 +86,7 @@ def add_unbake_options(parser: argparse.ArgumentParser) -> None:
     """Add the options of `unbake`."""
     parser.add_argument(
         "--tolerance", type=float, default=1.0, metavar="CM",
-        help="Greatest distance in centimetres by which a hand, a foot or the head may be off"
+        help="Greatest distance in centimetres by which any joint may be off"
         " [default 1]",
     )  # fmt: skip
     parser.add_argument(
@@ -117,7 +117,7 @@ def perform_unbake(task: Task, prepared: None, progress: Progress) -> Outcome:
     before = motion.n_frames * (4 * moving + 3)
     text = (
         f"{sparse.n_keys} keys instead of {before} ({sparse.n_keys / before:.0%});"
-        f" no end of a limb is off by more than {100 * sparse.error:.2f} cm."
+        f" no joint is off by more than {100 * sparse.error:.2f} cm."
     )
     return Outcome(
         text, {"n_keys": sparse.n_keys, "n_keys_before": before, "error_m": sparse.error}

@@ -15,12 +15,14 @@ from .key_curves import KeyCurve
 from .reduce_keys import SparseMotion, UnbakeSettings, load_sparse_motion, reduce_keys
 from .retarget import RetargetSettings, RootMotion, retarget
 from .root_motion import GroundPath, ground_path
+from .rotation_channels import RotationChannels
 
 __all__ = [
     "GroundPath",
     "KeyCurve",
     "RetargetSettings",
     "RootMotion",
+    "RotationChannels",
     "SparseMotion",
     "UnbakeSettings",
     "ground_path",

@@ -39,7 +39,7 @@ class Body:
         return self.skeleton.rest_positions
 
     def limb(self, side: str, part: str) -> tuple[int, int, int] | None:
-        """Return upper joint, hinge and end of an "Arm" or "Leg"; None unless it is whole."""
+        """Return upper joint, hinge and end of an "Arm" or "Leg"; None for a broken one."""
         end = "Hand" if part == "Arm" else "Foot"
         roles = [f"{side}Upper{part}", f"{side}Lower{part}", f"{side}{end}"]
         if not all(role in self.joints for role in roles):
@@ -47,7 +47,9 @@ class Body:
         upper, lower, last = (self.joints[role] for role in roles)
         skeleton = self.skeleton
         follow = upper in skeleton.ancestors(lower) and lower in skeleton.ancestors(last)
-        return (upper, lower, last) if follow and skeleton.parents[upper] >= 0 else None
+        limb = (upper, lower, last)
+        usable = follow and skeleton.parents[upper] >= 0 and self.limb_length(limb) > 0.0
+        return limb if usable else None
 
     def limb_length(self, limb: tuple[int, int, int]) -> float:
         """Return the way from the upper joint over the hinge to the end, metres."""

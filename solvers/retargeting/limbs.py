@@ -8,6 +8,7 @@ from scipy.ndimage import maximum_filter1d, uniform_filter1d
 
 from ..motion import Motion, ReachSettings, Skeleton, WorldPoses, reach, world_poses
 from .body import SIDES, Body
+from .meeting_hands import Arms, meeting_hands, way_into_reach
 from .placement import Placement
 
 Array = NDArray[np.float64]
@@ -17,9 +18,7 @@ DEEPEST = 0.15
 """Part of the leg by which hips are lowered at most so that feet reach."""
 EASE = 0.15
 """Seconds before and after over which hips are lowered."""
-TOUCHING, APART = 0.15, 0.4
-"""Parts of the arm's length: hands nearer to each other than the first meet, and beyond the
-second they have nothing to do with each other."""
+UP = np.array([0.0, 0.0, 1.0])
 
 
 @dataclass(frozen=True, eq=False)
@@ -65,10 +64,8 @@ def place_feet(
         stretch = np.maximum(1.0 - softness, _stretch(source, transfer.seen, theirs))
         reaches.append(target.limb_length(ours) * stretch)
     drop = hips_drop(hips, wanted, reaches, transfer.frame_rate)
-    places = places - drop[:, None] * (0.0, 0.0, 1.0)
-    world = WorldPoses(
-        before.rotations, before.positions - drop[:, None, None] * (0.0, 0.0, 1.0)
-    )
+    places = places - drop[:, None] * UP
+    world = WorldPoses(before.rotations, before.positions - drop[:, None, None] * UP)
     for (_, ours), targets in zip(pairs, wanted, strict=True):
         rotations = limb_reaches(target, rotations, world, ours, targets)
     return rotations, places
@@ -77,38 +74,30 @@ def place_feet(
 def place_hands(transfer: Transfer, rotations: Array, places: Array) -> Array:
     """Let the hands be as far from the shoulders as the source's, for the length of the arm.
 
-    Hands that meet in the source meet, midway between where each would be alone, as far apart
-    as there for the length of the arm.
+    Hands that meet in the source meet, as far apart as there for the length of the arm; see
+    `meeting_hands`.
     """
     source, target = transfer.source, transfer.target
     pairs = _limb_pairs(source, target, "Arm")
     if not pairs:
         return rotations
     world = world_poses(target.skeleton, rotations, places)
-    theirs_at = transfer.seen.positions
+    seen = transfer.seen.positions
     growths = [target.limb_length(ours) / source.limb_length(theirs) for theirs, ours in pairs]
-    wanted = [
-        world.positions[:, ours[0]]
-        + growth * (theirs_at[:, theirs[2]] - theirs_at[:, theirs[0]])
-        for (theirs, ours), growth in zip(pairs, growths, strict=True)
+    ways = [
+        growth * (seen[:, theirs[2]] - seen[:, theirs[0]])
+        for (theirs, _), growth in zip(pairs, growths, strict=True)
     ]
+    shoulders = np.stack([world.positions[:, ours[0]] for _, ours in pairs])
+    wanted = shoulders + ways
     if len(pairs) == len(SIDES):
-        left, right = (theirs_at[:, theirs[2]] for theirs, _ in pairs)
-        growth = float(np.mean(growths))
-        arm = source.limb_length(pairs[0][0])
-        wanted = _met(wanted[0], wanted[1], growth * (left - right), growth * arm)
+        left, right = (seen[:, theirs[2]] for theirs, _ in pairs)
+        lengths = np.array([target.limb_length(ours) for _, ours in pairs])
+        arms = Arms(shoulders, wanted, lengths)
+        wanted = meeting_hands(arms, np.mean(growths) * (left - right))
     for (_, ours), targets in zip(pairs, wanted, strict=True):
         rotations = limb_reaches(target, rotations, world, ours, targets)
     return rotations
-
-
-def _met(left: Array, right: Array, apart: Array, arm: float) -> list[Array]:
-    """Return the places of both hands, `apart` from each other where that is little."""
-    nearness = (APART - np.linalg.norm(apart, axis=1) / arm) / (APART - TOUCHING)
-    share = np.clip(nearness, 0.0, 1.0)
-    share = share * share * (3.0 - 2.0 * share)
-    correction = 0.5 * share[:, None] * (apart - (left - right))
-    return [left + correction, right - correction]
 
 
 def _limb_pairs(source: Body, target: Body, part: str) -> list[tuple[Limb, Limb]]:
@@ -142,10 +131,8 @@ def hips_drop(
     """
     needed = np.zeros(len(hips[0]))
     for hip, foot, allowed in zip(hips, feet, reaches, strict=True):
-        way = foot - hip
-        aside = np.einsum("fi,fi->f", way[:, :2], way[:, :2])
-        upright = np.sqrt(np.maximum(allowed**2 - aside, 0.0))
-        needed = np.maximum(needed, np.minimum(-way[:, 2] - upright, DEEPEST * allowed))
+        lacking = way_into_reach(foot - hip, UP, allowed)
+        needed = np.maximum(needed, np.minimum(lacking, DEEPEST * allowed))
     window = 2 * round(0.5 * EASE * frame_rate) + 1
     # The mean over a window of the greatest within that window is nowhere too little.
     envelope = maximum_filter1d(needed, window, mode="nearest")

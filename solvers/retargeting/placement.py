@@ -62,9 +62,11 @@ def find_placement(
     travel : float
         Growth over the ground; 0 for that of the legs.
     """
-    growth = _size(target) / _size(source)
+    growth = _growth(source, target)
     hips = positions[0, source.hip_joints()].mean(axis=0)
     start = hips * (1.0, 1.0, 0.0)
+    if not (leg_length(source) and leg_length(target)):
+        return Placement(travel or growth, growth, start, (0.0, 0.0))
     source_ankle, target_ankle = standing_ankle(source), standing_ankle(target)
     height = source_ankle
     if contacts is not None and contacts.any():
@@ -95,6 +97,18 @@ def standing_ankle(body: Body) -> float:
     return ankle - lowest if ankle > lowest else ANKLE_HEIGHT * leg
 
 
-def _size(body: Body) -> float:
-    """Return the length of the legs, or the height of what has none, metres."""
-    return leg_length(body) or body.skeleton.height or 1.0
+def trunk_length(body: Body) -> float:
+    """Return the way from the hips to the head, or to the neck, metres; 0 without either."""
+    top = body.joints.get("head", body.joints.get("neck"))
+    if top is None:
+        return 0.0
+    return float(np.linalg.norm(body.rest[top] - body.rest[body.joints["hips"]]))
+
+
+def _growth(source: Body, target: Body) -> float:
+    """Return the ratio of the legs; of the trunks where one has no legs; 1 without either."""
+    for measure in (leg_length, trunk_length):
+        theirs, ours = measure(source), measure(target)
+        if theirs > 0.0 and ours > 0.0:
+            return ours / theirs
+    return 1.0

@@ -1,5 +1,6 @@
 """Unbake: replace a key on every frame by few keys with handles."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -8,10 +9,11 @@ import numpy as np
 from ..errors import InvalidFileError, InvalidMotionError, InvalidSettingError
 from ..files import read_archive, write_archive
 from ..motion import Motion, Skeleton
-from ..motion.rotations import IDENTITY, normalize
+from ..motion.rotations import IDENTITY
 from ..progress import Progress, unwatched, within
 from ..settings import Settings, setting
 from .key_curves import KeyCurve
+from .rotation_channels import RotationChannels
 from .thinning import ROOT, Thinning
 
 KIND, VERSION = "keys of a motion", 1
@@ -34,18 +36,20 @@ class SparseMotion:
     ----------
     skeleton : Skeleton
     rotations : tuple of KeyCurve, one for each joint
-        Local quaternions, four channels w x y z; without keys for joints that rest throughout.
-        Between keys the quaternion is that of the four curves, brought to length one.
+        In the joint's channels; without keys for joints that rest throughout. Between keys a
+        quaternion is that of the four curves, brought to length one.
+    channels : tuple of RotationChannels, one for each joint
     root : KeyCurve
         Root positions, three channels, metres.
     n_frames : int
     frame_rate : float, hertz
     error : float, metres
-        By how much any end of a limb is off at most.
+        By how much any joint is off at most.
     """
 
     skeleton: Skeleton
     rotations: tuple[KeyCurve, ...]
+    channels: tuple[RotationChannels, ...]
     root: KeyCurve
     n_frames: int
     frame_rate: float
@@ -66,8 +70,10 @@ class SparseMotion:
             "offsets": self.skeleton.offsets,
             "counts": np.array([len(curve.frames) for curve in curves]),
             "frames": np.concatenate([curve.frames for curve in curves]),
-            "rotations": np.concatenate([curve.values for curve in self.rotations]),
-            "turning": np.concatenate([curve.slopes for curve in self.rotations]),
+            "rotations": np.concatenate([curve.values.ravel() for curve in self.rotations]),
+            "turning": np.concatenate([curve.slopes.ravel() for curve in self.rotations]),
+            "orders": np.array([each.order for each in self.channels]),
+            "axes": np.array([each.axes for each in self.channels]),
             "places": self.root.values,
             "moving": self.root.slopes,
             "length": np.array([self.n_frames, self.frame_rate, self.error]),
@@ -78,9 +84,9 @@ class SparseMotion:
         """Return the motion with a pose at every frame, as F-Curves would give it."""
         frames = np.arange(self.n_frames)
         rotations = np.tile(IDENTITY, (self.n_frames, self.skeleton.n_joints, 1))
-        for joint, curve in enumerate(self.rotations):
+        for joint, (curve, each) in enumerate(zip(self.rotations, self.channels, strict=True)):
             if len(curve.frames):
-                rotations[:, joint] = normalize(curve.at(frames))
+                rotations[:, joint] = each.to_rotations(curve.at(frames))
         return Motion(self.skeleton, rotations, self.root.at(frames), self.frame_rate)
 
 
@@ -97,18 +103,29 @@ def load_sparse_motion(path: Path | str) -> SparseMotion:
         skeleton = Skeleton(
             tuple(arrays["names"].tolist()), tuple(arrays["parents"]), arrays["offsets"]
         )
-        stops = np.cumsum(arrays["counts"])[:-1]
-        frames = np.split(arrays["frames"], stops)
+        channels = tuple(
+            RotationChannels(str(order), axes)
+            for order, axes in zip(arrays["orders"], arrays["axes"], strict=True)
+        )
+        frames = np.split(arrays["frames"], np.cumsum(arrays["counts"])[:-1])
+        widths = [3 if each.order else 4 for each in channels]
+        stops = np.cumsum(arrays["counts"][:-1] * widths)[:-1]
         parts = zip(
             frames[:-1],
-            np.split(arrays["rotations"], stops[:-1]),
-            np.split(arrays["turning"], stops[:-1]),
+            np.split(arrays["rotations"], stops),
+            np.split(arrays["turning"], stops),
+            widths,
             strict=True,
         )
-        curves = tuple(KeyCurve(*part) for part in parts)
+        curves = tuple(
+            KeyCurve(keys, values.reshape(-1, width), slopes.reshape(-1, width))
+            for keys, values, slopes, width in parts
+        )
         root = KeyCurve(frames[-1], arrays["places"], arrays["moving"])
         n_frames, frame_rate, error = arrays["length"].tolist()
-        sparse = SparseMotion(skeleton, curves, root, int(n_frames), frame_rate, error)
+        sparse = SparseMotion(
+            skeleton, curves, channels, root, int(n_frames), frame_rate, error
+        )
         sparse.dense()
     except (KeyError, ValueError, IndexError, TypeError) as fault:
         raise InvalidFileError(f"{path} holds no whole set of keys ({fault}).") from None
@@ -119,24 +136,27 @@ def reduce_keys(
     motion: Motion,
     tolerance: float,
     *,
+    channels: Sequence[RotationChannels] | None = None,
     settings: UnbakeSettings = UnbakeSettings(),
     progress: Progress = unwatched,
 ) -> SparseMotion:
-    """Replace a key on every frame by few keys, no end of a limb being off by more.
+    """Replace a key on every frame by few keys, nothing being off by more than the tolerance.
 
     Each joint's curves are fitted by least squares through their keys, values and slopes. At
-    first a joint gets keys until it alone moves the ends of its limbs by less than half the
-    tolerance; then, wherever an end of a limb is off by more than the tolerance, the joint
-    above it that does most of that gets another key, until none is. This is the splitting of
-    [1]_ with the error measured where it is seen, at hands, feet and head.
+    first the curves of each joint alone are split until it moves what hangs on it by not much
+    more than the tolerance; then, wherever a joint is off by more than that, the joint above it
+    that does most of it gets another key, until none is. This is the splitting of [1]_, in the
+    middle of the worst segment, with the error measured where it is seen: in the world.
 
     Parameters
     ----------
     motion : Motion
         Without gaps.
     tolerance : float, metres
-        Greatest distance by which an end may be off: the ends of the tree, and points that
-        show how hands and feet without further joints are turned.
+        Greatest distance by which any joint may be off, and with it two points that show how
+        a hand, foot or head is turned that has no further joints.
+    channels : sequence of RotationChannels, one for each joint
+        How the rig keys its rotations; quaternions in the world's axes where not given.
     settings : UnbakeSettings
     progress : Progress
 
@@ -147,7 +167,7 @@ def reduce_keys(
     Raises
     ------
     InvalidMotionError
-        The motion has gaps.
+        The motion has gaps, or there are not as many channels as joints.
     InvalidSettingError
         The tolerance is not positive.
     SolveCancelled
@@ -158,14 +178,16 @@ def reduce_keys(
     .. [1] Schneider (1990). An algorithm for automatically fitting digitized curves. Graphics
        Gems, 612-626.
     """
-    _check(motion, tolerance)
-    thinning = Thinning(motion, tolerance, settings.key_poses)
+    channels = tuple(channels or [RotationChannels()] * motion.n_joints)
+    _check(motion, tolerance, len(channels))
+    thinning = Thinning(motion, tolerance, channels, together=settings.key_poses)
     thinning.begin(within(progress, 0.0, 0.3))
     error = thinning.finish(within(progress, 0.3, 1.0))
     progress(1.0, "Unbaked")
     return SparseMotion(
         motion.skeleton,
         tuple(thinning.curves[joint] for joint in range(motion.n_joints)),
+        channels,
         thinning.curves[ROOT],
         motion.n_frames,
         motion.frame_rate,
@@ -173,7 +195,11 @@ def reduce_keys(
     )
 
 
-def _check(motion: Motion, tolerance: float) -> None:
+def _check(motion: Motion, tolerance: float, n_channels: int) -> None:
+    if n_channels != motion.n_joints:
+        raise InvalidMotionError(
+            f"{motion.n_joints} joints need as many rotation channels, not {n_channels}."
+        )
     if not (np.isfinite(tolerance) and tolerance > 0.0):
         raise InvalidSettingError(f"A tolerance of {tolerance} m is not positive.")
     gaps = ~motion.observed

@@ -1,14 +1,17 @@
-"""Choose the frames of keys by what the ends of the limbs lose."""
+"""Choose the frames of keys by what joints lose in the world."""
+
+from collections.abc import Sequence
 
 import numpy as np
 from numpy.typing import NDArray
 
 from ..motion import Motion, forward_kinematics
 from ..motion.kinematics import world_poses
-from ..motion.rotations import IDENTITY, normalize, unroll
+from ..motion.rotations import IDENTITY
 from ..progress import Progress
-from .end_points import find_end_points
+from .judged_points import find_judged_points
 from .key_curves import KeyCurve, fit_curve
+from .rotation_channels import RotationChannels
 
 Array = NDArray[np.float64]
 Frames = NDArray[np.intp]
@@ -19,6 +22,7 @@ STILL = 1e-7
 """A joint that turns less, in radians, and a root that moves less, in metres, needs one key."""
 LOOSE = 3.0
 """Part of the tolerance by which each joint alone may be off to begin with."""
+SAME = 1e-12
 SAMPLED = 100
 """Poses at which the reach of the joints is measured."""
 ROOT = -1
@@ -32,24 +36,38 @@ class Thinning:
     curves : dict of joint to KeyCurve
     """
 
-    def __init__(self, motion: Motion, tolerance: float, together: bool) -> None:
+    def __init__(
+        self,
+        motion: Motion,
+        tolerance: float,
+        channels: Sequence[RotationChannels],
+        *,
+        together: bool,
+    ) -> None:
         self.motion = motion
+        self.channels = channels
         self.tolerance = tolerance
         self.together = together
-        self.points = find_end_points(motion.skeleton)
+        self.points = find_judged_points(motion.skeleton)
         poses = forward_kinematics(motion)
         self.truth = self.points.positions(poses)
         self.joints = poses.positions
-        quaternions = unroll(motion.rotations)
-        self.samples = {
-            ROOT: motion.root_positions,
-            **{joint: quaternions[:, joint] for joint in range(motion.n_joints)},
+        self.samples = {ROOT: motion.root_positions} | {
+            joint: each.from_rotations(motion.rotations[:, joint])
+            for joint, each in enumerate(channels)
+        }
+        self.wanted = {ROOT: motion.root_positions} | {
+            joint: each.to_rotations(self.samples[joint]) for joint, each in enumerate(channels)
         }
         self.reach = self._reach()
         self.curves: dict[int, KeyCurve] = {}
         self.errors: dict[int, Array] = {}
+        self.fitted = {joint: np.zeros_like(each) for joint, each in self.wanted.items()}
+        self.changed = np.ones(motion.n_frames, dtype=np.bool_)
+        self.off = np.zeros(self.truth.shape[:2])
         for joint, samples in self.samples.items():
-            self._refit(joint, _first_keys(joint, samples))
+            rests = joint != ROOT and _rests(motion.rotations[:, joint])
+            self._refit(joint, _first_keys(samples, rests))
 
     def begin(self, progress: Progress) -> None:
         """Give each joint so many keys that it alone is off by little."""
@@ -60,15 +78,15 @@ class Thinning:
 
     def finish(self, progress: Progress) -> float:
         """Add keys until no end is off by more than the tolerance; return what is left."""
-        start = None
+        start, done = 0.0, 0.0
         while True:
-            off = np.linalg.norm(self._positions() - self.truth, axis=-1)
-            worst = float(off.max())
-            if worst <= self.tolerance or not self._add(self._wanted(off)):
+            self._measure()
+            worst = float(self.off.max())
+            if worst <= self.tolerance or not self._add(self._wanted()):
                 return worst
-            start = start or worst
-            done = (start - worst) / max(start - self.tolerance, 1e-12)
-            progress(float(np.clip(done, 0.0, 1.0)), "Adding keys where limbs are off")
+            start = max(start, worst)
+            done = max(done, (start - worst) / (start - self.tolerance))
+            progress(done, "Adding keys where limbs are off")
 
     def _reach(self) -> dict[int, float]:
         """Return how far from each joint the points are that it moves, at most."""
@@ -83,24 +101,19 @@ class Thinning:
         return reach
 
     def _too_far(self, joint: int) -> list[int]:
-        """Return the worst frame of each segment in which a joint alone is off by too much."""
+        """Return the middles of the segments in which a joint alone is off by too much."""
         keys, away = self.curves[joint].frames, self.errors[joint] * self.reach[joint]
         if len(keys) < 2:
             return []
-        found = []
-        for segment in np.flatnonzero(
-            np.maximum.reduceat(away, keys[:-1]) > LOOSE * self.tolerance
-        ):
-            inside = away[keys[segment] + 1 : keys[segment + 1]]
-            if len(inside) and inside.max() > LOOSE * self.tolerance:
-                found.append(int(keys[segment] + 1 + inside.argmax()))
-        return found
+        far = np.maximum.reduceat(away, keys[:-1]) > LOOSE * self.tolerance
+        far &= np.diff(keys) > 1
+        return [int(middle) for middle in (keys[:-1] + keys[1:])[far] // 2]
 
-    def _wanted(self, off: Array) -> set[Place]:
+    def _wanted(self) -> set[Place]:
         """Return where keys would help most: one place for each time that a point is off."""
         places = set()
         for point, chain in enumerate(self.points.chains):
-            for frame in _peaks(off[:, point], self.tolerance):
+            for frame in _peaks(self.off[:, point], self.tolerance):
                 if (place := self._culprit(point, chain, frame)) is not None:
                     places.add(place)
         return places
@@ -114,12 +127,12 @@ class Thinning:
         ]
         shares.append((self.errors[ROOT][frame], ROOT))
         for _, joint in sorted(shares, reverse=True):
-            if (new := self._worst_near(joint, frame)) is not None:
+            if (new := self._place_near(joint, frame)) is not None:
                 return joint, new
         return None
 
-    def _worst_near(self, joint: int, frame: int) -> int | None:
-        """Return the frame without a key that is worst, in the segment here or next to it."""
+    def _place_near(self, joint: int, frame: int) -> int | None:
+        """Return the middle of the worst segment here or next to it; None if all are short."""
         keys = self.curves[joint].frames
         if len(keys) < 2:
             return None
@@ -130,26 +143,29 @@ class Thinning:
             errors = self.errors[joint][start:stop].copy()
             errors[keys[(keys >= start) & (keys < stop)] - start] = 0.0
             if errors.any():
-                return start + int(errors.argmax())
+                worst = start + int(errors.argmax())
+                after = int(np.searchsorted(keys, worst))
+                return int(keys[after - 1] + keys[after]) // 2
         return None
 
     def _add(self, places: set[Place]) -> bool:
         """Add keys; tell whether there were any to add."""
         if self.together:
-            frames = {frame for _, frame in places}
             moving = [joint for joint, curve in self.curves.items() if len(curve.frames) > 1]
-            places = {(joint, frame) for joint in moving for frame in frames}
-        for joint in sorted({joint for joint, _ in places}):
-            new = [frame for one, frame in places if one == joint]
-            self._refit(joint, np.union1d(self.curves[joint].frames, new).astype(np.intp))
+            places = {(joint, frame) for joint in moving for _, frame in places}
+        new: dict[int, list[int]] = {}
+        for joint, frame in sorted(places):
+            new.setdefault(joint, []).append(frame)
+        for joint, frames in new.items():
+            self._refit(joint, np.union1d(self.curves[joint].frames, frames).astype(np.intp))
         return bool(places)
 
     def _refit(self, joint: int, keys: Frames) -> None:
-        samples = self.samples[joint]
-        curve = fit_curve(samples, keys)
+        curve = fit_curve(self.samples[joint], keys)
         fitted = self._evaluated(joint, curve)
-        self.curves[joint] = curve
-        self.errors[joint] = np.linalg.norm(fitted - samples, axis=-1)
+        self.changed |= (np.abs(fitted - self.fitted[joint]) > SAME).any(axis=1)
+        self.curves[joint], self.fitted[joint] = curve, fitted
+        self.errors[joint] = np.linalg.norm(fitted - self.wanted[joint], axis=-1)
 
     def _evaluated(self, joint: int, curve: KeyCurve) -> Array:
         frames = np.arange(self.motion.n_frames)
@@ -157,19 +173,28 @@ class Thinning:
             return curve.at(frames)
         if not len(curve.frames):
             return np.tile(IDENTITY, (len(frames), 1))
-        return normalize(curve.at(frames))
+        return self.channels[joint].to_rotations(curve.at(frames))
 
-    def _positions(self) -> Array:
-        curves = [self.curves[joint] for joint in range(self.motion.n_joints)]
-        rotations = [self._evaluated(joint, curve) for joint, curve in enumerate(curves)]
-        places = self._evaluated(ROOT, self.curves[ROOT])
-        skeleton = self.motion.skeleton
-        return self.points.positions(world_poses(skeleton, np.stack(rotations, 1), places))
+    def _measure(self) -> None:
+        """Find out anew how far off the points are, in the frames that have changed."""
+        here = self.changed
+        rotations = [self.fitted[joint][here] for joint in range(self.motion.n_joints)]
+        poses = world_poses(
+            self.motion.skeleton, np.stack(rotations, axis=1), self.fitted[ROOT][here]
+        )
+        away = self.points.positions(poses) - self.truth[here]
+        self.off[here] = np.linalg.norm(away, axis=-1)
+        self.changed = np.zeros_like(here)
 
 
-def _first_keys(joint: int, samples: Array) -> Frames:
+def _rests(rotations: Array) -> bool:
+    """Tell whether all rotations are the identity, but for rounding."""
+    return bool(np.linalg.norm(rotations[:, 1:], axis=1).max() < STILL / 2.0)
+
+
+def _first_keys(samples: Array, rests: bool) -> Frames:
     """Return no key for a joint at rest, one for what keeps still, both ends for all else."""
-    if joint != ROOT and np.abs(np.abs(samples[:, 0]) - 1.0).max() < STILL**2 / 8.0:
+    if rests:
         return np.array([], dtype=np.intp)
     if np.abs(samples - samples[0]).max() < STILL / 2.0:
         return np.array([0], dtype=np.intp)

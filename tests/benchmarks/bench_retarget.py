@@ -236,7 +236,7 @@ def _unbaked(names: tuple[str, ...], decimate: bool) -> str:
     if decimate:
         header += ["Decimate: keys", "error cm", "seconds", "times our keys"]
     return (
-        "**Keys (each channel counted) at a given error of the ends of the limbs**, 60 Hz;"
+        "**Keys (each channel counted) at a given greatest error of any joint**, 60 Hz;"
         " Decimate's margin is found by bisection, its seconds are those of one run\n\n"
         + table(header, rows)
         + "\n"

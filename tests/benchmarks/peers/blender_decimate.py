@@ -2,7 +2,7 @@
 
 `python -m tests.benchmarks.peers.blender_decimate IN.npz OUT.json` is the child process. Every
 channel, quaternions and places, is an F-Curve of its own; all are selected and decimated with
-one margin, which is found by bisection so that no end of a limb is off by more than asked.
+one margin, which is found by bisection so that no joint is off by more than asked.
 """
 
 import json
@@ -20,7 +20,7 @@ from numpy.typing import NDArray
 
 from solvers.motion import Motion, forward_kinematics
 from solvers.motion.rotations import IDENTITY, normalize, unroll
-from solvers.retargeting.end_points import find_end_points
+from solvers.retargeting.judged_points import find_judged_points
 
 from .blender_graph import _graph_editor, _write
 
@@ -121,7 +121,7 @@ def _decimated(bpy: Any, motion: Motion, margin: float) -> dict[str, float]:
 
 
 def _error(motion: Motion, other: Motion) -> float:
-    points = find_end_points(motion.skeleton)
+    points = find_judged_points(motion.skeleton)
     places = [points.positions(forward_kinematics(each)) for each in (motion, other)]
     return float(np.linalg.norm(places[1] - places[0], axis=-1).max())
 

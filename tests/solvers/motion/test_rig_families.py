@@ -99,11 +99,11 @@ FAMILIES: dict[str, tuple[str, str, str]] = {
     ),
     "Rigify controls": (
         "L R",
-        "hips=torso spine=spine_fk.001 chest=spine_fk.002 upperChest=spine_fk.003 neck=neck"
-        " head=head Shoulder=shoulder.{} UpperArm=upper_arm_fk.{} LowerArm=forearm_fk.{}"
+        "hips=torso spine=spine_fk.002 chest=spine_fk.003 neck=neck head=head"
+        " Shoulder=shoulder.{} UpperArm=upper_arm_fk.{} LowerArm=forearm_fk.{}"
         " Hand=hand_fk.{} UpperLeg=thigh_fk.{} LowerLeg=shin_fk.{} Foot=foot_fk.{}"
         " Toes=toe_fk.{}",
-        "root hips chest spine_fk tweak_spine tweak_spine.001 upper_arm_tweak.{}"
+        "root hips chest spine_fk spine_fk.001 tweak_spine tweak_spine.001 upper_arm_tweak.{}"
         " upper_arm_parent.{} upper_arm_ik.{} hand_ik.{} foot_ik.{} toe_ik.{} foot_heel_ik.{}"
         " foot_spin_ik.{} thigh_ik.{} upper_arm_ik_target.{} palm.{} breast.{}",
     ),

@@ -5,12 +5,18 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 from numpy.testing import assert_allclose
+from scipy.spatial.transform import Rotation
 
 from solvers.errors import InvalidFileError, InvalidMotionError, InvalidSettingError
 from solvers.motion import Motion, Skeleton, forward_kinematics
-from solvers.motion.rotations import IDENTITY, quaternion_from_rotation_vector
+from solvers.motion.rotations import IDENTITY, angle_between, quaternion_from_rotation_vector
 from solvers.recordings import read_bvh
-from solvers.retargeting import UnbakeSettings, load_sparse_motion, reduce_keys
+from solvers.retargeting import (
+    RotationChannels,
+    UnbakeSettings,
+    load_sparse_motion,
+    reduce_keys,
+)
 from solvers.retargeting.key_curves import KeyCurve, fit_curve
 from solvers.samples import GaitSettings, walking_gait
 
@@ -116,12 +122,46 @@ def test_keys_travel_through_a_file(walk, tmp_path):
         load_sparse_motion(tmp_path / "broken.npz")
 
 
+@pytest.mark.parametrize("order", ["XYZ", "ZYX", "YXZ"])
+def test_euler_angles_about_the_bones_own_axes(walk, rng, order, tmp_path):
+    """What Blender would make of the three curves, by its own composition of angles."""
+    axes = quaternion_from_rotation_vector(rng.normal(size=(walk.n_joints, 3)))
+    channels = [RotationChannels(order, each) for each in axes]
+
+    sparse = reduce_keys(walk, 0.01, channels=channels)
+
+    assert sparse.error <= 0.01
+    joint = walk.skeleton.index("LeftUpLeg")
+    angles = sparse.rotations[joint].at(np.arange(walk.n_frames))
+    rest = Rotation.from_quat(axes[joint], scalar_first=True)
+    turn = rest * Rotation.from_euler(order, angles) * rest.inv()
+    difference = turn * Rotation.from_quat(walk.rotations[:, joint], scalar_first=True).inv()
+    assert np.degrees(difference.magnitude().max()) < 3.0
+    sparse.save(tmp_path / "walk.npz")
+    again = load_sparse_motion(tmp_path / "walk.npz").dense()
+    assert_allclose(again.rotations, sparse.dense().rotations, atol=1e-14)
+
+
+def test_channels_go_back_and_forth(rng):
+    rotations = quaternion_from_rotation_vector(rng.normal(size=(50, 3)))
+    for order in ("", "XYZ", "YZX"):
+        channels = RotationChannels(order, [0.5, 0.5, -0.5, 0.5])
+        back = channels.to_rotations(channels.from_rotations(rotations))
+        assert angle_between(back, rotations).max() < 1e-6
+    with pytest.raises(InvalidMotionError, match="orders"):
+        RotationChannels("XYX")
+    with pytest.raises(InvalidMotionError, match="orders"):
+        RotationChannels("XYZ", [1.0, 0.0])
+
+
 def test_gaps_and_nonsense_are_refused(walk):
     rotations = walk.rotations.copy()
     rotations[3, 2] = np.nan
 
     with pytest.raises(InvalidMotionError, match=walk.skeleton.names[2]):
         reduce_keys(walk.with_poses(rotations), 0.01)
+    with pytest.raises(InvalidMotionError, match="as many rotation channels, not 1"):
+        reduce_keys(walk, 0.01, channels=[RotationChannels()])
     for tolerance in (0.0, -1.0, np.nan, np.inf):
         with pytest.raises(InvalidSettingError, match="not positive"):
             reduce_keys(walk, tolerance)

@@ -1,4 +1,4 @@
-"""The points by which a pose is judged: the ends of a skeleton's limbs."""
+"""The points by which a pose is judged: all joints, and what shows how hands and feet turn."""
 
 from dataclasses import dataclass
 
@@ -16,8 +16,8 @@ SHORTEST = 0.05
 
 
 @dataclass(frozen=True, eq=False)
-class EndPoints:
-    """Points fixed to joints, which show every error of every joint.
+class JudgedPoints:
+    """Points fixed to joints, which together show every error of every joint.
 
     Attributes
     ----------
@@ -39,18 +39,16 @@ class EndPoints:
         return np.asarray(poses.positions[:, self.carriers] + turned)
 
 
-def find_end_points(skeleton: Skeleton) -> EndPoints:
-    """Return two points for each joint without children; one for an end site, itself.
+def find_judged_points(skeleton: Skeleton) -> JudgedPoints:
+    """Return all joints, and two points more for each that turns but has no children.
 
-    A joint without children, such as a hand without fingers, turns without moving. Two points,
-    ahead of it and aside by the length of the bone above, show its turns.
+    A hand without fingers turns without moving any joint. Two points, ahead of it and aside by
+    the length of the bone above, show its turns.
     """
     rows: list[tuple[int, Array]] = []
     for joint in range(skeleton.n_joints):
-        if skeleton.children[joint]:
-            continue
-        if skeleton.is_end_site(joint):
-            rows.append((joint, np.zeros(3)))
+        rows.append((joint, np.zeros(3)))
+        if skeleton.children[joint] or skeleton.is_end_site(joint):
             continue
         bone = skeleton.offsets[joint] if joint else np.zeros(3)
         length = max(float(np.linalg.norm(bone)), SHORTEST)
@@ -61,4 +59,4 @@ def find_end_points(skeleton: Skeleton) -> EndPoints:
     chains = tuple(
         np.array([joint, *skeleton.ancestors(joint)][::-1], dtype=np.intp) for joint in carriers
     )
-    return EndPoints(carriers, np.array([offset for _, offset in rows]), chains)
+    return JudgedPoints(carriers, np.array([offset for _, offset in rows]), chains)
