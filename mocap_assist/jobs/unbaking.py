@@ -10,8 +10,8 @@ from ...solvers.motion import Motion, Skeleton
 from ...solvers.motion.kinematics import world_poses
 from ...solvers.motion.rotations import IDENTITY, angle_between, inverse, multiply, rotate
 from ...solvers.progress import Progress, unwatched, within
-from ...solvers.retargeting import KeyCurve, UnbakeSettings, reduce_keys
-from ...solvers.retargeting.end_points import find_end_points
+from ...solvers.retargeting import KeyCurve, RotationChannels, UnbakeSettings, reduce_keys
+from ...solvers.retargeting.judged_points import find_judged_points
 from ...solvers.retargeting.key_curves import fit_curve
 from ..scene.rotation_modes import (
     channels_from_quaternions,
@@ -25,8 +25,9 @@ FINEST = 0.1
 """Radians for each metre of tolerance that angles between keys may always be off."""
 LEAST = 2  # keys without which nothing moves
 TIGHTER, N_TRIES = 0.6, 6
-"""Angles between keys do not go as quaternions do: where that brings an end too far away, the
-keys are chosen for less than the tolerance, so many times at most."""
+"""Axes and angles do not go between keys as quaternions do: where that brings an end too far
+away, the keys are chosen for less than the tolerance, so many times at most."""
+AXIS_ANGLE, QUATERNION = "AXIS_ANGLE", "QUATERNION"
 
 
 @dataclass(frozen=True, eq=False)
@@ -98,9 +99,17 @@ def _unbake_tree(
     tolerance = problem.tolerance
     for attempt in range(N_TRIES):
         share = within(progress, attempt / N_TRIES, (attempt + 1) / N_TRIES)
-        sparse = reduce_keys(tree.motion, tolerance, settings=problem.settings, progress=share)
+        sparse = reduce_keys(
+            tree.motion,
+            tolerance,
+            channels=tuple(map(_channels_of, tree.shapes)),
+            settings=problem.settings,
+            progress=share,
+        )
         turns = [
-            _bone_curve(tree.motion.rotations[:, joint], shape, curve, FINEST * tolerance)
+            None
+            if shape is None
+            else _bone_curve(tree.motion.rotations[:, joint], shape, curve, FINEST * tolerance)
             for joint, (shape, curve) in enumerate(
                 zip(tree.shapes, sparse.rotations, strict=True)
             )
@@ -120,34 +129,37 @@ def _unbake_tree(
     return keys, off
 
 
-def _bone_curve(
-    rotations: Array, shape: BoneShape | None, curve: KeyCurve, finest: float
-) -> KeyCurve | None:
-    """Return the curve of the bone's own channels; one key where nothing moves."""
+def _channels_of(shape: BoneShape | None) -> RotationChannels:
+    """Blender's XYZ turns about fixed axes, X first: about moving axes that is Z Y X."""
     if shape is None:
-        return None
-    back = inverse(shape.axes)
-    if shape.mode == "QUATERNION" and len(curve.frames):
-        return KeyCurve(
-            curve.frames,
-            multiply(multiply(back, curve.values), shape.axes),
-            multiply(multiply(back, curve.slopes), shape.axes),
-        )
+        return RotationChannels()
+    keyed_by_angles = shape.mode not in {QUATERNION, AXIS_ANGLE}
+    return RotationChannels(shape.mode[::-1] if keyed_by_angles else "", shape.axes)
+
+
+def _bone_curve(rotations: Array, shape: BoneShape, curve: KeyCurve, finest: float) -> KeyCurve:
+    """Return the curve of Blender's channels; one key where nothing moves."""
+    basis = multiply(multiply(inverse(shape.axes), rotations), shape.axes)
     _, width = rotation_property(shape.mode)
     near = np.zeros((1, width))
-    near[:, 0] = float(shape.mode == "QUATERNION")
-    basis = multiply(multiply(back, rotations), shape.axes)
-    channels = channels_from_quaternions(basis, shape.mode, near)
+    near[:, 0] = float(shape.mode == QUATERNION)
     if not len(curve.frames):
+        channels = channels_from_quaternions(basis[:1], shape.mode, near)
         return fit_curve(channels, np.zeros(1, dtype=np.intp))
-    allowed = max(float(_apart(curve, rotations, "QUATERNION").max()), finest)
+    if shape.mode == QUATERNION:
+        return curve
+    if shape.mode != AXIS_ANGLE:
+        columns = np.argsort(["XYZ".index(axis) for axis in shape.mode[::-1]])
+        return KeyCurve(curve.frames, curve.values[:, columns], curve.slopes[:, columns])
+    channels = channels_from_quaternions(basis, shape.mode, near)
+    allowed = max(float(_apart(curve, basis, QUATERNION).max()), finest)
     return _refined(channels, curve.frames, basis, shape.mode, allowed)
 
 
 def _refined(
     channels: Array, frames: NDArray[np.intp], basis: Array, mode: str, allowed: float
 ) -> KeyCurve:
-    """Add keys where angles between keys go another way than quaternions, by too much."""
+    """Add keys where axes and angles go another way than quaternions, by too much."""
     while True:
         curve = fit_curve(channels, frames)
         off = _apart(curve, basis, mode)
@@ -187,7 +199,7 @@ def _error(tree: Tree, curves: Sequence[KeyCurve | None], root: KeyCurve) -> flo
         if shape is not None and curve is not None:
             basis = quaternions_from_channels(curve.at(frames), shape.mode)
             rotations[:, joint] = multiply(multiply(shape.axes, basis), inverse(shape.axes))
-    points = find_end_points(motion.skeleton)
+    points = find_judged_points(motion.skeleton)
     played = points.positions(world_poses(motion.skeleton, rotations, root.at(frames)))
     truth = world_poses(motion.skeleton, motion.rotations, motion.root_positions)
     return float(np.linalg.norm(played - points.positions(truth), axis=-1).max())

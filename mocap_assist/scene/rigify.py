@@ -1,12 +1,21 @@
 """How Rigify's control rigs are keyed."""
 
+import re
 from collections.abc import Collection, Mapping
 
+import numpy as np
+from numpy.typing import NDArray
+
+from ...solvers.motion import roles_by_name
 from .control_plan import Limbs, Plan, RigPlan
 
+Array = NDArray[np.float64]
 SIDES = {"left": "L", "right": "R"}
 LIMB_CONTROLS = {"Arm": ("upper_arm", "hand", "Hand"), "Leg": ("thigh", "foot", "Foot")}
+SPINE = re.compile(r"spine_fk\.\d+$")
+SPINE_ROLES = ("spine", "chest", "upperChest")
 HELPERS = ("DEF-", "ORG-", "MCH-", "VIS_", "WGT-")
+SAME_PLACE = 1e-4  # of the rig's unit
 IK_PARENT_ROOT = 1
 """Of the properties IK_parent and pole_parent: 0 is no parent, 1 the root."""
 
@@ -16,19 +25,28 @@ def is_rigify(bones: Collection[str]) -> bool:
     return "MCH-torso.parent" in bones or ("torso" in bones and "ORG-spine" in bones)
 
 
-def controls_among(bones: Collection[str]) -> list[str]:
-    """Return the bones that animators use."""
-    return [bone for bone in bones if not bone.startswith(HELPERS)]
+def rigify_roles(bones: Collection[str]) -> dict[str, str]:
+    """Return controls by role; all of the spine's have one, whichever way they turn it."""
+    controls = [bone for bone in bones if not bone.startswith(HELPERS)]
+    roles = roles_by_name(controls)
+    spine = sorted(bone for bone in controls if SPINE.match(bone))
+    if not spine:
+        return roles
+    kept = {role: bone for role, bone in roles.items() if role not in SPINE_ROLES}
+    chosen = (spine[0], spine[len(spine) // 2], spine[-1])
+    return dict(zip(SPINE_ROLES, dict.fromkeys(chosen), strict=False)) | kept
 
 
 def rigify_plan(
-    roles: Mapping[str, str], bones: Collection[str], limbs: Limbs, on_root: bool
+    roles: Mapping[str, str], heads: Mapping[str, Array], limbs: Limbs, on_root: bool
 ) -> RigPlan:
     """Return how a generated rig is keyed for these roles.
 
+    `heads` are the places of all bones at rest, shape (3,) each.
     The torso carries both ends of the spine, which turn about the joint at its middle: the
     controls below that are turned by the parts above them.
     """
+    bones = heads.keys()
     plans = [Plan("root", "root", "root", moves=True)] if on_root and "root" in bones else []
     joint_bones = {role: original_of(control, bones) for role, control in roles.items()}
     switches: dict[tuple[str, str], float] = {("torso", "torso_parent"): 1.0}
@@ -40,7 +58,7 @@ def rigify_plan(
         if limbs is Limbs.IK and role in keyed_by_ik:
             continue
         if role == "hips":
-            plans += _torso(control, roles, bones)
+            plans += _torso(control, roles, heads)
         else:
             plans.append(Plan(control, role, role))
     for side, letter in SIDES.items():
@@ -69,13 +87,21 @@ def original_of(control: str, bones: Collection[str]) -> str:
     return original if original in bones else control
 
 
-def _torso(control: str, roles: Mapping[str, str], bones: Collection[str]) -> list[Plan]:
-    """The torso turns with the hips but lies at the middle of the spine, as its joints do."""
-    middle = next((role for role in ("chest", "upperChest") if role in roles), "hips")
-    plans = [Plan(control, "hips", middle, moves=True)]
-    if "spine" in roles and "spine_fk" in bones:
-        plans.append(Plan("spine_fk", "hips", "hips"))
-    return plans
+def _torso(control: str, roles: Mapping[str, str], heads: Mapping[str, Array]) -> list[Plan]:
+    """The torso turns with the hips but lies at the middle of the spine, as its joints do.
+
+    Controls of the lower spine lie at the upper ends of their bones.
+    """
+    spine = {role: roles[role] for role in SPINE_ROLES if role in roles}
+    lower = [
+        role
+        for role, bone in spine.items()
+        if np.linalg.norm(heads[bone] - heads[original_of(bone, heads)]) > SAME_PLACE
+    ]
+    upper = [role for role in spine if role not in lower]
+    if not (lower and upper and "spine_fk" in heads):
+        return [Plan(control, "hips", "hips", moves=True)]
+    return [Plan(control, "hips", upper[0], moves=True), Plan("spine_fk", "hips", "hips")]
 
 
 def _ik(

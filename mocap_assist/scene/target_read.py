@@ -7,14 +7,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...solvers.errors import InvalidMotionError
-from ...solvers.motion import HumanoidMap, Skeleton, find_humanoid_map, roles_by_name
+from ...solvers.motion import HumanoidMap, Skeleton, find_humanoid_map
 from ...solvers.motion.humanoid import ESSENTIAL_ROLES
 from ...solvers.motion.rotations import inverse, multiply, quaternion_from_matrix, rotate
 from ..jobs.controls import AT_REST, Control, TargetRig
 from .control_plan import ROOT, Limbs, Plan, RigPlan, plain_plan, role_above
 from .probing import find_carriers, location_axes
 from .rig import Placement, Rig, placement_of, read_rig
-from .rigify import controls_among, is_rigify, rigify_plan
+from .rigify import is_rigify, rigify_plan, rigify_roles
 from .take import skeleton_of
 from .units import metres_per_unit
 
@@ -30,7 +30,7 @@ def find_roles(armature: bpy.types.Object) -> HumanoidMap:
     """
     rig = read_rig(armature)
     if is_rigify(rig.bones):
-        joints = roles_by_name(controls_among(rig.bones))
+        joints = rigify_roles(rig.bones)
         found = sum(role in joints for role in ESSENTIAL_ROLES)
         return HumanoidMap(joints, found / len(ESSENTIAL_ROLES))
     tops = [bone for bone, parent in enumerate(rig.parents) if parent < 0]
@@ -114,7 +114,8 @@ def read_target(
 
 def _plan(rig: Rig, joints: Mapping[str, str], limbs: Limbs, on_root: bool) -> RigPlan:
     if is_rigify(rig.bones):
-        return rigify_plan(joints, rig.bones, limbs, on_root)
+        heads = dict(zip(rig.bones, rig.heads, strict=True))
+        return rigify_plan(joints, heads, limbs, on_root)
     return plain_plan(joints, _root_bone(rig, joints) if on_root else "")
 
 
