@@ -9,6 +9,7 @@ import bpy
 
 from .check_choices import CheckSettings
 from .clean_choices import CleanSettings
+from .retarget_choices import RetargetBundle, UnbakeBundle
 from .settings_properties import settings_from
 
 
@@ -20,6 +21,38 @@ class MOCAP_PG_clean(bpy.types.PropertyGroup):
 @settings_from(CheckSettings)
 class MOCAP_PG_check(bpy.types.PropertyGroup):
     """Settings of the button Check."""
+
+
+@settings_from(RetargetBundle)
+class MOCAP_PG_retarget(bpy.types.PropertyGroup):
+    """Settings of the button Retarget."""
+
+
+@settings_from(UnbakeBundle)
+class MOCAP_PG_unbake(bpy.types.PropertyGroup):
+    """Settings of the button Unbake."""
+
+
+class MOCAP_PG_bone_pair(bpy.types.PropertyGroup):
+    """Bones of source and target that play one part of the body; `name` is the role's."""
+
+    source: bpy.props.StringProperty(
+        name="Source bone", description="Bone of the source that plays this part"
+    )
+    target: bpy.props.StringProperty(
+        name="Target bone", description="Bone or control of the target that plays this part"
+    )
+
+
+class MOCAP_PG_bone_map(bpy.types.PropertyGroup):
+    """Which bones play which part, and of which armatures."""
+
+    source: bpy.props.StringProperty(name="Source")
+    target: bpy.props.StringProperty(name="Target")
+    source_score: bpy.props.FloatProperty(name="Source matched", subtype="FACTOR")
+    target_score: bpy.props.FloatProperty(name="Target matched", subtype="FACTOR")
+    rows: bpy.props.CollectionProperty(type=MOCAP_PG_bone_pair)
+    active_row: bpy.props.IntProperty(name="Row", description="Row that is chosen")
 
 
 class MOCAP_PG_spot(bpy.types.PropertyGroup):
@@ -37,6 +70,9 @@ class MOCAP_PG_scene(bpy.types.PropertyGroup):
 
     clean: bpy.props.PointerProperty(type=MOCAP_PG_clean)
     check: bpy.props.PointerProperty(type=MOCAP_PG_check)
+    retarget: bpy.props.PointerProperty(type=MOCAP_PG_retarget)
+    unbake: bpy.props.PointerProperty(type=MOCAP_PG_unbake)
+    bone_map: bpy.props.PointerProperty(type=MOCAP_PG_bone_map)
     checked: bpy.props.StringProperty(
         name="Checked", description="Action that was checked last, whose spots are listed"
     )
@@ -53,7 +89,17 @@ class MOCAP_PG_job(bpy.types.PropertyGroup):
     message: bpy.props.StringProperty(name="Message")
 
 
-CLASSES = (MOCAP_PG_clean, MOCAP_PG_check, MOCAP_PG_spot, MOCAP_PG_scene, MOCAP_PG_job)
+CLASSES = (
+    MOCAP_PG_clean,
+    MOCAP_PG_check,
+    MOCAP_PG_retarget,
+    MOCAP_PG_unbake,
+    MOCAP_PG_bone_pair,
+    MOCAP_PG_bone_map,
+    MOCAP_PG_spot,
+    MOCAP_PG_scene,
+    MOCAP_PG_job,
+)
 
 
 def register() -> None:

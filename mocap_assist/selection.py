@@ -53,6 +53,14 @@ def why_not_plant(context: bpy.types.Context) -> str:
     return why_not_clean(context)
 
 
+def why_not_retarget(context: bpy.types.Context) -> str:
+    """Return why nothing can be retargeted, or nothing."""
+    armature = selected_armature(context)
+    if armature is None:
+        return "Select the armature whose motion another one is to make."
+    return ""
+
+
 def why_not_learn(context: bpy.types.Context) -> str:
     """Return why nothing can be learned, or nothing."""
     if selected_armature(context) is None:

@@ -8,6 +8,8 @@ from .jump_to_spot import MOCAP_OT_jump_to_spot
 from .learn_patterns import MOCAP_OT_learn_patterns
 from .measure_quality import MOCAP_OT_measure_quality
 from .plant_feet import MOCAP_OT_plant_feet
+from .reduce_keys import MOCAP_OT_reduce_keys
+from .retarget import MOCAP_OT_retarget
 from .revert_to_raw import MOCAP_OT_revert_to_raw
 
 OPERATORS = (
@@ -17,6 +19,8 @@ OPERATORS = (
     MOCAP_OT_jump_to_spot,
     MOCAP_OT_plant_feet,
     MOCAP_OT_learn_patterns,
+    MOCAP_OT_retarget,
+    MOCAP_OT_reduce_keys,
     MOCAP_OT_revert_to_raw,
 )
 

@@ -79,7 +79,7 @@ def _parser() -> SentenceParser:
 
 def _work(arguments: argparse.Namespace, screen: Screen) -> None:
     verb = VERBS[arguments.verb]
-    armatures = _armatures(arguments.armature)
+    armatures = _armatures(arguments.armature, verb.left_alone(arguments))
     target = _target(arguments) if verb.writes else None
     verb.check(arguments, armatures)
     figures_file = None if arguments.json in {None, STDOUT} else _in_a_folder(arguments.json)
@@ -120,10 +120,10 @@ def _in_a_folder(path: Path) -> Path:
     return path.resolve()
 
 
-def _armatures(name: str | None) -> list[bpy.types.Object]:
+def _armatures(name: str | None, left_alone: str) -> list[bpy.types.Object]:
     armatures = [each for each in bpy.context.scene.objects if each.type == "ARMATURE"]
     if name is None:
-        found = [each for each in armatures if _plays(each)]
+        found = [each for each in armatures if _plays(each) and each.name != left_alone]
         missing = "The scene has no animated armature."
     else:
         found = [each for each in armatures if each.name == name]

@@ -22,6 +22,13 @@ from ..jobs.job import run
 from ..scene import history
 from ..scene.armature_read import read_take
 from ..selection import played_source
+from .retarget_verbs import (
+    add_retarget_options,
+    add_unbake_options,
+    perform_retarget,
+    perform_unbake,
+    retarget_target,
+)
 
 Bundle = TypeVar("Bundle", bound=NamedTuple)
 Said = tuple[str, dict[str, Any]]
@@ -31,6 +38,11 @@ def nothing_to_check(
     arguments: argparse.Namespace, armatures: Sequence[bpy.types.Object]
 ) -> None:
     """Check nothing."""
+
+
+def nobody(arguments: argparse.Namespace) -> str:
+    """Name no armature."""
+    return ""
 
 
 @dataclass(frozen=True)
@@ -44,6 +56,8 @@ class Verb:
     """Whether it changes the .blend file, which is then saved."""
     check: Callable[[argparse.Namespace, Sequence[bpy.types.Object]], None] = nothing_to_check
     """Raise a MocapAssistError where the work would be in vain, before it begins."""
+    left_alone: Callable[[argparse.Namespace], str] = nobody
+    """Name of an armature on which it is never performed."""
 
 
 def _clean_options(parser: argparse.ArgumentParser) -> None:
@@ -153,6 +167,17 @@ VERBS = {
         _convert,
         writes=False,
         check=_check_targets,
+    ),
+    "retarget": Verb(
+        "Let another armature make the motions of an armature.",
+        add_retarget_options,
+        perform_retarget,
+        left_alone=retarget_target,
+    ),
+    "unbake": Verb(
+        "Replace a key on every frame by few keys with handles.",
+        add_unbake_options,
+        perform_unbake,
     ),
 }
 """A new verb is a new entry here."""

@@ -128,7 +128,7 @@ def part_of(
     root = bones[0]
     moved = rotate(rig.rest_rotations[root], channels[root].locations)
     positions = carrier.points(rig.heads[root] + moved)
-    skeleton, owners = _skeleton_of(rig, bones, rest)
+    skeleton, owners = skeleton_of(rig, bones, rest)
     still = np.tile([1.0, 0.0, 0.0, 0.0], (len(positions), 1))
     rotations += [still] * (len(owners) - len(bones))
     motion = Motion(skeleton, np.stack(rotations, axis=1), positions, frame_rate)
@@ -155,7 +155,7 @@ def root_locations(part: Part, rig: Rig) -> Array:
     return rotate(inverse(rig.rest_rotations[root]), moved)
 
 
-def _skeleton_of(
+def skeleton_of(
     rig: Rig, bones: list[int], rest: Placement
 ) -> tuple[Skeleton, tuple[int, ...]]:
     """Joints at the bones' heads, and an end site at the tail of each last bone."""

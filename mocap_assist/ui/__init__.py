@@ -1,12 +1,14 @@
 """What the animator sees: panels in the sidebar, menus, preferences and the overlay."""
 
 from . import (
+    bone_list,
     example_list,
     import_menu,
     manual,
     menus,
     overlay_switch,
     preferences,
+    retarget_panel,
     sidebar,
     translations,
 )
@@ -15,6 +17,8 @@ PARTS = (
     translations,
     preferences,
     example_list,
+    bone_list,
+    retarget_panel,
     sidebar,
     menus,
     import_menu,

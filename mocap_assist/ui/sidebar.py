@@ -8,6 +8,7 @@ from .compare_panel import ComparePanel
 from .feet_panel import FeetPanel
 from .import_panel import ImportPanel
 from .preferences import preferred
+from .retarget_panel import RetargetPanel
 
 EDITORS = {"": "VIEW_3D", "_graph": "GRAPH_EDITOR", "_dopesheet": "DOPESHEET_EDITOR"}
 TAB = "Mocap"
@@ -25,7 +26,7 @@ def _in_every_editor(body: type) -> list[type[bpy.types.Panel]]:
 
 PANELS = [
     panel
-    for body in (ImportPanel, CleanPanel, CheckPanel, ComparePanel, FeetPanel)
+    for body in (ImportPanel, CleanPanel, CheckPanel, ComparePanel, FeetPanel, RetargetPanel)
     for panel in _in_every_editor(body)
 ]
 

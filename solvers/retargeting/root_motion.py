@@ -13,6 +13,8 @@ from .body import held, hips_of
 Array = NDArray[np.float64]
 
 FORWARD = np.array([0.0, -1.0, 0.0])
+FAR = 4.0
+"""Standard deviations beyond which a blur takes nothing in."""
 UPRIGHT = 0.1
 """Length, over the ground, of the direction that hips face, below which they face nowhere."""
 
@@ -109,7 +111,16 @@ def hips_in_world(motion: Motion, hips: int) -> tuple[Array, Array]:
 
 
 def _blurred(values: Array, sigma: float) -> Array:
-    """Blur over time; sigma 0 leaves the values as they are."""
-    if sigma <= 0.0:
+    """Blur over time; sigma 0 leaves the values as they are.
+
+    Before the first and after the last frame, values go on as they went, mirrored at a point:
+    a walk does not slow down where its clip ends.
+    """
+    width = min(int(FAR * sigma), len(values) - 1)
+    if sigma <= 0.0 or not width:
         return values
-    return np.asarray(gaussian_filter1d(values, sigma, axis=0, mode="nearest"))
+    before = 2.0 * values[0] - values[width:0:-1]
+    after = 2.0 * values[-1] - values[-2 : -width - 2 : -1]
+    longer = np.concatenate([before, values, after])
+    blurred = gaussian_filter1d(longer, sigma, axis=0, mode="nearest")
+    return np.asarray(blurred[width : width + len(values)])

@@ -1,0 +1,73 @@
+"""The verbs `retarget` and `unbake`: what the buttons of the same names do."""
+
+import argparse
+from typing import Any
+
+import bpy
+
+from ...solvers.command_line import arguments_from, settings_from_arguments
+from ...solvers.progress import Progress
+from ...solvers.retargeting import RetargetSettings, UnbakeSettings
+from ..jobs.job import run
+from ..retarget_choices import RetargetBundle, RetargetChoices, UnbakeBundle, UnbakeChoices
+from ..retargeting import read_retarget, write_retargeted
+from ..scene import history
+from ..unbaking import read_unbaking, write_unbaked
+
+CENTIMETRE = 0.01
+Said = tuple[str, dict[str, Any]]
+
+
+def add_retarget_options(parser: argparse.ArgumentParser) -> None:
+    """Add the options of `retarget`; those of the button."""
+    arguments_from(parser, RetargetChoices, RetargetSettings)
+
+
+def retarget_target(arguments: argparse.Namespace) -> str:
+    """Name the armature that is to make the motions, which is no source."""
+    return str(getattr(arguments, "target", ""))  # only what was given is there
+
+
+def perform_retarget(
+    scene: bpy.types.Scene,
+    armature: bpy.types.Object,
+    arguments: argparse.Namespace,
+    progress: Progress,
+) -> Said:
+    """Give the armature's motions to the target."""
+    settings = RetargetBundle(
+        settings_from_arguments(arguments, RetargetChoices),
+        settings_from_arguments(arguments, RetargetSettings),
+    )
+    results = run(read_retarget(scene, armature, settings), progress)
+    sentence = write_retargeted(scene, armature, settings, results)
+    action = scene.objects[settings.choices.target].animation_data.action
+    figures = {"n_actions": len(results), "action": action.name}
+    return sentence, figures | history.history(action)[-1]
+
+
+def add_unbake_options(parser: argparse.ArgumentParser) -> None:
+    """Add the options of `unbake`."""
+    parser.add_argument(
+        "--tolerance", type=float, default=1.0, metavar="CM",
+        help="greatest distance in centimetres by which a hand, a foot or the head may be off"
+        " [default 1]",
+    )  # fmt: skip
+    arguments_from(parser, UnbakeSettings)
+
+
+def perform_unbake(
+    scene: bpy.types.Scene,
+    armature: bpy.types.Object,
+    arguments: argparse.Namespace,
+    progress: Progress,
+) -> Said:
+    """Thin out the keys of what the armature plays."""
+    settings = UnbakeBundle(
+        UnbakeChoices(tolerance=CENTIMETRE * arguments.tolerance),
+        settings_from_arguments(arguments, UnbakeSettings),
+    )
+    result = run(read_unbaking(scene, armature, settings), progress)
+    sentence = write_unbaked(scene, armature, settings, result)
+    action = armature.animation_data.action
+    return sentence, {"action": action.name} | history.history(action)[-1]

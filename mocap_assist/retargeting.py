@@ -1,0 +1,196 @@
+"""What the button Retarget reads from the scene, and what it writes back."""
+
+from collections.abc import Mapping
+from functools import partial
+from typing import NamedTuple
+
+import bpy
+import numpy as np
+
+from ..solvers.errors import InvalidMotionError
+from ..solvers.motion import HumanoidMap
+from ..solvers.retargeting import RootMotion
+from .bone_map import BoneMaps, is_finger, maps_for
+from .examples import SEPARATOR
+from .jobs.job import Quick
+from .jobs.retargeting import Clip, Retargeted, RetargetProblem, retarget_clips
+from .retarget_choices import RetargetBundle, RetargetChoices, Takes
+from .scene import compat, history
+from .scene.action_write import write_action
+from .scene.armature_read import read_take
+from .scene.armature_write import check_writable
+from .scene.bone_channels import animated_curves, bone_path
+from .scene.compat import Source
+from .scene.take import ArmatureTake
+from .scene.target_read import read_target, vertical_part
+from .selection import played_source
+from .subject import check_unchanged
+
+N_QUICK = 5000
+"""Frames that are solved in half a second: less than it takes to start another process."""
+
+
+class Reading(NamedTuple):
+    """What Retarget found in the scene."""
+
+    target: bpy.types.Object
+    sources: tuple[Source, ...]
+    takes: tuple[ArmatureTake, ...]
+    switches: Mapping[tuple[str, str], float]
+    maps: BoneMaps
+    problem: RetargetProblem
+
+
+def read_retarget(
+    scene: bpy.types.Scene, source: bpy.types.Object, settings: RetargetBundle
+) -> "partial[Retargeted]":
+    """Read source and target; return what is to be solved, which may be pickled."""
+    problem = _read(scene, source, settings).problem
+    n_frames = sum(clip.motion.n_frames for clip in problem.clips)
+    return (Quick if n_frames <= N_QUICK else partial)(retarget_clips, problem)
+
+
+def write_retargeted(
+    scene: bpy.types.Scene,
+    source: bpy.types.Object,
+    settings: RetargetBundle,
+    results: Retargeted,
+    asked: str | None = None,
+) -> str:
+    """Write an action for each clip, let the target play the last; return a sentence.
+
+    A linked target plays nothing: its actions are for its override.
+    """
+    found = _read(scene, source, settings)
+    check_unchanged(source, asked, found.problem)
+    for made_from, take, keys in zip(found.sources, found.takes, results, strict=True):
+        name = f"{made_from[0].name}.{found.target.name}"
+        action, slot = write_action(found.target, name, take.frames, keys, found.switches)
+        history.record(action, made_from, _entry(source, found, settings))
+    linked = found.target.library is not None
+    if not linked:
+        compat.assign(found.target, action, slot)
+    n_bones, n_frames = len(results[-1]), sum(len(take.frames) for take in found.takes)
+    made = action.name if len(results) == 1 else f"{len(results)} actions"
+    score = min(found.maps.source.score, found.maps.target.score)
+    return (
+        f"{made}: {n_frames} frames on {n_bones} bones of {found.target.name}"
+        f" (bones matched {score:.0%})."
+        + (" It is linked: let its library override play the action." if linked else "")
+    )
+
+
+def target_called(
+    scene: bpy.types.Scene, name: str, source: bpy.types.Object
+) -> bpy.types.Object:
+    """Return the armature of that name; raise InvalidMotionError where it cannot be used."""
+    if not name:
+        raise InvalidMotionError("Choose the armature that is to make the motion.")
+    named = [each for each in scene.objects if each.name == name and each.type == "ARMATURE"]
+    # A linked armature and its override may have one name; only the override can be animated.
+    target = min(named, key=lambda each: each.library is not None, default=None)
+    if target is None:
+        raise InvalidMotionError(f"The scene has no armature {name}.")
+    if target == source:
+        raise InvalidMotionError(
+            f"{name} is the source itself. Choose another armature to make the motion."
+        )
+    if target.library is None:
+        check_writable(target)
+    return target
+
+
+def chosen_sources(source: bpy.types.Object, choices: RetargetChoices) -> tuple[Source, ...]:
+    """Return the actions to retarget, and the slot of each that fits the armature."""
+    if choices.takes is Takes.PLAYED:
+        return (played_source(source),)
+    if choices.takes is Takes.ALL:
+        if not (fitting := fitting_actions(source)):
+            raise InvalidMotionError(f"No action has keys for the bones of {source.name}.")
+        return fitting
+    names = [name.strip() for name in choices.actions.split(SEPARATOR) if name.strip()]
+    if not names:
+        raise InvalidMotionError("No action is listed. Add one to the list.")
+    listed = []
+    for name in names:
+        action = bpy.data.actions.get(name)
+        slot = None if action is None else _fitting_slot(action, source)
+        if slot is None:
+            raise InvalidMotionError(
+                f"There is no action {name} with keys for the bones of {source.name}."
+            )
+        listed.append((action, slot))
+    return tuple(listed)
+
+
+def fitting_actions(armature: bpy.types.Object) -> tuple[Source, ...]:
+    """Return all actions, linked ones too, that key any of the armature's bones."""
+    found = [(each, _fitting_slot(each, armature)) for each in bpy.data.actions]
+    return tuple((action, slot) for action, slot in found if slot is not None)
+
+
+def _fitting_slot(
+    action: bpy.types.Action, armature: bpy.types.Object
+) -> bpy.types.ActionSlot | None:
+    """Return the first slot that keys any of the armature's bones."""
+    paths = {bone_path(bone.name, "") for bone in armature.data.bones}
+    for slot in action.slots:
+        if slot.target_id_type in compat.TARGETS and any(
+            path[: path.rfind(".") + 1] in paths for path, _ in animated_curves(action, slot)
+        ):
+            return slot
+    return None
+
+
+def _read(
+    scene: bpy.types.Scene, source: bpy.types.Object, settings: RetargetBundle
+) -> Reading:
+    choices = settings.choices
+    target = target_called(scene, choices.target, source)
+    sources = chosen_sources(source, choices)
+    files = (choices.source_map_file, choices.target_map_file)
+    maps = maps_for(scene, source, target, files)
+    takes = tuple(read_take(source, scene, source=each) for each in sources)
+    on_root = settings.retargeting.root_motion is RootMotion.ROOT_BONE
+    roles = _wanted(maps)
+    rig, switches = read_target(scene, target, roles, choices.limbs, on_root)
+    problem = RetargetProblem(
+        tuple(map(_clip, takes)), _known(maps.source, source), rig, settings.retargeting
+    )
+    return Reading(target, sources, takes, switches, maps, problem)
+
+
+def _clip(take: ArmatureTake) -> Clip:
+    origin = take.rest.origins[0] * (1.0, 1.0, 0.0)
+    return Clip(take.parts[0].motion, origin, vertical_part(take.rest.rotations[0]))
+
+
+def _wanted(maps: BoneMaps) -> HumanoidMap:
+    """Return the target's roles, without fingers of which the source knows nothing."""
+    joints = maps.target.joints.items()
+    kept = {role: bone for role, bone in joints if maps.source.has(role) or not is_finger(role)}
+    return HumanoidMap(kept, maps.target.score)
+
+
+def _known(roles: HumanoidMap, source: bpy.types.Object) -> HumanoidMap:
+    """Return the roles of bones that the armature has."""
+    bones = source.data.bones
+    return HumanoidMap(
+        {role: bone for role, bone in roles.joints.items() if bone in bones}, roles.score
+    )
+
+
+def _entry(
+    source: bpy.types.Object, found: Reading, settings: RetargetBundle
+) -> dict[str, object]:
+    """Return what the action remembers of how it was made."""
+    return {
+        "operation": "retarget",
+        "source_armature": source.name,
+        "settings": history.plain(*settings),
+        "bones": {
+            "source": dict(found.maps.source.joints),
+            "target": dict(found.maps.target.joints),
+        },
+        "score": float(np.round(min(each.score for each in found.maps), 3)),
+    }

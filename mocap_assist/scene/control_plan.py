@@ -1,0 +1,88 @@
+"""Which bones of a rig are keyed for which humanoid role."""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from enum import Enum
+from typing import NamedTuple
+
+ROOT = "root"
+"""Stands where a role is asked for: the travel over the ground."""
+CENTRE = ("hips", "spine", "chest", "upperChest", "neck", "head")
+LIMB = {
+    "Shoulder": "upperChest", "UpperArm": "Shoulder", "LowerArm": "UpperArm",
+    "Hand": "LowerArm", "UpperLeg": "hips", "LowerLeg": "UpperLeg", "Foot": "LowerLeg",
+    "Toes": "Foot",
+}  # fmt: skip
+FINGER_PARTS = ("Metacarpal", "Proximal", "Intermediate", "Distal")
+
+
+class Limbs(Enum):
+    """Controls of arms and legs that are keyed, where a rig has both."""
+
+    FK = "FK"
+    IK = "IK"
+    BOTH = "both, FK plays"
+
+
+class Plan(NamedTuple):
+    """A bone to be keyed."""
+
+    bone: str
+    role: str
+    """The part of the body that it turns with, or ROOT."""
+    anchor: str
+    """The role beside whose joint it keeps its place."""
+    turns: bool = True
+    moves: bool = False
+    limb: str = ""
+    """For a pole target the limb before whose hinge it lies, such as "leftLeg"."""
+
+
+@dataclass(frozen=True)
+class RigPlan:
+    """How a rig is keyed.
+
+    Attributes
+    ----------
+    plans : tuple of Plan
+    joint_bones : mapping of role to the bone that shows where the joint is
+    switches : mapping of bone and custom property to a value
+        Keyed once, at the first frame.
+    """
+
+    plans: tuple[Plan, ...]
+    joint_bones: Mapping[str, str]
+    switches: Mapping[tuple[str, str], float]
+
+
+def role_above(role: str, played: Sequence[str]) -> str:
+    """Return the nearest role above that is played too, or nothing for the topmost one."""
+    above = _above(role)
+    while above and above not in played:
+        above = _above(above)
+    return above
+
+
+def plain_plan(roles: Mapping[str, str], root_bone: str) -> RigPlan:
+    """Return how a rig without controls is keyed: each bone by its own role.
+
+    `root_bone` takes the travel; nothing where there is none.
+    """
+    plans = [Plan(bone, role, role, moves=role == "hips") for role, bone in roles.items()]
+    return RigPlan((*_root_plan(root_bone), *plans), dict(roles), {})
+
+
+def _root_plan(root_bone: str) -> list[Plan]:
+    return [Plan(root_bone, ROOT, ROOT, moves=True)] if root_bone else []
+
+
+def _above(role: str) -> str:
+    if role in CENTRE:
+        return CENTRE[CENTRE.index(role) - 1] if role != CENTRE[0] else ""
+    side = "left" if role.startswith("left") else "right"
+    part = role.removeprefix(side)
+    if part in LIMB:
+        return LIMB[part] if LIMB[part] in CENTRE else side + LIMB[part]
+    end = next(each for each in FINGER_PARTS if part.endswith(each))
+    place = FINGER_PARTS.index(end)
+    return side + (part.removesuffix(end) + FINGER_PARTS[place - 1] if place else "Hand")

@@ -1,0 +1,130 @@
+"""Find out what carries each control of a rig, by moving a copy of it."""
+
+from collections.abc import Collection, Iterator, Mapping, Sequence
+from contextlib import contextmanager
+
+import bpy
+import numpy as np
+from mathutils import Euler, Matrix
+from numpy.typing import NDArray
+
+Array = NDArray[np.float64]
+
+N_POSES = 3
+LARGEST_TURN = 0.35  # radians
+LARGEST_SHIFT = 0.03  # of the rig's height
+SAME_TURN = 2e-3  # difference between entries of rotation matrices
+SAME_PLACE = 2e-3  # of the rig's height
+Switches = Mapping[tuple[str, str], float]
+
+
+def find_carriers(
+    scene: bpy.types.Scene,
+    armature: bpy.types.Object,
+    controls: Sequence[tuple[str, bool]],
+    switches: Switches,
+) -> dict[str, str | None]:
+    """Return for each control the one that it moves along with.
+
+    Parameters
+    ----------
+    scene : bpy.types.Scene
+    armature : bpy.types.Object
+        Not touched: a copy is posed.
+    controls : names of bones, and whether their location is keyed too
+    switches : values of custom properties of bones while they are keyed
+
+    Returns
+    -------
+    dict of bone to bone, or to "" for what nothing carries, or None where it is none of them
+    """
+    names = [name for name, _ in controls]
+    movers = [name for name, moves in controls if moves]
+    with _copied(scene, armature, switches) as (copy, depsgraph):
+        height = max(max(bone.tail_local.length for bone in copy.data.bones), 1e-9)
+        seen = [
+            _seen(scene, copy, depsgraph, names, movers, seed, height)
+            for seed in range(N_POSES)
+        ]
+    carried = {name: np.stack([space[name] for space, _ in seen]) for name in names}
+    moved = {name: np.stack([delta[name] for _, delta in seen]) for name in names}
+    moved[""] = np.tile(np.eye(4), (N_POSES, 1, 1))
+    return {
+        name: _same(carried[name], moved, name, height if name in movers else np.inf)
+        for name in names
+    }
+
+
+def _same(carried: Array, moved: Mapping[str, Array], name: str, height: float) -> str | None:
+    """Return whose movement it is; places count only where the height is finite."""
+    for other, movement in moved.items():
+        apart = np.abs(carried - movement)
+        if (
+            other != name
+            and apart[:, :3, :3].max() < SAME_TURN
+            and apart[:, :3, 3].max() < SAME_PLACE * height
+        ):
+            return other
+    return None
+
+
+@contextmanager
+def _copied(
+    scene: bpy.types.Scene, armature: bpy.types.Object, switches: Switches
+) -> Iterator[tuple[bpy.types.Object, bpy.types.Depsgraph]]:
+    copy = armature.copy()
+    layer = scene.view_layers[0]
+    try:
+        if copy.animation_data is not None:
+            copy.animation_data.action = None
+            for track in copy.animation_data.nla_tracks:
+                track.mute = True
+        copy.hide_viewport = False
+        scene.collection.objects.link(copy)
+        for bone in copy.pose.bones:
+            bone.matrix_basis = Matrix()
+        for (bone, name), value in switches.items():
+            if bone in copy.pose.bones and name in copy.pose.bones[bone]:
+                present = copy.pose.bones[bone][name]
+                copy.pose.bones[bone][name] = type(present)(value)
+        layer.update()
+        yield copy, layer.depsgraph
+    finally:
+        bpy.data.objects.remove(copy)
+
+
+def _seen(
+    scene: bpy.types.Scene,
+    copy: bpy.types.Object,
+    depsgraph: bpy.types.Depsgraph,
+    names: Sequence[str],
+    movers: Collection[str],
+    seed: int,
+    height: float,
+) -> tuple[dict[str, Array], dict[str, Array]]:
+    """Return how each control's carrier has moved from rest, and how it has itself."""
+    rng = np.random.default_rng(seed)
+    for name in names:
+        turn = Euler(rng.uniform(-LARGEST_TURN, LARGEST_TURN, 3)).to_matrix().to_4x4()
+        if name in movers:
+            turn.translation = rng.uniform(-1.0, 1.0, 3) * LARGEST_SHIFT * height
+        copy.pose.bones[name].matrix_basis = turn
+    scene.view_layers[0].update()
+    posed = copy.evaluated_get(depsgraph).pose.bones
+    carried, moved = {}, {}
+    for name in names:
+        bone = posed[name]
+        back = bone.bone.matrix_local.inverted()
+        turn = bone.matrix_basis.to_3x3().to_4x4()
+        shift = location_axes(bone.bone) @ bone.location
+        moved[name] = np.array(bone.matrix @ back)
+        space = bone.matrix @ turn.inverted() @ back @ Matrix.Translation(-shift)
+        carried[name] = np.array(space)
+    return carried, moved
+
+
+def location_axes(bone: bpy.types.Bone) -> Matrix:
+    """Return the axes along which a bone's location shifts it, in the rest pose."""
+    if bone.use_local_location:
+        return bone.matrix_local.to_3x3()
+    return bone.parent.matrix_local.to_3x3() if bone.parent else Matrix.Identity(3)

@@ -1,0 +1,88 @@
+"""What the button Unbake reads from the scene, and what it writes back."""
+
+from functools import partial
+
+import bpy
+import numpy as np
+
+from ..solvers.motion import Motion
+from ..solvers.motion.rotations import inverse, multiply
+from .jobs.unbaking import BoneShape, Tree, Unbaked, UnbakeProblem, unbake
+from .retarget_choices import UnbakeBundle
+from .scene import history
+from .scene.armature_read import read_take
+from .scene.armature_write import Output, check_writable, put_to_use
+from .scene.bone_channels import animated_curves
+from .scene.sparse_write import count_keys, write_sparse
+from .scene.take import ArmatureTake, Part
+from .selection import played_source
+from .subject import check_unchanged
+
+
+def read_unbaking(
+    scene: bpy.types.Scene, armature: bpy.types.Object, settings: UnbakeBundle
+) -> "partial[Unbaked]":
+    """Read what an armature plays; return what is to be solved, which may be pickled."""
+    check_writable(armature)
+    take = read_take(armature, scene, source=played_source(armature))
+    return partial(unbake, _problem(take, settings))
+
+
+def write_unbaked(
+    scene: bpy.types.Scene,
+    armature: bpy.types.Object,
+    settings: UnbakeBundle,
+    result: Unbaked,
+    asked: str | None = None,
+) -> str:
+    """Write a copy of the action with few keys and put it to use; return a sentence."""
+    played = played_source(armature)
+    take = read_take(armature, scene, source=played)
+    check_unchanged(armature, asked, _problem(take, settings))
+    action, slot = write_sparse(armature, played, take.grid, result.keys)
+    before, after = (count_keys(animated_curves(*each)) for each in (played, (action, slot)))
+    entry = {
+        "operation": "reduce_keys",
+        "settings": history.plain(*settings),
+        "keys_before": before,
+        "keys_after": after,
+        "error_cm": 100 * result.error,
+    }
+    history.record(action, played, entry)
+    put_to_use(armature, action, slot, Output.ACTION)
+    return (
+        f"{action.name}: {after} keys instead of {before}; hands, feet and head are off by"
+        f" {100 * result.error:.2f} cm at most."
+    )
+
+
+def _problem(take: ArmatureTake, settings: UnbakeBundle) -> UnbakeProblem:
+    trees = tuple(_tree(take, part) for part in take.parts)
+    return UnbakeProblem(trees, settings.choices.tolerance, settings.unbaking)
+
+
+def _tree(take: ArmatureTake, part: Part) -> Tree:
+    """Return a part as it moves within what carries it, which keeps its own keys."""
+    rig, rest, root = take.rig, take.rest, part.bones[0]
+    turn = rest.rotations[0]
+    motion = part.motion
+    rotations = motion.rotations.copy()
+    carried = multiply(part.carrier.rotations, inverse(turn))
+    rotations[:, 0] = multiply(inverse(carried), rotations[:, 0])
+    places = rest.points(part.carrier.points_back(motion.root_positions))
+    axes = multiply(turn, rig.rest_rotations)
+    shapes = tuple(
+        None
+        if bone < 0
+        else BoneShape(
+            rig.bones[bone], rig.modes[bone], axes[bone], take.channels[bone].rotation_keyed
+        )
+        for bone in part.bones
+    )
+    return Tree(
+        Motion(motion.skeleton, rotations, places, motion.frame_rate),
+        shapes,
+        take.channels[root].location_keyed,
+        np.asarray(rest.points(rig.heads[root])),
+        rest.scale,
+    )

@@ -1,0 +1,21 @@
+"""Button: thin out the keys of the active armature's action."""
+
+import bpy
+
+from ..mocap_assist.retarget_choices import UnbakeBundle
+from ..mocap_assist.selection import why_not_clean
+from ..mocap_assist.settings_properties import settings_from
+from ..mocap_assist.solver_operator import SolverOperator
+from ..mocap_assist.unbaking import read_unbaking, write_unbaked
+
+
+@settings_from(UnbakeBundle)
+class MOCAP_OT_reduce_keys(SolverOperator, bpy.types.Operator):
+    bl_idname = "mocap_assist.reduce_keys"
+    bl_label = "Unbake"
+    bl_description = (
+        "Replace a key on every frame by few keys with handles, so that no hand, foot or head"
+        " is off by more than the tolerance. The result is a new action"
+    )
+    settings_group = "unbake"
+    why_not, read_scene, write_scene = why_not_clean, read_unbaking, write_unbaked

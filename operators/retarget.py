@@ -1,0 +1,21 @@
+"""Button: let another armature make the motion of the active one."""
+
+import bpy
+
+from ..mocap_assist.retarget_choices import RetargetBundle
+from ..mocap_assist.retargeting import read_retarget, write_retargeted
+from ..mocap_assist.selection import why_not_retarget
+from ..mocap_assist.settings_properties import settings_from
+from ..mocap_assist.solver_operator import SolverOperator
+
+
+@settings_from(RetargetBundle)
+class MOCAP_OT_retarget(SolverOperator, bpy.types.Operator):
+    bl_idname = "mocap_assist.retarget"
+    bl_label = "Retarget"
+    bl_description = (
+        "Let another armature make the motion of this one, whatever its size, rest pose and"
+        " names of bones. The result is a new action; nothing else is changed"
+    )
+    settings_group = "retarget"
+    why_not, read_scene, write_scene = why_not_retarget, read_retarget, write_retargeted

@@ -1,0 +1,102 @@
+"""The editable list of bones, its presets, and the panel around it."""
+
+import pytest
+
+pytestmark = pytest.mark.filterwarnings("ignore::pytest.PytestUnraisableExceptionWarning")
+
+
+@pytest.fixture
+def listed(walker, make_rig, blank):
+    """The list, filled for a walker and an Unreal rig."""
+    target = make_rig("Unreal", lowered=0.8)
+    blank.context.view_layer.objects.active = walker
+    blank.context.scene.mocap_assist.retarget.target = target.name
+    assert blank.ops.mocap_assist.find_bones() == {"FINISHED"}
+    return blank.context.scene.mocap_assist.bone_map
+
+
+def test_find_bones_fills_a_row_for_each_role_with_a_score(listed):
+    pairs = {row.name: (row.source, row.target) for row in listed.rows}
+
+    assert pairs["leftUpperArm"] == ("LeftArm", "upperarm_l")
+    assert pairs["hips"] == ("Hips", "pelvis")
+    assert listed.source_score > 0.9 and listed.target_score > 0.9
+
+
+def test_what_the_list_says_is_done(listed, walker, give, blank, keys_of):
+    target = blank.context.scene.objects["Unreal"]
+    next(row for row in listed.rows if row.name == "head").target = ""
+
+    keyed = {path.split('"')[1] for _, path, _ in keys_of(give(walker, target))}
+
+    assert "head" not in keyed and "neck_01" in keyed
+
+
+def test_the_list_of_other_armatures_is_not_used(listed, walker, give, make_rig, keys_of):
+    next(row for row in listed.rows if row.name == "head").target = ""
+    other = make_rig("Mixamo")
+
+    keyed = {path.split('"')[1] for _, path, _ in keys_of(give(walker, other))}
+
+    assert "Head" in keyed
+
+
+def test_presets_come_back_as_they_were_saved(listed, blank, tmp_path, walker, give, keys_of):
+    row = next(row for row in listed.rows if row.name == "neck")
+    row.target = "neck_02"
+    path = str(tmp_path / "unreal.json")
+
+    assert blank.ops.mocap_assist.save_bone_map(filepath=path, side="target") == {"FINISHED"}
+    blank.ops.mocap_assist.find_bones()
+    assert next(row for row in listed.rows if row.name == "neck").target == "neck_01"
+    assert blank.ops.mocap_assist.load_bone_map(filepath=path, side="target") == {"FINISHED"}
+    assert next(row for row in listed.rows if row.name == "neck").target == "neck_02"
+
+    blank.ops.mocap_assist.find_bones()
+    target = blank.context.scene.objects["Unreal"]
+    keyed = keys_of(give(walker, target, target_map_file=path))
+    assert any("neck_02" in path for _, path, _ in keyed)
+
+
+def test_presets_that_are_none_are_refused_in_a_sentence(listed, blank, tmp_path):
+    bad = tmp_path / "bad.json"
+    bad.write_text("{}")
+
+    with pytest.raises(RuntimeError, match="no humanoid map"):
+        blank.ops.mocap_assist.load_bone_map(filepath=str(bad), side="source")
+    with pytest.raises(RuntimeError, match="There is no file"):
+        blank.ops.mocap_assist.load_bone_map(filepath=str(tmp_path / "no"), side="source")
+
+
+def test_presets_are_kept_in_the_folder_of_the_user(load, extension):
+    folder = load("mocap_assist.ui.bone_list").preset_folder()
+
+    assert folder.is_dir() and "bl_ext" not in str(folder)
+    assert folder.name == "bone_maps" and ".user" in folder.parts
+
+
+def test_the_panel_says_what_is_missing(walker, blank, load, make_rig):
+    why = load("mocap_assist.ui.retarget_panel").why_not_pressed
+    shown = blank.context.scene.mocap_assist.retarget
+
+    assert "Choose the armature" in why(blank.context)
+    shown.target = walker.name
+    assert "is the source itself" in why(blank.context)
+    shown.target = "Nobody"
+    assert "no armature Nobody" in why(blank.context)
+    target = make_rig("Mixamo")
+    blank.context.view_layer.objects.active = walker
+    shown.target = target.name
+    assert why(blank.context) == ""
+    blank.context.view_layer.objects.active = None
+    assert "Select the armature" in why(blank.context)
+
+
+def test_actions_are_ticked_and_unticked(walker, blank):
+    shown = blank.context.scene.mocap_assist.retarget
+    name = walker.animation_data.action.name
+
+    blank.ops.mocap_assist.tick_action(action=name)
+    assert shown.actions == name
+    blank.ops.mocap_assist.tick_action(action=name)
+    assert shown.actions == ""

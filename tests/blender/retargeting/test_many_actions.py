@@ -1,0 +1,123 @@
+"""Many actions at once, linked ones, gaps, and what cannot be done."""
+
+import json
+
+import numpy as np
+import pytest
+
+pytestmark = pytest.mark.filterwarnings("ignore::pytest.PytestUnraisableExceptionWarning")
+
+
+@pytest.fixture
+def target(make_rig, walker, blank):
+    rig = make_rig("Mixamo")
+    blank.context.view_layer.objects.active = walker
+    return rig
+
+
+def made_of(bpy, operation="retarget"):
+    found = []
+    for action in bpy.data.actions:
+        entries = json.loads(action.get("mocap_assist_history", "[]"))
+        if entries and entries[-1]["operation"] == operation:
+            found.append(action)
+    return found
+
+
+def test_all_actions_that_fit_are_retargeted_in_one_step(target, walker, give, blank, keys_of):
+    raw = walker.animation_data.action
+    for name in ("run", "jump"):
+        raw.copy().name = name
+    blank.data.actions.new("lamp")
+
+    give(walker, target, takes="ALL")
+
+    made = made_of(blank)
+    names = {f"{name}.Mixamo" for name in (raw.name, "run", "jump")}
+    assert {action.name for action in made} == names
+    assert all(action.use_fake_user for action in made)
+    assert len({json.dumps(sorted(keys_of(action).items(), key=str)) for action in made}) == 1
+
+
+def test_listed_actions_and_no_others(target, walker, give, blank):
+    raw = walker.animation_data.action
+    for name in ("run", "jump"):
+        raw.copy().name = name
+
+    give(walker, target, takes="LISTED", actions=f"jump; {raw.name}")
+
+    assert {action.name for action in made_of(blank)} == {"jump.Mixamo", f"{raw.name}.Mixamo"}
+
+
+def test_a_linked_action_serves_and_is_remembered(target, walker, give, blank, tmp_path):
+    raw = walker.animation_data.action
+    raw.name = "linked walk"
+    blank.data.libraries.write(str(tmp_path / "clips.blend"), {raw})
+    blank.data.actions.remove(raw)
+    with blank.data.libraries.load(str(tmp_path / "clips.blend"), link=True) as (_, found):
+        found.actions = ["linked walk"]
+    linked = blank.data.actions["linked walk"]
+    assert linked.library is not None
+
+    action = give(walker, target, takes="LISTED", actions="linked walk")
+
+    assert action.name == "linked walk.Mixamo" and action.library is None
+    assert action["mocap_assist_source"] == linked
+
+
+def test_what_is_written_says_how_it_was_made(target, walker, give):
+    action = give(walker, target, root_motion="IN_PLACE")
+
+    entry = json.loads(action["mocap_assist_history"])[-1]
+    assert entry["settings"]["root_motion"] == "in place"
+    assert entry["source_armature"] == walker.name
+    assert entry["bones"]["target"]["leftFoot"] == "LeftFoot"
+
+
+def test_gaps_of_the_source_get_no_keys(target, walker, give, keys_of):
+    bag = walker.animation_data.action.layers[0].strips[0].channelbags[0]
+    for curve in bag.fcurves:
+        if "LeftForeArm" in curve.data_path:
+            for key in list(curve.keyframe_points)[20:50][::-1]:
+                curve.keyframe_points.remove(key)
+
+    keys = keys_of(give(walker, target))
+
+    counts = {path.split('"')[1]: len(each) for (_, path, _), each in keys.items()}
+    assert counts["LeftForeArm"] == 30 and counts["RightForeArm"] == 60
+    assert np.isfinite([key[:2] for each in keys.values() for key in each]).all()
+
+
+@pytest.mark.parametrize(
+    ("settings", "sentence"),
+    [
+        ({"takes": "LISTED"}, "No action is listed"),
+        ({"takes": "LISTED", "actions": "nothing"}, "There is no action nothing"),
+        ({"root_motion": "ROOT_BONE"}, "no bone above the hips"),
+    ],
+)
+def test_what_cannot_be_done_is_said(target, blank, settings, sentence):
+    with pytest.raises(RuntimeError, match=sentence):
+        blank.ops.mocap_assist.retarget(target=target.name, **settings)
+    assert not made_of(blank) and target.animation_data is None
+
+
+def test_nothing_but_actions_is_left_behind(target, walker, give, blank):
+    kept = ("objects", "armatures", "meshes", "collections", "scenes")
+    before = {name: len(getattr(blank.data, name)) for name in kept}
+
+    give(walker, target)
+
+    assert {name: len(getattr(blank.data, name)) for name in kept} == before
+
+
+def test_one_step_takes_it_back(target, walker, give, blank):
+    window = blank.context.window
+    with blank.context.temp_override(window=window, screen=window.screen):
+        blank.ops.ed.undo_push(message="before")
+        give(walker, target)
+        blank.ops.ed.undo_push(message="Retarget")
+        blank.ops.ed.undo()
+
+    assert not made_of(blank)
+    assert blank.data.objects["Mixamo"].animation_data is None

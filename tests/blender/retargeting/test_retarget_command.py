@@ -1,0 +1,62 @@
+"""`retarget` and `unbake` of `blender FILE --command mocap_assist`."""
+
+import json
+
+import pytest
+
+pytestmark = pytest.mark.filterwarnings("ignore::pytest.PytestUnraisableExceptionWarning")
+
+
+@pytest.fixture
+def command(load, capsys):
+    """Run the command; return its status, its lines of JSON, and what it complained about."""
+    run = load("mocap_assist.batch.command").run
+
+    def call(*words):
+        status = run(list(words))
+        out, err = capsys.readouterr()
+        lines = [json.loads(line) for line in out.splitlines() if line[:1] == "{"]
+        return status, lines, err
+
+    return call
+
+
+def test_motions_are_given_to_the_target_and_saved(walker, make_rig, blank, command, tmp_path):
+    make_rig("Mixamo")
+    saved = tmp_path / "hero.blend"
+
+    for _ in range(2):  # the second time the target is animated too, and left alone
+        status, lines, err = command(
+            "retarget", "--target", "Mixamo", "--json", "--output", str(saved)
+        )
+        assert (status, err) == (0, "")
+        assert [line["armature"] for line in lines] == [walker.name]
+    assert lines[0]["operation"] == "retarget" and lines[0]["n_actions"] == 1
+
+    blank.ops.wm.open_mainfile(filepath=str(saved))
+    action = blank.data.objects["Mixamo"].animation_data.action
+    assert action.name == lines[0]["action"]
+
+
+def test_keys_are_thinned_out(walker, command, tmp_path):
+    status, lines, err = command(
+        "unbake", "--tolerance", "2", "--json", "--output", str(tmp_path / "few.blend")
+    )
+
+    assert (status, err) == (0, "")
+    assert lines[0]["keys_after"] < 0.5 * lines[0]["keys_before"]
+    assert lines[0]["error_cm"] <= 2.0
+    assert lines[0]["settings"]["tolerance"] == 0.02
+
+
+def test_mistakes_are_said_in_a_sentence(walker, command, tmp_path):
+    output = ("--output", str(tmp_path / "x.blend"))
+
+    for words, sentence in (
+        ((), "Choose the armature that is to make the motion."),
+        (("--target", "Nobody"), "The scene has no armature Nobody."),
+        (("--takes", "listed", "--target", walker.name), "is the source itself"),
+    ):
+        status, _, err = command("retarget", "--armature", walker.name, *words, *output)
+        assert status == 2 and sentence in err
+    assert not (tmp_path / "x.blend").exists()

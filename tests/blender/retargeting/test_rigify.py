@@ -1,0 +1,156 @@
+"""A walk given to Rigify's control rig: what its deform bones do when Blender plays it."""
+
+import numpy as np
+import pytest
+
+pytestmark = [
+    pytest.mark.filterwarnings("ignore::pytest.PytestUnraisableExceptionWarning"),
+    pytest.mark.timeout(200),
+]
+CENTIMETRE = 0.01
+SOURCE = ("LeftUpLeg", "LeftLeg", "LeftFoot", "LeftArm", "LeftForeArm", "LeftHand")
+DEFORM = ("thigh.L", "shin.L", "foot.L", "upper_arm.L", "forearm.L", "hand.L")
+FRAMES = range(1, 61, 6)
+LEGS, ARMS = slice(0, 3), slice(3, 6)
+
+
+def heads(poses, armature, names, frames=FRAMES):
+    matrices = poses(armature, frames)
+    return np.stack([matrices[name][:, :3, 3] for name in names], axis=1)
+
+
+def length(armature, names):
+    """Of a limb at rest: Rigify's IK limbs may stretch."""
+    points = [armature.matrix_world @ armature.data.bones[name].head_local for name in names]
+    return np.linalg.norm(np.diff(points, axis=0), axis=1).sum()
+
+
+def ends_off(poses, hero, walker):
+    """How far foot and hand are from where the source's, grown with the limb, are: metres."""
+    names = [f"DEF-{name}" for name in DEFORM]
+    ours, theirs = heads(poses, hero, names), heads(poses, walker, SOURCE)
+    legs, arms = (
+        length(hero, names[limb]) / length(walker, SOURCE[limb]) for limb in (LEGS, ARMS)
+    )
+    feet = [points[:, 2] - points[0, 2] for points in (ours, theirs)]
+    hands = [points[:, 5] - points[:, 3] for points in (ours, theirs)]
+    return (
+        np.linalg.norm(feet[0] - legs * feet[1], axis=1).max(),
+        np.linalg.norm(hands[0] - arms * hands[1], axis=1).max(),
+    )
+
+
+@pytest.mark.parametrize("limbs", ["FK", "IK", "BOTH"])
+def test_ends_of_limbs_go_where_the_source_says(limbs, hero, walker, give, poses):
+    give(walker, hero, limbs=limbs)
+
+    assert max(ends_off(poses, hero, walker)) < CENTIMETRE
+
+
+def test_with_both_the_animator_may_switch(hero, walker, give, poses, blank):
+    action = give(walker, hero, limbs="BOTH")
+    by_fk = heads(poses, hero, [f"DEF-{name}" for name in DEFORM])
+
+    for curve in action.layers[0].strips[0].channelbags[0].fcurves:
+        if "IK_FK" in curve.data_path:
+            assert [key.co.y for key in curve.keyframe_points] == [1.0]
+            curve.keyframe_points[0].co.y = 0.0
+            curve.update()
+    by_ik = heads(poses, hero, [f"DEF-{name}" for name in DEFORM])
+
+    apart = np.linalg.norm(by_fk - by_ik, axis=-1).max(axis=0)
+    assert apart[[2, 5]].max() < 0.1 * CENTIMETRE
+    assert 0.0 < apart[[1, 4]].max() < 4 * CENTIMETRE  # Rigify's IK limbs stretch a little
+
+
+def test_the_body_turns_as_solved(hero, walker, give, load, blank):
+    """Every mapped part is where the solver wants it, which its own tests judge."""
+    retargeting = load("mocap_assist.retargeting")
+    choices = load("mocap_assist.retarget_choices")
+    solvers = load("solvers.retargeting")
+    motion = load("solvers.motion")
+    give(walker, hero)
+    settings = choices.RetargetBundle(
+        choices.RetargetChoices(target="Hero"), solvers.RetargetSettings()
+    )
+    solve = retargeting.read_retarget(blank.context.scene, walker, settings)
+    problem = solve.args[0]
+    target = problem.target
+    wanted = motion.forward_kinematics(
+        solvers.retarget(
+            problem.clips[0].on_stage(), problem.roles, target.skeleton, target.humanoid
+        )
+    )
+    for frame in FRAMES:
+        blank.context.scene.frame_set(frame)
+        for role, name in target.humanoid.joints.items():
+            joint = target.skeleton.names.index(name)
+            there = np.array(hero.matrix_world @ hero.pose.bones[name].head)
+            assert np.linalg.norm(there - wanted.positions[frame - 1, joint]) < 0.001, role
+
+
+def test_only_controls_are_keyed_and_the_rig_stays(hero, walker, give, keys_of):
+    before = {
+        bone.name: (np.array(bone.matrix_basis).tolist(), dict(numbers(bone)))
+        for bone in hero.pose.bones
+    }
+
+    action = give(walker, hero)
+
+    paths = {path for _, path, _ in keys_of(action)}
+    keyed = {path.split('"')[1] for path in paths}
+    assert not any(name.startswith(("DEF-", "ORG-", "MCH-")) for name in keyed)
+    assert {"torso", "spine_fk", "upper_arm_fk.L", "foot_fk.R", "head"} <= keyed
+    assert not any("f_index" in name for name in keyed)
+    assert 'pose.bones["thigh_parent.L"]["IK_FK"]' in paths
+    after = {
+        bone.name: (np.array(bone.matrix_basis).tolist(), dict(numbers(bone)))
+        for bone in hero.pose.bones
+        if bone.name not in keyed
+    }
+    assert after == {name: before[name] for name in after}
+
+
+def test_travel_goes_onto_the_root_bone(hero, walker, give, poses):
+    give(walker, hero)
+    names = [f"DEF-{name}" for name in DEFORM]
+    kept = heads(poses, hero, names)
+
+    give(walker, hero, root_motion="ROOT_BONE")
+
+    root = heads(poses, hero, ["root"])[:, 0]
+    assert np.linalg.norm(heads(poses, hero, names) - kept, axis=-1).max() < CENTIMETRE
+    assert np.abs(root[:, 2]).max() < 1e-5
+    hips = heads(poses, hero, ["DEF-spine"])[:, 0]
+    assert np.linalg.norm((hips - root)[:, :2], axis=1).max() < 0.3
+    assert np.linalg.norm(root[-1] - root[0]) > 1.0
+
+
+@pytest.mark.parametrize("how", ["overridden", "appended"])
+def test_a_hero_that_stands_and_faces_elsewhere_walks_there(how, bring, walker, give, poses):
+    hero = bring(how)
+    give(walker, hero)
+    names = [f"DEF-{name}" for name in DEFORM]
+    here = heads(poses, hero, names)
+
+    hero.location, hero.rotation_euler = (3.0, 1.0, 0.5), (0.0, 0.0, 0.7)
+    give(walker, hero)
+
+    turn = np.array([[np.cos(0.7), -np.sin(0.7), 0], [np.sin(0.7), np.cos(0.7), 0], [0, 0, 1]])
+    moved = here @ turn.T + (3.0, 1.0, 0.5)
+    assert np.linalg.norm(heads(poses, hero, names) - moved, axis=-1).max() < 0.001
+
+
+def test_a_linked_rig_gets_actions_but_does_not_play_them(bring, walker, blank, keys_of, give):
+    hero = bring("linked")
+    blank.context.view_layer.objects.active = walker
+
+    assert blank.ops.mocap_assist.retarget(target=hero.name) == {"FINISHED"}
+
+    made = blank.data.actions[f"{walker.animation_data.action.name}.Hero"]
+    assert made.library is None and keys_of(made)
+    assert hero.animation_data is None or hero.animation_data.action is None
+
+
+def numbers(bone):
+    return {name: value for name, value in bone.items() if isinstance(value, (int, float))}

@@ -1,0 +1,70 @@
+"""Few keys for the same motion, as Blender plays them."""
+
+import json
+
+import numpy as np
+import pytest
+
+pytestmark = pytest.mark.filterwarnings("ignore::pytest.PytestUnraisableExceptionWarning")
+ENDS = ("LeftHand", "RightHand", "LeftToeBase", "RightToeBase", "Head")
+HALF_A_CENTIMETRE = 0.005
+
+
+def n_keys(keys):
+    return sum(map(len, keys.values()))
+
+
+@pytest.mark.parametrize("mode", ["QUATERNION", "ZXY", "AXIS_ANGLE"])
+def test_ends_of_limbs_are_off_by_no_more_than_the_tolerance(
+    walker, blank, poses, keys_of, load, mode
+):
+    rekeyed(walker, mode, load)
+    raw = walker.animation_data.action
+    before, frames = keys_of(raw), range(1, 61)
+    truth = poses(walker, frames)
+
+    assert blank.ops.mocap_assist.reduce_keys(tolerance=HALF_A_CENTIMETRE) == {"FINISHED"}
+
+    action = walker.animation_data.action
+    assert action.name == f"{raw.name}.sparse" and keys_of(raw) == before
+    assert n_keys(keys_of(action)) < 0.4 * n_keys(before)
+    played = poses(walker, frames)
+    off = [np.abs(played[name][:, :3, 3] - truth[name][:, :3, 3]).max() for name in ENDS]
+    assert 0.0 < max(off) < HALF_A_CENTIMETRE
+    entry = json.loads(action["mocap_assist_history"])[-1]
+    assert entry["operation"] == "reduce_keys"
+    assert entry["keys_after"] == n_keys(keys_of(action))
+
+
+def test_a_larger_tolerance_leaves_fewer_keys(walker, blank, keys_of):
+    raw, found = walker.animation_data.action, []
+    for tolerance in (0.001, 0.01, 0.05):
+        walker.animation_data.action = raw
+        blank.ops.mocap_assist.reduce_keys(tolerance=tolerance)
+        found.append(n_keys(keys_of(walker.animation_data.action)))
+
+    assert found[0] > found[1] > found[2]
+
+
+def rekeyed(armature, mode, load):
+    """Key the same turns in another rotation mode."""
+    modes = load("mocap_assist.scene.rotation_modes")
+    reading = load("mocap_assist.scene.armature_read")
+    writing = load("mocap_assist.scene.action_write")
+    compat = load("mocap_assist.scene.compat")
+    controls = load("mocap_assist.jobs.controls")
+    import bpy
+
+    take = reading.read_take(armature, bpy.context.scene)
+    name = armature.animation_data.action.name
+    assert modes.rotation_property(mode)
+    keys = {
+        bone: controls.BoneKeys(
+            channels.rotations, channels.locations if channels.travels else None
+        )
+        for bone, channels in zip(take.rig.bones, take.channels, strict=True)
+    }
+    for bone in armature.pose.bones:
+        bone.rotation_mode = mode
+    made = writing.write_action(armature, f"{name}.{mode}", take.frames, keys, {})
+    compat.assign(armature, *made)
