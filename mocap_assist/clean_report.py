@@ -23,6 +23,8 @@ def clean_report(n_frames: int, cleaned: Cleaned, name: str, n_modified: int = 0
             f"Feet slid {100 * cleaned.planted.slide_before:.1f} cm, now"
             f" {100 * cleaned.planted.slide_after:.1f} cm; legs and hips moved for that."
         )
+    if swaps := cleaned.solution.swaps:
+        said.append(f"{len(swaps)} swaps of labels were put right.")
     said.append(body.prior_used)
     if n_modified:
         said.append(f"The modifiers of {n_modified} curves are part of the new keys now.")

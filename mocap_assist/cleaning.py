@@ -12,7 +12,7 @@ from ..solvers.errors import InvalidMotionError
 from ..solvers.motion import Tracks
 from . import redo
 from .clean_armature import ArmatureReading
-from .clean_choices import CleanChoices, CleanSettings, Limits, Prior
+from .clean_choices import Bones, CleanChoices, CleanSettings, Limits, Prior
 from .clean_markers import MarkerReading
 from .clean_report import clean_report, entry_of
 from .examples import read_prior
@@ -68,7 +68,7 @@ def write_cleaned(
     problem = _problem(scene, subject, found.raw, settings)
     check_unchanged(subject, asked, problem)
     redo.remember(problem, cleaned.solution)
-    types = key_types(found.raw.recordings, cleaned.solution.denoised)
+    types = key_types(cleaned.solution.recordings, cleaned.solution.denoised)
     entry = entry_of("denoise", settings, cleaned)
     name, n_modified = found.write(settings.choices, cleaned, types, entry)
     return clean_report(len(found.raw.frames), cleaned, name, n_modified)
@@ -112,6 +112,7 @@ def _problem(
         settings=replace(settings.denoising, strength=1.0),
         examples=read_prior(scene, subject, choices),
         learn_limits=learn_limits,
+        unswap=choices.unswap and choices.bones is Bones.ALL and isinstance(raw, MarkerTake),
     )
 
 

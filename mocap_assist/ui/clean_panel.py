@@ -58,8 +58,7 @@ def _draw_main(
     for name in MAIN:
         if joints or name not in OF_JOINTS:
             column.prop(clean, name)
-    if joints:
-        column.prop(clean, "plant_feet")
+    column.prop(clean, "plant_feet" if joints else "unswap")
 
 
 def _draw_learned(column: bpy.types.UILayout, clean: bpy.types.PropertyGroup) -> None:

@@ -7,6 +7,7 @@ from .clean_panel import CleanPanel
 from .compare_panel import ComparePanel
 from .feet_panel import FeetPanel
 from .import_panel import ImportPanel
+from .markers_panel import MarkersPanel
 from .preferences import preferred
 from .retarget_panel import RetargetPanel
 
@@ -24,11 +25,16 @@ def _in_every_editor(body: type) -> list[type[bpy.types.Panel]]:
     ]
 
 
-PANELS = [
-    panel
-    for body in (ImportPanel, CleanPanel, CheckPanel, ComparePanel, FeetPanel, RetargetPanel)
-    for panel in _in_every_editor(body)
-]
+BODIES = (
+    ImportPanel,
+    CleanPanel,
+    CheckPanel,
+    ComparePanel,
+    FeetPanel,
+    MarkersPanel,
+    RetargetPanel,
+)
+PANELS = [panel for body in BODIES for panel in _in_every_editor(body)]
 
 
 def register() -> None:
