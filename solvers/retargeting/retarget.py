@@ -114,7 +114,8 @@ def retarget(
     Raises
     ------
     InvalidMotionError
-        A map names no hips, or the target has no joint above the hips for "root bone".
+        A map names no hips, limbs that do not hang on them, or sides exchanged; or the target
+        has no joint above the hips for "root bone".
     SolveCancelled
         Raised by `progress`.
 
