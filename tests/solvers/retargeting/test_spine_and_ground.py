@@ -20,7 +20,7 @@ from solvers.motion.rotations import (
     quaternion_from_rotation_vector,
 )
 from solvers.recordings import read_bvh
-from solvers.retargeting import retarget
+from solvers.retargeting import RetargetSettings, retarget
 from solvers.samples import GaitSettings, walking_gait
 
 CMU_METRES = 0.0254 / 0.45
@@ -104,10 +104,13 @@ def test_a_source_on_a_stage_keeps_its_height():
     maps = find_humanoid_map(walk.skeleton), find_humanoid_map(unreal())
 
     low, high = (retarget(motion, maps[0], unreal(), maps[1]) for motion in (walk, raised))
+    down = RetargetSettings(to_ground=True)
+    put_down = retarget(raised, maps[0], unreal(), maps[1], settings=down)
 
     shift = (high.root_positions - low.root_positions)[:, 2]
     assert_allclose(shift, 3.0, atol=0.05)
     assert np.ptp(shift) < 1e-9
+    assert_allclose(put_down.root_positions, low.root_positions, atol=1e-9)
 
 
 def bowing(angle: float) -> Motion:
