@@ -50,7 +50,13 @@ class Placement:
 
 
 def find_placement(
-    source: Body, target: Body, positions: Array, contacts: Flags | None, travel: float
+    source: Body,
+    target: Body,
+    positions: Array,
+    contacts: Flags | None,
+    *,
+    travel: float,
+    to_ground: bool,
 ) -> Placement:
     """Compare the bodies' legs and how high their ankles stand.
 
@@ -61,6 +67,8 @@ def find_placement(
     contacts : bool, shape (n_frames, 2), or None for bodies without feet
     travel : float
         Growth over the ground; 0 for that of the legs.
+    to_ground : bool
+        Whether the ground comes to height 0, wherever it is in the source.
     """
     growth = _growth(source, target)
     hips = positions[0, source.hip_joints()].mean(axis=0)
@@ -73,7 +81,7 @@ def find_placement(
         ankles = np.stack([positions[:, source.joints[f"{side}Foot"], 2] for side in SIDES], 1)
         height = float(np.percentile(ankles[contacts], FLAT))
     floor = height - source_ankle
-    if abs(floor) < FLOOR_MISREAD * leg_length(source):
+    if to_ground or abs(floor) < FLOOR_MISREAD * leg_length(source):
         floor = 0.0
     return Placement(travel or growth, growth, start, (height, floor + target_ankle))
 
