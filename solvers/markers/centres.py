@@ -9,6 +9,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from ..errors import InvalidMotionError
 from .body_tables import SIDES
 from .vectors import across, frame, swung, unit
 
@@ -51,6 +52,11 @@ def joint_centres(spots: Mapping[str, Array]) -> Centres:
     ----------
     spots : mapping of spot to positions of shape (n_frames, 3), metres
 
+    Raises
+    ------
+    InvalidMotionError
+        The pelvis has no size.
+
     References
     ----------
     .. [1] Harrington, Zavatsky, Lawson, Yuan, Theologis (2007). Prediction of the hip joint
@@ -64,6 +70,11 @@ def joint_centres(spots: Mapping[str, Array]) -> Centres:
         np.linalg.norm(places[f"{side}UpperLeg"] - spots[f"{letter}ANK"], axis=-1)
         for side, (letter, _) in SIDES.items()
     ]
+    if not np.isfinite(legs).any():
+        raise InvalidMotionError(
+            "The markers of the pelvis lie in one place or on one line in every frame, which no"
+            " pelvis does. Check their labels and the scale."
+        )
     scale = float(np.nanmedian(legs) / USUAL_LEG)
     for side in SIDES:
         _leg(spots, places, frames["hips"], side, scale)

@@ -16,6 +16,10 @@ from .centres import Centres
 from .vectors import frame, median, swung, unit
 
 Array = NDArray[np.float64]
+SHORTEST_FOOT = 0.05
+"""Metres between heel and toe markers."""
+STEEPEST = 0.4
+"""Sine of the angle between the way from heel to toe marker and the sole, at most."""
 
 
 def bone_frames(
@@ -74,8 +78,8 @@ def _levelled(heel: Array, toe: Array) -> Array:
         np.nanpercentile(marker[..., 2], 5.0) if np.isfinite(marker).any() else 0.0
         for marker in (heel, toe)
     )
-    length = np.nanmedian(np.linalg.norm(heel - toe, axis=-1))
-    sine = np.clip((low_heel - low_toe) / length, -0.4, 0.4)
+    length = float(median(np.linalg.norm(heel - toe, axis=-1)[:, None])[0])
+    sine = np.clip((low_heel - low_toe) / max(length, SHORTEST_FOOT), -STEEPEST, STEEPEST)
     cosine = np.sqrt(1.0 - sine**2)
     return np.array([[1.0, 0.0, 0.0], [0.0, cosine, sine], [0.0, -sine, cosine]])
 

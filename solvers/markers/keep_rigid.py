@@ -13,10 +13,8 @@ from .rigid_clusters import Cluster
 from .rigid_fit import fit_rigidly, moved
 
 Array = NDArray[np.float64]
-SPANNING = 3
-"""Markers that place a shape in space."""
-OFF_LINE = 0.01
-"""Metres that a shape is thick at least, for its markers to place it."""
+OFF_LINE = 0.004
+"""Metres, rms, that markers lie off the line through them, at least, to place a shape."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -87,9 +85,9 @@ def _held(template: Array, places: Array) -> Array:
 
 
 def _placed(template: Array, seen: NDArray[np.bool_]) -> NDArray[np.bool_]:
-    """Whether the markers seen place the shape: three, and not on a line."""
+    """Whether the markers seen place the shape: three at least, and not on a line."""
     weights = seen[..., None] / np.maximum(seen.sum(axis=1), 1)[:, None, None]
     arms = template - (weights * template).sum(axis=1, keepdims=True)
     spread = np.einsum("fpk,fpi,fpj->fij", weights, arms, arms)
     thickness = np.sqrt(np.linalg.eigvalsh(spread)[:, 1].clip(min=0.0))
-    return np.asarray((seen.sum(axis=1) >= SPANNING) & (thickness > OFF_LINE / SPANNING))
+    return np.asarray(thickness > OFF_LINE)

@@ -39,15 +39,18 @@ def candidates(
 ) -> list[tuple[int, int]]:
     """Return the pairs that may be swapped somewhere.
 
-    They seem to jump into each other's place, or both are where they do not fit at one time.
+    They seem to jump into each other's place; or both do not fit their labels at one time, and
+    one has gaps in which they may have changed places.
     """
     n_markers = positions.shape[1]
     odd_together = _odd_runs(positions, distances)
+    gaps = ~np.isfinite(positions).all(axis=(0, 2))
     found = [
         (first, second)
         for first in range(n_markers - 1)
         for second in range(first + 1, n_markers)
-        if (odd_together[:, first] & odd_together[:, second]).sum() >= FEWEST_ODD
+        if (gaps[first] or gaps[second])
+        and (odd_together[:, first] & odd_together[:, second]).sum() >= FEWEST_ODD
     ]
     for first in range(n_markers - 1):
         relative = positions[:, first + 1 :] - positions[:, [first]]

@@ -82,7 +82,7 @@ def solve_skeleton(
     -------
     SolvedSkeleton
         Parts of the body that the set has no markers for are left out. A joint of which a
-        frame shows nothing is NaN there, and of some frame at least everything is known.
+        frame shows nothing is NaN there.
 
     Raises
     ------

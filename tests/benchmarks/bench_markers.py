@@ -19,7 +19,7 @@ from .part_swaps import compare_swaps, false_alarms
 from .report import DOCS, Report
 from .tables import Scores
 
-DRAWS = 12
+DRAWS = 6
 PARTS: dict[str, Callable[[], Sequence[Scores | str]]] = {
     "swaps": lambda: [compare_swaps(DRAWS), false_alarms()],
     "rigid": lambda: [compare_rigid()],

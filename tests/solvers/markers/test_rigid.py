@@ -90,6 +90,18 @@ def test_finds_a_lost_marker_from_three_others_and_not_from_two(take):
     assert kept.moved.max() < 1e-6
 
 
+def test_three_on_a_line_do_not_place_a_fourth():
+    rod = np.array([[0.0, 0, 0], [0.1, 0, 0], [0.25, 0, 0], [0.1, 0.1, 0.0]])
+    places = np.tile(rod, (10, 1, 1))
+    places[5:, 3] = np.nan
+    take = Tracks(tuple("abcd"), places, 60.0)
+
+    kept = keep_rigid(take, [Cluster(tuple("abcd"), rod - rod.mean(axis=0), 0.0)]).tracks
+
+    assert np.isnan(kept.positions[5:, 3]).all()
+    assert_allclose(kept.positions[:5], rod + np.zeros((5, 1, 1)), atol=1e-9)
+
+
 def test_a_marker_that_strays_is_brought_back_and_moves_the_others_little(take):
     positions = take.positions.copy()
     positions[100:110, 2] += [0.0, 0.0, 0.08]

@@ -177,6 +177,13 @@ def test_says_which_markers_are_missing(walk):
         solve_skeleton(unnamed)
 
 
+def test_refuses_a_pelvis_of_no_size(walk):
+    whole = markers_on(walk)
+
+    with pytest.raises(InvalidMotionError, match="one place or on one line"):
+        solve_skeleton(whole.with_positions(np.ones_like(whole.positions)))
+
+
 def test_needs_a_frame_that_shows_a_whole_leg(walk):
     whole = markers_on(walk)
     positions = whole.positions.copy()
