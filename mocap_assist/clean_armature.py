@@ -6,7 +6,7 @@ import bpy
 import numpy as np
 from numpy.typing import NDArray
 
-from ..solvers.denoising import JointLimits
+from ..solvers.motion import JointLimits
 from .clean_choices import CleanChoices, Limits
 from .jobs.cleaning import Cleaned, Recordings, names_of
 from .scene import history

@@ -6,7 +6,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...solvers.denoising import (
-    JointLimits,
     Quality,
     QualitySettings,
     Spot,
@@ -14,7 +13,7 @@ from ...solvers.denoising import (
     find_worst_spots,
     measure_quality,
 )
-from ...solvers.motion import Motion, Tracks
+from ...solvers.motion import JointLimits, Motion, Tracks
 from ...solvers.progress import Progress, unwatched, within
 
 

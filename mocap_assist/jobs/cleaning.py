@@ -15,7 +15,6 @@ from ...solvers.denoising import (
     Denoised,
     DenoiseSettings,
     FilterBases,
-    JointLimits,
     Planted,
     PlantSettings,
     Quality,
@@ -28,7 +27,7 @@ from ...solvers.denoising import (
     plant_feet,
 )
 from ...solvers.denoising.feet import find_legs
-from ...solvers.motion import Motion, Tracks
+from ...solvers.motion import JointLimits, Motion, Tracks
 from ...solvers.motion.rotations import angle_between, slerp
 from ...solvers.progress import Progress, unwatched, within
 from ...solvers.recordings import read_motion_or_tracks

@@ -5,7 +5,7 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from ..errors import InvalidSettingError
-from .files import LEARNED, ending_for, refuse_target
+from .files import LEARNED, ending_for, found_in, refuse_target
 from .verb import Makes, Task, Verb
 
 
@@ -21,11 +21,12 @@ def tasks_of(verb: Verb, arguments: argparse.Namespace) -> list[Task]:
     """
     files: list[Path] = arguments.files
     if verb.makes is Makes.WORDS:
-        return [Task((path,), None, arguments) for path in files]
+        return [Task((path,), None, arguments) for path, _ in found_in(files)]
     if verb.makes is Makes.ONE_FILE:
-        _refuse_reading_and_writing(files, [arguments.output])
+        sources = tuple(path for path, _ in found_in(files))
+        _refuse_reading_and_writing(sources, [arguments.output])
         refuse_target(arguments.output, LEARNED)
-        return [Task(tuple(files), arguments.output, arguments)]
+        return [Task(sources, arguments.output, arguments)]
     return [Task((path,), target, arguments) for path, target in _pairs(arguments)]
 
 
@@ -41,13 +42,16 @@ def _pairs(arguments: argparse.Namespace) -> list[tuple[Path, Path]]:
             )
         pairs = [(files[0], files[1])]
     else:
-        pairs = [(path, folder / f"{path.stem}{ending_for(path)}") for path in files]
-    _refuse_reading_and_writing(*zip(*pairs, strict=True))
-    if folder is not None:
         if folder.exists() and not folder.is_dir():
             raise InvalidSettingError(f"{folder} is a file; name a folder to write to.")
-        folder.mkdir(parents=True, exist_ok=True)
+        pairs = [
+            (path, folder / place.with_suffix(ending_for(path)))
+            for path, place in found_in(files, not_in=folder)
+        ]
+    _refuse_reading_and_writing(*zip(*pairs, strict=True))
     for _, target in pairs:
+        if folder is not None:
+            target.parent.mkdir(parents=True, exist_ok=True)
         refuse_target(target)
     return pairs
 

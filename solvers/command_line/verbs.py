@@ -14,6 +14,13 @@ from .convert import convert
 from .denoise_verb import add_denoise_options, learn_once, perform_denoise
 from .files import add_reading_options, read, read_all
 from .options import arguments_from, settings_from_arguments
+from .retarget_verbs import (
+    add_retarget_options,
+    add_unbake_options,
+    perform_retarget,
+    perform_unbake,
+    read_target,
+)
 from .verb import Makes, Outcome, Task, Verb
 
 
@@ -84,6 +91,17 @@ VERBS = {
         "Write recordings of any known format as BVH, or as C3D or TRC where they are points.",
         add_reading_options,
         _convert,
+    ),
+    "retarget": Verb(
+        "Give motions to another skeleton, whatever its names, lengths and rest pose.",
+        add_retarget_options,
+        perform_retarget,
+        prepare=read_target,
+    ),
+    "unbake": Verb(
+        "Replace a key on every frame by few keys with handles.",
+        add_unbake_options,
+        perform_unbake,
     ),
 }
 """A new verb is a new entry here."""

@@ -20,6 +20,8 @@ from .contacts import (
 from .depth_sensors import JOINTS, Sensor, joint_parents
 from .humanoid import HUMANOID_ROLES, HumanoidMap, find_humanoid_map
 from .humanoid_names import roles_by_name
+from .humanoid_presets import read_humanoid_map, write_humanoid_map
+from .joint_limits import JointLimits, load_joint_limits
 from .joint_recording import JointRecording
 from .kinematics import WorldPoses, forward_kinematics, local_rotations, world_poses
 from .limb_ik import ReachSettings, reach
@@ -38,6 +40,7 @@ __all__ = [
     "Alignment",
     "ContactSettings",
     "HumanoidMap",
+    "JointLimits",
     "JointRecording",
     "Motion",
     "ReachSettings",
@@ -57,9 +60,11 @@ __all__ = [
     "joint_parents",
     "leg_length",
     "linear_velocities",
+    "load_joint_limits",
     "local_rotations",
     "motion_from_points",
     "reach",
+    "read_humanoid_map",
     "resample",
     "roles_by_name",
     "skeleton_from_points",
@@ -67,4 +72,5 @@ __all__ = [
     "transfer_motion",
     "warp",
     "world_poses",
+    "write_humanoid_map",
 ]

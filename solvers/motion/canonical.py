@@ -47,7 +47,8 @@ def t_pose_alignment(skeleton: Skeleton, humanoid: HumanoidMap) -> NDArray[np.fl
     """Return for each joint the world rotation from the canonical T-pose to this rest pose.
 
     Bones of arms, legs and fingers turn the short way, on top of the turn of the bone above, so
-    that a lowered arm keeps the palm it would have when raised. Feet turn about the vertical
+    that a lowered arm keeps the palm it would have when raised. A hand points to its middle
+    finger, or to its end site where that is all it has. Feet turn about the vertical
     only, since the height of the ankle differs between rigs that all stand flat on the floor;
     where spread legs have tilted feet (Acclaim), about the axis of the shin.
     Trunk, head and collar bones differ in anatomy rather than in pose: they turn together, by
@@ -75,6 +76,8 @@ def t_pose_alignment(skeleton: Skeleton, humanoid: HumanoidMap) -> NDArray[np.fl
         if parent >= 0:
             alignment[joint] = alignment[parent]
         end = joints.get(side + LIMB_BONES.get(part, ""))
+        if end is None and part == "Hand":
+            end = _lone_end_site(skeleton, joint)
         if part in LIMB_BONES and end is not None:
             alignment[joint] = _swung(
                 alignment[joint], _t_pose_bone(side, part), rest[end] - rest[joint]
@@ -173,6 +176,11 @@ def _foot_turned(start: NDArray[np.float64], bone: NDArray[np.float64]) -> NDArr
     level = bone - (bone @ up) * up
     stands = np.linalg.norm(bone - level) <= STEEPEST_SOLE * np.linalg.norm(bone)
     return _swung(start, FORWARD, level if stands else bone)
+
+
+def _lone_end_site(skeleton: Skeleton, joint: int) -> int | None:
+    children = skeleton.children[joint]
+    return children[0] if len(children) == 1 and skeleton.is_end_site(children[0]) else None
 
 
 def _t_pose_bone(side: str, part: str) -> NDArray[np.float64]:

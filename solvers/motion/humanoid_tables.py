@@ -126,8 +126,8 @@ TABLES: dict[str, tuple[str, ...]] = {
         "DEF-shoulder", "DEF-upper_arm", "DEF-forearm", "DEF-hand",
         "DEF-thigh", "DEF-shin", "DEF-foot", "DEF-toe",
     ),
-    "Rigify controls": (
-        "torso hips", "spine_fk.001", "spine_fk.002", "spine_fk.003", "neck", "head",
+    "Rigify controls": (  # spine_fk and spine_fk.001 turn the pelvis under the torso
+        "torso hips", "spine_fk.002", "spine_fk.003", "", "neck", "head",
         "shoulder", "upper_arm_fk", "forearm_fk", "hand_fk",
         "thigh_fk", "shin_fk", "foot_fk", "toe_fk toe_ik toe",
     ),

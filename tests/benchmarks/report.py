@@ -22,8 +22,9 @@ PICTURES = DOCS / "pictures"
 class Report:
     """Where the tables go."""
 
-    def __init__(self, to_document: bool) -> None:
+    def __init__(self, to_document: bool, document: Path = DOCUMENT) -> None:
         self._to_document = to_document
+        self._document = document
 
     def part(self, name: str, tables: Sequence[Scores | str], seconds: float) -> None:
         """Print the tables of one part; put them into the document with a picture each."""
@@ -37,7 +38,7 @@ class Report:
                     path = PICTURES / f"bench_{name}_{number}.png"
                     draw_scores(scores, path)
                     text.append(f"![{scores.title}](pictures/{path.name})\n")
-            _replace(name, "\n".join(text))
+            _replace(self._document, name, "\n".join(text))
 
 
 def _text(scores: Scores | str) -> str:
@@ -51,11 +52,11 @@ def _run(seconds: float) -> str:
     return f"`{' '.join(words)}`, {now}, {machine}, one BLAS thread, {seconds:.0f} s.\n"
 
 
-def _replace(name: str, text: str) -> None:
+def _replace(path: Path, name: str, text: str) -> None:
     begin, end = f"<!-- {name} -->", f"<!-- end of {name} -->"
-    document = DOCUMENT.read_text(encoding="utf-8") if DOCUMENT.exists() else ""
+    document = path.read_text(encoding="utf-8") if path.exists() else ""
     if begin not in document:
         document += f"\n{begin}\n{end}\n"
     pattern = re.compile(f"{re.escape(begin)}.*?{re.escape(end)}", re.DOTALL)
     filled = pattern.sub(lambda _: f"{begin}\n{text}\n{end}", document)
-    DOCUMENT.write_text(filled, encoding="utf-8")
+    path.write_text(filled, encoding="utf-8")

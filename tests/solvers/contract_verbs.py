@@ -11,7 +11,6 @@ from typing import Any
 from solvers.denoising import (
     DenoiseSettings,
     FilterBases,
-    JointLimits,
     Method,
     denoise,
     find_worst_spots,
@@ -21,8 +20,19 @@ from solvers.denoising import (
     measure_quality,
     plant_feet,
 )
-from solvers.motion import Motion, Tracks, detect_contacts, forward_kinematics, resample
+from solvers.motion import (
+    HumanoidMap,
+    JointLimits,
+    Motion,
+    Skeleton,
+    Tracks,
+    detect_contacts,
+    find_humanoid_map,
+    forward_kinematics,
+    resample,
+)
 from solvers.progress import Progress
+from solvers.retargeting import reduce_keys, retarget
 from solvers.samples import CorruptionSettings, GaitSettings, corrupt, walking_gait
 
 
@@ -100,6 +110,21 @@ VERBS = {
         whole_input=True,
         any_rate=True,
     ),
+    "retarget": Verb(
+        lambda motion, progress: retarget(
+            motion,
+            find_humanoid_map(motion.skeleton),
+            tall(),
+            roles_of_tall(),
+            progress=progress,
+        ),
+        recording=lambda result: result,
+        any_rate=True,
+    ),
+    "reduce_keys": Verb(
+        lambda motion, progress: reduce_keys(motion, 0.01, progress=progress),
+        whole_input=True,
+    ),
     "resample": Verb(
         lambda motion, progress: resample(motion, 40.0),
         recording=lambda result: result,
@@ -131,6 +156,17 @@ def bases() -> FilterBases:
 @cache
 def limits() -> JointLimits:
     return learn_joint_limits([walk_of_few_joints(WALK)])
+
+
+@cache
+def tall() -> Skeleton:
+    walker = walk_of_few_joints(WALK).skeleton
+    return Skeleton(walker.names, walker.parents, 1.2 * walker.offsets)
+
+
+@cache
+def roles_of_tall() -> HumanoidMap:
+    return find_humanoid_map(tall())
 
 
 def spoilt(name: str) -> Motion:

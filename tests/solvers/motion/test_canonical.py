@@ -172,3 +172,16 @@ def rested_otherwise(motion: Motion, turns: np.ndarray) -> Motion:
     for joint, parent in enumerate(skeleton.parents[1:], start=1):
         local[:, joint] = multiply(inverse(world[:, parent]), world[:, joint])
     return Motion(rested, local, motion.root_positions, motion.frame_rate)
+
+
+def test_a_hand_that_hangs_in_the_rest_pose_points_to_its_end_site(lively):
+    """OptiTrack rests with level arms and hanging hands."""
+    turns = np.tile(IDENTITY, (lively.n_joints, 1))
+    for name, angle in (("LeftHand", 1.5), ("RightHand", -1.5)):
+        below = lively.skeleton.subtree(lively.skeleton.index(name))
+        turns[below] = quaternion_from_rotation_vector([0.0, angle, 0.0])
+    hanging = rested_otherwise(lively, turns)
+
+    canonical = canonical_rotations(hanging, find_humanoid_map(lively.skeleton))
+
+    assert angle_between(canonical, lively.rotations).max() < 1e-7

@@ -1,0 +1,135 @@
+"""`retarget` and `unbake`: motions for another rig, and fewer keys for the same motion."""
+
+import argparse
+from pathlib import Path
+from typing import NamedTuple
+
+from ..errors import InvalidMotionError, InvalidSettingError
+from ..motion import HumanoidMap, Motion, Skeleton, find_humanoid_map, read_humanoid_map
+from ..progress import Progress, within
+from ..retargeting import RetargetSettings, UnbakeSettings, reduce_keys, retarget
+from .files import add_reading_options, read, write
+from .options import arguments_from, settings_from_arguments
+from .verb import Outcome, Task
+
+CENTIMETRE = 0.01
+
+
+class Target(NamedTuple):
+    """What all motions of a run are given to."""
+
+    skeleton: Skeleton
+    humanoid: HumanoidMap
+
+
+def add_retarget_options(parser: argparse.ArgumentParser) -> None:
+    """Add the options of `retarget`."""
+    parser.add_argument(
+        "--to", type=Path, required=True, metavar="FILE",
+        help="A recording of the skeleton to give the motions to; its rest pose counts",
+    )  # fmt: skip
+    for whose in ("source", "target"):
+        parser.add_argument(
+            f"--{whose}-map", type=Path, metavar="FILE",
+            help=f"JSON file that says which joint of the {whose} plays which humanoid role"
+            " [default: found by names and shape]",
+        )  # fmt: skip
+    add_reading_options(parser)
+    arguments_from(parser, RetargetSettings)
+
+
+def read_target(arguments: argparse.Namespace, progress: Progress) -> Target:
+    """Read the skeleton that all motions of a run are given to.
+
+    Raises
+    ------
+    InvalidFileError
+        A file is missing or damaged, or the map does not fit.
+    InvalidMotionError
+        There is no skeleton in it.
+    """
+    recording = read(arguments.to, arguments, progress)
+    if not isinstance(recording, Motion):
+        raise InvalidMotionError(f"{arguments.to} holds points without a skeleton.")
+    return Target(recording.skeleton, _map(recording.skeleton, arguments.target_map))
+
+
+def perform_retarget(task: Task, target: Target, progress: Progress) -> Outcome:
+    """Give one motion to the target and write it."""
+    motion = _read_motion(task, "given to another", within(progress, 0.0, 0.3))
+    source_map = _map(motion.skeleton, task.arguments.source_map)
+    settings = settings_from_arguments(task.arguments, RetargetSettings)
+    result = retarget(
+        motion,
+        source_map,
+        target.skeleton,
+        target.humanoid,
+        settings=settings,
+        progress=within(progress, 0.3, 0.7),
+    )
+    write(result, task.target, within(progress, 0.7, 1.0))
+    shared = [role for role in source_map.joints if role in target.humanoid.joints]
+    text = (
+        f"{len(shared)} roles that both skeletons have; sure of the source by"
+        f" {source_map.score:.0%}, of the target by {target.humanoid.score:.0%}."
+    )
+    figures = {
+        "n_frames": result.n_frames,
+        "roles": shared,
+        "source_score": source_map.score,
+        "target_score": target.humanoid.score,
+    }
+    return Outcome(text, figures)
+
+
+def add_unbake_options(parser: argparse.ArgumentParser) -> None:
+    """Add the options of `unbake`."""
+    parser.add_argument(
+        "--tolerance", type=float, default=1.0, metavar="CM",
+        help="Greatest distance in centimetres by which any joint may be off"
+        " [default 1]",
+    )  # fmt: skip
+    parser.add_argument(
+        "--keys", action="store_true",
+        help="Also write the keys and their handles, beside the motion, as .npz",
+    )  # fmt: skip
+    add_reading_options(parser)
+    arguments_from(parser, UnbakeSettings)
+
+
+def perform_unbake(task: Task, prepared: None, progress: Progress) -> Outcome:
+    """Thin the keys of one motion out; write what they give."""
+    motion = _read_motion(task, "unbaked", within(progress, 0.0, 0.2))
+    if not task.arguments.tolerance > 0.0:
+        raise InvalidSettingError(
+            f"tolerance is {task.arguments.tolerance:g} cm; it must be more than 0."
+        )
+    sparse = reduce_keys(
+        motion,
+        CENTIMETRE * task.arguments.tolerance,
+        settings=settings_from_arguments(task.arguments, UnbakeSettings),
+        progress=within(progress, 0.2, 0.8),
+    )
+    write(sparse.dense(), task.target, within(progress, 0.8, 1.0))
+    if task.arguments.keys and task.target is not None:
+        sparse.save(task.target.with_suffix(".npz"))
+    moving = sum(len(curve.frames) > 0 for curve in sparse.rotations)
+    before = motion.n_frames * (4 * moving + 3)
+    text = (
+        f"{sparse.n_keys} keys instead of {before} ({sparse.n_keys / before:.0%});"
+        f" no joint is off by more than {100 * sparse.error:.2f} cm."
+    )
+    return Outcome(
+        text, {"n_keys": sparse.n_keys, "n_keys_before": before, "error_m": sparse.error}
+    )
+
+
+def _map(skeleton: Skeleton, path: Path | None) -> HumanoidMap:
+    return read_humanoid_map(path, skeleton) if path else find_humanoid_map(skeleton)
+
+
+def _read_motion(task: Task, what: str, progress: Progress) -> Motion:
+    recording = read(task.source, task.arguments, progress)
+    if not isinstance(recording, Motion):
+        raise InvalidMotionError(f"Points without a skeleton cannot be {what}.")
+    return recording

@@ -1,0 +1,211 @@
+"""Unbake: replace a key on every frame by few keys with handles."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+
+from ..errors import InvalidFileError, InvalidMotionError, InvalidSettingError
+from ..files import read_archive, write_archive
+from ..motion import Motion, Skeleton
+from ..motion.rotations import IDENTITY
+from ..progress import Progress, unwatched, within
+from ..settings import Settings, setting
+from .key_curves import KeyCurve
+from .rotation_channels import RotationChannels
+from .thinning import ROOT, Thinning
+
+KIND, VERSION = "keys of a motion", 1
+
+
+@dataclass(frozen=True, kw_only=True)
+class UnbakeSettings(Settings):
+    """How keys are thinned out."""
+
+    key_poses: bool = setting(
+        False, "Key all joints at the same frames, as an animator blocks poses; takes more keys"
+    )
+
+
+@dataclass(frozen=True, eq=False)
+class SparseMotion:
+    """A motion by few keys.
+
+    Attributes
+    ----------
+    skeleton : Skeleton
+    rotations : tuple of KeyCurve, one for each joint
+        In the joint's channels; without keys for joints that rest throughout. Between keys a
+        quaternion is that of the four curves, brought to length one.
+    channels : tuple of RotationChannels, one for each joint
+    root : KeyCurve
+        Root positions, three channels, metres.
+    n_frames : int
+    frame_rate : float, hertz
+    error : float, metres
+        By how much any joint is off at most.
+    """
+
+    skeleton: Skeleton
+    rotations: tuple[KeyCurve, ...]
+    channels: tuple[RotationChannels, ...]
+    root: KeyCurve
+    n_frames: int
+    frame_rate: float
+    error: float
+
+    @property
+    def n_keys(self) -> int:
+        """Number of keys, each channel counted, as Blender's Graph Editor does."""
+        curves = (*self.rotations, self.root)
+        return sum(curve.values.size for curve in curves)
+
+    def save(self, path: Path | str) -> None:
+        """Save as npz, whole or not at all; `load_sparse_motion` reads it."""
+        curves = (*self.rotations, self.root)
+        arrays = {
+            "names": np.array(self.skeleton.names),
+            "parents": np.array(self.skeleton.parents),
+            "offsets": self.skeleton.offsets,
+            "counts": np.array([len(curve.frames) for curve in curves]),
+            "frames": np.concatenate([curve.frames for curve in curves]),
+            "rotations": np.concatenate([curve.values.ravel() for curve in self.rotations]),
+            "turning": np.concatenate([curve.slopes.ravel() for curve in self.rotations]),
+            "orders": np.array([each.order for each in self.channels]),
+            "axes": np.array([each.axes for each in self.channels]),
+            "places": self.root.values,
+            "moving": self.root.slopes,
+            "length": np.array([self.n_frames, self.frame_rate, self.error]),
+        }
+        write_archive(path, KIND, VERSION, arrays)
+
+    def dense(self) -> Motion:
+        """Return the motion with a pose at every frame, as F-Curves would give it."""
+        frames = np.arange(self.n_frames)
+        rotations = np.tile(IDENTITY, (self.n_frames, self.skeleton.n_joints, 1))
+        for joint, (curve, each) in enumerate(zip(self.rotations, self.channels, strict=True)):
+            if len(curve.frames):
+                rotations[:, joint] = each.to_rotations(curve.at(frames))
+        return Motion(self.skeleton, rotations, self.root.at(frames), self.frame_rate)
+
+
+def load_sparse_motion(path: Path | str) -> SparseMotion:
+    """Load what `SparseMotion.save` saved.
+
+    Raises
+    ------
+    InvalidFileError
+        The file is missing, damaged, or holds something else.
+    """
+    arrays = read_archive(path, KIND, VERSION)
+    try:
+        skeleton = Skeleton(
+            tuple(arrays["names"].tolist()), tuple(arrays["parents"]), arrays["offsets"]
+        )
+        channels = tuple(
+            RotationChannels(str(order), axes)
+            for order, axes in zip(arrays["orders"], arrays["axes"], strict=True)
+        )
+        frames = np.split(arrays["frames"], np.cumsum(arrays["counts"])[:-1])
+        widths = [3 if each.order else 4 for each in channels]
+        stops = np.cumsum(arrays["counts"][:-1] * widths)[:-1]
+        parts = zip(
+            frames[:-1],
+            np.split(arrays["rotations"], stops),
+            np.split(arrays["turning"], stops),
+            widths,
+            strict=True,
+        )
+        curves = tuple(
+            KeyCurve(keys, values.reshape(-1, width), slopes.reshape(-1, width))
+            for keys, values, slopes, width in parts
+        )
+        root = KeyCurve(frames[-1], arrays["places"], arrays["moving"])
+        n_frames, frame_rate, error = arrays["length"].tolist()
+        sparse = SparseMotion(
+            skeleton, curves, channels, root, int(n_frames), frame_rate, error
+        )
+        sparse.dense()
+    except (KeyError, ValueError, IndexError, TypeError) as fault:
+        raise InvalidFileError(f"{path} holds no whole set of keys ({fault}).") from None
+    return sparse
+
+
+def reduce_keys(
+    motion: Motion,
+    tolerance: float,
+    *,
+    channels: Sequence[RotationChannels] | None = None,
+    settings: UnbakeSettings = UnbakeSettings(),
+    progress: Progress = unwatched,
+) -> SparseMotion:
+    """Replace a key on every frame by few keys, nothing being off by more than the tolerance.
+
+    Each joint's curves are fitted by least squares through their keys, values and slopes. At
+    first the curves of each joint alone are split until it moves what hangs on it by not much
+    more than the tolerance; then, wherever a joint is off by more than that, the joint above it
+    that does most of it gets another key, until none is. This is the splitting of [1]_, in the
+    middle of the worst segment, with the error measured where it is seen: in the world.
+
+    Parameters
+    ----------
+    motion : Motion
+        Without gaps.
+    tolerance : float, metres
+        Greatest distance by which any joint may be off, and with it two points that show how
+        a hand, foot or head is turned that has no further joints.
+    channels : sequence of RotationChannels, one for each joint
+        How the rig keys its rotations; quaternions in the world's axes where not given.
+    settings : UnbakeSettings
+    progress : Progress
+
+    Returns
+    -------
+    SparseMotion
+
+    Raises
+    ------
+    InvalidMotionError
+        The motion has gaps, or there are not as many channels as joints.
+    InvalidSettingError
+        The tolerance is not positive.
+    SolveCancelled
+        Raised by `progress`.
+
+    References
+    ----------
+    .. [1] Schneider (1990). An algorithm for automatically fitting digitized curves. Graphics
+       Gems, 612-626.
+    """
+    channels = tuple(channels or [RotationChannels()] * motion.n_joints)
+    _check(motion, tolerance, len(channels))
+    thinning = Thinning(motion, tolerance, channels, together=settings.key_poses)
+    thinning.begin(within(progress, 0.0, 0.3))
+    error = thinning.finish(within(progress, 0.3, 1.0))
+    progress(1.0, "Unbaked")
+    return SparseMotion(
+        motion.skeleton,
+        tuple(thinning.curves[joint] for joint in range(motion.n_joints)),
+        channels,
+        thinning.curves[ROOT],
+        motion.n_frames,
+        motion.frame_rate,
+        error,
+    )
+
+
+def _check(motion: Motion, tolerance: float, n_channels: int) -> None:
+    if n_channels != motion.n_joints:
+        raise InvalidMotionError(
+            f"{motion.n_joints} joints need as many rotation channels, not {n_channels}."
+        )
+    if not (np.isfinite(tolerance) and tolerance > 0.0):
+        raise InvalidSettingError(f"A tolerance of {tolerance} m is not positive.")
+    gaps = ~motion.observed
+    if gaps.any():
+        names = [motion.skeleton.names[joint] for joint in np.flatnonzero(gaps.any(axis=0))]
+        raise InvalidMotionError(
+            "Keys can be thinned out only where all is known; these have gaps:"
+            f" {', '.join(names)}. Clean the take first."
+        )

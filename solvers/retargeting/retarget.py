@@ -1,0 +1,186 @@
+"""Let another body make the same motion: retargeting."""
+
+from dataclasses import dataclass
+from enum import Enum
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..errors import InvalidMotionError
+from ..motion import (
+    HumanoidMap,
+    Motion,
+    Skeleton,
+    WorldPoses,
+    detect_contacts,
+    forward_kinematics,
+    world_poses,
+)
+from ..motion.rotations import IDENTITY
+from ..progress import Progress, unwatched
+from ..settings import Settings, setting
+from .body import SIDES, Body, find_body, without_gaps
+from .limbs import Transfer, place_feet, place_hands
+from .placement import Placement, find_placement
+from .pose_transfer import transfer_pose
+from .root_motion import in_place, on_root_bone
+
+Array = NDArray[np.float64]
+Flags = NDArray[np.bool_]
+
+
+class RootMotion(Enum):
+    """What becomes of the way that the body covers."""
+
+    KEEP = "keep"
+    IN_PLACE = "in place"
+    ROOT_BONE = "root bone"
+
+
+@dataclass(frozen=True, kw_only=True)
+class RetargetSettings(Settings):
+    """How a motion is given to another rig."""
+
+    root_motion: RootMotion = setting(
+        RootMotion.KEEP, "Keep the travel on the hips, take it out so that the body moves on"
+        " the spot, or put it on the bone above the hips"
+    )  # fmt: skip
+    travel_scale: float = setting(
+        0.0, "The way over the ground is multiplied by this; higher goes farther, 1 hits the"
+        " source's marks, 0 lets it grow with the legs",
+        minimum=0.0, maximum=1000.0,
+    )  # fmt: skip
+    keep_feet: bool = setting(
+        True, "Let the feet follow the source's paths, grown with the legs, so that they slide"
+        " no more than there"
+    )  # fmt: skip
+    keep_hands: bool = setting(
+        True, "Let the hands reach as far as the source's, for the arm's length, and meet where"
+        " those do"
+    )  # fmt: skip
+    softness: float = setting(
+        0.005, "Part of the leg's length that is kept in reserve so that knees do not snap"
+        " straight; higher lowers the hips more",
+        minimum=0.0, maximum=0.2, advanced=True,
+    )  # fmt: skip
+    travel_smoothing: float = setting(
+        0.5, "Standard deviation of the blur that tells travel from the sway of each step;"
+        " higher leaves more sway on the hips",
+        unit="s", minimum=0.0, maximum=10.0, advanced=True,
+    )  # fmt: skip
+    turn_root: bool = setting(
+        True, "Let the root bone also turn to where the body faces", advanced=True
+    )
+
+
+def retarget(
+    motion: Motion,
+    source_map: HumanoidMap,
+    target_skeleton: Skeleton,
+    target_map: HumanoidMap,
+    *,
+    settings: RetargetSettings = RetargetSettings(),
+    progress: Progress = unwatched,
+) -> Motion:
+    """Return the motion as another skeleton makes it.
+
+    Both rigs are read as if they rested in one T-pose, so that any rest pose and bone roll
+    serves (`t_pose_alignment`). Every part of the body with a role in both is turned in the
+    world as in the source; spines of other numbers of joints share the turn. The middle of the
+    hip joints travels as far as the legs are longer, its height measured from the ankles of
+    the standing feet. Then feet and hands are brought to the source's places, scaled by leg
+    and arm, by turning two joints each [1]_; where a leg is too short, the hips are lowered
+    smoothly. Joints without a role rest relative to their parents: twist bones, face, props.
+
+    Parameters
+    ----------
+    motion : Motion
+        Gaps stay gaps, in the joints that they concern.
+    source_map : HumanoidMap
+        Roles of the motion's joints.
+    target_skeleton : Skeleton
+    target_map : HumanoidMap
+        Roles of its joints.
+    settings : RetargetSettings
+    progress : Progress
+
+    Returns
+    -------
+    Motion
+        Of `target_skeleton`, with the source's frames. Joints above the hips rest, and
+        the topmost carries the hips, as only the topmost joint of a Motion has a place; for
+        "root bone" it also turns to where the body faces.
+
+    Raises
+    ------
+    InvalidMotionError
+        A map names no hips, or the target has no joint above the hips for "root bone".
+    SolveCancelled
+        Raised by `progress`.
+
+    References
+    ----------
+    .. [1] Choi, Ko (2000). Online motion retargetting. Journal of Visualization and Computer
+       Animation 11(5), 223-235; and for the two joints of a limb in closed form Tolani,
+       Goswami, Badler (2000). Real-time inverse kinematics techniques for anthropomorphic
+       limbs. Graphical Models 62(5). doi:10.1006/gmod.2000.0528
+    """
+    source = find_body(motion.skeleton, source_map, "source's")
+    target = find_body(target_skeleton, target_map, "target's")
+    if settings.root_motion is RootMotion.ROOT_BONE and target.joints["hips"] == 0:
+        raise InvalidMotionError(
+            "The target has no joint above the hips that could carry the travel. Keep it on the"
+            " hips, or add a root bone."
+        )
+    progress(0.05, "Reading the pose")
+    whole, unknown = without_gaps(motion, source)
+    seen = forward_kinematics(whole)
+    contacts = _contacts(motion, source_map)
+    progress(0.3, "Turning the joints")
+    rotations, missing = transfer_pose(source, seen.rotations, unknown, target)
+    placement = find_placement(source, target, seen.positions, contacts, settings.travel_scale)
+    places = _root_places(source, target, seen, rotations, placement)
+    transfer = Transfer(source, target, seen, placement, motion.frame_rate)
+    progress(0.5, "Placing the feet")
+    if settings.keep_feet:
+        rotations, places = place_feet(transfer, rotations, places, settings.softness)
+    progress(0.7, "Placing the hands")
+    if settings.keep_hands:
+        rotations = place_hands(transfer, rotations, places)
+    places[~np.isfinite(motion.root_positions).all(axis=1)] = np.nan
+    rotations[missing] = np.nan
+    everywhere = np.tile(IDENTITY, (motion.n_frames, target_skeleton.n_joints, 1))
+    everywhere[:, list(target.kept)] = rotations
+    result = Motion(target_skeleton, everywhere, places, motion.frame_rate)
+    progress(0.9, "Carrying the travel")
+    result = _with_travel(result, target_map, settings)
+    progress(1.0, "Retargeted")
+    return result
+
+
+def _contacts(motion: Motion, humanoid: HumanoidMap) -> Flags | None:
+    joints = humanoid.indices(motion.skeleton)
+    if not all(f"{side}Foot" in joints for side in SIDES):
+        return None
+    return detect_contacts(motion, humanoid)
+
+
+def _root_places(
+    source: Body, target: Body, seen: WorldPoses, rotations: Array, placement: Placement
+) -> Array:
+    """Return the places of the target's topmost joint, (n_frames, 3), metres.
+
+    The middle of the hip joints goes where the placement takes the source's.
+    """
+    middle = placement.points(seen.positions[:, source.hip_joints()].mean(axis=1))
+    origin = world_poses(target.skeleton, rotations, np.zeros_like(middle))
+    return np.asarray(middle - origin.positions[:, target.hip_joints()].mean(axis=1))
+
+
+def _with_travel(motion: Motion, humanoid: HumanoidMap, settings: RetargetSettings) -> Motion:
+    if settings.root_motion is RootMotion.IN_PLACE:
+        return in_place(motion, humanoid, settings.travel_smoothing)
+    if settings.root_motion is RootMotion.ROOT_BONE:
+        smoothing = settings.travel_smoothing
+        return on_root_bone(motion, humanoid, smoothing, turn=settings.turn_root)
+    return motion

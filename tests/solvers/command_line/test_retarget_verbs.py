@@ -1,0 +1,141 @@
+"""`retarget` and `unbake` on files."""
+
+import json
+
+import numpy as np
+import pytest
+from rigs import mixamo, unreal
+
+from solvers.motion import (
+    HumanoidMap,
+    Motion,
+    Skeleton,
+    Tracks,
+    find_humanoid_map,
+    forward_kinematics,
+    write_humanoid_map,
+)
+from solvers.motion.rotations import IDENTITY
+from solvers.recordings import read_bvh, write_bvh, write_trc
+from solvers.retargeting import load_sparse_motion
+from solvers.samples import GaitSettings, walking_gait
+
+
+@pytest.fixture
+def walk_file(tmp_path):
+    write_bvh(walking_gait(GaitSettings(duration=2.0, frame_rate=30.0)), tmp_path / "walk.bvh")
+    return tmp_path / "walk.bvh"
+
+
+@pytest.fixture
+def rig_file(tmp_path):
+    write_bvh(resting(mixamo()), tmp_path / "rig.bvh")
+    return tmp_path / "rig.bvh"
+
+
+def test_retarget_writes_the_motion_of_the_target(call, walk_file, rig_file, tmp_path):
+    status, said, _ = call("retarget", walk_file, tmp_path / "out.bvh", "--to", rig_file)
+
+    assert status == 0 and "22 roles" in said and "100%" in said
+    given = read_bvh(tmp_path / "out.bvh")
+    assert set(given.skeleton.names) == set(mixamo().names) and given.n_frames == 60
+    place = forward_kinematics(given).positions
+    assert np.ptp(place[:, given.skeleton.index("mixamorig:LeftFoot"), 1]) > 0.5
+
+
+def test_retarget_takes_many_files_settings_and_json(call, walk_file, rig_file, tmp_path):
+    status, said, _ = call(
+        "retarget", walk_file, "--to", rig_file, "--output-folder", tmp_path / "out",
+        "--root-motion", "in place", "--no-keep-hands", "--json",
+    )  # fmt: skip
+
+    assert status == 0
+    assert json.loads(said)["n_frames"] == 60
+    still = read_bvh(tmp_path / "out" / "walk.bvh")
+    assert np.ptp(still.root_positions[15:-15, :2], axis=0).max() < 0.5
+
+
+def test_retarget_reads_maps_from_files(call, walk_file, tmp_path):
+    """A target of which no name is known, whose map swaps the feet's sides."""
+    rig = mixamo()
+    names = tuple(f"joint{chr(97 + i // 26)}{chr(97 + i % 26)}" for i in range(rig.n_joints))
+    nameless = Skeleton(names, rig.parents, rig.offsets)
+    known = find_humanoid_map(rig).indices(rig)
+    write_bvh(resting(nameless), tmp_path / "rig.bvh")
+    write_humanoid_map(
+        HumanoidMap({role: names[joint] for role, joint in known.items()}),
+        tmp_path / "rig.json",
+    )
+
+    status, said, _ = call(
+        "retarget", walk_file, tmp_path / "out.bvh", "--to", tmp_path / "rig.bvh",
+        "--target-map", tmp_path / "rig.json",
+    )  # fmt: skip
+
+    assert status == 0 and "22 roles" in said
+
+
+@pytest.mark.parametrize(
+    ("words", "sentence"),
+    [
+        (("--to", "{folder}/none.bvh"), "none.bvh"),
+        (("--to", "{folder}/points.trc"), "points without a skeleton"),
+        (("--to", "{folder}/rig.bvh", "--source-map", "{folder}/wrong.json"), "lacks: Nobody"),
+        (("--to", "{folder}/rig.bvh", "--root-motion", "root bone"), "no joint above the hips"),
+        ((), "--to"),
+    ],
+)
+def test_retarget_says_what_is_wrong(call, walk_file, rig_file, tmp_path, words, sentence):
+    write_trc(Tracks(("a",), np.zeros((3, 1, 3)), 30.0), tmp_path / "points.trc")
+    write_humanoid_map(HumanoidMap({"hips": "Nobody"}), tmp_path / "wrong.json")
+    words = [word.format(folder=tmp_path) for word in words]
+
+    status, _, complaint = call("retarget", walk_file, tmp_path / "out.bvh", *words)
+
+    assert status == 2 and sentence in complaint
+    assert not (tmp_path / "out.bvh").exists()
+
+
+def test_a_root_bone_carries_the_travel(call, walk_file, tmp_path):
+    write_bvh(resting(unreal()), tmp_path / "rig.bvh")
+
+    status, _, _ = call(
+        "retarget", walk_file, tmp_path / "out.bvh", "--to", tmp_path / "rig.bvh",
+        "--root-motion", "root bone",
+    )  # fmt: skip
+
+    assert status == 0
+    assert read_bvh(tmp_path / "out.bvh").skeleton.names[0] == "root"
+
+
+def test_unbake_says_how_many_keys_are_left_and_keeps_them(call, walk_file, tmp_path):
+    status, said, _ = call(
+        "unbake", walk_file, tmp_path / "few.bvh", "--tolerance", 0.5, "--keys"
+    )
+
+    sparse = load_sparse_motion(tmp_path / "few.npz")
+    assert status == 0 and said.startswith(f"{sparse.n_keys} keys instead of")
+    before, after = (
+        forward_kinematics(read_bvh(path)).positions
+        for path in (walk_file, tmp_path / "few.bvh")
+    )
+    assert np.linalg.norm(after - before, axis=-1).max() < 0.0053
+
+
+def test_unbake_refuses_points_and_nonsense(call, walk_file, tmp_path):
+    write_trc(Tracks(("a",), np.zeros((3, 1, 3)), 30.0), tmp_path / "points.trc")
+
+    failures = [
+        call("unbake", tmp_path / "points.trc", tmp_path / "few.bvh"),
+        call("unbake", walk_file, tmp_path / "few.bvh", "--tolerance", 0),
+        call("unbake", walk_file, tmp_path / "few.bvh", "--tolerance", "nan"),
+    ]
+
+    assert [status for status, _, _ in failures] == [2, 2, 2]
+    assert "Points without a skeleton" in failures[0][2]
+    assert "more than 0" in failures[1][2]
+
+
+def resting(skeleton: Skeleton) -> Motion:
+    rotations = np.tile(IDENTITY, (2, skeleton.n_joints, 1))
+    return Motion(skeleton, rotations, np.tile(skeleton.offsets[0], (2, 1)), 30.0)

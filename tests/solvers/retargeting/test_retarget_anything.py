@@ -1,0 +1,139 @@
+"""Bodies that lack parts, and maps that make no sense: numbers or one clear sentence."""
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from numpy.testing import assert_allclose
+from rigs import mixamo, unreal
+
+from solvers.errors import InvalidMotionError
+from solvers.motion import (
+    HUMANOID_ROLES,
+    HumanoidMap,
+    Motion,
+    Skeleton,
+    find_humanoid_map,
+    forward_kinematics,
+)
+from solvers.motion.rotations import quaternion_from_rotation_vector
+from solvers.retargeting import RetargetSettings, RootMotion, retarget
+from solvers.samples import GaitSettings, walking_gait
+
+WALK = walking_gait(GaitSettings(duration=1.0, frame_rate=30.0))
+MAP = find_humanoid_map(WALK.skeleton)
+SOME_ROLES = [
+    role for role in HUMANOID_ROLES if "Proximal" not in role and "Intermediate" not in role
+]
+
+
+@st.composite
+def mapped_trees(draw):
+    """A random tree, some bones of no length, with random roles; hips at a random joint."""
+    n_joints = draw(st.integers(1, 14))
+    parents = [-1, *(draw(st.integers(0, joint - 1)) for joint in range(1, n_joints))]
+    coordinate = st.floats(-0.5, 0.5).map(lambda value: round(value, 1))
+    offsets = draw(
+        st.lists(
+            st.tuples(coordinate, coordinate, coordinate), min_size=n_joints, max_size=n_joints
+        )
+    )
+    names = tuple(f"j{joint}" for joint in range(n_joints))
+    roles = draw(st.permutations(SOME_ROLES))[: n_joints - 1]
+    joints = dict(
+        zip(["hips", *(role for role in roles if role != "hips")], names, strict=False)
+    )
+    return Skeleton(names, tuple(parents), np.array(offsets)), HumanoidMap(joints)
+
+
+@settings(max_examples=60)
+@given(mapped_trees(), mapped_trees(), st.sampled_from(list(RootMotion)), st.integers(0, 99))
+def test_any_tree_gives_numbers_or_a_sentence(source, target, root_motion, seed):
+    rng = np.random.default_rng(seed)
+    skeleton, source_map = source
+    turns = quaternion_from_rotation_vector(rng.normal(0, 0.5, (7, skeleton.n_joints, 3)))
+    motion = Motion(skeleton, turns, rng.normal(0, 1, (7, 3)), 30.0)
+
+    try:
+        given_motion = retarget(
+            motion, source_map, *target, settings=RetargetSettings(root_motion=root_motion)
+        )
+    except InvalidMotionError as error:
+        assert str(error).endswith(".")
+        return
+
+    assert given_motion.skeleton is target[0] and given_motion.n_frames == 7
+    assert np.isfinite(given_motion.rotations).all()
+    assert np.isfinite(given_motion.root_positions).all()
+
+
+@settings(max_examples=20)
+@given(st.sets(st.sampled_from([role for role in MAP.joints if role != "hips"]), max_size=21))
+def test_any_part_of_the_roles_may_be_missing(lost):
+    rig = unreal()
+    partial = find_humanoid_map(rig)
+    for role in lost:
+        partial = partial.with_joint(role, None)
+
+    for maps in ((MAP, partial), (partial_of(MAP, lost), find_humanoid_map(rig))):
+        result = retarget(WALK, maps[0], rig, maps[1])
+        assert np.isfinite(result.rotations).all()
+        height = forward_kinematics(result).positions[:, rig.index("pelvis"), 2]
+        assert height.min() > 0.6 and height.max() < 1.4
+
+
+@settings(max_examples=20)
+@given(st.data())
+def test_gaps_anywhere_leave_the_rest_finite(data):
+    """What is unknown in the source is unknown in the joints that it concerns, no more."""
+    rotations, places = WALK.rotations.copy(), WALK.root_positions.copy()
+    n_gaps = data.draw(st.integers(0, 6))
+    for _ in range(n_gaps):
+        joint, frame = (
+            data.draw(st.integers(0, WALK.n_joints - 1)),
+            data.draw(st.integers(0, 29)),
+        )
+        rotations[frame : frame + 5, joint] = np.nan
+    if data.draw(st.booleans()):
+        places[:] = np.nan
+    gappy = WALK.with_poses(rotations, places)
+
+    result = retarget(gappy, MAP, mixamo(), find_humanoid_map(mixamo()))
+
+    lost = ~np.isfinite(result.rotations).all(axis=-1)
+    gaps = np.isnan(rotations).any(axis=-1)
+    assert lost.sum() <= 2 * gaps.sum()
+    assert_allclose(np.isnan(result.root_positions), np.isnan(places))
+    for role in ("leftLowerArm", "rightFoot", "head"):
+        theirs, ours = (
+            roles.indices(skeleton)[role]
+            for roles, skeleton in (
+                (MAP, WALK.skeleton), (find_humanoid_map(mixamo()), mixamo()),
+            )
+        )  # fmt: skip
+        assert (lost[:, ours] >= gaps[:, theirs]).all()
+
+
+def test_a_single_frame():
+    result = retarget(WALK.slice(5, 6), MAP, unreal(), find_humanoid_map(unreal()))
+
+    assert result.n_frames == 1 and np.isfinite(result.rotations).all()
+
+
+def test_deform_bones_that_hang_beside_the_hips_are_refused():
+    """As the thighs of a generated Rigify rig do."""
+    rig = mixamo()
+    parents = list(rig.parents)
+    loose = rig.index("mixamorig:LeftUpLeg")
+    names = ("root", *rig.names)
+    parents = [-1, *(parent + 1 for parent in parents)]
+    parents[loose + 1] = 0
+    beside = Skeleton(names, tuple(parents), np.vstack([np.zeros((1, 3)), rig.offsets]))
+
+    with pytest.raises(InvalidMotionError, match=r"LeftUpLeg \(leftUpperLeg\) does not hang"):
+        retarget(WALK, MAP, beside, find_humanoid_map(beside))
+
+
+def partial_of(humanoid: HumanoidMap, lost: set[str]) -> HumanoidMap:
+    joints = {role: name for role, name in humanoid.joints.items() if role not in lost}
+    return HumanoidMap(joints)

@@ -1,0 +1,236 @@
+"""What must hold for any two rigs: rest poses do not matter, hands meet, knees bend forward."""
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from numpy.testing import assert_allclose
+from rigs import RIGS, mixamo, unreal
+
+from solvers.motion import (
+    HumanoidMap,
+    Motion,
+    Skeleton,
+    find_humanoid_map,
+    forward_kinematics,
+)
+from solvers.motion.rotations import angle_between, quaternion_from_rotation_vector, rotate
+from solvers.retargeting import RetargetSettings, RootMotion, ground_path, retarget
+from solvers.retargeting.limbs import hips_drop
+from solvers.samples import GaitSettings, walking_gait
+
+WALK = walking_gait(GaitSettings(duration=2.0, frame_rate=30.0))
+LIMBS = ("UpperArm", "LowerArm", "UpperLeg", "LowerLeg")
+ARM_ENDS = ("LowerArm", "Hand")
+AS_EVER = RetargetSettings()
+
+
+@settings(max_examples=25)
+@given(
+    st.lists(st.floats(-0.7, 0.7), min_size=len(LIMBS), max_size=len(LIMBS)),
+    st.sampled_from([0.0, np.pi / 2, np.pi, -np.pi / 2]),
+)
+def test_the_rest_pose_of_the_target_does_not_matter(angles, facing):
+    """Limbs turned about the axis from front to back, the body about the vertical."""
+    rig = mixamo()
+    posed = rested_otherwise(rig, dict(zip(LIMBS, angles, strict=True)), facing)
+
+    usual, other = given_to(WALK, rig), given_to(WALK, posed)
+
+    assert_allclose(
+        forward_kinematics(other).positions, forward_kinematics(usual).positions, atol=1e-6
+    )
+
+
+@settings(max_examples=25)
+@given(st.lists(st.floats(-0.7, 0.7), min_size=len(LIMBS), max_size=len(LIMBS)))
+def test_the_rest_pose_of_the_source_does_not_matter(angles):
+    rig = mixamo()
+    source = given_to(WALK, rig)
+    posed = given_to(WALK, rested_otherwise(rig, dict(zip(LIMBS, angles, strict=True)), 0.0))
+
+    usual, other = given_to(source, unreal()), given_to(posed, unreal())
+
+    assert_allclose(
+        forward_kinematics(other).positions, forward_kinematics(usual).positions, atol=1e-6
+    )
+
+
+@pytest.mark.parametrize("family", RIGS)
+def test_there_and_back_again(family):
+    """Feet and hands come back exactly; what is between them to what the rig can tell."""
+    there = given_to(WALK, RIGS[family](1.3))
+
+    back = given_to(there, WALK.skeleton)
+
+    here, again = (forward_kinematics(motion).positions for motion in (WALK, back))
+    joints = find_humanoid_map(WALK.skeleton).indices(WALK.skeleton)
+    for role in ("leftFoot", "rightFoot", "leftLowerLeg", "rightLowerLeg"):
+        shift = again[:, joints[role]] - here[:, joints[role]]
+        assert np.ptp(shift, axis=0).max() < 0.01, role
+
+
+@pytest.mark.parametrize("family", RIGS)
+def test_knees_and_elbows_bend_the_way_the_sources_do(family):
+    given = given_to(WALK, RIGS[family](0.8))
+
+    for side in ("left", "right"):
+        for roles in (("UpperLeg", "LowerLeg", "Foot"), ("UpperArm", "LowerArm", "Hand")):
+            theirs, ours = (bend(motion, side, roles) for motion in (WALK, given))
+            lengths = [np.linalg.norm(axis, axis=1) for axis in (theirs, ours)]
+            clear = np.minimum(*lengths) > 0.1
+            cosine = np.einsum("fi,fi->f", theirs, ours) / (lengths[0] * lengths[1])
+            assert cosine[clear].min() > 0.8
+
+
+@pytest.mark.parametrize("family", RIGS)
+def test_no_joint_turns_much_more_than_the_sources(family):
+    given = given_to(WALK, RIGS[family](1.2))
+
+    theirs, ours = (roles_in_world(motion) for motion in (WALK, given))
+    for role in set(theirs) & set(ours):
+        more = turns(ours[role]) - turns(theirs[role])
+        assert np.degrees(more.max()) < 5.0, role
+
+
+@pytest.mark.parametrize("family", RIGS)
+def test_hands_that_meet_in_the_source_meet(family):
+    """Clapping: both hands at one place in front of the chest, then apart; broad shoulders."""
+    body, rig = mixamo(), with_broad_shoulders(RIGS[family](1.1))
+    clapping = claps(body)
+
+    given = given_to(clapping, rig)
+    alone = given_to(clapping, rig, RetargetSettings(keep_hands=False))
+
+    apart, ours, without = (hands_apart(motion) for motion in (clapping, given, alone))
+    closed, open_ = apart < 0.08, apart > 0.6
+    growth = arm_length(rig) / arm_length(body)
+    assert closed.sum() >= 5 and open_.sum() >= 5
+    assert np.abs(ours - growth * apart)[closed].max() < 0.005
+    assert np.abs(without - growth * apart)[closed].min() > 0.03
+    assert ours[open_].min() > 0.6
+
+
+def test_travel_is_scaled_as_asked():
+    marks = given_to(WALK, mixamo(1.5), RetargetSettings(travel_scale=1.0))
+    ours = marks.root_positions[-1, :2] - marks.root_positions[0, :2]
+
+    assert_allclose(ours, (WALK.root_positions[-1] - WALK.root_positions[0])[:2], atol=0.03)
+
+
+def test_hips_sink_no_less_than_needed_and_smoothly():
+    """A foot that steps aside for a moment, out of reach of a leg of 1 m."""
+    hip, foot = np.tile([0, 0, 1.0], (100, 1)), np.zeros((100, 3))
+    foot[48:52, 0] = 0.4
+
+    drop = hips_drop([hip], [foot], [np.ones(100)], 60.0)
+
+    reached = np.linalg.norm(foot - (hip - drop[:, None] * (0, 0, 1.0)), axis=1)
+    assert reached.max() <= 1.0 + 1e-9
+    assert np.abs(np.diff(drop)).max() < 0.3 * drop.max()
+    assert drop[:20].max() == drop[-20:].max() == 0.0
+
+
+def test_the_ground_path_turns_with_the_body():
+    circle = np.linspace(0, 2 * np.pi, 240)
+    places = np.stack([2 * np.cos(circle), 2 * np.sin(circle), np.full(240, 0.9)], axis=1)
+    yaw = quaternion_from_rotation_vector(np.stack([0 * circle, 0 * circle, circle], axis=1))
+    rotations = np.tile([1.0, 0, 0, 0], (240, WALK.n_joints, 1))
+    rotations[:, 0] = yaw
+    walk = Motion(WALK.skeleton, rotations, places, 60.0)
+
+    path = ground_path(walk, find_humanoid_map(walk.skeleton), smoothing=0.1)
+
+    assert_allclose(path.positions[30:-30, :2], places[30:-30, :2], atol=0.03)
+    assert np.abs(path.positions[:, 2]).max() == 0.0
+    assert angle_between(path.rotations[30:-30], yaw[30:-30]).max() < 0.05
+
+
+def test_a_root_bone_need_not_turn():
+    kept = RetargetSettings(root_motion=RootMotion.ROOT_BONE, turn_root=False)
+
+    assert_allclose(given_to(WALK, unreal(), kept).rotations[:, 0, 0], 1.0)
+
+
+def given_to(motion: Motion, rig: Skeleton, settings: RetargetSettings = AS_EVER) -> Motion:
+    maps = find_humanoid_map(motion.skeleton), find_humanoid_map(rig)
+    return retarget(motion, maps[0], rig, maps[1], settings=settings)
+
+
+def rested_otherwise(rig: Skeleton, angles: dict[str, float], facing: float) -> Skeleton:
+    """Turn bones of limbs in the rest pose, and the whole body, which stands as before."""
+    joints = find_humanoid_map(rig).indices(rig)
+    offsets = rig.offsets.copy()
+    for part, angle in angles.items():
+        for side, sign in (("left", 1.0), ("right", -1.0)):
+            turn = quaternion_from_rotation_vector([0.0, sign * angle, 0.0])
+            below = rig.subtree(joints[side + part])[1:]
+            if part.endswith("Leg"):
+                feet = set(rig.subtree(joints[f"{side}Foot"])[1:])
+                below = [joint for joint in below if joint not in feet]
+            offsets[below] = rotate(turn, offsets[below])
+    offsets = rotate(quaternion_from_rotation_vector([0.0, 0.0, facing]), offsets)
+    posed = Skeleton(rig.names, rig.parents, offsets)
+    ankle = joints["leftFoot"]
+    offsets[0, 2] += rig.rest_positions[ankle, 2] - posed.rest_positions[ankle, 2]
+    return Skeleton(rig.names, rig.parents, offsets)
+
+
+def role_places(motion: Motion) -> dict[str, np.ndarray]:
+    positions = forward_kinematics(motion).positions
+    joints = find_humanoid_map(motion.skeleton).indices(motion.skeleton)
+    return {role: positions[:, joint] for role, joint in joints.items()}
+
+
+def roles_in_world(motion: Motion) -> dict[str, np.ndarray]:
+    rotations = forward_kinematics(motion).rotations
+    joints = find_humanoid_map(motion.skeleton).indices(motion.skeleton)
+    return {role: rotations[:, joint] for role, joint in joints.items()}
+
+
+def turns(rotations: np.ndarray) -> np.ndarray:
+    return angle_between(rotations[1:], rotations[:-1])
+
+
+def bend(motion: Motion, side: str, roles: tuple[str, str, str]) -> np.ndarray:
+    """Axis about which a limb is bent, as long as the sine of the angle."""
+    places = role_places(motion)
+    upper, hinge, end = (places[side + role] for role in roles)
+    first, second = (
+        way / np.linalg.norm(way, axis=1, keepdims=True) for way in (hinge - upper, end - hinge)
+    )
+    return np.cross(first, second)
+
+
+def hands_apart(motion: Motion) -> np.ndarray:
+    places = role_places(motion)
+    return np.linalg.norm(places["leftHand"] - places["rightHand"], axis=1)
+
+
+def with_broad_shoulders(rig: Skeleton) -> Skeleton:
+    joints = find_humanoid_map(rig).indices(rig)
+    offsets = rig.offsets.copy()
+    for role, aside in (("leftUpperArm", 0.05), ("rightUpperArm", -0.05)):
+        offsets[joints[role], 0] += aside
+    return Skeleton(rig.names, rig.parents, offsets)
+
+
+def arm_length(rig: Skeleton) -> float:
+    joints = find_humanoid_map(rig).indices(rig)
+    places = rig.rest_positions[[joints[f"left{part}"] for part in ("UpperArm", *ARM_ENDS)]]
+    return float(np.linalg.norm(np.diff(places, axis=0), axis=1).sum())
+
+
+def claps(body: Skeleton) -> Motion:
+    """Arms level ahead that swing together until the wrists touch, and open."""
+    joints = HumanoidMap(find_humanoid_map(body).joints).indices(body)
+    half_width = body.rest_positions[joints["leftUpperArm"], 0]
+    arm = body.rest_positions[joints["leftHand"], 0] - half_width
+    inwards = np.arcsin((half_width - 0.02) / arm)
+    openness = 0.5 - 0.5 * np.cos(np.linspace(0, 4 * np.pi, 121))
+    angle = np.pi / 2 + inwards - (inwards + 0.6) * openness
+    vectors = np.zeros((121, body.n_joints, 3))
+    vectors[:, joints["leftUpperArm"], 2] = -angle
+    vectors[:, joints["rightUpperArm"], 2] = angle
+    rotations = quaternion_from_rotation_vector(vectors)
+    return Motion(body, rotations, np.tile(body.offsets[0], (121, 1)), 60.0)
