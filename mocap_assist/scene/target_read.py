@@ -93,6 +93,11 @@ def read_target(
         raise InvalidMotionError(
             f"No bone of {armature.name} has the role hips. Choose one in the list of bones."
         )
+    if armature.data.pose_position == "REST":
+        raise InvalidMotionError(
+            f"{armature.name} is shown in its rest position, in which nothing moves. Switch it"
+            " to Pose Position in its data properties."
+        )
     plan = _plan(rig, joints, limbs, on_root)
     stage, _ = stage_of(armature)
     root = rig.bones.index(plan.joint_bones["hips"])

@@ -16,6 +16,10 @@ class Noted:
         assert known, f"{data} has no {name}"
         self.drawn.append(name.strip('["]'))
 
+    def prop_search(self, data, name, pool, pool_name, **_):
+        assert pool_name in pool.bl_rna.properties, f"{pool} has no {pool_name}"
+        self.prop(data, name)
+
     def operator(self, idname, **_):
         family, _, name = idname.partition(".")
         button = getattr(getattr(self.bpy.ops, family), name)

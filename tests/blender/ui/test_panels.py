@@ -6,7 +6,7 @@ import typing
 import pytest
 
 EDITORS = {"": "VIEW_3D", "_graph": "GRAPH_EDITOR", "_dopesheet": "DOPESHEET_EDITOR"}
-PANELS = ("import", "clean", "check", "compare", "feet")
+PANELS = ("import", "clean", "check", "compare", "feet", "retarget")
 
 
 @pytest.mark.parametrize("suffix", EDITORS)
