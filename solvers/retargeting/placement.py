@@ -93,7 +93,11 @@ def leg_length(body: Body) -> float:
 
 
 def standing_ankle(body: Body) -> float:
-    """Return how high the ankles of a body that stands flat are above the ground, metres."""
+    """Return how high the ankles of a body that stands flat are above the ground, metres.
+
+    Rigs that rest on height 0 show it. Of others, the lowest joint of the foot is above the
+    sole by an unknown height: their ankles are at least as high as a human's.
+    """
     feet = [body.joints[f"{side}Foot"] for side in SIDES if f"{side}Foot" in body.joints]
     leg = leg_length(body)
     if not feet or leg == 0.0:
@@ -102,7 +106,7 @@ def standing_ankle(body: Body) -> float:
     lowest = float(min(body.rest[body.skeleton.subtree(foot), 2].min() for foot in feet))
     if lowest > -STANDS_LOW * leg and 0.0 < ankle < STANDS_HIGH * leg:
         return ankle
-    return ankle - lowest if ankle > lowest else ANKLE_HEIGHT * leg
+    return max(ankle - lowest, ANKLE_HEIGHT * leg)
 
 
 def trunk_length(body: Body) -> float:

@@ -97,6 +97,20 @@ def test_feet_that_stand_stand_on_the_ground(recordings, family, size):
         assert np.percentile(ankle, 20) == pytest.approx(standing, abs=0.02 * size)
 
 
+def test_a_body_that_rests_around_its_hips_stands_at_its_own_height(recordings):
+    """CMU's skeletons have the hips at 0 and no soles: a walk comes back about as high."""
+    walk = read_bvh(recordings / "mocap/cmu_walk/05_01.bvh", scale=CMU_METRES)
+    walk = walk.slice(1, walk.n_frames)
+    roles = find_humanoid_map(walk.skeleton)
+
+    again = retarget(walk, roles, walk.skeleton, roles)
+
+    shift = again.root_positions - walk.root_positions
+    assert np.abs(shift).max() < 0.025
+    joints = [roles.indices(walk.skeleton)[role] for role in ("leftLowerLeg", "rightLowerArm")]
+    assert angle_between(again.rotations, walk.rotations)[:, joints].max() < 1e-3
+
+
 def test_a_source_on_a_stage_keeps_its_height():
     """A floor at 3 m is a floor at 3 m."""
     walk = walking_gait(GaitSettings(duration=2.0, frame_rate=30.0))
