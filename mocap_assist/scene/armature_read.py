@@ -11,6 +11,7 @@ from .body import body_root
 from .bone_channels import animated_curves, bone_path, read_bone, read_space
 from .compat import Source
 from .frames import FrameRange, Grid, key_grid, range_bounds
+from .history import was_thinned
 from .rig import Placement, Rig, read_rig
 from .take import ArmatureTake, BoneChannels, part_of
 from .units import metres_per_unit
@@ -52,14 +53,16 @@ def read_take(
     InvalidMotionError
         There is no action, slot, bone, key or uniform scale, as the sentence says.
     """
-    curves = animated_curves(*(source or action_of(armature)))
+    source = source or action_of(armature)
+    curves, thinned = animated_curves(*source), was_thinned(source[0])
     rig = read_rig(armature)
     if grid is None:
         known = {bone_path(bone, "") for bone in rig.bones}
         keyed = [curve for (path, _), curve in curves.items() if _owner(path) in known]
         grid = key_grid(keyed, range_bounds(choice, scene, keyed))
     channels = tuple(
-        read_bone(armature.pose.bones[bone], curves, grid.frames) for bone in rig.bones
+        read_bone(armature.pose.bones[bone], curves, grid.frames, gaps=not thinned)
+        for bone in rig.bones
     )
     space = read_space(armature, curves, grid.frames)
     root = body_root(rig, [each.travels for each in channels])

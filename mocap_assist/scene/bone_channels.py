@@ -32,19 +32,23 @@ def bone_path(bone: str, name: str) -> str:
     return f'pose.bones["{bpy.utils.escape_identifier(bone)}"].{name}'
 
 
-def read_bone(bone: bpy.types.PoseBone, curves: Curves, frames: Array) -> BoneChannels:
+def read_bone(
+    bone: bpy.types.PoseBone, curves: Curves, frames: Array, *, gaps: bool = True
+) -> BoneChannels:
     """Read the rotation channels of the bone's own mode, and its location.
 
-    Channels without keys have the pose's present value.
+    Channels without keys have the pose's present value. Without `gaps` nothing is unobserved.
     """
     turning, shifting = rotation_curves(bone, curves), location_curves(bone, curves)
     angles = sampled_rotation(bone, turning, frames)
     rotations = quaternions_from_channels(angles, bone.rotation_mode)
-    rotations[_gaps(turning, frames)] = np.nan
+    if gaps:
+        rotations[_gaps(turning, frames)] = np.nan
     if bone.bone.use_connect and bone.parent:
         return BoneChannels(rotations, np.zeros((len(frames), 3)), bool(turning), False)
     locations = _sampled(shifting, bone.location, frames)
-    locations[_gaps(shifting, frames)] = np.nan
+    if gaps:
+        locations[_gaps(shifting, frames)] = np.nan
     return BoneChannels(rotations, locations, bool(turning), bool(shifting))
 
 
