@@ -5,7 +5,14 @@ from pathlib import Path
 from typing import NamedTuple
 
 from ..errors import InvalidMotionError, InvalidSettingError
-from ..motion import HumanoidMap, Motion, Skeleton, find_humanoid_map, read_humanoid_map
+from ..motion import (
+    HumanoidMap,
+    Motion,
+    Skeleton,
+    find_humanoid_map,
+    read_humanoid_map,
+    write_humanoid_map,
+)
 from ..progress import Progress, within
 from ..retargeting import RetargetSettings, UnbakeSettings, reduce_keys, retarget
 from .files import add_reading_options, read, write
@@ -34,6 +41,10 @@ def add_retarget_options(parser: argparse.ArgumentParser) -> None:
             help=f"JSON file that says which joint of the {whose} plays which humanoid role"
             " [default: found by names and shape]",
         )  # fmt: skip
+    parser.add_argument(
+        "--write-target-map", type=Path, metavar="FILE",
+        help="Write the target's map there as JSON, to be looked at, edited and given again",
+    )  # fmt: skip
     add_reading_options(parser)
     arguments_from(parser, RetargetSettings)
 
@@ -51,7 +62,10 @@ def read_target(arguments: argparse.Namespace, progress: Progress) -> Target:
     recording = read(arguments.to, arguments, progress)
     if not isinstance(recording, Motion):
         raise InvalidMotionError(f"{arguments.to} holds points without a skeleton.")
-    return Target(recording.skeleton, _map(recording.skeleton, arguments.target_map))
+    target = Target(recording.skeleton, _map(recording.skeleton, arguments.target_map))
+    if arguments.write_target_map is not None:
+        write_humanoid_map(target.humanoid, arguments.write_target_map)
+    return target
 
 
 def perform_retarget(task: Task, target: Target, progress: Progress) -> Outcome:

@@ -11,6 +11,10 @@ from .skeleton import Skeleton
 # tabled by Winter 2009, Biomechanics and Motor Control of Human Movement, figure 4.1).
 ARM = (0.186, 0.146)
 LEG = (0.245, 0.246)
+SHOULDER = 0.129
+"""From the middle of the body to the shoulder; collar bones begin nearer to it."""
+HAND = 0.13
+"""Longest way from wrist to fingertip (0.108), with some room."""
 FEET = 0.15
 """Feet end in the lowest part of the body, arms above half its height."""
 
@@ -66,7 +70,7 @@ def _upper_body(
     roles = _trunk(body, hips, chest, arms)
     misfits = []
     for side, arm in arms.items():
-        found, misfit = body.limb(body.without_fingers(arm), ARM)
+        found, misfit = body.limb(body.without_fingers(arm), ARM, SHOULDER)
         names = (f"{side}UpperArm", f"{side}LowerArm", f"{side}Hand")
         roles |= dict(zip(names, found, strict=False))
         if found and arm[0] != found[0]:
@@ -140,9 +144,16 @@ class _Body:
         return [joint for joint in joints if not self.skeleton.is_end_site(joint)]
 
     def without_fingers(self, arm: list[int]) -> list[int]:
-        """Return the arm down to where it last branches, which leaves three joints at least."""
+        """Return the arm down to where it last branches, which leaves three joints at least.
+
+        Where more than a hand follows, what branches off there is a twist bone.
+        """
         forks = [i for i, joint in enumerate(arm) if len(self.skeleton.children[joint]) > 1]
-        return arm[: forks[-1] + 1] if forks and forks[-1] >= 2 else arm
+        if not forks or forks[-1] < 2:
+            return arm
+        beyond = np.diff(self.positions[arm[forks[-1] :]], axis=0)
+        is_hand = np.linalg.norm(beyond, axis=-1).sum() <= HAND * self.height
+        return arm[: forks[-1] + 1] if is_hand else arm
 
     def toes(self, foot: int) -> int | None:
         """Return the foremost joint that hangs on the foot, if it is before the ankle."""
@@ -157,11 +168,14 @@ class _Body:
             inside[self.skeleton.subtree(first)] = True
         return inside
 
-    def limb(self, way: Sequence[int], human: tuple[float, float]) -> tuple[list[int], float]:
+    def limb(
+        self, way: Sequence[int], human: tuple[float, float], aside: float | None = None
+    ) -> tuple[list[int], float]:
         """Return upper joint, hinge and end of a limb, and the misfit.
 
-        The misfit is the sum of both bones' absolute log ratios to human lengths. A way of
-        less than three joints is no limb.
+        The misfit is the sum of both bones' absolute log ratios to human lengths. Of several
+        upper joints, that is preferred which is as far `aside` from the middle as a human's,
+        in parts of the height. A way of less than three joints is no limb.
         """
         joints = self.rotating(way)
         if len(joints) < 3:
@@ -173,9 +187,14 @@ class _Body:
             np.where(ahead, np.abs(np.log(np.maximum(bones, 1e-9) / length)), np.inf)
             for length in human
         )
+        preferred = upper + (0.0 if aside is None else self._far_from(aside, places)[:, None])
         # Both bones meet at the hinge; given the hinge, each is chosen for itself.
-        misfits = upper.min(axis=0) + lower.min(axis=1)
-        hinge = int(misfits.argmin())
-        end = int(lower[hinge].argmin())
-        chosen = int(upper[:, hinge].argmin()), hinge, end
-        return [joints[place] for place in chosen], float(misfits[hinge])
+        hinge = int((preferred.min(axis=0) + lower.min(axis=1)).argmin())
+        start, end = int(preferred[:, hinge].argmin()), int(lower[hinge].argmin())
+        misfit = float(upper[start, hinge] + lower[hinge, end])
+        return [joints[place] for place in (start, hinge, end)], misfit
+
+    def _far_from(self, aside: float, places: NDArray[np.float64]) -> NDArray[np.float64]:
+        """Return absolute log ratios of the distances from the middle to `aside`."""
+        across = np.abs(places[:, 0] - self.positions[0, 0]) / self.height
+        return np.asarray(np.abs(np.log(np.maximum(across, 1e-9) / aside)))

@@ -7,9 +7,11 @@ from numpy.typing import NDArray
 
 from ..errors import InvalidMotionError
 from ..motion import HumanoidMap, Motion, Skeleton, t_pose_alignment
+from ..motion.rotations import angle_between
 
 Array = NDArray[np.float64]
 SIDES = ("left", "right")
+BACKWARDS = np.radians(135.0)
 LIMB_ROOTS = tuple(f"{side}{part}" for side in SIDES for part in ("UpperLeg", "UpperArm"))
 
 
@@ -68,12 +70,14 @@ def find_body(skeleton: Skeleton, humanoid: HumanoidMap, whose: str) -> Body:
     Raises
     ------
     InvalidMotionError
-        No joint plays the hips, or a limb does not hang on them. `whose` skeleton it is stands
-        in the sentence.
+        No joint plays the hips, a limb does not hang on them, or the feet point backwards.
+        `whose` skeleton it is stands in the sentence.
     """
     hips = hips_of(skeleton, humanoid, whose)
     joints = humanoid.indices(skeleton)
     _check_limbs(skeleton, joints, hips)
+    alignment = t_pose_alignment(skeleton, humanoid)
+    _check_feet(alignment, joints, whose)
     above = {up for joint in joints.values() for up in skeleton.ancestors(joint)}
     kept = tuple(sorted({*joints.values(), *above, 0}))
     place = {joint: index for index, joint in enumerate(kept)}
@@ -81,7 +85,7 @@ def find_body(skeleton: Skeleton, humanoid: HumanoidMap, whose: str) -> Body:
         skeleton.select(kept),
         kept,
         {role: place[joint] for role, joint in joints.items()},
-        t_pose_alignment(skeleton, humanoid)[list(kept)],
+        alignment[list(kept)],
     )
 
 
@@ -104,6 +108,17 @@ def _check_limbs(skeleton: Skeleton, joints: dict[str, int], hips: int) -> None:
                 " (hips) and would not follow it. Map bones of one tree, such as a rig's"
                 " controls."
             )
+
+
+def _check_feet(alignment: Array, joints: dict[str, int], whose: str) -> None:
+    """Refuse a body whose both feet point backwards, as in mirrored recordings of Kinect."""
+    feet = [joints[f"{side}Foot"] for side in SIDES if f"{side}Foot" in joints]
+    aside = angle_between(alignment[feet], alignment[joints["hips"]])
+    if len(feet) == len(SIDES) and (aside > BACKWARDS).all():
+        raise InvalidMotionError(
+            f"The feet of the {whose} skeleton point backwards in the rest pose. Exchange left"
+            " and right in the map, as for a mirrored recording, or give the toes their role."
+        )
 
 
 def without_gaps(motion: Motion, body: Body) -> tuple[Motion, NDArray[np.bool_]]:

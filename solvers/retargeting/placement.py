@@ -50,7 +50,13 @@ class Placement:
 
 
 def find_placement(
-    source: Body, target: Body, positions: Array, contacts: Flags | None, travel: float
+    source: Body,
+    target: Body,
+    positions: Array,
+    contacts: Flags | None,
+    *,
+    travel: float,
+    to_ground: bool,
 ) -> Placement:
     """Compare the bodies' legs and how high their ankles stand.
 
@@ -61,6 +67,8 @@ def find_placement(
     contacts : bool, shape (n_frames, 2), or None for bodies without feet
     travel : float
         Growth over the ground; 0 for that of the legs.
+    to_ground : bool
+        Whether the ground comes to height 0, wherever it is in the source.
     """
     growth = _growth(source, target)
     hips = positions[0, source.hip_joints()].mean(axis=0)
@@ -73,7 +81,7 @@ def find_placement(
         ankles = np.stack([positions[:, source.joints[f"{side}Foot"], 2] for side in SIDES], 1)
         height = float(np.percentile(ankles[contacts], FLAT))
     floor = height - source_ankle
-    if abs(floor) < FLOOR_MISREAD * leg_length(source):
+    if to_ground or abs(floor) < FLOOR_MISREAD * leg_length(source):
         floor = 0.0
     return Placement(travel or growth, growth, start, (height, floor + target_ankle))
 
@@ -85,7 +93,11 @@ def leg_length(body: Body) -> float:
 
 
 def standing_ankle(body: Body) -> float:
-    """Return how high the ankles of a body that stands flat are above the ground, metres."""
+    """Return how high the ankles of a body that stands flat are above the ground, metres.
+
+    Rigs that rest on height 0 show it. Of others, the lowest joint of the foot is above the
+    sole by an unknown height: their ankles are at least as high as a human's.
+    """
     feet = [body.joints[f"{side}Foot"] for side in SIDES if f"{side}Foot" in body.joints]
     leg = leg_length(body)
     if not feet or leg == 0.0:
@@ -94,7 +106,7 @@ def standing_ankle(body: Body) -> float:
     lowest = float(min(body.rest[body.skeleton.subtree(foot), 2].min() for foot in feet))
     if lowest > -STANDS_LOW * leg and 0.0 < ankle < STANDS_HIGH * leg:
         return ankle
-    return ankle - lowest if ankle > lowest else ANKLE_HEIGHT * leg
+    return max(ankle - lowest, ANKLE_HEIGHT * leg)
 
 
 def trunk_length(body: Body) -> float:

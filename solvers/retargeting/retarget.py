@@ -58,6 +58,10 @@ class RetargetSettings(Settings):
         True, "Let the hands reach as far as the source's, for the arm's length, and meet where"
         " those do"
     )  # fmt: skip
+    to_ground: bool = setting(
+        False, "Put the ground that the source stands on to height 0: for sensors that measure"
+        " heights from themselves"
+    )  # fmt: skip
     softness: float = setting(
         0.005, "Part of the leg's length that is kept in reserve so that knees do not snap"
         " straight; higher lowers the hips more",
@@ -114,7 +118,8 @@ def retarget(
     Raises
     ------
     InvalidMotionError
-        A map names no hips, or the target has no joint above the hips for "root bone".
+        A map names no hips, limbs that do not hang on them, or sides exchanged; or the target
+        has no joint above the hips for "root bone".
     SolveCancelled
         Raised by `progress`.
 
@@ -138,7 +143,14 @@ def retarget(
     contacts = _contacts(motion, source_map)
     progress(0.3, "Turning the joints")
     rotations, missing = transfer_pose(source, seen.rotations, unknown, target)
-    placement = find_placement(source, target, seen.positions, contacts, settings.travel_scale)
+    placement = find_placement(
+        source,
+        target,
+        seen.positions,
+        contacts,
+        travel=settings.travel_scale,
+        to_ground=settings.to_ground,
+    )
     places = _root_places(source, target, seen, rotations, placement)
     transfer = Transfer(source, target, seen, placement, motion.frame_rate)
     progress(0.5, "Placing the feet")

@@ -13,6 +13,7 @@ from solvers.motion import (
     Tracks,
     find_humanoid_map,
     forward_kinematics,
+    read_humanoid_map,
     write_humanoid_map,
 )
 from solvers.motion.rotations import IDENTITY
@@ -73,6 +74,26 @@ def test_retarget_reads_maps_from_files(call, walk_file, tmp_path):
     )  # fmt: skip
 
     assert status == 0 and "22 roles" in said
+
+
+def test_the_map_that_was_found_can_be_kept_edited_and_given_again(
+    call, walk_file, rig_file, tmp_path
+):
+    """A first go writes the map; without its arms, a second one leaves the arms at rest."""
+    kept = tmp_path / "rig.json"
+    out = tmp_path / "out.bvh"
+    call("retarget", walk_file, out, "--to", rig_file, "--write-target-map", kept)
+    found = read_humanoid_map(kept)
+    for role in [role for role in found.joints if "Arm" in role or "Hand" in role]:
+        found = found.with_joint(role, None)
+    write_humanoid_map(found, kept)
+
+    status, said, _ = call("retarget", walk_file, out, "--to", rig_file, "--target-map", kept)
+
+    assert status == 0 and "16 roles" in said
+    armless = read_bvh(out)
+    arm = armless.rotations[:, armless.skeleton.index("mixamorig:LeftArm")]
+    assert np.abs(np.abs(arm[:, 0]) - 1.0).max() < 1e-6
 
 
 @pytest.mark.parametrize(

@@ -134,6 +134,17 @@ def test_deform_bones_that_hang_beside_the_hips_are_refused():
         retarget(WALK, MAP, beside, find_humanoid_map(beside))
 
 
+def test_exchanged_sides_are_refused():
+    """As a mirrored Kinect has them: the feet would point backwards."""
+    swapped = {
+        role.replace("left", "?").replace("right", "left").replace("?", "right"): name
+        for role, name in MAP.joints.items()
+    }
+
+    with pytest.raises(InvalidMotionError, match="source's skeleton point backwards"):
+        retarget(WALK, HumanoidMap(swapped), unreal(), find_humanoid_map(unreal()))
+
+
 def partial_of(humanoid: HumanoidMap, lost: set[str]) -> HumanoidMap:
     joints = {role: name for role, name in humanoid.joints.items() if role not in lost}
     return HumanoidMap(joints)
