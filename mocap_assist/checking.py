@@ -10,40 +10,47 @@ from .scene import compat
 from .scene.armature_read import read_take
 from .scene.contacts import read_contacts
 from .scene.limits import read_limits
+from .scene.marker_take import MarkerTake, read_markers
+from .scene.markers import markers_of, point_names
+from .scene.scene_objects import choose
 from .scene.take import ArmatureTake
-from .selection import played_source, selected_armature
+from .selection import played_source, selected_subject
 from .subject import check_unchanged
 
 
 def read_checking(
-    scene: bpy.types.Scene, armature: bpy.types.Object, settings: CheckSettings
+    scene: bpy.types.Scene, subject: bpy.types.Object, settings: CheckSettings
 ) -> "partial[Checked]":
-    """Read what an armature plays; return what is to be solved, which may be pickled."""
-    take = _read(scene, armature)
+    """Read what a subject plays; return what is to be solved, which may be pickled."""
+    take = _read(scene, subject)
+    contacts, limits = None, None
+    if isinstance(take, ArmatureTake):
+        contacts = read_contacts(*played_source(subject), take.frames)
+        limits = read_limits(subject, take, take.rig.bones)
     return partial(
         check,
-        take.parts[0].motion,
+        take.recordings[0],
         settings.quality,
         settings.spots,
-        contacts=read_contacts(*played_source(armature), take.frames),
-        limits=read_limits(armature, take, take.rig.bones),
+        contacts=contacts,
+        limits=limits,
     )
 
 
 def show_checked(
     scene: bpy.types.Scene,
-    armature: bpy.types.Object,
+    subject: bpy.types.Object,
     settings: CheckSettings,
     checked: Checked,
     asked: str | None = None,
 ) -> str:
     """List the spots in the scene; return a sentence about them."""
-    take, shown = _read(scene, armature), scene.mocap_assist
-    check_unchanged(armature, asked, take.parts[0].motion)
+    take, shown = _read(scene, subject), scene.mocap_assist
+    check_unchanged(subject, asked, take.recordings[0])
     frames = take.frames
     shown.spots.clear()
     shown.active_spot = 0
-    shown.checked = played_source(armature)[0].name
+    shown.checked = played_source(subject)[0].name
     shown.report = checked.quality.report()
     for spot in checked.spots:
         item = shown.spots.add()
@@ -56,16 +63,30 @@ def show_checked(
 
 
 def jump_to(context: bpy.types.Context, spot: bpy.types.PropertyGroup) -> None:
-    """Move the playhead to the start of a spot and select its bone alone."""
+    """Move the playhead to the start of a spot and select its bone, or its marker, alone."""
     whole, part = divmod(spot.start, 1.0)
     context.scene.frame_set(int(whole), subframe=part)
-    armature = selected_armature(context)
-    if armature is None or spot.name not in armature.pose.bones:
+    subject = selected_subject(context)
+    if subject is None:
+        return
+    if subject.type == "ARMATURE":
+        _select_bone(subject, spot.name)
+        return
+    markers = markers_of(subject)
+    for name, marker in zip(point_names(markers), markers, strict=True):
+        if name == spot.name:
+            choose(context, [marker], marker)
+
+
+def _select_bone(armature: bpy.types.Object, name: str) -> None:
+    if name not in armature.pose.bones:
         return
     for bone in armature.pose.bones:
-        compat.select_bone(bone, bone.name == spot.name)
-    armature.data.bones.active = armature.data.bones[spot.name]
+        compat.select_bone(bone, bone.name == name)
+    armature.data.bones.active = armature.data.bones[name]
 
 
-def _read(scene: bpy.types.Scene, armature: bpy.types.Object) -> ArmatureTake:
-    return read_take(armature, scene, source=played_source(armature))
+def _read(scene: bpy.types.Scene, subject: bpy.types.Object) -> ArmatureTake | MarkerTake:
+    if subject.type != "ARMATURE":
+        return read_markers(subject, scene)
+    return read_take(subject, scene, source=played_source(subject))

@@ -56,6 +56,10 @@ class CleanChoices(Settings):
         " any rig serves",
     )
     learned_file: str = setting("", "File of learned patterns, as written by Learn")
+    unswap: bool = setting(
+        True,
+        "Put swapped and mistaken labels of markers right first, where all markers are cleaned",
+    )
     plant_feet: bool = setting(
         True, "Keep standing feet from sliding, by moving legs and hips a little"
     )

@@ -8,23 +8,23 @@ from ..solvers.denoising import Quality
 from .clean_choices import CleanSettings
 from .jobs.cleaning import Cleaned
 from .scene import history
-from .scene.take import ArmatureTake
 
 
-def clean_report(raw: ArmatureTake, cleaned: Cleaned, name: str, n_modified: int = 0) -> str:
+def clean_report(n_frames: int, cleaned: Cleaned, name: str, n_modified: int = 0) -> str:
     """Return a few sentences for the status bar; `n_modified` curves had modifiers."""
     body = cleaned.solution.denoised[0]
     before, after = cleaned.before, cleaned.after
     said = [
-        f"{name}: {len(raw.frames)} frames, shaking by {_shake(before):.2f} degrees before and"
-        f" {_shake(after):.2f} now, {_count(body.outliers)} spikes and"
-        f" {_count(before.gaps)} gaps mended."
+        f"{name}: {n_frames} frames, shaking by {_shake(before)} before and {_shake(after)}"
+        f" now, {_count(body.outliers)} spikes and {_count(before.gaps)} gaps mended."
     ]
     if cleaned.planted is not None:
         said.append(
             f"Feet slid {100 * cleaned.planted.slide_before:.1f} cm, now"
             f" {100 * cleaned.planted.slide_after:.1f} cm; legs and hips moved for that."
         )
+    if swaps := cleaned.solution.swaps:
+        said.append(f"{len(swaps)} swaps of labels were put right.")
     said.append(body.prior_used)
     if n_modified:
         said.append(f"The modifiers of {n_modified} curves are part of the new keys now.")
@@ -53,10 +53,12 @@ def figures(quality: Quality) -> dict[str, Any]:
     return {name: value for name, value in every.items() if isinstance(value, (int, float))}
 
 
-def _shake(quality: Quality) -> float:
-    """Return the mean noise of the rotations, degrees."""
-    noise = [signal.noise for signal in quality.signals if signal.turns]
-    return float(np.degrees(np.nanmean(noise)))
+def _shake(quality: Quality) -> str:
+    """Return the mean noise of the rotations or, of markers, that of the places."""
+    if turns := [signal.noise for signal in quality.signals if signal.turns]:
+        return f"{np.degrees(np.nanmean(turns)):.2f} degrees"
+    places = [signal.noise for signal in quality.signals]
+    return f"{1000.0 * np.nanmean(places):.2f} mm"
 
 
 def _count(flags: np.ndarray) -> int:

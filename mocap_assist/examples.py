@@ -58,7 +58,8 @@ def _read_action(
     """Read the body's motion from an action, on the armature that plays it or that it fits."""
     armatures = [each for each in scene.objects if each.type == "ARMATURE"]
     players = [each for each in armatures if plays(each, action)]
-    for other in [*players, armature, *armatures]:
+    asking = [armature] if armature.type == "ARMATURE" else []
+    for other in [*players, *asking, *armatures]:
         for slot in action.slots:
             if slot.target_id_type in compat.TARGETS and _fits(other, action, slot):
                 return read_take(other, scene, source=(action, slot)).parts[0].motion

@@ -3,29 +3,40 @@
 import bpy
 
 from .scene import compat, history
-from .selection import selected_armature
+from .selection import played_result, players, selected_subject
 
 
 def why_not_revert(context: bpy.types.Context) -> str:
     """Return why the button is grey, or nothing."""
-    armature = selected_armature(context)
-    if armature is None:
-        return "Select an armature."
-    if history.played_result(armature) is None:
+    subject = selected_subject(context)
+    if subject is None:
+        return "Select an armature, or captured markers."
+    if played_result(subject) is None:
         return (
-            f"{armature.name} plays no result of Mocap Assist whose raw action is in this file."
+            f"{subject.name} plays no result of Mocap Assist whose raw action is in this file."
         )
     return ""
 
 
-def revert(armature: bpy.types.Object) -> str:
+def revert(subject: bpy.types.Object) -> str:
+    """Let an armature, or each of the markers below an object, play what was recorded."""
+    result, _ = played_result(subject)
+    raw, _ = history.raw_of(result)
+    for player in players(subject):
+        if played := history.played_result(player):
+            _revert(player, *played)
+    return f"{subject.name} plays {raw.name} again; {result.name} is kept."
+
+
+def _revert(player: bpy.types.Object, result: bpy.types.Action, slot: object) -> None:
     """Assign the recorded action and slot again; NLA tracks of results made from it go."""
-    result, _ = history.played_result(armature)
-    raw, slot = history.raw_of(result)
-    tracks = armature.animation_data.nla_tracks
+    raw = history.raw_of(result, slot)
+    tracks = player.animation_data.nla_tracks
     for track in list(tracks):
-        sources = [strip.action and history.raw_of(strip.action) for strip in track.strips]
-        if sources == [(raw, slot)] and not track.mute:
+        made_from = [
+            strip.action and history.raw_of(strip.action, strip.action_slot)
+            for strip in track.strips
+        ]
+        if made_from == [raw] and not track.mute:
             tracks.remove(track)
-    compat.assign(armature, raw, slot)
-    return f"{armature.name} plays {raw.name} again; {result.name} is kept."
+    compat.assign(player, *raw)

@@ -11,6 +11,7 @@ from .check_choices import CheckSettings
 from .clean_choices import CleanSettings
 from .retarget_choices import RetargetBundle, UnbakeBundle
 from .settings_properties import settings_from
+from .solving import SolveBundle
 
 
 @settings_from(CleanSettings)
@@ -26,6 +27,11 @@ class MOCAP_PG_check(bpy.types.PropertyGroup):
 @settings_from(RetargetBundle)
 class MOCAP_PG_retarget(bpy.types.PropertyGroup):
     """Settings of the button Retarget."""
+
+
+@settings_from(SolveBundle)
+class MOCAP_PG_solve(bpy.types.PropertyGroup):
+    """Settings of the button Make Skeleton."""
 
 
 @settings_from(UnbakeBundle)
@@ -70,6 +76,7 @@ class MOCAP_PG_scene(bpy.types.PropertyGroup):
 
     clean: bpy.props.PointerProperty(type=MOCAP_PG_clean)
     check: bpy.props.PointerProperty(type=MOCAP_PG_check)
+    solve: bpy.props.PointerProperty(type=MOCAP_PG_solve)
     retarget: bpy.props.PointerProperty(type=MOCAP_PG_retarget)
     unbake: bpy.props.PointerProperty(type=MOCAP_PG_unbake)
     bone_map: bpy.props.PointerProperty(type=MOCAP_PG_bone_map)
@@ -92,6 +99,7 @@ class MOCAP_PG_job(bpy.types.PropertyGroup):
 CLASSES = (
     MOCAP_PG_clean,
     MOCAP_PG_check,
+    MOCAP_PG_solve,
     MOCAP_PG_retarget,
     MOCAP_PG_unbake,
     MOCAP_PG_bone_pair,

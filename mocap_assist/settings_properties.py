@@ -54,7 +54,7 @@ def _property(item: "Field[Any]", options: set[str]) -> Any:
     described: Described = item.metadata["described"]
     kind = type(item.default)
     shown = {
-        "name": item.name.replace("_", " ").capitalize(),
+        "name": described.label or item.name.replace("_", " ").capitalize(),
         "description": described.help,
         "default": item.default,
         "options": {"ANIMATABLE"} | options,

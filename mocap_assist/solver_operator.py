@@ -11,7 +11,7 @@ import bpy
 from ..solvers.errors import MocapAssistError, SolveCancelled
 from .jobs.job import Quick, run
 from .redo import fingerprint
-from .selection import selected_armature
+from .selection import selected_subject
 from .subject import Subject
 from .watch import Watch, why_busy
 
@@ -29,7 +29,7 @@ class SolverOperator:
     They run in Blender. What `read_scene` returns is called with `progress=` in a process of
     its own: it must be picklable and cannot use bpy. When the animator pressed a button, that
     window swallows all input but Esc and the right mouse button meanwhile; whatever is done in
-    another window, the result goes to the armature that was read, or nowhere. A script waits.
+    another window, the result goes to what was read, or nowhere. A script waits.
     """
 
     bl_options: ClassVar = {"REGISTER", "UNDO"}
@@ -40,9 +40,9 @@ class SolverOperator:
     why_not: ClassVar[Callable[[bpy.types.Context], str]]
     """Return why the button is grey, or nothing."""
     read_scene: ClassVar[Callable[..., "partial[Any]"]]
-    """From scene, armature and settings; the first argument of the solve is what is solved."""
+    """From scene, subject and settings; the first argument of the solve is what is solved."""
     write_scene: ClassVar[Callable[..., str]]
-    """From scene, armature, settings, result and the fingerprint of what was solved.
+    """From scene, subject, settings, result and the fingerprint of what was solved.
 
     Returns the sentence to show in the status bar.
     """
@@ -61,8 +61,8 @@ class SolverOperator:
                 setattr(self, name, getattr(shown, name))
 
     def execute(self, context: bpy.types.Context) -> set[str]:
-        if not hasattr(self, "_subject"):  # else it is done again, to the same armature
-            self._subject = Subject.of(context.scene, selected_armature(context))
+        if not hasattr(self, "_subject"):  # else it is done again, to the same subject
+            self._subject = Subject.of(context.scene, selected_subject(context))
         try:
             return self._finish(run(self._read()))
         except MocapAssistError as error:
@@ -72,7 +72,7 @@ class SolverOperator:
         self.prepare(context)
         if in_background():
             return self.execute(context)
-        self._subject = Subject.of(context.scene, selected_armature(context))
+        self._subject = Subject.of(context.scene, selected_subject(context))
         self._started = monotonic()
         try:
             solve = self._read()
@@ -112,8 +112,8 @@ class SolverOperator:
         return type(self).read_scene(*self._subject.find(), self.settings())
 
     def _finish(self, result: Any, asked: str | None = None) -> set[str]:
-        scene, armature = self._subject.find()
-        said = type(self).write_scene(scene, armature, self.settings(), result, asked)
+        scene, thing = self._subject.find()
+        said = type(self).write_scene(scene, thing, self.settings(), result, asked)
         self.report({"INFO"}, said)
         return {"FINISHED"}
 

@@ -1,4 +1,4 @@
-"""Button: take jitter, spikes and gaps out of the active armature's action."""
+"""Button: take jitter, spikes and gaps out of the action of an armature or of markers."""
 
 import bpy
 
@@ -14,8 +14,9 @@ class MOCAP_OT_denoise(SolverOperator, bpy.types.Operator):
     bl_idname = "mocap_assist.denoise"
     bl_label = "Clean"
     bl_description = (
-        "Take jitter, spikes and gaps out of the armature's action and plant its feet. The"
-        " result is a new action; the recorded one stays as it is"
+        "Take jitter, spikes and gaps out of the action of the armature, and plant its feet, or"
+        " out of that of captured markers. The result is a new action; the recorded one stays"
+        " as it is"
     )
 
     settings_group = "clean"

@@ -8,7 +8,7 @@ from ..mocap_assist.checking import jump_to
 class MOCAP_OT_jump_to_spot(bpy.types.Operator):
     bl_idname = "mocap_assist.jump_to_spot"
     bl_label = "Jump to Spot"
-    bl_description = "Move the playhead to this place and select the bone that is wrong there"
+    bl_description = "Move the playhead to this place and select what is wrong there"
     bl_options = {"REGISTER", "UNDO"}
 
     # Without SKIP_SAVE, Blender would fill in the index of the press before.

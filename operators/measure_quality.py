@@ -16,7 +16,8 @@ class MOCAP_OT_measure_quality(SolverOperator, bpy.types.Operator):
     bl_idname = "mocap_assist.measure_quality"
     bl_label = "Check"
     bl_description = (
-        "List where the armature's action jumps, shakes, has gaps, or lets feet slide"
+        "List where the action of the armature, or of markers, jumps, shakes, has gaps, or lets"
+        " feet slide"
     )
     # A list to look at: nothing to undo, and so no redo panel, which would solve anew.
     bl_options: ClassVar = {"REGISTER"}

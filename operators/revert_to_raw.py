@@ -3,7 +3,7 @@
 import bpy
 
 from ..mocap_assist.reverting import revert, why_not_revert
-from ..mocap_assist.selection import selected_armature
+from ..mocap_assist.selection import selected_subject
 
 
 class MOCAP_OT_revert_to_raw(bpy.types.Operator):
@@ -19,5 +19,5 @@ class MOCAP_OT_revert_to_raw(bpy.types.Operator):
         return not reason
 
     def execute(self, context: bpy.types.Context) -> set[str]:
-        self.report({"INFO"}, revert(selected_armature(context)))
+        self.report({"INFO"}, revert(selected_subject(context)))
         return {"FINISHED"}

@@ -1,13 +1,12 @@
 """Write files whole or not at all, and keep learned things in archives that cannot run code."""
 
-import os
 import struct
 import zipfile
 import zlib
 from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
 from pathlib import Path
-from tempfile import NamedTemporaryFile
+from secrets import token_hex
 from tokenize import TokenError
 from typing import Any
 
@@ -36,14 +35,10 @@ def written_whole(path: Path | str) -> Iterator[Path]:
         The folder is missing or may not be written to, or the disk is full.
     """
     path = Path(path)
+    part = path.with_name(f".{path.stem[:40]}.{token_hex(6)}{path.suffix}")
     try:
-        with NamedTemporaryFile(
-            dir=path.parent, prefix=f".{path.stem[:40]}.", suffix=path.suffix, delete=False
-        ) as file:
-            part = Path(file.name)
-        try:
+        try:  # Not tempfile's: a Ctrl-C that falls into it leaves its file behind, or is lost.
             yield part
-            part.chmod(0o666 & ~_umask())
             part.replace(path)
         finally:
             part.unlink(missing_ok=True)
@@ -85,9 +80,3 @@ def read_archive(path: Path | str, kind: str, version: int) -> dict[str, NDArray
             f" {version}. Learn it again from the clips."
         )
     return arrays
-
-
-def _umask() -> int:
-    mask = os.umask(0)
-    os.umask(mask)
-    return mask

@@ -22,6 +22,8 @@ class Described:
     maximum: float = inf
     advanced: bool = False
     """Folded away in the user interface."""
+    label: str = ""
+    """What the user interface calls it; without one, its name in words."""
 
 
 def setting(default: Any, help: str, **limits: Any) -> Any:

@@ -6,7 +6,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...solvers.denoising import (
-    JointLimits,
     Quality,
     QualitySettings,
     Spot,
@@ -14,7 +13,7 @@ from ...solvers.denoising import (
     find_worst_spots,
     measure_quality,
 )
-from ...solvers.motion import Motion
+from ...solvers.motion import JointLimits, Motion, Tracks
 from ...solvers.progress import Progress, unwatched, within
 
 
@@ -27,7 +26,7 @@ class Checked:
 
 
 def check(
-    body: Motion,
+    body: Motion | Tracks,
     settings: QualitySettings,
     spots: SpotSettings,
     *,
@@ -35,7 +34,7 @@ def check(
     limits: JointLimits | None,
     progress: Progress = unwatched,
 ) -> Checked:
-    """Measure the body's motion and list its worst spots."""
+    """Measure a body or its markers and list the worst spots."""
     quality = measure_quality(
         body,
         settings=settings,

@@ -15,7 +15,6 @@ from ...solvers.denoising import (
     Denoised,
     DenoiseSettings,
     FilterBases,
-    JointLimits,
     Planted,
     PlantSettings,
     Quality,
@@ -28,7 +27,8 @@ from ...solvers.denoising import (
     plant_feet,
 )
 from ...solvers.denoising.feet import find_legs
-from ...solvers.motion import Motion, Tracks
+from ...solvers.markers import Swap, unswap_markers
+from ...solvers.motion import JointLimits, Motion, Tracks
 from ...solvers.motion.rotations import angle_between, slerp
 from ...solvers.progress import Progress, unwatched, within
 from ...solvers.recordings import read_motion_or_tracks
@@ -76,6 +76,8 @@ class Problem:
     examples: Examples = Examples()
     learn_limits: bool = False
     """Whether the examples also teach how far joints turn."""
+    unswap: bool = False
+    """Whether labels of markers are put right first."""
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -105,6 +107,9 @@ class Solution:
     denoised: tuple[Denoised, ...]
     limits: JointLimits | None
     """How far joints turn in the examples."""
+    recordings: Recordings
+    """As they were, but for labels that were put right."""
+    swaps: tuple[Swap, ...] = ()
 
 
 @dataclass(frozen=True, eq=False)
@@ -129,7 +134,11 @@ def names_of(recording: Motion | Tracks) -> tuple[str, ...]:
 def solve(problem: Problem, *, progress: Progress = unwatched) -> Solution:
     """Denoise the body by what the examples teach, and all else by what the take teaches."""
     body, *others = problem.recordings
-    learned = problem.examples.learned(problem.learn_limits, within(progress, 0.0, 0.3))
+    swaps: tuple[Swap, ...] = ()
+    if problem.unswap and isinstance(body, Tracks):
+        unswapped = unswap_markers(body, progress=within(progress, 0.0, 0.2))
+        body, swaps = unswapped.tracks, unswapped.swaps
+    learned = problem.examples.learned(problem.learn_limits, within(progress, 0.2, 0.3))
     settings = replace(problem.settings, strength=1.0)
     results = [
         denoise(
@@ -143,7 +152,7 @@ def solve(problem: Problem, *, progress: Progress = unwatched) -> Solution:
     for index, recording in enumerate(others):
         share = (0.8 + 0.2 * index / len(others), 0.8 + 0.2 * (index + 1) / len(others))
         results.append(denoise(recording, settings=settings, progress=within(progress, *share)))
-    return Solution(tuple(results), learned.limits)
+    return Solution(tuple(results), learned.limits, (body, *others), swaps)
 
 
 def clean(
@@ -163,8 +172,8 @@ def clean(
     estimates = [each.recording for each in solution.denoised]
     body, *others = map(
         partial(_mixed, finish=finish),
-        problem.recordings,
-        finish.present or problem.recordings,
+        solution.recordings,
+        finish.present or solution.recordings,
         estimates,
     )
     for limits in (finish.limits, solution.limits):
@@ -183,11 +192,13 @@ def clean(
     return Cleaned((body, *others), moved, solution, planted, before, after)
 
 
-def _planted(body: Motion, finish: Finish, progress: Progress) -> Planted | None:
+def _planted(body: Motion | Tracks, finish: Finish, progress: Progress) -> Planted | None:
     """Plant the feet of what has legs, if the legs were chosen at all."""
+    if finish.planting is None or isinstance(body, Tracks):
+        return None
     legs = find_legs(body.skeleton)
     joints = {body.skeleton.names[joint] for leg in legs for joint in (leg.hip, leg.knee)}
-    if finish.planting is None or not joints & finish.chosen:
+    if not joints & finish.chosen:
         return None
     return plant_feet(body, finish.contacts, settings=finish.planting, progress=progress)
 

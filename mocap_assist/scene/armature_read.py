@@ -12,6 +12,7 @@ from .bone_channels import animated_curves, bone_path, read_bone, read_space
 from .compat import Source
 from .frames import FrameRange, Grid, key_grid, range_bounds
 from .history import was_thinned
+from .origin import origin_of
 from .rig import Placement, Rig, read_rig
 from .take import ArmatureTake, BoneChannels, part_of
 from .units import metres_per_unit
@@ -53,15 +54,22 @@ def read_take(
     InvalidMotionError
         There is no action, slot, bone, key or uniform scale, as the sentence says.
     """
-    source = source or action_of(armature)
-    curves, thinned = animated_curves(*source), was_thinned(source[0])
+    action, slot = source or action_of(armature)
+    thinned = was_thinned(action)
+    curves, recorded = animated_curves(action, slot), bool(origin_of(action)) and not thinned
     rig = read_rig(armature)
     if grid is None:
         known = {bone_path(bone, "") for bone in rig.bones}
         keyed = [curve for (path, _), curve in curves.items() if _owner(path) in known]
-        grid = key_grid(keyed, range_bounds(choice, scene, keyed))
+        grid = key_grid(keyed, range_bounds(choice, scene, keyed), recorded=recorded)
     channels = tuple(
-        read_bone(armature.pose.bones[bone], curves, grid.frames, gaps=not thinned)
+        read_bone(
+            armature.pose.bones[bone],
+            curves,
+            grid.frames,
+            grid.step if recorded else None,
+            gaps=not thinned,
+        )
         for bone in rig.bones
     )
     space = read_space(armature, curves, grid.frames)

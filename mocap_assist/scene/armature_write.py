@@ -62,7 +62,8 @@ def write_take(
     action, slot
         Named like the source with `.clean`, and kept by a fake user.
     """
-    action, slot = _copy(source)
+    action = copy_of(source[0])
+    slot = same_slot(action, source[1])
     curves = animated_curves(action, slot)
     rotations, locations = take.bone_rotations(), take.bone_locations()
     for index, name in enumerate(take.rig.bones):
@@ -125,14 +126,17 @@ def check_writable(armature: bpy.types.Object) -> None:
         )
 
 
-def _copy(
-    source: Source,
-) -> Source:
-    original, slot = source
+def copy_of(original: bpy.types.Action) -> bpy.types.Action:
+    """Return a copy, named like the original with `.clean`, and kept by a fake user."""
     action = original.copy()
     action.name = NUMBERED.sub("", original.name) + SUFFIX
     action.use_fake_user = True
-    return action, next(each for each in action.slots if each.handle == slot.handle)
+    return action
+
+
+def same_slot(copy: bpy.types.Action, slot: bpy.types.ActionSlot) -> bpy.types.ActionSlot:
+    """Return the slot of a copied action that was `slot` of the original."""
+    return next(each for each in copy.slots if each.handle == slot.handle)
 
 
 def _write(

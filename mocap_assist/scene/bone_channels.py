@@ -33,34 +33,40 @@ def bone_path(bone: str, name: str) -> str:
 
 
 def read_bone(
-    bone: bpy.types.PoseBone, curves: Curves, frames: Array, *, gaps: bool = True
+    bone: bpy.types.PoseBone,
+    curves: Curves,
+    frames: Array,
+    step: float | None = None,
+    *,
+    gaps: bool = True,
 ) -> BoneChannels:
     """Read the rotation channels of the bone's own mode, and its location.
 
-    Channels without keys have the pose's present value. Without `gaps` nothing is unobserved.
+    Channels without keys have the pose's present value. `step` is that of `unobserved`; without
+    `gaps` nothing is.
     """
     turning, shifting = rotation_curves(bone, curves), location_curves(bone, curves)
     angles = sampled_rotation(bone, turning, frames)
     rotations = quaternions_from_channels(angles, bone.rotation_mode)
     if gaps:
-        rotations[_gaps(turning, frames)] = np.nan
+        rotations[gaps_of(turning, frames, step)] = np.nan
     if bone.bone.use_connect and bone.parent:
         return BoneChannels(rotations, np.zeros((len(frames), 3)), bool(turning), False)
-    locations = _sampled(shifting, bone.location, frames)
+    locations = sampled(shifting, bone.location, frames)
     if gaps:
-        locations[_gaps(shifting, frames)] = np.nan
+        locations[gaps_of(shifting, frames, step)] = np.nan
     return BoneChannels(rotations, locations, bool(turning), bool(shifting))
 
 
 def rotation_curves(bone: bpy.types.PoseBone, curves: Curves) -> dict[int, Channel]:
     """Return the F-Curves of the bone's own rotation mode, by channel."""
     name, n_channels = rotation_property(bone.rotation_mode)
-    return _found(curves, bone_path(bone.name, name), n_channels)
+    return curves_of(curves, bone_path(bone.name, name), n_channels)
 
 
 def location_curves(bone: bpy.types.PoseBone, curves: Curves) -> dict[int, Channel]:
     """Return the F-Curves of the bone's location, by axis."""
-    return _found(curves, bone_path(bone.name, "location"), 3)
+    return curves_of(curves, bone_path(bone.name, "location"), 3)
 
 
 def sampled_rotation(
@@ -68,7 +74,7 @@ def sampled_rotation(
 ) -> Array:
     """Return the rotation channels at each frame, shape (n_frames, 3 or 4)."""
     name, _ = rotation_property(bone.rotation_mode)
-    return _sampled(turning, getattr(bone, name), frames)
+    return sampled(turning, getattr(bone, name), frames)
 
 
 def read_space(armature: bpy.types.Object, curves: Curves, frames: Array) -> Placement:
@@ -82,32 +88,37 @@ def read_space(armature: bpy.types.Object, curves: Curves, frames: Array) -> Pla
     bpy.context.view_layer.update()
     turn, origin, scale = placement_of(armature.matrix_world, armature.name)
     name, n_channels = rotation_property(armature.rotation_mode)
-    turning, shifting = _found(curves, name, n_channels), _found(curves, "location", 3)
+    turning, shifting = curves_of(curves, name, n_channels), curves_of(curves, "location", 3)
     if not (turning or shifting):
         n_frames = len(frames)
         return Placement(np.tile(turn, (n_frames, 1)), np.tile(origin, (n_frames, 1)), scale)
     around = armature.matrix_world @ armature.matrix_basis.inverted()
     turn, origin, size = placement_of(around, armature.name)
-    angles = _sampled(turning, getattr(armature, name), frames)
+    angles = sampled(turning, getattr(armature, name), frames)
     turns = quaternions_from_channels(angles, armature.rotation_mode)
-    places = _sampled(shifting, armature.location, frames)
+    places = sampled(shifting, armature.location, frames)
     return Placement(multiply(turn, turns), size * rotate(turn, places) + origin, scale)
 
 
-def _found(curves: Curves, path: str, n_channels: int) -> dict[int, Channel]:
+def curves_of(curves: Curves, path: str, n_channels: int) -> dict[int, Channel]:
+    """Return the F-Curves of a property, by channel."""
     return {
         index: curves[path, index] for index in range(n_channels) if (path, index) in curves
     }
 
 
-def _sampled(curves: Mapping[int, Channel], present: object, frames: Array) -> Array:
+def sampled(curves: Mapping[int, Channel], present: object, frames: Array) -> Array:
+    """Return a property, now `present`, at each frame: shape (n_frames, n_channels)."""
     values = np.tile(np.array(present, dtype=np.float64), (len(frames), 1))
     for index, channel in curves.items():
         values[:, index] = channel.values(frames)
     return values
 
 
-def _gaps(curves: Mapping[int, Channel], frames: Array) -> NDArray[np.bool_]:
+def gaps_of(
+    curves: Mapping[int, Channel], frames: Array, step: float | None = None
+) -> NDArray[np.bool_]:
+    """Tell the frames at which a property was not captured; see `unobserved`."""
     if not curves or all(channel.keyed_at(frames) for channel in curves.values()):
         return np.zeros(len(frames), bool)
-    return unobserved([channel.keys for channel in curves.values()], frames)
+    return unobserved([channel.keys for channel in curves.values()], frames, step)

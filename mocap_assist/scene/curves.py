@@ -74,6 +74,17 @@ class Channel:
         return np.fromiter(values, np.float64, len(frames))
 
 
+def write_first(
+    curve: bpy.types.FCurve, frames: Array, values: Array, interpolation: int = LINEAR
+) -> None:
+    """Give a curve without keys or modifiers one MEASURED key on each of the frames."""
+    points = curve.keyframe_points
+    points.add(len(frames))
+    points.foreach_set("co", np.stack([frames, values], axis=1).astype(np.float32).ravel())
+    points.foreach_set("interpolation", np.full(len(frames), interpolation, np.uint8))
+    curve.update()
+
+
 def write_values(
     curve: bpy.types.FCurve,
     frames: Array,

@@ -70,11 +70,14 @@ class Grid(NamedTuple):
     """Whether there are keys before the first frame, and after the last."""
 
 
-def key_grid(channels: Sequence[Channel], bounds: tuple[float, float]) -> Grid:
+def key_grid(
+    channels: Sequence[Channel], bounds: tuple[float, float], *, recorded: bool = False
+) -> Grid:
     """Return the frames within `bounds` on which the channels have their keys.
 
     A take keyed four times a frame, or at .5 of every frame, or on every second one, is read
-    where its keys are; where keys follow no grid, or are far apart, on every whole frame.
+    where its keys are; where keys follow no grid, or are far apart, on every whole frame. What
+    is known to be `recorded` may have its samples far apart.
 
     Raises
     ------
@@ -87,7 +90,7 @@ def key_grid(channels: Sequence[Channel], bounds: tuple[float, float]) -> Grid:
         raise InvalidMotionError("The action has no keys on this armature's bones.")
     every = np.concatenate(times)
     start, stop = every.min(), every.max()
-    step, phase = _grid_of(longest)
+    step, phase = _grid_of(longest, np.inf if recorded else WIDEST_STEP)
     first, last = max(start, bounds[0]), min(stop, bounds[1])
     n_steps = np.floor((last - phase + ON_FRAME) / step)
     place = np.arange(np.ceil((first - phase - ON_FRAME) / step), n_steps + 1)
@@ -101,7 +104,7 @@ def key_grid(channels: Sequence[Channel], bounds: tuple[float, float]) -> Grid:
     return Grid(frames, step, joins)
 
 
-def _grid_of(times: Array) -> tuple[float, float]:
+def _grid_of(times: Array, widest: float) -> tuple[float, float]:
     """Step and phase of the grid that the keys lie on, or that of the whole frames."""
     if len(times) == 1:
         return 1.0, float(times[0])
@@ -109,7 +112,7 @@ def _grid_of(times: Array) -> tuple[float, float]:
     step = float(span / max(np.round(span / spacing), 1.0))
     places = (times - times[0]) / step
     regular = (np.abs(places - np.round(places)) < OFF_GRID).mean() >= ON_GRID
-    if step <= WIDEST_STEP and regular:
+    if step <= widest and regular:
         return step, float(times[0])
     return 1.0, float(np.ceil(times[0] - ON_FRAME))
 

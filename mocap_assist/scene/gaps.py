@@ -10,7 +10,9 @@ WIDEST_STEP = 2.5  # a median distance of keys, in frames, above which an animat
 WIDEST_HOLE = 1.5  # distances between neighbours, in median ones, that are no gap
 
 
-def unobserved(channels: Sequence[Array], frames: Array) -> NDArray[np.bool_]:
+def unobserved(
+    channels: Sequence[Array], frames: Array, step: float | None = None
+) -> NDArray[np.bool_]:
     """Tell the frames at which a bone was not captured, shape (n_frames,).
 
     A recorded take has keys on every frame; where *all* channels of a bone have none, before
@@ -23,21 +25,26 @@ def unobserved(channels: Sequence[Array], frames: Array) -> NDArray[np.bool_]:
     channels : arrays of shape (n_keys, 2)
         Frame and value of each key of each animated channel of one bone.
     frames : shape (n_frames,)
+    step : float
+        Frames from one sample to the next of what is known to be a recording: then no keys are
+        taken for set by hand, though they are few or far apart.
     """
     gap = np.ones(len(frames), bool)
     held = np.ones(len(frames), bool)
     for keys in channels:
-        missing, same = _holes(keys, frames)
+        missing, same = _holes(keys, frames, step)
         gap &= missing
         held &= same
     return np.asarray(gap & ~held)
 
 
-def _holes(keys: Array, frames: Array) -> tuple[NDArray[np.bool_], NDArray[np.bool_]]:
+def _holes(
+    keys: Array, frames: Array, step: float | None
+) -> tuple[NDArray[np.bool_], NDArray[np.bool_]]:
     """Frames that lie in a hole of one channel, and those with equal values on both sides."""
     times, values = keys[:, 0], keys[:, 1]
-    spacing = np.median(np.diff(times)) if len(times) > 2 else np.inf
-    if spacing > WIDEST_STEP:
+    spacing = step or (np.median(np.diff(times)) if len(times) > 2 else np.inf)
+    if step is None and spacing > WIDEST_STEP:
         return np.zeros(len(frames), bool), np.zeros(len(frames), bool)
     after = np.searchsorted(times, frames)
     left, right = (after - 1).clip(min=0), after.clip(max=len(times) - 1)

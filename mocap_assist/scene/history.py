@@ -56,13 +56,18 @@ def was_thinned(action: bpy.types.Action) -> bool:
     return bool(entries) and entries[-1].get("operation") == "reduce_keys"
 
 
-def raw_of(action: bpy.types.Action) -> Source | None:
-    """Return the recorded action and slot that a result was made from, if both still exist."""
+def raw_of(action: bpy.types.Action, slot: bpy.types.ActionSlot | None = None) -> Source | None:
+    """Return the recorded action and slot that a result was made from, if both still exist.
+
+    A result for many markers has a slot for each; `slot` says whose recording is asked for.
+    """
     source, entries = action.get(SOURCE), history(action)
     if not isinstance(source, bpy.types.Action) or not entries:
         return None
-    slot = compat.slot_called(source, entries[0].get("slot", ""))
-    return None if slot is None else (source, slot)
+    handle = None if slot is None else slot.handle  # which copies of an action share
+    same = next((each for each in source.slots if each.handle == handle), None)
+    found = same or compat.slot_called(source, entries[0].get("slot", ""))
+    return None if found is None else (source, found)
 
 
 def played_result(armature: bpy.types.Object) -> Source | None:

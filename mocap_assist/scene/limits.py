@@ -6,7 +6,7 @@ from math import inf
 import bpy
 import numpy as np
 
-from ...solvers.denoising import JointLimits
+from ...solvers.motion import JointLimits
 from ...solvers.motion.rotations import multiply
 from .take import ArmatureTake
 

@@ -12,6 +12,8 @@ from ...solvers.motion.rotations import inverse, multiply, quaternion_from_matri
 
 Array = NDArray[np.float64]
 EVEN = 1e-3
+END = "mocap_assist_end"
+"""Custom property of bones whose tail was never captured."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -28,6 +30,8 @@ class Rig:
         Blender's rotation modes.
     connected : tuple of bool
         These bones ignore their location.
+    ends : tuple of bool
+        Of these bones only the head is a joint; what is beyond was never captured.
     """
 
     bones: tuple[str, ...]
@@ -37,6 +41,7 @@ class Rig:
     tails: Array
     modes: tuple[str, ...]
     connected: tuple[bool, ...]
+    ends: tuple[bool, ...]
 
     def chain_to(self, bone: int) -> list[int]:
         """Return the bones above `bone`, topmost first."""
@@ -98,6 +103,7 @@ def read_rig(armature: bpy.types.Object) -> Rig:
         tails=np.array([bone.tail_local for bone in bones], dtype=np.float64),
         modes=tuple(armature.pose.bones[bone.name].rotation_mode for bone in bones),
         connected=tuple(bone.use_connect and bone.parent is not None for bone in bones),
+        ends=tuple(bool(bone.get(END)) for bone in bones),
     )
 
 

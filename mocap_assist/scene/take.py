@@ -94,10 +94,7 @@ class ArmatureTake:
         """Return the pose-bone location, shape (n_frames, 3), of every bone that has one."""
         found = {}
         for part in self.parts:
-            root = part.bones[0]
-            points = part.carrier.points_back(part.motion.root_positions)
-            moved = points - self.rig.heads[root]
-            found[root] = rotate(inverse(self.rig.rest_rotations[root]), moved)
+            found[part.bones[0]] = root_locations(part, self.rig)
         if self.offsets is not None:
             for place, name in enumerate(self.offsets.names):
                 bone = self.rig.bones.index(name)
@@ -151,6 +148,13 @@ def basis_rotations(part: Part, rig: Rig, rest: Placement) -> dict[int, Array]:
     }
 
 
+def root_locations(part: Part, rig: Rig) -> Array:
+    """Undo `part_of`: the pose-bone location, shape (n_frames, 3), of the part's root."""
+    root = part.bones[0]
+    moved = part.carrier.points_back(part.motion.root_positions) - rig.heads[root]
+    return rotate(inverse(rig.rest_rotations[root]), moved)
+
+
 def skeleton_of(
     rig: Rig, bones: list[int], rest: Placement
 ) -> tuple[Skeleton, tuple[int, ...]]:
@@ -161,7 +165,9 @@ def skeleton_of(
     points = [rig.heads[bone] for bone in bones]
     for joint, bone in enumerate(bones):
         end = f"{rig.bones[bone]}_end"
-        last = bone not in rig.parents and not rig.bones[bone].endswith("_end")
+        last = bone not in rig.parents and not (
+            rig.ends[bone] or rig.bones[bone].endswith("_end")
+        )
         if last and end not in rig.bones:
             names.append(end)
             parents.append(joint)

@@ -10,6 +10,12 @@ from .rig import Rig
 PLAUSIBLE_REACH = (0.25, 15.0)
 
 
+def unit_of(scene: bpy.types.Scene) -> float:
+    """Return the length of one unit, in metres, that the scene states."""
+    settings = scene.unit_settings
+    return float(settings.scale_length) if settings.system != "NONE" else 1.0
+
+
 def metres_per_unit(scene: bpy.types.Scene, rig: Rig, root: int, scale: float) -> float:
     """Return the scene's unit, or the likely one of the file where the body would be absurd.
 
@@ -22,7 +28,7 @@ def metres_per_unit(scene: bpy.types.Scene, rig: Rig, root: int, scale: float) -
     scale : float
         Of the armature in the scene.
     """
-    said = scene.unit_settings.scale_length if scene.unit_settings.system != "NONE" else 1.0
+    said = unit_of(scene)
     bones = rig.subtree(root)
     place = {bone: index for index, bone in enumerate(bones)}
     parents = [-1, *(place[rig.parents[bone]] for bone in bones[1:])]

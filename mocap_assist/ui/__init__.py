@@ -3,6 +3,7 @@
 from . import (
     bone_list,
     example_list,
+    import_menu,
     manual,
     menus,
     overlay_switch,
@@ -20,6 +21,7 @@ PARTS = (
     retarget_panel,
     sidebar,
     menus,
+    import_menu,
     overlay_switch,
     manual,
 )

@@ -4,7 +4,7 @@ import bpy
 
 from ...solvers.errors import InvalidMotionError
 from ..scene import history
-from ..selection import played_source, selected_armature
+from ..selection import played_result, played_source, selected_subject
 from .drawing import draw_sentence, exists, is_wide
 from .figures import figure_rows, frames_text
 
@@ -56,8 +56,7 @@ class CheckPanel:
 
 
 def _draw_figures(layout: bpy.types.UILayout, context: bpy.types.Context) -> None:
-    armature = selected_armature(context)
-    result = history.played_result(armature) if armature is not None else None
+    result = played_result(selected_subject(context))
     rows = figure_rows(history.history(result[0])) if result else []
     if not rows:
         return
@@ -82,16 +81,16 @@ def _draw_spots(layout: bpy.types.UILayout, context: bpy.types.Context) -> None:
     row.operator(JUMP, text="Next", icon="TRIA_RIGHT").step = 1
     if 0 <= found.active_spot < len(found.spots):
         draw_sentence(layout, context, found.spots[found.active_spot].sentence)
-    armature = selected_armature(context)
-    if armature is not None and is_stale(found.checked, armature):
+    subject = selected_subject(context)
+    if subject is not None and is_stale(found.checked, subject):
         said = bpy.app.translations.pgettext_iface(STALE).format(action=found.checked)
         draw_sentence(layout, context, said, icon="INFO")
 
 
-def is_stale(checked: str, armature: bpy.types.Object) -> bool:
-    """Whether the armature plays another action than the one that was checked."""
+def is_stale(checked: str, subject: bpy.types.Object) -> bool:
+    """Whether the subject plays another action than the one that was checked."""
     try:
-        return played_source(armature)[0].name != checked
+        return played_source(subject)[0].name != checked
     except InvalidMotionError:
         return True
 

@@ -7,11 +7,12 @@ import bpy
 from ...solvers.denoising import DenoiseSettings, PlantSettings
 from ...solvers.settings import Settings
 from ..clean_choices import Prior
-from ..selection import why_not_clean
+from ..selection import selected_subject, why_not_clean
 from .drawing import draw_job, draw_sentence, exists
 from .example_list import draw_examples
 
 LEARN = "mocap_assist.learn_patterns"
+OF_JOINTS = {"joint_limits"}
 MAIN = ("strength", "frame_range", "joint_limits", "result_as")
 
 
@@ -33,8 +34,10 @@ class CleanPanel:
         clean = context.scene.mocap_assist.clean
         column.use_property_split = True
         column.use_property_decorate = False
-        _draw_main(column, clean)
-        _draw_folded(column, clean)
+        subject = selected_subject(context)
+        joints = subject is None or subject.type == "ARMATURE"
+        _draw_main(column, clean, joints)
+        _draw_folded(column, clean, joints)
         button = layout.row()
         button.scale_y = 1.6
         button.operator("mocap_assist.denoise", icon="BRUSH_DATA")
@@ -42,16 +45,20 @@ class CleanPanel:
             draw_sentence(layout, context, reason, icon="INFO")
 
 
-def _draw_main(column: bpy.types.UILayout, clean: bpy.types.PropertyGroup) -> None:
-    column.row().prop(clean, "bones", expand=True)
+def _draw_main(
+    column: bpy.types.UILayout, clean: bpy.types.PropertyGroup, joints: bool
+) -> None:
+    """Draw what everybody needs; markers have neither joint limits nor feet."""
+    column.row().prop(clean, "bones", text="Bones" if joints else "Markers", expand=True)
     column.prop(clean, "prior", text="Learn from")
     if clean.prior == Prior.EXAMPLES.name:
         draw_examples(column, clean)
     if clean.prior != Prior.TAKE.name:
         _draw_learned(column, clean)
     for name in MAIN:
-        column.prop(clean, name)
-    column.prop(clean, "plant_feet")
+        if joints or name not in OF_JOINTS:
+            column.prop(clean, name)
+    column.prop(clean, "plant_feet" if joints else "unswap")
 
 
 def _draw_learned(column: bpy.types.UILayout, clean: bpy.types.PropertyGroup) -> None:
@@ -63,13 +70,17 @@ def _draw_learned(column: bpy.types.UILayout, clean: bpy.types.PropertyGroup) ->
         column.operator(LEARN, text="Learn and Keep", icon="FILE_TICK")
 
 
-def _draw_folded(column: bpy.types.UILayout, clean: bpy.types.PropertyGroup) -> None:
+def _draw_folded(
+    column: bpy.types.UILayout, clean: bpy.types.PropertyGroup, joints: bool
+) -> None:
     header, body = column.panel("mocap_assist_clean_advanced", default_closed=True)
     header.label(text="Advanced")
     if body is None:
         return
     for name in folded(DenoiseSettings):
         body.prop(clean, name)
+    if not joints:
+        return
     feet = body.column()
     feet.active = clean.plant_feet
     for name in folded(PlantSettings):

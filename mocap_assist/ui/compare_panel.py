@@ -3,7 +3,7 @@
 import bpy
 
 from ..scene import history
-from ..selection import selected_armature
+from ..selection import played_result, selected_subject
 from .drawing import exists
 from .preferences import preferences
 
@@ -38,8 +38,7 @@ def _draw_colors(column: bpy.types.UILayout) -> None:
 
 
 def _draw_actions(layout: bpy.types.UILayout, context: bpy.types.Context) -> None:
-    armature = selected_armature(context)
-    played = history.played_result(armature) if armature is not None else None
+    played = played_result(selected_subject(context))
     if played is None:
         return
     raw, _ = history.raw_of(played[0])

@@ -20,7 +20,12 @@ def draw_sentence(
     layout: bpy.types.UILayout, context: bpy.types.Context, text: str, icon: str = "NONE"
 ) -> None:
     """Draw a sentence over as many lines as the sidebar's width asks for."""
-    lines = column_lines(text, sidebar_width(context))
+    draw_lines(layout, text, sidebar_width(context), icon)
+
+
+def draw_lines(layout: bpy.types.UILayout, text: str, width: float, icon: str = "NONE") -> None:
+    """Draw a sentence over as many lines as a width, in pixels at scale 1, asks for."""
+    lines = column_lines(text, width)
     column = layout.column(align=True)
     column.scale_y = 0.8
     for index, line in enumerate(lines):
@@ -32,7 +37,7 @@ def draw_sentence(
 
 
 def column_lines(text: str, width: float) -> list[str]:
-    """Break a sentence into lines for a sidebar of that width."""
+    """Break a sentence into lines for a panel of that width."""
     return wrap(text, max(int((width - BORDER) / LETTER), FEWEST_LETTERS))
 
 

@@ -13,6 +13,7 @@ from ..selection import selected_armature
 ADD, ADD_FILES = "mocap_assist.add_example", "mocap_assist.add_example_files"
 REMOVE = "mocap_assist.remove_example"
 RECORDINGS = "*.bvh;*.amc;*.c3d;*.trc"
+CHANGES_A_LIST = {"INTERNAL", "UNDO"}
 LONGEST_MENU = 30
 
 
@@ -65,22 +66,18 @@ class MOCAP_MT_examples(bpy.types.Menu):
         layout.operator(ADD_FILES, icon="FILE_FOLDER")
 
 
-class _ListButton:
-    """A button that changes the list."""
-
-    bl_options: ClassVar = {"INTERNAL", "UNDO"}
-
-    def change(self, entries: list[str]) -> list[str]:
-        raise NotImplementedError
-
-    def execute(self, context: bpy.types.Context) -> set[str]:
-        clean = context.scene.mocap_assist.clean
-        clean.examples = joined(self.change(listed(clean.examples)))
-        return {"FINISHED"}
+def _examples(context: bpy.types.Context) -> list[str]:
+    return listed(context.scene.mocap_assist.clean.examples)
 
 
-class MOCAP_OT_add_example(_ListButton, bpy.types.Operator):
+def _set_examples(context: bpy.types.Context, entries: list[str]) -> set[str]:
+    context.scene.mocap_assist.clean.examples = joined(entries)
+    return {"FINISHED"}
+
+
+class MOCAP_OT_add_example(bpy.types.Operator):
     bl_idname = ADD
+    bl_options: ClassVar = CHANGES_A_LIST
     bl_label = "Add Action"
     bl_description = "Learn from this action too; it must be clean, and may be of another rig"
 
@@ -88,12 +85,13 @@ class MOCAP_OT_add_example(_ListButton, bpy.types.Operator):
         name="Action", description="Name of the action", options={"SKIP_SAVE"}
     )
 
-    def change(self, entries: list[str]) -> list[str]:
-        return [*entries, self.example]
+    def execute(self, context: bpy.types.Context) -> set[str]:
+        return _set_examples(context, [*_examples(context), self.example])
 
 
-class MOCAP_OT_remove_example(_ListButton, bpy.types.Operator):
+class MOCAP_OT_remove_example(bpy.types.Operator):
     bl_idname = REMOVE
+    bl_options: ClassVar = CHANGES_A_LIST
     bl_label = "Remove Example"
     bl_description = "Do not learn from this one"
 
@@ -101,12 +99,14 @@ class MOCAP_OT_remove_example(_ListButton, bpy.types.Operator):
         name="Example", description="Place in the list", min=0, options={"SKIP_SAVE"}
     )
 
-    def change(self, entries: list[str]) -> list[str]:
-        return [name for place, name in enumerate(entries) if place != self.index]
+    def execute(self, context: bpy.types.Context) -> set[str]:
+        entries = enumerate(_examples(context))
+        return _set_examples(context, [name for place, name in entries if place != self.index])
 
 
-class MOCAP_OT_add_example_files(_ListButton, bpy.types.Operator):
+class MOCAP_OT_add_example_files(bpy.types.Operator):
     bl_idname = ADD_FILES
+    bl_options: ClassVar = CHANGES_A_LIST
     bl_label = "Recordings on Disk..."
     bl_description = "Learn from clean recordings on disk too, of any rig"
 
@@ -120,9 +120,9 @@ class MOCAP_OT_add_example_files(_ListButton, bpy.types.Operator):
         context.window_manager.fileselect_add(self)
         return {"RUNNING_MODAL"}
 
-    def change(self, entries: list[str]) -> list[str]:
-        folder = Path(self.directory)
-        return [*entries, *(str(folder / each.name) for each in self.files if each.name)]
+    def execute(self, context: bpy.types.Context) -> set[str]:
+        chosen = [str(Path(self.directory) / each.name) for each in self.files if each.name]
+        return _set_examples(context, [*_examples(context), *chosen])
 
 
 CLASSES = (

@@ -7,6 +7,7 @@ import bpy
 MANUAL = Path(__file__).with_name("manual.html")
 """The one place that says where the manual is: no network is needed to read it."""
 CHAPTERS = {
+    "bpy.ops.mocap_assist.import_recording*": "import",
     "bpy.ops.mocap_assist.denoise*": "clean",
     "bpy.ops.mocap_assist.learn_patterns*": "clean",
     "bpy.ops.mocap_assist.*_example*": "clean",
@@ -14,6 +15,8 @@ CHAPTERS = {
     "bpy.ops.mocap_assist.jump_to_spot*": "check",
     "bpy.ops.mocap_assist.revert_to_raw*": "compare",
     "bpy.ops.mocap_assist.plant_feet*": "feet",
+    "bpy.ops.mocap_assist.solve_skeleton*": "markers",
+    "bpy.types.mocap_pg_solve*": "markers",
     "bpy.ops.mocap_assist.retarget*": "retarget",
     "bpy.ops.mocap_assist.tick_action*": "retarget",
     "bpy.ops.mocap_assist.find_bones*": "retarget",

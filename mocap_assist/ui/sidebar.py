@@ -6,6 +6,8 @@ from .check_panel import CheckPanel, MOCAP_UL_spots
 from .clean_panel import CleanPanel
 from .compare_panel import ComparePanel
 from .feet_panel import FeetPanel
+from .import_panel import ImportPanel
+from .markers_panel import MarkersPanel
 from .preferences import preferred
 from .retarget_panel import RetargetPanel
 
@@ -23,11 +25,16 @@ def _in_every_editor(body: type) -> list[type[bpy.types.Panel]]:
     ]
 
 
-PANELS = [
-    panel
-    for body in (CleanPanel, CheckPanel, ComparePanel, FeetPanel, RetargetPanel)
-    for panel in _in_every_editor(body)
-]
+BODIES = (
+    ImportPanel,
+    CleanPanel,
+    CheckPanel,
+    ComparePanel,
+    FeetPanel,
+    MarkersPanel,
+    RetargetPanel,
+)
+PANELS = [panel for body in BODIES for panel in _in_every_editor(body)]
 
 
 def register() -> None:

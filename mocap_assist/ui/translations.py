@@ -4,6 +4,11 @@ import bpy
 
 LANGUAGES = ("ja_JP", "zh_HANS", "fr_FR", "es")
 TEXTS = {
+    "Import": ("インポート", "导入", "Importer", "Importar"),
+    "Import Motion Capture": (
+        "モーションキャプチャをインポート", "导入动作捕捉", "Importer la capture de mouvement",
+        "Importar captura de movimiento",
+    ),
     "Clean": ("クリーン", "清理", "Nettoyer", "Limpiar"),
     "Check": ("チェック", "检查", "Vérifier", "Comprobar"),
     "Compare": ("比較", "比较", "Comparer", "Comparar"),

@@ -13,11 +13,12 @@ from typing import Any, NamedTuple
 from ..errors import MocapAssistError
 from ..files import written_whole
 from ..progress import Progress, unwatched
+from .report import draw_task
 from .screen import Screen
 from .verb import Outcome, Task, Verb
 
 RECORD = "mocap_assist.json"
-NOT_OF_THE_RESULT = {"again", "files", "jobs", "json", "output_folder"}
+NOT_OF_THE_RESULT = {"again", "files", "jobs", "json", "output_folder", "report"}
 """Options that do not change what comes out."""
 ONE_THREAD = {"OMP_NUM_THREADS": "1", "OPENBLAS_NUM_THREADS": "1", "MKL_NUM_THREADS": "1"}
 
@@ -87,7 +88,10 @@ def _submitted(
 
 def _attempt(verb: Verb, task: Task, prepared: Any, progress: Progress) -> Finished:
     try:
-        return Finished(task, verb.perform(task, prepared, progress))
+        outcome = verb.perform(task, prepared, progress)
+        if getattr(task.arguments, "report", False):
+            draw_task(task)
+        return Finished(task, outcome)
     except MocapAssistError as error:
         sentence = str(error)
         named = task.subject.name in sentence
@@ -107,13 +111,14 @@ def _die_on_interrupt() -> None:
 
 
 class Made:
-    """What is in an output folder already, and from what it was made.
+    """What is in an output folder already, from what it was made, and what came of it.
 
-    The file `mocap_assist.json` notes, for each output, the verb, its options, and size and
-    date of the files it was made from.
+    The file `mocap_assist.json` notes, for each output, the verb, its options, size and date of
+    the files it was made from, and the figures.
     """
 
     def __init__(self, folder: Path) -> None:
+        self.folder = folder
         self.path = folder / RECORD
         self.notes: dict[str, Any] = {}
         try:
@@ -121,22 +126,30 @@ class Made:
         except (OSError, ValueError):
             notes = None  # None yet, or unreadable: everything is made anew.
         if isinstance(notes, dict):
-            self.notes = notes
+            self.notes = {name: note for name, note in notes.items() if isinstance(note, dict)}
 
     def has(self, task: Task) -> bool:
         """Whether the output is there and would come out the same again."""
-        return (
-            task.target is not None
-            and task.target.exists()
-            and self.notes.get(task.target.name) == note_of(task)
-        )
+        if task.target is None or not task.target.exists():
+            return False
+        note = dict(self.notes.get(self._name(task), {}))
+        note.pop("figures", None)
+        return note == note_of(task)
 
-    def add(self, task: Task) -> None:
+    def figures(self, task: Task) -> dict[str, Any]:
+        """Return the figures of an output that is there."""
+        found = self.notes[self._name(task)].get("figures")
+        return found if isinstance(found, dict) else {}
+
+    def add(self, task: Task, figures: dict[str, Any]) -> None:
         """Note that the output was made."""
         if task.target is not None:
-            self.notes[task.target.name] = note_of(task)
+            self.notes[self._name(task)] = {**note_of(task), "figures": figures}
             with written_whole(self.path) as part:
                 part.write_text(json.dumps(self.notes, indent=1), encoding="utf-8")
+
+    def _name(self, task: Task) -> str:
+        return "" if task.target is None else task.target.relative_to(self.folder).as_posix()
 
 
 def note_of(task: Task) -> dict[str, Any]:

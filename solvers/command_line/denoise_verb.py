@@ -12,7 +12,6 @@ from ..denoising import (
     DenoiseSettings,
     FilterBases,
     FilterBasesSettings,
-    JointLimits,
     PlantSettings,
     compare_quality,
     denoise,
@@ -23,7 +22,7 @@ from ..denoising import (
     plant_feet,
 )
 from ..errors import InvalidMotionError, InvalidSettingError
-from ..motion import Motion, Tracks
+from ..motion import JointLimits, Motion, Tracks
 from ..progress import Progress, within
 from .files import add_reading_options, read, read_all, write
 from .options import arguments_from, settings_from_arguments

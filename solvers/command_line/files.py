@@ -7,12 +7,21 @@ from pathlib import Path
 from ..errors import InvalidFileError
 from ..motion import Motion, Tracks
 from ..progress import Progress, within
-from ..recordings import read_motion_or_tracks, write_bvh, write_c3d, write_trc
+from ..recordings import (
+    format_of,
+    read_motion_or_tracks,
+    recordings_in,
+    write_bvh,
+    write_c3d,
+    write_trc,
+)
 
 MOTIONS = ".bvh"
 POINTS = {".c3d": write_c3d, ".trc": write_trc}
-RECORDED = {MOTIONS: "a skeleton's motion", **dict.fromkeys(POINTS, "points")}
+FOR_MOTIONS = {MOTIONS: "a skeleton's motion"}
+RECORDED = {**FOR_MOTIONS, **dict.fromkeys(POINTS, "points")}
 """Endings of recordings that can be written, and what each is for."""
+POINTS_BY_DEFAULT = ".trc"
 LEARNED = {".npz": "learned patterns"}
 
 
@@ -32,10 +41,45 @@ def read(path: Path, arguments: argparse.Namespace, progress: Progress) -> Motio
     return read_motion_or_tracks(path, scale=arguments.scale, progress=progress)
 
 
+def found_in(paths: Sequence[Path], not_in: Path | None = None) -> list[tuple[Path, Path]]:
+    """Return every file, and in place of a folder the recordings in it and below.
+
+    Parameters
+    ----------
+    paths : sequence of Path
+    not_in : Path, optional
+        A folder that is passed over: the one to write to.
+
+    Returns
+    -------
+    list of (Path, Path)
+        The file, and its place within the folder that was named.
+
+    Raises
+    ------
+    InvalidFileError
+        A folder has no recordings.
+    """
+    found = []
+    for path in paths:
+        if not path.is_dir():
+            found.append((path, Path(path.name)))
+            continue
+        inside = [
+            file for file in recordings_in(path)
+            if not_in is None or not_in.resolve() not in file.resolve().parents
+        ]  # fmt: skip
+        if not inside:
+            raise InvalidFileError(f"There is no recording in the folder {path}.")
+        found += [(file, file.relative_to(path)) for file in inside]
+    return found
+
+
 def read_all(
     paths: Sequence[Path], arguments: argparse.Namespace, progress: Progress
 ) -> list[Motion | Tracks]:
-    """Read recordings with the options of `add_reading_options`."""
+    """Read recordings, and all in folders, with the options of `add_reading_options`."""
+    paths = [path for path, _ in found_in(paths)]
     share = 1.0 / len(paths)
     return [
         read(path, arguments, within(progress, share * number, share * (number + 1)))
@@ -51,10 +95,13 @@ def write(recording: Motion | Tracks, path: Path | None, progress: Progress) -> 
     elif isinstance(recording, Tracks) and path and ending in POINTS:
         POINTS[ending](recording, path, progress=progress)
     else:
-        kind, fit = ("A skeleton's motion", MOTIONS)
+        kind, fit, else_ = ("A skeleton's motion", MOTIONS, "")
         if isinstance(recording, Tracks):
             kind, fit = ("Points without a skeleton", " or ".join(POINTS))
-        raise InvalidFileError(f"{kind} cannot be written as {path}; end the name in {fit}.")
+            else_ = ", or make a skeleton of labelled markers with the verb solve"
+        raise InvalidFileError(
+            f"{kind} cannot be written as {path}; end the name in {fit}{else_}."
+        )
 
 
 def refuse_target(path: Path, endings: Mapping[str, str] = RECORDED) -> None:
@@ -70,6 +117,12 @@ def refuse_target(path: Path, endings: Mapping[str, str] = RECORDED) -> None:
 
 
 def ending_for(source: Path) -> str:
-    """Return the ending of what is made from a file, judging by its name."""
+    """Return the ending of what is made from a file: its own, or one that fits it."""
     ending = source.suffix.lower()
-    return ending if ending in POINTS else MOTIONS
+    if ending in RECORDED:
+        return ending
+    try:
+        known = format_of(source)
+    except InvalidFileError:  # Whoever reads it will say so.
+        known = None
+    return MOTIONS if known is None or known.has_skeleton else POINTS_BY_DEFAULT

@@ -4,16 +4,17 @@ import argparse
 import json
 import os
 import sys
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
 from ..errors import InvalidSettingError, MocapAssistError
 from .batch import RECORD, Finished, Made, work_on
 from .options import SentenceParser
+from .report import PAGE, Entry, draw_task, has_picture, write_report
 from .screen import Screen
 from .tasks import tasks_of
-from .verb import Makes, Outcome, Verb
+from .verb import Makes, Outcome, Task, Verb
 
 FAILED = 2
 INTERRUPTED = 130
@@ -69,9 +70,12 @@ def _parser(verbs: Mapping[str, Verb], prog: str) -> SentenceParser:
 
 
 def _add_common_options(parser: argparse.ArgumentParser, makes: Makes) -> None:
-    meaning = "Recordings to read"
+    meaning = "Recordings to read, or folders of them"
     if makes is Makes.FILES:
-        meaning = "The recording and the file to write; with --output-folder any recordings"
+        meaning = (
+            "The recording and the file to write; with --output-folder any recordings, and"
+            " folders of them"
+        )
     parser.add_argument("files", nargs="+", type=Path, metavar="FILE", help=meaning)
     if makes is Makes.FILES:
         parser.add_argument(
@@ -83,6 +87,10 @@ def _add_common_options(parser: argparse.ArgumentParser, makes: Makes) -> None:
         parser.add_argument(
             "--again", action="store_true", help="Redo also what is there already"
         )
+        parser.add_argument(
+            "--report", action="store_true",
+            help=f"Write DIR/{PAGE} and report.json about the whole batch, with pictures",
+        )  # fmt: skip
     if makes is not Makes.ONE_FILE:
         parser.add_argument(
             "--jobs", type=int, default=1, metavar="N",
@@ -99,25 +107,47 @@ def _work(verb: Verb, arguments: argparse.Namespace, screen: Screen) -> int:
     n_jobs = getattr(arguments, "jobs", 1)
     if n_jobs < 1:
         raise InvalidSettingError(f"jobs is {n_jobs}; it must be at least 1.")
+    folder: Path | None = getattr(arguments, "output_folder", None)
+    reporting = getattr(arguments, "report", False)
+    if folder is None and reporting:
+        raise InvalidSettingError(
+            "A report needs a folder: say which with --output-folder DIR."
+        )
     tasks = tasks_of(verb, arguments)
-    folder = getattr(arguments, "output_folder", None)
     made = None if folder is None else Made(folder)
-    if made is not None and not arguments.again:
-        there = [task for task in tasks if made.has(task)]
-        for task in there:
-            _report(Finished(task, Outcome("Already made.", {"already_made": True})))
-        tasks = [task for task in tasks if task not in there]
-    failures = 0
+    entries = {task.sources: Entry(task, None) for task in tasks}
+    try:
+        for finished in _worked(verb, tasks, made, n_jobs, screen):
+            figures = finished.outcome.figures if finished.outcome else None
+            entry = Entry(finished.task, figures, finished.failure)
+            entries[finished.task.sources] = entry
+            _report(finished)
+    finally:
+        if folder is not None and reporting:
+            write_report(folder, arguments.verb, list(entries.values()))
+    return FAILED if any(entry.failure for entry in entries.values()) else 0
+
+
+def _worked(
+    verb: Verb, tasks: Sequence[Task], made: Made | None, n_jobs: int, screen: Screen
+) -> Iterator[Finished]:
+    """Yield what is there already, then each task as it is finished, and note it."""
+    arguments = tasks[0].arguments
+    there = [] if made is None or arguments.again else [t for t in tasks if made.has(t)]
+    for task in there:
+        if arguments.report and not has_picture(task):
+            draw_task(task)
+        figures = {} if made is None else made.figures(task)
+        yield Finished(task, Outcome("Already made.", {**figures, "already_made": True}))
+    tasks = [task for task in tasks if task not in there]
     prepared = verb.prepare(arguments, screen.progress) if tasks else None
     for finished in work_on(verb, tasks, prepared, n_jobs, screen):
         screen.clear()
         if finished.outcome is None:
-            failures += 1
             screen.say(finished.failure)
         elif made is not None:
-            made.add(finished.task)
-        _report(finished)
-    return FAILED if failures else 0
+            made.add(finished.task, finished.outcome.figures)
+        yield finished
 
 
 def _report(finished: Finished) -> None:

@@ -5,7 +5,15 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from ..errors import InvalidSettingError
-from .files import LEARNED, ending_for, refuse_target
+from .files import (
+    FOR_MOTIONS,
+    LEARNED,
+    MOTIONS,
+    RECORDED,
+    ending_for,
+    found_in,
+    refuse_target,
+)
 from .verb import Makes, Task, Verb
 
 
@@ -21,15 +29,16 @@ def tasks_of(verb: Verb, arguments: argparse.Namespace) -> list[Task]:
     """
     files: list[Path] = arguments.files
     if verb.makes is Makes.WORDS:
-        return [Task((path,), None, arguments) for path in files]
+        return [Task((path,), None, arguments) for path, _ in found_in(files)]
     if verb.makes is Makes.ONE_FILE:
-        _refuse_reading_and_writing(files, [arguments.output])
+        sources = tuple(path for path, _ in found_in(files))
+        _refuse_reading_and_writing(sources, [arguments.output])
         refuse_target(arguments.output, LEARNED)
-        return [Task(tuple(files), arguments.output, arguments)]
-    return [Task((path,), target, arguments) for path, target in _pairs(arguments)]
+        return [Task(sources, arguments.output, arguments)]
+    return [Task((path,), target, arguments) for path, target in _pairs(verb, arguments)]
 
 
-def _pairs(arguments: argparse.Namespace) -> list[tuple[Path, Path]]:
+def _pairs(verb: Verb, arguments: argparse.Namespace) -> list[tuple[Path, Path]]:
     """Return which file is written from which."""
     files: list[Path] = arguments.files
     folder: Path | None = arguments.output_folder
@@ -41,15 +50,22 @@ def _pairs(arguments: argparse.Namespace) -> list[tuple[Path, Path]]:
             )
         pairs = [(files[0], files[1])]
     else:
-        pairs = [(path, folder / f"{path.stem}{ending_for(path)}") for path in files]
-    _refuse_reading_and_writing(*zip(*pairs, strict=True))
-    if folder is not None:
         if folder.exists() and not folder.is_dir():
             raise InvalidSettingError(f"{folder} is a file; name a folder to write to.")
-        folder.mkdir(parents=True, exist_ok=True)
+        pairs = [
+            (path, folder / place.with_suffix(_ending(verb, path)))
+            for path, place in found_in(files, not_in=folder)
+        ]
+    _refuse_reading_and_writing(*zip(*pairs, strict=True))
     for _, target in pairs:
-        refuse_target(target)
+        if folder is not None:
+            target.parent.mkdir(parents=True, exist_ok=True)
+        refuse_target(target, FOR_MOTIONS if verb.writes_motions else RECORDED)
     return pairs
+
+
+def _ending(verb: Verb, source: Path) -> str:
+    return MOTIONS if verb.writes_motions else ending_for(source)
 
 
 def _refuse_reading_and_writing(sources: Sequence[Path], targets: Sequence[Path]) -> None:

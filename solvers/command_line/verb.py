@@ -61,5 +61,7 @@ class Verb:
     perform: Callable[[Task, Any, Progress], Outcome]
     """From a task and what was prepared."""
     makes: Makes = Makes.FILES
+    writes_motions: bool = False
+    """Whether it makes skeletons' motions, whatever it reads."""
     prepare: Callable[[argparse.Namespace, Progress], Any] = nothing_to_prepare
     """Its result serves all tasks, and must be fit to be sent to another process."""

@@ -21,6 +21,7 @@ from .retarget_verbs import (
     perform_unbake,
     read_target,
 )
+from .solve_verb import add_solve_options, perform_solve
 from .verb import Makes, Outcome, Task, Verb
 
 
@@ -86,6 +87,12 @@ VERBS = {
         _quality_options,
         _quality,
         Makes.WORDS,
+    ),
+    "solve": Verb(
+        "Solve the motion of a skeleton from the labelled markers of optical takes.",
+        add_solve_options,
+        perform_solve,
+        writes_motions=True,
     ),
     "convert": Verb(
         "Write recordings of any known format as BVH, or as C3D or TRC where they are points.",

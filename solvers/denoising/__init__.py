@@ -19,7 +19,6 @@ from .filter_bases import (
     learn_filter_bases,
     load_filter_bases,
 )
-from .joint_limits import JointLimits, load_joint_limits
 from .keep_within import keep_within, limit_excess
 from .learn_limits import JointLimitsSettings, learn_joint_limits
 from .plant_feet import Planted, PlantSettings, plant_feet
@@ -32,7 +31,6 @@ __all__ = [
     "Denoised",
     "FilterBases",
     "FilterBasesSettings",
-    "JointLimits",
     "JointLimitsSettings",
     "Method",
     "PlantSettings",
@@ -49,7 +47,6 @@ __all__ = [
     "learn_joint_limits",
     "limit_excess",
     "load_filter_bases",
-    "load_joint_limits",
     "measure_quality",
     "plant_feet",
 ]

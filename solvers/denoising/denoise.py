@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..errors import InvalidMotionError
-from ..motion import Motion, Tracks
+from ..motion import JointLimits, Motion, Tracks
 from ..progress import Progress, unwatched, within
 from ..settings import Settings, setting
 from .channels import CENTIMETRES, Channels
@@ -19,7 +19,6 @@ from .denoise_groups import estimate_in_groups
 from .fill_markers import FilledMarkers, fill_markers
 from .filter_bases import FilterBases
 from .impossible_turns import impossible_turns
-from .joint_limits import JointLimits
 from .keep_within import keep_within
 from .published import filter_as_published
 
@@ -59,7 +58,8 @@ class Denoised:
     """A clean recording, and how sure each part of it is."""
 
     recording: Motion | Tracks
-    """Same joints or points, same frames; no NaN is left."""
+    """Same joints or points, same frames; no NaN is left, but of points that neither the take
+    nor the examples ever show."""
     outliers: NDArray[np.bool_]
     """Where the input was taken for a spike, shape (n_frames, n_joints)."""
     confidence: Array
@@ -180,14 +180,27 @@ def _denoised_piece(
     cleaned = _kept_where_unchanged(piece, cleaned, settings)
     if limits is not None and isinstance(cleaned, Motion):
         cleaned = keep_within(cleaned, limits)
+    confidence = _confidence(_worst(piece, channels, estimate.deviation), filled)
+    if isinstance(cleaned, Tracks):
+        unknown = _never_shown(cleaned.names, piece, bases)
+        confidence[:, unknown] = 0.0
+        cleaned = cleaned.with_positions(np.where(unknown[:, None], np.nan, cleaned.positions))
     return Denoised(
         cleaned,
         (_worst(piece, channels, spikes) > 0.0) & _seen(piece),
-        _confidence(_worst(piece, channels, estimate.deviation), filled),
+        confidence,
         estimate.iterations,
         estimate.converged,
         used,
     )
+
+
+def _never_shown(
+    names: Sequence[str], piece: Motion | Tracks, bases: FilterBases | None
+) -> NDArray[np.bool_]:
+    """Tell which points neither this piece nor the examples show, shape (n_points,)."""
+    told = bases.reference_of if bases else {}
+    return np.asarray(~_seen(piece).any(axis=0) & [name not in told for name in names])
 
 
 def _filled(

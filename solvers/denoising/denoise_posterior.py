@@ -36,6 +36,9 @@ LOOKS = (8.0, 4.0, 2.0)
 FEW = 4
 """Patterns of gaps that are solved for again whenever the prior adapts."""
 MOST_LEVERAGE = 0.98
+FARTHEST, BEYOND = 4.0, 0.5
+"""How far an estimate may leave what was seen: in standard deviations of the prior, or in
+extents of what was seen."""
 NOISE_BOUNDS = (0.5, 1.1)
 """Range, relative to the first guess, in which the noise is estimated."""
 
@@ -121,6 +124,7 @@ class _Rounds:
         self.joints, self.prior = joints, prior.at_most(windows.length)
         self.use(windows)
         self.estimate, self.mean = start, prior.mean
+        self.bounds = _bounds(start, prior)
         self.first_guess = self.noise = noise
         self.covariance = expected(self.prior, windows.length)
         self.filters = list[Filter]()
@@ -180,7 +184,9 @@ class _Rounds:
         """Estimate again, and how noise and prior are; return the root mean square change."""
         drawn = self.estimate + self.weight * (self.observed - self.estimate) - self.mean
         sweep = swept(drawn, self.filters, self.windows, with_moments=adapts)
-        before, self.estimate = self.estimate, sweep.total / self.total_weight + self.mean
+        # Where nearly all is missing, windows that lean on each other can drift without end.
+        found = sweep.total / self.total_weight + self.mean
+        before, self.estimate = self.estimate, np.clip(found, *self.bounds)
         if adapts:
             shift = self.estimate.mean(axis=0) - self.mean
             self.mean = self.mean + self.prior.follows * shift
@@ -206,6 +212,14 @@ class _Rounds:
             iterations,
             converged,
         )
+
+
+def _bounds(start: Array, prior: WavePrior) -> tuple[Array, Array]:
+    """Return how low and how high each channel may be estimated, shape (n_channels,)."""
+    low = np.minimum(start.min(axis=0), prior.mean)
+    high = np.maximum(start.max(axis=0), prior.mean)
+    reach = np.maximum(BEYOND * (high - low), FARTHEST * prior.deviation)
+    return low - reach, high + reach
 
 
 def _inlier_probability(error: Array, spread: Array, rate: float | Array) -> Array:

@@ -3,8 +3,7 @@
 import numpy as np
 from numpy.typing import NDArray
 
-from ..motion import Motion
-from .joint_limits import JointLimits
+from ..motion import JointLimits, Motion
 from .keep_within import limit_excess
 from .spikes import runs
 

@@ -10,6 +10,7 @@ from ..errors import InvalidSettingError
 from ..motion import Motion, Skeleton
 from ..motion.canonical import t_pose_alignment
 from ..motion.humanoid import HumanoidMap, find_humanoid_map
+from ..motion.joint_limits import ROTATION_VECTOR, JointLimits
 from ..motion.rotations import (
     euler_from_quaternion,
     inverse,
@@ -18,7 +19,6 @@ from ..motion.rotations import (
     quaternion_from_rotation_vector,
     rotation_vector_from_quaternion,
 )
-from .joint_limits import ROTATION_VECTOR, JointLimits
 
 Array = NDArray[np.float64]
 

@@ -10,6 +10,7 @@ from ..errors import InvalidMotionError
 from ..motion import Motion
 from ..motion.canonical import canonical_rotations
 from ..motion.humanoid import HumanoidMap, find_humanoid_map
+from ..motion.joint_limits import ROTATION_VECTOR, JointLimits
 from ..motion.rotations import (
     inverse,
     mean_rotation,
@@ -19,7 +20,6 @@ from ..motion.rotations import (
 )
 from ..progress import Progress, unwatched
 from ..settings import Settings, setting
-from .joint_limits import ROTATION_VECTOR, JointLimits
 
 Array = NDArray[np.float64]
 Key = tuple[bool, str]

@@ -103,6 +103,12 @@ class WavePrior:
         return replace(self, slow=slow, fast=fast, smooth=replace(self.smooth, weights=weights))
 
     @property
+    def deviation(self) -> Array:
+        """Standard deviation of a frame from the mean, shape (n_channels,)."""
+        variance = np.einsum("kckc->c", self.slow) + self.fast.sum(axis=0)
+        return np.asarray(np.sqrt(variance / (self.n_slow + len(self.fast))))
+
+    @property
     def matrix(self) -> Array:
         """The covariance of the slow waves as a square matrix, waves outermost."""
         size = self.n_slow * len(self.mean)

@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..errors import InvalidMotionError
-from ..motion import Motion, Tracks, forward_kinematics
+from ..motion import JointLimits, Motion, Tracks, forward_kinematics
 from ..motion.contacts import contacts_of_points, detect_contacts
 from ..motion.humanoid import HumanoidMap
 from ..progress import Progress, unwatched, within
@@ -17,7 +17,6 @@ from .bone_drift import BoneDrift, bone_drifts
 from .cuts import find_cuts
 from .feet import SIDES, foot_joints
 from .foot_slide import FootSlide, foot_slide
-from .joint_limits import JointLimits
 from .keep_within import limit_excess
 from .quality_figures import quality_figures
 from .quality_report import quality_report

@@ -21,10 +21,13 @@ from .depth_sensors import JOINTS, Sensor, joint_parents
 from .humanoid import HUMANOID_ROLES, HumanoidMap, find_humanoid_map
 from .humanoid_names import roles_by_name
 from .humanoid_presets import read_humanoid_map, write_humanoid_map
+from .joint_limits import JointLimits, load_joint_limits
 from .joint_recording import JointRecording
 from .kinematics import WorldPoses, forward_kinematics, local_rotations, world_poses
 from .limb_ik import ReachSettings, reach
 from .motion import Motion
+from .points_motion import motion_from_points
+from .points_skeleton import skeleton_from_points
 from .resampling import resample
 from .skeleton import Skeleton
 from .tracks import Tracks
@@ -37,6 +40,7 @@ __all__ = [
     "Alignment",
     "ContactSettings",
     "HumanoidMap",
+    "JointLimits",
     "JointRecording",
     "Motion",
     "ReachSettings",
@@ -56,11 +60,14 @@ __all__ = [
     "joint_parents",
     "leg_length",
     "linear_velocities",
+    "load_joint_limits",
     "local_rotations",
+    "motion_from_points",
     "reach",
     "read_humanoid_map",
     "resample",
     "roles_by_name",
+    "skeleton_from_points",
     "t_pose_alignment",
     "transfer_motion",
     "warp",

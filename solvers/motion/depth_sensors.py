@@ -5,6 +5,7 @@ of the SDK 2.0 (JointType), k4abttypes.h of the Azure Kinect Body Tracking SDK 1
 (k4abt_joint_id_t), whose names are spelt here as the other two are.
 """
 
+import re
 from collections.abc import Sequence
 from enum import Enum
 
@@ -74,6 +75,32 @@ JOINTS = {
     Sensor.AZURE_KINECT: tuple(AZURE_KINECT),
 }
 """Names of the joints of each sensor, in the order of the tracker's own numbers."""
+
+# Ways from the parent to a joint of the left side, or of the middle, in a T-pose that faces -Y.
+UP, DOWN, OUT = (0.0, 0.0, 1.0), (0.0, 0.0, -1.0), (1.0, 0.0, 0.0)
+T_POSE = {
+    "HipLeft": (1.0, 0.0, -0.5), "LUpLeg": (1.0, 0.0, -0.5),
+    "KneeLeft": DOWN, "AnkleLeft": DOWN, "LLowLeg": DOWN, "LFoot": DOWN,
+    "FootLeft": (0.0, -1.0, -0.5), "LToes": (0.0, -1.0, -0.5),
+    "ClavicleLeft": (0.4, 0.0, 1.0), "LCollar": (0.4, 0.0, 1.0),
+    "ShoulderLeft": OUT, "ElbowLeft": OUT, "WristLeft": OUT, "HandLeft": OUT,
+    "HandTipLeft": OUT, "LUpArm": OUT, "LForeArm": OUT, "LHand": OUT,
+    "ThumbLeft": (0.6, -0.8, 0.0),
+    "Nose": (0.0, -1.0, 0.2), "EyeLeft": (0.3, -0.9, 0.5), "EarLeft": (0.8, -0.1, 0.3),
+}  # fmt: skip
+
+
+def rest_direction(name: str) -> tuple[float, float, float]:
+    """Return the way from its parent to a joint in a T-pose that faces -Y, of length 1.
+
+    What is not known by name, such as the joints of the spine, goes up.
+    """
+    left = (
+        name.replace("Right", "Left") if "Right" in name else re.sub("^R(?=[A-Z])", "L", name)
+    )
+    x, y, z = T_POSE.get(left, UP)
+    length = (x * x + y * y + z * z) ** 0.5
+    return (x if left == name else -x) / length, y / length, z / length
 
 
 def joint_parents(names: Sequence[str]) -> tuple[int, ...]:

@@ -1,14 +1,15 @@
-"""Strips of stick figures: several motions over each other, moment after moment."""
+"""Strips of stick figures: several recordings over each other, moment after moment."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass
 from enum import Enum
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from ..errors import InvalidMotionError
-from ..motion import Motion, Skeleton, forward_kinematics
+from ..motion import Motion, Skeleton, Tracks, forward_kinematics
 from ..motion.rotations import rotate
 from ..settings import Settings, setting
 from .canvas import FAINT, INK, Canvas, Color, paler, series_colors
@@ -51,22 +52,36 @@ class StickFigureSettings(Settings):
     )
 
 
+class _Figure(NamedTuple):
+    """A recording as it is drawn."""
+
+    points: Array
+    """Shape (n_moments, n_points, 3), metres."""
+    bones: tuple[tuple[int, int], ...]
+    """Joint and parent; none where the points have no skeleton."""
+    is_left: NDArray[np.bool_]
+    stature: float
+    head: tuple[int, int] | None
+    """The joint that rests highest, and its parent, of whoever has as many joints as a body."""
+
+
 def draw_stick_figures(
-    motions: Mapping[str, Motion],
+    recordings: Mapping[str, Motion | Tracks],
     settings: StickFigureSettings = StickFigureSettings(),
     *,
     frames: range | None = None,
 ) -> Picture:
-    """Draw motions over each other, the last one on top, at evenly spaced moments.
+    """Draw recordings over each other, the last one on top, at evenly spaced moments.
 
     Each moment stands in its own place from left to right, with the floor (z = 0) as a line.
-    The limbs of the left side (+X in the rest pose) are paler. A joint that is not observed,
-    and what hangs on it, is not drawn. The onlooker moves and turns with the last motion, for
-    which there is place; figures of the others may reach beyond theirs.
+    The limbs of the left side (+X in the rest pose) are paler; points without a skeleton are
+    dots. A joint that is not observed, and what hangs on it, is not drawn. The onlooker moves
+    and turns with the last recording, for which there is place; figures of the others may reach
+    beyond theirs.
 
     Parameters
     ----------
-    motions : mapping from label to Motion
+    recordings : mapping from label to Motion or Tracks
         All with the same number of frames; labels and colours go into the legend.
     settings : StickFigureSettings
     frames : range, optional
@@ -79,34 +94,28 @@ def draw_stick_figures(
     Raises
     ------
     InvalidMotionError
-        There is nothing to draw, or the motions do not have the same number of frames.
+        There is nothing to draw, or the recordings do not have the same number of frames.
     """
-    shown = _shown_frames(motions, settings.n_figures, frames)
-    last = list(motions.values())[-1]
+    shown = _shown_frames(recordings, settings.n_figures, frames)
+    last = list(recordings.values())[-1]
     center, heading = _onlooker(last, shown)
-    moments = [
-        motion.with_poses(motion.rotations[shown], motion.root_positions[shown])
-        for motion in motions.values()
-    ]
-    points = [
-        project(forward_kinematics(motion).positions - center, heading, settings.view)
-        for motion in moments
-    ]
-    tall = max(_stature(motion.skeleton) for motion in motions.values())
+    figures = [_figure(recording, shown) for recording in recordings.values()]
+    spots = [project(each.points - center, heading, settings.view) for each in figures]
+    tall = max(figure.stature for figure in figures)
     scale = settings.height / tall
-    half, top = _extent(points[-1], tall)
+    half, top = _extent(spots[-1], tall)
     place = max(2.0 * half * scale, NARROWEST * settings.height) + MARGIN
     floor = TOP + MARGIN + top * scale
     canvas = Canvas(max(place * len(shown), 360.0) + 2 * MARGIN, floor + BOTTOM + MARGIN)
-    canvas.legend(MARGIN, TOP / 2.0, list(motions))
+    canvas.legend(MARGIN, TOP / 2.0, list(recordings))
     canvas.line([(MARGIN, floor), (MARGIN + place * len(shown), floor)], FAINT, 1.0)
     for moment, frame in enumerate(shown):
         middle = MARGIN + (moment + 0.5) * place
-        canvas.text(middle, floor + 18.0, f"{frame * last.dt:.2f} s", INK, "mm")
-        colors = series_colors(len(motions))
-        for motion, spots, color in zip(motions.values(), points, colors, strict=True):
-            spot = spots[moment] * (scale, -scale, 1.0) + (middle, floor, 0.0)
-            _draw_figure(canvas, motion, spot, color, settings.height)
+        canvas.text(middle, floor + 18.0, f"{frame / last.frame_rate:.2f} s", INK, "mm")
+        colors = series_colors(len(recordings))
+        for figure, seen, color in zip(figures, spots, colors, strict=True):
+            spot = seen[moment] * (scale, -scale, 1.0) + (middle, floor, 0.0)
+            _draw_figure(canvas, figure, spot, color, settings.height)
     return canvas.picture()
 
 
@@ -132,9 +141,9 @@ def project(positions: Array, heading: Array, view: View) -> Array:
 
 
 def _shown_frames(
-    motions: Mapping[str, Motion], n_figures: int, frames: range | None
+    recordings: Mapping[str, Motion | Tracks], n_figures: int, frames: range | None
 ) -> NDArray[np.intp]:
-    lengths = {motion.n_frames for motion in motions.values()}
+    lengths = {recording.n_frames for recording in recordings.values()}
     if len(lengths) != 1:
         raise InvalidMotionError(
             f"The motions to draw must be as long as each other, not {sorted(lengths)} frames."
@@ -147,11 +156,28 @@ def _shown_frames(
     return np.array([within[round(step)] for step in steps], dtype=np.intp)
 
 
-def _onlooker(motion: Motion, shown: NDArray[np.intp]) -> tuple[Array, Array]:
+def _figure(recording: Motion | Tracks, shown: NDArray[np.intp]) -> _Figure:
+    if isinstance(recording, Tracks):
+        points = recording.positions[shown]
+        sides = np.zeros(recording.n_points, dtype=np.bool_)
+        return _Figure(points, (), sides, _height_of_points(recording), None)
+    skeleton = recording.skeleton
+    top = int(np.argmax(skeleton.rest_positions[:, 2]))
+    moments = recording.with_poses(recording.rotations[shown], recording.root_positions[shown])
+    stature = _stature(skeleton)
+    return _Figure(
+        forward_kinematics(moments).positions,
+        tuple((joint, parent) for joint, parent in enumerate(skeleton.parents) if parent >= 0),
+        skeleton.rest_positions[:, 0] > SIDEWAYS * stature,
+        stature,
+        (top, skeleton.parents[top]) if skeleton.n_joints >= BODY else None,
+    )
+
+
+def _onlooker(recording: Motion | Tracks, shown: NDArray[np.intp]) -> tuple[Array, Array]:
     """Where the body is on the floor, shape (n, 1, 3), and which way it faces, shape (n,)."""
-    place = motion.root_positions
-    facing = rotate(motion.rotations[:, 0], [0.0, -1.0, 0.0])[:, :2]
-    reach = round(STILL / 2.0 * motion.frame_rate)
+    place, facing = _place_and_facing(recording)
+    reach = round(STILL / 2.0 * recording.frame_rate)
     center, heading = np.zeros((len(shown), 1, 3)), np.zeros(len(shown))
     for moment, frame in enumerate(shown):
         near = slice(max(frame - reach, 0), frame + reach + 1)
@@ -165,9 +191,33 @@ def _onlooker(motion: Motion, shown: NDArray[np.intp]) -> tuple[Array, Array]:
     return center, heading
 
 
+def _place_and_facing(recording: Motion | Tracks) -> tuple[Array, Array]:
+    """Return the body's place, shape (n_frames, 3), and where it faces, (n_frames, 2).
+
+    Points without a skeleton face the way that they go from the first frame to the last.
+    """
+    if isinstance(recording, Motion):
+        facing = rotate(recording.rotations[:, 0], [0.0, -1.0, 0.0])
+        return recording.root_positions, facing[:, :2]
+    seen = recording.visible[..., None]
+    counts = np.maximum(seen.sum(axis=1), 1)
+    place = np.where(seen, recording.positions, 0.0).sum(axis=1) / counts
+    place[~seen.any(axis=(1, 2))] = np.nan
+    known = place[np.isfinite(place[:, 0])]
+    way = known[-1] - known[0] if len(known) else np.zeros(3)
+    return place, np.tile(way[:2], (len(place), 1))
+
+
 def _stature(skeleton: Skeleton) -> float:
     """Greatest extent of the rest pose along an axis, metres; 1 for a single point."""
     return float(np.ptp(skeleton.rest_positions, axis=0).max()) or 1.0
+
+
+def _height_of_points(tracks: Tracks) -> float:
+    """How high most points are spread, metres; 1 where they are all level."""
+    heights = tracks.positions[tracks.visible][:, 2]
+    spread = np.quantile(heights, [0.01, 0.99]) if len(heights) else np.zeros(2)
+    return float(np.ptp(spread)) or 1.0
 
 
 def _extent(points: Array, tall: float) -> tuple[float, float]:
@@ -178,18 +228,16 @@ def _extent(points: Array, tall: float) -> tuple[float, float]:
 
 
 def _draw_figure(
-    canvas: Canvas, motion: Motion, spots: Array, color: Color, height: float
+    canvas: Canvas, figure: _Figure, spots: Array, color: Color, height: float
 ) -> None:
-    """Bones from the farthest to the nearest."""
-    skeleton = motion.skeleton
+    """Bones from the farthest to the nearest; points where there are none."""
     width = max(height / 70.0, 1.5)
-    is_left = skeleton.rest_positions[:, 0] > SIDEWAYS * _stature(skeleton)
-    bones = [(joint, parent) for joint, parent in enumerate(skeleton.parents) if parent >= 0]
     depth = np.nan_to_num(spots[:, 2])
-    for joint, parent in sorted(bones, key=lambda bone: -depth[list(bone)].sum()):
-        shade = paler(color, 0.55) if is_left[joint] else color
+    for joint, parent in sorted(figure.bones, key=lambda bone: -depth[list(bone)].sum()):
+        shade = paler(color, 0.55) if figure.is_left[joint] else color
         canvas.line(spots[[parent, joint], :2], shade, width)
-    if skeleton.n_joints >= BODY:
-        top = int(np.argmax(skeleton.rest_positions[:, 2]))
-        middle = spots[[top, skeleton.parents[top]], :2].mean(axis=0)
-        canvas.dot(middle, color, height / 20.0)
+    if not figure.bones:
+        for spot in spots[np.isfinite(spots).all(axis=1)]:
+            canvas.dot(spot[:2], color, width)
+    if figure.head is not None:
+        canvas.dot(spots[list(figure.head), :2].mean(axis=0), color, height / 20.0)

@@ -13,6 +13,7 @@
 """
 
 from .acclaim import read_acclaim
+from .acclaim_limits import read_acclaim_limits
 from .azure_csv import read_azure_csv
 from .azure_json import read_azure_json
 from .bvh import read_bvh
@@ -27,13 +28,20 @@ from .joints import read_joints, write_joints
 from .kinect_csv import read_kinect_csv
 from .msr_action3d import read_msr_action3d
 from .ntu_skeleton import read_ntu_skeleton
-from .read_recording import read_motion_or_tracks, read_recording
+from .read_recording import (
+    format_of,
+    read_motion_or_tracks,
+    read_recording,
+    recordings_in,
+)
 from .trc import read_trc
 from .trc_writing import write_trc
 from .ui_prmd import read_ui_prmd, read_ui_prmd_pair
 
 __all__ = [
+    "format_of",
     "read_acclaim",
+    "read_acclaim_limits",
     "read_azure_csv",
     "read_azure_json",
     "read_bvh",
@@ -51,6 +59,7 @@ __all__ = [
     "read_trc",
     "read_ui_prmd",
     "read_ui_prmd_pair",
+    "recordings_in",
     "write_bvh",
     "write_c3d",
     "write_joint_csv",

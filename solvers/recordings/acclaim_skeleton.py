@@ -1,5 +1,6 @@
 """Read Acclaim skeletons (ASF): the bones that the numbers of an AMC file turn."""
 
+import re
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from pathlib import Path
@@ -16,6 +17,7 @@ from .text import read_bytes
 
 INCH = 0.0254
 ROOT = "root"
+BRACKETS = re.compile(r"\(([^()]*)\)")
 CHANNELS = {f"{kind}{axis}" for kind in "rt" for axis in "xyz"} | {"l"}
 
 
@@ -32,6 +34,8 @@ class AcclaimBone:
     """Axis that is turned about first, second, third."""
     channels: tuple[str, ...]
     """What the AMC file records of it, such as `rx`, `rz`."""
+    limits: Mapping[str, tuple[float, float]]
+    """Lowest and highest of these channels, where the file says them, in its own units."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -103,6 +107,8 @@ class _SkeletonFile:
                 entries = {}
             elif keyword == "end":
                 yield entries
+            elif keyword.startswith("("):  # A bone has a line of limits for each channel.
+                entries["limits"] = entries.get("limits", []) + words
             else:
                 entries[keyword] = words[1:]
 
@@ -125,7 +131,26 @@ class _SkeletonFile:
             self._refuse(
                 f"{shown(name)} has the degrees of freedom {shown(' '.join(channels))!r}"
             )
-        return AcclaimBone(name, direction * length, frame, order, channels)
+        limits = self._limits(name, entries.get("limits", []), channels)
+        return AcclaimBone(name, direction * length, frame, order, channels, limits)
+
+    def _limits(
+        self, name: str, words: list[str], channels: tuple[str, ...]
+    ) -> dict[str, tuple[float, float]]:
+        """Return what stands in the brackets, in the order of the channels."""
+        pairs = BRACKETS.findall(" ".join(words))
+        if len(pairs) > len(channels):
+            self._refuse(f"{shown(name)} has more limits than degrees of freedom")
+        found = {}
+        for channel, pair in zip(channels, pairs, strict=False):
+            try:
+                low, high = (float(bound) for bound in pair.replace(",", " ").split())
+            except ValueError:
+                low, high = np.inf, -np.inf
+            if not low <= high:
+                self._refuse(f"{shown(name)} has the limits {shown(pair)!r}")
+            found[channel] = low, high
+        return found
 
     def _hierarchy(
         self, bones: Mapping[str, AcclaimBone]

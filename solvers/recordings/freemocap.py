@@ -94,22 +94,27 @@ def _names(points: NDArray[np.float64]) -> tuple[str, ...]:
         return BODY
     if n_points - WITH_HANDS not in FACES:
         return tuple(f"point_{number}" for number in range(1, n_points + 1))
-    first, second = points[:, len(BODY)], points[:, len(BODY) + len(HAND)]
-    left, right = points[:, BODY.index("left_wrist")], points[:, BODY.index("right_wrist")]
-    straight = _apart(first, left) + _apart(second, right)
-    crossed = _apart(first, right) + _apart(second, left)
-    sides = ("left", "right") if straight < crossed else ("right", "left")
-    hands = (f"{side}_hand_{part}" for side in sides for part in HAND)
+    hands = [points[:, len(BODY)], points[:, len(BODY) + len(HAND)]]
+    wrists = [points[:, BODY.index(f"{side}_wrist")] for side in ("left", "right")]
+    (first_left, first_right), (second_left, second_right) = (
+        [_apart(hand, wrist) for wrist in wrists] for hand in hands
+    )
+    nearer_crossed = (
+        first_left - first_right, first_left - second_left,
+        second_right - second_left, second_right - first_right,
+    )  # fmt: skip
+    sides = ("left", "right") if np.nansum(nearer_crossed) < 0.0 else ("right", "left")
+    named = (f"{side}_hand_{part}" for side in sides for part in HAND)
     face = (f"face_{number}" for number in range(1, n_points - WITH_HANDS + 1))
-    return (*BODY, *hands, *face)
+    return (*BODY, *named, *face)
 
 
 def _apart(one: NDArray[np.float64], other: NDArray[np.float64]) -> float:
-    """Return the usual distance of two points; 0 where they are never seen together."""
+    """Return the usual distance of two points; NaN where they are never seen together."""
     with np.errstate(over="ignore"):
         distances = np.linalg.norm(one - other, axis=-1)
     known = distances[np.isfinite(distances)]
-    return float(np.median(known)) if len(known) else 0.0
+    return float(np.median(known)) if len(known) else np.nan
 
 
 def _z_up(points: NDArray[np.float64]) -> NDArray[np.float64]:

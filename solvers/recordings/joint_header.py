@@ -107,6 +107,7 @@ def told_recording(
         confidence=confidence,
         times=times if header.frame_rate is None else None,
         frame_rate=header.frame_rate or 1.0,
+        nan_only=True,
         progress=progress,
     )
 

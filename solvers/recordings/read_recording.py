@@ -42,6 +42,8 @@ class Format(NamedTuple):
     name: str
     fits: Callable[[bytes], bool]
     read: Reader
+    has_skeleton: bool = False
+    """Whether it holds a skeleton's motion; else points."""
 
 
 def _is_bvh(head: bytes) -> bool:
@@ -76,9 +78,9 @@ def _refuse_skeleton(
 
 
 FORMATS = (
-    Format("BVH", _is_bvh, read_bvh),
-    Format("Acclaim AMC", _is_acclaim, read_acclaim),
-    Format("Acclaim ASF", _is_acclaim_skeleton, _refuse_skeleton),
+    Format("BVH", _is_bvh, read_bvh, has_skeleton=True),
+    Format("Acclaim AMC", _is_acclaim, read_acclaim, has_skeleton=True),
+    Format("Acclaim ASF", _is_acclaim_skeleton, _refuse_skeleton, has_skeleton=True),
     Format("C3D", _is_c3d, read_c3d),
     Format("TRC", _is_trc, read_trc),
     Format("IRDS", is_irds, read_irds),
@@ -121,24 +123,49 @@ def read_recording(
     SolveCancelled
         Raised by `progress`.
     """
-    path = Path(path)
+    known = format_of(path)
+    if known is not None:
+        try:
+            return known.read(path, scale=scale, progress=progress)
+        except InvalidMotionError as error:  # Read as it says, but no recording.
+            raise InvalidFileError(f"{path}: {error}") from None
+    names = ", ".join(each.name for each in FORMATS if each.read is not _refuse_skeleton)
+    raise InvalidFileError(
+        f"{path} is of no known format ({names}). Export it as one of these first."
+    )
+
+
+def format_of(path: Path | str) -> Format | None:
+    """Tell by its first bytes which format a file has; None for none that is known.
+
+    Raises
+    ------
+    InvalidFileError
+        The file is missing, or cannot be read.
+    """
     try:
-        with path.open("rb") as file:
+        with Path(path).open("rb") as file:
             head = file.read(HEAD).removeprefix(BYTE_ORDER_MARK)
     except FileNotFoundError:
         raise InvalidFileError(f"There is no file {path}.") from None
     except OSError as error:
         raise InvalidFileError(f"{path} cannot be read ({error.strerror}).") from None
-    for known in FORMATS:
-        if known.fits(head):
-            try:
-                return known.read(path, scale=scale, progress=progress)
-            except InvalidMotionError as error:  # Read as it says, but no recording.
-                raise InvalidFileError(f"{path}: {error}") from None
-    names = ", ".join(known.name for known in FORMATS if known.read is not _refuse_skeleton)
-    raise InvalidFileError(
-        f"{path} is of no known format ({names}). Export it as one of these first."
-    )
+    return next((known for known in FORMATS if known.fits(head)), None)
+
+
+def recordings_in(folder: Path) -> list[Path]:
+    """Return the files in a folder and the folders in it that hold recordings, by name.
+
+    Hidden files and folders are passed over, and skeletons without motion.
+    """
+    found = []
+    for path in sorted(folder.rglob("*")):
+        hidden = any(part.startswith(".") for part in path.relative_to(folder).parts)
+        if path.is_file() and not hidden:
+            known = format_of(path)
+            if known is not None and known.read is not _refuse_skeleton:
+                found.append(path)
+    return found
 
 
 def read_motion_or_tracks(

@@ -22,6 +22,7 @@ def joint_recording(
     confidence: NDArray[np.float64] | None = None,
     times: NDArray[np.float64] | None = None,
     frame_rate: float = USUAL_RATE,
+    nan_only: bool = False,
     progress: Progress,
 ) -> JointRecording:
     """Make a recording of what a file holds.
@@ -41,6 +42,9 @@ def joint_recording(
         When each frame was seen; then `frame_rate` does not count, and the recording is
         brought to a constant rate (`ConstantRate`).
     frame_rate : float, hertz
+    nan_only : bool
+        True: only NaN was not observed; the origin is a place like others, and a joint that was
+        not tracked keeps the place that it was given.
     progress : Progress
         Told that this is done.
 
@@ -53,10 +57,11 @@ def joint_recording(
     InvalidFileError
         No joint is seen in any frame; or the time stamps make no sense.
     """
-    with np.errstate(invalid="ignore"):
-        missing = ~np.isfinite(positions).all(axis=-1) | (positions == 0.0).all(axis=-1)
+    missing = ~np.isfinite(positions).all(axis=-1)
+    if not nan_only:
+        missing |= (positions == 0.0).all(axis=-1)
+        missing |= False if states is None else states == 0
     if states is not None:
-        missing |= states == 0
         states = np.where(missing, 0, states).astype(np.int8)
     positions = np.where(missing[..., None], np.nan, positions)
     if missing.all():

@@ -23,8 +23,7 @@ class Report:
     """Where the tables go."""
 
     def __init__(self, to_document: bool, document: Path = DOCUMENT) -> None:
-        self._to_document = to_document
-        self._document = document
+        self._to_document, self._document = to_document, document
 
     def part(self, name: str, tables: Sequence[Scores | str], seconds: float) -> None:
         """Print the tables of one part; put them into the document with a picture each."""

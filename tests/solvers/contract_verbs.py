@@ -8,10 +8,12 @@ from dataclasses import dataclass
 from functools import cache
 from typing import Any
 
+import numpy as np
+from marked_bodies import markers_on
+
 from solvers.denoising import (
     DenoiseSettings,
     FilterBases,
-    JointLimits,
     Method,
     denoise,
     find_worst_spots,
@@ -21,8 +23,15 @@ from solvers.denoising import (
     measure_quality,
     plant_feet,
 )
+from solvers.markers import (
+    keep_rigid,
+    rigid_clusters,
+    solve_skeleton,
+    unswap_markers,
+)
 from solvers.motion import (
     HumanoidMap,
+    JointLimits,
     Motion,
     Skeleton,
     Tracks,
@@ -34,6 +43,7 @@ from solvers.motion import (
 from solvers.progress import Progress
 from solvers.retargeting import reduce_keys, retarget
 from solvers.samples import CorruptionSettings, GaitSettings, corrupt, walking_gait
+from solvers.workflows import motion_from_markers
 
 
 @dataclass(frozen=True)
@@ -125,6 +135,34 @@ VERBS = {
         lambda motion, progress: reduce_keys(motion, 0.01, progress=progress),
         whole_input=True,
     ),
+    "unswap_markers": Verb(
+        lambda motion, progress: unswap_markers(marked(motion), progress=progress),
+        recording=lambda result: result.tracks,
+        figures=lambda result: [(swap.names, swap.frames) for swap in result.swaps],
+    ),
+    "rigid_clusters": Verb(
+        lambda motion, progress: rigid_clusters(marked(motion), progress=progress),
+        figures=lambda result: [(cluster.names, cluster.slack) for cluster in result],
+    ),
+    "keep_rigid": Verb(
+        lambda motion, progress: keep_rigid(
+            marked(motion), rigid_clusters(marked(motion)), progress=progress
+        ),
+        recording=lambda result: result.tracks,
+        figures=lambda result: (result.filled, result.moved),
+    ),
+    "solve_skeleton": Verb(
+        lambda motion, progress: solve_skeleton(marked(motion), progress=progress),
+        recording=lambda result: result.motion,
+        figures=lambda result: (result.markers, result.motion.skeleton.names),
+        any_rate=True,
+    ),
+    "motion_from_markers": Verb(
+        lambda motion, progress: motion_from_markers(marked(motion), progress=progress),
+        recording=lambda result: result.motion,
+        figures=lambda result: result.solved.markers,
+        any_rate=True,
+    ),
     "resample": Verb(
         lambda motion, progress: resample(motion, 40.0),
         recording=lambda result: result,
@@ -145,6 +183,13 @@ JOINTS = {"Hips", "Spine", "Spine2", "Head", "LeftArm", "LeftForeArm"} | {
     side + part for side in ("Left", "Right") for part in LEG
 }
 """Enough of a body for every verb, and quick."""
+
+
+LEG_MARKERS = frozenset(
+    side + spot
+    for side in "LR"
+    for spot in ("FWT", "BWT", "THI", "KNE", "SHN", "ANK", "HEE", "TOE", "MT5")
+)
 
 
 @cache
@@ -189,6 +234,17 @@ def walk_of_few_joints(settings: GaitSettings) -> Motion:
     joints = [n for n, name in enumerate(walk.skeleton.names) if name in JOINTS]
     skeleton = walk.skeleton.select(joints)
     return Motion(skeleton, walk.rotations[:, joints], walk.root_positions, walk.frame_rate)
+
+
+def marked(motion: Motion) -> Tracks:
+    """Markers on pelvis and legs; the left knee's is lost for a while, and feet are swapped."""
+    tracks = markers_on(motion, keep=LEG_MARKERS)
+    positions = tracks.positions.copy()
+    frames = slice(motion.n_frames // 2, motion.n_frames // 2 + motion.n_frames // 6)
+    knee, left, right = (tracks.names.index(name) for name in ("LKNE", "LTOE", "RTOE"))
+    positions[frames, knee] = np.nan
+    positions[frames, [left, right]] = positions[frames, [right, left]]
+    return tracks.with_positions(positions)
 
 
 def points_of(motion: Motion) -> Tracks:

@@ -6,7 +6,7 @@ import typing
 import pytest
 
 EDITORS = {"": "VIEW_3D", "_graph": "GRAPH_EDITOR", "_dopesheet": "DOPESHEET_EDITOR"}
-PANELS = ("clean", "check", "compare", "feet", "retarget")
+PANELS = ("import", "clean", "check", "compare", "feet", "retarget")
 
 
 @pytest.mark.parametrize("suffix", EDITORS)
@@ -28,7 +28,7 @@ def test_without_an_armature_clean_says_what_to_select(draw):
 
 def test_clean_offers_every_setting_of_its_button_once(blank, draw, actor):
     clean = blank.context.scene.mocap_assist.clean
-    hidden = {"examples", "learned_file"}
+    hidden = {"examples", "learned_file", "unswap"}  # the last one is for markers
 
     shown = draw("MOCAP_PT_clean")
 

@@ -4,7 +4,9 @@ from string import Formatter
 
 import pytest
 
-PANELS = [f"MOCAP_PT_{name}" for name in ("clean", "check", "compare", "feet", "retarget")]
+PANELS = [
+    f"MOCAP_PT_{name}" for name in ("import", "clean", "check", "compare", "feet", "retarget")
+]
 
 
 @pytest.fixture

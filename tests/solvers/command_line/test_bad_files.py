@@ -224,7 +224,10 @@ def test_an_interrupt_leaves_whole_files_only(swinging_leg, tmp_path):
         while running.poll() is None and len(list(out.glob("*.bvh"))) < len(files):
             time.sleep(0.02)
         os.kill(running.pid, signal.SIGINT)
-        complaint = running.communicate(timeout=60)[1]
+        try:
+            complaint = running.communicate(timeout=60)[1]
+        finally:
+            running.kill()
 
     assert running.returncode == 130
     assert complaint == "Interrupted. Files that were finished are kept.\n"

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from solvers.denoising import DenoiseSettings, denoise
+from solvers.denoising import DenoiseSettings, denoise, learn_filter_bases
 from solvers.denoising.fill_markers import fill_markers
 from solvers.denoising.gap_borders import bridge
 from solvers.denoising.stray_points import stray
@@ -171,6 +171,42 @@ def test_denoise_keeps_the_fill_and_says_how_sure_it_is(body):
     untouched = denoise(tracks_of(given), settings=DenoiseSettings(strength=0.0)).recording
     seen = np.isfinite(given)
     assert (untouched.positions[seen] == given[seen]).all()
+
+
+def test_a_marker_that_nothing_shows_stays_unknown(body):
+    done = denoise(tracks_of(gapped(body, 4, slice(None))))
+
+    unseen = np.isnan(done.recording.positions).all(axis=(0, 2))
+    assert unseen.tolist() == [point == 4 for point in range(10)]
+    assert np.isfinite(done.recording.positions[:, ~unseen]).all()
+    assert (done.confidence[:, 4] == 0.0).all()
+
+
+def test_a_point_that_blinks_between_long_gaps_does_not_drift_away():
+    rng = np.random.default_rng(1)
+    time = np.arange(900) / 400.0
+    way = np.stack([np.sin(3 * time), np.cos(2 * time), 1 + 0.3 * np.sin(5 * time)], axis=1)
+    places = np.full((900, 1, 3), np.nan)
+    for start in rng.integers(0, 860, 12):
+        blinks = start + np.arange(0, 30, 3)
+        places[blinks, 0] = way[blinks] + rng.normal(0.0, 0.001, (10, 3))
+
+    found = denoise(Tracks(("slot",), places, 400.0)).recording.positions
+
+    error = np.linalg.norm(found[:, 0] - way, axis=1)
+    assert np.median(error) < 0.15
+    assert error.max() < 4.0
+
+
+def test_a_marker_that_only_examples_show_is_known_from_them(recordings):
+    take = read_c3d(recordings / "mocap" / "05_13.c3d")
+    truth = take.positions[:1200:4, :41]
+    whole = Tracks(take.names[:41], truth, take.frame_rate / 4)
+    given = whole.with_positions(gapped(truth, 7, slice(None)))
+
+    found = denoise(given, learn_filter_bases([whole])).recording.positions
+
+    assert np.linalg.norm(found[:, 7] - truth[:, 7], axis=1).mean() < 0.01
 
 
 def test_five_markers_of_a_dancer_are_found_to_a_centimetre(recordings):

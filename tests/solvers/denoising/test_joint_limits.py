@@ -4,11 +4,10 @@ import numpy as np
 import pytest
 from numpy.testing import assert_allclose
 
-from solvers.denoising.joint_limits import JointLimits, load_joint_limits
 from solvers.denoising.keep_within import keep_within, limit_excess
 from solvers.denoising.learn_limits import JointLimitsSettings, learn_joint_limits
 from solvers.errors import InvalidFileError, InvalidMotionError, InvalidSettingError
-from solvers.motion import Motion, Skeleton, find_humanoid_map
+from solvers.motion import JointLimits, Motion, Skeleton, find_humanoid_map, load_joint_limits
 from solvers.motion.canonical import canonical_rotations, from_canonical
 from solvers.motion.rotations import (
     IDENTITY,

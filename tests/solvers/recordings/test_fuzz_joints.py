@@ -1,15 +1,12 @@
 """Damaged joint recordings are read or refused: see test_fuzz.py, whose bounds hold here."""
 
-import os
-import tracemalloc
 from pathlib import Path
 from tempfile import TemporaryDirectory
-from time import perf_counter
 
 import numpy as np
 import pytest
-from hypothesis import HealthCheck, given, settings
-from hypothesis import strategies as st
+from damage import damaged, read_or_refuse, searching
+from hypothesis import given
 from joint_files import (
     azure_columns,
     azure_json,
@@ -23,7 +20,6 @@ from joint_files import (
     ui_prmd,
 )
 
-from solvers.errors import InvalidFileError, InvalidMotionError
 from solvers.motion import JointRecording, Sensor, Tracks
 from solvers.recordings import (
     read_azure_csv,
@@ -40,10 +36,7 @@ from solvers.recordings import (
     write_joints,
 )
 
-EXAMPLES = int(os.environ.get("MOCAP_FUZZ", "60"))
-MOST_MEMORY = 64e6
-MOST_SECONDS = 20.0
-"""No measurement: only an endless loop takes so long for a file of some kilobytes."""
+EXAMPLES = 60
 
 
 def written(ending: str) -> bytes:
@@ -89,30 +82,6 @@ TOKENS = [
 ]  # fmt: skip
 
 
-@st.composite
-def damaged(draw, whole: bytes) -> bytes:
-    """Cut, overwrite, insert, repeat, and swap numbers for tokens, a few times."""
-    content = whole
-    for _ in range(draw(st.integers(1, 4))):
-        at = draw(st.integers(0, len(content)))
-        length = draw(st.integers(0, 40))
-        kind = draw(st.sampled_from(["cut", "replace", "insert", "noise", "repeat", "word"]))
-        token = draw(st.sampled_from(TOKENS))
-        if kind == "cut":
-            content = content[:at]
-        elif kind == "replace":
-            content = content[:at] + token + content[at + len(token) :]
-        elif kind == "insert":
-            content = content[:at] + token + content[at:]
-        elif kind == "noise":
-            content = content[:at] + draw(st.binary(max_size=8)) + content[at + length :]
-        elif kind == "word":
-            content = content[:at] + token + content[at:].lstrip(b"-.0123456789e")
-        else:
-            content = content[: at + length] + content[at:]
-    return content
-
-
 @pytest.mark.parametrize("kind", WHOLE)
 def test_whole_files_are_read_and_known_by_their_content(kind, tmp_path):
     read, whole = WHOLE[kind]
@@ -129,36 +98,14 @@ def test_damaged_files(kind, tmp_path):
     read, whole = WHOLE[kind]
     path = tmp_path / "take"
 
-    @settings(
-        max_examples=EXAMPLES,
-        deadline=None,
-        derandomize="MOCAP_FUZZ" not in os.environ,
-        database=None,
-        suppress_health_check=list(HealthCheck),
-    )
-    @given(damaged(whole))
+    @searching(EXAMPLES)
+    @given(damaged(whole, TOKENS))
     def search(content: bytes) -> None:
         path.write_bytes(content)
         read_or_refuse(lambda: read(path))
         read_or_refuse(lambda: read_recording(path))
 
     search()
-
-
-def read_or_refuse(read) -> None:
-    """Read within bounds: a valid recording or a whole sentence comes out."""
-    tracemalloc.start()
-    started = perf_counter()
-    try:
-        found = read()
-        assert isinstance(found, JointRecording | Tracks)
-    except (InvalidFileError, InvalidMotionError) as error:
-        assert str(error).endswith(".")
-    finally:
-        peak = tracemalloc.get_traced_memory()[1]
-        tracemalloc.stop()
-    assert peak < MOST_MEMORY
-    assert perf_counter() - started < MOST_SECONDS
 
 
 @pytest.mark.parametrize("kind", WHOLE)

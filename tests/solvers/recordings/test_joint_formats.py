@@ -45,7 +45,8 @@ def write(tmp_path):
 def recording(request, rng) -> JointRecording:
     names = ('left "hand", upper', "head.x", "Fuß", *JOINTS[Sensor.KINECT_V2])
     positions = rng.normal(size=(40, len(names), 3)) / 3
-    state = rng.integers(1, 3, (40, len(names)))
+    state = rng.integers(0, 3, (40, len(names)))
+    positions[20, 1] = 0.0
     positions[4:9, 2], state[4:9, 2] = np.nan, 0
     confidence = rng.uniform(size=(40, len(names)))
     with_confidence = request.param in {"all", "no state"}
@@ -80,8 +81,9 @@ def test_what_somebody_else_wrote(write, kind):
     assert (recording.frame_rate, recording.sensor) == (50.0, Sensor.KINECT_V1)
     assert_allclose(recording.tracks.positions[0], [(0.1, -0.02, 1.7), (0.3, -0.01, 0.9)])
     assert_allclose(recording.tracks.positions[2, 0], (0.102, -0.022, 1.702))
-    assert np.isnan(recording.tracks.positions[1:, 1]).all()
-    assert recording.tracking_state.tolist() == [[2, 1], [2, 0], [2, 0]]
+    assert np.isnan(recording.tracks.positions[1, 1]).all()
+    assert_array_equal(recording.tracks.positions[2, 1], 0.0)  # A place like others.
+    assert recording.tracking_state.tolist() == [[2, 1], [2, 0], [2, 2]]
 
 
 @pytest.mark.parametrize("kind", TEXTS)

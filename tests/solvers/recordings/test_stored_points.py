@@ -154,6 +154,19 @@ def test_freemocap_hands_are_told_by_the_wrists(write, person):
     )
 
 
+@pytest.mark.parametrize("right_first", [True, False])
+@pytest.mark.parametrize("unseen", [LEFT_WRIST, RIGHT_WRIST, slice(33, 54), slice(54, 75)])
+def test_freemocap_hands_are_told_by_what_is_seen(write, person, right_first, unseen):
+    points = person.copy()
+    if not right_first:
+        points[:, 33:54], points[:, 54:] = person[:, 54:], person[:, 33:54]
+    points[:, unseen] = np.nan
+
+    names = read_freemocap(write(npy(points))).names
+
+    assert names[33] == ("right_hand_wrist" if right_first else "left_hand_wrist")
+
+
 @pytest.mark.parametrize(
     ("n_points", "last"), [(33, BODY[-1]), (553, "face_478"), (7, "point_7")]
 )

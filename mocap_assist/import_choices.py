@@ -1,0 +1,74 @@
+"""What an animator chooses for Import; the words are those of Blender's BVH importer."""
+
+from dataclasses import dataclass
+from enum import Enum
+from typing import NamedTuple
+
+from ..solvers.settings import Settings, setting
+from .scene.scene_rate import FrameRate
+
+
+class Target(Enum):
+    """What joints become."""
+
+    ARMATURE = "armature"
+    OBJECT = "object"
+
+
+class Rotation(Enum):
+    """Rotation mode of the bones."""
+
+    QUATERNION = "quaternion"
+    XYZ = "euler (XYZ)"
+    XZY = "euler (XZY)"
+    YXZ = "euler (YXZ)"
+    YZX = "euler (YZX)"
+    ZXY = "euler (ZXY)"
+    ZYX = "euler (ZYX)"
+
+
+@dataclass(frozen=True, kw_only=True)
+class ImportChoices(Settings):
+    """How recordings come into the scene."""
+
+    target: Target = setting(
+        Target.ARMATURE,
+        "Joints of a depth camera become the bones of an armature, or one empty each, which"
+        " keeps every measured position. Markers always become empties",
+    )
+    global_scale: float = setting(
+        1.0,
+        "Scale the recording by this value; 1 leaves it in true metres",
+        minimum=1e-4,
+        maximum=1e6,
+        label="Scale",
+    )
+    rotate_mode: Rotation = setting(
+        Rotation.QUATERNION, "Rotation mode of the bones", label="Rotation"
+    )
+    frame_start: int = setting(
+        1,
+        "Starting frame for the animation",
+        minimum=-1_000_000,
+        maximum=1_000_000,
+        label="Start Frame",
+    )
+    frame_rate: FrameRate = setting(
+        FrameRate.SCALE,
+        "Where the recording has another rate than the scene. Scale FPS keeps every sample and"
+        " its second, between frames if need be. Resample to Scene FPS keeps the seconds, with"
+        " one key on each frame. Update Scene FPS gives the scene the rate of the first"
+        " recording. One Sample a Frame lets the recording play faster or slower",
+        label="Frame Rate",
+    )
+    update_scene_duration: bool = setting(
+        False,
+        "Extend the scene's duration to the recording's (never shortens the scene)",
+        label="Update Scene Duration",
+    )
+
+
+class ImportSettings(NamedTuple):
+    """All that the button offers."""
+
+    choices: ImportChoices

@@ -1,0 +1,43 @@
+"""Files that were read last, kept so that the redo panel need not read them again."""
+
+from pathlib import Path
+
+from ..solvers.errors import InvalidFileError
+from ..solvers.motion import JointRecording, Motion, Tracks
+from ..solvers.progress import Progress, unwatched
+from ..solvers.recordings import read_recording
+from ..solvers.recordings.acclaim import find_skeleton
+
+MOST = 20_000_000  # numbers that are kept
+
+Recording = Motion | Tracks | JointRecording
+State = tuple[tuple[str, int, int], ...]
+_read: dict[State, Recording] = {}
+
+
+def read_again(path: Path, progress: Progress = unwatched) -> Recording:
+    """Return what a file holds, as `read_recording` does; what has not changed is read once."""
+    state = _state(path)
+    recording = _read.pop(state, None) or read_recording(path, progress=progress)
+    if state:
+        _read[state] = recording
+    while sum(map(_size, _read.values())) > MOST:
+        _read.pop(next(iter(_read)))
+    return recording
+
+
+def _state(path: Path) -> State:
+    """When and how long the file, and the skeleton that it needs, were written last."""
+    try:
+        needed = [path, find_skeleton(path)] if path.suffix.lower() == ".amc" else [path]
+        states = [(each, each.stat()) for each in needed]
+    except (OSError, InvalidFileError):  # which the reader says better
+        return ()
+    return tuple((str(each), state.st_mtime_ns, state.st_size) for each, state in states)
+
+
+def _size(recording: Recording) -> int:
+    if isinstance(recording, Motion):
+        return recording.rotations.size
+    tracks = recording.tracks if isinstance(recording, JointRecording) else recording
+    return tracks.positions.size

@@ -1,0 +1,162 @@
+"""The markers of a take as tracks, and the way back."""
+
+from collections.abc import Collection, Mapping
+from dataclasses import dataclass, replace
+
+import bpy
+import numpy as np
+from numpy.typing import NDArray
+
+from ...solvers.errors import InvalidMotionError
+from ...solvers.motion import Tracks
+from . import history
+from .armature_write import copy_of, same_slot
+from .bone_channels import Curves, animated_curves, curves_of, gaps_of, sampled
+from .compat import Source
+from .curves import write_values
+from .frames import FrameRange, Grid, key_grid, range_bounds
+from .markers import PATH, markers_of, played_by, point_names
+from .rig import Placement, placement_of
+from .sensor_words import CONFIDENCE
+from .units import unit_of
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True, eq=False)
+class MarkerTake:
+    """What was read, in the form in which it is solved."""
+
+    markers: tuple[bpy.types.Object, ...]
+    sources: tuple[Source, ...]
+    """Action and slot of each marker."""
+    grid: Grid
+    tracks: Tracks
+    """In the world, metres; NaN where a marker has no keys though it has them all around."""
+    spaces: tuple[Placement, ...]
+    """Where each marker's own space lies in the world."""
+
+    @property
+    def frames(self) -> Array:
+        """Scene frames, shape (n_frames,)."""
+        return self.grid.frames
+
+    @property
+    def recordings(self) -> tuple[Tracks, ...]:
+        """What is to be solved."""
+        return (self.tracks,)
+
+    def with_recordings(self, recordings: tuple[Tracks, ...]) -> "MarkerTake":
+        """Return the take with other tracks in the place of its own."""
+        return replace(self, tracks=recordings[0])
+
+
+def read_markers(
+    holder: bpy.types.Object,
+    scene: bpy.types.Scene,
+    choice: FrameRange = FrameRange.ACTION,
+    *,
+    recorded: bool = False,
+    grid: Grid | None = None,
+) -> MarkerTake:
+    """Read the location keys of all markers below an object.
+
+    Parameters
+    ----------
+    holder : the object above the markers; its own motion is not looked at
+    scene : bpy.types.Scene
+        Its frame rate, ranges and unit.
+    choice : FrameRange
+    recorded : bool
+        What was recorded, rather than the result that is played.
+    grid : Grid
+        Moments to read at, in the place of those of the keys within `choice`.
+
+    Raises
+    ------
+    InvalidMotionError
+        There are no markers or keys, or a marker's space is scaled unevenly.
+    """
+    markers = markers_of(holder)
+    if not markers:
+        raise InvalidMotionError(f"{holder.name} holds no empties whose location is keyed.")
+    sources = tuple(_source(marker, recorded) for marker in markers)
+    every = [animated_curves(*source) for source in sources]
+    if grid is None:
+        keyed = [curve for curves in every for curve in curves_of(curves, PATH, 3).values()]
+        grid = key_grid(keyed, range_bounds(choice, scene, keyed), recorded=True)
+    bpy.context.view_layer.update()
+    spaces = tuple(_space(marker, unit_of(scene)) for marker in markers)
+    places = [
+        space.points(_locations(marker, curves, grid))
+        for marker, curves, space in zip(markers, every, spaces, strict=True)
+    ]
+    rate = scene.render.fps / scene.render.fps_base / grid.step
+    confidence = _confidence(every, grid.frames)
+    tracks = Tracks(point_names(markers), np.stack(places, axis=1), rate, confidence)
+    return MarkerTake(markers, sources, grid, tracks, spaces)
+
+
+def write_markers(
+    take: MarkerTake, chosen: Collection[str], key_types: Mapping[str, NDArray[np.uint8]]
+) -> tuple[tuple[bpy.types.Object, Source, Source], ...]:
+    """Copy the actions and replace the location keys of the chosen markers.
+
+    Parameters
+    ----------
+    take : MarkerTake
+        The result, over the frames to replace; its `sources` are what is copied.
+    chosen : names of the points to change
+        All else is copied bit for bit.
+    key_types : per point name, shape (n_frames,)
+        Blender's type of each key.
+
+    Returns
+    -------
+    tuple of (marker, what was copied, what it should play now)
+    """
+    copies: dict[bpy.types.Action, bpy.types.Action] = {}
+    written = []
+    for point, (marker, source) in enumerate(zip(take.markers, take.sources, strict=True)):
+        action, slot = source
+        if action not in copies:
+            copies[action] = copy_of(action)
+        made = copies[action], same_slot(copies[action], slot)
+        name = take.tracks.names[point]
+        if name in chosen:
+            places = take.spaces[point].points_back(take.tracks.positions[:, point])
+            for index, channel in curves_of(animated_curves(*made), PATH, 3).items():
+                write_values(channel.curve, take.frames, places[:, index], key_types.get(name))
+        written.append((marker, source, made))
+    return tuple(written)
+
+
+def _source(marker: bpy.types.Object, recorded: bool) -> Source:
+    played = played_by(marker)
+    raw = history.raw_of(*played) if recorded else None
+    return raw or played
+
+
+def _space(marker: bpy.types.Object, metres: float) -> Placement:
+    """Where the space lies in which the marker's location is measured."""
+    around = marker.matrix_world @ marker.matrix_basis.inverted()
+    turn, origin, scale = placement_of(around, marker.name)
+    return Placement(turn[None], origin[None], scale).in_unit(metres)
+
+
+def _locations(marker: bpy.types.Object, curves: Curves, grid: Grid) -> Array:
+    found = curves_of(curves, PATH, 3)
+    locations = sampled(found, marker.location, grid.frames)
+    locations[gaps_of(found, grid.frames, grid.step)] = np.nan
+    return locations
+
+
+def _confidence(every: list[Curves], frames: Array) -> Array | None:
+    """Return what the sensor said of each point, (n_frames, n_points), if it said anything."""
+    path = f'["{CONFIDENCE}"]'
+    found = [curves.get((path, 0)) for curves in every]
+    if not any(found):
+        return None
+    sure = np.ones(len(frames))
+    values = [sure if curve is None else curve.values(frames) for curve in found]
+    return np.clip(np.stack(values, axis=1), 0.0, 1.0)

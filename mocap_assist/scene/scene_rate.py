@@ -1,0 +1,60 @@
+"""On which scene frames the samples of a recording come to lie."""
+
+from enum import Enum
+from math import ceil
+from typing import NamedTuple
+
+import bpy
+import numpy as np
+from numpy.typing import NDArray
+
+Array = NDArray[np.float64]
+SAME = 1e-6  # relative difference of rates that is only rounding
+
+
+class FrameRate(Enum):
+    """What happens where the recording has another rate than the scene."""
+
+    SCALE = "scale FPS"
+    RESAMPLE = "resample to scene FPS"
+    UPDATE = "update scene FPS"
+    ONE = "one sample a frame"
+
+
+class Timing(NamedTuple):
+    """When samples are seen in the scene."""
+
+    start: float
+    """Scene frame of the first sample."""
+    step: float
+    """Scene frames from one sample to the next."""
+
+    def frames(self, n_frames: int) -> Array:
+        """Return the scene frame of each sample."""
+        return self.start + self.step * np.arange(n_frames)
+
+
+def scene_rate(scene: bpy.types.Scene) -> float:
+    """Return the scene's frames per second."""
+    rate = scene.render.fps / scene.render.fps_base
+    whole = round(rate)
+    return float(whole) if abs(rate - whole) < SAME * rate else rate
+
+
+def set_scene_rate(scene: bpy.types.Scene, frame_rate: float) -> None:
+    """Let the scene play so many frames per second; fractional rates too."""
+    scene.render.fps = max(round(frame_rate), 1)
+    scene.render.fps_base = scene.render.fps / frame_rate
+
+
+def timing(scene: bpy.types.Scene, choice: FrameRate, frame_rate: float, start: int) -> Timing:
+    """Return where samples of `frame_rate` come to lie; the scene is not changed."""
+    step = scene_rate(scene) / frame_rate
+    if choice in {FrameRate.UPDATE, FrameRate.ONE} or abs(step - 1.0) < SAME:
+        step = 1.0
+    return Timing(float(start), step)
+
+
+def extend_duration(scene: bpy.types.Scene, last_frame: float) -> None:
+    """Let the scene last until a frame; it is never made shorter."""
+    scene.frame_end = max(scene.frame_end, ceil(last_frame - SAME))

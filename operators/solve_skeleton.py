@@ -1,0 +1,19 @@
+"""Button: make the skeleton that the markers of an optical take sit on."""
+
+import bpy
+
+from ..mocap_assist.settings_properties import settings_from
+from ..mocap_assist.solver_operator import SolverOperator
+from ..mocap_assist.solving import SolveBundle, read_solving, why_not_solve, write_solved
+
+
+@settings_from(SolveBundle)
+class MOCAP_OT_solve_skeleton(SolverOperator, bpy.types.Operator):
+    bl_idname = "mocap_assist.solve_skeleton"
+    bl_label = "Make Skeleton"
+    bl_description = (
+        "Add an armature that moves as the markers do: joints and their turns are solved from"
+        " Plug-in-Gait or CMU markers. The markers stay as they are"
+    )
+    settings_group = "solve"
+    why_not, read_scene, write_scene = why_not_solve, read_solving, write_solved

@@ -1,0 +1,82 @@
+"""`solve`: the motion of a skeleton from the labelled markers of optical takes."""
+
+import argparse
+
+import numpy as np
+
+from ..errors import InvalidMotionError
+from ..markers import SolveSettings
+from ..motion import Tracks
+from ..progress import Progress, within
+from ..workflows import MarkerMotion, MarkerMotionSettings, motion_from_markers
+from .files import add_reading_options, read, write
+from .options import arguments_from, settings_from_arguments
+from .verb import Outcome, Task
+
+MOST_SAID = 5
+
+
+def add_solve_options(parser: argparse.ArgumentParser) -> None:
+    """Add the options of `solve`."""
+    add_reading_options(parser)
+    arguments_from(parser, MarkerMotionSettings)
+    arguments_from(parser.add_argument_group("solving"), SolveSettings)
+
+
+def perform_solve(task: Task, prepared: None, progress: Progress) -> Outcome:
+    """Solve one take and write its motion; tell how well the markers fit."""
+    recording = read(task.source, task.arguments, within(progress, 0.0, 0.1))
+    if not isinstance(recording, Tracks):
+        raise InvalidMotionError(
+            f"{task.source} has a skeleton already; solve is for markers. Use denoise to clean"
+            " it, or convert."
+        )
+    result = motion_from_markers(
+        recording,
+        settings=settings_from_arguments(task.arguments, MarkerMotionSettings),
+        solving=settings_from_arguments(task.arguments, SolveSettings),
+        progress=within(progress, 0.1, 0.95),
+    )
+    write(result.motion, task.target, within(progress, 0.95, 1.0))
+    return Outcome(_said(result), _figures(result))
+
+
+def _figures(result: MarkerMotion) -> dict[str, object]:
+    error = result.solved.error
+    return {
+        "n_frames": result.motion.n_frames,
+        "frame_rate_hz": result.motion.frame_rate,
+        "joints": list(result.motion.skeleton.names),
+        "marker_set": result.solved.marker_set.name,
+        "markers": list(result.solved.markers),
+        "error_m": float(np.nanmean(error)),
+        "worst_error_m": float(np.nanmax(error)),
+        "filled_samples": int(result.filled.sum()),
+        "unknown_samples": int((~result.solved.motion.observed).sum()),
+        "swaps": [
+            {"names": list(swap.names), "first": swap.frames.start, "stop": swap.frames.stop}
+            for swap in result.swaps
+        ],
+    }
+
+
+def _said(result: MarkerMotion) -> str:
+    solved, error = result.solved, result.solved.error
+    lines = [
+        f"{solved.marker_set.name}: {len(solved.markers)} markers, {result.motion.n_frames}"
+        f" frames at {result.motion.frame_rate:g} Hz, {result.motion.n_joints} joints.",
+        f"Markers lie {1000 * np.nanmean(error):.1f} mm from where the skeleton has them.",
+    ]
+    lines += [
+        f"Labels of {' and '.join(swap.names)} were wrong in frames {swap.frames.start} to"
+        f" {swap.frames.stop - 1}."
+        for swap in result.swaps[:MOST_SAID]
+    ]
+    if len(result.swaps) > MOST_SAID:
+        lines.append(f"So were {len(result.swaps) - MOST_SAID} more.")
+    if result.filled.any():
+        lines.append(f"{result.filled.sum()} samples of lost markers were filled.")
+    unknown = (~solved.motion.observed).any(axis=1).sum()
+    if unknown:
+        lines.append(f"In {unknown} frames some joints were filled that no marker shows.")
+    return "\n".join(lines)

@@ -1,0 +1,30 @@
+"""Optical markers: labels put right, clusters kept rigid, and a skeleton solved from them.
+
+>>> from solvers.markers import find_marker_set
+>>> found = find_marker_set(["Anna:LFWT", "Anna:RFWT", "Anna:LBWT", "Anna:RBWT"])
+>>> found.name, found.subject, found.markers["LASI"]
+('CMU 41', 'Anna:', 'Anna:LFWT')
+"""
+
+from .keep_rigid import KeptRigid, keep_rigid
+from .marker_sets import MarkerSet, find_marker_set
+from .rigid_clusters import Cluster, ClusterSettings, rigid_clusters
+from .solve_skeleton import SolvedSkeleton, SolveSettings, solve_skeleton
+from .unswap import Swap, Unswapped, UnswapSettings, unswap_markers
+
+__all__ = [
+    "Cluster",
+    "ClusterSettings",
+    "KeptRigid",
+    "MarkerSet",
+    "SolveSettings",
+    "SolvedSkeleton",
+    "Swap",
+    "UnswapSettings",
+    "Unswapped",
+    "find_marker_set",
+    "keep_rigid",
+    "rigid_clusters",
+    "solve_skeleton",
+    "unswap_markers",
+]

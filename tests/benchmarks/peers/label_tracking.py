@@ -1,0 +1,33 @@
+"""Keep labels by continuity alone: what most tracking programs begin with."""
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.optimize import linear_sum_assignment
+
+Array = NDArray[np.float64]
+FAR = 10.0
+"""Metres: the cost of a label that gets no point."""
+
+
+def by_continuity(positions: Array) -> Array:
+    """Give each frame's points to the labels whose predicted places are nearest, all at once.
+
+    A place is predicted by constant velocity from the last two frames in which a label had a
+    point, and the sum of distances made small (Kuhn's assignment). Whatever a frame's own
+    labels say is not asked.
+
+    Parameters
+    ----------
+    positions : shape (n_frames, n_markers, 3), metres; NaN where not seen
+    """
+    result = positions.copy()
+    last, step = positions[0].copy(), np.zeros_like(positions[0])
+    for frame in range(1, len(positions)):
+        expected = last + step
+        cost = np.linalg.norm(expected[:, None] - positions[frame][None], axis=-1)
+        labels, points = linear_sum_assignment(np.nan_to_num(cost, nan=FAR))
+        result[frame, labels] = positions[frame, points]
+        seen = np.isfinite(result[frame]).all(axis=-1)
+        step = np.where(seen[:, None], np.nan_to_num(result[frame] - last), 0.0)
+        last = np.where(seen[:, None], result[frame], last)
+    return result

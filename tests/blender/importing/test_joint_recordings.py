@@ -1,0 +1,167 @@
+"""Joints of depth cameras become armatures that keep gaps, and what the sensor said."""
+
+import numpy as np
+import pytest
+from numpy.testing import assert_allclose, assert_array_equal
+
+NEAR = 1e-5  # metres; bones and keys are 32-bit numbers
+LARGEST = 0.06  # metres that a bone of constant length may miss a joint by
+
+
+@pytest.fixture
+def lossy(recordings):
+    """A take of 44 frames in which hands and feet are lost for a while."""
+    return recordings / "kinect" / "irds" / "215_18_5_8_1_stand.txt"
+
+
+def test_bones_follow_the_joints(lossy, bring, load, poses):
+    recording = load("solvers.recordings").read_recording(lossy)
+
+    armature = bring(lossy, frame_rate="ONE")
+
+    shown = poses(armature, range(1, recording.n_frames + 1))
+    misses = [
+        np.linalg.norm(shown[name][:, :3, 3] - recording.tracks.positions[:, joint], axis=-1)
+        for joint, name in enumerate(recording.names)
+        if name in shown
+    ]
+    assert len(misses) >= 20
+    assert np.nanmedian(misses) < 0.01
+    assert np.nanpercentile(misses, 95) < LARGEST
+
+
+@pytest.mark.parametrize("fps", [24, 30, 120])
+def test_what_was_not_tracked_has_no_keys(fps, lossy, bring, load, blank):
+    blank.context.scene.render.fps = fps
+    motion = load("solvers.motion")
+    recording = load("solvers.recordings").read_recording(lossy)
+    expected = motion.motion_from_points(recording.tracks, recording.parents)
+    assert not expected.observed.all()
+
+    armature = bring(lossy)
+
+    take = load("mocap_assist.scene.armature_read").read_take(armature, blank.context.scene)
+    read = take.parts[0].motion
+    assert read.frame_rate == pytest.approx(30.0)
+    assert sorted(read.skeleton.names) == sorted(expected.skeleton.names)
+    for joint, name in enumerate(expected.skeleton.names):
+        assert_array_equal(
+            read.observed[:, read.skeleton.index(name)], expected.observed[:, joint], name
+        )
+    where = motion.forward_kinematics
+    order = [read.skeleton.index(name) for name in expected.skeleton.names]
+    assert_allclose(where(read).positions[:, order], where(expected).positions, atol=NEAR)
+
+
+@pytest.mark.parametrize("target", ["ARMATURE", "OBJECT"])
+def test_confidence_is_kept_and_survives_cleaning(lossy, bring, load, target, blank):
+    recording = load("solvers.recordings").read_recording(lossy)
+
+    made = bring(lossy, target=target, frame_rate="ONE")
+    if target == "ARMATURE":
+        assert blank.ops.mocap_assist.denoise(plant_feet=False) == {"FINISHED"}
+        owners = {bone.name: bone for bone in made.pose.bones}
+        assert made.animation_data.action.name.endswith(".clean")
+    else:
+        owners = {empty["mocap_assist_point"]: empty for empty in made.children}
+
+    states = np.zeros((recording.n_frames, len(owners)))
+    for frame in range(recording.n_frames):
+        blank.context.scene.frame_set(frame + 1)
+        states[frame] = [owner["mocap_tracking_state"] for owner in owners.values()]
+    order = [recording.names.index(name) for name in owners]
+    assert_array_equal(states, recording.tracking_state[:, order])
+    assert (states == 0).any()
+
+
+def test_empties_give_back_what_the_camera_measured(lossy, bring, load, blank):
+    recording = load("solvers.recordings").read_recording(lossy)
+    read = load("mocap_assist.scene.marker_take").read_markers
+
+    tracks = read(bring(lossy, target="OBJECT"), blank.context.scene).tracks
+
+    order = [recording.names.index(name) for name in tracks.names]
+    assert len(order) == recording.n_joints
+    assert_allclose(tracks.positions, recording.tracks.positions[:, order], atol=NEAR)
+
+
+@pytest.mark.parametrize("target", ["ARMATURE", "OBJECT"])
+def test_the_file_and_the_sensor_are_noted(target, lossy, bring, load):
+    origin = load("mocap_assist.scene.origin")
+
+    made = bring(lossy, target=target)
+
+    player = made if target == "ARMATURE" else made.children[0]
+    for owner in (made, player.animation_data.action):
+        noted = origin.origin_of(owner)
+        assert noted["file"].endswith(lossy.name)
+        assert (noted["sensor"], noted["frame_rate"]) == ("kinect_v2", 30.0)
+
+
+@pytest.fixture
+def kinect(load, rng):
+    """A short recording of all joints of a Kinect v2 that wander about."""
+    motion = load("solvers.motion")
+    names = motion.JOINTS[motion.Sensor.KINECT_V2]
+    places = rng.normal(size=(1, 25, 3)) + np.cumsum(
+        rng.normal(scale=0.01, size=(40, 25, 3)), 0
+    )
+    tracks = motion.Tracks(names, places, 30.0, rng.uniform(size=(40, 25)))
+    state = rng.integers(0, 3, size=(40, 25))
+    return motion.JointRecording(tracks, state, motion.Sensor.KINECT_V2)
+
+
+@pytest.mark.parametrize("extension", [".csv", ".json"])
+def test_our_own_tables_of_joints_become_armatures(extension, kinect, bring, load, tmp_path):
+    path = tmp_path / f"joints{extension}"
+    load("solvers.recordings").write_joints(kinect, path)
+    again = load("solvers.recordings").read_recording(path)
+
+    armature = bring(path, frame_rate="ONE")
+
+    assert set(armature.pose.bones.keys()) == set(kinect.names)
+    channels = armature.animation_data.action.layers[0].strips[0].channelbags[0].fcurves
+    for joint, name in enumerate(kinect.names):
+        curve = channels.find(f'pose.bones["{name}"]["mocap_confidence"]')
+        values = [curve.evaluate(frame) for frame in range(1, 41)]
+        assert_allclose(values, again.tracks.confidence[:, joint], atol=1e-6)
+
+
+def test_joints_of_unknown_parents_become_empties_and_it_is_said(
+    kinect, bring, load, tmp_path, capfd
+):
+    motion, path = load("solvers.motion"), tmp_path / "three.json"
+    tracks = motion.Tracks(("a", "b", "c"), kinect.tracks.positions[:, :3], 30.0)
+    unknown = motion.JointRecording(tracks, None, motion.Sensor.OTHER)
+    load("solvers.recordings").write_joints(unknown, path)
+
+    holder = bring(path)
+
+    assert holder.type == "EMPTY"
+    assert len(holder.children) == 3
+    assert "nothing tells which joint hangs on which" in capfd.readouterr().out
+
+
+def test_points_of_freemocap_become_empties(bring, rng, tmp_path):
+    path = tmp_path / "skeleton_3d.npy"
+    np.save(path, 1000.0 * rng.uniform(size=(50, 21, 3)))
+
+    assert len(bring(path).children) == 21
+
+
+@pytest.mark.parametrize(
+    "file",
+    [
+        "msr_action3d/a02_s02_e02_skeleton3D.txt",
+        "ui_prmd/m01_s01_e08.npz",
+        "kimore/JointPositionExercise1.csv",
+        "laban/Ges03_drawlines.csv",
+        "azure/joints_sync_1.csv",
+    ],
+)
+def test_joints_of_every_sensor_are_cleaned_with_the_button(file, recordings, bring, blank):
+    armature = bring(recordings / "kinect" / file)
+
+    assert armature.type == "ARMATURE"
+    assert blank.ops.mocap_assist.denoise() == {"FINISHED"}
+    assert armature.animation_data.action.name.endswith(".clean")

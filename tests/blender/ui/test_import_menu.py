@@ -1,0 +1,67 @@
+"""Import is where an animator looks for it, and takes dropped files."""
+
+import pytest
+
+IMPORT = "mocap_assist.import_recording"
+EXTENSIONS = {
+    ".bvh", ".amc", ".asf", ".c3d", ".trc", ".skeleton", ".csv", ".json", ".txt", ".npy",
+    ".npz",
+}  # fmt: skip
+
+
+def test_dropped_files_of_every_format_are_taken(blank):
+    handler = blank.types.MOCAP_FH_recording
+
+    assert set(handler.bl_file_extensions.split(";")) == EXTENSIONS
+    assert handler.bl_import_operator == IMPORT
+    # What Blender fills in for dropped files, and must not remember for the next ones.
+    given = blank.ops.mocap_assist.import_recording.get_rna_type().properties
+    for name in ("directory", "files", "filepath"):
+        assert given[name].is_skip_save
+
+
+@pytest.mark.parametrize(("area", "taken"), [("VIEW_3D", True), ("TEXT_EDITOR", False)])
+def test_files_are_taken_where_objects_are(area, taken, blank):
+    screen = blank.context.window.screen
+    place = max(screen.areas, key=lambda each: each.width)
+    before, place.type = place.type, area
+    region = next(each for each in place.regions if each.type == "WINDOW")
+    try:
+        with blank.context.temp_override(area=place, region=region):
+            polled = blank.types.MOCAP_FH_recording.poll_drop(blank.context)
+    finally:
+        place.type = before
+
+    assert bool(polled) == taken
+
+
+def test_the_file_menu_has_the_entry(blank, draw):
+    menu = blank.types.TOPBAR_MT_file_import
+
+    entries = [each for each in menu._dyn_ui_initialize() if "mocap_assist" in each.__module__]
+
+    assert len(entries) == 1
+
+
+def test_clean_offers_markers_nothing_that_only_joints_have(blank, draw, load, rng, tmp_path):
+    joints = {"joint_limits", "plant_feet", "contact_height"}
+    assert joints - {"contact_height"} <= set(draw("MOCAP_PT_clean"))
+    tracks = load("solvers.motion").Tracks(("a", "b"), rng.normal(size=(30, 2, 3)), 24.0)
+    load("solvers.recordings").write_trc(tracks, tmp_path / "two.trc")
+
+    blank.ops.mocap_assist.import_recording(filepath=str(tmp_path / "two.trc"))
+
+    shown = set(draw("MOCAP_PT_clean"))
+    assert not joints & shown
+    assert {"strength", "frame_range", "mocap_assist.denoise"} <= shown
+
+
+def test_the_panel_tells_where_the_selected_take_came_from(blank, draw, load, tmp_path):
+    samples = load("solvers.samples")
+    walk = samples.walking_gait(samples.GaitSettings(duration=1.0, frame_rate=25.0))
+    load("solvers.recordings").write_bvh(walk, tmp_path / "stroll.bvh")
+    assert draw("MOCAP_PT_import") == [IMPORT]
+
+    blank.ops.mocap_assist.import_recording(filepath=str(tmp_path / "stroll.bvh"))
+
+    assert draw("MOCAP_PT_import") == [IMPORT, "stroll.bvh", "25 frames, 25 Hz"]

@@ -1,0 +1,146 @@
+"""A whole batch is told in one page, also after it was stopped and taken up again."""
+
+import json
+import os
+import signal
+import subprocess
+import sys
+import time
+from html.parser import HTMLParser
+from pathlib import Path
+
+import numpy as np
+import pytest
+from joint_files import kinect_csv, moving
+
+from solvers.recordings import read_bvh, read_recording, write_bvh
+
+ROOT = Path(__file__).parents[3]
+PNG = b"\x89PNG\r\n\x1a\n"
+
+
+class Page(HTMLParser):
+    """What a reader of the page sees: titles, words, and which pictures."""
+
+    def __init__(self, path: Path) -> None:
+        super().__init__()
+        self.titles, self.words, self.pictures, self._inside = [], [], [], ""
+        self.feed(path.read_text(encoding="utf-8"))
+
+    def handle_starttag(self, tag, attrs):
+        self._inside = tag
+        if tag == "img":
+            self.pictures.append(dict(attrs)["src"])
+
+    def handle_data(self, data):
+        self.words.append(data)
+        if self._inside == "h2" and data.strip():
+            self.titles.append(data)
+
+
+@pytest.fixture
+def takes(swinging_leg, tmp_path) -> Path:
+    """A folder with a folder in it, recordings, and what is none."""
+    folder = tmp_path / "takes"
+    (folder / "day <2>").mkdir(parents=True)
+    (folder / ".trash").mkdir()
+    for place in ("leg.bvh", "day <2>/leg & foot.bvh", ".trash/old.bvh"):
+        write_bvh(swinging_leg, folder / place)
+    (folder / "notes.txt").write_text("Tuesday: the actor limped.\n")
+    (folder / "kinect.csv").write_text(kinect_csv(moving(40, 25)))
+    return folder
+
+
+def test_a_page_tells_of_every_file(call, takes, tmp_path):
+    (takes / "bad.bvh").write_text("HIERARCHY\nMOTION\n")
+    out = tmp_path / "out"
+
+    status, _, complaint = call("denoise", takes, "--output-folder", out, "--report")
+
+    assert status == 2
+    assert complaint.count("\n") == 1
+    page = Page(out / "report.html")
+    assert page.titles[0] == "bad.bvh"
+    assert sorted(page.titles) == ["bad.bvh", "kinect.csv", "leg & foot.bvh", "leg.bvh"]
+    assert "Mocap Assist, denoise: 3 done, 1 failed" in page.words
+    assert complaint.strip() in page.words
+    assert sorted(page.pictures) == [
+        "report/day <2>/leg & foot.bvh.png", "report/kinect.trc.png", "report/leg.bvh.png",
+    ]  # fmt: skip
+    assert all((out / picture).read_bytes().startswith(PNG) for picture in page.pictures)
+    told = json.loads((out / "report.json").read_text())
+    assert (told["verb"], told["done"], told["failed"]) == ("denoise", 3, 1)
+    figures = {Path(each["input"]).name: each for each in told["files"]}
+    assert figures["bad.bvh"]["error"] == complaint.strip()
+    leg = figures["leg.bvh"]
+    assert leg["before"]["n_frames"] == 120
+    assert f"{leg['before']['mean_jitter_m_per_s3']:.3g} → " in "".join(page.words)
+
+
+def test_a_folder_keeps_its_form_and_points_stay_points(call, takes):
+    out = takes / "clean"
+    words = ["convert", takes, "--output-folder", out]
+
+    assert call(*words)[0] == 0
+    again = call(*words)[1]
+
+    made = {path.relative_to(out).as_posix() for path in out.rglob("*") if path.is_file()}
+    assert made == {"leg.bvh", "day <2>/leg & foot.bvh", "kinect.trc", "mocap_assist.json"}
+    assert again.count("Already made.") == 3
+    kinect = read_recording(takes / "kinect.csv").tracks
+    assert np.nanmax(
+        np.abs(read_recording(out / "kinect.trc").positions - kinect.positions)
+    ) < (1e-5)
+
+
+def test_quality_and_examples_take_folders_too(call, takes, leg_file, tmp_path):
+    assert call("quality", takes)[1].count(" frames at ") == 3
+    (takes / "kinect.csv").unlink()
+    status, said, _ = call("learn", takes, "--output", tmp_path / "legs.npz")
+    assert (status, "from 2 clips" in said) == (0, True)
+    assert call("denoise", leg_file, tmp_path / "a.bvh", "--train", takes)[0] == 0
+
+
+def test_a_folder_without_recordings_is_refused(call, tmp_path):
+    (tmp_path / "empty").mkdir()
+    (tmp_path / "empty" / "notes.txt").write_text("nothing")
+
+    status, _, complaint = call("quality", tmp_path / "empty")
+
+    assert (status, complaint) == (
+        2, f"There is no recording in the folder {tmp_path / 'empty'}.\n",
+    )  # fmt: skip
+
+
+def test_a_report_needs_a_folder(call, leg_file, tmp_path):
+    status, _, complaint = call("convert", leg_file, tmp_path / "out.bvh", "--report")
+
+    assert status == 2
+    assert complaint == "A report needs a folder: say which with --output-folder DIR.\n"
+
+
+def test_killed_in_the_middle_and_taken_up_again(swinging_leg, takes, tmp_path, call):
+    """The last file cannot be read until somebody writes it: there the batch is killed."""
+    out, late = tmp_path / "out", tmp_path / "late.bvh"
+    os.mkfifo(late)
+    words = ["denoise", takes, late, "--output-folder", out]
+    with subprocess.Popen([sys.executable, "-m", "solvers", *words], cwd=ROOT) as running:
+        while running.poll() is None and len(list(out.rglob("*.trc"))) < 1:
+            time.sleep(0.02)
+        while "kinect" not in (out / "mocap_assist.json").read_text() and not running.poll():
+            time.sleep(0.02)
+        os.kill(running.pid, signal.SIGKILL)
+    late.unlink()
+    write_bvh(swinging_leg, late)
+    n_made = len(json.loads((out / "mocap_assist.json").read_text()))
+
+    status, said, _ = call(*words, "--report")
+
+    assert status == 0
+    assert n_made >= 1
+    assert said.count("Already made.") == n_made
+    told = json.loads((out / "report.json").read_text())
+    assert told["done"] == 4
+    assert all("after" in each and "picture" in each for each in told["files"])
+    assert read_bvh(out / "late.bvh").n_frames == swinging_leg.n_frames
+    assert not [path for path in out.rglob("*") if path.name.startswith(".")]

@@ -1,0 +1,66 @@
+"""`solve`: from a file of markers to a BVH file."""
+
+import json
+
+import pytest
+from marked_bodies import markers_on
+
+from solvers.motion import find_humanoid_map
+from solvers.recordings import read_bvh, write_bvh, write_c3d, write_trc
+from solvers.samples import GaitSettings, walking_gait
+
+
+@pytest.fixture
+def walk():
+    return walking_gait(GaitSettings(duration=1.0, frame_rate=30.0))
+
+
+@pytest.fixture
+def marker_file(walk, tmp_path):
+    write_c3d(markers_on(walk), tmp_path / "walk.c3d")
+    return tmp_path / "walk.c3d"
+
+
+def test_writes_a_skeleton_and_tells_how_well_it_fits(call, marker_file, tmp_path):
+    status, out, err = call("solve", marker_file, tmp_path / "walk.bvh", "--json")
+
+    assert (status, err) == (0, "")
+    figures = json.loads(out)
+    assert figures["marker_set"] == "CMU 41" and len(figures["markers"]) == 41
+    assert figures["error_m"] < 0.005 and figures["swaps"] == []
+    motion = read_bvh(tmp_path / "walk.bvh")
+    assert motion.n_frames == figures["n_frames"] == 30
+    assert find_humanoid_map(motion.skeleton).score == 1.0
+
+
+def test_many_files_all_become_bvh(call, marker_file, walk, tmp_path):
+    write_trc(markers_on(walk), tmp_path / "other.trc")
+
+    status, out, _ = call(
+        "solve", marker_file, tmp_path / "other.trc", "--output-folder", tmp_path / "out",
+        "--no-unswap", "--no-fill", "--smooth",
+    )  # fmt: skip
+
+    assert status == 0 and "41 markers" in out
+    written = {path.name for path in (tmp_path / "out").glob("*.bvh")}
+    assert written == {"walk.bvh", "other.bvh"}
+
+
+def test_refuses_what_is_no_bvh_before_any_work(call, marker_file, tmp_path):
+    status, _, err = call("solve", marker_file, tmp_path / "again.c3d")
+
+    assert status == 2 and ".bvh" in err
+
+
+def test_refuses_what_has_a_skeleton(call, walk, tmp_path):
+    write_bvh(walk, tmp_path / "walk.bvh")
+
+    status, _, err = call("solve", tmp_path / "walk.bvh", tmp_path / "again.bvh")
+
+    assert status == 2 and "has a skeleton already" in err
+
+
+def test_convert_says_that_markers_have_to_be_solved(call, marker_file, tmp_path):
+    status, _, err = call("convert", marker_file, tmp_path / "walk.bvh")
+
+    assert status == 2 and "the verb solve" in err

@@ -1,0 +1,102 @@
+"""The slopes by which poses and bodies are fitted, against finite differences."""
+
+import numpy as np
+import pytest
+from marked_bodies import markers_on
+from numpy.testing import assert_allclose
+
+from solvers.markers.body import Poses
+from solvers.markers.build_body import build_body
+from solvers.markers.centres import chord, joint_centres
+from solvers.markers.fit_body import body_slopes, fit_body, measures_of
+from solvers.markers.fit_poses import _ease, cost_of, fit_poses, marker_slopes, stepped
+from solvers.markers.marker_sets import find_marker_set
+from solvers.samples import GaitSettings, walking_gait
+
+STEP = 1e-6
+
+
+@pytest.fixture(scope="module")
+def started():
+    """A body, the markers seen, and poses that are a little off."""
+    tracks = markers_on(walking_gait(GaitSettings(duration=0.5, frame_rate=20.0)))
+    found = find_marker_set(tracks.names).markers
+    spots = {
+        spot: tracks.positions[:, tracks.names.index(name)] for spot, name in found.items()
+    }
+    centres = joint_centres(spots)
+    body, turns = build_body(centres, spots)
+    seen = np.stack([spots[marker.spot] for marker in body.markers], axis=1)
+    off = Poses(turns, centres.places["hips"])
+    rng = np.random.default_rng(1)
+    off = stepped(body, off, 0.05 * rng.normal(size=(len(seen), 3 + 3 * len(body.turning))))
+    return body, seen, off
+
+
+def test_markers_move_with_the_pose_as_their_slopes_say(started):
+    body, _, poses = started
+    slopes = marker_slopes(body, body.place_in(poses))
+
+    for unknown in range(slopes.shape[-1]):
+        step = np.zeros((len(poses.roots), slopes.shape[-1]))
+        step[:, unknown] = STEP
+        ahead = body.place_in(stepped(body, poses, step)).markers
+        behind = body.place_in(stepped(body, poses, -step)).markers
+        assert_allclose(slopes[..., unknown], (ahead - behind) / (2 * STEP), atol=1e-8)
+
+
+def test_what_joints_usually_do_changes_as_its_slopes_say(started):
+    body, _, poses = started
+    _, slopes = _ease(body, poses)
+
+    for unknown in range(slopes.shape[-1]):
+        step = np.zeros((len(poses.roots), slopes.shape[-1]))
+        step[:, unknown] = STEP
+        ahead, _ = _ease(body, stepped(body, poses, step))
+        behind, _ = _ease(body, stepped(body, poses, -step))
+        assert_allclose(slopes[..., unknown], (ahead - behind) / (2 * STEP), atol=1e-5)
+
+
+def test_markers_move_with_the_measures_as_their_slopes_say(started):
+    body, _, poses = started
+    measures = measures_of(body)
+    slopes = body_slopes(body, body.place_in(poses), measures)
+
+    for number, moved in enumerate(measures.joints):
+        offsets = body.offsets.copy()
+        for joint, axis, sign in moved:
+            offsets[joint, axis] += sign * STEP
+        ahead = body.with_offsets(offsets, body.marker_offsets).place_in(poses).markers
+        change = (ahead - body.place_in(poses).markers) / STEP
+        assert_allclose(slopes[..., number], change, atol=1e-6)
+
+
+def test_fitting_never_makes_it_worse_and_settles(started):
+    body, seen, poses = started
+
+    fitted = fit_poses(body, seen, poses)
+    again = fit_poses(body, seen, fitted)
+
+    assert (cost_of(body, seen, fitted) < cost_of(body, seen, poses)).all()
+    assert_allclose(cost_of(body, seen, again), cost_of(body, seen, fitted), rtol=0.02)
+
+
+def test_a_body_fits_better_once_it_is_measured(started):
+    body, seen, poses = started
+    fitted = fit_poses(body, seen, poses)
+
+    better, refitted = fit_body(body, seen, fitted)
+
+    assert cost_of(better, seen, refitted).sum() < 0.5 * cost_of(body, seen, fitted).sum()
+    left, right = better.place["leftLowerLeg"], better.place["rightLowerLeg"]
+    assert_allclose(better.offsets[left], better.offsets[right] * (-1.0, 1.0, 1.0))
+
+
+def test_the_chord_makes_a_right_angle_at_the_joint():
+    start, marker = np.zeros((1, 3)), np.array([[0.1, 0.02, -0.4]])
+
+    joint = chord(start, marker, np.array([[1.0, 0.0, 0.0]]), 0.06)
+
+    assert_allclose(np.linalg.norm(marker - joint), 0.06)
+    assert_allclose(np.sum((marker - joint) * (joint - start)), 0.0, atol=1e-12)
+    assert joint[0, 0] < marker[0, 0]
