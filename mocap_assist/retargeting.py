@@ -21,6 +21,7 @@ from .scene.armature_read import read_take
 from .scene.armature_write import check_writable
 from .scene.bone_channels import animated_curves, bone_path
 from .scene.compat import Source
+from .scene.rigify import is_rigify
 from .scene.take import ArmatureTake
 from .scene.target_read import read_target, vertical_part
 from .selection import played_source
@@ -66,7 +67,8 @@ def write_retargeted(
     for made_from, take, keys in zip(found.sources, found.takes, results, strict=True):
         name = f"{made_from[0].name}.{found.target.name}"
         action, slot = write_action(found.target, name, take.frames, keys, found.switches)
-        history.record(action, made_from, _entry(source, found, settings))
+        entry = _entry(source, found, settings)
+        history.record(action, made_from, entry, of_another_rig=True)
     linked = found.target.library is not None
     if not linked:
         compat.assign(found.target, action, slot)
@@ -147,6 +149,11 @@ def _read(
 ) -> Reading:
     choices = settings.choices
     target = target_called(scene, choices.target, source)
+    if is_rigify(source.data.bones):
+        raise InvalidMotionError(
+            f"{source.name} is a generated control rig: where its body is depends on"
+            " constraints. Bake its deform bones onto an armature of their own to take from."
+        )
     sources = chosen_sources(source, choices)
     files = (choices.source_map_file, choices.target_map_file)
     maps = maps_for(scene, source, target, files)

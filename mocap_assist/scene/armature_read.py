@@ -11,6 +11,7 @@ from .body import body_root
 from .bone_channels import animated_curves, bone_path, read_bone, read_space
 from .compat import Source
 from .frames import FrameRange, Grid, key_grid, range_bounds
+from .history import was_thinned
 from .origin import origin_of
 from .rig import Placement, Rig, read_rig
 from .take import ArmatureTake, BoneChannels, part_of
@@ -54,7 +55,8 @@ def read_take(
         There is no action, slot, bone, key or uniform scale, as the sentence says.
     """
     action, slot = source or action_of(armature)
-    curves, recorded = animated_curves(action, slot), bool(origin_of(action))
+    thinned = was_thinned(action)
+    curves, recorded = animated_curves(action, slot), bool(origin_of(action)) and not thinned
     rig = read_rig(armature)
     if grid is None:
         known = {bone_path(bone, "") for bone in rig.bones}
@@ -62,7 +64,11 @@ def read_take(
         grid = key_grid(keyed, range_bounds(choice, scene, keyed), recorded=recorded)
     channels = tuple(
         read_bone(
-            armature.pose.bones[bone], curves, grid.frames, grid.step if recorded else None
+            armature.pose.bones[bone],
+            curves,
+            grid.frames,
+            grid.step if recorded else None,
+            gaps=not thinned,
         )
         for bone in rig.bones
     )

@@ -33,20 +33,28 @@ def bone_path(bone: str, name: str) -> str:
 
 
 def read_bone(
-    bone: bpy.types.PoseBone, curves: Curves, frames: Array, step: float | None = None
+    bone: bpy.types.PoseBone,
+    curves: Curves,
+    frames: Array,
+    step: float | None = None,
+    *,
+    gaps: bool = True,
 ) -> BoneChannels:
     """Read the rotation channels of the bone's own mode, and its location.
 
-    Channels without keys have the pose's present value. `step` is that of `unobserved`.
+    Channels without keys have the pose's present value. `step` is that of `unobserved`; without
+    `gaps` nothing is.
     """
     turning, shifting = rotation_curves(bone, curves), location_curves(bone, curves)
     angles = sampled_rotation(bone, turning, frames)
     rotations = quaternions_from_channels(angles, bone.rotation_mode)
-    rotations[gaps_of(turning, frames, step)] = np.nan
+    if gaps:
+        rotations[gaps_of(turning, frames, step)] = np.nan
     if bone.bone.use_connect and bone.parent:
         return BoneChannels(rotations, np.zeros((len(frames), 3)), bool(turning), False)
     locations = sampled(shifting, bone.location, frames)
-    locations[gaps_of(shifting, frames, step)] = np.nan
+    if gaps:
+        locations[gaps_of(shifting, frames, step)] = np.nan
     return BoneChannels(rotations, locations, bool(turning), bool(shifting))
 
 

@@ -16,16 +16,27 @@ from .compat import Source
 
 HISTORY = "mocap_assist_history"
 SOURCE = "mocap_assist_source"
+GIVEN_BY = "mocap_assist_given_by"
 
 
-def record(action: bpy.types.Action, made_from: Source, entry: dict[str, Any]) -> None:
+def record(
+    action: bpy.types.Action,
+    made_from: Source,
+    entry: dict[str, Any],
+    *,
+    of_another_rig: bool = False,
+) -> None:
     """Note in `action` what was done to `made_from`, and by which version.
 
-    An action that was made from a result keeps the result's entries and its raw source.
+    An action that was made from a result keeps the result's entries and its raw source. One
+    made from an action `of_another_rig` is raw itself: it cannot be reverted to that.
     """
     source, slot = made_from
     entry = {"version": version(), "source": source.name, "slot": slot.identifier} | entry
     action[HISTORY] = json.dumps([*history(source), entry], ensure_ascii=False)
+    if of_another_rig:
+        action[GIVEN_BY] = source
+        return
     # A pointer follows the source through renaming, and keeps it in the saved file.
     action[SOURCE] = source.get(SOURCE) or source
 
@@ -37,6 +48,12 @@ def history(action: bpy.types.Action) -> list[dict[str, Any]]:
     except (TypeError, ValueError):  # edited by hand
         return []
     return entries if isinstance(entries, list) else []
+
+
+def was_thinned(action: bpy.types.Action) -> bool:
+    """Tell whether Unbake made it: frames without keys are no gaps then."""
+    entries = history(action)
+    return bool(entries) and entries[-1].get("operation") == "reduce_keys"
 
 
 def raw_of(action: bpy.types.Action, slot: bpy.types.ActionSlot | None = None) -> Source | None:

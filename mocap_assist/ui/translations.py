@@ -47,6 +47,15 @@ TEXTS = {
     "Revert to Raw": ("元に戻す", "恢复原始", "Revenir au brut", "Volver al original"),
     "Left foot stands": ("左足が接地", "左脚着地", "Pied gauche posé", "Pie izquierdo apoyado"),
     "Right foot stands": ("右足が接地", "右脚着地", "Pied droit posé", "Pie derecho apoyado"),
+    "Retarget": ("リターゲット", "重定向", "Reciblage", "Redirigir"),
+    "Find Bones": ("ボーンを探す", "查找骨骼", "Trouver les os", "Buscar huesos"),
+    "Unbake": ("キーを間引く", "精简关键帧", "Alléger les clés", "Reducir claves"),
+    "Target": ("ターゲット", "目标", "Cible", "Destino"),
+    "Takes": ("テイク", "录制", "Prises", "Tomas"),
+    "Root motion": ("ルートモーション", "根运动", "Mouvement racine", "Movimiento raíz"),
+    "Keep feet": ("足の位置を保つ", "保持脚部位置", "Garder les pieds", "Conservar los pies"),
+    "Keep hands": ("手の位置を保つ", "保持手部位置", "Garder les mains", "Conservar las manos"),
+    "Tolerance": ("許容誤差", "容差", "Tolérance", "Tolerancia"),
 }  # fmt: skip
 CONTEXTS = ("*", "Operator")  # labels and properties, buttons
 

@@ -62,7 +62,7 @@ def test_a_linked_action_serves_and_is_remembered(target, walker, give, blank, t
     action = give(walker, target, takes="LISTED", actions="linked walk")
 
     assert action.name == "linked walk.Mixamo" and action.library is None
-    assert action["mocap_assist_source"] == linked
+    assert action["mocap_assist_given_by"] == linked
 
 
 def test_what_is_written_says_how_it_was_made(target, walker, give):
@@ -121,3 +121,45 @@ def test_one_step_takes_it_back(target, walker, give, blank):
 
     assert not made_of(blank)
     assert blank.data.objects["Mixamo"].animation_data is None
+
+
+def test_the_result_is_cleaned_and_reverted_to_as_a_recording_of_its_own(
+    target, walker, give, blank
+):
+    given = give(walker, target)
+    blank.context.view_layer.objects.active = target
+
+    assert blank.ops.mocap_assist.denoise() == {"FINISHED"}
+    clean = target.animation_data.action
+    assert clean.name == f"{given.name}.clean"
+    assert blank.ops.mocap_assist.revert_to_raw() == {"FINISHED"}
+
+    assert target.animation_data.action == given
+    operations = [each["operation"] for each in json.loads(clean["mocap_assist_history"])]
+    assert operations == ["retarget", "denoise"]
+
+
+def test_several_slots_and_bones_of_another_rig_do_not_confuse(target, walker, give, blank):
+    """The slot that keys the source's bones is taken, wherever it stands."""
+    raw = walker.animation_data.action
+    other = blank.data.actions.new("two")
+    for name in ("Lamp", "Actor"):
+        slot = other.slots.new("OBJECT", name)
+        strip = (
+            other.layers[0].strips[0]
+            if other.layers
+            else other.layers.new("Layer").strips.new(type="KEYFRAME")
+        )
+        bag = strip.channelbag(slot, ensure=True)
+        if name == "Lamp":
+            bag.fcurves.new("location", index=0).keyframe_points.insert(1, 0)
+            continue
+        for curve in raw.layers[0].strips[0].channelbags[0].fcurves:
+            copy = bag.fcurves.new(curve.data_path, index=curve.array_index)
+            for key in curve.keyframe_points:
+                copy.keyframe_points.insert(*key.co, options={"FAST"})
+
+    action = give(walker, target, takes="LISTED", actions="two")
+
+    assert action.name == "two.Mixamo"
+    assert json.loads(action["mocap_assist_history"])[-1]["slot"] == "OBActor"

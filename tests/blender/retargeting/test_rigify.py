@@ -47,6 +47,31 @@ def test_ends_of_limbs_go_where_the_source_says(limbs, hero, walker, give, poses
     assert max(ends_off(poses, hero, walker)) < CENTIMETRE
 
 
+@pytest.mark.parametrize("limbs", ["FK", "IK"])
+def test_joints_do_not_flip(limbs, hero, walker, give, poses):
+    frames = range(1, 61)
+
+    give(walker, hero, limbs=limbs)
+
+    def steps(armature, names):
+        found = poses(armature, frames)
+        turns = np.stack([found[name][:, :3, :3] for name in names], axis=1)
+        turns /= np.linalg.norm(turns, axis=-2, keepdims=True)
+        cosine = (np.einsum("fjab,fjab->fj", turns[1:], turns[:-1]) - 1.0) / 2.0
+        return np.degrees(np.arccos(cosine.clip(-1.0, 1.0))).max(axis=0)
+
+    ours = steps(hero, [f"DEF-{name}" for name in DEFORM])
+    assert (ours < steps(walker, SOURCE) + 5.0).all()
+
+
+def test_its_controls_are_no_source(hero, walker, give, make_rig):
+    """Where its arms are depends on constraints, which are not read."""
+    give(walker, hero)
+
+    with pytest.raises(RuntimeError, match="Hero is a generated control rig"):
+        give(hero, make_rig("Mixamo"))
+
+
 def test_with_both_the_animator_may_switch(hero, walker, give, poses, blank):
     action = give(walker, hero, limbs="BOTH")
     by_fk = heads(poses, hero, [f"DEF-{name}" for name in DEFORM])

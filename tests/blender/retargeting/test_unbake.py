@@ -46,6 +46,29 @@ def test_a_larger_tolerance_leaves_fewer_keys(walker, blank, keys_of):
     assert found[0] > found[1] > found[2]
 
 
+def test_few_keys_can_be_thinned_out_again_and_reverted(walker, blank, keys_of):
+    raw = walker.animation_data.action
+    for tolerance in (0.002, 0.03):
+        assert blank.ops.mocap_assist.reduce_keys(tolerance=tolerance) == {"FINISHED"}
+
+    action = walker.animation_data.action
+    assert action.name.startswith(f"{raw.name}.sparse")
+    assert n_keys(keys_of(action)) < n_keys(keys_of(blank.data.actions[f"{raw.name}.sparse"]))
+    assert blank.ops.mocap_assist.revert_to_raw() == {"FINISHED"}
+    assert walker.animation_data.action == raw
+
+
+def test_gaps_are_not_unbaked(walker, blank):
+    bag = walker.animation_data.action.layers[0].strips[0].channelbags[0]
+    for curve in bag.fcurves:
+        if "LeftForeArm" in curve.data_path:
+            for key in list(curve.keyframe_points)[10:50][::-1]:
+                curve.keyframe_points.remove(key)
+
+    with pytest.raises(RuntimeError, match=r"LeftForeArm\. Clean the take first"):
+        blank.ops.mocap_assist.reduce_keys()
+
+
 def rekeyed(armature, mode, load):
     """Key the same turns in another rotation mode."""
     modes = load("mocap_assist.scene.rotation_modes")

@@ -4,7 +4,9 @@ from string import Formatter
 
 import pytest
 
-PANELS = [f"MOCAP_PT_{name}" for name in ("import", "clean", "check", "compare", "feet")]
+PANELS = [
+    f"MOCAP_PT_{name}" for name in ("import", "clean", "check", "compare", "feet", "retarget")
+]
 
 
 @pytest.fixture
@@ -29,7 +31,8 @@ def said_by(blank, draw, actor):
 def names_of(blank, drawn):
     """Return what Blender itself writes for the properties and buttons among these."""
     found = blank.context.scene.mocap_assist
-    groups = [found.clean, found.check, blank.context.window_manager]
+    groups = [found.clean, found.check, found.retarget, found.unbake]
+    groups.append(blank.context.window_manager)
     for group in groups:
         for each in group.bl_rna.properties:
             if each.identifier in drawn:
