@@ -126,8 +126,15 @@ def chosen_sources(source: bpy.types.Object, choices: RetargetChoices) -> tuple[
 
 
 def fitting_actions(armature: bpy.types.Object) -> tuple[Source, ...]:
-    """Return all actions, linked ones too, that key any of the armature's bones."""
-    found = [(each, _fitting_slot(each, armature)) for each in bpy.data.actions]
+    """Return all actions, linked ones too, that key any of the armature's bones.
+
+    What was given to another armature, whose bones may have the same names, is left out.
+    """
+    found = [
+        (each, _fitting_slot(each, armature))
+        for each in bpy.data.actions
+        if history.given_to(each) in {"", armature.name}
+    ]
     return tuple((action, slot) for action, slot in found if slot is not None)
 
 
@@ -194,6 +201,7 @@ def _entry(
     return {
         "operation": "retarget",
         "source_armature": source.name,
+        "target_armature": found.target.name,
         "settings": history.plain(*settings),
         "bones": {
             "source": dict(found.maps.source.joints),

@@ -50,6 +50,12 @@ def history(action: bpy.types.Action) -> list[dict[str, Any]]:
     return entries if isinstance(entries, list) else []
 
 
+def given_to(action: bpy.types.Action) -> str:
+    """Return the name of the armature that Retarget made it for; nothing for other actions."""
+    names = [entry.get("target_armature", "") for entry in history(action)]
+    return next((str(name) for name in reversed(names) if name), "")
+
+
 def was_thinned(action: bpy.types.Action) -> bool:
     """Tell whether Unbake made it: frames without keys are no gaps then."""
     entries = history(action)

@@ -39,6 +39,15 @@ def test_all_actions_that_fit_are_retargeted_in_one_step(target, walker, give, b
     assert len({json.dumps(sorted(keys_of(action).items(), key=str)) for action in made}) == 1
 
 
+def test_what_was_given_to_the_target_is_not_taken_for_the_source(target, walker, give, blank):
+    """Both have bones of the same names."""
+    for _ in range(2):
+        give(walker, target, takes="ALL")
+
+    assert not any("Mixamo.Mixamo" in action.name for action in blank.data.actions)
+    assert len(made_of(blank)) == 2
+
+
 def test_listed_actions_and_no_others(target, walker, give, blank):
     raw = walker.animation_data.action
     for name in ("run", "jump"):
@@ -100,6 +109,14 @@ def test_what_cannot_be_done_is_said(target, blank, settings, sentence):
     with pytest.raises(RuntimeError, match=sentence):
         blank.ops.mocap_assist.retarget(target=target.name, **settings)
     assert not made_of(blank) and target.animation_data is None
+
+
+def test_figures_without_hips_are_refused(walker, make_armature, blank):
+    prop = make_armature({"Lid": (None, (0, 0, 0), (0, 0, 1), False)}, name="Box")
+    blank.context.view_layer.objects.active = walker
+
+    with pytest.raises(RuntimeError, match="No bone of Box has the role hips"):
+        blank.ops.mocap_assist.retarget(target=prop.name)
 
 
 def test_nothing_but_actions_is_left_behind(target, walker, give, blank):
