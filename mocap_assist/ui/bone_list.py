@@ -1,5 +1,7 @@
 """The editable list of which bone plays which part, and its presets."""
 
+from collections.abc import Callable
+from functools import partial
 from pathlib import Path
 from typing import ClassVar
 
@@ -31,18 +33,22 @@ class MOCAP_UL_bones(bpy.types.UIList):
         active_property: str,
         index: int,
     ) -> None:
-        """Draw the role and a picker for each side."""
+        """Draw the role, and the bone of each side; a name that its armature lacks is red."""
         columns = layout.split(factor=0.3, align=True)
         columns.label(text=row.name, translate=False)
         for side in SIDES:
-            armature = context.scene.objects.get(getattr(listed, side))
-            if armature is None or armature.type != "ARMATURE":
-                columns.label(text=getattr(row, side), translate=False)
-                continue
+            bone, armature = getattr(row, side), _armature(context, listed, side)
             cell = columns.row(align=True)
-            bone = getattr(row, side)
-            cell.alert = bool(bone) and bone not in armature.data.bones
-            cell.prop_search(row, side, armature.data, "bones", text="", icon="BONE_DATA")
+            cell.alert = bool(bone) and armature is not None and bone not in armature.data.bones
+            cell.label(text=bone or "-", translate=False)
+
+
+def _armature(
+    context: bpy.types.Context, listed: bpy.types.PropertyGroup, side: str
+) -> bpy.types.Object | None:
+    """Return the armature that the list speaks of, if it is there."""
+    found = context.scene.objects.get(getattr(listed, side))
+    return found if found is not None and found.type == "ARMATURE" else None
 
 
 class _BoneButton:
@@ -59,12 +65,10 @@ class _BoneButton:
             cls.poll_message_set(reason)
         return not reason
 
-    def change(self, context: bpy.types.Context) -> None:
-        raise NotImplementedError
-
-    def execute(self, context: bpy.types.Context) -> set[str]:
+    def done(self, act: Callable[[], None]) -> set[str]:
+        """Do it; an error is said in a sentence."""
         try:
-            self.change(context)
+            act()
         except MocapAssistError as error:
             self.report({"ERROR"}, str(error))
             return {"CANCELLED"}
@@ -79,7 +83,10 @@ class MOCAP_OT_find_bones(_BoneButton, bpy.types.Operator):
         " which part in both armatures"
     )
 
-    def change(self, context: bpy.types.Context) -> None:
+    def execute(self, context: bpy.types.Context) -> set[str]:
+        return self.done(partial(self.find, context))
+
+    def find(self, context: bpy.types.Context) -> None:
         """Fill the list anew."""
         found = context.scene.mocap_assist
         source = selected_armature(context)
@@ -111,7 +118,10 @@ class MOCAP_OT_save_bone_map(_PresetButton, bpy.types.Operator):
     bl_label = "Save Bones"
     bl_description = "Keep what the list says of one armature as a preset"
 
-    def change(self, context: bpy.types.Context) -> None:
+    def execute(self, context: bpy.types.Context) -> set[str]:
+        return self.done(partial(self.save, context))
+
+    def save(self, context: bpy.types.Context) -> None:
         """Write the file, whole or not at all."""
         maps = listed_maps(context.scene.mocap_assist.bone_map)
         write_humanoid_map(getattr(maps, self.side), Path(self.filepath))
@@ -122,7 +132,10 @@ class MOCAP_OT_load_bone_map(_PresetButton, bpy.types.Operator):
     bl_label = "Load Bones"
     bl_description = "Let a preset say which bones of one armature play which part"
 
-    def change(self, context: bpy.types.Context) -> None:
+    def execute(self, context: bpy.types.Context) -> set[str]:
+        return self.done(partial(self.load, context))
+
+    def load(self, context: bpy.types.Context) -> None:
         """Put the preset into the list, which is filled first if it was of other armatures."""
         found = context.scene.mocap_assist
         source = selected_armature(context)
@@ -151,6 +164,8 @@ def draw_bones(layout: bpy.types.UILayout, context: bpy.types.Context) -> None:
         score = getattr(listed, f"{side}_score")
         heads.label(text=f"{getattr(listed, side)} {score:.0%}", translate=False)
     layout.template_list("MOCAP_UL_bones", "", listed, "rows", listed, "active_row", rows=8)
+    if 0 <= listed.active_row < len(listed.rows):
+        _draw_pickers(layout, context, listed)
     for idname, icon in ((SAVE, "FILE_TICK"), (LOAD, "FILE_FOLDER")):
         row = layout.row(align=True)
         for side in SIDES:
@@ -159,6 +174,23 @@ def draw_bones(layout: bpy.types.UILayout, context: bpy.types.Context) -> None:
                 text=f"{idname.split('.')[1].split('_')[0].capitalize()} {side.capitalize()}",
                 icon=icon,
             ).side = side
+
+
+def _draw_pickers(
+    layout: bpy.types.UILayout, context: bpy.types.Context, listed: bpy.types.PropertyGroup
+) -> None:
+    """Draw where the bones of the active row are chosen, wide enough to read."""
+    row = listed.rows[listed.active_row]
+    column = layout.column(align=True)
+    column.use_property_split = True
+    column.use_property_decorate = False
+    for side in SIDES:
+        armature = _armature(context, listed, side)
+        if armature is not None:
+            text = f"{row.name}, {side}"
+            column.prop_search(
+                row, side, armature.data, "bones", text=text, translate=False, icon="BONE_DATA"
+            )
 
 
 CLASSES = (MOCAP_UL_bones, MOCAP_OT_find_bones, MOCAP_OT_save_bone_map, MOCAP_OT_load_bone_map)
