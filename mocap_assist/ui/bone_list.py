@@ -14,6 +14,7 @@ from ..selection import selected_armature, why_not_retarget
 FIND, SAVE, LOAD = (
     f"mocap_assist.{name}" for name in ("find_bones", "save_bone_map", "load_bone_map")
 )
+ROLE_COLUMN = 0.38  # of the list's width
 PACKAGE = __package__.rpartition(".mocap_assist.")[0]
 
 
@@ -31,18 +32,22 @@ class MOCAP_UL_bones(bpy.types.UIList):
         active_property: str,
         index: int,
     ) -> None:
-        """Draw the role and a picker for each side."""
-        columns = layout.split(factor=0.3, align=True)
+        """Draw the role and both bones; those that do not exist in red."""
+        columns = layout.split(factor=ROLE_COLUMN, align=True)
         columns.label(text=row.name, translate=False)
         for side in SIDES:
-            armature = context.scene.objects.get(getattr(listed, side))
-            if armature is None or armature.type != "ARMATURE":
-                columns.label(text=getattr(row, side), translate=False)
-                continue
-            cell = columns.row(align=True)
-            bone = getattr(row, side)
-            cell.alert = bool(bone) and bone not in armature.data.bones
-            cell.prop_search(row, side, armature.data, "bones", text="", icon="BONE_DATA")
+            armature, bone = listed_armature(context, listed, side), getattr(row, side)
+            cell = columns.row()
+            cell.alert = bool(bone) and armature is not None and bone not in armature.data.bones
+            cell.label(text=bone or "-", translate=False)
+
+
+def listed_armature(
+    context: bpy.types.Context, listed: bpy.types.PropertyGroup, side: str
+) -> bpy.types.Object | None:
+    """Return the armature on one side of the list, if it is still there."""
+    armature = context.scene.objects.get(getattr(listed, side))
+    return armature if armature is not None and armature.type == "ARMATURE" else None
 
 
 class _BoneButton:
@@ -145,12 +150,19 @@ def draw_bones(layout: bpy.types.UILayout, context: bpy.types.Context) -> None:
     layout.operator(FIND, icon="VIEWZOOM")
     if not len(listed.rows):
         return
-    heads = layout.split(factor=0.3, align=True)
+    heads = layout.split(factor=ROLE_COLUMN, align=True)
     heads.label(text="")
     for side in SIDES:
         score = getattr(listed, f"{side}_score")
         heads.label(text=f"{getattr(listed, side)} {score:.0%}", translate=False)
     layout.template_list("MOCAP_UL_bones", "", listed, "rows", listed, "active_row", rows=8)
+    row = listed.rows[min(listed.active_row, len(listed.rows) - 1)]
+    column = layout.column(align=True)
+    for side in SIDES:
+        if (armature := listed_armature(context, listed, side)) is not None:
+            column.prop_search(
+                row, side, armature.data, "bones", text=side.capitalize(), icon="BONE_DATA"
+            )
     for idname, icon in ((SAVE, "FILE_TICK"), (LOAD, "FILE_FOLDER")):
         row = layout.row(align=True)
         for side in SIDES:
