@@ -4,7 +4,6 @@ import argparse
 import json
 import sys
 from collections.abc import Sequence
-from pathlib import Path
 
 import bpy
 
@@ -13,11 +12,17 @@ from ...solvers.command_line.screen import Screen
 from ...solvers.errors import InvalidFileError, MocapAssistError
 from ...solvers.files import written_whole
 from ..scene import history
+from ..scene.markers import markers_of
+from .each_verb import HELP as EACH_HELP
+from .each_verb import add_each_options, perform_each
+from .import_verb import HELP as IMPORT_HELP
+from .import_verb import add_import_options, perform_import
+from .pictures import draw_played
+from .saving import STDOUT, add_output_options, in_a_folder, save, target_file
 from .verbs import VERBS
 
 PROG = "blender FILE --command mocap_assist"
 FAILED = 2
-STDOUT = Path("-")
 _commands: list[object] = []
 
 
@@ -28,14 +33,24 @@ def run(words: Sequence[str]) -> int:
     """
     screen = Screen()
     try:
-        arguments = _parser().parse_args(list(words))
-        _work(arguments, screen)
+        own, after = _parted(list(words))
+        arguments = _parser().parse_args(own)
+        arguments.words = after
+        arguments.work(arguments, screen)
     except MocapAssistError as error:
         screen.say(str(error))
         return FAILED
     except SystemExit as stop:  # a slip in the command line, or --help
         return int(stop.code or 0)
     return 0
+
+
+def _parted(words: list[str]) -> tuple[list[str], list[str]]:
+    """Part the words of `each` from those of the verb that it does: at the first --."""
+    if words[:1] != ["each"] or "--" not in words:
+        return words, []
+    at = words.index("--")
+    return words[:at], words[at + 1 :]
 
 
 def register() -> None:
@@ -50,84 +65,68 @@ def unregister() -> None:
 
 
 def _parser() -> SentenceParser:
-    parser = SentenceParser(prog=PROG, description="Clean up captured motion in a .blend file.")
+    parser = SentenceParser(prog=PROG, description="Captured motion in .blend files.")
     choices = parser.add_subparsers(dest="verb", metavar="VERB", required=True)
     for name, verb in VERBS.items():
         described = choices.add_parser(name, help=verb.help, description=verb.help)
         described.add_argument(
             "--armature",
             metavar="NAME",
-            help="work on this one [default: all that are animated]",
+            help="work on this one, or on the markers below this empty [default: all armatures"
+            " that are animated; where there are none, all markers]",
         )
-        described.add_argument(
-            "--json",
-            nargs="?",
-            type=Path,
-            const=STDOUT,
-            metavar="FILE",
-            help="write one line of JSON for each armature, and nothing else, to FILE; without"
-            " FILE print the lines, each of which begins with {, among what Blender prints",
-        )
-        if verb.writes:
-            described.add_argument(
-                "--output", type=Path, metavar="FILE",
-                help="save the result there [default: in the opened file]",
-            )  # fmt: skip
+        add_output_options(described, saves=verb.writes)
         verb.add_options(described)
+        described.set_defaults(work=_work)
+    described = choices.add_parser("import", help=IMPORT_HELP, description=IMPORT_HELP)
+    add_output_options(described, saves=True)
+    add_import_options(described)
+    described.set_defaults(work=perform_import)
+    described = choices.add_parser("each", help=EACH_HELP, description=EACH_HELP)
+    add_each_options(described)
+    described.set_defaults(work=perform_each)
     return parser
 
 
 def _work(arguments: argparse.Namespace, screen: Screen) -> None:
     verb = VERBS[arguments.verb]
-    armatures = _armatures(arguments.armature, verb.left_alone(arguments))
-    target = _target(arguments) if verb.writes else None
-    verb.check(arguments, armatures)
-    figures_file = None if arguments.json in {None, STDOUT} else _in_a_folder(arguments.json)
+    left_alone = verb.left_alone(arguments)
+    subjects = _subjects(arguments.armature, left_alone, on_markers=verb.on_markers)
+    target = target_file(arguments) if verb.writes else None
+    verb.check(arguments, subjects)
+    figures_file = None if arguments.json in {None, STDOUT} else in_a_folder(arguments.json)
     lines = []
-    for armature in armatures:
-        screen.title = armature.name
-        text, figures = verb.perform(bpy.context.scene, armature, arguments, screen.progress)
+    for subject in subjects:
+        screen.title = subject.name
+        text, figures = verb.perform(bpy.context.scene, subject, arguments, screen.progress)
         screen.clear()
-        lines.append(json.dumps({"armature": armature.name} | figures) + "\n")
+        lines.append(json.dumps({"armature": subject.name} | figures) + "\n")
         sys.stdout.write(lines[-1] if arguments.json == STDOUT else f"{text}\n")
         sys.stdout.flush()
     if target is not None:
-        _save(target)
+        save(target)
     if figures_file is not None:
         with written_whole(figures_file) as part:
             part.write_text("".join(lines), encoding="utf-8")
+    if arguments.picture is not None:
+        made = bpy.data.objects.get(left_alone, subjects[0])
+        draw_played(bpy.context.scene, made, arguments.picture)
 
 
-def _save(target: Path) -> None:
-    try:
-        bpy.ops.wm.save_as_mainfile(filepath=str(target), check_existing=False)
-    except RuntimeError as error:
-        reason = str(error).strip().removeprefix("Error: ")
-        raise InvalidFileError(f"{target} was not saved: {reason}") from error
-
-
-def _target(arguments: argparse.Namespace) -> Path:
-    target = arguments.output or (Path(bpy.data.filepath) if bpy.data.filepath else None)
-    if target is None:
-        raise InvalidFileError("No file is open: say which one to save with --output FILE.")
-    return _in_a_folder(target)
-
-
-def _in_a_folder(path: Path) -> Path:
-    """Return the whole path, whose folder must exist."""
-    if not path.resolve().parent.is_dir():
-        raise InvalidFileError(f"There is no folder {path.resolve().parent} to save in.")
-    return path.resolve()
-
-
-def _armatures(name: str | None, left_alone: str) -> list[bpy.types.Object]:
-    armatures = [each for each in bpy.context.scene.objects if each.type == "ARMATURE"]
+def _subjects(name: str | None, left_alone: str, *, on_markers: bool) -> list[bpy.types.Object]:
+    """Return the armatures, or holders of markers, to work on."""
+    things = list(bpy.context.scene.objects)
+    armatures = [each for each in things if each.type == "ARMATURE"]
+    holders = [
+        each for each in things if on_markers and each.type == "EMPTY" and markers_of(each)
+    ]
     if name is None:
         found = [each for each in armatures if _plays(each) and each.name != left_alone]
+        found = found or holders
         missing = "The scene has no animated armature."
     else:
-        found = [each for each in armatures if each.name == name]
-        there = ", ".join(each.name for each in armatures) or "none"
+        found = [each for each in [*armatures, *holders] if each.name == name]
+        there = ", ".join(each.name for each in [*armatures, *holders]) or "none"
         missing = f"There is no armature {name}; the scene has {there}."
     if not found:
         raise InvalidFileError(missing)

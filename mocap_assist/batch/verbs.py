@@ -10,7 +10,7 @@ import bpy
 
 from ...solvers.command_line import arguments_from, settings_from_arguments
 from ...solvers.command_line.convert import convert
-from ...solvers.command_line.files import MOTIONS, refuse_target
+from ...solvers.command_line.files import MOTIONS, POINTS_BY_DEFAULT, refuse_target
 from ...solvers.errors import InvalidSettingError
 from ...solvers.progress import Progress
 from ..check_choices import CheckSettings
@@ -21,7 +21,8 @@ from ..examples import SEPARATOR
 from ..jobs.job import run
 from ..scene import history
 from ..scene.armature_read import read_take
-from ..selection import played_source
+from ..scene.marker_take import read_markers
+from ..selection import played_result, played_source
 from .retarget_verbs import (
     add_retarget_options,
     add_unbake_options,
@@ -58,6 +59,8 @@ class Verb:
     """Raise a MocapAssistError where the work would be in vain, before it begins."""
     left_alone: Callable[[argparse.Namespace], str] = nobody
     """Name of an armature on which it is never performed."""
+    on_markers: bool = True
+    """Whether it is also for the markers below an empty."""
 
 
 def _clean_options(parser: argparse.ArgumentParser) -> None:
@@ -82,7 +85,7 @@ def _clean(
         settings = settings._replace(choices=choices)
     cleaned = run(read_cleaning(scene, armature, settings), progress)
     sentence = write_cleaned(scene, armature, settings, cleaned)
-    action, _ = history.played_result(armature)
+    action, _ = played_result(armature)
     return sentence, {"action": action.name} | history.history(action)[-1]
 
 
@@ -130,7 +133,8 @@ def _target(arguments: argparse.Namespace, armature: bpy.types.Object) -> Path:
     """Return the file to write: in a folder, one with the armature's name."""
     target: Path = arguments.target
     if target.is_dir():
-        target /= bpy.path.clean_name(armature.name) + MOTIONS
+        ending = MOTIONS if armature.type == "ARMATURE" else POINTS_BY_DEFAULT
+        target /= bpy.path.clean_name(armature.name) + ending
     return target
 
 
@@ -142,8 +146,11 @@ def _convert(
 ) -> Said:
     """Write the body's motion as the armature plays it, be it raw or clean."""
     target = _target(arguments, armature)
-    take = read_take(armature, scene, source=played_source(armature))
-    outcome = convert(take.parts[0].motion, target, progress)
+    if armature.type == "ARMATURE":
+        take = read_take(armature, scene, source=played_source(armature))
+        outcome = convert(take.parts[0].motion, target, progress)
+    else:
+        outcome = convert(read_markers(armature, scene).tracks, target, progress)
     return f"{target}: {outcome.text}", {"output": str(target)} | outcome.figures
 
 
@@ -162,7 +169,7 @@ VERBS = {
         "Measure jitter, spikes, gaps and sliding feet.", _check_options, _check, writes=False
     ),
     "convert": Verb(
-        "Write what armatures play, raw or clean, as BVH in centimetres, Y up.",
+        "Write what armatures play, raw or clean, as BVH in centimetres, Y up; markers as TRC.",
         _convert_options,
         _convert,
         writes=False,
@@ -173,11 +180,13 @@ VERBS = {
         add_retarget_options,
         perform_retarget,
         left_alone=retarget_target,
+        on_markers=False,
     ),
     "unbake": Verb(
         "Replace a key on every frame by few keys with handles.",
         add_unbake_options,
         perform_unbake,
+        on_markers=False,
     ),
 }
 """A new verb is a new entry here."""

@@ -18,7 +18,7 @@ from .screen import Screen
 from .verb import Outcome, Task, Verb
 
 RECORD = "mocap_assist.json"
-NOT_OF_THE_RESULT = {"again", "files", "jobs", "json", "output_folder", "report"}
+NOT_OF_THE_RESULT = {"again", "files", "jobs", "json", "output_folder", "report", "work"}
 """Options that do not change what comes out."""
 ONE_THREAD = {"OMP_NUM_THREADS": "1", "OPENBLAS_NUM_THREADS": "1", "MKL_NUM_THREADS": "1"}
 

@@ -38,10 +38,15 @@ class Entry(NamedTuple):
     failure: str = ""
 
 
-def has_picture(task: Task) -> bool:
-    """Whether the picture of a task that is written to a folder is there."""
+def picture_file(task: Task) -> Path:
+    """Return where the picture of a task that is written to a folder belongs."""
     folder: Path = task.arguments.output_folder
-    return (folder / _picture(task)).exists()
+    return folder / _picture(task)
+
+
+def has_picture(task: Task) -> bool:
+    """Whether it is there."""
+    return picture_file(task).exists()
 
 
 def draw_task(task: Task) -> None:
@@ -50,7 +55,7 @@ def draw_task(task: Task) -> None:
     What cannot be drawn has no picture: a report must not fail where the work was done.
     """
     assert task.target is not None
-    picture = task.arguments.output_folder / _picture(task)
+    picture = picture_file(task)
     try:
         given = read_motion_or_tracks(task.source, scale=task.arguments.scale)
         made = read_motion_or_tracks(task.target)

@@ -1,6 +1,6 @@
 """Strips of stick figures: several recordings over each other, moment after moment."""
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from enum import Enum
 from typing import NamedTuple
@@ -9,13 +9,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..errors import InvalidMotionError
-from ..motion import Motion, Skeleton, Tracks, forward_kinematics
+from ..motion import JointRecording, Motion, Skeleton, Tracks, forward_kinematics
 from ..motion.rotations import rotate
 from ..settings import Settings, setting
 from .canvas import FAINT, INK, Canvas, Color, paler, series_colors
 from .picture import Picture
 
 Array = NDArray[np.float64]
+Recording = Motion | Tracks | JointRecording
 
 TOP, BOTTOM, MARGIN = 44.0, 34.0, 16.0
 NARROWEST = 0.35
@@ -66,7 +67,7 @@ class _Figure(NamedTuple):
 
 
 def draw_stick_figures(
-    recordings: Mapping[str, Motion | Tracks],
+    recordings: Mapping[str, Recording],
     settings: StickFigureSettings = StickFigureSettings(),
     *,
     frames: range | None = None,
@@ -81,7 +82,7 @@ def draw_stick_figures(
 
     Parameters
     ----------
-    recordings : mapping from label to Motion or Tracks
+    recordings : mapping from label to Motion, Tracks or JointRecording
         All with the same number of frames; labels and colours go into the legend.
     settings : StickFigureSettings
     frames : range, optional
@@ -141,7 +142,7 @@ def project(positions: Array, heading: Array, view: View) -> Array:
 
 
 def _shown_frames(
-    recordings: Mapping[str, Motion | Tracks], n_figures: int, frames: range | None
+    recordings: Mapping[str, Recording], n_figures: int, frames: range | None
 ) -> NDArray[np.intp]:
     lengths = {recording.n_frames for recording in recordings.values()}
     if len(lengths) != 1:
@@ -156,7 +157,12 @@ def _shown_frames(
     return np.array([within[round(step)] for step in steps], dtype=np.intp)
 
 
-def _figure(recording: Motion | Tracks, shown: NDArray[np.intp]) -> _Figure:
+def _figure(recording: Recording, shown: NDArray[np.intp]) -> _Figure:
+    if isinstance(recording, JointRecording):
+        is_left = np.array(["left" in name.lower() for name in recording.names])
+        bones = _bones(recording.parents)
+        figure = _figure(recording.tracks, shown)
+        return figure._replace(bones=bones, is_left=is_left)
     if isinstance(recording, Tracks):
         points = recording.positions[shown]
         sides = np.zeros(recording.n_points, dtype=np.bool_)
@@ -167,14 +173,18 @@ def _figure(recording: Motion | Tracks, shown: NDArray[np.intp]) -> _Figure:
     stature = _stature(skeleton)
     return _Figure(
         forward_kinematics(moments).positions,
-        tuple((joint, parent) for joint, parent in enumerate(skeleton.parents) if parent >= 0),
+        _bones(skeleton.parents),
         skeleton.rest_positions[:, 0] > SIDEWAYS * stature,
         stature,
         (top, skeleton.parents[top]) if skeleton.n_joints >= BODY else None,
     )
 
 
-def _onlooker(recording: Motion | Tracks, shown: NDArray[np.intp]) -> tuple[Array, Array]:
+def _bones(parents: Sequence[int]) -> tuple[tuple[int, int], ...]:
+    return tuple((joint, parent) for joint, parent in enumerate(parents) if parent >= 0)
+
+
+def _onlooker(recording: Recording, shown: NDArray[np.intp]) -> tuple[Array, Array]:
     """Where the body is on the floor, shape (n, 1, 3), and which way it faces, shape (n,)."""
     place, facing = _place_and_facing(recording)
     reach = round(STILL / 2.0 * recording.frame_rate)
@@ -191,11 +201,15 @@ def _onlooker(recording: Motion | Tracks, shown: NDArray[np.intp]) -> tuple[Arra
     return center, heading
 
 
-def _place_and_facing(recording: Motion | Tracks) -> tuple[Array, Array]:
+def _place_and_facing(recording: Recording) -> tuple[Array, Array]:
     """Return the body's place, shape (n_frames, 3), and where it faces, (n_frames, 2).
 
-    Points without a skeleton face the way that they go from the first frame to the last.
+    Points without a skeleton face the way that they go from the first frame to the last; the
+    joints of a depth camera face the camera.
     """
+    if isinstance(recording, JointRecording):
+        place, _ = _place_and_facing(recording.tracks)
+        return place, np.tile((0.0, -1.0), (len(place), 1))
     if isinstance(recording, Motion):
         facing = rotate(recording.rotations[:, 0], [0.0, -1.0, 0.0])
         return recording.root_positions, facing[:, :2]

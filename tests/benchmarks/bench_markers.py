@@ -19,9 +19,13 @@ from .part_swaps import compare_swaps, false_alarms
 from .report import DOCS, Report
 from .tables import Scores
 
-DRAWS = 6
+DRAWS, HARD_DRAWS = 6, 8
 PARTS: dict[str, Callable[[], Sequence[Scores | str]]] = {
-    "swaps": lambda: [compare_swaps(DRAWS), false_alarms()],
+    "swaps": lambda: [
+        compare_swaps(DRAWS, hard=False),
+        compare_swaps(HARD_DRAWS, hard=True),
+        false_alarms(),
+    ],
     "rigid": lambda: [compare_rigid()],
     "skeleton": lambda: [*against_amc(), *(one.markdown() for one in against_known_bodies())],
 }

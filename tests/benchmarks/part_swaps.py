@@ -19,6 +19,8 @@ from .tables import table
 
 Array = NDArray[np.float64]
 Untangler = Callable[[Tracks], Array]
+HARD_STEP = 4
+SECONDS_BETWEEN_GAPS = 3.0
 NEAREST = 4
 """A marker is swapped with one of so many nearest ones, or with its mirror image."""
 
@@ -53,27 +55,43 @@ class Count:
         return f"{shown} / {recall:.1f} / {100.0 * self.whole / max(self.draws, 1):.0f}"
 
 
-def compare_swaps(draws: int) -> str:
-    """Return a table: precision, recall and draws without a fault, by kind of mistake."""
+def compare_swaps(draws: int, hard: bool) -> str:
+    """Return a table: precision, recall and draws without a fault, by kind of mistake.
+
+    `hard` takes every fourth frame only, and every marker is lost a few times besides.
+    """
     counts = {name: {kind: Count() for kind in MISTAKES} for name in METHODS}
     for take in TAKES:
         clean = without_copies(read_c3d(clips.DATA / "markers" / f"{take}.c3d"))
         clean = clean.slice(0, min(clean.n_frames, 1200))
         for kind, mistake in MISTAKES.items():
             for draw in range(draws):
-                spoilt, truth = mistake(clean, seeded(take, kind, draw))
+                rng = seeded(take, kind, draw)
+                given = _blinking(clean, rng) if hard else clean
+                spoilt, truth = mistake(given, rng)
                 for name, method in METHODS.items():
-                    _add(
-                        counts[name][kind], spoilt, truth, method(clean.with_positions(spoilt))
-                    )
+                    result = method(given.with_positions(spoilt))
+                    _add(counts[name][kind], spoilt, truth, result)
         print(f"  {take}: swaps", flush=True)
     rows = {name: [counts[name][kind].cell() for kind in MISTAKES] for name in METHODS}
     title = (
-        f"**Exchanged labels, {draws} draws of each kind in each of {len(TAKES)} takes**"
+        f"**Exchanged labels, {'30 Hz, with gaps' if hard else '120 Hz, nothing missing'},"
+        f" {draws} draws of each kind in each of {len(TAKES)} takes**"
         " (percent of changed samples that were wrong and are right now / of wrong samples put"
         " right / of draws without a fault left)\n\n"
     )
     return title + table(["method", *MISTAKES], rows) + "\n"
+
+
+def _blinking(take: Tracks, rng: np.random.Generator) -> Tracks:
+    """Return the take at a quarter of its rate, each marker lost for a while now and then."""
+    positions = take.positions[::HARD_STEP].copy()
+    rate = take.frame_rate / HARD_STEP
+    n_gaps = round(len(positions) / rate / SECONDS_BETWEEN_GAPS)
+    for marker in range(take.n_points):
+        for start in rng.integers(0, len(positions), n_gaps):
+            positions[start : start + round(rng.uniform(0.1, 0.5) * rate), marker] = np.nan
+    return Tracks(take.names, positions, rate)
 
 
 def _add(count: Count, spoilt: Array, truth: Array, result: Array) -> None:
@@ -96,7 +114,7 @@ def _pair(take: Tracks, rng: np.random.Generator) -> list[int]:
     if twin in take.names and rng.random() < 0.4:
         return [first, take.names.index(twin)]
     apart = np.linalg.norm(take.positions[::10] - take.positions[::10, [first]], axis=-1)
-    near = np.argsort(apart.mean(axis=0))[1 : NEAREST + 1]
+    near = np.argsort(np.nanmean(apart, axis=0))[1 : NEAREST + 1]
     return [first, int(rng.choice(near))]
 
 

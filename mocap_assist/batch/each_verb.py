@@ -1,0 +1,177 @@
+"""`each`: a verb done to each of many files, by Blenders of their own, and a report of all."""
+
+import argparse
+import json
+import subprocess
+import sys
+from collections.abc import Iterator, Sequence
+from concurrent.futures import ThreadPoolExecutor, as_completed
+from pathlib import Path
+from tempfile import TemporaryDirectory
+from typing import Any
+
+import bpy
+
+from ...solvers.command_line.batch import Finished, Made
+from ...solvers.command_line.files import found_in
+from ...solvers.command_line.report import Entry, picture_file, write_report
+from ...solvers.command_line.screen import Screen
+from ...solvers.command_line.verb import Outcome, Task
+from ...solvers.errors import InvalidFileError, InvalidSettingError
+
+HELP = "Do another verb to each of many files: each FILE... --output-folder DIR -- VERB ..."
+BLEND = ".blend"
+PACKAGE = __package__.removesuffix(".mocap_assist.batch")
+MODULE_CHILD = """
+import os, sys
+import bpy
+from addon_utils import enable
+from importlib import import_module
+package, file, *words = sys.argv[1:]
+enable(package, default_set=True)
+if file:
+    bpy.ops.wm.open_mainfile(filepath=file)
+else:
+    bpy.ops.wm.read_homefile(use_empty=True, use_factory_startup=True)
+status = import_module(f"{package}.mocap_assist.batch.command").run(words)
+sys.stdout.flush()
+sys.stderr.flush()
+os._exit(status)
+"""
+"""Runs a command where Blender is a Python module; it may hang at its end, hence _exit."""
+
+
+def add_each_options(parser: argparse.ArgumentParser) -> None:
+    """Add the options of `each`."""
+    parser.add_argument(
+        "files", nargs="+", type=Path, metavar="FILE",
+        help=".blend files, or folders of them; for import, recordings or folders of them",
+    )  # fmt: skip
+    parser.add_argument(
+        "--output-folder", type=Path, required=True, metavar="DIR",
+        help="save a .blend file for each there. A second run goes on where the first stopped",
+    )  # fmt: skip
+    parser.add_argument("--again", action="store_true", help="redo what is there already")
+    parser.add_argument(
+        "--jobs", type=int, default=1, metavar="N",
+        help="how many Blenders work at a time [default 1]",
+    )  # fmt: skip
+    parser.add_argument(
+        "--report", action="store_true",
+        help="write DIR/report.html and report.json about all files, with pictures",
+    )  # fmt: skip
+
+
+def perform_each(arguments: argparse.Namespace, screen: Screen) -> None:
+    """Start a Blender for each file, report, and raise InvalidFileError if any failed."""
+    if not arguments.words:
+        raise InvalidSettingError("Say what to do to each file after --, as in: -- denoise.")
+    if arguments.jobs < 1:
+        raise InvalidSettingError(f"jobs is {arguments.jobs}; it must be at least 1.")
+    folder: Path = arguments.output_folder
+    tasks = _tasks(arguments)
+    made = Made(folder)
+    entries = {task.sources: Entry(task, None) for task in tasks}
+    try:
+        for finished in _worked(tasks, arguments, made):
+            figures = finished.outcome.figures if finished.outcome else None
+            entries[finished.task.sources] = Entry(finished.task, figures, finished.failure)
+            text = finished.outcome.text if finished.outcome else finished.failure
+            sys.stdout.write(f"{finished.task.source}: {text}\n")
+            sys.stdout.flush()
+    finally:
+        if arguments.report:
+            write_report(folder, " ".join(arguments.words), list(entries.values()))
+    failed = [entry.failure for entry in entries.values() if entry.failure]
+    if failed:
+        raise InvalidFileError(f"{len(failed)} of {len(tasks)} files failed. {failed[0]}")
+
+
+def _tasks(arguments: argparse.Namespace) -> list[Task]:
+    """Return which .blend file is made of which file."""
+    folder: Path = arguments.output_folder.resolve()
+    imports = arguments.words[0] == "import"
+    pairs = found_in(arguments.files, folder) if imports else _blends(arguments.files, folder)
+    tasks = []
+    for source, place in pairs:
+        if not imports and source.suffix.lower() != BLEND:
+            raise InvalidSettingError(f"{source} is no .blend file; only import reads others.")
+        target = arguments.output_folder / place.with_suffix(BLEND)
+        if target.resolve() == source.resolve():
+            raise InvalidSettingError(f"{source} would be written over; choose another folder.")
+        target.parent.mkdir(parents=True, exist_ok=True)
+        tasks.append(Task((source,), target, arguments))
+    targets = [task.target for task in tasks]
+    if twice := [target for target in targets if targets.count(target) > 1]:
+        raise InvalidSettingError(f"Two files would both become {twice[0]}. Rename one.")
+    return tasks
+
+
+def _blends(paths: Sequence[Path], not_in: Path) -> list[tuple[Path, Path]]:
+    found = []
+    for path in paths:
+        if not path.is_dir():
+            found.append((path, Path(path.name)))
+            continue
+        inside = sorted(path.resolve().rglob(f"*{BLEND}"))
+        kept = [file for file in inside if not_in not in file.parents]
+        found += [(file, file.relative_to(path.resolve())) for file in kept]
+    if not found:
+        raise InvalidFileError(f"There is no .blend file in {paths[0]}.")
+    return found
+
+
+def _worked(
+    tasks: Sequence[Task], arguments: argparse.Namespace, made: Made
+) -> Iterator[Finished]:
+    """Yield what is there already, then each task as it is finished, and note it."""
+    there = [] if arguments.again else [task for task in tasks if made.has(task)]
+    for task in there:
+        yield Finished(task, Outcome("Already made.", made.figures(task)))
+    with ThreadPoolExecutor(arguments.jobs) as pool:
+        waiting = [pool.submit(_attempt, task) for task in tasks if task not in there]
+        try:
+            for done in as_completed(waiting):
+                finished = done.result()
+                if finished.outcome is not None:
+                    made.add(finished.task, finished.outcome.figures)
+                yield finished
+        finally:
+            pool.shutdown(cancel_futures=True)
+
+
+def _attempt(task: Task) -> Finished:
+    """Let another Blender do the verb to one file."""
+    with TemporaryDirectory(prefix="mocap_assist_") as scratch:
+        figures = Path(scratch) / "figures"
+        done = subprocess.run(
+            _command(task, figures), capture_output=True, text=True, check=False
+        )
+        if done.returncode == 0:
+            return Finished(task, Outcome("Done.", _figures(figures)))
+    said = [line for line in done.stderr.splitlines() if line.strip()]
+    sentence = said[-1] if done.returncode == 2 and said else "the Blender for it has died."
+    named = task.source.name in sentence
+    return Finished(task, None, sentence if named else f"{task.source}: {sentence}")
+
+
+def _command(task: Task, figures: Path) -> list[str]:
+    arguments, source = task.arguments, str(task.source.resolve())
+    verb, *options = arguments.words
+    imports = verb == "import"
+    opened = bpy.data.filepath if imports else source
+    words = [verb, *([source] if imports else []), *options, "--json", str(figures)]
+    words += ["--output", str(task.target.resolve())]
+    if arguments.report:
+        words += ["--picture", str(picture_file(task).resolve())]
+    if bpy.app.binary_path:
+        start = [bpy.app.binary_path, "--background", *([opened] if opened else [])]
+        return [*start, "--command", "mocap_assist", *words]
+    return [sys.executable, "-c", MODULE_CHILD, PACKAGE, opened, *words]
+
+
+def _figures(path: Path) -> dict[str, Any]:
+    """Return the figures of the first armature, and how many there are."""
+    lines = [json.loads(line) for line in path.read_text(encoding="utf-8").splitlines()]
+    first: dict[str, Any] = lines[0] if lines else {}
+    return {**first, "armatures": len(lines)}

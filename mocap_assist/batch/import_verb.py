@@ -1,0 +1,64 @@
+"""`import`: what the button Import does, to files and folders."""
+
+import argparse
+import json
+import sys
+from pathlib import Path
+
+import bpy
+
+from ...solvers.command_line import arguments_from, settings_from_arguments
+from ...solvers.command_line.files import found_in
+from ...solvers.command_line.screen import Screen
+from ...solvers.errors import InvalidFileError
+from ...solvers.files import written_whole
+from ..import_choices import ImportChoices
+from ..importing import import_files
+from .pictures import draw_played
+from .saving import STDOUT, save, target_file
+
+HELP = "Bring recordings of motion into the .blend file: armatures, and empties for markers."
+
+
+def add_import_options(parser: argparse.ArgumentParser) -> None:
+    """Add the options of `import`; those of the button."""
+    parser.add_argument(
+        "files", nargs="+", type=Path, metavar="FILE", help="recordings, or folders of them"
+    )
+    arguments_from(parser, ImportChoices)
+
+
+def perform_import(arguments: argparse.Namespace, screen: Screen) -> None:
+    """Import all that can be read and save the file.
+
+    Raises
+    ------
+    InvalidFileError
+        Some recordings could not be read, or the file could not be saved.
+    """
+    target = target_file(arguments)
+    paths = [path for path, _ in found_in(arguments.files)]
+    screen.title = "Import"
+    imported = import_files(
+        bpy.context,
+        paths,
+        settings_from_arguments(arguments, ImportChoices),
+        progress=screen.progress,
+    )
+    screen.clear()
+    if imported.made:
+        save(target)
+    line = json.dumps({
+        "objects": [made.name for made in imported.made],
+        "said": list(imported.said),
+        "failed": list(imported.failed),
+    })
+    sys.stdout.write("\n".join([line] if arguments.json == STDOUT else imported.said) + "\n")
+    sys.stdout.flush()
+    if arguments.json not in {None, STDOUT}:
+        with written_whole(arguments.json) as part:
+            part.write_text(line + "\n", encoding="utf-8")
+    if arguments.picture is not None and imported.made:
+        draw_played(bpy.context.scene, imported.made[0], arguments.picture)
+    if imported.failed:
+        raise InvalidFileError(" ".join(imported.failed))

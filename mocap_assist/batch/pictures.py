@@ -1,0 +1,38 @@
+"""A picture of what was done, for those who were not there."""
+
+from pathlib import Path
+
+import bpy
+
+from ...solvers.errors import MocapAssistError
+from ...solvers.motion import Motion, Tracks
+from ...solvers.pictures import StickFigureSettings, draw_stick_figures
+from ..scene import history
+from ..scene.armature_read import read_take
+from ..scene.marker_take import read_markers
+from ..selection import played_source
+
+SIZE = StickFigureSettings(n_figures=9, height=150)
+
+
+def draw_played(scene: bpy.types.Scene, subject: bpy.types.Object, path: Path) -> None:
+    """Draw what an armature or markers play, over what it was made from if that is known.
+
+    What cannot be drawn has no picture: the work was done all the same.
+    """
+    try:
+        figures = {"result": _played(scene, subject)}
+        if subject.type == "ARMATURE" and (raw := history.raw_of(played_source(subject)[0])):
+            given = read_take(subject, scene, source=raw).parts[0].motion
+            if given.n_frames == figures["result"].n_frames:
+                figures = {"given": given, **figures}
+        path.parent.mkdir(parents=True, exist_ok=True)
+        draw_stick_figures(figures, SIZE).save(path)
+    except (MocapAssistError, OSError):
+        path.unlink(missing_ok=True)
+
+
+def _played(scene: bpy.types.Scene, subject: bpy.types.Object) -> Motion | Tracks:
+    if subject.type == "ARMATURE":
+        return read_take(subject, scene, source=played_source(subject)).parts[0].motion
+    return read_markers(subject, scene).tracks

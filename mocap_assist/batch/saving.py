@@ -1,0 +1,56 @@
+"""Where a command saves the .blend file, and what it writes beside."""
+
+import argparse
+from pathlib import Path
+
+import bpy
+
+from ...solvers.errors import InvalidFileError
+
+STDOUT = Path("-")
+
+
+def add_output_options(parser: argparse.ArgumentParser, *, saves: bool) -> None:
+    """Add the options that say where results go."""
+    parser.add_argument(
+        "--json",
+        nargs="?",
+        type=Path,
+        const=STDOUT,
+        metavar="FILE",
+        help="write one line of JSON for each armature, and nothing else, to FILE; without FILE"
+        " print the lines, each of which begins with {, among what Blender prints",
+    )
+    parser.add_argument(
+        "--picture", type=Path, metavar="FILE",
+        help="draw the raw motion and the result as stick figures, to a PNG file",
+    )  # fmt: skip
+    if saves:
+        parser.add_argument(
+            "--output", type=Path, metavar="FILE",
+            help="save the result there [default: in the opened file]",
+        )  # fmt: skip
+
+
+def target_file(arguments: argparse.Namespace) -> Path:
+    """Return the file to save; raise InvalidFileError where there is none, or no folder."""
+    target = arguments.output or (Path(bpy.data.filepath) if bpy.data.filepath else None)
+    if target is None:
+        raise InvalidFileError("No file is open: say which one to save with --output FILE.")
+    return in_a_folder(target)
+
+
+def in_a_folder(path: Path) -> Path:
+    """Return the whole path, whose folder must exist."""
+    if not path.resolve().parent.is_dir():
+        raise InvalidFileError(f"There is no folder {path.resolve().parent} to save in.")
+    return path.resolve()
+
+
+def save(target: Path) -> None:
+    """Save the open file; Blender writes it whole or not at all."""
+    try:
+        bpy.ops.wm.save_as_mainfile(filepath=str(target), check_existing=False)
+    except RuntimeError as error:
+        reason = str(error).strip().removeprefix("Error: ")
+        raise InvalidFileError(f"{target} was not saved: {reason}") from error

@@ -1,0 +1,123 @@
+"""Many files from the command line, each by a Blender of its own."""
+
+import json
+
+import pytest
+
+
+@pytest.fixture
+def command(load, capsys):
+    """Run `blender FILE --command mocap_assist ...`; return status, stdout and stderr."""
+    run = load("mocap_assist.batch.command").run
+
+    def call(*words):
+        status = run([str(word) for word in words])
+        return status, *capsys.readouterr()
+
+    return call
+
+
+@pytest.fixture
+def takes(load, tmp_path):
+    """A folder of three takes, one of them broken, one in a folder of its own."""
+    samples = load("solvers.samples")
+    write_bvh = load("solvers.recordings").write_bvh
+    walk = samples.walking_gait(samples.GaitSettings(duration=2.0, frame_rate=30.0))
+    raw = samples.corrupt(walk, samples.CorruptionSettings(jitter=3.0))
+    folder = tmp_path / "takes"
+    (folder / "second").mkdir(parents=True)
+    write_bvh(raw, folder / "one.bvh")
+    write_bvh(raw, folder / "second" / "two.bvh")
+    (folder / "bad.bvh").write_text("HIERARCHY\nMOTION\n")
+    return folder
+
+
+def test_import_brings_files_and_folders_into_one_scene(blank, command, takes, tmp_path):
+    target = tmp_path / "all.blend"
+
+    status, out, err = command("import", takes, "--output", target, "--json")
+
+    assert status == 2
+    assert "bad.bvh" in err
+    said = json.loads(next(line for line in out.splitlines() if line[:1] == "{"))
+    assert said["objects"] == ["one", "two"]
+    blank.ops.wm.open_mainfile(filepath=str(target))
+    assert {"one", "two"} <= {each.name for each in blank.data.objects}
+
+
+def test_a_shoot_is_imported_then_cleaned_then_taken_up_again(blank, command, takes, tmp_path):
+    raw, clean = tmp_path / "raw", tmp_path / "clean"
+
+    status, out, err = command(
+        "each", takes, "--output-folder", raw, "--jobs", 2, "--report",
+        "--", "import", "--frame-rate", "update scene FPS",
+    )  # fmt: skip
+
+    assert status == 2
+    assert "1 of 3 files failed" in err and "bad.bvh" in err
+    made = {path.relative_to(raw).as_posix() for path in raw.rglob("*.blend")}
+    assert made == {"one.blend", "second/two.blend"}
+    told = json.loads((raw / "report.json").read_text())
+    assert (told["done"], told["failed"]) == (2, 1)
+
+    status, out, err = command(
+        "each", raw, "--output-folder", clean, "--report", "--", "denoise", "--no-plant-feet"
+    )
+    assert (status, err) == (0, "")
+    told = json.loads((clean / "report.json").read_text())
+    assert all(
+        each["after"]["mean_jitter_m_per_s3"] < 0.5 * each["before"]["mean_jitter_m_per_s3"]
+        and (clean / each["picture"]).exists()
+        for each in told["files"]
+    )
+    blank.ops.wm.open_mainfile(filepath=str(clean / "second" / "two.blend"))
+    assert blank.data.objects["two"].animation_data.action.name == "two.clean"
+
+    (clean / "one.blend").unlink()
+    status, out, _ = command(
+        "each", raw, "--output-folder", clean, "--", "denoise", "--no-plant-feet"
+    )
+    assert (status, out.count("Already made."), out.count("Done.")) == (0, 1, 1)
+
+
+@pytest.mark.parametrize(
+    ("words", "sentence"),
+    [
+        (["each", "{takes}", "--output-folder", "{out}"], "Say what to do to each"),
+        (["each", "{takes}", "--output-folder", "{out}", "--", "denoise"], "no .blend file in"),
+        (["each", "{takes}/one.bvh", "--output-folder", "{out}", "--", "denoise"],
+         "only import reads others"),
+        (["each", "{takes}", "--output-folder", "{out}", "--jobs", "0", "--", "import"],
+         "jobs is 0"),
+    ],
+)  # fmt: skip
+def test_what_cannot_be_done_is_said_at_once(command, takes, tmp_path, words, sentence):
+    places = {"takes": takes, "out": tmp_path / "out"}
+
+    status, _, err = command(*(word.format(**places) for word in words))
+
+    assert status == 2
+    assert sentence in err
+    assert err.count("\n") == 1
+
+
+def test_markers_are_cleaned_where_there_is_no_armature(blank, command, load, tmp_path, rng):
+    tracks = load("solvers.motion").Tracks(
+        ("a", "b", "c"),
+        rng.normal(size=(3, 3)) + rng.normal(scale=0.002, size=(90, 3, 3)),
+        30.0,
+    )
+    load("solvers.recordings").write_trc(tracks, tmp_path / "three.trc")
+    command("import", tmp_path / "three.trc", "--output", tmp_path / "raw.blend")
+    blank.ops.wm.open_mainfile(filepath=str(tmp_path / "raw.blend"))
+
+    status, out, err = command("denoise", "--output", tmp_path / "clean.blend", "--json")
+
+    assert (status, err) == (0, "")
+    said = json.loads(next(line for line in out.splitlines() if line[:1] == "{"))
+    assert said["armature"] == "three"
+    assert said["action"].endswith(".clean")
+    assert command("convert", tmp_path / "three_clean.trc")[0] == 0
+    back = load("solvers.recordings").read_recording(tmp_path / "three_clean.trc")
+    assert back.names == ("a", "b", "c")
+    assert "no animated armature" in command("unbake", "--output", tmp_path / "x.blend")[2]
