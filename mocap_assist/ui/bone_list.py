@@ -16,6 +16,7 @@ from ..selection import selected_armature, why_not_retarget
 FIND, SAVE, LOAD = (
     f"mocap_assist.{name}" for name in ("find_bones", "save_bone_map", "load_bone_map")
 )
+ROLE_COLUMN = 0.38  # of the list's width
 PACKAGE = __package__.rpartition(".mocap_assist.")[0]
 
 
@@ -33,22 +34,22 @@ class MOCAP_UL_bones(bpy.types.UIList):
         active_property: str,
         index: int,
     ) -> None:
-        """Draw the role, and the bone of each side; a name that its armature lacks is red."""
-        columns = layout.split(factor=0.3, align=True)
+        """Draw the role and both bones; those that do not exist in red."""
+        columns = layout.split(factor=ROLE_COLUMN, align=True)
         columns.label(text=row.name, translate=False)
         for side in SIDES:
-            bone, armature = getattr(row, side), _armature(context, listed, side)
-            cell = columns.row(align=True)
+            armature, bone = listed_armature(context, listed, side), getattr(row, side)
+            cell = columns.row()
             cell.alert = bool(bone) and armature is not None and bone not in armature.data.bones
             cell.label(text=bone or "-", translate=False)
 
 
-def _armature(
+def listed_armature(
     context: bpy.types.Context, listed: bpy.types.PropertyGroup, side: str
 ) -> bpy.types.Object | None:
-    """Return the armature that the list speaks of, if it is there."""
-    found = context.scene.objects.get(getattr(listed, side))
-    return found if found is not None and found.type == "ARMATURE" else None
+    """Return the armature on one side of the list, if it is still there."""
+    armature = context.scene.objects.get(getattr(listed, side))
+    return armature if armature is not None and armature.type == "ARMATURE" else None
 
 
 class _BoneButton:
@@ -158,14 +159,19 @@ def draw_bones(layout: bpy.types.UILayout, context: bpy.types.Context) -> None:
     layout.operator(FIND, icon="VIEWZOOM")
     if not len(listed.rows):
         return
-    heads = layout.split(factor=0.3, align=True)
+    heads = layout.split(factor=ROLE_COLUMN, align=True)
     heads.label(text="")
     for side in SIDES:
         score = getattr(listed, f"{side}_score")
         heads.label(text=f"{getattr(listed, side)} {score:.0%}", translate=False)
     layout.template_list("MOCAP_UL_bones", "", listed, "rows", listed, "active_row", rows=8)
-    if 0 <= listed.active_row < len(listed.rows):
-        _draw_pickers(layout, context, listed)
+    row = listed.rows[min(listed.active_row, len(listed.rows) - 1)]
+    column = layout.column(align=True)
+    for side in SIDES:
+        if (armature := listed_armature(context, listed, side)) is not None:
+            column.prop_search(
+                row, side, armature.data, "bones", text=side.capitalize(), icon="BONE_DATA"
+            )
     for idname, icon in ((SAVE, "FILE_TICK"), (LOAD, "FILE_FOLDER")):
         row = layout.row(align=True)
         for side in SIDES:
@@ -174,23 +180,6 @@ def draw_bones(layout: bpy.types.UILayout, context: bpy.types.Context) -> None:
                 text=f"{idname.split('.')[1].split('_')[0].capitalize()} {side.capitalize()}",
                 icon=icon,
             ).side = side
-
-
-def _draw_pickers(
-    layout: bpy.types.UILayout, context: bpy.types.Context, listed: bpy.types.PropertyGroup
-) -> None:
-    """Draw where the bones of the active row are chosen, wide enough to read."""
-    row = listed.rows[listed.active_row]
-    column = layout.column(align=True)
-    column.use_property_split = True
-    column.use_property_decorate = False
-    for side in SIDES:
-        armature = _armature(context, listed, side)
-        if armature is not None:
-            text = f"{row.name}, {side}"
-            column.prop_search(
-                row, side, armature.data, "bones", text=text, translate=False, icon="BONE_DATA"
-            )
 
 
 CLASSES = (MOCAP_UL_bones, MOCAP_OT_find_bones, MOCAP_OT_save_bone_map, MOCAP_OT_load_bone_map)
