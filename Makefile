@@ -114,9 +114,10 @@ libraries:
 .venv-4.5/ready: PYTHON := 3.11
 .venv-5.2/ready: PYTHON := 3.13
 .venv-%/ready: .ci/requirements-%.txt .ci/requirements.txt | libraries
-	@echo "Setting up $(@D), once: about a minute and 1.5 GB."
-	@"$$(.ci/find_python $(PYTHON))" -m venv --clear $(@D)
-	@$(@D)/bin/python -m pip install -qq --no-compile --disable-pip-version-check -r $<
+	@if [ -L $(@D) ]; then echo "$(@D) is a link, and left as it is."; else \
+	    echo "Setting up $(@D), once: about a minute and 1.5 GB."; \
+	    "$$(.ci/find_python $(PYTHON))" -m venv --clear $(@D); \
+	    $(@D)/bin/python -m pip install -qq --no-compile --disable-pip-version-check -r $<; fi
 	@touch $@
 
 clean:  ## remove what make made, the environments too
