@@ -69,7 +69,7 @@ def write_solved(
         name = f"{holder.name} skeleton"
         armature, bones = build_armature(context, name, result.motion.skeleton, metres, MODE)
         action, _ = write_motion(armature, bones, result.motion, take.frames, metres)
-    history.record(action, played_source(holder), _entry(settings, result))
+    history.record(action, played_source(holder), _entry(settings, result), of_another_rig=True)
     for owner in (armature, action):
         if ORIGIN in holder:
             owner[ORIGIN] = holder[ORIGIN]

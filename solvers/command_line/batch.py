@@ -13,7 +13,7 @@ from typing import Any, NamedTuple
 from ..errors import MocapAssistError
 from ..files import written_whole
 from ..progress import Progress, unwatched
-from .report import draw_task
+from .report import draw_task, forget_picture
 from .screen import Screen
 from .verb import Outcome, Task, Verb
 
@@ -50,7 +50,13 @@ def work_on(
             lost.append(finished.task)
         else:
             yield finished
-    for task in lost:  # One that dies takes the others along; alone it is known which.
+    suspects: list[Task] = []
+    for finished in _work_together(verb, lost, prepared, n_jobs) if lost else ():
+        if finished.died:
+            suspects.append(finished.task)
+        else:
+            yield finished
+    for task in suspects:  # One that dies takes the others along; alone it is known which.
         yield from _work_together(verb, [task], prepared, 1)
 
 
@@ -89,8 +95,10 @@ def _submitted(
 def _attempt(verb: Verb, task: Task, prepared: Any, progress: Progress) -> Finished:
     try:
         outcome = verb.perform(task, prepared, progress)
-        if getattr(task.arguments, "report", False):
-            draw_task(task)
+        if getattr(task.arguments, "output_folder", None) is not None:
+            forget_picture(task)
+            if task.arguments.report:
+                draw_task(task)
         return Finished(task, outcome)
     except MocapAssistError as error:
         sentence = str(error)
@@ -153,13 +161,24 @@ class Made:
 
 
 def note_of(task: Task) -> dict[str, Any]:
-    """Return what the result depends on, as JSON has it."""
+    """Return what the result depends on, as JSON has it: files by what is in them now."""
     options = {
         name: _noted(value)
         for name, value in sorted(vars(task.arguments).items())
         if name not in NOT_OF_THE_RESULT
     }
-    return {"source": _stamp(task.source), "options": options}
+    return {
+        "source": _stamp(task.source),
+        "skeletons": _skeletons_beside(task.source),
+        "options": options,
+    }
+
+
+def _skeletons_beside(source: Path) -> list[Any]:
+    """Return what an Acclaim recording may be read with."""
+    if source.suffix.lower() != ".amc":
+        return []
+    return [_stamp(path) for path in sorted(source.parent.glob("*.[aA][sS][fF]"))]
 
 
 def _noted(value: Any) -> Any:
@@ -170,7 +189,10 @@ def _noted(value: Any) -> Any:
 
 
 def _stamp(file: Path) -> list[Any]:
+    """Return name, size and date of a file, or of all files in a folder."""
     try:
+        if file.is_dir():
+            return [_stamp(each) for each in sorted(file.rglob("*")) if each.is_file()]
         found = file.stat()
     except OSError:  # Whoever reads it will say so.
         return [str(file)]

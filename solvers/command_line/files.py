@@ -53,7 +53,8 @@ def found_in(paths: Sequence[Path], not_in: Path | None = None) -> list[tuple[Pa
     Returns
     -------
     list of (Path, Path)
-        The file, and its place within the folder that was named.
+        The file, and its place within the folder that was named; where other places are named
+        too, with the folder's own name.
 
     Raises
     ------
@@ -71,7 +72,8 @@ def found_in(paths: Sequence[Path], not_in: Path | None = None) -> list[tuple[Pa
         ]  # fmt: skip
         if not inside:
             raise InvalidFileError(f"There is no recording in the folder {path}.")
-        found += [(file, file.relative_to(path)) for file in inside]
+        above = path.resolve().parent if len(paths) > 1 else path.resolve()
+        found += [(file, file.resolve().relative_to(above)) for file in inside]
     return found
 
 
@@ -114,6 +116,17 @@ def refuse_target(path: Path, endings: Mapping[str, str] = RECORDED) -> None:
             f"{path} cannot be written: "
             + ("it is a folder." if path.is_dir() else f"there is no folder {path.parent}.")
         )
+
+
+def told_apart(places: Sequence[Path], ending_of: Sequence[str]) -> list[Path]:
+    """Return places with other endings; those that would be the same keep theirs before it."""
+    wanted = [
+        place.with_suffix(ending) for place, ending in zip(places, ending_of, strict=True)
+    ]
+    return [
+        place.with_name(place.name + ending) if wanted.count(target) > 1 else target
+        for place, ending, target in zip(places, ending_of, wanted, strict=True)
+    ]
 
 
 def ending_for(source: Path) -> str:

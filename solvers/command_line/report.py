@@ -6,6 +6,7 @@ from html import escape
 from pathlib import Path
 from string import Template
 from typing import Any, NamedTuple
+from urllib.parse import quote
 
 from ..errors import MocapAssistError
 from ..files import written_whole
@@ -47,6 +48,11 @@ def picture_file(task: Task) -> Path:
 def has_picture(task: Task) -> bool:
     """Whether it is there."""
     return picture_file(task).exists()
+
+
+def forget_picture(task: Task) -> None:
+    """Take away the picture of what was there before."""
+    picture_file(task).unlink(missing_ok=True)
 
 
 def draw_task(task: Task) -> None:
@@ -159,7 +165,7 @@ def _section(entry: Entry, number: int) -> str:
     task = entry.task
     image = ""
     if entry.figures is not None and has_picture(task):
-        place = escape(_picture(task).as_posix())
+        place = escape(quote(_picture(task).as_posix()))
         image = f'<img loading="lazy" src="{place}" alt="Given and result, from the side">'
     message = entry.failure or ("" if entry.figures is not None else "Not come to yet.")
     return SECTION.substitute(

@@ -121,7 +121,7 @@ def _work(verb: Verb, arguments: argparse.Namespace, screen: Screen) -> int:
             figures = finished.outcome.figures if finished.outcome else None
             entry = Entry(finished.task, figures, finished.failure)
             entries[finished.task.sources] = entry
-            _report(finished)
+            _report(finished, len(tasks) > 1)
     finally:
         if folder is not None and reporting:
             write_report(folder, arguments.verb, list(entries.values()))
@@ -150,7 +150,7 @@ def _worked(
         yield finished
 
 
-def _report(finished: Finished) -> None:
+def _report(finished: Finished, one_of_many: bool) -> None:
     """Print what came of a task on stdout: a line of JSON, or text."""
     task, outcome = finished.task, finished.outcome
     arguments = task.arguments
@@ -163,7 +163,6 @@ def _report(finished: Finished) -> None:
             names["output"] = str(task.target)
         sys.stdout.write(json.dumps({**names, **figures}, allow_nan=False) + "\n")
     elif outcome is not None:
-        one_of_many = len(arguments.files) > len(task.sources) + (task.target is not None)
         title = f"{task.source}\n" if one_of_many else ""
         sys.stdout.write(f"{title}{outcome.text}\n")
     sys.stdout.flush()

@@ -13,6 +13,7 @@ from .files import (
     ending_for,
     found_in,
     refuse_target,
+    told_apart,
 )
 from .verb import Makes, Task, Verb
 
@@ -52,10 +53,10 @@ def _pairs(verb: Verb, arguments: argparse.Namespace) -> list[tuple[Path, Path]]
     else:
         if folder.exists() and not folder.is_dir():
             raise InvalidSettingError(f"{folder} is a file; name a folder to write to.")
-        pairs = [
-            (path, folder / place.with_suffix(_ending(verb, path)))
-            for path, place in found_in(files, not_in=folder)
-        ]
+        found = found_in(files, not_in=folder)
+        endings = [_ending(verb, path) for path, _ in found]
+        places = told_apart([place for _, place in found], endings)
+        pairs = [(path, folder / place) for (path, _), place in zip(found, places, strict=True)]
     _refuse_reading_and_writing(*zip(*pairs, strict=True))
     for _, target in pairs:
         if folder is not None:

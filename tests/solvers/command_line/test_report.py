@@ -8,6 +8,7 @@ import sys
 import time
 from html.parser import HTMLParser
 from pathlib import Path
+from urllib.parse import unquote
 
 import numpy as np
 import pytest
@@ -30,7 +31,7 @@ class Page(HTMLParser):
     def handle_starttag(self, tag, attrs):
         self._inside = tag
         if tag == "img":
-            self.pictures.append(dict(attrs)["src"])
+            self.pictures.append(unquote(dict(attrs)["src"]))
 
     def handle_data(self, data):
         self.words.append(data)
@@ -144,3 +145,46 @@ def test_killed_in_the_middle_and_taken_up_again(swinging_leg, takes, tmp_path, 
     assert all("after" in each and "picture" in each for each in told["files"])
     assert read_bvh(out / "late.bvh").n_frames == swinging_leg.n_frames
     assert not [path for path in out.rglob("*") if path.name.startswith(".")]
+
+
+def test_files_of_the_same_name_are_told_apart(call, takes, swinging_leg, tmp_path):
+    (takes / "leg.csv").write_text(kinect_csv(moving(40, 25)))
+    (takes / "leg.txt").write_text(kinect_csv(moving(40, 25)))
+    other = tmp_path / "more"
+    other.mkdir()
+    write_bvh(swinging_leg, other / "leg.bvh")
+
+    assert call("convert", takes, other, "--output-folder", tmp_path / "out")[0] == 0
+
+    made = {
+        path.relative_to(tmp_path / "out").as_posix() for path in tmp_path.rglob("out/**/leg*")
+    }
+    assert made == {
+        "takes/leg.bvh", "takes/leg.csv.trc", "takes/leg.txt.trc", "more/leg.bvh",
+        "takes/day <2>/leg & foot.bvh",
+    }  # fmt: skip
+
+
+def test_a_changed_skeleton_or_example_makes_a_take_anew(call, recordings, tmp_path):
+    for name in ("05.asf", "05_13.amc"):
+        (tmp_path / name).write_bytes((recordings / "mocap" / name).read_bytes())
+    words = ["convert", tmp_path / "05_13.amc", "--output-folder", tmp_path / "out"]
+    call(*words)
+    skeleton = tmp_path / "05.asf"
+    skeleton.write_text(skeleton.read_text().replace("length 0.45", "length 0.5"))
+
+    assert "Already made." not in call(*words)[1]
+
+
+def test_a_picture_is_of_what_is_there_now(call, takes, tmp_path):
+    (takes / "kinect.csv").unlink()
+    words = ["denoise", takes, "--output-folder", tmp_path / "out"]
+    call(*words, "--report")
+    picture = tmp_path / "out" / "report" / "leg.bvh.png"
+    first = picture.read_bytes()
+
+    call(*words, "--strength", 0)
+    assert not picture.exists()
+    call(*words, "--strength", 0, "--report")
+
+    assert picture.read_bytes() != first
