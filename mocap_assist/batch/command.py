@@ -9,7 +9,7 @@ import bpy
 
 from ...solvers.command_line import SentenceParser
 from ...solvers.command_line.screen import Screen
-from ...solvers.errors import InvalidFileError, MocapAssistError
+from ...solvers.errors import InvalidFileError, InvalidSettingError, MocapAssistError
 from ...solvers.files import written_whole
 from ..scene import history
 from ..scene.markers import markers_of
@@ -29,13 +29,14 @@ _commands: list[object] = []
 def run(words: Sequence[str]) -> int:
     """Do what the command line says; return the exit status, 0 or 2.
 
-    Each failure is one sentence on stderr. Nothing is saved if anything failed.
+    Each failure is one sentence on stderr. Nothing is saved if anything failed, but for
+    `import` and `each`, which do what can be done.
     """
     screen = Screen()
     try:
         own, after = _parted(list(words))
         arguments = _parser().parse_args(own)
-        arguments.words = after
+        arguments.words = _understood(after)
         arguments.work(arguments, screen)
     except MocapAssistError as error:
         screen.say(str(error))
@@ -51,6 +52,28 @@ def _parted(words: list[str]) -> tuple[list[str], list[str]]:
         return words, []
     at = words.index("--")
     return words[:at], words[at + 1 :]
+
+
+def _understood(words: list[str]) -> list[str]:
+    """Return the words of the verb that `each` does, once it is sure that they mean one.
+
+    Raises
+    ------
+    InvalidSettingError
+        It is a verb that saves no file.
+    SystemExit
+        There is no such verb or option; the parser has said so.
+    """
+    if not words:
+        return words
+    verb = VERBS.get(words[0])
+    if words[0] == "each" or (verb is not None and not verb.writes):
+        raise InvalidSettingError(
+            f"{words[0]} saves no .blend file; each is for verbs that do, such as denoise."
+        )
+    files = ["FILE"] if words[0] == "import" else []
+    _parser().parse_args([words[0], *files, *words[1:]])
+    return words
 
 
 def register() -> None:

@@ -13,8 +13,14 @@ from typing import Any
 import bpy
 
 from ...solvers.command_line.batch import Finished, Made
-from ...solvers.command_line.files import found_in
-from ...solvers.command_line.report import Entry, picture_file, write_report
+from ...solvers.command_line.files import found_in, told_apart
+from ...solvers.command_line.report import (
+    Entry,
+    forget_picture,
+    has_picture,
+    picture_file,
+    write_report,
+)
 from ...solvers.command_line.screen import Screen
 from ...solvers.command_line.verb import Outcome, Task
 from ...solvers.errors import InvalidFileError, InvalidSettingError
@@ -66,6 +72,8 @@ def perform_each(arguments: argparse.Namespace, screen: Screen) -> None:
     """Start a Blender for each file, report, and raise InvalidFileError if any failed."""
     if not arguments.words:
         raise InvalidSettingError("Say what to do to each file after --, as in: -- denoise.")
+    opened = [bpy.data.filepath] if arguments.words[0] == "import" else []
+    arguments.depends_on = _named_files([*opened, *arguments.words])
     if arguments.jobs < 1:
         raise InvalidSettingError(f"jobs is {arguments.jobs}; it must be at least 1.")
     folder: Path = arguments.output_folder
@@ -87,23 +95,30 @@ def perform_each(arguments: argparse.Namespace, screen: Screen) -> None:
         raise InvalidFileError(f"{len(failed)} of {len(tasks)} files failed. {failed[0]}")
 
 
+def _named_files(words: Sequence[str]) -> list[Path]:
+    """Return the files that the result depends on: the open one, examples and the like."""
+    parts = [Path(part.strip()) for word in words for part in word.split(";")]
+    return [path for path in parts if path.is_file()]
+
+
 def _tasks(arguments: argparse.Namespace) -> list[Task]:
     """Return which .blend file is made of which file."""
     folder: Path = arguments.output_folder.resolve()
     imports = arguments.words[0] == "import"
     pairs = found_in(arguments.files, folder) if imports else _blends(arguments.files, folder)
+    places = told_apart([place for _, place in pairs], [BLEND] * len(pairs))
     tasks = []
-    for source, place in pairs:
+    for (source, _), place in zip(pairs, places, strict=True):
         if not imports and source.suffix.lower() != BLEND:
             raise InvalidSettingError(f"{source} is no .blend file; only import reads others.")
-        target = arguments.output_folder / place.with_suffix(BLEND)
+        if not source.is_file():
+            raise InvalidFileError(f"There is no file {source}.")
+        target = arguments.output_folder / place
         if target.resolve() == source.resolve():
             raise InvalidSettingError(f"{source} would be written over; choose another folder.")
-        target.parent.mkdir(parents=True, exist_ok=True)
         tasks.append(Task((source,), target, arguments))
-    targets = [task.target for task in tasks]
-    if twice := [target for target in targets if targets.count(target) > 1]:
-        raise InvalidSettingError(f"Two files would both become {twice[0]}. Rename one.")
+    for task in tasks:
+        task.target.parent.mkdir(parents=True, exist_ok=True)
     return tasks
 
 
@@ -113,9 +128,11 @@ def _blends(paths: Sequence[Path], not_in: Path) -> list[tuple[Path, Path]]:
         if not path.is_dir():
             found.append((path, Path(path.name)))
             continue
-        inside = sorted(path.resolve().rglob(f"*{BLEND}"))
+        whole = path.resolve()
+        above = whole.parent if len(paths) > 1 else whole
+        inside = sorted(whole.rglob(f"*{BLEND}"))
         kept = [file for file in inside if not_in not in file.parents]
-        found += [(file, file.relative_to(path.resolve())) for file in kept]
+        found += [(file, file.relative_to(above)) for file in kept]
     if not found:
         raise InvalidFileError(f"There is no .blend file in {paths[0]}.")
     return found
@@ -125,7 +142,13 @@ def _worked(
     tasks: Sequence[Task], arguments: argparse.Namespace, made: Made
 ) -> Iterator[Finished]:
     """Yield what is there already, then each task as it is finished, and note it."""
-    there = [] if arguments.again else [task for task in tasks if made.has(task)]
+    there = [
+        task
+        for task in tasks
+        if not arguments.again
+        and made.has(task)
+        and (has_picture(task) or not arguments.report)
+    ]
     for task in there:
         yield Finished(task, Outcome("Already made.", made.figures(task)))
     with ThreadPoolExecutor(arguments.jobs) as pool:
@@ -142,6 +165,7 @@ def _worked(
 
 def _attempt(task: Task) -> Finished:
     """Let another Blender do the verb to one file."""
+    forget_picture(task)
     with TemporaryDirectory(prefix="mocap_assist_") as scratch:
         figures = Path(scratch) / "figures"
         done = subprocess.run(

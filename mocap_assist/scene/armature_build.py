@@ -5,6 +5,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...solvers.motion import Skeleton
+from .data_names import fitting_name
 from .rig import END
 from .scene_objects import add_object, in_object_mode
 
@@ -40,6 +41,7 @@ def build_armature(
         Name of each joint's bone; empty where an end site is the tail of another bone.
     """
     in_object_mode(context)
+    name = fitting_name(name)
     armature = bpy.data.objects.new(name, bpy.data.armatures.new(name))
     add_object(context, armature)
     heads = skeleton.rest_positions / metres
@@ -64,7 +66,7 @@ def _add_bones(
     for joint, parent in enumerate(skeleton.parents):
         if joint in tips:
             continue
-        bone = bones.new(skeleton.names[joint])
+        bone = bones.new(fitting_name(skeleton.names[joint]))
         bone.head, bone.tail = heads[joint], tails[joint]
         if parent >= 0:
             bone.parent = bones[made[parent]]

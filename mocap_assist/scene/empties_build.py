@@ -7,6 +7,7 @@ from numpy.typing import NDArray
 from ...solvers.motion import Tracks
 from ...solvers.progress import Progress, unwatched
 from . import compat
+from .data_names import fitting_name
 from .new_action import write_channels
 from .scene_objects import add_object, add_quietly, in_object_mode
 
@@ -25,11 +26,11 @@ def build_empties(
     `metres` is the length of one of the scene's units.
     """
     in_object_mode(context)
-    holder = bpy.data.objects.new(name, None)
+    holder = bpy.data.objects.new(fitting_name(name), None)
     holder.empty_display_size = CROSS / metres
     made = []
     for point in points:
-        empty = bpy.data.objects.new(point, None)
+        empty = bpy.data.objects.new(fitting_name(point), None)
         empty.empty_display_type = "SPHERE"
         empty.empty_display_size = SIZE / metres
         empty[POINT] = point
@@ -68,7 +69,7 @@ def write_tracks(
     action.use_fake_user = True
     for point, empty in enumerate(empties):
         progress(point / len(empties), "Writing keys")
-        slot = action.slots.new("OBJECT", tracks.names[point])
+        slot = action.slots.new("OBJECT", fitting_name(tracks.names[point]))
         bag = compat.channelbag(action, slot, ensure=True)
         places = tracks.positions[:, point] / metres
         write_channels(bag, "location", "Location", frames, places)

@@ -139,6 +139,8 @@ def _source(marker: bpy.types.Object, recorded: bool) -> Source:
 
 def _space(marker: bpy.types.Object, metres: float) -> Placement:
     """Where the space lies in which the marker's location is measured."""
+    if not marker.matrix_basis.determinant():
+        raise InvalidMotionError(f"{marker.name} has scale 0. Give it a scale above 0.")
     around = marker.matrix_world @ marker.matrix_basis.inverted()
     turn, origin, scale = placement_of(around, marker.name)
     return Placement(turn[None], origin[None], scale).in_unit(metres)

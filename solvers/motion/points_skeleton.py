@@ -36,8 +36,9 @@ def skeleton_from_points(tracks: Tracks, parents: Sequence[int]) -> Skeleton:
     Returns
     -------
     Skeleton
-        Standing on the ground (Z = 0) at the origin, facing -Y. A joint that is never seen
-        together with its parent has no place in it, nor has what hangs on that joint.
+        Standing on the ground (Z = 0) at the origin, facing -Y. A joint that is never seen has
+        no place in it; what hangs on it hangs on the joint above. Nor has a joint that is never
+        seen together with the one it hangs on.
 
     Raises
     ------
@@ -49,6 +50,7 @@ def skeleton_from_points(tracks: Tracks, parents: Sequence[int]) -> Skeleton:
     .. [1] Gower (1975). Generalized Procrustes analysis. Psychometrika 40(1).
        doi:10.1007/BF02291478
     """
+    parents = _seen_parents(tracks, parents)
     order = _seen_tree(tracks, parents)
     names = tuple(tracks.names[point] for point in order)
     above = tuple(-1 if parents[point] < 0 else order.index(parents[point]) for point in order)
@@ -66,6 +68,20 @@ def skeleton_from_points(tracks: Tracks, parents: Sequence[int]) -> Skeleton:
     skeleton = Skeleton(names, above, offsets)
     offsets[0, 2] = -skeleton.rest_positions[:, 2].min()
     return Skeleton(names, above, offsets)
+
+
+def _seen_parents(tracks: Tracks, parents: Sequence[int]) -> list[int]:
+    """Return the nearest joint above each that is ever seen; the root stays what it is."""
+    seen = tracks.visible.any(axis=0)
+    found = list(parents)
+    for point in range(len(found)):
+        above = set()
+        while found[point] >= 0 and not seen[found[point]] and found[point] not in above:
+            above.add(found[point])
+            if parents[found[point]] < 0:
+                break
+            found[point] = parents[found[point]]
+    return found
 
 
 def _seen_tree(tracks: Tracks, parents: Sequence[int]) -> list[int]:

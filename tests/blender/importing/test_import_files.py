@@ -125,3 +125,19 @@ def test_odd_names_and_bones_without_length_are_no_obstacle(bring, load, blank, 
 def channelbag(animated):
     action, slot = animated.animation_data.action, animated.animation_data.action_slot
     return action.layers[0].strips[0].channelbag(slot)
+
+
+def test_names_longer_than_blender_can_hold_are_cut_between_letters(bring, load, tmp_path):
+    samples = load("solvers.samples")
+    walk = samples.walking_gait(samples.GaitSettings(duration=0.5, frame_rate=30.0))
+    file = tmp_path / f"{'Ж' * 40}.bvh"
+    load("solvers.recordings").write_bvh(walk, file)
+    file.write_text(file.read_text().replace("LeftArm", "Ж" * 50).replace("RightArm", "Ж" * 51))
+
+    armature = bring(file)
+
+    assert armature.name == "Ж" * 31
+    assert {"Ж" * 31, "LeftForeArm"} <= set(armature.data.bones.keys())
+    assert len(armature.data.bones) == len([
+        name for name in walk.skeleton.names if not name.endswith("_end")
+    ])

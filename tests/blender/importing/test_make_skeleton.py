@@ -58,8 +58,12 @@ def test_a_c3d_becomes_a_cleaned_armature(blank, holder, tracks, load, recording
         turned = expected[:, [0, 1, 2]] - expected.mean(axis=0)
         moved = np.linalg.norm(found - found.mean(axis=0), axis=1)
         assert np.abs(moved - np.linalg.norm(turned, axis=1)).mean() < 0.05, bone
-    blank.ops.ed.undo_push()
-    assert blank.ops.mocap_assist.measure_quality() == {"FINISHED"}
+    raw = armature.animation_data.action
+    assert not blank.ops.mocap_assist.revert_to_raw.poll()  # it is raw itself
+    assert blank.ops.mocap_assist.denoise(plant_feet=False) == {"FINISHED"}
+    assert armature.animation_data.action != raw
+    assert blank.ops.mocap_assist.revert_to_raw() == {"FINISHED"}
+    assert armature.animation_data.action == raw
 
 
 def test_markers_of_no_known_set_are_refused_in_a_sentence(blank, bring, load, tmp_path, rng):

@@ -89,6 +89,11 @@ def test_a_shoot_is_imported_then_cleaned_then_taken_up_again(blank, command, ta
          "only import reads others"),
         (["each", "{takes}", "--output-folder", "{out}", "--jobs", "0", "--", "import"],
          "jobs is 0"),
+        (["each", "{takes}", "--output-folder", "{out}", "--", "quality"], "saves no .blend"),
+        (["each", "{takes}", "--output-folder", "{out}", "--", "import", "--frame-rat", "x"],
+         "frame-rat"),
+        (["each", "{out}/gone.blend", "--output-folder", "{out}", "--", "denoise"],
+         "There is no file"),
     ],
 )  # fmt: skip
 def test_what_cannot_be_done_is_said_at_once(command, takes, tmp_path, words, sentence):

@@ -196,6 +196,23 @@ def test_a_joint_that_is_never_seen_has_no_bone(body, dance):
     assert gone <= {"HandLeft", "HandTipLeft"}
 
 
+def test_what_hangs_on_a_joint_that_is_never_seen_hangs_on_the_one_above(body, dance):
+    points = points_of(dance)
+    lost = np.array(points.positions)
+    root = body.parents.index(-1)
+    middle = next(
+        joint for joint, parent in enumerate(body.parents)
+        if parent == root and len(body.children[joint]) == 1
+        and len(body.children[body.children[joint][0]])
+    )  # fmt: skip
+    whole = motion_from_points(points, body.parents)
+    lost[:, middle] = np.nan
+
+    found = motion_from_points(points.with_positions(lost), body.parents)
+
+    assert set(whole.skeleton.names) - set(found.skeleton.names) == {points.names[middle]}
+
+
 @pytest.mark.parametrize(
     ("parents", "words"),
     [
