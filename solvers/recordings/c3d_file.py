@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..errors import InvalidFileError
-from .text import read_bytes
+from .text import map_bytes
 
 BLOCK = 512
 MAGIC = 0x50
@@ -24,6 +24,9 @@ CHARACTERS, BYTES, INTEGERS, FLOATS = -1, 1, 2, 4
 
 class C3dFile:
     """The parts of a C3D file that matter for point tracks.
+
+    The file is mapped, not loaded: analog channels and forces, which may be most of it, are
+    never read.
 
     Parameters
     ----------
@@ -37,7 +40,7 @@ class C3dFile:
 
     def __init__(self, path: Path | str) -> None:
         self.path = path
-        self.content = read_bytes(path)
+        self.content = map_bytes(path)
         if len(self.content) < 2 * BLOCK or self.content[1] != MAGIC:
             raise InvalidFileError(f"{path} is no C3D file, or is cut short.")
         start = self._parameter_start()

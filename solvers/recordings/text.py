@@ -1,5 +1,6 @@
 """Text files of numbers: opened, cut into lines and read fast, whatever their line ends."""
 
+import mmap
 import warnings
 from collections.abc import Sequence
 from pathlib import Path
@@ -14,6 +15,26 @@ from .names import shown
 ROWS_AT_ONCE = 2000
 BYTE_ORDER_MARK = b"\xef\xbb\xbf"
 MISSING = {b"nan", b"-nan", b"inf", b"-inf", b"null", b"none", b"-"}
+
+
+def map_bytes(path: Path | str) -> bytes | mmap.mmap:
+    """Return the file as bytes that are read when they are asked for.
+
+    Raises
+    ------
+    InvalidFileError
+        There is no such file, or it cannot be read.
+    """
+    path = Path(path)
+    if not path.is_file():
+        raise InvalidFileError(f"There is no file {path}.")
+    try:
+        with path.open("rb") as file:
+            return mmap.mmap(file.fileno(), 0, access=mmap.ACCESS_READ)
+    except ValueError:  # An empty file cannot be mapped.
+        return b""
+    except OSError as error:
+        raise InvalidFileError(f"{path} cannot be read ({error.strerror}).") from None
 
 
 def read_bytes(path: Path | str) -> bytes:
