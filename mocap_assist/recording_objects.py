@@ -27,6 +27,7 @@ from .scene.sensor_words import words_of, write_words
 from .scene.units import unit_of
 
 Array = NDArray[np.float64]
+NAMED = 3  # joints that a sentence lists
 
 
 class Words(NamedTuple):
@@ -73,11 +74,26 @@ def make_objects(
     words = Words(samples.frames(recording.n_frames), words_of(recording))
     if isinstance(moving, Motion):
         mode = choices.rotate_mode.name
-        return _make_armature(context, name, moving, mode, frames, words, progress)
-    made = _make_empties(context, name, moving, frames, words, progress)
-    if choices.target is Target.OBJECT or isinstance(recording, Tracks):
-        return made
-    return made._replace(what=f"{made.what}, since nothing tells which joint hangs on which")
+        made = _make_armature(context, name, moving, mode, frames, words, progress)
+    else:
+        made = _make_empties(context, name, moving, frames, words, progress)
+    what = made.what
+    wanted = choices.target is Target.ARMATURE and isinstance(recording, JointRecording)
+    if wanted and not isinstance(moving, Motion):
+        what += ", since nothing tells which joint hangs on which"
+    return made._replace(what=what + _never_seen(recording))
+
+
+def _never_seen(recording: Motion | Tracks | JointRecording) -> str:
+    """Name the joints or markers that were left out."""
+    if isinstance(recording, Motion):
+        return ""
+    tracks = recording.tracks if isinstance(recording, JointRecording) else recording
+    lost = [tracks.names[point] for point in np.flatnonzero(~tracks.visible.any(axis=0))]
+    if not lost:
+        return ""
+    more = f" and {len(lost) - NAMED} more" * (len(lost) > NAMED)
+    return f", without {', '.join(lost[:NAMED])}{more}, never seen"
 
 
 def in_one_tree(recording: JointRecording) -> bool:

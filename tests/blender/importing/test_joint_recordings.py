@@ -165,3 +165,22 @@ def test_joints_of_every_sensor_are_cleaned_with_the_button(file, recordings, br
     assert armature.type == "ARMATURE"
     assert blank.ops.mocap_assist.denoise() == {"FINISHED"}
     assert armature.animation_data.action.name.endswith(".clean")
+
+
+def test_what_is_never_seen_is_said_and_takes_nothing_along(lossy, load, tmp_path, blank):
+    recordings = load("solvers.recordings")
+    recording = recordings.read_recording(lossy)
+    places = recording.tracks.positions.copy()
+    places[:, recording.names.index("SpineMid")] = np.nan
+    recordings.write_joints(
+        recording.with_tracks(recording.tracks.with_positions(places)), tmp_path / "lost.csv"
+    )
+    files = load("mocap_assist.importing")
+    choices = load("mocap_assist.import_choices").ImportChoices()
+
+    imported = files.import_files(blank.context, [tmp_path / "lost.csv"], choices)
+
+    assert "without SpineMid, never seen" in imported.sentence
+    bones = set(imported.made[0].data.bones.keys())
+    assert {"Head", "WristLeft", "KneeRight"} <= bones
+    assert "SpineMid" not in bones
