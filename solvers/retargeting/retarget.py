@@ -118,7 +118,7 @@ def retarget(
     Raises
     ------
     InvalidMotionError
-        A map names no hips, limbs that do not hang on them, or sides exchanged; or the target
+        A map names no hips, or makes no body (see `map_checks`); or the target
         has no joint above the hips for "root bone".
     SolveCancelled
         Raised by `progress`.
