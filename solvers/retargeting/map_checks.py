@@ -53,8 +53,14 @@ def _check_limb(skeleton: Skeleton, joints: Joints, roles: list[str]) -> None:
 
 
 def _check_head(skeleton: Skeleton, joints: Joints, whose: str) -> None:
-    """Refuse a head or neck on the legs' side of the hips."""
+    """Refuse a head or neck that the hips hang on, or on the legs' side of them."""
     rest, hips = skeleton.rest_positions, joints["hips"]
+    for role in ("neck", "head"):
+        if joints.get(role) in skeleton.ancestors(hips):
+            raise InvalidMotionError(
+                f"{skeleton.names[hips]} (hips) hangs below {skeleton.names[joints[role]]}"
+                f" ({role}) in the {whose} skeleton. Choose other joints in the map."
+            )
     feet = [joints[f"{side}Foot"] for side in SIDES if f"{side}Foot" in joints]
     if len(feet) < len(SIDES):
         return

@@ -194,6 +194,13 @@ def test_a_head_below_the_hips_is_refused():
         retarget(WALK, MAP, unreal(), headless)
 
 
+def test_hips_that_hang_on_the_head_are_refused():
+    upside_down = HumanoidMap({"hips": "head", "head": "pelvis"})
+
+    with pytest.raises(InvalidMotionError, match=r"head \(hips\) hangs below pelvis \(head\)"):
+        retarget(WALK, MAP, unreal(), upside_down)
+
+
 def test_arms_without_a_middle_joint_still_hang_on_the_body():
     """A role that is missing breaks no chain."""
     partial = find_humanoid_map(unreal()).with_joint("leftLowerArm", None)
