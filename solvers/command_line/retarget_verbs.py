@@ -100,7 +100,7 @@ def add_unbake_options(parser: argparse.ArgumentParser) -> None:
     """Add the options of `unbake`."""
     parser.add_argument(
         "--tolerance", type=float, default=1.0, metavar="CM",
-        help="Greatest distance in centimetres by which any joint may be off"
+        help="Greatest distance in centimetres by which any joint may be off at any frame"
         " [default 1]",
     )  # fmt: skip
     parser.add_argument(

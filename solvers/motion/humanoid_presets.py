@@ -48,11 +48,11 @@ def read_humanoid_map(path: Path | str, skeleton: Skeleton | None = None) -> Hum
     ------
     InvalidFileError
         The file is missing, is no such map, comes from a later version, or names unknown roles,
-        a joint twice, or a joint that the skeleton lacks.
+        a role or a joint twice, or a joint that the skeleton lacks.
     """
     try:
         with Path(path).open(encoding="utf-8-sig") as file:
-            content = json.loads(file.read(LONGEST))
+            content = json.loads(file.read(LONGEST), object_pairs_hook=_each_once)
     except FileNotFoundError:
         raise InvalidFileError(f"There is no file {path}.") from None
     except (OSError, ValueError, RecursionError) as error:
@@ -70,6 +70,14 @@ def read_humanoid_map(path: Path | str, skeleton: Skeleton | None = None) -> Hum
                 " map of this rig."
             )
     return humanoid
+
+
+def _each_once(pairs: list[tuple[str, Any]]) -> dict[str, Any]:
+    """Refuse JSON that says a key twice, of which the last one would win unseen."""
+    names = [name for name, _ in pairs]
+    if twice := sorted({name for name in names if names.count(name) > 1}):
+        raise ValueError(f"it says {', '.join(twice)} more than once")
+    return dict(pairs)
 
 
 def _joints(content: Any, path: Path | str) -> dict[str, str]:

@@ -7,12 +7,10 @@ from numpy.typing import NDArray
 
 from ..errors import InvalidMotionError
 from ..motion import HumanoidMap, Motion, Skeleton, t_pose_alignment
-from ..motion.rotations import angle_between
+from .map_checks import check_feet, check_roles
 
 Array = NDArray[np.float64]
 SIDES = ("left", "right")
-BACKWARDS = np.radians(135.0)
-LIMB_ROOTS = tuple(f"{side}{part}" for side in SIDES for part in ("UpperLeg", "UpperArm"))
 
 
 @dataclass(frozen=True, eq=False)
@@ -70,14 +68,15 @@ def find_body(skeleton: Skeleton, humanoid: HumanoidMap, whose: str) -> Body:
     Raises
     ------
     InvalidMotionError
-        No joint plays the hips, a limb does not hang on them, or the feet point backwards.
+        No joint plays the hips, a limb does not hang on them or is no chain, the head rests
+        below them, arms and legs disagree about left and right, or the feet point backwards.
         `whose` skeleton it is stands in the sentence.
     """
-    hips = hips_of(skeleton, humanoid, whose)
+    hips_of(skeleton, humanoid, whose)
     joints = humanoid.indices(skeleton)
-    _check_limbs(skeleton, joints, hips)
+    check_roles(skeleton, joints, whose)
     alignment = t_pose_alignment(skeleton, humanoid)
-    _check_feet(alignment, joints, whose)
+    check_feet(alignment, joints, whose)
     above = {up for joint in joints.values() for up in skeleton.ancestors(joint)}
     kept = tuple(sorted({*joints.values(), *above, 0}))
     place = {joint: index for index, joint in enumerate(kept)}
@@ -97,28 +96,6 @@ def hips_of(skeleton: Skeleton, humanoid: HumanoidMap, whose: str) -> int:
             " map."
         )
     return hips
-
-
-def _check_limbs(skeleton: Skeleton, joints: dict[str, int], hips: int) -> None:
-    for role in LIMB_ROOTS:
-        joint = joints.get(role, hips)
-        if joint != hips and hips not in skeleton.ancestors(joint):
-            raise InvalidMotionError(
-                f"{skeleton.names[joint]} ({role}) does not hang below {skeleton.names[hips]}"
-                " (hips) and would not follow it. Map bones of one tree, such as a rig's"
-                " controls."
-            )
-
-
-def _check_feet(alignment: Array, joints: dict[str, int], whose: str) -> None:
-    """Refuse a body whose both feet point backwards, as in mirrored recordings of Kinect."""
-    feet = [joints[f"{side}Foot"] for side in SIDES if f"{side}Foot" in joints]
-    aside = angle_between(alignment[feet], alignment[joints["hips"]])
-    if len(feet) == len(SIDES) and (aside > BACKWARDS).all():
-        raise InvalidMotionError(
-            f"The feet of the {whose} skeleton point backwards in the rest pose. Exchange left"
-            " and right in the map, as for a mirrored recording, or give the toes their role."
-        )
 
 
 def without_gaps(motion: Motion, body: Body) -> tuple[Motion, NDArray[np.bool_]]:

@@ -44,7 +44,7 @@ class SparseMotion:
     n_frames : int
     frame_rate : float, hertz
     error : float, metres
-        By how much any joint is off at most.
+        By how much any joint is off at most, at any frame; not between frames.
     """
 
     skeleton: Skeleton
@@ -140,7 +140,7 @@ def reduce_keys(
     settings: UnbakeSettings = UnbakeSettings(),
     progress: Progress = unwatched,
 ) -> SparseMotion:
-    """Replace a key on every frame by few keys, nothing being off by more than the tolerance.
+    """Replace a key on every frame by few keys, off by the tolerance at most at every frame.
 
     Each joint's curves are fitted by least squares through their keys, values and slopes. At
     first the curves of each joint alone are split until it moves what hangs on it by not much
@@ -153,8 +153,8 @@ def reduce_keys(
     motion : Motion
         Without gaps.
     tolerance : float, metres
-        Greatest distance by which any joint may be off, and with it two points that show how
-        a hand, foot or head is turned that has no further joints.
+        Greatest distance by which any joint may be off at any frame, and with it two points
+        that show how a hand, foot or head is turned that has no further joints.
     channels : sequence of RotationChannels, one for each joint
         How the rig keys its rotations; quaternions in the world's axes where not given.
     settings : UnbakeSettings

@@ -51,8 +51,8 @@ class RetargetSettings(Settings):
         minimum=0.0, maximum=1000.0,
     )  # fmt: skip
     keep_feet: bool = setting(
-        True, "Let the feet follow the source's paths, grown with the legs, so that they slide"
-        " no more than there"
+        True, "Let the ankles follow the source's paths, grown with the legs, so that they"
+        " slide no more than there as far as the legs reach"
     )  # fmt: skip
     keep_hands: bool = setting(
         True, "Let the hands reach as far as the source's, for the arm's length, and meet where"
@@ -118,7 +118,7 @@ def retarget(
     Raises
     ------
     InvalidMotionError
-        A map names no hips, limbs that do not hang on them, or sides exchanged; or the target
+        A map names no hips, or makes no body (see `map_checks`); or the target
         has no joint above the hips for "root bone".
     SolveCancelled
         Raised by `progress`.

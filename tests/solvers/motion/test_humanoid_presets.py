@@ -54,6 +54,10 @@ def test_names_in_any_script_return(tmp_path_factory, joints):
         (json.dumps({**HEAD, "joints": {"tail": "Tail"}}), "no humanoid roles: tail"),
         (json.dumps({**HEAD, "joints": {"hips": "A", "head": "A"}}), "more than one has A"),
         (json.dumps({**HEAD, "joints": {"hips": "Pelvis"}}), "lacks: Pelvis"),
+        (
+            json.dumps({**HEAD, "joints": {"hips": "Hips"}})[:-2] + ', "hips": "Spine"}}',
+            "says hips more than once",
+        ),
     ],
 )
 def test_says_what_is_wrong_with_a_file(body, tmp_path, content, sentence):

@@ -21,6 +21,7 @@ from solvers.retargeting import RetargetSettings, RootMotion, retarget
 from solvers.samples import GaitSettings, walking_gait
 
 WALK = walking_gait(GaitSettings(duration=1.0, frame_rate=30.0))
+LEG = ("UpperLeg", "LowerLeg", "Foot", "Toes")
 MAP = find_humanoid_map(WALK.skeleton)
 SOME_ROLES = [
     role for role in HUMANOID_ROLES if "Proximal" not in role and "Intermediate" not in role
@@ -148,3 +149,60 @@ def test_exchanged_sides_are_refused():
 def partial_of(humanoid: HumanoidMap, lost: set[str]) -> HumanoidMap:
     joints = {role: name for role, name in humanoid.joints.items() if role not in lost}
     return HumanoidMap(joints)
+
+
+@pytest.mark.parametrize("whose", ["source", "target"])
+@pytest.mark.parametrize(
+    ("exchanged", "sentence"),
+    [
+        ([("leftUpperLeg", "leftLowerLeg")], r"\(leftLowerLeg\) does not hang below"),
+        ([("rightLowerArm", "rightHand")], r"\(rightHand\) does not hang below"),
+        ([("leftLowerLeg", "rightLowerLeg")], r"\(leftLowerLeg\) does not hang below"),
+        ([("leftUpperLeg", "leftFoot")], r"does not hang below .* \(leftUpperLeg\)"),
+        ([("hips", "head")], r"does not hang below .* \(hips\)"),
+        ([("neck", "leftFoot"), ("leftFoot", "leftToes")], r"does not hang|\(neck\) is below"),
+        (
+            [(f"left{part}", f"right{part}") for part in ("UpperArm", "LowerArm", "Hand")],
+            "Left arm and left leg of the {} skeleton are on different sides",
+        ),
+        (
+            [
+                (f"left{part}", f"right{part}")
+                for part in ("UpperLeg", "LowerLeg", "Foot", "Toes")
+            ],
+            "Left arm and left leg of the {} skeleton are on different sides",
+        ),
+    ],
+)
+def test_maps_that_make_no_body_are_refused(whose, exchanged, sentence):
+    humanoid = MAP if whose == "source" else find_humanoid_map(unreal())
+    joints = dict(humanoid.joints)
+    for one, other in exchanged:
+        joints[one], joints[other] = joints[other], joints[one]
+    nonsense = HumanoidMap(joints)
+    maps = (nonsense, find_humanoid_map(unreal())) if whose == "source" else (MAP, nonsense)
+
+    with pytest.raises(InvalidMotionError, match=sentence.format(f"{whose}'s")):
+        retarget(WALK, maps[0], unreal(), maps[1])
+
+
+def test_a_head_below_the_hips_is_refused():
+    humanoid = find_humanoid_map(unreal())
+    headless = humanoid.with_joint("leftToes", None).with_joint("head", "ball_l")
+
+    with pytest.raises(InvalidMotionError, match=r"ball_l \(head\) is below pelvis \(hips\)"):
+        retarget(WALK, MAP, unreal(), headless)
+
+
+def test_hips_that_hang_on_the_head_are_refused():
+    upside_down = HumanoidMap({"hips": "head", "head": "pelvis"})
+
+    with pytest.raises(InvalidMotionError, match=r"head \(hips\) hangs below pelvis \(head\)"):
+        retarget(WALK, MAP, unreal(), upside_down)
+
+
+def test_arms_without_a_middle_joint_still_hang_on_the_body():
+    """A role that is missing breaks no chain."""
+    partial = find_humanoid_map(unreal()).with_joint("leftLowerArm", None)
+
+    assert np.isfinite(retarget(WALK, MAP, unreal(), partial).rotations).all()

@@ -1,0 +1,106 @@
+"""Refuse humanoid maps that no body can have, in one sentence each."""
+
+from itertools import pairwise
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..errors import InvalidMotionError
+from ..motion import Skeleton
+from ..motion.rotations import angle_between
+
+Array = NDArray[np.float64]
+Joints = dict[str, int]
+SIDES = ("left", "right")
+BACKWARDS = np.radians(135.0)
+LIMBS = {
+    "Leg": ("UpperLeg", "LowerLeg", "Foot"),
+    "Arm": ("UpperArm", "LowerArm", "Hand"),
+}
+
+
+def check_roles(skeleton: Skeleton, joints: Joints, whose: str) -> None:
+    """Refuse limbs off the hips or out of order, a head below the hips, sides that disagree.
+
+    Raises
+    ------
+    InvalidMotionError
+        The sentence names the joints, their roles, and `whose` skeleton it is where that helps.
+    """
+    for side in SIDES:
+        for parts in LIMBS.values():
+            _check_limb(skeleton, joints, [f"{side}{part}" for part in parts])
+    _check_head(skeleton, joints, whose)
+    _check_sides(skeleton, joints, whose)
+
+
+def _check_limb(skeleton: Skeleton, joints: Joints, roles: list[str]) -> None:
+    root, hips = roles[0], joints["hips"]
+    if root in joints and hips not in skeleton.ancestors(joints[root]):
+        raise InvalidMotionError(
+            f"{skeleton.names[joints[root]]} ({root}) does not hang below"
+            f" {skeleton.names[hips]} (hips) and would not follow it. Map bones of one tree,"
+            " such as a rig's controls."
+        )
+    known = [role for role in roles if role in joints]
+    for upper, lower in pairwise(known):
+        if joints[upper] not in skeleton.ancestors(joints[lower]):
+            raise InvalidMotionError(
+                f"{skeleton.names[joints[lower]]} ({lower}) does not hang below"
+                f" {skeleton.names[joints[upper]]} ({upper}) and would not follow it. Map one"
+                " chain of bones, from the body outwards, or leave this limb without roles."
+            )
+
+
+def _check_head(skeleton: Skeleton, joints: Joints, whose: str) -> None:
+    """Refuse a head or neck that the hips hang on, or on the legs' side of them."""
+    rest, hips = skeleton.rest_positions, joints["hips"]
+    for role in ("neck", "head"):
+        if joints.get(role) in skeleton.ancestors(hips):
+            raise InvalidMotionError(
+                f"{skeleton.names[hips]} (hips) hangs below {skeleton.names[joints[role]]}"
+                f" ({role}) in the {whose} skeleton. Choose other joints in the map."
+            )
+    feet = [joints[f"{side}Foot"] for side in SIDES if f"{side}Foot" in joints]
+    if len(feet) < len(SIDES):
+        return
+    up = rest[hips] - rest[feet].mean(axis=0)
+    for role in ("neck", "head"):
+        if role in joints and (rest[joints[role]] - rest[hips]) @ up < 0.0:
+            raise InvalidMotionError(
+                f"{skeleton.names[joints[role]]} ({role}) is below {skeleton.names[hips]}"
+                f" (hips) where the {whose} skeleton rests. Choose other joints in the map."
+            )
+
+
+def _check_sides(skeleton: Skeleton, joints: Joints, whose: str) -> None:
+    """Refuse left arm and left leg on different sides of the body."""
+    rest = skeleton.rest_positions
+    legs, arms = (_to_the_left(rest, joints, parts[0]) for parts in LIMBS.values())
+    if legs @ arms < 0.0:
+        raise InvalidMotionError(
+            f"Left arm and left leg of the {whose} skeleton are on different sides of the body."
+            " Exchange left and right of the arms, or of the legs, in the map."
+        )
+
+
+def _to_the_left(rest: Array, joints: Joints, part: str) -> Array:
+    """Return the way from the right to the left limb, metres; zero where one is not known.
+
+    From where the limbs begin: hands and feet may rest crossed.
+    """
+    left, right = (joints.get(f"{side}{part}") for side in SIDES)
+    if left is None or right is None:
+        return np.zeros(3)
+    return np.asarray(rest[left] - rest[right])
+
+
+def check_feet(alignment: Array, joints: Joints, whose: str) -> None:
+    """Refuse a body whose both feet point backwards, as in mirrored recordings of Kinect."""
+    feet = [joints[f"{side}Foot"] for side in SIDES if f"{side}Foot" in joints]
+    aside = angle_between(alignment[feet], alignment[joints["hips"]])
+    if len(feet) == len(SIDES) and (aside > BACKWARDS).all():
+        raise InvalidMotionError(
+            f"The feet of the {whose} skeleton point backwards in the rest pose. Exchange left"
+            " and right in the map, as for a mirrored recording, or give the toes their role."
+        )
