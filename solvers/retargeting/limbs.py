@@ -10,8 +10,10 @@ from ..motion import Motion, ReachSettings, Skeleton, WorldPoses, reach, world_p
 from .body import SIDES, Body
 from .meeting_hands import Arms, meeting_hands, way_into_reach
 from .placement import Placement
+from .uneven_legs import Leg, level_ankles
 
 Array = NDArray[np.float64]
+Flags = NDArray[np.bool_]
 Limb = tuple[int, int, int]
 
 DEEPEST = 0.15
@@ -31,6 +33,8 @@ class Transfer:
     """The source's."""
     placement: Placement
     frame_rate: float
+    contacts: Flags | None
+    """Of the source's feet, shape (n_frames, 2)."""
 
 
 def place_feet(
@@ -57,12 +61,24 @@ def place_feet(
     if not pairs:
         return rotations, places
     before = world_poses(target.skeleton, rotations, places)
-    wanted, hips, reaches = [], [], []
-    for theirs, ours in pairs:
-        wanted.append(transfer.placement.points(transfer.seen.positions[:, theirs[2]]))
-        hips.append(before.positions[:, ours[0]])
-        stretch = np.maximum(1.0 - softness, _stretch(source, transfer.seen, theirs))
-        reaches.append(target.limb_length(ours) * stretch)
+    stretches = [_stretch(source, transfer.seen, theirs) for theirs, _ in pairs]
+    lengths = [target.limb_length(ours) for _, ours in pairs]
+    hips = [before.positions[:, ours[0]] for _, ours in pairs]
+    wanted = [
+        transfer.placement.points(transfer.seen.positions[:, theirs[2]]) for theirs, _ in pairs
+    ]
+    if transfer.contacts is not None and len(pairs) == len(SIDES):
+        theirs = np.array([source.limb_length(leg) for leg, _ in pairs])
+        excess = transfer.placement.rise * (theirs - theirs.mean())
+        straight = [
+            stretch * length for stretch, length in zip(stretches, lengths, strict=True)
+        ]
+        legs = zip(hips, wanted, straight, transfer.contacts.T, excess, strict=True)
+        wanted = level_ankles(*(Leg(*leg) for leg in legs))
+    reaches = [
+        length * np.maximum(1.0 - softness, stretch)
+        for length, stretch in zip(lengths, stretches, strict=True)
+    ]
     drop = hips_drop(hips, wanted, reaches, transfer.frame_rate)
     places = places - drop[:, None] * UP
     world = WorldPoses(before.rotations, before.positions - drop[:, None, None] * UP)
