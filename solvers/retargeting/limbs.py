@@ -1,6 +1,7 @@
 """Bring feet and hands to where the source's are, grown with the limb."""
 
 from dataclasses import dataclass
+from itertools import repeat
 
 import numpy as np
 from numpy.typing import NDArray
@@ -8,8 +9,9 @@ from scipy.ndimage import maximum_filter1d, uniform_filter1d
 
 from ..motion import Motion, ReachSettings, Skeleton, WorldPoses, reach, world_poses
 from .body import SIDES, Body
+from .low_hands import Ground, above_ground, near_ground, within_reach
 from .meeting_hands import Arms, meeting_hands, way_into_reach
-from .placement import Placement
+from .placement import Placement, leg_length
 from .uneven_legs import Leg, level_ankles
 
 Array = NDArray[np.float64]
@@ -90,8 +92,9 @@ def place_feet(
 def place_hands(transfer: Transfer, rotations: Array, places: Array) -> Array:
     """Let the hands be as far from the shoulders as the source's, for the length of the arm.
 
-    Hands that meet in the source meet, as far apart as there for the length of the arm; see
-    `meeting_hands`.
+    Hands near the ground are as near to it as in the source, and lean on the same place; see
+    `low_hands`. Hands that meet in the source meet, as far apart as there for the length of the
+    arm; see `meeting_hands`.
     """
     source, target = transfer.source, transfer.target
     pairs = _limb_pairs(source, target, "Arm")
@@ -105,15 +108,31 @@ def place_hands(transfer: Transfer, rotations: Array, places: Array) -> Array:
         for (theirs, _), growth in zip(pairs, growths, strict=True)
     ]
     shoulders = np.stack([world.positions[:, ours[0]] for _, ours in pairs])
+    lengths = np.array([target.limb_length(ours) for _, ours in pairs])
+    hands = [seen[:, theirs[2]] for theirs, _ in pairs]
+    ground = _ground(transfer)
     wanted = shoulders + ways
+    if ground:
+        wanted = np.stack(list(map(near_ground, wanted, hands, repeat(ground))))
     if len(pairs) == len(SIDES):
-        left, right = (seen[:, theirs[2]] for theirs, _ in pairs)
-        lengths = np.array([target.limb_length(ours) for _, ours in pairs])
         arms = Arms(shoulders, wanted, lengths)
-        wanted = meeting_hands(arms, np.mean(growths) * (left - right))
+        wanted = meeting_hands(arms, np.mean(growths) * (hands[0] - hands[1]))
+    if ground:
+        wanted = np.stack(list(map(above_ground, wanted, hands, repeat(ground))))
+        reached = map(within_reach, wanted - shoulders, ways, lengths)
+        wanted = shoulders + np.stack(list(reached))
     for (_, ours), targets in zip(pairs, wanted, strict=True):
         rotations = limb_reaches(target, rotations, world, ours, targets)
     return rotations
+
+
+def _ground(transfer: Transfer) -> Ground | None:
+    """Return what hands must know of the ground; None where no legs tell where it is."""
+    placement = transfer.placement
+    if placement.floors is None:
+        return None
+    leg = leg_length(transfer.source)
+    return Ground(placement, placement.floors, leg, transfer.frame_rate)
 
 
 def _limb_pairs(source: Body, target: Body, part: str) -> list[tuple[Limb, Limb]]:
