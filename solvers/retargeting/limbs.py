@@ -113,7 +113,9 @@ def place_hands(transfer: Transfer, rotations: Array, places: Array) -> Array:
     ground = _ground(transfer)
     wanted = shoulders + ways
     if ground:
-        wanted = np.stack(list(map(near_ground, wanted, hands, repeat(ground))))
+        wanted = np.stack(
+            list(map(near_ground, wanted, hands, shoulders, lengths, repeat(ground)))
+        )
     if len(pairs) == len(SIDES):
         arms = Arms(shoulders, wanted, lengths)
         wanted = meeting_hands(arms, np.mean(growths) * (hands[0] - hands[1]))

@@ -37,7 +37,9 @@ class Ground(NamedTuple):
     frame_rate: float
 
 
-def near_ground(hand: Array, seen: Array, ground: Ground) -> Array:
+def near_ground(
+    hand: Array, seen: Array, shoulder: Array, length: float, ground: Ground
+) -> Array:
     """Return where a hand comes that is near the ground in the source.
 
     Parameters
@@ -46,13 +48,17 @@ def near_ground(hand: Array, seen: Array, ground: Ground) -> Array:
         Where it would be by the arm alone.
     seen : shape (n_frames, 3), metres
         The source's hand.
+    shoulder : shape (n_frames, 3), metres
+        Where the arm begins.
+    length : float, metres
+        Of the arm.
     ground : Ground
 
     Returns
     -------
     NDArray, shape (n_frames, 3), metres
         The lower the source's hand, the more the height is that of the source's, grown with
-        the legs; the lower and slower, the more is the whole place.
+        the legs; the lower and slower, the more is the whole place, if within the arm's reach.
     """
     height = seen[:, 2] - ground.floors[0]
     low = _falling(height / ground.leg, LOW, HIGH)
@@ -64,6 +70,7 @@ def near_ground(hand: Array, seen: Array, ground: Ground) -> Array:
     leans = _falling(height / ground.leg, *TOUCHING) * _falling(speed / ground.leg, SLOW, FAST)
     there = ground.placement.points(seen)
     there[:, 2] = ground.floors[1] + ground.placement.rise * height
+    leans *= _falling(np.linalg.norm(there - shoulder, axis=1) / length, STRAIGHT, 1.0)
     shares = np.stack([leans, leans, low], axis=1)
     return np.asarray(hand + shares * (there - hand))
 

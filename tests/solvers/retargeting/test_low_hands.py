@@ -35,6 +35,7 @@ def stretched(names: tuple[str, ...], factor: float) -> Skeleton:
 BODIES = {
     "usual": mixamo(),
     "short legs": stretched(("Leg", "Foot"), 0.6),
+    "long legs": stretched(("Leg", "Foot"), 1.4),
     "long arms": stretched(("ForeArm", "Hand"), 1.4),
     "long forearms": stretched(("Hand",), 1.4),
 }
