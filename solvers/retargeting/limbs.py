@@ -22,6 +22,8 @@ DEEPEST = 0.15
 """Part of the leg by which hips are lowered at most so that feet reach."""
 EASE = 0.15
 """Seconds before and after over which hips are lowered."""
+STANDS, LIES = np.radians([50.0, 70.0])
+"""Angles of a leg from straight down: hips sink fully for the first, not for the second."""
 UP = np.array([0.0, 0.0, 1.0])
 
 
@@ -164,16 +166,26 @@ def hips_drop(
     Returns
     -------
     NDArray, shape (n_frames,), metres
-        Not less than needed in any frame, unless that would be more than `DEEPEST`.
+        Not less than needed in any frame, unless that would be more than `DEEPEST`, or the
+        leg lies: to sink would not bring its foot nearer.
     """
     needed = np.zeros(len(hips[0]))
     for hip, foot, allowed in zip(hips, feet, reaches, strict=True):
         lacking = way_into_reach(foot - hip, UP, allowed)
+        lacking *= _upright(hip - foot)
         needed = np.maximum(needed, np.minimum(lacking, DEEPEST * allowed))
     window = 2 * round(0.5 * EASE * frame_rate) + 1
     # The mean over a window of the greatest within that window is nowhere too little.
     envelope = maximum_filter1d(needed, window, mode="nearest")
     return np.asarray(uniform_filter1d(envelope, window, mode="nearest"))
+
+
+def _upright(ways: Array) -> Array:
+    """Return 1 for legs that stand, 0 for those that lie, smoothly, shape (n_frames,)."""
+    length = np.maximum(np.linalg.norm(ways, axis=1), 1e-9)
+    lies, stands = np.cos(LIES), np.cos(STANDS)
+    share = np.clip((ways[:, 2] / length - lies) / (stands - lies), 0.0, 1.0)
+    return np.asarray(share * share * (3.0 - 2.0 * share))
 
 
 def limb_reaches(

@@ -131,6 +131,19 @@ def test_hips_sink_no_less_than_needed_and_smoothly():
     assert drop[:20].max() == drop[-20:].max() == 0.0
 
 
+@pytest.mark.parametrize(("degrees", "sinks"), [(0, 1.0), (45, 1.0), (75, 0.0), (90, 0.0)])
+def test_hips_sink_for_no_leg_that_lies(degrees, sinks):
+    """A leg of 1 m reaches for a foot 1.02 m away, ever farther from straight down."""
+    angle = np.radians(degrees)
+    foot = np.tile(1.02 * np.array([np.sin(angle), 0.0, -np.cos(angle)]), (10, 1))
+
+    drop = hips_drop([np.zeros((10, 3))], [foot], [np.ones(10)], 30.0)
+
+    beside, below = 1.02 * np.sin(angle), 1.02 * np.cos(angle)
+    needed = below - np.sqrt(max(1.0 - beside**2, 0.0))
+    assert_allclose(drop, sinks * needed, atol=1e-12)
+
+
 def test_the_ground_path_turns_with_the_body():
     circle = np.linspace(0, 2 * np.pi, 240)
     places = np.stack([2 * np.cos(circle), 2 * np.sin(circle), np.full(240, 0.9)], axis=1)
