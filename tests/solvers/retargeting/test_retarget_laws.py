@@ -28,7 +28,7 @@ AS_EVER = RetargetSettings()
 @settings(max_examples=25)
 @given(
     st.lists(st.floats(-0.7, 0.7), min_size=len(LIMBS), max_size=len(LIMBS)),
-    st.sampled_from([0.0, np.pi / 2, np.pi, -np.pi / 2]),
+    st.sampled_from([0.0, np.pi / 2, np.pi, -np.pi / 2, 0.15, 0.5, -0.8, 2.5]),
 )
 def test_the_rest_pose_of_the_target_does_not_matter(angles, facing):
     """Limbs turned about the axis from front to back, the body about the vertical."""
