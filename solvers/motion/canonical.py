@@ -17,6 +17,7 @@ from .rotations import (
     inverse,
     multiply,
     quaternion_from_matrix,
+    quaternion_from_rotation_vector,
     rotate,
     rotation_between,
 )
@@ -39,6 +40,10 @@ LIMB_BONES = {
 SAME_DIRECTION = np.radians(1.0)
 """By so much, feet must point straighter to count as tilted."""
 
+SAME_FACING = np.radians(8.0)
+"""By so much, hips and shoulders may be turned aside in a rest pose that faces straight on:
+one shoulder rests before the other in measured bodies (4 degrees in HDM05's)."""
+
 STEEPEST_SOLE = np.sin(np.radians(65.0))
 """A foot bone steeper than this does not stand on its sole: the rest pose points its toes."""
 
@@ -52,8 +57,8 @@ def t_pose_alignment(skeleton: Skeleton, humanoid: HumanoidMap) -> NDArray[np.fl
     only, since the height of the ankle differs between rigs that all stand flat on the floor;
     where spread legs have tilted feet (Acclaim), about the axis of the shin.
     Trunk, head and collar bones differ in anatomy rather than in pose: they turn together, by
-    whole right angles, for rigs whose rest pose faces another way or lies down. Joints without
-    a role turn with the nearest role above them.
+    whole right angles for rigs whose rest pose lies down, and about the vertical to where the
+    lines of hips and shoulders face. Joints without a role turn with the nearest role above.
 
     Parameters
     ----------
@@ -111,7 +116,7 @@ def _above(skeleton: Skeleton, alignment: NDArray[np.float64]) -> NDArray[np.flo
 
 
 def _trunk_alignment(rest: NDArray[np.float64], joints: dict[str, int]) -> NDArray[np.float64]:
-    """Return the turn by whole right angles that fits hips, head and left-right best."""
+    """Return the turn that fits hips and head by whole right angles, and left-right best."""
     sides = [
         (joints[f"left{part}"], joints[f"right{part}"])
         for part in ("UpperLeg", "UpperArm")
@@ -122,7 +127,13 @@ def _trunk_alignment(rest: NDArray[np.float64], joints: dict[str, int]) -> NDArr
         return IDENTITY.copy()
     left = np.sum([rest[a] - rest[b] for a, b in sides], axis=0)
     up = rest[top] - rest[joints["hips"]]
-    return quaternion_from_matrix(_nearest_right_angles(left, up))
+    matrix = _nearest_right_angles(left, up)
+    turned = quaternion_from_matrix(matrix)
+    aside, back, _ = left @ matrix
+    yaw = np.arctan2(back, aside)
+    if abs(yaw) <= SAME_FACING:
+        return turned
+    return multiply(turned, quaternion_from_rotation_vector(yaw * UP))
 
 
 def _nearest_right_angles(

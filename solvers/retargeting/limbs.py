@@ -1,6 +1,7 @@
 """Bring feet and hands to where the source's are, grown with the limb."""
 
 from dataclasses import dataclass
+from itertools import repeat
 
 import numpy as np
 from numpy.typing import NDArray
@@ -8,16 +9,21 @@ from scipy.ndimage import maximum_filter1d, uniform_filter1d
 
 from ..motion import Motion, ReachSettings, Skeleton, WorldPoses, reach, world_poses
 from .body import SIDES, Body
+from .low_hands import Ground, above_ground, near_ground, within_reach
 from .meeting_hands import Arms, meeting_hands, way_into_reach
-from .placement import Placement
+from .placement import Placement, leg_length
+from .uneven_legs import Leg, level_ankles
 
 Array = NDArray[np.float64]
+Flags = NDArray[np.bool_]
 Limb = tuple[int, int, int]
 
 DEEPEST = 0.15
 """Part of the leg by which hips are lowered at most so that feet reach."""
 EASE = 0.15
 """Seconds before and after over which hips are lowered."""
+STANDS, LIES = np.radians([50.0, 70.0])
+"""Angles of a leg from straight down: hips sink fully for the first, not for the second."""
 UP = np.array([0.0, 0.0, 1.0])
 
 
@@ -31,6 +37,8 @@ class Transfer:
     """The source's."""
     placement: Placement
     frame_rate: float
+    contacts: Flags | None
+    """Of the source's feet, shape (n_frames, 2)."""
 
 
 def place_feet(
@@ -57,12 +65,24 @@ def place_feet(
     if not pairs:
         return rotations, places
     before = world_poses(target.skeleton, rotations, places)
-    wanted, hips, reaches = [], [], []
-    for theirs, ours in pairs:
-        wanted.append(transfer.placement.points(transfer.seen.positions[:, theirs[2]]))
-        hips.append(before.positions[:, ours[0]])
-        stretch = np.maximum(1.0 - softness, _stretch(source, transfer.seen, theirs))
-        reaches.append(target.limb_length(ours) * stretch)
+    stretches = [_stretch(source, transfer.seen, theirs) for theirs, _ in pairs]
+    lengths = [target.limb_length(ours) for _, ours in pairs]
+    hips = [before.positions[:, ours[0]] for _, ours in pairs]
+    wanted = [
+        transfer.placement.points(transfer.seen.positions[:, theirs[2]]) for theirs, _ in pairs
+    ]
+    if transfer.contacts is not None and len(pairs) == len(SIDES):
+        theirs = np.array([source.limb_length(leg) for leg, _ in pairs])
+        excess = transfer.placement.rise * (theirs - theirs.mean())
+        straight = [
+            stretch * length for stretch, length in zip(stretches, lengths, strict=True)
+        ]
+        legs = zip(hips, wanted, straight, transfer.contacts.T, excess, strict=True)
+        wanted = level_ankles(*(Leg(*leg) for leg in legs))
+    reaches = [
+        length * np.maximum(1.0 - softness, stretch)
+        for length, stretch in zip(lengths, stretches, strict=True)
+    ]
     drop = hips_drop(hips, wanted, reaches, transfer.frame_rate)
     places = places - drop[:, None] * UP
     world = WorldPoses(before.rotations, before.positions - drop[:, None, None] * UP)
@@ -74,8 +94,9 @@ def place_feet(
 def place_hands(transfer: Transfer, rotations: Array, places: Array) -> Array:
     """Let the hands be as far from the shoulders as the source's, for the length of the arm.
 
-    Hands that meet in the source meet, as far apart as there for the length of the arm; see
-    `meeting_hands`.
+    Hands near the ground are as near to it as in the source, and lean on the same place; see
+    `low_hands`. Hands that meet in the source meet, as far apart as there for the length of the
+    arm; see `meeting_hands`.
     """
     source, target = transfer.source, transfer.target
     pairs = _limb_pairs(source, target, "Arm")
@@ -89,15 +110,33 @@ def place_hands(transfer: Transfer, rotations: Array, places: Array) -> Array:
         for (theirs, _), growth in zip(pairs, growths, strict=True)
     ]
     shoulders = np.stack([world.positions[:, ours[0]] for _, ours in pairs])
+    lengths = np.array([target.limb_length(ours) for _, ours in pairs])
+    hands = [seen[:, theirs[2]] for theirs, _ in pairs]
+    ground = _ground(transfer)
     wanted = shoulders + ways
+    if ground:
+        wanted = np.stack(
+            list(map(near_ground, wanted, hands, shoulders, lengths, repeat(ground)))
+        )
     if len(pairs) == len(SIDES):
-        left, right = (seen[:, theirs[2]] for theirs, _ in pairs)
-        lengths = np.array([target.limb_length(ours) for _, ours in pairs])
         arms = Arms(shoulders, wanted, lengths)
-        wanted = meeting_hands(arms, np.mean(growths) * (left - right))
+        wanted = meeting_hands(arms, np.mean(growths) * (hands[0] - hands[1]))
+    if ground:
+        wanted = np.stack(list(map(above_ground, wanted, hands, repeat(ground))))
+        reached = map(within_reach, wanted - shoulders, ways, lengths)
+        wanted = shoulders + np.stack(list(reached))
     for (_, ours), targets in zip(pairs, wanted, strict=True):
         rotations = limb_reaches(target, rotations, world, ours, targets)
     return rotations
+
+
+def _ground(transfer: Transfer) -> Ground | None:
+    """Return what hands must know of the ground; None where no legs tell where it is."""
+    placement = transfer.placement
+    if placement.floors is None:
+        return None
+    leg = leg_length(transfer.source)
+    return Ground(placement, placement.floors, leg, transfer.frame_rate)
 
 
 def _limb_pairs(source: Body, target: Body, part: str) -> list[tuple[Limb, Limb]]:
@@ -127,16 +166,26 @@ def hips_drop(
     Returns
     -------
     NDArray, shape (n_frames,), metres
-        Not less than needed in any frame, unless that would be more than `DEEPEST`.
+        Not less than needed in any frame, unless that would be more than `DEEPEST`, or the
+        leg lies: to sink would not bring its foot nearer.
     """
     needed = np.zeros(len(hips[0]))
     for hip, foot, allowed in zip(hips, feet, reaches, strict=True):
         lacking = way_into_reach(foot - hip, UP, allowed)
+        lacking *= _upright(hip - foot)
         needed = np.maximum(needed, np.minimum(lacking, DEEPEST * allowed))
     window = 2 * round(0.5 * EASE * frame_rate) + 1
     # The mean over a window of the greatest within that window is nowhere too little.
     envelope = maximum_filter1d(needed, window, mode="nearest")
     return np.asarray(uniform_filter1d(envelope, window, mode="nearest"))
+
+
+def _upright(ways: Array) -> Array:
+    """Return 1 for legs that stand, 0 for those that lie, smoothly, shape (n_frames,)."""
+    length = np.maximum(np.linalg.norm(ways, axis=1), 1e-9)
+    lies, stands = np.cos(LIES), np.cos(STANDS)
+    share = np.clip((ways[:, 2] / length - lies) / (stands - lies), 0.0, 1.0)
+    return np.asarray(share * share * (3.0 - 2.0 * share))
 
 
 def limb_reaches(

@@ -34,12 +34,15 @@ class Placement:
         The ground under the first place of the hips, which stays.
     ankles : (float, float), metres
         Heights of source's and target's ankles when they stand.
+    floors : (float, float), metres, or None
+        Heights of the ground of source and target; None where no legs tell.
     """
 
     travel: float
     rise: float
     start: Array
     ankles: tuple[float, float]
+    floors: tuple[float, float] | None
 
     def points(self, points: Array) -> Array:
         """Return where points, shape (..., 3), of the source lie for the target."""
@@ -74,7 +77,7 @@ def find_placement(
     hips = positions[0, source.hip_joints()].mean(axis=0)
     start = hips * (1.0, 1.0, 0.0)
     if not (leg_length(source) and leg_length(target)):
-        return Placement(travel or growth, growth, start, (0.0, 0.0))
+        return Placement(travel or growth, growth, start, (0.0, 0.0), None)
     source_ankle, target_ankle = standing_ankle(source), standing_ankle(target)
     height = source_ankle
     if contacts is not None and contacts.any():
@@ -83,7 +86,13 @@ def find_placement(
     floor = height - source_ankle
     if to_ground or abs(floor) < FLOOR_MISREAD * leg_length(source):
         floor = 0.0
-    return Placement(travel or growth, growth, start, (height, floor + target_ankle))
+    return Placement(
+        travel or growth,
+        growth,
+        start,
+        (height, floor + target_ankle),
+        (height - source_ankle, floor),
+    )
 
 
 def leg_length(body: Body) -> float:

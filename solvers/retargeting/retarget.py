@@ -152,7 +152,7 @@ def retarget(
         to_ground=settings.to_ground,
     )
     places = _root_places(source, target, seen, rotations, placement)
-    transfer = Transfer(source, target, seen, placement, motion.frame_rate)
+    transfer = Transfer(source, target, seen, placement, motion.frame_rate, contacts)
     progress(0.5, "Placing the feet")
     if settings.keep_feet:
         rotations, places = place_feet(transfer, rotations, places, settings.softness)

@@ -7,16 +7,16 @@ from numpy.typing import NDArray
 from scipy.ndimage import gaussian_filter1d
 
 from ..motion import HumanoidMap, Motion, t_pose_alignment
-from ..motion.rotations import IDENTITY, inverse, multiply, rotate
+from ..motion.rotations import IDENTITY, inverse, multiply, rotate, twist_about
 from .body import held, hips_of
 
 Array = NDArray[np.float64]
 
-FORWARD = np.array([0.0, -1.0, 0.0])
+UP = np.array([0.0, 0.0, 1.0])
 FAR = 4.0
 """Standard deviations beyond which a blur takes nothing in."""
-UPRIGHT = 0.1
-"""Length, over the ground, of the direction that hips face, below which they face nowhere."""
+MOST_TILTED = np.radians(60.0)
+"""Tilt of the hips beyond which they do not tell where the body faces."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -53,7 +53,8 @@ def ground_path(
     Returns
     -------
     GroundPath
-        Without gaps: held where the hips are not observed.
+        Without gaps: held where the hips are not observed. While the body lies or flips, it
+        turns evenly to where the body faces afterwards.
 
     Raises
     ------
@@ -66,12 +67,8 @@ def ground_path(
     places = _blurred(places, sigma) * (1.0, 1.0, 0.0)
     if not turn:
         return GroundPath(places, np.tile(IDENTITY, (len(places), 1)))
-    ahead = rotate(t_pose_alignment(motion.skeleton, humanoid)[hips], FORWARD)
-    ahead = ahead * (1.0, 1.0, 0.0)
-    faces = rotate(rotations, ahead)[:, :2]
-    unclear = np.linalg.norm(faces, axis=1) < UPRIGHT
-    faces = _blurred(held(np.where(unclear[:, None], np.nan, faces), ahead[:2]), sigma)
-    yaw = np.arctan2(faces[:, 1], faces[:, 0]) - np.arctan2(ahead[1], ahead[0])
+    rest = t_pose_alignment(motion.skeleton, humanoid)[hips]
+    yaw = _blurred(_yaw(multiply(rotations, rest)), sigma) - _yaw(rest[None])
     zero = np.zeros_like(yaw)
     turns = np.stack([np.cos(yaw / 2), zero, zero, np.sin(yaw / 2)], axis=1)
     return GroundPath(places, turns)
@@ -108,6 +105,25 @@ def hips_in_world(motion: Motion, hips: int) -> tuple[Array, Array]:
         places = places + rotate(rotations, motion.skeleton.offsets[joint])
         rotations = multiply(rotations, held(motion.rotations[:, joint], IDENTITY))
     return rotations, places
+
+
+def _yaw(rotations: Array) -> Array:
+    """Return by how much bodies are turned about the vertical, radians, without jumps.
+
+    The turn is the twist that is left when the short way from upright to the tilt is taken off
+    (swing and twist), so that it does not reverse when the body bends beyond level. Between
+    frames that are tilted too far to tell, angles are interpolated.
+
+    Parameters
+    ----------
+    rotations : shape (n_frames, 4)
+        Of the hips, from the canonical T-pose.
+    """
+    tilt = np.arccos(np.clip(rotate(rotations, UP)[:, 2], -1.0, 1.0))
+    known = np.flatnonzero(tilt <= max(MOST_TILTED, tilt.min()))
+    twist = twist_about(rotations[known], UP)
+    angles = np.unwrap(2.0 * np.arctan2(twist[:, 3], twist[:, 0]))
+    return np.interp(np.arange(len(rotations)), known, angles)
 
 
 def _blurred(values: Array, sigma: float) -> Array:

@@ -185,3 +185,23 @@ def test_a_hand_that_hangs_in_the_rest_pose_points_to_its_end_site(lively):
     canonical = canonical_rotations(hanging, find_humanoid_map(lively.skeleton))
 
     assert angle_between(canonical, lively.rotations).max() < 1e-7
+
+
+@pytest.mark.parametrize("facing", [0.15, -0.6, 2.0])
+def test_the_same_motion_reads_the_same_from_a_rest_pose_that_faces_aside(lively, facing):
+    turn = quaternion_from_rotation_vector([0.0, 0.0, facing])
+    aside = rested_otherwise(lively, np.tile(turn, (lively.n_joints, 1)))
+
+    canonical = canonical_rotations(aside, find_humanoid_map(lively.skeleton))
+
+    assert angle_between(canonical, lively.rotations).max() < 1e-7
+
+
+def test_a_rest_pose_slightly_aside_faces_straight_on(body):
+    """Five degrees may be anatomy, or what a sensor makes of it: the trunk stays exactly."""
+    turn = quaternion_from_rotation_vector([0.0, 0.0, np.radians(5.0)])
+    aside = Skeleton(body.names, body.parents, rotate(turn, body.offsets))
+
+    alignment = t_pose_alignment(aside, find_humanoid_map(body))
+
+    assert_allclose(alignment[body.index("Hips")], IDENTITY, atol=0.0)

@@ -28,7 +28,7 @@ AS_EVER = RetargetSettings()
 @settings(max_examples=25)
 @given(
     st.lists(st.floats(-0.7, 0.7), min_size=len(LIMBS), max_size=len(LIMBS)),
-    st.sampled_from([0.0, np.pi / 2, np.pi, -np.pi / 2]),
+    st.sampled_from([0.0, np.pi / 2, np.pi, -np.pi / 2, 0.15, 0.5, -0.8, 2.5]),
 )
 def test_the_rest_pose_of_the_target_does_not_matter(angles, facing):
     """Limbs turned about the axis from front to back, the body about the vertical."""
@@ -129,6 +129,19 @@ def test_hips_sink_no_less_than_needed_and_smoothly():
     assert reached.max() <= 1.0 + 1e-9
     assert np.abs(np.diff(drop)).max() < 0.3 * drop.max()
     assert drop[:20].max() == drop[-20:].max() == 0.0
+
+
+@pytest.mark.parametrize(("degrees", "sinks"), [(0, 1.0), (45, 1.0), (75, 0.0), (90, 0.0)])
+def test_hips_sink_for_no_leg_that_lies(degrees, sinks):
+    """A leg of 1 m reaches for a foot 1.02 m away, ever farther from straight down."""
+    angle = np.radians(degrees)
+    foot = np.tile(1.02 * np.array([np.sin(angle), 0.0, -np.cos(angle)]), (10, 1))
+
+    drop = hips_drop([np.zeros((10, 3))], [foot], [np.ones(10)], 30.0)
+
+    beside, below = 1.02 * np.sin(angle), 1.02 * np.cos(angle)
+    needed = below - np.sqrt(max(1.0 - beside**2, 0.0))
+    assert_allclose(drop, sinks * needed, atol=1e-12)
 
 
 def test_the_ground_path_turns_with_the_body():

@@ -1,0 +1,161 @@
+"""Hands near the ground stay near it and go through it on no body."""
+
+import numpy as np
+import pytest
+from numpy.testing import assert_allclose
+from rigs import RIGS, mixamo
+
+from solvers.motion import (
+    Motion,
+    Skeleton,
+    find_humanoid_map,
+    forward_kinematics,
+    leg_length,
+    reach,
+)
+from solvers.motion.rotations import quaternion_from_rotation_vector
+from solvers.recordings import read_recording
+from solvers.retargeting import retarget
+from solvers.retargeting.low_hands import within_reach
+from solvers.samples import GaitSettings, walking_gait
+
+WRISTS = ("leftHand", "rightHand")
+CLIPS = ("bd_depositFloorR_001", "bd_lieDownFloor_001", "bd_lieDownFloor_004")
+
+
+def stretched(names: tuple[str, ...], factor: float) -> Skeleton:
+    rig = mixamo()
+    offsets = rig.offsets.copy()
+    for name in names:
+        for side in ("Left", "Right"):
+            offsets[rig.index(f"mixamorig:{side}{name}")] *= factor
+    return Skeleton(rig.names, rig.parents, offsets)
+
+
+BODIES = {
+    "usual": mixamo(),
+    "short legs": stretched(("Leg", "Foot"), 0.6),
+    "long legs": stretched(("Leg", "Foot"), 1.4),
+    "long arms": stretched(("ForeArm", "Hand"), 1.4),
+    "long forearms": stretched(("Hand",), 1.4),
+}
+
+
+@pytest.mark.parametrize("clip", CLIPS)
+@pytest.mark.parametrize("body", BODIES)
+def test_no_wrist_goes_through_the_floor(recordings, clip, body):
+    """Before, wrists came to -23.5 cm, where the lowest of the source are at -1.2 cm."""
+    motion = read_recording(recordings / f"mocap/hdm05/HDM_{clip}_120.amc")
+    motion = every_fourth(motion)
+
+    result = given_to(motion, BODIES[body])
+
+    for role in WRISTS:
+        lowest = place(motion, role)[:, 2].min()
+        assert place(result, role)[:, 2].min() > min(lowest, 0.0) - 0.001
+
+
+@pytest.mark.parametrize("body", BODIES)
+def test_what_is_put_down_is_put_down_as_low(recordings, body):
+    """The wrist's height over the ground grows with the legs; it was off by up to 27 cm."""
+    motion = read_recording(recordings / "mocap/hdm05/HDM_bd_depositFloorR_001_120.amc")
+    motion = every_fourth(motion)
+    rig = BODIES[body]
+
+    result = given_to(motion, rig)
+
+    theirs = place(motion, "rightHand")[:, 2]
+    frame = int(theirs.argmin())
+    expected = growth(motion, rig) * theirs[frame]
+    assert place(result, "rightHand")[frame, 2] == pytest.approx(expected, abs=0.04)
+
+
+@pytest.mark.parametrize("family", RIGS)
+def test_hands_that_lean_on_the_ground_do_not_slide(family):
+    """On all fours, the shoulders rock to and fro above the hands."""
+    source = on_all_fours()
+    rig = RIGS[family](1.3)
+
+    result = given_to(source, rig)
+
+    for role in WRISTS:
+        theirs, ours = place(source, role), place(result, role)
+        slide = np.ptp(ours, axis=0) - growth(source, rig) * np.ptp(theirs, axis=0)
+        assert np.abs(slide).max() < 0.005
+
+
+def test_the_hands_of_a_walk_are_those_of_the_arms():
+    walk = walking_gait(GaitSettings(duration=1.0, frame_rate=30.0))
+    rig = stretched(("ForeArm", "Hand"), 1.4)
+
+    result = given_to(walk, rig)
+
+    for side in ("left", "right"):
+        theirs, ours = (
+            place(motion, f"{side}Hand") - place(motion, f"{side}UpperArm")
+            for motion in (walk, result)
+        )
+        ratio = np.linalg.norm(ours, axis=1) / np.linalg.norm(theirs, axis=1)
+        assert_allclose(ratio, ratio[0], rtol=1e-6)
+
+
+def test_an_arm_eases_into_full_extension():
+    distances = np.linspace(0.1, 3.0, 300)
+    way = distances[:, None] * np.array([0.0, 0.0, -1.0])
+
+    eased = np.linalg.norm(within_reach(way, np.full((300, 3), 0.1), 1.0), axis=1)
+
+    assert_allclose(eased[distances < 0.9], distances[distances < 0.9])
+    assert (np.diff(eased) >= 0.0).all()
+    assert eased.max() <= 1.0
+    assert np.abs(np.diff(eased, 2)).max() < 2e-3
+
+
+def on_all_fours() -> Motion:
+    """Trunk level, thighs upright, hands held on the ground; the body rocks by 8 cm."""
+    rig = mixamo()
+    rotations = np.tile([1.0, 0, 0, 0], (120, rig.n_joints, 1))
+    places = np.tile([0.0, 0.0, 0.5], (120, 1))
+    places[:, 1] = 0.04 * np.sin(np.linspace(0.0, 4.0 * np.pi, 120))
+    rotations[:, 0] = about_x(0.5 * np.pi)
+    for side, sign in (("Left", 1.0), ("Right", -1.0)):
+        rotations[:, rig.index(f"mixamorig:{side}Arm")] = quaternion_from_rotation_vector([
+            0.0,
+            -sign * 1.2,
+            -sign * 0.8,
+        ])
+        rotations[:, rig.index(f"mixamorig:{side}UpLeg")] = about_x(-0.5 * np.pi)
+        rotations[:, rig.index(f"mixamorig:{side}Leg")] = about_x(0.5 * np.pi)
+    motion = Motion(rig, rotations, places, 60.0)
+    for side, sign in (("Left", 1.0), ("Right", -1.0)):
+        arm = [rig.index(f"mixamorig:{side}{part}") for part in ("Arm", "ForeArm", "Hand")]
+        spot = np.tile([sign * 0.2, -0.5, 0.05], (120, 1))
+        motion = reach(motion, (arm[0], arm[1], arm[2]), spot)
+    return motion
+
+
+def about_x(angle: float) -> np.ndarray:
+    return quaternion_from_rotation_vector([angle, 0.0, 0.0])
+
+
+def every_fourth(motion: Motion) -> Motion:
+    return Motion(
+        motion.skeleton,
+        motion.rotations[::4],
+        motion.root_positions[::4],
+        motion.frame_rate / 4,
+    )
+
+
+def given_to(motion: Motion, rig: Skeleton) -> Motion:
+    return retarget(motion, find_humanoid_map(motion.skeleton), rig, find_humanoid_map(rig))
+
+
+def growth(motion: Motion, rig: Skeleton) -> float:
+    legs = [leg_length(x, find_humanoid_map(x)) for x in (motion.skeleton, rig)]
+    return legs[1] / legs[0]
+
+
+def place(motion: Motion, role: str) -> np.ndarray:
+    joint = find_humanoid_map(motion.skeleton).indices(motion.skeleton)[role]
+    return forward_kinematics(motion).positions[:, joint]
