@@ -3,10 +3,9 @@
 import json
 from collections.abc import Iterator, Mapping, Sequence
 from html import escape
-from pathlib import Path
+from pathlib import Path, PurePosixPath
 from string import Template
 from typing import Any, NamedTuple
-from urllib.parse import quote
 
 from ..errors import MocapAssistError
 from ..files import written_whole
@@ -165,7 +164,7 @@ def _section(entry: Entry, number: int) -> str:
     task = entry.task
     image = ""
     if entry.figures is not None and has_picture(task):
-        place = escape(quote(_picture(task).as_posix()))
+        place = escape(_address(_picture(task)))
         image = f'<img loading="lazy" src="{place}" alt="Given and result, from the side">'
     message = entry.failure or ("" if entry.figures is not None else "Not come to yet.")
     return SECTION.substitute(
@@ -178,6 +177,11 @@ def _section(entry: Entry, number: int) -> str:
         cells="".join(_rows(entry.figures or {})),
         picture=image,
     )
+
+
+def _address(place: Path) -> str:
+    """Return a place beside the page as a browser understands it."""
+    return PurePosixPath("/", *place.parts).as_uri().removeprefix("file:///")
 
 
 def _rows(figures: Mapping[str, Any]) -> Iterator[str]:
