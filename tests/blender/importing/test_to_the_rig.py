@@ -1,0 +1,57 @@
+"""From a file of any kind to the production rig: Import, Clean, Retarget."""
+
+import numpy as np
+import pytest
+
+FRAMES = (10, 20, 30, 40)
+
+
+@pytest.fixture
+def c3d(recordings, load, tmp_path):
+    """Two seconds of a dancer with the CMU set, at 30 Hz."""
+    files = load("solvers.recordings")
+    take = files.read_recording(recordings / "mocap" / "05_13.c3d")
+    few = load("solvers.motion").Tracks(
+        take.names[:41], take.positions[:240:4, :41], take.frame_rate / 4
+    )
+    files.write_c3d(few, tmp_path / "dance.c3d")
+    files.write_trc(few, tmp_path / "dance.trc")
+    return tmp_path / "dance.c3d"
+
+
+@pytest.mark.parametrize(
+    "file",
+    [
+        "mocap/cmu_walk/07_01.bvh",
+        "mocap/05_13.amc",
+        "kinect/msr_action3d/a01_s01_e01_skeleton3D.txt",
+        "kinect/irds/215_18_1_4_2_stand.txt",
+        "kinect/kimore/JointPositionExercise1.csv",
+        "kinect/azure/joints_sync_1.csv",
+        "dance.c3d",
+        "dance.trc",
+    ],
+)
+def test_a_dropped_file_ends_on_the_rig(file, recordings, c3d, bring, make_rig, blank):
+    path = recordings / file if "/" in file else c3d.with_name(file)
+    made = bring(path, frame_rate="UPDATE")
+    if made.type == "EMPTY":
+        blank.ops.mocap_assist.solve_skeleton()
+        made = blank.context.object
+    rig = make_rig("Mixamo", scale=0.01, prefix="mixamorig:")
+    blank.context.view_layer.objects.active = made
+
+    assert blank.ops.mocap_assist.denoise() == {"FINISHED"}
+    assert blank.ops.mocap_assist.retarget(target=rig.name) == {"FINISHED"}
+
+    assert made.animation_data.action.name.endswith(".clean")
+    lifted = []
+    for frame in FRAMES:
+        blank.context.scene.frame_set(frame)
+        pose = rig.evaluated_get(blank.context.evaluated_depsgraph_get()).pose.bones
+        head, hips = (
+            rig.matrix_world @ pose[f"mixamorig:{name}"].head for name in ("Head", "Hips")
+        )
+        lifted.append(np.array(head - hips))
+    assert np.isfinite(lifted).all()
+    assert (np.array(lifted)[:, 2] > 0.3).all()  # upright, as all of these actors are
