@@ -12,11 +12,6 @@ import numpy as np
 
 ROOT = Path(__file__).resolve().parents[1]
 sys.path.insert(0, str(ROOT))
-
-from solvers.motion import JointRecording  # noqa: E402
-from solvers.pictures import StickFigureSettings, View, draw_stick_figures  # noqa: E402
-from solvers.recordings import read_recording  # noqa: E402
-
 PICTURES = ROOT / "docs" / "pictures"
 SAMPLES = {
     "bvh": ("mocap/cmu_walk/07_01.bvh", "side"),
@@ -34,6 +29,8 @@ SAMPLES = {
 
 def on_the_floor(recording):
     """Lift the joints of a depth camera, which is at the origin, so that the feet are at 0."""
+    from solvers.motion import JointRecording
+
     if not isinstance(recording, JointRecording):
         return recording
     places = recording.tracks.positions
@@ -43,6 +40,9 @@ def on_the_floor(recording):
 
 def main(recordings: Path) -> None:
     """Draw one picture for each page."""
+    from solvers.pictures import StickFigureSettings, View, draw_stick_figures
+    from solvers.recordings import read_recording
+
     for page, (file, view) in SAMPLES.items():
         recording = on_the_floor(read_recording(recordings / file))
         settings = StickFigureSettings(n_figures=8, height=150, view=View(view))

@@ -17,6 +17,7 @@ WIDEST_STEP = (
 )
 ON_GRID = 0.9  # share of keys that must lie on the grid, each
 OFF_GRID = 0.05  # of a step from it at most
+ALIKE = 0.1  # share by which times between keys may differ and still be the same
 
 
 class FrameRange(Enum):
@@ -108,13 +109,24 @@ def _grid_of(times: Array, widest: float) -> tuple[float, float]:
     """Step and phase of the grid that the keys lie on, or that of the whole frames."""
     if len(times) == 1:
         return 1.0, float(times[0])
-    span, spacing = times[-1] - times[0], np.median(np.diff(times))
+    span, spacing = times[-1] - times[0], _spacing(times)
     step = float(span / max(np.round(span / spacing), 1.0))
     places = (times - times[0]) / step
     regular = (np.abs(places - np.round(places)) < OFF_GRID).mean() >= ON_GRID
     if step <= widest and regular:
         return step, float(times[0])
     return 1.0, float(np.ceil(times[0] - ON_FRAME))
+
+
+def _spacing(times: Array) -> float:
+    """Return the usual time between keys; the mean of those about the median.
+
+    Blender keeps times in single precision: late in a long take the median alone is off by a
+    thousandth, which over its many keys makes whole frames.
+    """
+    spacings = np.diff(times)
+    usual = np.median(spacings)
+    return float(spacings[np.abs(spacings - usual) <= ALIKE * usual].mean())
 
 
 def _selected_keys(channel: Channel) -> Array:

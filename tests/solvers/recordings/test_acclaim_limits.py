@@ -5,47 +5,20 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from acclaim_files import LEG
 from numpy.testing import assert_allclose
 
 from solvers.denoising.keep_within import limit_excess
 from solvers.errors import InvalidFileError
 from solvers.recordings import read_acclaim, read_acclaim_limits
 
-SKELETON = """:units
- length 0.45
- angle deg
-:root
- order TX TY TZ RX RY RZ
- axis XYZ
- position 0 0 0
- orientation 0 0 0
-:bonedata
- begin
-  id 1
-  name thigh
-  direction 0 -1 0
-  length 7.5
-  axis 0 0 20 XYZ
-  dof rx ry rz
-  limits (-160.0 20.0)
-         (-70.0 70.0)
-         (-inf 10)
- end
- begin
-  id 2
-  name shank
-  direction 0 -1 0
-  length 7
-  axis 0 30 20 XYZ
-  dof rx
-  limits (-10.0 170.0)
- end
-:hierarchy
- begin
-  root thigh
-  thigh shank
- end
-"""
+LIMITS = {
+    "dof rx ry rz": "limits (-160.0 20.0)\n         (-70.0 70.0)\n         (-inf 10)",
+    "dof rx\n": "limits (-10.0 170.0)\n",
+}
+SKELETON = LEG.replace("axis 0 0 20 XYZ\n  dof rx\n", "axis 0 30 20 XYZ\n  dof rx\n")
+for freedom, limits in LIMITS.items():
+    SKELETON = SKELETON.replace(freedom, f"{freedom.rstrip()}\n  {limits}")
 
 
 @pytest.fixture

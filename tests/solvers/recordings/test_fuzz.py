@@ -9,6 +9,7 @@ from tempfile import TemporaryDirectory
 
 import numpy as np
 import pytest
+from acclaim_files import LEG
 from damage import damaged, read_or_refuse, searching
 from hypothesis import given
 
@@ -17,37 +18,7 @@ from solvers.recordings import read_acclaim, read_recording, write_bvh, write_c3
 
 EXAMPLES = 100
 
-SKELETON = b""":units
- length 0.45
- angle deg
-:root
- order TX TY TZ RX RY RZ
- axis XYZ
- position 0 0 0
- orientation 0 0 0
-:bonedata
- begin
-  id 1
-  name thigh
-  direction 0 -1 0
-  length 7.5
-  axis 0 0 20 XYZ
-  dof rx ry rz
- end
- begin
-  id 2
-  name shank
-  direction 0 -1 0
-  length 7
-  axis 0 0 20 XYZ
-  dof rx
- end
-:hierarchy
- begin
-  root thigh
-  thigh shank
- end
-"""
+SKELETON = LEG.encode()
 RECORDING = b":FULLY-SPECIFIED\n:DEGREES\n" + b"".join(
     b"%d\nroot 0 17 %d 0 5 0\nthigh %d 2 3\nshank %d\n" % (frame, frame, frame, 2 * frame)
     for frame in range(1, 12)
