@@ -22,6 +22,7 @@ from ..denoising import (
     plant_feet,
 )
 from ..errors import InvalidMotionError, InvalidSettingError
+from ..markers import Swap, unswap_markers
 from ..motion import JointLimits, Motion, Tracks
 from ..progress import Progress, within
 from .files import add_reading_options, read, read_all, write
@@ -51,6 +52,10 @@ def add_denoise_options(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--joint-limits", action="store_true",
         help="Hold joints softly within the angles to which they turn in the clips of --train",
+    )  # fmt: skip
+    parser.add_argument(
+        "--unswap", action="store_true",
+        help="Put swapped and mistaken labels of optical markers right first",
     )  # fmt: skip
     parser.add_argument(
         "--feet", action=argparse.BooleanOptionalAction,
@@ -103,9 +108,10 @@ def _refuse_what_needs_clips(arguments: argparse.Namespace) -> None:
 
 def perform_denoise(task: Task, learned: Learned, progress: Progress) -> Outcome:
     """Clean one recording and write it; tell its quality before and after."""
-    recording = read(task.source, task.arguments, within(progress, 0.0, 0.1))
+    recording = read(task.source, task.arguments, within(progress, 0.0, 0.05))
+    labelled, swaps = _labelled(recording, task.arguments, within(progress, 0.05, 0.1))
     denoised = denoise(
-        recording,
+        labelled,
         learned.bases,
         limits=learned.limits,
         settings=settings_from_arguments(task.arguments, DenoiseSettings),
@@ -123,6 +129,7 @@ def perform_denoise(task: Task, learned: Learned, progress: Progress) -> Outcome
     text = "\n".join([
         denoised.prior_used,
         *([] if denoised.converged else ["The estimate had not settled when it was stopped."]),
+        *([f"{len(swaps)} swaps of labels were put right."] if swaps else []),
         *([feet["feet"]] if "feet" in feet else []),
         compare_quality(before, after),
     ])
@@ -131,12 +138,25 @@ def perform_denoise(task: Task, learned: Learned, progress: Progress) -> Outcome
         "iterations": denoised.iterations,
         "converged": denoised.converged,
         "outliers": int(denoised.outliers.sum()),
+        "swaps": len(swaps),
         "mean_confidence": float(denoised.confidence.mean()),
         **feet,
         "before": before.figures(),
         "after": after.figures(),
     }
     return Outcome(text, figures)
+
+
+def _labelled(
+    recording: Motion | Tracks, arguments: argparse.Namespace, progress: Progress
+) -> tuple[Motion | Tracks, tuple[Swap, ...]]:
+    """Return the recording with its labels put right, if that was asked for; and the swaps."""
+    if not arguments.unswap:
+        return recording, ()
+    if isinstance(recording, Motion):
+        raise InvalidMotionError("Only markers have labels that can be swapped.")
+    unswapped = unswap_markers(recording, progress=progress)
+    return unswapped.tracks, unswapped.swaps
 
 
 def _with_feet_planted(

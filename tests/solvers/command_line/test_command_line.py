@@ -51,6 +51,30 @@ def test_markers_go_from_trc_to_c3d_and_back_and_are_cleaned(call, tmp_path, rng
     assert clean.visible.all()
 
 
+def test_swapped_labels_are_put_right_where_that_is_asked_for(
+    call, recordings, leg_file, tmp_path
+):
+    take = read_c3d(recordings / "mocap" / "05_13.c3d")
+    names = take.names[:41]
+    truth = take.positions[:480:4, :41]
+    pair = [names.index(name) for name in names if name.endswith(("LKNE", "RKNE"))]
+    swapped = truth.copy()
+    swapped[40:90, pair] = truth[40:90, pair[::-1]]
+    write_trc(Tracks(names, swapped, take.frame_rate / 4), tmp_path / "bad.trc")
+
+    status, said, _ = call(
+        "denoise", tmp_path / "bad.trc", tmp_path / "good.trc", "--unswap", "--json"
+    )
+
+    assert (status, json.loads(said)["swaps"]) == (0, 1)
+    error = np.linalg.norm(read_trc(tmp_path / "good.trc").positions - truth, axis=-1)
+    assert np.median(error[45:85][:, pair]) < 0.02
+    assert (
+        "Only markers have labels"
+        in call("denoise", leg_file, tmp_path / "x.bvh", "--unswap")[2]
+    )
+
+
 def test_quality_prints_the_report_or_its_figures(call, leg_file):
     _, text, _ = call("quality", leg_file)
     _, figures, _ = call("quality", leg_file, "--json")
