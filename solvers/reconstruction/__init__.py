@@ -1,0 +1,1 @@
+"""Rebuild clean poses from what a depth camera's tracker saw."""

@@ -1,0 +1,64 @@
+"""How long the bones of an actor are, and postures on a body of other lengths."""
+
+import numpy as np
+from numpy.typing import NDArray
+
+from .posture_joints import HIPS, N_JOINTS, PARENTS
+
+Array = NDArray[np.float64]
+
+USUAL_LENGTHS = np.array(
+    [0.0, 0.28, 0.22, 0.27]
+    + 2 * [0.19, 0.28, 0.25, 0.09]
+    + 2 * [0.10, 0.42, 0.40, 0.15]
+)  # fmt: skip
+"""Metres of the way to each joint from the one above, in an adult of 1.75 m
+(Drillis and Contini's shares of stature, and the Kinect's flat shoulders and hips)."""
+RELIABLE = 0.6
+"""Joints that are trusted more than this tell the lengths, where there are enough of them."""
+FEWEST = 15
+
+
+def segment_lengths(positions: Array) -> Array:
+    """Return the way from the joint above to each joint, shape (n_frames, 20), metres."""
+    above = np.maximum(PARENTS, 0)
+    return np.asarray(np.linalg.norm(positions - positions[..., above, :], axis=-1))
+
+
+def body_lengths(positions: Array, reliability: Array | None = None) -> Array:
+    """Return the lengths of an actor's bones, shape (20,), metres: medians of reliable frames.
+
+    A bone that is never seen has its usual share of the size of the others.
+    """
+    found = segment_lengths(positions)
+    if reliability is not None:
+        sure = np.minimum(reliability, reliability[:, np.maximum(PARENTS, 0)]) > RELIABLE
+        enough = (sure & np.isfinite(found)).sum(axis=0) >= FEWEST
+        found = np.where(sure | ~enough, found, np.nan)
+    seen = np.isfinite(found).any(axis=0)
+    lengths = np.full(N_JOINTS, np.nan)
+    lengths[seen] = np.nanmedian(found[:, seen], axis=0)
+    known = seen & (USUAL_LENGTHS > 0.0)
+    share = lengths[known].sum() / USUAL_LENGTHS[known].sum() if known.any() else 1.0
+    lengths = np.where(seen, lengths, share * USUAL_LENGTHS)
+    lengths[HIPS] = 0.0
+    return lengths
+
+
+def resize(postures: Array, lengths: Array) -> Array:
+    """Give every bone its length and leave it its direction; the hips stay.
+
+    Parameters
+    ----------
+    postures : shape (..., 20, 3), metres
+        NaN where not tracked; all below such a joint becomes NaN.
+    lengths : shape (20,), metres
+    """
+    result = np.array(postures, dtype=np.float64)
+    for joint in range(1, N_JOINTS):
+        above = PARENTS[joint]
+        bone = postures[..., joint, :] - postures[..., above, :]
+        size = np.linalg.norm(bone, axis=-1, keepdims=True)
+        way = bone / np.where(size > 0.0, size, 1.0)
+        result[..., joint, :] = result[..., above, :] + lengths[joint] * way
+    return result

@@ -1,0 +1,90 @@
+"""Postures as if all actors stood in one place and faced one way [SHJT13, section V-A]."""
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.ndimage import gaussian_filter1d
+
+from .posture_joints import HIPS, POSTURE_JOINTS
+
+Array = NDArray[np.float64]
+
+ACROSS = tuple(
+    (POSTURE_JOINTS.index(f"left{part}"), POSTURE_JOINTS.index(f"right{part}"))
+    for part in ("UpperLeg", "UpperArm")
+)
+STEADY = 0.1
+"""Seconds of the Gaussian that steadies the heading: jitter must not turn the whole body."""
+SHORTEST = 0.02
+"""Metres. A level line from right to left that is shorter tells no heading."""
+
+
+@dataclass(frozen=True, eq=False)
+class Normalised:
+    """Postures without heading and place.
+
+    Attributes
+    ----------
+    postures : shape (n_frames, 20, 3), metres
+        Relative to the hips; the actor faces -Y, his left is +X. NaN: not tracked.
+    places : shape (n_frames, 3), metres
+        Where the hips are.
+    headings : shape (n_frames,), radians
+        Turn about Z that brings a posture back.
+    """
+
+    postures: Array
+    places: Array
+    headings: Array
+
+    def put_back(self, postures: Array) -> Array:
+        """Return postures of these frames in the world, same shape."""
+        return turned(postures, self.headings) + self.places[:, None]
+
+
+def normalise(positions: Array, frame_rate: float, weights: Array | None = None) -> Normalised:
+    """Take heading and place out.
+
+    The heading follows the level lines from the right to the left hip and shoulder, and is
+    steadied over a tenth of a second.
+
+    Parameters
+    ----------
+    positions : shape (n_frames, 20, 3), metres
+    frame_rate : float, hertz
+    weights : shape (n_frames, 20), 0 to 1, optional
+        How far each joint is to be trusted.
+    """
+    trust = np.ones(positions.shape[:2]) if weights is None else weights
+    places = _filled(positions[:, HIPS], trust[:, HIPS] > 0.0)
+    left = np.zeros((len(positions), 2))
+    for one, other in ACROSS:
+        line = (positions[:, one] - positions[:, other])[:, :2]
+        sure = np.minimum(trust[:, one], trust[:, other])
+        left += np.where(np.isfinite(line), line, 0.0) * (1e-3 + sure[:, None])
+    told = np.linalg.norm(left, axis=-1) > SHORTEST * 1e-3
+    if not told.any():
+        left[:], told = (1.0, 0.0), np.ones(len(left), bool)
+    unit = _filled(left / np.maximum(np.linalg.norm(left, axis=-1, keepdims=True), 1e-9), told)
+    unit = gaussian_filter1d(unit, STEADY * frame_rate, axis=0, mode="nearest")
+    headings = np.arctan2(unit[:, 1], unit[:, 0])
+    return Normalised(turned(positions - places[:, None], -headings), places, headings)
+
+
+def turned(postures: Array, angles: Array) -> Array:
+    """Turn each frame about Z by its angle, in radians."""
+    cos, sin = np.cos(angles)[:, None], np.sin(angles)[:, None]
+    x, y, z = np.moveaxis(postures, -1, 0)
+    return np.stack([cos * x - sin * y, sin * x + cos * y, z], axis=-1)
+
+
+def _filled(values: Array, told: NDArray[np.bool_]) -> Array:
+    """Fill rows that tell nothing, along straight lines; at the ends with the nearest."""
+    told = told & np.isfinite(values).all(axis=-1)
+    if not told.any():
+        return np.zeros_like(values)
+    frames = np.arange(len(values))
+    return np.stack(
+        [np.interp(frames, frames[told], column[told]) for column in values.T], axis=-1
+    )

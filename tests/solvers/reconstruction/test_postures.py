@@ -1,0 +1,105 @@
+"""Postures: which joints they are made of, without heading and place, on other bodies."""
+
+import numpy as np
+import pytest
+
+from solvers.errors import InvalidMotionError
+from solvers.motion import JOINTS, Sensor, Tracks
+from solvers.reconstruction.body_size import body_lengths, resize, segment_lengths
+from solvers.reconstruction.heading import normalise, turned
+from solvers.reconstruction.posture_joints import (
+    PARENTS,
+    POSTURE_JOINTS,
+    joints_of_names,
+    motion_postures,
+    posture_positions,
+)
+from solvers.samples import GaitSettings, walking_gait
+
+
+@pytest.fixture
+def walk():
+    return motion_postures(walking_gait(GaitSettings(duration=2.0, frame_rate=30.0)))
+
+
+@pytest.mark.parametrize("sensor", list(JOINTS))
+def test_every_kinect_tracks_all_joints_of_postures(sensor):
+    names = JOINTS[sensor]
+    found = {role: names[place] for role, place in joints_of_names(names).items()}
+    assert set(found) == set(POSTURE_JOINTS)
+    assert found["leftLowerArm"] == "ElbowLeft"
+    assert found["rightHandEnd"] == "HandRight"
+    assert found["chest"] in {"ShoulderCenter", "SpineShoulder", "SpineChest"}
+
+
+def test_names_that_are_no_body_are_refused():
+    tracks = Tracks(("LFHD", "RFHD"), np.zeros((3, 2, 3)), 30.0)
+    with pytest.raises(InvalidMotionError, match="No body was recognised"):
+        posture_positions(tracks)
+
+
+def test_missing_joints_are_nan_and_others_keep_their_place():
+    names = JOINTS[Sensor.KINECT_V1][:12]
+    positions = np.random.default_rng(0).normal(size=(4, 12, 3))
+    found = posture_positions(Tracks(names, positions, 30.0))
+    assert np.isnan(found[:, POSTURE_JOINTS.index("leftFoot")]).all()
+    np.testing.assert_array_equal(
+        found[:, POSTURE_JOINTS.index("leftLowerArm")], positions[:, 5]
+    )
+
+
+def test_normal_postures_do_not_depend_on_place_and_heading(walk):
+    moved = turned(walk, np.full(len(walk), 2.5)) + np.array([3.0, -1.0, 0.2])
+    one, other = normalise(walk, 30.0), normalise(moved, 30.0)
+    np.testing.assert_allclose(one.postures, other.postures, atol=1e-9)
+    np.testing.assert_allclose(other.put_back(other.postures), moved, atol=1e-12)
+
+
+def test_a_normal_posture_faces_forward_with_its_left_at_plus_x(walk):
+    posture = normalise(walk, 30.0).postures.mean(axis=0)
+    assert posture[POSTURE_JOINTS.index("leftUpperArm"), 0] > 0.1
+    assert (
+        posture[POSTURE_JOINTS.index("leftToes"), 1]
+        < posture[POSTURE_JOINTS.index("leftFoot"), 1]
+    )
+
+
+def test_joints_without_trust_do_not_turn_the_heading(walk):
+    wrong = walk.copy()
+    arm = POSTURE_JOINTS.index("leftUpperArm")
+    wrong[:, arm] += (0.0, 1.0, 0.0)
+    trust = np.ones(walk.shape[:2])
+    trust[:, arm] = 0.0
+    believed = np.abs(normalise(wrong, 30.0).headings - normalise(walk, 30.0).headings).max()
+    doubted = np.abs(
+        normalise(wrong, 30.0, trust).headings - normalise(walk, 30.0, trust).headings
+    ).max()
+    assert believed > 0.3
+    assert doubted < 0.01
+
+
+def test_a_resized_body_has_the_lengths_and_keeps_directions(walk):
+    lengths = np.linspace(0.1, 0.5, len(PARENTS))
+    resized = resize(walk, lengths)
+    bones = body_lengths(walk) > 0.0
+    np.testing.assert_allclose(
+        segment_lengths(resized)[:, bones], np.tile(lengths[bones], (len(walk), 1))
+    )
+    assert bones.sum() >= 16
+    np.testing.assert_allclose(resize(resized, body_lengths(walk)), walk, atol=1e-9)
+
+
+def test_lengths_ignore_frames_that_are_not_trusted(walk):
+    shin = POSTURE_JOINTS.index("leftFoot")
+    wrong = walk.copy()
+    wrong[:40, shin] += (0.0, 0.0, 0.4)
+    trust = np.ones(walk.shape[:2])
+    trust[:40, shin] = 0.1
+    assert body_lengths(wrong, trust)[shin] == pytest.approx(body_lengths(walk)[shin], abs=1e-6)
+    assert abs(body_lengths(wrong)[shin] - body_lengths(walk)[shin]) > 0.1
+
+
+def test_a_bone_that_is_never_seen_has_its_usual_share(walk):
+    unseen = walk.copy()
+    unseen[:, POSTURE_JOINTS.index("leftHandEnd")] = np.nan
+    assert 0.05 < body_lengths(unseen)[POSTURE_JOINTS.index("leftHandEnd")] < 0.15
