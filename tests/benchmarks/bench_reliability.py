@@ -11,7 +11,6 @@ without that subject; what ships was fitted to all five.
 import argparse
 from collections.abc import Callable
 from itertools import pairwise
-from pathlib import Path
 from time import perf_counter
 
 import numpy as np
@@ -155,7 +154,7 @@ def _agreement(takes: list[JointRecording]) -> list[str]:
     found = [measure_reliability(take, settings=EYES_CLOSED) for take in takes]
     seen = [take.tracks.visible for take in takes]
     inferred = np.concatenate([
-        take.tracking_state[known] < 2 for take, known in zip(takes, seen, strict=True)
+        _doubted(take)[known] for take, known in zip(takes, seen, strict=True)
     ])
     cells = [f"{inferred.mean():.1%}"]
     for measure in MEASURES.values():
