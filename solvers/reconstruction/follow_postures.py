@@ -90,7 +90,9 @@ def follow_postures(
     asked, given = take.postures, _led_up(take, settings)
     for number in range(rounds):
         part = within(progress, number / rounds, (number + 1) / rounds)
-        made = _synthesise(replace(take, postures=asked, trust=given), body, index, settings, part)
+        made = _synthesise(
+            replace(take, postures=asked, trust=given), body, index, settings, part
+        )
         more = _shift(take.postures - shift - made.values, trust, frame_rate, settings)
         shift = shift + more
         course = _corrected(made, take.postures - shift, take, settings)
@@ -162,9 +164,7 @@ def _synthesise(
     for start in range(0, len(values), BLOCK):
         part = slice(start, min(start + BLOCK, len(values)))
         spaces = local_pca(body.positions[places[part]], settings.n_dimensions)
-        asked = Demands(
-            take.postures[part], take.trust[part], spaces.neighbours, take.lengths
-        )
+        asked = Demands(take.postures[part], take.trust[part], spaces.neighbours, take.lengths)
         probable, spread[part] = probable_postures(spaces, asked)
         values[part] = _chosen(spaces, asked, probable, settings, last)
         last = values[max(part.stop - 2, 0) : part.stop]
@@ -203,7 +203,7 @@ def _shift(off: Array, trust: Array, frame_rate: float, settings: PostureSetting
     move *= 1.0 - np.where(np.isfinite(off[:, HIPS, :1]), trust[:, [HIPS]], 0.0)
     if settings.smoothing and not settings.causal:
         move = gaussian_filter1d(move, settings.smoothing * frame_rate, axis=0, mode="nearest")
-    return move[:, None]
+    return np.asarray(move[:, None])
 
 
 def _corrected(made: Course, seen: Array, take: _Seen, settings: PostureSettings) -> Course:

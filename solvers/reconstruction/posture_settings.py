@@ -59,3 +59,6 @@ class PostureSettings(Settings):
         0, "Start of the random numbers of the published method", minimum=0, maximum=2**31 - 1,
         advanced=True,
     )  # fmt: skip
+
+
+USUAL = PostureSettings()
