@@ -100,7 +100,7 @@ class _Body:
         return turns
 
     def _above(self, joint: int, parent: int, trunk: dict[int, float]) -> Array:
-        """Return what a joint turns out of: its parent's turn; a spine shares in the chest's."""
+        """Return what a joint turns out of: its parent's turn; a spine shares the chest's."""
         if parent < 0:
             return np.broadcast_to(IDENTITY, self.world[:, 0].shape)
         if joint not in trunk:
