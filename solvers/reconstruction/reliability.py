@@ -5,6 +5,12 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from ..motion import JointRecording
+from ..progress import Progress, unwatched
+from .reliability_reference import reference_lengths, reference_postures, segments
+from .reliability_settings import USUAL, ReliabilitySettings
+from .reliability_terms import behaviour_term, gaussian_mean, kinematics_term, tracking_term
+
 
 @dataclass(frozen=True, eq=False)
 class Reliability:
@@ -21,3 +27,55 @@ class Reliability:
     behaviour: NDArray[np.float64]
     kinematics: NDArray[np.float64]
     tracking: NDArray[np.float64]
+
+
+def measure_reliability(
+    recording: JointRecording,
+    *,
+    settings: ReliabilitySettings = USUAL,
+    progress: Progress = unwatched,
+) -> Reliability:
+    """Measure how far each joint of a depth camera's recording can be trusted.
+
+    Parameters
+    ----------
+    recording : JointRecording
+        Any joints; NaN where not tracked.
+    settings : ReliabilitySettings
+    progress : Progress
+
+    Returns
+    -------
+    Reliability
+        For the joints of the recording, in their order. A joint that is NaN has 0 everywhere.
+
+    Raises
+    ------
+    SolveCancelled
+        Raised by `progress`.
+
+    References
+    ----------
+    .. [SHJT13] Shum, Ho, Jiang, Takagi (2013). Real-time posture reconstruction for Microsoft
+       Kinect. IEEE Transactions on Cybernetics 43(5). doi:10.1109/TCYB.2013.2275945
+    """
+    positions, parents = recording.tracks.positions, np.array(recording.parents)
+    visible = recording.tracks.visible
+    behaviour = behaviour_term(positions, recording.frame_rate, settings)
+    tracking = tracking_term(recording, settings)
+    progress(0.4, "Measuring reliability")
+    lengths = segments(positions, parents)
+    state = recording.tracking_state
+    tracked = visible if state is None else visible & (state == 2)
+    postures = reference_postures(recording.names, positions, tracked)
+    steady = np.minimum(behaviour, tracked)
+    trust = np.minimum(steady, steady[:, np.maximum(parents, 0)])
+    reference = reference_lengths(lengths, postures, trust)
+    kinematics = kinematics_term(lengths, reference, parents)
+    behaviour, kinematics, tracking = (
+        np.where(visible, term, 0.0) for term in (behaviour, kinematics, tracking)
+    )
+    worst = np.minimum(np.minimum(behaviour, kinematics), tracking)
+    combined = np.where(visible, gaussian_mean(worst, recording.frame_rate, settings), 0.0)
+    progress(1.0, "Measuring reliability")
+    return Reliability(combined, behaviour, kinematics, tracking)
