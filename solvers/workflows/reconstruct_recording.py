@@ -1,0 +1,110 @@
+"""From a depth camera's joints to clean motion of a skeleton whose feet stand."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from ..denoising import Planted, PlantSettings, plant_feet
+from ..errors import InvalidMotionError
+from ..motion import JointRecording, Motion, Skeleton
+from ..progress import Progress, unwatched, within
+from ..reconstruction.follow_joints import follow_joints
+from ..reconstruction.result import Reconstruction
+from .known_body import check_size, known_body
+from .rough_reconstruct import ReconstructSettings, reconstruct
+
+LONG_GAP = 1.0
+"""Seconds without any joint, from which on the result is a guess that is worth a word."""
+PLANTING = PlantSettings()
+REBUILDING = ReconstructSettings()
+
+
+@dataclass(frozen=True, eq=False)
+class ReconstructedMotion:
+    """Clean motion, and what was done for it.
+
+    Attributes
+    ----------
+    motion : Motion
+        Without gaps; the feet are planted where that was asked for and can be done.
+    reconstruction : Reconstruction
+        Joints, confidence and the motion before feet were planted.
+    planted : Planted or None
+    remarks : tuple of str
+        Sentences on what the animator should know.
+    """
+
+    motion: Motion
+    reconstruction: Reconstruction
+    planted: Planted | None
+    remarks: tuple[str, ...]
+
+
+def reconstruct_recording(
+    recording: JointRecording,
+    postures: None = None,
+    prior: None = None,
+    *,
+    skeleton: Skeleton | None = None,
+    settings: ReconstructSettings = REBUILDING,
+    planting: PlantSettings | None = PLANTING,
+    progress: Progress = unwatched,
+) -> ReconstructedMotion:
+    """Rebuild the poses of a recording, let a skeleton follow them, and plant its feet.
+
+    Parameters
+    ----------
+    recording : JointRecording
+        Joints of a body, of any tracker whose names are known.
+    postures : PostureLibrary, optional
+    prior : ResidualPrior, optional
+    skeleton : Skeleton, optional
+        To move, in the place of one of the recording's own lengths; its joints are some of the
+        recording's.
+    settings : ReconstructSettings
+    planting : PlantSettings or None
+        None leaves the feet as they are.
+    progress : Progress
+
+    Raises
+    ------
+    InvalidMotionError
+        Nothing is tracked, no body is recognised, or it is not of human size.
+    SolveCancelled
+        Raised by `progress`.
+    """
+    known = known_body(recording)
+    check_size(known)
+    rebuilt = reconstruct(
+        known, postures, prior, settings=settings, progress=within(progress, 0.0, 0.8)
+    )
+    motion = rebuilt.motion
+    if skeleton is not None:
+        motion = follow_joints(
+            rebuilt.tracks, known.parents, rebuilt.confidence, skeleton=skeleton
+        )
+    remarks = [*_gap_remarks(known)]
+    planted = None
+    if planting is not None:
+        try:
+            planted = plant_feet(motion, settings=planting, progress=within(progress, 0.8, 1.0))
+            motion = planted.motion
+        except InvalidMotionError as error:
+            remarks.append(f"Feet are left as they are. {error}")
+    progress(1.0, "Done")
+    return ReconstructedMotion(motion, rebuilt, planted, tuple(remarks))
+
+
+def _gap_remarks(recording: JointRecording) -> list[str]:
+    """Tell of the longest time at which nothing was tracked, if it is long."""
+    blank = ~recording.tracks.visible.any(axis=1)
+    edges = np.flatnonzero(np.diff(np.concatenate([[False], blank, [False]]).astype(np.int8)))
+    starts, stops = edges[::2], edges[1::2]
+    if not len(starts):
+        return []
+    longest = int(np.argmax(stops - starts))
+    seconds = (stops - starts)[longest] / recording.frame_rate
+    if seconds < LONG_GAP:
+        return []
+    start = starts[longest] / recording.frame_rate
+    return [f"Nothing was tracked for {seconds:.1f} s from {start:.1f} s on: a guess."]
