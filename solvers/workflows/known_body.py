@@ -55,8 +55,9 @@ def _by_roles(recording: JointRecording) -> JointRecording:
     columns = [tracks.positions[:, place] for place in places.values()]
     states = [] if state is None else [state[:, place] for place in places.values()]
     roles = list(places)
-    legs = [places.get(f"{side}UpperLeg") for side in ("left", "right")]
-    if "hips" not in places and None not in legs:
+    sides = [f"{side}UpperLeg" for side in ("left", "right")]
+    legs = [places[role] for role in sides if role in places]
+    if "hips" not in places and len(legs) == 2:
         roles.append("hips")
         columns.append(tracks.positions[:, legs].mean(axis=1))
         states += [] if state is None else [state[:, legs].min(axis=1)]
