@@ -1,5 +1,15 @@
 """What joins families: whole ways from a recording to a result."""
 
 from .motion_from_markers import MarkerMotion, MarkerMotionSettings, motion_from_markers
+from .reconstruct_motion import RebuiltMotion, reconstruct_motion
+from .reconstruct_recording import ReconstructedMotion, reconstruct_recording
 
-__all__ = ["MarkerMotion", "MarkerMotionSettings", "motion_from_markers"]
+__all__ = [
+    "MarkerMotion",
+    "MarkerMotionSettings",
+    "RebuiltMotion",
+    "ReconstructedMotion",
+    "motion_from_markers",
+    "reconstruct_motion",
+    "reconstruct_recording",
+]

@@ -15,6 +15,8 @@ from ..reconstruction.posture_joints import (
 LARGEST, SMALLEST = 3.0, 0.2
 """Sizes of a body, in usual adults, beyond which the unit must be wrong."""
 STATURE = 1.75
+LONG_GAP = 1.0
+"""Seconds without any joint, from which on the result is a guess that is worth a word."""
 UNITS = {0.001: "millimetres", 0.01: "centimetres", 0.0254: "inches", 1000.0: "kilometres"}
 KINECT_V1 = dict(zip(POSTURE_JOINTS, JOINTS[Sensor.KINECT_V1], strict=True))
 """What the first Kinect calls the joints of postures."""
@@ -31,6 +33,15 @@ def known_body(recording: JointRecording) -> JointRecording:
     InvalidMotionError
         Nothing is ever tracked, or no body is recognised.
     """
+    check_tracked(recording)
+    parents = recording.parents
+    if parents.count(-1) == 1 and "hips" in joints_of_names(recording.names):
+        return recording
+    return _by_roles(recording)
+
+
+def check_tracked(recording: JointRecording) -> None:
+    """Raise InvalidMotionError where nothing, or a single joint, is ever tracked."""
     tracks = recording.tracks
     seen = tracks.visible.any(axis=0)
     if not seen.any():
@@ -43,10 +54,6 @@ def known_body(recording: JointRecording) -> JointRecording:
         raise InvalidMotionError(
             f"Only one joint ({name}) is ever tracked; poses need hips and limbs."
         )
-    parents = recording.parents
-    if parents.count(-1) == 1 and "hips" in joints_of_names(tracks.names):
-        return recording
-    return _by_roles(recording)
 
 
 def _by_roles(recording: JointRecording) -> JointRecording:
@@ -91,3 +98,21 @@ def check_size(recording: JointRecording) -> None:
         f"The body is {STATURE * size:.3g} m tall{guess}. Read the recording with a scale of"
         f" {scale}."
     )
+
+
+def gap_remarks(recording: JointRecording) -> list[str]:
+    """Tell of the longest time at which nothing was tracked, if it is long."""
+    blank = ~recording.tracks.visible.any(axis=1)
+    edges = np.flatnonzero(np.diff(np.concatenate([[False], blank, [False]]).astype(np.int8)))
+    starts, stops = edges[::2], edges[1::2]
+    if not len(starts):
+        return []
+    longest = int(np.argmax(stops - starts))
+    seconds = (stops - starts)[longest] / recording.frame_rate
+    if seconds < LONG_GAP:
+        return []
+    start = starts[longest] / recording.frame_rate
+    return [
+        f"Nothing was tracked for {seconds:.1f} s from {start:.1f} s on; what moves there is"
+        " a guess."
+    ]

@@ -2,19 +2,15 @@
 
 from dataclasses import dataclass
 
-import numpy as np
-
 from ..denoising import Planted, PlantSettings, plant_feet
 from ..errors import InvalidMotionError
 from ..motion import JointRecording, Motion, Skeleton
 from ..progress import Progress, unwatched, within
 from ..reconstruction.follow_joints import follow_joints
 from ..reconstruction.result import Reconstruction
-from .known_body import check_size, known_body
+from .known_body import check_size, gap_remarks, known_body
 from .rough_reconstruct import ReconstructSettings, reconstruct
 
-LONG_GAP = 1.0
-"""Seconds without any joint, from which on the result is a guess that is worth a word."""
 PLANTING = PlantSettings()
 REBUILDING = ReconstructSettings()
 
@@ -83,7 +79,7 @@ def reconstruct_recording(
         motion = follow_joints(
             rebuilt.tracks, known.parents, rebuilt.confidence, skeleton=skeleton
         )
-    remarks = [*_gap_remarks(known)]
+    remarks = gap_remarks(known)
     planted = None
     if planting is not None:
         try:
@@ -93,18 +89,3 @@ def reconstruct_recording(
             remarks.append(f"Feet are left as they are. {error}")
     progress(1.0, "Done")
     return ReconstructedMotion(motion, rebuilt, planted, tuple(remarks))
-
-
-def _gap_remarks(recording: JointRecording) -> list[str]:
-    """Tell of the longest time at which nothing was tracked, if it is long."""
-    blank = ~recording.tracks.visible.any(axis=1)
-    edges = np.flatnonzero(np.diff(np.concatenate([[False], blank, [False]]).astype(np.int8)))
-    starts, stops = edges[::2], edges[1::2]
-    if not len(starts):
-        return []
-    longest = int(np.argmax(stops - starts))
-    seconds = (stops - starts)[longest] / recording.frame_rate
-    if seconds < LONG_GAP:
-        return []
-    start = starts[longest] / recording.frame_rate
-    return [f"Nothing was tracked for {seconds:.1f} s from {start:.1f} s on: a guess."]
