@@ -9,6 +9,7 @@ import bpy
 
 from .check_choices import CheckSettings
 from .clean_choices import CleanSettings
+from .reconstruct_choices import ReconstructBundle
 from .retarget_choices import RetargetBundle, UnbakeBundle
 from .settings_properties import settings_from
 from .solving import SolveBundle
@@ -37,6 +38,11 @@ class MOCAP_PG_solve(bpy.types.PropertyGroup):
 @settings_from(UnbakeBundle)
 class MOCAP_PG_unbake(bpy.types.PropertyGroup):
     """Settings of the button Unbake."""
+
+
+@settings_from(ReconstructBundle)
+class MOCAP_PG_reconstruct(bpy.types.PropertyGroup):
+    """Settings of the button Reconstruct."""
 
 
 class MOCAP_PG_bone_pair(bpy.types.PropertyGroup):
@@ -77,6 +83,7 @@ class MOCAP_PG_scene(bpy.types.PropertyGroup):
     clean: bpy.props.PointerProperty(type=MOCAP_PG_clean)
     check: bpy.props.PointerProperty(type=MOCAP_PG_check)
     solve: bpy.props.PointerProperty(type=MOCAP_PG_solve)
+    reconstruct: bpy.props.PointerProperty(type=MOCAP_PG_reconstruct)
     retarget: bpy.props.PointerProperty(type=MOCAP_PG_retarget)
     unbake: bpy.props.PointerProperty(type=MOCAP_PG_unbake)
     bone_map: bpy.props.PointerProperty(type=MOCAP_PG_bone_map)
@@ -102,6 +109,7 @@ CLASSES = (
     MOCAP_PG_solve,
     MOCAP_PG_retarget,
     MOCAP_PG_unbake,
+    MOCAP_PG_reconstruct,
     MOCAP_PG_bone_pair,
     MOCAP_PG_bone_map,
     MOCAP_PG_spot,

@@ -9,6 +9,7 @@ from .feet_panel import FeetPanel
 from .import_panel import ImportPanel
 from .markers_panel import MarkersPanel
 from .preferences import preferred
+from .reconstruct_panel import ReconstructPanel
 from .retarget_panel import RetargetPanel
 
 EDITORS = {"": "VIEW_3D", "_graph": "GRAPH_EDITOR", "_dopesheet": "DOPESHEET_EDITOR"}
@@ -27,6 +28,7 @@ def _in_every_editor(body: type) -> list[type[bpy.types.Panel]]:
 
 BODIES = (
     ImportPanel,
+    ReconstructPanel,
     CleanPanel,
     CheckPanel,
     ComparePanel,

@@ -3,11 +3,13 @@
 from .motion_from_markers import MarkerMotion, MarkerMotionSettings, motion_from_markers
 from .reconstruct_motion import RebuiltMotion, reconstruct_motion
 from .reconstruct_recording import ReconstructedMotion, reconstruct_recording
+from .rough_reconstruct import ReconstructSettings
 
 __all__ = [
     "MarkerMotion",
     "MarkerMotionSettings",
     "RebuiltMotion",
+    "ReconstructSettings",
     "ReconstructedMotion",
     "motion_from_markers",
     "reconstruct_motion",
