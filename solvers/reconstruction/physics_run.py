@@ -1,0 +1,112 @@
+"""Let a body follow its target through time, and notice when it does not."""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from types import ModuleType
+
+import numpy as np
+from numpy.typing import NDArray
+
+from .physics_control import Controller, drive
+from .physics_target import States, Target
+from .physics_world import World
+
+Array = NDArray[np.float64]
+LOST = 0.35
+"""Metres, for legs of 0.9 m: a body whose joints are on average farther off is lost."""
+
+
+@dataclass(frozen=True, eq=False)
+class Course:
+    """What a simulated body did.
+
+    Attributes
+    ----------
+    places : shape (n_frames, 3 + 4 n_joints)
+        In the coordinates of `States.places`.
+    contacts : bool, shape (n_frames, 2)
+        Whether the left and the right foot touch the ground.
+    help : shape (n_frames,)
+        Share of the outside help that was used.
+    lost : bool, shape (n_frames,)
+        Where the body had to be put back onto its target.
+    """
+
+    places: Array
+    contacts: NDArray[np.bool_]
+    help: Array
+    lost: NDArray[np.bool_]
+
+
+def follow(
+    engine: ModuleType,
+    world: World,
+    control: Controller,
+    target: Target,
+    n_steps: int,
+    *,
+    tell: Callable[[int], None],
+) -> Course:
+    """Simulate all frames; a body that is lost is put back onto its target and goes on.
+
+    `tell` is called with the number of each frame.
+    """
+    n_frames = target.n_frames
+    course = Course(
+        np.empty((n_frames, world.model.nq)),
+        np.zeros((n_frames, 2), dtype=np.bool_),
+        np.zeros(n_frames),
+        np.zeros(n_frames, dtype=np.bool_),
+    )
+    for frame in range(n_frames):
+        tell(frame)
+        states = target.between(frame, n_steps)
+        engine.mj_step1(world.model, world.data)
+        if frame == 0 or _is_lost(engine, world, states.places[0], control.size):
+            course.lost[frame] = frame > 0
+            _put(engine, world, states)
+        course.places[frame] = world.data.qpos
+        course.contacts[frame] = _feet_touch(world)
+        if frame < n_frames - 1:
+            course.help[frame] = np.mean(_steps(engine, world, control, states))
+    return course
+
+
+def _steps(engine: ModuleType, world: World, control: Controller, states: States) -> list[float]:
+    """Go from one frame to the next; return how much help each step used."""
+    used = []
+    for step, moment in enumerate(zip(*states, strict=True)):
+        if step:
+            engine.mj_step1(world.model, world.data)
+        used.append(drive(engine, world, control, States(*moment)))
+        engine.mj_step2(world.model, world.data)
+    return used
+
+
+def _is_lost(engine: ModuleType, world: World, wanted: Array, size: float) -> bool:
+    """Whether the engine gave up, or the body is far from where it should be."""
+    data = world.data
+    if any(warning.number for warning in data.warning) or not np.isfinite(data.qpos).all():
+        return True
+    world.ghost.qpos[:] = wanted
+    engine.mj_kinematics(world.model, world.ghost)
+    apart = data.xpos[world.bodies] - world.ghost.xpos[world.bodies]
+    return bool(np.linalg.norm(apart, axis=1).mean() > LOST * size)
+
+
+def _put(engine: ModuleType, world: World, states: States) -> None:
+    """Put the body onto its target, just so high that nothing is under the ground."""
+    model, data = world.model, world.data
+    engine.mj_resetData(model, data)
+    data.qpos[:], data.qvel[:] = states.places[0], states.velocities[0]
+    engine.mj_kinematics(model, data)
+    # A capsule reaches from its middle as far down as its axis leans, and its radius.
+    down = model.geom_size[:, 0] + model.geom_size[:, 1] * np.abs(data.geom_xmat[:, 8])
+    bottoms = (data.geom_xpos[:, 2] - down)[model.geom_contype > 0]
+    data.qpos[2] += max(0.0, world.ground - bottoms.min(initial=np.inf))
+    engine.mj_step1(model, data)
+
+
+def _feet_touch(world: World) -> NDArray[np.bool_]:
+    touching = [pair for contact in world.data.contact for pair in contact.geom]
+    return np.asarray(world.feet[touching].any(axis=0))

@@ -1,0 +1,74 @@
+"""How the skin of a body lies to the ground."""
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.ndimage import gaussian_filter1d, median_filter
+
+from ..motion import Motion, forward_kinematics
+from ..motion.rotations import rotate
+from .physics_body import PhysicsBody
+
+Array = NDArray[np.float64]
+SLOW = 1.0
+"""Seconds over which a body that is under the ground is raised with its target."""
+
+
+def bottoms(body: PhysicsBody, motion: Motion) -> tuple[Array, Array]:
+    """Return the lowest points of all capsules that touch the ground.
+
+    Returns
+    -------
+    points : shape (n_frames, n_capsules, 3), metres
+    joints : int, shape (n_capsules,)
+    """
+    poses = forward_kinematics(motion)
+    touching = [capsule for capsule in body.capsules if capsule.touches]
+    joints = np.array([capsule.joint for capsule in touching], dtype=np.intp)
+    ends = np.stack([capsule.ends for capsule in touching], axis=1)
+    radii = np.array([capsule.radius for capsule in touching])
+    points = [
+        poses.positions[:, joints] + rotate(poses.rotations[:, joints], end) for end in ends
+    ]
+    lower = np.where((points[0][..., 2] < points[1][..., 2])[..., None], *points)
+    lower[..., 2] -= radii
+    return lower, joints
+
+
+def penetration(body: PhysicsBody, motion: Motion, ground: float) -> Array:
+    """Return how deep the body is under the ground, shape (n_frames,), metres; 0 above."""
+    points, _ = bottoms(body, motion)
+    return np.maximum(0.0, ground - points[..., 2].min(axis=1))
+
+
+def raising(depths: Array, frame_rate: float) -> Array:
+    """Return how far a target must be raised that is under the ground for long, (n_frames,).
+
+    What is under it for a moment is for the legs to mend.
+    """
+    window = 2 * int(SLOW * frame_rate / 2) + 1
+    usual = median_filter(depths, size=min(window, 2 * len(depths) - 1), mode="nearest")
+    return np.asarray(gaussian_filter1d(usual, SLOW / 4 * frame_rate, mode="nearest"))
+
+
+def slide(body: PhysicsBody, motion: Motion, contacts: NDArray[np.bool_]) -> float:
+    """Return the way in metres that both feet cover over the ground while they touch it.
+
+    Of each foot, the point that was lowest counts.
+    """
+    points, joints = bottoms(body, motion)
+    total = 0.0
+    for column, side in enumerate(("left", "right")):
+        of_foot = [
+            place
+            for place, joint in enumerate(joints)
+            if body.roles.get(int(joint)) in {f"{side}Foot", f"{side}Toes"}
+        ]
+        if not of_foot:
+            continue
+        foot = points[:, of_foot]
+        lowest = foot[..., 2].argmin(axis=1)
+        frames = np.arange(len(foot) - 1)
+        steps = foot[frames + 1, lowest[:-1]] - foot[frames, lowest[:-1]]
+        standing = contacts[1:, column] & contacts[:-1, column]
+        total += float(np.linalg.norm(steps[standing, :2], axis=1).sum())
+    return total
