@@ -2,13 +2,14 @@
 
 from collections.abc import Mapping
 from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
-from ..motion import HumanoidMap, Skeleton, leg_length, t_pose_alignment
+from ..motion import HumanoidMap, Motion, Skeleton, leg_length, t_pose_alignment
 from ..motion.contacts import HUMAN_LEG
-from ..motion.rotations import rotate
+from ..motion.rotations import IDENTITY, angle_between, multiply, rotate
 from .physics_tables import (
     DENSITY,
     HUMAN_MASS,
@@ -28,8 +29,19 @@ LEGS = {side + part for side in ("left", "right") for part in ("UpperLeg", "Lowe
 LIGHTEST = 0.05
 """Kilograms of a joint that is no segment, for legs of 0.9 m."""
 
+STILL = 1e-3
+"""Radians: a joint that turns less, and plays no role, is part of the one above."""
+
 SHORT = 0.01
 """Metres, for legs of 0.9 m: a shorter segment is a ball."""
+
+
+class Frame(NamedTuple):
+    """Where a joint sits on the moving joint above it."""
+
+    above: int
+    place: Array
+    rotation: Array
 
 
 @dataclass(frozen=True, eq=False)
@@ -63,6 +75,8 @@ class PhysicsBody:
     joints : tuple of int
         Joints that move, each branch in one piece; the first is the base, which moves freely,
         and the others are ball joints.
+    frames : mapping of joint to the moving joint above, its place and its rotation there
+        Between two moving joints there may be others, which are held as they are.
     roles : mapping of joint to humanoid role
     capsules : tuple of Capsule
     size : float
@@ -73,29 +87,26 @@ class PhysicsBody:
 
     skeleton: Skeleton
     joints: tuple[int, ...]
+    frames: Mapping[int, Frame]
     roles: Mapping[int, str]
     capsules: tuple[Capsule, ...]
     size: float
     mass: float
     strengths: Array
 
-    def parent(self, joint: int) -> int:
-        """Return the moving joint above; -1 for the base, above which nothing is simulated."""
-        return -1 if joint == self.joints[0] else self.skeleton.parents[joint]
+def physics_body(motion: Motion, humanoid: HumanoidMap) -> PhysicsBody:
+    """Build the body that is simulated, of a motion without gaps.
 
-
-def physics_body(skeleton: Skeleton, humanoid: HumanoidMap) -> PhysicsBody:
-    """Build the body that is simulated.
-
-    Each joint of a role of `ROLES` begins a segment, and joints between two of them move too;
-    others, such as fingers, keep their rotations and weigh nothing. A skeleton without legs is
+    Each joint of a role of `ROLES` begins a segment, and joints between two of them move too if
+    they do in the take; others, such as fingers, keep their rotations and weigh nothing. A skeleton without legs is
     no human: there each bone is a segment, by whose length the mass is shared.
     """
+    skeleton = motion.skeleton
     joints = {role: j for role, j in humanoid.indices(skeleton).items() if role in ROLES}
     if not LEGS <= set(joints):
-        return _some_body(skeleton)
+        return _some_body(motion)
     size = leg_length(skeleton, humanoid) / HUMAN_LEG
-    moving = _moving(skeleton, set(joints.values()))
+    moving, frames = _moving(motion, set(joints.values()))
     roles = {joint: role for role, joint in joints.items()}
     masses = dict.fromkeys(moving, 0.0)
     for role in ROLES:
@@ -106,12 +117,13 @@ def physics_body(skeleton: Skeleton, humanoid: HumanoidMap) -> PhysicsBody:
     for joint in moving:
         end = _segment_end(skeleton, joint, roles.get(joint, ""), joints, size, up[joint])
         capsules.append(_capsule(joint, end, masses[joint], size))
-    return _body(skeleton, moving, roles, capsules, size)
+    return _body(skeleton, moving, frames, roles, capsules, size)
 
 
-def _some_body(skeleton: Skeleton) -> PhysicsBody:
+def _some_body(motion: Motion) -> PhysicsBody:
     """Build a body of any skeleton: bones as long as they are, and as heavy as a human's."""
-    moving = _moving(skeleton, {j for j in range(skeleton.n_joints) if skeleton.children[j]})
+    skeleton = motion.skeleton
+    moving, frames = _moving(motion, {j for j in range(skeleton.n_joints) if skeleton.children[j]})
     ends = [
         skeleton.offsets[list(skeleton.children[joint])].mean(axis=0)
         if skeleton.children[joint]
@@ -126,12 +138,13 @@ def _some_body(skeleton: Skeleton) -> PhysicsBody:
         _capsule(joint, end, mass, size)
         for joint, end, mass in zip(moving, ends, masses, strict=True)
     ]
-    return _body(skeleton, moving, {}, capsules, size)
+    return _body(skeleton, moving, frames, {}, capsules, size)
 
 
 def _body(
     skeleton: Skeleton,
     moving: tuple[int, ...],
+    frames: Mapping[int, Frame],
     roles: Mapping[int, str],
     capsules: list[Capsule],
     size: float,
@@ -142,23 +155,38 @@ def _body(
     ]
     mass = sum(capsule.mass for capsule in capsules)
     return PhysicsBody(
-        skeleton, moving, roles, tuple(capsules), size, mass, np.array(strengths)
+        skeleton, moving, frames, roles, tuple(capsules), size, mass, np.array(strengths)
     )
 
 
-def _moving(skeleton: Skeleton, joints: set[int]) -> tuple[int, ...]:
-    """Return these joints and those between them, base first, each branch in one piece."""
+def _moving(motion: Motion, joints: set[int]) -> tuple[tuple[int, ...], dict[int, Frame]]:
+    """Return the joints to simulate, base first and each branch in one piece, and their frames.
+
+    These are the given ones, the lowest joint above them all, and those between that move.
+    """
+    skeleton = motion.skeleton
     joints = joints or {0}
-    lines = [[joint, *skeleton.ancestors(joint)] for joint in joints]
-    shared = set(lines[0]).intersection(*lines)
-    base = max(shared)
-    inside = {joint for line in lines for joint in line if joint >= base} - (shared - {base})
-    order, waiting = [], [base]
+    lines = [{joint, *skeleton.ancestors(joint)} for joint in joints]
+    base = max(set.intersection(*lines))
+    between = {joint for line in lines for joint in line if joint > base}
+    order, frames, waiting = [], {}, [(base, Frame(-1, np.zeros(3), IDENTITY))]
     while waiting:
-        joint = waiting.pop()
-        order.append(joint)
-        waiting += [child for child in reversed(skeleton.children[joint]) if child in inside]
-    return tuple(order)
+        joint, frame = waiting.pop()
+        held = motion.rotations[0, joint]
+        is_still = angle_between(motion.rotations[:, joint], held).max() < STILL
+        if joint not in joints and joint != base and is_still:
+            place, rotation = frame.place, multiply(frame.rotation, held)
+            above = frame.above
+        else:
+            order.append(joint)
+            frames[joint] = frame
+            above, place, rotation = joint, np.zeros(3), IDENTITY
+        waiting += [
+            (child, Frame(above, place + rotate(rotation, skeleton.offsets[child]), rotation))
+            for child in reversed(skeleton.children[joint])
+            if child in between
+        ]
+    return tuple(order), frames
 
 
 def _segment_end(

@@ -15,10 +15,14 @@ BASE = slice(0, 6)
 LIFTING = 0.1
 """Metres per second, for legs of 0.9 m: a foot that is to rise faster bears no weight."""
 
+HARDEST, HARDEST_TURN = 1.0, 30.0
+"""Of the base: at most so much acceleration corrects an error, in g and in 1/s^2."""
+
 SWEEPS = 12
 RIDGE = 1e-3
 """Share by which a contact's force is held small, so that neighbours share the load."""
 
+HELPING_LEVER = 1.0
 LEVER = 0.3
 """Metres, for legs of 0.9 m: by it, torques on the base are weighed against forces."""
 
@@ -58,7 +62,7 @@ def controller(
         stiffness=omega**2,
         damping=2 * omega,
         force=support * weight,
-        torque=support * weight * LEVER * body.size,
+        torque=support * weight * HELPING_LEVER * body.size,
         strengths=body.strengths,
         friction=friction,
         size=body.size,
@@ -80,13 +84,12 @@ def drive(
     help. What the help cannot give, the base does not get: the body falls, or tips.
     """
     model, data = world.model, world.data
-    error = np.empty(model.nv)
+    error, slip = np.empty(model.nv), target.velocities - data.qvel
     engine.mj_differentiatePos(model, error, 1.0, data.qpos, target.places)
-    wanted = (
-        target.accelerations
-        + control.damping * (target.velocities - data.qvel)
-        + control.stiffness * error
-    )
+    correction = control.damping * slip + control.stiffness * error
+    correction[:3] = _at_most(correction[:3], HARDEST * GRAVITY)
+    correction[3:6] = _at_most(correction[3:6], HARDEST_TURN)
+    wanted = target.accelerations + correction
     inertia = np.empty((model.nv, model.nv))
     engine.mj_fullM(model, inertia, data.qM)
     contacts = _bearing_contacts(data, target.velocities, control)
@@ -144,7 +147,12 @@ def _in_cones(forces: Array, friction: float) -> Array:
     return np.column_stack([normal, threes[:, 1] * share, threes[:, 2] * share]).ravel()
 
 
+def _at_most(vector: Array, bound: float) -> Array:
+    """Return a vector no longer than `bound`."""
+    return vector * min(1.0, bound / max(float(np.linalg.norm(vector)), 1e-9))
+
+
 def _bounded_help(wanted: Array, control: Controller) -> Array:
-    force = min(1.0, control.force / max(float(np.linalg.norm(wanted[:3])), 1e-9))
-    torque = min(1.0, control.torque / max(float(np.linalg.norm(wanted[3:])), 1e-9))
-    return wanted * np.repeat([force, torque], 3)
+    return np.concatenate([
+        _at_most(wanted[:3], control.force), _at_most(wanted[3:], control.torque)
+    ])

@@ -43,6 +43,7 @@ def follow(
     world: World,
     control: Controller,
     target: Target,
+    grips: Array,
     n_steps: int,
     *,
     tell: Callable[[int], None],
@@ -61,6 +62,7 @@ def follow(
     for frame in range(n_frames):
         tell(frame)
         states = target.between(frame, n_steps)
+        _grip(world, control, grips[frame])
         engine.mj_step1(world.model, world.data)
         if frame == 0 or _is_lost(engine, world, states.places[0], control.size):
             course.lost[frame] = frame > 0
@@ -105,6 +107,12 @@ def _put(engine: ModuleType, world: World, states: States) -> None:
     bottoms = (data.geom_xpos[:, 2] - down)[model.geom_contype > 0]
     data.qpos[2] += max(0.0, world.ground - bottoms.min(initial=np.inf))
     engine.mj_step1(model, data)
+
+
+def _grip(world: World, control: Controller, grips: Array) -> None:
+    """Let each foot hold the ground as firmly as its target does."""
+    for foot, grip in zip(world.feet.T, grips, strict=True):
+        world.model.geom_friction[foot, 0] = max(control.friction * grip, 1e-5)
 
 
 def _feet_touch(world: World) -> NDArray[np.bool_]:

@@ -50,25 +50,27 @@ def raising(depths: Array, frame_rate: float) -> Array:
     return np.asarray(gaussian_filter1d(usual, SLOW / 4 * frame_rate, mode="nearest"))
 
 
-def slide(body: PhysicsBody, motion: Motion, contacts: NDArray[np.bool_]) -> float:
-    """Return the way in metres that both feet cover over the ground while they touch it.
+def sole_speeds(body: PhysicsBody, motion: Motion) -> Array:
+    """Return how fast each foot moves over the ground, shape (n_frames, 2), m/s.
 
-    Of each foot, the point that was lowest counts.
+    Of a foot that rolls, only what all its points share counts: the speed of the slowest.
     """
     points, joints = bottoms(body, motion)
-    total = 0.0
+    speeds = np.zeros((motion.n_frames, 2))
     for column, side in enumerate(("left", "right")):
         of_foot = [
             place
             for place, joint in enumerate(joints)
             if body.roles.get(int(joint)) in {f"{side}Foot", f"{side}Toes"}
         ]
-        if not of_foot:
-            continue
-        foot = points[:, of_foot]
-        lowest = foot[..., 2].argmin(axis=1)
-        frames = np.arange(len(foot) - 1)
-        steps = foot[frames + 1, lowest[:-1]] - foot[frames, lowest[:-1]]
-        standing = contacts[1:, column] & contacts[:-1, column]
-        total += float(np.linalg.norm(steps[standing, :2], axis=1).sum())
-    return total
+        if of_foot and motion.n_frames > 1:
+            steps = np.linalg.norm(np.diff(points[:, of_foot, :2], axis=0), axis=-1)
+            speeds[1:, column] = steps.min(axis=1) * motion.frame_rate
+            speeds[0, column] = speeds[1, column]
+    return speeds
+
+
+def slide(body: PhysicsBody, motion: Motion, contacts: NDArray[np.bool_]) -> float:
+    """Return the way in metres that both feet cover over the ground while they touch it."""
+    standing = contacts[1:] & contacts[:-1]
+    return float(sole_speeds(body, motion)[1:][standing].sum() / motion.frame_rate)

@@ -28,7 +28,7 @@ STRENGTHS = {
 }  # fmt: skip
 """Newton metres that a strong adult's joint gives at most."""
 
-OTHER_STRENGTH = 200.0
+OTHER_STRENGTH = 300.0
 """Newton metres of a joint without a role."""
 
 LENGTHS = {"head": 0.2, "Hand": 0.16, "Toes": 0.06, "Foot": 0.15}

@@ -9,7 +9,7 @@ from scipy.ndimage import gaussian_filter1d
 
 from ..errors import InvalidMotionError
 from ..motion import Motion
-from ..motion.rotations import IDENTITY, multiply, inverse, slerp, unroll
+from ..motion.rotations import IDENTITY, inverse, multiply, normalize, slerp, unroll
 
 Array = NDArray[np.float64]
 SPLINE_VARIANCE = 1.0 / 3.0
@@ -48,6 +48,12 @@ class Target:
     def n_frames(self) -> int:
         """Number of frames."""
         return len(self.controls) - 2
+
+    def at_frames(self) -> Array:
+        """Return the places at all frames, as in `States.places`."""
+        value = (self.controls[:-2] + 4 * self.controls[1:-1] + self.controls[2:]) / 6
+        turns = normalize(value[:, 3:].reshape(len(value), -1, 4))
+        return np.hstack([value[:, :3], turns.reshape(len(value), -1)])
 
     def between(self, frame: int, n_steps: int) -> States:
         """Return the states at `frame` and at the further steps before the next frame."""

@@ -12,8 +12,7 @@ GRAVITY = 9.81
 SOFTNESS = 0.02
 """Seconds in which the ground pushes out what sinks into it."""
 
-JOINT_INERTIA = 0.005
-"""Kilograms times square metres that each joint has of its own, for legs of 0.9 m."""
+ROTOR = 0.002
 
 
 class World(NamedTuple):
@@ -34,17 +33,16 @@ def build_world(
     engine: ModuleType, body: PhysicsBody, ground: float, friction: float, timestep: float
 ) -> World:
     """Build the model: ball joints, capsules that meet the ground but not each other."""
-    scale = body.size
     lines = [
         "<mujoco><compiler angle='radian' autolimits='false' boundmass='1e-9'"
         " boundinertia='1e-12'/>",
         f"<option timestep='{timestep!r}' integrator='implicitfast' cone='elliptic'"
         f" jacobian='dense' impratio='10' iterations='50' gravity='0 0 {-GRAVITY}'>"
         "<flag autoreset='disable'/></option>",
-        f"<default><geom condim='3' friction='{max(friction, 1e-5)!r} 0.005 0.0001'"
-        f" solref='{max(SOFTNESS, 2 * timestep)!r} 1'/>"
-        f"<joint type='ball' armature='{JOINT_INERTIA * scale**5!r}'/></default>",
-        f"<worldbody><geom type='plane' size='0 0 1' pos='0 0 {ground!r}' contype='0'"
+        f"<default><geom condim='3' priority='1' friction='{max(friction, 1e-5)!r} 0.005 0.0001'"
+        f" solref='{max(SOFTNESS, 2 * timestep)!r} 1' solimp='0.95 0.995 0.002 0.5 2'/>"
+        "<joint type='ball'/></default>",
+        f"<worldbody><geom type='plane' size='0 0 1' priority='0' pos='0 0 {ground!r}' contype='0'"
         " conaffinity='1'/>",
         _nested(body, body.joints[0]),
         "</worldbody></mujoco>",
@@ -58,16 +56,22 @@ def build_world(
 def _nested(body: PhysicsBody, joint: int) -> str:
     """Return the element of a joint's body with all that hang on it."""
     is_base = joint == body.joints[0]
-    place = "0 0 0" if is_base else _words(body.skeleton.offsets[joint])
+    frame = body.frames[joint]
     capsules = [capsule for capsule in body.capsules if capsule.joint == joint]
-    below = [other for other in body.joints if body.parent(other) == joint]
+    below = [other for other in body.joints if body.frames[other].above == joint]
     return "".join([
-        f"<body name='joint{joint}' pos='{place}'>",
-        "<freejoint/>" if is_base else "<joint/>",
+        f"<body name='joint{joint}' pos='{_words(frame.place)}'"
+        f" quat='{_words(frame.rotation)}'>",
+        "<freejoint/>" if is_base else _ball(body, joint),
         *(_geometry(capsule) for capsule in capsules),
         *(_nested(body, other) for other in below),
         "</body>",
     ])
+
+
+def _ball(body: PhysicsBody, joint: int) -> str:
+    strength = float(body.strengths[body.joints.index(joint) - 1])
+    return f"<joint armature='{ROTOR * strength!r}'/>"
 
 
 def _geometry(capsule: Capsule) -> str:

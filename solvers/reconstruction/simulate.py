@@ -17,7 +17,7 @@ from .physics_control import controller
 from .physics_engine import load_engine
 from .physics_feet import find_ground, with_soles
 from .physics_run import Course, follow
-from .physics_surface import penetration, raising, slide
+from .physics_surface import penetration, raising, slide, sole_speeds
 from .physics_target import calmed_target, filled
 from .physics_world import build_world
 
@@ -133,7 +133,7 @@ def simulate(
     engine = load_engine()
     humanoid = humanoid_map or find_humanoid_map(motion.skeleton)
     whole = filled(motion)
-    body = physics_body(motion.skeleton, humanoid)
+    body = physics_body(whole, humanoid)
     ground = settings.ground_height
     if settings.ground is Ground.FEET:
         ground = find_ground(whole, humanoid, body.size)
@@ -142,11 +142,12 @@ def simulate(
     places, rotations = _base_first(body, whole)
     places[:, 2] += raised
     target = calmed_target(places, rotations, motion.frame_rate, settings.smoothing)
+    grips = grips_of(sole_speeds(body, _as_motion(body, whole, target.at_frames())), body.size)
     n_steps = int(np.ceil(motion.dt / LONGEST_STEP))
-    world = build_world(engine, body, ground, settings.friction, motion.dt / n_steps)
     control = controller(body, settings.response, settings.support, settings.friction)
-    course = follow(engine, world, control, target, n_steps, tell=lambda frame: progress(frame / motion.n_frames, "Simulating"))
-    result = _as_motion(body, whole, course)
+    world = build_world(engine, body, ground, settings.friction, motion.dt / n_steps)
+    course = follow(engine, world, control, target, grips, n_steps, tell=lambda frame: progress(frame / motion.n_frames, "Simulating"))
+    result = _as_motion(body, whole, course.places)
     return result, course, body, ground
 
 
@@ -158,15 +159,19 @@ def _base_first(body, motion):
     return poses.positions[:, base].copy(), rotations
 
 
-def _as_motion(body, motion, course):
+def grips_of(speeds, size):
+    return np.clip((0.8 - speeds/size)/0.5, 0.05, 1.0)
+
+
+def _as_motion(body, motion, places):
     base = body.joints[0]
     n = motion.n_frames
-    turns = course.places[:, 3:].reshape(n, -1, 4)
+    turns = places[:, 3:].reshape(n, -1, 4)
     rotations = motion.rotations.copy()
     rotations[:, list(body.joints)] = turns
     if base:
         above = forward_kinematics(motion).rotations[:, motion.skeleton.parents[base]]
         rotations[:, base] = multiply(inverse(above), turns[:, 0])
     result = motion.with_poses(rotations)
-    shift = course.places[:, :3] - forward_kinematics(result).positions[:, base]
+    shift = places[:, :3] - forward_kinematics(result).positions[:, base]
     return result.with_poses(root_positions=result.root_positions + shift)
