@@ -7,6 +7,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from ..errors import InvalidMotionError
 from ..motion import HumanoidMap, Motion, Skeleton, leg_length, t_pose_alignment
 from ..motion.contacts import HUMAN_LEG
 from ..motion.rotations import IDENTITY, angle_between, multiply, rotate
@@ -31,6 +32,12 @@ LIGHTEST = 0.05
 
 STILL = 1e-3
 """Radians: a joint that turns less, and plays no role, is part of the one above."""
+
+SMALLEST, LARGEST = 0.05, 20.0
+"""Of a body, as a length of leg over 0.9 m."""
+
+SLOWEST = 5.0
+"""Hertz."""
 
 SHORT = 0.01
 """Metres, for legs of 0.9 m: a shorter segment is a ball."""
@@ -94,16 +101,18 @@ class PhysicsBody:
     mass: float
     strengths: Array
 
+
 def physics_body(motion: Motion, humanoid: HumanoidMap) -> PhysicsBody:
     """Build the body that is simulated, of a motion without gaps.
 
     Each joint of a role of `ROLES` begins a segment, and joints between two of them move too if
-    they do in the take; others, such as fingers, keep their rotations and weigh nothing. A skeleton without legs is
-    no human: there each bone is a segment, by whose length the mass is shared.
+    they do in the take; others, such as fingers, keep their rotations and weigh nothing. A
+    skeleton without legs is no human: there each bone is a segment, by whose length the mass is
+    shared.
     """
     skeleton = motion.skeleton
     joints = {role: j for role, j in humanoid.indices(skeleton).items() if role in ROLES}
-    if not LEGS <= set(joints):
+    if not set(joints) >= LEGS:
         return _some_body(motion)
     size = leg_length(skeleton, humanoid) / HUMAN_LEG
     moving, frames = _moving(motion, set(joints.values()))
@@ -120,10 +129,32 @@ def physics_body(motion: Motion, humanoid: HumanoidMap) -> PhysicsBody:
     return _body(skeleton, moving, frames, roles, capsules, size)
 
 
+def check_size(body: PhysicsBody, frame_rate: float) -> None:
+    """Refuse what gravity has no meaning for.
+
+    Raises
+    ------
+    InvalidMotionError
+        The body is a giant or an ant, or so slowly sampled that nothing tells how it moved.
+    """
+    leg = HUMAN_LEG * body.size
+    if not SMALLEST <= body.size <= LARGEST:
+        raise InvalidMotionError(
+            f"A leg of {leg:.3g} m is no size for physics; give the scale of the recording."
+        )
+    if frame_rate < SLOWEST:
+        raise InvalidMotionError(
+            f"At {frame_rate:g} frames a second nothing tells how the body moved in between;"
+            f" physics needs at least {SLOWEST:g}."
+        )
+
+
 def _some_body(motion: Motion) -> PhysicsBody:
     """Build a body of any skeleton: bones as long as they are, and as heavy as a human's."""
     skeleton = motion.skeleton
-    moving, frames = _moving(motion, {j for j in range(skeleton.n_joints) if skeleton.children[j]})
+    moving, frames = _moving(
+        motion, {j for j in range(skeleton.n_joints) if skeleton.children[j]}
+    )
     ends = [
         skeleton.offsets[list(skeleton.children[joint])].mean(axis=0)
         if skeleton.children[joint]

@@ -36,6 +36,7 @@ class Controller:
     stiffness, damping : float
         Acceleration per error (1/s^2) and per error of velocity (1/s): critically damped, and
         the same for all joints, for the mass that each moves is reckoned with.
+    weight : float, newtons
     force, torque : float, newtons and newton metres
         At most so much helps the base from outside.
     strengths : shape (n_joints - 1,), newton metres
@@ -45,6 +46,7 @@ class Controller:
 
     stiffness: float
     damping: float
+    weight: float
     force: float
     torque: float
     strengths: Array
@@ -61,6 +63,7 @@ def controller(
     return Controller(
         stiffness=omega**2,
         damping=2 * omega,
+        weight=weight,
         force=support * weight,
         torque=support * weight * HELPING_LEVER * body.size,
         strengths=body.strengths,
@@ -75,7 +78,7 @@ def drive(
     control: Controller,
     target: States,
 ) -> float:
-    """Set the forces of one step; return the share of the outside help that is used.
+    """Set the forces of one step; return that from outside as a share of the weight.
 
     The wanted acceleration follows equations 16 and 17 of [SHJT13], each error times a gain,
     and that of the target itself. Where the paper pulls every part of the body by an outside
@@ -98,15 +101,13 @@ def drive(
     from_ground = contacts.T @ pushes
     help_ = _bounded_help(on_base - from_ground[BASE], control)
     given = help_ + from_ground[BASE] - data.qfrc_bias[BASE]
-    wanted[BASE] = np.linalg.solve(
-        inertia[BASE, BASE], given - inertia[BASE, 6:] @ wanted[6:]
-    )
+    wanted[BASE] = np.linalg.solve(inertia[BASE, BASE], given - inertia[BASE, 6:] @ wanted[6:])
     torques = (inertia @ wanted + data.qfrc_bias - from_ground)[6:].reshape(-1, 3)
     norms = np.linalg.norm(torques, axis=1)
     torques *= np.minimum(1.0, control.strengths / np.maximum(norms, 1e-9))[:, None]
     data.qfrc_applied[BASE] = help_
     data.qfrc_applied[6:] = torques.ravel()
-    return float(np.linalg.norm(help_[:3]) / max(control.force, 1e-9))
+    return float(np.linalg.norm(help_[:3]) / control.weight)
 
 
 def _bearing_contacts(data: object, velocities: Array, control: Controller) -> Array:
@@ -154,5 +155,6 @@ def _at_most(vector: Array, bound: float) -> Array:
 
 def _bounded_help(wanted: Array, control: Controller) -> Array:
     return np.concatenate([
-        _at_most(wanted[:3], control.force), _at_most(wanted[3:], control.torque)
+        _at_most(wanted[:3], control.force),
+        _at_most(wanted[3:], control.torque),
     ])

@@ -165,4 +165,5 @@ def _standing(heights: Array, standing: NDArray[np.bool_]) -> float:
 
 def _median(heights: Array, standing: NDArray[np.bool_]) -> Array:
     """Return the height of each joint below which a standing foot is flat."""
-    return np.median(heights[standing], axis=0) if standing.any() else heights.min(axis=0)
+    chosen = heights[standing]
+    return np.asarray(np.median(chosen, axis=0) if len(chosen) else heights.min(axis=0))

@@ -15,6 +15,9 @@ Array = NDArray[np.float64]
 LOST = 0.35
 """Metres, for legs of 0.9 m: a body whose joints are on average farther off is lost."""
 
+STRAYING = 0.15
+"""Metres, for legs of 0.9 m: from here on, a body that is lost in the end was so before."""
+
 
 @dataclass(frozen=True, eq=False)
 class Course:
@@ -26,16 +29,19 @@ class Course:
         In the coordinates of `States.places`.
     contacts : bool, shape (n_frames, 2)
         Whether the left and the right foot touch the ground.
-    help : shape (n_frames,)
-        Share of the outside help that was used.
-    lost : bool, shape (n_frames,)
-        Where the body had to be put back onto its target.
+    support : shape (n_frames,)
+        Force from outside, as a share of the weight.
+    followed : bool, shape (n_frames,)
+        Where the body was near its target.
+    n_lost : int
+        How often it had to be put back there.
     """
 
     places: Array
     contacts: NDArray[np.bool_]
-    help: Array
-    lost: NDArray[np.bool_]
+    support: Array
+    followed: NDArray[np.bool_]
+    n_lost: int
 
 
 def follow(
@@ -53,28 +59,42 @@ def follow(
     `tell` is called with the number of each frame.
     """
     n_frames = target.n_frames
-    course = Course(
-        np.empty((n_frames, world.model.nq)),
-        np.zeros((n_frames, 2), dtype=np.bool_),
-        np.zeros(n_frames),
-        np.zeros(n_frames, dtype=np.bool_),
-    )
+    places = np.empty((n_frames, world.model.nq))
+    contacts = np.zeros((n_frames, 2), dtype=np.bool_)
+    support, apart, lost = np.zeros(n_frames), np.zeros(n_frames), []
     for frame in range(n_frames):
         tell(frame)
         states = target.between(frame, n_steps)
         _grip(world, control, grips[frame])
         engine.mj_step1(world.model, world.data)
-        if frame == 0 or _is_lost(engine, world, states.places[0], control.size):
-            course.lost[frame] = frame > 0
+        apart[frame] = _apart(engine, world, states.places[0])
+        if frame == 0 or not apart[frame] <= LOST * control.size:
             _put(engine, world, states)
-        course.places[frame] = world.data.qpos
-        course.contacts[frame] = _feet_touch(world)
+            lost += [frame] if frame else []
+        places[frame] = world.data.qpos
+        contacts[frame] = _feet_touch(world)
         if frame < n_frames - 1:
-            course.help[frame] = np.mean(_steps(engine, world, control, states))
-    return course
+            support[frame] = np.mean(_steps(engine, world, control, states))
+    followed = _followed(apart, lost, STRAYING * control.size)
+    return Course(places, contacts, support, followed, len(lost))
 
 
-def _steps(engine: ModuleType, world: World, control: Controller, states: States) -> list[float]:
+def _followed(apart: Array, lost: list[int], near: float) -> NDArray[np.bool_]:
+    """Return False for the frames in which the body was lost, and for those just before in
+    which it strayed.
+    """
+    followed = np.ones(len(apart), dtype=np.bool_)
+    for frame in lost:
+        followed[frame] = False
+        while frame > 0 and not apart[frame - 1] <= near:
+            frame -= 1
+            followed[frame] = False
+    return followed
+
+
+def _steps(
+    engine: ModuleType, world: World, control: Controller, states: States
+) -> list[float]:
     """Go from one frame to the next; return how much help each step used."""
     used = []
     for step, moment in enumerate(zip(*states, strict=True)):
@@ -85,15 +105,17 @@ def _steps(engine: ModuleType, world: World, control: Controller, states: States
     return used
 
 
-def _is_lost(engine: ModuleType, world: World, wanted: Array, size: float) -> bool:
-    """Whether the engine gave up, or the body is far from where it should be."""
+def _apart(engine: ModuleType, world: World, wanted: Array) -> float:
+    """Return how far joints are on average from where they should be; infinite where the
+    engine gave up.
+    """
     data = world.data
     if any(warning.number for warning in data.warning) or not np.isfinite(data.qpos).all():
-        return True
+        return np.inf
     world.ghost.qpos[:] = wanted
     engine.mj_kinematics(world.model, world.ghost)
     apart = data.xpos[world.bodies] - world.ghost.xpos[world.bodies]
-    return bool(np.linalg.norm(apart, axis=1).mean() > LOST * size)
+    return float(np.linalg.norm(apart, axis=1).mean())
 
 
 def _put(engine: ModuleType, world: World, states: States) -> None:

@@ -13,7 +13,7 @@ SLOW = 1.0
 """Seconds over which a body that is under the ground is raised with its target."""
 
 
-def bottoms(body: PhysicsBody, motion: Motion) -> tuple[Array, Array]:
+def bottoms(body: PhysicsBody, motion: Motion) -> tuple[Array, NDArray[np.intp]]:
     """Return the lowest points of all capsules that touch the ground.
 
     Returns
@@ -26,10 +26,10 @@ def bottoms(body: PhysicsBody, motion: Motion) -> tuple[Array, Array]:
     joints = np.array([capsule.joint for capsule in touching], dtype=np.intp)
     ends = np.stack([capsule.ends for capsule in touching], axis=1)
     radii = np.array([capsule.radius for capsule in touching])
-    points = [
+    one, other = (
         poses.positions[:, joints] + rotate(poses.rotations[:, joints], end) for end in ends
-    ]
-    lower = np.where((points[0][..., 2] < points[1][..., 2])[..., None], *points)
+    )
+    lower = np.where(one[..., 2:] < other[..., 2:], one, other)
     lower[..., 2] -= radii
     return lower, joints
 
@@ -37,7 +37,7 @@ def bottoms(body: PhysicsBody, motion: Motion) -> tuple[Array, Array]:
 def penetration(body: PhysicsBody, motion: Motion, ground: float) -> Array:
     """Return how deep the body is under the ground, shape (n_frames,), metres; 0 above."""
     points, _ = bottoms(body, motion)
-    return np.maximum(0.0, ground - points[..., 2].min(axis=1))
+    return np.asarray(np.maximum(0.0, ground - points[..., 2].min(axis=1)))
 
 
 def raising(depths: Array, frame_rate: float) -> Array:

@@ -22,9 +22,9 @@ MASS_SHARES = {
 shoulders, his head among head and neck, his foot among foot and toes."""
 
 STRENGTHS = {
-    "spine": 300.0, "chest": 300.0, "upperChest": 250.0, "neck": 60.0, "head": 40.0,
+    "spine": 450.0, "chest": 400.0, "upperChest": 350.0, "neck": 80.0, "head": 50.0,
     "Shoulder": 150.0, "UpperArm": 120.0, "LowerArm": 80.0, "Hand": 20.0,
-    "UpperLeg": 300.0, "LowerLeg": 250.0, "Foot": 200.0, "Toes": 60.0,
+    "UpperLeg": 450.0, "LowerLeg": 400.0, "Foot": 300.0, "Toes": 90.0,
 }  # fmt: skip
 """Newton metres that a strong adult's joint gives at most."""
 

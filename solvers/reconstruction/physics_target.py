@@ -1,5 +1,6 @@
 """What a simulated body is to follow: the take without gaps, calmed, as a smooth curve."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import NamedTuple
 
@@ -61,10 +62,10 @@ class Target:
         near = self.controls[frame : frame + 4]
         if len(near) < 4:
             near = np.concatenate([near, near[-1:]])
-        value = np.hstack([(1 - u) ** 3, 3 * u**3 - 6 * u**2 + 4, -3 * u**3 + 3 * u**2 + 3 * u + 1,
-                           u**3]) / 6  # fmt: skip
-        slope = np.hstack([-((1 - u) ** 2), 3 * u**2 - 4 * u, -3 * u**2 + 2 * u + 1, u**2]) / 2
-        bend = np.hstack([1 - u, 3 * u - 2, 1 - 3 * u, u])
+        v = 1 - u
+        value = np.hstack([v**3, 4 - 6 * u**2 + 3 * u**3, 4 - 6 * v**2 + 3 * v**3, u**3]) / 6
+        slope = np.hstack([-(v**2), 3 * u**2 - 4 * u, 4 * v - 3 * v**2, u**2]) / 2
+        bend = np.hstack([v, 3 * u - 2, 3 * v - 2, u])
         return _states(value @ near, slope @ near / self.dt, bend @ near / self.dt**2)
 
 
@@ -86,7 +87,9 @@ def _states(value: Array, slope: Array, bend: Array) -> States:
     )
 
 
-def calmed_target(places: Array, rotations: Array, frame_rate: float, smoothing: float) -> Target:
+def calmed_target(
+    places: Array, rotations: Array, frame_rate: float, smoothing: float
+) -> Target:
     """Return the curve of base and joints, calmed by a Gaussian of `smoothing` seconds in all.
 
     Parameters
@@ -110,6 +113,22 @@ def calmed_target(places: Array, rotations: Array, frame_rate: float, smoothing:
         return Target(np.repeat(calm, 3, axis=0), 1.0 / frame_rate)
     first, last = 2 * calm[:1] - calm[1:2], 2 * calm[-1:] - calm[-2:-1]
     return Target(np.concatenate([first, calm, last]), 1.0 / frame_rate)
+
+
+def blended(motion: Motion, other: Motion, joints: Sequence[int], share: Array) -> Motion:
+    """Return the motion gone by a share of each frame, 0 to 1, towards another.
+
+    Only the root's place and the rotations of these joints differ; a share of 1 gives the
+    other's bits, and one of 0 those of the motion.
+    """
+    rotations = motion.rotations.copy()
+    near, far = rotations[:, list(joints)], other.rotations[:, list(joints)]
+    turned = slerp(near, far, np.broadcast_to(share[:, None], near.shape[:2]))
+    turned = np.where(share[:, None, None] == 0.0, near, turned)
+    rotations[:, list(joints)] = np.where(share[:, None, None] == 1.0, far, turned)
+    weight = share[:, None]
+    roots = (1 - weight) * motion.root_positions + weight * other.root_positions
+    return motion.with_poses(rotations, roots)
 
 
 def filled(motion: Motion) -> Motion:

@@ -12,7 +12,12 @@ GRAVITY = 9.81
 SOFTNESS = 0.02
 """Seconds in which the ground pushes out what sinks into it."""
 
-ROTOR = 0.002
+HARDNESS = "0.95 0.995 0.002 0.5 2"
+"""The engine's `solimp`: a foot is light, and what its leg pushes with must not sink it."""
+
+ROTOR = 0.0014
+"""Seconds squared: by it and its strength, a joint has inertia of its own, as a geared motor
+has. Without it, feet are so light that a small error of the ground's force would turn them."""
 
 
 class World(NamedTuple):
@@ -33,17 +38,17 @@ def build_world(
     engine: ModuleType, body: PhysicsBody, ground: float, friction: float, timestep: float
 ) -> World:
     """Build the model: ball joints, capsules that meet the ground but not each other."""
+    rub, softness = max(friction, 1e-5), max(SOFTNESS, 2 * timestep)
     lines = [
         "<mujoco><compiler angle='radian' autolimits='false' boundmass='1e-9'"
         " boundinertia='1e-12'/>",
         f"<option timestep='{timestep!r}' integrator='implicitfast' cone='elliptic'"
         f" jacobian='dense' impratio='10' iterations='50' gravity='0 0 {-GRAVITY}'>"
         "<flag autoreset='disable'/></option>",
-        f"<default><geom condim='3' priority='1' friction='{max(friction, 1e-5)!r} 0.005 0.0001'"
-        f" solref='{max(SOFTNESS, 2 * timestep)!r} 1' solimp='0.95 0.995 0.002 0.5 2'/>"
-        "<joint type='ball'/></default>",
-        f"<worldbody><geom type='plane' size='0 0 1' priority='0' pos='0 0 {ground!r}' contype='0'"
-        " conaffinity='1'/>",
+        f"<default><geom condim='3' priority='1' friction='{rub!r} 0.005 0.0001'"
+        f" solref='{softness!r} 1' solimp='{HARDNESS}'/><joint type='ball'/></default>",
+        f"<worldbody><geom type='plane' size='0 0 1' priority='0' pos='0 0 {ground!r}'"
+        " contype='0' conaffinity='1'/>",
         _nested(body, body.joints[0]),
         "</worldbody></mujoco>",
     ]

@@ -2,44 +2,28 @@
 
 from dataclasses import dataclass
 from enum import Enum
-from types import ModuleType
 
 import numpy as np
 from numpy.typing import NDArray
 
-from ..errors import InvalidMotionError
-from ..motion import HumanoidMap, Motion, find_humanoid_map, forward_kinematics
-from ..motion.rotations import inverse, multiply, rotate, slerp
+from ..motion import HumanoidMap, Motion, find_humanoid_map
 from ..progress import Progress, unwatched, within
 from ..settings import Settings, setting
-from .physics_body import PhysicsBody, physics_body
-from .physics_control import controller
+from .physics_body import PhysicsBody, check_size, physics_body
 from .physics_engine import load_engine
 from .physics_feet import find_ground, with_soles
-from .physics_run import Course, follow
-from .physics_surface import penetration, raising, slide, sole_speeds
-from .physics_target import calmed_target, filled
-from .physics_world import build_world
+from .physics_figures import mean_distance, told
+from .physics_piece import Piece, find_pieces, simulated_piece
+from .physics_surface import penetration, slide
+from .physics_target import blended, filled
 
 Array = NDArray[np.float64]
 Flags = NDArray[np.bool_]
-LONGEST_STEP = 1.0 / 239.0
-"""Seconds. 30, 60 and 120 frames a second are then simulated in the same steps, 1/240 s."""
-
-SLOWEST = 5.0
-"""Hertz, of a take that tells how its body moved."""
-
-SMALLEST, LARGEST = 0.05, 20.0
-"""Of a body, by the length of its legs over 0.9 m: others have a wrong unit."""
-
 EASE = 0.3
-"""Seconds in which the result eases to the input where it could not be followed."""
-
-JUMP, FASTEST = 0.3, 12.0
-"""Metres, and metres per second: who goes farther from frame to frame is in another place."""
+"""Seconds in which the result eases to the input where the body could not follow it."""
 
 TOO_OFTEN = 1.0
-"""Seconds of take for each time that the body may be lost."""
+"""Seconds of a take for each time that its body may be lost before all is given up."""
 
 
 class Ground(Enum):
@@ -51,7 +35,7 @@ class Ground(Enum):
 
 @dataclass(frozen=True, kw_only=True)
 class SimulateSettings(Settings):
-    """How a motion is simulated. Lengths and times are for any size of body."""
+    """How a motion is simulated."""
 
     strength: float = setting(
         1.0, "How much of the simulation the result takes over; 0 leaves the take as it is",
@@ -96,24 +80,24 @@ class Simulated:
         Where the body could follow; elsewhere the motion is the input's.
     contacts : bool, shape (n_frames, 2), left and right
         Where the simulated feet touch the ground.
-    help : float array, shape (n_frames,)
-        Share, 0 to 1, of the outside support that was used.
+    support : float array, shape (n_frames,)
+        Force from outside that kept the body up, as a share of its weight.
     ground : float, metres
         Height of the ground.
     penetration_before, penetration_after : float, metres
         How deep the body is under the ground where it is deepest.
     slide_before, slide_after : float, metres
-        Way of both feet over the ground during `contacts`.
+        Way that both feet cover over the ground during `contacts`.
     distance : float, metres
-        Mean distance of the simulated joints from where they were captured.
+        Mean distance of the result's joints from where they were captured.
     message : str
-        What there is to say, in a sentence or two.
+        What there is to say about it, in a sentence or two.
     """
 
     motion: Motion
     followed: Flags
     contacts: Flags
-    help: Array
+    support: Array
     ground: float
     penetration_before: float
     penetration_after: float
@@ -130,48 +114,125 @@ def simulate(
     settings: SimulateSettings = SimulateSettings(),
     progress: Progress = unwatched,
 ) -> Simulated:
+    """Return the motion that a body with mass and muscles makes when it tries to follow.
+
+    The skeleton becomes a body of capsules with a human's masses [2]_ on level ground, under
+    gravity, in the engine MuJoCo; its joints are pulled towards the captured rotations by
+    bounded proportional-derivative control, equations 16 and 17 of [1]_. So segments keep
+    their lengths, nothing sinks into the ground, feet that stand are held by friction, and
+    nothing moves faster than muscles can make it.
+
+    Where it departs from the paper: there, an outside force pulls every part of the body to its
+    target. Here joints turn by torques of their own, reckoned by inverse dynamics, and only the
+    hips are helped from outside, by `support` times the weight at most; the rest must come from
+    the ground. There, the body lags behind its target; here the target is calmed over time in
+    both directions first, and its acceleration is known, so that it does not. A foot whose
+    target swings low slips over the ground instead of tripping.
+
+    Parameters
+    ----------
+    motion : Motion
+        Gaps are bridged first.
+    humanoid_map : HumanoidMap
+        Says which joints are which segments; found by name and structure where it is not given.
+        A skeleton without legs is simulated bone by bone.
+    settings : SimulateSettings
+    progress : Progress
+
+    Returns
+    -------
+    Simulated
+        Where the body is lost, for the engine gives up or it is far off its target, it is put
+        back there, and the result eases to the input and back. If that happens too often, the
+        motion is the input, bit for bit; so it is at strength 0. Joints that are not simulated,
+        such as fingers, are left as they are. The same input gives the same bits.
+
+    Raises
+    ------
+    InvalidMotionError
+        The root is never observed, or the body's size or the frame rate are not plausible.
+    NoPhysicsError
+        The engine is not installed.
+    SolveCancelled
+        Raised by `progress`.
+
+    References
+    ----------
+    .. [1] Shum, Ho, Jiang, Takagi (2013). Real-time posture reconstruction for Microsoft
+       Kinect, section VII. IEEE Transactions on Cybernetics 43(5).
+    .. [2] De Leva (1996). Adjustments to Zatsiorsky-Seluyanov's segment inertia parameters.
+       Journal of Biomechanics 29(9). doi:10.1016/0021-9290(95)00178-6
+    """
     engine = load_engine()
     humanoid = humanoid_map or find_humanoid_map(motion.skeleton)
     whole = filled(motion)
-    body = physics_body(whole, humanoid)
-    ground = settings.ground_height
-    if settings.ground is Ground.FEET:
-        ground = find_ground(whole, humanoid, body.size)
-    body = with_soles(body, whole, humanoid, ground)
-    raised = raising(penetration(body, whole, ground), motion.frame_rate)
-    places, rotations = _base_first(body, whole)
-    places[:, 2] += raised
-    target = calmed_target(places, rotations, motion.frame_rate, settings.smoothing)
-    grips = grips_of(sole_speeds(body, _as_motion(body, whole, target.at_frames())), body.size)
-    n_steps = int(np.ceil(motion.dt / LONGEST_STEP))
-    control = controller(body, settings.response, settings.support, settings.friction)
-    world = build_world(engine, body, ground, settings.friction, motion.dt / n_steps)
-    course = follow(engine, world, control, target, grips, n_steps, tell=lambda frame: progress(frame / motion.n_frames, "Simulating"))
-    result = _as_motion(body, whole, course.places)
-    return result, course, body, ground
+    bare = physics_body(whole, humanoid)
+    check_size(bare, motion.frame_rate)
+    under_feet = find_ground(whole, humanoid, bare.size)
+    in_air = settings.ground is Ground.HEIGHT
+    ground = settings.ground_height if in_air else under_feet
+    body = with_soles(bare, whole, humanoid, ground)
+    pieces = []
+    for start, stop in find_pieces(whole, body.size):
+        pieces.append(
+            simulated_piece(
+                engine,
+                body,
+                whole.slice(start, stop),
+                ground,
+                response=settings.response,
+                smoothing=settings.smoothing,
+                friction=settings.friction,
+                support=settings.support,
+                progress=within(progress, start / motion.n_frames, stop / motion.n_frames),
+            )
+        )
+    progress(1.0, "Simulated")
+    return _put_together(motion, whole, body, pieces, settings.strength, ground, under_feet)
 
 
-def _base_first(body, motion):
-    poses = forward_kinematics(motion)
-    base = body.joints[0]
-    rotations = motion.rotations[:, list(body.joints)]
-    rotations[:, 0] = poses.rotations[:, base]
-    return poses.positions[:, base].copy(), rotations
+def _put_together(
+    motion: Motion,
+    whole: Motion,
+    body: PhysicsBody,
+    pieces: list[Piece],
+    strength: float,
+    ground: float,
+    under_feet: float,
+) -> Simulated:
+    """Blend what was simulated with the take, and measure the result."""
+    followed = np.concatenate([piece.followed for piece in pieces])
+    n_lost = sum(piece.n_lost for piece in pieces)
+    given_up = n_lost > 1 + motion.n_frames * motion.dt / TOO_OFTEN
+    if given_up:
+        followed[:] = False
+    rotations = np.concatenate([piece.motion.rotations for piece in pieces])
+    roots = np.concatenate([piece.motion.root_positions for piece in pieces])
+    share = strength * _ease(pieces, motion.frame_rate) * (not given_up)
+    result = motion
+    if share.any():
+        result = blended(whole, whole.with_poses(rotations, roots), body.joints, share)
+    contacts = np.concatenate([piece.contacts for piece in pieces])
+    return Simulated(
+        motion=result.with_poses(),
+        followed=followed,
+        contacts=contacts,
+        support=np.concatenate([piece.support for piece in pieces]),
+        ground=ground,
+        penetration_before=float(penetration(body, whole, ground).max()),
+        penetration_after=float(penetration(body, filled(result), ground).max()),
+        slide_before=slide(body, whole, contacts),
+        slide_after=slide(body, filled(result), contacts),
+        distance=mean_distance(whole, filled(result), body.joints),
+        message=told(followed, given_up, ground, under_feet, body.size),
+    )
 
 
-def grips_of(speeds, size):
-    return np.clip((0.8 - speeds/size)/0.5, 0.05, 1.0)
-
-
-def _as_motion(body, motion, places):
-    base = body.joints[0]
-    n = motion.n_frames
-    turns = places[:, 3:].reshape(n, -1, 4)
-    rotations = motion.rotations.copy()
-    rotations[:, list(body.joints)] = turns
-    if base:
-        above = forward_kinematics(motion).rotations[:, motion.skeleton.parents[base]]
-        rotations[:, base] = multiply(inverse(above), turns[:, 0])
-    result = motion.with_poses(rotations)
-    shift = places[:, :3] - forward_kinematics(result).positions[:, base]
-    return result.with_poses(root_positions=result.root_positions + shift)
+def _ease(pieces: list[Piece], frame_rate: float) -> Array:
+    """Return a share that rises from 0 where the body was lost to 1, shape (n_frames,)."""
+    shares = []
+    for piece in pieces:
+        frames, lost = np.arange(len(piece.followed)), np.flatnonzero(~piece.followed)
+        away = np.abs(frames[:, None] - lost).min(axis=1, initial=len(frames) + 1e9)
+        shares.append(np.minimum(1.0, away / (EASE * frame_rate)))
+    return np.concatenate(shares)
