@@ -1,6 +1,5 @@
 """The physics engine MuJoCo, loaded when it is needed and without its windows."""
 
-import importlib
 import os
 from types import ModuleType
 
@@ -28,7 +27,7 @@ def load_engine() -> ModuleType:
     before = os.environ.get(DISPLAY)
     os.environ[DISPLAY] = "disable"
     try:
-        engine = importlib.import_module("mujoco")
+        import mujoco
     except (ImportError, OSError) as error:
         raise NoPhysicsError(
             f"Physics needs MuJoCo, which does not load here ({error}). Install the extension"
@@ -39,6 +38,7 @@ def load_engine() -> ModuleType:
             del os.environ[DISPLAY]
         else:
             os.environ[DISPLAY] = before
+    engine: ModuleType = mujoco
     engine.set_mju_user_warning(_silent)
     return engine
 
