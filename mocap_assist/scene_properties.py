@@ -11,6 +11,7 @@ from .check_choices import CheckSettings
 from .clean_choices import CleanSettings
 from .retarget_choices import RetargetBundle, UnbakeBundle
 from .settings_properties import settings_from
+from .simulating import SimulateBundle
 from .solving import SolveBundle
 
 
@@ -32,6 +33,11 @@ class MOCAP_PG_retarget(bpy.types.PropertyGroup):
 @settings_from(SolveBundle)
 class MOCAP_PG_solve(bpy.types.PropertyGroup):
     """Settings of the button Make Skeleton."""
+
+
+@settings_from(SimulateBundle)
+class MOCAP_PG_simulate(bpy.types.PropertyGroup):
+    """Settings of the button Physics."""
 
 
 @settings_from(UnbakeBundle)
@@ -77,6 +83,7 @@ class MOCAP_PG_scene(bpy.types.PropertyGroup):
     clean: bpy.props.PointerProperty(type=MOCAP_PG_clean)
     check: bpy.props.PointerProperty(type=MOCAP_PG_check)
     solve: bpy.props.PointerProperty(type=MOCAP_PG_solve)
+    simulate: bpy.props.PointerProperty(type=MOCAP_PG_simulate)
     retarget: bpy.props.PointerProperty(type=MOCAP_PG_retarget)
     unbake: bpy.props.PointerProperty(type=MOCAP_PG_unbake)
     bone_map: bpy.props.PointerProperty(type=MOCAP_PG_bone_map)
@@ -101,6 +108,7 @@ CLASSES = (
     MOCAP_PG_check,
     MOCAP_PG_solve,
     MOCAP_PG_retarget,
+    MOCAP_PG_simulate,
     MOCAP_PG_unbake,
     MOCAP_PG_bone_pair,
     MOCAP_PG_bone_map,

@@ -21,6 +21,7 @@ from .retarget_verbs import (
     perform_unbake,
     read_target,
 )
+from .simulate_verb import add_simulate_options, perform_simulate
 from .solve_verb import add_solve_options, perform_solve
 from .verb import Makes, Outcome, Task, Verb
 
@@ -93,6 +94,11 @@ VERBS = {
         add_solve_options,
         perform_solve,
         writes_motions=True,
+    ),
+    "simulate": Verb(
+        "Let a body with mass and muscles, on solid ground, make motions of a skeleton.",
+        add_simulate_options,
+        perform_simulate,
     ),
     "convert": Verb(
         "Write recordings of any known format as BVH, or as C3D or TRC where they are points.",

@@ -8,6 +8,13 @@
 """
 
 from .physics_engine import NoPhysicsError
-from .simulate import Ground, Simulated, SimulateSettings, simulate
+from .simulate import Ground, Simulated, SimulateSettings, simulate, with_strength
 
-__all__ = ["Ground", "NoPhysicsError", "SimulateSettings", "Simulated", "simulate"]
+__all__ = [
+    "Ground",
+    "NoPhysicsError",
+    "SimulateSettings",
+    "Simulated",
+    "simulate",
+    "with_strength",
+]

@@ -191,6 +191,17 @@ def simulate(
     return _put_together(motion, whole, body, pieces, settings.strength, ground, under_feet)
 
 
+def with_strength(motion: Motion, simulated: Simulated, strength: float) -> Motion:
+    """Return a motion gone by a share, 0 to 1, towards what was simulated of it in full.
+
+    The same as `simulate` with that strength, to rounding, but at once.
+    """
+    if strength in {0.0, 1.0}:
+        return (simulated.motion if strength else motion).with_poses()
+    share = np.full(motion.n_frames, strength)
+    return blended(filled(motion), filled(simulated.motion), range(motion.n_joints), share)
+
+
 def _put_together(
     motion: Motion,
     whole: Motion,
