@@ -22,8 +22,9 @@ Flags = NDArray[np.bool_]
 LONGEST_STEP = 1.0 / 239.0
 """Seconds. 30, 60 and 120 frames a second are then simulated in the same steps, 1/240 s."""
 
-JUMP, FASTEST = 0.3, 12.0
-"""Metres, for legs of 0.9 m, and metres per second: who goes farther in a frame jumps."""
+JUMP, FASTEST = 0.1, 12.0
+"""Metres, for legs of 0.9 m, and metres per second: a body whose joints go farther on average
+from one frame to the next jumps, as between clips that were joined, or out of a T-pose."""
 
 STANDS, SWINGS = 0.3, 0.8
 """Metres per second, for legs of 0.9 m: a sole whose target is slower is held by all its
@@ -44,12 +45,12 @@ class Piece:
     n_lost: int
 
 
-def find_pieces(motion: Motion, size: float) -> list[tuple[int, int]]:
-    """Return first frame and stop of each piece in which the root does not jump."""
-    steps = np.linalg.norm(np.diff(motion.root_positions, axis=0), axis=1)
-    jumps = np.flatnonzero(steps > JUMP * size + FASTEST * motion.dt) + 1
-    borders = [0, *(int(jump) for jump in jumps), motion.n_frames]
-    return list(pairwise(borders))
+def find_pieces(body: PhysicsBody, motion: Motion) -> list[tuple[int, int]]:
+    """Return first frame and stop of each piece in which the body does not jump."""
+    positions = forward_kinematics(motion).positions[:, list(body.joints)]
+    steps = np.linalg.norm(np.diff(positions, axis=0), axis=-1).mean(axis=1)
+    jumps = np.flatnonzero(steps > JUMP * body.size + FASTEST * motion.dt) + 1
+    return list(pairwise([0, *(int(jump) for jump in jumps), motion.n_frames]))
 
 
 def simulated_piece(

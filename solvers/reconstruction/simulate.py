@@ -173,7 +173,7 @@ def simulate(
     ground = settings.ground_height if in_air else under_feet
     body = with_soles(bare, whole, humanoid, ground)
     pieces = []
-    for start, stop in find_pieces(whole, body.size):
+    for start, stop in find_pieces(body, whole):
         pieces.append(
             simulated_piece(
                 engine,
