@@ -102,7 +102,7 @@ def write_reconstructed(
     take = found.take.with_recordings((rebuilt.motion, *others))
     n_modified = count_modified(found.recorded, bones)
     action, slot = write_take(
-        armature, found.recorded, take, bones, _key_types(names, rebuilt), SUFFIX
+        armature, found.recorded, take, bones, _key_types(names, rebuilt), suffix=SUFFIX
     )
     reliability = dict(zip(names, rebuilt.solution.reliability.T, strict=True))
     write_reliability(armature, action, slot, take.frames, reliability)

@@ -12,6 +12,7 @@ from .clean_choices import CleanSettings
 from .reconstruct_choices import ReconstructBundle
 from .retarget_choices import RetargetBundle, UnbakeBundle
 from .settings_properties import settings_from
+from .simulating import SimulateBundle
 from .solving import SolveBundle
 
 
@@ -33,6 +34,11 @@ class MOCAP_PG_retarget(bpy.types.PropertyGroup):
 @settings_from(SolveBundle)
 class MOCAP_PG_solve(bpy.types.PropertyGroup):
     """Settings of the button Make Skeleton."""
+
+
+@settings_from(SimulateBundle)
+class MOCAP_PG_simulate(bpy.types.PropertyGroup):
+    """Settings of the button Physics."""
 
 
 @settings_from(UnbakeBundle)
@@ -84,6 +90,7 @@ class MOCAP_PG_scene(bpy.types.PropertyGroup):
     check: bpy.props.PointerProperty(type=MOCAP_PG_check)
     solve: bpy.props.PointerProperty(type=MOCAP_PG_solve)
     reconstruct: bpy.props.PointerProperty(type=MOCAP_PG_reconstruct)
+    simulate: bpy.props.PointerProperty(type=MOCAP_PG_simulate)
     retarget: bpy.props.PointerProperty(type=MOCAP_PG_retarget)
     unbake: bpy.props.PointerProperty(type=MOCAP_PG_unbake)
     bone_map: bpy.props.PointerProperty(type=MOCAP_PG_bone_map)
@@ -108,6 +115,7 @@ CLASSES = (
     MOCAP_PG_check,
     MOCAP_PG_solve,
     MOCAP_PG_retarget,
+    MOCAP_PG_simulate,
     MOCAP_PG_unbake,
     MOCAP_PG_reconstruct,
     MOCAP_PG_bone_pair,

@@ -12,6 +12,7 @@ from .reconstruct import MOCAP_OT_reconstruct
 from .reduce_keys import MOCAP_OT_reduce_keys
 from .retarget import MOCAP_OT_retarget
 from .revert_to_raw import MOCAP_OT_revert_to_raw
+from .simulate import MOCAP_OT_simulate
 from .solve_skeleton import MOCAP_OT_solve_skeleton
 
 OPERATORS = (
@@ -22,6 +23,7 @@ OPERATORS = (
     MOCAP_OT_jump_to_spot,
     MOCAP_OT_plant_feet,
     MOCAP_OT_learn_patterns,
+    MOCAP_OT_simulate,
     MOCAP_OT_solve_skeleton,
     MOCAP_OT_retarget,
     MOCAP_OT_reduce_keys,

@@ -30,6 +30,7 @@ from .retarget_verbs import (
     perform_unbake,
     retarget_target,
 )
+from .simulate_verb import add_simulate_options, perform_simulate
 
 Bundle = TypeVar("Bundle", bound=NamedTuple)
 Said = tuple[str, dict[str, Any]]
@@ -174,6 +175,12 @@ VERBS = {
         _convert,
         writes=False,
         check=_check_targets,
+    ),
+    "simulate": Verb(
+        "Let a body with mass and muscles, on solid ground, make the motions of armatures.",
+        add_simulate_options,
+        perform_simulate,
+        on_markers=False,
     ),
     "retarget": Verb(
         "Let another armature make the motions of an armature.",

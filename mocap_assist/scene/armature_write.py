@@ -26,9 +26,8 @@ from .take import ArmatureTake
 Array = NDArray[np.float64]
 KeyTypes = Mapping[str, NDArray[np.uint8]]
 SUFFIX = ".clean"
-NUMBERED = re.compile(
-    r"\.(clean|reconstructed)(\.\d{3,})?$"
-)  # as Blender names a second result
+NUMBERED = re.compile(r"\.(clean|physics|reconstructed)(\.\d{3,})?$")
+"""As Blender names a second result."""
 
 
 class Output(Enum):
@@ -44,6 +43,7 @@ def write_take(
     take: ArmatureTake,
     bones: Collection[str],
     key_types: KeyTypes,
+    *,
     suffix: str = SUFFIX,
 ) -> Source:
     """Copy an action and replace the rotation and location keys of some of its bones.
@@ -59,7 +59,7 @@ def write_take(
         than the bone's own, and Euler or location channels that have no keys.
     key_types : per bone name, shape (n_frames,)
         Blender's type of each key.
-    suffix : what the action's name ends in
+    suffix : ending of the result's name
 
     Returns
     -------
@@ -131,7 +131,7 @@ def check_writable(armature: bpy.types.Object) -> None:
 
 
 def copy_of(original: bpy.types.Action, suffix: str = SUFFIX) -> bpy.types.Action:
-    """Return a copy, named like the original with a suffix, and kept by a fake user."""
+    """Return a copy, named like the original with an ending, and kept by a fake user."""
     action = original.copy()
     action.name = NUMBERED.sub("", original.name) + suffix
     action.use_fake_user = True

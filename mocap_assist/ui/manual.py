@@ -15,6 +15,8 @@ CHAPTERS = {
     "bpy.ops.mocap_assist.jump_to_spot*": "check",
     "bpy.ops.mocap_assist.revert_to_raw*": "compare",
     "bpy.ops.mocap_assist.plant_feet*": "feet",
+    "bpy.ops.mocap_assist.simulate*": "physics",
+    "bpy.types.mocap_pg_simulate*": "physics",
     "bpy.ops.mocap_assist.solve_skeleton*": "markers",
     "bpy.types.mocap_pg_solve*": "markers",
     "bpy.ops.mocap_assist.retarget*": "retarget",

@@ -8,6 +8,7 @@ BUTTONS = (
     "mocap_assist.denoise",
     "mocap_assist.measure_quality",
     "mocap_assist.plant_feet",
+    "mocap_assist.simulate",
     "mocap_assist.retarget",
     "mocap_assist.reduce_keys",
     "mocap_assist.revert_to_raw",

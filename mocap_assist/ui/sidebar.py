@@ -8,6 +8,7 @@ from .compare_panel import ComparePanel
 from .feet_panel import FeetPanel
 from .import_panel import ImportPanel
 from .markers_panel import MarkersPanel
+from .physics_panel import PhysicsPanel
 from .preferences import preferred
 from .reconstruct_panel import ReconstructPanel
 from .retarget_panel import RetargetPanel
@@ -33,6 +34,7 @@ BODIES = (
     CheckPanel,
     ComparePanel,
     FeetPanel,
+    PhysicsPanel,
     MarkersPanel,
     RetargetPanel,
 )

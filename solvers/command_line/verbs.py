@@ -22,6 +22,7 @@ from .retarget_verbs import (
     perform_unbake,
     read_target,
 )
+from .simulate_verb import add_simulate_options, perform_simulate
 from .solve_verb import add_solve_options, perform_solve
 from .verb import Makes, Outcome, Task, Verb
 
@@ -101,6 +102,11 @@ VERBS = {
         perform_reconstruct,
         writes_motions=True,
         writes_joints=True,
+    ),
+    "simulate": Verb(
+        "Let a body with mass and muscles, on solid ground, make motions of a skeleton.",
+        add_simulate_options,
+        perform_simulate,
     ),
     "convert": Verb(
         "Write recordings of any known format as BVH, or as C3D or TRC where they are points.",
