@@ -14,12 +14,15 @@ from ...solvers.denoising import (
     PlantSettings,
     Quality,
     measure_quality,
-    plant_feet,
 )
-from ...solvers.errors import InvalidMotionError
 from ...solvers.motion import Motion
 from ...solvers.progress import Progress, unwatched, within
-from ...solvers.workflows import RebuiltMotion, ReconstructSettings, reconstruct_motion
+from ...solvers.workflows import (
+    RebuiltMotion,
+    ReconstructSettings,
+    reconstruct_motion,
+    try_to_plant,
+)
 from .cleaning import Examples, toward
 
 Array = NDArray[np.float64]
@@ -82,25 +85,19 @@ def rebuild(
     """Solve the problem, unless its solution is given, and finish it."""
     if solution is None:
         solution = solve(problem, progress=within(progress, 0.0, 0.8))
-    motion, remarks, planted = solution.motion, list(solution.remarks), None
-    if finish.planting is not None:
-        try:
-            planted = plant_feet(
-                motion,
-                finish.contacts,
-                settings=finish.planting,
-                progress=within(progress, 0.8, 0.9),
-            )
-            motion = planted.motion
-        except InvalidMotionError as error:
-            remarks.append(f"Feet are left as they are. {error}")
+    motion, planted, remarks = try_to_plant(
+        solution.motion,
+        finish.planting,
+        finish.contacts,
+        progress=within(progress, 0.8, 0.9),
+    )
     motion = _eased(problem.body, motion, finish.ease)
     contacts = None if planted is None else planted.contacts
     before, after = (
         measure_quality(each, contacts=contacts, progress=within(progress, start, start + 0.05))
         for each, start in ((problem.body, 0.9), (motion, 0.95))
     )
-    return Rebuilt(motion, solution, planted, tuple(remarks), before, after)
+    return Rebuilt(motion, solution, planted, (*solution.remarks, *remarks), before, after)
 
 
 def _eased(raw: Motion, motion: Motion, ease: Array) -> Motion:

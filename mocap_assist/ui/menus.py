@@ -5,6 +5,7 @@ import bpy
 from .drawing import exists
 
 BUTTONS = (
+    "mocap_assist.reconstruct",
     "mocap_assist.denoise",
     "mocap_assist.measure_quality",
     "mocap_assist.plant_feet",

@@ -6,12 +6,17 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from ..denoising import PlantSettings, compare_quality, measure_quality
+from ..denoising import Planted, PlantSettings, compare_quality, measure_quality
 from ..errors import InvalidMotionError
 from ..motion import JointRecording, Motion, Sensor, Tracks
 from ..progress import Progress, within
 from ..recordings import read_recording, write_joint_csv
-from ..workflows import ReconstructSettings, reconstruct_motion, reconstruct_recording
+from ..workflows import (
+    ReconstructSettings,
+    reconstruct_motion,
+    reconstruct_recording,
+    try_to_plant,
+)
 from .files import JOINTS, add_reading_options, write
 from .options import arguments_from, settings_from_arguments
 from .verb import Outcome, Task
@@ -71,35 +76,42 @@ def perform_reconstruct(task: Task, prepared: None, progress: Progress) -> Outco
 
 def _rebuilt(given: Any, task: Task, progress: Progress) -> Rebuilt:
     settings = settings_from_arguments(task.arguments, ReconstructSettings)
-    planting = settings_from_arguments(task.arguments, PlantSettings)
+    feet = task.arguments.feet
+    planting = settings_from_arguments(task.arguments, PlantSettings) if feet else None
     if isinstance(given, Motion):
         whole = reconstruct_motion(given, settings=settings, progress=progress)
         known = np.isfinite(whole.reliability)
         lost = float((whole.reliability[known] < LOST).mean())
-        return Rebuilt(whole.motion, None, lost, whole.method, whole.remarks, None)
+        footing = try_to_plant(whole.motion, planting)
+        remarks = (*whole.remarks, *footing.remarks)
+        slide = _slide(footing.planted)
+        return Rebuilt(footing.motion, None, lost, whole.method, remarks, slide)
     recording = _joints_of(given, task.source)
     found = reconstruct_recording(
         recording,
         settings=settings,
-        planting=planting if task.arguments.feet else None,
+        planting=planting,
         progress=progress,
     )
-    rebuilt, planted = found.reconstruction, found.planted
+    rebuilt = found.reconstruction
     tracks = Tracks(
         rebuilt.tracks.names,
         rebuilt.tracks.positions,
         rebuilt.tracks.frame_rate,
         np.clip(rebuilt.confidence, 0.0, 1.0),
     )
-    slide = None if planted is None else (planted.slide_before, planted.slide_after)
     return Rebuilt(
         found.motion,
         JointRecording(tracks, None, Sensor.OTHER),
         float((rebuilt.reliability.combined < LOST).mean()),
         rebuilt.method,
         found.remarks,
-        slide,
+        _slide(found.planted),
     )
+
+
+def _slide(planted: Planted | None) -> tuple[float, float] | None:
+    return None if planted is None else (planted.slide_before, planted.slide_after)
 
 
 def _joints_of(given: JointRecording | Tracks, source: Path) -> JointRecording:

@@ -4,8 +4,10 @@ from .motion_from_markers import MarkerMotion, MarkerMotionSettings, motion_from
 from .reconstruct_motion import RebuiltMotion, reconstruct_motion
 from .reconstruct_recording import ReconstructedMotion, reconstruct_recording
 from .rough_reconstruct import ReconstructSettings
+from .try_to_plant import Footing, try_to_plant
 
 __all__ = [
+    "Footing",
     "MarkerMotion",
     "MarkerMotionSettings",
     "RebuiltMotion",
@@ -14,4 +16,5 @@ __all__ = [
     "motion_from_markers",
     "reconstruct_motion",
     "reconstruct_recording",
+    "try_to_plant",
 ]

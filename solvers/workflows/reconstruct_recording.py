@@ -2,14 +2,14 @@
 
 from dataclasses import dataclass
 
-from ..denoising import Planted, PlantSettings, plant_feet
-from ..errors import InvalidMotionError
+from ..denoising import Planted, PlantSettings
 from ..motion import JointRecording, Motion, Skeleton
 from ..progress import Progress, unwatched, within
 from ..reconstruction.follow_joints import follow_joints
 from ..reconstruction.result import Reconstruction
 from .known_body import check_size, gap_remarks, known_body
 from .rough_reconstruct import ReconstructSettings, reconstruct
+from .try_to_plant import try_to_plant
 
 PLANTING = PlantSettings()
 REBUILDING = ReconstructSettings()
@@ -79,13 +79,7 @@ def reconstruct_recording(
         motion = follow_joints(
             rebuilt.tracks, known.parents, rebuilt.confidence, skeleton=skeleton
         )
-    remarks = gap_remarks(known)
-    planted = None
-    if planting is not None:
-        try:
-            planted = plant_feet(motion, settings=planting, progress=within(progress, 0.8, 1.0))
-            motion = planted.motion
-        except InvalidMotionError as error:
-            remarks.append(f"Feet are left as they are. {error}")
+    footing = try_to_plant(motion, planting, progress=within(progress, 0.8, 1.0))
     progress(1.0, "Done")
-    return ReconstructedMotion(motion, rebuilt, planted, tuple(remarks))
+    remarks = (*gap_remarks(known), *footing.remarks)
+    return ReconstructedMotion(footing.motion, rebuilt, footing.planted, remarks)
