@@ -1,0 +1,46 @@
+"""Bones of constant length, moved as little as trust allows."""
+
+import numpy as np
+from numpy.typing import NDArray
+
+from .body_size import resize
+from .posture_joints import HIPS, N_JOINTS, PARENTS
+
+Array = NDArray[np.float64]
+
+N_ROUNDS = 30
+STIFFEST = 50.0
+"""How many times easier a joint gives way that is not trusted than one that is."""
+
+
+def keep_lengths(postures: Array, lengths: Array, sure: Array) -> Array:
+    """Return the postures with bones of the given lengths.
+
+    Position-based dynamics [1]_: bone after bone, both ends give way, the less sure one more,
+    until lengths are nearly met; then each bone gets its length from the hips outwards.
+
+    Parameters
+    ----------
+    postures : shape (n_frames, 20, 3), metres
+    lengths : shape (20,), metres
+    sure : shape (n_frames, 20), 0 to 1
+        How sure each joint is.
+
+    References
+    ----------
+    .. [1] Müller, Heidelberger, Hennix, Ratcliff (2007). Position based dynamics. Journal of
+       Visual Communication and Image Representation 18(2). doi:10.1016/j.jvcir.2007.01.005
+    """
+    x = np.array(postures)
+    gives = 1.0 / (1.0 / STIFFEST + np.clip(sure, 0.0, 1.0))
+    gives[:, HIPS] *= 0.5
+    for _ in range(N_ROUNDS):
+        for joint in range(1, N_JOINTS):
+            above = PARENTS[joint]
+            way = x[:, joint] - x[:, above]
+            size = np.maximum(np.linalg.norm(way, axis=-1), 1e-6)
+            share = gives[:, joint] + gives[:, above]
+            move = ((lengths[joint] - size) / size / share)[:, None] * way
+            x[:, joint] += gives[:, [joint]] * move
+            x[:, above] -= gives[:, [above]] * move
+    return resize(x, lengths)

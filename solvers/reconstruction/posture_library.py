@@ -1,0 +1,207 @@
+"""Postures of clean clips, thinned out to an even density: what natural bodies do."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..errors import InvalidFileError, InvalidMotionError
+from ..files import read_archive, write_archive
+from ..motion import Motion, resample
+from ..progress import Progress, unwatched, within
+from ..settings import Settings, setting
+from .bone_directions import bone_changes, bone_directions, mirrored
+from .heading import normalise
+from .posture_joints import N_JOINTS, motion_postures
+from .thin_out import thin_out
+
+Array = NDArray[np.float64]
+
+KIND = "posture library"
+VERSION = 1
+SHIPPED = Path(__file__).parent / "models" / "postures.npz"
+DIRECTION_STEP = 1.0 / 1000.0
+CHANGE_STEP = 1.0 / 8.0
+"""Steps in which directions, and their changes per second, are stored: finer than any capture."""
+PACE = 0.1
+"""Seconds of movement that count as much as the same way between two postures."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class PostureLibrarySettings(Settings):
+    """How postures are taken from clips."""
+
+    frame_rate: float = setting(
+        15.0, "Postures looked at per second of a clip; more catches faster movements",
+        unit="Hz", minimum=1.0, maximum=120.0,
+    )  # fmt: skip
+    spacing: float = setting(
+        0.01, "Least difference between two postures kept, as a mean over joints; more keeps"
+        " fewer", unit="m", minimum=0.0, maximum=1.0,
+    )  # fmt: skip
+    n_postures: int = setting(
+        2500, "Most postures kept, the most different ones; more knows more and is slower",
+        minimum=1, maximum=1_000_000,
+    )  # fmt: skip
+    mirror: bool = setting(True, "Also learn each posture with left and right exchanged")
+
+
+@dataclass(frozen=True, eq=False)
+class PostureLibrary:
+    """Postures without heading, place and size.
+
+    Attributes
+    ----------
+    directions : float32, shape (n_postures, 20, 3)
+        Unit vectors from the joint above to each of `POSTURE_JOINTS`, in an actor who faces -Y
+        with his left at +X; zero for the hips.
+    changes : float32, shape (n_postures, 20, 3)
+        How the directions change, per second.
+    n_seen : int
+        Postures of the clips before they were thinned out.
+    trained_on : str
+        Which clips they are of, in words.
+    """
+
+    directions: NDArray[np.float32]
+    changes: NDArray[np.float32]
+    n_seen: int
+    trained_on: str = ""
+
+    @property
+    def n_postures(self) -> int:
+        """Number of postures."""
+        return len(self.directions)
+
+    def save(self, path: Path | str) -> None:
+        """Write an archive that `load_posture_library` reads."""
+        arrays = {
+            "directions": np.round(self.directions[:, 1:] / DIRECTION_STEP).astype(np.int16),
+            "changes": np.clip(np.round(self.changes[:, 1:] / CHANGE_STEP), -127, 127).astype(
+                np.int8
+            ),
+            "n_seen": np.array(self.n_seen),
+            "trained_on": np.array(self.trained_on),
+        }
+        write_archive(path, KIND, VERSION, arrays)
+
+
+def load_posture_library(path: Path | str = SHIPPED) -> PostureLibrary:
+    """Read what `PostureLibrary.save` wrote; without a path, the library that is shipped.
+
+    Raises
+    ------
+    InvalidFileError
+        The file is missing, damaged, or holds something else.
+    """
+    arrays = read_archive(path, KIND, VERSION)
+    if fault := _fault(arrays):
+        raise InvalidFileError(f"{path} holds damaged postures ({fault}). Build them again.")
+    directions, changes = (
+        np.pad(arrays[name] * np.float32(step), ((0, 0), (1, 0), (0, 0)))
+        for name, step in (("directions", DIRECTION_STEP), ("changes", CHANGE_STEP))
+    )
+    sizes = np.linalg.norm(directions[:, 1:], axis=-1, keepdims=True)
+    directions[:, 1:] /= sizes
+    return PostureLibrary(
+        directions, changes, int(arrays["n_seen"]), str(arrays["trained_on"])
+    )
+
+
+def _fault(arrays: dict[str, NDArray[np.generic]]) -> str:
+    """Return what keeps postures from a file from being used, or nothing."""
+    kinds = {"directions": "i", "changes": "i", "n_seen": "i", "trained_on": "U"}
+    if missing := [name for name in kinds if name not in arrays]:
+        return f"{', '.join(missing)} missing"
+    if any(arrays[name].dtype.kind != kind for name, kind in kinds.items()):
+        return "their numbers are of other kinds"
+    shape = arrays["directions"].shape
+    if shape != (len(arrays["directions"]), N_JOINTS - 1, 3) or not shape[0]:
+        return "their shapes do not fit"
+    if arrays["changes"].shape != shape or arrays["n_seen"].shape != ():
+        return "their shapes do not fit"
+    sizes = np.linalg.norm(arrays["directions"] * DIRECTION_STEP, axis=-1)
+    return "" if (np.abs(sizes - 1.0) < 0.05).all() else "directions are not of length 1"
+
+
+def build_posture_library(
+    motions: Sequence[Motion],
+    *,
+    settings: PostureLibrarySettings = PostureLibrarySettings(),
+    trained_on: str = "",
+    progress: Progress = unwatched,
+) -> PostureLibrary:
+    """Collect the postures of clean clips, and keep the most different ones.
+
+    As the motion database of [SHJT13]_: heading and place are removed, and postures that are
+    too similar are left out, so that the neighbours of a posture show how it may vary. What is
+    kept are directions of bones, so that the body is that of whoever is recorded later. Here
+    two postures also differ by where they are going (a tenth of a second of movement).
+
+    Parameters
+    ----------
+    motions : sequence of Motion
+        Clean clips. Skeletons may differ; each needs hips, arms and legs.
+    settings : PostureLibrarySettings
+    trained_on : str
+        Kept with the library: which clips these are.
+    progress : Progress
+
+    Returns
+    -------
+    PostureLibrary
+        The most different postures first.
+
+    Raises
+    ------
+    InvalidMotionError
+        There is no clip, or a skeleton lacks hips, arms or legs.
+    SolveCancelled
+        Raised by `progress`.
+
+    References
+    ----------
+    .. [SHJT13] Shum, Ho, Jiang, Takagi (2013). Real-time posture reconstruction for Microsoft
+       Kinect. IEEE Transactions on Cybernetics 43(5), section V-A.
+    """
+    if not motions:
+        raise InvalidMotionError("There is no clip to learn postures from; choose clean clips.")
+    found = []
+    for place, motion in enumerate(motions):
+        progress(0.5 * place / len(motions), "Reading postures")
+        found.append(_postures(motion, settings))
+    directions, changes = (np.concatenate(parts) for parts in zip(*found, strict=True))
+    told = np.isfinite(directions).all(axis=(1, 2)) & np.isfinite(changes).all(axis=(1, 2))
+    directions, changes = directions[told], changes[told]
+    if not len(directions):
+        raise InvalidMotionError("No posture of the clips is complete; fill their gaps first.")
+    kept = thin_out(
+        np.concatenate([directions, PACE * changes], axis=1),
+        settings.n_postures,
+        settings.spacing,
+        within(progress, 0.5, 1.0),
+    )
+    return PostureLibrary(
+        directions[kept].astype(np.float32), changes[kept].astype(np.float32),
+        len(directions), trained_on,
+    )  # fmt: skip
+
+
+def _postures(motion: Motion, settings: PostureLibrarySettings) -> tuple[Array, Array]:
+    """Directions and changes of a clip, and of its mirror image."""
+    fine = max(settings.frame_rate, min(motion.frame_rate, 2.0 / PACE))
+    if abs(motion.frame_rate - fine) > 1e-6:
+        motion = resample(motion, fine)
+    postures = normalise(motion_postures(motion), fine).postures
+    directions = bone_directions(postures)
+    changes = bone_changes(directions, fine)
+    step = max(round(fine / settings.frame_rate), 1)
+    directions, changes = directions[::step], changes[::step]
+    if not settings.mirror:
+        return directions, changes
+    return (
+        np.concatenate([directions, mirrored(directions)]),
+        np.concatenate([changes, mirrored(changes)]),
+    )
