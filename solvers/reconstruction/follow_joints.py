@@ -48,6 +48,8 @@ class _Ways(NamedTuple):
     """Shape (n_frames, n, 3)."""
     hard: Array
     """Whether the joint alone points there, shape (n,)."""
+    known: NDArray[np.bool_]
+    """Whether both ends were seen, shape (n_frames, n)."""
 
 
 class _Body:
@@ -141,9 +143,10 @@ class _Body:
                 hard.append(False)
         shape = (len(self.places), len(rest), 3)
         ways = np.stack(seen, axis=1) if seen else np.zeros(shape)
+        known = np.isfinite(ways).all(axis=-1)
         lengths = np.linalg.norm(np.nan_to_num(ways), axis=-1, keepdims=True)
         ways = np.where(lengths > SHORT, ways, np.nan)
-        return _Ways(np.array(rest).reshape(-1, 3), ways, np.array(hard, bool))
+        return _Ways(np.array(rest).reshape(-1, 3), ways, np.array(hard, bool), known)
 
     def _way(self, joint: int, child: int) -> Array:
         """Return the way to a child: to its very place where the bone is long."""
@@ -155,19 +158,31 @@ class _Body:
         )
 
     def _turned(self, joint: int, above: Array) -> Array:
-        """World rotations of a joint, shape (n_frames, 4), that turns out of `above`."""
+        """World rotations of a joint, shape (n_frames, 4), that turns out of `above`.
+
+        Where children were seen but lie too near to tell a direction, it goes on as it was.
+        """
         ways = self._ways(joint)
         if not len(ways.rest):
             return above
+        turns = above
         if len(ways.rest) > 1:
-            above = best_turns(ways.rest, ways.seen)
+            turns = _first_known(best_turns(ways.rest, ways.seen), above, ways.known)
         aims = np.flatnonzero(ways.hard) if ways.hard.any() else np.arange(len(ways.rest))
         if len(aims) > 1:
-            return above
-        way, rest = ways.seen[:, aims[0]], rotate(above, ways.rest[aims[0]])
+            return turns
+        way, rest = ways.seen[:, aims[0]], rotate(turns, ways.rest[aims[0]])
         told = (np.isfinite(way) & np.isfinite(rest)).all(axis=-1)[:, None]
         swing = rotation_between(np.where(told, rest, 1.0), np.where(told, way, 1.0))
-        return np.where(told, multiply(swing, above), np.nan)
+        return _first_known(
+            np.where(told, multiply(swing, turns), np.nan), turns, ways.known[:, aims]
+        )
+
+
+def _first_known(turns: Array, otherwise: Array, known: NDArray[np.bool_]) -> Array:
+    """Fill what is not told, in frames in which all children were seen."""
+    lost = np.isnan(turns).any(axis=-1) & known.all(axis=-1)
+    return np.where(lost[:, None], otherwise, turns)
 
 
 def follow_joints(

@@ -123,6 +123,8 @@ def _steady(seen: NDArray[np.complex128], weights: Array, stiffness: float) -> A
     bands[0, 1:] = -stiffness
     bands[1] = weights + USUAL + stiffness * ends
     told = weights * seen + USUAL
+    if n_frames == 1:
+        return np.asarray(told)
     return np.asarray(solveh_banded(bands, told.real) + 1j * solveh_banded(bands, told.imag))
 
 

@@ -191,9 +191,7 @@ def _among_groups(
     for group in np.flatnonzero(chosen.any(axis=0)):
         frames = np.flatnonzero(chosen[:, group])
         span = slice(index.starts[group], index.starts[group + 1])
-        quick = _quick(
-            points[frames], weights[frames], index.points[span], index.squares[span]
-        )
+        quick = _quick(points[frames], weights[frames], index.points[span], index.squares[span])
         _keep(best, taken, frames, quick, int(span.start), n_taken)
     return _exact(index, points, weights, taken[:, :n_taken], n_neighbours)
 

@@ -105,9 +105,7 @@ def load_posture_library(path: Path | str = SHIPPED) -> PostureLibrary:
     )
     sizes = np.linalg.norm(directions[:, 1:], axis=-1, keepdims=True)
     directions[:, 1:] /= sizes
-    return PostureLibrary(
-        directions, changes, int(arrays["n_seen"]), str(arrays["trained_on"])
-    )
+    return PostureLibrary(directions, changes, int(arrays["n_seen"]), str(arrays["trained_on"]))
 
 
 def _fault(arrays: dict[str, NDArray[np.generic]]) -> str:

@@ -42,7 +42,13 @@ def noise_of(trust: Array, noise: float) -> Array:
 
 
 def fading_course(
-    seen: Array, deviation: Array, dt: float, *, size: float, memory: float, causal: bool = False
+    seen: Array,
+    deviation: Array,
+    dt: float,
+    *,
+    size: float,
+    memory: float,
+    causal: bool = False,
 ) -> Course:
     """Follow values that fade to nothing where they are not seen.
 

@@ -205,6 +205,31 @@ def test_a_skeleton_that_is_given_is_moved(walk):
     assert motion.observed.all()
 
 
+def test_what_a_rigid_trunk_misses_is_not_handed_down_to_the_hand(walk):
+    """The shoulder is pulled up by 5 cm; the bones of the arm make for elbow and wrist."""
+    body = motion_from_points(as_tracks(walk), PARENTS).skeleton
+    arm = [NAMES.index(f"{part}Left") for part in ("Shoulder", "Elbow", "Wrist")]
+    shrugging = walk.copy()
+    shrugging[:, arm[0], 2] += 0.05
+
+    motion = follow_joints(as_tracks(shrugging), PARENTS, skeleton=body)
+
+    order = [motion.skeleton.index(NAMES[joint]) for joint in arm]
+    places = forward_kinematics(motion).positions[:, order]
+    shoulder, _, wrist = np.linalg.norm(places - shrugging[:, arm], axis=-1).mean(axis=0)
+    assert shoulder > 0.03
+    assert wrist < 0.4 * shoulder
+
+
+def test_joints_in_one_place_tell_no_direction_and_do_no_harm(walk):
+    tracks = as_tracks(walk.copy())
+    tracks.positions[20, NAMES.index("HandLeft")] = walk[20, NAMES.index("WristLeft")]
+
+    motion = follow_joints(tracks, PARENTS)
+
+    assert motion.observed.all()
+
+
 def test_gaps_stay_gaps(walk):
     tracks = as_tracks(walk.copy())
     tracks.positions[10:20, NAMES.index("KneeLeft")] = np.nan
