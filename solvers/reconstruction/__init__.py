@@ -8,13 +8,19 @@
 """
 
 from .physics_engine import NoPhysicsError
+from .reliability import Reliability, measure_reliability
+from .reliability_settings import ReliabilityMethod, ReliabilitySettings
 from .simulate import Ground, Simulated, SimulateSettings, simulate, with_strength
 
 __all__ = [
     "Ground",
     "NoPhysicsError",
+    "Reliability",
+    "ReliabilityMethod",
+    "ReliabilitySettings",
     "SimulateSettings",
     "Simulated",
+    "measure_reliability",
     "simulate",
     "with_strength",
 ]

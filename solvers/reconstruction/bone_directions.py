@@ -1,11 +1,14 @@
 """Postures as directions of bones, which tell nothing of how large a body is."""
 
+from typing import TypeVar
+
 import numpy as np
 from numpy.typing import NDArray
 
 from .posture_joints import N_JOINTS, PARENTS, POSTURE_JOINTS
 
 Array = NDArray[np.float64]
+Real = TypeVar("Real", np.float32, np.float64)
 
 SHORT = 5e-3
 """Metres. A bone that is shorter tells no direction."""
@@ -43,7 +46,7 @@ def bone_directions(postures: Array) -> Array:
             directions[:, joint] = (
                 directions[:, POSTURE_JOINTS.index(other)] if other else FORWARD
             )
-    return directions
+    return np.asarray(directions)
 
 
 def bone_changes(directions: Array, frame_rate: float) -> Array:
@@ -66,7 +69,7 @@ def mirrored(vectors: Array) -> Array:
     return np.asarray(vectors[..., MIRROR, :] * (-1.0, 1.0, 1.0))
 
 
-def along_bones(vectors: Array, lengths: Array) -> Array:
+def along_bones(vectors: NDArray[Real], lengths: NDArray[Real]) -> NDArray[Real]:
     """Return joints relative to the hips from directions, or speeds from changes.
 
     Parameters

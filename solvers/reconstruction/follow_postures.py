@@ -1,161 +1,219 @@
-"""A motion of any rig, turned so that its body goes where postures say."""
+"""Postures of a library that follow what was seen, through whatever was not."""
+
+from dataclasses import dataclass, replace
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.ndimage import gaussian_filter1d
 
-from ..errors import InvalidMotionError
-from ..motion import HumanoidMap, Motion, find_humanoid_map, forward_kinematics, local_rotations
-from ..motion.rigid_fit import best_turns
-from ..motion.rotations import (
-    inverse,
-    multiply,
-    rotate,
-    rotation_between,
-    slerp,
-)
-from .posture_joints import CHEST, HIPS, N_JOINTS, POSTURE_JOINTS, motion_postures
+from ..progress import Progress, within
+from .bone_directions import bone_changes
+from .heading import Normalised
+from .keep_lengths import keep_lengths
+from .library_body import BodyPostures, anatomy_turns, on_body
+from .neighbours import PostureIndex, Query, index_postures, nearest_postures
+from .posture_energy import Demands
+from .posture_joints import HIPS
+from .posture_library import PostureLibrary
+from .posture_search import search_in_turn
+from .posture_settings import PostureMethod, PostureSettings
+from .posture_space import PostureSpaces, local_pca
+from .posture_synthesis import solve_in_turn, solve_postures
+from .probable_posture import probable_postures
+from .smooth_course import Course, causal_course, fading_course, noise_of
 
 Array = NDArray[np.float64]
-AIMS = {
-    f"{side}{part}": f"{side}{end}"
-    for side in ("left", "right")
-    for part, end in (
-        ("Shoulder", "UpperArm"), ("UpperArm", "LowerArm"), ("LowerArm", "Hand"),
-        ("UpperLeg", "LowerLeg"), ("LowerLeg", "Foot"), ("Foot", "Toes"),
-    )
-} | {"neck": "head"}  # fmt: skip
-"""Roles that point at another one."""
-PELVIS = tuple(
-    POSTURE_JOINTS.index(role) for role in ("leftUpperLeg", "rightUpperLeg", "spine")
-)
-TRUNK = tuple(POSTURE_JOINTS.index(role) for role in ("leftUpperArm", "rightUpperArm", "head"))
-SHORT = 1e-3
-"""Metres. Ways that are shorter tell no direction."""
+
+LED_UP_TO = 0.2
+"""Seconds before and after a joint is lost in which it is already trusted less, so that it is
+synthesised on both sides of the loss alike."""
+SIZE = 0.1
+"""Metres. Usual error of a joint that is synthesised without being seen."""
+AGAIN = 0.3
+"""Trust in what one round synthesised and is sure of, in the next."""
+SURE = 0.05
+"""Metres. Deviation at which that trust, or confidence, is half of what it can be."""
+MODEL = 0.03
+"""Metres. Error of a posture that its neighbours agree upon."""
+BLOCK = 256
+"""Frames whose spaces are in memory at once."""
+ANATOMY_FRAMES = 150
+ANATOMY_NEIGHBOURS = 3
+ANATOMY_ROUNDS = 2
+
+
+class Followed(NamedTuple):
+    """Postures, shape (n_frames, 20, 3), and how sure each joint is, 0 to 1."""
+
+    postures: Array
+    confidence: Array
+
+
+@dataclass(frozen=True, eq=False)
+class _Seen:
+    """What is known of a take: joints relative to where the hips seem to be, and trust."""
+
+    postures: Array
+    trust: Array
+    frame_rate: float
+    lengths: Array
 
 
 def follow_postures(
-    motion: Motion, postures: Array, humanoid_map: HumanoidMap | None = None
-) -> Motion:
-    """Turn a motion the short way until its body is where postures say.
-
-    Pelvis and chest turn as hips and shoulders do, the spine between them by shares; limbs
-    point at the place of their child. All else, twist too, stays as it was: hands and fingers
-    go along with the forearm. Gaps are bridged first.
+    seen: Normalised,
+    trust: Array,
+    frame_rate: float,
+    lengths: Array,
+    library: PostureLibrary,
+    settings: PostureSettings,
+    progress: Progress,
+) -> Followed:
+    """Reconstruct the postures of a take.
 
     Parameters
     ----------
-    motion : Motion
-    postures : shape (n_frames, 20, 3), metres
-        Where `POSTURE_JOINTS` are to be; NaN: anywhere.
-    humanoid_map : HumanoidMap, optional
-        Found by `find_humanoid_map` where it is not given.
-
-    Returns
-    -------
-    Motion
-        Of the same skeleton.
-
-    Raises
-    ------
-    InvalidMotionError
-        The postures do not fit the motion, or the skeleton lacks hips, arms or legs.
+    seen : Normalised
+    trust : shape (n_frames, 20)
+        0 where a joint was not seen.
+    frame_rate : float, hertz
+    lengths : shape (20,), metres
+    library : PostureLibrary
+    settings : PostureSettings
+    progress : Progress
     """
-    if postures.shape != (motion.n_frames, N_JOINTS, 3):
-        raise InvalidMotionError(
-            f"Postures for this motion need shape ({motion.n_frames}, {N_JOINTS}, 3), not"
-            f" {postures.shape}."
+    take = _Seen(seen.postures, trust, frame_rate, lengths)
+    body = _body_of(take, library, settings.pace)
+    index = index_postures(body, library.groups)
+    rounds = 1 if settings.causal else settings.rounds
+    shift = np.zeros((len(trust), 1, 3))
+    asked, given = take.postures, _led_up(take, settings)
+    for number in range(rounds):
+        part = within(progress, number / rounds, (number + 1) / rounds)
+        made = _synthesise(
+            replace(take, postures=asked, trust=given), body, index, settings, part
         )
-    humanoid_map = humanoid_map or find_humanoid_map(motion.skeleton)
-    whole = without_gaps(motion)
-    return _Follower(whole, postures, humanoid_map).followed()
+        more = _shift(take.postures - shift - made.values, trust, frame_rate, settings)
+        shift = shift + more
+        course = _corrected(made, take.postures - shift, take, settings)
+        if number + 1 < rounds:
+            lost = (trust < AGAIN)[..., None]
+            asked = np.where(lost, course.values, take.postures - shift)
+            again = AGAIN / (1.0 + (course.spread / SURE) ** 2)
+            given = np.maximum(given, again)
+    share = course.spread / SIZE
+    unsure = np.hypot(settings.noise, share * np.hypot(made.spread, MODEL))
+    postures = keep_lengths(course.values, lengths, trust)
+    return Followed(postures + shift, 1.0 / (1.0 + (unsure / SURE) ** 2))
 
 
-def without_gaps(motion: Motion) -> Motion:
-    """Bridge gaps the short way, joint by joint; before and after all that is known, hold."""
-    rotations = np.array(motion.rotations)
-    frames = np.arange(motion.n_frames, dtype=float)
-    for joint in range(motion.n_joints):
-        known = np.flatnonzero(np.isfinite(rotations[:, joint]).all(axis=-1))
-        if len(known) in {0, motion.n_frames}:
-            rotations[:, joint] = rotations[:, joint] if len(known) else (1.0, 0.0, 0.0, 0.0)
-            continue
-        after = np.searchsorted(known, frames).clip(max=len(known) - 1)
-        before = (np.searchsorted(known, frames, side="right") - 1).clip(min=0)
-        start, stop = known[before], known[after]
-        share = np.where(stop > start, (frames - start) / np.maximum(stop - start, 1), 0.0)
-        rotations[:, joint] = slerp(rotations[start, joint], rotations[stop, joint], share)
-    places = np.array(motion.root_positions)
-    seen = np.isfinite(places).all(axis=-1)
-    if not seen.any():
-        return motion.with_poses(rotations, np.zeros_like(places))
-    for axis in range(3):
-        places[:, axis] = np.interp(frames, frames[seen], places[seen, axis])
-    return motion.with_poses(rotations, places)
-
-
-class _Follower:
-    """A motion whose joints are turned anew, parents first."""
-
-    def __init__(self, motion: Motion, postures: Array, humanoid_map: HumanoidMap) -> None:
-        self.motion, self.skeleton = motion, motion.skeleton
-        self.old = forward_kinematics(motion)
-        self.before = motion_postures(motion, humanoid_map)
-        self.wanted = np.where(np.isfinite(postures), postures, self.before)
-        places = humanoid_map.indices(self.skeleton)
-        self.roles = {joint: role for role, joint in places.items()}
-        self.places = places
-        arms = [
-            self.skeleton.ancestors(places[f"{side}UpperArm"]) for side in ("left", "right")
-        ]
-        self.chest = next(joint for joint in arms[0] if joint in arms[1])
-        chain = [self.chest, *self.skeleton.ancestors(self.chest)]
-        self.hips = places["hips"]
-        self.trunk = chain[: chain.index(self.hips) + 1][::-1]
-        self.turns = np.tile((1.0, 0.0, 0.0, 0.0), (motion.n_frames, motion.n_joints, 1))
-        """How each joint turns in the world, on top of how it was turned."""
-        self.at = np.array(self.old.positions)
-
-    def followed(self) -> Motion:
-        pelvis, chest = self._laid(HIPS, PELVIS), self._laid(CHEST, TRUNK)
-        moved = self.wanted[:, HIPS] - self.before[:, HIPS]
-        for joint, parent in enumerate(self.skeleton.parents):
-            if parent < 0:
-                self.at[:, joint] += moved
-            else:
-                way = self.old.positions[:, joint] - self.old.positions[:, parent]
-                self.at[:, joint] = self.at[:, parent] + rotate(self.turns[:, parent], way)
-                self.turns[:, joint] = self.turns[:, parent]
-            if joint in self.trunk:
-                share = self.trunk.index(joint) / max(len(self.trunk) - 1, 1)
-                self.turns[:, joint] = slerp(pelvis, chest, share)
-                if 0.0 < share < 1.0:
-                    self.turns[:, joint] = self._aimed(joint, self.chest, CHEST)
-            elif (role := AIMS.get(self.roles.get(joint, ""), "")) in self.places:
-                child = self.places[role]
-                self.turns[:, joint] = self._aimed(joint, child, POSTURE_JOINTS.index(role))
-        world = multiply(self.turns, self.old.rotations)
-        rotations = local_rotations(self.skeleton, world)
-        root = self.motion.root_positions + moved
-        return self.motion.with_poses(rotations, root)
-
-    def _laid(self, middle: int, around: tuple[int, ...]) -> Array:
-        """Return the turn that lays joints about one of the trunk where they are to be."""
-        old = self.before[:, around] - self.before[:, [middle]]
-        new = self.wanted[:, around] - self.wanted[:, [middle]]
-        told = np.isfinite(old).all(axis=(0, 2)) & np.isfinite(new).all(axis=(0, 2))
-        rest = np.median(old[:, told], axis=0)
-        turns = multiply(
-            best_turns(rest, new[:, told]), inverse(best_turns(rest, old[:, told]))
+def _body_of(take: _Seen, library: PostureLibrary, pace: float) -> BodyPostures:
+    """Bring the library to the actor's size, and to the tracker's idea of a body."""
+    directions, changes, lengths = library.directions, library.changes, take.lengths
+    body = on_body(directions, changes, lengths)
+    frames = np.linspace(0, len(take.trust) - 1, ANATOMY_FRAMES).astype(int)
+    frames = np.unique(frames)
+    speeds = bone_changes(take.postures, take.frame_rate)[frames]
+    some = Query(take.postures[frames], speeds, take.trust[frames], pace)
+    for _ in range(ANATOMY_ROUNDS):
+        index = index_postures(body, library.groups)
+        places, _ = nearest_postures(index, some, ANATOMY_NEIGHBOURS)
+        each = places.shape[1]
+        turns = anatomy_turns(
+            np.repeat(some.postures, each, axis=0),
+            np.repeat(some.trust, each, axis=0) / each,
+            directions[places.reshape(-1)].astype(np.float64),
+            lengths,
         )
-        return np.where(np.isfinite(turns), turns, (1.0, 0.0, 0.0, 0.0))
+        body = on_body(directions, changes, lengths, turns)
+    return body
 
-    def _aimed(self, joint: int, goal: int, place: int) -> Array:
-        """Turn a joint so much farther that one below it comes into line with its place."""
-        above = self.turns[:, joint]
-        astray = self.old.positions[:, goal] - self.before[:, place]
-        rest = rotate(above, self.old.positions[:, goal] - self.old.positions[:, joint])
-        way = self.wanted[:, place] + astray - self.at[:, joint]
-        sizes = [np.linalg.norm(each, axis=-1, keepdims=True) for each in (rest, way)]
-        told = np.isfinite(way).all(axis=-1, keepdims=True) & (np.minimum(*sizes) > SHORT)
-        swing = rotation_between(np.where(told, rest, 1.0), np.where(told, way, 1.0))
-        return np.where(told, multiply(swing, above), above)
+
+def _led_up(take: _Seen, settings: PostureSettings) -> Array:
+    """Let trust fall and rise gradually about a loss; not before it in causal mode."""
+    trust = take.trust
+    reach = round(LED_UP_TO * take.frame_rate)
+    least = trust
+    for way in range(1, min(reach, len(trust) - 1) + 1):
+        share = way / (reach + 1)
+        near = np.ones_like(trust)
+        near[way:] = trust[:-way]
+        if not settings.causal:
+            near[:-way] = np.minimum(near[:-way], trust[way:])
+        least = np.minimum(least, near + (1.0 - near) * share)
+    return least
+
+
+def _synthesise(
+    take: _Seen,
+    body: BodyPostures,
+    index: PostureIndex,
+    settings: PostureSettings,
+    progress: Progress,
+) -> Course:
+    """Choose a posture for each frame; spread is the deviation of each joint by its space."""
+    speeds = bone_changes(take.postures, take.frame_rate)
+    if settings.causal:
+        speeds = np.full_like(speeds, np.nan)
+    query = Query(take.postures, speeds, take.trust, settings.pace)
+    places, _ = nearest_postures(
+        index, query, settings.n_neighbours, progress=within(progress, 0.0, 0.4)
+    )
+    values, spread = np.empty_like(take.postures), np.empty_like(take.trust)
+    last = None
+    for start in range(0, len(values), BLOCK):
+        part = slice(start, min(start + BLOCK, len(values)))
+        spaces = local_pca(body.positions[places[part]], settings.n_dimensions)
+        asked = Demands(take.postures[part], take.trust[part], spaces.neighbours, take.lengths)
+        probable, spread[part] = probable_postures(spaces, asked)
+        values[part] = _chosen(spaces, asked, probable, settings, last)
+        last = values[max(part.stop - 2, 0) : part.stop]
+        progress(0.4 + 0.6 * part.stop / len(values), "Synthesising postures")
+    if settings.smoothing and not settings.causal:
+        width = settings.smoothing * take.frame_rate
+        values = gaussian_filter1d(values, width, axis=0, mode="nearest")
+    return Course(values, spread)
+
+
+def _chosen(
+    spaces: PostureSpaces,
+    asked: Demands,
+    probable: Array,
+    settings: PostureSettings,
+    last: Array | None,
+) -> Array:
+    if settings.method is PostureMethod.PUBLISHED:
+        return search_in_turn(spaces, asked, settings.seed, last)[0]
+    if settings.method is PostureMethod.ENERGY and settings.causal:
+        return solve_in_turn(spaces, asked, before=last)[0]
+    if settings.method is PostureMethod.ENERGY:
+        return spaces.postures(solve_postures(spaces, asked))
+    return probable
+
+
+def _shift(off: Array, trust: Array, frame_rate: float, settings: PostureSettings) -> Array:
+    """Return where the hips are instead of where they seem to be, shape (n_frames, 1, 3).
+
+    They are where joints that are trusted ask for, as far as the hips themselves are not.
+    """
+    weight = np.where(np.isfinite(off).all(axis=-1), trust, 0.0)
+    weight[:, HIPS] = 0.0
+    total = weight.sum(axis=1)[:, None]
+    move = np.einsum("fi,fik->fk", weight, np.nan_to_num(off)) / (1.0 + total)
+    move *= 1.0 - np.where(np.isfinite(off[:, HIPS, :1]), trust[:, [HIPS]], 0.0)
+    if settings.smoothing and not settings.causal:
+        move = gaussian_filter1d(move, settings.smoothing * frame_rate, axis=0, mode="nearest")
+    return np.asarray(move[:, None])
+
+
+def _corrected(made: Course, seen: Array, take: _Seen, settings: PostureSettings) -> Course:
+    """Lead synthesised postures through what was seen."""
+    if settings.method is PostureMethod.PUBLISHED:
+        return Course(made.values, np.full(take.trust.shape, SIZE))
+    dt, deviation = 1.0 / take.frame_rate, noise_of(take.trust, settings.noise)
+    known = {"size": SIZE, "memory": settings.memory}
+    if settings.causal:
+        course = causal_course(made.values, seen, deviation, dt, **known)
+    else:
+        course = fading_course(seen - made.values, deviation, dt, **known)
+    return Course(made.values + course.values, course.spread)

@@ -17,7 +17,7 @@ ARMS, LEGS, SHINS, TOES = (
     for part in ("UpperArm", "UpperLeg", "Foot", "Toes")
 )
 ANATOMY = (SPINE, CHEST, HEAD, *ARMS, *LEGS, *TOES)
-"""Bones that lead to other places in each tracker's idea of a body, in the very same posture."""
+"""Bones that lead elsewhere in each tracker's idea of a body, in the very same posture."""
 FEWEST = 20.0
 """Sightings of a bone at which half of what they tell is believed."""
 
@@ -53,7 +53,7 @@ def on_body(
     """
     if turns is not None:
         directions, changes = directions.copy(), changes.copy()
-        frames = bone_frames(along_bones(directions, lengths))
+        frames = bone_frames(along_bones(directions.astype(np.float64), lengths))
         for bone in ANATOMY:
             frame = frames[bone].astype(np.float32)
             turn = frame @ turns[bone].astype(np.float32) @ frame.swapaxes(-1, -2)
@@ -74,8 +74,8 @@ def bone_frames(postures: Array) -> dict[int, Array]:
         joints: postures[:, joints[0]] - postures[:, joints[1]] for joints in (ARMS, LEGS)
     }
     upper, lower = _axes(up, across[ARMS]), _axes(up, across[LEGS])
-    frames = {bone: upper for bone in (CHEST, HEAD, *ARMS)}
-    frames |= {bone: lower for bone in (SPINE, *LEGS)}
+    frames = dict.fromkeys((CHEST, HEAD, *ARMS), upper)
+    frames |= dict.fromkeys((SPINE, *LEGS), lower)
     for ankle, toes in zip(SHINS, TOES, strict=True):
         shin = postures[:, ABOVE[ankle]] - postures[:, ankle]
         frames[toes] = _axes(shin, across[LEGS])

@@ -41,8 +41,8 @@ class Query(NamedTuple):
 
     def slice(self, start: int, stop: int) -> "Query":
         """Return the frames `start` up to but without `stop`."""
-        arrays = (self.postures, self.speeds, self.trust)
-        return Query(*(array[start:stop] for array in arrays), self.pace)
+        part = slice(start, stop)
+        return Query(self.postures[part], self.speeds[part], self.trust[part], self.pace)
 
 
 @dataclass(frozen=True, eq=False)
@@ -71,7 +71,7 @@ class PostureIndex:
     radii: Single
 
 
-def index_postures(body: BodyPostures, groups: NDArray[np.integer]) -> PostureIndex:
+def index_postures(body: BodyPostures, groups: NDArray[np.int32]) -> PostureIndex:
     """Prepare the search among the postures of one body.
 
     Parameters
@@ -153,7 +153,7 @@ def _as_points(query: Query) -> tuple[Single, Single]:
 def _quick(points: Single, weights: Single, known: Single, squares: Single) -> Single:
     """Weighted squared ways but for what does not depend on the known, (n_frames, n_known)."""
     weighted = (points * weights[..., None]).reshape(len(points), -1)
-    return weights @ squares.T - 2.0 * (weighted @ known.reshape(len(known), -1).T)
+    return np.asarray(weights @ squares.T - 2.0 * (weighted @ known.reshape(len(known), -1).T))
 
 
 def _among_all(

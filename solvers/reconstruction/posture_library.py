@@ -3,6 +3,7 @@
 from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -14,6 +15,7 @@ from ..progress import Progress, unwatched, within
 from ..settings import Settings, setting
 from .bone_directions import bone_changes, bone_directions, mirrored
 from .heading import normalise
+from .posture_groups import group_postures
 from .posture_joints import N_JOINTS, motion_postures
 from .thin_out import thin_out
 
@@ -22,9 +24,9 @@ Array = NDArray[np.float64]
 KIND = "posture library"
 VERSION = 1
 SHIPPED = Path(__file__).parent / "models" / "postures.npz"
-DIRECTION_STEP = 1.0 / 1000.0
+DIRECTION_STEP = 1.0 / 500.0
 CHANGE_STEP = 1.0 / 8.0
-"""Steps in which directions, and their changes per second, are stored: finer than any capture."""
+"""Steps in which directions, and their changes per second, are stored."""
 PACE = 0.1
 """Seconds of movement that count as much as the same way between two postures."""
 
@@ -59,6 +61,8 @@ class PostureLibrary:
         with his left at +X; zero for the hips.
     changes : float32, shape (n_postures, 20, 3)
         How the directions change, per second.
+    groups : int32, shape (n_postures,)
+        Number of the group of alike postures that each belongs to.
     n_seen : int
         Postures of the clips before they were thinned out.
     trained_on : str
@@ -67,6 +71,7 @@ class PostureLibrary:
 
     directions: NDArray[np.float32]
     changes: NDArray[np.float32]
+    groups: NDArray[np.int32]
     n_seen: int
     trained_on: str = ""
 
@@ -82,6 +87,7 @@ class PostureLibrary:
             "changes": np.clip(np.round(self.changes[:, 1:] / CHANGE_STEP), -127, 127).astype(
                 np.int8
             ),
+            "groups": self.groups,
             "n_seen": np.array(self.n_seen),
             "trained_on": np.array(self.trained_on),
         }
@@ -105,12 +111,14 @@ def load_posture_library(path: Path | str = SHIPPED) -> PostureLibrary:
     )
     sizes = np.linalg.norm(directions[:, 1:], axis=-1, keepdims=True)
     directions[:, 1:] /= sizes
-    return PostureLibrary(directions, changes, int(arrays["n_seen"]), str(arrays["trained_on"]))
+    return PostureLibrary(
+        directions, changes, arrays["groups"], int(arrays["n_seen"]), str(arrays["trained_on"])
+    )
 
 
-def _fault(arrays: dict[str, NDArray[np.generic]]) -> str:
+def _fault(arrays: dict[str, NDArray[Any]]) -> str:
     """Return what keeps postures from a file from being used, or nothing."""
-    kinds = {"directions": "i", "changes": "i", "n_seen": "i", "trained_on": "U"}
+    kinds = {"directions": "i", "changes": "i", "groups": "i", "n_seen": "i", "trained_on": "U"}
     if missing := [name for name in kinds if name not in arrays]:
         return f"{', '.join(missing)} missing"
     if any(arrays[name].dtype.kind != kind for name, kind in kinds.items()):
@@ -118,7 +126,8 @@ def _fault(arrays: dict[str, NDArray[np.generic]]) -> str:
     shape = arrays["directions"].shape
     if shape != (len(arrays["directions"]), N_JOINTS - 1, 3) or not shape[0]:
         return "their shapes do not fit"
-    if arrays["changes"].shape != shape or arrays["n_seen"].shape != ():
+    others = {"changes": shape, "groups": shape[:1], "n_seen": (), "trained_on": ()}
+    if any(arrays[name].shape != expected for name, expected in others.items()):
         return "their shapes do not fit"
     sizes = np.linalg.norm(arrays["directions"] * DIRECTION_STEP, axis=-1)
     return "" if (np.abs(sizes - 1.0) < 0.05).all() else "directions are not of length 1"
@@ -181,9 +190,10 @@ def build_posture_library(
         settings.spacing,
         within(progress, 0.5, 1.0),
     )
+    single = directions[kept].astype(np.float32)
     return PostureLibrary(
-        directions[kept].astype(np.float32), changes[kept].astype(np.float32),
-        len(directions), trained_on,
+        single, changes[kept].astype(np.float32), group_postures(single), len(directions),
+        trained_on,
     )  # fmt: skip
 
 

@@ -1,10 +1,9 @@
-"""The posture of least energy by local stochastic search, as published [SHJT13, section VI-E]."""
-
-from dataclasses import replace
+"""The posture of least energy by local stochastic search [SHJT13, section VI-E]."""
 
 import numpy as np
 from numpy.typing import NDArray
 
+from .in_turn import in_turn
 from .posture_energy import Demands, posture_energy
 from .posture_space import PostureSpaces
 
@@ -53,7 +52,7 @@ def search_postures(
 
 
 def search_in_turn(
-    spaces: PostureSpaces, demands: Demands, seed: int = 0
+    spaces: PostureSpaces, demands: Demands, seed: int = 0, before: Array | None = None
 ) -> tuple[Array, Array]:
     """Search frame after frame; each goes on from the postures of the two before it.
 
@@ -62,20 +61,9 @@ def search_in_turn(
     postures : shape (n_frames, 20, 3), metres
     energies : shape (n_frames,)
     """
-    n_frames = len(spaces.means)
-    postures = np.empty((n_frames, demands.observed.shape[1], 3))
-    energies = np.empty(n_frames)
-    for frame in range(n_frames):
-        one = slice(frame, frame + 1)
-        space, asked = spaces.at(one), demands.at(one)
-        if frame > 1:
-            expected = 2.0 * postures[frame - 1] - postures[frame - 2]
-            asked = replace(asked, expected=expected[None])
-        if frame:
-            start = space.coordinates(postures[frame - 1 : frame])
-        else:
-            start = np.zeros((1, space.axes.shape[-1]))
-        z = search_postures(space, asked, start, seed + frame)
-        postures[frame] = space.postures(z)[0]
-        energies[frame] = posture_energy(postures[one], asked)[0]
-    return postures, energies
+
+    def choose(space: PostureSpaces, asked: Demands, last: Array | None, frame: int) -> Array:
+        start = space.coordinates(last) if last is not None else 0.0 * space.spreads
+        return search_postures(space, asked, start, seed + frame)
+
+    return in_turn(spaces, demands, choose, before)

@@ -39,12 +39,12 @@ class PostureSpaces:
     def postures(self, z: Array) -> Array:
         """Return where the joints are, shape (n_frames, 20, 3)."""
         flat = self.means + np.einsum("fij,fj->fi", self.axes, z)
-        return flat.reshape(len(flat), N_JOINTS, 3)
+        return np.asarray(flat.reshape(len(flat), N_JOINTS, 3))
 
     def coordinates(self, postures: Array) -> Array:
         """Return the nearest point of the space, shape (n_frames, n_dimensions)."""
         flat = postures.reshape(len(postures), -1) - self.means
-        return np.einsum("fij,fi->fj", self.axes, flat)
+        return np.asarray(np.einsum("fij,fi->fj", self.axes, flat))
 
 
 def local_pca(neighbours: Array, n_dimensions: int = 20) -> PostureSpaces:

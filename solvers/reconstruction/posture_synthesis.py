@@ -1,11 +1,10 @@
 """The posture of least energy by Gauss-Newton steps in the natural posture space."""
 
-from dataclasses import replace
-
 import numpy as np
 from numpy.typing import NDArray
 
 from .bone_directions import ABOVE
+from .in_turn import in_turn
 from .posture_energy import N_BONES, Demands, posture_energy, style_distances
 from .posture_joints import N_JOINTS
 from .posture_space import PostureSpaces
@@ -44,7 +43,7 @@ def solve_postures(spaces: PostureSpaces, demands: Demands, n_starts: int = 2) -
 
 
 def solve_in_turn(
-    spaces: PostureSpaces, demands: Demands, n_starts: int = 2
+    spaces: PostureSpaces, demands: Demands, n_starts: int = 2, before: Array | None = None
 ) -> tuple[Array, Array]:
     """Solve frame after frame; each goes on from the postures of the two before it.
 
@@ -53,18 +52,11 @@ def solve_in_turn(
     postures : shape (n_frames, 20, 3), metres
     energies : shape (n_frames,)
     """
-    n_frames = len(spaces.means)
-    postures = np.empty((n_frames, N_JOINTS, 3))
-    energies = np.empty(n_frames)
-    for frame in range(n_frames):
-        one = slice(frame, frame + 1)
-        space, asked = spaces.at(one), demands.at(one)
-        if frame > 1:
-            expected = 2.0 * postures[frame - 1] - postures[frame - 2]
-            asked = replace(asked, expected=expected[None])
-        postures[frame] = space.postures(solve_postures(space, asked, n_starts))[0]
-        energies[frame] = posture_energy(postures[one], asked)[0]
-    return postures, energies
+
+    def choose(space: PostureSpaces, asked: Demands, last: Array | None, frame: int) -> Array:
+        return solve_postures(space, asked, n_starts)
+
+    return in_turn(spaces, demands, choose, before)
 
 
 class _Quadratic:

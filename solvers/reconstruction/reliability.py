@@ -7,8 +7,9 @@ from numpy.typing import NDArray
 
 from ..motion import JointRecording
 from ..progress import Progress, unwatched
+from .reliability_error import CAUSAL, CENTRED, signs_of_error
 from .reliability_reference import reference_lengths, reference_postures, segments
-from .reliability_settings import USUAL, ReliabilitySettings
+from .reliability_settings import USUAL, ReliabilityMethod, ReliabilitySettings
 from .reliability_terms import behaviour_term, gaussian_mean, kinematics_term, tracking_term
 
 
@@ -75,7 +76,15 @@ def measure_reliability(
     behaviour, kinematics, tracking = (
         np.where(visible, term, 0.0) for term in (behaviour, kinematics, tracking)
     )
-    worst = np.minimum(np.minimum(behaviour, kinematics), tracking)
-    combined = np.where(visible, gaussian_mean(worst, recording.frame_rate, settings), 0.0)
+    rate = recording.frame_rate
+    if settings.method is ReliabilityMethod.PUBLISHED:
+        worst = np.minimum(np.minimum(behaviour, kinematics), tracking)
+        combined = gaussian_mean(worst, rate, settings)
+    else:
+        signs = signs_of_error(positions, lengths - reference, parents, rate, settings.causal)
+        model = CAUSAL if settings.causal else CENTRED
+        within = model.chance_within(signs, settings.tolerance)
+        combined = np.minimum(within, gaussian_mean(tracking, rate, settings))
+    combined = np.where(visible, combined, 0.0)
     progress(1.0, "Measuring reliability")
     return Reliability(combined, behaviour, kinematics, tracking)

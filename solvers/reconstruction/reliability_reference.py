@@ -6,6 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .posture_joints import joints_of_names
+from .reliability_terms import lengths_of
 
 Array = NDArray[np.float64]
 Flags = NDArray[np.bool_]
@@ -22,7 +23,7 @@ RELIABLE = 0.6
 
 def segments(positions: Array, parents: NDArray[np.intp]) -> Array:
     """Return how far each joint is from its parent, (n_frames, n_joints); NaN for roots."""
-    lengths = np.linalg.norm(positions - positions[:, np.maximum(parents, 0)], axis=-1)
+    lengths = lengths_of(positions - positions[:, np.maximum(parents, 0)])
     return np.where(parents >= 0, lengths, np.nan)
 
 
@@ -96,5 +97,5 @@ def _as_they_are_at_rest(
 
 
 def _unit(vectors: Array) -> Array:
-    lengths = np.linalg.norm(vectors, axis=-1, keepdims=True)
+    lengths = lengths_of(vectors)[:, None]
     return np.asarray(vectors / np.where(lengths > 0.0, lengths, np.nan))

@@ -20,12 +20,22 @@ class ReliabilityMethod(Enum):
 class ReliabilitySettings(Settings):
     """What is held against a joint."""
 
+    method: ReliabilityMethod = setting(
+        ReliabilityMethod.DEFAULT,
+        "Default tells the chance that a joint is right, as measured errors teach it; published"
+        " is the least of the three terms of Shum and others (2013)",
+        advanced=True,
+    )
     causal: bool = setting(
         False, "Ask past frames only, as a live system must; else those on both sides count"
     )
     inferred: float = setting(
         0.0, "What a joint counts for that the tracker inferred; higher trusts more",
         minimum=0.0, maximum=1.0,
+    )  # fmt: skip
+    tolerance: float = setting(
+        0.05, "Distance from the truth that is still right; higher trusts more",
+        unit="m", minimum=0.005, maximum=0.5,
     )  # fmt: skip
     slowest: float = setting(
         0.9, "Speed below which a joint is never said to vibrate; higher forgives more",

@@ -43,7 +43,7 @@ def turns_of_path(positions: Array, step: int, shortest: float) -> Array:
     turns = np.zeros(positions.shape[:2])
     if len(positions) > 2 * step:
         moved = positions[step:] - positions[:-step]  # eq. 1 and 2
-        lengths = np.linalg.norm(moved, axis=-1)
+        lengths = lengths_of(moved)
         before, after = lengths[:-step], lengths[step:]
         far = (before > shortest) & (after > shortest)  # False for NaN
         along = np.einsum("fjc,fjc->fj", moved[:-step], moved[step:])
@@ -111,8 +111,18 @@ def frames_in(seconds: float, frame_rate: float) -> int:
 
 def _averaged(values: Array, weights: Array, causal: bool) -> Array:
     """Average over the frames that there are; causal: the first weight is the present's."""
+    inside = weighted_sum(np.ones(len(values)), weights, causal)
+    total = weighted_sum(values, weights, causal)
+    return np.asarray(np.minimum(total / inside[:, None], values.max(initial=0.0)))
+
+
+def weighted_sum(values: Array, weights: Array, causal: bool) -> Array:
+    """Add up neighbouring frames; causal: the first weight is for the present, others past."""
     if causal:
         weights = np.concatenate([np.zeros(len(weights) - 1), weights])
-    inside = convolve1d(np.ones(len(values)), weights, mode="constant")
-    total = convolve1d(values, weights, axis=0, mode="constant")
-    return np.asarray(np.minimum(total / inside[:, None], values.max(initial=0.0)))
+    return np.asarray(convolve1d(values, weights, axis=0, mode="constant"))
+
+
+def lengths_of(vectors: Array) -> Array:
+    """Return the lengths of vectors along the last axis."""
+    return np.asarray(np.sqrt(np.einsum("...c,...c->...", vectors, vectors)))

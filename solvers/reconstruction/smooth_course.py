@@ -1,4 +1,4 @@
-"""The course of a value through gaps: Kalman filters, and smoothers where the future is known."""
+"""How what was seen differs from what was synthesised, as a course through gaps."""
 
 from typing import NamedTuple
 
@@ -9,12 +9,6 @@ Array = NDArray[np.float64]
 
 UNSEEN = 0.05
 """Joints trusted less than this tell nothing."""
-FAR = 10.0
-"""Metres, and metres per second: any place and any speed of a joint."""
-SPAN = 0.25
-"""Seconds to both sides over which it is measured how fast a joint changes its speed."""
-QUIETEST = 1e-3
-"""Metres: least second difference over that span that is believed."""
 
 
 class Course(NamedTuple):
@@ -42,13 +36,7 @@ def noise_of(trust: Array, noise: float) -> Array:
 
 
 def fading_course(
-    seen: Array,
-    deviation: Array,
-    dt: float,
-    *,
-    size: float,
-    memory: float,
-    causal: bool = False,
+    seen: Array, deviation: Array, dt: float, *, size: float, memory: float
 ) -> Course:
     """Follow values that fade to nothing where they are not seen.
 
@@ -66,8 +54,6 @@ def fading_course(
         Usual size of a value.
     memory : float, seconds
         How long it lasts.
-    causal : bool
-        Each frame by those up to it alone.
 
     References
     ----------
@@ -80,47 +66,43 @@ def fading_course(
         [-(rate**2) * dt, 1.0 - rate * dt],
     ])  # fmt: skip
     start = size**2 * np.diag([1.0, rate**2])
-    return _follow(seen, deviation, _Process(A, start - A @ start @ A.T, start), causal)
+    return _follow(seen, deviation, _Process(A, start - A @ start @ A.T, start))
 
 
-def going_course(
-    seen: Array, deviation: Array, dt: float, *, restless: float = 1.0, causal: bool = False
+def causal_course(
+    synthesised: Array, seen: Array, deviation: Array, dt: float, *, size: float, memory: float
 ) -> Course:
-    """Follow joints that go on as they went: constant velocity, disturbed by white noise.
+    """Estimate, from the past alone, how far joints are from where they were synthesised.
 
-    In gaps this is a cubic spline, which says how unsure it is. How strong the disturbance is,
-    each joint tells by its second differences over a quarter of a second.
+    A joint that is lost goes on from where it was last, and from there to where it is
+    synthesised, in the time of its memory.
 
     Parameters
     ----------
-    seen, deviation, dt, causal
-        As in `fading_course`.
-    restless : float
-        Times that strength.
+    synthesised : shape (n_frames, n_joints, 3), metres
+    seen, deviation, dt, size, memory
+        As in `fading_course`; what was seen are joints, not differences.
     """
-    lag = max(round(SPAN / dt), 1)
-    known = np.where((deviation < np.inf)[..., None], seen, np.nan)
-    turns = known[2 * lag :] - 2.0 * known[lag : -lag or None][: max(len(known) - 2 * lag, 0)]
-    turns = turns + known[: max(len(known) - 2 * lag, 0)]
-    told = np.isfinite(turns)
-    square = np.where(told, turns, 0.0) ** 2
-    mean = square.sum(axis=(0, 2)) / np.maximum(told.sum(axis=(0, 2)), 1)
-    usual = mean.max(initial=0.0)
-    mean = np.where(told.any(axis=(0, 2)), mean, usual)
-    power = restless * 1.5 * np.maximum(mean, QUIETEST**2) / (lag * dt) ** 3
-    A = np.array([[1.0, dt], [0.0, 1.0]])
-    Q = power[:, None, None] * np.array([[dt**3 / 3, dt**2 / 2], [dt**2 / 2, dt]])
-    return _follow(seen, deviation, _Process(A, Q, FAR**2 * np.eye(2)), causal)
+    told = np.isfinite(seen).all(axis=-1) & (deviation < np.inf)
+    off = np.where(told[..., None], seen - synthesised, 0.0)
+    fade = np.exp(-dt / memory)
+    values, spread = np.empty_like(off), np.empty(told.shape)
+    value, variance = np.zeros_like(off[0]), np.full(told.shape[1], size**2)
+    for frame in range(len(off)):
+        if frame:
+            lost = told[frame - 1] & ~told[frame]
+            jump = synthesised[frame - 1] - synthesised[frame]
+            value = fade * value + lost[:, None] * (jump + (1.0 - fade) * value)
+            variance = fade**2 * variance + (1.0 - fade**2) * size**2
+        noise = np.where(told[frame], deviation[frame], np.inf) ** 2
+        gain = variance / (variance + noise)
+        value = value + gain[:, None] * (off[frame] - value)
+        variance = (1.0 - gain) * variance
+        values[frame], spread[frame] = value, np.sqrt(variance)
+    return Course(values, spread)
 
 
-def agreed(one: Course, other: Course) -> Course:
-    """Return the mean of two courses, the surer one counting more, by inverse variances."""
-    a, b = one.spread**-2, other.spread**-2
-    values = (a[..., None] * one.values + b[..., None] * other.values) / (a + b)[..., None]
-    return Course(values, (a + b) ** -0.5)
-
-
-def _follow(seen: Array, deviation: Array, process: _Process, causal: bool) -> Course:
+def _follow(seen: Array, deviation: Array, process: _Process) -> Course:
     n_frames, n_joints = deviation.shape
     told = np.isfinite(seen).all(axis=-1)
     values = np.where(told[..., None], seen, 0.0)
@@ -136,8 +118,7 @@ def _follow(seen: Array, deviation: Array, process: _Process, causal: bool) -> C
         mean = mean + gain * (values[frame][:, None] - mean[:, :1])
         P = P - gain * P[:, :1]
         means[frame], spreads[frame] = mean, P
-    if not causal:
-        _backwards(means, spreads, A, Q)
+    _backwards(means, spreads, A, Q)
     return Course(means[:, :, 0], np.sqrt(np.maximum(spreads[:, :, 0, 0], 1e-12)))
 
 

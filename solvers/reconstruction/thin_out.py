@@ -37,7 +37,7 @@ def thin_out(
     points = np.concatenate([along_bones(part, USUAL_LENGTHS) for part in parts], axis=1)
     flat = points.reshape(len(points), -1)
     flat = flat - flat.mean(axis=0)
-    values, axes = np.linalg.eigh(flat.T @ flat)
+    _, axes = np.linalg.eigh(flat.T @ flat)
     low = np.ascontiguousarray(flat @ axes[:, -N_COMPONENTS:], dtype=np.float32)
     squares = np.einsum("ij,ij->i", low, low)
     least = N_JOINTS * spacing**2

@@ -17,13 +17,14 @@ from ..motion import (
 )
 from ..progress import Progress, unwatched, within
 from ..reconstruction.follow_joints import follow_joints
-from ..reconstruction.follow_postures import follow_postures
 from ..reconstruction.posture_joints import (
     POSTURE_JOINTS,
     joints_of_names,
     motion_postures,
     posture_positions,
 )
+from ..reconstruction.posture_library import PostureLibrary
+from ..reconstruction.turn_to_postures import turn_to_postures
 from .known_body import KINECT_V1, check_size, check_tracked, gap_remarks
 from .rough_reconstruct import ReconstructSettings, reconstruct
 
@@ -57,7 +58,7 @@ class RebuiltMotion:
 
 def reconstruct_motion(
     motion: Motion,
-    postures: None = None,
+    postures: PostureLibrary | None = None,
     prior: None = None,
     *,
     tracking_state: NDArray[np.int8] | None = None,
@@ -69,7 +70,7 @@ def reconstruct_motion(
 
     Where its joints are those of a known tracker, all of them are rebuilt and followed
     (`follow_joints`). On any other skeleton those of a body are, and its motion is turned the
-    short way to where they come to be (`follow_postures`).
+    short way to where they come to be (`turn_to_postures`).
 
     Parameters
     ----------
@@ -107,7 +108,7 @@ def reconstruct_motion(
             rebuilt.tracks, recording.parents, rebuilt.confidence, skeleton=motion.skeleton
         )
     else:
-        turned = follow_postures(motion, posture_positions(rebuilt.tracks), humanoid_map)
+        turned = turn_to_postures(motion, posture_positions(rebuilt.tracks), humanoid_map)
     shape = (motion.n_frames, motion.n_joints)
     reliability, confidence = np.full(shape, np.nan), np.full(shape, np.nan)
     for joint, column in columns.items():

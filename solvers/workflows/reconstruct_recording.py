@@ -6,6 +6,7 @@ from ..denoising import Planted, PlantSettings
 from ..motion import JointRecording, Motion, Skeleton
 from ..progress import Progress, unwatched, within
 from ..reconstruction.follow_joints import follow_joints
+from ..reconstruction.posture_library import PostureLibrary
 from ..reconstruction.result import Reconstruction
 from .known_body import check_size, gap_remarks, known_body
 from .rough_reconstruct import ReconstructSettings, reconstruct
@@ -38,7 +39,7 @@ class ReconstructedMotion:
 
 def reconstruct_recording(
     recording: JointRecording,
-    postures: None = None,
+    postures: PostureLibrary | None = None,
     prior: None = None,
     *,
     skeleton: Skeleton | None = None,

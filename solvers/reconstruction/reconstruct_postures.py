@@ -1,0 +1,118 @@
+"""Rebuild the postures of a recording from those of clean clips."""
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..errors import InvalidMotionError
+from ..motion import JointRecording, motion_from_points
+from ..progress import Progress, unwatched, within
+from .body_size import body_lengths
+from .follow_postures import follow_postures
+from .heading import normalise
+from .other_joints import all_joints, anchors
+from .posture_joints import N_JOINTS, POSTURE_JOINTS, joints_of_names, posture_positions
+from .posture_library import PostureLibrary, load_posture_library
+from .posture_settings import USUAL, PostureMethod, PostureSettings
+from .reliability import Reliability, measure_reliability
+from .result import Reconstruction
+
+Array = NDArray[np.float64]
+
+FEWEST = 4
+"""Joints of postures that must be seen together in some frame."""
+
+
+def reconstruct_postures(
+    recording: JointRecording,
+    postures: PostureLibrary | None = None,
+    *,
+    settings: PostureSettings = USUAL,
+    reliability: Reliability | None = None,
+    progress: Progress = unwatched,
+) -> Reconstruction:
+    """Rebuild what a depth camera lost, with postures of clean clips [1]_.
+
+    For each frame the postures of the library that are like what was seen, joint by joint as
+    trusted, span a space of principal components (local PCA), in which the posture is chosen.
+    Joints that were trusted then stay where they were seen; how the others differ from what
+    was chosen leads over from before to after their loss. The library is brought to the actor's
+    bone lengths and to the tracker's idea of a body, so that joints need not be.
+
+    Parameters
+    ----------
+    recording : JointRecording
+        15 to 32 joints, among them the hips.
+    postures : PostureLibrary, optional
+        The one that is shipped by default.
+    settings : PostureSettings
+    reliability : Reliability, optional
+        That of `measure_reliability` by default.
+    progress : Progress
+
+    Returns
+    -------
+    Reconstruction
+        Every joint in every frame, except those that are never seen; bones between the joints
+        of postures have constant lengths.
+
+    Raises
+    ------
+    InvalidMotionError
+        No body is recognised in the names, or hardly a joint was ever seen.
+    SolveCancelled
+        Raised by `progress`.
+
+    References
+    ----------
+    .. [1] Shum, Ho, Jiang, Takagi (2013). Real-time posture reconstruction for Microsoft
+       Kinect. IEEE Transactions on Cybernetics 43(5), sections V and VI.
+    """
+    library = load_posture_library() if postures is None else postures
+    if reliability is None:
+        reliability = measure_reliability(recording, progress=within(progress, 0.0, 0.1))
+    positions = posture_positions(recording)
+    trust = _posture_trust(recording, positions, reliability.combined)
+    if (trust > 0.0).sum(axis=1).max(initial=0) < FEWEST:
+        raise InvalidMotionError(
+            f"No frame shows {FEWEST} joints of a body; choose a recording of an actor who was"
+            " tracked."
+        )
+    rate = recording.frame_rate
+    seen = normalise(positions, rate, trust)
+    lengths = body_lengths(seen.postures, trust)
+    found = follow_postures(
+        seen, trust, rate, lengths, library, settings, within(progress, 0.1, 0.9)
+    )
+    tracks = recording.tracks
+    after = seen.put_back(found.postures)
+    joints = all_joints(tracks.names, tracks.positions, reliability.combined, positions, after)
+    joints[:, ~tracks.visible.any(axis=0)] = np.nan
+    rebuilt = tracks.with_positions(joints)
+    motion = motion_from_points(rebuilt, recording.parents)
+    progress(1.0, "Reconstructed")
+    return Reconstruction(
+        rebuilt, motion, reliability, found.confidence[:, anchors(tracks.names)],
+        _words(settings, library),
+    )  # fmt: skip
+
+
+def _posture_trust(recording: JointRecording, positions: Array, combined: Array) -> Array:
+    """Return how far each joint of postures is trusted; 0 where it was not seen."""
+    trust = np.zeros((recording.n_frames, N_JOINTS))
+    for role, place in joints_of_names(recording.names).items():
+        trust[:, POSTURE_JOINTS.index(role)] = combined[:, place]
+    return np.where(np.isfinite(positions).all(axis=-1), trust, 0.0)
+
+
+def _words(settings: PostureSettings, library: PostureLibrary) -> str:
+    ways = {
+        PostureMethod.PROBABLE: "most probable postures",
+        PostureMethod.ENERGY: "postures of least energy",
+        PostureMethod.PUBLISHED: "postures by stochastic search",
+    }
+    when = ", causal" if settings.causal else ""
+    of = f" ({library.trained_on})" if library.trained_on else ""
+    return (
+        f"{ways[settings.method]} among {settings.n_neighbours} neighbours of"
+        f" {library.n_postures}{of}{when}"
+    )

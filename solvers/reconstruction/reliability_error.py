@@ -1,0 +1,152 @@
+"""How far a joint is probably off: learned from takes that an optical system saw as well.
+
+Two signs are weighed, in metres: how far the joint is off its own smoothed path, and how far
+the segments at it are off their lengths. Errors as large as these signs are not rare, but signs
+are small where a joint is at rest in the wrong place: that is not seen here.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.ndimage import gaussian_filter1d, uniform_filter1d
+from scipy.special import ndtr
+
+from .reliability_settings import SENSOR_RATE
+from .reliability_terms import frames_in, lengths_of, weighted_sum
+
+Array = NDArray[np.float64]
+
+SMOOTH = 0.08
+"""Seconds of the Gaussian that makes the path that a joint should have had."""
+AGITATED = 0.8
+"""Seconds over which deviations from that path count for a joint."""
+STRETCHED = 0.2
+"""Seconds over which errors of lengths count."""
+CENTIMETRE = 0.01
+
+
+@dataclass(frozen=True)
+class ErrorModel:
+    """The logarithm of the error, plus a centimetre, is normal about a line over the signs'."""
+
+    length_share: float
+    """What an error of length counts, compared with a deviation from the smoothed path."""
+    floor: float
+    """Metres added to the signs before the logarithm is taken."""
+    level: float
+    slope: float
+    spread: float
+
+    def sign(self, signs: "Signs") -> Array:
+        """Return the logarithm of both signs together."""
+        both = np.hypot(signs.deviation, self.length_share * signs.stretch)
+        return np.asarray(np.log(both + self.floor))
+
+    def chance_within(self, signs: "Signs", tolerance: float) -> Array:
+        """Return the probability that a joint is no farther off than that, in metres."""
+        expected = self.level + self.slope * self.sign(signs)
+        return np.asarray(ndtr((np.log(tolerance + CENTIMETRE) - expected) / self.spread))
+
+
+CENTRED = ErrorModel(length_share=0.2, floor=0.002, level=-0.902, slope=0.559, spread=0.408)
+CAUSAL = ErrorModel(length_share=0.5, floor=0.002, level=-1.807, slope=0.405, spread=0.460)
+"""From all subjects of UI-PRMD: `python -m tests.benchmarks.bench_reliability --fit`."""
+
+
+@dataclass(frozen=True, eq=False)
+class Signs:
+    """What betrays errors, shape (n_frames, n_joints), metres."""
+
+    deviation: Array
+    """Root mean square over `AGITATED` of the distance from the smoothed path."""
+    stretch: Array
+    """The same over `STRETCHED` of the greatest error of length of the segments that meet."""
+
+
+def signs_of_error(
+    positions: Array,
+    wrong_lengths: Array,
+    parents: NDArray[np.intp],
+    frame_rate: float,
+    causal: bool,
+) -> Signs:
+    """Look for signs of errors; 0 where there is nothing to see.
+
+    Parameters
+    ----------
+    positions : shape (n_frames, n_joints, 3), metres
+    wrong_lengths : shape (n_frames, n_joints), metres
+        How far the segment above each joint is off its length; NaN where that is not known.
+    parents : shape (n_joints,)
+    frame_rate : float, hertz
+    causal : bool
+        True: look at past frames only, and at second differences instead of a smoothed path.
+    """
+    off = _second_differences if causal else _off_the_smooth_path
+    deviation = _root_mean_square(off(positions, frame_rate), AGITATED, frame_rate, causal)
+    greatest = np.where(np.isfinite(wrong_lengths), np.abs(wrong_lengths), 0.0)
+    at_segments = greatest.copy()
+    for joint, parent in enumerate(parents):
+        if parent >= 0:
+            np.maximum(greatest[:, parent], at_segments[:, joint], out=greatest[:, parent])
+    return Signs(deviation, _root_mean_square(greatest, STRETCHED, frame_rate, causal))
+
+
+def _off_the_smooth_path(positions: Array, frame_rate: float) -> Array:
+    """Return distances from the smoothed path, (n_frames, n_joints); NaN where not seen.
+
+    Beyond its ends a path goes on as it came, turned about: a steady walk has no distance.
+    """
+    filled = _bridged(positions)
+    n_more = min(len(filled) - 1, int(4.0 * SMOOTH * frame_rate) + 1)
+    before = 2.0 * filled[:1] - filled[n_more:0:-1]
+    after = 2.0 * filled[-1:] - filled[-2 : -n_more - 2 : -1]
+    longer = np.concatenate([before, filled, after[:n_more]])
+    smooth = gaussian_filter1d(longer, SMOOTH * frame_rate, axis=0, truncate=3.0)
+    return lengths_of(positions - smooth[n_more : n_more + len(filled)])
+
+
+def _second_differences(positions: Array, frame_rate: float) -> Array:
+    """Return how far a joint is from where its last two places led; NaN where not known."""
+    step = frames_in(1.0 / SENSOR_RATE, frame_rate)
+    off = np.full(positions.shape[:2], np.nan)
+    if len(positions) > 2 * step:
+        now, once, before = positions[2 * step :], positions[step:-step], positions[: -2 * step]
+        off[2 * step :] = lengths_of(now - 2.0 * once + before)
+    return off
+
+
+def _bridged(positions: Array) -> Array:
+    """Fill gaps along straight lines, and at the ends with the nearest place."""
+    seen = np.isfinite(positions).all(axis=-1)
+    filled = np.where(seen[..., None], positions, 0.0)
+    frames = np.arange(len(positions))
+    for joint in np.flatnonzero(seen.any(axis=0) & ~seen.all(axis=0)):
+        known = seen[:, joint]
+        for axis in range(3):
+            filled[:, joint, axis] = np.interp(
+                frames, frames[known], positions[known, joint, axis]
+            )
+    return filled
+
+
+def _root_mean_square(values: Array, window: float, frame_rate: float, causal: bool) -> Array:
+    """Average over what is known, most over the nearest frames."""
+    known = np.isfinite(values)
+    squares: Array = np.square(np.where(known, values, 0.0))
+    n_averaged = frames_in(window, frame_rate)
+    if causal:
+        weights = np.linspace(1.0, 0.0, 2 * n_averaged, endpoint=False)
+        total = weighted_sum(squares, weights, causal)
+        share = weighted_sum(known.astype(np.float64), weights, causal)
+        return np.asarray(np.sqrt(total / np.maximum(share, 1e-9)))
+    n_averaged = 2 * (n_averaged // 2) + 1
+    for _ in range(2):
+        squares = uniform_filter1d(squares, n_averaged, axis=0, mode="nearest")
+    if known.all():
+        return np.asarray(np.sqrt(np.maximum(squares, 0.0)))
+    share = known.astype(np.float64)
+    for _ in range(2):
+        share = uniform_filter1d(share, n_averaged, axis=0, mode="nearest")
+    return np.asarray(np.sqrt(np.maximum(squares, 0.0) / np.maximum(share, 1e-9)))

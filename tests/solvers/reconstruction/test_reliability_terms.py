@@ -1,0 +1,166 @@
+"""The terms of reliability, against cases worked out by hand from [SHJT13], eq. 3 to 8."""
+
+import numpy as np
+import pytest
+from numpy.testing import assert_allclose
+
+from solvers.motion import JointRecording, Sensor, Tracks
+from solvers.reconstruction import ReliabilityMethod, ReliabilitySettings, measure_reliability
+from solvers.reconstruction.reliability_terms import (
+    behaviour_term,
+    gaussian_mean,
+    kinematics_term,
+)
+
+CAUSAL = ReliabilitySettings(causal=True)
+PUBLISHED = ReliabilitySettings(method=ReliabilityMethod.PUBLISHED)
+
+
+def path_that_turns(*turns: float, length: float = 0.1) -> np.ndarray:
+    """One joint that goes on by equal lengths in a plane and turns by these degrees."""
+    ways = np.radians(np.cumsum([0.0, *turns]))
+    moves = length * np.stack([np.cos(ways), np.sin(ways), 0.0 * ways], axis=-1)
+    return np.concatenate([np.zeros((1, 3)), np.cumsum(moves, axis=0)])[:, None]
+
+
+@pytest.mark.parametrize(
+    ("turns", "expected"),
+    [
+        ((90.0, 90.0, 90.0), 1.0),
+        ((120.0, 120.0, 120.0), 1.0 / 3.0),  # 1 - (120 - 90) / (135 - 90)
+        ((180.0, 90.0, 90.0), 1.0 / 3.0),  # the same mean
+        ((135.0, 135.0, 135.0), 0.0),
+        ((180.0, 180.0, 180.0), 0.0),  # to and fro
+        ((180.0, 0.0, 0.0), 1.0),  # one spike alone is not held against a joint
+    ],
+)
+def test_the_behaviour_term_is_that_of_the_mean_turn(turns, expected):
+    term = behaviour_term(path_that_turns(*turns), 30.0, CAUSAL)
+
+    assert term[-1, 0] == pytest.approx(expected, abs=1e-6)
+
+
+@pytest.mark.parametrize(("length", "expected"), [(0.0299, 1.0), (0.0301, 0.0)])
+def test_what_moves_less_than_three_centimetres_does_not_vibrate(length, expected):
+    path = path_that_turns(180.0, 180.0, 180.0, length=length)
+
+    assert behaviour_term(path, 30.0, CAUSAL)[-1, 0] == pytest.approx(expected, abs=1e-6)
+
+
+def test_vibration_is_asked_of_the_past_only_if_so_told():
+    path = path_that_turns(*[0.0] * 9, *[180.0] * 10)
+    changed = path.copy()
+    changed[12:] = 5.0
+
+    before = behaviour_term(path, 30.0, CAUSAL)
+    after = behaviour_term(changed, 30.0, CAUSAL)
+
+    assert_allclose(after[:12], before[:12])
+    assert before[13, 0] == pytest.approx(0.0)  # frames 10 to 12 turned back
+    assert behaviour_term(path, 30.0, PUBLISHED)[11, 0] == pytest.approx(0.0)
+
+
+def test_the_same_vibration_is_seen_at_any_frame_rate():
+    time = np.arange(240) / 120.0
+    path = np.zeros((240, 1, 3))
+    path[:, 0, 0] = 0.08 * np.sin(2.0 * np.pi * 12.0 * time + 0.3)
+    rates = {30.0: 4, 60.0: 2, 120.0: 1}
+
+    means = [
+        behaviour_term(path[::step], rate, PUBLISHED)[step:-step].mean()
+        for rate, step in rates.items()
+    ]
+
+    assert max(means) < 0.65
+    assert np.ptp(means) < 0.1
+
+
+def test_the_kinematics_term_is_the_mean_over_segments_that_meet():
+    """A root with two children, one of which has a child: segments of 0.5, 0.4 and 0.2 m."""
+    parents = np.array([-1, 0, 0, 1])
+    reference = np.array([np.nan, 0.5, 0.4, 0.2])
+    lengths = np.array([[np.nan, 0.6, 0.4, 0.5]])
+
+    term = kinematics_term(lengths, reference, parents)
+
+    ratios = {1: 0.2, 2: 0.0, 3: 1.0}  # eq. 5: 0.1 / 0.5, nothing, and 0.3 / 0.2 cut off at 1
+    assert_allclose(
+        term[0],
+        [
+            1.0 - (ratios[1] + ratios[2]) / 2.0,
+            1.0 - (ratios[1] + ratios[3]) / 2.0,
+            1.0,
+            0.0,
+        ],
+        atol=1e-12,
+    )
+
+
+def test_segments_that_are_not_seen_do_not_count():
+    parents = np.array([-1, 0, 0])
+    lengths = np.array([[np.nan, 0.6, np.nan]])
+
+    term = kinematics_term(lengths, np.array([np.nan, 0.5, 0.4]), parents)
+
+    assert_allclose(term[0], [0.8, 0.8, 1.0])
+
+
+def test_the_window_is_six_frames_with_most_weight_on_the_present():
+    """Eq. 8, written out for a joint that is lost in one frame."""
+    lost = np.ones((20, 1))
+    lost[10] = 0.0
+    weights = np.exp(-0.5 * (np.arange(6) / 2.0) ** 2)
+
+    mean = gaussian_mean(lost, 30.0, CAUSAL)
+
+    assert_allclose(mean[:10], 1.0)
+    assert_allclose(mean[10:16, 0], 1.0 - weights / weights.sum(), atol=1e-12)
+    assert_allclose(mean[16:], 1.0)
+
+
+def test_the_window_lies_on_both_sides_offline():
+    lost = np.ones((21, 1))
+    lost[10] = 0.0
+
+    mean = gaussian_mean(lost, 30.0, PUBLISHED)[:, 0]
+
+    assert_allclose(mean, mean[::-1], atol=1e-12)
+    assert mean.argmin() == 10
+    assert (mean < 1.0 - 1e-9).sum() == 7
+
+
+def still(n_frames: int = 40, state: np.ndarray | None = None) -> JointRecording:
+    names = ("ShoulderLeft", "ElbowLeft", "WristLeft")
+    places = np.tile([[0.0, 2.0, 1.4], [0.3, 2.0, 1.4], [0.55, 2.0, 1.4]], (n_frames, 1, 1))
+    return JointRecording(Tracks(names, places, 30.0), state, Sensor.KINECT_V2)
+
+
+def test_tracking_states_count_as_told():
+    state = np.full((40, 3), 2)
+    state[:, 1], state[:, 2] = 1, 0
+
+    strict = measure_reliability(still(state=state))
+    mild = measure_reliability(still(state=state), settings=ReliabilitySettings(inferred=0.4))
+
+    assert_allclose(strict.tracking, np.tile([1.0, 0.0, 0.0], (40, 1)))
+    assert_allclose(mild.tracking, np.tile([1.0, 0.4, 0.0], (40, 1)))
+    assert_allclose(mild.combined[:, 1], 0.4)
+
+
+def test_published_is_the_least_term_seen_through_the_window():
+    recording = still()
+    rng = np.random.default_rng(2)
+    places = recording.tracks.positions + rng.normal(scale=0.06, size=(40, 3, 3))
+    state = np.where(rng.random((40, 3)) < 0.2, 1, 2)
+    noisy = JointRecording(recording.tracks.with_positions(places), state, Sensor.KINECT_V2)
+    settings = ReliabilitySettings(method=ReliabilityMethod.PUBLISHED, causal=True)
+
+    found = measure_reliability(noisy, settings=settings)
+
+    least = np.minimum(np.minimum(found.behaviour, found.kinematics), found.tracking)
+    weights = np.exp(-0.5 * (np.arange(6) / 2.0) ** 2)
+    for frame in (0, 3, 17, 39):
+        past = least[max(frame - 5, 0) : frame + 1][::-1]
+        share = weights[: len(past)] / weights[: len(past)].sum()
+        assert_allclose(found.combined[frame], share @ past, atol=1e-12)
+    assert 0.05 < found.combined.mean() < 0.95
