@@ -120,7 +120,7 @@ libraries:
 	@if [ -L $(@D) ]; then echo "$(@D) is a link, and left as it is."; else \
 	    echo "Setting up $(@D), once: about a minute and 1.5 GB."; \
 	    "$$(.ci/find_python $(PYTHON))" -m venv --clear $(@D); \
-	    $(@D)/bin/python -m pip install -qq --no-compile --disable-pip-version-check -r $<; fi
+	    $(@D)/bin/python -m pip install -qq --no-deps --no-compile --disable-pip-version-check -r $<; fi
 	@touch $@
 
 clean:  ## remove what make made, the environments too

@@ -41,7 +41,7 @@ def read_cleaning(
     plants = choices.plant_feet and isinstance(found.raw, ArmatureTake)
     finish = Finish(
         strength=settings.denoising.strength,
-        ease=_ease(found.raw.grid),
+        ease=ease_of(found.raw.grid),
         chosen=found.chosen,
         present=found.present(),
         limits=found.limits(choices),
@@ -116,7 +116,7 @@ def _problem(
     )
 
 
-def _ease(grid: Grid) -> NDArray[np.float64]:
+def ease_of(grid: Grid) -> NDArray[np.float64]:
     """Rise from 0 and fall to 0 where the action goes on before or after the cleaned frames."""
     n_frames = len(grid.frames)
     ramp = np.minimum((np.arange(n_frames) + 1.0) / (EASE + 1.0), 1.0)

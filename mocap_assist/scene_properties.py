@@ -9,8 +9,10 @@ import bpy
 
 from .check_choices import CheckSettings
 from .clean_choices import CleanSettings
+from .reconstruct_choices import ReconstructBundle
 from .retarget_choices import RetargetBundle, UnbakeBundle
 from .settings_properties import settings_from
+from .simulating import SimulateBundle
 from .solving import SolveBundle
 
 
@@ -34,9 +36,19 @@ class MOCAP_PG_solve(bpy.types.PropertyGroup):
     """Settings of the button Make Skeleton."""
 
 
+@settings_from(SimulateBundle)
+class MOCAP_PG_simulate(bpy.types.PropertyGroup):
+    """Settings of the button Physics."""
+
+
 @settings_from(UnbakeBundle)
 class MOCAP_PG_unbake(bpy.types.PropertyGroup):
     """Settings of the button Unbake."""
+
+
+@settings_from(ReconstructBundle)
+class MOCAP_PG_reconstruct(bpy.types.PropertyGroup):
+    """Settings of the button Reconstruct."""
 
 
 class MOCAP_PG_bone_pair(bpy.types.PropertyGroup):
@@ -77,6 +89,8 @@ class MOCAP_PG_scene(bpy.types.PropertyGroup):
     clean: bpy.props.PointerProperty(type=MOCAP_PG_clean)
     check: bpy.props.PointerProperty(type=MOCAP_PG_check)
     solve: bpy.props.PointerProperty(type=MOCAP_PG_solve)
+    reconstruct: bpy.props.PointerProperty(type=MOCAP_PG_reconstruct)
+    simulate: bpy.props.PointerProperty(type=MOCAP_PG_simulate)
     retarget: bpy.props.PointerProperty(type=MOCAP_PG_retarget)
     unbake: bpy.props.PointerProperty(type=MOCAP_PG_unbake)
     bone_map: bpy.props.PointerProperty(type=MOCAP_PG_bone_map)
@@ -101,7 +115,9 @@ CLASSES = (
     MOCAP_PG_check,
     MOCAP_PG_solve,
     MOCAP_PG_retarget,
+    MOCAP_PG_simulate,
     MOCAP_PG_unbake,
+    MOCAP_PG_reconstruct,
     MOCAP_PG_bone_pair,
     MOCAP_PG_bone_map,
     MOCAP_PG_spot,

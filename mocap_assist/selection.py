@@ -53,6 +53,13 @@ def why_not_plant(context: bpy.types.Context) -> str:
     return why_not_clean(context)
 
 
+def why_not_simulate(context: bpy.types.Context) -> str:
+    """Return why nothing can be simulated, or nothing."""
+    if selected_armature(context) is None:
+        return "Select an armature that plays a captured action."
+    return why_not_clean(context)
+
+
 def why_not_retarget(context: bpy.types.Context) -> str:
     """Return why nothing can be retargeted, or nothing."""
     armature = selected_armature(context)

@@ -46,7 +46,7 @@ def test_tests_run_with_the_libraries_that_are_shipped(blender):
     pins = requirements(ROOT / ".ci" / f"requirements-{blender}.txt")
 
     for name, version in {tuple(wheel.split("-")[:2]) for wheel in WHEELS}:
-        assert pins.get(name) == version
+        assert pins.get(name.replace("_", "-")) == version
 
 
 @pytest.mark.parametrize("blender", ["4.5", "5.2"])

@@ -23,6 +23,7 @@ from ..scene import history
 from ..scene.armature_read import read_take
 from ..scene.marker_take import read_markers
 from ..selection import played_result, played_source
+from .reconstruct_verb import add_reconstruct_options, perform_reconstruct
 from .retarget_verbs import (
     add_retarget_options,
     add_unbake_options,
@@ -30,6 +31,7 @@ from .retarget_verbs import (
     perform_unbake,
     retarget_target,
 )
+from .simulate_verb import add_simulate_options, perform_simulate
 
 Bundle = TypeVar("Bundle", bound=NamedTuple)
 Said = tuple[str, dict[str, Any]]
@@ -174,6 +176,18 @@ VERBS = {
         _convert,
         writes=False,
         check=_check_targets,
+    ),
+    "reconstruct": Verb(
+        "Rebuild poses that a depth camera lost or mistook, and plant feet.",
+        add_reconstruct_options,
+        perform_reconstruct,
+        on_markers=False,
+    ),
+    "simulate": Verb(
+        "Let a body with mass and muscles, on solid ground, make the motions of armatures.",
+        add_simulate_options,
+        perform_simulate,
+        on_markers=False,
     ),
     "retarget": Verb(
         "Let another armature make the motions of an armature.",

@@ -181,7 +181,7 @@ def clean(
     planted = _planted(body, finish, within(progress, 0.8, 0.9))
     moved = finish.chosen
     if planted is not None:
-        eased = _toward(body, planted.motion, finish.ease[:, None])
+        eased = toward(body, planted.motion, finish.ease[:, None])
         moved |= differing(body, eased)
         body = eased
     contacts = None if planted is None else planted.contacts
@@ -219,10 +219,10 @@ def _mixed(
     start = clean.with_poses(
         _first_known(turns, clean.rotations), _first_known(place, clean.root_positions)
     )
-    return _toward(start, clean, share)
+    return toward(start, clean, share)
 
 
-def _toward(start: Motion, stop: Motion, share: Array) -> Motion:
+def toward(start: Motion, stop: Motion, share: Array) -> Motion:
     """Turn and shift by a share, shape (n_frames, n_joints or 1), of the way."""
     moved = start.root_positions + share[:, :1] * (stop.root_positions - start.root_positions)
     return start.with_poses(slerp(start.rotations, stop.rotations, share), moved)

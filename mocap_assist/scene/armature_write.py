@@ -26,7 +26,8 @@ from .take import ArmatureTake
 Array = NDArray[np.float64]
 KeyTypes = Mapping[str, NDArray[np.uint8]]
 SUFFIX = ".clean"
-NUMBERED = re.compile(r"\.clean(\.\d{3,})?$")  # as Blender names a second result
+NUMBERED = re.compile(r"\.(clean|physics|reconstructed)(\.\d{3,})?$")
+"""As Blender names a second result."""
 
 
 class Output(Enum):
@@ -42,6 +43,8 @@ def write_take(
     take: ArmatureTake,
     bones: Collection[str],
     key_types: KeyTypes,
+    *,
+    suffix: str = SUFFIX,
 ) -> Source:
     """Copy an action and replace the rotation and location keys of some of its bones.
 
@@ -56,13 +59,14 @@ def write_take(
         than the bone's own, and Euler or location channels that have no keys.
     key_types : per bone name, shape (n_frames,)
         Blender's type of each key.
+    suffix : ending of the result's name
 
     Returns
     -------
     action, slot
-        Named like the source with `.clean`, and kept by a fake user.
+        Named like the source with the suffix, and kept by a fake user.
     """
-    action = copy_of(source[0])
+    action = copy_of(source[0], suffix)
     slot = same_slot(action, source[1])
     curves = animated_curves(action, slot)
     rotations, locations = take.bone_rotations(), take.bone_locations()
@@ -126,10 +130,10 @@ def check_writable(armature: bpy.types.Object) -> None:
         )
 
 
-def copy_of(original: bpy.types.Action) -> bpy.types.Action:
-    """Return a copy, named like the original with `.clean`, and kept by a fake user."""
+def copy_of(original: bpy.types.Action, suffix: str = SUFFIX) -> bpy.types.Action:
+    """Return a copy, named like the original with an ending, and kept by a fake user."""
     action = original.copy()
-    action.name = NUMBERED.sub("", original.name) + SUFFIX
+    action.name = NUMBERED.sub("", original.name) + suffix
     action.use_fake_user = True
     return action
 

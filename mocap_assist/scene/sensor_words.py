@@ -1,6 +1,6 @@
 """How well a sensor saw each joint or marker: custom properties, keyed where they change."""
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 
 import bpy
 import numpy as np
@@ -8,6 +8,7 @@ from numpy.typing import NDArray
 
 from ...solvers.motion import JointRecording, Motion, Tracks
 from . import compat
+from .bone_channels import bone_path
 from .curves import CONSTANT, write_first
 
 Array = NDArray[np.float64]
@@ -15,6 +16,7 @@ CONFIDENCE = "mocap_confidence"
 """Custom property of a bone or an empty: 0 to 1, how sure the sensor is of it."""
 STATE = "mocap_tracking_state"
 """Likewise: 2 tracked, 1 inferred from other joints, 0 not tracked."""
+TRACKED = 2.0
 
 
 def words_of(recording: Motion | Tracks | JointRecording) -> dict[str, dict[str, Array]]:
@@ -45,3 +47,24 @@ def write_words(
         curve = compat.new_curve(bag, f'{path}["{name}"]', 0, group)
         changes = np.append(True, values[1:] != values[:-1])
         write_first(curve, frames[changes], values[changes].astype(float), CONSTANT)
+
+
+def read_states(
+    source: compat.Source, bones: Sequence[str], frames: Array
+) -> NDArray[np.int8] | None:
+    """Return what the sensor said of each bone's joint, shape (n_frames, n_bones): 2, 1, 0.
+
+    A bone of which nothing was said counts as tracked; None where nothing was said of any.
+    """
+    bag = compat.channelbag(*source)
+    if bag is None:
+        return None
+    paths = [f'{bone_path(bone, "").removesuffix(".")}["{STATE}"]' for bone in bones]
+    curves = [bag.fcurves.find(path) for path in paths]
+    if not any(curves):
+        return None
+    said = np.full((len(frames), len(curves)), TRACKED)
+    for place, curve in enumerate(curves):
+        if curve is not None:
+            said[:, place] = [curve.evaluate(frame) for frame in frames]
+    return said.astype(np.int8)

@@ -3,6 +3,7 @@
 from . import (
     bone_list,
     example_list,
+    heat_switch,
     import_menu,
     manual,
     menus,
@@ -23,6 +24,7 @@ PARTS = (
     menus,
     import_menu,
     overlay_switch,
+    heat_switch,
     manual,
 )
 

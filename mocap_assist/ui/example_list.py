@@ -2,7 +2,7 @@
 
 from collections.abc import Iterable
 from pathlib import Path
-from typing import ClassVar
+from typing import Any, ClassVar
 
 import bpy
 
@@ -11,7 +11,10 @@ from ..scene import history
 from ..selection import selected_armature
 
 ADD, ADD_FILES = "mocap_assist.add_example", "mocap_assist.add_example_files"
+ADD_FOLDER = "mocap_assist.add_example_folder"
 REMOVE = "mocap_assist.remove_example"
+CLEAN, RECONSTRUCT = "clean", "reconstruct"
+"""Whose list it is: a property of `scene.mocap_assist`."""
 RECORDINGS = "*.bvh;*.amc;*.c3d;*.trc"
 CHANGES_A_LIST = {"INTERNAL", "UNDO"}
 LONGEST_MENU = 30
@@ -27,23 +30,26 @@ def joined(entries: Iterable[str]) -> str:
     return f"{SEPARATOR} ".join(dict.fromkeys(entries))
 
 
-def draw_examples(layout: bpy.types.UILayout, clean: bpy.types.PropertyGroup) -> None:
+def draw_examples(
+    layout: bpy.types.UILayout, settings: bpy.types.PropertyGroup, group: str = CLEAN
+) -> None:
     """Draw the examples, each with a button that takes it out."""
-    for index, name in enumerate(listed(clean.examples)):
+    for index, name in enumerate(listed(settings.examples)):
         row = layout.row(align=True)
         action = name in bpy.data.actions
         shown = name if action else Path(name).name
         row.label(text=shown, icon="ACTION" if action else "FILE", translate=False)
-        row.operator(REMOVE, text="", icon="X", emboss=False).index = index
-    layout.menu("MOCAP_MT_examples", icon="ADD")
+        button = row.operator(REMOVE, text="", icon="X", emboss=False)
+        button.index, button.group = index, group
+    layout.menu(MENUS[group], icon="ADD")
 
 
-def candidates(context: bpy.types.Context) -> list[str]:
+def candidates(context: bpy.types.Context, group: str = CLEAN) -> list[str]:
     """Return the actions that may serve: recordings and clean ones, but not the one played."""
     armature = selected_armature(context)
     animation = armature.animation_data if armature is not None else None
     played = animation.action if animation is not None else None
-    taken = listed(context.scene.mocap_assist.clean.examples)
+    taken = _examples(context, group)
     return [
         action.name
         for action in bpy.data.actions
@@ -57,22 +63,41 @@ class MOCAP_MT_examples(bpy.types.Menu):
     """Actions of this file, and recordings on disk."""
 
     bl_label = "Add Example"
+    group: ClassVar[str] = CLEAN
 
     def draw(self, context: bpy.types.Context) -> None:
         layout = self.layout
-        for name in candidates(context)[:LONGEST_MENU]:
-            layout.operator(ADD, text=name, translate=False, icon="ACTION").example = name
+        for name in candidates(context, self.group)[:LONGEST_MENU]:
+            button = layout.operator(ADD, text=name, translate=False, icon="ACTION")
+            button.example, button.group = name, self.group
         layout.separator()
-        layout.operator(ADD_FILES, icon="FILE_FOLDER")
+        layout.operator(ADD_FILES, icon="FILE_FOLDER").group = self.group
+        if self.group == RECONSTRUCT:
+            layout.operator(ADD_FOLDER, icon="FILE_FOLDER").group = self.group
 
 
-def _examples(context: bpy.types.Context) -> list[str]:
-    return listed(context.scene.mocap_assist.clean.examples)
+class MOCAP_MT_posture_examples(MOCAP_MT_examples):
+    """The same, of which postures are learned."""
+
+    bl_label = "Add Clip"
+    group: ClassVar[str] = RECONSTRUCT
 
 
-def _set_examples(context: bpy.types.Context, entries: list[str]) -> set[str]:
-    context.scene.mocap_assist.clean.examples = joined(entries)
+MENUS = {CLEAN: "MOCAP_MT_examples", RECONSTRUCT: "MOCAP_MT_posture_examples"}
+
+
+def _examples(context: bpy.types.Context, group: str) -> list[str]:
+    return listed(getattr(context.scene.mocap_assist, group).examples)
+
+
+def _set_examples(context: bpy.types.Context, group: str, entries: list[str]) -> set[str]:
+    getattr(context.scene.mocap_assist, group).examples = joined(entries)
     return {"FINISHED"}
+
+
+def _group() -> Any:
+    """Return a property that says whose list is meant."""
+    return bpy.props.StringProperty(default=CLEAN, options={"HIDDEN", "SKIP_SAVE"})
 
 
 class MOCAP_OT_add_example(bpy.types.Operator):
@@ -84,9 +109,12 @@ class MOCAP_OT_add_example(bpy.types.Operator):
     example: bpy.props.StringProperty(
         name="Action", description="Name of the action", options={"SKIP_SAVE"}
     )
+    group: _group()
 
     def execute(self, context: bpy.types.Context) -> set[str]:
-        return _set_examples(context, [*_examples(context), self.example])
+        return _set_examples(
+            context, self.group, [*_examples(context, self.group), self.example]
+        )
 
 
 class MOCAP_OT_remove_example(bpy.types.Operator):
@@ -98,10 +126,12 @@ class MOCAP_OT_remove_example(bpy.types.Operator):
     index: bpy.props.IntProperty(
         name="Example", description="Place in the list", min=0, options={"SKIP_SAVE"}
     )
+    group: _group()
 
     def execute(self, context: bpy.types.Context) -> set[str]:
-        entries = enumerate(_examples(context))
-        return _set_examples(context, [name for place, name in entries if place != self.index])
+        entries = enumerate(_examples(context, self.group))
+        kept = [name for place, name in entries if place != self.index]
+        return _set_examples(context, self.group, kept)
 
 
 class MOCAP_OT_add_example_files(bpy.types.Operator):
@@ -115,6 +145,7 @@ class MOCAP_OT_add_example_files(bpy.types.Operator):
         type=bpy.types.OperatorFileListElement, options={"HIDDEN", "SKIP_SAVE"}
     )
     filter_glob: bpy.props.StringProperty(default=RECORDINGS, options={"HIDDEN", "SKIP_SAVE"})
+    group: _group()
 
     def invoke(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
         context.window_manager.fileselect_add(self)
@@ -122,14 +153,34 @@ class MOCAP_OT_add_example_files(bpy.types.Operator):
 
     def execute(self, context: bpy.types.Context) -> set[str]:
         chosen = [str(Path(self.directory) / each.name) for each in self.files if each.name]
-        return _set_examples(context, [*_examples(context), *chosen])
+        return _set_examples(context, self.group, [*_examples(context, self.group), *chosen])
+
+
+class MOCAP_OT_add_example_folder(bpy.types.Operator):
+    bl_idname = ADD_FOLDER
+    bl_options: ClassVar = CHANGES_A_LIST
+    bl_label = "Folder on Disk..."
+    bl_description = "Learn from all clean recordings in a folder, of any rig"
+
+    directory: bpy.props.StringProperty(subtype="DIR_PATH", options={"HIDDEN", "SKIP_SAVE"})
+    group: _group()
+
+    def invoke(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
+        context.window_manager.fileselect_add(self)
+        return {"RUNNING_MODAL"}
+
+    def execute(self, context: bpy.types.Context) -> set[str]:
+        folder = str(Path(self.directory))
+        return _set_examples(context, self.group, [*_examples(context, self.group), folder])
 
 
 CLASSES = (
     MOCAP_MT_examples,
+    MOCAP_MT_posture_examples,
     MOCAP_OT_add_example,
     MOCAP_OT_remove_example,
     MOCAP_OT_add_example_files,
+    MOCAP_OT_add_example_folder,
 )
 
 

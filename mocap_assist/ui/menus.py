@@ -5,9 +5,11 @@ import bpy
 from .drawing import exists
 
 BUTTONS = (
+    "mocap_assist.reconstruct",
     "mocap_assist.denoise",
     "mocap_assist.measure_quality",
     "mocap_assist.plant_feet",
+    "mocap_assist.simulate",
     "mocap_assist.retarget",
     "mocap_assist.reduce_keys",
     "mocap_assist.revert_to_raw",

@@ -8,7 +8,9 @@ from .compare_panel import ComparePanel
 from .feet_panel import FeetPanel
 from .import_panel import ImportPanel
 from .markers_panel import MarkersPanel
+from .physics_panel import PhysicsPanel
 from .preferences import preferred
+from .reconstruct_panel import ReconstructPanel
 from .retarget_panel import RetargetPanel
 
 EDITORS = {"": "VIEW_3D", "_graph": "GRAPH_EDITOR", "_dopesheet": "DOPESHEET_EDITOR"}
@@ -27,10 +29,12 @@ def _in_every_editor(body: type) -> list[type[bpy.types.Panel]]:
 
 BODIES = (
     ImportPanel,
+    ReconstructPanel,
     CleanPanel,
     CheckPanel,
     ComparePanel,
     FeetPanel,
+    PhysicsPanel,
     MarkersPanel,
     RetargetPanel,
 )

@@ -47,6 +47,11 @@ TEXTS = {
     "Revert to Raw": ("元に戻す", "恢复原始", "Revenir au brut", "Volver al original"),
     "Left foot stands": ("左足が接地", "左脚着地", "Pied gauche posé", "Pie izquierdo apoyado"),
     "Right foot stands": ("右足が接地", "右脚着地", "Pied droit posé", "Pie derecho apoyado"),
+    "Reconstruct": ("再構成", "重建", "Reconstruire", "Reconstruir"),
+    "Postures": ("姿勢", "姿势", "Postures", "Posturas"),
+    "Trust in Colours": (
+        "信頼度を色で表示", "以颜色显示可信度", "Confiance en couleurs", "Confianza en colores",
+    ),
     "Retarget": ("リターゲット", "重定向", "Reciblage", "Redirigir"),
     "Find Bones": ("ボーンを探す", "查找骨骼", "Trouver les os", "Buscar huesos"),
     "Unbake": ("キーを間引く", "精简关键帧", "Alléger les clés", "Reducir claves"),

@@ -38,7 +38,7 @@ def work_on(
     verb: Verb, tasks: Sequence[Task], prepared: Any, n_jobs: int, screen: Screen
 ) -> Iterator[Finished]:
     """Yield every task as it is finished; a failure does not stop the others."""
-    if n_jobs == 1 or len(tasks) == 1:
+    if n_jobs == 1 or len(tasks) <= 1:
         for number, task in enumerate(tasks, start=1):
             screen.title = f"[{number}/{len(tasks)}] {task.source.name}"
             yield _attempt(verb, task, prepared, screen.progress)

@@ -19,6 +19,8 @@ from ..recordings import (
 MOTIONS = ".bvh"
 POINTS = {".c3d": write_c3d, ".trc": write_trc}
 FOR_MOTIONS = {MOTIONS: "a skeleton's motion"}
+JOINTS = ".csv"
+FOR_JOINTS = {JOINTS: "joints"}
 RECORDED = {**FOR_MOTIONS, **dict.fromkeys(POINTS, "points")}
 """Endings of recordings that can be written, and what each is for."""
 POINTS_BY_DEFAULT = ".trc"

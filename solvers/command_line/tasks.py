@@ -1,12 +1,14 @@
 """Which file is read, which is written: decided, and refused, before any work is done."""
 
 import argparse
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 
 from ..errors import InvalidSettingError
 from .files import (
+    FOR_JOINTS,
     FOR_MOTIONS,
+    JOINTS,
     LEARNED,
     MOTIONS,
     RECORDED,
@@ -54,18 +56,26 @@ def _pairs(verb: Verb, arguments: argparse.Namespace) -> list[tuple[Path, Path]]
         if folder.exists() and not folder.is_dir():
             raise InvalidSettingError(f"{folder} is a file; name a folder to write to.")
         found = found_in(files, not_in=folder)
-        endings = [_ending(verb, path) for path, _ in found]
+        endings = [_ending(verb, path, arguments) for path, _ in found]
         places = told_apart([place for _, place in found], endings)
         pairs = [(path, folder / place) for (path, _), place in zip(found, places, strict=True)]
     _refuse_reading_and_writing(*zip(*pairs, strict=True))
     for _, target in pairs:
         if folder is not None:
             target.parent.mkdir(parents=True, exist_ok=True)
-        refuse_target(target, FOR_MOTIONS if verb.writes_motions else RECORDED)
+        refuse_target(target, _endings(verb))
     return pairs
 
 
-def _ending(verb: Verb, source: Path) -> str:
+def _endings(verb: Verb) -> Mapping[str, str]:
+    if not verb.writes_motions:
+        return RECORDED
+    return FOR_MOTIONS | FOR_JOINTS if verb.writes_joints else FOR_MOTIONS
+
+
+def _ending(verb: Verb, source: Path, arguments: argparse.Namespace) -> str:
+    if verb.writes_joints and arguments.joints:
+        return JOINTS
     return MOTIONS if verb.writes_motions else ending_for(source)
 
 

@@ -63,5 +63,7 @@ class Verb:
     makes: Makes = Makes.FILES
     writes_motions: bool = False
     """Whether it makes skeletons' motions, whatever it reads."""
+    writes_joints: bool = False
+    """Whether it can also write tracked joints."""
     prepare: Callable[[argparse.Namespace, Progress], Any] = nothing_to_prepare
     """Its result serves all tasks, and must be fit to be sent to another process."""

@@ -14,6 +14,7 @@ from .convert import convert
 from .denoise_verb import add_denoise_options, learn_once, perform_denoise
 from .files import add_reading_options, read, read_all
 from .options import arguments_from, settings_from_arguments
+from .reconstruct_verb import add_reconstruct_options, perform_reconstruct
 from .retarget_verbs import (
     add_retarget_options,
     add_unbake_options,
@@ -21,6 +22,7 @@ from .retarget_verbs import (
     perform_unbake,
     read_target,
 )
+from .simulate_verb import add_simulate_options, perform_simulate
 from .solve_verb import add_solve_options, perform_solve
 from .verb import Makes, Outcome, Task, Verb
 
@@ -93,6 +95,18 @@ VERBS = {
         add_solve_options,
         perform_solve,
         writes_motions=True,
+    ),
+    "reconstruct": Verb(
+        "Rebuild clean poses from the joints that a depth camera's tracker saw.",
+        add_reconstruct_options,
+        perform_reconstruct,
+        writes_motions=True,
+        writes_joints=True,
+    ),
+    "simulate": Verb(
+        "Let a body with mass and muscles, on solid ground, make motions of a skeleton.",
+        add_simulate_options,
+        perform_simulate,
     ),
     "convert": Verb(
         "Write recordings of any known format as BVH, or as C3D or TRC where they are points.",

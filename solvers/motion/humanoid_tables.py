@@ -70,6 +70,11 @@ TABLES: dict[str, tuple[str, ...]] = {
         "Collar", "UpArm", "ForeArm", "Hand",
         "UpLeg", "LowLeg", "Foot", "Toes",
     ),
+    "OpenNI": (  # fifteen joints; hands and feet are where wrists and ankles are
+        "", "torso", "", "", "Neck", "Head",
+        "", "Shoulder", "Elbow", "Hand",
+        "Hip", "Knee", "Foot", "",
+    ),
     "Kinect v1": (
         "HipCenter HipCentre Hip", "Spine", "", "", "ShoulderCenter ShoulderCentre", "Head",
         "", "Shoulder", "Elbow", "Wrist",

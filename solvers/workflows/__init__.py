@@ -1,5 +1,20 @@
 """What joins families: whole ways from a recording to a result."""
 
 from .motion_from_markers import MarkerMotion, MarkerMotionSettings, motion_from_markers
+from .reconstruct_motion import RebuiltMotion, reconstruct_motion
+from .reconstruct_recording import ReconstructedMotion, reconstruct_recording
+from .rough_reconstruct import ReconstructSettings
+from .try_to_plant import Footing, try_to_plant
 
-__all__ = ["MarkerMotion", "MarkerMotionSettings", "motion_from_markers"]
+__all__ = [
+    "Footing",
+    "MarkerMotion",
+    "MarkerMotionSettings",
+    "RebuiltMotion",
+    "ReconstructSettings",
+    "ReconstructedMotion",
+    "motion_from_markers",
+    "reconstruct_motion",
+    "reconstruct_recording",
+    "try_to_plant",
+]

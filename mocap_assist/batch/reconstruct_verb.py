@@ -1,0 +1,50 @@
+"""The verb `reconstruct`: what the button Reconstruct does."""
+
+import argparse
+from dataclasses import replace
+from typing import Any, get_type_hints
+
+import bpy
+
+from ...solvers.command_line import arguments_from, settings_from_arguments
+from ...solvers.progress import Progress
+from ..examples import SEPARATOR
+from ..jobs.job import run
+from ..reconstruct_choices import Postures, ReconstructBundle
+from ..reconstructing import read_reconstructing, write_reconstructed
+from ..scene import history
+from ..selection import played_result
+
+
+def add_reconstruct_options(parser: argparse.ArgumentParser) -> None:
+    """Add the options of `reconstruct`; those of the button."""
+    parser.add_argument(
+        "--train", nargs="+", default=[], metavar="FILE",
+        help="clean recordings, or folders of them, to learn postures from; short for"
+        " --postures examples --examples",
+    )  # fmt: skip
+    arguments_from(parser, *get_type_hints(ReconstructBundle).values())
+
+
+def perform_reconstruct(
+    scene: bpy.types.Scene,
+    armature: bpy.types.Object,
+    arguments: argparse.Namespace,
+    progress: Progress,
+) -> tuple[str, dict[str, Any]]:
+    """Rebuild what the armature plays."""
+    classes = get_type_hints(ReconstructBundle)
+    settings = ReconstructBundle(**{
+        name: settings_from_arguments(arguments, each) for name, each in classes.items()
+    })
+    if arguments.train:
+        choices = replace(
+            settings.choices,
+            postures=Postures.EXAMPLES,
+            examples=SEPARATOR.join(arguments.train),
+        )
+        settings = settings._replace(choices=choices)
+    rebuilt = run(read_reconstructing(scene, armature, settings), progress)
+    sentence = write_reconstructed(scene, armature, settings, rebuilt)
+    action, _ = played_result(armature)
+    return sentence, {"action": action.name} | history.history(action)[-1]

@@ -1,0 +1,32 @@
+"""The verb `simulate`: what the button Physics does."""
+
+import argparse
+from typing import Any
+
+import bpy
+
+from ...solvers.command_line import arguments_from, settings_from_arguments
+from ...solvers.progress import Progress
+from ...solvers.reconstruction import SimulateSettings
+from ..jobs.job import run
+from ..scene import history
+from ..simulating import SimulateBundle, read_simulating, write_simulated
+
+
+def add_simulate_options(parser: argparse.ArgumentParser) -> None:
+    """Add the options of `simulate`; those of the button."""
+    arguments_from(parser, SimulateSettings)
+
+
+def perform_simulate(
+    scene: bpy.types.Scene,
+    armature: bpy.types.Object,
+    arguments: argparse.Namespace,
+    progress: Progress,
+) -> tuple[str, dict[str, Any]]:
+    """Let a body with mass and muscles make what the armature plays."""
+    settings = SimulateBundle(settings_from_arguments(arguments, SimulateSettings))
+    result = run(read_simulating(scene, armature, settings), progress)
+    sentence = write_simulated(scene, armature, settings, result)
+    action = armature.animation_data.action
+    return sentence, {"action": action.name} | history.history(action)[-1]

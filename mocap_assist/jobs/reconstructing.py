@@ -1,0 +1,113 @@
+"""What the button Reconstruct has solved for it: poses rebuilt, then feet planted.
+
+The slow part, `solve`, does not depend on the feet: what it returns is kept, so that the redo
+panel has only `finish` to repeat.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ...solvers.denoising import (
+    Planted,
+    PlantSettings,
+    Quality,
+    measure_quality,
+)
+from ...solvers.motion import Motion
+from ...solvers.progress import Progress, unwatched, within
+from ...solvers.workflows import (
+    RebuiltMotion,
+    ReconstructSettings,
+    reconstruct_motion,
+    try_to_plant,
+)
+from .cleaning import Examples, toward
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True, eq=False, kw_only=True)
+class RebuildProblem:
+    """All that the slow part depends on."""
+
+    body: Motion
+    tracking_state: NDArray[np.int8] | None
+    """What the sensor said of each joint, shape (n_frames, n_joints)."""
+    settings: ReconstructSettings
+    examples: Examples | None
+    """Clips of natural postures; None for those that are shipped."""
+
+
+@dataclass(frozen=True, eq=False, kw_only=True)
+class RebuildFinish:
+    """How the solution is applied to the take."""
+
+    ease: Array
+    """Shape (n_frames,): 1, and less where the frames join others that stay."""
+    planting: PlantSettings | None
+    """None leaves the feet alone."""
+    contacts: NDArray[np.bool_] | None
+    """When each foot stands, shape (n_frames, 2), as the animator keyed it."""
+
+
+@dataclass(frozen=True, eq=False)
+class Rebuilt:
+    """What is to be written, and what there is to say about it."""
+
+    motion: Motion
+    solution: RebuiltMotion
+    planted: Planted | None
+    remarks: tuple[str, ...]
+    before: Quality
+    """Of the recording, its feet measured at the contacts at which they were planted."""
+    after: Quality
+
+
+def solve(problem: RebuildProblem, *, progress: Progress = unwatched) -> RebuiltMotion:
+    """Rebuild the poses of the body."""
+    return reconstruct_motion(
+        problem.body,
+        tracking_state=problem.tracking_state,
+        settings=problem.settings,
+        progress=progress,
+    )
+
+
+def rebuild(
+    problem: RebuildProblem,
+    finish: RebuildFinish,
+    solution: RebuiltMotion | None = None,
+    *,
+    progress: Progress = unwatched,
+) -> Rebuilt:
+    """Solve the problem, unless its solution is given, and finish it."""
+    if solution is None:
+        solution = solve(problem, progress=within(progress, 0.0, 0.8))
+    motion, planted, remarks = try_to_plant(
+        solution.motion,
+        finish.planting,
+        finish.contacts,
+        progress=within(progress, 0.8, 0.9),
+    )
+    motion = _eased(problem.body, motion, finish.ease)
+    contacts = None if planted is None else planted.contacts
+    before, after = (
+        measure_quality(each, contacts=contacts, progress=within(progress, start, start + 0.05))
+        for each, start in ((problem.body, 0.9), (motion, 0.95))
+    )
+    return Rebuilt(motion, solution, planted, (*solution.remarks, *remarks), before, after)
+
+
+def _eased(raw: Motion, motion: Motion, ease: Array) -> Motion:
+    """Join the frames outside, where the recording knows the way."""
+    if (ease == 1.0).all():
+        return motion
+    known = np.isfinite(raw.rotations).all(axis=-1, keepdims=True)
+    placed = np.isfinite(raw.root_positions).all(axis=-1, keepdims=True)
+    start = motion.with_poses(
+        np.where(known, raw.rotations, motion.rotations),
+        np.where(placed, raw.root_positions, motion.root_positions),
+    )
+    return toward(start, motion, ease[:, None])

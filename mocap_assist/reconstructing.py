@@ -1,0 +1,180 @@
+"""What the button Reconstruct reads from the scene, and what it writes back."""
+
+from functools import partial
+from typing import Any, NamedTuple
+
+import bpy
+import numpy as np
+from numpy.typing import NDArray
+
+from ..solvers.errors import InvalidMotionError
+from ..solvers.motion import Motion
+from . import redo
+from .clean_report import figures
+from .cleaning import UNSURE, ease_of
+from .examples import read_examples
+from .jobs.job import Quick
+from .jobs.reconstructing import RebuildFinish, RebuildProblem, Rebuilt, rebuild
+from .reconstruct_choices import Postures, ReconstructBundle
+from .scene import history
+from .scene.armature_read import read_take
+from .scene.armature_write import check_writable, count_modified, put_to_use, write_take
+from .scene.compat import Source
+from .scene.contacts import animators_contacts, write_contacts
+from .scene.curves import GENERATED, MEASURED
+from .scene.reliability_curves import write_reliability
+from .scene.sensor_words import read_states
+from .scene.take import ArmatureTake
+from .selection import played_source, selected_armature, why_not_clean
+from .subject import check_unchanged
+
+SUFFIX = ".reconstructed"
+N_TRUSTED = 0.5
+"""Reliability below which a joint counts as lost in what is said of the result."""
+
+
+class _Reading(NamedTuple):
+    """What an armature plays, and what was recorded for it."""
+
+    played: Source
+    recorded: Source
+    take: ArmatureTake
+
+    @classmethod
+    def of(
+        cls, scene: bpy.types.Scene, armature: bpy.types.Object, settings: ReconstructBundle
+    ) -> "_Reading":
+        check_writable(armature)
+        played = played_source(armature)
+        recorded = history.raw_of(played[0]) or played
+        take = read_take(armature, scene, settings.choices.frame_range, recorded)
+        return cls(played, recorded, take)
+
+    @property
+    def body(self) -> Motion:
+        return self.take.parts[0].motion
+
+
+def why_not_reconstruct(context: bpy.types.Context) -> str:
+    """Return why nothing can be reconstructed, or nothing."""
+    if selected_armature(context) is None:
+        return (
+            "Select an armature that plays a captured action; import joints of a depth camera"
+            " as an armature."
+        )
+    return why_not_clean(context)
+
+
+def read_reconstructing(
+    scene: bpy.types.Scene, armature: bpy.types.Object, settings: ReconstructBundle
+) -> "partial[Rebuilt]":
+    """Read what was recorded; return what is to be solved, which may be pickled."""
+    found = _Reading.of(scene, armature, settings)
+    problem = _problem(scene, armature, found, settings)
+    finish = RebuildFinish(
+        ease=ease_of(found.take.grid),
+        planting=settings.planting if settings.choices.plant_feet else None,
+        contacts=animators_contacts(found.played, found.take.frames),
+    )
+    solution = redo.recall(problem)
+    return (partial if solution is None else Quick)(rebuild, problem, finish, solution)
+
+
+def write_reconstructed(
+    scene: bpy.types.Scene,
+    armature: bpy.types.Object,
+    settings: ReconstructBundle,
+    rebuilt: Rebuilt,
+    asked: str | None = None,
+) -> str:
+    """Write the result as a new action and put it to use; return a sentence about it.
+
+    Raises InvalidMotionError if the armature plays something else than what was `asked`, a
+    fingerprint of the problem.
+    """
+    found = _Reading.of(scene, armature, settings)
+    problem = _problem(scene, armature, found, settings)
+    check_unchanged(armature, asked, problem)
+    redo.remember(problem, rebuilt.solution)
+    names = problem.body.skeleton.names
+    bones = frozenset(names) & frozenset(found.take.rig.bones)
+    others = found.take.recordings[1:]
+    take = found.take.with_recordings((rebuilt.motion, *others))
+    n_modified = count_modified(found.recorded, bones)
+    action, slot = write_take(
+        armature, found.recorded, take, bones, _key_types(names, rebuilt), suffix=SUFFIX
+    )
+    reliability = dict(zip(names, rebuilt.solution.reliability.T, strict=True))
+    write_reliability(armature, action, slot, take.frames, reliability)
+    if rebuilt.planted is not None:
+        detected = animators_contacts(found.played, take.frames) is None
+        contacts = rebuilt.planted.contacts
+        write_contacts(armature, action, slot, take.frames, contacts, detected=detected)
+    history.record(action, found.recorded, _entry(settings, rebuilt))
+    put_to_use(armature, action, slot, settings.choices.result_as)
+    return _said(action.name, rebuilt, n_modified)
+
+
+def _problem(
+    scene: bpy.types.Scene,
+    armature: bpy.types.Object,
+    found: _Reading,
+    settings: ReconstructBundle,
+) -> RebuildProblem:
+    body = found.body
+    if not np.isfinite(body.root_positions).all(axis=-1).any():
+        raise InvalidMotionError(
+            f"The hips of {armature.name} are tracked in no frame; there is nothing to"
+            " reconstruct."
+        )
+    examples = None
+    if settings.choices.postures is Postures.EXAMPLES:
+        examples = read_examples(scene, armature, settings.choices.examples)
+    state = read_states(found.recorded, body.skeleton.names, found.take.frames)
+    return RebuildProblem(
+        body=body, tracking_state=state, settings=settings.rebuilding, examples=examples
+    )
+
+
+def _key_types(names: tuple[str, ...], rebuilt: Rebuilt) -> dict[str, NDArray[np.uint8]]:
+    """Paint the keys of joints that the result is not sure of."""
+    unsure = rebuilt.solution.confidence < UNSURE  # never where it is not known
+    painted = np.where(unsure, GENERATED, MEASURED).astype(np.uint8)
+    return dict(zip(names, painted.T, strict=True))
+
+
+def _entry(settings: ReconstructBundle, rebuilt: Rebuilt) -> dict[str, Any]:
+    """Return what the action's history keeps, JSON-ready."""
+    return {
+        "operation": "reconstruct",
+        "settings": history.plain(*settings),
+        "method": rebuilt.solution.method,
+        "lost_share": _lost(rebuilt),
+        "remarks": list(rebuilt.remarks),
+        "before": figures(rebuilt.before),
+        "after": figures(rebuilt.after),
+    }
+
+
+def _lost(rebuilt: Rebuilt) -> float:
+    """Return the share of joints and frames that were not trusted."""
+    known = np.isfinite(rebuilt.solution.reliability)
+    return float((rebuilt.solution.reliability[known] < N_TRUSTED).mean())
+
+
+def _said(name: str, rebuilt: Rebuilt, n_modified: int) -> str:
+    n_frames = rebuilt.motion.n_frames
+    said = [
+        f"{name}: {n_frames} frames; {100 * _lost(rebuilt):.1f} % of the joints could not be"
+        " trusted and were rebuilt."
+    ]
+    if rebuilt.planted is not None:
+        said.append(
+            f"Feet slid {100 * rebuilt.planted.slide_before:.1f} cm, now"
+            f" {100 * rebuilt.planted.slide_after:.1f} cm."
+        )
+    said += [rebuilt.solution.method.rstrip(".") + "."] if rebuilt.solution.method else []
+    said += rebuilt.remarks
+    if n_modified:
+        said.append(f"The modifiers of {n_modified} curves are part of the new keys now.")
+    return " ".join(said)

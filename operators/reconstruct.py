@@ -1,0 +1,33 @@
+"""Button: rebuild clean poses from what a depth camera's tracker saw."""
+
+import bpy
+
+from ..mocap_assist.reconstruct_choices import QUICK, ReconstructBundle
+from ..mocap_assist.reconstructing import (
+    read_reconstructing,
+    why_not_reconstruct,
+    write_reconstructed,
+)
+from ..mocap_assist.settings_properties import settings_from
+from ..mocap_assist.solver_operator import SolverOperator
+
+
+@settings_from(ReconstructBundle)
+class MOCAP_OT_reconstruct(SolverOperator, bpy.types.Operator):
+    bl_idname = "mocap_assist.reconstruct"
+    bl_label = "Reconstruct"
+    bl_description = (
+        "Rebuild joints that a depth camera lost or mistook, by how far each can be trusted and"
+        " how natural bodies stand and move, and plant the feet. The result is a new action;"
+        " the recorded one stays as it is"
+    )
+    settings_group = "reconstruct"
+    why_not, read_scene, write_scene = (
+        why_not_reconstruct, read_reconstructing, write_reconstructed,
+    )  # fmt: skip
+
+    def draw(self, context: bpy.types.Context) -> None:
+        """Offer in the redo panel what needs no new solve: Blender would stand still for it."""
+        self.layout.use_property_split = True
+        for name in QUICK:
+            self.layout.prop(self, name)

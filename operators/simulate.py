@@ -1,0 +1,26 @@
+"""Button: let a body with mass and muscles make the motion."""
+
+import bpy
+
+from ..mocap_assist.selection import why_not_simulate
+from ..mocap_assist.settings_properties import settings_from
+from ..mocap_assist.simulating import SimulateBundle, read_simulating, write_simulated
+from ..mocap_assist.solver_operator import SolverOperator
+
+
+@settings_from(SimulateBundle)
+class MOCAP_OT_simulate(SolverOperator, bpy.types.Operator):
+    bl_idname = "mocap_assist.simulate"
+    bl_label = "Physics"
+    bl_description = (
+        "Let a body with mass and muscles, on solid ground, make the motion of the armature:"
+        " nothing sinks into the ground, standing feet hold, and jitter has too much mass to"
+        " move. The result is a new action"
+    )
+    settings_group = "simulate"
+    why_not, read_scene, write_scene = why_not_simulate, read_simulating, write_simulated
+
+    def draw(self, context: bpy.types.Context) -> None:
+        """Offer in the redo panel what needs no new simulation."""
+        self.layout.use_property_split = True
+        self.layout.prop(self, "strength")

@@ -1,0 +1,145 @@
+"""`reconstruct`: clean poses from what a depth camera's tracker saw."""
+
+import argparse
+from pathlib import Path
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from ..denoising import Planted, PlantSettings, compare_quality, measure_quality
+from ..errors import InvalidMotionError
+from ..motion import JointRecording, Motion, Sensor, Tracks
+from ..progress import Progress, within
+from ..recordings import read_recording, write_joint_csv
+from ..workflows import (
+    ReconstructSettings,
+    reconstruct_motion,
+    reconstruct_recording,
+    try_to_plant,
+)
+from .files import JOINTS, add_reading_options, write
+from .options import arguments_from, settings_from_arguments
+from .verb import Outcome, Task
+
+LOST = 0.5
+"""Reliability below which a joint is told as lost."""
+
+
+class Rebuilt(NamedTuple):
+    """What came of one recording, whatever it was."""
+
+    motion: Motion
+    joints: JointRecording | None
+    lost: float
+    """Share of joints and frames that were not trusted."""
+    method: str
+    remarks: tuple[str, ...]
+    slide: tuple[float, float] | None
+    """Metres that the feet slid before and after they were planted."""
+
+
+def add_reconstruct_options(parser: argparse.ArgumentParser) -> None:
+    """Add the options of `reconstruct`."""
+    add_reading_options(parser)
+    parser.add_argument(
+        "--joints", action="store_true",
+        help="With --output-folder: write joints as .csv, with the confidence of each, in the"
+        " place of a skeleton's motion",
+    )  # fmt: skip
+    parser.add_argument(
+        "--feet", action=argparse.BooleanOptionalAction, default=True,
+        help="Whether to keep standing feet from sliding [default: yes, where there are feet]",
+    )  # fmt: skip
+    for title, settings in (
+        ("reconstruction", ReconstructSettings), ("planting feet", PlantSettings),
+    ):  # fmt: skip
+        arguments_from(parser.add_argument_group(title), settings)
+
+
+def perform_reconstruct(task: Task, prepared: None, progress: Progress) -> Outcome:
+    """Reconstruct one recording and write it; tell what was lost, and the quality."""
+    given = read_recording(
+        task.source, scale=task.arguments.scale, progress=within(progress, 0.0, 0.1)
+    )
+    rebuilt = _rebuilt(given, task, within(progress, 0.1, 0.8))
+    assert task.target is not None
+    if task.target.suffix.lower() != JOINTS:
+        write(rebuilt.motion, task.target, within(progress, 0.9, 1.0))
+    elif rebuilt.joints is None:
+        raise InvalidMotionError(
+            f"{task.source} has a skeleton, not joints; write it as {task.target.stem}.bvh."
+        )
+    else:
+        write_joint_csv(rebuilt.joints, task.target, progress=within(progress, 0.9, 1.0))
+    return _outcome(given, rebuilt)
+
+
+def _rebuilt(given: Any, task: Task, progress: Progress) -> Rebuilt:
+    settings = settings_from_arguments(task.arguments, ReconstructSettings)
+    feet = task.arguments.feet
+    planting = settings_from_arguments(task.arguments, PlantSettings) if feet else None
+    if isinstance(given, Motion):
+        whole = reconstruct_motion(given, settings=settings, progress=progress)
+        known = np.isfinite(whole.reliability)
+        lost = float((whole.reliability[known] < LOST).mean())
+        footing = try_to_plant(whole.motion, planting)
+        remarks = (*whole.remarks, *footing.remarks)
+        slide = _slide(footing.planted)
+        return Rebuilt(footing.motion, None, lost, whole.method, remarks, slide)
+    recording = _joints_of(given, task.source)
+    found = reconstruct_recording(
+        recording,
+        settings=settings,
+        planting=planting,
+        progress=progress,
+    )
+    rebuilt = found.reconstruction
+    tracks = Tracks(
+        rebuilt.tracks.names,
+        rebuilt.tracks.positions,
+        rebuilt.tracks.frame_rate,
+        np.clip(rebuilt.confidence, 0.0, 1.0),
+    )
+    return Rebuilt(
+        found.motion,
+        JointRecording(tracks, None, Sensor.OTHER),
+        float((rebuilt.reliability.combined < LOST).mean()),
+        rebuilt.method,
+        found.remarks,
+        _slide(found.planted),
+    )
+
+
+def _slide(planted: Planted | None) -> tuple[float, float] | None:
+    return None if planted is None else (planted.slide_before, planted.slide_after)
+
+
+def _joints_of(given: JointRecording | Tracks, source: Path) -> JointRecording:
+    """Return joints; points are taken for them where their names say so."""
+    if isinstance(given, JointRecording):
+        return given
+    if isinstance(given, Tracks):
+        return JointRecording(given, None, Sensor.OTHER)
+    raise InvalidMotionError(f"{source} holds depth pictures; reconstruct is for joints.")
+
+
+def _outcome(given: Any, rebuilt: Rebuilt) -> Outcome:
+    before_of = given.tracks if isinstance(given, JointRecording) else given
+    before, after = measure_quality(before_of), measure_quality(rebuilt.motion)
+    lines = [f"{100 * rebuilt.lost:.1f} % of the joints could not be trusted and were rebuilt."]
+    if rebuilt.method:
+        lines.append(rebuilt.method.rstrip(".") + ".")
+    if rebuilt.slide is not None:
+        first, last = rebuilt.slide
+        lines.append(f"Feet slid {100 * first:.1f} cm in all, and {100 * last:.1f} cm now.")
+    lines += [*rebuilt.remarks, compare_quality(before, after)]
+    figures = {
+        "method": rebuilt.method,
+        "lost_share": rebuilt.lost,
+        "remarks": list(rebuilt.remarks),
+        "slide_before_m": rebuilt.slide and rebuilt.slide[0],
+        "slide_after_m": rebuilt.slide and rebuilt.slide[1],
+        "before": before.figures(),
+        "after": after.figures(),
+    }
+    return Outcome("\n".join(lines), figures)

@@ -1,0 +1,134 @@
+"""How far upper arms and thighs are twisted about themselves: elbows and knees tell it."""
+
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.linalg import solveh_banded
+
+from ..motion import Skeleton
+from ..motion.rotations import multiply, quaternion_from_rotation_vector, rotate
+
+Array = NDArray[np.float64]
+
+HINGES = {"Arm": (0.0, -1.0, 0.0), "Leg": (0.0, 1.0, 0.0)}
+"""Where an elbow or a knee brings what is below it, in a T-pose that faces -Y."""
+DOUBTED_BEND, TRUSTED_BEND = np.radians([8.0, 30.0])
+"""Bends at which the plane begins to be told, and is fully told."""
+STEADY = 0.1
+"""Seconds over which the twist is steadied where bends tell it."""
+USUAL = 0.02
+"""Weight of no twist against the trunk; a bend has 1."""
+
+
+class Limb(NamedTuple):
+    """Joints of an arm or a leg."""
+
+    upper: int
+    lower: int
+    end: int
+    bends_towards: tuple[float, float, float]
+
+
+def hinge_turns(
+    turns: Array,
+    limb: Limb,
+    skeleton: Skeleton,
+    places: Array,
+    trust: Array,
+    frame_rate: float,
+) -> Array:
+    """Twist an upper arm or thigh about itself until its hinge bends as it was seen to bend.
+
+    The twist of each frame is a point on a circle. What bends tell of it is weighed by how far
+    they bend and are trusted, and by how near they are to what a joint can do; the path is the
+    one that fits them best while it is steady and near to no twist at all (least squares in
+    the plane of the circle, so that nothing ever jumps by a turn).
+
+    Parameters
+    ----------
+    turns : shape (n_frames, 4)
+        World rotations of the upper joint that point it the right way.
+    limb : Limb
+    skeleton : Skeleton
+        In a T-pose.
+    places : shape (n_frames, n_joints, 3), metres
+    trust : shape (n_frames, n_joints), 0 to 1
+    frame_rate : float, hertz
+
+    Returns
+    -------
+    NDArray, shape (n_frames, 4)
+        NaN where `turns` are.
+    """
+    along = unit(skeleton.offsets[limb.lower])
+    axis = rotate(turns, along)
+    hinge = rotate(turns, unit(np.cross(along, limb.bends_towards)))
+    below = unit(places[:, limb.end] - places[:, limb.lower])
+    normal = np.cross(axis, below)
+    bend = np.arctan2(np.linalg.norm(normal, axis=-1), np.einsum("fi,fi->f", axis, below))
+    share = np.clip((bend - DOUBTED_BEND) / (TRUSTED_BEND - DOUBTED_BEND), 0.0, 1.0)
+    sure = np.min(trust[:, [limb.upper, limb.lower, limb.end]], axis=1)
+    return twisted(turns, axis, hinge, normal, share * sure, frame_rate)
+
+
+def thumb_turns(
+    turns: Array, along: Array, thumb: Array, seen: Array, trust: Array, frame_rate: float
+) -> Array:
+    """Twist a hand about itself until its thumb lies where it was seen to lie, steadily.
+
+    Parameters
+    ----------
+    turns : shape (n_frames, 4)
+        World rotations of the wrist that point the hand the right way.
+    along, thumb : shape (3,)
+        Ways to hand and thumb in the rest pose.
+    seen : shape (n_frames, 3)
+        The way to the thumb.
+    trust : shape (n_frames,), 0 to 1
+    frame_rate : float, hertz
+    """
+    axis = rotate(turns, unit(along))
+    usual = rotate(turns, unit(np.cross(along, thumb)))
+    normal = np.cross(axis, unit(seen))
+    return twisted(
+        turns, axis, usual, normal, trust * np.linalg.norm(normal, axis=-1), frame_rate
+    )
+
+
+def twisted(
+    turns: Array, axis: Array, usual: Array, normal: Array, weights: Array, frame_rate: float
+) -> Array:
+    """Twist frames about their `axis` so far that `usual` comes to `normal`, where it counts.
+
+    Arrays of shape (n_frames, 3) are in the world; `weights` has shape (n_frames,).
+    """
+    size = np.linalg.norm(normal, axis=-1)
+    cos = np.einsum("fi,fi->f", usual, normal)
+    sin = np.einsum("fi,fi->f", np.cross(usual, normal), axis)
+    told = np.isfinite(cos) & np.isfinite(sin) & (size > 0.0)
+    seen = np.where(told, (cos + 1j * sin) / np.where(told, size, 1.0), 0.0)
+    weights = np.where(told, weights * (0.5 + 0.5 * seen.real), 0.0)
+    twist = np.angle(_steady(seen, weights, (STEADY * frame_rate) ** 2))
+    return multiply(quaternion_from_rotation_vector(twist[:, None] * axis), turns)
+
+
+def _steady(seen: NDArray[np.complex128], weights: Array, stiffness: float) -> Array:
+    """Return the path z that minimises w |z - seen|^2 + u |z - 1|^2 + s |z' - z|^2, summed."""
+    n_frames = len(seen)
+    ends = np.full(n_frames, 2.0)
+    ends[0] -= 1.0
+    ends[-1] -= 1.0
+    bands = np.zeros((2, n_frames))
+    bands[0, 1:] = -stiffness
+    bands[1] = weights + USUAL + stiffness * ends
+    told = weights * seen + USUAL
+    if n_frames == 1:
+        return np.asarray(told)
+    return np.asarray(solveh_banded(bands, told.real) + 1j * solveh_banded(bands, told.imag))
+
+
+def unit(vectors: Array) -> Array:
+    """Return vectors of length 1; one of no length stays."""
+    lengths = np.linalg.norm(vectors, axis=-1, keepdims=True)
+    return np.asarray(vectors / np.where(lengths > 0.0, lengths, 1.0))

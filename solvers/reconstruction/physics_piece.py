@@ -1,0 +1,118 @@
+"""Simulate a piece of a take in which nobody jumps from place to place."""
+
+from dataclasses import dataclass
+from itertools import pairwise
+from types import ModuleType
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..motion import Motion, forward_kinematics
+from ..motion.rotations import inverse, multiply
+from ..progress import Progress
+from .physics_body import PhysicsBody
+from .physics_control import controller
+from .physics_run import follow
+from .physics_surface import penetration, raising, sole_speeds
+from .physics_target import calmed_target
+from .physics_world import build_world
+
+Array = NDArray[np.float64]
+Flags = NDArray[np.bool_]
+LONGEST_STEP = 1.0 / 239.0
+"""Seconds. 30, 60 and 120 frames a second are then simulated in the same steps, 1/240 s."""
+
+JUMP, FASTEST = 0.1, 12.0
+"""Metres, for legs of 0.9 m, and metres per second: a body whose joints go farther on average
+from one frame to the next jumps, as between clips that were joined, or out of a T-pose."""
+
+STANDS, SWINGS = 0.3, 0.8
+"""Metres per second, for legs of 0.9 m: a sole whose target is slower is held by all its
+friction, and by little of it if faster."""
+
+SLIPPERY = 0.05
+"""Share of the friction under a foot that swings."""
+
+
+@dataclass(frozen=True, eq=False)
+class Piece:
+    """What was simulated of a piece: see `Simulated`; `n_lost` counts how often it was lost."""
+
+    motion: Motion
+    followed: Flags
+    contacts: Flags
+    support: Array
+    n_lost: int
+
+
+def find_pieces(body: PhysicsBody, motion: Motion) -> list[tuple[int, int]]:
+    """Return first frame and stop of each piece in which the body does not jump."""
+    positions = forward_kinematics(motion).positions[:, list(body.joints)]
+    steps = np.linalg.norm(np.diff(positions, axis=0), axis=-1).mean(axis=1)
+    jumps = np.flatnonzero(steps > JUMP * body.size + FASTEST * motion.dt) + 1
+    return list(pairwise([0, *(int(jump) for jump in jumps), motion.n_frames]))
+
+
+def simulated_piece(
+    engine: ModuleType,
+    body: PhysicsBody,
+    motion: Motion,
+    ground: float,
+    *,
+    response: float,
+    smoothing: float,
+    friction: float,
+    support: float,
+    progress: Progress,
+) -> Piece:
+    """Let the body follow a piece without gaps."""
+    places, rotations = _of_moving_joints(body, motion)
+    places[:, 2] += raising(penetration(body, motion, ground), motion.frame_rate)
+    target = calmed_target(places, rotations, motion.frame_rate, smoothing)
+    speeds = sole_speeds(body, _with_moving_joints(body, motion, target.at_frames()))
+    grips = np.clip((SWINGS - speeds / body.size) / (SWINGS - STANDS), SLIPPERY, 1.0)
+    n_steps = int(np.ceil(motion.dt / LONGEST_STEP))
+    course = follow(
+        engine,
+        build_world(engine, body, ground, friction, motion.dt / n_steps),
+        controller(body, response, support, friction),
+        target,
+        grips,
+        n_steps,
+        tell=lambda frame: progress(frame / motion.n_frames, "Simulating"),
+    )
+    return Piece(
+        _with_moving_joints(body, motion, course.places),
+        course.followed,
+        course.contacts,
+        course.support,
+        course.n_lost,
+    )
+
+
+def _of_moving_joints(body: PhysicsBody, motion: Motion) -> tuple[Array, Array]:
+    """Return places of the base, (n_frames, 3), and rotations of all that moves; the base's
+    are in the world.
+    """
+    poses = forward_kinematics(motion)
+    base = body.joints[0]
+    rotations = motion.rotations[:, list(body.joints)]
+    rotations[:, 0] = poses.rotations[:, base]
+    return poses.positions[:, base].copy(), rotations
+
+
+def _with_moving_joints(body: PhysicsBody, motion: Motion, places: Array) -> Motion:
+    """Return the motion with the simulated joints at these places (see `States`).
+
+    Joints above the base are only shifted.
+    """
+    base = body.joints[0]
+    turns = places[:, 3:].reshape(len(places), -1, 4)
+    rotations = motion.rotations.copy()
+    rotations[:, list(body.joints)] = turns
+    if base:
+        above = forward_kinematics(motion).rotations[:, motion.skeleton.parents[base]]
+        rotations[:, base] = multiply(inverse(above), turns[:, 0])
+    turned = motion.with_poses(rotations)
+    shift = places[:, :3] - forward_kinematics(turned).positions[:, base]
+    return turned.with_poses(root_positions=turned.root_positions + shift)

@@ -1,0 +1,142 @@
+"""Let a body follow its target through time, and notice when it does not."""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from types import ModuleType
+
+import numpy as np
+from numpy.typing import NDArray
+
+from .physics_control import Controller, drive
+from .physics_target import States, Target
+from .physics_world import World
+
+Array = NDArray[np.float64]
+LOST = 0.35
+"""Metres, for legs of 0.9 m: a body whose joints are on average farther off is lost."""
+
+STRAYING = 0.15
+"""Metres, for legs of 0.9 m: from here on, a body that is lost in the end was so before."""
+
+
+@dataclass(frozen=True, eq=False)
+class Course:
+    """What a simulated body did.
+
+    Attributes
+    ----------
+    places : shape (n_frames, 3 + 4 n_joints)
+        In the coordinates of `States.places`.
+    contacts : bool, shape (n_frames, 2)
+        Whether the left and the right foot touch the ground.
+    support : shape (n_frames,)
+        Force from outside, as a share of the weight.
+    followed : bool, shape (n_frames,)
+        Where the body was near its target.
+    n_lost : int
+        How often it had to be put back there.
+    """
+
+    places: Array
+    contacts: NDArray[np.bool_]
+    support: Array
+    followed: NDArray[np.bool_]
+    n_lost: int
+
+
+def follow(
+    engine: ModuleType,
+    world: World,
+    control: Controller,
+    target: Target,
+    grips: Array,
+    n_steps: int,
+    *,
+    tell: Callable[[int], None],
+) -> Course:
+    """Simulate all frames; a body that is lost is put back onto its target and goes on.
+
+    `tell` is called with the number of each frame.
+    """
+    n_frames = target.n_frames
+    places = np.empty((n_frames, world.model.nq))
+    contacts = np.zeros((n_frames, 2), dtype=np.bool_)
+    support, apart, lost = np.zeros(n_frames), np.zeros(n_frames), []
+    for frame in range(n_frames):
+        tell(frame)
+        states = target.between(frame, n_steps)
+        _grip(world, control, grips[frame])
+        engine.mj_step1(world.model, world.data)
+        apart[frame] = _apart(engine, world, states.places[0])
+        if frame == 0 or not apart[frame] <= LOST * control.size:
+            _put(engine, world, states)
+            lost += [frame] if frame else []
+        places[frame] = world.data.qpos
+        contacts[frame] = _feet_touch(world)
+        if frame < n_frames - 1:
+            support[frame] = np.mean(_steps(engine, world, control, states))
+    followed = _followed(apart, lost, STRAYING * control.size)
+    return Course(places, contacts, support, followed, len(lost))
+
+
+def _followed(apart: Array, lost: list[int], near: float) -> NDArray[np.bool_]:
+    """Return False for the frames in which the body was lost, and for those just before in
+    which it strayed.
+    """
+    followed = np.ones(len(apart), dtype=np.bool_)
+    for frame in lost:
+        followed[frame] = False
+        while frame > 0 and not apart[frame - 1] <= near:
+            frame -= 1
+            followed[frame] = False
+    return followed
+
+
+def _steps(
+    engine: ModuleType, world: World, control: Controller, states: States
+) -> list[float]:
+    """Go from one frame to the next; return how much help each step used."""
+    used = []
+    for step, moment in enumerate(zip(*states, strict=True)):
+        if step:
+            engine.mj_step1(world.model, world.data)
+        used.append(drive(engine, world, control, States(*moment)))
+        engine.mj_step2(world.model, world.data)
+    return used
+
+
+def _apart(engine: ModuleType, world: World, wanted: Array) -> float:
+    """Return how far joints are on average from where they should be; infinite where the
+    engine gave up.
+    """
+    data = world.data
+    if any(warning.number for warning in data.warning) or not np.isfinite(data.qpos).all():
+        return np.inf
+    world.ghost.qpos[:] = wanted
+    engine.mj_kinematics(world.model, world.ghost)
+    apart = data.xpos[world.bodies] - world.ghost.xpos[world.bodies]
+    return float(np.linalg.norm(apart, axis=1).mean())
+
+
+def _put(engine: ModuleType, world: World, states: States) -> None:
+    """Put the body onto its target, just so high that nothing is under the ground."""
+    model, data = world.model, world.data
+    engine.mj_resetData(model, data)
+    data.qpos[:], data.qvel[:] = states.places[0], states.velocities[0]
+    engine.mj_kinematics(model, data)
+    # A capsule reaches from its middle as far down as its axis leans, and its radius.
+    down = model.geom_size[:, 0] + model.geom_size[:, 1] * np.abs(data.geom_xmat[:, 8])
+    bottoms = (data.geom_xpos[:, 2] - down)[model.geom_contype > 0]
+    data.qpos[2] += max(0.0, world.ground - bottoms.min(initial=np.inf))
+    engine.mj_step1(model, data)
+
+
+def _grip(world: World, control: Controller, grips: Array) -> None:
+    """Let each foot hold the ground as firmly as its target does."""
+    for foot, grip in zip(world.feet.T, grips, strict=True):
+        world.model.geom_friction[foot, 0] = max(control.friction * grip, 1e-5)
+
+
+def _feet_touch(world: World) -> NDArray[np.bool_]:
+    touching = [pair for contact in world.data.contact for pair in contact.geom]
+    return np.asarray(world.feet[touching].any(axis=0))

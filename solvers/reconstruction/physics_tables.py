@@ -1,0 +1,72 @@
+"""How a human body's mass, size and strength are spread over its segments."""
+
+CENTRAL = ("hips", "spine", "chest", "upperChest", "neck", "head")
+LEG = ("UpperLeg", "LowerLeg", "Foot", "Toes")
+ARM = ("Shoulder", "UpperArm", "LowerArm", "Hand")
+ROLES = (
+    *CENTRAL,
+    *(side + part for side in ("left", "right") for part in (*LEG, *ARM)),
+)
+"""Humanoid roles that are segments of their own, 22 at most; hands and feet are whole."""
+
+HUMAN_MASS = 70.0
+"""Kilograms, of a body whose legs are 0.9 m long; it grows with the cube of that length."""
+
+MASS_SHARES = {
+    "hips": 0.1182, "spine": 0.1549, "chest": 0.0665, "upperChest": 0.0665,
+    "neck": 0.0120, "head": 0.0561,
+    "Shoulder": 0.0120, "UpperArm": 0.0263, "LowerArm": 0.0150, "Hand": 0.0059,
+    "UpperLeg": 0.1447, "LowerLeg": 0.0457, "Foot": 0.0113, "Toes": 0.0020,
+}  # fmt: skip
+"""De Leva (1996), table 4, mean of women and men. His upper trunk is parted among chest and
+shoulders, his head among head and neck, his foot among foot and toes."""
+
+STRENGTHS = {
+    "spine": 450.0, "chest": 400.0, "upperChest": 350.0, "neck": 80.0, "head": 50.0,
+    "Shoulder": 150.0, "UpperArm": 120.0, "LowerArm": 80.0, "Hand": 20.0,
+    "UpperLeg": 450.0, "LowerLeg": 400.0, "Foot": 300.0, "Toes": 90.0,
+}  # fmt: skip
+"""Newton metres that a strong adult's joint gives at most."""
+
+OTHER_STRENGTH = 300.0
+"""Newton metres of a joint without a role."""
+
+LENGTHS = {"head": 0.2, "Hand": 0.16, "Toes": 0.06, "Foot": 0.15}
+"""Metres of a segment at whose end there is no joint, for legs of 0.9 m."""
+
+THICKEST = 0.105
+"""Metres, radius of the thickest capsule for legs of 0.9 m: trunks are not round."""
+
+DENSITY = 1000.0
+"""Kilograms per cubic metre of a body."""
+
+
+def part_of(role: str) -> str:
+    """Return the role without its side: UpperArm for leftUpperArm."""
+    return role.removeprefix("left").removeprefix("right")
+
+
+def next_roles(role: str) -> tuple[str, ...]:
+    """Return the roles to whose joint a segment may reach, best first."""
+    if role in CENTRAL:
+        return CENTRAL[CENTRAL.index(role) + 1 :]
+    part = part_of(role)
+    chain = LEG if part in LEG else ARM
+    side = role.removesuffix(part)
+    return tuple(side + below for below in chain[chain.index(part) + 1 :])
+
+
+def bearer(role: str, played: "set[str] | dict[str, int]") -> str:
+    """Return the role that carries a segment's mass: its own, or the next above it."""
+    while role not in played:
+        part = part_of(role)
+        if role in CENTRAL:
+            role = CENTRAL[CENTRAL.index(role) - 1] if role != "hips" else ""
+        elif part in {"UpperLeg", "Shoulder"}:
+            role = "hips" if part == "UpperLeg" else "upperChest"
+        else:
+            chain = LEG if part in LEG else ARM
+            role = role.removesuffix(part) + chain[chain.index(part) - 1]
+        if not role:
+            return ""
+    return role

@@ -1,0 +1,105 @@
+"""A body of capsules on level ground, as a model of the engine MuJoCo."""
+
+from types import ModuleType
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from .physics_body import Capsule, PhysicsBody
+
+GRAVITY = 9.81
+SOFTNESS = 0.02
+"""Seconds in which the ground pushes out what sinks into it."""
+
+HARDNESS = "0.95 0.995 0.002 0.5 2"
+"""The engine's `solimp`: a foot is light, and what its leg pushes with must not sink it."""
+
+ROTOR = 0.0014
+"""Seconds squared: by it and its strength, a joint has inertia of its own, as a geared motor
+has. Without it, feet are so light that a small error of the ground's force would turn them."""
+
+
+class World(NamedTuple):
+    """A model, its state, and which number each joint has in it."""
+
+    model: Any
+    data: Any
+    ghost: Any
+    """Another state, to see where the target is."""
+    bodies: NDArray[np.intp]
+    """Number of each moving joint's body, in the order of `PhysicsBody.joints`."""
+    feet: NDArray[np.bool_]
+    """Whether each geometry is of the left foot, of the right foot, shape (n_geometries, 2)."""
+    ground: float
+
+
+def build_world(
+    engine: ModuleType, body: PhysicsBody, ground: float, friction: float, timestep: float
+) -> World:
+    """Build the model: ball joints, capsules that meet the ground but not each other."""
+    rub, softness = max(friction, 1e-5), max(SOFTNESS, 2 * timestep)
+    lines = [
+        "<mujoco><compiler angle='radian' autolimits='false' boundmass='1e-9'"
+        " boundinertia='1e-12'/>",
+        f"<option timestep='{timestep!r}' integrator='implicitfast' cone='elliptic'"
+        f" jacobian='dense' impratio='10' iterations='50' gravity='0 0 {-GRAVITY}'>"
+        "<flag autoreset='disable'/></option>",
+        f"<default><geom condim='3' priority='1' friction='{rub!r} 0.005 0.0001'"
+        f" solref='{softness!r} 1' solimp='{HARDNESS}'/><joint type='ball'/></default>",
+        f"<worldbody><geom type='plane' size='0 0 1' priority='0' pos='0 0 {ground!r}'"
+        " contype='0' conaffinity='1'/>",
+        _nested(body, body.joints[0]),
+        "</worldbody></mujoco>",
+    ]
+    model = engine.MjModel.from_xml_string("".join(lines))
+    bodies = np.array([model.body(f"joint{joint}").id for joint in body.joints])
+    data, ghost = engine.MjData(model), engine.MjData(model)
+    return World(model, data, ghost, bodies, _feet(model, body, bodies), ground)
+
+
+def _nested(body: PhysicsBody, joint: int) -> str:
+    """Return the element of a joint's body with all that hang on it."""
+    is_base = joint == body.joints[0]
+    frame = body.frames[joint]
+    capsules = [capsule for capsule in body.capsules if capsule.joint == joint]
+    below = [other for other in body.joints if body.frames[other].above == joint]
+    return "".join([
+        f"<body name='joint{joint}' pos='{_words(frame.place)}'"
+        f" quat='{_words(frame.rotation)}'>",
+        "<freejoint/>" if is_base else _ball(body, joint),
+        *(_geometry(capsule) for capsule in capsules),
+        *(_nested(body, other) for other in below),
+        "</body>",
+    ])
+
+
+def _ball(body: PhysicsBody, joint: int) -> str:
+    strength = float(body.strengths[body.joints.index(joint) - 1])
+    return f"<joint armature='{ROTOR * strength!r}'/>"
+
+
+def _geometry(capsule: Capsule) -> str:
+    meets = f"contype='{int(capsule.touches)}' conaffinity='0'"
+    start, stop = capsule.ends
+    common = f"size='{capsule.radius!r}' mass='{capsule.mass!r}' {meets}"
+    if np.array_equal(start, stop):
+        return f"<geom type='sphere' pos='{_words(start)}' {common}/>"
+    return f"<geom type='capsule' fromto='{_words(start)} {_words(stop)}' {common}/>"
+
+
+def _words(vector: NDArray[np.float64]) -> str:
+    return " ".join(repr(float(value)) for value in vector)
+
+
+def _feet(model: Any, body: PhysicsBody, bodies: NDArray[np.intp]) -> NDArray[np.bool_]:
+    """Tell which geometries touch the ground for the left and for the right foot."""
+    flags = np.zeros((model.ngeom, 2), dtype=np.bool_)
+    for column, side in enumerate(("left", "right")):
+        joints = [
+            place
+            for place, joint in enumerate(body.joints)
+            if body.roles.get(joint) in {f"{side}Foot", f"{side}Toes"}
+        ]
+        flags[:, column] = np.isin(model.geom_bodyid, bodies[joints])
+    return flags

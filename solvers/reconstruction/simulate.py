@@ -1,0 +1,249 @@
+"""Let a body with mass and muscles make a captured motion: physics as a filter."""
+
+from dataclasses import dataclass
+from enum import Enum
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..motion import HumanoidMap, Motion, find_humanoid_map
+from ..progress import Progress, unwatched, within
+from ..settings import Settings, setting
+from .physics_body import PhysicsBody, check_size, physics_body
+from .physics_engine import load_engine
+from .physics_feet import find_ground, with_soles
+from .physics_figures import mean_distance, told
+from .physics_piece import Piece, find_pieces, simulated_piece
+from .physics_surface import penetration, slide
+from .physics_target import blended, filled
+
+Array = NDArray[np.float64]
+Flags = NDArray[np.bool_]
+EASE = 0.3
+"""Seconds in which the result eases to the input where the body could not follow it."""
+
+TOO_OFTEN = 1.0
+"""Seconds of a take for each time that its body may be lost before all is given up."""
+
+
+class Ground(Enum):
+    """Where the ground is."""
+
+    HEIGHT = "height"
+    FEET = "auto"
+
+
+@dataclass(frozen=True, kw_only=True)
+class SimulateSettings(Settings):
+    """How a motion is simulated."""
+
+    strength: float = setting(
+        1.0, "How much of the simulation the result takes over; 0 leaves the take as it is",
+        minimum=0.0, maximum=1.0,
+    )  # fmt: skip
+    ground: Ground = setting(
+        Ground.HEIGHT, "Where the ground is: at a given height, or under the feet of the take"
+    )
+    ground_height: float = setting(
+        0.0, "Height of the ground, where it is given", unit="m", minimum=-1e4, maximum=1e4,
+    )  # fmt: skip
+    response: float = setting(
+        5.0, "How quickly joints are pulled to the captured pose; higher follows it closer,"
+        " lower is softer and lags behind",
+        unit="Hz", minimum=0.5, maximum=15.0,
+    )  # fmt: skip
+    smoothing: float = setting(
+        0.02, "Standard deviation of the Gaussian that calms the take first; higher is calmer"
+        " but blurs quick moves",
+        unit="s", minimum=0.0, maximum=0.5,
+    )  # fmt: skip
+    friction: float = setting(
+        1.0, "Friction between feet and ground; higher holds feet that are pulled aside",
+        minimum=0.0, maximum=5.0,
+    )  # fmt: skip
+    support: float = setting(
+        0.4, "Force from outside that may keep the body from falling, as a share of its weight;"
+        " lower leaves more to its own legs",
+        minimum=0.0, maximum=3.0, advanced=True,
+    )  # fmt: skip
+
+
+@dataclass(frozen=True, eq=False)
+class Simulated:
+    """A motion as a body with mass can make it.
+
+    Attributes
+    ----------
+    motion : Motion
+        Same skeleton and frames as the input.
+    followed : bool, shape (n_frames,)
+        Where the body could follow; elsewhere the motion is the input's.
+    contacts : bool, shape (n_frames, 2), left and right
+        Where the simulated feet touch the ground.
+    support : float array, shape (n_frames,)
+        Force from outside that kept the body up, as a share of its weight.
+    ground : float, metres
+        Height of the ground.
+    penetration_before, penetration_after : float, metres
+        How deep the body is under the ground where it is deepest.
+    slide_before, slide_after : float, metres
+        Way that both feet cover over the ground during `contacts`.
+    distance : float, metres
+        Mean distance of the result's joints from where they were captured.
+    message : str
+        What there is to say about it, in a sentence or two.
+    """
+
+    motion: Motion
+    followed: Flags
+    contacts: Flags
+    support: Array
+    ground: float
+    penetration_before: float
+    penetration_after: float
+    slide_before: float
+    slide_after: float
+    distance: float
+    message: str
+
+
+def simulate(
+    motion: Motion,
+    *,
+    humanoid_map: HumanoidMap | None = None,
+    settings: SimulateSettings = SimulateSettings(),
+    progress: Progress = unwatched,
+) -> Simulated:
+    """Return the motion that a body with mass and muscles makes when it tries to follow.
+
+    The skeleton becomes a body of capsules with a human's masses [2]_ on level ground, under
+    gravity, in the engine MuJoCo; its joints are pulled towards the captured rotations by
+    bounded proportional-derivative control, equations 16 and 17 of [1]_. So segments keep
+    their lengths, nothing sinks into the ground, feet that stand are held by friction, and
+    nothing moves faster than muscles can make it.
+
+    Where it departs from the paper: there, an outside force pulls every part of the body to its
+    target. Here joints turn by torques of their own, reckoned by inverse dynamics, and only the
+    hips are helped from outside, by `support` times the weight at most; the rest must come from
+    the ground. There, the body lags behind its target; here the target is calmed over time in
+    both directions first, and its acceleration is known, so that it does not. A foot whose
+    target swings low slips over the ground instead of tripping.
+
+    Parameters
+    ----------
+    motion : Motion
+        Gaps are bridged first.
+    humanoid_map : HumanoidMap
+        Says which joints are which segments; found by name and structure where it is not given.
+        A skeleton without legs is simulated bone by bone.
+    settings : SimulateSettings
+    progress : Progress
+
+    Returns
+    -------
+    Simulated
+        Where the body is lost, for the engine gives up or it is far off its target, it is put
+        back there, and the result eases to the input and back. If that happens too often, the
+        motion is the input, bit for bit; so it is at strength 0. Joints that are not simulated,
+        such as fingers, are left as they are. The same input gives the same bits.
+
+    Raises
+    ------
+    InvalidMotionError
+        The root is never observed, or the body's size or the frame rate are not plausible.
+    NoPhysicsError
+        The engine is not installed.
+    SolveCancelled
+        Raised by `progress`.
+
+    References
+    ----------
+    .. [1] Shum, Ho, Jiang, Takagi (2013). Real-time posture reconstruction for Microsoft
+       Kinect, section VII. IEEE Transactions on Cybernetics 43(5).
+    .. [2] De Leva (1996). Adjustments to Zatsiorsky-Seluyanov's segment inertia parameters.
+       Journal of Biomechanics 29(9). doi:10.1016/0021-9290(95)00178-6
+    """
+    engine = load_engine()
+    humanoid = humanoid_map or find_humanoid_map(motion.skeleton)
+    whole = filled(motion)
+    bare = physics_body(whole, humanoid)
+    check_size(bare, motion.frame_rate)
+    under_feet = find_ground(whole, humanoid, bare.size)
+    in_air = settings.ground is Ground.HEIGHT
+    ground = settings.ground_height if in_air else under_feet
+    body = with_soles(bare, whole, humanoid, ground)
+    pieces = []
+    for start, stop in find_pieces(body, whole):
+        pieces.append(
+            simulated_piece(
+                engine,
+                body,
+                whole.slice(start, stop),
+                ground,
+                response=settings.response,
+                smoothing=settings.smoothing,
+                friction=settings.friction,
+                support=settings.support,
+                progress=within(progress, start / motion.n_frames, stop / motion.n_frames),
+            )
+        )
+    progress(1.0, "Simulated")
+    return _put_together(motion, whole, body, pieces, settings.strength, ground, under_feet)
+
+
+def with_strength(motion: Motion, simulated: Simulated, strength: float) -> Motion:
+    """Return a motion gone by a share, 0 to 1, towards what was simulated of it in full.
+
+    The same as `simulate` with that strength, to rounding, but at once.
+    """
+    if strength in {0.0, 1.0}:
+        return (simulated.motion if strength else motion).with_poses()
+    share = np.full(motion.n_frames, strength)
+    return blended(filled(motion), filled(simulated.motion), range(motion.n_joints), share)
+
+
+def _put_together(
+    motion: Motion,
+    whole: Motion,
+    body: PhysicsBody,
+    pieces: list[Piece],
+    strength: float,
+    ground: float,
+    under_feet: float,
+) -> Simulated:
+    """Blend what was simulated with the take, and measure the result."""
+    followed = np.concatenate([piece.followed for piece in pieces])
+    n_lost = sum(piece.n_lost for piece in pieces)
+    given_up = n_lost > 1 + motion.n_frames * motion.dt / TOO_OFTEN
+    if given_up:
+        followed[:] = False
+    rotations = np.concatenate([piece.motion.rotations for piece in pieces])
+    roots = np.concatenate([piece.motion.root_positions for piece in pieces])
+    share = strength * _ease(pieces, motion.frame_rate) * (not given_up)
+    result = motion
+    if share.any():
+        result = blended(whole, whole.with_poses(rotations, roots), body.joints, share)
+    contacts = np.concatenate([piece.contacts for piece in pieces])
+    return Simulated(
+        motion=result.with_poses(),
+        followed=followed,
+        contacts=contacts,
+        support=np.concatenate([piece.support for piece in pieces]),
+        ground=ground,
+        penetration_before=float(penetration(body, whole, ground).max()),
+        penetration_after=float(penetration(body, filled(result), ground).max()),
+        slide_before=slide(body, whole, contacts),
+        slide_after=slide(body, filled(result), contacts),
+        distance=mean_distance(whole, filled(result), body.joints),
+        message=told(followed, given_up, ground, under_feet, body.size),
+    )
+
+
+def _ease(pieces: list[Piece], frame_rate: float) -> Array:
+    """Return a share that rises from 0 where the body was lost to 1, shape (n_frames,)."""
+    shares = []
+    for piece in pieces:
+        frames, lost = np.arange(len(piece.followed)), np.flatnonzero(~piece.followed)
+        away = np.abs(frames[:, None] - lost).min(axis=1, initial=len(frames) + 1e9)
+        shares.append(np.minimum(1.0, away / (EASE * frame_rate)))
+    return np.concatenate(shares)

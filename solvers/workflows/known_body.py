@@ -1,0 +1,118 @@
+"""A recording whose joints hang together, whatever its tracker calls them."""
+
+import numpy as np
+
+from ..errors import InvalidMotionError
+from ..motion import JOINTS, JointRecording, Sensor, Tracks
+from ..reconstruction.body_size import USUAL_LENGTHS, segment_lengths
+from ..reconstruction.posture_joints import (
+    PARENTS,
+    POSTURE_JOINTS,
+    joints_of_names,
+    posture_positions,
+)
+
+LARGEST, SMALLEST = 3.0, 0.2
+"""Sizes of a body, in usual adults, beyond which the unit must be wrong."""
+STATURE = 1.75
+LONG_GAP = 1.0
+"""Seconds without any joint, from which on the result is a guess that is worth a word."""
+UNITS = {0.001: "millimetres", 0.01: "centimetres", 0.0254: "inches", 1000.0: "kilometres"}
+KINECT_V1 = dict(zip(POSTURE_JOINTS, JOINTS[Sensor.KINECT_V1], strict=True))
+"""What the first Kinect calls the joints of postures."""
+
+
+def known_body(recording: JointRecording) -> JointRecording:
+    """Return the recording, or its joints under the names of the first Kinect's.
+
+    Names of which it is known how they hang together stay. Others are understood by their
+    humanoid roles; where only the hips themselves are missing, they are put between the legs.
+
+    Raises
+    ------
+    InvalidMotionError
+        Nothing is ever tracked, or no body is recognised.
+    """
+    check_tracked(recording)
+    parents = recording.parents
+    if parents.count(-1) == 1 and "hips" in joints_of_names(recording.names):
+        return recording
+    return _by_roles(recording)
+
+
+def check_tracked(recording: JointRecording) -> None:
+    """Raise InvalidMotionError where nothing, or a single joint, is ever tracked."""
+    tracks = recording.tracks
+    seen = tracks.visible.any(axis=0)
+    if not seen.any():
+        raise InvalidMotionError(
+            f"No joint is tracked in any of the {tracks.n_frames} frames; there is nothing to"
+            " reconstruct."
+        )
+    if seen.sum() < 2:
+        name = tracks.names[int(np.argmax(seen))]
+        raise InvalidMotionError(
+            f"Only one joint ({name}) is ever tracked; poses need hips and limbs."
+        )
+
+
+def _by_roles(recording: JointRecording) -> JointRecording:
+    tracks, state = recording.tracks, recording.tracking_state
+    places = joints_of_names(tracks.names)
+    columns = [tracks.positions[:, place] for place in places.values()]
+    states = [] if state is None else [state[:, place] for place in places.values()]
+    roles = list(places)
+    sides = [f"{side}UpperLeg" for side in ("left", "right")]
+    legs = [places[role] for role in sides if role in places]
+    if "hips" not in places and len(legs) == 2:
+        roles.append("hips")
+        columns.append(tracks.positions[:, legs].mean(axis=1))
+        states += [] if state is None else [state[:, legs].min(axis=1)]
+    if "hips" not in roles or len(roles) < 2:
+        raise InvalidMotionError(
+            "No body was recognised in the names of the joints"
+            f" ({', '.join(tracks.names[:4])}); they must be those of a Kinect, or humanoid"
+            " roles such as hips and leftUpperArm."
+        )
+    names = tuple(KINECT_V1[role] for role in roles)
+    body = Tracks(names, np.stack(columns, axis=1), tracks.frame_rate)
+    return JointRecording(body, None if state is None else np.stack(states, 1), Sensor.OTHER)
+
+
+def check_size(recording: JointRecording) -> None:
+    """Raise InvalidMotionError, and guess the unit, where the body is not of human size."""
+    lengths = segment_lengths(posture_positions(recording))
+    usual = np.where(np.isfinite(lengths), USUAL_LENGTHS, np.nan)
+    bones = [joint for joint, above in enumerate(PARENTS) if above >= 0]
+    shares = lengths[:, bones] / usual[:, bones]
+    if not np.isfinite(shares).any():
+        return
+    size = float(np.nanmedian(shares))
+    if SMALLEST <= size <= LARGEST:
+        return
+    unit = min(UNITS, key=lambda factor: abs(np.log(size * factor)))
+    human = SMALLEST <= size * unit <= LARGEST
+    guess = f", as if {UNITS[unit]} were taken for metres" if human else ""
+    scale = f"{unit:g}" if human else f"{1.0 / size:.3g}"
+    raise InvalidMotionError(
+        f"The body is {STATURE * size:.3g} m tall{guess}. Read the recording with a scale of"
+        f" {scale}."
+    )
+
+
+def gap_remarks(recording: JointRecording) -> list[str]:
+    """Tell of the longest time at which nothing was tracked, if it is long."""
+    blank = ~recording.tracks.visible.any(axis=1)
+    edges = np.flatnonzero(np.diff(np.concatenate([[False], blank, [False]]).astype(np.int8)))
+    starts, stops = edges[::2], edges[1::2]
+    if not len(starts):
+        return []
+    longest = int(np.argmax(stops - starts))
+    seconds = (stops - starts)[longest] / recording.frame_rate
+    if seconds < LONG_GAP:
+        return []
+    start = starts[longest] / recording.frame_rate
+    return [
+        f"Nothing was tracked for {seconds:.1f} s from {start:.1f} s on; what moves there is"
+        " a guess."
+    ]

@@ -1,0 +1,151 @@
+"""Rebuild the poses of a skeleton that moves as a depth camera's tracker saw it."""
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..motion import (
+    HumanoidMap,
+    JointRecording,
+    Motion,
+    Sensor,
+    Tracks,
+    find_humanoid_map,
+    forward_kinematics,
+    joint_parents,
+)
+from ..progress import Progress, unwatched, within
+from ..reconstruction.follow_joints import follow_joints
+from ..reconstruction.posture_joints import (
+    POSTURE_JOINTS,
+    joints_of_names,
+    motion_postures,
+    posture_positions,
+)
+from ..reconstruction.posture_library import PostureLibrary
+from ..reconstruction.turn_to_postures import turn_to_postures
+from .known_body import KINECT_V1, check_size, check_tracked, gap_remarks
+from .rough_reconstruct import ReconstructSettings, reconstruct
+
+Array = NDArray[np.float64]
+REBUILDING = ReconstructSettings()
+
+
+@dataclass(frozen=True, eq=False)
+class RebuiltMotion:
+    """Clean motion of a skeleton.
+
+    Attributes
+    ----------
+    motion : Motion
+        Of the skeleton that was given; without gaps.
+    reliability, confidence : shape (n_frames, n_joints), 0 to 1
+        How far each joint was trusted, and how sure its result is; NaN for joints that are
+        not among those by which bodies are compared.
+    method : str
+        What was done, in words.
+    remarks : tuple of str
+        Sentences on what the animator should know.
+    """
+
+    motion: Motion
+    reliability: Array
+    confidence: Array
+    method: str
+    remarks: tuple[str, ...]
+
+
+def reconstruct_motion(
+    motion: Motion,
+    postures: PostureLibrary | None = None,
+    prior: None = None,
+    *,
+    tracking_state: NDArray[np.int8] | None = None,
+    humanoid_map: HumanoidMap | None = None,
+    settings: ReconstructSettings = REBUILDING,
+    progress: Progress = unwatched,
+) -> RebuiltMotion:
+    """Rebuild the poses of a motion that a tracker's joints, or any capture, gave a skeleton.
+
+    Where its joints are those of a known tracker, all of them are rebuilt and followed
+    (`follow_joints`). On any other skeleton those of a body are, and its motion is turned the
+    short way to where they come to be (`turn_to_postures`).
+
+    Parameters
+    ----------
+    motion : Motion
+        NaN where it was not observed.
+    postures : PostureLibrary, optional
+    prior : ResidualPrior, optional
+    tracking_state : shape (n_frames, n_joints), optional
+        What the tracker said of each joint: 2 tracked, 1 inferred, 0 not tracked.
+    humanoid_map : HumanoidMap, optional
+        Which joint plays which part of a body; found where it is not given.
+    settings : ReconstructSettings
+    progress : Progress
+
+    Raises
+    ------
+    InvalidMotionError
+        Nothing is tracked, no body is recognised, or it is not of human size.
+    SolveCancelled
+        Raised by `progress`.
+    """
+    tracked = _is_tracked(motion.skeleton.names)
+    recording, columns = (
+        _all_joints(motion, tracking_state)
+        if tracked
+        else _postures_of(motion, humanoid_map or find_humanoid_map(motion.skeleton))
+    )
+    check_tracked(recording)
+    check_size(recording)
+    rebuilt = reconstruct(
+        recording, postures, prior, settings=settings, progress=within(progress, 0.0, 0.9)
+    )
+    if tracked:
+        turned = follow_joints(
+            rebuilt.tracks, recording.parents, rebuilt.confidence, skeleton=motion.skeleton
+        )
+    else:
+        turned = turn_to_postures(motion, posture_positions(rebuilt.tracks), humanoid_map)
+    shape = (motion.n_frames, motion.n_joints)
+    reliability, confidence = np.full(shape, np.nan), np.full(shape, np.nan)
+    for joint, column in columns.items():
+        reliability[:, joint] = rebuilt.reliability.combined[:, column]
+        confidence[:, joint] = rebuilt.confidence[:, column]
+    progress(1.0, "Done")
+    remarks = tuple(gap_remarks(recording))
+    return RebuiltMotion(turned, reliability, confidence, rebuilt.method, remarks)
+
+
+def _is_tracked(names: tuple[str, ...]) -> bool:
+    """Whether all joints are a known tracker's, and so hang together as is known."""
+    return joint_parents(names).count(-1) == 1 and "hips" in joints_of_names(names)
+
+
+def _all_joints(
+    motion: Motion, state: NDArray[np.int8] | None
+) -> tuple[JointRecording, dict[int, int]]:
+    """Return where all joints are, and the column of each joint."""
+    positions = forward_kinematics(motion).positions
+    tracks = Tracks(motion.skeleton.names, positions, motion.frame_rate)
+    columns = {joint: joint for joint in range(motion.n_joints)}
+    return JointRecording(tracks, state, Sensor.OTHER), columns
+
+
+def _postures_of(
+    motion: Motion, humanoid_map: HumanoidMap
+) -> tuple[JointRecording, dict[int, int]]:
+    """Return where the joints of postures are, under the names of a tracker."""
+    positions = motion_postures(motion, humanoid_map)
+    there = np.flatnonzero(np.isfinite(positions).all(axis=-1).any(axis=0))
+    names = tuple(KINECT_V1[POSTURE_JOINTS[joint]] for joint in there)
+    tracks = Tracks(names, positions[:, there], motion.frame_rate)
+    places = humanoid_map.indices(motion.skeleton)
+    columns = {
+        places[role]: column
+        for column, joint in enumerate(there)
+        if (role := POSTURE_JOINTS[joint]) in places
+    }
+    return JointRecording(tracks, None, Sensor.OTHER), columns

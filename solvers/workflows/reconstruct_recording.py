@@ -1,0 +1,86 @@
+"""From a depth camera's joints to clean motion of a skeleton whose feet stand."""
+
+from dataclasses import dataclass
+
+from ..denoising import Planted, PlantSettings
+from ..motion import JointRecording, Motion, Skeleton
+from ..progress import Progress, unwatched, within
+from ..reconstruction.follow_joints import follow_joints
+from ..reconstruction.posture_library import PostureLibrary
+from ..reconstruction.result import Reconstruction
+from .known_body import check_size, gap_remarks, known_body
+from .rough_reconstruct import ReconstructSettings, reconstruct
+from .try_to_plant import try_to_plant
+
+PLANTING = PlantSettings()
+REBUILDING = ReconstructSettings()
+
+
+@dataclass(frozen=True, eq=False)
+class ReconstructedMotion:
+    """Clean motion, and what was done for it.
+
+    Attributes
+    ----------
+    motion : Motion
+        Without gaps; the feet are planted where that was asked for and can be done.
+    reconstruction : Reconstruction
+        Joints, confidence and the motion before feet were planted.
+    planted : Planted or None
+    remarks : tuple of str
+        Sentences on what the animator should know.
+    """
+
+    motion: Motion
+    reconstruction: Reconstruction
+    planted: Planted | None
+    remarks: tuple[str, ...]
+
+
+def reconstruct_recording(
+    recording: JointRecording,
+    postures: PostureLibrary | None = None,
+    prior: None = None,
+    *,
+    skeleton: Skeleton | None = None,
+    settings: ReconstructSettings = REBUILDING,
+    planting: PlantSettings | None = PLANTING,
+    progress: Progress = unwatched,
+) -> ReconstructedMotion:
+    """Rebuild the poses of a recording, let a skeleton follow them, and plant its feet.
+
+    Parameters
+    ----------
+    recording : JointRecording
+        Joints of a body, of any tracker whose names are known.
+    postures : PostureLibrary, optional
+    prior : ResidualPrior, optional
+    skeleton : Skeleton, optional
+        To move, in the place of one of the recording's own lengths; its joints are some of the
+        recording's.
+    settings : ReconstructSettings
+    planting : PlantSettings or None
+        None leaves the feet as they are.
+    progress : Progress
+
+    Raises
+    ------
+    InvalidMotionError
+        Nothing is tracked, no body is recognised, or it is not of human size.
+    SolveCancelled
+        Raised by `progress`.
+    """
+    known = known_body(recording)
+    check_size(known)
+    rebuilt = reconstruct(
+        known, postures, prior, settings=settings, progress=within(progress, 0.0, 0.8)
+    )
+    motion = rebuilt.motion
+    if skeleton is not None:
+        motion = follow_joints(
+            rebuilt.tracks, known.parents, rebuilt.confidence, skeleton=skeleton
+        )
+    footing = try_to_plant(motion, planting, progress=within(progress, 0.8, 1.0))
+    progress(1.0, "Done")
+    remarks = (*gap_remarks(known), *footing.remarks)
+    return ReconstructedMotion(footing.motion, rebuilt, footing.planted, remarks)

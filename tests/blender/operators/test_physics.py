@@ -1,0 +1,95 @@
+"""Physics: a new action in which nothing sinks into the ground."""
+
+import json
+
+import numpy as np
+import pytest
+
+
+@pytest.fixture
+def walker(blank, load, tmp_path):
+    """A walk of a whole figure, two seconds at 30 Hz, 10 cm under the ground."""
+    samples, recordings = load("solvers.samples"), load("solvers.recordings")
+    walk = samples.walking_gait(samples.GaitSettings(duration=2.0, frame_rate=30.0))
+    sunk = walk.with_poses(root_positions=walk.root_positions - (0.0, 0.0, 0.1))
+    recordings.write_bvh(sunk, tmp_path / "walk.bvh")
+    blank.ops.mocap_assist.import_recording(filepath=str(tmp_path / "walk.bvh"))
+    return blank.context.object
+
+
+def test_the_result_is_a_new_action_on_the_ground(walker, blank, keys_of, load):
+    raw = walker.animation_data.action
+    before = keys_of(raw)
+
+    assert blank.ops.mocap_assist.simulate() == {"FINISHED"}
+
+    action = walker.animation_data.action
+    assert action.name == "walk.physics" and keys_of(raw) == before
+    entry = json.loads(action["mocap_assist_history"])[-1]
+    assert entry["operation"] == "simulate" and entry["frames_not_followed"] == 0
+    figures = entry["at_full_strength"]
+    assert figures["penetration_before_cm"] > 8.0 and figures["penetration_after_cm"] < 1.0
+    assert lowest_foot(walker, blank, load) > lowest_foot(walker, blank, load, raw) + 0.08
+    assert blank.ops.mocap_assist.revert_to_raw() == {"FINISHED"}
+    assert walker.animation_data.action == raw
+
+
+def test_a_part_of_it_needs_no_new_simulation(walker, blank, load, monkeypatch):
+    assert blank.ops.mocap_assist.simulate() == {"FINISHED"}
+    whole = lowest_foot(walker, blank, load)
+    blank.ops.mocap_assist.revert_to_raw()
+    raw = lowest_foot(walker, blank, load)
+    monkeypatch.setattr(load("mocap_assist.jobs.job"), "Job", None)
+
+    assert blank.ops.mocap_assist.simulate(strength=0.5) == {"FINISHED"}
+
+    half = lowest_foot(walker, blank, load)
+    assert half == pytest.approx((whole + raw) / 2, abs=0.02)
+
+
+def test_the_ground_is_under_the_feet_if_asked(walker, blank):
+    assert blank.ops.mocap_assist.simulate(ground="FEET") == {"FINISHED"}
+
+    action = walker.animation_data.action
+    entry = json.loads(action["mocap_assist_history"])[-1]
+    assert entry["settings"]["ground"] == "auto"
+    assert -0.15 < entry["ground_m"] < -0.05
+
+
+def test_a_grey_button_says_why(blank):
+    assert not blank.ops.mocap_assist.simulate.poll()
+    with pytest.raises(RuntimeError, match="Select an armature"):
+        blank.ops.mocap_assist.simulate()
+
+
+def test_it_is_one_step_to_undo(blank):
+    assert blank.types.MOCAP_ASSIST_OT_simulate.bl_options == {"REGISTER", "UNDO"}
+
+
+def test_the_command_simulates_and_saves(walker, load, blank, capsys, tmp_path):
+    target = tmp_path / "physics.blend"
+    run = load("mocap_assist.batch.command").run
+
+    status = run(["simulate", "--output", str(target), "--json", "--ground", "auto"])
+
+    out, err = capsys.readouterr()
+    assert (status, err) == (0, "")
+    said = json.loads(next(line for line in out.splitlines() if line[:1] == "{"))
+    assert (said["action"], said["settings"]["ground"]) == ("walk.physics", "auto")
+    blank.ops.wm.open_mainfile(filepath=str(target))
+    assert "walk.physics" in blank.data.actions
+
+
+def lowest_foot(armature, blank, load, action=None):
+    """Return the mean height of the lower foot over the take."""
+    if action is not None:
+        armature.animation_data.action, kept = action, armature.animation_data.action
+        height = lowest_foot(armature, blank, load)
+        armature.animation_data.action = kept
+        return height
+    read = load("mocap_assist.scene.armature_read").read_take
+    source = load("mocap_assist.selection").played_source(armature)
+    body = read(armature, blank.context.scene, source=source).parts[0].motion
+    positions = load("solvers.motion").forward_kinematics(body).positions
+    feet = [n for n, name in enumerate(body.skeleton.names) if "Foot" in name]
+    return float(np.mean(positions[:, feet, 2].min(axis=1)))

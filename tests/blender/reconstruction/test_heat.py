@@ -1,0 +1,81 @@
+"""The colours of trust: from the action, at each frame."""
+
+import numpy as np
+import pytest
+from kinect_walks import LOST
+
+INSIDE = LOST.start + 15
+
+
+@pytest.fixture
+def heat(load):
+    return load("mocap_assist.scene.heat")
+
+
+def of_bone(armature, shown, name):
+    """Colours of a bone's head and tail."""
+    return shown.colors[[bone.name for bone in armature.pose.bones].index(name)]
+
+
+def test_a_hidden_arm_is_red_and_the_other_blue(walk, reconstruct, heat):
+    reconstruct()
+
+    shown = heat.heat_at(walk, INSIDE)
+    before = heat.heat_at(walk, 5)
+
+    red, _, blue, _ = of_bone(walk, shown, "WristLeft")[0]
+    assert red > 0.6 and blue < 0.4
+    red, _, blue, _ = of_bone(walk, shown, "WristRight")[0]
+    assert red < 0.4 and blue > 0.6
+    red, _, blue, _ = of_bone(walk, before, "WristLeft")[0]
+    assert blue > 0.6
+
+
+def test_a_bone_goes_over_into_the_colour_of_the_next(walk, reconstruct, heat):
+    reconstruct()
+
+    shown = heat.heat_at(walk, INSIDE)
+
+    shoulder, elbow = of_bone(walk, shown, "ShoulderLeft")
+    assert np.allclose(elbow, of_bone(walk, shown, "ElbowLeft")[0])
+    assert shoulder[2] > elbow[2]
+
+
+def test_lines_lie_where_the_bones_are_posed(walk, reconstruct, heat, blank):
+    reconstruct()
+    blank.context.scene.frame_set(INSIDE)
+
+    shown = heat.heat_at(walk, INSIDE)
+
+    for bone, (head, tail) in zip(walk.pose.bones, shown.ends, strict=True):
+        assert np.allclose(head, bone.head, atol=1e-6)
+        assert np.allclose(tail, bone.tail, atol=1e-6)
+
+
+def test_there_is_none_on_what_was_not_reconstructed(walk, heat, blank):
+    assert heat.heat_at(walk, 5) is None
+
+    blank.ops.mocap_assist.denoise(plant_feet=False)
+
+    assert heat.heat_at(walk, 5) is None
+
+
+@pytest.mark.parametrize(("trust", "channel"), [(0.0, 0), (1.0, 2)])
+def test_shades_go_from_red_to_blue(heat, trust, channel):
+    assert np.argmax(heat.shade(trust)[:3]) == channel
+
+
+def test_what_is_not_known_is_grey(heat):
+    red, green, blue, _ = heat.shade(np.nan)
+
+    assert red == green == blue
+
+
+def test_the_switch_leaves_the_scene_alone(walk, reconstruct, blank):
+    reconstruct()
+    bones = [bone.color.palette for bone in walk.pose.bones]
+
+    blank.context.window_manager.mocap_assist_heat = True
+
+    assert [bone.color.palette for bone in walk.pose.bones] == bones
+    blank.context.window_manager.mocap_assist_heat = False

@@ -1,0 +1,150 @@
+"""The button Reconstruct: a new action, plausible where the camera was wrong."""
+
+import json
+
+import numpy as np
+import pytest
+from kinect_walks import HIDDEN, LOST
+from numpy.testing import assert_allclose, assert_array_equal
+
+HISTORY, SOURCE = "mocap_assist_history", "mocap_assist_source"
+GENERATED = 5
+
+
+@pytest.fixture
+def body(load, blank):
+    """Read where the joints of an armature's action are, by name."""
+
+    def read(armature):
+        take = load("mocap_assist.scene.armature_read").read_take(armature, blank.context.scene)
+        motion = take.parts[0].motion
+        places = load("solvers.motion").forward_kinematics(motion).positions
+        return dict(zip(motion.skeleton.names, np.moveaxis(places, 1, 0), strict=True))
+
+    return read
+
+
+def test_the_result_is_a_new_action_and_the_recorded_one_stays(walk, reconstruct, keys_of):
+    raw = walk.animation_data.action
+    before = keys_of(raw)
+
+    result = reconstruct()
+
+    assert result.name == "walk.reconstructed"
+    assert result.use_fake_user
+    assert keys_of(raw) == before
+    assert result[SOURCE] == raw
+    entry = json.loads(result[HISTORY])[-1]
+    assert entry["operation"] == "reconstruct"
+    assert entry["settings"]["plant_feet"] is False
+    assert 0.0 < entry["lost_share"] < 0.2
+
+
+def test_the_hidden_forearm_comes_nearer_to_the_truth(walk, reconstruct, body, truth):
+    raw = body(walk)
+
+    reconstruct()
+
+    clean = body(walk)
+    for name, joint in zip(HIDDEN, (5, 6, 7), strict=True):
+        error = [
+            np.nanmean(np.linalg.norm(each[name][LOST] - truth[LOST, joint], axis=-1))
+            for each in (raw, clean)
+        ]
+        assert error[1] < 0.6 * error[0], name
+    assert all(np.isfinite(places).all() for places in clean.values())
+
+
+def test_what_was_trusted_stays_where_it_was(walk, reconstruct, body):
+    raw = body(walk)
+
+    reconstruct()
+
+    clean = body(walk)
+    for name in ("KneeRight", "AnkleLeft", "ElbowRight", "ShoulderCenter"):
+        moved = np.linalg.norm(clean[name] - raw[name], axis=-1)
+        assert np.nanmedian(moved) < 0.03, name
+
+
+def test_trust_is_kept_with_the_action(walk, reconstruct, load):
+    result = reconstruct()
+
+    trust = load("mocap_assist.scene.reliability_curves").reliability_at
+    source = (result, walk.animation_data.action_slot)
+    hidden = trust(source, ["WristLeft", "WristRight"], LOST.start + 15)
+    seen = trust(source, ["WristLeft", "WristRight"], 10)
+    assert hidden["WristLeft"] < 0.3 < 0.7 < hidden["WristRight"]
+    assert seen["WristLeft"] > 0.7
+
+
+def test_keys_that_are_guessed_look_so(walk, reconstruct, blank):
+    result = reconstruct()
+
+    path = 'pose.bones["ElbowLeft"].rotation_quaternion'
+    curves = result.layers[0].strips[0].channelbags[0].fcurves
+    curve = next(each for each in curves if each.data_path == path)
+    generated = [key.co.x for key in curve.keyframe_points if key.type == "GENERATED"]
+    assert {LOST.start + 15.0} <= set(generated)
+    assert not {10.0, 80.0} & set(generated)
+
+
+def test_feet_that_are_planted_do_not_slide(walk, reconstruct):
+    result = reconstruct(plant_feet=True)
+
+    entry = json.loads(result[HISTORY])[-1]
+    assert entry["after"]["foot_slide_cm_per_s"] < 0.3 * entry["before"]["foot_slide_cm_per_s"]
+
+
+def test_reconstructing_again_starts_from_what_was_recorded(walk, reconstruct, keys_of):
+    first = reconstruct()
+
+    second = reconstruct()
+
+    assert second.name.startswith("walk.reconstructed")
+    assert second != first
+    again, once = keys_of(second), keys_of(first)
+    assert again.keys() == once.keys()
+    for path, keys in once.items():
+        assert_allclose(again[path], keys, atol=1e-5, err_msg=str(path))
+    assert len(json.loads(second[HISTORY])) == 1
+
+
+def test_a_rig_of_another_kind_keeps_its_hands(make_armature, animate, reconstruct, blank):
+    """Of joints that belong to no body, all turns stay."""
+    armature = make_armature()
+    animate(armature)
+    blank.context.scene.render.fps = 30
+
+    result = reconstruct()
+
+    assert result.name == "walk.reconstructed"
+    raw = result[SOURCE]
+    first, second = (
+        [key.co.y for curve in each.layers[0].strips[0].channelbags[0].fcurves
+         if "Head" in curve.data_path and "mocap" not in curve.data_path
+         for key in curve.keyframe_points]
+        for each in (raw, result)
+    )  # fmt: skip
+    assert_array_equal(np.shape(first), np.shape(second))
+
+
+def test_the_button_is_grey_without_an_armature(blank):
+    blank.ops.object.empty_add()
+
+    with pytest.raises(RuntimeError, match="Select an armature"):
+        blank.ops.mocap_assist.reconstruct()
+
+
+@pytest.fixture
+def keys_of():
+    """All keys of an action."""
+
+    def read(action):
+        return {
+            (curve.data_path, curve.array_index): [
+                tuple(key.co) for key in curve.keyframe_points
+            ]
+            for curve in action.layers[0].strips[0].channelbags[0].fcurves
+        }
+
+    return read

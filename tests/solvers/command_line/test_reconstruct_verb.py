@@ -1,0 +1,129 @@
+"""`reconstruct`: from files of joints to motions or joints."""
+
+import json
+
+import numpy as np
+import pytest
+from kinect_walks import tracked_walk, true_positions
+
+from solvers import motion as vocabulary
+from solvers import samples
+from solvers.motion import JOINTS, Sensor, Tracks
+from solvers.reconstruction import posture_joints
+from solvers.recordings import read_bvh, read_joint_csv, write_bvh, write_joint_csv, write_trc
+
+
+@pytest.fixture(scope="module")
+def walk():
+    return tracked_walk(vocabulary, true_positions(samples, posture_joints))
+
+
+@pytest.fixture
+def walk_file(walk, tmp_path):
+    write_joint_csv(walk, tmp_path / "walk.csv")
+    return tmp_path / "walk.csv"
+
+
+def test_writes_a_motion_and_tells_what_was_lost(call, walk_file, tmp_path):
+    status, out, err = call("reconstruct", walk_file, tmp_path / "walk.bvh", "--json")
+
+    assert (status, err) == (0, "")
+    figures = json.loads(out)
+    assert 0.02 < figures["lost_share"] < 0.2
+    assert figures["slide_after_m"] < figures["slide_before_m"]
+    assert figures["after"]["missing_share"] == 0
+    motion = read_bvh(tmp_path / "walk.bvh")
+    assert motion.n_frames == 90 and "WristLeft" in motion.skeleton.names
+
+
+def test_writes_joints_with_their_confidence(call, walk_file, walk, tmp_path):
+    status, out, err = call("reconstruct", walk_file, tmp_path / "clean.csv", "--no-feet")
+
+    assert (status, err) == (0, "")
+    assert "could not be trusted" in out and "Feet" not in out
+    joints = read_joint_csv(tmp_path / "clean.csv")
+    assert joints.names == walk.names
+    assert joints.tracks.visible.all()
+    hidden = joints.tracks.confidence[45, joints.names.index("WristLeft")]
+    assert hidden < joints.tracks.confidence[10, joints.names.index("WristLeft")]
+
+
+@pytest.mark.parametrize(("options", "ending"), [((), ".bvh"), (("--joints",), ".csv")])
+def test_many_files_go_into_a_folder_and_are_not_made_twice(
+    call, walk_file, walk, tmp_path, options, ending
+):
+    write_joint_csv(walk, tmp_path / "other.csv")
+    words = ("reconstruct", walk_file, tmp_path / "other.csv", "--output-folder",
+             tmp_path / "out", "--jobs", 2, *options)  # fmt: skip
+
+    first, again = call(*words), call(*words)
+
+    assert first[0] == again[0] == 0
+    assert {path.stem for path in (tmp_path / "out").glob(f"*{ending}")} == {"walk", "other"}
+    assert again[1].count("Already made.") == 2
+
+
+def test_the_motion_of_a_skeleton_is_rebuilt_on_it(call, tmp_path):
+    walk = samples.walking_gait(samples.GaitSettings(duration=1.0, frame_rate=30.0))
+    write_bvh(walk, tmp_path / "walk.bvh")
+
+    status, out, err = call("reconstruct", tmp_path / "walk.bvh", tmp_path / "clean.bvh")
+
+    assert (status, err) == (0, "")
+    assert "Feet slid" in out
+    clean = read_bvh(tmp_path / "clean.bvh")
+    assert set(clean.skeleton.names) == set(read_bvh(tmp_path / "walk.bvh").skeleton.names)
+
+
+def test_metres_of_millimetres_are_asked_for(call, walk, tmp_path):
+    large = Tracks(walk.names, 1000.0 * walk.tracks.positions, 30.0)
+    write_joint_csv(walk.with_tracks(large), tmp_path / "large.csv")
+
+    status, _, err = call("reconstruct", tmp_path / "large.csv", tmp_path / "out.bvh")
+    scaled, _, _ = call(
+        "reconstruct", tmp_path / "large.csv", tmp_path / "out.bvh", "--scale", "0.001"
+    )
+
+    assert status == 2 and err.count("\n") == 1
+    assert "large.csv" in err and "millimetres were taken for metres" in err
+    assert scaled == 0
+    height = read_bvh(tmp_path / "out.bvh").skeleton.height
+    assert 1.3 < height < 2.2
+
+
+def test_markers_are_refused(call, tmp_path):
+    markers = Tracks(("LFHD", "RFHD", "LASI"), np.random.default_rng(1).random((9, 3, 3)), 30.0)
+    write_trc(markers, tmp_path / "markers.trc")
+
+    status, _, err = call("reconstruct", tmp_path / "markers.trc", tmp_path / "out.bvh")
+
+    assert status == 2 and "No body was recognised" in err
+    assert not (tmp_path / "out.bvh").exists()
+
+
+@pytest.mark.parametrize("target", ["out.c3d", "out.trc", "out"])
+def test_other_endings_are_refused_before_any_work(call, walk_file, tmp_path, target):
+    status, _, err = call("reconstruct", walk_file, tmp_path / target)
+
+    assert status == 2 and ".bvh" in err and ".csv" in err
+
+
+def test_a_skeleton_has_no_joints_to_write(call, tmp_path):
+    walk = samples.walking_gait(samples.GaitSettings(duration=0.5, frame_rate=30.0))
+    write_bvh(walk, tmp_path / "walk.bvh")
+
+    status, _, err = call("reconstruct", tmp_path / "walk.bvh", tmp_path / "out.csv")
+
+    assert status == 2 and "out.bvh" in err
+
+
+def test_a_recording_of_which_nothing_was_tracked(call, tmp_path):
+    names = JOINTS[Sensor.KINECT_V1]
+    path = tmp_path / "empty.csv"
+    columns = ",".join(f"{name}.{axis}" for name in names for axis in "xyz")
+    rows = [f"{frame / 30.0}" + "," * 60 for frame in range(5)]
+    path.write_text("\n".join(["mocap-assist-joints,1,units=m", f"time,{columns}", *rows]))
+
+    status, _, err = call("reconstruct", path, tmp_path / "out.bvh")
+
+    assert status == 2 and err.count("\n") == 1 and "empty.csv" in err

@@ -1,0 +1,260 @@
+"""Positions to a rig: joints keep their places, and nothing turns needlessly."""
+
+import numpy as np
+import pytest
+from kinect_walks import true_positions
+from numpy.testing import assert_allclose
+
+from solvers import samples
+from solvers.errors import InvalidMotionError
+from solvers.motion import (
+    JOINTS,
+    Motion,
+    Sensor,
+    Tracks,
+    find_humanoid_map,
+    fit_bone_lengths,
+    forward_kinematics,
+    joint_parents,
+    motion_from_points,
+)
+from solvers.motion.rotations import angle_between, rotate
+from solvers.reconstruction import posture_joints
+from solvers.reconstruction.follow_joints import follow_joints
+from solvers.recordings import read_recording
+
+NAMES = JOINTS[Sensor.KINECT_V1]
+PARENTS = joint_parents(NAMES)
+REAL = (
+    "irds/215_18_0_5_1_stand.txt",
+    "kimore/JointPositionExercise1.csv",
+    "laban/Ges01_wavehand.csv",
+    "msr_action3d/a01_s01_e01_skeleton3D.txt",
+    "azure/joints_sync_1.csv",
+    "ui_prmd/m01_s01_e04.npz",
+)
+
+
+def as_tracks(positions: np.ndarray) -> Tracks:
+    return Tracks(NAMES, positions, 30.0)
+
+
+@pytest.fixture(scope="module")
+def walk() -> np.ndarray:
+    return true_positions(samples, posture_joints)
+
+
+def miss(motion: Motion, tracks: Tracks) -> np.ndarray:
+    """How far each tracked joint is from where it was, shape (n_frames, n_joints), metres."""
+    shown = [name for name in motion.skeleton.names if name in tracks.names]
+    own = [motion.skeleton.index(name) for name in shown]
+    theirs = [tracks.names.index(name) for name in shown]
+    places = forward_kinematics(motion).positions[:, own]
+    return np.linalg.norm(places - tracks.positions[:, theirs], axis=-1)
+
+
+def test_joints_of_constant_lengths_keep_their_places(walk):
+    motion = follow_joints(as_tracks(walk), PARENTS)
+
+    assert miss(motion, as_tracks(walk)).mean() < 0.003
+
+
+@pytest.mark.parametrize("file", REAL)
+def test_so_do_those_of_real_cameras(recordings, file):
+    """Their shoulders and hips shift on the trunk; a rigid one misses by up to 45 mm."""
+    recording = read_recording(recordings / "kinect" / file)
+    parents, tracks = recording.parents, recording.tracks
+    body = motion_from_points(tracks, parents).skeleton
+    order = [tracks.names.index(name) for name in body.names]
+    steady = np.array(tracks.positions)
+    steady[:, order] = fit_bone_lengths(tracks.positions[:, order], body)
+    steady = tracks.with_positions(steady)
+
+    motion = follow_joints(steady, parents)
+
+    assert np.nanmean(miss(motion, steady)) < 0.005
+
+
+def test_bones_have_one_length_that_of_reliable_frames(walk):
+    tracks, reliability = as_tracks(walk.copy()), np.ones((90, 20))
+    wrist = NAMES.index("WristLeft")
+    tracks.positions[40:, wrist] += (0.3, 0.0, 0.0)
+    reliability[40:, wrist] = 0.1
+
+    motion = follow_joints(tracks, PARENTS, reliability)
+
+    true = np.linalg.norm(walk[0, wrist] - walk[0, NAMES.index("ElbowLeft")])
+    offset = motion.skeleton.offsets[motion.skeleton.index("WristLeft")]
+    assert np.linalg.norm(offset) == pytest.approx(true, abs=0.003)
+
+
+def bending_arm(angles: np.ndarray, plane: float) -> Tracks:
+    """An upright body whose left upper arm hangs and whose elbow bends by so many radians.
+
+    It bends forward (-Y), turned about the upper arm by `plane` towards the body.
+    """
+    still = np.zeros((len(angles), 20, 3))
+    for name, place in {
+        "HipCenter": (0, 0, 1.0), "Spine": (0, 0, 1.25), "ShoulderCenter": (0, 0, 1.5),
+        "Head": (0, 0, 1.7), "ShoulderLeft": (0.2, 0, 1.5), "ElbowLeft": (0.2, 0, 1.2),
+        "ShoulderRight": (-0.2, 0, 1.5), "ElbowRight": (-0.2, 0, 1.2),
+        "WristRight": (-0.2, 0, 0.95), "HandRight": (-0.2, 0, 0.85),
+        "HipLeft": (0.1, 0, 0.92), "KneeLeft": (0.1, 0, 0.5), "AnkleLeft": (0.1, 0, 0.1),
+        "FootLeft": (0.1, -0.15, 0), "HipRight": (-0.1, 0, 0.92), "KneeRight": (-0.1, 0, 0.5),
+        "AnkleRight": (-0.1, 0, 0.1), "FootRight": (-0.1, -0.15, 0),
+    }.items():  # fmt: skip
+        still[:, NAMES.index(name)] = place
+    way = np.stack(
+        [-np.sin(angles) * np.sin(plane), -np.sin(angles) * np.cos(plane), -np.cos(angles)],
+        axis=-1,
+    )
+    still[:, NAMES.index("WristLeft")] = still[:, NAMES.index("ElbowLeft")] + 0.25 * way
+    still[:, NAMES.index("HandLeft")] = still[:, NAMES.index("ElbowLeft")] + 0.35 * way
+    return as_tracks(still)
+
+
+def hinge_of(motion: Motion, joint: str, axis: tuple[float, float, float]) -> np.ndarray:
+    """Where the axis of a hinge in the T-pose points in the world, shape (n_frames, 3)."""
+    return rotate(
+        forward_kinematics(motion).rotations[:, motion.skeleton.index(joint)], np.array(axis)
+    )
+
+
+@pytest.mark.parametrize("plane", np.radians([-30.0, 0.0, 60.0]))
+def test_an_upper_arm_is_twisted_so_that_its_elbow_bends_as_a_hinge(plane):
+    motion = follow_joints(bending_arm(np.full(60, np.radians(80)), plane), PARENTS)
+
+    elbow = motion.rotations[:, motion.skeleton.index("ElbowLeft")]
+    axis = elbow[:, 1:] / np.linalg.norm(elbow[:, 1:], axis=-1, keepdims=True)
+    assert_allclose(np.abs(axis[:, 2]), 1.0, atol=0.02)  # Z is the hinge of a T-pose's elbow
+    assert_allclose(np.degrees(angle_between(elbow, [1.0, 0, 0, 0])), 80.0, atol=1.0)
+
+
+def test_a_straight_arm_keeps_the_twist_of_the_bends_about_it():
+    """It is stretched for a fifth of a second; noise there must not turn it."""
+    angles = np.full(60, np.radians(60.0))
+    angles[27:33] = 0.0
+    tracks = bending_arm(angles, np.radians(60.0))
+    tracks.positions[27:33, NAMES.index("WristLeft")] += np.random.default_rng(1).normal(
+        scale=0.005, size=(6, 3)
+    )
+
+    motion = follow_joints(tracks, PARENTS)
+
+    hinge = hinge_of(motion, "ShoulderLeft", (0.0, 0.0, 1.0))
+    turned = np.degrees(np.arccos(np.clip(hinge @ hinge[0], -1.0, 1.0)))
+    assert turned.max() < 10.0
+
+
+def test_an_arm_that_never_bends_is_not_twisted_against_the_trunk():
+    motion = follow_joints(bending_arm(np.zeros(30), 0.0), PARENTS)
+
+    hinge = hinge_of(motion, "ShoulderLeft", (0.0, 0.0, 1.0))
+    assert_allclose(hinge, np.tile((1.0, 0.0, 0.0), (30, 1)), atol=0.02)
+
+
+def test_nothing_jumps_while_a_body_turns_round(walk):
+    angles = np.linspace(0.0, 4.0 * np.pi, len(walk))
+    cos, sin = np.cos(angles)[:, None], np.sin(angles)[:, None]
+    x, y, z = np.moveaxis(walk, -1, 0)
+    turning = np.stack([cos * x - sin * y, sin * x + cos * y, z], axis=-1)
+
+    still, motion = (follow_joints(as_tracks(each), PARENTS) for each in (walk, turning))
+
+    steps = angle_between(still.rotations[1:, 1:], still.rotations[:-1, 1:])
+    assert np.degrees(steps.max()) < 20.0
+    assert_allclose(
+        angle_between(motion.rotations[:, 1:], still.rotations[:, 1:]), 0.0, atol=1e-4
+    )
+
+
+def test_the_twist_of_the_trunk_is_shared_by_the_spine():
+    tracks = bending_arm(np.full(5, 1.0), 0.0)
+    above = [
+        name for name in NAMES if not name.startswith(("Hip", "Knee", "Ankle", "Foot", "Sp"))
+    ]
+    places = tracks.positions
+    for name in above:  # turned by 60 degrees to the left
+        x, y = places[:, NAMES.index(name), :2].T.copy()
+        places[:, NAMES.index(name), 0] = 0.5 * x - np.sqrt(0.75) * y
+        places[:, NAMES.index(name), 1] = np.sqrt(0.75) * x + 0.5 * y
+
+    motion = follow_joints(tracks, PARENTS)
+
+    spine = motion.rotations[:, motion.skeleton.index("Spine")]
+    chest = motion.rotations[:, motion.skeleton.index("ShoulderCenter")]
+    assert 10.0 < np.degrees(angle_between(spine, [1.0, 0, 0, 0])).mean() < 50.0
+    assert np.degrees(angle_between(chest, [1.0, 0, 0, 0])).mean() < 40.0
+
+
+def test_the_skeleton_is_still_that_of_a_human(walk):
+    motion = follow_joints(as_tracks(walk), PARENTS)
+
+    assert {"ClavicleLeft", "ClavicleRight", "SpineLow"} <= set(motion.skeleton.names)
+    found = find_humanoid_map(motion.skeleton)
+    assert found.score > 0.9
+    assert found.joint("leftUpperArm") == "ShoulderLeft"
+
+
+def test_a_skeleton_that_is_given_is_moved(walk):
+    body = motion_from_points(as_tracks(walk), PARENTS).skeleton
+
+    motion = follow_joints(as_tracks(walk), PARENTS, skeleton=body)
+
+    assert motion.skeleton is body
+    assert motion.observed.all()
+
+
+def test_what_a_rigid_trunk_misses_is_not_handed_down_to_the_hand(walk):
+    """The shoulder is pulled up by 5 cm; the bones of the arm make for elbow and wrist."""
+    body = motion_from_points(as_tracks(walk), PARENTS).skeleton
+    arm = [NAMES.index(f"{part}Left") for part in ("Shoulder", "Elbow", "Wrist")]
+    shrugging = walk.copy()
+    shrugging[:, arm[0], 2] += 0.05
+
+    motion = follow_joints(as_tracks(shrugging), PARENTS, skeleton=body)
+
+    order = [motion.skeleton.index(NAMES[joint]) for joint in arm]
+    places = forward_kinematics(motion).positions[:, order]
+    shoulder, _, wrist = np.linalg.norm(places - shrugging[:, arm], axis=-1).mean(axis=0)
+    assert shoulder > 0.03
+    assert wrist < 0.4 * shoulder
+
+
+def test_joints_in_one_place_tell_no_direction_and_do_no_harm(walk):
+    tracks = as_tracks(walk.copy())
+    tracks.positions[20, NAMES.index("HandLeft")] = walk[20, NAMES.index("WristLeft")]
+
+    motion = follow_joints(tracks, PARENTS)
+
+    assert motion.observed.all()
+
+
+def test_gaps_stay_gaps(walk):
+    tracks = as_tracks(walk.copy())
+    tracks.positions[10:20, NAMES.index("KneeLeft")] = np.nan
+
+    motion = follow_joints(tracks, PARENTS)
+
+    assert not motion.observed[10:20, motion.skeleton.index("HipLeft")].any()
+    assert motion.observed[:, motion.skeleton.index("HipRight")].all()
+    assert motion.observed[:10].all()
+
+
+def test_the_input_stays_as_it_is(walk):
+    tracks = as_tracks(walk)
+    before = tracks.positions.copy()
+
+    follow_joints(tracks, PARENTS, np.full((90, 20), 0.4))
+
+    assert_allclose(tracks.positions, before, rtol=0, atol=0)
+
+
+def test_refuses_what_does_not_fit(walk):
+    body = motion_from_points(as_tracks(walk), PARENTS).skeleton
+    fewer = Tracks(NAMES[:-1], walk[:, :-1], 30.0)
+
+    with pytest.raises(InvalidMotionError, match="not tracked: FootRight"):
+        follow_joints(fewer, PARENTS[:-1], skeleton=body)
+    with pytest.raises(InvalidMotionError, match="Reliability needs shape"):
+        follow_joints(as_tracks(walk), PARENTS, np.ones((3, 20)))

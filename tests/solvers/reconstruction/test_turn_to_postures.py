@@ -1,0 +1,117 @@
+"""Any rig goes where postures say, twisted as it was."""
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+from numpy.testing import assert_allclose
+
+from solvers.errors import InvalidMotionError
+from solvers.motion import Motion, forward_kinematics
+from solvers.motion.rotations import multiply, quaternion_from_rotation_vector
+from solvers.reconstruction.heading import turned
+from solvers.reconstruction.posture_joints import POSTURE_JOINTS, motion_postures
+from solvers.reconstruction.turn_to_postures import turn_to_postures, without_gaps
+from solvers.recordings import read_bvh
+from solvers.samples import GaitSettings, walking_gait
+
+RAISED = np.array([0.0, 0.0, 0.2])
+
+
+@pytest.fixture(scope="module")
+def walk() -> Motion:
+    return walking_gait(GaitSettings(duration=1.0, frame_rate=30.0))
+
+
+def place(role: str) -> int:
+    return POSTURE_JOINTS.index(role)
+
+
+def test_postures_that_are_there_already_change_nothing(walk):
+    result = turn_to_postures(walk, motion_postures(walk))
+
+    assert_allclose(result.rotations, walk.rotations, atol=1e-9)
+    assert_allclose(result.root_positions, walk.root_positions, atol=1e-12)
+
+
+def test_nan_means_anywhere(walk):
+    postures = np.full((walk.n_frames, 20, 3), np.nan)
+
+    assert_allclose(turn_to_postures(walk, postures).rotations, walk.rotations, atol=1e-9)
+
+
+@given(st.floats(-3.0, 3.0), st.tuples(*[st.floats(-2.0, 2.0)] * 3))
+def test_a_body_that_is_turned_and_moved_is_turned_and_moved(angle, shift):
+    walk = walking_gait(GaitSettings(duration=0.5, frame_rate=20.0))
+    wanted = turned(motion_postures(walk), np.full(walk.n_frames, angle)) + np.array(shift)
+
+    result = turn_to_postures(walk, wanted)
+
+    assert_allclose(motion_postures(result), wanted, atol=1e-6)
+
+
+def test_an_arm_that_is_raised_is_raised(walk):
+    wanted = motion_postures(walk)
+    shoulder = wanted[:, place("leftUpperArm")]
+    for role in ("leftLowerArm", "leftHand"):
+        reach = np.linalg.norm(wanted[:, place(role)] - shoulder, axis=-1, keepdims=True)
+        wanted[:, place(role)] = shoulder + reach * (0.6, 0.0, 0.8)
+    arm = [place(role) for role in ("leftUpperArm", "leftLowerArm", "leftHand")]
+
+    result = turn_to_postures(walk, wanted)
+
+    got = motion_postures(result)
+    assert np.linalg.norm(got - wanted, axis=-1)[:, arm].max() < 0.03
+    others = [joint for joint in range(20) if not POSTURE_JOINTS[joint].startswith("left")]
+    assert_allclose(got[:, others], wanted[:, others], atol=1e-9)
+
+
+def test_twist_stays(walk):
+    """Forearms that are turned about themselves are so afterwards; wrists go along."""
+    twist = quaternion_from_rotation_vector(np.array([0.7, 0.0, 0.0]))
+    joint = walk.skeleton.names.index(
+        next(name for name in walk.skeleton.names if "LeftForeArm" in name)
+    )
+    rotations = walk.rotations.copy()
+    rotations[:, joint] = multiply(rotations[:, joint], twist)
+    wrung = walk.with_poses(rotations)
+    wanted = motion_postures(wrung) + RAISED
+
+    result = turn_to_postures(wrung, wanted)
+
+    assert_allclose(result.rotations, wrung.rotations, atol=1e-9)
+    assert_allclose(result.root_positions, wrung.root_positions + RAISED, atol=1e-9)
+
+
+def test_real_motion_with_constant_lengths_is_followed_closely(recordings):
+    """Take over the poses of one stretch of a walk in another, a second later."""
+    walk = read_bvh(sorted((recordings / "mocap" / "cmu_walk").glob("*.bvh"))[0])
+    first, later = walk.slice(1, 121), walk.slice(121, 241)
+    wanted = motion_postures(later)
+
+    result = turn_to_postures(first, wanted)
+
+    miss = np.linalg.norm(motion_postures(result) - wanted, axis=-1)
+    ends = [place(f"{side}{part}") for side in ("left", "right")
+            for part in ("LowerArm", "Hand", "LowerLeg", "Foot")]  # fmt: skip
+    assert miss[:, ends].mean() < 0.01
+    assert np.nanmean(miss) < 0.02
+
+
+def test_gaps_are_bridged_the_short_way(walk):
+    rotations, places = walk.rotations.copy(), walk.root_positions.copy()
+    rotations[10:13, 2], rotations[:2, 3], places[5:8] = np.nan, np.nan, np.nan
+
+    result = without_gaps(walk.with_poses(rotations, places))
+
+    assert result.observed.all()
+    assert_allclose(result.rotations[:2, 3], np.tile(walk.rotations[2, 3], (2, 1)))
+    assert_allclose(result.root_positions[5:8, 2], walk.root_positions[5:8, 2], atol=0.01)
+    middle = forward_kinematics(result).rotations[11, 2]
+    true = forward_kinematics(walk).rotations[11, 2]
+    assert abs(middle @ true) > np.cos(np.radians(3.0))
+
+
+def test_refuses_postures_of_other_frames(walk):
+    with pytest.raises(InvalidMotionError, match=r"shape \(30, 20, 3\)"):
+        turn_to_postures(walk, np.zeros((3, 20, 3)))

@@ -1,0 +1,177 @@
+"""From a recording of joints to a motion: any tracker, and one sentence for bad input."""
+
+import numpy as np
+import pytest
+from kinect_walks import tracked_walk, true_positions
+
+from solvers import motion as vocabulary
+from solvers import samples
+from solvers.denoising import PlantSettings
+from solvers.errors import InvalidMotionError
+from solvers.motion import (
+    JOINTS,
+    JointRecording,
+    Sensor,
+    Tracks,
+    forward_kinematics,
+    motion_from_points,
+)
+from solvers.reconstruction import posture_joints
+from solvers.recordings import read_joint_csv, read_recording
+from solvers.workflows import reconstruct_motion, reconstruct_recording
+
+NITE = {  # fifteen joints, as OpenNI's tracker names them, and the first Kinect's name of each
+    "head": "Head", "neck": "ShoulderCenter", "torso": "Spine",
+    "left_shoulder": "ShoulderLeft", "left_elbow": "ElbowLeft", "left_hand": "WristLeft",
+    "right_shoulder": "ShoulderRight", "right_elbow": "ElbowRight",
+    "right_hand": "WristRight", "left_hip": "HipLeft", "left_knee": "KneeLeft",
+    "left_foot": "AnkleLeft", "right_hip": "HipRight", "right_knee": "KneeRight",
+    "right_foot": "AnkleRight",
+}  # fmt: skip
+
+
+@pytest.fixture(scope="module")
+def truth() -> np.ndarray:
+    return true_positions(samples, posture_joints)
+
+
+@pytest.fixture
+def walk(truth) -> JointRecording:
+    return tracked_walk(vocabulary, truth)
+
+
+def test_every_joint_is_there_in_every_frame_and_bones_have_one_length(walk):
+    result = reconstruct_recording(walk)
+
+    assert result.motion.observed.all()
+    assert result.motion.n_frames == walk.n_frames
+    assert result.remarks == ()
+
+
+def test_feet_stand_still_where_they_stand(walk):
+    result = reconstruct_recording(walk)
+
+    assert result.planted.slide_after < 0.1 * result.planted.slide_before
+
+
+def test_feet_are_left_alone_on_request(walk):
+    result = reconstruct_recording(walk, planting=None)
+
+    assert result.planted is None
+    assert result.motion is result.reconstruction.motion
+
+
+def test_a_body_without_legs_says_that_its_feet_stay(truth):
+    upper = [name for name in JOINTS[Sensor.KINECT_V1]
+             if not name.startswith(("Knee", "Ankle", "Foot"))]  # fmt: skip
+    places = [JOINTS[Sensor.KINECT_V1].index(name) for name in upper]
+    recording = JointRecording(Tracks(tuple(upper), truth[:, places], 30.0), None, Sensor.OTHER)
+
+    result = reconstruct_recording(recording, planting=PlantSettings())
+
+    assert len(result.remarks) == 1 and result.remarks[0].startswith("Feet are left")
+
+
+def test_fifteen_joints_of_another_tracker_make_a_body(truth):
+    places = [JOINTS[Sensor.KINECT_V1].index(name) for name in NITE.values()]
+    recording = JointRecording(Tracks(tuple(NITE), truth[:, places], 30.0), None, Sensor.OTHER)
+
+    result = reconstruct_recording(recording, planting=None)
+
+    shown = result.motion.skeleton
+    wrist = forward_kinematics(result.motion).positions[:, shown.index("WristLeft")]
+    true = truth[:, JOINTS[Sensor.KINECT_V1].index("WristLeft")]
+    assert np.linalg.norm(wrist - true, axis=-1).mean() < 0.05
+
+
+@pytest.mark.parametrize(
+    "file",
+    ["azure/joints_sync_1.csv", "irds/215_18_5_8_1_stand.txt", "laban/Ges01_wavehand.csv"],
+)
+def test_trackers_of_25_and_32_joints(recordings, file):
+    recording = read_recording(recordings / "kinect" / file)
+
+    result = reconstruct_recording(recording)
+
+    assert result.motion.observed.all()
+    assert set(recording.names) <= set(result.motion.skeleton.names)
+
+
+def as_recording(positions: np.ndarray, names=JOINTS[Sensor.KINECT_V1]) -> JointRecording:
+    return JointRecording(Tracks(names, positions, 30.0), None, Sensor.OTHER)
+
+
+@pytest.mark.parametrize(
+    ("spoil", "said"),
+    [
+        (lambda p: np.full_like(p, np.nan), "No joint is tracked in any of the 90 frames"),
+        (
+            lambda p: np.where(np.arange(20)[:, None] == 3, p, np.nan),
+            r"Only one joint \(Head\)",
+        ),
+        (lambda p: 1000.0 * p, "millimetres were taken for metres.*scale of 0.001"),
+        (lambda p: 100.0 * p, "centimetres were taken for metres.*scale of 0.01"),
+        (lambda p: 0.001 * p, "scale of 1000"),
+    ],
+    ids=["nothing", "one joint", "millimetres", "centimetres", "kilometres"],
+)
+def test_what_cannot_be_is_told_in_one_sentence(truth, spoil, said):
+    with pytest.raises(InvalidMotionError, match=said):
+        reconstruct_recording(as_recording(spoil(truth)))
+
+
+def test_names_that_mean_no_body_are_told(truth):
+    names = tuple(f"marker{number}" for number in range(20))
+
+    with pytest.raises(InvalidMotionError, match=r"No body was recognised .* \(marker0"):
+        reconstruct_recording(as_recording(truth, names))
+
+
+def test_a_child_and_a_giant_are_human(truth):
+    for size in (0.5, 1.3):
+        assert reconstruct_recording(as_recording(size * truth)).motion.observed.all()
+
+
+def test_time_stamps_that_jump_leave_a_guess_that_is_told(walk, tmp_path):
+    """The recording stops for three seconds; the file's own times say so."""
+    path = tmp_path / "jump.csv"
+    head = "mocap-assist-joints,1,units=m,up=z"
+    columns = ",".join(f"{name}.{axis}" for name in walk.names for axis in "xyz")
+    rows = [
+        ",".join(map(str, [frame / 30.0 + 3.0 * (frame >= 45), *places.ravel()]))
+        for frame, places in enumerate(walk.tracks.positions)
+    ]
+    path.write_text("\n".join([head, f"time,{columns}", *rows]))
+
+    result = reconstruct_recording(read_joint_csv(path), planting=None)
+
+    assert result.motion.n_frames == pytest.approx(180, abs=2)
+    assert result.motion.observed.all()
+    assert "Nothing was tracked for 3.0 s from 1.5 s on" in result.remarks[0]
+
+
+def test_two_frames_are_enough(truth):
+    assert reconstruct_recording(as_recording(truth[:2])).motion.n_frames == 2
+    assert reconstruct_recording(as_recording(truth[:1])).motion.n_frames == 1
+
+
+def test_the_motion_of_a_trackers_armature_is_rebuilt_on_its_own_skeleton(walk):
+    motion = motion_from_points(walk.tracks, walk.parents)
+    order = [walk.names.index(name) for name in motion.skeleton.names]
+
+    result = reconstruct_motion(motion, tracking_state=walk.tracking_state[:, order])
+
+    assert result.motion.skeleton is motion.skeleton
+    assert result.motion.observed.all()
+    wrist = motion.skeleton.index("WristLeft")
+    assert result.reliability[45, wrist] < 0.3 < result.reliability[10, wrist]
+
+
+def test_the_motion_of_any_other_rig_is_rebuilt_too():
+    walk = samples.walking_gait(samples.GaitSettings(duration=1.0, frame_rate=30.0))
+
+    result = reconstruct_motion(walk)
+
+    assert result.motion.skeleton is walk.skeleton
+    known = np.isfinite(result.reliability).all(axis=0)
+    assert 15 <= known.sum() < walk.n_joints or known.all()
