@@ -1,6 +1,6 @@
 """How well reliability tells wrong joints: areas under curves, calibration, device's flags.
 
-    make bench-reliability                     # about two minutes
+    make bench-reliability                     # some minutes
     make bench-reliability ARGUMENTS=--docs    # into docs/reliability.md
     make bench-reliability ARGUMENTS=--fit     # only print the models of errors of all subjects
 
@@ -73,8 +73,8 @@ def areas(pairs: list[Pair]) -> str:
     for causal in (False, True):
         signs = [signs_of(pair.recording, causal) for pair in pairs]
         measures = dict(doubts(pairs, causal))
-        measures["deviation from the smoothed path"] = [each.deviation for each in signs]
-        measures["greatest error of length"] = [each.stretch for each in signs]
+        measures["path: off its smoothed self"] = [each.deviation for each in signs]
+        measures["lengths: greatest error"] = [each.stretch for each in signs]
         for name, doubt in measures.items():
             _put_areas(rows, name, [areas_by_subject(pairs, doubt, limit) for limit in LIMITS])
         left_out = [

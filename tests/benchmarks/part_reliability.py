@@ -30,8 +30,8 @@ LIMITS = (0.05, 0.10)
 """Metres from the truth that are wrong."""
 FEWEST = 20
 """Wrong and right ones that there must be for a curve."""
-SHARES = (0.05, 0.1, 0.2, 0.3, 0.5)
-FLOORS = (0.0003, 0.001, 0.002, 0.004)
+SHARES = (0.05, 0.1, 0.15, 0.2, 0.3, 0.5)
+FLOORS = (0.0001, 0.0002, 0.0003, 0.0005, 0.001, 0.002, 0.004)
 
 
 @dataclass(frozen=True, eq=False)

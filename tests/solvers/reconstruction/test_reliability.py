@@ -79,8 +79,8 @@ def test_a_still_body_is_believed(walk, settings):
 def test_a_clean_walk_is_believed(walk):
     combined = measure_reliability(recorded(walk)).combined
 
-    assert combined.mean() > 0.95
-    assert combined.min() > 0.7  # toes, which do start and stop at once
+    assert combined.mean() > 0.98
+    assert combined.min() > 0.85  # knees and feet at footfall
 
 
 @every_way
@@ -154,7 +154,7 @@ def test_frame_rates_agree(frame_rate):
     quick = measure_reliability(recorded(fast, frame_rate)).combined[::step]
 
     assert 0.4 < slow.mean() < 0.98
-    assert np.abs(slow - quick).mean() < 0.03
+    assert np.abs(slow - quick).mean() < 0.06
 
 
 @every_way
