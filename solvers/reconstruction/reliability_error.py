@@ -50,8 +50,8 @@ class ErrorModel:
         return np.asarray(ndtr((np.log(tolerance + CENTIMETRE) - expected) / self.spread))
 
 
-CENTRED = ErrorModel(length_share=0.15, floor=0.0003, level=-1.510, slope=0.370, spread=0.439)
-CAUSAL = ErrorModel(length_share=0.5, floor=0.001, level=-1.985, slope=0.353, spread=0.460)
+CENTRED = ErrorModel(length_share=0.15, floor=0.0005, level=-1.437, slope=0.394, spread=0.467)
+CAUSAL = ErrorModel(length_share=0.5, floor=0.001, level=-2.056, slope=0.344, spread=0.488)
 """From all subjects of UI-PRMD: `python -m tests.benchmarks.bench_reliability --fit`."""
 
 
