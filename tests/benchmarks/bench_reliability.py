@@ -5,9 +5,9 @@
     make bench-reliability ARGUMENTS=--fit     # only print the models of errors of all subjects
 
 Areas are computed for each subject of UI-PRMD and averaged. "Left out" are models fitted
-without that subject; what ships was fitted to all five. Wrong is what is that far off after the
-median offset of each joint and take is taken out. Ten takes, m03_s01, are left out: their markers
-are of a repetition with the other leg.
+without that subject; what ships was fitted to all five. Wrong is what is that far off after
+the median offset of each joint and take is taken out. Ten takes, m03_s01, are left out: their
+markers are of a repetition with the other leg.
 """
 
 import argparse
