@@ -100,6 +100,16 @@ def test_a_single_marker_has_no_neighbours_to_ask():
     assert_allclose(measure_marker_reliability(alone).combined, 1.0)
 
 
+def test_of_two_markers_both_are_doubted():
+    pair = np.tile([[[0.0, 0.0, 1.0], [0.1, 0.0, 1.0]]], (100, 1, 1))
+    pair[40:60, 0, 0] -= 0.05
+
+    found = measure_marker_reliability(Tracks(("a", "b"), pair, 120.0)).kinematics
+
+    assert_allclose(found[40:60], 0.0)
+    assert_allclose(found[:40], 1.0)
+
+
 def test_a_real_take_is_believed_but_where_it_is_spoilt(recordings):
     take = read_c3d(recordings / "markers" / "85_02.c3d")
     spoilt = take.positions.copy()
