@@ -35,7 +35,7 @@ def behaviour_term(positions: Array, frame_rate: float, settings: ReliabilitySet
         n_averaged = 2 * (n_averaged // 2) + 1
     turns = _averaged(turns, np.ones(n_averaged), settings.causal)
     floor, roof = settings.vibration_floor, settings.vibration_roof
-    return 1.0 - np.clip((turns - floor) / max(roof - floor, 1e-9), 0.0, 1.0)  # eq. 4
+    return 1.0 - np.clip((turns - floor) / (roof - floor), 0.0, 1.0)  # eq. 4
 
 
 def turns_of_path(positions: Array, step: int, shortest: float) -> Array:

@@ -5,6 +5,7 @@ import pytest
 from numpy.testing import assert_allclose
 from scipy.stats import norm
 
+from solvers.errors import InvalidSettingError
 from solvers.motion import JointRecording, Sensor, Tracks
 from solvers.reconstruction import ReliabilityMethod, ReliabilitySettings, measure_reliability
 from solvers.reconstruction.reliability_error import CAUSAL as AS_IT_COMES
@@ -48,6 +49,11 @@ def test_what_moves_less_than_three_centimetres_does_not_vibrate(length, expecte
     path = path_that_turns(180.0, 180.0, 180.0, length=length)
 
     assert behaviour_term(path, 30.0, CAUSAL)[-1, 0] == pytest.approx(expected, abs=1e-6)
+
+
+def test_a_roof_below_the_floor_is_refused():
+    with pytest.raises(InvalidSettingError, match="it must lie above vibration_floor, 90"):
+        ReliabilitySettings(vibration_roof=80.0)
 
 
 def test_the_floor_is_a_speed_at_any_frame_rate():
