@@ -15,8 +15,10 @@ from ..motion import JointRecording
 from ..progress import Progress, unwatched, within
 from .axes import check_scale
 from .joint_header import FORMAT, VERSION, check_names, joint_header, told_recording
+from .line_reader import LineReader
 from .names import shown
-from .text import parted_by_blanks, read_bytes, read_rows
+from .row_stream import stream_rows
+from .text import parted_by_blanks
 
 TIME = "time"
 AXES = ("x", "y", "z")
@@ -61,17 +63,14 @@ def read_joint_csv(
         Raised by `progress`.
     """
     check_scale(scale)
-    lines = read_bytes(path).splitlines()
-    if len(lines) < 2:
+    reader = LineReader(path)
+    head = reader.take(2)
+    if len(head) < 2:
         raise InvalidFileError(f"{path} is cut short: it has no line that names its columns.")
-    header = joint_header(_said(lines[0]), f"{path}, line 1")
-    columns = _columns(lines[1], f"{path}, line 2")
-    rows = read_rows(
-        [parted_by_blanks(line) for line in lines[2:]],
-        len(columns),
-        path,
-        range(3, len(lines) + 1),
-        within(progress, 0.0, 0.9),
+    header = joint_header(_said(head[0]), f"{path}, line 1")
+    columns = _columns(head[1], f"{path}, line 2")
+    rows = stream_rows(
+        reader, len(columns), path, within(progress, 0.0, 0.9), tidied=parted_by_blanks
     )
     names = [column[:-2] for column in columns if column.endswith(".x")]
     table = dict(zip(columns, rows.T, strict=True))
