@@ -186,12 +186,13 @@ def _mentions(
 
 def _motion(
     skeleton: AcclaimSkeleton,
-    recorded: Mapping[str, NDArray[np.float64]],
+    recorded: dict[str, NDArray[np.float64]],
     frame_rate: float,
     scale: float | None,
     angle_unit: float,
     progress: Progress,
 ) -> Motion:
+    """Turn what is recorded into a motion; it is emptied, not to be in memory twice."""
     n_frames = len(next(iter(recorded.values())))
     scale = skeleton.unit if scale is None else scale
     names, parents, offsets = _joints(skeleton)
@@ -201,7 +202,7 @@ def _motion(
     for joint, bone in enumerate(skeleton.bones):
         if bone.name not in recorded:
             continue
-        columns = dict(zip(bone.channels, recorded[bone.name].T, strict=True))
+        columns = dict(zip(bone.channels, recorded.pop(bone.name).T, strict=True))
         turns = _turns(bone, columns, angle_unit)
         rotations[:, joint] = turns_z_up_from_y_up(turns)
         if joint == 0:

@@ -8,7 +8,7 @@ from ..errors import InvalidFileError
 from ..motion import Motion
 from ..progress import Progress, unwatched, within
 from .axes import check_scale
-from .bvh_channels import BvhChannels
+from .bvh_channels import BvhChannels, motion_of_poses
 from .bvh_hierarchy import read_hierarchy
 from .line_reader import LineReader
 from .row_stream import stream_rows
@@ -73,8 +73,9 @@ def read_bvh(
     rows = stream_rows(reader, width, path, within(progress, 0.0, 0.7))
     if not len(rows):
         raise InvalidFileError(f"{path} has no frames: nothing follows its Frame Time.")
-    channels = BvhChannels(joints, rows)
-    return channels.motion(frame_rate, scale, up, within(progress, 0.7, 1.0))
+    poses = BvhChannels(joints, rows).poses(within(progress, 0.7, 1.0))
+    del rows
+    return motion_of_poses(joints, poses, frame_rate, scale, up)
 
 
 def _hierarchy(reader: LineReader, path: Path | str) -> bytes:

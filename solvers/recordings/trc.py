@@ -170,6 +170,10 @@ class _Rows(NamedTuple):
 
     def fill(self, table: NDArray[np.float64]) -> None:
         """Write each row from the left of a table, shape (n_rows, width)."""
+        length = int(self.lengths[0])
+        if length <= table.shape[1] and (self.lengths == length).all():
+            table[:, :length] = self.numbers.reshape(-1, length)
+            return
         stops = np.cumsum(self.lengths)
         for row, stop, length in zip(table, stops, self.lengths, strict=True):
             row[:length] = self.numbers[stop - length : stop][: len(row)]
@@ -236,7 +240,8 @@ def _in_columns(
         rows.fill(block)
         block[~(np.abs(block) < LARGEST)] = np.nan
         stop -= len(block)
-    return table[:, 0], table[:, 1], table[:, 2:].reshape(n_rows, n_points, 3)
+    points = table[:, 2:].reshape(n_rows, n_points, 3)
+    return table[:, 0].copy(), table[:, 1].copy(), points
 
 
 def _unit(header: _Header, points: NDArray[np.float64], path: Path | str) -> float:
