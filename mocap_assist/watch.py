@@ -26,6 +26,10 @@ class Watch:
         _on.append(self)
         self.show(context, 0.0, "Starting")
 
+    def go_on(self, solve: Callable[..., Any]) -> None:
+        """Let another job follow the one that has ended."""
+        self.job = Job(solve)
+
     @property
     def is_on(self) -> bool:
         """Whether it is still shown; not after another file was loaded."""
