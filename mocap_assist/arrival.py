@@ -1,16 +1,19 @@
 """Recordings that come into the scene one after the other, and go again if need be."""
 
+from collections.abc import Sequence
 from dataclasses import replace
 from pathlib import Path
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import bpy
 
 from ..solvers.errors import MocapAssistError, SolveCancelled
+from ..solvers.motion import JointRecording
 from ..solvers.progress import Progress, unwatched
+from ..solvers.recordings import recording_figures
 from .import_choices import ImportChoices
 from .recent_files import Recording
-from .recording_objects import make_objects
+from .recording_objects import in_one_tree, make_objects
 from .scene.origin import note_origin, origin_of_file
 from .scene.scene_objects import Numbers, all_or_nothing, choose, in_object_mode, remove
 from .scene.scene_rate import FrameRate, extend_duration, set_scene_rate
@@ -28,6 +31,8 @@ class Imported(NamedTuple):
     """A sentence for each file that was read."""
     failed: tuple[str, ...]
     """A sentence for each that was not."""
+    figures: tuple[dict[str, Any], ...] = ()
+    """Of each file that was read: `recording_figures`, and warnings as one text."""
 
     @property
     def note(self) -> str:
@@ -56,6 +61,7 @@ class Arrival:
         self._tops: list[int] = []
         self._said: list[str] = []
         self._failed: list[str] = []
+        self._figures: list[dict[str, Any]] = []
 
     def add(
         self,
@@ -63,8 +69,13 @@ class Arrival:
         path: Path,
         recording: Recording,
         progress: Progress = unwatched,
+        *,
+        warnings: Sequence[str] = (),
     ) -> None:
-        """Make an armature or empties of a recording, or note why not; all or nothing."""
+        """Make an armature or empties of a recording, or note why not; all or nothing.
+
+        `warnings` are what its reader said of it.
+        """
         try:
             with all_or_nothing(context) as made:
                 top, sentence = self._make(context, path, recording, progress)
@@ -76,6 +87,7 @@ class Arrival:
             self._made.append(made)
             self._tops.append(top.session_uid)
             self._said.append(sentence)
+            self._figures.append(_figures(recording, warnings))
 
     def refuse(self, path: Path, error: MocapAssistError) -> None:
         """Note that a file failed."""
@@ -97,7 +109,7 @@ class Arrival:
         if tops:
             choose(context, list(tops), tops[-1])
         failed = self._failed if self._said or self._failed else ["No file was chosen."]
-        return Imported(tops, tuple(self._said), tuple(failed))
+        return Imported(tops, tuple(self._said), tuple(failed), tuple(self._figures))
 
     def _make(
         self, context: bpy.types.Context, path: Path, recording: Recording, progress: Progress
@@ -114,3 +126,12 @@ class Arrival:
             extend_duration(context.scene, made.last_frame)
         rate = f"{recording.n_frames} frames at {recording.frame_rate:g} Hz"
         return made.top, f"{made.top.name}: {made.what}, {rate}."
+
+
+def _figures(recording: Recording, warnings: Sequence[str]) -> dict[str, Any]:
+    figures = recording_figures(recording)
+    lost = figures.pop("never_seen")
+    told = [*warnings, *[f"Never seen: {', '.join(lost)}"] * bool(lost)]
+    if isinstance(recording, JointRecording) and not in_one_tree(recording):
+        told.append("Nothing tells which joint hangs on which")
+    return {**figures, "warnings": ". ".join(told)}

@@ -71,15 +71,30 @@ def import_files(
     try:
         for index, path in enumerate(paths):
             share = within(progress, index / len(paths), (index + 1) / len(paths))
+            reading = _Listener(within(share, 0.0, READING))
             try:
-                recording = read_again(path, within(share, 0.0, READING))
+                recording = read_again(path, reading)
             except SolveCancelled:
                 raise
             except MocapAssistError as error:
                 arrival.refuse(path, error)
             else:
-                arrival.add(context, path, recording, within(share, READING, 1.0))
+                building = within(share, READING, 1.0)
+                arrival.add(context, path, recording, building, warnings=reading.warnings)
     except BaseException:
         arrival.take_back(context)
         raise
     return arrival.end(context)
+
+
+class _Listener:
+    """A Progress that keeps what a reader says beyond that it reads."""
+
+    def __init__(self, progress: Progress) -> None:
+        self._progress = progress
+        self.warnings: list[str] = []
+
+    def __call__(self, fraction: float, message: str = "") -> None:
+        if message not in {"", "Reading", *self.warnings}:
+            self.warnings.append(message)
+        self._progress(fraction, message)
