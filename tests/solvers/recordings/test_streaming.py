@@ -12,7 +12,15 @@ from whole_files import JOINT_FILES, JOINT_TOKENS, SKELETON, TOKENS, WHOLE
 
 from solvers.errors import InvalidFileError, InvalidMotionError
 from solvers.motion import JointRecording, Motion
-from solvers.recordings import line_reader, read_acclaim, read_bvh, read_joint_csv, read_trc
+from solvers.recordings import (
+    acclaim,
+    line_reader,
+    read_acclaim,
+    read_bvh,
+    read_joint_csv,
+    read_trc,
+    trc,
+)
 from solvers.recordings.growing_table import GrowingTable
 from solvers.recordings.line_reader import Block, LineReader
 
@@ -35,6 +43,8 @@ def said(tmp_path, monkeypatch):
     """What a reader makes of some bytes, in blocks of a size: figures, or its sentence."""
     (tmp_path / "take.asf").write_bytes(SKELETON)
     path = tmp_path / "take.amc"
+    monkeypatch.setattr(acclaim, "LINES_OF_HEAD", 3)  # else a small file is all head
+    monkeypatch.setattr(trc, "FIRST_LINES", 8)
 
     def tell(read, content, size):
         monkeypatch.setattr(line_reader, "BLOCK", size)
