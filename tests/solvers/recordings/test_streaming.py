@@ -96,6 +96,15 @@ def test_damaged_files_are_refused_in_the_same_words_wherever_the_borders_are(ki
     search()
 
 
+@pytest.mark.parametrize("size", [1, 30, 1 << 22])
+def test_of_two_lines_about_a_bone_in_one_frame_the_later_counts(size, said):
+    whole = WHOLE["amc"]
+    twice = whole.replace(b"thigh 5 2 3\n", b"thigh 80 8 8\nshank 4\nthigh 5 2 3\n")
+    assert twice != whole
+
+    assert said(read_acclaim, twice, size) == said(read_acclaim, whole, size)
+
+
 @given(st.lists(st.sampled_from([b"a", b"\n", b"\r", b"\r\n", b"12 "])), st.integers(1, 5))
 def test_lines_are_those_of_splitlines(tmp_path_factory, words, size):
     content = b"".join(words)
