@@ -8,12 +8,12 @@ from typing import Any, NamedTuple
 import bpy
 
 from ..solvers.errors import MocapAssistError, SolveCancelled
-from ..solvers.motion import JointRecording
+from ..solvers.motion import JointRecording, Motion, Tracks
 from ..solvers.progress import Progress, unwatched
 from ..solvers.recordings import recording_figures
 from .import_choices import ImportChoices
-from .recent_files import Recording
-from .recording_objects import in_one_tree, make_objects
+from .jobs.reading import Recording, in_one_tree
+from .recording_objects import make_objects
 from .scene.origin import note_origin, origin_of_file
 from .scene.scene_objects import Numbers, all_or_nothing, choose, in_object_mode, remove
 from .scene.scene_rate import FrameRate, extend_duration, set_scene_rate
@@ -70,15 +70,16 @@ class Arrival:
         recording: Recording,
         progress: Progress = unwatched,
         *,
+        moving: Motion | Tracks | None = None,
         warnings: Sequence[str] = (),
     ) -> None:
         """Make an armature or empties of a recording, or note why not; all or nothing.
 
-        `warnings` are what its reader said of it.
+        `moving` is what it becomes (`make_objects`), `warnings` what its reader said of it.
         """
         try:
             with all_or_nothing(context) as made:
-                top, sentence = self._make(context, path, recording, progress)
+                top, sentence = self._make(context, path, recording, moving, progress)
         except SolveCancelled:
             raise
         except MocapAssistError as error:
@@ -112,12 +113,19 @@ class Arrival:
         return Imported(tops, tuple(self._said), tuple(failed), tuple(self._figures))
 
     def _make(
-        self, context: bpy.types.Context, path: Path, recording: Recording, progress: Progress
+        self,
+        context: bpy.types.Context,
+        path: Path,
+        recording: Recording,
+        moving: Motion | Tracks | None,
+        progress: Progress,
     ) -> tuple[bpy.types.Object, str]:
         choices = self._choices
         if self._tops and choices.frame_rate is FrameRate.UPDATE:  # the first has set the rate
             choices = replace(choices, frame_rate=FrameRate.SCALE)
-        made = make_objects(context, path.stem, recording, choices, progress=progress)
+        made = make_objects(
+            context, path.stem, recording, choices, moving=moving, progress=progress
+        )
         for owner in (made.top, made.action):
             note_origin(owner, origin_of_file(path, recording))
         if choices.frame_rate is FrameRate.UPDATE:

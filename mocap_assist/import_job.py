@@ -10,8 +10,9 @@ import bpy
 from ..solvers.errors import MocapAssistError
 from .arrival import READING, Arrival
 from .import_choices import ImportChoices
-from .jobs.reading import read_files
-from .recent_files import Recording, State, remember, state_of
+from .jobs.reading import Read, read_files
+from .recent_files import State, remember, state_of
+from .recording_objects import wanted_of
 from .watch import Watch
 
 BYTES_AT_ONCE = 64_000_000
@@ -33,10 +34,11 @@ class ImportJob:
         self, context: bpy.types.Context, paths: list[Path], choices: ImportChoices
     ) -> None:
         self.arrival = Arrival(context, choices)
+        self._wanted = wanted_of(context, choices)
         self._batches = deque(batches(paths))
         self._n_files, self._n_read, self._n_in = len(paths), 0, 0
         self._states: list[State] = []
-        self._read: deque[tuple[Path, State, Recording | MocapAssistError]] = deque()
+        self._read: deque[tuple[Path, State, Read | MocapAssistError]] = deque()
         self.watch = Watch(context, self._next_batch())
 
     def step(self, context: bpy.types.Context) -> bool:
@@ -57,9 +59,9 @@ class ImportJob:
         self.watch.abandon(context)
         self.arrival.take_back(context)
 
-    def _next_batch(self) -> "partial[list[Recording | MocapAssistError]]":
+    def _next_batch(self) -> "partial[list[Read | MocapAssistError]]":
         self._states = [state_of(path) for path in self._batches[0]]
-        return partial(read_files, self._batches[0])
+        return partial(read_files, self._batches[0], self._wanted)
 
     def _fetch(self) -> None:
         """Take over what was read, and let the next files be read meanwhile."""
@@ -78,13 +80,13 @@ class ImportJob:
         context: bpy.types.Context,
         path: Path,
         state: State,
-        found: Recording | MocapAssistError,
+        found: Read | MocapAssistError,
     ) -> None:
         if isinstance(found, MocapAssistError):
             self.arrival.refuse(path, found)
         else:
-            remember(path, state, found)
-            self.arrival.add(context, path, found)
+            remember(path, state, found.recording)
+            self.arrival.add(context, path, found.recording, moving=found.moving)
 
     def _show(self, context: bpy.types.Context) -> None:
         fraction, message = 0.0, ""

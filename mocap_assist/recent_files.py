@@ -3,14 +3,14 @@
 from pathlib import Path
 
 from ..solvers.errors import InvalidFileError
-from ..solvers.motion import JointRecording, Motion, Tracks
+from ..solvers.motion import JointRecording, Motion
 from ..solvers.progress import Progress, unwatched
 from ..solvers.recordings import read_recording
 from ..solvers.recordings.acclaim import find_skeleton
+from .jobs.reading import Recording
 
 MOST = 20_000_000  # numbers that are kept
 
-Recording = Motion | Tracks | JointRecording
 State = tuple[tuple[str, int, int], ...]
 _read: dict[State, Recording] = {}
 

@@ -5,6 +5,7 @@ import time
 from pathlib import Path
 from types import SimpleNamespace
 
+import numpy as np
 import pytest
 
 WALK = "07_01.bvh"
@@ -174,15 +175,26 @@ def test_all_that_can_be_read_comes_in(press, window, load, monkeypatch, blank, 
     assert any(text and text.startswith("Reading ") for text in window.status)
 
 
-def test_it_is_what_a_script_gets(press, window, bring, walk, blank, poses):
-    expected = poses(bring(walk / "first.bvh"), [1, 30])
+@pytest.mark.parametrize("joints", [False, True])
+@pytest.mark.parametrize("chosen", [{}, {"frame_rate": "RESAMPLE", "global_scale": 2.0}])
+def test_it_is_what_a_script_gets(
+    chosen, joints, press, window, bring, walk, blank, poses, load, recordings
+):
+    if joints:
+        take = recordings / "kinect" / "irds" / "215_18_5_8_1_stand.txt"
+        (walk / "first.bvh").write_bytes(take.read_bytes())
+    expected = poses(bring(walk / "first.bvh", **chosen), [1, 30])
     blank.data.objects.remove(blank.context.object)
+    if chosen:
+        rates = load("mocap_assist.scene.scene_rate").FrameRate
+        chosen = chosen | {"frame_rate": rates[chosen["frame_rate"]]}
 
-    wait(press("first.bvh"), window)
+    wait(press("first.bvh", **chosen), window)
 
     found = poses(blank.context.view_layer.objects.active, [1, 30])
     assert found.keys() == expected.keys()
-    assert all((found[name] == expected[name]).all() for name in expected)
+    for name, matrices in expected.items():
+        np.testing.assert_array_equal(found[name], matrices)
 
 
 def test_the_redo_panel_need_not_read_again(press, window, load, walk, monkeypatch, blank):
