@@ -279,21 +279,6 @@ def test_a_script_too_keeps_pose_mode_and_selection_where_all_fails(
     assert everything() == before
 
 
-def test_small_files_are_read_together_and_large_ones_alone(load, tmp_path, monkeypatch):
-    job = load("mocap_assist.import_job")
-    monkeypatch.setattr(job, "BYTES_AT_ONCE", 100)
-    paths = []
-    for number, size in enumerate([40, 60, 1, 300, 0, 99]):
-        paths.append(tmp_path / str(number))
-        paths[-1].write_bytes(b"x" * size)
-    paths.append(tmp_path / "gone")
-
-    parted = [[path.name for path in batch] for batch in job.batches(paths)]
-
-    assert parted == [["0", "1"], ["2"], ["3"], ["4", "5", "gone"]]
-    assert list(job.batches([])) == []
-
-
 def test_the_dialog_does_not_wait_for_a_large_file(load, walk, monkeypatch, blank):
     importing = load("mocap_assist.importing")
     small = importing.preview(blank.context, [walk / "first.bvh"])
