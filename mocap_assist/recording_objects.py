@@ -13,6 +13,7 @@ from ..solvers.motion import (
     Motion,
     Skeleton,
     Tracks,
+    joint_parents,
     motion_from_points,
     resample,
 )
@@ -81,6 +82,8 @@ def make_objects(
     wanted = choices.target is Target.ARMATURE and isinstance(recording, JointRecording)
     if wanted and not isinstance(moving, Motion):
         what += ", since nothing tells which joint hangs on which"
+    elif wanted and (n_loose := recording.n_joints - len(_hanging(recording))):
+        what += f", without {n_loose} points that hang on no joint"
     return made._replace(what=what + _never_seen(recording))
 
 
@@ -98,7 +101,14 @@ def _never_seen(recording: Motion | Tracks | JointRecording) -> str:
 
 def in_one_tree(recording: JointRecording) -> bool:
     """Whether it is known which joint hangs on which, so that they can become an armature."""
-    return recording.parents.count(-1) == 1 < recording.n_joints
+    parents = recording.parents
+    return sum(parents[joint] < 0 for joint in _hanging(recording)) == 1
+
+
+def _hanging(recording: JointRecording) -> list[int]:
+    """Return the joints that hang on another, or that others hang on."""
+    parents = recording.parents
+    return [joint for joint, parent in enumerate(parents) if parent >= 0 or joint in parents]
 
 
 def _as_target(recording: Motion | Tracks | JointRecording, target: Target) -> Motion | Tracks:
@@ -108,7 +118,10 @@ def _as_target(recording: Motion | Tracks | JointRecording, target: Target) -> M
     if not isinstance(recording, JointRecording):
         return recording
     if target is Target.ARMATURE and in_one_tree(recording):
-        return motion_from_points(recording.tracks, recording.parents)
+        kept, tracks = _hanging(recording), recording.tracks
+        names = tuple(tracks.names[joint] for joint in kept)
+        body = Tracks(names, tracks.positions[:, kept], tracks.frame_rate)
+        return motion_from_points(body, joint_parents(names))
     return recording.tracks
 
 
