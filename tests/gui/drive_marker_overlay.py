@@ -36,11 +36,14 @@ def steps():
         assert bpy.ops.mocap_assist.denoise() == {"FINISHED"}
     bpy.context.window_manager.mocap_assist_overlay = True
     yield from bgui.open_sidebar("Mocap")
-    scene = bpy.context.scene
-    scene.frame_set(round(bpy.context.object.children[0].animation_data.action.frame_end * 0.5))
+    first, last = bpy.context.object.children[0].animation_data.action.curve_frame_range
+    bpy.context.scene.frame_set(round((first + last) / 2.0))
     view = bgui.area().spaces.active
     view.overlay.show_relationship_lines = False
-    view.region_3d.view_location = (0.0, 0.0, 0.9)
-    view.region_3d.view_distance = 3.5
+    view.region_3d.view_location = (0.0, 0.0, 1.0)
+    view.region_3d.view_distance = 1.8
     yield from settle()
     bgui.shot("1-marker-overlay.png")
+
+
+bgui.run(steps, timeout=300)
