@@ -54,7 +54,7 @@ def pair(true: np.ndarray, offset: float = 0.03) -> tuple[JointRecording, Tracks
 @pytest.fixture(scope="module")
 def prior():
     return learn_residual_prior(
-        [pair(truth(speed)) for speed in (0.9, 1.1, 1.5, 1.7)], settings=QUICK
+        [pair(truth(speed)) for speed in (0.9, 1.1, 1.45, 1.6)], settings=QUICK
     )
 
 
@@ -192,14 +192,14 @@ def test_a_prior_that_is_told_the_actors_takes_less_of_one_for_a_rule():
 
 def test_same_pairs_same_prior(prior):
     again = learn_residual_prior(
-        [pair(truth(speed)) for speed in (0.9, 1.1, 1.5, 1.7)], settings=QUICK
+        [pair(truth(speed)) for speed in (0.9, 1.1, 1.45, 1.6)], settings=QUICK
     )
     np.testing.assert_array_equal(prior.means, again.means)
 
 
 def test_the_published_prior_sees_neighbours_only():
     published = learn_residual_prior(
-        [pair(truth(speed)) for speed in (0.9, 1.7)],
+        [pair(truth(speed)) for speed in (0.9, 1.6)],
         settings=replace(QUICK, method=ResidualMethod.PUBLISHED, calm=0.0),
     )
     kernel = published.kernel(KNEE)
