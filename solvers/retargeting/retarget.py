@@ -145,7 +145,7 @@ def retarget(
     seen = forward_kinematics(whole)
     transfer = _compared(source, target, seen, _contacts(motion, source_map), motion, settings)
     progress(0.3, "Turning the joints")
-    rotations, missing = transfer_pose(transfer.source, seen.rotations, unknown, target)
+    rotations, missing = transfer_pose(transfer.source, seen, unknown, target)
     places = _root_places(transfer, rotations)
     progress(0.5, "Placing the feet")
     if settings.keep_feet:
