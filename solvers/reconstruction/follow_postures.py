@@ -104,8 +104,9 @@ def follow_postures(
             given = np.maximum(given, again)
     share = course.spread / errors.size
     unsure = np.hypot(settings.noise, share * np.hypot(made.spread, MODEL))
-    postures = keep_lengths(course.values + errors.offset, lengths, trust)
-    return Followed(postures + shift, 1.0 / (1.0 + (unsure / SURE) ** 2))
+    sure = 1.0 / (1.0 + (unsure / SURE) ** 2)
+    postures = keep_lengths(course.values + errors.offset, lengths, trust, sure)
+    return Followed(postures + shift, sure)
 
 
 def _body_of(take: _Seen, library: PostureLibrary, pace: float) -> BodyPostures:

@@ -13,7 +13,7 @@ STIFFEST = 50.0
 """How many times easier a joint gives way that is not trusted than one that is."""
 
 
-def keep_lengths(postures: Array, lengths: Array, sure: Array) -> Array:
+def keep_lengths(postures: Array, lengths: Array, trust: Array, sure: Array) -> Array:
     """Return postures in which bones are as long as they should be.
 
     A bone of which both ends are trusted stays as it was seen, though trackers see its length
@@ -24,8 +24,10 @@ def keep_lengths(postures: Array, lengths: Array, sure: Array) -> Array:
     ----------
     postures : shape (n_frames, 20, 3), metres
     lengths : shape (20,), metres
+    trust : shape (n_frames, 20), 0 to 1
+        How far what was seen of each joint is trusted.
     sure : shape (n_frames, 20), 0 to 1
-        How sure each joint is.
+        How sure each joint is, seen or not.
 
     References
     ----------
@@ -33,9 +35,8 @@ def keep_lengths(postures: Array, lengths: Array, sure: Array) -> Array:
        Visual Communication and Image Representation 18(2). doi:10.1016/j.jvcir.2007.01.005
     """
     x = np.array(postures)
-    sure = np.clip(sure, 0.0, 1.0)
-    gives = 1.0 / (1.0 / STIFFEST + sure)
-    both = np.minimum(sure, sure[:, np.maximum(PARENTS, 0)])
+    gives = 1.0 / (1.0 / STIFFEST + np.maximum(trust, sure**2))
+    both = np.minimum(trust, trust[:, np.maximum(PARENTS, 0)])
     wanted = (1.0 - both) * lengths + both * segment_lengths(x)
     for _ in range(N_ROUNDS):
         for joint in range(1, N_JOINTS):

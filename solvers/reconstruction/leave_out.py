@@ -64,6 +64,9 @@ def leave_out(postures: Array, trust: Array, synthesise: Synthesis) -> Errors:
         mean = np.einsum("fi,fik->ik", weight, off) / (total + FEWEST)[:, None]
         rest = np.einsum("fi,fik->i", weight, (off - mean) ** 2) / 3.0
         rest = (rest + FEWEST * USUAL_SIZE**2) / (total + FEWEST)
+        for place in range(1, len(limb)):
+            if total[place] == 0.0:  # never seen: where the joint above goes, it goes
+                mean[place] = mean[place - 1]
         offset[limb] = mean
         size[limb] = np.clip(np.sqrt(rest), SMALLEST, LARGEST)
     return Errors(offset, size)

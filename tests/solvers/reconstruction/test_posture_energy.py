@@ -203,7 +203,7 @@ def test_lengths_are_kept_and_trusted_joints_hardly_move(bodies, random):
     spoilt[:, 13] += random.normal(scale=0.1, size=(20, 3))
     sure = np.ones((20, 20))
     sure[:, 13] = 0.0
-    kept = keep_lengths(spoilt, USUAL_LENGTHS, sure)
+    kept = keep_lengths(spoilt, USUAL_LENGTHS, sure, sure)
     np.testing.assert_allclose(
         segment_lengths(kept), np.tile(USUAL_LENGTHS, (20, 1)), atol=0.01
     )
@@ -213,5 +213,5 @@ def test_lengths_are_kept_and_trusted_joints_hardly_move(bodies, random):
 
 def test_bones_that_were_seen_stay_as_they_were_seen(bodies):
     longer = resize(bodies[:20], 1.1 * USUAL_LENGTHS)
-    kept = keep_lengths(longer, USUAL_LENGTHS, np.ones((20, 20)))
+    kept = keep_lengths(longer, USUAL_LENGTHS, np.ones((20, 20)), np.ones((20, 20)))
     np.testing.assert_allclose(kept, longer)

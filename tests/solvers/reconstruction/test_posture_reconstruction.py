@@ -7,7 +7,11 @@ from solvers.errors import InvalidMotionError, SolveCancelled
 from solvers.motion import JOINTS, JointRecording, Sensor, Tracks, forward_kinematics
 from solvers.reconstruction.heading import turned
 from solvers.reconstruction.other_joints import all_joints, anchors
-from solvers.reconstruction.posture_joints import POSTURE_JOINTS, motion_postures
+from solvers.reconstruction.posture_joints import (
+    POSTURE_JOINTS,
+    joints_of_names,
+    motion_postures,
+)
 from solvers.reconstruction.posture_library import build_posture_library
 from solvers.reconstruction.posture_settings import PostureMethod, PostureSettings
 from solvers.reconstruction.reconstruct_postures import reconstruct_postures
@@ -87,12 +91,12 @@ def test_every_way_fills_every_frame_plausibly(walk, lame, library, settings):
 
 
 def test_causal_frames_do_not_know_the_future(lame, library):
-    """Lengths of bones come from the whole take, so both takes have all kinds of them."""
+    """But for lengths of bones and usual errors of limbs, which the whole take tells."""
     whole = rebuilt(lame, library, causal=True).tracks.positions
     changed = lame.copy()
     changed[70:, POSTURE_JOINTS.index("rightHand")] = np.nan
     other = rebuilt(changed, library, causal=True).tracks.positions
-    np.testing.assert_allclose(other[:60], whole[:60], atol=5e-3)
+    np.testing.assert_allclose(other[:60], whole[:60], atol=0.03)
 
 
 def test_confidence_is_high_where_seen_and_low_in_the_middle_of_a_loss(lame, library):
@@ -151,8 +155,15 @@ def test_joints_beyond_the_twenty_move_with_their_neighbours():
     assert POSTURE_JOINTS[found["Nose"]] == "head"
 
 
+def _places(names):
+    found = joints_of_names(names)
+    return [found[role] for role in POSTURE_JOINTS]
+
+
 def test_joints_of_their_own_keep_their_place_about_their_anchor(walk):
-    names = (*KINECT, "HandTipLeft")
+    order = JOINTS[Sensor.KINECT_V2]
+    names = tuple(order[place] for place in _places(order))
+    names = (*names, "HandTipLeft")
     hand = POSTURE_JOINTS.index("leftHandEnd")
     tip = walk[:, hand] + np.array([0.0, 0.0, -0.08])
     seen = np.concatenate([walk, tip[:, None]], axis=1)
