@@ -30,8 +30,8 @@ LIMITS = (0.05, 0.10)
 """Metres from the truth that are wrong."""
 FEWEST = 20
 """Wrong and right ones that there must be for a curve."""
-SHARES = (0.05, 0.1, 0.2, 0.3, 0.5)
-FLOORS = (0.0003, 0.001, 0.002, 0.004)
+SHARES = (0.1, 0.15, 0.2, 0.3, 0.5)
+FLOORS = (0.0002, 0.0003, 0.0005, 0.001, 0.002)
 
 
 @dataclass(frozen=True, eq=False)
@@ -41,7 +41,7 @@ class Pair:
     name: str
     recording: JointRecording
     error: Array
-    """Metres after a constant offset per joint is taken out, (n_frames, n_joints)."""
+    """Metres beside the median offset of each joint, (n_frames, n_joints)."""
 
     @property
     def subject(self) -> str:
@@ -57,7 +57,7 @@ def read_pairs(folder: Path) -> list[Pair]:
             recording, markers = read_ui_prmd_pair(path)
             off = recording.tracks.positions - true_joints(markers)
             seen = np.isfinite(off).any(axis=(0, 2))
-            off[:, seen] -= np.nanmean(off[:, seen], axis=0)
+            off[:, seen] -= np.nanmedian(off[:, seen], axis=0)
             pairs.append(Pair(path.stem, recording, np.linalg.norm(off, axis=-1)))
     return pairs
 
