@@ -23,7 +23,7 @@ RIDGE = 1e-3
 """Share by which a contact's force is held small, so that neighbours share the load."""
 
 HELPING_LEVER = 1.0
-LEVER = 0.3
+LEVER = 1.0
 """Metres, for legs of 0.9 m: by it, torques on the base are weighed against forces."""
 
 

@@ -13,7 +13,7 @@ from ..progress import Progress
 from .physics_body import PhysicsBody
 from .physics_control import controller
 from .physics_run import follow
-from .physics_surface import penetration, raising, sole_speeds
+from .physics_surface import clearance, raising, sole_speeds
 from .physics_target import calmed_target
 from .physics_world import build_world
 
@@ -22,7 +22,7 @@ Flags = NDArray[np.bool_]
 LONGEST_STEP = 1.0 / 239.0
 """Seconds. 30, 60 and 120 frames a second are then simulated in the same steps, 1/240 s."""
 
-JUMP, FASTEST = 0.1, 12.0
+JUMP, FASTEST = 0.05, 12.0
 """Metres, for legs of 0.9 m, and metres per second: a body whose joints go farther on average
 from one frame to the next jumps, as between clips that were joined, or out of a T-pose."""
 
@@ -67,7 +67,7 @@ def simulated_piece(
 ) -> Piece:
     """Let the body follow a piece without gaps."""
     places, rotations = _of_moving_joints(body, motion)
-    places[:, 2] += raising(penetration(body, motion, ground), motion.frame_rate)
+    places[:, 2] += raising(clearance(body, motion, ground), motion.frame_rate, body.size)
     target = calmed_target(places, rotations, motion.frame_rate, smoothing)
     speeds = sole_speeds(body, _with_moving_joints(body, motion, target.at_frames()))
     grips = np.clip((SWINGS - speeds / body.size) / (SWINGS - STANDS), SLIPPERY, 1.0)

@@ -2,7 +2,7 @@
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.ndimage import gaussian_filter1d, median_filter
+from scipy.ndimage import gaussian_filter1d, grey_opening, median_filter
 
 from ..motion import Motion, forward_kinematics
 from ..motion.rotations import rotate
@@ -10,7 +10,10 @@ from .physics_body import PhysicsBody
 
 Array = NDArray[np.float64]
 SLOW = 1.0
-"""Seconds over which a body that is under the ground is raised with its target."""
+"""Seconds: what a body does for longer, over or under the ground, is taken for an error."""
+
+HIGHEST = 0.25
+"""Metres, for legs of 0.9 m, of hovering that is taken for an error."""
 
 
 def bottoms(body: PhysicsBody, motion: Motion) -> tuple[Array, NDArray[np.intp]]:
@@ -34,20 +37,41 @@ def bottoms(body: PhysicsBody, motion: Motion) -> tuple[Array, NDArray[np.intp]]
     return lower, joints
 
 
-def penetration(body: PhysicsBody, motion: Motion, ground: float) -> Array:
-    """Return how deep the body is under the ground, shape (n_frames,), metres; 0 above."""
+def clearance(body: PhysicsBody, motion: Motion, ground: float) -> Array:
+    """Return how high the lowest point of the body is over the ground, (n_frames,), metres."""
     points, _ = bottoms(body, motion)
-    return np.asarray(np.maximum(0.0, ground - points[..., 2].min(axis=1)))
+    return np.asarray(points[..., 2].min(axis=1) - ground)
 
 
-def raising(depths: Array, frame_rate: float) -> Array:
-    """Return how far a target must be raised that is under the ground for long, (n_frames,).
+def penetration(body: PhysicsBody, motion: Motion, ground: float) -> float:
+    """Return how deep the body is under the ground where it is deepest, metres; 0 above."""
+    return float(max(0.0, -clearance(body, motion, ground).min()))
 
-    What is under it for a moment is for the legs to mend.
+
+def raising(heights: Array, frame_rate: float, size: float) -> Array:
+    """Return by how much to raise a target that is under the ground, or hovers, for long.
+
+    What is under it for a moment is for the legs to mend, and who leaves it for a moment jumps.
+    A body that hovers higher than anyone's shoes are thick is not on this ground at all.
+
+    Parameters
+    ----------
+    heights : shape (n_frames,), metres
+        Of the body's lowest point over the ground.
+    frame_rate : float, hertz
+    size : float
+        Of the body: its legs over 0.9 m.
+
+    Returns
+    -------
+    Array
+        Shape (n_frames,), metres; negative where the target is to be lowered.
     """
-    window = 2 * int(SLOW * frame_rate / 2) + 1
-    usual = median_filter(depths, size=min(window, 2 * len(depths) - 1), mode="nearest")
-    return np.asarray(gaussian_filter1d(usual, SLOW / 4 * frame_rate, mode="nearest"))
+    window = min(2 * int(SLOW * frame_rate / 2) + 1, 2 * len(heights) - 1)
+    under = median_filter(np.maximum(-heights, 0.0), size=window, mode="nearest")
+    over = grey_opening(np.maximum(heights, 0.0), size=window, mode="nearest")
+    over = np.where(over > HIGHEST * size, 0.0, over)
+    return np.asarray(gaussian_filter1d(under - over, SLOW / 4 * frame_rate, mode="nearest"))
 
 
 def sole_speeds(body: PhysicsBody, motion: Motion) -> Array:
