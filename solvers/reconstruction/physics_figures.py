@@ -39,7 +39,7 @@ def told(
         sentences.append("The simulated body followed the whole take.")
     if abs(under_feet - ground) > OTHER_GROUND * size:
         sentences.append(
-            f"The feet of the take stand at a height of {under_feet:.2f} m, the ground is at"
+            f"The take stands at a height of {under_feet:.2f} m, the ground is at"
             f" {ground:.2f} m: choose the ground under the feet if that is wrong."
         )
     return " ".join(sentences)

@@ -8,12 +8,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..motion import Motion, forward_kinematics
-from ..motion.rotations import inverse, multiply
+from ..motion.canonical import UP
+from ..motion.rotations import inverse, multiply, rotate, twist_about
 from ..progress import Progress
 from .physics_body import PhysicsBody
 from .physics_control import controller
 from .physics_run import follow
-from .physics_surface import clearance, raising, sole_speeds
+from .physics_surface import clearance, raising, sole_speeds, touching
 from .physics_target import calmed_target
 from .physics_world import build_world
 
@@ -65,9 +66,16 @@ def simulated_piece(
     support: float,
     progress: Progress,
 ) -> Piece:
-    """Let the body follow a piece without gaps."""
+    """Let the body follow a piece without gaps.
+
+    It is simulated where it starts at the origin and faces along an axis, so that rounding in
+    the engine does not depend on where and which way it was captured.
+    """
     places, rotations = _of_moving_joints(body, motion)
     places[:, 2] += raising(clearance(body, motion, ground), motion.frame_rate, body.size)
+    origin, facing = places[0] * (1.0, 1.0, 0.0), twist_about(rotations[0, 0], UP)
+    places = rotate(inverse(facing), places - origin)
+    rotations[:, 0] = multiply(inverse(facing), rotations[:, 0])
     target = calmed_target(places, rotations, motion.frame_rate, smoothing)
     speeds = sole_speeds(body, _with_moving_joints(body, motion, target.at_frames()))
     grips = np.clip((SWINGS - speeds / body.size) / (SWINGS - STANDS), SLIPPERY, 1.0)
@@ -81,13 +89,11 @@ def simulated_piece(
         n_steps,
         tell=lambda frame: progress(frame / motion.n_frames, "Simulating"),
     )
-    return Piece(
-        _with_moving_joints(body, motion, course.places),
-        course.followed,
-        course.contacts,
-        course.support,
-        course.n_lost,
-    )
+    course.places[:, :3] = rotate(facing, course.places[:, :3]) + origin
+    course.places[:, 3:7] = multiply(facing, course.places[:, 3:7])
+    result = _with_moving_joints(body, motion, course.places)
+    contacts = touching(body, result, ground)
+    return Piece(result, course.followed, contacts, course.support, course.n_lost)
 
 
 def _of_moving_joints(body: PhysicsBody, motion: Motion) -> tuple[Array, Array]:

@@ -9,6 +9,10 @@ from ..motion.rotations import rotate
 from .physics_body import PhysicsBody
 
 Array = NDArray[np.float64]
+SIDES = ("left", "right")
+NEAR = 0.005
+"""Metres, for legs of 0.9 m: a sole as near to the ground touches it."""
+
 SLOW = 1.0
 """Seconds: what a body does for longer, over or under the ground, is taken for an error."""
 
@@ -74,6 +78,13 @@ def raising(heights: Array, frame_rate: float, size: float) -> Array:
     return np.asarray(gaussian_filter1d(under - over, SLOW / 4 * frame_rate, mode="nearest"))
 
 
+def touching(body: PhysicsBody, motion: Motion, ground: float) -> NDArray[np.bool_]:
+    """Return whether the left and the right foot touch the ground, shape (n_frames, 2)."""
+    points, joints = bottoms(body, motion)
+    near = points[..., 2] < ground + NEAR * body.size
+    return np.stack([near[:, _of_foot(body, joints, side)].any(axis=1) for side in SIDES], -1)
+
+
 def sole_speeds(body: PhysicsBody, motion: Motion) -> Array:
     """Return how fast each foot moves over the ground, shape (n_frames, 2), m/s.
 
@@ -81,17 +92,19 @@ def sole_speeds(body: PhysicsBody, motion: Motion) -> Array:
     """
     points, joints = bottoms(body, motion)
     speeds = np.zeros((motion.n_frames, 2))
-    for column, side in enumerate(("left", "right")):
-        of_foot = [
-            place
-            for place, joint in enumerate(joints)
-            if body.roles.get(int(joint)) in {f"{side}Foot", f"{side}Toes"}
-        ]
-        if of_foot and motion.n_frames > 1:
+    for column, side in enumerate(SIDES):
+        of_foot = _of_foot(body, joints, side)
+        if of_foot.any() and motion.n_frames > 1:
             steps = np.linalg.norm(np.diff(points[:, of_foot, :2], axis=0), axis=-1)
             speeds[1:, column] = steps.min(axis=1) * motion.frame_rate
             speeds[0, column] = speeds[1, column]
     return speeds
+
+
+def _of_foot(body: PhysicsBody, joints: NDArray[np.intp], side: str) -> NDArray[np.bool_]:
+    """Tell which of these joints are of the left or of the right foot."""
+    roles = {f"{side}Foot", f"{side}Toes"}
+    return np.array([body.roles.get(int(joint)) in roles for joint in joints], dtype=np.bool_)
 
 
 def slide(body: PhysicsBody, motion: Motion, contacts: NDArray[np.bool_]) -> float:

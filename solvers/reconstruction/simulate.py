@@ -25,6 +25,9 @@ EASE = 0.3
 TOO_OFTEN = 1.0
 """Seconds of a take for each time that its body may be lost before all is given up."""
 
+TOO_MANY = 0.3
+"""Share of the frames that may not be followed, likewise."""
+
 
 class Ground(Enum):
     """Where the ground is."""
@@ -214,7 +217,8 @@ def _put_together(
     """Blend what was simulated with the take, and measure the result."""
     followed = np.concatenate([piece.followed for piece in pieces])
     n_lost = sum(piece.n_lost for piece in pieces)
-    given_up = n_lost > 1 + motion.n_frames * motion.dt / TOO_OFTEN
+    too_often = n_lost > 1 + motion.n_frames * motion.dt / TOO_OFTEN
+    given_up = too_often or float((~followed).mean()) > TOO_MANY
     if given_up:
         followed[:] = False
     rotations = np.concatenate([piece.motion.rotations for piece in pieces])
