@@ -107,7 +107,7 @@ def _steps(
 
     Where the engine gave up, there is nothing left to drive; `_apart` will say so.
     """
-    used = []
+    used: list[float] = []
     for step, moment in enumerate(zip(*states, strict=True)):
         if step:
             engine.mj_step1(world.model, world.data)
@@ -124,7 +124,7 @@ def _apart(engine: ModuleType, world: World, wanted: Array) -> float:
     """
     data = world.data
     exploded = not (np.isfinite(data.qpos).all() and np.abs(data.qvel).max() < FASTEST)
-    if exploded or any(warning.number for warning in data.warning):
+    if exploded or np.any(data.warning.number):
         return np.inf
     world.ghost.qpos[:] = wanted
     engine.mj_kinematics(world.model, world.ghost)
