@@ -13,7 +13,7 @@ from .physics_tables import ARM
 GRAVITY = 9.81
 SIDES = ("left", "right")
 WEAK = {"neck", "head", *(side + part for side in SIDES for part in ARM)}
-SOFTNESS = 0.02
+SOFTNESS = 0.01
 """Seconds in which the ground pushes out what sinks into it."""
 
 HARDNESS = "0.95 0.995 0.002 0.5 2"
