@@ -21,24 +21,20 @@ HIGHEST = 0.25
 
 
 def bottoms(body: PhysicsBody, motion: Motion) -> tuple[Array, NDArray[np.intp]]:
-    """Return the lowest points of all capsules that touch the ground.
+    """Return the lowest points of both ends of all capsules that touch the ground.
 
     Returns
     -------
-    points : shape (n_frames, n_capsules, 3), metres
-    joints : int, shape (n_capsules,)
+    points : shape (n_frames, 2 n_capsules, 3), metres
+    joints : int, shape (2 n_capsules,)
     """
     poses = forward_kinematics(motion)
-    touching = [capsule for capsule in body.capsules if capsule.touches]
+    touching = [capsule for capsule in body.capsules if capsule.touches for _ in capsule.ends]
     joints = np.array([capsule.joint for capsule in touching], dtype=np.intp)
-    ends = np.stack([capsule.ends for capsule in touching], axis=1)
-    radii = np.array([capsule.radius for capsule in touching])
-    one, other = (
-        poses.positions[:, joints] + rotate(poses.rotations[:, joints], end) for end in ends
-    )
-    lower = np.where(one[..., 2:] < other[..., 2:], one, other)
-    lower[..., 2] -= radii
-    return lower, joints
+    ends = np.concatenate([capsule.ends for capsule in touching[::2]])
+    points = poses.positions[:, joints] + rotate(poses.rotations[:, joints], ends)
+    points[..., 2] -= [capsule.radius for capsule in touching]
+    return points, joints
 
 
 def clearance(body: PhysicsBody, motion: Motion, ground: float) -> Array:

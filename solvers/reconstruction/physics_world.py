@@ -19,7 +19,7 @@ SOFTNESS = 0.01
 HARDNESS = "0.95 0.995 0.002 0.5 2"
 """The engine's `solimp`: a foot is light, and what its leg pushes with must not sink it."""
 
-ROTOR = 0.0014
+ROTOR = 0.001
 """Seconds squared: by it and its strength, a joint has inertia of its own, as a geared motor
 has. Without it, feet are so light that a small error of the ground's force would turn them."""
 
