@@ -16,6 +16,10 @@ NEAR = 0.005
 SLOW = 1.0
 """Seconds: what a body does for longer, over or under the ground, is taken for an error."""
 
+SHALLOW = 0.02
+"""Metres, for legs of 0.9 m, by which a body may be under the ground for long: one foot often
+is a little lower than the other, and legs that press it down stand more firmly."""
+
 HIGHEST = 0.25
 """Metres, for legs of 0.9 m, of hovering that is taken for an error."""
 
@@ -68,7 +72,8 @@ def raising(heights: Array, frame_rate: float, size: float) -> Array:
         Shape (n_frames,), metres; negative where the target is to be lowered.
     """
     window = min(2 * int(SLOW * frame_rate / 2) + 1, 2 * len(heights) - 1)
-    under = median_filter(np.maximum(-heights, 0.0), size=window, mode="nearest")
+    sunk = np.maximum(-heights - SHALLOW * size, 0.0)
+    under = median_filter(sunk, size=window, mode="nearest")
     over = grey_opening(np.maximum(heights, 0.0), size=window, mode="nearest")
     over = np.where(over > HIGHEST * size, 0.0, over)
     return np.asarray(gaussian_filter1d(under - over, SLOW / 4 * frame_rate, mode="nearest"))
