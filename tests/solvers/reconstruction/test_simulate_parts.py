@@ -228,7 +228,7 @@ def test_a_body_that_is_sunk_for_long_is_raised_and_one_that_jumps_is_not_lowere
 
     lift = raising(heights, frame_rate=30.0, size=1.0)
 
-    assert_allclose(lift[:70], 0.2, atol=1e-3)
+    assert_allclose(lift[:70], 0.2 - 0.02, atol=1e-3)  # two may be pressed into the ground
     assert_allclose(lift[130:], 0.0, atol=1e-3)
     assert_allclose(raising(np.full(90, 0.1), 30.0, 1.0), -0.1)
     assert_allclose(raising(np.full(90, 2.0), 30.0, 1.0), 0.0)
