@@ -12,9 +12,6 @@ from .physics_world import GRAVITY, World
 
 Array = NDArray[np.float64]
 BASE = slice(0, 6)
-LIFTING = 0.1
-"""Metres per second, for legs of 0.9 m: a foot that is to rise faster bears no weight."""
-
 HARDEST, HARDEST_TURN = 1.0, 30.0
 """Of the base: at most so much acceleration corrects an error, in g and in 1/s^2."""
 
@@ -98,7 +95,7 @@ def drive(
     wanted = target.accelerations + correction
     inertia = np.empty((model.nv, model.nv))
     engine.mj_fullM(model, inertia, data.qM)
-    contacts, burdens = _bearing_contacts(world, target.velocities, control)
+    contacts, burdens = _contacts(world)
     on_base = inertia[BASE] @ wanted + data.qfrc_bias[BASE]
     pushes = _ground_forces(contacts[:, BASE], burdens, on_base, control)
     from_ground = contacts.T @ pushes
@@ -113,18 +110,14 @@ def drive(
     return float(np.linalg.norm(help_[:3]) / control.weight)
 
 
-def _bearing_contacts(
-    world: World, velocities: Array, control: Controller
-) -> tuple[Array, Array]:
-    """Return Jacobians of the contacts that are to stay: rows in threes, along the normal
-    first, shape (3 n_contacts, n_velocities); and how hard each row is to bear.
+def _contacts(world: World) -> tuple[Array, Array]:
+    """Return Jacobians of the contacts, rows in threes, along the normal first, shape
+    (3 n_contacts, n_velocities); and how reluctantly each row bears the body.
     """
-    jacobians = world.data.efc_J.reshape(-1, len(velocities))
-    geometries = world.data.contact.geom[world.data.contact.efc_address >= 0]
-    weak = world.weak[geometries].any(axis=1)
-    staying = np.repeat(jacobians[::3] @ velocities < LIFTING * control.size, 3)
+    data = world.data
+    weak = world.weak[data.contact.geom[data.contact.efc_address >= 0]].any(axis=1)
     burdens = np.repeat(np.where(weak, RELUCTANCE, 1.0), 3)
-    return jacobians[staying], burdens[staying]
+    return data.efc_J.reshape(-1, world.model.nv), burdens
 
 
 def _ground_forces(
