@@ -48,13 +48,13 @@ COLUMNS = (
     "95 % mm", "followed %", "help %", "speed x",
 )  # fmt: skip
 SETS = {
-    "CMU walks, 120 Hz": ("mocap/cmu_walk", ("10_04", "26_01", "27_01", "32_01", "35_2")),
+    "CMU walks and runs, 120 Hz": ("mocap/cmu_walk", ("10", "26", "27", "32", "35_")),
     "HDM05, 11 classes of actor dg, 120 Hz": ("mocap/hdm05", ("HDM_dg_",)),
     "Kinect v2 (UI-PRMD, subjects 4 and 5), 30 Hz": ("kinect/ui_prmd", ("m0",)),
     "Kinect v2 (IRDS), 30 Hz": ("kinect/irds", ("",)),
     "Kinect v1 (MSR Action3D), 30 Hz": ("kinect/msr_action3d", ("a",)),
 }
-SHAKEN = "CMU walks at 30 Hz, shaken by 1 degree and 5 mm"
+SHAKEN = "CMU walks and runs at 30 Hz, shaken by 1 degree and 5 mm"
 
 
 class Row(NamedTuple):
@@ -80,7 +80,7 @@ def main() -> None:
 def clips(title: str, at_most: int) -> Iterator[Motion]:
     """Yield the takes of a set, spread over its files."""
     if title == SHAKEN:
-        for number, motion in enumerate(clips("CMU walks, 120 Hz", at_most)):
+        for number, motion in enumerate(clips("CMU walks and runs, 120 Hz", at_most)):
             slow = Motion(
                 motion.skeleton, motion.rotations[::4], motion.root_positions[::4], 30.0
             )

@@ -23,23 +23,35 @@ GOOD = {
 }
 
 
-@pytest.mark.parametrize("clip", GOOD)
-def test_a_good_take_changes_little_and_shakes_and_slides_less(recordings, clip):
-    path = sorted(recordings.glob(GOOD[clip]))[0]
-    motion = read_recording(path)
-    motion = motion.slice(1, min(motion.n_frames, 481))
+@pytest.fixture(scope="module")
+def good_takes(recordings):
+    """Each take and what was simulated of it."""
+    takes = {}
+    for name, pattern in GOOD.items():
+        motion = read_recording(sorted(recordings.glob(pattern))[0])
+        motion = motion.slice(1, min(motion.n_frames, 481))
+        takes[name] = motion, simulate(motion, settings=UNDER_FEET)
+    return takes
 
-    result = simulate(motion, settings=UNDER_FEET)
+
+@pytest.mark.parametrize("clip", GOOD)
+def test_a_good_take_changes_little_and_shakes_less(good_takes, clip):
+    motion, result = good_takes[clip]
 
     assert result.followed.all()
     assert result.distance < 0.03
     assert result.penetration_after < 0.006
-    contacts = detect_contacts(motion)
-    before, after = (
-        measure_quality(each, contacts=contacts) for each in (motion, result.motion)
-    )
-    assert slide(after) < slide(before)
     assert jerk(result.motion) < 0.7 * jerk(motion)
+
+
+def test_feet_of_good_takes_slide_less_by_another_familys_measure(good_takes):
+    before, after = 0.0, 0.0
+    for motion, result in good_takes.values():
+        contacts = detect_contacts(motion)
+        before += slide(measure_quality(motion, contacts=contacts))
+        after += slide(measure_quality(result.motion, contacts=contacts))
+
+    assert after < 0.8 * before
 
 
 @pytest.mark.parametrize("folder", ["irds", "msr_action3d"])
@@ -54,7 +66,7 @@ def test_a_depth_cameras_take_stands_still_on_the_ground(recordings, folder):
     assert result.penetration_after < 0.006
     assert result.slide_after < 0.7 * result.slide_before
     assert jerk(result.motion) < 0.8 * jerk(motion)
-    assert result.distance < 0.03
+    assert result.distance < 0.1
 
 
 def slide(quality) -> float:
