@@ -14,7 +14,12 @@ from solvers.reconstruction import NoPhysicsError
 from solvers.reconstruction.physics_body import Capsule, PhysicsBody, physics_body
 from solvers.reconstruction.physics_control import _in_cones
 from solvers.reconstruction.physics_engine import load_engine
-from solvers.reconstruction.physics_surface import raising
+from solvers.reconstruction.physics_surface import (
+    bottoms,
+    clearance,
+    penetration,
+    raising,
+)
 from solvers.reconstruction.physics_tables import MASS_SHARES, ROLES, part_of
 from solvers.reconstruction.physics_target import blended, calmed_target, filled
 from solvers.reconstruction.physics_world import build_world
@@ -218,6 +223,28 @@ def test_forces_of_the_ground_do_not_pull_and_friction_bounds_them():
     inside = _in_cones(given, friction=0.6)
 
     assert_allclose(inside, [0, 0, 0, 10, 3, 4, 10, 3.6, 4.8])
+
+
+def test_the_skin_of_a_capsule_hangs_below_both_its_ends_by_its_radius():
+    """A rod of 1 m with a skin of 10 cm, turned about X from level to upright and back."""
+    rod = Capsule(0, np.array([[0.0, 0.0, 0.0], [0.0, 1.0, 0.0]]), 0.1, 1.0)
+    body = body_of(rod, replace(rod, touches=False))
+    turns = np.zeros((3, 1, 3))
+    turns[:, 0, 0] = 0.0, -np.pi / 2, np.pi / 6
+    motion = Motion(
+        body.skeleton,
+        quaternion_from_rotation_vector(turns),
+        np.tile([5.0, 0, 2.0], (3, 1)),
+        30.0,
+    )
+
+    points, joints = bottoms(body, motion)
+
+    assert joints.tolist() == [0, 0]
+    assert_allclose(points[:, 0], np.tile([5.0, 0.0, 1.9], (3, 1)), atol=1e-12)
+    assert_allclose(points[:, 1], [[5, 1, 1.9], [5, 0, 0.9], [5, 0.75**0.5, 2.4]], atol=1e-12)
+    assert_allclose(clearance(body, motion, 0.5), [1.4, 0.4, 1.4], atol=1e-12)
+    assert penetration(body, motion, 1.0) == pytest.approx(0.1)
 
 
 def test_a_body_that_is_sunk_for_long_is_raised_and_one_that_jumps_is_not_lowered():
