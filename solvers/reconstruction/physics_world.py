@@ -53,7 +53,7 @@ def build_world(
         "<flag autoreset='disable'/></option>",
         f"<default><geom condim='3' priority='1' friction='{rub!r} 0.005 0.0001'"
         f" solref='{softness!r} 1' solimp='{HARDNESS}'/><joint type='ball'/></default>",
-        f"<worldbody><geom type='plane' size='0 0 1' priority='0' pos='0 0 {ground!r}'"
+        f"<worldbody><geom type='plane' size='0 0 1' priority='0' pos='0 0 {float(ground)!r}'"
         " contype='0' conaffinity='1'/>",
         _nested(body, body.joints[0]),
         "</worldbody></mujoco>",
@@ -90,7 +90,7 @@ def _ball(body: PhysicsBody, joint: int) -> str:
 def _geometry(capsule: Capsule) -> str:
     meets = f"contype='{int(capsule.touches)}' conaffinity='0'"
     start, stop = capsule.ends
-    common = f"size='{capsule.radius!r}' mass='{capsule.mass!r}' {meets}"
+    common = f"size='{float(capsule.radius)!r}' mass='{float(capsule.mass)!r}' {meets}"
     if np.array_equal(start, stop):
         return f"<geom type='sphere' pos='{_words(start)}' {common}/>"
     return f"<geom type='capsule' fromto='{_words(start)} {_words(stop)}' {common}/>"
