@@ -11,7 +11,7 @@ from ..solvers.errors import InvalidMotionError
 from ..solvers.motion import Motion
 from . import redo
 from .clean_report import figures
-from .cleaning import UNSURE, ease_of
+from .cleaning import ease_of
 from .examples import read_examples
 from .jobs.job import Quick
 from .jobs.reconstructing import RebuildFinish, RebuildProblem, Rebuilt, rebuild
@@ -29,8 +29,6 @@ from .selection import played_source, selected_armature, why_not_clean
 from .subject import check_unchanged
 
 SUFFIX = ".reconstructed"
-N_TRUSTED = 0.5
-"""Reliability below which a joint counts as lost in what is said of the result."""
 
 
 class _Reading(NamedTuple):
@@ -137,9 +135,8 @@ def _problem(
 
 
 def _key_types(names: tuple[str, ...], rebuilt: Rebuilt) -> dict[str, NDArray[np.uint8]]:
-    """Paint the keys of joints that the result is not sure of."""
-    unsure = rebuilt.solution.confidence < UNSURE  # never where it is not known
-    painted = np.where(unsure, GENERATED, MEASURED).astype(np.uint8)
+    """Paint the keys of joints that were rebuilt."""
+    painted = np.where(rebuilt.solution.rebuilt, GENERATED, MEASURED).astype(np.uint8)
     return dict(zip(names, painted.T, strict=True))
 
 
@@ -149,24 +146,18 @@ def _entry(settings: ReconstructBundle, rebuilt: Rebuilt) -> dict[str, Any]:
         "operation": "reconstruct",
         "settings": history.plain(*settings),
         "method": rebuilt.solution.method,
-        "lost_share": _lost(rebuilt),
+        "rebuilt_share": rebuilt.solution.rebuilt_share,
         "remarks": list(rebuilt.remarks),
         "before": figures(rebuilt.before),
         "after": figures(rebuilt.after),
     }
 
 
-def _lost(rebuilt: Rebuilt) -> float:
-    """Return the share of joints and frames that were not trusted."""
-    known = np.isfinite(rebuilt.solution.reliability)
-    return float((rebuilt.solution.reliability[known] < N_TRUSTED).mean())
-
-
 def _said(name: str, rebuilt: Rebuilt, n_modified: int) -> str:
     n_frames = rebuilt.motion.n_frames
     said = [
-        f"{name}: {n_frames} frames; {100 * _lost(rebuilt):.1f} % of the joints could not be"
-        " trusted and were rebuilt."
+        f"{name}: {n_frames} frames; {100 * rebuilt.solution.rebuilt_share:.1f} % of the joints"
+        " were lost or wrong, and are rebuilt."
     ]
     if rebuilt.planted is not None:
         said.append(

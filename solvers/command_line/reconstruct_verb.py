@@ -21,17 +21,14 @@ from .files import JOINTS, add_reading_options, write
 from .options import arguments_from, settings_from_arguments
 from .verb import Outcome, Task
 
-LOST = 0.5
-"""Reliability below which a joint is told as lost."""
-
 
 class Rebuilt(NamedTuple):
     """What came of one recording, whatever it was."""
 
     motion: Motion
     joints: JointRecording | None
-    lost: float
-    """Share of joints and frames that were not trusted."""
+    share: float
+    """Of the joints and frames that were rebuilt."""
     method: str
     remarks: tuple[str, ...]
     slide: tuple[float, float] | None
@@ -80,12 +77,10 @@ def _rebuilt(given: Any, task: Task, progress: Progress) -> Rebuilt:
     planting = settings_from_arguments(task.arguments, PlantSettings) if feet else None
     if isinstance(given, Motion):
         whole = reconstruct_motion(given, settings=settings, progress=progress)
-        known = np.isfinite(whole.reliability)
-        lost = float((whole.reliability[known] < LOST).mean())
         footing = try_to_plant(whole.motion, planting)
         remarks = (*whole.remarks, *footing.remarks)
         slide = _slide(footing.planted)
-        return Rebuilt(footing.motion, None, lost, whole.method, remarks, slide)
+        return Rebuilt(footing.motion, None, whole.rebuilt_share, whole.method, remarks, slide)
     recording = _joints_of(given, task.source)
     found = reconstruct_recording(
         recording,
@@ -103,7 +98,7 @@ def _rebuilt(given: Any, task: Task, progress: Progress) -> Rebuilt:
     return Rebuilt(
         found.motion,
         JointRecording(tracks, None, Sensor.OTHER),
-        float((rebuilt.reliability.combined < LOST).mean()),
+        float(found.rebuilt.mean()),
         rebuilt.method,
         found.remarks,
         _slide(found.planted),
@@ -126,7 +121,7 @@ def _joints_of(given: JointRecording | Tracks, source: Path) -> JointRecording:
 def _outcome(given: Any, rebuilt: Rebuilt) -> Outcome:
     before_of = given.tracks if isinstance(given, JointRecording) else given
     before, after = measure_quality(before_of), measure_quality(rebuilt.motion)
-    lines = [f"{100 * rebuilt.lost:.1f} % of the joints could not be trusted and were rebuilt."]
+    lines = [f"{100 * rebuilt.share:.1f} % of the joints were lost or wrong, and are rebuilt."]
     if rebuilt.method:
         lines.append(rebuilt.method.rstrip(".") + ".")
     if rebuilt.slide is not None:
@@ -135,7 +130,7 @@ def _outcome(given: Any, rebuilt: Rebuilt) -> Outcome:
     lines += [*rebuilt.remarks, compare_quality(before, after)]
     figures = {
         "method": rebuilt.method,
-        "lost_share": rebuilt.lost,
+        "rebuilt_share": rebuilt.share,
         "remarks": list(rebuilt.remarks),
         "slide_before_m": rebuilt.slide and rebuilt.slide[0],
         "slide_after_m": rebuilt.slide and rebuilt.slide[1],

@@ -26,6 +26,7 @@ from ..reconstruction.posture_joints import (
 from ..reconstruction.posture_library import PostureLibrary
 from ..reconstruction.turn_to_postures import turn_to_postures
 from .known_body import KINECT_V1, check_size, check_tracked, gap_remarks
+from .rebuilt_joints import rebuilt_joints
 from .rough_reconstruct import ReconstructSettings, reconstruct
 
 Array = NDArray[np.float64]
@@ -43,6 +44,8 @@ class RebuiltMotion:
     reliability, confidence : shape (n_frames, n_joints), 0 to 1
         How far each joint was trusted, and how sure its result is; NaN for joints that are
         not among those by which bodies are compared.
+    rebuilt : bool, shape (n_frames, n_joints)
+        Which of these joints were lost, or are put elsewhere than they were recorded.
     method : str
         What was done, in words.
     remarks : tuple of str
@@ -52,8 +55,14 @@ class RebuiltMotion:
     motion: Motion
     reliability: Array
     confidence: Array
+    rebuilt: NDArray[np.bool_]
     method: str
     remarks: tuple[str, ...]
+
+    @property
+    def rebuilt_share(self) -> float:
+        """Share of the joints and frames that were rebuilt, of those that are compared."""
+        return float(self.rebuilt[np.isfinite(self.reliability)].mean())
 
 
 def reconstruct_motion(
@@ -111,12 +120,14 @@ def reconstruct_motion(
         turned = turn_to_postures(motion, posture_positions(rebuilt.tracks), humanoid_map)
     shape = (motion.n_frames, motion.n_joints)
     reliability, confidence = np.full(shape, np.nan), np.full(shape, np.nan)
+    told, guessed = np.zeros(shape, bool), rebuilt_joints(recording, rebuilt)
     for joint, column in columns.items():
         reliability[:, joint] = rebuilt.reliability.combined[:, column]
         confidence[:, joint] = rebuilt.confidence[:, column]
+        told[:, joint] = guessed[:, column]
     progress(1.0, "Done")
     remarks = tuple(gap_remarks(recording))
-    return RebuiltMotion(turned, reliability, confidence, rebuilt.method, remarks)
+    return RebuiltMotion(turned, reliability, confidence, told, rebuilt.method, remarks)
 
 
 def _is_tracked(names: tuple[str, ...]) -> bool:
