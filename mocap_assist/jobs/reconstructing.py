@@ -17,9 +17,11 @@ from ...solvers.denoising import (
 )
 from ...solvers.motion import Motion
 from ...solvers.progress import Progress, unwatched, within
+from ...solvers.recordings import read_motion_or_tracks
 from ...solvers.workflows import (
     RebuiltMotion,
     ReconstructSettings,
+    postures_of,
     reconstruct_motion,
     try_to_plant,
 )
@@ -67,11 +69,16 @@ class Rebuilt:
 
 def solve(problem: RebuildProblem, *, progress: Progress = unwatched) -> RebuiltMotion:
     """Rebuild the poses of the body."""
+    postures = None
+    if problem.examples is not None:
+        clips = [*problem.examples.motions, *map(read_motion_or_tracks, problem.examples.files)]
+        postures = postures_of(clips, progress=within(progress, 0.0, 0.2))
     return reconstruct_motion(
         problem.body,
+        postures,
         tracking_state=problem.tracking_state,
         settings=problem.settings,
-        progress=progress,
+        progress=within(progress, 0.0 if postures is None else 0.2, 1.0),
     )
 
 

@@ -128,6 +128,26 @@ def test_a_rig_of_another_kind_keeps_its_hands(make_armature, animate, reconstru
     assert_array_equal(np.shape(first), np.shape(second))
 
 
+@pytest.mark.parametrize("kind", ["action", "folder"])
+def test_clips_of_your_own_teach_postures(
+    walk, reconstruct, load, blank, tmp_path, bring, kind
+):
+    samples = load("solvers.samples")
+    clip = samples.walking_gait(samples.GaitSettings(duration=3.0, frame_rate=30.0))
+    (tmp_path / "clean").mkdir()
+    path = tmp_path / "clean" / "stroll.bvh"
+    load("solvers.recordings").write_bvh(clip, path)
+    if kind == "action":
+        bring(path)
+        blank.context.view_layer.objects.active = walk
+
+    result = reconstruct(
+        postures="EXAMPLES", examples="stroll" if kind == "action" else str(path.parent)
+    )
+
+    assert "1 clip of your own" in json.loads(result[HISTORY])[-1]["method"]
+
+
 def test_the_button_is_grey_without_an_armature(blank):
     blank.ops.object.empty_add()
 

@@ -75,6 +75,19 @@ def test_the_motion_of_a_skeleton_is_rebuilt_on_it(call, tmp_path):
     assert set(clean.skeleton.names) == set(read_bvh(tmp_path / "walk.bvh").skeleton.names)
 
 
+def test_clips_of_your_own_teach_postures(call, walk_file, tmp_path):
+    walk = samples.walking_gait(samples.GaitSettings(duration=3.0, frame_rate=30.0))
+    (tmp_path / "clean").mkdir()
+    write_bvh(walk, tmp_path / "clean" / "walk.bvh")
+
+    status, out, err = call(
+        "reconstruct", walk_file, tmp_path / "out.bvh", "--train", tmp_path / "clean"
+    )
+
+    assert (status, err) == (0, "")
+    assert "1 clip of your own" in out
+
+
 def test_metres_of_millimetres_are_asked_for(call, walk, tmp_path):
     large = Tracks(walk.names, 1000.0 * walk.tracks.positions, 30.0)
     write_joint_csv(walk.with_tracks(large), tmp_path / "large.csv")
