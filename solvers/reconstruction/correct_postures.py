@@ -1,0 +1,205 @@
+"""Take a sensor's errors out of a recording with a residual prior [ZH14, chapter 5]."""
+
+from dataclasses import dataclass
+from enum import Enum
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.linalg import solveh_banded
+from scipy.special import gammainc
+
+from ..motion import JointRecording
+from ..progress import Progress, unwatched, within
+from ..settings import Settings, setting
+from .finish import finished, posture_reliability
+from .posture_joints import posture_positions
+from .reliability import Reliability, measure_reliability
+from .residual_inputs import CalmPostures, bridged, calm_postures
+from .residual_prior import ResidualPrior
+from .result import Reconstruction
+
+Array = NDArray[np.float64]
+
+CENTIMETRES = 100.0
+"""[ZH14] names no unit for its weights; with metres the temporal term would vanish."""
+LEAST = 0.02
+"""Weight of a joint that is not trusted at all, so that gaps are bridged smoothly."""
+REFERENCE_RATE = 30.0
+SURE_WITHIN = 0.05
+"""Metres. Confidence is the chance that a joint lies within this of where it was."""
+
+
+class CorrectionMethod(Enum):
+    """How offsets, smoothness and trust are brought together."""
+
+    WHOLE_TAKE = "whole take"
+    PUBLISHED = "published"
+
+
+@dataclass(frozen=True, kw_only=True)
+class CorrectionSettings(Settings):
+    """How a residual prior is applied."""
+
+    method: CorrectionMethod = setting(
+        CorrectionMethod.WHOLE_TAKE,
+        "Whole take smooths before and after each frame; published goes frame by frame with"
+        " three terms as Zhou 2014, as a live recording must",
+    )
+    smoothing: float = setting(
+        0.1, "Movements shorter than about this are jitter; higher is smoother and blunter",
+        unit="s", minimum=0.0, maximum=1.0,
+    )  # fmt: skip
+    spatial: float = setting(
+        0.6, "Weight of the foretold offsets; published method only",
+        minimum=0.0, maximum=10.0, advanced=True,
+    )  # fmt: skip
+    temporal: float = setting(
+        0.2, "Weight of steady velocities; published method only",
+        minimum=0.0, maximum=10.0, advanced=True,
+    )  # fmt: skip
+    trust: float = setting(
+        0.2, "Weight of staying where reliable joints were seen; published method only",
+        minimum=0.0, maximum=10.0, advanced=True,
+    )  # fmt: skip
+
+
+def correct_postures(
+    recording: JointRecording,
+    prior: ResidualPrior,
+    *,
+    reliability: Reliability | None = None,
+    settings: CorrectionSettings = CorrectionSettings(),
+    progress: Progress = unwatched,
+) -> Reconstruction:
+    """Move joints from where a sensor saw them to where they were, as far as is known.
+
+    Published: minimise E = w_S E_S + w_T E_T + w_R E_R (eq. 5.1, 5.4, 5.5, 5.6), frame by frame
+    in closed form, since all three are quadratic and diagonal. The default takes the foretold
+    offset in full and minimises over the whole take the distance to it, weighted by reliability,
+    and the accelerations.
+
+    Parameters
+    ----------
+    recording : JointRecording
+    prior : ResidualPrior
+    reliability : Reliability, optional
+        Measured by `measure_reliability` where it is not given.
+    settings : CorrectionSettings
+    progress : Progress
+
+    Returns
+    -------
+    Reconstruction
+        Its confidence is the chance that a joint lies within 5 cm of where it was.
+
+    Raises
+    ------
+    InvalidMotionError
+        No body is recognised in the names of the joints.
+    SolveCancelled
+        Raised by `progress`.
+
+    References
+    ----------
+    .. [ZH14] Zhou (2014). Modeling of single character motions with temporal sparse
+       representation and Gaussian processes. PhD thesis, City University of Hong Kong, 5.2.
+    """
+    trust = reliability or measure_reliability(
+        recording, progress=within(progress, 0.0, 0.3)
+    )
+    weights = posture_reliability(recording, trust.combined)
+    calm = calm_postures(recording, float(prior.calm), weights)
+    progress(0.4, "Correcting")
+    offsets, variances = prior.predict(calm)
+    foretold = calm.positions + calm.turn_back(offsets)
+    if settings.method is CorrectionMethod.PUBLISHED:
+        total = variances + prior.lasting_variances()
+        corrected = _frame_by_frame(recording, foretold, total, weights, settings)
+    else:
+        corrected = smoothed(
+            foretold, np.maximum(weights, LEAST), settings.smoothing * recording.frame_rate
+        )
+    progress(0.9, "Correcting")
+    confidence = chance_within(variances + prior.lasting_variances(), SURE_WITHIN)
+    result = finished(
+        recording, corrected, trust, confidence, f"residual prior of {prior.source}"
+    )
+    progress(1.0, "Corrected")
+    return result
+
+
+def smoothed(positions: Array, weights: Array, frames: float) -> Array:
+    """Return the paths nearest to the given ones whose accelerations are small.
+
+    Minimises sum_t w_t |m_t - z_t|^2 + c sum_t |m_t-1 - 2 m_t + m_t+1|^2 (Whittaker 1923), where
+    c is chosen so that waves of `frames` * 2 pi frames lose half their size where w is 1.
+
+    Parameters
+    ----------
+    positions : shape (n_frames, n_joints, 3)
+        A joint is NaN in every frame or in none.
+    weights : shape (n_frames, n_joints), positive
+    frames : float
+        Time constant in frames.
+    """
+    n = len(positions)
+    if n < 3 or frames <= 0.0:
+        return positions.copy()
+    rough = np.diff(np.eye(min(n, 5)), 2, axis=0)
+    bands = np.zeros((3, n))
+    if n <= 5:
+        square = rough.T @ rough
+        for lag in range(3):
+            bands[2 - lag, lag:] = np.diagonal(square, lag)
+    else:
+        bands[0, 2:] = 1.0
+        bands[1, 1:] = [-2.0, *[-4.0] * (n - 3), -2.0]
+        bands[2] = [1.0, 5.0, *[6.0] * (n - 4), 5.0, 1.0]
+    result = positions.copy()
+    for joint in np.flatnonzero(np.isfinite(positions).all(axis=(0, 2))):
+        matrix = frames**4 * bands
+        matrix[2] += weights[:, joint]
+        result[:, joint] = solveh_banded(
+            matrix, weights[:, joint, None] * positions[:, joint], check_finite=False
+        )
+    return result
+
+
+def _frame_by_frame(
+    recording: JointRecording,
+    foretold: Array,
+    variances: Array,
+    weights: Array,
+    settings: CorrectionSettings,
+) -> Array:
+    """Minimise eq. 5.6 of [ZH14] in each frame, after the two before."""
+    seen = bridged(posture_positions(recording)) * CENTIMETRES
+    offsets = foretold * CENTIMETRES - seen
+    spatial = settings.spatial / (2.0 * variances * CENTIMETRES**2)
+    trust = settings.trust * weights**2
+    result = seen.copy()
+    step = REFERENCE_RATE / recording.frame_rate
+    for frame in range(len(seen)):
+        temporal = settings.temporal / step**4 if frame >= 2 else 0.0
+        total = spatial[frame] + trust[frame] + temporal
+        wanted = spatial[frame][:, None] * offsets[frame]
+        if frame >= 2:
+            steady = 2.0 * result[frame - 1] - result[frame - 2] - seen[frame]
+            wanted = wanted + temporal * steady
+        result[frame] = seen[frame] + wanted / np.maximum(total, 1e-12)[:, None]
+    return result / CENTIMETRES
+
+
+def chance_within(variances: Array, distance: float) -> Array:
+    """Return the chance of a point being within a distance of its mean (Maxwell's law).
+
+    Parameters
+    ----------
+    variances : any shape, square metres for each of three axes; infinite: chance 0
+    distance : float, metres
+    """
+    scaled = distance**2 / (2.0 * np.maximum(variances, 1e-12))
+    return np.asarray(gammainc(1.5, scaled))
+
+
+__all__ = ["CalmPostures", "CorrectionMethod", "CorrectionSettings", "correct_postures"]

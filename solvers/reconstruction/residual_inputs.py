@@ -1,0 +1,89 @@
+"""What the residual prior looks at: calm postures of a usual size, normalised."""
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.ndimage import gaussian_filter1d
+
+from ..motion import JointRecording, Tracks
+from .body_size import USUAL_LENGTHS, body_lengths
+from .heading import Normalised, normalise, turned
+from .posture_joints import N_JOINTS, PARENTS, posture_positions
+
+Array = NDArray[np.float64]
+
+NEIGHBOURHOODS = tuple(
+    tuple(
+        [joint]
+        + [child for child in range(N_JOINTS) if PARENTS[child] == joint]
+        + ([PARENTS[joint]] if PARENTS[joint] >= 0 else [])
+    )
+    for joint in range(N_JOINTS)
+)
+"""A joint and those that it shares a bone with [ZH14, section 5.2.1]."""
+LARGEST = 3 * max(len(joints) for joints in NEIGHBOURHOODS)
+
+
+@dataclass(frozen=True, eq=False)
+class CalmPostures:
+    """A recording as the residual prior sees it.
+
+    Attributes
+    ----------
+    positions : shape (n_frames, 20, 3), metres, world
+        Calmed and without gaps, except joints that are never seen, which are NaN.
+    normalised : Normalised
+        The same without heading and place.
+    features : shape (n_frames, 20, 3)
+        The same for a body of usual size; NaN where `normalised` is.
+    """
+
+    positions: Array
+    normalised: Normalised
+    features: Array
+
+    def turn_back(self, offsets: Array) -> Array:
+        """Return offsets of these frames as the world sees them, (n_frames, n, 3)."""
+        return turned(offsets, self.normalised.headings)
+
+
+def calm_postures(
+    recording: JointRecording | Tracks, calm: float, weights: Array | None = None
+) -> CalmPostures:
+    """Calm a recording with a Gaussian of `calm` seconds, bridge gaps, and normalise it."""
+    positions = bridged(posture_positions(recording))
+    seen = np.isfinite(positions).all(axis=(0, 2))
+    rate = recording.frame_rate
+    if calm > 0.0:
+        positions[:, seen] = gaussian_filter1d(
+            positions[:, seen], calm * rate, axis=0, mode="nearest"
+        )
+    normal = normalise(positions, rate, weights)
+    size = USUAL_LENGTHS.sum() / body_lengths(positions).sum()
+    return CalmPostures(positions, normal, normal.postures * size)
+
+
+def bridged(positions: Array) -> Array:
+    """Bridge the gaps of each joint along straight lines; joints never seen stay NaN."""
+    result = np.array(positions, dtype=np.float64)
+    frames = np.arange(len(result))
+    seen = np.isfinite(result).all(axis=-1)
+    for joint in np.flatnonzero(seen.any(axis=0) & ~seen.all(axis=0)):
+        known = seen[:, joint]
+        for axis in range(3):
+            result[:, joint, axis] = np.interp(
+                frames, frames[known], result[known, joint, axis]
+            )
+    return result
+
+
+def filled(features: Array, usual: Array) -> Array:
+    """Return features with the usual posture, shape (20, 3), where a joint is never seen."""
+    return np.where(np.isfinite(features), features, usual)
+
+
+def neighbourhood(features: Array, joint: int) -> Array:
+    """Return a joint's features and its neighbours', shape (n_frames, 15), filled up with 0."""
+    found = features[:, list(NEIGHBOURHOODS[joint])].reshape(len(features), -1)
+    return np.pad(found, ((0, 0), (0, LARGEST - found.shape[1])))

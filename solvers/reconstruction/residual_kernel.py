@@ -1,0 +1,133 @@
+"""How alike the errors of two frames are: the covariance of the residual prior.
+
+The error y of a joint is y = f(x) + f_actor(x) + b_actor + b_take + noise. f is common to all
+actors and has covariance a1 k1 + a2 k2: k1 sees the joint and its neighbours as in [ZH14], k2
+the whole posture. f_actor has the same form with its own strengths, the b are constant offsets.
+Only f is used for an actor who is not among the examples; without the other terms it would
+take how one actor differs from others for something that postures tell, and be too sure.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.linalg import cho_factor, cho_solve
+from scipy.optimize import minimize
+
+Array = NDArray[np.float64]
+
+LOCAL, WHOLE = 0, 1
+SMALLEST, LARGEST = 1e-4, 10.0
+"""Bounds of each variance, as shares of the variance of the errors."""
+SHORTEST, LONGEST = 0.3, 10.0
+"""Bounds of each length, as multiples of the spread of the examples."""
+ROUNDS = 40
+
+
+@dataclass(frozen=True)
+class Kernel:
+    """Hyper-parameters of one joint: lengths in metres of features, variances in square metres.
+
+    Attributes
+    ----------
+    lengths, shared, personal : (local, whole)
+        How far two features may differ and still be alike; strengths of f and of f_actor.
+    take, actor, noise : float
+        Variances of the constant offsets and of what is left.
+    """
+
+    lengths: tuple[float, float]
+    shared: tuple[float, float]
+    personal: tuple[float, float]
+    take: float
+    actor: float
+    noise: float
+
+    @classmethod
+    def from_logs(cls, logs: Array) -> "Kernel":
+        """Read the logarithms that are optimised."""
+        l1, l2, a1, a2, p1, p2, take, actor, noise = (float(value) for value in np.exp(logs))
+        return cls((l1, l2), (a1, a2), (p1, p2), take, actor, noise)
+
+
+def squared_distances(one: Array, other: Array) -> Array:
+    """Return the squared distance of each row to each row, shape (n_one, n_other)."""
+    sums = (one**2).sum(axis=1)[:, None] + (other**2).sum(axis=1)
+    return np.asarray(np.maximum(sums - 2.0 * one @ other.T, 0.0))
+
+
+def alike(one: Array, other: Array, length: float) -> Array:
+    """Return the squared-exponential kernel, shape (n_one, n_other)."""
+    return np.asarray(np.exp(-0.5 * squared_distances(one, other) / length**2))
+
+
+def learn_kernel(
+    features: tuple[Array, Array],
+    errors: Array,
+    takes: NDArray[np.int64],
+    actors: NDArray[np.int64],
+    simple: bool,
+) -> Kernel:
+    """Find the hyper-parameters under which the examples are likeliest (L-BFGS).
+
+    Parameters
+    ----------
+    features : local and whole, each of shape (n, n_features)
+    errors : shape (n, 3), metres; axes share the hyper-parameters
+    takes, actors : shape (n,), int
+    simple : bool
+        As published: k1 and noise alone.
+    """
+    far = tuple(squared_distances(one, one) for one in features)
+    spread = np.sqrt([max(float(one.mean()) / 2.0, 1e-12) for one in far])
+    centred = errors - errors.mean(axis=0)
+    total = max(float(centred.var()), 1e-12)
+    same = tuple((one[:, None] == one).astype(np.float64) for one in (takes, actors))
+    start = np.log([*spread, *(total * np.array([0.2, 0.2, 0.1, 0.1, 0.1, 0.2, 0.1]))])
+    bounds = [(np.log(SHORTEST * one), np.log(LONGEST * one)) for one in spread]
+    bounds += [(np.log(SMALLEST * total), np.log(LARGEST * total))] * 7
+    if simple:
+        for place in (3, 4, 5, 6, 7):
+            start[place] = np.log(SMALLEST * total * 1e-3)
+            bounds[place] = (start[place], start[place])
+    found = minimize(
+        _unlikeliness, start, args=(far, same, centred), jac=True, method="L-BFGS-B",
+        bounds=bounds, options={"maxiter": ROUNDS},
+    )  # fmt: skip
+    return Kernel.from_logs(found.x)
+
+
+def _unlikeliness(
+    logs: Array, far: tuple[Array, ...], same: tuple[Array, ...], errors: Array
+) -> tuple[float, Array]:
+    """Return the negative log marginal likelihood and its gradient along the logarithms."""
+    kernel = Kernel.from_logs(logs)
+    n, n_axes = errors.shape
+    shapes = [np.exp(-0.5 * d / size**2) for d, size in zip(far, kernel.lengths, strict=True)]
+    strengths = [
+        shared + personal * same[1]
+        for shared, personal in zip(kernel.shared, kernel.personal, strict=True)
+    ]
+    covariance = kernel.take * same[0] + kernel.actor * same[1] + kernel.noise * np.eye(n)
+    for shape, strength in zip(shapes, strengths, strict=True):
+        covariance += shape * strength
+    factor = cho_factor(covariance, lower=True, check_finite=False)
+    solved = cho_solve(factor, errors, check_finite=False)
+    value = 0.5 * (errors * solved).sum() + n_axes * np.log(np.diag(factor[0])).sum()
+    inverse = cho_solve(factor, np.eye(n), check_finite=False)
+    slope = -0.5 * (solved @ solved.T - n_axes * inverse)
+    weighted = [slope * shape for shape in shapes]
+    gradient = [
+        ((one * strength) * d).sum() / size**2
+        for one, strength, d, size in zip(weighted, strengths, far, kernel.lengths, strict=True)
+    ]
+    gradient += [a * one.sum() for a, one in zip(kernel.shared, weighted, strict=True)]
+    gradient += [
+        p * (one * same[1]).sum() for p, one in zip(kernel.personal, weighted, strict=True)
+    ]
+    gradient += [
+        kernel.take * (slope * same[0]).sum(),
+        kernel.actor * (slope * same[1]).sum(),
+        kernel.noise * np.trace(slope),
+    ]
+    return float(value), np.array(gradient)

@@ -1,0 +1,164 @@
+"""Gaussian processes that know how a sensor errs: from what it saw to where the joint was."""
+
+from dataclasses import dataclass, fields
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..errors import InvalidFileError
+from ..files import read_archive, write_archive
+from .posture_joints import N_JOINTS, POSTURE_JOINTS
+from .residual_inputs import LARGEST, CalmPostures, filled, neighbourhood
+from .residual_kernel import Kernel
+from .residual_sparse import basis, shared_columns
+
+Array = NDArray[np.float64]
+
+KIND = "residual prior"
+VERSION = 1
+
+
+@dataclass(frozen=True, eq=False)
+class ResidualPrior:
+    """What was learned of a sensor's errors, joint by joint [ZH14, section 5.2.1].
+
+    Attributes
+    ----------
+    joints : shape (n,), str
+        Which of `POSTURE_JOINTS` were learned.
+    usual : shape (20, 3), metres
+        The mean posture, for joints that a recording lacks.
+    components : shape (57, n_components)
+        Principal components of the whole posture without the hips.
+    local_points : shape (n, n_local, 15)
+        Inducing points of each joint and its neighbours.
+    whole_points : shape (n_whole, n_components)
+        Inducing points of whole postures.
+    kernels : shape (n, 9)
+        Hyper-parameters (`Kernel`): lengths, shared, personal, take, actor, noise.
+    means, covariances : shapes (n, n_weights, 3) and (n, n_weights, n_weights)
+        Of the weights of the shared functions and the mean error.
+    calm : shape (), seconds
+        Gaussian that recordings are calmed with before they are looked at.
+    source : shape (), str
+        What it was learned from.
+    """
+
+    joints: NDArray[np.str_]
+    usual: Array
+    components: Array
+    local_points: Array
+    whole_points: Array
+    kernels: Array
+    means: Array
+    covariances: Array
+    calm: Array
+    source: NDArray[np.str_]
+
+    def save(self, path: Path | str) -> None:
+        """Write the prior to a file; `load_residual_prior` reads it."""
+        arrays = {one.name: np.asarray(getattr(self, one.name)) for one in fields(self)}
+        write_archive(path, KIND, VERSION, arrays)
+
+    def kernel(self, place: int) -> Kernel:
+        """Return the hyper-parameters of one of the joints."""
+        return Kernel.from_logs(np.log(self.kernels[place]))
+
+    def predict(self, calm: CalmPostures) -> tuple[Array, Array]:
+        """Foretell true minus seen place of every joint.
+
+        Returns
+        -------
+        offsets : shape (n_frames, 20, 3), metres
+            In the frame of the heading; 0 for joints that were not learned.
+        variances : shape (n_frames, 20), square metres for each axis
+            Of what the shared functions do not know; infinite for joints not learned.
+        """
+        offsets = np.zeros_like(calm.features)
+        variances = np.full(calm.features.shape[:2], np.inf)
+        features = filled(calm.features, self.usual)
+        whole = whole_posture(features, self.usual, self.components)
+        for place, name in enumerate(self.joints):
+            joint, kernel = POSTURE_JOINTS.index(str(name)), self.kernel(place)
+            local = neighbourhood(features, joint)
+            bases = (
+                basis(local, self.local_points[place], kernel.lengths[0]),
+                basis(whole, self.whole_points, kernel.lengths[1]),
+            )
+            columns = shared_columns(bases, kernel)
+            offsets[:, joint] = columns @ self.means[place]
+            unknown = np.einsum("ni,ni->n", columns @ self.covariances[place], columns)
+            for one, shared in zip(bases, kernel.shared, strict=True):
+                unknown += shared * np.maximum(1.0 - (one**2).sum(axis=1), 0.0)
+            variances[:, joint] = unknown
+        return offsets, variances
+
+    def lasting_variances(self) -> Array:
+        """Return variances that no posture tells of: actor, take, noise; shape (20,)."""
+        result = np.full(N_JOINTS, np.inf)
+        for place, name in enumerate(self.joints):
+            kernel = self.kernel(place)
+            result[POSTURE_JOINTS.index(str(name))] = (
+                sum(kernel.personal) + kernel.take + kernel.actor + kernel.noise
+            )
+        return result
+
+
+def whole_posture(features: Array, usual: Array, components: Array) -> Array:
+    """Return principal components of postures, shape (n_frames, n_components)."""
+    flat = (features - usual)[:, 1:].reshape(len(features), -1)
+    return np.asarray(flat @ components)
+
+
+def load_residual_prior(path: Path | str) -> ResidualPrior:
+    """Read a prior that `save` wrote.
+
+    Raises
+    ------
+    InvalidFileError
+        The file is missing, damaged, or holds something else.
+    """
+    arrays = read_archive(path, KIND, VERSION)
+    names = [one.name for one in fields(ResidualPrior)]
+    missing = [name for name in names if name not in arrays]
+    fault = f"{', '.join(map(repr, missing))} missing" if missing else _fault(arrays)
+    if fault:
+        raise InvalidFileError(f"{path} holds a damaged prior ({fault}). Learn it again.")
+    joints, source = arrays.pop("joints"), arrays.pop("source")
+    numbers = {name: arrays[name].astype(np.float64) for name in names if name in arrays}
+    return ResidualPrior(joints=joints, source=source, **numbers)
+
+
+def _fault(arrays: dict[str, NDArray[Any]]) -> str:
+    """Return what keeps these arrays from being used, or nothing."""
+    n = arrays["joints"].size
+    n_components = arrays["components"].shape[-1] if arrays["components"].ndim == 2 else 0
+    n_local = arrays["local_points"].shape[1] if arrays["local_points"].ndim == 3 else 0
+    n_whole = len(arrays["whole_points"]) if arrays["whole_points"].ndim == 2 else 0
+    n_weights = n_local + n_whole + 1
+    expected = {
+        "joints": (n,),
+        "usual": (N_JOINTS, 3),
+        "components": (3 * (N_JOINTS - 1), n_components),
+        "local_points": (n, n_local, LARGEST),
+        "whole_points": (n_whole, n_components),
+        "kernels": (n, 9),
+        "means": (n, n_weights, 3),
+        "covariances": (n, n_weights, n_weights),
+        "calm": (),
+        "source": (),
+    }
+    if any(arrays[name].shape != shape for name, shape in expected.items()) or not (
+        n and n_local and n_whole
+    ):
+        return "their shapes do not fit"
+    if not set(map(str, arrays["joints"])) <= set(POSTURE_JOINTS):
+        return "they speak of unknown joints"
+    for name in expected.keys() - {"joints", "source"}:
+        if arrays[name].dtype.kind not in "fiu" or not np.isfinite(arrays[name]).all():
+            return "not all numbers are finite"
+    if not (arrays["kernels"] > 0.0).all() or not 0.0 <= float(arrays["calm"]) < 10.0:
+        return "their hyper-parameters are not positive"
+    return ""
