@@ -22,6 +22,7 @@ from .scene.armature_write import check_writable, count_modified, put_to_use, wr
 from .scene.compat import Source
 from .scene.contacts import animators_contacts, write_contacts
 from .scene.curves import GENERATED, MEASURED
+from .scene.origin import origin_of
 from .scene.reliability_curves import write_reliability
 from .scene.sensor_words import read_states
 from .scene.take import ArmatureTake
@@ -130,7 +131,11 @@ def _problem(
         examples = read_examples(scene, armature, settings.choices.examples)
     state = read_states(found.recorded, body.skeleton.names, found.take.frames)
     return RebuildProblem(
-        body=body, tracking_state=state, settings=settings.rebuilding, examples=examples
+        body=body,
+        tracking_state=state,
+        source_file=str(origin_of(found.recorded[0]).get("file", "")),
+        settings=settings.rebuilding,
+        examples=examples,
     )
 
 
@@ -164,7 +169,8 @@ def _said(name: str, rebuilt: Rebuilt, n_modified: int) -> str:
             f"Feet slid {100 * rebuilt.planted.slide_before:.1f} cm, now"
             f" {100 * rebuilt.planted.slide_after:.1f} cm."
         )
-    said += [rebuilt.solution.method.rstrip(".") + "."] if rebuilt.solution.method else []
+    if method := rebuilt.solution.method.rstrip("."):
+        said.append(f"{method[0].upper()}{method[1:]}.")
     said += rebuilt.remarks
     if n_modified:
         said.append(f"The modifiers of {n_modified} curves are part of the new keys now.")

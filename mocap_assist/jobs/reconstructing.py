@@ -5,6 +5,7 @@ panel has only `finish` to repeat.
 """
 
 from dataclasses import dataclass
+from pathlib import Path
 
 import numpy as np
 from numpy.typing import NDArray
@@ -15,9 +16,10 @@ from ...solvers.denoising import (
     Quality,
     measure_quality,
 )
-from ...solvers.motion import Motion
+from ...solvers.errors import MocapAssistError
+from ...solvers.motion import JointRecording, Motion
 from ...solvers.progress import Progress, unwatched, within
-from ...solvers.recordings import read_motion_or_tracks
+from ...solvers.recordings import read_motion_or_tracks, read_recording
 from ...solvers.workflows import (
     RebuiltMotion,
     ReconstructSettings,
@@ -37,6 +39,8 @@ class RebuildProblem:
     body: Motion
     tracking_state: NDArray[np.int8] | None
     """What the sensor said of each joint, shape (n_frames, n_joints)."""
+    source_file: str
+    """That the take was imported from; empty where it was not."""
     settings: ReconstructSettings
     examples: Examples | None
     """Clips of natural postures; None for those that are shipped."""
@@ -76,10 +80,22 @@ def solve(problem: RebuildProblem, *, progress: Progress = unwatched) -> Rebuilt
     return reconstruct_motion(
         problem.body,
         postures,
+        source=_source(problem.source_file),
         tracking_state=problem.tracking_state,
         settings=problem.settings,
         progress=within(progress, 0.0 if postures is None else 0.2, 1.0),
     )
+
+
+def _source(path: str) -> JointRecording | None:
+    """Return the recording of a take, if it is still there."""
+    if not path or not Path(path).is_file():
+        return None
+    try:
+        recording = read_recording(path)
+    except MocapAssistError:
+        return None
+    return recording if isinstance(recording, JointRecording) else None
 
 
 def rebuild(

@@ -38,7 +38,8 @@ def draw_examples(
         row = layout.row(align=True)
         action = name in bpy.data.actions
         shown = name if action else Path(name).name
-        row.label(text=shown, icon="ACTION" if action else "FILE", translate=False)
+        icon = "ACTION" if action else "FILE" if Path(name).suffix else "FILE_FOLDER"
+        row.label(text=shown, icon=icon, translate=False)
         button = row.operator(REMOVE, text="", icon="X", emboss=False)
         button.index, button.group = index, group
     layout.menu(MENUS[group], icon="ADD")

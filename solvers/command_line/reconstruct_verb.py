@@ -142,8 +142,8 @@ def _outcome(given: Any, rebuilt: Rebuilt) -> Outcome:
     before_of = given.tracks if isinstance(given, JointRecording) else given
     before, after = measure_quality(before_of), measure_quality(rebuilt.motion)
     lines = [f"{100 * rebuilt.share:.1f} % of the joints were lost or wrong, and are rebuilt."]
-    if rebuilt.method:
-        lines.append(rebuilt.method.rstrip(".") + ".")
+    if method := rebuilt.method.rstrip("."):
+        lines.append(f"{method[0].upper()}{method[1:]}.")
     if rebuilt.slide is not None:
         first, last = rebuilt.slide
         lines.append(f"Feet slid {100 * first:.1f} cm in all, and {100 * last:.1f} cm now.")

@@ -104,9 +104,7 @@ def correct_postures(
     .. [ZH14] Zhou (2014). Modeling of single character motions with temporal sparse
        representation and Gaussian processes. PhD thesis, City University of Hong Kong, 5.2.
     """
-    trust = reliability or measure_reliability(
-        recording, progress=within(progress, 0.0, 0.3)
-    )
+    trust = reliability or measure_reliability(recording, progress=within(progress, 0.0, 0.3))
     weights = posture_reliability(recording, trust.combined)
     calm = calm_postures(recording, float(prior.calm), weights)
     progress(0.4, "Correcting")

@@ -26,6 +26,7 @@ from ..reconstruction.posture_joints import (
 from ..reconstruction.posture_library import PostureLibrary
 from ..reconstruction.turn_to_postures import turn_to_postures
 from .known_body import KINECT_V1, check_size, check_tracked, gap_remarks
+from .measured_joints import measured_joints
 from .rebuilt_joints import rebuilt_joints
 from .rough_reconstruct import ReconstructSettings, reconstruct
 
@@ -70,6 +71,7 @@ def reconstruct_motion(
     postures: PostureLibrary | None = None,
     prior: None = None,
     *,
+    source: JointRecording | None = None,
     tracking_state: NDArray[np.int8] | None = None,
     humanoid_map: HumanoidMap | None = None,
     settings: ReconstructSettings = REBUILDING,
@@ -87,6 +89,9 @@ def reconstruct_motion(
         NaN where it was not observed.
     postures : PostureLibrary, optional
     prior : ResidualPrior, optional
+    source : JointRecording, optional
+        What the motion was made of, if it is at hand; used where it still fits
+        (`measured_joints`).
     tracking_state : shape (n_frames, n_joints), optional
         What the tracker said of each joint: 2 tracked, 1 inferred, 0 not tracked.
     humanoid_map : HumanoidMap, optional
@@ -102,11 +107,11 @@ def reconstruct_motion(
         Raised by `progress`.
     """
     tracked = _is_tracked(motion.skeleton.names)
-    recording, columns = (
-        _all_joints(motion, tracking_state)
-        if tracked
-        else _postures_of(motion, humanoid_map or find_humanoid_map(motion.skeleton))
-    )
+    if tracked:
+        recording, columns = _all_joints(motion, source, tracking_state)
+    else:
+        found = humanoid_map or find_humanoid_map(motion.skeleton)
+        recording, columns = _postures_of(motion, found)
     check_tracked(recording)
     check_size(recording)
     rebuilt = reconstruct(
@@ -136,12 +141,15 @@ def _is_tracked(names: tuple[str, ...]) -> bool:
 
 
 def _all_joints(
-    motion: Motion, state: NDArray[np.int8] | None
+    motion: Motion, source: JointRecording | None, state: NDArray[np.int8] | None
 ) -> tuple[JointRecording, dict[int, int]]:
     """Return where all joints are, and the column of each joint."""
+    columns = {joint: joint for joint in range(motion.n_joints)}
+    measured = None if source is None else measured_joints(motion, source)
+    if measured is not None:
+        return measured, columns
     positions = forward_kinematics(motion).positions
     tracks = Tracks(motion.skeleton.names, positions, motion.frame_rate)
-    columns = {joint: joint for joint in range(motion.n_joints)}
     return JointRecording(tracks, state, Sensor.OTHER), columns
 
 
