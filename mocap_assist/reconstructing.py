@@ -1,6 +1,7 @@
 """What the button Reconstruct reads from the scene, and what it writes back."""
 
 from functools import partial
+from pathlib import Path
 from typing import Any, NamedTuple
 
 import bpy
@@ -133,10 +134,16 @@ def _problem(
     return RebuildProblem(
         body=body,
         tracking_state=state,
-        source_file=str(origin_of(found.recorded[0]).get("file", "")),
+        source=_file_of(found.recorded[0]),
         settings=settings.rebuilding,
         examples=examples,
     )
+
+
+def _file_of(action: bpy.types.Action) -> tuple[str, int] | None:
+    """Return the file that an action was imported from, and its date."""
+    path = Path(bpy.path.abspath(str(origin_of(action).get("file", ""))))
+    return (str(path), path.stat().st_mtime_ns) if path.is_file() else None
 
 
 def _key_types(names: tuple[str, ...], rebuilt: Rebuilt) -> dict[str, NDArray[np.uint8]]:

@@ -5,7 +5,6 @@ panel has only `finish` to repeat.
 """
 
 from dataclasses import dataclass
-from pathlib import Path
 
 import numpy as np
 from numpy.typing import NDArray
@@ -39,8 +38,8 @@ class RebuildProblem:
     body: Motion
     tracking_state: NDArray[np.int8] | None
     """What the sensor said of each joint, shape (n_frames, n_joints)."""
-    source_file: str
-    """That the take was imported from; empty where it was not."""
+    source: tuple[str, int] | None
+    """The file that the take was imported from, if it is there, and its date."""
     settings: ReconstructSettings
     examples: Examples | None
     """Clips of natural postures; None for those that are shipped."""
@@ -80,19 +79,19 @@ def solve(problem: RebuildProblem, *, progress: Progress = unwatched) -> Rebuilt
     return reconstruct_motion(
         problem.body,
         postures,
-        source=_source(problem.source_file),
+        source=_source(problem),
         tracking_state=problem.tracking_state,
         settings=problem.settings,
         progress=within(progress, 0.0 if postures is None else 0.2, 1.0),
     )
 
 
-def _source(path: str) -> JointRecording | None:
-    """Return the recording of a take, if it is still there."""
-    if not path or not Path(path).is_file():
+def _source(problem: RebuildProblem) -> JointRecording | None:
+    """Return the recording of a take, if its file is still there and readable."""
+    if problem.source is None:
         return None
     try:
-        recording = read_recording(path)
+        recording = read_recording(problem.source[0])
     except MocapAssistError:
         return None
     return recording if isinstance(recording, JointRecording) else None
