@@ -95,6 +95,25 @@ def test_feet_that_are_planted_do_not_slide(walk, reconstruct):
     assert entry["after"]["foot_slide_cm_per_s"] < 0.3 * entry["before"]["foot_slide_cm_per_s"]
 
 
+def test_frames_outside_of_the_range_stay_as_they_were(walk, reconstruct, keys_of, blank):
+    scene = blank.context.scene
+    scene.use_preview_range = True
+    scene.frame_preview_start, scene.frame_preview_end = 25, 65
+    before = keys_of(walk.animation_data.action)
+
+    result = reconstruct(frame_range="PREVIEW")
+
+    after = keys_of(result)
+    changed = 0
+    for path, keys in before.items():
+        if "mocap" in path[0]:
+            continue
+        outside = [key for key in keys if not 25 <= key[0] <= 65]
+        assert [key for key in after[path] if not 25 <= key[0] <= 65] == outside
+        changed += keys != after[path]
+    assert changed > 10
+
+
 def test_reconstructing_again_starts_from_what_was_recorded(walk, reconstruct, keys_of):
     first = reconstruct()
 
