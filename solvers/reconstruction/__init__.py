@@ -9,6 +9,7 @@
 
 from .physics_engine import NoPhysicsError
 from .reliability import Reliability, measure_reliability
+from .reliability_markers import measure_marker_reliability
 from .reliability_settings import ReliabilityMethod, ReliabilitySettings
 from .simulate import Ground, Simulated, SimulateSettings, simulate, with_strength
 
@@ -20,6 +21,7 @@ __all__ = [
     "ReliabilitySettings",
     "SimulateSettings",
     "Simulated",
+    "measure_marker_reliability",
     "measure_reliability",
     "simulate",
     "with_strength",

@@ -11,10 +11,11 @@ from scipy.special import gammainc
 from ..motion import JointRecording
 from ..progress import Progress, unwatched, within
 from ..settings import Settings, setting
-from .finish import finished, posture_reliability
-from .posture_joints import posture_positions
+from .follow_joints import follow_joints
+from .other_joints import all_joints, anchors
+from .posture_joints import N_JOINTS, POSTURE_JOINTS, joints_of_names, posture_positions
 from .reliability import Reliability, measure_reliability
-from .residual_inputs import CalmPostures, bridged, calm_postures
+from .residual_inputs import bridged, calm_postures
 from .residual_prior import ResidualPrior
 from .result import Reconstruction
 
@@ -75,8 +76,8 @@ def correct_postures(
 
     Published: minimise E = w_S E_S + w_T E_T + w_R E_R (eq. 5.1, 5.4, 5.5, 5.6), frame by frame
     in closed form, since all three are quadratic and diagonal. The default takes the foretold
-    offset in full and minimises over the whole take the distance to it, weighted by reliability,
-    and the accelerations.
+    offset in full and minimises over the whole take the distance to it, weighted by
+    reliability, and the accelerations.
 
     Parameters
     ----------
@@ -119,18 +120,24 @@ def correct_postures(
         )
     progress(0.9, "Correcting")
     confidence = chance_within(variances + prior.lasting_variances(), SURE_WITHIN)
-    result = finished(
-        recording, corrected, trust, confidence, f"residual prior of {prior.source}"
+    tracks = recording.tracks
+    joints = all_joints(
+        tracks.names, tracks.positions, trust.combined, posture_positions(recording), corrected
     )
+    joints[:, ~tracks.visible.any(axis=0)] = np.nan
+    confidence = confidence[:, anchors(tracks.names)]
+    rebuilt = tracks.with_positions(joints)
+    motion = follow_joints(rebuilt, recording.parents, confidence)
     progress(1.0, "Corrected")
-    return result
+    method = f"{settings.method.value} with a residual prior of {prior.source}"
+    return Reconstruction(rebuilt, motion, trust, confidence, method)
 
 
 def smoothed(positions: Array, weights: Array, frames: float) -> Array:
     """Return the paths nearest to the given ones whose accelerations are small.
 
     Minimises sum_t w_t |m_t - z_t|^2 + c sum_t |m_t-1 - 2 m_t + m_t+1|^2 (Whittaker 1923), where
-    c is chosen so that waves of `frames` * 2 pi frames lose half their size where w is 1.
+    c is chosen so that waves of `frames` * 2 pi frames lose half their size where w = 1.
 
     Parameters
     ----------
@@ -200,4 +207,9 @@ def chance_within(variances: Array, distance: float) -> Array:
     return np.asarray(gammainc(1.5, scaled))
 
 
-__all__ = ["CalmPostures", "CorrectionMethod", "CorrectionSettings", "correct_postures"]
+def posture_reliability(recording: JointRecording, combined: Array) -> Array:
+    """Return the reliability of the joints of postures, (n_frames, 20); 0 where not seen."""
+    result = np.zeros((recording.n_frames, N_JOINTS))
+    for role, place in joints_of_names(recording.names).items():
+        result[:, POSTURE_JOINTS.index(role)] = combined[:, place]
+    return result

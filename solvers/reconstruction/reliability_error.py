@@ -9,7 +9,7 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.ndimage import gaussian_filter1d, uniform_filter1d
+from scipy.ndimage import uniform_filter1d
 from scipy.special import ndtr
 
 from .reliability_settings import SENSOR_RATE
@@ -17,9 +17,10 @@ from .reliability_terms import frames_in, lengths_of, weighted_sum
 
 Array = NDArray[np.float64]
 
-SMOOTH = 0.08
-"""Seconds of the Gaussian that makes the path that a joint should have had."""
-AGITATED = 0.8
+SMOOTH = 1.0 / 3.0
+"""Seconds of a piece of path that is held to be a polynomial."""
+DEGREE = 4
+AGITATED = 0.4
 """Seconds over which deviations from that path count for a joint."""
 STRETCHED = 0.2
 """Seconds over which errors of lengths count."""
@@ -49,8 +50,8 @@ class ErrorModel:
         return np.asarray(ndtr((np.log(tolerance + CENTIMETRE) - expected) / self.spread))
 
 
-CENTRED = ErrorModel(length_share=0.2, floor=0.002, level=-0.902, slope=0.559, spread=0.408)
-CAUSAL = ErrorModel(length_share=0.5, floor=0.002, level=-1.807, slope=0.405, spread=0.460)
+CENTRED = ErrorModel(length_share=0.15, floor=0.0005, level=-1.437, slope=0.394, spread=0.467)
+CAUSAL = ErrorModel(length_share=0.5, floor=0.001, level=-2.056, slope=0.344, spread=0.488)
 """From all subjects of UI-PRMD: `python -m tests.benchmarks.bench_reliability --fit`."""
 
 
@@ -96,15 +97,16 @@ def signs_of_error(
 def _off_the_smooth_path(positions: Array, frame_rate: float) -> Array:
     """Return distances from the smoothed path, (n_frames, n_joints); NaN where not seen.
 
-    Beyond its ends a path goes on as it came, turned about: a steady walk has no distance.
+    The path is smoothed with polynomials of the fourth degree, which follow a body however fast
+    it goes (Savitzky and Golay 1964).
     """
-    filled = _bridged(positions)
-    n_more = min(len(filled) - 1, int(4.0 * SMOOTH * frame_rate) + 1)
-    before = 2.0 * filled[:1] - filled[n_more:0:-1]
-    after = 2.0 * filled[-1:] - filled[-2 : -n_more - 2 : -1]
-    longer = np.concatenate([before, filled, after[:n_more]])
-    smooth = gaussian_filter1d(longer, SMOOTH * frame_rate, axis=0, truncate=3.0)
-    return lengths_of(positions - smooth[n_more : n_more + len(filled)])
+    from scipy.signal import savgol_filter  # takes a second to import: only when needed
+
+    longest = len(positions) - 1 + len(positions) % 2
+    n_frames = min(2 * round(0.5 * SMOOTH * frame_rate) + 1, longest)
+    degree = min(DEGREE, n_frames - 1)
+    smooth = savgol_filter(_bridged(positions), n_frames, degree, axis=0)
+    return lengths_of(positions - smooth)
 
 
 def _second_differences(positions: Array, frame_rate: float) -> Array:
@@ -119,6 +121,8 @@ def _second_differences(positions: Array, frame_rate: float) -> Array:
 
 def _bridged(positions: Array) -> Array:
     """Fill gaps along straight lines, and at the ends with the nearest place."""
+    if np.isfinite(positions.sum()):
+        return positions
     seen = np.isfinite(positions).all(axis=-1)
     filled = np.where(seen[..., None], positions, 0.0)
     frames = np.arange(len(positions))

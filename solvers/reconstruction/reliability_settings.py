@@ -3,6 +3,7 @@
 from dataclasses import dataclass
 from enum import Enum
 
+from ..errors import InvalidSettingError
 from ..settings import Settings, setting
 
 SENSOR_RATE = 30.0
@@ -57,6 +58,14 @@ class ReliabilitySettings(Settings):
         0.2, "Time over which reliability is averaged; longer recovers later",
         unit="s", minimum=0.01, maximum=2.0, advanced=True,
     )  # fmt: skip
+
+    def __post_init__(self) -> None:
+        super().__post_init__()
+        if self.vibration_roof <= self.vibration_floor:
+            raise InvalidSettingError(
+                f"vibration_roof is {self.vibration_roof:g} degrees; it must lie above"
+                f" vibration_floor, {self.vibration_floor:g}."
+            )
 
 
 USUAL = ReliabilitySettings()

@@ -35,7 +35,7 @@ def behaviour_term(positions: Array, frame_rate: float, settings: ReliabilitySet
         n_averaged = 2 * (n_averaged // 2) + 1
     turns = _averaged(turns, np.ones(n_averaged), settings.causal)
     floor, roof = settings.vibration_floor, settings.vibration_roof
-    return 1.0 - np.clip((turns - floor) / max(roof - floor, 1e-9), 0.0, 1.0)  # eq. 4
+    return 1.0 - np.clip((turns - floor) / (roof - floor), 0.0, 1.0)  # eq. 4
 
 
 def turns_of_path(positions: Array, step: int, shortest: float) -> Array:
@@ -46,9 +46,9 @@ def turns_of_path(positions: Array, step: int, shortest: float) -> Array:
         lengths = lengths_of(moved)
         before, after = lengths[:-step], lengths[step:]
         far = (before > shortest) & (after > shortest)  # False for NaN
-        along = np.einsum("fjc,fjc->fj", moved[:-step], moved[step:])
-        cosine = np.divide(along, before * after, out=np.ones_like(along), where=far)
-        turns[step:-step] = np.degrees(np.arccos(np.clip(cosine, -1.0, 1.0)))  # eq. 3
+        along = np.einsum("nc,nc->n", moved[:-step][far], moved[step:][far])
+        cosine = np.clip(along / (before[far] * after[far]), -1.0, 1.0)
+        turns[step:-step][far] = np.degrees(np.arccos(cosine))  # eq. 3
     return turns
 
 

@@ -9,8 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.stats import rankdata
 
-from solvers.motion import JointRecording, Tracks
-from solvers.motion.depth_sensors import UI_PRMD
+from solvers.motion import JointRecording
 from solvers.reconstruction import ReliabilityMethod, ReliabilitySettings, measure_reliability
 from solvers.reconstruction.reliability_error import (
     CENTIMETRE,
@@ -19,19 +18,18 @@ from solvers.reconstruction.reliability_error import (
     signs_of_error,
 )
 from solvers.reconstruction.reliability_reference import reference_lengths, segments
-from solvers.recordings import read_ui_prmd_pair
+
+from . import kinect_pairs
 
 Array = NDArray[np.float64]
 Flags = NDArray[np.bool_]
 
-MISPAIRED = "m03_s01_"
-"""Ten takes whose markers are of a repetition with the other leg; left out."""
 LIMITS = (0.05, 0.10)
 """Metres from the truth that are wrong."""
 FEWEST = 20
 """Wrong and right ones that there must be for a curve."""
-SHARES = (0.05, 0.1, 0.2, 0.3, 0.5)
-FLOORS = (0.0003, 0.001, 0.002, 0.004)
+SHARES = (0.1, 0.15, 0.2, 0.3, 0.5)
+FLOORS = (0.0002, 0.0003, 0.0005, 0.001, 0.002)
 
 
 @dataclass(frozen=True, eq=False)
@@ -41,7 +39,7 @@ class Pair:
     name: str
     recording: JointRecording
     error: Array
-    """Metres after a constant offset per joint is taken out, (n_frames, n_joints)."""
+    """Metres beside the median offset of each joint, (n_frames, n_joints)."""
 
     @property
     def subject(self) -> str:
@@ -52,60 +50,12 @@ class Pair:
 def read_pairs(folder: Path) -> list[Pair]:
     """Read all takes that are paired rightly."""
     pairs = []
-    for path in sorted(folder.glob("*.npz")):
-        if not path.name.startswith(MISPAIRED):
-            recording, markers = read_ui_prmd_pair(path)
-            off = recording.tracks.positions - true_joints(markers)
-            seen = np.isfinite(off).any(axis=(0, 2))
-            off[:, seen] -= np.nanmean(off[:, seen], axis=0)
-            pairs.append(Pair(path.stem, recording, np.linalg.norm(off, axis=-1)))
+    for pair in kinect_pairs.read_pairs(folder):
+        off = pair.kinect.tracks.positions - pair.truth.positions
+        seen = np.isfinite(off).any(axis=(0, 2))
+        off[:, seen] -= np.nanmedian(off[:, seen], axis=0)
+        pairs.append(Pair(pair.name, pair.kinect, np.linalg.norm(off, axis=-1)))
     return pairs
-
-
-def true_joints(markers: Tracks) -> Array:
-    """Derive where the joints of UI-PRMD truly are from markers, (n_frames, 22, 3), metres.
-
-    Hips after Bell and others; other joints lie between or at markers.
-    """
-    at = {name: markers.positions[:, place] for place, name in enumerate(markers.names)}
-
-    def mid(*names: str) -> Array:
-        return np.mean([at[name] for name in names], axis=0)
-
-    neck, head = mid("C7", "CLAV"), mid("LFHD", "RFHD", "LBHD", "RBHD")
-    chest = 0.5 * mid("C7", "CLAV", "T10", "STRN") + 0.5 * neck
-    true = {
-        "Waist": mid("LASI", "RASI", "LPSI", "RPSI"), "Spine": mid("T10", "STRN"),
-        "Chest": chest, "Neck": neck, "Head": 0.5 * (neck + head), "HeadTip": head,
-    }  # fmt: skip
-    for side, sign in (("L", 1.0), ("R", -1.0)):
-        shoulder = at[f"{side}SHO"] - (0.0, 0.0, 0.04)
-        true |= {
-            f"{side}Collar": 0.6 * neck + 0.4 * shoulder, f"{side}UpArm": shoulder,
-            f"{side}ForeArm": at[f"{side}ELB"], f"{side}Hand": mid(f"{side}WRA", f"{side}WRB"),
-            f"{side}UpLeg": _hip(at, sign), f"{side}LowLeg": at[f"{side}KNE"],
-            f"{side}Foot": at[f"{side}ANK"], f"{side}Toes": at[f"{side}TOE"],
-        }  # fmt: skip
-    return np.stack([true[name] for name in UI_PRMD], axis=1)
-
-
-def _hip(at: dict[str, Array], sign: float) -> Array:
-    """Return the centre of a hip, from the four markers of the pelvis."""
-    front = 0.5 * (at["LASI"] + at["RASI"])
-    across = at["LASI"] - at["RASI"]
-    forward = front - 0.5 * (at["LPSI"] + at["RPSI"])
-    width, depth = (np.nanmedian(np.linalg.norm(way, axis=-1)) for way in (across, forward))
-    left = across / np.linalg.norm(across, axis=-1, keepdims=True)
-    forward = forward - (forward * left).sum(axis=-1, keepdims=True) * left
-    forward = forward / np.linalg.norm(forward, axis=-1, keepdims=True)
-    up = np.cross(forward, left)
-    up = up * np.sign(np.nanmean(up[:, 2]))
-    return np.asarray(
-        front
-        + left * sign * (0.33 * width + 0.0073)
-        - forward * (0.24 * depth + 0.0099)
-        - up * (0.30 * width + 0.0109)
-    )
 
 
 def area_under_curve(score: Array, wrong: Flags) -> float:

@@ -79,8 +79,8 @@ def test_a_still_body_is_believed(walk, settings):
 def test_a_clean_walk_is_believed(walk):
     combined = measure_reliability(recorded(walk)).combined
 
-    assert combined.mean() > 0.95
-    assert combined.min() > 0.7  # toes, which do start and stop at once
+    assert combined.mean() > 0.98
+    assert combined.min() > 0.85  # knees and feet at footfall
 
 
 @every_way
@@ -154,7 +154,7 @@ def test_frame_rates_agree(frame_rate):
     quick = measure_reliability(recorded(fast, frame_rate)).combined[::step]
 
     assert 0.4 < slow.mean() < 0.98
-    assert np.abs(slow - quick).mean() < 0.03
+    assert np.abs(slow - quick).mean() < 0.06
 
 
 @every_way
@@ -244,6 +244,33 @@ def test_lengths_are_those_of_reference_postures_where_there_are_any():
     assert_allclose(reference_lengths(lengths, postures, trust), [0.4, 0.4])
     postures[14:20] = False  # four are too few
     assert_allclose(reference_lengths(lengths, postures, trust), [0.5, 0.4])
+
+
+def test_reference_postures_with_a_guessed_joint_tell_no_lengths():
+    frames = np.tile(body((0.0, 0.0, -1.0)), (30, 1, 1))
+    frames[:20, place("HandLeft"), 2] -= 0.1
+    state = np.full(frames.shape[:2], 2)
+    state[:20, place("Head")] = 1
+    recording = JointRecording(Tracks(NAMES, frames, 30.0), state, Sensor.KINECT_V1)
+
+    kinematics = measure_reliability(recording).kinematics
+
+    assert_allclose(kinematics[20:], 1.0)
+    assert_allclose(kinematics[:20, place("HandLeft")], 1.0 - 0.1 / 0.28)
+
+
+def test_doubt_lasts_as_long_at_any_frame_rate():
+    lasting = []
+    for frame_rate in (30.0, 120.0):
+        still = np.tile(walk_at(30.0)[:1], (round(4.0 * frame_rate), 1, 1))
+        burst = slice(round(2.0 * frame_rate), round(2.3 * frame_rate))
+        sign = (-1.0) ** (np.arange(still[burst].shape[0]) * 30.0 // frame_rate)
+        still[burst, place("HandLeft"), 1] += 0.05 * sign
+        found = measure_reliability(recorded(still, frame_rate)).combined
+        lasting.append((found[:, place("HandLeft")] < 0.9).sum() / frame_rate)
+
+    assert 0.5 < lasting[0] < 1.5
+    assert lasting[1] == pytest.approx(lasting[0], abs=0.2)
 
 
 def test_segments_of_roots_have_no_length():

@@ -3,9 +3,13 @@
 import numpy as np
 import pytest
 from numpy.testing import assert_allclose
+from scipy.stats import norm
 
+from solvers.errors import InvalidSettingError
 from solvers.motion import JointRecording, Sensor, Tracks
 from solvers.reconstruction import ReliabilityMethod, ReliabilitySettings, measure_reliability
+from solvers.reconstruction.reliability_error import CAUSAL as AS_IT_COMES
+from solvers.reconstruction.reliability_error import CENTRED
 from solvers.reconstruction.reliability_terms import (
     behaviour_term,
     gaussian_mean,
@@ -45,6 +49,20 @@ def test_what_moves_less_than_three_centimetres_does_not_vibrate(length, expecte
     path = path_that_turns(180.0, 180.0, 180.0, length=length)
 
     assert behaviour_term(path, 30.0, CAUSAL)[-1, 0] == pytest.approx(expected, abs=1e-6)
+
+
+def test_a_roof_below_the_floor_is_refused():
+    with pytest.raises(InvalidSettingError, match="it must lie above vibration_floor, 90"):
+        ReliabilitySettings(vibration_roof=80.0)
+
+
+def test_the_floor_is_a_speed_at_any_frame_rate():
+    corners = path_that_turns(*[180.0] * 9, length=0.0299)[:, 0, 0]
+    path = np.zeros((41, 1, 3))
+    path[:, 0, 0] = np.interp(np.arange(41) / 4.0, np.arange(11), corners)
+
+    assert_allclose(behaviour_term(path, 120.0, PUBLISHED), 1.0)
+    assert behaviour_term(3.0 * path, 120.0, PUBLISHED).min() < 0.5
 
 
 def test_vibration_is_asked_of_the_past_only_if_so_told():
@@ -133,6 +151,19 @@ def still(n_frames: int = 40, state: np.ndarray | None = None) -> JointRecording
     names = ("ShoulderLeft", "ElbowLeft", "WristLeft")
     places = np.tile([[0.0, 2.0, 1.4], [0.3, 2.0, 1.4], [0.55, 2.0, 1.4]], (n_frames, 1, 1))
     return JointRecording(Tracks(names, places, 30.0), state, Sensor.KINECT_V2)
+
+
+@pytest.mark.parametrize(("causal", "model"), [(False, CENTRED), (True, AS_IT_COMES)])
+def test_the_default_is_the_chance_of_a_normal_distribution(causal, model):
+    """Of a still body all signs are 0, and the line over them is at its floor."""
+    settings = ReliabilitySettings(causal=causal, tolerance=0.02)
+
+    found = measure_reliability(still(), settings=settings).combined
+
+    line = model.level + model.slope * np.log(model.floor)
+    chance = norm.cdf(np.log(0.03), loc=line, scale=model.spread)  # 2 cm and the 1 cm added
+    assert_allclose(found, chance, atol=1e-6)
+    assert CENTRED != AS_IT_COMES
 
 
 def test_tracking_states_count_as_told():
