@@ -206,8 +206,8 @@ def follow_joints(
     All else points at the place of its child, so that an error is not handed down. How far an
     upper arm or a thigh is twisted is told by the plane in which elbow or knee bends, where it
     bends; where it is straight, by the bends before and after, and by the trunk
-    (`hinge_turns`). A thumb tells the same of its hand, whose tip is steadied. Everywhere else a joint turns the short
-    way out of its parent's turn.
+    (`hinge_turns`). A thumb tells the same of its hand, whose tip is steadied. Everywhere else
+    a joint turns the short way out of its parent's turn.
 
     Parameters
     ----------
