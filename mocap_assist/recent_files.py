@@ -3,30 +3,35 @@
 from pathlib import Path
 
 from ..solvers.errors import InvalidFileError
-from ..solvers.motion import JointRecording, Motion, Tracks
+from ..solvers.motion import JointRecording, Motion
 from ..solvers.progress import Progress, unwatched
 from ..solvers.recordings import read_recording
 from ..solvers.recordings.acclaim import find_skeleton
+from .jobs.reading import Recording
 
 MOST = 20_000_000  # numbers that are kept
 
-Recording = Motion | Tracks | JointRecording
 State = tuple[tuple[str, int, int], ...]
 _read: dict[State, Recording] = {}
 
 
 def read_again(path: Path, progress: Progress = unwatched) -> Recording:
     """Return what a file holds, as `read_recording` does; what has not changed is read once."""
-    state = _state(path)
+    state = state_of(path)
     recording = _read.pop(state, None) or read_recording(path, progress=progress)
-    if state:
-        _read[state] = recording
-    while sum(map(_size, _read.values())) > MOST:
-        _read.pop(next(iter(_read)))
+    remember(path, state, recording)
     return recording
 
 
-def _state(path: Path) -> State:
+def remember(path: Path, state: State, recording: Recording) -> None:
+    """Keep what was read from a file in this state, unless it has changed since."""
+    if state and state == state_of(path):
+        _read[state] = recording
+    while sum(map(_size, _read.values())) > MOST:
+        _read.pop(next(iter(_read)))
+
+
+def state_of(path: Path) -> State:
     """When and how long the file, and the skeleton that it needs, were written last."""
     try:
         needed = [path, find_skeleton(path)] if path.suffix.lower() == ".amc" else [path]

@@ -1,6 +1,5 @@
 """Recordings as objects of the scene: armatures for joints, empties for markers."""
 
-from dataclasses import replace
 from typing import NamedTuple
 
 import bpy
@@ -8,16 +7,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..solvers.errors import InvalidMotionError
-from ..solvers.motion import (
-    JointRecording,
-    Motion,
-    Skeleton,
-    Tracks,
-    motion_from_points,
-    resample,
-)
+from ..solvers.motion import JointRecording, Motion, Tracks
 from ..solvers.progress import Progress, unwatched
 from .import_choices import ImportChoices, Target
+from .jobs.reading import Recording, Wanted, as_wanted
 from .scene import compat
 from .scene.armature_build import build_armature
 from .scene.empties_build import build_empties, write_tracks
@@ -54,23 +47,35 @@ class Made(NamedTuple):
     """In words."""
 
 
+def wanted_of(context: bpy.types.Context, choices: ImportChoices) -> Wanted:
+    """Return what choices mean for recordings before they come into the scene."""
+    resampled = choices.frame_rate is FrameRate.RESAMPLE
+    return Wanted(
+        choices.target is Target.ARMATURE,
+        choices.global_scale,
+        scene_rate(context.scene) if resampled else None,
+    )
+
+
 def make_objects(
     context: bpy.types.Context,
     name: str,
-    recording: Motion | Tracks | JointRecording,
+    recording: Recording,
     choices: ImportChoices,
     *,
+    moving: Motion | Tracks | None = None,
     progress: Progress = unwatched,
 ) -> Made:
-    """Add what moves as the recording does; the scene's settings stay as they are."""
+    """Add what moves as the recording does; the scene's settings stay as they are.
+
+    `moving` is what the recording becomes, `as_wanted`, if that is known already.
+    """
     scene = context.scene
     samples = timing(scene, choices.frame_rate, recording.frame_rate, choices.frame_start)
-    moving = scaled(_as_target(recording, choices.target), choices.global_scale)
-    when = samples
-    if choices.frame_rate is FrameRate.RESAMPLE:
-        moving = resample(moving, scene_rate(scene))
-        when = samples._replace(step=1.0)
-    frames = when.frames(moving.n_frames)
+    if moving is None:
+        moving = as_wanted(recording, wanted_of(context, choices))
+    resampled = choices.frame_rate is FrameRate.RESAMPLE
+    frames = (samples._replace(step=1.0) if resampled else samples).frames(moving.n_frames)
     words = Words(samples.frames(recording.n_frames), words_of(recording))
     if isinstance(moving, Motion):
         mode = choices.rotate_mode.name
@@ -84,7 +89,7 @@ def make_objects(
     return made._replace(what=what + _never_seen(recording))
 
 
-def _never_seen(recording: Motion | Tracks | JointRecording) -> str:
+def _never_seen(recording: Recording) -> str:
     """Name the joints or markers that were left out."""
     if isinstance(recording, Motion):
         return ""
@@ -94,33 +99,6 @@ def _never_seen(recording: Motion | Tracks | JointRecording) -> str:
         return ""
     more = f" and {len(lost) - NAMED} more" * (len(lost) > NAMED)
     return f", without {', '.join(lost[:NAMED])}{more}, never seen"
-
-
-def in_one_tree(recording: JointRecording) -> bool:
-    """Whether it is known which joint hangs on which, so that they can become an armature."""
-    return recording.parents.count(-1) == 1 < recording.n_joints
-
-
-def _as_target(recording: Motion | Tracks | JointRecording, target: Target) -> Motion | Tracks:
-    """Turn the joints of a camera into a motion, where an armature is wanted and they hang
-    together; into points otherwise.
-    """
-    if not isinstance(recording, JointRecording):
-        return recording
-    if target is Target.ARMATURE and in_one_tree(recording):
-        return motion_from_points(recording.tracks, recording.parents)
-    return recording.tracks
-
-
-def scaled(recording: Motion | Tracks, factor: float) -> Motion | Tracks:
-    """Return the recording with all lengths so many times as long."""
-    if factor == 1.0:
-        return recording
-    if isinstance(recording, Tracks):
-        return recording.with_positions(factor * recording.positions)
-    skeleton = recording.skeleton
-    larger = Skeleton(skeleton.names, skeleton.parents, factor * skeleton.offsets)
-    return replace(recording, skeleton=larger, root_positions=factor * recording.root_positions)
 
 
 def _seen(tracks: Tracks) -> Tracks:

@@ -26,6 +26,10 @@ class Watch:
         _on.append(self)
         self.show(context, 0.0, "Starting")
 
+    def go_on(self, solve: Callable[..., Any]) -> None:
+        """Let another job follow the one that has ended."""
+        self.job = Job(solve)
+
     @property
     def is_on(self) -> bool:
         """Whether it is still shown; not after another file was loaded."""
@@ -36,9 +40,7 @@ class Watch:
         state = context.window_manager.mocap_assist_job
         state.running, state.fraction, state.message = True, fraction, message
         context.workspace.status_text_set(f"{message} {fraction:.0%}   Esc: cancel")
-        for window in context.window_manager.windows:
-            for area in window.screen.areas:
-                area.tag_redraw()
+        _redraw(context)
 
     def end(self, context: bpy.types.Context) -> None:
         """Show nothing more."""
@@ -46,12 +48,19 @@ class Watch:
         context.window_manager.event_timer_remove(self._timer)
         context.window_manager.mocap_assist_job.running = False
         context.workspace.status_text_set(None)
+        _redraw(context)
 
     def abandon(self, context: bpy.types.Context) -> None:
         """End the job too, whatever it has found."""
         self.job.cancel()
         self.job.tidy_up()
         self.end(context)
+
+
+def _redraw(context: bpy.types.Context) -> None:
+    for window in context.window_manager.windows:
+        for area in window.screen.areas:
+            area.tag_redraw()
 
 
 def why_busy() -> str:

@@ -3,6 +3,7 @@
 import bpy
 
 from .denoise import MOCAP_OT_denoise
+from .import_job import MOCAP_OT_import_job
 from .import_recording import MOCAP_OT_import_recording
 from .jump_to_spot import MOCAP_OT_jump_to_spot
 from .learn_patterns import MOCAP_OT_learn_patterns
@@ -17,6 +18,7 @@ from .solve_skeleton import MOCAP_OT_solve_skeleton
 
 OPERATORS = (
     MOCAP_OT_import_recording,
+    MOCAP_OT_import_job,
     MOCAP_OT_denoise,
     MOCAP_OT_reconstruct,
     MOCAP_OT_measure_quality,

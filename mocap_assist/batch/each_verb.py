@@ -195,7 +195,9 @@ def _command(task: Task, figures: Path) -> list[str]:
 
 
 def _figures(path: Path) -> dict[str, Any]:
-    """Return the figures of the first armature, and how many there are."""
+    """Return the figures of the first armature, and how many there are; or of a recording."""
     lines = [json.loads(line) for line in path.read_text(encoding="utf-8").splitlines()]
     first: dict[str, Any] = lines[0] if lines else {}
+    if "objects" in first:  # What `import` says of the one recording that each is.
+        return {"object": first["objects"][0], **first["figures"][0]}
     return {**first, "armatures": len(lines)}

@@ -52,6 +52,7 @@ def perform_import(arguments: argparse.Namespace, screen: Screen) -> None:
         "objects": [made.name for made in imported.made],
         "said": list(imported.said),
         "failed": list(imported.failed),
+        "figures": list(imported.figures),
     })
     sys.stdout.write("\n".join([line] if arguments.json == STDOUT else imported.said) + "\n")
     sys.stdout.flush()

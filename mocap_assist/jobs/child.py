@@ -28,7 +28,8 @@ def main(folder: Path, extension: str) -> None:
         error.add_note(traceback.format_exc())
         outcome = error
     part = folder / "part"
-    part.write_bytes(pickle.dumps(outcome))
+    with part.open("wb") as file:  # large arrays go straight into it, without a copy
+        pickle.dump(outcome, file, protocol=pickle.HIGHEST_PROTOCOL)
     part.replace(folder / protocol.RESULT)
 
 

@@ -111,7 +111,8 @@ class Job(Generic[Result]):
         said, answer = last_words(self._path), self._path / RESULT
         outcome: Any = None
         if answer.exists() and not self._cancelled:
-            outcome = pickle.loads(answer.read_bytes())
+            with answer.open("rb") as file:
+                outcome = pickle.load(file)
         self.tidy_up()
         if self._cancelled:
             raise SolveCancelled("Cancelled.")

@@ -1,16 +1,14 @@
 """What was done to an action, kept in the action itself, and the way back to the raw one."""
 
 import json
-import tomllib
 from dataclasses import asdict
 from enum import Enum
-from functools import cache
-from pathlib import Path
 from typing import Any
 
 import bpy
 
 from ...solvers.settings import Settings
+from ...solvers.version import version
 from . import compat
 from .compat import Source
 
@@ -99,10 +97,3 @@ def plain(*settings: Settings) -> dict[str, Any]:
         name: value.value if isinstance(value, Enum) else value
         for name, value in values.items()
     }
-
-
-@cache
-def version() -> str:
-    """Return the extension's version, which stands in its manifest alone."""
-    manifest = Path(__file__).parents[2] / "blender_manifest.toml"
-    return str(tomllib.loads(manifest.read_text(encoding="utf-8"))["version"])

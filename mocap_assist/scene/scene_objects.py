@@ -5,6 +5,10 @@ from contextlib import contextmanager
 
 import bpy
 
+from .scene_state import SceneState
+
+Numbers = dict[str, set[int]]
+"""Session numbers of data, by their kind."""
 KINDS = ("objects", "armatures", "actions", "collections")
 
 
@@ -42,15 +46,32 @@ def choose(
     context.view_layer.objects.active = active
 
 
+def present() -> Numbers:
+    """Return the numbers of all data of the kinds that are made here."""
+    return {kind: {each.session_uid for each in getattr(bpy.data, kind)} for kind in KINDS}
+
+
+def remove(numbers: Numbers) -> None:
+    """Remove data by their numbers, as far as they are there."""
+    for kind, unwanted in numbers.items():
+        data = getattr(bpy.data, kind)
+        bpy.data.batch_remove([each for each in data if each.session_uid in unwanted])
+
+
 @contextmanager
-def all_or_nothing(context: bpy.types.Context) -> Iterator[None]:
-    """Remove what was made inside if it ends with an error."""
-    before = {kind: {each.session_uid for each in getattr(bpy.data, kind)} for kind in KINDS}
+def all_or_nothing(context: bpy.types.Context) -> Iterator[Numbers]:
+    """Leave the scene as it was if it ends with an error; else fill what it yields."""
+    state, before = SceneState.of(context), present()
+    made: Numbers = {}
     try:
-        yield
+        yield made
     except BaseException:
         in_object_mode(context)
-        for kind in KINDS:
-            data = getattr(bpy.data, kind)
-            bpy.data.batch_remove([x for x in data if x.session_uid not in before[kind]])
+        remove(_new(before))
+        state.restore(context)
         raise
+    made.update(_new(before))
+
+
+def _new(before: Numbers) -> Numbers:
+    return {kind: numbers - before[kind] for kind, numbers in present().items()}

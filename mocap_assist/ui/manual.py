@@ -7,7 +7,7 @@ import bpy
 MANUAL = Path(__file__).with_name("manual.html")
 """The one place that says where the manual is: no network is needed to read it."""
 CHAPTERS = {
-    "bpy.ops.mocap_assist.import_recording*": "import",
+    "bpy.ops.mocap_assist.import_*": "import",
     "bpy.ops.mocap_assist.denoise*": "clean",
     "bpy.ops.mocap_assist.learn_patterns*": "clean",
     "bpy.ops.mocap_assist.*_example*": "clean",

@@ -13,6 +13,7 @@ from typing import Any, NamedTuple
 from ..errors import MocapAssistError
 from ..files import written_whole
 from ..progress import Progress, unwatched
+from ..version import version
 from .report import draw_task, forget_picture
 from .screen import Screen
 from .verb import Outcome, Task, Verb
@@ -121,8 +122,8 @@ def _die_on_interrupt() -> None:
 class Made:
     """What is in an output folder already, from what it was made, and what came of it.
 
-    The file `mocap_assist.json` notes, for each output, the verb, its options, size and date of
-    the files it was made from, and the figures.
+    The file `mocap_assist.json` notes, for each output, the verb, its options, the version of
+    Mocap Assist, size and date of the files it was made from, and the figures.
     """
 
     def __init__(self, folder: Path) -> None:
@@ -168,6 +169,7 @@ def note_of(task: Task) -> dict[str, Any]:
         if name not in NOT_OF_THE_RESULT
     }
     return {
+        "version": version(),
         "source": _stamp(task.source),
         "skeletons": _skeletons_beside(task.source),
         "options": options,

@@ -12,6 +12,8 @@ UNIT_TOLERANCE = 1e-3
 ROUNDING = 1e-14
 """Lengths this near to one are left alone, so that what nobody changes stays bit for bit."""
 
+FRAMES_AT_ONCE = 2000
+
 
 @dataclass(frozen=True, eq=False)
 class Motion:
@@ -56,11 +58,14 @@ class Motion:
                 f"The root goes as far as {farthest:.3g} m; give the scale of the recording, or"
                 " take those frames out."
             )
-        object.__setattr__(self, "rotations", self._normalized(rotations))
+        for start in range(0, len(rotations), FRAMES_AT_ONCE):
+            self._normalize(rotations[start : start + FRAMES_AT_ONCE])
+        object.__setattr__(self, "rotations", rotations)
         object.__setattr__(self, "root_positions", root_positions)
         object.__setattr__(self, "frame_rate", float(self.frame_rate))
 
-    def _normalized(self, rotations: NDArray[np.float64]) -> NDArray[np.float64]:
+    def _normalize(self, rotations: NDArray[np.float64]) -> None:
+        """Change rotations of some frames to unit length, if they are nearly."""
         norms = np.linalg.norm(rotations, axis=-1, keepdims=True)
         wrong = (np.abs(norms - 1.0) > UNIT_TOLERANCE).any(axis=(0, 2))
         if wrong.any():
@@ -69,7 +74,7 @@ class Motion:
                 f"Rotations must be unit quaternions; these are not: {', '.join(names)}."
             )
         unit = np.abs(norms - 1.0) <= ROUNDING
-        return np.where(unit, rotations, rotations / norms)
+        np.divide(rotations, norms, out=rotations, where=~unit)
 
     @property
     def n_frames(self) -> int:

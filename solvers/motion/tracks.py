@@ -40,9 +40,10 @@ class Tracks:
             raise InvalidMotionError(f"Point names must differ; twice: {', '.join(twice)}.")
         if not (np.isfinite(self.frame_rate) and self.frame_rate > 0):
             raise InvalidMotionError(f"A frame rate of {self.frame_rate} Hz is not positive.")
-        if np.isinf(positions).any():
+        farthest = max(np.nanmax(positions, initial=0.0), -np.nanmin(positions, initial=0.0))
+        if np.isinf(farthest):
             raise InvalidMotionError("There are infinite positions; NaN marks missing ones.")
-        if (farthest := np.nanmax(np.abs(positions), initial=0.0)) > FARTHEST:
+        if farthest > FARTHEST:
             raise InvalidMotionError(
                 f"A point is as far as {farthest:.3g} m; give the scale of the recording, or"
                 " take those frames out."

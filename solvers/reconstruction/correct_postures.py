@@ -47,8 +47,12 @@ class CorrectionSettings(Settings):
         " three terms as Zhou 2014, as a live recording must",
     )
     smoothing: float = setting(
-        0.1, "Movements shorter than about this are jitter; higher is smoother and blunter",
+        0.05, "Movements shorter than about this are jitter; higher is smoother and blunter",
         unit="s", minimum=0.0, maximum=1.0,
+    )  # fmt: skip
+    shift: bool = setting(
+        True, "Also move each joint by the offset that the sensor always has, as from the skin"
+        " to the joint; false leaves joints on average where they were seen",
     )  # fmt: skip
     spatial: float = setting(
         0.6, "Weight of the foretold offsets; published method only",
@@ -110,6 +114,9 @@ def correct_postures(
     calm = calm_postures(recording, float(prior.calm), weights)
     progress(0.4, "Correcting")
     offsets, variances = prior.predict(calm)
+    if not settings.shift:
+        weighed = np.maximum(weights, LEAST)[..., None]
+        offsets -= (weighed * offsets).sum(axis=0) / weighed.sum(axis=0)
     foretold = calm.positions + calm.turn_back(offsets)
     if settings.method is CorrectionMethod.PUBLISHED:
         total = variances + prior.lasting_variances()
@@ -136,8 +143,8 @@ def correct_postures(
 def smoothed(positions: Array, weights: Array, frames: float) -> Array:
     """Return the paths nearest to the given ones whose accelerations are small.
 
-    Minimises sum_t w_t |m_t - z_t|^2 + c sum_t |m_t-1 - 2 m_t + m_t+1|^2 (Whittaker 1923), where
-    c is chosen so that waves of `frames` * 2 pi frames lose half their size where w = 1.
+    Minimises sum_t w_t |m_t - z_t|^2 + c sum_t |m_t-1 - 2 m_t + m_t+1|^2 (Whittaker 1923);
+    c is chosen so that waves of 2 pi `frames` frames lose half their size where w is 1.
 
     Parameters
     ----------

@@ -1,7 +1,7 @@
 """Learn how a sensor errs from takes that another system saw as well."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from enum import Enum
 
 import numpy as np
@@ -16,7 +16,7 @@ from .posture_joints import N_JOINTS, POSTURE_JOINTS, posture_positions
 from .residual_inputs import calm_postures, filled, neighbourhood
 from .residual_kernel import Kernel, learn_kernel
 from .residual_prior import ResidualPrior, whole_posture
-from .residual_sparse import basis, inducing_points, posterior
+from .residual_sparse import basis, inducing_points, posterior, shared_columns
 
 Array = NDArray[np.float64]
 Numbers = NDArray[np.int64]
@@ -24,6 +24,8 @@ Numbers = NDArray[np.int64]
 N_COMPONENTS = 15
 ALONE = 2.5
 """Seconds after which errors of one take tell something new; nearer frames repeat it."""
+MEDIAN_OF_SQUARES = 2.366
+"""Median of the squared length of a normal vector in space whose axes have variance 1."""
 FEWEST = 20
 """Frames in which a joint must be known to be learned."""
 
@@ -215,7 +217,31 @@ def _learn_joint(
     )
     repeats = 1.0 if published else max(ALONE * settings.frame_rate, 1.0)
     mean, covariance = posterior(bases, errors, takes, actors, kernel, repeats)
-    return points, kernel, mean, covariance
+    return points, honest(kernel, bases, errors, mean, covariance), mean, covariance
+
+
+def honest(
+    kernel: Kernel, bases: tuple[Array, Array], errors: Array, mean: Array, covariance: Array
+) -> Kernel:
+    """Return the kernel with what no posture tells as large as the usual error calls for.
+
+    Errors of sensors have heavy tails: their variance says more than half of them are. The
+    variances of actor, take, noise and personal functions are multiplied so that half of the
+    examples lie within the median that the normal distribution has.
+    """
+    columns = shared_columns(bases, kernel)
+    known = np.einsum("ni,ni->n", columns @ covariance, columns)
+    off = ((errors - columns @ mean) ** 2).sum(axis=1)
+    lasting = sum(kernel.personal) + kernel.take + kernel.actor + kernel.noise
+    wanted = float(np.median(off)) / MEDIAN_OF_SQUARES - float(np.median(known))
+    share = float(np.clip(wanted / lasting, 0.01, 10.0))
+    return replace(
+        kernel,
+        personal=(share * kernel.personal[0], share * kernel.personal[1]),
+        take=share * kernel.take,
+        actor=share * kernel.actor,
+        noise=share * kernel.noise,
+    )
 
 
 def _row(kernel: Kernel) -> list[float]:

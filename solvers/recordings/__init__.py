@@ -34,6 +34,7 @@ from .read_recording import (
     read_recording,
     recordings_in,
 )
+from .recording_figures import recording_figures
 from .trc import read_trc
 from .trc_writing import write_trc
 from .ui_prmd import read_ui_prmd, read_ui_prmd_pair
@@ -59,6 +60,7 @@ __all__ = [
     "read_trc",
     "read_ui_prmd",
     "read_ui_prmd_pair",
+    "recording_figures",
     "recordings_in",
     "write_bvh",
     "write_c3d",

@@ -2,8 +2,9 @@
 
 import re
 from collections import defaultdict
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from pathlib import Path
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -14,9 +15,11 @@ from ..motion.rotations import inverse, multiply, quaternion_from_euler
 from ..progress import Progress, unwatched, within
 from .acclaim_skeleton import AcclaimBone, AcclaimSkeleton, read_acclaim_skeleton
 from .axes import check_scale, turns_z_up_from_y_up, z_up_from_y_up
+from .line_reader import Block, LineReader
 from .names import shown
-from .text import read_bytes, read_rows
+from .text import read_some_rows
 
+LINES_OF_HEAD = 100
 RADIANS = re.compile(rb"^[ \t]*:RADIANS", re.MULTILINE | re.IGNORECASE)
 
 
@@ -69,10 +72,11 @@ def read_acclaim(
     check_scale(scale)
     if not (np.isfinite(frame_rate) and frame_rate > 0.0):
         raise InvalidSettingError(f"A frame rate of {frame_rate} Hz is not positive.")
-    content = read_bytes(amc_path)
     skeleton = read_acclaim_skeleton(find_skeleton(amc_path) if asf_path is None else asf_path)
-    recorded = _recorded(content.splitlines(), skeleton, amc_path, within(progress, 0.0, 0.7))
-    angle_unit = 1.0 if RADIANS.search(content[:4096]) else skeleton.angle_unit
+    reader = LineReader(amc_path)
+    in_radians = RADIANS.search(b"\n".join(reader.peek(LINES_OF_HEAD)))
+    angle_unit = 1.0 if in_radians else skeleton.angle_unit
+    recorded = _recorded(reader, skeleton, amc_path, within(progress, 0.0, 0.7))
     return _motion(
         skeleton, recorded, frame_rate, scale, angle_unit, within(progress, 0.7, 1.0)
     )
@@ -107,66 +111,88 @@ def _is_for(path: Path, amc_path: Path) -> bool:
     return path.suffix.lower() == ".asf" and amc_path.stem.startswith(path.stem)
 
 
+class _Mentions(NamedTuple):
+    """What some lines say of one bone."""
+
+    frames: NDArray[np.intp]
+    rows: NDArray[np.float64]
+    """Shape (n, n_channels)."""
+
+
 def _recorded(
-    lines: Sequence[bytes], skeleton: AcclaimSkeleton, path: Path | str, progress: Progress
+    reader: LineReader, skeleton: AcclaimSkeleton, path: Path | str, progress: Progress
 ) -> dict[str, NDArray[np.float64]]:
     """Return what is recorded of each bone, shape (n_frames, n_channels), by its name."""
-    frame_lines, mentions = _mentions(lines, path)
     known = {bone.name.encode(): bone for bone in skeleton.bones}
-    if strange := [
-        shown(name.decode("ascii", "backslashreplace")) for name in mentions.keys() - known
-    ]:
-        raise InvalidFileError(
-            f"{path} moves bones that its skeleton does not have: {', '.join(strange[:5])}."
-            " It belongs to another .asf file, or is damaged."
-        )
-    result = {}
-    for place, (name, numbers) in enumerate(mentions.items()):
-        bone = known[name]
-        texts = [lines[number - 1].lstrip()[len(name) :] for number in numbers]
-        table = np.full((len(frame_lines), len(bone.channels)), np.nan)
-        frames = np.searchsorted(frame_lines, numbers) - 1
-        table[frames] = read_rows(texts, len(bone.channels), path, numbers)
-        result[bone.name] = table
-        progress((place + 1) / len(mentions), "Reading")
-    return result
+    found: dict[bytes, list[_Mentions]] = {}
+    n_frames = 0
+    for block in reader.rest():
+        frame_lines, mentions = _mentions(block, n_frames > 0, path)
+        if strange := [
+            shown(name.decode("ascii", "backslashreplace")) for name in mentions.keys() - known
+        ]:
+            raise InvalidFileError(
+                f"{path} moves bones that its skeleton does not have: {', '.join(strange[:5])}."
+                " It belongs to another .asf file, or is damaged."
+            )
+        for name, numbers in mentions.items():
+            texts = [
+                block.lines[number - block.first].lstrip()[len(name) :] for number in numbers
+            ]
+            rows = read_some_rows(texts, len(known[name].channels), path, numbers)
+            frames = np.searchsorted(frame_lines, numbers) - 1 + n_frames
+            found.setdefault(name, []).append(_Mentions(frames, rows))
+        n_frames += len(frame_lines)
+        progress(block.stop, "Reading")
+    if not found:
+        raise InvalidFileError(f"{path} is no Acclaim recording: nothing moves in it.")
+    return {known[name].name: _table(parts, n_frames) for name, parts in found.items()}
+
+
+def _table(parts: list[_Mentions], n_frames: int) -> NDArray[np.float64]:
+    """Return a row for each frame, NaN where a bone is left out; empties the list."""
+    table = np.full((n_frames, parts[0].rows.shape[1]), np.nan)
+    parts.reverse()
+    while parts:
+        frames, rows = parts.pop()
+        table[frames] = rows
+    return table
 
 
 def _mentions(
-    lines: Sequence[bytes], path: Path | str
+    block: Block, begun: bool, path: Path | str
 ) -> tuple[list[int], dict[bytes, list[int]]]:
     """Return the lines with a frame number, and those that begin with each bone's name.
 
-    Lines are counted from 1.
+    Lines are counted from 1. Nothing may be said of a bone before the first frame has `begun`.
     """
     frame_lines: list[int] = []
     mentions: defaultdict[bytes, list[int]] = defaultdict(list)
-    for number, line in enumerate(lines, start=1):
+    for number, line in enumerate(block.lines, start=block.first):
         words = line.split(None, 1)
         if not words or words[0][:1] in b"#:":
             continue
         if len(words) == 1 and words[0].isdigit():
             frame_lines.append(number)
-        elif frame_lines and len(words) == 2:
+        elif (begun or frame_lines) and len(words) == 2:
             mentions[words[0]].append(number)
         else:
             raise InvalidFileError(
                 f"{path}, line {number}: a frame number or a bone with its angles belongs here."
                 " The file is damaged, cut short or no Acclaim recording."
             )
-    if not mentions:
-        raise InvalidFileError(f"{path} is no Acclaim recording: nothing moves in it.")
     return frame_lines, mentions
 
 
 def _motion(
     skeleton: AcclaimSkeleton,
-    recorded: Mapping[str, NDArray[np.float64]],
+    recorded: dict[str, NDArray[np.float64]],
     frame_rate: float,
     scale: float | None,
     angle_unit: float,
     progress: Progress,
 ) -> Motion:
+    """Turn what is recorded into a motion; it is emptied, not to be in memory twice."""
     n_frames = len(next(iter(recorded.values())))
     scale = skeleton.unit if scale is None else scale
     names, parents, offsets = _joints(skeleton)
@@ -176,7 +202,7 @@ def _motion(
     for joint, bone in enumerate(skeleton.bones):
         if bone.name not in recorded:
             continue
-        columns = dict(zip(bone.channels, recorded[bone.name].T, strict=True))
+        columns = dict(zip(bone.channels, recorded.pop(bone.name).T, strict=True))
         turns = _turns(bone, columns, angle_unit)
         rotations[:, joint] = turns_z_up_from_y_up(turns)
         if joint == 0:

@@ -10,8 +10,11 @@ from ..errors import InvalidFileError
 from ..motion import JOINTS, JointRecording, Sensor
 from ..progress import Progress, unwatched, within
 from .axes import check_scale
+from .growing_table import GrowingTable
+from .line_reader import LineReader
+from .row_stream import stream_rows
 from .sensor_axes import from_azure_space
-from .text import parted_by_blanks, read_bytes, read_number, read_rows
+from .text import parted_by_blanks, read_number
 from .time_stamps import USUAL_RATE
 from .tracked_joints import joint_recording
 
@@ -21,6 +24,7 @@ PER_JOINT = re.compile(rb"(?i)[^\n]*\n?[ \t]*body id\s*,\s*joint #\s*,\s*x\s*,\s
 PER_FRAME = re.compile(rb"(?i)[^\n]*\bpelvis\.x\s*,")
 ONLY_AZURE = re.compile(rb"(?i)[^\n]*(\bspine_?(chest|nav[ae]l)\b|\bclavicle)")
 LEAST_WORDS = 10
+NOT_SEEN = np.tile((np.nan, np.nan, np.nan, 0.0), (len(NAMES), 1))
 SPELLINGS = {name.upper(): name for name in NAMES} | {"SPINENAVAL": "SpineNavel"}
 STATES = (  # What the SDK calls its levels of confidence, and what a state is.
     (rb"out of range|\bnone\b|^0$", 0),
@@ -79,10 +83,10 @@ def read_azure_csv(
         Raised by `progress`.
     """
     check_scale(scale)
-    content = read_bytes(path)
-    lines = content.splitlines() or [b""]
-    read = _read_joint_lines if PER_JOINT.match(content) else _read_frame_lines
-    names, values = read(lines, path, within(progress, 0.0, 0.9))
+    reader = LineReader(path)
+    per_joint = PER_JOINT.match(b"\n".join(reader.peek(2)))
+    read = _read_joint_lines if per_joint else _read_frame_lines
+    names, values = read(reader, path, within(progress, 0.0, 0.9))
     states = values[..., 3].astype(np.int8) if values.shape[-1] > 3 else None
     return joint_recording(
         path,
@@ -96,26 +100,50 @@ def read_azure_csv(
 
 
 def _read_joint_lines(
-    lines: list[bytes], path: Path | str, progress: Progress
+    reader: LineReader, path: Path | str, progress: Progress
 ) -> tuple[tuple[str, ...], NDArray[np.float64]]:
     """Return the joints' names, and x y z state, shape (n_frames, n_joints, 4)."""
-    bodies: dict[bytes, list[NDArray[np.float64]]] = {}
-    last: dict[bytes, int] = {}
-    for count, line in enumerate(lines, start=1):
-        words = line.split(b",")
-        body = words[0].strip()
-        if not line.strip() or not body or not body[:1].isdigit():
-            continue  # headings
-        joint, values = _joint(words, f"{path}, line {count}")
-        frames = bodies.setdefault(body, [])
-        if joint <= last.get(body, len(NAMES)):
-            frames.append(np.full((len(NAMES), 4), (np.nan, np.nan, np.nan, 0.0)))
-        frames[-1][joint] = values
-        last[body] = joint
-        progress(count / len(lines), "Reading")
+    bodies: dict[bytes, _Body] = {}
+    for block in reader.rest():
+        for count, line in enumerate(block.lines, start=block.first):
+            words = line.split(b",")
+            body = words[0].strip()
+            if not body[:1].isdigit():
+                continue  # headings, and blank lines
+            joint, values = _joint(words, f"{path}, line {count}")
+            bodies.setdefault(body, _Body()).see(joint, values)
+        progress(block.stop, "Reading")
     if not bodies:
         raise InvalidFileError(f"{path} has headings but no joints.")
-    return NAMES, np.stack(max(bodies.values(), key=len))
+    return NAMES, max(bodies.values(), key=lambda body: body.n_frames).frames()
+
+
+class _Body:
+    """What is seen of one body, frame by frame."""
+
+    def __init__(self) -> None:
+        self._table = GrowingTable(4 * len(NAMES))
+        self._frame = NOT_SEEN.copy()
+        self._last = len(NAMES)
+        self.n_frames = 0
+
+    def see(self, joint: int, values: list[float]) -> None:
+        """Take x, y, z and state of a joint; a frame ends where its numbers begin again."""
+        if joint <= self._last:
+            self._end_frame()
+            self.n_frames += 1
+        self._frame[joint] = values
+        self._last = joint
+
+    def frames(self) -> NDArray[np.float64]:
+        """Return all, shape (n_frames, n_joints, 4)."""
+        self._end_frame()
+        return self._table.rows().reshape(-1, len(NAMES), 4)
+
+    def _end_frame(self) -> None:
+        if self.n_frames:
+            self._table.add(self._frame.reshape(1, -1))
+            self._frame[:] = NOT_SEEN
 
 
 def _joint(words: list[bytes], place: str) -> tuple[int, list[float]]:
@@ -137,21 +165,16 @@ def _joint(words: list[bytes], place: str) -> tuple[int, list[float]]:
 
 
 def _read_frame_lines(
-    lines: list[bytes], path: Path | str, progress: Progress
+    reader: LineReader, path: Path | str, progress: Progress
 ) -> tuple[tuple[str, ...], NDArray[np.float64]]:
     """Return the joints' names, and x y z, shape (n_frames, n_joints, 3)."""
-    header = [word.strip() for word in lines[0].decode("latin-1").split(",")]
+    heading = b"".join(reader.take()).decode("latin-1")
+    header = [word.strip() for word in heading.split(",")]
     columns = {azure_joint(word[:-2]) + word[-2:].lower(): at for at, word in enumerate(header)}
     names = [name for name in NAMES if all(f"{name}.{axis}" in columns for axis in "xyz")]
     if not names:
         raise InvalidFileError(f"{path} has no columns x, y and z of any joint.")
-    rows = read_rows(
-        [parted_by_blanks(line) for line in lines[1:]],
-        len(header),
-        path,
-        range(2, len(lines) + 1),
-        progress,
-    )
+    rows = stream_rows(reader, len(header), path, progress, tidied=parted_by_blanks)
     if not len(rows):
         raise InvalidFileError(f"{path} has headings but no joints.")
     used = [columns[f"{name}.{axis}"] for name in names for axis in "xyz"]

@@ -1,7 +1,5 @@
 """Read BVH files: the format that most capture software and libraries of clips exchange."""
 
-import re
-from collections.abc import Sequence
 from decimal import Decimal, InvalidOperation
 from pathlib import Path
 from typing import Literal
@@ -10,13 +8,16 @@ from ..errors import InvalidFileError
 from ..motion import Motion
 from ..progress import Progress, unwatched, within
 from .axes import check_scale
-from .bvh_channels import BvhChannels
+from .bvh_channels import BvhChannels, motion_of_poses
 from .bvh_hierarchy import read_hierarchy
-from .text import read_bytes, read_rows
+from .line_reader import LineReader
+from .row_stream import stream_rows
 
 USUAL_RATES = (24, 25, 30, 48, 50, 60, 90, 100, 120, 200, 240)
 RATE_WITHOUT_FRAME_TIME = 30.0
-MOTION_LINE = re.compile(rb"^[ \t]*MOTION[ \t]*\r?$", re.MULTILINE | re.IGNORECASE)
+MOST_BLANK_LINES = 4096
+LONGEST_HIERARCHY = 1 << 24
+"""Characters."""
 
 
 def read_bvh(
@@ -63,41 +64,47 @@ def read_bvh(
         Raised by `progress`.
     """
     check_scale(scale)
-    content = read_bytes(path)
-    if not content[:4096].lstrip().upper().startswith(b"HIERARCHY"):
-        raise InvalidFileError(f"{path} is no BVH file: it does not begin with HIERARCHY.")
-    if b"\n" not in content:  # The line ends of old Macs.
-        content = content.replace(b"\r", b"\n")
-    motion_line = MOTION_LINE.search(content)
-    if motion_line is None:
-        raise InvalidFileError(f"{path} has no MOTION part: it is cut short. Export it again.")
-    joints = read_hierarchy(content[: motion_line.start()], path)
-    first_line = content.count(b"\n", 0, motion_line.end()) + 2
-    lines = content[motion_line.end() :].lstrip(b"\r").removeprefix(b"\n").splitlines()
-    del content
-    frame_rate, n_head = _frame_rate(lines)
+    reader = LineReader(path)
+    joints = read_hierarchy(_hierarchy(reader, path), path)
+    frame_rate = _frame_rate(reader)
     width = sum(len(joint.channels) for joint in joints)
     if not width:
         raise InvalidFileError(f"{path} has no CHANNELS, so nothing in it moves.")
-    numbers = range(first_line + n_head, first_line + len(lines))
-    rows = read_rows(lines[n_head:], width, path, numbers, within(progress, 0.0, 0.7))
-    del lines
+    rows = stream_rows(reader, width, path, within(progress, 0.0, 0.7))
     if not len(rows):
         raise InvalidFileError(f"{path} has no frames: nothing follows its Frame Time.")
-    channels = BvhChannels(joints, rows)
-    return channels.motion(frame_rate, scale, up, within(progress, 0.7, 1.0))
+    poses = BvhChannels(joints, rows).poses(within(progress, 0.7, 1.0))
+    del rows
+    return motion_of_poses(joints, poses, frame_rate, scale, up)
 
 
-def _frame_rate(lines: Sequence[bytes]) -> tuple[float, int]:
-    """Return the rate in hertz, and how many lines stand before the first frame."""
+def _hierarchy(reader: LineReader, path: Path | str) -> bytes:
+    """Take the lines down to the word MOTION; return those before it."""
+    lines: list[bytes] = []
+    while (line := reader.peek()) and not line[0].strip() and len(lines) < MOST_BLANK_LINES:
+        lines += reader.take()
+    if not b"".join(line).lstrip().upper().startswith(b"HIERARCHY"):
+        raise InvalidFileError(f"{path} is no BVH file: it does not begin with HIERARCHY.")
+    length = 0
+    while (line := reader.take()) and length < LONGEST_HIERARCHY:
+        if line[0].strip(b" \t").upper() == b"MOTION":
+            return b"\n".join(lines)
+        lines += line
+        length += len(line[0])
+    raise InvalidFileError(f"{path} has no MOTION part: it is cut short. Export it again.")
+
+
+def _frame_rate(reader: LineReader) -> float:
+    """Take the lines before the first frame; return the rate in hertz."""
     rate = RATE_WITHOUT_FRAME_TIME
-    for number, line in enumerate(lines):
-        words = line.lower().replace(b":", b" ").split()
+    while line := reader.peek():
+        words = line[0].lower().replace(b":", b" ").split()
         if words[:2] == [b"frame", b"time"] and len(words) == 3:
             rate = _rate_from_time(words[2].decode("ascii", "replace"))
         elif words and not words[0].startswith(b"frame"):
-            return rate, number
-    return rate, len(lines)
+            break
+        reader.take()
+    return rate
 
 
 def _rate_from_time(word: str) -> float:

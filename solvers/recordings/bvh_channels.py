@@ -3,6 +3,7 @@
 from collections.abc import Sequence
 from dataclasses import replace
 from functools import cached_property
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -30,6 +31,17 @@ FRAMES_AT_ONCE = 2000
 FRAMES_TO_JUDGE_BY = 40
 
 
+class BvhPoses(NamedTuple):
+    """Rigid bones and how they move, in units of the file."""
+
+    offsets: NDArray[np.float64]
+    """Shape (n_joints, 3), Y up."""
+    rotations: NDArray[np.float64]
+    """Local quaternions in our axes, shape (n_frames, n_joints, 4)."""
+    root: NDArray[np.float64]
+    """Places of the root in our axes, shape (n_frames, 3)."""
+
+
 class BvhChannels:
     """What a BVH file records, in its own axes and units.
 
@@ -50,10 +62,8 @@ class BvhChannels:
             for joint, start in zip(joints, first, strict=False)
         ]
 
-    def motion(
-        self, frame_rate: float, scale: float | None, up: str | None, progress: Progress
-    ) -> Motion:
-        """Return the motion in metres, Z up, as `read_bvh` describes it."""
+    def poses(self, progress: Progress) -> BvhPoses:
+        """Return rigid bones and how they move, as `read_bvh` describes it."""
         rotations = self._rotations(progress)
         offsets = self.file_offsets.copy()
         for joint in range(1, len(offsets)):
@@ -66,15 +76,7 @@ class BvhChannels:
             root = root + rotate(turn, z_up_from_y_up(strayed))
             turn = multiply(turn, rotations[:, joint])
         self._turn_towards_only_children(rotations, offsets)
-        parents = tuple(joint.parent for joint in self.joints)
-        if scale is None:
-            scale = guess_unit(parents, offsets)
-        names = tuple(joint.name for joint in self.joints)
-        skeleton = Skeleton(names, parents, scale * z_up_from_y_up(offsets))
-        motion = Motion(skeleton, rotations, scale * root, frame_rate)
-        if up is None:
-            up = "Z" if _lies_on_its_face(motion) else "Y"
-        return _raised(motion) if up == "Z" else motion
+        return BvhPoses(offsets, rotations, root)
 
     @cached_property
     def added(self) -> bool:
@@ -166,6 +168,25 @@ class BvhChannels:
             joint = self.children[joint][0]
             trunk[joint] = None
         return trunk
+
+
+def motion_of_poses(
+    joints: Sequence[BvhJoint],
+    poses: BvhPoses,
+    frame_rate: float,
+    scale: float | None,
+    up: str | None,
+) -> Motion:
+    """Return the motion in metres, Z up, as `read_bvh` describes it."""
+    parents = tuple(joint.parent for joint in joints)
+    if scale is None:
+        scale = guess_unit(parents, poses.offsets)
+    names = tuple(joint.name for joint in joints)
+    skeleton = Skeleton(names, parents, scale * z_up_from_y_up(poses.offsets))
+    motion = Motion(skeleton, poses.rotations, scale * poses.root, frame_rate)
+    if up is None:
+        up = "Z" if _lies_on_its_face(motion) else "Y"
+    return _raised(motion) if up == "Z" else motion
 
 
 def _median_place(places: NDArray[np.float64]) -> NDArray[np.float64]:

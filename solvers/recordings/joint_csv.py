@@ -5,6 +5,7 @@ from collections import Counter
 from collections.abc import Mapping, Sequence
 from itertools import chain
 from pathlib import Path
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -15,13 +16,25 @@ from ..motion import JointRecording
 from ..progress import Progress, unwatched, within
 from .axes import check_scale
 from .joint_header import FORMAT, VERSION, check_names, joint_header, told_recording
+from .line_reader import LineReader
 from .names import shown
-from .text import parted_by_blanks, read_bytes, read_rows
+from .row_stream import stream_rows
+from .text import parted_by_blanks
 
 TIME = "time"
 AXES = ("x", "y", "z")
 FIELDS = (*AXES, "state", "confidence")
 FRAMES_AT_ONCE = 1000
+
+
+class _Values(NamedTuple):
+    """What stands in the columns."""
+
+    positions: NDArray[np.float64]
+    """Shape (n_frames, n_joints, 3), in the file's unit."""
+    states: NDArray[np.float64] | None
+    confidence: NDArray[np.float64] | None
+    times: NDArray[np.float64] | None
 
 
 def is_joint_csv(head: bytes) -> bool:
@@ -61,40 +74,28 @@ def read_joint_csv(
         Raised by `progress`.
     """
     check_scale(scale)
-    lines = read_bytes(path).splitlines()
-    if len(lines) < 2:
+    reader = LineReader(path)
+    head = reader.take(2)
+    if len(head) < 2:
         raise InvalidFileError(f"{path} is cut short: it has no line that names its columns.")
-    header = joint_header(_said(lines[0]), f"{path}, line 1")
-    columns = _columns(lines[1], f"{path}, line 2")
-    rows = read_rows(
-        [parted_by_blanks(line) for line in lines[2:]],
-        len(columns),
-        path,
-        range(3, len(lines) + 1),
-        within(progress, 0.0, 0.9),
-    )
-    names = [column[:-2] for column in columns if column.endswith(".x")]
-    table = dict(zip(columns, rows.T, strict=True))
-    fields = {field: _field(table, names, field, path) for field in FIELDS}
-    axes = [values for axis in AXES if (values := fields[axis]) is not None]
-    if len(axes) < len(AXES) or not len(rows):
-        raise InvalidFileError(
-            f"{path} has no frames, or no joints with columns .x, .y and .z."
-        )
-    if header.frame_rate is None and TIME not in table:
+    header = joint_header(_said(head[0]), f"{path}, line 1")
+    columns = _columns(head[1], f"{path}, line 2")
+    values = _values(reader, columns, path, within(progress, 0.0, 0.9))
+    if header.frame_rate is None and values.times is None:
         raise InvalidFileError(
             f"{path}: neither a frame_rate in its first line nor a column {TIME} tells when"
             " each frame was seen."
         )
-    positions = np.stack(axes, axis=-1)
+    positions = values.positions
+    positions *= header.unit if scale is None else scale
     return told_recording(
         path,
-        names,
+        _joint_names(columns),
         header,
-        positions * (header.unit if scale is None else scale),
-        states=fields["state"],
-        confidence=fields["confidence"],
-        times=table.get(TIME),
+        positions,
+        states=values.states,
+        confidence=values.confidence,
+        times=values.times,
         progress=progress,
     )
 
@@ -175,16 +176,40 @@ def _columns(line: bytes, place: str) -> list[str]:
     return columns
 
 
-def _field(
-    table: Mapping[str, NDArray[np.float64]], names: Sequence[str], field: str, path: Path | str
-) -> NDArray[np.float64] | None:
-    """Return the columns of one field, shape (n_frames, n_joints), or None without any."""
-    found = [name for name in names if f"{name}.{field}" in table]
-    if not found:
-        return None
-    if len(found) < len(names):
+def _joint_names(columns: Sequence[str]) -> list[str]:
+    return [column[:-2] for column in columns if column.endswith(".x")]
+
+
+def _values(
+    reader: LineReader, columns: Sequence[str], path: Path | str, progress: Progress
+) -> _Values:
+    """Return what the lines below the names of the columns hold."""
+    rows = stream_rows(reader, len(columns), path, progress, tidied=parted_by_blanks)
+    places = {column: at for at, column in enumerate(columns)}
+    names = _joint_names(columns)
+    used = {field: _places(places, names, field, path) for field in FIELDS}
+    axes = [used[axis] for axis in AXES if used[axis]]
+    if len(axes) < len(AXES) or not len(rows):
+        raise InvalidFileError(
+            f"{path} has no frames, or no joints with columns .x, .y and .z."
+        )
+    positions = rows[:, np.transpose(axes).ravel()]
+    return _Values(
+        positions=positions.reshape(len(rows), len(names), len(AXES)),
+        states=rows[:, used["state"]] if used["state"] else None,
+        confidence=rows[:, used["confidence"]] if used["confidence"] else None,
+        times=rows[:, places[TIME]].copy() if TIME in places else None,
+    )
+
+
+def _places(
+    places: Mapping[str, int], names: Sequence[str], field: str, path: Path | str
+) -> list[int]:
+    """Return the columns of one field, one for each joint, or none at all."""
+    found = [name for name in names if f"{name}.{field}" in places]
+    if found and len(found) < len(names):
         lacking = next(name for name in names if name not in found)
         raise InvalidFileError(
             f"{path}: {shown(lacking)} has no column .{field}, though other joints have one."
         )
-    return np.stack([table[f"{name}.{field}"] for name in names], axis=-1)
+    return [places[f"{name}.{field}"] for name in found]

@@ -9,8 +9,10 @@ from ..errors import InvalidFileError
 from ..motion import JOINTS, JointRecording, Sensor
 from ..progress import Progress, unwatched, within
 from .axes import check_scale
+from .line_reader import LineReader
+from .row_stream import stream_rows
 from .sensor_axes import from_kinect_space
-from .text import parted_by_blanks, read_bytes, read_rows
+from .text import parted_by_blanks
 from .time_stamps import USUAL_RATE
 from .tracked_joints import joint_recording
 
@@ -77,18 +79,15 @@ def read_kinect_csv(
        doi:10.1109/TNSRE.2019.2923060
     """
     check_scale(scale)
-    lines = [
-        parted_by_blanks(line.strip().removesuffix(b","))
-        for line in read_bytes(path).split(b"\n")
-    ]
-    width = next((len(line.split()) for line in lines if line), 0)
+    reader = LineReader(path)
+    reader.pass_over_blank()
+    width = len(b"".join(map(_tidied, reader.peek())).split())
     if width not in {WITHOUT_TIME, WITHOUT_TIME + 1}:
         raise InvalidFileError(
             f"{path} is no table of Kinect v2 joints: {WITHOUT_TIME} numbers belong in each"
             f" line, or {WITHOUT_TIME + 1} with the time, not {width}."
         )
-    counts = range(1, len(lines) + 1)
-    rows = read_rows(lines, width, path, counts, within(progress, 0.0, 0.9))
+    rows = stream_rows(reader, width, path, within(progress, 0.0, 0.9), tidied=_tidied)
     joints = rows[:, width - WITHOUT_TIME :].reshape(len(rows), len(NAMES), 4)
     return joint_recording(
         path,
@@ -100,6 +99,10 @@ def read_kinect_csv(
         frame_rate=frame_rate,
         progress=progress,
     )
+
+
+def _tidied(line: bytes) -> bytes:
+    return parted_by_blanks(line.strip().removesuffix(b","))
 
 
 def checked_states(values: NDArray[np.float64], path: Path | str) -> NDArray[np.int8]:

@@ -88,9 +88,16 @@ def read_rows(
     parts = [np.empty((0, width))]
     for start in range(0, len(lines), ROWS_AT_ONCE):
         block = slice(start, start + ROWS_AT_ONCE)
-        parts.append(_read_block(lines[block], width, path, line_numbers[block]))
+        parts.append(read_some_rows(lines[block], width, path, line_numbers[block]))
         progress(min(1.0, (start + ROWS_AT_ONCE) / len(lines)), "Reading")
-    rows = np.concatenate(parts)
+    return np.concatenate(parts)
+
+
+def read_some_rows(
+    lines: Sequence[bytes], width: int, path: Path | str, line_numbers: Sequence[int]
+) -> NDArray[np.float64]:
+    """Read one row of numbers per line, as `read_rows` does: all lines at once."""
+    rows = _read_block(lines, width, path, line_numbers)
     rows[np.isinf(rows)] = np.nan
     return rows
 
@@ -118,7 +125,7 @@ def _read_block(
 
 
 def _read_line(line: bytes, width: int, place: str) -> list[float]:
-    words = line.split()
+    words = [word.encode("latin-1") for word in line.decode("latin-1").split()]  # as numpy
     if len(words) != width:
         raise InvalidFileError(
             f"{place}: {len(words)} numbers stand where {width} belong. The file is damaged or"

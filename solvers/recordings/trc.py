@@ -11,9 +11,10 @@ from ..errors import InvalidFileError
 from ..motion import Tracks
 from ..progress import Progress, unwatched, within
 from .axes import FEWEST_JOINTS_OF_A_BODY, check_scale
+from .line_reader import LineReader
 from .names import shown
 from .points import guess_unit_of_points, point_names, points_z_up, said_unit
-from .text import read_bytes, read_number
+from .text import ROWS_AT_ONCE, read_number
 from .time_stamps import ConstantRate, even_rate
 
 FIRST_LINES = 30
@@ -24,7 +25,6 @@ TITLE = rb'[\s"]*[A-Za-z]'
 FULL_TURN = 2.0 * np.pi
 LARGEST = 1e12
 """What is larger is no measurement; some programs write so what they did not see."""
-ROWS_PER_REPORT = 1000
 SLOWEST, FASTEST = 1e-3, 1e6
 MOST_BLANKS = 10
 FREE_CELLS = 1_000_000
@@ -81,9 +81,10 @@ def read_trc(
         Raised by `progress`.
     """
     check_scale(scale)
-    lines = read_bytes(path).splitlines()
-    header = _read_header(lines[:FIRST_LINES], path)
-    rows = _read_rows(lines, header, path, within(progress, 0.0, 0.8))
+    reader = LineReader(path)
+    header = _read_header(reader.peek(FIRST_LINES), path)
+    reader.take(header.n_lines)
+    rows = _read_rows(reader, path, within(progress, 0.0, 0.8))
     frames, times, points = _in_columns(rows, len(header.labels), path)
     points[(points == 0.0).all(axis=-1) | ~np.isfinite(points).all(axis=-1)] = np.nan
     if np.isnan(points).all():
@@ -161,21 +162,40 @@ def _labels(text: str) -> list[str]:
     return [names[place] for place in filled]
 
 
-def _read_rows(
-    lines: list[bytes], header: _Header, path: Path | str, progress: Progress
-) -> list[NDArray[np.float64]]:
+class _Rows(NamedTuple):
+    """Rows of different lengths, one after the other."""
+
+    numbers: NDArray[np.float64]
+    lengths: NDArray[np.intp]
+
+    def fill(self, table: NDArray[np.float64]) -> None:
+        """Write each row from the left of a table, shape (n_rows, width)."""
+        length = int(self.lengths[0])
+        if length <= table.shape[1] and (self.lengths == length).all():
+            table[:, :length] = self.numbers.reshape(-1, length)
+            return
+        stops = np.cumsum(self.lengths)
+        for row, stop, length in zip(table, stops, self.lengths, strict=True):
+            row[:length] = self.numbers[stop - length : stop][: len(row)]
+
+
+def _read_rows(reader: LineReader, path: Path | str, progress: Progress) -> list[_Rows]:
     """Return the numbers of each frame, NaN where blank, up to the last that is not."""
-    rows: list[NDArray[np.float64]] = []
-    for place in range(header.n_lines, len(lines)):
-        line = lines[place].rstrip()
-        if not place % ROWS_PER_REPORT:
-            progress(place / len(lines), "Reading")
-        if not line or (not rows and re.match(TITLE, line)):
-            continue
-        rows.append(_read_row(line, f"{path}, line {place + 1}"))
-    if not rows:
+    found: list[_Rows] = []
+    for block in reader.rest():
+        for part in block.parts(ROWS_AT_ONCE):
+            rows: list[NDArray[np.float64]] = []
+            for number, line in enumerate(part.lines, start=part.first):
+                filled = line.rstrip()
+                if filled and (found or rows or not re.match(TITLE, filled)):
+                    rows.append(_read_row(filled, f"{path}, line {number}"))
+            if rows:
+                lengths = np.array([len(row) for row in rows])
+                found.append(_Rows(np.concatenate(rows), lengths))
+            progress(part.stop, "Reading")
+    if not found:
         raise InvalidFileError(f"{path} has a header but no frames. Export it again.")
-    return rows
+    return found
 
 
 def _read_row(line: bytes, place: str) -> NDArray[np.float64]:
@@ -195,23 +215,33 @@ def _read_row(line: bytes, place: str) -> NDArray[np.float64]:
 
 
 def _in_columns(
-    rows: list[NDArray[np.float64]], n_labels: int, path: Path | str
+    found: list[_Rows], n_labels: int, path: Path | str
 ) -> tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.float64]]:
-    """Return frame numbers, times, and points of shape (n_frames, n_points, 3)."""
-    n_points = max(n_labels, (max(len(row) for row in rows) - 2) // 3)
+    """Return frame numbers, times, and points of shape (n_frames, n_points, 3).
+
+    The list is emptied on the way, so that nothing is in memory twice.
+    """
+    n_rows = sum(len(rows.lengths) for rows in found)
+    n_points = max(n_labels, (max(int(rows.lengths.max()) for rows in found) - 2) // 3)
     width = 2 + 3 * n_points
-    if len(rows) * width > FREE_CELLS + MOST_BLANKS * sum(len(row) for row in rows):
+    if n_rows * width > FREE_CELLS + MOST_BLANKS * sum(len(rows.numbers) for rows in found):
         raise InvalidFileError(
             f"{path} has {n_points} markers by its longest line, but hardly any in the other"
-            f" {len(rows)} lines. It is damaged; export it again."
+            f" {n_rows} lines. It is damaged; export it again."
         )
     if not n_points:
         raise InvalidFileError(f"{path} has no markers, only the times of its frames.")
-    table = np.full((len(rows), width), np.nan)
-    for filled, row in zip(table, rows, strict=True):
-        filled[: len(row)] = row[:width]
-    table[~(np.abs(table) < LARGEST)] = np.nan
-    return table[:, 0], table[:, 1], table[:, 2:].reshape(len(rows), n_points, 3)
+    table = np.empty((n_rows, width))
+    stop = n_rows
+    while found:
+        rows = found.pop()
+        block = table[stop - len(rows.lengths) : stop]
+        block[:] = np.nan
+        rows.fill(block)
+        block[~(np.abs(block) < LARGEST)] = np.nan
+        stop -= len(block)
+    points = table[:, 2:].reshape(n_rows, n_points, 3)
+    return table[:, 0].copy(), table[:, 1].copy(), points
 
 
 def _unit(header: _Header, points: NDArray[np.float64], path: Path | str) -> float:

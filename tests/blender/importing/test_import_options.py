@@ -195,3 +195,18 @@ def test_undo_is_one_step(walk, blank):
 
     assert not blank.data.objects
     assert not blank.data.actions
+
+
+def test_small_files_are_read_together_and_large_ones_alone(load, tmp_path, monkeypatch):
+    job = load("mocap_assist.import_job")
+    monkeypatch.setattr(job, "BYTES_AT_ONCE", 100)
+    paths = []
+    for number, size in enumerate([40, 60, 1, 300, 0, 99]):
+        paths.append(tmp_path / str(number))
+        paths[-1].write_bytes(b"x" * size)
+    paths.append(tmp_path / "gone")
+
+    parted = [[path.name for path in batch] for batch in job.batches(paths)]
+
+    assert parted == [["0", "1"], ["2"], ["3"], ["4", "5", "gone"]]
+    assert list(job.batches([])) == []

@@ -41,6 +41,7 @@ def test_import_brings_files_and_folders_into_one_scene(blank, command, takes, t
     assert "bad.bvh" in err
     said = json.loads(next(line for line in out.splitlines() if line[:1] == "{"))
     assert said["objects"] == ["one", "two"]
+    assert [each["n_frames"] for each in said["figures"]] == [60, 60]
     blank.ops.wm.open_mainfile(filepath=str(target))
     assert {"one", "two"} <= {each.name for each in blank.data.objects}
 
@@ -59,6 +60,10 @@ def test_a_shoot_is_imported_then_cleaned_then_taken_up_again(blank, command, ta
     assert made == {"one.blend", "second/two.blend"}
     told = json.loads((raw / "report.json").read_text())
     assert (told["done"], told["failed"]) == (2, 1)
+    for each in told["files"]:
+        if "error" not in each:
+            assert (each["joints"], each["n_frames"], each["frame_rate_hz"]) == (22, 60, 30.0)
+            assert (each["gaps"], each["warnings"]) == (0, "")
 
     status, out, err = command(
         "each", raw, "--output-folder", clean, "--report", "--", "denoise", "--no-plant-feet"
@@ -126,3 +131,22 @@ def test_markers_are_cleaned_where_there_is_no_armature(blank, command, load, tm
     back = load("solvers.recordings").read_recording(tmp_path / "three_clean.trc")
     assert back.names == ("a", "b", "c")
     assert "no animated armature" in command("unbake", "--output", tmp_path / "x.blend")[2]
+
+
+def test_what_a_reader_warns_of_is_told(blank, command, tmp_path):
+    lines = ["mocap-assist-joints,1,units=m", "time,A.x,A.y,A.z,B.x,B.y,B.z,C.x,C.y,C.z"]
+    lines += [f"{frame / 30 + 0.002 * (frame % 3)},1,2,{frame},1,1,1,,," for frame in range(40)]
+    (tmp_path / "late.csv").write_text("\n".join(lines) + "\n")
+
+    status, out, _ = command(
+        "import", tmp_path / "late.csv", "--output", tmp_path / "late.blend", "--json"
+    )
+
+    assert status == 0
+    (figures,) = json.loads(next(line for line in out.splitlines() if line[:1] == "{"))[
+        "figures"
+    ]
+    assert (figures["joints"], figures["frame_rate_hz"]) == (3, 30.0)
+    assert figures["warnings"] == (
+        "Resampled to 30 Hz. Never seen: C. Nothing tells which joint hangs on which"
+    )

@@ -30,8 +30,10 @@ def test_many_files_go_to_a_folder_and_a_second_run_goes_on(call, leg_file, tmp_
     assert (folder / "twin.bvh").exists()
 
 
-@pytest.mark.parametrize("change", ["options", "source", "again"])
-def test_what_would_come_out_otherwise_is_made_again(call, leg_file, tmp_path, change):
+@pytest.mark.parametrize("change", ["options", "source", "again", "version"])
+def test_what_would_come_out_otherwise_is_made_again(
+    call, leg_file, tmp_path, change, monkeypatch
+):
     words = ["convert", leg_file, "--output-folder", tmp_path / "out"]
     call(*words)
     if change == "options":
@@ -40,6 +42,8 @@ def test_what_would_come_out_otherwise_is_made_again(call, leg_file, tmp_path, c
         leg_file.write_bytes(leg_file.read_bytes() + b"\n")
     if change == "again":
         words += ["--again"]
+    if change == "version":
+        monkeypatch.setattr("solvers.command_line.batch.version", lambda: "99.0.0")
 
     _, said, _ = call(*words)
 

@@ -1,0 +1,55 @@
+"""Learn the residual prior that is shipped, from UI-PRMD (published as ODC-PDDL).
+
+    python .ci/train_residuals.py
+
+Vakanski, Jun, Paul, Baker (2018). A data set of human body movements for physical
+rehabilitation exercises. Data 3(1). doi:10.3390/data3010002
+"""
+
+import sys
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+
+ROOT = Path(__file__).resolve().parents[1]
+sys.path.insert(0, str(ROOT))
+
+from solvers.reconstruction import (  # noqa: E402
+    ResidualPrior,
+    ResidualPriorSettings,
+    learn_residual_prior,
+)
+from solvers.reconstruction.reconstruct import SHIPPED  # noqa: E402
+from tests.benchmarks.kinect_pairs import read_pairs  # noqa: E402
+
+SETTINGS = ResidualPriorSettings(local_points=30, whole_points=60)
+WORDS = "UI-PRMD: ten exercises by five actors, Kinect v2 against markers"
+
+
+def main() -> None:
+    """Learn from all takes and save where it is shipped, in single precision."""
+    pairs = list(read_pairs())
+    prior = learn_residual_prior(
+        [(pair.kinect, pair.truth) for pair in pairs],
+        actors=[pair.subject for pair in pairs],
+        settings=SETTINGS,
+        progress=lambda share, words: print(f"{share:4.0%} {words}", flush=True),
+    )
+    SHIPPED.parent.mkdir(exist_ok=True)
+    small(prior).save(SHIPPED)
+    print(f"{len(prior.joints)} joints, {SHIPPED.stat().st_size} bytes: {SHIPPED}")
+
+
+def small(prior: ResidualPrior) -> ResidualPrior:
+    """Return the same in single precision."""
+    names = ("usual", "components", "local_points", "whole_points", "means", "covariances")
+    return replace(
+        prior,
+        source=np.array(WORDS),
+        **{name: getattr(prior, name).astype(np.float32) for name in names},
+    )
+
+
+if __name__ == "__main__":
+    main()

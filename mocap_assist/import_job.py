@@ -1,0 +1,115 @@
+"""Files that are read in a process of its own and then come into the scene one by one."""
+
+from collections import deque
+from collections.abc import Iterable, Iterator
+from functools import partial
+from pathlib import Path
+
+import bpy
+
+from ..solvers.errors import MocapAssistError
+from .arrival import READING, Arrival
+from .import_choices import ImportChoices
+from .jobs.reading import Read, read_files
+from .recent_files import State, remember, state_of
+from .recording_objects import wanted_of
+from .watch import Watch
+
+BYTES_AT_ONCE = 64_000_000
+"""Of the files that are read before what they hold comes into the scene."""
+
+
+class ImportJob:
+    """One import; `step` is called now and then, and never works for long.
+
+    Parameters
+    ----------
+    context : bpy.types.Context
+        With a window, whose status bar tells how far the work is.
+    paths : files, at least one
+    choices : ImportChoices
+    """
+
+    def __init__(
+        self, context: bpy.types.Context, paths: list[Path], choices: ImportChoices
+    ) -> None:
+        self.arrival = Arrival(context, choices)
+        self._wanted = wanted_of(context, choices)
+        self._batches = deque(batches(paths))
+        self._n_files, self._n_read, self._n_in = len(paths), 0, 0
+        self._states: list[State] = []
+        self._read: deque[tuple[Path, State, Read | MocapAssistError]] = deque()
+        self.watch = Watch(context, self._next_batch())
+
+    def step(self, context: bpy.types.Context) -> bool:
+        """Do a little; return whether all is done, and nothing is shown any more."""
+        if self._read:
+            self._bring_in(context, *self._read.popleft())
+            self._n_in += 1
+        elif self.watch.job.done():
+            self._fetch()
+        if not (self._read or self._batches or self._n_in < self._n_files):
+            self.watch.end(context)
+            return True
+        self._show(context)
+        return False
+
+    def cancel(self, context: bpy.types.Context) -> None:
+        """Stop at once and leave the scene as it was."""
+        self.watch.abandon(context)
+        self.arrival.take_back(context)
+
+    def _next_batch(self) -> "partial[list[Read | MocapAssistError]]":
+        self._states = [state_of(path) for path in self._batches[0]]
+        return partial(read_files, self._batches[0], self._wanted)
+
+    def _fetch(self) -> None:
+        """Take over what was read, and let the next files be read meanwhile."""
+        paths = self._batches.popleft()
+        try:
+            found = self.watch.job.result()
+        except MocapAssistError as error:  # The process has died; nobody knows of which file.
+            found = [error] * len(paths)
+        self._read.extend(zip(paths, self._states, found, strict=True))
+        self._n_read += len(paths)
+        if self._batches:
+            self.watch.go_on(self._next_batch())
+
+    def _bring_in(
+        self,
+        context: bpy.types.Context,
+        path: Path,
+        state: State,
+        found: Read | MocapAssistError,
+    ) -> None:
+        if isinstance(found, MocapAssistError):
+            self.arrival.refuse(path, found)
+        else:
+            remember(path, state, found.recording)
+            self.arrival.add(context, path, found.recording, moving=found.moving)
+
+    def _show(self, context: bpy.types.Context) -> None:
+        fraction, message = 0.0, ""
+        if self._batches:
+            fraction, message = self.watch.job.progress()
+            fraction *= len(self._batches[0])
+        if self._read:
+            message = f"Bringing in {self._read[0][0].name}"
+        reading = READING * (self._n_read + fraction)
+        done = (reading + (1.0 - READING) * self._n_in) / self._n_files
+        self.watch.show(context, done, message)
+
+
+def batches(paths: Iterable[Path]) -> Iterator[list[Path]]:
+    """Part files into as many as are read at once: several small ones, or a large one."""
+    batch: list[Path] = []
+    room = BYTES_AT_ONCE
+    for path in paths:
+        size = path.stat().st_size if path.is_file() else 0
+        if batch and size > room:
+            yield batch
+            batch, room = [], BYTES_AT_ONCE
+        batch.append(path)
+        room -= size
+    if batch:
+        yield batch

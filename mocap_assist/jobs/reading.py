@@ -1,0 +1,97 @@
+"""What the button Import has done for it before anything comes into the scene."""
+
+from collections.abc import Sequence
+from dataclasses import replace
+from pathlib import Path
+from typing import NamedTuple
+
+from ...solvers.errors import InvalidFileError, MocapAssistError, SolveCancelled
+from ...solvers.motion import (
+    JointRecording,
+    Motion,
+    Skeleton,
+    Tracks,
+    motion_from_points,
+    resample,
+)
+from ...solvers.progress import Progress, unwatched
+from ...solvers.recordings import read_recording
+
+Recording = Motion | Tracks | JointRecording
+
+
+class Wanted(NamedTuple):
+    """How recordings come into the scene."""
+
+    armature: bool
+    """Whether joints of a camera become a skeleton's motion, where they hang together."""
+    scale: float
+    frame_rate: float | None
+    """Frames per second to resample to; None leaves each recording its own."""
+
+
+class Read(NamedTuple):
+    """What a file holds, and what is to be seen of it."""
+
+    recording: Recording
+    moving: Motion | Tracks
+
+
+def read_files(
+    paths: Sequence[Path], wanted: Wanted, *, progress: Progress = unwatched
+) -> list[Read | MocapAssistError]:
+    """Return what each file holds, or the error that says why it cannot come in."""
+    found: list[Read | MocapAssistError] = []
+    for path in paths:
+
+        def share(fraction: float, message: str = "", path: Path = path) -> None:
+            progress((len(found) + fraction) / len(paths), f"Reading {path.name}")
+
+        share(0.0)
+        try:
+            recording = read_recording(path, progress=share)
+            found.append(Read(recording, as_wanted(recording, wanted)))
+        except SolveCancelled:
+            raise
+        except MocapAssistError as error:
+            found.append(error)
+        except MemoryError:
+            found.append(
+                InvalidFileError(
+                    f"{path} needs more memory than there is. Import a part of the take."
+                )
+            )
+    return found
+
+
+def as_wanted(recording: Recording, wanted: Wanted) -> Motion | Tracks:
+    """Turn a recording into what moves as it does in the scene."""
+    moving = _scaled(_joined(recording, wanted.armature), wanted.scale)
+    return moving if wanted.frame_rate is None else resample(moving, wanted.frame_rate)
+
+
+def in_one_tree(recording: JointRecording) -> bool:
+    """Whether it is known which joint hangs on which, so that they can become an armature."""
+    return recording.parents.count(-1) == 1 < recording.n_joints
+
+
+def _joined(recording: Recording, armature: bool) -> Motion | Tracks:
+    """Turn the joints of a camera into a motion, where an armature is wanted and they hang
+    together; into points otherwise.
+    """
+    if not isinstance(recording, JointRecording):
+        return recording
+    if armature and in_one_tree(recording):
+        return motion_from_points(recording.tracks, recording.parents)
+    return recording.tracks
+
+
+def _scaled(recording: Motion | Tracks, factor: float) -> Motion | Tracks:
+    """Return the recording with all lengths so many times as long."""
+    if factor == 1.0:
+        return recording
+    if isinstance(recording, Tracks):
+        return recording.with_positions(factor * recording.positions)
+    skeleton = recording.skeleton
+    larger = Skeleton(skeleton.names, skeleton.parents, factor * skeleton.offsets)
+    return replace(recording, skeleton=larger, root_positions=factor * recording.root_positions)

@@ -1,0 +1,46 @@
+"""What must be as it was where an import fails: the selection, and the scene's time."""
+
+from typing import NamedTuple
+
+import bpy
+
+
+class SceneState(NamedTuple):
+    """By numbers, since undo replaces what Blender's own pointers mean."""
+
+    active: int | None
+    mode: str
+    """Of the active object."""
+    selected: frozenset[int]
+    fps: int
+    fps_base: float
+    frame_end: int
+
+    @classmethod
+    def of(cls, context: bpy.types.Context) -> "SceneState":
+        """Remember it."""
+        objects, scene = context.view_layer.objects, context.scene
+        active = objects.active
+        return cls(
+            active=None if active is None else active.session_uid,
+            mode="OBJECT" if active is None else active.mode,
+            selected=frozenset(each.session_uid for each in objects.selected),
+            fps=scene.render.fps,
+            fps_base=scene.render.fps_base,
+            frame_end=scene.frame_end,
+        )
+
+    def restore(self, context: bpy.types.Context) -> None:
+        """Bring it back, as far as the objects are still there."""
+        scene, objects = context.scene, context.view_layer.objects
+        scene.render.fps, scene.render.fps_base = self.fps, self.fps_base
+        scene.frame_end = self.frame_end
+        if SceneState.of(context) == self:
+            return
+        for each in objects:
+            if each.select_get() != (each.session_uid in self.selected):
+                each.select_set(each.session_uid in self.selected)
+        objects.active = next((o for o in objects if o.session_uid == self.active), None)
+        switch = bpy.ops.object.mode_set
+        if objects.active is not None and objects.active.mode != self.mode and switch.poll():
+            switch(mode=self.mode)

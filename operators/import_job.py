@@ -1,0 +1,17 @@
+"""The second half of the button Import, once it is known which files, and how."""
+
+from typing import ClassVar
+
+import bpy
+
+from ..mocap_assist.import_choices import ImportSettings
+from ..mocap_assist.import_operator import WaitingImport
+from ..mocap_assist.settings_properties import settings_from
+
+
+@settings_from(ImportSettings)
+class MOCAP_OT_import_job(WaitingImport, bpy.types.Operator):
+    bl_idname = "mocap_assist.import_job"
+    bl_label = "Import Motion Capture"
+    bl_description = "Read files in a process of its own and bring them into the scene"
+    bl_options: ClassVar = {"REGISTER", "UNDO", "INTERNAL"}

@@ -1,0 +1,163 @@
+"""Both ways together: postures of clean clips for what was lost, residuals for what is off."""
+
+from dataclasses import dataclass, replace
+from enum import Enum
+from functools import cache
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..motion import JointRecording, Tracks
+from ..progress import Progress, unwatched, within
+from ..settings import Settings, setting
+from .correct_postures import CorrectionMethod, CorrectionSettings, correct_postures
+from .follow_joints import follow_joints
+from .posture_library import PostureLibrary
+from .posture_settings import PostureSettings
+from .reconstruct_postures import reconstruct_postures
+from .reliability import measure_reliability
+from .reliability_settings import ReliabilitySettings
+from .residual_prior import ResidualPrior, load_residual_prior
+from .result import Reconstruction
+
+Array = NDArray[np.float64]
+
+SHIPPED = Path(__file__).parent / "models" / "residuals.npz"
+
+DOUBTED, LOST = 0.5, 0.2
+"""Joints that are trusted more than the first stay where they were seen; those trusted less
+than the second are where the postures say."""
+
+
+class ReconstructMethod(Enum):
+    """What poses are rebuilt with."""
+
+    BOTH = "both"
+    """Lost joints by postures of clean clips, then all by the residual prior."""
+    POSTURES = "postures"
+    """[SHJT13]: postures of clean clips alone."""
+    RESIDUALS = "residuals"
+    """[ZH14]: the residual prior alone; gaps are bridged smoothly."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class ReconstructSettings(Settings):
+    """How poses are rebuilt from a depth camera's joints."""
+
+    method: ReconstructMethod = setting(
+        ReconstructMethod.BOTH,
+        "Both rebuilds lost joints from clean postures and then takes out how the sensor errs;"
+        " the others do one of these alone",
+    )
+    smoothing: float = setting(
+        0.05, "Movements shorter than about this are jitter; higher is smoother and blunter",
+        unit="s", minimum=0.0, maximum=1.0,
+    )  # fmt: skip
+    n_neighbours: int = setting(
+        30, "Clean postures that each lost pose is made of; more vary more",
+        minimum=2, maximum=200,
+    )  # fmt: skip
+    causal: bool = setting(
+        False, "Use only what came before each frame, as a live system must; less smooth"
+    )
+    shift: bool = setting(
+        False, "Also move each joint by the offset that the prior's sensor always has, as from"
+        " the skin to the joint; for recordings of the very sensor that the prior learned",
+    )  # fmt: skip
+
+
+USUAL = ReconstructSettings()
+
+
+def reconstruct(
+    recording: JointRecording,
+    postures: PostureLibrary | None = None,
+    prior: ResidualPrior | None = None,
+    *,
+    settings: ReconstructSettings = USUAL,
+    progress: Progress = unwatched,
+) -> Reconstruction:
+    """Rebuild clean poses from what a depth camera's tracker saw.
+
+    Each joint's reliability is measured. What is not reliable is rebuilt from postures of clean
+    clips that are like the rest (`reconstruct_postures`); how the sensor errs in such postures
+    is taken out (`correct_postures`); and a skeleton of constant bone lengths follows.
+
+    Parameters
+    ----------
+    recording : JointRecording
+        15 to 32 joints of a body, among them the hips; NaN where not tracked.
+    postures : PostureLibrary, optional
+        The one that is shipped by default.
+    prior : ResidualPrior, optional
+        The one that is shipped by default.
+    settings : ReconstructSettings
+    progress : Progress
+
+    Returns
+    -------
+    Reconstruction
+
+    Raises
+    ------
+    InvalidMotionError
+        No body is recognised in the names, or hardly a joint was ever seen.
+    SolveCancelled
+        Raised by `progress`.
+    """
+    trust = measure_reliability(
+        recording,
+        settings=ReliabilitySettings(causal=settings.causal),
+        progress=within(progress, 0.0, 0.1),
+    )
+    if settings.method is ReconstructMethod.RESIDUALS:
+        return correct_postures(
+            recording,
+            prior or shipped_residual_prior(),
+            reliability=trust,
+            settings=_correction(settings),
+            progress=within(progress, 0.1, 1.0),
+        )
+    rebuilt = reconstruct_postures(
+        recording,
+        postures,
+        settings=PostureSettings(causal=settings.causal, n_neighbours=settings.n_neighbours),
+        reliability=trust,
+        progress=within(progress, 0.1, 0.7),
+    )
+    if settings.method is ReconstructMethod.POSTURES:
+        motion = follow_joints(rebuilt.tracks, recording.parents, rebuilt.confidence)
+        return replace(rebuilt, motion=motion)
+    lost = np.clip((DOUBTED - trust.combined) / (DOUBTED - LOST), 0.0, 1.0)
+    sure = np.maximum(trust.combined, lost * rebuilt.confidence)
+    corrected = correct_postures(
+        replace(recording, tracks=_blended(recording.tracks, rebuilt.tracks, lost)),
+        prior or shipped_residual_prior(),
+        reliability=replace(trust, combined=sure),
+        settings=_correction(settings),
+        progress=within(progress, 0.7, 1.0),
+    )
+    confidence = np.minimum(corrected.confidence, np.maximum(1.0 - lost, rebuilt.confidence))
+    return Reconstruction(
+        corrected.tracks, corrected.motion, trust, confidence,
+        f"{rebuilt.method}; {corrected.method}",
+    )  # fmt: skip
+
+
+def _blended(seen: Tracks, rebuilt: Tracks, lost: Array) -> Tracks:
+    """Return joints where they were seen, and where they were lost as postures have them."""
+    share = np.where(seen.visible, lost, 1.0)[..., None]
+    places = np.where(seen.visible[..., None], seen.positions, 0.0)
+    return seen.with_positions(share * rebuilt.positions + (1.0 - share) * places)
+
+
+def _correction(settings: ReconstructSettings) -> CorrectionSettings:
+    method = CorrectionMethod.PUBLISHED if settings.causal else CorrectionMethod.WHOLE_TAKE
+    return CorrectionSettings(method=method, smoothing=settings.smoothing, shift=settings.shift)
+
+
+@cache
+def shipped_residual_prior() -> ResidualPrior:
+    """Return the prior that is shipped: a Kinect v2 against markers (UI-PRMD, ODC-PDDL)."""
+    return load_residual_prior(SHIPPED)

@@ -1,0 +1,14 @@
+"""Which version this is."""
+
+import tomllib
+from functools import cache
+from pathlib import Path
+
+
+@cache
+def version() -> str:
+    """Return the extension's version, which stands in its manifest alone; empty without one."""
+    manifest = Path(__file__).parents[1] / "blender_manifest.toml"
+    if not manifest.is_file():
+        return ""
+    return str(tomllib.loads(manifest.read_text(encoding="utf-8"))["version"])

@@ -1,0 +1,293 @@
+"""Import from a window: files are read in a process of its own; here Blender pretends to."""
+
+import tempfile
+import time
+from pathlib import Path
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+
+WALK = "07_01.bvh"
+
+
+@pytest.fixture(autouse=True)
+def own_temporary_folder(tmp_path, monkeypatch):
+    """Others that solve on this machine at the same time leave their folders elsewhere."""
+    (tmp_path / "jobs").mkdir()
+    monkeypatch.setattr(tempfile, "tempdir", str(tmp_path / "jobs"))
+
+
+@pytest.fixture
+def walk(recordings, tmp_path):
+    """Three files of a folder of their own: two walks, and between them one that is cut."""
+    content = (recordings / "mocap" / "cmu_walk" / WALK).read_bytes()
+    for name in ("first.bvh", "second.bvh"):
+        (tmp_path / name).write_bytes(content)
+    (tmp_path / "cut.bvh").write_bytes(content[:9000])
+    return tmp_path
+
+
+@pytest.fixture
+def window(blank):
+    """The context that an operator gets in one, and what it does to it."""
+    seen = SimpleNamespace(timers=[], status=[], reports=[])
+    seen.job = blank.context.window_manager.mocap_assist_job
+    seen.context = SimpleNamespace(
+        scene=blank.context.scene,
+        view_layer=blank.context.view_layer,
+        window=None,
+        window_manager=SimpleNamespace(
+            event_timer_add=lambda *_, **__: seen.timers.append("timer") or "timer",
+            event_timer_remove=seen.timers.remove,
+            modal_handler_add=lambda _: None,
+            mocap_assist_job=seen.job,
+            windows=[],
+        ),
+        workspace=SimpleNamespace(status_text_set=seen.status.append),
+    )
+    return seen
+
+
+@pytest.fixture
+def press(load, window, walk):
+    """Import files of the folder; return the operator, which waits."""
+    choices = load("mocap_assist.import_choices")
+    module = load("mocap_assist.import_operator")
+
+    def start(*names, **chosen):
+        class Operator(module.WaitingImport):
+            directory, filepath = str(walk), ""
+            files = tuple(SimpleNamespace(name=name) for name in names)
+            poll_message_set = window.reports.append
+
+            def settings(self):
+                return choices.ImportSettings(choices.ImportChoices(**chosen))
+
+            def report(self, kind, message):
+                window.reports.append((kind, message))
+
+        operator = Operator()
+        assert operator.invoke(window.context, None) == {"RUNNING_MODAL"}
+        return operator
+
+    return start
+
+
+def event(kind, value="NOTHING"):
+    return SimpleNamespace(type=kind, value=value)
+
+
+def wait(operator, window, until=lambda: False):
+    """Let time pass until the operator ends, or something has happened."""
+    while not until():
+        outcome = operator.modal(window.context, event("TIMER"))
+        if outcome != {"RUNNING_MODAL"}:
+            return outcome
+        time.sleep(0.02)
+    return None
+
+
+@pytest.fixture
+def everything(blank):
+    """What an import that comes to nothing must leave as it was."""
+
+    def look():
+        view, scene = blank.context.view_layer, blank.context.scene
+        kinds = (blank.data.objects, blank.data.armatures, blank.data.actions)
+        active = view.objects.active
+        return (
+            *(sorted(each.name for each in kind) for kind in kinds),
+            sorted(each.name for each in view.objects.selected),
+            active and (active.name, active.mode),
+            (scene.render.fps, scene.render.fps_base, scene.frame_end),
+        )
+
+    return look
+
+
+@pytest.fixture
+def posing(blank, bring, walk):
+    """An animator poses one armature; another is selected too."""
+    other, active = bring(walk / "second.bvh"), bring(walk / "first.bvh")
+    other.select_set(True)
+    blank.context.view_layer.objects.active = active
+    blank.ops.object.mode_set(mode="POSE")
+    return active
+
+
+def nothing_is_left(window):
+    jobs = list(Path(tempfile.gettempdir()).iterdir())
+    return not (jobs or window.timers or window.job.running) and window.status[-1] is None
+
+
+@pytest.mark.parametrize("key", ["ESC", "RIGHTMOUSE"])
+def test_escape_while_files_are_read_leaves_all_as_it_was(
+    posing, press, window, everything, key
+):
+    before = everything()
+    operator = press("first.bvh", "second.bvh")
+
+    assert window.job.running and window.status[-1] == "Starting 0%   Esc: cancel"
+    assert operator.modal(window.context, event("LEFTMOUSE", "PRESS")) == {"RUNNING_MODAL"}
+    assert operator.modal(window.context, event(key, "PRESS")) == {"CANCELLED"}
+
+    assert everything() == before
+    assert nothing_is_left(window)
+    assert window.reports == [({"INFO"}, "Cancelled.")]
+
+
+def test_escape_after_the_first_has_come_in_takes_it_back(
+    posing, press, window, everything, load, blank
+):
+    before = everything()
+    update = load("mocap_assist.scene.scene_rate").FrameRate.UPDATE
+    operator = press("first.bvh", "second.bvh", frame_rate=update, update_scene_duration=True)
+
+    wait(operator, window, until=lambda: len(blank.data.objects) > len(before[0]))
+    assert everything()[-1] != before[-1]
+    assert window.status[-1].startswith("Bringing in second.bvh")
+    assert operator.modal(window.context, event("ESC", "PRESS")) == {"CANCELLED"}
+
+    assert everything() == before
+    assert nothing_is_left(window)
+
+
+@pytest.mark.parametrize("bytes_at_once", [1, 64_000_000])
+def test_all_that_can_be_read_comes_in(press, window, load, monkeypatch, blank, bytes_at_once):
+    monkeypatch.setattr(load("mocap_assist.import_job"), "BYTES_AT_ONCE", bytes_at_once)
+    operator = press("first.bvh", "cut.bvh", "second.bvh")
+
+    assert wait(operator, window) == {"FINISHED"}
+
+    assert sorted(blank.data.objects.keys()) == ["first", "second"]
+    assert sorted(each.name for each in blank.context.view_layer.objects.selected) == [
+        "first",
+        "second",
+    ]
+    ((kind, said),) = window.reports
+    assert kind == {"ERROR"}
+    assert said.startswith("1 of 3 files failed.") and "cut.bvh" in said
+    assert operator.note.startswith("first: an armature of 31 bones, 317 frames at 120 Hz.")
+    assert nothing_is_left(window)
+    told = [float(text.split("%")[0].split()[-1]) for text in window.status if text]
+    assert told == sorted(told)
+    assert any(text and text.startswith("Reading ") for text in window.status)
+
+
+@pytest.mark.parametrize("joints", [False, True])
+@pytest.mark.parametrize("chosen", [{}, {"frame_rate": "RESAMPLE", "global_scale": 2.0}])
+def test_it_is_what_a_script_gets(
+    chosen, joints, press, window, bring, walk, blank, poses, load, recordings
+):
+    if joints:
+        take = recordings / "kinect" / "irds" / "215_18_5_8_1_stand.txt"
+        (walk / "first.bvh").write_bytes(take.read_bytes())
+    expected = poses(bring(walk / "first.bvh", **chosen), [1, 30])
+    blank.data.objects.remove(blank.context.object)
+    if chosen:
+        rates = load("mocap_assist.scene.scene_rate").FrameRate
+        chosen = chosen | {"frame_rate": rates[chosen["frame_rate"]]}
+
+    wait(press("first.bvh", **chosen), window)
+
+    found = poses(blank.context.view_layer.objects.active, [1, 30])
+    assert found.keys() == expected.keys()
+    for name, matrices in expected.items():
+        np.testing.assert_array_equal(found[name], matrices)
+
+
+def test_the_redo_panel_need_not_read_again(press, window, load, walk, monkeypatch, blank):
+    operator = press("first.bvh")
+    wait(operator, window)
+
+    def fail(*_, **__):
+        raise AssertionError("It was read again.")
+
+    monkeypatch.setattr(load("mocap_assist.recent_files"), "read_recording", fail)
+    operator.execute(blank.context)
+
+    assert len(blank.data.objects) == 2
+
+
+def test_a_reader_that_dies_takes_nothing_along(posing, press, window, everything):
+    before = everything()
+    operator = press("first.bvh", "second.bvh")
+
+    operator._job.watch.job._process.kill()
+
+    assert wait(operator, window) == {"CANCELLED"}
+    ((kind, said),) = window.reports
+    assert kind == {"ERROR"} and "ended early" in said
+    assert everything() == before
+    assert nothing_is_left(window)
+
+
+def test_closing_the_window_ends_it(posing, press, window, everything):
+    before = everything()
+    operator = press("first.bvh")
+
+    operator.cancel(window.context)
+    operator.cancel(window.context)
+
+    assert everything() == before
+    assert nothing_is_left(window)
+
+
+def test_what_goes_wrong_unforeseen_leaves_no_watch(
+    press, window, everything, load, monkeypatch
+):
+    before = everything()
+
+    def fail(*_, **__):
+        raise ZeroDivisionError
+
+    monkeypatch.setattr(load("mocap_assist.arrival"), "make_objects", fail)
+    operator = press("first.bvh")
+    with pytest.raises(ZeroDivisionError):
+        wait(operator, window)
+
+    assert everything() == before
+    assert nothing_is_left(window)
+
+
+def test_one_at_a_time(press, window, blank):
+    operator = press("first.bvh")
+
+    assert not blank.ops.mocap_assist.import_recording.poll()
+    operator.modal(window.context, event("ESC", "PRESS"))
+    assert blank.ops.mocap_assist.import_recording.poll()
+
+
+@pytest.mark.parametrize("fault", ["cut", "half way"])
+def test_a_script_too_keeps_pose_mode_and_selection_where_all_fails(
+    posing, everything, walk, blank, load, monkeypatch, fault
+):
+    before = everything()
+    if fault == "half way":
+        errors = load("solvers.errors")
+
+        def fail(*_, **__):
+            raise errors.InvalidMotionError("Half way.")
+
+        monkeypatch.setattr(load("mocap_assist.recording_objects"), "write_motion", fail)
+    name = "cut.bvh" if fault == "cut" else "first.bvh"
+
+    with pytest.raises(RuntimeError, match=name):
+        blank.ops.mocap_assist.import_recording(filepath=str(walk / name))
+
+    assert everything() == before
+
+
+def test_the_dialog_does_not_wait_for_a_large_file(load, walk, monkeypatch, blank):
+    importing = load("mocap_assist.importing")
+    small = importing.preview(blank.context, [walk / "first.bvh"])
+    monkeypatch.setattr(importing, "QUICKLY_READ", 1000)
+    monkeypatch.setattr(importing, "read_again", None)
+    blank.context.scene.render.fps = 24
+
+    large = importing.preview(blank.context, [walk / "first.bvh"])
+
+    assert small == "first.bvh: 317 frames at 120 Hz; the scene plays 24 frames per second"
+    assert large == "first.bvh: 0 MB; the scene plays 24 frames per second"
+    assert "cannot be read" in importing.preview(blank.context, [walk / "gone.bvh"])

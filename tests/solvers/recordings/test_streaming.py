@@ -1,0 +1,182 @@
+"""Large text files are read block by block; where the borders fall must not be seen."""
+
+import tracemalloc
+from itertools import chain, pairwise
+
+import numpy as np
+import pytest
+from damage import damaged, searching
+from hypothesis import given
+from hypothesis import strategies as st
+from whole_files import JOINT_FILES, JOINT_TOKENS, SKELETON, TOKENS, WHOLE
+
+from solvers.errors import InvalidFileError, InvalidMotionError
+from solvers.motion import JointRecording, Motion
+from solvers.recordings import (
+    acclaim,
+    line_reader,
+    read_acclaim,
+    read_bvh,
+    read_joint_csv,
+    read_trc,
+    trc,
+)
+from solvers.recordings.growing_table import GrowingTable
+from solvers.recordings.line_reader import Block, LineReader
+
+FILES = {
+    "bvh": (read_bvh, WHOLE["bvh"], TOKENS),
+    "trc": (read_trc, WHOLE["trc"], TOKENS),
+    "amc": (read_acclaim, WHOLE["amc"], TOKENS),
+} | {
+    kind: (*JOINT_FILES[kind], JOINT_TOKENS)
+    for kind in (
+        "csv", "csv with times", "kinect table", "kinect table with times", "azure lines",
+        "azure columns",
+    )
+}  # fmt: skip
+ENDS = {"unix": b"\n", "windows": b"\r\n", "old mac": b"\r"}
+
+
+@pytest.fixture
+def said(tmp_path, monkeypatch):
+    """What a reader makes of some bytes, in blocks of a size: figures, or its sentence."""
+    (tmp_path / "take.asf").write_bytes(SKELETON)
+    path = tmp_path / "take.amc"
+    monkeypatch.setattr(acclaim, "LINES_OF_HEAD", 3)  # else a small file is all head
+    monkeypatch.setattr(trc, "FIRST_LINES", 8)
+
+    def tell(read, content, size):
+        monkeypatch.setattr(line_reader, "BLOCK", size)
+        path.write_bytes(content)
+        try:
+            return figures(read(path))
+        except (InvalidFileError, InvalidMotionError) as error:
+            return str(error)
+
+    return tell
+
+
+def figures(recording):
+    """All that a recording holds, so that equal ones can be told by ==."""
+    if isinstance(recording, Motion):
+        skeleton = recording.skeleton
+        arrays = (skeleton.offsets, recording.rotations, recording.root_positions)
+        return (skeleton.names, recording.frame_rate, *map(np.ndarray.tobytes, arrays))
+    tracks = recording.tracks if isinstance(recording, JointRecording) else recording
+    return (tracks.names, tracks.frame_rate, np.ascontiguousarray(tracks.positions).tobytes())
+
+
+@pytest.mark.parametrize("end", ENDS)
+@pytest.mark.parametrize("kind", FILES)
+def test_a_border_within_any_number_or_line_end_is_not_seen(kind, end, said):
+    read, whole, _ = FILES[kind]
+    if kind.startswith("kinect"):
+        whole = whole.replace(b"\r\n", b"\n")
+    whole = b"\n".join(whole.splitlines()[:60]).replace(b"\n", ENDS[end])
+    expected = said(read, whole, len(whole) + 1)
+    assert not isinstance(expected, str)
+
+    for size in range(1, 40):
+        assert said(read, whole, size) == expected
+
+
+@pytest.mark.parametrize("kind", FILES)
+def test_damaged_files_are_refused_in_the_same_words_wherever_the_borders_are(kind, said):
+    read, whole, tokens = FILES[kind]
+
+    @searching(40)
+    @given(damaged(whole, tokens), st.integers(1, 200))
+    def search(content, size):
+        one, other = said(read, content, size), said(read, content, 1 << 22)
+        if kind == "amc" and isinstance(one, str):  # of two faults it may tell the second
+            one = other if isinstance(other, str) else one
+        assert one == other
+
+    search()
+
+
+@pytest.mark.parametrize("size", [1, 30, 1 << 22])
+def test_of_two_lines_about_a_bone_in_one_frame_the_later_counts(size, said):
+    whole = WHOLE["amc"]
+    twice = whole.replace(b"thigh 5 2 3\n", b"thigh 80 8 8\nshank 4\nthigh 5 2 3\n")
+    assert twice != whole
+
+    assert said(read_acclaim, twice, size) == said(read_acclaim, whole, size)
+
+
+@given(st.lists(st.sampled_from([b"a", b"\n", b"\r", b"\r\n", b"12 "])), st.integers(1, 5))
+def test_lines_are_those_of_splitlines(tmp_path_factory, words, size):
+    content = b"".join(words)
+    path = tmp_path_factory.mktemp("lines") / "file"
+    path.write_bytes(content)
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(line_reader, "BLOCK", size)
+        reader = LineReader(path)
+        assert reader.peek(2) == content.splitlines()[:2]
+        head = reader.take(1)
+        blocks = list(reader.rest())
+
+    assert head + [line for block in blocks for line in block.lines] == content.splitlines()
+    numbers = [block.first + at for block in blocks for at in range(len(block.lines))]
+    assert numbers == list(range(2, 2 + len(numbers)))
+    shares = [share for block in blocks for share in (block.start, block.stop)]
+    assert shares == sorted(shares) and all(share <= 1.0 for share in shares)
+
+
+def test_parts_of_a_block_count_on():
+    block = Block(11, [b"long line of words", b"b", b"", b"d", b"e"], 0.2, 0.6)
+
+    parts = list(block.parts(2))
+
+    assert [part.first for part in parts] == [11, 13, 15]
+    assert list(chain(*(part.lines for part in parts))) == block.lines
+    assert parts[0].start == 0.2 and parts[-1].stop == pytest.approx(0.6)
+    assert all(one.stop == other.start for one, other in pairwise(parts))
+    assert parts[0].stop > 0.4, "by bytes, not by lines"
+
+
+def test_a_line_that_never_ends_is_refused(tmp_path, monkeypatch):
+    monkeypatch.setattr(line_reader, "LONGEST_LINE", 1 << 20)
+    monkeypatch.setattr(line_reader, "BLOCK", 1 << 16)
+    path = tmp_path / "take.csv"
+    path.write_bytes(b"mocap-assist-joints,1\n" + b"x" * (5 << 20))
+
+    with pytest.raises(InvalidFileError, match="a line of more than 1 MB"):
+        read_joint_csv(path)
+
+
+@pytest.mark.parametrize("share", [0.0, 0.01, 0.5, 1.0])
+def test_a_table_holds_what_was_added_whatever_was_foretold(share, rng):
+    blocks = [rng.normal(size=(n_rows, 3)) for n_rows in (1, 0, 7, 300, 2)]
+    table = GrowingTable(3)
+
+    for block in blocks:
+        table.add(block, share)
+
+    np.testing.assert_array_equal(table.rows(), np.concatenate(blocks))
+
+
+def test_an_empty_table_has_its_width():
+    assert GrowingTable(4).rows().shape == (0, 4)
+
+
+@pytest.mark.parametrize("kind", ["bvh", "trc", "amc", "csv"])
+def test_the_text_is_never_whole_in_memory(kind, tmp_path, monkeypatch):
+    """Beside three times the numbers, which the readers work on, stands only a block."""
+    read, whole, _ = FILES[kind]
+    monkeypatch.setattr(line_reader, "BLOCK", 1 << 16)
+    (tmp_path / "take.asf").write_bytes(SKELETON)
+    path = tmp_path / "take.amc"
+    lines = whole.splitlines(keepends=True)
+    n_frame, blanks = (4 if kind == "amc" else 1), b" " * 1000
+    frames = [line.rstrip() + blanks + b"\n" for line in lines[-6 * n_frame :]]
+    path.write_bytes(b"".join(lines[: -6 * n_frame]) + b"".join(frames) * 1500)
+
+    tracemalloc.start()
+    recording = read(path)
+    peak = tracemalloc.get_traced_memory()[1]
+    tracemalloc.stop()
+
+    assert recording.n_frames >= 6 * 1500
+    assert path.stat().st_size > 9e6 > peak
