@@ -6,6 +6,7 @@ import bpy
 
 from ..solvers.errors import InvalidMotionError
 from ..solvers.motion import Motion
+from ..solvers.recordings import recordings_in
 from .clean_choices import CleanChoices, Prior
 from .jobs.cleaning import Examples
 from .scene import compat
@@ -43,13 +44,23 @@ def read_examples(scene: bpy.types.Scene, armature: bpy.types.Object, listed: st
         )
     actions = [name for name in names if name in bpy.data.actions]
     files = [bpy.path.abspath(name) for name in names if name not in actions]
-    missing = [path for path in files if not Path(path).is_file()]
+    missing = [path for path in files if not Path(path).exists()]
     if missing:
         raise InvalidMotionError(
             f"There is neither an action nor a file called {', '.join(missing)}."
         )
+    files = [str(file) for path in files for file in _recordings_of(Path(path))]
     motions = [_read_action(scene, armature, bpy.data.actions[name]) for name in actions]
     return Examples(motions=tuple(motions), files=tuple(files))
+
+
+def _recordings_of(path: Path) -> list[Path]:
+    """Return a file, or all recordings in a folder and below."""
+    if not path.is_dir():
+        return [path]
+    if not (found := list(recordings_in(path))):
+        raise InvalidMotionError(f"There is no recording in the folder {path}.")
+    return found
 
 
 def _read_action(

@@ -1,6 +1,7 @@
 """What the button Reconstruct reads from the scene, and what it writes back."""
 
 from functools import partial
+from pathlib import Path
 from typing import Any, NamedTuple
 
 import bpy
@@ -11,7 +12,7 @@ from ..solvers.errors import InvalidMotionError
 from ..solvers.motion import Motion
 from . import redo
 from .clean_report import figures
-from .cleaning import UNSURE, ease_of
+from .cleaning import ease_of
 from .examples import read_examples
 from .jobs.job import Quick
 from .jobs.reconstructing import RebuildFinish, RebuildProblem, Rebuilt, rebuild
@@ -22,6 +23,7 @@ from .scene.armature_write import check_writable, count_modified, put_to_use, wr
 from .scene.compat import Source
 from .scene.contacts import animators_contacts, write_contacts
 from .scene.curves import GENERATED, MEASURED
+from .scene.origin import origin_of
 from .scene.reliability_curves import write_reliability
 from .scene.sensor_words import read_states
 from .scene.take import ArmatureTake
@@ -29,8 +31,6 @@ from .selection import played_source, selected_armature, why_not_clean
 from .subject import check_unchanged
 
 SUFFIX = ".reconstructed"
-N_TRUSTED = 0.5
-"""Reliability below which a joint counts as lost in what is said of the result."""
 
 
 class _Reading(NamedTuple):
@@ -132,14 +132,23 @@ def _problem(
         examples = read_examples(scene, armature, settings.choices.examples)
     state = read_states(found.recorded, body.skeleton.names, found.take.frames)
     return RebuildProblem(
-        body=body, tracking_state=state, settings=settings.rebuilding, examples=examples
+        body=body,
+        tracking_state=state,
+        source=_file_of(found.recorded[0]),
+        settings=settings.rebuilding,
+        examples=examples,
     )
 
 
+def _file_of(action: bpy.types.Action) -> tuple[str, int] | None:
+    """Return the file that an action was imported from, and its date."""
+    path = Path(bpy.path.abspath(str(origin_of(action).get("file", ""))))
+    return (str(path), path.stat().st_mtime_ns) if path.is_file() else None
+
+
 def _key_types(names: tuple[str, ...], rebuilt: Rebuilt) -> dict[str, NDArray[np.uint8]]:
-    """Paint the keys of joints that the result is not sure of."""
-    unsure = rebuilt.solution.confidence < UNSURE  # never where it is not known
-    painted = np.where(unsure, GENERATED, MEASURED).astype(np.uint8)
+    """Paint the keys of joints that were rebuilt."""
+    painted = np.where(rebuilt.solution.rebuilt, GENERATED, MEASURED).astype(np.uint8)
     return dict(zip(names, painted.T, strict=True))
 
 
@@ -149,31 +158,26 @@ def _entry(settings: ReconstructBundle, rebuilt: Rebuilt) -> dict[str, Any]:
         "operation": "reconstruct",
         "settings": history.plain(*settings),
         "method": rebuilt.solution.method,
-        "lost_share": _lost(rebuilt),
+        "rebuilt_share": rebuilt.solution.rebuilt_share,
         "remarks": list(rebuilt.remarks),
         "before": figures(rebuilt.before),
         "after": figures(rebuilt.after),
     }
 
 
-def _lost(rebuilt: Rebuilt) -> float:
-    """Return the share of joints and frames that were not trusted."""
-    known = np.isfinite(rebuilt.solution.reliability)
-    return float((rebuilt.solution.reliability[known] < N_TRUSTED).mean())
-
-
 def _said(name: str, rebuilt: Rebuilt, n_modified: int) -> str:
     n_frames = rebuilt.motion.n_frames
     said = [
-        f"{name}: {n_frames} frames; {100 * _lost(rebuilt):.1f} % of the joints could not be"
-        " trusted and were rebuilt."
+        f"{name}: {n_frames} frames; {100 * rebuilt.solution.rebuilt_share:.1f} % of the joints"
+        " were lost or wrong, and are rebuilt."
     ]
     if rebuilt.planted is not None:
         said.append(
             f"Feet slid {100 * rebuilt.planted.slide_before:.1f} cm, now"
             f" {100 * rebuilt.planted.slide_after:.1f} cm."
         )
-    said += [rebuilt.solution.method.rstrip(".") + "."] if rebuilt.solution.method else []
+    if method := rebuilt.solution.method.rstrip("."):
+        said.append(f"{method[0].upper()}{method[1:]}.")
     said += rebuilt.remarks
     if n_modified:
         said.append(f"The modifiers of {n_modified} curves are part of the new keys now.")

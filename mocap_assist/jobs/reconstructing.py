@@ -15,11 +15,14 @@ from ...solvers.denoising import (
     Quality,
     measure_quality,
 )
-from ...solvers.motion import Motion
+from ...solvers.errors import MocapAssistError
+from ...solvers.motion import JointRecording, Motion
 from ...solvers.progress import Progress, unwatched, within
+from ...solvers.recordings import read_motion_or_tracks, read_recording
 from ...solvers.workflows import (
     RebuiltMotion,
     ReconstructSettings,
+    postures_of,
     reconstruct_motion,
     try_to_plant,
 )
@@ -35,6 +38,8 @@ class RebuildProblem:
     body: Motion
     tracking_state: NDArray[np.int8] | None
     """What the sensor said of each joint, shape (n_frames, n_joints)."""
+    source: tuple[str, int] | None
+    """The file that the take was imported from, if it is there, and its date."""
     settings: ReconstructSettings
     examples: Examples | None
     """Clips of natural postures; None for those that are shipped."""
@@ -67,12 +72,29 @@ class Rebuilt:
 
 def solve(problem: RebuildProblem, *, progress: Progress = unwatched) -> RebuiltMotion:
     """Rebuild the poses of the body."""
+    postures = None
+    if problem.examples is not None:
+        clips = [*problem.examples.motions, *map(read_motion_or_tracks, problem.examples.files)]
+        postures = postures_of(clips, progress=within(progress, 0.0, 0.2))
     return reconstruct_motion(
         problem.body,
+        postures,
+        source=_source(problem),
         tracking_state=problem.tracking_state,
         settings=problem.settings,
-        progress=progress,
+        progress=within(progress, 0.0 if postures is None else 0.2, 1.0),
     )
+
+
+def _source(problem: RebuildProblem) -> JointRecording | None:
+    """Return the recording of a take, if its file is still there and readable."""
+    if problem.source is None:
+        return None
+    try:
+        recording = read_recording(problem.source[0])
+    except MocapAssistError:
+        return None
+    return recording if isinstance(recording, JointRecording) else None
 
 
 def rebuild(

@@ -38,7 +38,8 @@ def draw_examples(
         row = layout.row(align=True)
         action = name in bpy.data.actions
         shown = name if action else Path(name).name
-        row.label(text=shown, icon="ACTION" if action else "FILE", translate=False)
+        icon = "ACTION" if action else "FILE" if Path(name).suffix else "FILE_FOLDER"
+        row.label(text=shown, icon=icon, translate=False)
         button = row.operator(REMOVE, text="", icon="X", emboss=False)
         button.index, button.group = index, group
     layout.menu(MENUS[group], icon="ADD")
@@ -63,24 +64,27 @@ class MOCAP_MT_examples(bpy.types.Menu):
     """Actions of this file, and recordings on disk."""
 
     bl_label = "Add Example"
-    group: ClassVar[str] = CLEAN
 
     def draw(self, context: bpy.types.Context) -> None:
-        layout = self.layout
-        for name in candidates(context, self.group)[:LONGEST_MENU]:
-            button = layout.operator(ADD, text=name, translate=False, icon="ACTION")
-            button.example, button.group = name, self.group
-        layout.separator()
-        layout.operator(ADD_FILES, icon="FILE_FOLDER").group = self.group
-        if self.group == RECONSTRUCT:
-            layout.operator(ADD_FOLDER, icon="FILE_FOLDER").group = self.group
+        _draw_menu(self.layout, context, CLEAN)
 
 
-class MOCAP_MT_posture_examples(MOCAP_MT_examples):
+class MOCAP_MT_posture_examples(bpy.types.Menu):
     """The same, of which postures are learned."""
 
     bl_label = "Add Clip"
-    group: ClassVar[str] = RECONSTRUCT
+
+    def draw(self, context: bpy.types.Context) -> None:
+        _draw_menu(self.layout, context, RECONSTRUCT)
+
+
+def _draw_menu(layout: bpy.types.UILayout, context: bpy.types.Context, group: str) -> None:
+    for name in candidates(context, group)[:LONGEST_MENU]:
+        button = layout.operator(ADD, text=name, translate=False, icon="ACTION")
+        button.example, button.group = name, group
+    layout.separator()
+    layout.operator(ADD_FILES, icon="FILE_FOLDER").group = group
+    layout.operator(ADD_FOLDER, icon="FILE_FOLDER").group = group
 
 
 MENUS = {CLEAN: "MOCAP_MT_examples", RECONSTRUCT: "MOCAP_MT_posture_examples"}

@@ -11,7 +11,7 @@ from ..scene.heat import Heat, heat_at
 from ..scene.overlay_drawing import refresh
 from .preferences import preferred
 
-WIDER = 2.5
+WIDER = 2.0
 """Times as wide as the lines of the overlay, for they lie upon the bones."""
 _handle: list[Any] = []
 

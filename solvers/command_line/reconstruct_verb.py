@@ -10,19 +10,18 @@ from ..denoising import Planted, PlantSettings, compare_quality, measure_quality
 from ..errors import InvalidMotionError
 from ..motion import JointRecording, Motion, Sensor, Tracks
 from ..progress import Progress, within
+from ..reconstruction.posture_library import PostureLibrary
 from ..recordings import read_recording, write_joint_csv
 from ..workflows import (
     ReconstructSettings,
+    postures_of,
     reconstruct_motion,
     reconstruct_recording,
     try_to_plant,
 )
-from .files import JOINTS, add_reading_options, write
+from .files import JOINTS, add_reading_options, read_all, write
 from .options import arguments_from, settings_from_arguments
 from .verb import Outcome, Task
-
-LOST = 0.5
-"""Reliability below which a joint is told as lost."""
 
 
 class Rebuilt(NamedTuple):
@@ -30,8 +29,8 @@ class Rebuilt(NamedTuple):
 
     motion: Motion
     joints: JointRecording | None
-    lost: float
-    """Share of joints and frames that were not trusted."""
+    share: float
+    """Of the joints and frames that were rebuilt."""
     method: str
     remarks: tuple[str, ...]
     slide: tuple[float, float] | None
@@ -41,6 +40,11 @@ class Rebuilt(NamedTuple):
 def add_reconstruct_options(parser: argparse.ArgumentParser) -> None:
     """Add the options of `reconstruct`."""
     add_reading_options(parser)
+    parser.add_argument(
+        "--train", nargs="+", type=Path, default=[], metavar="FILE",
+        help="Clean clips of skeletons, or folders of them, to learn postures from; without"
+        " them those that come with Mocap Assist guide",
+    )  # fmt: skip
     parser.add_argument(
         "--joints", action="store_true",
         help="With --output-folder: write joints as .csv, with the confidence of each, in the"
@@ -56,12 +60,22 @@ def add_reconstruct_options(parser: argparse.ArgumentParser) -> None:
         arguments_from(parser.add_argument_group(title), settings)
 
 
-def perform_reconstruct(task: Task, prepared: None, progress: Progress) -> Outcome:
+def learn_postures(arguments: argparse.Namespace, progress: Progress) -> PostureLibrary | None:
+    """Learn, once for all files of a run, the postures that guide; None for those shipped."""
+    if not arguments.train:
+        return None
+    clips = read_all(arguments.train, arguments, within(progress, 0.0, 0.7))
+    return postures_of(clips, progress=within(progress, 0.7, 1.0))
+
+
+def perform_reconstruct(
+    task: Task, prepared: PostureLibrary | None, progress: Progress
+) -> Outcome:
     """Reconstruct one recording and write it; tell what was lost, and the quality."""
     given = read_recording(
         task.source, scale=task.arguments.scale, progress=within(progress, 0.0, 0.1)
     )
-    rebuilt = _rebuilt(given, task, within(progress, 0.1, 0.8))
+    rebuilt = _rebuilt(given, task, prepared, within(progress, 0.1, 0.8))
     assert task.target is not None
     if task.target.suffix.lower() != JOINTS:
         write(rebuilt.motion, task.target, within(progress, 0.9, 1.0))
@@ -74,21 +88,22 @@ def perform_reconstruct(task: Task, prepared: None, progress: Progress) -> Outco
     return _outcome(given, rebuilt)
 
 
-def _rebuilt(given: Any, task: Task, progress: Progress) -> Rebuilt:
+def _rebuilt(
+    given: Any, task: Task, postures: PostureLibrary | None, progress: Progress
+) -> Rebuilt:
     settings = settings_from_arguments(task.arguments, ReconstructSettings)
     feet = task.arguments.feet
     planting = settings_from_arguments(task.arguments, PlantSettings) if feet else None
     if isinstance(given, Motion):
-        whole = reconstruct_motion(given, settings=settings, progress=progress)
-        known = np.isfinite(whole.reliability)
-        lost = float((whole.reliability[known] < LOST).mean())
+        whole = reconstruct_motion(given, postures, settings=settings, progress=progress)
         footing = try_to_plant(whole.motion, planting)
         remarks = (*whole.remarks, *footing.remarks)
         slide = _slide(footing.planted)
-        return Rebuilt(footing.motion, None, lost, whole.method, remarks, slide)
+        return Rebuilt(footing.motion, None, whole.rebuilt_share, whole.method, remarks, slide)
     recording = _joints_of(given, task.source)
     found = reconstruct_recording(
         recording,
+        postures,
         settings=settings,
         planting=planting,
         progress=progress,
@@ -103,7 +118,7 @@ def _rebuilt(given: Any, task: Task, progress: Progress) -> Rebuilt:
     return Rebuilt(
         found.motion,
         JointRecording(tracks, None, Sensor.OTHER),
-        float((rebuilt.reliability.combined < LOST).mean()),
+        float(found.rebuilt.mean()),
         rebuilt.method,
         found.remarks,
         _slide(found.planted),
@@ -126,16 +141,16 @@ def _joints_of(given: JointRecording | Tracks, source: Path) -> JointRecording:
 def _outcome(given: Any, rebuilt: Rebuilt) -> Outcome:
     before_of = given.tracks if isinstance(given, JointRecording) else given
     before, after = measure_quality(before_of), measure_quality(rebuilt.motion)
-    lines = [f"{100 * rebuilt.lost:.1f} % of the joints could not be trusted and were rebuilt."]
-    if rebuilt.method:
-        lines.append(rebuilt.method.rstrip(".") + ".")
+    lines = [f"{100 * rebuilt.share:.1f} % of the joints were lost or wrong, and are rebuilt."]
+    if method := rebuilt.method.rstrip("."):
+        lines.append(f"{method[0].upper()}{method[1:]}.")
     if rebuilt.slide is not None:
         first, last = rebuilt.slide
         lines.append(f"Feet slid {100 * first:.1f} cm in all, and {100 * last:.1f} cm now.")
     lines += [*rebuilt.remarks, compare_quality(before, after)]
     figures = {
         "method": rebuilt.method,
-        "lost_share": rebuilt.lost,
+        "rebuilt_share": rebuilt.share,
         "remarks": list(rebuilt.remarks),
         "slide_before_m": rebuilt.slide and rebuilt.slide[0],
         "slide_after_m": rebuilt.slide and rebuilt.slide[1],

@@ -19,7 +19,7 @@ from ..motion.rigid_fit import best_turns
 from ..motion.rotations import IDENTITY, multiply, rotate, rotation_between, slerp
 from .body_size import FEWEST, RELIABLE
 from .girdles import with_girdles
-from .limb_twist import HINGES, Limb, hinge_turns, thumb_turns
+from .limb_twist import HINGES, Limb, hinge_turns, steady_way, thumb_turns
 
 Array = NDArray[np.float64]
 SHORT = 1e-3
@@ -151,6 +151,13 @@ class _Body:
     def _way(self, joint: int, child: int) -> Array:
         """Return the way to a child: to its very place where the bone is long."""
         length = float(np.linalg.norm(self.skeleton.offsets[child]))
+        above = self.skeleton.parents[joint]
+        if self.hands & {joint, above} and not self.skeleton.children[child]:
+            seen = self.places[:, child] - self.places[:, joint]
+            return steady_way(
+                seen, self.world[:, above], self.skeleton.offsets[joint],
+                self.trust[:, child], self.frame_rate,
+            )  # fmt: skip
         share = np.clip((length - FREE) / (AIMED - FREE), 0.0, 1.0)
         astray = self.places[:, joint] - self.at[:, joint]
         return np.asarray(
@@ -199,8 +206,8 @@ def follow_joints(
     All else points at the place of its child, so that an error is not handed down. How far an
     upper arm or a thigh is twisted is told by the plane in which elbow or knee bends, where it
     bends; where it is straight, by the bends before and after, and by the trunk
-    (`hinge_turns`). A thumb tells the same of its hand. Everywhere else a joint turns the short
-    way out of its parent's turn.
+    (`hinge_turns`). A thumb tells the same of its hand, whose tip is steadied. Everywhere else
+    a joint turns the short way out of its parent's turn.
 
     Parameters
     ----------

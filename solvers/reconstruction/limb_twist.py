@@ -7,7 +7,7 @@ from numpy.typing import NDArray
 from scipy.linalg import solveh_banded
 
 from ..motion import Skeleton
-from ..motion.rotations import multiply, quaternion_from_rotation_vector, rotate
+from ..motion.rotations import inverse, multiply, quaternion_from_rotation_vector, rotate
 
 Array = NDArray[np.float64]
 
@@ -96,6 +96,34 @@ def thumb_turns(
     )
 
 
+def steady_way(
+    seen: Array, above: Array, straight_on: Array, trust: Array, frame_rate: float
+) -> Array:
+    """Return a short way whose direction is steadied over a tenth of a second, as trusted.
+
+    A camera sees the tips of hands to a few centimetres: on so short a bone that is half a
+    right angle. The bone above is what the way is steady against; where it is not trusted at
+    all, it goes straight on.
+
+    Parameters
+    ----------
+    seen : shape (n_frames, 3)
+    above : shape (n_frames, 4)
+        World rotations of the joint above.
+    straight_on : shape (3,)
+        The bone above in the rest pose.
+    trust : shape (n_frames,), 0 to 1
+    frame_rate : float, hertz
+    """
+    local = rotate(inverse(above), unit(seen))
+    told = np.isfinite(local).all(axis=-1)
+    weights = np.where(told, trust, 0.0)
+    mixed = weights[:, None] * np.where(told[:, None], local, 0.0) + USUAL * unit(straight_on)
+    steady = unit(_smoothest(mixed, weights + USUAL, (STEADY * frame_rate) ** 2))
+    lengths = np.linalg.norm(seen, axis=-1, keepdims=True)
+    return np.asarray(rotate(above, steady) * lengths)
+
+
 def twisted(
     turns: Array, axis: Array, usual: Array, normal: Array, weights: Array, frame_rate: float
 ) -> Array:
@@ -115,17 +143,23 @@ def twisted(
 
 def _steady(seen: NDArray[np.complex128], weights: Array, stiffness: float) -> Array:
     """Return the path z that minimises w |z - seen|^2 + u |z - 1|^2 + s |z' - z|^2, summed."""
-    n_frames = len(seen)
+    told = weights * seen + USUAL
+    parts = _smoothest(np.stack([told.real, told.imag], -1), weights + USUAL, stiffness)
+    return np.asarray(parts[:, 0] + 1j * parts[:, 1])
+
+
+def _smoothest(told: Array, weights: Array, stiffness: float) -> Array:
+    """Solve (W + s D'D) z = told for paths z, shape (n_frames, n)."""
+    n_frames = len(told)
+    if n_frames == 1:
+        return told
     ends = np.full(n_frames, 2.0)
     ends[0] -= 1.0
     ends[-1] -= 1.0
     bands = np.zeros((2, n_frames))
     bands[0, 1:] = -stiffness
-    bands[1] = weights + USUAL + stiffness * ends
-    told = weights * seen + USUAL
-    if n_frames == 1:
-        return np.asarray(told)
-    return np.asarray(solveh_banded(bands, told.real) + 1j * solveh_banded(bands, told.imag))
+    bands[1] = weights + stiffness * ends
+    return np.asarray(solveh_banded(bands, told))
 
 
 def unit(vectors: Array) -> Array:

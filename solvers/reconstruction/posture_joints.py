@@ -97,8 +97,8 @@ def motion_postures(motion: Motion, humanoid_map: HumanoidMap | None = None) -> 
     needed = [f"{side}{part}" for side in SIDES for part in ("UpperArm", "UpperLeg")]
     if lost := [role for role in ("hips", *needed) if role not in places]:
         raise InvalidMotionError(
-            f"The skeleton has no joint for {', '.join(lost)}; only bodies with arms and legs"
-            " can be examples of postures."
+            f"The skeleton has no joint for {', '.join(lost)}; postures are those of bodies"
+            " with two arms and two legs."
         )
     played = {role: place for role, place in places.items() if role in POSTURE_JOINTS}
     arms = [skeleton.ancestors(places[f"{side}UpperArm"]) for side in SIDES]

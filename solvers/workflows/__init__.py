@@ -1,6 +1,7 @@
 """What joins families: whole ways from a recording to a result."""
 
 from .motion_from_markers import MarkerMotion, MarkerMotionSettings, motion_from_markers
+from .postures_of import postures_of
 from .reconstruct_motion import RebuiltMotion, reconstruct_motion
 from .reconstruct_recording import ReconstructedMotion, reconstruct_recording
 from .rough_reconstruct import ReconstructSettings
@@ -14,6 +15,7 @@ __all__ = [
     "ReconstructSettings",
     "ReconstructedMotion",
     "motion_from_markers",
+    "postures_of",
     "reconstruct_motion",
     "reconstruct_recording",
     "try_to_plant",

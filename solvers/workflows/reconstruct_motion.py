@@ -26,6 +26,8 @@ from ..reconstruction.posture_joints import (
 from ..reconstruction.posture_library import PostureLibrary
 from ..reconstruction.turn_to_postures import turn_to_postures
 from .known_body import KINECT_V1, check_size, check_tracked, gap_remarks
+from .measured_joints import measured_joints
+from .rebuilt_joints import rebuilt_joints
 from .rough_reconstruct import ReconstructSettings, reconstruct
 
 Array = NDArray[np.float64]
@@ -43,6 +45,8 @@ class RebuiltMotion:
     reliability, confidence : shape (n_frames, n_joints), 0 to 1
         How far each joint was trusted, and how sure its result is; NaN for joints that are
         not among those by which bodies are compared.
+    rebuilt : bool, shape (n_frames, n_joints)
+        Which of these joints were lost, or are put elsewhere than they were recorded.
     method : str
         What was done, in words.
     remarks : tuple of str
@@ -52,8 +56,14 @@ class RebuiltMotion:
     motion: Motion
     reliability: Array
     confidence: Array
+    rebuilt: NDArray[np.bool_]
     method: str
     remarks: tuple[str, ...]
+
+    @property
+    def rebuilt_share(self) -> float:
+        """Share of the joints and frames that were rebuilt, of those that are compared."""
+        return float(self.rebuilt[np.isfinite(self.reliability)].mean())
 
 
 def reconstruct_motion(
@@ -61,6 +71,7 @@ def reconstruct_motion(
     postures: PostureLibrary | None = None,
     prior: None = None,
     *,
+    source: JointRecording | None = None,
     tracking_state: NDArray[np.int8] | None = None,
     humanoid_map: HumanoidMap | None = None,
     settings: ReconstructSettings = REBUILDING,
@@ -78,6 +89,9 @@ def reconstruct_motion(
         NaN where it was not observed.
     postures : PostureLibrary, optional
     prior : ResidualPrior, optional
+    source : JointRecording, optional
+        What the motion was made of, if it is at hand; used where it still fits
+        (`measured_joints`).
     tracking_state : shape (n_frames, n_joints), optional
         What the tracker said of each joint: 2 tracked, 1 inferred, 0 not tracked.
     humanoid_map : HumanoidMap, optional
@@ -93,11 +107,11 @@ def reconstruct_motion(
         Raised by `progress`.
     """
     tracked = _is_tracked(motion.skeleton.names)
-    recording, columns = (
-        _all_joints(motion, tracking_state)
-        if tracked
-        else _postures_of(motion, humanoid_map or find_humanoid_map(motion.skeleton))
-    )
+    if tracked:
+        recording, columns = _all_joints(motion, source, tracking_state)
+    else:
+        found = humanoid_map or find_humanoid_map(motion.skeleton)
+        recording, columns = _postures_of(motion, found)
     check_tracked(recording)
     check_size(recording)
     rebuilt = reconstruct(
@@ -111,12 +125,14 @@ def reconstruct_motion(
         turned = turn_to_postures(motion, posture_positions(rebuilt.tracks), humanoid_map)
     shape = (motion.n_frames, motion.n_joints)
     reliability, confidence = np.full(shape, np.nan), np.full(shape, np.nan)
+    told, guessed = np.zeros(shape, bool), rebuilt_joints(recording, rebuilt)
     for joint, column in columns.items():
         reliability[:, joint] = rebuilt.reliability.combined[:, column]
         confidence[:, joint] = rebuilt.confidence[:, column]
+        told[:, joint] = guessed[:, column]
     progress(1.0, "Done")
     remarks = tuple(gap_remarks(recording))
-    return RebuiltMotion(turned, reliability, confidence, rebuilt.method, remarks)
+    return RebuiltMotion(turned, reliability, confidence, told, rebuilt.method, remarks)
 
 
 def _is_tracked(names: tuple[str, ...]) -> bool:
@@ -125,12 +141,15 @@ def _is_tracked(names: tuple[str, ...]) -> bool:
 
 
 def _all_joints(
-    motion: Motion, state: NDArray[np.int8] | None
+    motion: Motion, source: JointRecording | None, state: NDArray[np.int8] | None
 ) -> tuple[JointRecording, dict[int, int]]:
     """Return where all joints are, and the column of each joint."""
+    columns = {joint: joint for joint in range(motion.n_joints)}
+    measured = None if source is None else measured_joints(motion, source)
+    if measured is not None:
+        return measured, columns
     positions = forward_kinematics(motion).positions
     tracks = Tracks(motion.skeleton.names, positions, motion.frame_rate)
-    columns = {joint: joint for joint in range(motion.n_joints)}
     return JointRecording(tracks, state, Sensor.OTHER), columns
 
 

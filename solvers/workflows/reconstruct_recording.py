@@ -2,6 +2,9 @@
 
 from dataclasses import dataclass
 
+import numpy as np
+from numpy.typing import NDArray
+
 from ..denoising import Planted, PlantSettings
 from ..motion import JointRecording, Motion, Skeleton
 from ..progress import Progress, unwatched, within
@@ -9,6 +12,7 @@ from ..reconstruction.follow_joints import follow_joints
 from ..reconstruction.posture_library import PostureLibrary
 from ..reconstruction.result import Reconstruction
 from .known_body import check_size, gap_remarks, known_body
+from .rebuilt_joints import rebuilt_joints
 from .rough_reconstruct import ReconstructSettings, reconstruct
 from .try_to_plant import try_to_plant
 
@@ -27,6 +31,8 @@ class ReconstructedMotion:
     reconstruction : Reconstruction
         Joints, confidence and the motion before feet were planted.
     planted : Planted or None
+    rebuilt : bool, shape (n_frames, n_joints)
+        Which joints of the reconstruction were lost, or are put elsewhere than recorded.
     remarks : tuple of str
         Sentences on what the animator should know.
     """
@@ -34,6 +40,7 @@ class ReconstructedMotion:
     motion: Motion
     reconstruction: Reconstruction
     planted: Planted | None
+    rebuilt: NDArray[np.bool_]
     remarks: tuple[str, ...]
 
 
@@ -83,4 +90,5 @@ def reconstruct_recording(
     footing = try_to_plant(motion, planting, progress=within(progress, 0.8, 1.0))
     progress(1.0, "Done")
     remarks = (*gap_remarks(known), *footing.remarks)
-    return ReconstructedMotion(footing.motion, rebuilt, footing.planted, remarks)
+    guessed = rebuilt_joints(known, rebuilt)
+    return ReconstructedMotion(footing.motion, rebuilt, footing.planted, guessed, remarks)

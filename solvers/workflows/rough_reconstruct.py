@@ -6,11 +6,12 @@ from ..motion import JointRecording
 from ..progress import Progress, unwatched
 from ..reconstruction.follow_joints import follow_joints
 from ..reconstruction.posture_library import PostureLibrary
-from ..reconstruction.posture_settings import PostureSettings as ReconstructSettings
+from ..reconstruction.posture_settings import PostureSettings
 from ..reconstruction.reconstruct_postures import reconstruct_postures
 from ..reconstruction.result import Reconstruction
 
-USUAL = ReconstructSettings()
+ReconstructSettings = PostureSettings
+USUAL = PostureSettings()
 
 
 def reconstruct(

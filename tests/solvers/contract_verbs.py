@@ -32,7 +32,9 @@ from solvers.markers import (
 from solvers.motion import (
     HumanoidMap,
     JointLimits,
+    JointRecording,
     Motion,
+    Sensor,
     Skeleton,
     Tracks,
     detect_contacts,
@@ -44,7 +46,7 @@ from solvers.progress import Progress
 from solvers.reconstruction import simulate
 from solvers.retargeting import reduce_keys, retarget
 from solvers.samples import CorruptionSettings, GaitSettings, corrupt, walking_gait
-from solvers.workflows import motion_from_markers
+from solvers.workflows import motion_from_markers, reconstruct_recording
 
 
 @dataclass(frozen=True)
@@ -126,6 +128,11 @@ VERBS = {
         recording=lambda result: result.motion,
         figures=lambda result: (result.contacts, result.slide_after, result.distance),
         any_rate=True,
+    ),
+    "reconstruct_recording": Verb(
+        lambda motion, progress: reconstruct_recording(joints_of(motion), progress=progress),
+        recording=lambda result: result.motion,
+        figures=lambda result: result.reconstruction.confidence,
     ),
     "retarget": Verb(
         lambda motion, progress: retarget(
@@ -252,6 +259,11 @@ def marked(motion: Motion) -> Tracks:
     positions[frames, knee] = np.nan
     positions[frames, [left, right]] = positions[frames, [right, left]]
     return tracks.with_positions(positions)
+
+
+def joints_of(motion: Motion) -> JointRecording:
+    """As a depth camera would have tracked it."""
+    return JointRecording(points_of(motion), None, Sensor.OTHER)
 
 
 def points_of(motion: Motion) -> Tracks:

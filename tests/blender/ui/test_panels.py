@@ -130,7 +130,9 @@ def test_a_result_shows_its_figures_its_source_and_its_contacts(blank, draw, act
 def test_the_menu_holds_the_buttons(draw):
     shown = draw("MOCAP_MT_clean")
 
-    assert shown[:2] == ["mocap_assist.denoise", "mocap_assist.measure_quality"]
+    assert shown[:3] == [
+        "mocap_assist.reconstruct", "mocap_assist.denoise", "mocap_assist.measure_quality",
+    ]  # fmt: skip
 
 
 @pytest.mark.parametrize("group", ["clean", "check"])
@@ -178,3 +180,25 @@ def test_a_sentence_is_broken_to_fit_the_sidebar(load):
 
     assert len(lines(sentence, 200)) > len(lines(sentence, 400)) == 1
     assert " ".join(lines(sentence, 0)) == sentence
+
+
+def test_the_panel_of_reconstruct_shows_its_settings_and_the_colours(blank, draw, actor):
+    shown = draw("MOCAP_PT_reconstruct")
+
+    assert {"postures", "plant_feet", "mocap_assist.reconstruct", "mocap_assist_heat"} <= set(
+        shown
+    )
+
+
+def test_clips_of_postures_have_a_list_of_their_own(blank, draw, actor):
+    settings = blank.context.scene.mocap_assist
+    settings.reconstruct.postures = "EXAMPLES"
+    assert "MOCAP_MT_posture_examples" in draw("MOCAP_PT_reconstruct")
+
+    blank.ops.mocap_assist.add_example(example="run", group="reconstruct")
+    blank.ops.mocap_assist.add_example_folder(directory="/clips/", group="reconstruct")
+
+    assert settings.reconstruct.examples == "run; /clips"
+    assert settings.clean.examples == ""
+    blank.ops.mocap_assist.remove_example(index=0, group="reconstruct")
+    assert settings.reconstruct.examples == "/clips"

@@ -5,7 +5,8 @@ from string import Formatter
 import pytest
 
 PANELS = [
-    f"MOCAP_PT_{name}" for name in ("import", "clean", "check", "compare", "feet", "retarget")
+    f"MOCAP_PT_{name}"
+    for name in ("import", "clean", "check", "compare", "feet", "reconstruct", "retarget")
 ]
 
 
@@ -31,7 +32,7 @@ def said_by(blank, draw, actor):
 def names_of(blank, drawn):
     """Return what Blender itself writes for the properties and buttons among these."""
     found = blank.context.scene.mocap_assist
-    groups = [found.clean, found.check, found.retarget, found.unbake]
+    groups = [found.clean, found.check, found.reconstruct, found.retarget, found.unbake]
     groups.append(blank.context.window_manager)
     for group in groups:
         for each in group.bl_rna.properties:

@@ -1,0 +1,59 @@
+"""What was measured, for a motion that was made of it: bones do not keep all that it told."""
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..motion import JointRecording, Motion, Tracks, forward_kinematics, motion_from_points
+
+Array = NDArray[np.float64]
+SAME = 0.002
+"""Metres by which joints may differ: the rounding of keys, far from the camera."""
+FEWEST = 3
+
+
+def measured_joints(motion: Motion, recording: JointRecording) -> JointRecording | None:
+    """Return a recording as it lies where a motion is, if the motion was made of it.
+
+    Bones of constant length cannot tell how far the tracker stretched them, nor where a joint
+    was that hangs on one that was not seen. The recording can; but it is only believed where
+    the motion is still what `motion_from_points` makes of it, moved, turned and scaled as a
+    whole at most. None where it is not.
+    """
+    if recording.parents.count(-1) != 1 or recording.n_frames != motion.n_frames:
+        return None
+    made = motion_from_points(recording.tracks, recording.parents)
+    names = motion.skeleton.names
+    if set(made.skeleton.names) != set(names):
+        return None
+    order = [made.skeleton.index(name) for name in names]
+    start = forward_kinematics(made).positions[:, order]
+    stop = forward_kinematics(motion).positions
+    seen = np.isfinite(start).all(axis=-1)
+    if (seen != np.isfinite(stop).all(axis=-1)).any() or seen.sum() < FEWEST:
+        return None
+    axes, scale, shift = _similarity(start[seen], stop[seen])
+    moved = scale * start[seen] @ axes.T + shift
+    if np.abs(moved - stop[seen]).max() > SAME * scale:
+        return None
+    points = [recording.names.index(name) for name in names]
+    places = scale * recording.tracks.positions[:, points] @ axes.T + shift
+    state = recording.tracking_state
+    return JointRecording(
+        Tracks(names, places, motion.frame_rate),
+        None if state is None else state[:, points],
+        recording.sensor,
+    )
+
+
+def _similarity(start: Array, stop: Array) -> tuple[Array, float, Array]:
+    """Return turn, scale and shift that bring points, shape (n, 3), nearest to others.
+
+    Umeyama (1991), doi:10.1109/34.88573.
+    """
+    middles = start.mean(axis=0), stop.mean(axis=0)
+    first, second = start - middles[0], stop - middles[1]
+    left, sizes, right = np.linalg.svd(second.T @ first)
+    signs = np.array([1.0, 1.0, np.sign(np.linalg.det(left) * np.linalg.det(right))])
+    axes = (left * signs) @ right
+    scale = float((sizes * signs).sum() / max((first**2).sum(), np.finfo(float).tiny))
+    return axes, scale, middles[1] - scale * axes @ middles[0]

@@ -1,0 +1,78 @@
+"""The file that a take was imported from tells more than its bones; used while they agree."""
+
+import numpy as np
+import pytest
+
+
+@pytest.fixture
+def found(load, blank):
+    """What was measured for what an armature plays, or None."""
+
+    def find(armature, path):
+        take = load("mocap_assist.scene.armature_read").read_take(armature, blank.context.scene)
+        recording = load("solvers.recordings").read_recording(path)
+        measured = load("solvers.workflows.measured_joints").measured_joints
+        return measured(take.parts[0].motion, recording)
+
+    return find
+
+
+@pytest.mark.parametrize("fps", [24, 30, 60])
+def test_an_imported_take_is_recognised_where_it_stands(walk_file, bring, found, blank, fps):
+    armature = bring(walk_file)
+    blank.context.scene.render.fps = fps
+    armature.location, armature.rotation_euler.z, armature.scale = (2, 1, 0.9), 0.5, (1.1,) * 3
+    blank.context.view_layer.update()
+
+    assert found(armature, walk_file) is not None
+
+
+def test_so_is_a_real_one_with_gaps(recordings, bring, found):
+    path = recordings / "kinect" / "irds" / "215_18_5_8_1_stand.txt"
+
+    assert found(bring(path), path) is not None
+
+
+def test_an_edited_one_is_taken_as_the_animator_left_it(walk, walk_file, found):
+    curves = walk.animation_data.action.layers[0].strips[0].channelbags[0].fcurves
+    path = 'pose.bones["ElbowRight"].rotation_quaternion'
+    key = curves.find(path, index=1).keyframe_points[40]
+    key.co.y += 0.3
+
+    assert found(walk, walk_file) is None
+
+
+def test_without_the_file_it_works_too(walk, walk_file, reconstruct):
+    walk_file.unlink()
+
+    assert reconstruct().name == "walk.reconstructed"
+
+
+def test_the_file_helps_where_a_joint_hangs_on_a_lost_one(
+    load, truth, bring, tmp_path, reconstruct, blank
+):
+    """The elbow is lost; where the wrist was, only the file knows."""
+    from kinect_walks import tracked_walk
+
+    motion, recordings = load("solvers.motion"), load("solvers.recordings")
+    recording = tracked_walk(motion, truth)
+    names, positions = recording.names, np.array(recording.tracks.positions)
+    positions[60:75, names.index("ElbowRight")] = np.nan
+    path = tmp_path / "walk.csv"
+    recordings.write_joint_csv(
+        recording.with_tracks(recording.tracks.with_positions(positions)), path
+    )
+    wrist = names.index("WristRight")
+    errors = []
+    for kept in (True, False):
+        armature = bring(path)
+        if not kept:
+            path.unlink()
+        reconstruct()
+        take = load("mocap_assist.scene.armature_read").read_take(armature, blank.context.scene)
+        body = take.parts[0].motion
+        places = motion.forward_kinematics(body).positions[:, body.skeleton.index("WristRight")]
+        errors.append(np.linalg.norm(places - truth[:, wrist], axis=-1)[60:75].mean())
+
+    assert errors[0] < 0.03
+    assert errors[0] < 0.8 * errors[1]

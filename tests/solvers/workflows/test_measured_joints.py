@@ -1,0 +1,71 @@
+"""What was measured is found again for a motion that was made of it."""
+
+import numpy as np
+import pytest
+from kinect_walks import tracked_walk, true_positions
+from numpy.testing import assert_allclose, assert_array_equal
+
+from solvers import motion as vocabulary
+from solvers import samples
+from solvers.motion import Motion, Skeleton, motion_from_points
+from solvers.motion.rotations import multiply, quaternion_from_rotation_vector, rotate
+from solvers.reconstruction import posture_joints
+from solvers.workflows.measured_joints import measured_joints
+
+
+@pytest.fixture
+def walk():
+    truth = true_positions(samples, posture_joints)
+    recording = tracked_walk(vocabulary, truth)
+    positions = recording.tracks.positions
+    positions[10:14, recording.names.index("KneeLeft")] = np.nan
+    return recording.with_tracks(recording.tracks.with_positions(positions))
+
+
+def test_it_is_all_there_even_below_a_joint_that_was_not_seen(walk):
+    motion = motion_from_points(walk.tracks, walk.parents)
+
+    found = measured_joints(motion, walk)
+
+    order = [walk.names.index(name) for name in found.names]
+    assert_allclose(found.tracks.positions, walk.tracks.positions[:, order], atol=1e-9)
+    assert_array_equal(found.tracking_state, walk.tracking_state[:, order])
+    ankle = found.names.index("AnkleLeft")
+    assert found.tracks.visible[10:14, ankle].all()
+
+
+def test_it_goes_along_where_the_armature_was_put(walk):
+    """Turned about Z, scaled, and moved: as an armature that stands elsewhere."""
+    motion = motion_from_points(walk.tracks, walk.parents)
+    turn, shift = quaternion_from_rotation_vector(np.array([0.0, 0.0, 0.8])), (1.0, 2.0, 0.9)
+    body = motion.skeleton
+    larger = Skeleton(body.names, body.parents, 1.1 * rotate(turn, body.offsets))
+    back = turn * (1.0, -1.0, -1.0, -1.0)
+    rotations = multiply(multiply(turn, motion.rotations), back)  # about turned axes
+    rotations[:, 0] = multiply(multiply(turn, motion.rotations[:, 0]), back)
+    moved = Motion(larger, rotations, 1.1 * rotate(turn, motion.root_positions) + shift, 30.0)
+
+    found = measured_joints(moved, walk)
+
+    head = walk.tracks.positions[:, walk.names.index("Head")]
+    expected = 1.1 * rotate(turn, head) + shift
+    assert_allclose(found.tracks.positions[:, found.names.index("Head")], expected, atol=1e-6)
+
+
+@pytest.mark.parametrize("change", ["edited", "cut", "filled", "other"])
+def test_it_is_not_believed_for_a_motion_that_was_changed(walk, change):
+    motion = motion_from_points(walk.tracks, walk.parents)
+    rotations = motion.rotations.copy()
+    if change == "edited":
+        elbow = motion.skeleton.index("ElbowLeft")
+        bend = quaternion_from_rotation_vector(np.array([0.0, 0.0, 0.3]))
+        rotations[40, elbow] = multiply(rotations[40, elbow], bend)
+    if change == "filled":
+        rotations = np.where(np.isnan(rotations), (1.0, 0.0, 0.0, 0.0), rotations)
+    motion = motion.with_poses(rotations)
+    if change == "cut":
+        motion = motion.slice(5, 60)
+    if change == "other":
+        motion = samples.walking_gait(samples.GaitSettings(duration=3.0, frame_rate=30.0))
+
+    assert measured_joints(motion, walk) is None
