@@ -10,7 +10,7 @@ from ..solvers.errors import InvalidMotionError
 from ..solvers.motion import JointRecording, Motion, Tracks
 from ..solvers.progress import Progress, unwatched
 from .import_choices import ImportChoices, Target
-from .jobs.reading import Recording, Wanted, as_wanted
+from .jobs.reading import Recording, Wanted, as_wanted, hanging
 from .scene import compat
 from .scene.armature_build import build_armature
 from .scene.empties_build import build_empties, write_tracks
@@ -86,6 +86,8 @@ def make_objects(
     wanted = choices.target is Target.ARMATURE and isinstance(recording, JointRecording)
     if wanted and not isinstance(moving, Motion):
         what += ", since nothing tells which joint hangs on which"
+    elif wanted and (n_loose := recording.n_joints - len(hanging(recording))):
+        what += f", without {n_loose} points that hang on no joint"
     return made._replace(what=what + _never_seen(recording))
 
 

@@ -21,6 +21,7 @@ from .scene.armature_read import read_take
 from .scene.armature_write import check_writable
 from .scene.bone_channels import animated_curves, bone_path
 from .scene.compat import Source
+from .scene.evaluated_body import body_bones, with_body_shown
 from .scene.rigify import is_rigify
 from .scene.take import ArmatureTake
 from .scene.target_read import read_target, vertical_part
@@ -156,21 +157,21 @@ def _read(
 ) -> Reading:
     choices = settings.choices
     target = target_called(scene, choices.target, source)
-    if is_rigify(source.data.bones):
-        raise InvalidMotionError(
-            f"{source.name} is a generated control rig: where its body is depends on"
-            " constraints. Bake its deform bones onto an armature of their own to take from."
-        )
     sources = chosen_sources(source, choices)
     files = (choices.source_map_file, choices.target_map_file)
     maps = maps_for(scene, source, target, files)
     takes = tuple(read_take(source, scene, source=each) for each in sources)
+    known = _known(maps.source, source)
+    if is_rigify(source.data.bones):
+        known = body_bones(known, source.data.bones)
+        takes = tuple(
+            with_body_shown(scene, source, take, known, each)
+            for take, each in zip(takes, sources, strict=True)
+        )
     on_root = settings.retargeting.root_motion is RootMotion.ROOT_BONE
     roles = _wanted(maps)
     rig, switches = read_target(scene, target, roles, choices.limbs, on_root)
-    problem = RetargetProblem(
-        tuple(map(_clip, takes)), _known(maps.source, source), rig, settings.retargeting
-    )
+    problem = RetargetProblem(tuple(map(_clip, takes)), known, rig, settings.retargeting)
     return Reading(target, sources, takes, switches, maps, problem)
 
 

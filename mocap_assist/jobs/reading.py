@@ -11,6 +11,7 @@ from ...solvers.motion import (
     Motion,
     Skeleton,
     Tracks,
+    joint_parents,
     motion_from_points,
     resample,
 )
@@ -72,7 +73,14 @@ def as_wanted(recording: Recording, wanted: Wanted) -> Motion | Tracks:
 
 def in_one_tree(recording: JointRecording) -> bool:
     """Whether it is known which joint hangs on which, so that they can become an armature."""
-    return recording.parents.count(-1) == 1 < recording.n_joints
+    parents = recording.parents
+    return sum(parents[joint] < 0 for joint in hanging(recording)) == 1
+
+
+def hanging(recording: JointRecording) -> list[int]:
+    """Return the joints that hang on another, or that others hang on."""
+    parents = recording.parents
+    return [joint for joint, parent in enumerate(parents) if parent >= 0 or joint in parents]
 
 
 def _joined(recording: Recording, armature: bool) -> Motion | Tracks:
@@ -82,7 +90,10 @@ def _joined(recording: Recording, armature: bool) -> Motion | Tracks:
     if not isinstance(recording, JointRecording):
         return recording
     if armature and in_one_tree(recording):
-        return motion_from_points(recording.tracks, recording.parents)
+        kept, tracks = hanging(recording), recording.tracks
+        names = tuple(tracks.names[joint] for joint in kept)
+        body = Tracks(names, tracks.positions[:, kept], tracks.frame_rate)
+        return motion_from_points(body, joint_parents(names))
     return recording.tracks
 
 

@@ -1,4 +1,4 @@
-"""Draw the stick figures over the 3D View; nothing of the scene is touched."""
+"""Draw stick figures or markers over the 3D View; nothing of the scene is touched."""
 
 from collections.abc import Callable
 from typing import Any
@@ -8,8 +8,10 @@ import gpu
 import numpy as np
 from bpy.app import handlers
 from bpy.types import SpaceView3D
+from mathutils import Matrix
 
-from . import overlay
+from . import marker_overlay, overlay
+from .markers import holder_of
 
 Color = tuple[float, float, float, float]
 
@@ -41,15 +43,25 @@ def stop() -> None:
 def forget() -> None:
     """Read the actions anew when they are drawn next."""
     overlay.forget()
+    marker_overlay.forget()
 
 
 def draw(context: bpy.types.Context, colors: tuple[Color, Color], width: float) -> None:
-    """Draw what the active armature's actions, raw and clean, show at the present frame."""
-    armature = context.view_layer.objects.active
-    shown = context.space_data.overlay.show_overlays
-    if armature is None or armature.type != "ARMATURE" or not shown:
+    """Draw what raw and clean actions of the active armature or markers show at this frame."""
+    active = context.view_layer.objects.active
+    if active is None or not context.space_data.overlay.show_overlays:
         return
-    frame = context.scene.frame_current_final
+    if active.type == "ARMATURE":
+        _draw_figures(active, context.scene.frame_current_final, colors, width)
+    elif (holder := holder_of(active)) is not None:
+        for played, color in zip(marker_overlay.raw_and_clean(holder), colors, strict=True):
+            lines = marker_overlay.lines_at(played, context.scene)
+            _draw_lines(lines, Matrix.Identity(4), color, width)
+
+
+def _draw_figures(
+    armature: bpy.types.Object, frame: float, colors: tuple[Color, Color], width: float
+) -> None:
     for source, color in zip(overlay.raw_and_clean(armature), colors, strict=True):
         if source is not None:
             lines = overlay.figures_at(armature, source, frame).segments(frame)

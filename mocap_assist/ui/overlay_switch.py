@@ -22,8 +22,8 @@ def register() -> None:
     bpy.types.WindowManager.mocap_assist_overlay = bpy.props.BoolProperty(
         name="Raw and Clean Overlay",
         description=(
-            "Draw stick figures of the recorded and of the clean action over the 3D View. They"
-            " show the keys alone, without constraints"
+            "Draw stick figures, or markers and their trails, of the recorded and of the clean"
+            " action over the 3D View. They show the keys alone, without constraints"
         ),
         update=_switched,
     )

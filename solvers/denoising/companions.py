@@ -17,7 +17,7 @@ COVERED, LEARNED = 0.8, 0.6
 together have to be seen in."""
 APART, OFF_LINE = 0.01, 0.03
 """Metres that the second point is from the first, and the third from their line, at least."""
-SLACK = 0.01
+SLACK = 0.001
 """Metres that even a distance which never varied is held to be uncertain by."""
 N_FITS = 3
 

@@ -6,11 +6,12 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.linalg.lapack import dpotrf, dpotri
 
+from .blend_estimates import blend_weights
 from .companions import SLACK, Companions, body_frames
 
 Array = NDArray[np.float64]
 
-VARIANTS = ((3, 8), (3, 16), (8, 24))
+VARIANTS = ((3, 8), (3, 16), (8, 24), (3, 5), (5, 12))
 """Numbers of companions that span the frame, and that tell the pose."""
 
 
@@ -32,9 +33,9 @@ KERNELS = (
     Kernel(1.0, 0.3, 1.0, 0.01, 0.3, 1e-2),
     Kernel(1.0, 0.3, 0.5, 0.01, 0.1, 3e-2),
     Kernel(0.05, 0.02, 1.0, 0.02, 0.1, 1e-2),
+    Kernel(1.0, 1.0, 2.0, 0.1, 0.03, 1e-4),
+    Kernel(1.0, 1.0, 2.0, 0.1, 0.1, 1e-4),
 )
-SHARPNESS = 4.0
-"""Weight of each variant is its error when tried to minus this power."""
 TINY = 1e-9
 """Square metres: what is nearer than 0.03 mm is the same."""
 
@@ -71,9 +72,9 @@ def foretell(
     """Average what several frames and kernels foretell, by how they fare when tried.
 
     In a frame that travels with its companions, a point is a smooth function of their pose
-    (linear, and alike for similar poses), and of time. Averaging such estimates by their own
-    errors follows Tits, Tilmanne and Dutoit [1]_; errors of whole left-out stretches are exact,
-    without solving again: K_BB^-1 (K^-1 y)_B, with the inverse's block [2]_.
+    (linear, and alike for similar poses), and of time. Averaging such estimates follows Tits,
+    Tilmanne and Dutoit [1]_; they are weighted by what they get wrong in whole stretches left
+    out, which is exact without solving again: K_BB^-1 (K^-1 y)_B, of the inverse's block [2]_.
 
     Parameters
     ----------
@@ -96,7 +97,7 @@ def foretell(
     truth = positions[companions.learned, point]
     stretches, depth = _stretches(companions.learned, length)
     found, trials = [], []
-    for spanning, telling in VARIANTS[: 1 + (len(companions.points) > VARIANTS[0][1]) * 2]:
+    for spanning, telling in _variants(len(companions.points)):
         weights = 1.0 / (companions.slack**2 + SLACK**2)
         problem = _problem(
             poses[:, :telling], truth, weights[:telling], spanning, rows / frame_rate
@@ -106,11 +107,18 @@ def foretell(
             turned = np.einsum("fij,fj->fi", problem.turns, local + problem.mean)
             found.append(turned + problem.origins)
             trials.append(np.einsum("fij,fj->fi", problem.turns[: len(error)], error))
-    scores = np.array([(trial**2).sum(axis=1).mean() + TINY for trial in trials])
-    weights = (scores / scores.min()) ** (-SHARPNESS / 2.0)
-    weights /= weights.sum()
+    weights = blend_weights(trials)
     places = np.tensordot(weights, found, 1)
     return Foretold(places, np.tensordot(weights, trials, 1), depth)
+
+
+def _variants(n_companions: int) -> list[tuple[int, int]]:
+    """Return the variants that differ with so many companions."""
+    possible = [
+        (min(spanning, n_companions), min(telling, n_companions))
+        for spanning, telling in VARIANTS
+    ]
+    return list(dict.fromkeys(possible))
 
 
 def _problem(

@@ -14,7 +14,7 @@ MOST_ROWS, FEWEST_ROWS = 400, 100
 """Frames learned from, besides those at the borders of gaps."""
 MANY_GAPS = 50
 """From so many on, each is learned from fewer frames, so that it does not take for ever."""
-LEARN_RATE = 30.0
+LEARN_RATE = 60.0
 """Hertz: bodies move too slowly for more frames a second to tell more."""
 BORDER = (1, 2, 3, 5, 8)
 """Frames from a gap that are always learned from."""

@@ -14,8 +14,8 @@ from ..motion.rotations import (
     rotate,
     rotation_vector_from_quaternion,
 )
+from ..motion.smooth_correction import smooth_correction
 from .feet import Leg
-from .smooth_correction import smooth_correction
 from .sole import CALM, loads, sole_points, standing_heights
 from .spikes import runs
 

@@ -6,8 +6,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..motion import Skeleton, WorldPoses
+from ..motion.smooth_correction import smooth_correction
 from .planted_path import Plant
-from .smooth_correction import smooth_correction
 
 Array = NDArray[np.float64]
 

@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 
 from .humanoid import HumanoidMap
 from .motion import Motion
+from .palms import with_palms_down
 from .rotations import (
     IDENTITY,
     angle_between,
@@ -53,7 +54,8 @@ def t_pose_alignment(skeleton: Skeleton, humanoid: HumanoidMap) -> NDArray[np.fl
 
     Bones of arms, legs and fingers turn the short way, on top of the turn of the bone above, so
     that a lowered arm keeps the palm it would have when raised. A hand points to its middle
-    finger, or to its end site where that is all it has. Feet turn about the vertical
+    finger, or to its end site where that is all it has; its palm faces down unless the knuckles
+    say otherwise (`with_palms_down`). Feet turn about the vertical
     only, since the height of the ankle differs between rigs that all stand flat on the floor;
     where spread legs have tilted feet (Acclaim), about the axis of the shin.
     Trunk, head and collar bones differ in anatomy rather than in pose: they turn together, by
@@ -88,7 +90,7 @@ def t_pose_alignment(skeleton: Skeleton, humanoid: HumanoidMap) -> NDArray[np.fl
                 alignment[joint], _t_pose_bone(side, part), rest[end] - rest[joint]
             )
     _align_feet(alignment, skeleton, joints, trunk)
-    return alignment
+    return with_palms_down(alignment, skeleton, joints)
 
 
 def canonical_rotations(motion: Motion, humanoid: HumanoidMap) -> NDArray[np.float64]:

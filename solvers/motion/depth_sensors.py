@@ -9,13 +9,16 @@ import re
 from collections.abc import Sequence
 from enum import Enum
 
+from .mediapipe import MEDIAPIPE, MEDIAPIPE_T_POSE
+
 
 class Sensor(Enum):
-    """The camera, and with it the tracker, that a joint recording comes from."""
+    """The camera or the tracker that a joint recording comes from."""
 
     KINECT_V1 = "kinect_v1"
     KINECT_V2 = "kinect_v2"
     AZURE_KINECT = "azure_kinect"
+    MEDIAPIPE = "mediapipe"
     OTHER = "other"
 
 
@@ -87,6 +90,7 @@ T_POSE = {
     "HandTipLeft": OUT, "LUpArm": OUT, "LForeArm": OUT, "LHand": OUT,
     "ThumbLeft": (0.6, -0.8, 0.0),
     "Nose": (0.0, -1.0, 0.2), "EyeLeft": (0.3, -0.9, 0.5), "EarLeft": (0.8, -0.1, 0.3),
+    **MEDIAPIPE_T_POSE,
 }  # fmt: skip
 
 
@@ -95,9 +99,8 @@ def rest_direction(name: str) -> tuple[float, float, float]:
 
     What is not known by name, such as the joints of the spine, goes up.
     """
-    left = (
-        name.replace("Right", "Left") if "Right" in name else re.sub("^R(?=[A-Z])", "L", name)
-    )
+    left = re.sub("^R(?=[A-Z])", "L", name)
+    left = left.replace("Right", "Left").replace("right", "left")
     x, y, z = T_POSE.get(left, UP)
     length = (x * x + y * y + z * z) ** 0.5
     return (x if left == name else -x) / length, y / length, z / length
@@ -110,7 +113,7 @@ def joint_parents(names: Sequence[str]) -> tuple[int, ...]:
     out hangs on its nearest ancestor that is there. In the order of the Kinect v2 a parent may
     come after its children.
     """
-    tables = (KINECT_V2, KINECT_V1, AZURE_KINECT, UI_PRMD)
+    tables = (KINECT_V2, KINECT_V1, AZURE_KINECT, UI_PRMD, MEDIAPIPE)
     table = max(tables, key=lambda known: len(known.keys() & set(names)))
     places = {name: place for place, name in enumerate(names)}
     parents = []

@@ -90,6 +90,11 @@ TABLES: dict[str, tuple[str, ...]] = {
         "Clavicle", "Shoulder", "Elbow", "Wrist",
         "Hip", "Knee", "Ankle", "Foot",
     ),
+    "MediaPipe": (
+        "hips_center", "trunk_center", "", "", "neck_center", "head_center",
+        "", "shoulder", "elbow", "wrist",
+        "hip", "knee", "ankle", "foot_index",
+    ),
     "Unreal 5": (
         "pelvis", "spine_01", "spine_03", "spine_05", "neck_01", "head",
         "clavicle", "upperarm", "lowerarm", "hand",

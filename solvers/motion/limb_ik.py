@@ -29,8 +29,8 @@ class ReachSettings(Settings):
     """How a limb stretches."""
 
     softness: float = setting(
-        0.01, "Part of the limb's length over which it eases into full extension; higher keeps"
-        " knees from popping but falls short of far targets",
+        0.01, "Part of the limb's length over which it eases into full extension, and into full"
+        " folding; higher keeps knees from popping but falls short of far targets",
         minimum=0.0, maximum=0.5,
     )  # fmt: skip
 
@@ -51,7 +51,7 @@ def reach(
     limb bends elsewhere in the clip. Joints between the three, such as twist bones, turn along.
     Farther than the limb reaches, it points at the target and eases into full extension: from
     `softness` before it, or from as far as the pose already is, the distance approaches the
-    full length exponentially.
+    full length exponentially; so it does towards full folding.
 
     Parameters
     ----------
@@ -128,6 +128,7 @@ def _hinge_turn(first: Array, second: Array, wanted: Array, axis: Array, soft: f
     a, b = np.linalg.norm(first, axis=-1), np.linalg.norm(second, axis=-1)
     present = np.linalg.norm(first + second, axis=-1)
     distance = _softened(np.linalg.norm(wanted, axis=-1), present, a + b, soft)
+    distance = _unfolded(distance, present, np.abs(a - b), soft * (a + b))
     cosine = (distance**2 - a**2 - b**2) / np.maximum(2 * a * b, 1e-12)
     after = np.arccos(np.clip(cosine, -1.0, 1.0))  # nearer than it can fold, it folds
 
@@ -161,6 +162,15 @@ def _softened(wanted: Array, present: Array, full: Array, soft: float) -> Array:
     excess = np.maximum(wanted - begin, 0.0)
     eased = room * -np.expm1(-excess / np.maximum(room, 1e-12))
     return np.minimum(wanted, begin + eased)
+
+
+def _unfolded(wanted: Array, present: Array, folded: Array, soft: Array) -> Array:
+    """Return a distance not less than that of the folded limb; leaves `present` as it is."""
+    begin = np.maximum(np.minimum(folded + soft, present), folded)
+    room = begin - folded
+    lacking = np.maximum(begin - wanted, 0.0)
+    eased = room * -np.expm1(-lacking / np.maximum(room, 1e-12))
+    return np.asarray(np.maximum(wanted, begin - eased))
 
 
 def _turned(motion: Motion, world: WorldPoses, joint: int, turn: Array) -> Array:

@@ -11,6 +11,7 @@ from ..progress import Progress, within
 from .bone_directions import bone_changes
 from .heading import Normalised
 from .keep_lengths import keep_lengths
+from .leave_out import Errors, leave_out
 from .library_body import BodyPostures, anatomy_turns, on_body
 from .neighbours import PostureIndex, Query, index_postures, nearest_postures
 from .posture_energy import Demands
@@ -28,8 +29,6 @@ Array = NDArray[np.float64]
 LED_UP_TO = 0.2
 """Seconds before and after a joint is lost in which it is already trusted less, so that it is
 synthesised on both sides of the loss alike."""
-SIZE = 0.1
-"""Metres. Usual error of a joint that is synthesised without being seen."""
 AGAIN = 0.3
 """Trust in what one round synthesised and is sure of, in the next."""
 SURE = 0.05
@@ -85,6 +84,8 @@ def follow_postures(
     take = _Seen(seen.postures, trust, frame_rate, lengths)
     body = _body_of(take, library, settings.pace)
     index = index_postures(body, library.groups)
+    errors = _errors(take, body, index, settings)
+    take = replace(take, postures=take.postures - errors.offset)
     rounds = 1 if settings.causal else settings.rounds
     shift = np.zeros((len(trust), 1, 3))
     asked, given = take.postures, _led_up(take, settings)
@@ -95,16 +96,17 @@ def follow_postures(
         )
         more = _shift(take.postures - shift - made.values, trust, frame_rate, settings)
         shift = shift + more
-        course = _corrected(made, take.postures - shift, take, settings)
+        course = _corrected(made, take.postures - shift, take, errors.size, settings)
         if number + 1 < rounds:
             lost = (trust < AGAIN)[..., None]
             asked = np.where(lost, course.values, take.postures - shift)
             again = AGAIN / (1.0 + (course.spread / SURE) ** 2)
             given = np.maximum(given, again)
-    share = course.spread / SIZE
+    share = course.spread / errors.size
     unsure = np.hypot(settings.noise, share * np.hypot(made.spread, MODEL))
-    postures = keep_lengths(course.values, lengths, trust)
-    return Followed(postures + shift, 1.0 / (1.0 + (unsure / SURE) ** 2))
+    sure = 1.0 / (1.0 + (unsure / SURE) ** 2)
+    postures = keep_lengths(course.values + errors.offset, lengths, trust, sure)
+    return Followed(postures + shift, sure)
 
 
 def _body_of(take: _Seen, library: PostureLibrary, pace: float) -> BodyPostures:
@@ -127,6 +129,22 @@ def _body_of(take: _Seen, library: PostureLibrary, pace: float) -> BodyPostures:
         )
         body = on_body(directions, changes, lengths, turns)
     return body
+
+
+def _errors(
+    take: _Seen, body: BodyPostures, index: PostureIndex, settings: PostureSettings
+) -> Errors:
+    """Return what to expect of limbs that are not seen, by leaving them out."""
+    speeds = bone_changes(take.postures, take.frame_rate)
+
+    def synthesise(frames: NDArray[np.intp], trust: Array) -> Array:
+        query = Query(take.postures[frames], speeds[frames], trust, settings.pace)
+        places, _ = nearest_postures(index, query, settings.n_neighbours)
+        spaces = local_pca(body.positions[places].astype(np.float64), settings.n_dimensions)
+        asked = Demands(take.postures[frames], trust, spaces.neighbours, take.lengths)
+        return probable_postures(spaces, asked)[0]
+
+    return leave_out(take.postures, take.trust, synthesise)
 
 
 def _led_up(take: _Seen, settings: PostureSettings) -> Array:
@@ -206,14 +224,15 @@ def _shift(off: Array, trust: Array, frame_rate: float, settings: PostureSetting
     return np.asarray(move[:, None])
 
 
-def _corrected(made: Course, seen: Array, take: _Seen, settings: PostureSettings) -> Course:
+def _corrected(
+    made: Course, seen: Array, take: _Seen, size: Array, settings: PostureSettings
+) -> Course:
     """Lead synthesised postures through what was seen."""
     if settings.method is PostureMethod.PUBLISHED:
-        return Course(made.values, np.full(take.trust.shape, SIZE))
+        return Course(made.values, np.broadcast_to(size, take.trust.shape))
     dt, deviation = 1.0 / take.frame_rate, noise_of(take.trust, settings.noise)
-    known = {"size": SIZE, "memory": settings.memory}
     if settings.causal:
-        course = causal_course(made.values, seen, deviation, dt, **known)
+        course = causal_course(made.values, seen, deviation, dt, size, settings.memory)
     else:
-        course = fading_course(seen - made.values, deviation, dt, **known)
+        course = fading_course(seen - made.values, deviation, dt, size, settings.memory)
     return Course(made.values + course.values, course.spread)

@@ -12,18 +12,18 @@ from .physics_world import GRAVITY, World
 
 Array = NDArray[np.float64]
 BASE = slice(0, 6)
-LIFTING = 0.1
-"""Metres per second, for legs of 0.9 m: a foot that is to rise faster bears no weight."""
-
 HARDEST, HARDEST_TURN = 1.0, 30.0
 """Of the base: at most so much acceleration corrects an error, in g and in 1/s^2."""
 
-SWEEPS = 12
+SWEEPS = 8
 RIDGE = 1e-3
 """Share by which a contact's force is held small, so that neighbours share the load."""
 
+RELUCTANCE = 100.0
+"""How much smaller it is held for arms and head: legs carry the body where they can."""
+
 HELPING_LEVER = 1.0
-LEVER = 0.3
+LEVER = 1.0
 """Metres, for legs of 0.9 m: by it, torques on the base are weighed against forces."""
 
 
@@ -95,9 +95,9 @@ def drive(
     wanted = target.accelerations + correction
     inertia = np.empty((model.nv, model.nv))
     engine.mj_fullM(model, inertia, data.qM)
-    contacts = _bearing_contacts(data, target.velocities, control)
+    contacts, burdens = _contacts(world)
     on_base = inertia[BASE] @ wanted + data.qfrc_bias[BASE]
-    pushes = _ground_forces(contacts[:, BASE], on_base, control)
+    pushes = _ground_forces(contacts[:, BASE], burdens, on_base, control)
     from_ground = contacts.T @ pushes
     help_ = _bounded_help(on_base - from_ground[BASE], control)
     given = help_ + from_ground[BASE] - data.qfrc_bias[BASE]
@@ -110,16 +110,19 @@ def drive(
     return float(np.linalg.norm(help_[:3]) / control.weight)
 
 
-def _bearing_contacts(data: object, velocities: Array, control: Controller) -> Array:
-    """Return Jacobians of the contacts that are to stay: rows in threes, along the normal
-    first, shape (3 n_contacts, n_velocities).
+def _contacts(world: World) -> tuple[Array, Array]:
+    """Return Jacobians of the contacts, rows in threes, along the normal first, shape
+    (3 n_contacts, n_velocities); and how reluctantly each row bears the body.
     """
-    jacobians = data.efc_J.reshape(-1, len(velocities))  # type: ignore[attr-defined]
-    rising = jacobians[::3] @ velocities
-    return np.asarray(jacobians[np.repeat(rising < LIFTING * control.size, 3)])
+    data = world.data
+    weak = world.weak[data.contact.geom[data.contact.efc_address >= 0]].any(axis=1)
+    burdens = np.repeat(np.where(weak, RELUCTANCE, 1.0), 3)
+    return data.efc_J.reshape(-1, world.model.nv), burdens
 
 
-def _ground_forces(contacts: Array, wanted: Array, control: Controller) -> Array:
+def _ground_forces(
+    contacts: Array, burdens: Array, wanted: Array, control: Controller
+) -> Array:
     """Return the forces of contacts that would drive the base as wanted, as far as friction
     and the ground, which does not pull, allow: the least ones, shape (3 n_contacts,).
 
@@ -128,24 +131,23 @@ def _ground_forces(contacts: Array, wanted: Array, control: Controller) -> Array
     if not len(contacts):
         return np.zeros(0)
     scale = np.repeat([1.0, 1.0 / (LEVER * control.size)], 3)
-    A, b = (contacts * scale).T, wanted * scale
-    gram = A.T @ A
-    steepest = np.trace(gram)
-    gram[np.diag_indices_from(gram)] += RIDGE * steepest
-    forces = _in_cones(np.linalg.solve(gram, A.T @ b), control.friction)
-    step = 1.0 / np.linalg.norm(gram, 2)
+    A = (contacts * scale).T
+    gram, wish = A.T @ A, A.T @ (wanted * scale)
+    gram[np.diag_indices_from(gram)] += RIDGE * np.trace(gram) * burdens
+    forces = _in_cones(np.linalg.solve(gram, wish), control.friction)
+    step = 1.0 / np.sqrt((gram * gram).sum())
     for _ in range(SWEEPS):
-        forces = _in_cones(forces - step * (gram @ forces - A.T @ b), control.friction)
+        forces = _in_cones(forces - step * (gram @ forces - wish), control.friction)
     return forces
 
 
 def _in_cones(forces: Array, friction: float) -> Array:
     """Return forces that neither pull nor hold sideways more than friction allows."""
-    threes = forces.reshape(-1, 3)
-    normal = np.maximum(threes[:, 0], 0.0)
-    sideways = np.hypot(threes[:, 1], threes[:, 2])
-    share = np.minimum(1.0, friction * normal / np.maximum(sideways, 1e-9))
-    return np.column_stack([normal, threes[:, 1] * share, threes[:, 2] * share]).ravel()
+    inside = forces.reshape(-1, 3).copy()
+    normal = np.maximum(inside[:, 0], 0.0, out=inside[:, 0])
+    sideways = np.hypot(inside[:, 1], inside[:, 2])
+    inside[:, 1:] *= np.minimum(1.0, friction * normal / np.maximum(sideways, 1e-9))[:, None]
+    return inside.ravel()
 
 
 def _at_most(vector: Array, bound: float) -> Array:

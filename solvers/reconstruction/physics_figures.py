@@ -19,27 +19,26 @@ def mean_distance(motion: Motion, other: Motion, joints: Sequence[int]) -> float
     return float(np.linalg.norm(there - here, axis=-1).mean())
 
 
-def told(
-    followed: NDArray[np.bool_], given_up: bool, ground: float, under_feet: float, size: float
-) -> str:
-    """Say where the body could follow, and whether the ground is where the feet stand."""
+def told(followed: NDArray[np.bool_], given_up: bool, smoothing: float) -> str:
+    """Say where the body could follow, and that the take had to be calmed for it (seconds)."""
     n_lost, n_frames = int((~followed).sum()), len(followed)
-    sentences = []
     if given_up:
-        sentences.append(
-            "The simulated body could not follow the take, which is left as it is."
-        )
-    elif n_lost:
-        first = int(np.flatnonzero(~followed)[0])
-        sentences.append(
-            f"The simulated body could not follow in {n_lost} of {n_frames} frames, the first"
-            f" of them {first}; there the take is left as it is."
-        )
-    else:
-        sentences.append("The simulated body followed the whole take.")
-    if abs(under_feet - ground) > OTHER_GROUND * size:
-        sentences.append(
-            f"The feet of the take stand at a height of {under_feet:.2f} m, the ground is at"
-            f" {ground:.2f} m: choose the ground under the feet if that is wrong."
-        )
-    return " ".join(sentences)
+        return "The simulated body could not follow the take, which is left as it is."
+    calmed = f" It had to be calmed by {smoothing:.2g} s for that." if smoothing else ""
+    if not n_lost:
+        return f"The simulated body followed the whole take.{calmed}"
+    first = int(np.flatnonzero(~followed)[0])
+    return (
+        f"The simulated body could not follow in {n_lost} of {n_frames} frames, the first of"
+        f" them {first}; there the take is left as it is.{calmed}"
+    )
+
+
+def about_ground(ground: float, under_feet: float, size: float) -> str:
+    """Say that the ground is not where the take stands; nothing where it is."""
+    if abs(under_feet - ground) <= OTHER_GROUND * size:
+        return ""
+    return (
+        f" The take stands at a height of {under_feet:.2f} m, the ground is at {ground:.2f} m:"
+        " choose the ground under the feet if that is wrong."
+    )

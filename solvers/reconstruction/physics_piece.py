@@ -3,17 +3,19 @@
 from dataclasses import dataclass
 from itertools import pairwise
 from types import ModuleType
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from ..motion import Motion, forward_kinematics
-from ..motion.rotations import inverse, multiply
-from ..progress import Progress
+from ..motion.canonical import UP
+from ..motion.rotations import inverse, multiply, rotate, twist_about
+from ..progress import Progress, within
 from .physics_body import PhysicsBody
 from .physics_control import controller
 from .physics_run import follow
-from .physics_surface import penetration, raising, sole_speeds
+from .physics_surface import clearance, raising, sole_speeds, touching
 from .physics_target import calmed_target
 from .physics_world import build_world
 
@@ -22,7 +24,7 @@ Flags = NDArray[np.bool_]
 LONGEST_STEP = 1.0 / 239.0
 """Seconds. 30, 60 and 120 frames a second are then simulated in the same steps, 1/240 s."""
 
-JUMP, FASTEST = 0.1, 12.0
+JUMP, FASTEST = 0.05, 12.0
 """Metres, for legs of 0.9 m, and metres per second: a body whose joints go farther on average
 from one frame to the next jumps, as between clips that were joined, or out of a T-pose."""
 
@@ -34,6 +36,24 @@ SLIPPERY = 0.05
 """Share of the friction under a foot that swings."""
 
 
+TRIES = 4
+CALMEST = 0.16
+"""Seconds of smoothing, beyond which there is little left of a motion."""
+
+HANGING = 0.75
+"""Share of the help from outside which a body that goes by itself does not use on average."""
+
+
+class Conditions(NamedTuple):
+    """In what a body is simulated: see `SimulateSettings`."""
+
+    ground: float
+    response: float
+    smoothing: float
+    friction: float
+    support: float
+
+
 @dataclass(frozen=True, eq=False)
 class Piece:
     """What was simulated of a piece: see `Simulated`; `n_lost` counts how often it was lost."""
@@ -43,6 +63,12 @@ class Piece:
     contacts: Flags
     support: Array
     n_lost: int
+    smoothing: float
+
+    @property
+    def trouble(self) -> tuple[int, float]:
+        """How badly it went: how often the body was lost, and how much it was held."""
+        return self.n_lost, float(self.support.mean())
 
 
 def find_pieces(body: PhysicsBody, motion: Motion) -> list[tuple[int, int]]:
@@ -57,17 +83,50 @@ def simulated_piece(
     engine: ModuleType,
     body: PhysicsBody,
     motion: Motion,
-    ground: float,
-    *,
-    response: float,
-    smoothing: float,
-    friction: float,
-    support: float,
+    conditions: Conditions,
     progress: Progress,
 ) -> Piece:
-    """Let the body follow a piece without gaps."""
+    """Let the body follow a piece without gaps.
+
+    One that shakes faster than muscles can move throws its body about. Where the body is lost,
+    or hangs on the help from outside, it tries again with a target that is calmed twice as
+    much, up to three times; what went best is returned.
+    """
+    best, start = None, 0.0
+    for doublings in range(TRIES):
+        smoothing = min(conditions.smoothing * 2**doublings, CALMEST)
+        stop = (1.0 + start) / 2
+        tried = _tried(
+            engine, body, motion, conditions, smoothing, within(progress, start, stop)
+        )
+        if best is None or tried.trouble < best.trouble:
+            best = tried
+        if best.trouble < (0, HANGING * conditions.support) or smoothing == CALMEST:
+            break
+        start = stop
+    assert best is not None
+    return best
+
+
+def _tried(
+    engine: ModuleType,
+    body: PhysicsBody,
+    motion: Motion,
+    conditions: Conditions,
+    smoothing: float,
+    progress: Progress,
+) -> Piece:
+    """Simulate a piece once.
+
+    It is simulated where it starts at the origin and faces along an axis, so that rounding in
+    the engine does not depend on where and which way it was captured.
+    """
+    ground, friction = conditions.ground, conditions.friction
     places, rotations = _of_moving_joints(body, motion)
-    places[:, 2] += raising(penetration(body, motion, ground), motion.frame_rate)
+    places[:, 2] += raising(clearance(body, motion, ground), motion.frame_rate, body.size)
+    origin, facing = places[0] * (1.0, 1.0, 0.0), twist_about(rotations[0, 0], UP)
+    places = rotate(inverse(facing), places - origin)
+    rotations[:, 0] = multiply(inverse(facing), rotations[:, 0])
     target = calmed_target(places, rotations, motion.frame_rate, smoothing)
     speeds = sole_speeds(body, _with_moving_joints(body, motion, target.at_frames()))
     grips = np.clip((SWINGS - speeds / body.size) / (SWINGS - STANDS), SLIPPERY, 1.0)
@@ -75,19 +134,17 @@ def simulated_piece(
     course = follow(
         engine,
         build_world(engine, body, ground, friction, motion.dt / n_steps),
-        controller(body, response, support, friction),
+        controller(body, conditions.response, conditions.support, friction),
         target,
         grips,
         n_steps,
         tell=lambda frame: progress(frame / motion.n_frames, "Simulating"),
     )
-    return Piece(
-        _with_moving_joints(body, motion, course.places),
-        course.followed,
-        course.contacts,
-        course.support,
-        course.n_lost,
-    )
+    course.places[:, :3] = rotate(facing, course.places[:, :3]) + origin
+    course.places[:, 3:7] = multiply(facing, course.places[:, 3:7])
+    result = _with_moving_joints(body, motion, course.places)
+    contacts = touching(body, result, ground)
+    return Piece(result, course.followed, contacts, course.support, course.n_lost, smoothing)
 
 
 def _of_moving_joints(body: PhysicsBody, motion: Motion) -> tuple[Array, Array]:

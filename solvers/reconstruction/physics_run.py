@@ -12,11 +12,21 @@ from .physics_target import States, Target
 from .physics_world import World
 
 Array = NDArray[np.float64]
-LOST = 0.35
-"""Metres, for legs of 0.9 m: a body whose joints are on average farther off is lost."""
+FAR, PATIENCE = 0.35, 0.2
+"""Metres, for legs of 0.9 m, and seconds: a body whose joints are on average farther from
+their targets, for longer, is lost. For a moment it may be the target that is wrong."""
+
+LOST = 1.0
+"""Metres, for legs of 0.9 m: a body that is farther off is lost at once."""
+
+FASTEST = 1e4
+"""Metres or radians per second: nothing turns so fast but in a simulation that explodes."""
 
 STRAYING = 0.15
 """Metres, for legs of 0.9 m: from here on, a body that is lost in the end was so before."""
+
+HAIR = 0.001
+"""Metres over the ground at which a body starts, lest rounding decides whether it touches."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -27,8 +37,6 @@ class Course:
     ----------
     places : shape (n_frames, 3 + 4 n_joints)
         In the coordinates of `States.places`.
-    contacts : bool, shape (n_frames, 2)
-        Whether the left and the right foot touch the ground.
     support : shape (n_frames,)
         Force from outside, as a share of the weight.
     followed : bool, shape (n_frames,)
@@ -38,7 +46,6 @@ class Course:
     """
 
     places: Array
-    contacts: NDArray[np.bool_]
     support: Array
     followed: NDArray[np.bool_]
     n_lost: int
@@ -60,23 +67,24 @@ def follow(
     """
     n_frames = target.n_frames
     places = np.empty((n_frames, world.model.nq))
-    contacts = np.zeros((n_frames, 2), dtype=np.bool_)
     support, apart, lost = np.zeros(n_frames), np.zeros(n_frames), []
+    far = 0
     for frame in range(n_frames):
         tell(frame)
         states = target.between(frame, n_steps)
         _grip(world, control, grips[frame])
         engine.mj_step1(world.model, world.data)
         apart[frame] = _apart(engine, world, states.places[0])
-        if frame == 0 or not apart[frame] <= LOST * control.size:
+        far = far + 1 if apart[frame] > FAR * control.size else 0
+        if frame == 0 or far * target.dt > PATIENCE or not apart[frame] <= LOST * control.size:
+            far = 0
             _put(engine, world, states)
             lost += [frame] if frame else []
         places[frame] = world.data.qpos
-        contacts[frame] = _feet_touch(world)
         if frame < n_frames - 1:
             support[frame] = np.mean(_steps(engine, world, control, states))
     followed = _followed(apart, lost, STRAYING * control.size)
-    return Course(places, contacts, support, followed, len(lost))
+    return Course(places, support, followed, len(lost))
 
 
 def _followed(apart: Array, lost: list[int], near: float) -> NDArray[np.bool_]:
@@ -95,11 +103,16 @@ def _followed(apart: Array, lost: list[int], near: float) -> NDArray[np.bool_]:
 def _steps(
     engine: ModuleType, world: World, control: Controller, states: States
 ) -> list[float]:
-    """Go from one frame to the next; return how much help each step used."""
-    used = []
+    """Go from one frame to the next; return how much help each step used.
+
+    Where the engine gave up, there is nothing left to drive; `_apart` will say so.
+    """
+    used: list[float] = []
     for step, moment in enumerate(zip(*states, strict=True)):
         if step:
             engine.mj_step1(world.model, world.data)
+        if not np.abs(world.data.qvel).max() < FASTEST:
+            return [*used, 0.0]
         used.append(drive(engine, world, control, States(*moment)))
         engine.mj_step2(world.model, world.data)
     return used
@@ -110,7 +123,8 @@ def _apart(engine: ModuleType, world: World, wanted: Array) -> float:
     engine gave up.
     """
     data = world.data
-    if any(warning.number for warning in data.warning) or not np.isfinite(data.qpos).all():
+    exploded = not (np.isfinite(data.qpos).all() and np.abs(data.qvel).max() < FASTEST)
+    if exploded or np.any(data.warning.number):
         return np.inf
     world.ghost.qpos[:] = wanted
     engine.mj_kinematics(world.model, world.ghost)
@@ -127,7 +141,7 @@ def _put(engine: ModuleType, world: World, states: States) -> None:
     # A capsule reaches from its middle as far down as its axis leans, and its radius.
     down = model.geom_size[:, 0] + model.geom_size[:, 1] * np.abs(data.geom_xmat[:, 8])
     bottoms = (data.geom_xpos[:, 2] - down)[model.geom_contype > 0]
-    data.qpos[2] += max(0.0, world.ground - bottoms.min(initial=np.inf))
+    data.qpos[2] += max(0.0, world.ground + HAIR - bottoms.min(initial=np.inf))
     engine.mj_step1(model, data)
 
 
@@ -135,8 +149,3 @@ def _grip(world: World, control: Controller, grips: Array) -> None:
     """Let each foot hold the ground as firmly as its target does."""
     for foot, grip in zip(world.feet.T, grips, strict=True):
         world.model.geom_friction[foot, 0] = max(control.friction * grip, 1e-5)
-
-
-def _feet_touch(world: World) -> NDArray[np.bool_]:
-    touching = [pair for contact in world.data.contact for pair in contact.geom]
-    return np.asarray(world.feet[touching].any(axis=0))

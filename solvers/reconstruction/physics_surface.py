@@ -2,52 +2,88 @@
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.ndimage import gaussian_filter1d, median_filter
+from scipy.ndimage import gaussian_filter1d, grey_opening, median_filter
 
 from ..motion import Motion, forward_kinematics
 from ..motion.rotations import rotate
 from .physics_body import PhysicsBody
 
 Array = NDArray[np.float64]
+SIDES = ("left", "right")
+NEAR = 0.005
+"""Metres, for legs of 0.9 m: a sole as near to the ground touches it."""
+
 SLOW = 1.0
-"""Seconds over which a body that is under the ground is raised with its target."""
+"""Seconds: what a body does for longer, over or under the ground, is taken for an error."""
+
+SHALLOW = 0.02
+"""Metres, for legs of 0.9 m, by which a body may be under the ground for long: one foot often
+is a little lower than the other, and legs that press it down stand more firmly."""
+
+HIGHEST = 0.25
+"""Metres, for legs of 0.9 m, of hovering that is taken for an error."""
 
 
 def bottoms(body: PhysicsBody, motion: Motion) -> tuple[Array, NDArray[np.intp]]:
-    """Return the lowest points of all capsules that touch the ground.
+    """Return the lowest points of both ends of all capsules that touch the ground.
 
     Returns
     -------
-    points : shape (n_frames, n_capsules, 3), metres
-    joints : int, shape (n_capsules,)
+    points : shape (n_frames, 2 n_capsules, 3), metres
+    joints : int, shape (2 n_capsules,)
     """
     poses = forward_kinematics(motion)
-    touching = [capsule for capsule in body.capsules if capsule.touches]
+    touching = [capsule for capsule in body.capsules if capsule.touches for _ in capsule.ends]
     joints = np.array([capsule.joint for capsule in touching], dtype=np.intp)
-    ends = np.stack([capsule.ends for capsule in touching], axis=1)
-    radii = np.array([capsule.radius for capsule in touching])
-    one, other = (
-        poses.positions[:, joints] + rotate(poses.rotations[:, joints], end) for end in ends
-    )
-    lower = np.where(one[..., 2:] < other[..., 2:], one, other)
-    lower[..., 2] -= radii
-    return lower, joints
+    ends = np.concatenate([capsule.ends for capsule in touching[::2]])
+    points = poses.positions[:, joints] + rotate(poses.rotations[:, joints], ends)
+    points[..., 2] -= [capsule.radius for capsule in touching]
+    return points, joints
 
 
-def penetration(body: PhysicsBody, motion: Motion, ground: float) -> Array:
-    """Return how deep the body is under the ground, shape (n_frames,), metres; 0 above."""
+def clearance(body: PhysicsBody, motion: Motion, ground: float) -> Array:
+    """Return how high the lowest point of the body is over the ground, (n_frames,), metres."""
     points, _ = bottoms(body, motion)
-    return np.asarray(np.maximum(0.0, ground - points[..., 2].min(axis=1)))
+    return np.asarray(points[..., 2].min(axis=1) - ground)
 
 
-def raising(depths: Array, frame_rate: float) -> Array:
-    """Return how far a target must be raised that is under the ground for long, (n_frames,).
+def penetration(body: PhysicsBody, motion: Motion, ground: float) -> float:
+    """Return how deep the body is under the ground where it is deepest, metres; 0 above."""
+    return float(max(0.0, -clearance(body, motion, ground).min()))
 
-    What is under it for a moment is for the legs to mend.
+
+def raising(heights: Array, frame_rate: float, size: float) -> Array:
+    """Return by how much to raise a target that is under the ground, or hovers, for long.
+
+    What is under it for a moment is for the legs to mend, and who leaves it for a moment jumps.
+    A body that hovers higher than anyone's shoes are thick is not on this ground at all.
+
+    Parameters
+    ----------
+    heights : shape (n_frames,), metres
+        Of the body's lowest point over the ground.
+    frame_rate : float, hertz
+    size : float
+        Of the body: its legs over 0.9 m.
+
+    Returns
+    -------
+    Array
+        Shape (n_frames,), metres; negative where the target is to be lowered.
     """
-    window = 2 * int(SLOW * frame_rate / 2) + 1
-    usual = median_filter(depths, size=min(window, 2 * len(depths) - 1), mode="nearest")
-    return np.asarray(gaussian_filter1d(usual, SLOW / 4 * frame_rate, mode="nearest"))
+    window = min(2 * int(SLOW * frame_rate / 2) + 1, 2 * len(heights) - 1)
+    sunk = np.maximum(-heights - SHALLOW * size, 0.0)
+    under = median_filter(sunk, size=window, mode="nearest")
+    over = grey_opening(np.maximum(heights, 0.0), size=window, mode="nearest")
+    over = np.where(over > HIGHEST * size, 0.0, over)
+    return np.asarray(gaussian_filter1d(under - over, SLOW / 4 * frame_rate, mode="nearest"))
+
+
+def touching(body: PhysicsBody, motion: Motion, ground: float) -> NDArray[np.bool_]:
+    """Return whether the left and the right foot touch the ground, shape (n_frames, 2)."""
+    points, joints = bottoms(body, motion)
+    near = points[..., 2] < ground + NEAR * body.size
+    return np.stack([near[:, _of_foot(body, joints, side)].any(axis=1) for side in SIDES], -1)
 
 
 def sole_speeds(body: PhysicsBody, motion: Motion) -> Array:
@@ -57,17 +93,19 @@ def sole_speeds(body: PhysicsBody, motion: Motion) -> Array:
     """
     points, joints = bottoms(body, motion)
     speeds = np.zeros((motion.n_frames, 2))
-    for column, side in enumerate(("left", "right")):
-        of_foot = [
-            place
-            for place, joint in enumerate(joints)
-            if body.roles.get(int(joint)) in {f"{side}Foot", f"{side}Toes"}
-        ]
-        if of_foot and motion.n_frames > 1:
+    for column, side in enumerate(SIDES):
+        of_foot = _of_foot(body, joints, side)
+        if of_foot.any() and motion.n_frames > 1:
             steps = np.linalg.norm(np.diff(points[:, of_foot, :2], axis=0), axis=-1)
             speeds[1:, column] = steps.min(axis=1) * motion.frame_rate
             speeds[0, column] = speeds[1, column]
     return speeds
+
+
+def _of_foot(body: PhysicsBody, joints: NDArray[np.intp], side: str) -> NDArray[np.bool_]:
+    """Tell which of these joints are of the left or of the right foot."""
+    roles = {f"{side}Foot", f"{side}Toes"}
+    return np.array([body.roles.get(int(joint)) in roles for joint in joints], dtype=np.bool_)
 
 
 def slide(body: PhysicsBody, motion: Motion, contacts: NDArray[np.bool_]) -> float:

@@ -1,5 +1,6 @@
 """A body of capsules on level ground, as a model of the engine MuJoCo."""
 
+from collections.abc import Collection
 from types import ModuleType
 from typing import Any, NamedTuple
 
@@ -7,15 +8,18 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .physics_body import Capsule, PhysicsBody
+from .physics_tables import ARM
 
 GRAVITY = 9.81
-SOFTNESS = 0.02
+SIDES = ("left", "right")
+WEAK = {"neck", "head", *(side + part for side in SIDES for part in ARM)}
+SOFTNESS = 0.01
 """Seconds in which the ground pushes out what sinks into it."""
 
 HARDNESS = "0.95 0.995 0.002 0.5 2"
 """The engine's `solimp`: a foot is light, and what its leg pushes with must not sink it."""
 
-ROTOR = 0.0014
+ROTOR = 0.001
 """Seconds squared: by it and its strength, a joint has inertia of its own, as a geared motor
 has. Without it, feet are so light that a small error of the ground's force would turn them."""
 
@@ -31,6 +35,8 @@ class World(NamedTuple):
     """Number of each moving joint's body, in the order of `PhysicsBody.joints`."""
     feet: NDArray[np.bool_]
     """Whether each geometry is of the left foot, of the right foot, shape (n_geometries, 2)."""
+    weak: NDArray[np.bool_]
+    """Whether each geometry is of an arm or of the head, shape (n_geometries,)."""
     ground: float
 
 
@@ -47,15 +53,17 @@ def build_world(
         "<flag autoreset='disable'/></option>",
         f"<default><geom condim='3' priority='1' friction='{rub!r} 0.005 0.0001'"
         f" solref='{softness!r} 1' solimp='{HARDNESS}'/><joint type='ball'/></default>",
-        f"<worldbody><geom type='plane' size='0 0 1' priority='0' pos='0 0 {ground!r}'"
+        f"<worldbody><geom type='plane' size='0 0 1' priority='0' pos='0 0 {float(ground)!r}'"
         " contype='0' conaffinity='1'/>",
         _nested(body, body.joints[0]),
         "</worldbody></mujoco>",
     ]
     model = engine.MjModel.from_xml_string("".join(lines))
     bodies = np.array([model.body(f"joint{joint}").id for joint in body.joints])
+    feet = [_of_parts(model, body, bodies, {f"{side}Foot", f"{side}Toes"}) for side in SIDES]
+    weak = _of_parts(model, body, bodies, WEAK)
     data, ghost = engine.MjData(model), engine.MjData(model)
-    return World(model, data, ghost, bodies, _feet(model, body, bodies), ground)
+    return World(model, data, ghost, bodies, np.stack(feet, axis=-1), weak, ground)
 
 
 def _nested(body: PhysicsBody, joint: int) -> str:
@@ -82,7 +90,7 @@ def _ball(body: PhysicsBody, joint: int) -> str:
 def _geometry(capsule: Capsule) -> str:
     meets = f"contype='{int(capsule.touches)}' conaffinity='0'"
     start, stop = capsule.ends
-    common = f"size='{capsule.radius!r}' mass='{capsule.mass!r}' {meets}"
+    common = f"size='{float(capsule.radius)!r}' mass='{float(capsule.mass)!r}' {meets}"
     if np.array_equal(start, stop):
         return f"<geom type='sphere' pos='{_words(start)}' {common}/>"
     return f"<geom type='capsule' fromto='{_words(start)} {_words(stop)}' {common}/>"
@@ -92,14 +100,11 @@ def _words(vector: NDArray[np.float64]) -> str:
     return " ".join(repr(float(value)) for value in vector)
 
 
-def _feet(model: Any, body: PhysicsBody, bodies: NDArray[np.intp]) -> NDArray[np.bool_]:
-    """Tell which geometries touch the ground for the left and for the right foot."""
-    flags = np.zeros((model.ngeom, 2), dtype=np.bool_)
-    for column, side in enumerate(("left", "right")):
-        joints = [
-            place
-            for place, joint in enumerate(body.joints)
-            if body.roles.get(joint) in {f"{side}Foot", f"{side}Toes"}
-        ]
-        flags[:, column] = np.isin(model.geom_bodyid, bodies[joints])
-    return flags
+def _of_parts(
+    model: Any, body: PhysicsBody, bodies: NDArray[np.intp], roles: Collection[str]
+) -> NDArray[np.bool_]:
+    """Tell which geometries are of joints with these roles, shape (n_geometries,)."""
+    places = [
+        place for place, joint in enumerate(body.joints) if body.roles.get(joint) in roles
+    ]
+    return np.isin(model.geom_bodyid, bodies[places])

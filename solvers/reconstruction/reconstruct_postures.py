@@ -18,7 +18,7 @@ from .result import Reconstruction
 
 Array = NDArray[np.float64]
 
-FEWEST = 4
+FEWEST = 3
 """Joints of postures that must be seen together in some frame."""
 
 
@@ -52,8 +52,9 @@ def reconstruct_postures(
     Returns
     -------
     Reconstruction
-        Every joint in every frame, except those that are never seen; bones between the joints
-        of postures have constant lengths.
+        Every joint in every frame; those that are never seen where the library has them, with
+        the usual share of the body's size. Bones of lost joints have the actor's lengths as
+        nearly as trusted joints allow; those of the motion have them exactly.
 
     Raises
     ------
@@ -86,7 +87,6 @@ def reconstruct_postures(
     tracks = recording.tracks
     after = seen.put_back(found.postures)
     joints = all_joints(tracks.names, tracks.positions, reliability.combined, positions, after)
-    joints[:, ~tracks.visible.any(axis=0)] = np.nan
     rebuilt = tracks.with_positions(joints)
     motion = motion_from_points(rebuilt, recording.parents)
     progress(1.0, "Reconstructed")

@@ -12,8 +12,8 @@ from ..settings import Settings, setting
 from .physics_body import PhysicsBody, check_size, physics_body
 from .physics_engine import load_engine
 from .physics_feet import find_ground, with_soles
-from .physics_figures import mean_distance, told
-from .physics_piece import Piece, find_pieces, simulated_piece
+from .physics_figures import about_ground, mean_distance, told
+from .physics_piece import Conditions, Piece, find_pieces, simulated_piece
 from .physics_surface import penetration, slide
 from .physics_target import blended, filled
 
@@ -24,6 +24,9 @@ EASE = 0.3
 
 TOO_OFTEN = 1.0
 """Seconds of a take for each time that its body may be lost before all is given up."""
+
+TOO_MANY = 0.3
+"""Share of the frames that may not be followed, likewise."""
 
 
 class Ground(Enum):
@@ -88,6 +91,8 @@ class Simulated:
         How deep the body is under the ground where it is deepest.
     slide_before, slide_after : float, metres
         Way that both feet cover over the ground during `contacts`.
+    smoothing : float, seconds
+        How much the target was calmed where it was calmed most.
     distance : float, metres
         Mean distance of the result's joints from where they were captured.
     message : str
@@ -103,6 +108,7 @@ class Simulated:
     penetration_after: float
     slide_before: float
     slide_after: float
+    smoothing: float
     distance: float
     message: str
 
@@ -137,6 +143,7 @@ def simulate(
         Says which joints are which segments; found by name and structure where it is not given.
         A skeleton without legs is simulated bone by bone.
     settings : SimulateSettings
+        A take that shakes so that the body cannot follow is calmed more than they say.
     progress : Progress
 
     Returns
@@ -172,23 +179,21 @@ def simulate(
     in_air = settings.ground is Ground.HEIGHT
     ground = settings.ground_height if in_air else under_feet
     body = with_soles(bare, whole, humanoid, ground)
-    pieces = []
-    for start, stop in find_pieces(body, whole):
-        pieces.append(
-            simulated_piece(
-                engine,
-                body,
-                whole.slice(start, stop),
-                ground,
-                response=settings.response,
-                smoothing=settings.smoothing,
-                friction=settings.friction,
-                support=settings.support,
-                progress=within(progress, start / motion.n_frames, stop / motion.n_frames),
-            )
+    conditions = Conditions(
+        ground, settings.response, settings.smoothing, settings.friction, settings.support
+    )
+    pieces = [
+        simulated_piece(
+            engine,
+            body,
+            whole.slice(start, stop),
+            conditions,
+            within(progress, start / motion.n_frames, stop / motion.n_frames),
         )
+        for start, stop in find_pieces(body, whole)
+    ]
     progress(1.0, "Simulated")
-    return _put_together(motion, whole, body, pieces, settings.strength, ground, under_feet)
+    return _put_together(motion, whole, body, pieces, settings, ground, under_feet)
 
 
 def with_strength(motion: Motion, simulated: Simulated, strength: float) -> Motion:
@@ -207,22 +212,24 @@ def _put_together(
     whole: Motion,
     body: PhysicsBody,
     pieces: list[Piece],
-    strength: float,
+    settings: SimulateSettings,
     ground: float,
     under_feet: float,
 ) -> Simulated:
     """Blend what was simulated with the take, and measure the result."""
     followed = np.concatenate([piece.followed for piece in pieces])
     n_lost = sum(piece.n_lost for piece in pieces)
-    given_up = n_lost > 1 + motion.n_frames * motion.dt / TOO_OFTEN
+    too_often = n_lost > 1 + motion.n_frames * motion.dt / TOO_OFTEN
+    given_up = too_often or float((~followed).mean()) > TOO_MANY
     if given_up:
         followed[:] = False
     rotations = np.concatenate([piece.motion.rotations for piece in pieces])
     roots = np.concatenate([piece.motion.root_positions for piece in pieces])
-    share = strength * _ease(pieces, motion.frame_rate) * (not given_up)
+    share = settings.strength * _ease(pieces, motion.frame_rate) * (not given_up)
     result = motion
     if share.any():
         result = blended(whole, whole.with_poses(rotations, roots), body.joints, share)
+    smoothing = max(piece.smoothing for piece in pieces)
     contacts = np.concatenate([piece.contacts for piece in pieces])
     return Simulated(
         motion=result.with_poses(),
@@ -230,12 +237,14 @@ def _put_together(
         contacts=contacts,
         support=np.concatenate([piece.support for piece in pieces]),
         ground=ground,
-        penetration_before=float(penetration(body, whole, ground).max()),
-        penetration_after=float(penetration(body, filled(result), ground).max()),
+        penetration_before=penetration(body, whole, ground),
+        penetration_after=penetration(body, filled(result), ground),
         slide_before=slide(body, whole, contacts),
         slide_after=slide(body, filled(result), contacts),
+        smoothing=smoothing,
         distance=mean_distance(whole, filled(result), body.joints),
-        message=told(followed, given_up, ground, under_feet, body.size),
+        message=told(followed, given_up, smoothing if smoothing > settings.smoothing else 0.0)
+        + about_ground(ground, under_feet, body.size),
     )
 
 

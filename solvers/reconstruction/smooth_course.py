@@ -36,7 +36,7 @@ def noise_of(trust: Array, noise: float) -> Array:
 
 
 def fading_course(
-    seen: Array, deviation: Array, dt: float, *, size: float, memory: float
+    seen: Array, deviation: Array, dt: float, size: Array, memory: float
 ) -> Course:
     """Follow values that fade to nothing where they are not seen.
 
@@ -50,7 +50,7 @@ def fading_course(
     deviation : shape (n_frames, n_joints), metres
         Standard deviation of what was seen; infinite where it tells nothing.
     dt : float, seconds
-    size : float, metres
+    size : shape (n_joints,), metres
         Usual size of a value.
     memory : float, seconds
         How long it lasts.
@@ -65,12 +65,12 @@ def fading_course(
         [1.0 + rate * dt, dt],
         [-(rate**2) * dt, 1.0 - rate * dt],
     ])  # fmt: skip
-    start = size**2 * np.diag([1.0, rate**2])
+    start = size[:, None, None] ** 2 * np.diag([1.0, rate**2])
     return _follow(seen, deviation, _Process(A, start - A @ start @ A.T, start))
 
 
 def causal_course(
-    synthesised: Array, seen: Array, deviation: Array, dt: float, *, size: float, memory: float
+    synthesised: Array, seen: Array, deviation: Array, dt: float, size: Array, memory: float
 ) -> Course:
     """Estimate, from the past alone, how far joints are from where they were synthesised.
 
@@ -87,7 +87,7 @@ def causal_course(
     off = np.where(told[..., None], seen - synthesised, 0.0)
     fade = np.exp(-dt / memory)
     values, spread = np.empty_like(off), np.empty(told.shape)
-    value, variance = np.zeros_like(off[0]), np.full(told.shape[1], size**2)
+    value, variance = np.zeros_like(off[0]), size**2
     for frame in range(len(off)):
         if frame:
             lost = told[frame - 1] & ~told[frame]

@@ -6,22 +6,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..errors import InvalidFileError
-from ..motion import Tracks
+from ..motion import JointRecording, Sensor, Tracks
+from ..motion.mediapipe import BODY, CENTRES, HAND
 from ..progress import Progress, unwatched
 from .axes import check_scale, z_up_from_y_up
 from .stored_arrays import MAGIC, read_array
 from .time_stamps import USUAL_RATE
 
-BODY = (
-    "nose", "left_eye_inner", "left_eye", "left_eye_outer", "right_eye_inner", "right_eye",
-    "right_eye_outer", "left_ear", "right_ear", "mouth_left", "mouth_right", "left_shoulder",
-    "right_shoulder", "left_elbow", "right_elbow", "left_wrist", "right_wrist", "left_pinky",
-    "right_pinky", "left_index", "right_index", "left_thumb", "right_thumb", "left_hip",
-    "right_hip", "left_knee", "right_knee", "left_ankle", "right_ankle", "left_heel",
-    "right_heel", "left_foot_index", "right_foot_index",
-)  # fmt: skip
-FINGERS = ("thumb", "index", "middle", "ring", "pinky")
-HAND = ("wrist", *(f"{finger}_{part}" for finger in FINGERS for part in (1, 2, 3, 4)))
 WITH_HANDS = len(BODY) + 2 * len(HAND)
 FACES = (0, 468, 478)
 MILLIMETRE = 0.001
@@ -40,14 +31,15 @@ def read_freemocap(
     scale: float | None = None,
     frame_rate: float = USUAL_RATE,
     progress: Progress = unwatched,
-) -> Tracks:
+) -> JointRecording | Tracks:
     """Read a `.npy` file of freemocap, in metres, Z up; what was not observed is NaN.
 
     The array tells neither names, unit, axes nor frame rate. Arrays of 33, 75, 543 or 553
     points are MediaPipe's: body, two hands, face; which hand comes first has changed, so the
-    one nearer to the left wrist is the left. Others are called `point_<number>`. Millimetres,
-    unless the extent is a body's in metres. Up is where a known body has its nose, seen from
-    its ankles; of other points, Z. Which way the actor faces is not changed otherwise.
+    one nearer to the left wrist is the left. The joints on the middle of the body, which
+    MediaPipe lacks, are added (`CENTRES`). Others are points called `point_<number>`.
+    Millimetres, unless the extent is a body's in metres. Up is where a known body has its nose,
+    seen from its ankles; of other points, Z. Where the actor faces is not changed otherwise.
 
     Parameters
     ----------
@@ -59,7 +51,7 @@ def read_freemocap(
 
     Returns
     -------
-    Tracks
+    JointRecording of a body, or Tracks of other points
 
     Raises
     ------
@@ -82,10 +74,24 @@ def read_freemocap(
         raise InvalidFileError(f"{path} has no points that are seen in any frame.")
     progress(0.5, "Reading")
     names = _names(points)
-    points = _z_up(points) if names[0] == BODY[0] else points
+    is_body = names[0] == BODY[0]
+    if is_body:
+        names, points = _with_centres(names, _z_up(points))
     tracks = Tracks(names, points * (_unit(points) if scale is None else scale), frame_rate)
     progress(1.0, "Reading")
-    return tracks
+    return JointRecording(tracks, None, Sensor.MEDIAPIPE) if is_body else tracks
+
+
+def _with_centres(
+    names: tuple[str, ...], points: NDArray[np.float64]
+) -> tuple[tuple[str, ...], NDArray[np.float64]]:
+    """Add the joints on the middle of the body; unseen where any of their points is."""
+    centres = [
+        points[:, [BODY.index(side) for side in sides]].mean(axis=1)
+        for sides in CENTRES.values()
+    ]
+    together = np.concatenate([points, np.stack(centres, axis=1)], axis=1)
+    return (*names, *CENTRES), together
 
 
 def _names(points: NDArray[np.float64]) -> tuple[str, ...]:

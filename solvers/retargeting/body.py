@@ -11,11 +11,12 @@ from .map_checks import check_feet, check_roles
 
 Array = NDArray[np.float64]
 SIDES = ("left", "right")
+FEET = ("leftFoot", "rightFoot", "leftToes", "rightToes")
 
 
 @dataclass(frozen=True, eq=False)
 class Body:
-    """Joints with a role, and those above them.
+    """Joints with a role, those above them, and the ends of feet and toes.
 
     Attributes
     ----------
@@ -78,7 +79,9 @@ def find_body(skeleton: Skeleton, humanoid: HumanoidMap, whose: str) -> Body:
     alignment = t_pose_alignment(skeleton, humanoid)
     check_feet(alignment, joints, whose)
     above = {up for joint in joints.values() for up in skeleton.ancestors(joint)}
-    kept = tuple(sorted({*joints.values(), *above, 0}))
+    feet = [joints[role] for role in FEET if role in joints]
+    tips = {child for foot in feet for child in skeleton.children[foot][:1]}
+    kept = tuple(sorted({*joints.values(), *above, *tips, 0}))
     place = {joint: index for index, joint in enumerate(kept)}
     return Body(
         skeleton.select(kept),

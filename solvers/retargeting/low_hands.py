@@ -4,7 +4,7 @@ from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.ndimage import gaussian_filter1d
+from scipy.ndimage import gaussian_filter1d, maximum_filter1d, uniform_filter1d
 
 from .placement import Placement
 
@@ -20,6 +20,10 @@ SLOW, FAST = 0.25, 1.0
 those faster than the second only pass."""
 STEADY = 0.1
 """Standard deviation of the blur of the speed, seconds."""
+GENTLE = 0.07
+"""Standard deviation of the blur of how much hands are shifted, seconds."""
+EASE = 0.07
+"""Seconds before and after over which hands are lifted off the ground."""
 STRAIGHT = 0.9
 """Part of its length from which on an arm eases into full extension to reach the ground."""
 ROUNDING = 0.05
@@ -72,13 +76,17 @@ def near_ground(
     there[:, 2] = ground.floors[1] + ground.placement.rise * height
     leans *= _falling(np.linalg.norm(there - shoulder, axis=1) / length, STRAIGHT, 1.0)
     shares = np.stack([leans, leans, low], axis=1)
-    return np.asarray(hand + shares * (there - hand))
+    shift = gaussian_filter1d(
+        shares * (there - hand), GENTLE * ground.frame_rate, axis=0, mode="nearest"
+    )
+    return np.asarray(hand + shift)
 
 
 def above_ground(hand: Array, seen: Array, ground: Ground) -> Array:
     """Return the hand, shape (n_frames, 3), not below where the source's is, grown.
 
-    A hand higher than `LOW` in the source is not below that height.
+    A hand higher than `LOW` in the source is not below that height. It is lifted smoothly, and
+    a little earlier and longer than it must be: a nearly straight arm would fling its elbow.
     """
     height = np.minimum(seen[:, 2] - ground.floors[0], LOW * ground.leg)
     least = ground.floors[1] + ground.placement.rise * height
@@ -87,7 +95,7 @@ def above_ground(hand: Array, seen: Array, ground: Ground) -> Array:
     raised = hand.copy()
     # A polynomial that leaves the hand as it is from `rounding` above the least height on.
     near = np.maximum(rounding - gap, 0.0) ** 2 / (4.0 * rounding)
-    raised[:, 2] = np.maximum(hand[:, 2], least) + near
+    raised[:, 2] += _early(np.maximum(least - hand[:, 2], 0.0) + near, ground.frame_rate)
     return raised
 
 
@@ -102,6 +110,13 @@ def within_reach(way: Array, arm_alone: Array, length: float) -> Array:
     room = np.maximum(length - begin, 1e-9)
     eased = begin + room * -np.expm1(-np.maximum(wanted - begin, 0.0) / room)
     return np.asarray(way * np.minimum(eased / np.maximum(wanted, 1e-9), 1.0)[:, None])
+
+
+def _early(lift: Array, frame_rate: float) -> Array:
+    """Return a lift that is nowhere less and sets in and fades smoothly, (n_frames,)."""
+    window = 2 * round(EASE * frame_rate) + 1
+    envelope = maximum_filter1d(lift, window, mode="nearest")
+    return np.asarray(uniform_filter1d(envelope, window, mode="nearest"))
 
 
 def _falling(values: Array, start: float, stop: float) -> Array:

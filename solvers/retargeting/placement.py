@@ -56,7 +56,7 @@ def find_placement(
     source: Body,
     target: Body,
     positions: Array,
-    contacts: Flags | None,
+    height: float | None,
     *,
     travel: float,
     to_ground: bool,
@@ -67,7 +67,8 @@ def find_placement(
     ----------
     source, target : Body
     positions : shape (n_frames, n_source_joints, 3), metres
-    contacts : bool, shape (n_frames, 2), or None for bodies without feet
+    height : float, metres
+        Of the source's ankles that stand; None where none do.
     travel : float
         Growth over the ground; 0 for that of the legs.
     to_ground : bool
@@ -79,20 +80,29 @@ def find_placement(
     if not (leg_length(source) and leg_length(target)):
         return Placement(travel or growth, growth, start, (0.0, 0.0), None)
     source_ankle, target_ankle = standing_ankle(source), standing_ankle(target)
-    height = source_ankle
-    if contacts is not None and contacts.any():
-        ankles = np.stack([positions[:, source.joints[f"{side}Foot"], 2] for side in SIDES], 1)
-        height = float(np.percentile(ankles[contacts], FLAT))
-    floor = height - source_ankle
-    if to_ground or abs(floor) < FLOOR_MISREAD * leg_length(source):
-        floor = 0.0
-    return Placement(
-        travel or growth,
-        growth,
-        start,
-        (height, floor + target_ankle),
-        (height - source_ankle, floor),
-    )
+    height = source_ankle if height is None else height
+    ground = height - source_ankle
+    misread = abs(ground) < FLOOR_MISREAD * leg_length(source)
+    floor = 0.0 if to_ground or misread else ground
+    if misread and not rests_on_ground(source):
+        ground = 0.0
+    ankles = height, floor + target_ankle
+    return Placement(travel or growth, growth, start, ankles, (ground, floor))
+
+
+def ankle_height(source: Body, positions: Array, contacts: Flags | None) -> float | None:
+    """Return at which height the ankles stand, metres; None where none do.
+
+    Parameters
+    ----------
+    source : Body
+    positions : shape (n_frames, n_source_joints, 3), metres
+    contacts : bool, shape (n_frames, 2), or None for bodies without feet
+    """
+    if contacts is None or not contacts.any():
+        return None
+    ankles = np.stack([positions[:, source.joints[f"{side}Foot"], 2] for side in SIDES], 1)
+    return float(np.percentile(ankles[contacts], FLAT))
 
 
 def leg_length(body: Body) -> float:
@@ -107,15 +117,22 @@ def standing_ankle(body: Body) -> float:
     Rigs that rest on height 0 show it. Of others, the lowest joint of the foot is above the
     sole by an unknown height: their ankles are at least as high as a human's.
     """
-    feet = [body.joints[f"{side}Foot"] for side in SIDES if f"{side}Foot" in body.joints]
-    leg = leg_length(body)
+    feet, leg = _feet(body), leg_length(body)
     if not feet or leg == 0.0:
         return 0.0
     ankle = float(body.rest[feet, 2].mean())
-    lowest = float(min(body.rest[body.skeleton.subtree(foot), 2].min() for foot in feet))
-    if lowest > -STANDS_LOW * leg and 0.0 < ankle < STANDS_HIGH * leg:
+    if rests_on_ground(body):
         return ankle
-    return max(ankle - lowest, ANKLE_HEIGHT * leg)
+    return max(ankle - _lowest(body, feet), ANKLE_HEIGHT * leg)
+
+
+def rests_on_ground(body: Body) -> bool:
+    """Tell whether the rest pose stands on height 0, or nearly."""
+    feet, leg = _feet(body), leg_length(body)
+    if not feet or leg == 0.0:
+        return False
+    ankle = float(body.rest[feet, 2].mean())
+    return _lowest(body, feet) > -STANDS_LOW * leg and 0.0 < ankle < STANDS_HIGH * leg
 
 
 def trunk_length(body: Body) -> float:
@@ -124,6 +141,15 @@ def trunk_length(body: Body) -> float:
     if top is None:
         return 0.0
     return float(np.linalg.norm(body.rest[top] - body.rest[body.joints["hips"]]))
+
+
+def _feet(body: Body) -> list[int]:
+    return [body.joints[f"{side}Foot"] for side in SIDES if f"{side}Foot" in body.joints]
+
+
+def _lowest(body: Body, feet: list[int]) -> float:
+    """Return the height of the lowest joint of the feet in the rest pose, metres."""
+    return float(min(body.rest[body.skeleton.subtree(foot), 2].min() for foot in feet))
 
 
 def _growth(source: Body, target: Body) -> float:

@@ -5,8 +5,10 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from ..motion import WorldPoses
 from ..motion.rotations import IDENTITY, inverse, multiply, slerp
 from .body import Body
+from .trunk_lean import leaning_swings
 
 Array = NDArray[np.float64]
 Flags = NDArray[np.bool_]
@@ -25,20 +27,21 @@ class Turn(NamedTuple):
 
 
 def transfer_pose(
-    source: Body, world: Array, unknown: Flags, target: Body
+    source: Body, seen: WorldPoses, unknown: Flags, target: Body
 ) -> tuple[Array, Flags]:
     """Return the target's local rotations that give each part the source's orientation.
 
     A role that both bodies have is turned in the world as in the source. The spine is a chain
     whose lower end turns with the hips: where the numbers of joints differ, the turns of the
     source are spread evenly over the target's, and the top is turned as in the source; so is
-    the neck, between chest and head. All else rests relative to its parent.
+    the neck, between chest and head. The spine swings a little for the neck to be where the
+    source's is (`leaning_swings`). All else rests relative to its parent.
 
     Parameters
     ----------
     source, target : Body
-    world : shape (n_frames, n_source_joints, 4)
-        World rotations from the source's rest pose.
+    seen : WorldPoses
+        Of the source.
     unknown : bool, shape (n_frames, n_source_joints)
         Where the source's local rotations were not observed.
 
@@ -48,8 +51,8 @@ def transfer_pose(
     unknown : bool, shape (n_frames, n_target_joints)
         Rotations that rest on something not observed.
     """
-    wanted = _wanted_turns(source, world, target)
-    n_frames = len(world)
+    wanted = _leaning(source, seen, target, _wanted_turns(source, seen.rotations, target))
+    n_frames = len(seen.rotations)
     skeleton = target.skeleton
     local = np.tile(IDENTITY, (n_frames, skeleton.n_joints, 1))
     missing = np.zeros((n_frames, skeleton.n_joints), dtype=np.bool_)
@@ -82,6 +85,23 @@ def _wanted_turns(source: Body, world: Array, target: Body) -> dict[int, Turn]:
         chain = [top, *(turns[role] for role in NECK if role in turns)]
         given |= _spread(chain, [role for role in NECK if role in target.joints])
     return {target.joints[role]: turn for role, turn in given.items() if role in target.joints}
+
+
+def _leaning(
+    source: Body, seen: WorldPoses, target: Body, wanted: dict[int, Turn]
+) -> dict[int, Turn]:
+    """Return the turns with those of the trunk swung so that it leans as the source's."""
+    trunk = [target.joints[role] for role in TRUNK if target.joints.get(role) in wanted]
+    turned = {
+        joint: multiply(turn.rotations, inverse(target.alignment[joint]))
+        for joint, turn in wanted.items()
+    }
+    hips = wanted[target.joints["hips"]].rotations
+    swings = leaning_swings(source, target, seen, hips, turned, trunk)
+    return wanted | {
+        joint: Turn(multiply(swing, wanted[joint].rotations), wanted[joint].joints)
+        for joint, swing in swings.items()
+    }
 
 
 def _turn(source: Body, world: Array, joint: int) -> Turn:

@@ -20,10 +20,13 @@ from ..motion.rotations import IDENTITY
 from ..progress import Progress, unwatched
 from ..settings import Settings, setting
 from .body import SIDES, Body, find_body, without_gaps
-from .limbs import Transfer, place_feet, place_hands
-from .placement import Placement, find_placement
+from .feet import place_feet
+from .hands import place_hands
+from .limbs import Transfer
+from .placement import ankle_height, find_placement
 from .pose_transfer import transfer_pose
 from .root_motion import in_place, on_root_bone
+from .standing_feet import find_stances, with_level_soles
 
 Array = NDArray[np.float64]
 Flags = NDArray[np.bool_]
@@ -140,19 +143,10 @@ def retarget(
     progress(0.05, "Reading the pose")
     whole, unknown = without_gaps(motion, source)
     seen = forward_kinematics(whole)
-    contacts = _contacts(motion, source_map)
+    transfer = _compared(source, target, seen, _contacts(motion, source_map), motion, settings)
     progress(0.3, "Turning the joints")
-    rotations, missing = transfer_pose(source, seen.rotations, unknown, target)
-    placement = find_placement(
-        source,
-        target,
-        seen.positions,
-        contacts,
-        travel=settings.travel_scale,
-        to_ground=settings.to_ground,
-    )
-    places = _root_places(source, target, seen, rotations, placement)
-    transfer = Transfer(source, target, seen, placement, motion.frame_rate, contacts)
+    rotations, missing = transfer_pose(transfer.source, seen, unknown, target)
+    places = _root_places(transfer, rotations)
     progress(0.5, "Placing the feet")
     if settings.keep_feet:
         rotations, places = place_feet(transfer, rotations, places, settings.softness)
@@ -177,14 +171,40 @@ def _contacts(motion: Motion, humanoid: HumanoidMap) -> Flags | None:
     return detect_contacts(motion, humanoid)
 
 
-def _root_places(
-    source: Body, target: Body, seen: WorldPoses, rotations: Array, placement: Placement
-) -> Array:
+def _compared(
+    source: Body,
+    target: Body,
+    seen: WorldPoses,
+    contacts: Flags | None,
+    motion: Motion,
+    settings: RetargetSettings,
+) -> Transfer:
+    """Find out how the source stands, and where the target does."""
+    stances = find_stances(source, target, seen, contacts, motion.frame_rate)
+    if stances:
+        source = with_level_soles(source, stances)
+        height: float | None = float(np.mean([stance.ankle for stance in stances]))
+    else:
+        height = ankle_height(source, seen.positions, contacts)
+    placement = find_placement(
+        source,
+        target,
+        seen.positions,
+        height,
+        travel=settings.travel_scale,
+        to_ground=settings.to_ground,
+    )
+    return Transfer(source, target, seen, placement, motion.frame_rate, contacts, stances)
+
+
+def _root_places(transfer: Transfer, rotations: Array) -> Array:
     """Return the places of the target's topmost joint, (n_frames, 3), metres.
 
     The middle of the hip joints goes where the placement takes the source's.
     """
-    middle = placement.points(seen.positions[:, source.hip_joints()].mean(axis=1))
+    source, target = transfer.source, transfer.target
+    hips = transfer.seen.positions[:, source.hip_joints()].mean(axis=1)
+    middle = transfer.placement.points(hips)
     origin = world_poses(target.skeleton, rotations, np.zeros_like(middle))
     return np.asarray(middle - origin.positions[:, target.hip_joints()].mean(axis=1))
 

@@ -96,7 +96,7 @@ def gaps(chosen: argparse.Namespace) -> list[Scores]:
 def markers(chosen: argparse.Namespace) -> list[Scores]:
     """Lost optical markers."""
     draws = chosen.clips or (FULL_MARKER_GAPS if chosen.full else QUICK_MARKER_GAPS)
-    return compare_markers(_named(chosen, MARKER_FILLERS), draws)
+    return compare_markers(_named(chosen, MARKER_FILLERS), draws, chosen.dev)
 
 
 def speed(chosen: argparse.Namespace) -> list[str]:

@@ -1,12 +1,13 @@
 """Optical markers at 120 Hz: one or five lost for half a second or two, in clean takes."""
 
 from collections.abc import Callable, Mapping
+from pathlib import Path
 
 import numpy as np
 
 from solvers.denoising import denoise
 from solvers.motion import Tracks
-from solvers.recordings import read_c3d
+from solvers.recordings import read_c3d, read_recording
 
 from . import clips
 from .noise import Array, seeded
@@ -15,20 +16,36 @@ from .peers.model_averaging import model_averaging
 from .tables import Scores
 
 TAKES = ("85_02", "HDM_bd_05-01_01_120")
+"""Published figures are of these alone."""
+DEV_TAKES = {
+    "mocap/05_13.c3d": 41,
+    "formats/c3d/Dance.c3d": 40,
+    "formats/c3d/PiG_Motion-FlatFoot-Hole.c3d": 35,
+    "formats/trc/SprintMotion.trc": 55,
+    "formats/trc/dataWithNaNsWithSpaces.trc": 42,
+    "formats/trc/static_walk_2.trc": 41,
+    "formats/trc/subject02_running.trc": 41,
+}
+"""Settings are chosen on these alone. By file, the number of points that are markers: what
+follows them is computed."""
+LONGEST = 0.5
+"""Of a take: longer gaps leave too little to learn from."""
 GAPS = ((1, 0.5), (1, 2.0), (5, 0.5), (5, 2.0))
 """Number of markers and seconds."""
 Filler = Callable[[Array, float], Array]
 
 
-def compare_markers(fillers: Mapping[str, Filler], draws: int) -> list[Scores]:
+def compare_markers(fillers: Mapping[str, Filler], draws: int, dev: bool) -> list[Scores]:
     """Cut the same random gaps for all methods; distance from the truth where it was cut."""
+    takes = _development() if dev else _scored()
     scores = Scores(
-        f"Gaps of optical markers, {draws} in each of {len(TAKES)} takes",
+        f"Gaps of optical markers, {draws} in each of {len(takes)} takes",
         "mean distance, millimetres; spread over gaps",
     )
-    for take in TAKES:
-        tracks = without_copies(read_c3d(clips.DATA / "markers" / f"{take}.c3d"))
+    for take, tracks in takes.items():
         for n_markers, seconds in GAPS:
+            if seconds > LONGEST * tracks.n_frames / tracks.frame_rate:
+                continue
             for draw in range(draws):
                 gapped = _cut(tracks, take, n_markers, seconds, draw)
                 lost = np.isnan(gapped).any(axis=2)
@@ -39,6 +56,23 @@ def compare_markers(fillers: Mapping[str, Filler], draws: int) -> list[Scores]:
                     scores.add(name, column, f"{take} {draw}", float(distance))
             print(f"  {take}: {n_markers} markers for {seconds:g} s", flush=True)
     return [scores]
+
+
+def _scored() -> dict[str, Tracks]:
+    paths = {take: clips.DATA / "markers" / f"{take}.c3d" for take in TAKES}
+    return {take: without_copies(read_c3d(path)) for take, path in paths.items()}
+
+
+def _development() -> dict[str, Tracks]:
+    """Keep the markers that are seen in all frames, so that the truth is known."""
+    takes = {}
+    for file, n_markers in DEV_TAKES.items():
+        tracks = read_recording(clips.DATA / file)
+        assert isinstance(tracks, Tracks)
+        kept = np.flatnonzero(tracks.visible[:, :n_markers].all(axis=0))
+        names = tuple(tracks.names[point] for point in kept)
+        takes[Path(file).stem] = Tracks(names, tracks.positions[:, kept], tracks.frame_rate)
+    return takes
 
 
 def without_copies(tracks: Tracks) -> Tracks:

@@ -26,6 +26,8 @@ from solvers.motion.rotations import inverse, rotate, rotation_between
 
 Array = NDArray[np.float64]
 SIDES = ("left", "right")
+SUNK = 0.01
+"""Metres below its height in the rest pose at which the ball of a foot has sunk."""
 FINGERS = ("Thumb", "Index", "Middle", "Ring", "Little")
 
 
@@ -89,6 +91,7 @@ def seen_figures(source: Acted, given: Acted) -> dict[str, float]:
         "head cm": head.mean(), "head path at most": head_path.max(),
         "trunk degrees": trunk.mean(), "trunk at most": trunk.max(),
         "below floor cm": max(0.0, float(below.max())),
+        "sunk feet %": 100.0 * float(np.mean(_sinking(given) > SUNK)),
         "knee acceleration": _shake(source, given, "LowerLeg", growth),
         "elbow acceleration": _shake(source, given, "LowerArm", growth),
     }  # fmt: skip
@@ -109,6 +112,16 @@ def trunk_angles(source: Acted, given: Acted) -> Array:
     in_hips = rotate(rotation_between(*rests), rotate(inverse(turn), ways[0]))
     cosines = (rotate(turn, in_hips) * ways[1]).sum(axis=-1)
     return np.asarray(np.degrees(np.arccos(np.clip(cosines, -1.0, 1.0))))
+
+
+def _sinking(given: Acted) -> Array:
+    """Return how far the ball of each foot is below its height at rest, worst frame, metres.
+
+    Of rigs whose rest pose stands on height 0.
+    """
+    balls = foot_points(given.motion.skeleton, given.humanoid)[:, 1]
+    rest = given.motion.skeleton.rest_positions[balls, 2]
+    return np.asarray((rest - given.poses.positions[:, balls, 2]).max(axis=0))
 
 
 def _off(source: Acted, given: Acted, role: str, growth: float) -> tuple[Array, Array]:

@@ -43,6 +43,7 @@ from solvers.motion import (
     resample,
 )
 from solvers.progress import Progress
+from solvers.reconstruction import simulate
 from solvers.retargeting import reduce_keys, retarget
 from solvers.samples import CorruptionSettings, GaitSettings, corrupt, walking_gait
 from solvers.workflows import motion_from_markers, reconstruct_recording
@@ -120,6 +121,12 @@ VERBS = {
         recording=lambda result: result.motion,
         figures=lambda result: (result.contacts, result.slide_before),
         whole_input=True,
+        any_rate=True,
+    ),
+    "simulate": Verb(
+        lambda motion, progress: simulate(motion, progress=progress),
+        recording=lambda result: result.motion,
+        figures=lambda result: (result.contacts, result.slide_after, result.distance),
         any_rate=True,
     ),
     "reconstruct_recording": Verb(

@@ -142,7 +142,31 @@ def test_joints_of_unknown_parents_become_empties_and_it_is_said(
     assert "nothing tells which joint hangs on which" in capfd.readouterr().out
 
 
-def test_points_of_freemocap_become_empties(bring, rng, tmp_path):
+@pytest.mark.parametrize(("n_points", "n_loose"), [(33, 0), (75, 2), (553, 480)])
+def test_a_body_of_freemocap_becomes_an_armature(
+    n_points, n_loose, bring, rng, load, tmp_path, capfd
+):
+    path = tmp_path / "skeleton_3d.npy"
+    body = load("solvers.motion.mediapipe").BODY
+    points = rng.normal(scale=20.0, size=(50, n_points, 3))
+    points[:, body.index("nose"), 2] += 1600.0
+    for height, joint in enumerate(("ankle", "knee", "hip", "shoulder", "ear")):
+        for place, side in ((200.0, "left"), (-200.0, "right")):
+            points[:, body.index(f"{side}_{joint}")] += (place, 0.0, 400.0 * height)
+    np.save(path, points)
+
+    armature = bring(path)
+
+    assert armature.type == "ARMATURE"
+    names = set(armature.data.bones.keys())
+    assert {"hips_center", "left_elbow", "right_knee", "left_foot_index"} <= names
+    assert ("left_hand_index_3" in names) == (n_points > 33)
+    assert not any(name.startswith("face_") for name in names)
+    said = capfd.readouterr().out
+    assert (f"without {n_loose} points that hang on no joint" in said) == (n_loose > 0)
+
+
+def test_points_of_freemocap_that_are_no_body_become_empties(bring, rng, tmp_path):
     path = tmp_path / "skeleton_3d.npy"
     np.save(path, 1000.0 * rng.uniform(size=(50, 21, 3)))
 

@@ -1,6 +1,7 @@
 """Physics: a new action in which nothing sinks into the ground."""
 
 import json
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -56,10 +57,29 @@ def test_the_ground_is_under_the_feet_if_asked(walker, blank):
     assert -0.15 < entry["ground_m"] < -0.05
 
 
+def test_a_take_that_cannot_be_followed_is_said_and_left(walker, blank, keys_of, load):
+    raw = walker.animation_data.action
+    before = keys_of(raw)
+
+    assert blank.ops.mocap_assist.simulate(ground_height=-20.0) == {"FINISHED"}
+
+    action = walker.animation_data.action
+    assert json.loads(action["mocap_assist_history"])[-1]["frames_not_followed"] == 60
+    assert {name[1:]: keys for name, keys in keys_of(action).items()} == {
+        name[1:]: keys for name, keys in before.items()
+    }
+
+
 def test_a_grey_button_says_why(blank):
     assert not blank.ops.mocap_assist.simulate.poll()
     with pytest.raises(RuntimeError, match="Select an armature"):
         blank.ops.mocap_assist.simulate()
+
+
+def test_the_engine_comes_from_the_extensions_wheels(extension, load):
+    engine = load("solvers.reconstruction.physics_engine").load_engine()
+
+    assert Path(engine.__file__).is_relative_to(Path(extension.__file__).parents[2] / ".local")
 
 
 def test_it_is_one_step_to_undo(blank):

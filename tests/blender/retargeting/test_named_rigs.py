@@ -5,6 +5,8 @@ import pytest
 
 pytestmark = pytest.mark.filterwarnings("ignore::pytest.PytestUnraisableExceptionWarning")
 CENTIMETRE = 0.01
+ROLLING = 0.04
+"""Ankles go along where a foot of another length rolls over its planted ball."""
 SOURCE = ("LeftUpLeg", "LeftLeg", "LeftFoot", "LeftArm", "LeftForeArm", "LeftHand")
 ENDS = {
     "Mixamo": tuple(f"mixamorig:{name}" for name in SOURCE),
@@ -44,7 +46,7 @@ def test_ends_of_limbs_go_where_the_source_says(case, walker, give, poses):
     )
     growth = length(ours[:, :3]) / length(theirs[:, :3])
     paths = [points[:, 2] - points[0, 2] for points in (ours, theirs)]
-    assert np.linalg.norm(paths[0] - growth * paths[1], axis=1).max() < CENTIMETRE
+    assert np.linalg.norm(paths[0] - growth * paths[1], axis=1).max() < ROLLING
     grown = length(ours[:, 3:]) / length(theirs[:, 3:])
     reach = [points[:, 5] - points[:, 3] for points in (ours, theirs)]
     assert np.linalg.norm(reach[0] - grown * reach[1], axis=1).max() < CENTIMETRE
@@ -124,4 +126,4 @@ def test_a_recorded_walk_reaches_a_mixamo_rig(make_rig, import_bvh, recordings, 
     )
     growth = length(ours[:, :3]) / length(theirs[:, :3])
     paths = [points[:, 2] - points[0, 2] for points in (ours, theirs)]
-    assert np.linalg.norm(paths[0] - growth * paths[1], axis=1).max() < CENTIMETRE
+    assert np.linalg.norm(paths[0] - growth * paths[1], axis=1).max() < ROLLING

@@ -154,6 +154,28 @@ def test_no_knee_pops_through_full_extension(leg):
     assert largest_jerk(0.01) < 0.25 * largest_jerk(0.0)
 
 
+def test_no_limb_snaps_when_it_folds():
+    """Bones of 0.5 and 0.3 m; the target comes nearer than the 0.2 m that are left."""
+    bones = Skeleton(
+        ("hip", "knee", "ankle"), (-1, 0, 1), np.array([[0, 0, 1], [0, 0, -0.5], [0, -0.3, 0]])
+    )
+    rest = Motion(
+        bones, np.tile([1.0, 0, 0, 0], (200, 3, 1)), np.tile([0, 0, 1.0], (200, 1)), 60.0
+    )
+    targets = np.tile([0.0, 0.0, 1.0], (200, 1))
+    targets[:, 2] -= np.linspace(0.3, 0.15, 200)
+
+    jerks = []
+    for softness in (0.0, 0.05):
+        moved = reach(rest, LEG, targets, ReachSettings(softness=softness))
+        away = np.linalg.norm(ankle(moved) - [0.0, 0.0, 1.0], axis=1)
+        assert away.min() > 0.2 - 1e-9
+        assert_allclose(away[:50], np.linspace(0.3, 0.15, 200)[:50], atol=1e-9)
+        knee = angle_between(moved.rotations[1:, 1], moved.rotations[:-1, 1])
+        jerks.append(np.abs(np.diff(knee)).max())
+    assert jerks[1] < 0.25 * jerks[0]
+
+
 def test_a_knee_that_wavers_about_straight_does_not_flip(leg, rng):
     """One degree of jitter about straight; the foot is lifted until the knee bends by 40."""
     n = 100

@@ -6,14 +6,15 @@ from joint_files import npy, npz, ui_prmd
 from numpy.testing import assert_allclose, assert_array_equal
 
 from solvers.errors import InvalidFileError
-from solvers.motion import JointRecording, Sensor, Tracks
+from solvers.motion import JointRecording, Sensor
+from solvers.motion.humanoid_names import roles_by_name
+from solvers.motion.mediapipe import BODY
 from solvers.recordings import (
     read_freemocap,
     read_recording,
     read_ui_prmd,
     read_ui_prmd_pair,
 )
-from solvers.recordings.freemocap import BODY
 
 NOSE, LEFT_WRIST, RIGHT_WRIST, ANKLES = 0, 15, 16, (27, 28)
 TRIPLE = [NOSE, LEFT_WRIST, RIGHT_WRIST]
@@ -125,15 +126,16 @@ def test_freemocap_comes_out_upright_in_metres(write, person, unit, axes):
     """In all axes and units that versions of freemocap had; never mirrored."""
     into_file = np.linalg.inv(TURNS[axes])
 
-    tracks = read_recording(write(npy(person @ into_file.T / unit)))
+    recording = read_recording(write(npy(person @ into_file.T / unit)))
 
-    assert isinstance(tracks, Tracks)
+    assert isinstance(recording, JointRecording)
+    tracks = recording.tracks
     up = tracks.positions[:, NOSE] - tracks.positions[:, list(ANKLES)].mean(axis=1)
     assert_allclose(np.median(up, axis=0)[2], 1.55, atol=0.05)
     before, after = person[0, TRIPLE], tracks.positions[0, TRIPLE]
     assert np.linalg.det(after) * np.linalg.det(before) > 0
     assert np.isnan(tracks.positions[3, 5]).all()
-    assert tracks.visible.sum() == 20 * 75 - 1
+    assert tracks.visible.sum() == 20 * (75 + 4) - 1
 
 
 def test_freemocap_hands_are_told_by_the_wrists(write, person):
@@ -154,6 +156,48 @@ def test_freemocap_hands_are_told_by_the_wrists(write, person):
     )
 
 
+def test_freemocap_adds_the_joints_on_the_middle_of_the_body(write, person):
+    recording = read_freemocap(write(npy(person)))
+    places = dict(
+        zip(recording.names, np.moveaxis(recording.tracks.positions, 1, 0), strict=True)
+    )
+
+    hips = (places["left_hip"] + places["right_hip"]) / 2.0
+    shoulders = (places["left_shoulder"] + places["right_shoulder"]) / 2.0
+    assert_allclose(places["hips_center"], hips)
+    assert_allclose(places["trunk_center"], (hips + shoulders) / 2.0)
+    assert recording.sensor is Sensor.MEDIAPIPE
+    assert np.isnan(places["head_center"]).any() == np.isnan(places["left_ear"]).any()
+
+
+def test_freemocap_bodies_hang_together_and_every_limb_has_its_role(write, person):
+    recording = read_freemocap(write(npy(person)))
+    names = recording.names
+    above = {
+        name: names[parent] if parent >= 0 else ""
+        for name, parent in zip(names, recording.parents, strict=True)
+    }
+
+    assert [name for name, parent in above.items() if not parent] == [
+        "right_hand_wrist",
+        "left_hand_wrist",
+        "hips_center",
+    ]
+    chain = ["left_hand_index_3"]
+    while chain[-1]:
+        chain.append(above[chain[-1]])
+    assert chain[:-1] == [
+        "left_hand_index_3", "left_hand_index_2", "left_hand_index_1", "left_wrist",
+        "left_elbow", "left_shoulder", "neck_center", "trunk_center", "hips_center",
+    ]  # fmt: skip
+    roles = roles_by_name(names)
+    assert roles["hips"] == "hips_center"
+    assert roles["rightUpperArm"] == "right_shoulder"
+    assert roles["leftFoot"] == "left_ankle"
+    assert roles["leftHand"] == "left_wrist"
+    assert roles["rightIndexIntermediate"] == "right_hand_index_2"
+
+
 @pytest.mark.parametrize("right_first", [True, False])
 @pytest.mark.parametrize("unseen", [LEFT_WRIST, RIGHT_WRIST, slice(33, 54), slice(54, 75)])
 def test_freemocap_hands_are_told_by_what_is_seen(write, person, right_first, unseen):
@@ -168,7 +212,7 @@ def test_freemocap_hands_are_told_by_what_is_seen(write, person, right_first, un
 
 
 @pytest.mark.parametrize(
-    ("n_points", "last"), [(33, BODY[-1]), (553, "face_478"), (7, "point_7")]
+    ("n_points", "last"), [(33, "head_center"), (553, "head_center"), (7, "point_7")]
 )
 def test_freemocap_names_by_the_number_of_points(write, rng, n_points, last):
     tracks = read_freemocap(write(npy(rng.normal(size=(4, n_points, 3)))), frame_rate=24.0)

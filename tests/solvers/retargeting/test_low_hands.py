@@ -70,6 +70,20 @@ def test_what_is_put_down_is_put_down_as_low(recordings, body):
     assert place(result, "rightHand")[frame, 2] == pytest.approx(expected, abs=0.04)
 
 
+def test_elbows_are_not_flung_where_a_straight_arm_comes_to_the_ground(recordings):
+    """Before, up to 2.5 times as much as the source's, grown."""
+    motion = every_fourth(read_recording(recordings / f"mocap/hdm05/HDM_{CLIPS[0]}_120.amc"))
+    rig = mixamo()
+
+    result = given_to(motion, rig)
+
+    theirs, ours = (
+        np.linalg.norm(np.diff(place(one, "rightLowerArm"), 2, axis=0), axis=1).max()
+        for one in (motion, result)
+    )
+    assert ours < 1.3 * growth(motion, rig) * theirs
+
+
 @pytest.mark.parametrize("family", RIGS)
 def test_hands_that_lean_on_the_ground_do_not_slide(family):
     """On all fours, the shoulders rock to and fro above the hands."""

@@ -10,7 +10,9 @@ from solvers.motion import (
     HumanoidMap,
     Motion,
     Skeleton,
+    detect_contacts,
     find_humanoid_map,
+    foot_points,
     forward_kinematics,
     leg_length,
 )
@@ -68,7 +70,8 @@ def test_feet_and_hands_follow_paths_scaled_by_the_limb(walk, family, size):
     for side in ("left", "right"):
         theirs, ours = place(walk, f"{side}Foot"), place(result, f"{side}Foot")
         error = (ours - ours[0]) - growth * (theirs - theirs[0])
-        assert np.linalg.norm(error, axis=1).max() < 0.01
+        # Feet of other lengths that roll over their balls take their ankles along.
+        assert np.linalg.norm(error, axis=1).max() < 0.025 * size
         arms = [
             place(motion, f"{side}Hand") - place(motion, f"{side}UpperArm")
             for motion in (walk, result)
@@ -100,9 +103,11 @@ def test_no_foot_slides_more_than_in_a_real_walk(recordings, family):
     growth = leg_length(rig, find_humanoid_map(rig)) / leg_length(
         walk.skeleton, find_humanoid_map(walk.skeleton)
     )
-    for role in ("leftFoot", "rightFoot"):
-        theirs, ours = (np.diff(place(motion, role), axis=0) for motion in (walk, result))
-        assert np.linalg.norm(ours - growth * theirs, axis=1).max() < 1e-4
+    contacts = detect_contacts(walk)
+    held = contacts[1:] & contacts[:-1]
+    theirs, ours = (slower_steps(motion)[held] for motion in (walk, result))
+    assert (ours - growth * theirs).max() < 1e-3
+    assert ours.mean() < growth * theirs.mean()
 
 
 def test_gaps_stay_gaps_and_spread_to_nothing_else(walk):
@@ -194,3 +199,10 @@ def arm_length(motion: Motion, side: str) -> float:
 def assert_equal_flags(found: np.ndarray, expected: np.ndarray) -> None:
     wrong = np.argwhere(found != expected)
     assert not len(wrong), wrong[:5]
+
+
+def slower_steps(motion: Motion) -> np.ndarray:
+    """How far the slower of ankle and ball goes, level, (n_frames - 1, 2), metres."""
+    feet = foot_points(motion.skeleton, find_humanoid_map(motion.skeleton))
+    steps = np.diff(forward_kinematics(motion).positions[:, feet, :2], axis=0)
+    return np.linalg.norm(steps, axis=-1).min(axis=-1)

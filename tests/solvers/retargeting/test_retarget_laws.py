@@ -16,7 +16,7 @@ from solvers.motion import (
 )
 from solvers.motion.rotations import angle_between, quaternion_from_rotation_vector, rotate
 from solvers.retargeting import RetargetSettings, RootMotion, ground_path, retarget
-from solvers.retargeting.limbs import hips_drop
+from solvers.retargeting.feet import hips_drop
 from solvers.samples import GaitSettings, walking_gait
 
 WALK = walking_gait(GaitSettings(duration=2.0, frame_rate=30.0))

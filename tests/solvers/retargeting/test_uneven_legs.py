@@ -54,7 +54,8 @@ def test_knees_bend_as_the_sources_though_its_left_leg_is_shorter(shorter):
             for motion in (uneven, result)
         )
         growth = 2.0 / (1.0 + 1.0 / shorter)
-        assert_allclose(ours, growth * theirs, atol=1e-6)
+        # The source's feet are not shortened with its leg: its ball goes a little farther.
+        assert_allclose(ours, growth * theirs, atol=3e-4)
 
 
 @pytest.mark.parametrize(

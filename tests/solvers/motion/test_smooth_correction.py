@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from numpy.testing import assert_allclose
 
-from solvers.denoising.smooth_correction import FADES, PULL_WEIGHT, smooth_correction
+from solvers.motion.smooth_correction import FADES, PULL_WEIGHT, smooth_correction
 
 
 def test_equals_the_dense_least_squares_solution(rng):

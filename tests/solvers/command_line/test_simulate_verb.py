@@ -1,0 +1,54 @@
+"""`simulate`: from a file of a motion to one with weight."""
+
+import json
+
+import numpy as np
+import pytest
+
+from solvers.motion import Tracks, forward_kinematics
+from solvers.recordings import read_bvh, write_bvh, write_trc
+from solvers.samples import GaitSettings, walking_gait
+
+
+@pytest.fixture
+def sunk(tmp_path):
+    """A walk 10 cm under the ground."""
+    walk = walking_gait(GaitSettings(duration=1.0, frame_rate=30.0))
+    low = walk.with_poses(root_positions=walk.root_positions - np.array([0, 0, 0.1]))
+    write_bvh(low, tmp_path / "sunk.bvh")
+    return tmp_path / "sunk.bvh"
+
+
+def test_writes_a_motion_on_the_ground_and_tells_the_figures(call, sunk, tmp_path):
+    status, out, err = call("simulate", sunk, tmp_path / "stands.bvh", "--json")
+
+    assert (status, err) == (0, "")
+    figures = json.loads(out)
+    assert figures["penetration_before_m"] > 0.09 and figures["penetration_after_m"] < 0.005
+    assert figures["frames_not_followed"] == 0 and figures["n_frames"] == 30
+    assert figures["message"] == "The simulated body followed the whole take."
+    before, after = (
+        forward_kinematics(read_bvh(tmp_path / name)).positions[..., 2].min()
+        for name in ("sunk.bvh", "stands.bvh")
+    )
+    assert after > before + 0.05
+
+
+def test_takes_the_settings_and_says_it_in_words(call, sunk, tmp_path):
+    status, out, _ = call(
+        "simulate", sunk, tmp_path / "stands.bvh", "--ground", "auto", "--strength", "0.5"
+    )
+
+    assert status == 0
+    assert "The simulated body followed the whole take." in out
+    assert "Joints moved by" in out
+
+
+def test_refuses_points(call, tmp_path):
+    points = Tracks(("a", "b"), np.ones((3, 2, 3)), 30.0)
+    write_trc(points, tmp_path / "points.trc")
+
+    status, _, err = call("simulate", tmp_path / "points.trc", tmp_path / "out.bvh")
+
+    assert status == 2
+    assert "points without a skeleton; only skeletons have a body" in err

@@ -1,0 +1,58 @@
+"""Several estimates are averaged so that what they get wrong cancels."""
+
+import numpy as np
+from scipy.optimize import minimize
+
+from solvers.denoising.blend_estimates import DOUBT, blend_weights
+
+N_FRAMES = 4000
+
+
+def errors(*sizes):
+    rng = np.random.default_rng(3)
+    return [size * rng.normal(size=(N_FRAMES, 3)) for size in sizes]
+
+
+def test_independent_estimates_weigh_as_the_inverse_of_their_square_errors():
+    weights = blend_weights(errors(0.01, 0.02, 0.04))
+
+    expected = np.array([16.0, 4.0, 1.0]) / 21.0
+    assert np.allclose(weights, expected, atol=0.02)
+    assert np.isclose(weights.sum(), 1.0)
+
+
+def test_the_weights_are_those_that_a_general_search_finds():
+    first, second, third = errors(0.01, 0.02, 0.005)
+    trials = [first, first + second, third + 0.8 * first]
+    flat = np.array(trials).reshape(3, -1)
+    products = flat @ flat.T / N_FRAMES
+    products += DOUBT * np.diag(np.diag(products))
+    found = minimize(
+        lambda weights: 1e4 * weights @ products @ weights,
+        np.full(3, 1.0 / 3.0),
+        bounds=[(0.0, 1.0)] * 3,
+        constraints={"type": "eq", "fun": lambda weights: weights.sum() - 1.0},
+        options={"ftol": 1e-12},
+    )
+
+    assert np.allclose(blend_weights(trials), found.x, atol=2e-3)
+
+
+def test_errors_of_opposite_sign_cancel():
+    shared, own = errors(0.02, 0.002)
+
+    trials = [shared, own - shared, 3.0 * shared]
+    blended = np.tensordot(blend_weights(trials), trials, 1)
+
+    assert np.abs(blended).mean() < 0.1 * np.abs(shared).mean()
+
+
+def test_a_worse_copy_gets_nothing_and_equals_share():
+    (one,) = errors(0.01)
+
+    assert np.allclose(blend_weights([one, one]), 0.5)
+    assert np.allclose(blend_weights([one, 4.0 * one]), [1.0, 0.0], atol=1e-3)
+
+
+def test_estimates_without_any_error_share():
+    assert np.allclose(blend_weights([np.zeros((5, 3))] * 3), 1.0 / 3.0)

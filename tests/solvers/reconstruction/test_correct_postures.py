@@ -1,0 +1,264 @@
+"""Residual priors: learned from made sensors whose errors are known, applied, kept in files."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from damage import damaged, searching
+from hypothesis import given
+from hypothesis import strategies as st
+from scipy.optimize import minimize
+
+from solvers.errors import InvalidFileError, InvalidMotionError
+from solvers.motion import JOINTS, JointRecording, Sensor, Tracks
+from solvers.reconstruction import (
+    CorrectionMethod,
+    CorrectionSettings,
+    ResidualMethod,
+    ResidualPriorSettings,
+    correct_postures,
+    learn_residual_prior,
+    load_residual_prior,
+)
+from solvers.reconstruction.correct_postures import _frame_by_frame, chance_within, smoothed
+from solvers.reconstruction.heading import turned
+from solvers.reconstruction.posture_joints import motion_postures
+from solvers.samples import GaitSettings, walking_gait
+
+NAMES = JOINTS[Sensor.KINECT_V1]
+KNEE, HAND = NAMES.index("KneeLeft"), NAMES.index("HandLeft")
+QUICK = ResidualPriorSettings(local_points=20, whole_points=30, sample=100)
+
+
+def truth(speed: float, frames: int = 90) -> np.ndarray:
+    walk = walking_gait(GaitSettings(duration=4.0, frame_rate=30.0, speed=speed))
+    return motion_postures(walk)[:frames]
+
+
+def seen_by_a_bad_sensor(true: np.ndarray, offset: float = 0.03) -> np.ndarray:
+    """The knee is too far out by `offset`, and too low by half of how far it is forward."""
+    wrong = true.copy()
+    wrong[:, KNEE, 0] += offset
+    wrong[:, KNEE, 2] -= 0.5 * np.abs(true[:, KNEE, 1] - true[:, 0, 1])
+    return wrong
+
+
+def recording(positions: np.ndarray, rate: float = 30.0) -> JointRecording:
+    return JointRecording(Tracks(NAMES, positions, rate), None, Sensor.KINECT_V1)
+
+
+def pair(true: np.ndarray, offset: float = 0.03) -> tuple[JointRecording, Tracks]:
+    return recording(seen_by_a_bad_sensor(true, offset)), Tracks(NAMES, true, 30.0)
+
+
+@pytest.fixture(scope="module")
+def prior():
+    return learn_residual_prior(
+        [pair(truth(speed)) for speed in (0.9, 1.1, 1.45, 1.6)], settings=QUICK
+    )
+
+
+def error(positions: np.ndarray, true: np.ndarray, joint: int = KNEE) -> float:
+    return float(np.linalg.norm((positions - true)[:, joint], axis=-1).mean())
+
+
+def test_a_sensors_error_is_taken_out_of_a_walk_it_has_not_seen(prior):
+    true = truth(1.3)
+    given_ = recording(seen_by_a_bad_sensor(true))
+    before = error(given_.tracks.positions, true)
+    after = error(correct_postures(given_, prior).tracks.positions, true)
+    assert before > 0.06
+    assert after < 0.25 * before
+
+
+def test_without_shift_joints_stay_on_average_where_they_were_seen(prior):
+    given_ = recording(seen_by_a_bad_sensor(truth(1.3)))
+    moved = correct_postures(given_, prior, settings=CorrectionSettings(shift=False))
+    mean = (moved.tracks.positions - given_.tracks.positions)[:, KNEE].mean(axis=0)
+    assert np.abs(mean).max() < 0.01
+    shifted = correct_postures(given_, prior).tracks.positions - given_.tracks.positions
+    assert np.abs(shifted[:, KNEE].mean(axis=0)).max() > 0.03
+
+
+def test_the_prior_does_not_see_heading_and_place(prior):
+    given_ = recording(seen_by_a_bad_sensor(truth(1.3)))
+    angles = np.full(given_.n_frames, 2.0)
+    turned_ = recording(turned(given_.tracks.positions, angles) + np.array([4.0, 1.0, 0.0]))
+    here = correct_postures(given_, prior).tracks.positions
+    there = correct_postures(turned_, prior).tracks.positions
+    np.testing.assert_allclose(
+        turned(here, angles) + np.array([4.0, 1.0, 0.0]), there, atol=1e-4
+    )
+
+
+def test_confidence_is_high_where_the_prior_knows_and_low_for_strange_postures(prior):
+    given_ = recording(seen_by_a_bad_sensor(truth(1.3)))
+    usual = correct_postures(given_, prior).confidence[:, KNEE]
+    strange = given_.tracks.positions.copy()
+    strange[:, 1:] = strange[:, :1] + (strange[:, 1:] - strange[:, :1]) * (1.0, 1.0, -1.0)
+    odd = correct_postures(recording(strange), prior).confidence[:, KNEE]
+    assert usual.mean() > 0.9
+    assert odd.mean() < usual.mean() - 0.2
+
+
+def test_a_joint_that_was_never_tracked_hurts_no_other(prior):
+    positions = seen_by_a_bad_sensor(truth(1.3))
+    positions[:, HAND] = np.nan
+    result = correct_postures(recording(positions), prior)
+    assert np.isnan(result.tracks.positions[:, HAND]).all()
+    assert error(result.tracks.positions, truth(1.3)) < 0.02
+    assert np.isfinite(np.delete(result.tracks.positions, HAND, axis=1)).all()
+
+
+def test_gaps_are_bridged(prior):
+    positions = seen_by_a_bad_sensor(truth(1.3))
+    positions[40:46, KNEE] = np.nan
+    result = correct_postures(recording(positions), prior)
+    assert error(result.tracks.positions[40:46], truth(1.3)[40:46]) < 0.05
+
+
+@pytest.mark.parametrize("n_frames", [1, 2, 3, 5, 6])
+def test_short_takes(prior, n_frames):
+    given_ = recording(seen_by_a_bad_sensor(truth(1.3))[:n_frames])
+    for method in CorrectionMethod:
+        result = correct_postures(given_, prior, settings=CorrectionSettings(method=method))
+        assert np.isfinite(result.tracks.positions).all()
+
+
+def test_smoothing_solves_the_least_squares_problem(rng):
+    positions, weights = rng.normal(size=(12, 2, 3)), rng.uniform(0.1, 1.0, size=(12, 2))
+    second = np.diff(np.eye(12), 2, axis=0)
+    found = smoothed(positions, weights, 1.7)
+    for joint in range(2):
+        matrix = np.diag(weights[:, joint]) + 1.7**4 * second.T @ second
+        expected = np.linalg.solve(matrix, weights[:, [joint]] * positions[:, joint])
+        np.testing.assert_allclose(found[:, joint], expected, atol=1e-10)
+
+
+def test_smoothing_halves_waves_of_its_length():
+    frames = 20.0
+    wave = np.sin(np.arange(2000) / frames)[:, None, None] * np.ones(3)
+    found = smoothed(wave, np.ones((2000, 1)), frames)
+    assert np.ptp(found[800:1200]) / np.ptp(wave) == pytest.approx(0.5, abs=0.01)
+
+
+def test_the_published_frame_minimises_the_published_energy(rng):
+    """Eq. 5.6 of [ZH14], minimised numerically in the third frame."""
+    positions = truth(1.3)[:3] + rng.normal(scale=0.02, size=(3, 20, 3))
+    foretold = positions + rng.normal(scale=0.03, size=positions.shape)
+    variances = rng.uniform(1e-4, 1e-3, size=(3, 20))
+    trust = rng.uniform(size=(3, 20))
+    settings = CorrectionSettings(method=CorrectionMethod.PUBLISHED)
+    found = _frame_by_frame(recording(positions), foretold, variances, trust, settings)
+
+    def energy(offset: np.ndarray) -> float:
+        y = offset * 100.0
+        spatial = ((y - 100.0 * (foretold - positions)[2, KNEE]) ** 2).sum()
+        steady = 100.0 * (2.0 * found[1, KNEE] - found[0, KNEE] - positions[2, KNEE])
+        return float(
+            0.6 * spatial / (2.0 * 1e4 * variances[2, KNEE])
+            + 0.2 * ((y - steady) ** 2).sum()
+            + 0.2 * (trust[2, KNEE] ** 2) * (y**2).sum()
+        )
+
+    best = minimize(
+        energy, np.zeros(3), method="Nelder-Mead", options={"xatol": 1e-7, "fatol": 1e-9}
+    )
+    np.testing.assert_allclose(found[2, KNEE] - positions[2, KNEE], best.x, atol=1e-5)
+
+
+def test_chance_within_is_that_of_drawing(rng):
+    drawn = np.linalg.norm(rng.normal(scale=0.03, size=(200_000, 3)), axis=-1)
+    assert chance_within(np.array(0.03**2), 0.05) == pytest.approx(
+        (drawn < 0.05).mean(), abs=0.005
+    )
+    assert chance_within(np.array(np.inf), 0.05) == 0.0
+
+
+def test_a_prior_that_is_told_the_actors_takes_less_of_one_for_a_rule():
+    """Four of five takes are of one actor, whose knee the sensor sees 10 cm aside."""
+    takes = [pair(truth(speed), 0.10) for speed in (1.0, 1.2, 1.4, 1.6)] + [
+        pair(truth(1.3), 0.0)
+    ]
+    told = learn_residual_prior(takes, actors=[*"aaaa", "b"], settings=QUICK)
+    untold = learn_residual_prior(takes, settings=QUICK)
+    given_ = recording(seen_by_a_bad_sensor(truth(1.5), 0.05))
+    sideways = [
+        (correct_postures(given_, one).tracks.positions - given_.tracks.positions)[:, KNEE, 0]
+        for one in (told, untold)
+    ]
+    assert abs(sideways[0].mean() + 0.05) < abs(sideways[1].mean() + 0.05)
+
+
+def test_same_pairs_same_prior(prior):
+    again = learn_residual_prior(
+        [pair(truth(speed)) for speed in (0.9, 1.1, 1.45, 1.6)], settings=QUICK
+    )
+    np.testing.assert_array_equal(prior.means, again.means)
+
+
+def test_the_published_prior_sees_neighbours_only():
+    published = learn_residual_prior(
+        [pair(truth(speed)) for speed in (0.9, 1.6)],
+        settings=replace(QUICK, method=ResidualMethod.PUBLISHED, calm=0.0),
+    )
+    kernel = published.kernel(KNEE)
+    assert kernel.shared[1] < 1e-3 * kernel.shared[0]
+    given_ = recording(seen_by_a_bad_sensor(truth(1.3)))
+    settings = CorrectionSettings(method=CorrectionMethod.PUBLISHED)
+    result = correct_postures(given_, published, settings=settings)
+    assert error(result.tracks.positions, truth(1.3)) < 0.6 * error(
+        given_.tracks.positions, truth(1.3)
+    )
+
+
+def test_pairs_must_fit():
+    seen, true = pair(truth(1.3))
+    with pytest.raises(InvalidMotionError, match="no pair"):
+        learn_residual_prior([])
+    with pytest.raises(InvalidMotionError, match="90 frames at 30 Hz do not fit 80"):
+        learn_residual_prior([(seen, true.slice(0, 80))])
+    with pytest.raises(InvalidMotionError, match="1 pairs but 2 actors"):
+        learn_residual_prior([(seen, true)], actors=["a", "b"])
+    blind = Tracks(NAMES, np.full((90, 20, 3), np.nan), 30.0)
+    with pytest.raises(InvalidMotionError, match="No joint is known in both"):
+        learn_residual_prior([(seen, blind)], settings=QUICK)
+
+
+def test_a_prior_comes_back_from_its_file(prior, tmp_path):
+    path = tmp_path / "prior.npz"
+    prior.save(path)
+    again = load_residual_prior(path)
+    given_ = recording(seen_by_a_bad_sensor(truth(1.3)))
+    np.testing.assert_array_equal(
+        correct_postures(given_, prior).tracks.positions,
+        correct_postures(given_, again).tracks.positions,
+    )
+
+
+@pytest.mark.parametrize(
+    ("change", "said"),
+    [
+        ({"kernels": np.ones((2, 9))}, "shapes do not fit"),
+        ({"kernels": -np.ones((20, 9))}, "not positive"),
+        ({"means": np.full((20, 51, 3), np.nan)}, "not all numbers are finite"),
+        ({"joints": np.array(["tail"] * 20)}, "unknown joints"),
+    ],
+)
+def test_a_damaged_prior_is_refused(prior, tmp_path, change, said):
+    path = tmp_path / "prior.npz"
+    replace(prior, **change).save(path)
+    with pytest.raises(InvalidFileError, match=said):
+        load_residual_prior(path)
+
+
+@given(data=st.data())
+@searching(20)
+def test_a_broken_file_is_refused(prior, tmp_path_factory, data):
+    path = tmp_path_factory.mktemp("broken") / "prior.npz"
+    prior.save(path)
+    path.write_bytes(data.draw(damaged(path.read_bytes(), [b"0", b"\xff", b"PK"])))
+    try:
+        load_residual_prior(path)
+    except InvalidFileError as refused:
+        assert str(path) in str(refused)

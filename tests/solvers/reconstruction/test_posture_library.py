@@ -1,0 +1,151 @@
+"""Libraries of postures: what is kept of clips, and what comes back from a file."""
+
+import numpy as np
+import pytest
+
+from solvers.errors import InvalidFileError, InvalidMotionError
+from solvers.files import write_archive
+from solvers.reconstruction.body_size import USUAL_LENGTHS, body_lengths
+from solvers.reconstruction.bone_directions import (
+    along_bones,
+    bone_changes,
+    bone_directions,
+    mirrored,
+)
+from solvers.reconstruction.heading import normalise
+from solvers.reconstruction.library_body import ANATOMY, anatomy_turns, on_body
+from solvers.reconstruction.posture_joints import POSTURE_JOINTS, motion_postures
+from solvers.reconstruction.posture_library import (
+    KIND,
+    SHIPPED,
+    VERSION,
+    PostureLibrarySettings,
+    build_posture_library,
+    load_posture_library,
+)
+from solvers.reconstruction.thin_out import thin_out
+from solvers.samples import GaitSettings, walking_gait
+
+
+@pytest.fixture(scope="module")
+def gait():
+    return walking_gait(GaitSettings(duration=3.0, frame_rate=30.0))
+
+
+@pytest.fixture(scope="module")
+def library(gait):
+    settings = PostureLibrarySettings(spacing=0.02)
+    return build_posture_library([gait], settings=settings, trained_on="a made walk")
+
+
+@pytest.fixture(scope="module")
+def walk(gait):
+    return normalise(motion_postures(gait), 30.0).postures
+
+
+def test_directions_and_lengths_give_the_posture_back(walk):
+    for one in walk[::20, None]:
+        postures = along_bones(bone_directions(one), body_lengths(one))
+        np.testing.assert_allclose(postures, one, atol=1e-9)
+
+
+def test_changes_of_a_steady_turn_are_its_speed():
+    angle = 2.0 * np.arange(30) / 30.0
+    steady = np.stack([angle, 0.5 * angle, -angle], axis=-1)
+    np.testing.assert_allclose(bone_changes(steady, 30.0), np.tile([2.0, 1.0, -2.0], (30, 1)))
+
+
+def test_a_mirrored_posture_has_left_and_right_exchanged(walk):
+    left, right = (POSTURE_JOINTS.index(f"{side}Hand") for side in ("left", "right"))
+    np.testing.assert_array_equal(mirrored(walk)[:, left], walk[:, right] * (-1, 1, 1))
+    np.testing.assert_array_equal(mirrored(mirrored(walk)), walk)
+
+
+def test_kept_postures_are_apart_and_no_other_is_far_from_them():
+    random = np.random.default_rng(0)
+    ways = random.normal(size=(3, 60)) * 0.1
+    directions = (random.normal(size=(400, 3)) @ ways).reshape(400, 20, 3)
+    spacing = 0.03
+    kept = thin_out(directions, 400, spacing)
+    points = along_bones(directions, USUAL_LENGTHS).reshape(400, -1)
+    ways = np.linalg.norm(points[:, None] - points[kept], axis=-1) / np.sqrt(20.0)
+    among = ways[kept] + np.eye(len(kept))
+    assert 1 < len(kept) < 400
+    assert among.min() > 0.8 * spacing  # compared in principal components
+    assert ways.min(axis=1).max() < 1.2 * spacing
+
+
+def test_a_library_has_the_postures_of_its_clip(gait, library, walk):
+    body = on_body(library.directions, library.changes, body_lengths(walk))
+    postures = np.concatenate([walk, mirrored(walk)]).reshape(-1, 60)
+    ways = np.linalg.norm(postures[:, None] - body.positions.reshape(-1, 60), axis=-1)
+    assert ways.min(axis=1).max() / np.sqrt(20.0) < 0.05
+    assert library.n_postures < library.n_seen
+    alone = build_posture_library(
+        [gait], settings=PostureLibrarySettings(mirror=False, spacing=0.02)
+    )
+    assert library.n_seen == 2 * alone.n_seen
+
+
+def test_fewer_postures_are_the_most_different_ones(gait, library):
+    few = build_posture_library([gait], settings=PostureLibrarySettings(n_postures=10))
+    np.testing.assert_array_equal(few.directions, library.directions[:10])
+
+
+def test_a_library_comes_back_from_its_file(library, tmp_path):
+    library.save(tmp_path / "postures.npz")
+    read = load_posture_library(tmp_path / "postures.npz")
+    np.testing.assert_allclose(read.directions, library.directions, atol=2e-3)
+    np.testing.assert_allclose(np.linalg.norm(read.directions[:, 1:], axis=-1), 1.0, rtol=1e-5)
+    np.testing.assert_allclose(read.changes, library.changes, atol=0.07)
+    assert (read.n_seen, read.trained_on) == (library.n_seen, "a made walk")
+
+
+def test_the_shipped_library_is_small_and_says_what_it_knows():
+    library = load_posture_library()
+    assert 1000 <= library.n_postures <= 2500
+    assert "CMU" in library.trained_on
+    assert SHIPPED.stat().st_size < 300_000
+
+
+@pytest.mark.parametrize("fault", ["missing", "zero", "shape"])
+def test_damaged_libraries_are_refused(library, tmp_path, fault):
+    directions = np.round(library.directions[:, 1:] * 500).astype(np.int16)
+    arrays = {
+        "directions": 0 * directions if fault == "zero" else directions,
+        "changes": directions[:-1] if fault == "shape" else directions,
+        "groups": library.groups,
+        "n_seen": np.array(3),
+        "trained_on": np.array(""),
+    }
+    if fault == "missing":
+        del arrays["groups"]
+    write_archive(tmp_path / "bad.npz", KIND, VERSION, arrays)
+    with pytest.raises(InvalidFileError, match=r"damaged postures .* Build them again"):
+        load_posture_library(tmp_path / "bad.npz")
+
+
+def test_nothing_to_learn_from_is_refused():
+    with pytest.raises(InvalidMotionError, match="choose clean clips"):
+        build_posture_library([])
+
+
+def test_the_tracker_s_idea_of_a_body_is_found(walk, library):
+    """Bones of the observed body are turned by known angles; the same turns are found."""
+    lengths = body_lengths(walk)
+    known = np.tile(np.eye(3), (20, 1, 1))
+    cos, sin = np.cos(0.3), np.sin(0.3)
+    for bone, name in enumerate(POSTURE_JOINTS):
+        side = 1.0 if "left" in name else -1.0
+        if bone in ANATOMY and name not in {"spine", "chest", "head"}:
+            known[bone] = [[cos, 0, side * sin], [0, 1, 0], [-side * sin, 0, cos]]
+    directions = bone_directions(walk)
+    seen = on_body(directions, np.zeros_like(directions), lengths, known).positions
+    plain = along_bones(directions, lengths)
+    trust = np.full(walk.shape[:2], 100.0)
+    found = on_body(
+        directions, 0 * directions, lengths, anatomy_turns(seen, trust, directions, lengths)
+    ).positions
+    before, after = (np.linalg.norm(each - seen, axis=-1).mean() for each in (plain, found))
+    assert before > 0.02
+    assert after < 0.25 * before

@@ -1,0 +1,220 @@
+"""Reconstruction from a library: what was right stays, what was lost comes back."""
+
+import numpy as np
+import pytest
+
+from solvers.errors import InvalidMotionError, SolveCancelled
+from solvers.motion import JOINTS, JointRecording, Sensor, Tracks, forward_kinematics
+from solvers.reconstruction.heading import turned
+from solvers.reconstruction.other_joints import all_joints, anchors
+from solvers.reconstruction.posture_joints import (
+    POSTURE_JOINTS,
+    joints_of_names,
+    motion_postures,
+)
+from solvers.reconstruction.posture_library import build_posture_library
+from solvers.reconstruction.posture_settings import PostureMethod, PostureSettings
+from solvers.reconstruction.reconstruct_postures import reconstruct_postures
+from solvers.reconstruction.reliability import Reliability
+from solvers.recordings import read_bvh, read_recording
+from solvers.samples import GaitSettings, walking_gait
+
+LEG = [POSTURE_JOINTS.index(f"left{part}") for part in ("LowerLeg", "Foot", "Toes")]
+GONE = slice(30, 60)
+KINECT = JOINTS[Sensor.KINECT_V1]
+
+
+def recorded(positions, names=KINECT):
+    return JointRecording(Tracks(names, positions, 30.0), None, Sensor.KINECT_V1)
+
+
+def trusted(trust):
+    return Reliability(trust, trust, trust, trust)
+
+
+def rebuilt(positions, library, **settings):
+    """What is NaN is not trusted, all else is."""
+    trust = np.isfinite(positions).all(axis=-1).astype(float)
+    return reconstruct_postures(
+        recorded(positions), library, settings=PostureSettings(**settings),
+        reliability=trusted(trust),
+    )  # fmt: skip
+
+
+@pytest.fixture(scope="module")
+def library():
+    gaits = [
+        walking_gait(GaitSettings(duration=3.0, frame_rate=30.0, speed=speed))
+        for speed in (0.9, 1.2, 1.5)
+    ]
+    return build_posture_library(gaits)
+
+
+@pytest.fixture(scope="module")
+def walk():
+    return motion_postures(walking_gait(GaitSettings(duration=3.0, frame_rate=30.0, speed=1.1)))
+
+
+@pytest.fixture
+def lame(walk):
+    seen = walk.copy()
+    seen[GONE, LEG] = np.nan
+    return seen
+
+
+def test_what_was_seen_stays_and_a_lost_leg_walks_on(walk, lame, library):
+    result = rebuilt(lame, library)
+    away = np.linalg.norm(result.tracks.positions - walk, axis=-1)
+    kept = np.isfinite(lame).all(axis=-1)
+    assert np.quantile(away[kept], 0.99) < 0.02
+    straight = walk.copy()
+    frames = np.arange(len(walk))
+    seen = np.setdiff1d(frames, frames[GONE])
+    for joint in LEG:
+        for axis in range(3):
+            straight[:, joint, axis] = np.interp(frames, seen, walk[seen, joint, axis])
+    usual = np.linalg.norm(straight - walk, axis=-1)[~kept].mean()
+    assert usual > 0.1
+    assert away[~kept].mean() < 0.3 * usual
+
+
+@pytest.mark.parametrize(
+    "settings", [{"method": method} for method in PostureMethod] + [{"causal": True}], ids=str
+)
+def test_every_way_fills_every_frame_plausibly(walk, lame, library, settings):
+    result = rebuilt(lame, library, **settings)
+    away = np.linalg.norm(result.tracks.positions - walk, axis=-1)
+    assert np.isfinite(away).all()
+    assert away[GONE][:, LEG].mean() < 0.15
+    assert ((result.confidence >= 0.0) & (result.confidence <= 1.0)).all()
+    assert np.isfinite(result.motion.rotations).all()
+
+
+def test_causal_frames_do_not_know_the_future(lame, library):
+    """But for lengths of bones and usual errors of limbs, which the whole take tells."""
+    whole = rebuilt(lame, library, causal=True).tracks.positions
+    changed = lame.copy()
+    changed[70:, POSTURE_JOINTS.index("rightHand")] = np.nan
+    other = rebuilt(changed, library, causal=True).tracks.positions
+    np.testing.assert_allclose(other[:60], whole[:60], atol=0.03)
+
+
+def test_confidence_is_high_where_seen_and_low_in_the_middle_of_a_loss(lame, library):
+    found = rebuilt(lame, library).confidence
+    assert found[:20].min() > 0.9
+    assert found[45, LEG[1]] < 0.8 < found[10, LEG[1]]
+    assert found[45, LEG[1]] < found[31, LEG[1]]
+
+
+def test_place_and_heading_do_not_matter(lame, library):
+    moved = turned(lame, np.full(len(lame), 1.9)) + np.array([2.0, 3.0, 0.0])
+    one, other = rebuilt(lame, library), rebuilt(moved, library)
+    back = turned(other.tracks.positions - np.array([2.0, 3.0, 0.0]), np.full(len(lame), -1.9))
+    np.testing.assert_allclose(back, one.tracks.positions, atol=1e-3)
+
+
+def test_a_larger_body_is_reconstructed_as_well(walk, lame, library):
+    away = [
+        np.linalg.norm(
+            rebuilt(size * lame, library).tracks.positions / size - walk, axis=-1
+        ).mean()
+        for size in (1.0, 1.3)
+    ]
+    assert away[1] < 1.3 * away[0]
+
+
+def test_the_take_is_not_changed_and_the_same_comes_out_twice(lame, library):
+    before = lame.copy()
+    one, other = rebuilt(lame, library), rebuilt(lame, library)
+    np.testing.assert_array_equal(lame, before)
+    np.testing.assert_array_equal(one.tracks.positions, other.tracks.positions)
+
+
+def test_lost_hips_are_found_by_the_joints_about_them(walk, library):
+    seen = walk.copy()
+    seen[GONE, 0] = np.nan
+    away = np.linalg.norm(rebuilt(seen, library).tracks.positions - walk, axis=-1)
+    assert away[GONE, 0].max() < 0.05
+
+
+def test_the_motion_has_bones_of_constant_length_and_follows(lame, library):
+    result = rebuilt(lame, library)
+    world = forward_kinematics(result.motion).positions
+    order = [result.tracks.names.index(name) for name in result.motion.skeleton.names]
+    assert np.linalg.norm(world - result.tracks.positions[:, order], axis=-1).mean() < 0.03
+
+
+def test_joints_beyond_the_twenty_move_with_their_neighbours():
+    names = JOINTS[Sensor.KINECT_V2]
+    found = dict(zip(names, anchors(names), strict=True))
+    assert POSTURE_JOINTS[found["HandTipLeft"]] == "leftHandEnd"
+    assert POSTURE_JOINTS[found["ThumbRight"]] == "rightHand"
+    assert POSTURE_JOINTS[found["Neck"]] in {"chest", "head"}
+    azure = JOINTS[Sensor.AZURE_KINECT]
+    found = dict(zip(azure, anchors(azure), strict=True))
+    assert POSTURE_JOINTS[found["Nose"]] == "head"
+
+
+def _places(names):
+    found = joints_of_names(names)
+    return [found[role] for role in POSTURE_JOINTS]
+
+
+def test_joints_of_their_own_keep_their_place_about_their_anchor(walk):
+    order = JOINTS[Sensor.KINECT_V2]
+    names = tuple(order[place] for place in _places(order))
+    names = (*names, "HandTipLeft")
+    hand = POSTURE_JOINTS.index("leftHandEnd")
+    tip = walk[:, hand] + np.array([0.0, 0.0, -0.08])
+    seen = np.concatenate([walk, tip[:, None]], axis=1)
+    trust = np.ones((len(walk), 21))
+    moved = walk + np.array([0.1, 0.2, 0.3])
+    found = all_joints(names, seen, trust, walk, moved)
+    np.testing.assert_allclose(found[:, 20], tip + np.array([0.1, 0.2, 0.3]), atol=1e-9)
+    seen[20:40, 20] = np.nan
+    found = all_joints(names, seen, trust, walk, walk)
+    assert np.linalg.norm(found[20:40, 20] - tip[20:40], axis=-1).max() < 0.06
+
+
+def test_a_take_that_shows_no_body_is_refused(walk, library):
+    blind = np.full_like(walk, np.nan)
+    blind[:, :2] = walk[:, :2]
+    with pytest.raises(InvalidMotionError, match="No frame shows 3 joints"):
+        rebuilt(blind, library)
+
+
+@pytest.mark.parametrize("n_frames", [1, 2, 5])
+def test_short_takes_are_fine(lame, library, n_frames):
+    result = rebuilt(lame[40 : 40 + n_frames], library)
+    assert np.isfinite(result.tracks.positions[:, :12]).all()
+
+
+def test_cancelling_ends_it(walk, library):
+    def cancel(fraction, message=""):
+        raise SolveCancelled
+
+    with pytest.raises(SolveCancelled):
+        reconstruct_postures(recorded(walk), library, progress=cancel)
+
+
+def test_real_walks_of_another_person(recordings, library):
+    folder = recordings / "mocap" / "cmu_walk"
+    clips = [read_bvh(path, scale=0.0254 / 0.45) for path in sorted(folder.glob("3[25]*.bvh"))]
+    learned = build_posture_library([clip.slice(1, clip.n_frames) for clip in clips[:12]])
+    clip = read_bvh(folder / "07_03.bvh", scale=0.0254 / 0.45)
+    walk = motion_postures(clip.slice(1, clip.n_frames))[::4]
+    seen = walk.copy()
+    seen[20:50, LEG] = np.nan
+    away = np.linalg.norm(rebuilt(seen, learned).tracks.positions - walk, axis=-1)
+    assert away[20:50][:, LEG].mean() < 0.12
+
+
+def test_a_real_kinect_take_with_the_shipped_library(recordings):
+    take = read_recording(next((recordings / "kinect" / "kimore").glob("*.csv")))
+    result = reconstruct_postures(take.slice(0, 120))
+    assert result.tracks.names == take.names
+    assert np.isfinite(result.tracks.positions).all()
+    sure = result.reliability.combined > 0.9
+    moved = np.linalg.norm(result.tracks.positions - take.tracks.positions[:120], axis=-1)
+    assert np.median(moved[sure]) < 0.03
+    assert "CMU" in result.method

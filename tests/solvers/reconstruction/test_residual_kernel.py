@@ -1,0 +1,151 @@
+"""The residual prior's Gaussian process against formulas written out."""
+
+import numpy as np
+import pytest
+
+from solvers.reconstruction.residual_kernel import (
+    Kernel,
+    _unlikeliness,
+    alike,
+    learn_kernel,
+    squared_distances,
+)
+from solvers.reconstruction.residual_sparse import (
+    FREE_MEAN,
+    basis,
+    inducing_points,
+    posterior,
+    shared_columns,
+)
+
+KERNEL = Kernel((0.5, 1.5), (0.8, 0.3), (0.2, 0.1), 0.05, 0.1, 0.02)
+
+
+@pytest.fixture
+def examples():
+    random = np.random.default_rng(3)
+    local, whole = random.normal(size=(24, 3)), random.normal(size=(24, 2))
+    takes = np.repeat(np.arange(6), 4)
+    return local, whole, random.normal(size=(24, 3)), takes, takes // 3
+
+
+def dense_covariance(local, whole, takes, actors, kernel):
+    """K of all examples, written out pair by pair."""
+    n = len(local)
+    covariance = np.zeros((n, n))
+    for a in range(n):
+        for b in range(n):
+            near = [
+                np.exp(-((one[a] - one[b]) ** 2).sum() / (2.0 * size**2))
+                for one, size in zip((local, whole), kernel.lengths, strict=True)
+            ]
+            covariance[a, b] = kernel.shared[0] * near[0] + kernel.shared[1] * near[1]
+            if actors[a] == actors[b]:
+                covariance[a, b] += kernel.personal[0] * near[0] + kernel.personal[1] * near[1]
+                covariance[a, b] += kernel.actor
+            covariance[a, b] += kernel.take * (takes[a] == takes[b]) + kernel.noise * (a == b)
+    return covariance
+
+
+def test_distances_are_those_of_pairs():
+    one = np.array([[0.0, 0.0], [3.0, 4.0]])
+    np.testing.assert_allclose(squared_distances(one, one), [[0.0, 25.0], [25.0, 0.0]])
+    np.testing.assert_allclose(alike(one, one, 5.0)[0, 1], np.exp(-0.5))
+
+
+def test_likelihood_is_that_of_a_normal_distribution(examples):
+    local, whole, errors, takes, actors = examples
+    covariance = dense_covariance(local, whole, takes, actors, KERNEL)
+    sign, log = np.linalg.slogdet(covariance)
+    expected = 0.5 * np.trace(errors.T @ np.linalg.inv(covariance) @ errors) + 1.5 * log
+    assert sign > 0
+    assert unlikeliness(logs_of(KERNEL), examples)[0] == pytest.approx(expected)
+
+
+def test_gradient_is_that_of_finite_differences(examples):
+    logs = logs_of(KERNEL)
+    _, gradient = unlikeliness(logs, examples)
+    for place, slope in enumerate(gradient):
+        step = np.zeros(9)
+        step[place] = 1e-5
+        ahead, behind = (unlikeliness(logs + sign * step, examples)[0] for sign in (1, -1))
+        assert slope == pytest.approx((ahead - behind) / 2e-5, rel=1e-4, abs=1e-5)
+
+
+def test_learning_makes_the_examples_likelier(examples):
+    local, whole, errors, takes, actors = examples
+    learned = learn_kernel((local, whole), errors, takes, actors, simple=False)
+    assert (
+        unlikeliness(logs_of(learned), examples, centred=True)[0]
+        < unlikeliness(logs_of(KERNEL), examples, centred=True)[0]
+    )
+
+
+def test_noise_is_found():
+    random = np.random.default_rng(0)
+    local = random.uniform(-2.0, 2.0, size=(300, 1))
+    errors = np.sin(2.0 * local) * [1.0, -1.0, 0.5] + random.normal(0.0, 0.2, size=(300, 3))
+    one = np.zeros(300, int)
+    learned = learn_kernel((local, local), errors, np.arange(300), one, simple=True)
+    assert np.sqrt(learned.noise) == pytest.approx(0.2, rel=0.15)
+
+
+def test_with_an_inducing_point_at_each_example_it_is_the_exact_process(examples):
+    local, whole, errors, takes, actors = examples
+    bases = basis(local, local, KERNEL.lengths[0]), basis(whole, whole, KERNEL.lengths[1])
+    mean, covariance = posterior(bases, errors, takes, actors, KERNEL, 1.0)
+    new_local, new_whole = local[:5] + 0.3, whole[:5] - 0.2
+    columns = shared_columns(
+        (
+            basis(new_local, local, KERNEL.lengths[0]),
+            basis(new_whole, whole, KERNEL.lengths[1]),
+        ),
+        KERNEL,
+    )
+    between = FREE_MEAN + sum(
+        shared * alike(new, old, size)
+        for shared, new, old, size in zip(
+            KERNEL.shared, (new_local, new_whole), (local, whole), KERNEL.lengths, strict=True
+        )
+    )
+    dense = dense_covariance(local, whole, takes, actors, KERNEL) + FREE_MEAN
+    solved = np.linalg.solve(dense, np.c_[errors, between.T])
+    np.testing.assert_allclose(columns @ mean, between @ solved[:, :3], atol=2e-3)
+    own = FREE_MEAN + sum(KERNEL.shared)
+    expected = own - np.einsum("ij,ji->i", between, solved[:, 3:])
+    known = np.einsum("ni,ij,nj->n", columns, covariance, columns)
+    open_variance = sum(KERNEL.shared) + FREE_MEAN - (columns**2).sum(axis=1)
+    np.testing.assert_allclose(known + open_variance, expected, atol=5e-3)
+
+
+def test_what_one_actor_always_does_is_no_rule(examples):
+    local, whole, _, takes, actors = examples
+    errors = np.where(actors[:, None] == 0, 1.0, -1.0) * np.ones((24, 3))
+    bases = basis(local, local, KERNEL.lengths[0]), basis(whole, whole, KERNEL.lengths[1])
+    mean, _ = posterior(bases, errors, takes, actors, KERNEL, 1.0)
+    told = np.abs(shared_columns(bases, KERNEL) @ mean).mean()
+    unaware, _ = posterior(bases, errors, takes, np.zeros(24, int), KERNEL, 1.0)
+    assert told < 0.6 * np.abs(shared_columns(bases, KERNEL) @ unaware).mean()
+
+
+def test_few_different_features_are_their_own_inducing_points():
+    features = np.repeat(np.eye(3), 5, axis=0)
+    assert sorted(map(tuple, inducing_points(features, 10, 0))) == sorted(map(tuple, np.eye(3)))
+
+
+def logs_of(kernel):
+    return np.log([
+        *kernel.lengths,
+        *kernel.shared,
+        *kernel.personal,
+        kernel.take,
+        kernel.actor,
+        kernel.noise,
+    ])
+
+
+def unlikeliness(logs, examples, centred=False):
+    local, whole, errors, takes, actors = examples
+    far = tuple(squared_distances(one, one) for one in (local, whole))
+    same = tuple((one[:, None] == one).astype(float) for one in (takes, actors))
+    return _unlikeliness(logs, far, same, errors - errors.mean(axis=0) * centred)

@@ -1,0 +1,187 @@
+"""Feet stand level on the ground, sink into it nowhere, and slide as the source's."""
+
+import numpy as np
+import pytest
+from numpy.testing import assert_allclose
+from rigs import RIGS, child, mixamo
+
+from solvers.motion import (
+    Motion,
+    Skeleton,
+    detect_contacts,
+    find_humanoid_map,
+    foot_points,
+    forward_kinematics,
+    leg_length,
+)
+from solvers.motion.rotations import (
+    angle_between,
+    multiply,
+    quaternion_from_rotation_vector,
+    rotate,
+)
+from solvers.recordings import read_recording
+from solvers.retargeting import retarget
+from solvers.retargeting.body import find_body
+from solvers.retargeting.planting import planting_shift
+from solvers.retargeting.soles import Depths, sole_above_ground
+from solvers.samples import GaitSettings, walking_gait
+
+BODIES = {**RIGS, "Child": child}
+CLIPS = (
+    "bd_squat1Reps_001",
+    "bd_hopBothLegs1hops_003",
+    "bd_sneak2StepsLStart_001",
+    "bd_kickLFront1Reps_003",
+)
+DOWN = np.radians(10.0)
+WALK = walking_gait(GaitSettings(duration=2.0, frame_rate=30.0))
+
+
+@pytest.mark.parametrize("clip", CLIPS)
+@pytest.mark.parametrize("family", BODIES)
+def test_no_foot_sinks_and_none_slides_more(recordings, clip, family):
+    """Before, balls were up to 3 cm in the ground; ankles alone followed the source's."""
+    motion = every_fourth(read_recording(recordings / f"mocap/hdm05/HDM_{clip}_120.amc"))
+    rig = BODIES[family]()
+
+    result = given_to(motion, rig)
+
+    balls = foot_points(rig, find_humanoid_map(rig))[:, 1]
+    lowest = forward_kinematics(result).positions[:, balls, 2].min(axis=0)
+    assert (lowest - rig.rest_positions[balls, 2]).min() > -0.005
+    contacts = detect_contacts(motion)
+    held = contacts[1:] & contacts[:-1]
+    theirs, ours = (slower_steps(one)[held].mean() for one in (motion, result))
+    assert ours < 1.02 * growth(motion, rig) * theirs
+
+
+def test_soles_are_level_whatever_the_feet_of_the_rest_pose():
+    """A source whose feet rest pointing down by 10 degrees more than they stand."""
+    plain = standing()
+    drawn = with_feet_drawn_down(plain)
+    assert_allclose(
+        forward_kinematics(drawn).positions[:, 1:], forward_kinematics(plain).positions[:, 1:]
+    )
+    rig = RIGS["Unreal"]()
+
+    usual, other = given_to(plain, rig), given_to(drawn, rig)
+
+    feet = foot_points(rig, find_humanoid_map(rig))
+    for motion in (usual, other):
+        heights = forward_kinematics(motion).positions[:, feet, 2]
+        assert_allclose(heights, heights[0] * np.ones((60, 1, 1)), atol=1e-3)
+        level = heights - rig.rest_positions[feet, 2]
+        assert_allclose(level[..., 0], level[..., 1], atol=2e-3)
+
+
+def test_a_body_that_rests_around_its_hips_makes_its_own_steps_as_they_are(recordings):
+    """What its rest pose does not tell is as unknown of the target as of the source."""
+    motion = every_fourth(
+        read_recording(recordings / "mocap/hdm05/HDM_bd_sneak2StepsLStart_001_120.amc")
+    )
+
+    again = given_to(motion, motion.skeleton)
+
+    joints = find_humanoid_map(motion.skeleton).indices(motion.skeleton)
+    feet = [joints[f"{side}{part}"] for side in ("left", "right") for part in ("Foot", "Toes")]
+    assert angle_between(again.rotations, motion.rotations)[:, feet].max() < 1e-6
+
+
+def test_the_same_point_goes_as_far_and_no_shift_is_needed_where_it_does(rng):
+    theirs = path(rng), path(rng)
+    stands = np.zeros(90, dtype=np.bool_)
+    stands[30:60] = True
+
+    assert_allclose(
+        planting_shift(theirs, (1.3 * theirs[0], 1.3 * theirs[1]), stands, 1.3, 30.0),
+        np.zeros((90, 3)),
+        atol=1e-9,
+    )
+    dragged = theirs[0] + np.linspace(0.0, 0.2, 90)[:, None] * np.array([1.0, 0.0, 0.0])
+    resting = np.tile(theirs[0][:1], (90, 1)), theirs[1]
+    shift = planting_shift(resting, (dragged, theirs[1]), stands, 1.0, 30.0)
+    after = np.diff((dragged + shift)[30:60, :2], axis=0)
+    assert np.abs(after).max() < 2e-4
+    assert np.abs(np.diff(dragged[30:60, :2], axis=0)).max() > 2e-3
+    assert np.abs(shift[[0, -1]]).max() < 0.01
+    assert not shift[:, 2].any()
+
+
+@pytest.mark.parametrize("sunk", [0.0, 0.01, 0.03])
+def test_a_sunken_ball_is_lifted_and_the_ankle_stays(sunk):
+    rig = mixamo()
+    body = find_body(rig, find_humanoid_map(rig), "target's")
+    pose = Motion(body.skeleton, np.tile([1.0, 0, 0, 0], (1, len(body.kept), 1)),
+                  body.rest[:1], 30.0)  # fmt: skip
+    world = forward_kinematics(pose)
+    foot, ball = body.joints["leftFoot"], body.joints["leftToes"]
+    ankle = body.rest[[foot]] - (0.0, 0.0, sunk)
+
+    sole = sole_above_ground(body, world, "left", ankle, 0.0, Depths(np.zeros(1), np.zeros(1)))
+
+    way = rotate(sole.turn, body.rest[ball] - body.rest[foot])
+    height = (ankle + way)[0, 2] - body.rest[ball, 2]
+    assert -0.004 <= height <= 1e-9
+    assert sole.lift[0] == 0.0
+
+
+def standing() -> Motion:
+    """Two seconds on both feet, breathing; the hips at 0 in the rest pose, as Acclaim's."""
+    walker = WALK.skeleton
+    offsets = walker.offsets.copy()
+    places = np.tile(offsets[0], (60, 1))
+    offsets[0] = 0.0
+    rig = Skeleton(walker.names, walker.parents, offsets)
+    rotations = np.tile([1.0, 0, 0, 0], (60, rig.n_joints, 1))
+    spine = find_humanoid_map(rig).indices(rig)["spine"]
+    rotations[:, spine] = quaternion_from_rotation_vector(
+        np.sin(np.linspace(0.0, 6.0, 60))[:, None] * np.array([0.02, 0.0, 0.0])
+    )
+    return Motion(rig, rotations, places, 30.0)
+
+
+def with_feet_drawn_down(motion: Motion) -> Motion:
+    """The same motion of the same body, whose rest pose has other feet."""
+    rig = motion.skeleton
+    joints = find_humanoid_map(rig).indices(rig)
+    turn = quaternion_from_rotation_vector([DOWN, 0.0, 0.0])
+    back = quaternion_from_rotation_vector([-DOWN, 0.0, 0.0])
+    offsets, rotations = rig.offsets.copy(), motion.rotations.copy()
+    for side in ("left", "right"):
+        foot = joints[f"{side}Foot"]
+        below = rig.subtree(foot)[1:]
+        offsets[below] = rotate(turn, offsets[below])
+        rotations[:, foot] = multiply(rotations[:, foot], back)
+    return Motion(
+        Skeleton(rig.names, rig.parents, offsets), rotations, motion.root_positions, 30.0
+    )
+
+
+def path(rng: np.random.Generator) -> np.ndarray:
+    return np.cumsum(rng.normal(scale=0.01, size=(90, 3)), axis=0)
+
+
+def slower_steps(motion: Motion) -> np.ndarray:
+    """How far the slower of ankle and ball goes, level, (n_frames - 1, 2), metres."""
+    feet = foot_points(motion.skeleton, find_humanoid_map(motion.skeleton))
+    steps = np.diff(forward_kinematics(motion).positions[:, feet, :2], axis=0)
+    return np.linalg.norm(steps, axis=-1).min(axis=-1)
+
+
+def every_fourth(motion: Motion) -> Motion:
+    return Motion(
+        motion.skeleton,
+        motion.rotations[::4],
+        motion.root_positions[::4],
+        motion.frame_rate / 4,
+    )
+
+
+def given_to(motion: Motion, rig: Skeleton) -> Motion:
+    return retarget(motion, find_humanoid_map(motion.skeleton), rig, find_humanoid_map(rig))
+
+
+def growth(motion: Motion, rig: Skeleton) -> float:
+    legs = [leg_length(x, find_humanoid_map(x)) for x in (motion.skeleton, rig)]
+    return legs[1] / legs[0]
