@@ -5,8 +5,8 @@ from enum import Enum
 from typing import NamedTuple
 
 from ..solvers.denoising import PlantSettings
+from ..solvers.reconstruction import ReconstructSettings
 from ..solvers.settings import Settings, setting
-from ..solvers.workflows import ReconstructSettings
 from .scene.armature_write import Output
 from .scene.frames import FrameRange
 

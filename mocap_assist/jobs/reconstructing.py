@@ -18,10 +18,10 @@ from ...solvers.denoising import (
 from ...solvers.errors import MocapAssistError
 from ...solvers.motion import JointRecording, Motion
 from ...solvers.progress import Progress, unwatched, within
+from ...solvers.reconstruction import ReconstructSettings
 from ...solvers.recordings import read_motion_or_tracks, read_recording
 from ...solvers.workflows import (
     RebuiltMotion,
-    ReconstructSettings,
     postures_of,
     reconstruct_motion,
     try_to_plant,

@@ -5,7 +5,7 @@ from typing import ClassVar
 import bpy
 
 from ...solvers.denoising import PlantSettings
-from ...solvers.workflows import ReconstructSettings
+from ...solvers.reconstruction import ReconstructSettings
 from ..reconstruct_choices import Postures
 from ..reconstructing import why_not_reconstruct
 from .clean_panel import folded

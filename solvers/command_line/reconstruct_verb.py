@@ -10,10 +10,9 @@ from ..denoising import Planted, PlantSettings, compare_quality, measure_quality
 from ..errors import InvalidMotionError
 from ..motion import JointRecording, Motion, Sensor, Tracks
 from ..progress import Progress, within
-from ..reconstruction.posture_library import PostureLibrary
+from ..reconstruction import PostureLibrary, ReconstructSettings
 from ..recordings import read_recording, write_joint_csv
 from ..workflows import (
-    ReconstructSettings,
     postures_of,
     reconstruct_motion,
     reconstruct_recording,

@@ -134,7 +134,7 @@ def correct_postures(
     joints[:, ~tracks.visible.any(axis=0)] = np.nan
     confidence = confidence[:, anchors(tracks.names)]
     rebuilt = tracks.with_positions(joints)
-    motion = follow_joints(rebuilt, recording.parents, confidence)
+    motion = follow_joints(rebuilt, recording.parents, trust.combined)
     progress(1.0, "Corrected")
     method = f"{settings.method.value} with a residual prior of {prior.source}"
     return Reconstruction(rebuilt, motion, trust, confidence, method)

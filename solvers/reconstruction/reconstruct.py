@@ -127,7 +127,7 @@ def reconstruct(
         progress=within(progress, 0.1, 0.7),
     )
     if settings.method is ReconstructMethod.POSTURES:
-        motion = follow_joints(rebuilt.tracks, recording.parents, rebuilt.confidence)
+        motion = follow_joints(rebuilt.tracks, recording.parents, trust.combined)
         return replace(rebuilt, motion=motion)
     lost = np.clip((DOUBTED - trust.combined) / (DOUBTED - LOST), 0.0, 1.0)
     sure = np.maximum(trust.combined, lost * rebuilt.confidence)

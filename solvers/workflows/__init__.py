@@ -4,7 +4,6 @@ from .motion_from_markers import MarkerMotion, MarkerMotionSettings, motion_from
 from .postures_of import postures_of
 from .reconstruct_motion import RebuiltMotion, reconstruct_motion
 from .reconstruct_recording import ReconstructedMotion, reconstruct_recording
-from .rough_reconstruct import ReconstructSettings
 from .try_to_plant import Footing, try_to_plant
 
 __all__ = [
@@ -12,7 +11,6 @@ __all__ = [
     "MarkerMotion",
     "MarkerMotionSettings",
     "RebuiltMotion",
-    "ReconstructSettings",
     "ReconstructedMotion",
     "motion_from_markers",
     "postures_of",

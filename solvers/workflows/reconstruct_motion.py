@@ -16,6 +16,7 @@ from ..motion import (
     joint_parents,
 )
 from ..progress import Progress, unwatched, within
+from ..reconstruction import PostureLibrary, ReconstructSettings, ResidualPrior, reconstruct
 from ..reconstruction.follow_joints import follow_joints
 from ..reconstruction.posture_joints import (
     POSTURE_JOINTS,
@@ -23,12 +24,10 @@ from ..reconstruction.posture_joints import (
     motion_postures,
     posture_positions,
 )
-from ..reconstruction.posture_library import PostureLibrary
 from ..reconstruction.turn_to_postures import turn_to_postures
 from .known_body import KINECT_V1, check_size, check_tracked, gap_remarks
 from .measured_joints import measured_joints
 from .rebuilt_joints import rebuilt_joints
-from .rough_reconstruct import ReconstructSettings, reconstruct
 
 Array = NDArray[np.float64]
 REBUILDING = ReconstructSettings()
@@ -69,7 +68,7 @@ class RebuiltMotion:
 def reconstruct_motion(
     motion: Motion,
     postures: PostureLibrary | None = None,
-    prior: None = None,
+    prior: ResidualPrior | None = None,
     *,
     source: JointRecording | None = None,
     tracking_state: NDArray[np.int8] | None = None,
@@ -119,7 +118,10 @@ def reconstruct_motion(
     )
     if tracked:
         turned = follow_joints(
-            rebuilt.tracks, recording.parents, rebuilt.confidence, skeleton=motion.skeleton
+            rebuilt.tracks,
+            recording.parents,
+            rebuilt.reliability.combined,
+            skeleton=motion.skeleton,
         )
     else:
         turned = turn_to_postures(motion, posture_positions(rebuilt.tracks), humanoid_map)

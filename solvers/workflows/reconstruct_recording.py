@@ -8,12 +8,11 @@ from numpy.typing import NDArray
 from ..denoising import Planted, PlantSettings
 from ..motion import JointRecording, Motion, Skeleton
 from ..progress import Progress, unwatched, within
+from ..reconstruction import PostureLibrary, ReconstructSettings, ResidualPrior, reconstruct
 from ..reconstruction.follow_joints import follow_joints
-from ..reconstruction.posture_library import PostureLibrary
 from ..reconstruction.result import Reconstruction
 from .known_body import check_size, gap_remarks, known_body
 from .rebuilt_joints import rebuilt_joints
-from .rough_reconstruct import ReconstructSettings, reconstruct
 from .try_to_plant import try_to_plant
 
 PLANTING = PlantSettings()
@@ -47,7 +46,7 @@ class ReconstructedMotion:
 def reconstruct_recording(
     recording: JointRecording,
     postures: PostureLibrary | None = None,
-    prior: None = None,
+    prior: ResidualPrior | None = None,
     *,
     skeleton: Skeleton | None = None,
     settings: ReconstructSettings = REBUILDING,
@@ -85,7 +84,10 @@ def reconstruct_recording(
     motion = rebuilt.motion
     if skeleton is not None:
         motion = follow_joints(
-            rebuilt.tracks, known.parents, rebuilt.confidence, skeleton=skeleton
+            rebuilt.tracks,
+            known.parents,
+            rebuilt.reliability.combined,
+            skeleton=skeleton,
         )
     footing = try_to_plant(motion, planting, progress=within(progress, 0.8, 1.0))
     progress(1.0, "Done")
