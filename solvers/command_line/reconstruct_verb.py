@@ -10,7 +10,12 @@ from ..denoising import Planted, PlantSettings, compare_quality, measure_quality
 from ..errors import InvalidMotionError
 from ..motion import JointRecording, Motion, Sensor, Tracks
 from ..progress import Progress, within
-from ..reconstruction import PostureLibrary, ReconstructSettings
+from ..reconstruction import (
+    PostureLibrary,
+    ReconstructSettings,
+    ResidualPrior,
+    load_residual_prior,
+)
 from ..recordings import read_recording, write_joint_csv
 from ..workflows import (
     postures_of,
@@ -45,6 +50,10 @@ def add_reconstruct_options(parser: argparse.ArgumentParser) -> None:
         " them those that come with Mocap Assist guide",
     )  # fmt: skip
     parser.add_argument(
+        "--residuals", type=Path, metavar="FILE",
+        help="How the sensor errs, as learn-residuals wrote it; without it a Kinect v2's",
+    )  # fmt: skip
+    parser.add_argument(
         "--joints", action="store_true",
         help="With --output-folder: write joints as .csv, with the confidence of each, in the"
         " place of a skeleton's motion",
@@ -59,17 +68,24 @@ def add_reconstruct_options(parser: argparse.ArgumentParser) -> None:
         arguments_from(parser.add_argument_group(title), settings)
 
 
-def learn_postures(arguments: argparse.Namespace, progress: Progress) -> PostureLibrary | None:
-    """Learn, once for all files of a run, the postures that guide; None for those shipped."""
+class Guides(NamedTuple):
+    """What guides a run; None for what is shipped."""
+
+    postures: PostureLibrary | None
+    residuals: ResidualPrior | None
+
+
+def read_guides(arguments: argparse.Namespace, progress: Progress) -> Guides:
+    """Learn and read, once for all files of a run, what guides them."""
+    given = arguments.residuals
+    residuals = None if given is None else load_residual_prior(given)
     if not arguments.train:
-        return None
+        return Guides(None, residuals)
     clips = read_all(arguments.train, arguments, within(progress, 0.0, 0.7))
-    return postures_of(clips, progress=within(progress, 0.7, 1.0))
+    return Guides(postures_of(clips, progress=within(progress, 0.7, 1.0)), residuals)
 
 
-def perform_reconstruct(
-    task: Task, prepared: PostureLibrary | None, progress: Progress
-) -> Outcome:
+def perform_reconstruct(task: Task, prepared: Guides, progress: Progress) -> Outcome:
     """Reconstruct one recording and write it; tell what was lost, and the quality."""
     given = read_recording(
         task.source, scale=task.arguments.scale, progress=within(progress, 0.0, 0.1)
@@ -87,14 +103,12 @@ def perform_reconstruct(
     return _outcome(given, rebuilt)
 
 
-def _rebuilt(
-    given: Any, task: Task, postures: PostureLibrary | None, progress: Progress
-) -> Rebuilt:
+def _rebuilt(given: Any, task: Task, guides: Guides, progress: Progress) -> Rebuilt:
     settings = settings_from_arguments(task.arguments, ReconstructSettings)
     feet = task.arguments.feet
     planting = settings_from_arguments(task.arguments, PlantSettings) if feet else None
     if isinstance(given, Motion):
-        whole = reconstruct_motion(given, postures, settings=settings, progress=progress)
+        whole = reconstruct_motion(given, *guides, settings=settings, progress=progress)
         footing = try_to_plant(whole.motion, planting)
         remarks = (*whole.remarks, *footing.remarks)
         slide = _slide(footing.planted)
@@ -102,7 +116,7 @@ def _rebuilt(
     recording = _joints_of(given, task.source)
     found = reconstruct_recording(
         recording,
-        postures,
+        *guides,
         settings=settings,
         planting=planting,
         progress=progress,

@@ -14,7 +14,8 @@ from .convert import convert
 from .denoise_verb import add_denoise_options, learn_once, perform_denoise
 from .files import add_reading_options, read, read_all
 from .options import arguments_from, settings_from_arguments
-from .reconstruct_verb import add_reconstruct_options, learn_postures, perform_reconstruct
+from .reconstruct_verb import add_reconstruct_options, perform_reconstruct, read_guides
+from .residuals_verb import add_residuals_options, perform_residuals
 from .retarget_verbs import (
     add_retarget_options,
     add_unbake_options,
@@ -102,7 +103,13 @@ VERBS = {
         perform_reconstruct,
         writes_motions=True,
         writes_joints=True,
-        prepare=learn_postures,
+        prepare=read_guides,
+    ),
+    "learn-residuals": Verb(
+        "Learn how a depth camera errs from takes that another system saw as well.",
+        add_residuals_options,
+        perform_residuals,
+        Makes.ONE_FILE,
     ),
     "simulate": Verb(
         "Let a body with mass and muscles, on solid ground, make motions of a skeleton.",

@@ -56,6 +56,7 @@ def joints_of_names(names: Sequence[str]) -> dict[str, int]:
     for side, name in zip(SIDES, HAND_ENDS, strict=True):
         if name in names and roles.get(f"{side}Hand") != name:
             roles[f"{side}HandEnd"] = name
+    roles |= {name: name for name in names if name in POSTURE_JOINTS}
     return {role: list(names).index(roles[role]) for role in POSTURE_JOINTS if role in roles}
 
 

@@ -1,0 +1,61 @@
+"""`learn-residuals`, and `reconstruct` with what it learned."""
+
+import numpy as np
+import pytest
+
+from solvers.motion import JOINTS, JointRecording, Sensor, Tracks
+from solvers.reconstruction import load_residual_prior
+from solvers.reconstruction.posture_joints import motion_postures
+from solvers.recordings import read_recording, write_bvh, write_joint_csv
+from solvers.samples import GaitSettings, walking_gait
+
+NAMES = JOINTS[Sensor.KINECT_V1]
+KNEE = NAMES.index("KneeLeft")
+QUICK = ["--local-points", "10", "--whole-points", "10", "--sample", "50"]
+
+
+@pytest.fixture
+def stage(tmp_path):
+    """Three walks as an optical system and as a sensor that sees the knee 8 cm aside."""
+    (tmp_path / "kinect").mkdir()
+    (tmp_path / "truth").mkdir()
+    for name, speed in (("anna_1", 0.9), ("anna_2", 1.2), ("bob_1", 1.5)):
+        walk = walking_gait(GaitSettings(duration=3.0, frame_rate=30.0, speed=speed))
+        write_bvh(walk, tmp_path / "truth" / f"{name}.bvh")
+        seen = motion_postures(walk)
+        seen[:, KNEE, 0] += 0.08
+        joints = JointRecording(Tracks(NAMES, seen, 30.0), None, Sensor.KINECT_V1)
+        write_joint_csv(joints, tmp_path / "kinect" / f"{name}.csv")
+    return tmp_path
+
+
+def learn(call, stage, *more):
+    return call(
+        "learn-residuals", stage / "kinect", "--truth", stage / "truth",
+        "--output", stage / "sensor.npz", *QUICK, *more,
+    )  # fmt: skip
+
+
+def test_what_a_sensor_does_wrong_is_learned_and_taken_out(call, stage):
+    status, out, err = learn(call, stage, "--actors", "anna", "bob")
+    assert (status, err) == (0, "")
+    assert "3 takes of 2 actors" in out
+    assert "leftLowerLeg" in load_residual_prior(stage / "sensor.npz").joints
+    source, target = stage / "kinect" / "anna_2.csv", stage / "clean.csv"
+    told = ["--residuals", stage / "sensor.npz", "--shift"]
+    assert call("reconstruct", source, target, *told)[0] == 0
+    seen, clean = (read_recording(path).tracks.positions[:, KNEE] for path in (source, target))
+    assert np.mean((clean - seen)[:, 0]) == pytest.approx(-0.08, abs=0.03)
+
+
+def test_a_take_without_partner_is_named(call, stage):
+    (stage / "truth" / "bob_1.bvh").unlink()
+    status, _, err = learn(call, stage)
+    assert status == 2
+    assert "no take named bob_1" in err
+
+
+def test_an_unknown_actor_is_named(call, stage):
+    status, _, err = learn(call, stage, "--actors", "anna")
+    assert status == 2
+    assert "bob_1 begins with none of the actors' names: anna" in err
