@@ -52,7 +52,7 @@ def test_commands_in_the_documents_exist_and_the_readme_shows_all():
     shown = {"solvers": set(), "blender": set()}
     for document in DOCUMENTS:
         text = document.read_text(encoding="utf-8")
-        shown["solvers"] |= set(re.findall(r"python -m solvers (\w+)", text))
+        shown["solvers"] |= set(re.findall(r"python -m solvers ([\w-]+)", text))
         shown["blender"] |= set(re.findall(r"--command mocap_assist (\w+)", text))
 
     assert shown["solvers"] == set(VERBS)
@@ -72,7 +72,7 @@ def blender_verbs() -> set[str]:
 
 def test_options_in_the_readme_exist(capsys):
     readme = (ROOT / "README.md").read_text(encoding="utf-8")
-    for verb, words in re.findall(r"^python -m solvers (\w+)(.*)$", readme, re.MULTILINE):
+    for verb, words in re.findall(r"^python -m solvers ([\w-]+)(.*)$", readme, re.MULTILINE):
         with pytest.raises(SystemExit):
             run(VERBS, [verb, "--help"], "solvers")
         text = capsys.readouterr().out
