@@ -99,7 +99,7 @@ def nearest_postures(
     query: Query,
     n_neighbours: int = 30,
     *,
-    n_looked_at: int = 4000,
+    n_looked_at: int = 8000,
     progress: Progress = unwatched,
 ) -> tuple[Places, Array]:
     """Find the nearest postures by the weighted distance of [SHJT13], eq. 9.

@@ -5,6 +5,7 @@ from enum import Enum
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.ndimage import distance_transform_edt
 
 from ..motion import HumanoidMap, Motion, find_humanoid_map
 from ..progress import Progress, unwatched, within
@@ -252,7 +253,10 @@ def _ease(pieces: list[Piece], frame_rate: float) -> Array:
     """Return a share that rises from 0 where the body was lost to 1, shape (n_frames,)."""
     shares = []
     for piece in pieces:
-        frames, lost = np.arange(len(piece.followed)), np.flatnonzero(~piece.followed)
-        away = np.abs(frames[:, None] - lost).min(axis=1, initial=len(frames) + 1e9)
+        # A lost frame beyond each end, too far to matter: there is always one to measure to.
+        far = int(EASE * frame_rate) + 2
+        frames = np.pad(piece.followed, far, constant_values=True)
+        frames[[0, -1]] = False
+        away = distance_transform_edt(frames)[far:-far]
         shares.append(np.minimum(1.0, away / (EASE * frame_rate)))
     return np.concatenate(shares)

@@ -1,8 +1,9 @@
-"""Postures from a library: parts used, energies, lost joints and large libraries.
+"""Postures from a library: parts used, energies, lost joints; large libraries.
 
     python -m tests.benchmarks.bench_postures          # about five minutes
     python -m tests.benchmarks.bench_postures --dev    # clips to tune on
     python -m tests.benchmarks.bench_postures --docs   # into docs/benchmarks.md
+    python -m tests.benchmarks.bench_postures --search # large libraries alone
 
 Libraries are of other persons than the clips: CMU walkers for development and one actor of
 HDM05. "Lost" joints are taken out of the capture; all methods are told which. Interpolation
@@ -37,17 +38,22 @@ def main() -> None:
     parser = argparse.ArgumentParser(description=(__doc__ or "").splitlines()[0])
     parser.add_argument("--dev", action="store_true", help="clips to tune on instead")
     parser.add_argument("--docs", action="store_true", help="rewrite docs/benchmarks.md")
+    parser.add_argument("--search", action="store_true", help="search in large libraries")
     chosen = parser.parse_args()
     started = perf_counter()
     tables: list[Scores | str] = []
+    if chosen.search:
+        with threadpool_limits(1):
+            found_tables = [growth()]
+        Report(chosen.docs).part("posture search", found_tables, perf_counter() - started)
+        return
     with threadpool_limits(1):
         optical, kinect = part.optical_clips(chosen.dev), part.kinect_clips(chosen.dev)
         titles = f"{len(optical)} CMU and HDM05 clips", f"{len(kinect)} Kinect takes"
         for title, found in zip(titles, (optical, kinect), strict=True):
             tables.append(part.parts_used(title, found))
         tables.append(part.energies(optical[::3]))
-        tables.append(growth())
-        _say("parts, energies, growth")
+        _say("parts, energies")
         for title, found in zip(titles, (optical, kinect), strict=True):
             tables += part.lost_joints(title, found)
             _say(f"lost joints, {title}")

@@ -86,6 +86,7 @@ def test_every_button_offers_every_setting_with_a_tooltip(load):
         "measure_quality": load("mocap_assist.check_choices").CheckSettings,
         "plant_feet": load("mocap_assist.planting").FeetSettings,
         "learn_patterns": load("mocap_assist.learning").LearnSettings,
+        "simulate": load("mocap_assist.simulating").SimulateBundle,
     }
     for button, bundle in bundles.items():
         shown = getattr(bpy.ops.mocap_assist, button).get_rna_type().properties

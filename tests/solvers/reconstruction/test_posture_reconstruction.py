@@ -131,10 +131,23 @@ def test_the_take_is_not_changed_and_the_same_comes_out_twice(lame, library):
 
 
 def test_lost_hips_are_found_by_the_joints_about_them(walk, library):
-    seen = walk.copy()
+    """The body bobs, so that a straight line through the loss would be far off."""
+    bob = 0.15 * np.sin(2.0 * np.pi * np.arange(len(walk)) / 30.0)
+    truth = walk + bob[:, None, None] * (0.0, 0.0, 1.0)
+    seen = truth.copy()
     seen[GONE, 0] = np.nan
-    away = np.linalg.norm(rebuilt(seen, library).tracks.positions - walk, axis=-1)
-    assert away[GONE, 0].max() < 0.05
+    away = np.linalg.norm(rebuilt(seen, library).tracks.positions - truth, axis=-1)
+    assert away[GONE, 0].max() < 0.06
+
+
+def test_a_constant_difference_of_a_limb_is_learned_where_it_is_seen(walk, library):
+    """A tracker that sees this leg ten centimetres to the side, lost for long."""
+    truth = walk.copy()
+    truth[:, LEG] += (0.1, 0.0, 0.0)
+    seen = truth.copy()
+    seen[15:75, LEG] = np.nan
+    off = (rebuilt(seen, library).tracks.positions - truth)[35:55, LEG]
+    assert np.abs(off.mean(axis=(0, 1))[0]) < 0.05
 
 
 def test_the_motion_has_bones_of_constant_length_and_follows(lame, library):
