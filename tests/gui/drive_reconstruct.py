@@ -65,6 +65,7 @@ def steps():
     hips = armature.pose.bones[0].head
     view.region_3d.view_location = hips
     view.region_3d.view_distance = 2.6
+    view.region_3d.view_rotation = (0.79, 0.57, 0.13, 0.18)  # a little from the side
     yield from settle()
     bgui.shot("1-recorded.png")
     with bgui.override("WINDOW"):
