@@ -16,7 +16,7 @@ from .other_joints import all_joints, anchors
 from .posture_joints import N_JOINTS, POSTURE_JOINTS, joints_of_names, posture_positions
 from .reliability import Reliability, measure_reliability
 from .residual_inputs import bridged, calm_postures
-from .residual_prior import ResidualPrior
+from .residual_prior import Foretold, ResidualPrior
 from .result import Reconstruction
 
 Array = NDArray[np.float64]
@@ -80,8 +80,9 @@ def correct_postures(
 
     Published: minimise E = w_S E_S + w_T E_T + w_R E_R (eq. 5.1, 5.4, 5.5, 5.6), frame by frame
     in closed form, since all three are quadratic and diagonal. The default takes the foretold
-    offset in full and minimises over the whole take the distance to it, weighted by
-    reliability, and the accelerations.
+    offset, the less of it the farther the posture is from those that were learned, and
+    minimises over the whole take the distance to it, weighted by reliability, and the
+    accelerations.
 
     Parameters
     ----------
@@ -95,7 +96,8 @@ def correct_postures(
     Returns
     -------
     Reconstruction
-        Its confidence is the chance that a joint lies within 5 cm of where it was.
+        Its confidence is the chance that a joint lies within 5 cm of where it was (without
+        `shift`: beside a constant offset); where the prior knows nothing, the reliability.
 
     Raises
     ------
@@ -113,20 +115,18 @@ def correct_postures(
     weights = posture_reliability(recording, trust.combined)
     calm = calm_postures(recording, float(prior.calm), weights)
     progress(0.4, "Correcting")
-    offsets, variances = prior.predict(calm)
-    if not settings.shift:
-        weighed = np.maximum(weights, LEAST)[..., None]
-        offsets -= (weighed * offsets).sum(axis=0) / weighed.sum(axis=0)
-    foretold = calm.positions + calm.turn_back(offsets)
+    told = prior.predict(calm)
+    foretold = calm.positions + calm.turn_back(_offsets(told, weights, settings))
+    variances = told.variances + prior.lasting_variances(constant=settings.shift)
     if settings.method is CorrectionMethod.PUBLISHED:
-        total = variances + prior.lasting_variances()
-        corrected = _frame_by_frame(recording, foretold, total, weights, settings)
+        corrected = _frame_by_frame(recording, foretold, variances, weights, settings)
     else:
         corrected = smoothed(
             foretold, np.maximum(weights, LEAST), settings.smoothing * recording.frame_rate
         )
     progress(0.9, "Correcting")
-    confidence = chance_within(variances + prior.lasting_variances(), SURE_WITHIN)
+    confidence = chance_within(variances, SURE_WITHIN)
+    confidence = told.coverage * confidence + (1.0 - told.coverage) * weights
     tracks = recording.tracks
     joints = all_joints(
         tracks.names, tracks.positions, trust.combined, posture_positions(recording), corrected
@@ -138,6 +138,18 @@ def correct_postures(
     progress(1.0, "Corrected")
     method = f"{settings.method.value} with a residual prior of {prior.source}"
     return Reconstruction(rebuilt, motion, trust, confidence, method)
+
+
+def _offsets(told: Foretold, weights: Array, settings: CorrectionSettings) -> Array:
+    """Return the offsets to apply: far from what was learned the usual one, if any."""
+    if settings.method is CorrectionMethod.PUBLISHED:
+        offsets = told.offsets
+    else:
+        offsets = told.usual + told.coverage[..., None] * (told.offsets - told.usual)
+    if settings.shift:
+        return offsets
+    weighed = np.maximum(weights, LEAST)[..., None]
+    return np.asarray(offsets - (weighed * offsets).sum(axis=0) / weighed.sum(axis=0))
 
 
 def smoothed(positions: Array, weights: Array, frames: float) -> Array:

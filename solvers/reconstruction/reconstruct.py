@@ -58,6 +58,11 @@ class ReconstructSettings(Settings):
         30, "Clean postures that each lost pose is made of; more vary more",
         minimum=2, maximum=200,
     )  # fmt: skip
+    inferred: float = setting(
+        0.5, "What a joint counts for that the sensor itself only guessed; 0 rebuilds all of"
+        " them, as published; 0.5 those that also look wrong",
+        minimum=0.0, maximum=1.0,
+    )  # fmt: skip
     causal: bool = setting(
         False, "Use only what came before each frame, as a live system must; less smooth"
     )
@@ -108,7 +113,7 @@ def reconstruct(
     """
     trust = measure_reliability(
         recording,
-        settings=ReliabilitySettings(causal=settings.causal),
+        settings=ReliabilitySettings(causal=settings.causal, inferred=settings.inferred),
         progress=within(progress, 0.0, 0.1),
     )
     if settings.method is ReconstructMethod.RESIDUALS:

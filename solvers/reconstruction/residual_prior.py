@@ -11,13 +11,40 @@ from ..errors import InvalidFileError
 from ..files import read_archive, write_archive
 from .posture_joints import N_JOINTS, POSTURE_JOINTS
 from .residual_inputs import LARGEST, CalmPostures, filled, neighbourhood
-from .residual_kernel import Kernel
+from .residual_kernel import Kernel, squared_distances
 from .residual_sparse import basis, shared_columns
 
 Array = NDArray[np.float64]
 
 KIND = "residual prior"
 VERSION = 1
+
+
+FAR_LOCAL, FAR_WHOLE = (0.15, 0.1), (0.35, 0.15)
+"""Metres of features from the nearest inducing point up to which postures count as known, and
+how fast they become unknown beyond. Actors who were left out lie within nearly always."""
+
+
+@dataclass(frozen=True, eq=False)
+class Foretold:
+    """What a prior says of postures.
+
+    Attributes
+    ----------
+    offsets : shape (n_frames, 20, 3), metres
+        True minus seen place, in the frame of the heading; 0 for joints that were not learned.
+    usual : shape (20, 3), metres
+        The mean of all examples.
+    variances : shape (n_frames, 20), square metres for each axis
+        Of what the shared functions do not know; infinite for joints that were not learned.
+    coverage : shape (n_frames, 20), 0 to 1
+        How near the posture is to those that were learned.
+    """
+
+    offsets: Array
+    usual: Array
+    variances: Array
+    coverage: Array
 
 
 @dataclass(frozen=True, eq=False)
@@ -66,20 +93,14 @@ class ResidualPrior:
         """Return the hyper-parameters of one of the joints."""
         return Kernel.from_logs(np.log(self.kernels[place]))
 
-    def predict(self, calm: CalmPostures) -> tuple[Array, Array]:
-        """Foretell true minus seen place of every joint.
-
-        Returns
-        -------
-        offsets : shape (n_frames, 20, 3), metres
-            In the frame of the heading; 0 for joints that were not learned.
-        variances : shape (n_frames, 20), square metres for each axis
-            Of what the shared functions do not know; infinite for joints not learned.
-        """
-        offsets = np.zeros_like(calm.features)
-        variances = np.full(calm.features.shape[:2], np.inf)
+    def predict(self, calm: CalmPostures) -> "Foretold":
+        """Foretell true minus seen place of every joint."""
+        shape = calm.features.shape
+        offsets, usual = np.zeros(shape), np.zeros(shape[1:])
+        variances, coverage = np.full(shape[:2], np.inf), np.zeros(shape[:2])
         features = filled(calm.features, self.usual)
         whole = whole_posture(features, self.usual, self.components)
+        near = _nearness(whole, self.whole_points, FAR_WHOLE)
         for place, name in enumerate(self.joints):
             joint, kernel = POSTURE_JOINTS.index(str(name)), self.kernel(place)
             local = neighbourhood(features, joint)
@@ -89,21 +110,36 @@ class ResidualPrior:
             )
             columns = shared_columns(bases, kernel)
             offsets[:, joint] = columns @ self.means[place]
+            usual[joint] = columns[0, -1] * self.means[place][-1]
             unknown = np.einsum("ni,ni->n", columns @ self.covariances[place], columns)
             for one, shared in zip(bases, kernel.shared, strict=True):
                 unknown += shared * np.maximum(1.0 - (one**2).sum(axis=1), 0.0)
             variances[:, joint] = unknown
-        return offsets, variances
+            coverage[:, joint] = near * _nearness(local, self.local_points[place], FAR_LOCAL)
+        return Foretold(offsets, usual, variances, coverage)
 
-    def lasting_variances(self) -> Array:
-        """Return variances that no posture tells of: actor, take, noise; shape (20,)."""
+    def lasting_variances(self, constant: bool = True) -> Array:
+        """Return variances that no posture tells of, shape (20,), square metres.
+
+        Those of personal functions and noise, and where `constant` those of the constant
+        offsets of an actor and a take.
+        """
         result = np.full(N_JOINTS, np.inf)
         for place, name in enumerate(self.joints):
             kernel = self.kernel(place)
             result[POSTURE_JOINTS.index(str(name))] = (
-                sum(kernel.personal) + kernel.take + kernel.actor + kernel.noise
+                sum(kernel.personal)
+                + kernel.noise
+                + (kernel.take + kernel.actor if constant else 0.0)
             )
         return result
+
+
+def _nearness(features: Array, points: Array, far: tuple[float, float]) -> Array:
+    """Return 1 near the points, falling to 0 where the nearest is far, shape (n,)."""
+    near, fall = far
+    distance = np.sqrt(squared_distances(features, points).min(axis=1))
+    return np.asarray(np.exp(-0.5 * (np.maximum(distance - near, 0.0) / fall) ** 2))
 
 
 def whole_posture(features: Array, usual: Array, components: Array) -> Array:

@@ -91,14 +91,24 @@ def test_the_prior_does_not_see_heading_and_place(prior):
     )
 
 
-def test_confidence_is_high_where_the_prior_knows_and_low_for_strange_postures(prior):
+def test_far_from_what_was_learned_the_prior_is_silent(prior):
     given_ = recording(seen_by_a_bad_sensor(truth(1.3)))
-    usual = correct_postures(given_, prior).confidence[:, KNEE]
-    strange = given_.tracks.positions.copy()
-    strange[:, 1:] = strange[:, :1] + (strange[:, 1:] - strange[:, :1]) * (1.0, 1.0, -1.0)
-    odd = correct_postures(recording(strange), prior).confidence[:, KNEE]
-    assert usual.mean() > 0.9
-    assert odd.mean() < usual.mean() - 0.2
+    upside_down = given_.tracks.positions.copy()
+    upside_down[:, 1:] = upside_down[:, :1] + (upside_down[:, 1:] - upside_down[:, :1]) * (
+        1.0,
+        1.0,
+        -1.0,
+    )
+    settings = CorrectionSettings(shift=False, smoothing=0.0)
+    strange = correct_postures(recording(upside_down), prior, settings=settings)
+    usual = correct_postures(given_, prior, settings=settings)
+    moved = np.linalg.norm(strange.tracks.positions - upside_down, axis=-1)[:, KNEE]
+    expected = np.linalg.norm(usual.tracks.positions - given_.tracks.positions, axis=-1)
+    assert moved.max() < 0.35 * expected[:, KNEE].max()
+    np.testing.assert_allclose(
+        strange.confidence[:, KNEE], strange.reliability.combined[:, KNEE], atol=1e-3
+    )
+    assert usual.confidence[:, KNEE].mean() > 0.9
 
 
 def test_a_joint_that_was_never_tracked_hurts_no_other(prior):
