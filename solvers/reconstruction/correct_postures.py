@@ -54,6 +54,11 @@ class CorrectionSettings(Settings):
         True, "Also move each joint by the offset that the sensor always has, as from the skin"
         " to the joint; false leaves joints on average where they were seen",
     )  # fmt: skip
+    change: float = setting(
+        0.75, "How much is applied of the offsets' change with posture; 1 takes the prior at its"
+        " word, also in movements that it has never seen",
+        minimum=0.0, maximum=1.0, advanced=True,
+    )  # fmt: skip
     spatial: float = setting(
         0.6, "Weight of the foretold offsets; published method only",
         minimum=0.0, maximum=10.0, advanced=True,
@@ -79,10 +84,9 @@ def correct_postures(
     """Move joints from where a sensor saw them to where they were, as far as is known.
 
     Published: minimise E = w_S E_S + w_T E_T + w_R E_R (eq. 5.1, 5.4, 5.5, 5.6), frame by frame
-    in closed form, since all three are quadratic and diagonal. The default takes the foretold
-    offset, the less of it the farther the posture is from those that were learned, and
-    minimises over the whole take the distance to it, weighted by reliability, and the
-    accelerations.
+    in closed form, since all three are quadratic and diagonal. The default takes the mean
+    offset of the take and a part of its change, and minimises over the whole take the distance
+    to that, weighted by reliability, and the accelerations.
 
     Parameters
     ----------
@@ -141,15 +145,18 @@ def correct_postures(
 
 
 def _offsets(told: Foretold, weights: Array, settings: CorrectionSettings) -> Array:
-    """Return the offsets to apply: far from what was learned the usual one, if any."""
-    if settings.method is CorrectionMethod.PUBLISHED:
-        offsets = told.offsets
-    else:
-        offsets = told.usual + told.coverage[..., None] * (told.offsets - told.usual)
-    if settings.shift:
-        return offsets
+    """Return the offsets to apply: their mean over the take, and what changes with posture.
+
+    Of the change a part is applied, and none of it in takes unlike those that were learned:
+    in exercises that were left out the whole of it harms, three quarters help.
+    """
     weighed = np.maximum(weights, LEAST)[..., None]
-    return np.asarray(offsets - (weighed * offsets).sum(axis=0) / weighed.sum(axis=0))
+    mean = (weighed * told.offsets).sum(axis=0) / weighed.sum(axis=0)
+    constant = mean if settings.shift else np.zeros_like(mean)
+    if settings.method is CorrectionMethod.PUBLISHED:
+        return np.asarray(told.offsets + (constant - mean))
+    share = settings.change * told.coverage.mean(axis=0)
+    return np.asarray(constant + share[:, None] * (told.offsets - mean))
 
 
 def smoothed(positions: Array, weights: Array, frames: float) -> Array:

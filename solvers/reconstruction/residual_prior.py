@@ -33,8 +33,6 @@ class Foretold:
     ----------
     offsets : shape (n_frames, 20, 3), metres
         True minus seen place, in the frame of the heading; 0 for joints that were not learned.
-    usual : shape (20, 3), metres
-        The mean of all examples.
     variances : shape (n_frames, 20), square metres for each axis
         Of what the shared functions do not know; infinite for joints that were not learned.
     coverage : shape (n_frames, 20), 0 to 1
@@ -42,7 +40,6 @@ class Foretold:
     """
 
     offsets: Array
-    usual: Array
     variances: Array
     coverage: Array
 
@@ -96,8 +93,8 @@ class ResidualPrior:
     def predict(self, calm: CalmPostures) -> "Foretold":
         """Foretell true minus seen place of every joint."""
         shape = calm.features.shape
-        offsets, usual = np.zeros(shape), np.zeros(shape[1:])
-        variances, coverage = np.full(shape[:2], np.inf), np.zeros(shape[:2])
+        offsets, variances = np.zeros(shape), np.full(shape[:2], np.inf)
+        coverage = np.zeros(shape[:2])
         features = filled(calm.features, self.usual)
         whole = whole_posture(features, self.usual, self.components)
         near = _nearness(whole, self.whole_points, FAR_WHOLE)
@@ -110,13 +107,12 @@ class ResidualPrior:
             )
             columns = shared_columns(bases, kernel)
             offsets[:, joint] = columns @ self.means[place]
-            usual[joint] = columns[0, -1] * self.means[place][-1]
             unknown = np.einsum("ni,ni->n", columns @ self.covariances[place], columns)
             for one, shared in zip(bases, kernel.shared, strict=True):
                 unknown += shared * np.maximum(1.0 - (one**2).sum(axis=1), 0.0)
             variances[:, joint] = unknown
             coverage[:, joint] = near * _nearness(local, self.local_points[place], FAR_LOCAL)
-        return Foretold(offsets, usual, variances, coverage)
+        return Foretold(offsets, variances, coverage)
 
     def lasting_variances(self, constant: bool = True) -> Array:
         """Return variances that no posture tells of, shape (20,), square metres.

@@ -1,0 +1,100 @@
+"""Both ways of reconstruction together, on a walk whose left forearm shakes behind the body."""
+
+import kinect_walks
+import numpy as np
+import pytest
+
+from solvers import motion, samples
+from solvers.motion import JointRecording, forward_kinematics
+from solvers.reconstruction import (
+    ReconstructMethod,
+    ReconstructSettings,
+    posture_joints,
+    reconstruct,
+)
+from solvers.reconstruction.heading import turned
+
+LOST, HIDDEN = kinect_walks.LOST, [5, 6, 7]
+SEEN = [joint for joint in range(20) if joint not in HIDDEN]
+
+
+@pytest.fixture(scope="module")
+def true():
+    return kinect_walks.true_positions(samples, posture_joints)
+
+
+@pytest.fixture(scope="module")
+def walk(true):
+    return kinect_walks.tracked_walk(motion, true)
+
+
+def off(positions, true, joints, frames=slice(None)):
+    return float(np.linalg.norm((positions - true)[frames][:, joints], axis=-1).mean())
+
+
+@pytest.mark.parametrize("method", list(ReconstructMethod))
+@pytest.mark.parametrize("causal", [False, True])
+def test_a_shaking_forearm_comes_nearer_to_the_truth(walk, true, method, causal):
+    settings = ReconstructSettings(method=method, causal=causal)
+    found = reconstruct(walk, settings=settings).tracks.positions
+    before = off(walk.tracks.positions, true, HIDDEN, LOST)
+    assert off(found, true, HIDDEN, LOST) < (0.7 if causal else 0.5) * before
+
+
+def test_postures_help_where_the_residuals_alone_can_only_smooth(walk, true):
+    lost = walk.tracks.positions.copy()
+    lost[LOST, HIDDEN[0] : HIDDEN[-1] + 1] = np.nan
+    blind = JointRecording(walk.tracks.with_positions(lost), None, walk.sensor)
+    error = {
+        method: off(
+            reconstruct(blind, settings=ReconstructSettings(method=method)).tracks.positions,
+            true, HIDDEN, LOST,
+        )
+        for method in (ReconstructMethod.BOTH, ReconstructMethod.RESIDUALS)
+    }  # fmt: skip
+    assert error[ReconstructMethod.BOTH] < 0.7 * error[ReconstructMethod.RESIDUALS]
+
+
+def test_joints_that_were_seen_stay_where_they_were(walk, true):
+    found = reconstruct(walk)
+    assert off(found.tracks.positions, walk.tracks.positions, SEEN) < 0.015
+    assert found.confidence[:, SEEN].mean() > 0.7
+    assert found.confidence[LOST][:, HIDDEN].mean() < found.confidence[:, SEEN].mean() - 0.2
+
+
+def test_bones_have_one_length(walk):
+    result = reconstruct(walk).motion
+    joints = forward_kinematics(result).positions
+    bones = np.linalg.norm(
+        joints[:, 1:] - joints[:, list(result.skeleton.parents[1:])], axis=-1
+    )
+    assert bones.std(axis=0).max() < 1e-9
+
+
+def test_heading_and_place_do_not_matter(walk):
+    angles, shift = np.full(walk.n_frames, 1.2), np.array([2.0, -3.0, 0.0])
+    moved = walk.with_tracks(
+        walk.tracks.with_positions(turned(walk.tracks.positions, angles) + shift)
+    )
+    here, there = reconstruct(walk).tracks.positions, reconstruct(moved).tracks.positions
+    np.testing.assert_allclose(turned(here, angles) + shift, there, atol=1e-3)
+
+
+def test_the_same_again_and_the_input_as_it_was(walk):
+    given = walk.tracks.positions.copy()
+    one, other = reconstruct(walk), reconstruct(walk)
+    np.testing.assert_array_equal(one.tracks.positions, other.tracks.positions)
+    np.testing.assert_array_equal(walk.tracks.positions, given)
+
+
+def test_what_the_sensor_guessed_is_rebuilt_more_the_less_it_counts(walk, true):
+    calm = walk.with_tracks(walk.tracks.with_positions(true))
+    moved = [
+        off(
+            reconstruct(calm, settings=ReconstructSettings(inferred=count)).tracks.positions,
+            true, HIDDEN, LOST,
+        )
+        for count in (0.0, 0.5, 1.0)
+    ]  # fmt: skip
+    assert moved[0] > moved[1] > 0.5 * moved[2]
+    assert moved[1] < 0.02
