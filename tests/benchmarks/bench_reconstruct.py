@@ -1,0 +1,44 @@
+"""Rebuilding what a Kinect saw, against the published methods and peers.
+
+    make bench-reconstruct                                   # half an hour
+    make bench-reconstruct ARGUMENTS="--takes 1"             # a tenth of the takes
+    make bench-reconstruct ARGUMENTS="--part kinect --docs"  # docs/benchmarks_reconstruction.md
+
+Priors are learned without the subject that they are tried on, and kept under build/reconstruct.
+"""
+
+import argparse
+from collections.abc import Callable, Sequence
+from time import perf_counter
+
+from threadpoolctl import threadpool_limits
+
+from . import part_kinect
+from .report import DOCS, Report
+
+Part = Callable[[int], Sequence[str]]
+
+PARTS: dict[str, Part] = {
+    "kinect": part_kinect.accuracy,
+}
+
+
+def main() -> None:
+    """Print the tables of the parts that are asked for."""
+    parser = argparse.ArgumentParser(description=(__doc__ or "").splitlines()[0])
+    parser.add_argument("--part", choices=PARTS, action="append", help="all by default")
+    parser.add_argument("--takes", type=int, default=10, help="repetitions of each exercise")
+    parser.add_argument(
+        "--docs", action="store_true", help="rewrite docs/benchmarks_reconstruction.md"
+    )
+    chosen = parser.parse_args()
+    report = Report(chosen.docs, DOCS / "benchmarks_reconstruction.md")
+    for name in chosen.part or PARTS:
+        started = perf_counter()
+        with threadpool_limits(1):
+            tables = PARTS[name](chosen.takes)
+        report.part(name, tables, perf_counter() - started)
+
+
+if __name__ == "__main__":
+    main()
