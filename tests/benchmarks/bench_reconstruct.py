@@ -13,13 +13,15 @@ from time import perf_counter
 
 from threadpoolctl import threadpool_limits
 
-from . import part_kinect
+from . import part_kinect, part_losses
 from .report import DOCS, Report
 
 Part = Callable[[int], Sequence[str]]
 
 PARTS: dict[str, Part] = {
     "kinect": part_kinect.accuracy,
+    "losses": part_losses.losses,
+    "damages": part_losses.damages,
 }
 
 

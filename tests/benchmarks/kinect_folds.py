@@ -42,13 +42,13 @@ def pairs() -> tuple[Pair, ...]:
     return tuple(read_pairs())
 
 
-def takes_of(subject: str, n_repetitions: int) -> list[Pair]:
-    """Takes of a subject: of each exercise the first repetitions that are there."""
+def takes_of(subject: str, n_repetitions: int, after: int = 0) -> list[Pair]:
+    """Takes of a subject: of each exercise some repetitions after the first few."""
     found: dict[str, list[Pair]] = {}
     for pair in pairs():
         if pair.subject == subject:
             found.setdefault(pair.name[:3], []).append(pair)
-    return [pair for same in found.values() for pair in same[:n_repetitions]]
+    return [pair for same in found.values() for pair in same[after : after + n_repetitions]]
 
 
 def others(subject: str) -> list[Pair]:

@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 
 from solvers.reconstruction.posture_joints import N_JOINTS, PARENTS
 
-from .kinect_folds import SUBJECTS, seen_of, takes_of, truth_of
+from .kinect_folds import SUBJECTS, takes_of, truth_of
 from .kinect_methods import METHODS, Method
 from .kinect_pairs import Pair
 from .tables import number, table
@@ -93,28 +93,12 @@ def accuracy(n_repetitions: int) -> list[str]:
             f"{100.0 * np.nanmean(found.free[found.subjects == one]):.2f}" for one in SUBJECTS
         ]
         print(name, *rows[name], flush=True)
-    truth = [
-        jerk(truth_of(pair), pair) for one in SUBJECTS for pair in _few(one, n_repetitions)
-    ]
-    rows["markers"] = [
-        "0",
-        "0",
-        "0",
-        "0",
-        number(float(np.nanmean(np.concatenate(truth)))),
-        "-",
-    ]
-    n_takes = sum(len(_few(one, n_repetitions)) for one in SUBJECTS)
-    head = f"**Accuracy, subject left out**, {n_takes} takes, {len(worst)} frames\n\n"
+    takes = [pair for one in SUBJECTS for pair in takes_of(one, n_repetitions)]
+    truth = np.concatenate([jerk(truth_of(pair), pair) for pair in takes])
+    rows["markers"] = ["0", "0", "0", "0", number(float(np.nanmean(truth))), "-"]
+    head = f"**Accuracy, subject left out**, {len(takes)} takes, {len(worst)} frames\n\n"
     tail = "\n**Offset-free error of each subject left out** (cm)\n\n"
     return [
         head + table(["method", *COLUMNS], rows) + "\n",
         tail + table(["method", *SUBJECTS], by_subject) + "\n",
     ]
-
-
-def _few(subject: str, n_repetitions: int) -> list[Pair]:
-    return takes_of(subject, n_repetitions)
-
-
-__all__ = ["accuracy", "compared", "errors_of", "seen_of"]
