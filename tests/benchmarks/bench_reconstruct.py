@@ -13,7 +13,7 @@ from time import perf_counter
 
 from threadpoolctl import threadpool_limits
 
-from . import part_kinect, part_losses
+from . import part_kinect, part_losses, part_real, part_terms
 from .report import DOCS, Report
 
 Part = Callable[[int], Sequence[str]]
@@ -22,6 +22,9 @@ PARTS: dict[str, Part] = {
     "kinect": part_kinect.accuracy,
     "losses": part_losses.losses,
     "damages": part_losses.damages,
+    "terms": part_terms.terms,
+    "confidence": part_terms.confidence,
+    "real": part_real.recordings,
 }
 
 

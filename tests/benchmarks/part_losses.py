@@ -170,9 +170,9 @@ def losses(n_repetitions: int) -> list[str]:
     methods = {**FILLED, **OURS}
     random, behind = errors_of(lost, methods), errors_of(hidden, methods)
     return [
-        _table("Joints lost, by how many", random, lambda one: one.what),
-        _table("Joints lost, by how long", random, lambda one: one.seconds),
-        _table(
+        errors_table("Joints lost, by how many", random, lambda one: one.what),
+        errors_table("Joints lost, by how long", random, lambda one: one.seconds),
+        errors_table(
             "Joints hidden by the body, by where the sensor is", behind, lambda one: one.what
         ),
     ]
@@ -183,8 +183,8 @@ def damages(n_repetitions: int) -> list[str]:
     methods = {**CALMED, **OURS}
     jumpy, wrong = errors_of(shaken, methods), errors_of(swapped, methods)
     return [
-        _table("Joints that vibrate", jumpy, lambda one: one.seconds),
-        _table("Limbs swapped", wrong, lambda one: one.what),
+        errors_table("Joints that vibrate", jumpy, lambda one: one.seconds),
+        errors_table("Limbs swapped", wrong, lambda one: one.what),
     ]
 
 
@@ -208,7 +208,7 @@ def errors_of(
     return result
 
 
-def _table(title: str, found: dict[str, list[Found]], by: Callable[[Found], str]) -> str:
+def errors_table(title: str, found: dict[str, list[Found]], by: Callable[[Found], str]) -> str:
     base = LINEAR if LINEAR in found else "raw"
     columns = list(dict.fromkeys(by(one) for one in found[base]))
     usual = _mean(found[base])
