@@ -126,10 +126,13 @@ def _row(
         sure.append(moved[(told > SOUND) & np.isfinite(moved)])
         doubted.append(moved[(told < WRONG) & np.isfinite(moved)])
     n_frames = sum(take.n_frames for take in takes)
-    figures = [100.0 * np.mean(lengths), np.mean(jerks)]
-    for moved in map(np.concatenate, (sure, doubted)):
-        figures.append(100.0 * moved.mean() if len(moved) else np.nan)
-    return [*map(number, map(float, figures)), f"{1e3 * taken / n_frames:.2f}"]
+    ways = [np.concatenate(one) for one in (sure, doubted)]
+    figures = [
+        100.0 * float(np.mean(lengths)),
+        float(np.mean(jerks)),
+        *(100.0 * float(one.mean()) if len(one) else np.nan for one in ways),
+    ]
+    return [*map(number, figures), f"{1e3 * taken / n_frames:.2f}"]
 
 
 def _varying(made: Tracks) -> float:
