@@ -7,9 +7,9 @@ from numpy.testing import assert_allclose
 from solvers.motion import JointRecording, Sensor, Tracks
 from solvers.reconstruction.posture_joints import POSTURE_JOINTS
 from tests.benchmarks.kinect_damage import Damaged, occluded, swapped, without
+from tests.benchmarks.kinect_errors import compared
 from tests.benchmarks.kinect_folds import seen_of
 from tests.benchmarks.kinect_pairs import Pair
-from tests.benchmarks.part_kinect import compared
 from tests.benchmarks.peers.one_euro import one_euro
 
 LEFT_HAND, RIGHT_HAND = (POSTURE_JOINTS.index(f"{side}Hand") for side in ("left", "right"))
@@ -96,9 +96,9 @@ def test_errors_are_with_and_without_the_usual_offset():
 
 
 def test_regressions_find_a_linear_law(rng):
-    regressions = pytest.importorskip(
-        "tests.benchmarks.peers.posture_regression", exc_type=ImportError
-    )
+    pytest.importorskip("sklearn")
+    from tests.benchmarks.peers import posture_regression as regressions
+
     features = rng.normal(size=(400, 3))
     offsets = 0.3 + features @ rng.normal(size=(3, 2)) + 0.05 * rng.normal(size=(400, 2))
 
