@@ -171,7 +171,10 @@ class Found:
 def losses(n_repetitions: int) -> list[str]:
     """Return tables of what was lost and of what was hidden."""
     methods = {**FILLED, **OURS}
-    random, behind = errors_of(lost, methods, every=2), errors_of(hidden, methods)
+    random, behind = (
+        errors_of(lost, methods, every=4),
+        errors_of(hidden, methods, every=2),
+    )
     return [
         errors_table("Joints lost, by how many", random, lambda one: one.what),
         errors_table("Joints lost, by how long", random, lambda one: one.seconds),
@@ -184,7 +187,10 @@ def losses(n_repetitions: int) -> list[str]:
 def damages(n_repetitions: int) -> list[str]:
     """Return tables of joints that were shaken or swapped, without a word of the tracker."""
     methods = {**CALMED, **OURS}
-    jumpy, wrong = errors_of(shaken, methods), errors_of(swapped, methods)
+    jumpy, wrong = (
+        errors_of(shaken, methods, every=3),
+        errors_of(swapped, methods, every=3),
+    )
     return [
         errors_table("Joints that vibrate", jumpy, lambda one: one.seconds),
         errors_table("Limbs swapped", wrong, lambda one: one.what),
