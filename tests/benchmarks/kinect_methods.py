@@ -162,11 +162,13 @@ def by_published_residuals(
     )
 
 
-def by_reconstruct(pair: Pair, subject: str, *, method: ReconstructMethod) -> Reconstruction:
+def by_reconstruct(
+    pair: Pair, subject: str, *, method: ReconstructMethod, taught: bool = False
+) -> Reconstruction:
     """Ours, with the offsets of the sensor that the prior knows."""
     return reconstruct(
         pair.kinect,
-        _shipped_library(),
+        optical_library(subject) if taught else _shipped_library(),
         residual_prior(subject, ResidualMethod.HIERARCHICAL),
         settings=ReconstructSettings(method=method, shift=True),
     )
@@ -202,4 +204,7 @@ METHODS: dict[str, Method] = {
     "[ZH14] residuals, as published": joints(by_published_residuals),
     "residuals": joints(by_reconstruct, method=ReconstructMethod.RESIDUALS),
     "ours (both)": joints(by_reconstruct, method=ReconstructMethod.BOTH),
+    "ours (both), taught by the others too": joints(
+        by_reconstruct, method=ReconstructMethod.BOTH, taught=True
+    ),
 }

@@ -140,6 +140,9 @@ OURS: dict[str, Method] = {
     ),
     "residuals": joints(by_reconstruct, method=ReconstructMethod.RESIDUALS),
     "ours (both)": joints(by_reconstruct, method=ReconstructMethod.BOTH),
+    "ours (both), taught by the others too": joints(
+        by_reconstruct, method=ReconstructMethod.BOTH, taught=True
+    ),
 }
 CALMED: dict[str, Method] = {
     "raw": raw,
