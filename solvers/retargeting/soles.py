@@ -4,7 +4,6 @@ from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.ndimage import maximum_filter1d, uniform_filter1d
 
 from ..motion import WorldPoses
 from ..motion.rotations import (
@@ -17,7 +16,7 @@ from ..motion.rotations import (
 from .body import Body
 from .placement import Placement, leg_length, rests_on_ground
 from .standing_feet import foot_bone
-from .toes import toes_up
+from .toes import eased, toes_up
 
 Array = NDArray[np.float64]
 
@@ -30,8 +29,6 @@ BEHIND = 0.8
 """How far the heel reaches behind the ankle, parts of the ankle's height above the sole."""
 STANDING = 0.5
 """Cosine of the sole's tilt from which on the heel is below the ankle, not behind it."""
-EASE = 0.1
-"""Seconds before and after over which the ankle is lifted."""
 UP = np.array([0.0, 0.0, 1.0])
 
 
@@ -111,7 +108,7 @@ def sole_above_ground(
     lacking = _sunk(height + lift - rest[ball, 2] + allowed.ball, tolerance)
     length = max(float(np.linalg.norm(rest[ball] - rest[foot])), tolerance)
     steep = _rising(-way[:, 2] / length, LEVEL, STEEP)
-    lift = _eased(lift + steep * lacking, frame_rate)
+    lift = eased(lift + steep * lacking, frame_rate)
     turn = _raised(way, _sunk(height + lift - rest[ball, 2] + allowed.ball, tolerance))
     tip = tip_of(target, ball)
     if ball == foot or tip is None:
@@ -120,7 +117,7 @@ def sole_above_ground(
     height = ankle[:, 2] + lift + rotate(turn, way)[:, 2] + toes[:, 2] - ground
     lacking = _sunk(height - rest[tip, 2] + allowed.tip, tolerance)
     feet = multiply(turn, world.rotations[:, foot])
-    return Sole(lift, turn, toes_up(rest[[foot, ball, tip]], feet, toes, lacking))
+    return Sole(lift, turn, toes_up(rest[[foot, ball, tip]], feet, toes, lacking, frame_rate))
 
 
 def with_sole(
@@ -149,13 +146,6 @@ def _heel(body: Body, world: WorldPoses, foot: int) -> Array:
     return np.asarray(
         body.rest[foot, 2] * (BEHIND + (1.0 - BEHIND) * _rising(upright, 0.0, STANDING))
     )
-
-
-def _eased(lift: Array, frame_rate: float) -> Array:
-    """Return a lift that is nowhere less, and comes and goes smoothly, (n_frames,)."""
-    window = 2 * round(0.5 * EASE * frame_rate) + 1
-    envelope = maximum_filter1d(lift, window, mode="nearest")
-    return np.asarray(uniform_filter1d(envelope, window, mode="nearest"))
 
 
 def _sunk(height: Array, tolerance: float) -> Array:
