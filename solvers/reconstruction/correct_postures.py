@@ -5,7 +5,6 @@ from enum import Enum
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.linalg import solveh_banded
 from scipy.special import gammainc
 
 from ..motion import JointRecording
@@ -18,6 +17,7 @@ from .reliability import Reliability, measure_reliability
 from .residual_inputs import bridged, calm_postures
 from .residual_prior import Foretold, ResidualPrior
 from .result import Reconstruction
+from .steady_paths import followed, smoothed
 
 Array = NDArray[np.float64]
 
@@ -34,6 +34,7 @@ class CorrectionMethod(Enum):
     """How offsets, smoothness and trust are brought together."""
 
     WHOLE_TAKE = "whole take"
+    CAUSAL = "causal"
     PUBLISHED = "published"
 
 
@@ -43,8 +44,8 @@ class CorrectionSettings(Settings):
 
     method: CorrectionMethod = setting(
         CorrectionMethod.WHOLE_TAKE,
-        "Whole take smooths before and after each frame; published goes frame by frame with"
-        " three terms as Zhou 2014, as a live recording must",
+        "Whole take smooths over what was before and after each frame, causal over what was"
+        " before; published weighs three terms frame by frame as Zhou 2014",
     )
     smoothing: float = setting(
         0.05, "Movements shorter than about this are jitter; higher is smoother and blunter",
@@ -55,8 +56,8 @@ class CorrectionSettings(Settings):
         " to the joint; false leaves joints on average where they were seen",
     )  # fmt: skip
     change: float = setting(
-        0.75, "How much is applied of the offsets' change with posture; 1 takes the prior at its"
-        " word, also in movements that it has never seen",
+        0.75, "How much is applied of the offsets' change with posture; 1 takes the prior at"
+        " its word, also in movements that it has never seen",
         minimum=0.0, maximum=1.0, advanced=True,
     )  # fmt: skip
     spatial: float = setting(
@@ -125,12 +126,13 @@ def correct_postures(
     if settings.method is CorrectionMethod.PUBLISHED:
         corrected = _frame_by_frame(recording, foretold, variances, weights, settings)
     else:
-        corrected = smoothed(
-            foretold, np.maximum(weights, LEAST), settings.smoothing * recording.frame_rate
-        )
+        steady = followed if settings.method is CorrectionMethod.CAUSAL else smoothed
+        frames = settings.smoothing * recording.frame_rate
+        corrected = steady(foretold, np.maximum(weights, LEAST), frames)
     progress(0.9, "Correcting")
-    confidence = chance_within(variances, SURE_WITHIN)
-    confidence = told.coverage * confidence + (1.0 - told.coverage) * weights
+    asked = settings.change > 0.0 or settings.shift
+    heard = told.coverage if asked else 0.0
+    confidence = heard * chance_within(variances, SURE_WITHIN) + (1.0 - heard) * weights
     tracks = recording.tracks
     joints = all_joints(
         tracks.names, tracks.positions, trust.combined, posture_positions(recording), corrected
@@ -140,7 +142,9 @@ def correct_postures(
     rebuilt = tracks.with_positions(joints)
     motion = follow_joints(rebuilt, recording.parents, trust.combined)
     progress(1.0, "Corrected")
-    method = f"{settings.method.value} with a residual prior of {prior.source}"
+    method = f"steadied ({settings.method.value})"
+    if asked:
+        method += f" with a residual prior of {prior.source}"
     return Reconstruction(rebuilt, motion, trust, confidence, method)
 
 
@@ -159,43 +163,6 @@ def _offsets(told: Foretold, weights: Array, settings: CorrectionSettings) -> Ar
     return np.asarray(constant + share[:, None] * (told.offsets - mean))
 
 
-def smoothed(positions: Array, weights: Array, frames: float) -> Array:
-    """Return the paths nearest to the given ones whose accelerations are small.
-
-    Minimises sum_t w_t |m_t - z_t|^2 + c sum_t |m_t-1 - 2 m_t + m_t+1|^2 (Whittaker 1923);
-    c is chosen so that waves of 2 pi `frames` frames lose half their size where w is 1.
-
-    Parameters
-    ----------
-    positions : shape (n_frames, n_joints, 3)
-        A joint is NaN in every frame or in none.
-    weights : shape (n_frames, n_joints), positive
-    frames : float
-        Time constant in frames.
-    """
-    n = len(positions)
-    if n < 3 or frames <= 0.0:
-        return positions.copy()
-    rough = np.diff(np.eye(min(n, 5)), 2, axis=0)
-    bands = np.zeros((3, n))
-    if n <= 5:
-        square = rough.T @ rough
-        for lag in range(3):
-            bands[2 - lag, lag:] = np.diagonal(square, lag)
-    else:
-        bands[0, 2:] = 1.0
-        bands[1, 1:] = [-2.0, *[-4.0] * (n - 3), -2.0]
-        bands[2] = [1.0, 5.0, *[6.0] * (n - 4), 5.0, 1.0]
-    result = positions.copy()
-    for joint in np.flatnonzero(np.isfinite(positions).all(axis=(0, 2))):
-        matrix = frames**4 * bands
-        matrix[2] += weights[:, joint]
-        result[:, joint] = solveh_banded(
-            matrix, weights[:, joint, None] * positions[:, joint], check_finite=False
-        )
-    return result
-
-
 def _frame_by_frame(
     recording: JointRecording,
     foretold: Array,
@@ -203,19 +170,19 @@ def _frame_by_frame(
     weights: Array,
     settings: CorrectionSettings,
 ) -> Array:
-    """Minimise eq. 5.6 of [ZH14] in each frame, after the two before."""
+    """Minimise eq. 5.6 of [ZH14] in each frame, after those 1/30 and 1/15 s before."""
     seen = bridged(posture_positions(recording)) * CENTIMETRES
     offsets = foretold * CENTIMETRES - seen
     spatial = settings.spatial / (2.0 * variances * CENTIMETRES**2)
     trust = settings.trust * weights**2
     result = seen.copy()
-    step = REFERENCE_RATE / recording.frame_rate
+    step = max(round(recording.frame_rate / REFERENCE_RATE), 1)
     for frame in range(len(seen)):
-        temporal = settings.temporal / step**4 if frame >= 2 else 0.0
+        temporal = settings.temporal if frame >= 2 * step else 0.0
         total = spatial[frame] + trust[frame] + temporal
         wanted = spatial[frame][:, None] * offsets[frame]
-        if frame >= 2:
-            steady = 2.0 * result[frame - 1] - result[frame - 2] - seen[frame]
+        if frame >= 2 * step:
+            steady = 2.0 * result[frame - step] - result[frame - 2 * step] - seen[frame]
             wanted = wanted + temporal * steady
         result[frame] = seen[frame] + wanted / np.maximum(total, 1e-12)[:, None]
     return result / CENTIMETRES

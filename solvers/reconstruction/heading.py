@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.ndimage import gaussian_filter1d
 
-from .posture_joints import HIPS, POSTURE_JOINTS
+from .posture_joints import HIPS, MIRROR_IMAGES, POSTURE_JOINTS
 
 Array = NDArray[np.float64]
 
@@ -77,6 +77,11 @@ def turned(postures: Array, angles: Array) -> Array:
     cos, sin = np.cos(angles)[:, None], np.sin(angles)[:, None]
     x, y, z = np.moveaxis(postures, -1, 0)
     return np.stack([cos * x - sin * y, sin * x + cos * y, z], axis=-1)
+
+
+def mirrored(postures: Array) -> Array:
+    """Return postures or offsets without heading, (..., 20, 3), as a mirror shows them."""
+    return np.asarray(postures[..., list(MIRROR_IMAGES), :] * (-1.0, 1.0, 1.0))
 
 
 def _filled(values: Array, told: NDArray[np.bool_]) -> Array:

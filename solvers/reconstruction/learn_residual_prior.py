@@ -11,8 +11,8 @@ from ..errors import InvalidMotionError
 from ..motion import JointRecording, Tracks
 from ..progress import Progress, unwatched
 from ..settings import Settings, setting
-from .heading import turned
-from .posture_joints import N_JOINTS, POSTURE_JOINTS, posture_positions
+from .heading import mirrored, turned
+from .posture_joints import MIRROR_IMAGES, N_JOINTS, POSTURE_JOINTS, posture_positions
 from .residual_inputs import calm_postures, filled, neighbourhood
 from .residual_kernel import Kernel, learn_kernel
 from .residual_prior import ResidualPrior, whole_posture
@@ -61,6 +61,10 @@ class ResidualPriorSettings(Settings):
     frame_rate: float = setting(
         6.0, "Frames of a second that examples are thinned to",
         unit="Hz", minimum=0.5, maximum=120.0, advanced=True,
+    )  # fmt: skip
+    mirror: bool = setting(
+        True, "Whether right limbs err as left ones do in a mirror; no, where the sensor stood"
+        " aside and always will",
     )  # fmt: skip
     calm: float = setting(
         1 / 30, "Gaussian that recordings are calmed with first; 0 as published",
@@ -128,7 +132,8 @@ def learn_residual_prior(
     for joint in range(N_JOINTS):
         progress(joint / N_JOINTS, "Learning how the sensor errs")
         known = np.isfinite(examples.errors[:, joint]).all(axis=-1)
-        if known.sum() >= FEWEST:
+        right = settings.mirror and MIRROR_IMAGES[joint] < joint
+        if known.sum() >= FEWEST and not right:
             learned[joint] = _learn_joint(examples, joint, known, whole, whole_points, settings)
     if not learned:
         raise InvalidMotionError("No joint is known in both recordings of any pair.")
@@ -143,6 +148,7 @@ def learn_residual_prior(
         np.stack([mean for *_, mean, _ in learned.values()]),
         np.stack([covariance for *_, covariance in learned.values()]),
         np.array(settings.calm),
+        np.array(settings.mirror),
         np.array(f"{len(pairs)} takes of {len(set(people))} actors"),
     )
 
@@ -180,13 +186,18 @@ def _gathered(
         errors.append(error[step // 2 :: step])
         takes += [take] * len(features[-1])
     names = sorted(set(people))
-    actors = np.array([names.index(people[take]) for take in takes])
+    actors = [names.index(people[take]) for take in takes]
+    if settings.mirror:
+        features += [mirrored(one) for one in features]
+        errors += [mirrored(one) for one in errors]
+        takes += [len(pairs) + take for take in takes]
+        actors += [len(names) + actor for actor in actors]
     together = np.concatenate(features)
     known = np.isfinite(together).all(axis=-1)
     usual = np.where(known[..., None], together, 0.0).sum(axis=0)
     usual /= np.maximum(known.sum(axis=0), 1)[:, None]
     examples = filled(together, usual)
-    return _Examples(examples, np.concatenate(errors), np.array(takes), actors), usual
+    return _Examples(examples, np.concatenate(errors), np.array(takes), np.array(actors)), usual
 
 
 def _learn_joint(

@@ -35,6 +35,8 @@ between the shoulders, and a "HandEnd" the middle of the hand or what comes afte
 
 PARENTS = (-1, 0, 1, 2, 2, 4, 5, 6, 2, 8, 9, 10, 0, 12, 13, 14, 0, 16, 17, 18)
 N_JOINTS = len(POSTURE_JOINTS)
+MIRROR_IMAGES = (0, 1, 2, 3, 8, 9, 10, 11, 4, 5, 6, 7, 16, 17, 18, 19, 12, 13, 14, 15)
+"""The joint of the other side; joints of the middle are their own."""
 HIPS, SPINE, CHEST = 0, 1, 2
 
 BETWEEN_SHOULDERS = ("SpineShoulder", "Chest", "SpineChest", "ShoulderCenter")

@@ -8,7 +8,7 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from ..motion import JointRecording, Tracks
+from ..motion import JointRecording, Sensor, Tracks
 from ..progress import Progress, unwatched, within
 from ..settings import Settings, setting
 from .correct_postures import CorrectionMethod, CorrectionSettings, correct_postures
@@ -99,7 +99,8 @@ def reconstruct(
     postures : PostureLibrary, optional
         The one that is shipped by default.
     prior : ResidualPrior, optional
-        The one that is shipped by default.
+        The one that is shipped by default, for recordings of the sensor that it learned, a
+        Kinect v2; those of others are steadied only.
     settings : ReconstructSettings
     progress : Progress
 
@@ -121,12 +122,13 @@ def reconstruct(
         settings=ReliabilitySettings(causal=settings.causal, inferred=settings.inferred),
         progress=within(progress, 0.0, 0.1),
     )
+    known = prior is not None or recording.sensor is Sensor.KINECT_V2
     if settings.method is ReconstructMethod.RESIDUALS:
         return correct_postures(
             recording,
             prior or shipped_residual_prior(),
             reliability=trust,
-            settings=_correction(settings),
+            settings=_correction(settings, known),
             progress=within(progress, 0.1, 1.0),
         )
     rebuilt = reconstruct_postures(
@@ -145,7 +147,7 @@ def reconstruct(
         replace(recording, tracks=_blended(recording.tracks, rebuilt.tracks, lost)),
         prior or shipped_residual_prior(),
         reliability=replace(trust, combined=sure),
-        settings=_correction(settings),
+        settings=_correction(settings, known),
         progress=within(progress, 0.7, 1.0),
     )
     confidence = np.minimum(corrected.confidence, np.maximum(1.0 - lost, rebuilt.confidence))
@@ -162,9 +164,16 @@ def _blended(seen: Tracks, rebuilt: Tracks, lost: Array) -> Tracks:
     return seen.with_positions(share * rebuilt.positions + (1.0 - share) * places)
 
 
-def _correction(settings: ReconstructSettings) -> CorrectionSettings:
-    method = CorrectionMethod.PUBLISHED if settings.causal else CorrectionMethod.WHOLE_TAKE
-    return CorrectionSettings(method=method, smoothing=settings.smoothing, shift=settings.shift)
+def _correction(settings: ReconstructSettings, known: bool) -> CorrectionSettings:
+    """Return how to correct; what is not known of a sensor cannot be taken out."""
+    method = CorrectionMethod.CAUSAL if settings.causal else CorrectionMethod.WHOLE_TAKE
+    usual = CorrectionSettings()
+    return CorrectionSettings(
+        method=method,
+        smoothing=settings.smoothing,
+        shift=settings.shift and known,
+        change=usual.change if known else 0.0,
+    )
 
 
 @cache

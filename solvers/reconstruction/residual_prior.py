@@ -9,7 +9,8 @@ from numpy.typing import NDArray
 
 from ..errors import InvalidFileError
 from ..files import read_archive, write_archive
-from .posture_joints import N_JOINTS, POSTURE_JOINTS
+from .heading import mirrored
+from .posture_joints import MIRROR_IMAGES, N_JOINTS, POSTURE_JOINTS
 from .residual_inputs import LARGEST, CalmPostures, filled, neighbourhood
 from .residual_kernel import Kernel, squared_distances
 from .residual_sparse import basis, shared_columns
@@ -66,6 +67,8 @@ class ResidualPrior:
         Of the weights of the shared functions and the mean error.
     calm : shape (), seconds
         Gaussian that recordings are calmed with before they are looked at.
+    mirrored : shape (), bool
+        Right limbs are not among the joints, but err as left ones do in a mirror.
     source : shape (), str
         What it was learned from.
     """
@@ -79,6 +82,7 @@ class ResidualPrior:
     means: Array
     covariances: Array
     calm: Array
+    mirrored: NDArray[np.bool_]
     source: NDArray[np.str_]
 
     def save(self, path: Path | str) -> None:
@@ -92,10 +96,26 @@ class ResidualPrior:
 
     def predict(self, calm: CalmPostures) -> "Foretold":
         """Foretell true minus seen place of every joint."""
-        shape = calm.features.shape
+        features = filled(calm.features, self.usual)
+        told = self._foretell(features)
+        if not self.mirrored:
+            return told
+        image = self._foretell(mirrored(features))
+        other = list(MIRROR_IMAGES)
+        share = np.where(np.arange(N_JOINTS) == other, 0.5, np.arange(N_JOINTS) < other)
+        own = np.where(np.isfinite(told.variances), share, 0.0)
+        variances = np.where(own > 0.0, told.variances, image.variances[:, other])
+        return Foretold(
+            own[..., None] * told.offsets + (1.0 - own)[..., None] * mirrored(image.offsets),
+            variances,
+            own * told.coverage + (1.0 - own) * image.coverage[:, other],
+        )
+
+    def _foretell(self, features: Array) -> "Foretold":
+        """Foretell of those joints alone that were learned."""
+        shape = features.shape
         offsets, variances = np.zeros(shape), np.full(shape[:2], np.inf)
         coverage = np.zeros(shape[:2])
-        features = filled(calm.features, self.usual)
         whole = whole_posture(features, self.usual, self.components)
         near = _nearness(whole, self.whole_points, FAR_WHOLE)
         for place, name in enumerate(self.joints):
@@ -123,7 +143,9 @@ class ResidualPrior:
         result = np.full(N_JOINTS, np.inf)
         for place, name in enumerate(self.joints):
             kernel = self.kernel(place)
-            result[POSTURE_JOINTS.index(str(name))] = (
+            joint = POSTURE_JOINTS.index(str(name))
+            alike = [joint, MIRROR_IMAGES[joint]] if self.mirrored else [joint]
+            result[alike] = (
                 sum(kernel.personal)
                 + kernel.noise
                 + (kernel.take + kernel.actor if constant else 0.0)
@@ -159,8 +181,9 @@ def load_residual_prior(path: Path | str) -> ResidualPrior:
     if fault:
         raise InvalidFileError(f"{path} holds a damaged prior ({fault}). Learn it again.")
     joints, source = arrays.pop("joints"), arrays.pop("source")
+    alike = arrays.pop("mirrored").astype(np.bool_)
     numbers = {name: arrays[name].astype(np.float64) for name in names if name in arrays}
-    return ResidualPrior(joints=joints, source=source, **numbers)
+    return ResidualPrior(joints=joints, mirrored=alike, source=source, **numbers)
 
 
 def _fault(arrays: dict[str, NDArray[Any]]) -> str:
@@ -180,6 +203,7 @@ def _fault(arrays: dict[str, NDArray[Any]]) -> str:
         "means": (n, n_weights, 3),
         "covariances": (n, n_weights, n_weights),
         "calm": (),
+        "mirrored": (),
         "source": (),
     }
     if any(arrays[name].shape != shape for name, shape in expected.items()) or not (
@@ -189,7 +213,7 @@ def _fault(arrays: dict[str, NDArray[Any]]) -> str:
     if not set(map(str, arrays["joints"])) <= set(POSTURE_JOINTS):
         return "they speak of unknown joints"
     for name in expected.keys() - {"joints", "source"}:
-        if arrays[name].dtype.kind not in "fiu" or not np.isfinite(arrays[name]).all():
+        if arrays[name].dtype.kind not in "fiub" or not np.isfinite(arrays[name]).all():
             return "not all numbers are finite"
     if not (arrays["kernels"] > 0.0).all() or not 0.0 <= float(arrays["calm"]) < 10.0:
         return "their hyper-parameters are not positive"

@@ -16,7 +16,7 @@ QUICK = ["--local-points", "10", "--whole-points", "10", "--sample", "50"]
 
 @pytest.fixture
 def stage(tmp_path):
-    """Three walks as an optical system and as a sensor that sees the knee 8 cm aside."""
+    """Three walks as an optical system and as a sensor that sees the knees 8 cm too far apart."""
     (tmp_path / "kinect").mkdir()
     (tmp_path / "truth").mkdir()
     for name, speed in (("anna_1", 0.9), ("anna_2", 1.2), ("bob_1", 1.5)):
@@ -24,6 +24,7 @@ def stage(tmp_path):
         write_bvh(walk, tmp_path / "truth" / f"{name}.bvh")
         seen = motion_postures(walk)
         seen[:, KNEE, 0] += 0.08
+        seen[:, NAMES.index("KneeRight"), 0] -= 0.08
         joints = JointRecording(Tracks(NAMES, seen, 30.0), None, Sensor.KINECT_V1)
         write_joint_csv(joints, tmp_path / "kinect" / f"{name}.csv")
     return tmp_path

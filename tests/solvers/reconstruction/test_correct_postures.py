@@ -20,14 +20,15 @@ from solvers.reconstruction import (
     learn_residual_prior,
     load_residual_prior,
 )
-from solvers.reconstruction.correct_postures import _frame_by_frame, chance_within, smoothed
-from solvers.reconstruction.heading import turned
-from solvers.reconstruction.posture_joints import motion_postures
+from solvers.reconstruction.correct_postures import _frame_by_frame, chance_within
+from solvers.reconstruction.heading import mirrored, turned
+from solvers.reconstruction.posture_joints import MIRROR_IMAGES, motion_postures
+from solvers.reconstruction.steady_paths import followed, smoothed
 from solvers.samples import GaitSettings, walking_gait
 
 NAMES = JOINTS[Sensor.KINECT_V1]
 KNEE, HAND = NAMES.index("KneeLeft"), NAMES.index("HandLeft")
-QUICK = ResidualPriorSettings(local_points=20, whole_points=30, sample=100)
+QUICK = ResidualPriorSettings(local_points=20, whole_points=30, sample=100, mirror=False)
 
 
 def truth(speed: float, frames: int = 90) -> np.ndarray:
@@ -152,6 +153,16 @@ def test_smoothing_halves_waves_of_its_length():
     assert np.ptp(found[800:1200]) / np.ptp(wave) == pytest.approx(0.5, abs=0.01)
 
 
+def test_following_ends_where_smoothing_of_what_was_before_ends(rng):
+    """The filter's last frame is the smoother's of the same frames, the start being far."""
+    positions = np.cumsum(rng.normal(size=(60, 2, 3)), axis=0)
+    weights = rng.uniform(0.2, 1.0, size=(60, 2))
+    found = followed(positions, weights, 2.0)
+    for last in (40, 59):
+        expected = smoothed(positions[: last + 1], weights[: last + 1], 2.0)[last]
+        np.testing.assert_allclose(found[last], expected, atol=1e-3)
+
+
 def test_the_published_frame_minimises_the_published_energy(rng):
     """Eq. 5.6 of [ZH14], minimised numerically in the third frame."""
     positions = truth(1.3)[:3] + rng.normal(scale=0.02, size=(3, 20, 3))
@@ -220,6 +231,25 @@ def test_the_published_prior_sees_neighbours_only():
     assert error(result.tracks.positions, truth(1.3)) < 0.6 * error(
         given_.tracks.positions, truth(1.3)
     )
+
+
+def test_in_a_mirror_right_limbs_err_as_left_ones_do():
+    """Learned from a left knee alone, whose right one was never tracked."""
+    takes = []
+    for speed in (0.9, 1.1, 1.45, 1.6):
+        seen, true = pair(truth(speed))
+        blind = true.positions.copy()
+        blind[:, [MIRROR_IMAGES[joint] for joint in (KNEE, KNEE + 1, KNEE + 2)]] = np.nan
+        takes.append((seen, true.with_positions(blind)))
+    both_sides = learn_residual_prior(takes, settings=replace(QUICK, mirror=True))
+    assert "rightLowerLeg" not in both_sides.joints
+    given_ = recording(seen_by_a_bad_sensor(truth(1.3)))
+    image = recording(mirrored(given_.tracks.positions))
+    here = correct_postures(given_, both_sides).tracks.positions
+    there = correct_postures(image, both_sides).tracks.positions
+    np.testing.assert_allclose(mirrored(here), there, atol=1e-6)
+    moved = (there - image.tracks.positions)[:, MIRROR_IMAGES[KNEE]]
+    assert np.linalg.norm(moved, axis=-1).mean() > 0.03
 
 
 def test_pairs_must_fit():
