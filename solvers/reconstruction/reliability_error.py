@@ -21,8 +21,8 @@ Flags = NDArray[np.bool_]
 
 SMOOTH = 1.0 / 3.0
 """Seconds of a piece of path that is held to be a polynomial."""
-FEWEST = 7
-"""Frames of such a piece at least: through fewer, a polynomial follows every error."""
+FEWEST = 9
+"""Frames that such a piece has at least."""
 DEGREE = 4
 AGITATED = 0.4
 """Seconds over which deviations from that path count for a joint."""
@@ -55,7 +55,7 @@ class ErrorModel:
         return np.where(signs.away, 0.0, chance)
 
 
-CENTRED = ErrorModel(length_share=0.15, floor=0.0005, level=-1.437, slope=0.394, spread=0.467)
+CENTRED = ErrorModel(length_share=0.15, floor=0.0005, level=-1.431, slope=0.395, spread=0.467)
 CAUSAL = ErrorModel(length_share=0.5, floor=0.001, level=-2.056, slope=0.344, spread=0.488)
 """From all subjects of UI-PRMD: `python -m tests.benchmarks.bench_reliability --fit`."""
 
@@ -113,14 +113,14 @@ def _off_the_smooth_path(positions: Array, frame_rate: float) -> Array:
     """Return distances from the smoothed path, (n_frames, n_joints); NaN where not seen.
 
     The path is smoothed with polynomials of the fourth degree, which follow a body however fast
-    it goes (Savitzky and Golay 1964). Of a slow camera a piece has few frames, and the degree
-    is lower, so that errors stand out of seven frames as they do of eleven.
+    it goes (Savitzky and Golay 1964). Of a slow camera the pieces last longer: a polynomial
+    through all of few frames would follow every error.
     """
     from scipy.signal import savgol_filter  # takes a second to import: only when needed
 
     longest = len(positions) - 1 + len(positions) % 2
     n_frames = min(max(2 * round(0.5 * SMOOTH * frame_rate) + 1, FEWEST), longest)
-    degree = max(min(DEGREE, n_frames // 2 - 1), 0)
+    degree = min(DEGREE, n_frames // 2)
     smooth = savgol_filter(_bridged(positions), n_frames, degree, axis=0)
     return lengths_of(positions - smooth)
 
