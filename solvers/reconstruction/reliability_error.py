@@ -29,6 +29,9 @@ AGITATED = 0.4
 STRETCHED = 0.2
 """Seconds over which errors of lengths count."""
 CENTIMETRE = 0.01
+JUMPED = 0.05
+"""Metres that a joint counts as off its path in the mean, however far it jumped away: the frames
+beside it are wrong more often than others, but mostly they are right."""
 
 
 @dataclass(frozen=True)
@@ -69,7 +72,7 @@ class Signs:
     stretch: Array
     """The same over `STRETCHED` of the greatest error of length of the segments that meet."""
     away: Flags
-    """Where a joint jumped away and comes back; these frames count in no mean."""
+    """Where a joint jumped away and comes back; how far does not count in means."""
 
 
 def signs_of_error(
@@ -99,7 +102,8 @@ def signs_of_error(
         odd = away | away[:, np.maximum(parents, 0)]
         wrong_lengths = np.where(odd, np.nan, wrong_lengths)
     off = _second_differences if causal else _off_the_smooth_path
-    deviation = _root_mean_square(off(positions, frame_rate), AGITATED, frame_rate, causal)
+    far = np.where(away, JUMPED, off(positions, frame_rate))
+    deviation = _root_mean_square(far, AGITATED, frame_rate, causal)
     greatest = np.where(np.isfinite(wrong_lengths), np.abs(wrong_lengths), 0.0)
     at_segments = greatest.copy()
     for joint, parent in enumerate(parents):

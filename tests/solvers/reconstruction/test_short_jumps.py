@@ -84,7 +84,7 @@ def thrown(take, name, frames, by=(0.4, 0.0, 0.0)):
     return take.with_tracks(take.tracks.with_positions(positions))
 
 
-def test_one_bad_frame_costs_the_trust_of_that_frame_alone(walk):
+def test_one_bad_frame_costs_others_little_trust(walk):
     before = measure_reliability(walk).combined
     after = measure_reliability(thrown(walk, "WristLeft", 45)).combined
 
@@ -92,7 +92,7 @@ def test_one_bad_frame_costs_the_trust_of_that_frame_alone(walk):
     others = np.delete(np.arange(walk.n_frames), 45)
     assert after[45, wrist] == 0.0
     assert before[:, wrist].min() > 0.8
-    assert np.abs(after - before)[others].max() < 0.1
+    assert after[others, wrist].min() > 0.6  # 0.05 to 0.1 within 0.8 s, if it counted in full
     assert np.abs(after - before)[:, np.arange(walk.n_joints) != wrist].max() < 0.1
 
 
@@ -100,7 +100,7 @@ def test_a_live_system_doubts_it_whether_or_not_it_will_come_back(walk):
     wrist = walk.names.index("WristLeft")
     for frames in (slice(45, 46), slice(45, 55)):
         found = measure_reliability(thrown(walk, "WristLeft", frames), settings=CAUSAL)
-        assert 0.0 < found.combined[45, wrist] < 0.3
+        assert 0.0 < found.combined[45, wrist] < 0.5
 
 
 def test_frames_beside_a_bad_one_stay_where_they_were(walk):
