@@ -12,6 +12,7 @@ from ..motion import JointRecording, Sensor, Tracks
 from ..progress import Progress, unwatched, within
 from ..settings import Settings, setting
 from .correct_postures import CorrectionMethod, CorrectionSettings, correct_postures
+from .exchanges import undo_exchanges
 from .follow_joints import follow_joints
 from .posture_library import PostureLibrary
 from .posture_settings import PostureSettings
@@ -85,9 +86,11 @@ def reconstruct(
 ) -> Reconstruction:
     """Rebuild clean poses from what a depth camera's tracker saw.
 
-    Each joint's reliability is measured. What is not reliable is rebuilt from postures of clean
-    clips that are like the rest (`reconstruct_postures`); how the sensor errs in such postures
-    is taken out (`correct_postures`); and a skeleton of constant bone lengths follows.
+    Left and right are given back where the tracker exchanged them for a moment (not if causal:
+    that takes the future to know). Each joint's reliability is measured. What is not reliable
+    is rebuilt from postures of clean clips that are like the rest (`reconstruct_postures`); how
+    the sensor errs in such postures is taken out (`correct_postures`); and a skeleton of
+    constant bone lengths follows.
 
     Parameters
     ----------
@@ -112,6 +115,8 @@ def reconstruct(
     SolveCancelled
         Raised by `progress`.
     """
+    if not settings.causal:
+        recording = undo_exchanges(recording)
     trust = measure_reliability(
         recording,
         settings=ReliabilitySettings(causal=settings.causal, inferred=settings.inferred),

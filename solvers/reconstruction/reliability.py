@@ -10,7 +10,13 @@ from ..progress import Progress, unwatched
 from .reliability_error import CAUSAL, CENTRED, signs_of_error
 from .reliability_reference import reference_lengths, reference_postures, segments
 from .reliability_settings import USUAL, ReliabilityMethod, ReliabilitySettings
-from .reliability_terms import behaviour_term, gaussian_mean, kinematics_term, tracking_term
+from .reliability_terms import (
+    behaviour_term,
+    gaussian_mean,
+    is_tracked,
+    kinematics_term,
+    tracking_term,
+)
 
 
 @dataclass(frozen=True, eq=False)
@@ -66,8 +72,7 @@ def measure_reliability(
     tracking = tracking_term(recording, settings)
     progress(0.4, "Measuring reliability")
     lengths = segments(positions, parents)
-    state = recording.tracking_state
-    tracked = visible if state is None else visible & (state == 2)
+    tracked = is_tracked(recording)
     postures = reference_postures(recording.names, positions, tracked)
     steady = np.minimum(behaviour, tracked)
     trust = np.minimum(steady, steady[:, np.maximum(parents, 0)])

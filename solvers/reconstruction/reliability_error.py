@@ -14,17 +14,24 @@ from scipy.special import ndtr
 
 from .reliability_settings import SENSOR_RATE
 from .reliability_terms import frames_in, lengths_of, weighted_sum
+from .short_jumps import short_jumps
 
 Array = NDArray[np.float64]
+Flags = NDArray[np.bool_]
 
 SMOOTH = 1.0 / 3.0
 """Seconds of a piece of path that is held to be a polynomial."""
+FEWEST = 9
+"""Frames that such a piece has at least."""
 DEGREE = 4
 AGITATED = 0.4
 """Seconds over which deviations from that path count for a joint."""
 STRETCHED = 0.2
 """Seconds over which errors of lengths count."""
 CENTIMETRE = 0.01
+JUMPED = 0.05
+"""Metres that a joint counts as off its path in the mean, however far it jumped away: the frames
+beside it are wrong more often than others, but mostly they are right."""
 
 
 @dataclass(frozen=True)
@@ -47,10 +54,11 @@ class ErrorModel:
     def chance_within(self, signs: "Signs", tolerance: float) -> Array:
         """Return the probability that a joint is no farther off than that, in metres."""
         expected = self.level + self.slope * self.sign(signs)
-        return np.asarray(ndtr((np.log(tolerance + CENTIMETRE) - expected) / self.spread))
+        chance = ndtr((np.log(tolerance + CENTIMETRE) - expected) / self.spread)
+        return np.where(signs.away, 0.0, chance)
 
 
-CENTRED = ErrorModel(length_share=0.15, floor=0.0005, level=-1.437, slope=0.394, spread=0.467)
+CENTRED = ErrorModel(length_share=0.15, floor=0.0005, level=-1.431, slope=0.395, spread=0.467)
 CAUSAL = ErrorModel(length_share=0.5, floor=0.001, level=-2.056, slope=0.344, spread=0.488)
 """From all subjects of UI-PRMD: `python -m tests.benchmarks.bench_reliability --fit`."""
 
@@ -63,6 +71,8 @@ class Signs:
     """Root mean square over `AGITATED` of the distance from the smoothed path."""
     stretch: Array
     """The same over `STRETCHED` of the greatest error of length of the segments that meet."""
+    away: Flags
+    """Where a joint jumped away and comes back; how far does not count in means."""
 
 
 def signs_of_error(
@@ -82,29 +92,39 @@ def signs_of_error(
     parents : shape (n_joints,)
     frame_rate : float, hertz
     causal : bool
-        True: look at past frames only, and at second differences instead of a smoothed path.
+        True: look at past frames only, and at second differences instead of a smoothed path;
+        then it is not known yet that a joint which jumps away will come back.
     """
+    away = np.zeros(positions.shape[:2], bool)
+    if not causal:
+        away = short_jumps(positions, frame_rate)
+        positions = np.where(away[..., None], np.nan, positions)
+        odd = away | away[:, np.maximum(parents, 0)]
+        wrong_lengths = np.where(odd, np.nan, wrong_lengths)
     off = _second_differences if causal else _off_the_smooth_path
-    deviation = _root_mean_square(off(positions, frame_rate), AGITATED, frame_rate, causal)
+    far = np.where(away, JUMPED, off(positions, frame_rate))
+    deviation = _root_mean_square(far, AGITATED, frame_rate, causal)
     greatest = np.where(np.isfinite(wrong_lengths), np.abs(wrong_lengths), 0.0)
     at_segments = greatest.copy()
     for joint, parent in enumerate(parents):
         if parent >= 0:
             np.maximum(greatest[:, parent], at_segments[:, joint], out=greatest[:, parent])
-    return Signs(deviation, _root_mean_square(greatest, STRETCHED, frame_rate, causal))
+    stretch = _root_mean_square(greatest, STRETCHED, frame_rate, causal)
+    return Signs(deviation, stretch, away)
 
 
 def _off_the_smooth_path(positions: Array, frame_rate: float) -> Array:
     """Return distances from the smoothed path, (n_frames, n_joints); NaN where not seen.
 
     The path is smoothed with polynomials of the fourth degree, which follow a body however fast
-    it goes (Savitzky and Golay 1964).
+    it goes (Savitzky and Golay 1964). Of a slow camera the pieces last longer: a polynomial
+    through all of few frames would follow every error.
     """
     from scipy.signal import savgol_filter  # takes a second to import: only when needed
 
     longest = len(positions) - 1 + len(positions) % 2
-    n_frames = min(2 * round(0.5 * SMOOTH * frame_rate) + 1, longest)
-    degree = min(DEGREE, n_frames - 1)
+    n_frames = min(max(2 * round(0.5 * SMOOTH * frame_rate) + 1, FEWEST), longest)
+    degree = min(DEGREE, n_frames // 2)
     smooth = savgol_filter(_bridged(positions), n_frames, degree, axis=0)
     return lengths_of(positions - smooth)
 

@@ -13,6 +13,9 @@ from .reliability_settings import SENSOR_RATE, ReliabilitySettings
 
 Array = NDArray[np.float64]
 
+SURE = 0.5
+"""Confidence from which on a joint was seen and not guessed."""
+
 
 def behaviour_term(positions: Array, frame_rate: float, settings: ReliabilitySettings) -> Array:
     """Return 1 for a steady path, 0 for one that turns to and fro [SHJT13, eq. 1 to 4].
@@ -82,11 +85,27 @@ def mean_at_joints(values: Array, parents: NDArray[np.intp]) -> Array:
 
 
 def tracking_term(recording: JointRecording, settings: ReliabilitySettings) -> Array:
-    """Return what the tracker says of each joint [SHJT13, eq. 7]; 1 where it says nothing."""
-    state = recording.tracking_state
-    if state is None:
+    """Return what the tracker says of each joint [SHJT13, eq. 7]; 1 where it says nothing.
+
+    One that tells a confidence in the place of a state is taken at its word: from what an
+    inferred joint counts for, where it has none, to 1.
+    """
+    state, confidence = recording.tracking_state, recording.tracks.confidence
+    if state is not None:
+        inferred = np.where(state == INFERRED, settings.inferred, 0.0)
+        return np.where(state == TRACKED, 1.0, inferred)
+    if confidence is None:
         return np.ones(recording.tracks.positions.shape[:2])
-    return np.where(state == TRACKED, 1.0, np.where(state == INFERRED, settings.inferred, 0.0))
+    return np.asarray(settings.inferred + (1.0 - settings.inferred) * confidence)
+
+
+def is_tracked(recording: JointRecording) -> NDArray[np.bool_]:
+    """Tell which joints the tracker saw, and did not only guess."""
+    visible = recording.tracks.visible
+    state, confidence = recording.tracking_state, recording.tracks.confidence
+    if state is not None:
+        return np.asarray(visible & (state == TRACKED))
+    return visible if confidence is None else np.asarray(visible & (confidence >= SURE))
 
 
 def gaussian_mean(values: Array, frame_rate: float, settings: ReliabilitySettings) -> Array:

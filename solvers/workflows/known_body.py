@@ -1,6 +1,9 @@
 """A recording whose joints hang together, whatever its tracker calls them."""
 
+from typing import TypeVar
+
 import numpy as np
+from numpy.typing import NDArray
 
 from ..errors import InvalidMotionError
 from ..motion import JOINTS, JointRecording, Sensor, Tracks
@@ -20,6 +23,7 @@ LONG_GAP = 1.0
 UNITS = {0.001: "millimetres", 0.01: "centimetres", 0.0254: "inches", 1000.0: "kilometres"}
 KINECT_V1 = dict(zip(POSTURE_JOINTS, JOINTS[Sensor.KINECT_V1], strict=True))
 """What the first Kinect calls the joints of postures."""
+Word = TypeVar("Word", np.int8, np.float64)
 
 
 def known_body(recording: JointRecording) -> JointRecording:
@@ -59,24 +63,29 @@ def check_tracked(recording: JointRecording) -> None:
 def _by_roles(recording: JointRecording) -> JointRecording:
     tracks, state = recording.tracks, recording.tracking_state
     places = joints_of_names(tracks.names)
-    columns = [tracks.positions[:, place] for place in places.values()]
-    states = [] if state is None else [state[:, place] for place in places.values()]
-    roles = list(places)
-    sides = [f"{side}UpperLeg" for side in ("left", "right")]
-    legs = [places[role] for role in sides if role in places]
+    joints = {role: [place] for role, place in places.items()}
+    legs = [places[leg] for leg in ("leftUpperLeg", "rightUpperLeg") if leg in places]
     if "hips" not in places and len(legs) == 2:
-        roles.append("hips")
-        columns.append(tracks.positions[:, legs].mean(axis=1))
-        states += [] if state is None else [state[:, legs].min(axis=1)]
-    if "hips" not in roles or len(roles) < 2:
+        joints["hips"] = legs
+    if "hips" not in joints or len(joints) < 2:
         raise InvalidMotionError(
             "No body was recognised in the names of the joints"
             f" ({', '.join(tracks.names[:4])}); they must be those of a Kinect, or humanoid"
             " roles such as hips and leftUpperArm."
         )
-    names = tuple(KINECT_V1[role] for role in roles)
-    body = Tracks(names, np.stack(columns, axis=1), tracks.frame_rate)
-    return JointRecording(body, None if state is None else np.stack(states, 1), Sensor.OTHER)
+    chosen = list(joints.values())
+    body = Tracks(
+        tuple(KINECT_V1[role] for role in joints),
+        np.stack([tracks.positions[:, some].mean(axis=1) for some in chosen], axis=1),
+        tracks.frame_rate,
+        None if tracks.confidence is None else _least(tracks.confidence, chosen),
+    )
+    return JointRecording(body, None if state is None else _least(state, chosen), Sensor.OTHER)
+
+
+def _least(told: NDArray[Word], chosen: list[list[int]]) -> NDArray[Word]:
+    """Return the least that is told of the joints that each is made of."""
+    return np.stack([told[:, some].min(axis=1) for some in chosen], axis=1)
 
 
 def check_size(recording: JointRecording) -> None:

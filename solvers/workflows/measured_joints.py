@@ -37,9 +37,10 @@ def measured_joints(motion: Motion, recording: JointRecording) -> JointRecording
         return None
     points = [recording.names.index(name) for name in names]
     places = scale * recording.tracks.positions[:, points] @ axes.T + shift
-    state = recording.tracking_state
+    state, confidence = recording.tracking_state, recording.tracks.confidence
+    told = None if confidence is None else confidence[:, points]
     return JointRecording(
-        Tracks(names, places, motion.frame_rate),
+        Tracks(names, places, motion.frame_rate, told),
         None if state is None else state[:, points],
         recording.sensor,
     )

@@ -113,6 +113,7 @@ def fit_model(signs: Iterable[Signs], errors: Iterable[Array]) -> ErrorModel:
     every = Signs(
         np.concatenate([each.deviation.ravel() for each in both])[known],
         np.concatenate([each.stretch.ravel() for each in both])[known],
+        np.concatenate([each.away.ravel() for each in both])[known],
     )
     fits = []
     for share, floor in product(SHARES, FLOORS):

@@ -55,20 +55,70 @@ def test_what_the_device_doubts_is_doubted_without_its_word(recordings, folder):
 
 
 @pytest.mark.parametrize(
-    "folder", ["irds", "kimore", "laban", "msr_action3d", "azure", "ui_prmd"]
-)
-def test_every_sensor_and_skeleton_has_reliability(recordings, folder):
+    ("folder", "least"),
+    [("irds", 0.8), ("kimore", 0.8), ("laban", 0.8), ("msr_action3d", 0.7), ("azure", 0.8),
+     ("ui_prmd", 0.8)],
+)  # fmt: skip
+def test_every_sensor_is_believed_until_its_joints_shake(recordings, folder, least):
+    """By the signs of errors alone, without the tracker's word."""
     files = [path for path in (recordings / "kinect" / folder).iterdir() if path.is_file()]
-    take = read_recording(min(files))
+    given = read_recording(min(files))
+    tracks = Tracks(given.names, given.tracks.positions, given.frame_rate)
+    take = JointRecording(tracks, None, given.sensor)
+    shaken = tracks.positions + np.random.default_rng(1).normal(
+        scale=0.1, size=tracks.positions.shape
+    )
 
-    found = measure_reliability(take)
+    sound = measure_reliability(take)
+    spoilt = measure_reliability(take.with_tracks(tracks.with_positions(shaken)))
 
-    for term in (found.combined, found.behaviour, found.kinematics, found.tracking):
+    seen = tracks.visible
+    for term in (sound.combined, sound.behaviour, sound.kinematics, sound.tracking):
         assert term.shape == (take.n_frames, take.n_joints)
         assert ((term >= 0.0) & (term <= 1.0)).all()
-    assert found.combined[take.tracks.visible].mean() > 0.4
-    if take.tracking_state is not None:
-        assert found.combined[take.tracking_state < TRACKED].max(initial=0.0) < 0.9
+    assert sound.combined[seen].mean() > least
+    assert (sound.combined[seen] < 0.5).mean() < 0.1
+    assert (spoilt.combined[seen] < 0.5).mean() > 0.95
+
+
+@pytest.mark.parametrize("folder", ["irds", "kimore", "azure"])
+def test_a_joint_that_is_not_tracked_for_long_has_no_trust(recordings, folder):
+    """The mean over the window leaves none where all of it was guessed."""
+    for path in sorted((recordings / "kinect" / folder).iterdir())[:12]:
+        take = read_recording(path)
+        guessed = take.tracking_state < TRACKED
+        window = round(0.1 * take.frame_rate)
+        padded = np.pad(guessed, ((window, window), (0, 0)), mode="edge")
+        windows = np.lib.stride_tricks.sliding_window_view(padded, 2 * window + 1, axis=0)
+        found = measure_reliability(take).combined[windows.all(axis=-1)]
+        assert found.max(initial=0.0) < 1e-9
+
+
+def test_ankles_of_a_slow_camera_at_24_metres_per_second_are_not_believed(recordings):
+    path = recordings / "kinect" / "msr_action3d" / "a13_s01_e02_skeleton3D.txt"
+    take = read_recording(path)
+    steps = np.diff(take.tracks.positions, axis=0)
+    speeds = take.frame_rate * np.linalg.norm(steps, axis=-1)
+    assert take.frame_rate == 15.0
+    assert speeds.max() > 24.0
+
+    trust = measure_reliability(JointRecording(take.tracks, None, take.sensor)).combined
+    signs = measure_reliability(take, settings=WITHOUT_STATE).combined
+
+    assert trust[1:][speeds > 10.0].max() < 0.2
+    assert signs[1:][speeds > 10.0].max() < 0.2
+
+
+def test_the_confidence_of_a_tracker_without_states_counts(recordings):
+    doubted, sure = [], []
+    for path in sorted((recordings / "kinect" / "msr_action3d").iterdir())[::40]:
+        take = read_recording(path)
+        found, told = measure_reliability(take).combined, take.tracks.confidence
+        doubted.append(found[told < 0.05])
+        sure.append(found[told == 1.0])
+
+    assert np.concatenate(doubted).mean() < 0.4
+    assert np.concatenate(sure).mean() > 0.6
 
 
 def test_names_that_are_no_body_have_reliability_too():

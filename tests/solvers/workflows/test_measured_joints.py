@@ -34,6 +34,17 @@ def test_it_is_all_there_even_below_a_joint_that_was_not_seen(walk):
     assert found.tracks.visible[10:14, ankle].all()
 
 
+def test_the_confidence_of_a_tracker_without_states_comes_along(walk):
+    told = np.random.default_rng(2).random(walk.tracks.positions.shape[:2])
+    tracks = vocabulary.Tracks(walk.names, walk.tracks.positions, 30.0, told)
+    sure = vocabulary.JointRecording(tracks, None, walk.sensor)
+
+    found = measured_joints(motion_from_points(walk.tracks, walk.parents), sure)
+
+    order = [walk.names.index(name) for name in found.names]
+    assert_array_equal(found.tracks.confidence, told[:, order])
+
+
 def test_it_goes_along_where_the_armature_was_put(walk):
     """Turned about Z, scaled, and moved: as an armature that stands elsewhere."""
     motion = motion_from_points(walk.tracks, walk.parents)

@@ -1,0 +1,138 @@
+"""Exchanges of left and right are undone; movements that only look alike are left alone."""
+
+import kinect_walks
+import numpy as np
+import pytest
+from numpy.testing import assert_allclose, assert_array_equal
+
+from solvers import motion, samples
+from solvers.motion import JointRecording, Tracks
+from solvers.reconstruction import posture_joints, reconstruct
+from solvers.reconstruction.exchanges import undo_exchanges
+from solvers.recordings import read_recording
+
+ARMS, LEGS = ("Elbow", "Wrist", "Hand"), ("Knee", "Ankle", "Foot")
+ALL = ("Shoulder", "Hip", *ARMS, *LEGS)
+
+
+@pytest.fixture(scope="module")
+def walk():
+    true = kinect_walks.true_positions(samples, posture_joints)
+    tracked = kinect_walks.tracked_walk(motion, true)
+    seen = true + np.random.default_rng(4).normal(scale=0.005, size=true.shape)
+    return JointRecording(
+        Tracks(tracked.names, seen, 30.0, np.random.default_rng(5).random(seen.shape[:2])),
+        tracked.tracking_state,
+        tracked.sensor,
+    )
+
+
+def exchanged(take, parts, frames):
+    """Exchange left and right of these joints, with all that is told of them."""
+    names = take.names
+    left = [place for place, name in enumerate(names) if name in {f"{p}Left" for p in parts}]
+    right = [names.index(names[place].replace("Left", "Right")) for place in left]
+    order = np.arange(len(names))
+    order[left], order[right] = right, left
+
+    def changed(values):
+        if values is None:
+            return None
+        values = values.copy()
+        values[frames] = values[frames][:, order]
+        return values
+
+    tracks = take.tracks
+    return JointRecording(
+        Tracks(names, changed(tracks.positions), take.frame_rate, changed(tracks.confidence)),
+        changed(take.tracking_state),
+        take.sensor,
+    )
+
+
+@pytest.mark.parametrize("n_frames", [1, 5, 10])
+@pytest.mark.parametrize("parts", [ARMS, ("Shoulder", *ARMS), LEGS, ALL])
+def test_what_was_exchanged_comes_back_bit_by_bit(walk, parts, n_frames):
+    spoilt = exchanged(walk, parts, slice(40, 40 + n_frames))
+    assert np.abs(spoilt.tracks.positions - walk.tracks.positions).max() > 0.1
+
+    found = undo_exchanges(spoilt)
+
+    assert_array_equal(found.tracks.positions, walk.tracks.positions)
+    assert_array_equal(found.tracks.confidence, walk.tracks.confidence)
+    assert_array_equal(found.tracking_state, walk.tracking_state)
+
+
+@pytest.mark.parametrize("frames", [slice(0, 6), slice(80, 90)])
+def test_the_first_and_the_last_frames_come_back_too(walk, frames):
+    found = undo_exchanges(exchanged(walk, ALL, frames))
+
+    assert_array_equal(found.tracks.positions, walk.tracks.positions)
+
+
+def test_several_exchanges_soon_after_each_other_come_back(walk):
+    spoilt = exchanged(walk, ARMS, [20, 21, 25, 40, 41, 42, 43])
+    spoilt = exchanged(spoilt, LEGS, [24, 25, 26])
+
+    assert_array_equal(undo_exchanges(spoilt).tracks.positions, walk.tracks.positions)
+
+
+def test_joints_that_are_lost_at_the_exchange_do_not_hide_it(walk):
+    gone = walk.tracks.positions.copy()
+    gone[38:42, walk.names.index("WristLeft")] = np.nan
+    blank = JointRecording(walk.tracks.with_positions(gone), None, walk.sensor)
+    spoilt = exchanged(blank, ARMS, slice(40, 46))
+
+    assert_array_equal(undo_exchanges(spoilt).tracks.positions, gone)
+
+
+def test_a_sound_take_is_returned_as_it_is(walk):
+    assert undo_exchanges(walk) is walk
+
+
+def test_sides_that_stay_exchanged_are_left_alone(walk):
+    spoilt = exchanged(walk, ALL, slice(45, None))
+
+    assert undo_exchanges(spoilt) is spoilt
+
+
+def test_hands_that_cross_in_one_frame_are_no_exchange(walk):
+    crossing = walk.tracks.positions.copy()
+    hands = [[walk.names.index(f"{part}{side}") for part in ("Wrist", "Hand")]
+             for side in ("Left", "Right")]  # fmt: skip
+    crossing[40:45, hands[0]] = walk.tracks.positions[40:45, hands[1]]
+    crossing[40:45, hands[1]] = walk.tracks.positions[40:45, hands[0]]
+    take = JointRecording(walk.tracks.with_positions(crossing), None, walk.sensor)
+
+    assert undo_exchanges(take) is take
+
+
+def test_the_input_is_not_modified(walk):
+    spoilt = exchanged(walk, ALL, slice(40, 45))
+    before = spoilt.tracks.positions.copy()
+
+    undo_exchanges(spoilt)
+
+    assert_array_equal(spoilt.tracks.positions, before)
+
+
+@pytest.mark.parametrize("folder", ["irds", "kimore", "laban"])
+def test_sound_takes_of_a_kinect_have_no_exchanges(recordings, folder):
+    files = [path for path in (recordings / "kinect" / folder).iterdir() if path.is_file()]
+    for path in sorted(files)[:12]:
+        take = read_recording(path)
+        assert undo_exchanges(take) is take, path.name
+
+
+@pytest.mark.parametrize("parts", [("Elbow", "Wrist", "Hand", "HandTip", "Thumb"), ALL])
+@pytest.mark.parametrize("n_frames", [1, 5, 10])
+def test_exchanged_sides_of_a_real_take_cost_nothing(recordings, parts, n_frames):
+    take = read_recording(recordings / "kinect" / "irds" / "215_18_5_3_1_stand.txt")
+    if parts is ALL:
+        parts = (*ALL, "HandTip", "Thumb")
+    start = take.n_frames // 2 - n_frames // 2
+    spoilt = exchanged(take, parts, slice(start, start + n_frames))
+
+    found = reconstruct(spoilt).tracks.positions
+
+    assert_allclose(found, reconstruct(take).tracks.positions, atol=0.005)

@@ -1,0 +1,129 @@
+"""One bad frame is found, costs itself alone, and fast movement is not taken for it."""
+
+import kinect_walks
+import numpy as np
+import pytest
+from numpy.testing import assert_array_equal
+
+from solvers import motion, samples
+from solvers.motion import JointRecording
+from solvers.reconstruction import (
+    ReliabilitySettings,
+    measure_reliability,
+    posture_joints,
+    reconstruct,
+)
+from solvers.reconstruction.short_jumps import short_jumps
+from solvers.recordings import read_recording
+
+CAUSAL = ReliabilitySettings(causal=True)
+
+
+def path_along(*places):
+    """One joint along a line, shape (n_frames, 1, 3)."""
+    path = np.zeros((len(places), 1, 3))
+    path[:, 0, 0] = places
+    return path
+
+
+@pytest.mark.parametrize("n_away", [1, 2, 6])
+def test_a_joint_that_jumps_away_is_found_in_those_frames_only(n_away):
+    path = path_along(*np.linspace(0.0, 0.3, 40))
+    path[20 : 20 + n_away, 0, 2] += 0.2
+
+    found = short_jumps(path, 30.0)
+
+    assert np.flatnonzero(found[:, 0]).tolist() == list(range(20, 20 + n_away))
+
+
+@pytest.mark.parametrize(
+    "places",
+    [
+        [0.0] * 10 + [0.3] * 7 + [0.0] * 10,  # seven frames are longer than a fifth of a second
+        [0.0] * 10 + [0.3] * 15,  # it does not come back
+        [0.0] * 10 + [0.3] * 2 + [0.6] * 10,  # nor here
+        [0.0] * 10 + [0.3, 0.0] * 6 + [0.0] * 10,  # shakes
+        [0, 0, 0.05, 0.2, 0.4, 0.45, 0.3, 0.12, 0.02, 0, 0],  # a punch
+        [0.0] * 10 + [0.1] * 2 + [0.0] * 10,  # 0.1 m in 1/30 s: 90 m/s^2
+    ],
+)
+def test_what_is_no_short_jump(places):
+    assert not short_jumps(path_along(*places), 30.0).any()
+
+
+def test_two_jumps_at_twice_the_rate_are_the_same_frames():
+    slow = path_along(*[0.0] * 10, *[0.3] * 3, *[0.0] * 10)
+    fast = np.repeat(slow, 2, axis=0)
+
+    assert_array_equal(short_jumps(fast, 60.0)[::2], short_jumps(slow, 30.0))
+
+
+@pytest.mark.parametrize("n_frames", [1, 2, 3])
+def test_the_shortest_takes_have_no_jumps(n_frames):
+    assert not short_jumps(path_along(*np.zeros(n_frames)), 30.0).any()
+
+
+def test_frames_that_are_not_seen_are_no_jumps():
+    path = path_along(*np.zeros(20))
+    path[8:10] = np.nan
+
+    assert not short_jumps(path, 30.0).any()
+
+
+@pytest.fixture(scope="module")
+def walk():
+    true = kinect_walks.true_positions(samples, posture_joints)
+    tracked = kinect_walks.tracked_walk(motion, true)
+    seen = true + np.random.default_rng(4).normal(scale=0.005, size=true.shape)
+    return JointRecording(tracked.tracks.with_positions(seen), None, tracked.sensor)
+
+
+def thrown(take, name, frames, by=(0.4, 0.0, 0.0)):
+    positions = take.tracks.positions.copy()
+    positions[frames, take.names.index(name)] += by
+    return take.with_tracks(take.tracks.with_positions(positions))
+
+
+def test_one_bad_frame_costs_others_little_trust(walk):
+    before = measure_reliability(walk).combined
+    after = measure_reliability(thrown(walk, "WristLeft", 45)).combined
+
+    wrist = walk.names.index("WristLeft")
+    others = np.delete(np.arange(walk.n_frames), 45)
+    assert after[45, wrist] == 0.0
+    assert before[:, wrist].min() > 0.8
+    assert after[others, wrist].min() > 0.6  # 0.05 to 0.1 within 0.8 s, if it counted in full
+    assert np.abs(after - before)[:, np.arange(walk.n_joints) != wrist].max() < 0.1
+
+
+def test_a_live_system_doubts_it_whether_or_not_it_will_come_back(walk):
+    wrist = walk.names.index("WristLeft")
+    for frames in (slice(45, 46), slice(45, 55)):
+        found = measure_reliability(thrown(walk, "WristLeft", frames), settings=CAUSAL)
+        assert 0.0 < found.combined[45, wrist] < 0.5
+
+
+def test_frames_beside_a_bad_one_stay_where_they_were(walk):
+    wrist = walk.names.index("WristLeft")
+    before = reconstruct(walk).tracks.positions[:, wrist]
+    after = reconstruct(thrown(walk, "WristLeft", 45)).tracks.positions[:, wrist]
+
+    off = np.linalg.norm(after - before, axis=-1)
+    assert off[45] < 0.02
+    assert np.delete(off, 45).max() < 0.01
+
+
+@pytest.mark.parametrize("frame_rate", [30.0, 20.0, 15.0, 12.0, 10.0])
+def test_a_thrown_wrist_is_doubted_and_a_sound_one_is_not_at_any_rate(recordings, frame_rate):
+    take = read_recording(recordings / "kinect" / "kimore" / "JointPositionExercise1.csv")
+    frames = np.round(np.arange(0.0, 199.0, 30.0 / frame_rate)).astype(int)
+    tracks = motion.Tracks(take.names, take.tracks.positions[frames], frame_rate)
+    slow = JointRecording(tracks, None, take.sensor)
+    middle, wrist = len(frames) // 2, take.names.index("WristLeft")
+
+    sound = measure_reliability(slow).combined
+    spoilt = measure_reliability(thrown(slow, "WristLeft", middle, (0.5, 0.0, 0.3))).combined
+
+    assert spoilt[middle, wrist] < 0.1
+    assert sound[:, wrist].mean() > 0.7
+    assert (sound < 0.5).mean() < 0.03

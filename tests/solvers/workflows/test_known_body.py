@@ -1,0 +1,36 @@
+"""Joints under other names are understood, and what is told of them comes along."""
+
+import numpy as np
+from numpy.testing import assert_allclose, assert_array_equal
+
+from solvers.motion import JointRecording, Sensor, Tracks
+from solvers.workflows.known_body import known_body
+
+NAMES = ("head", "leftUpperLeg", "rightUpperLeg", "leftLowerLeg", "rightLowerLeg")
+
+
+def test_hips_between_the_legs_are_as_sure_as_the_less_sure_leg():
+    rng = np.random.default_rng(1)
+    positions, told = rng.normal(size=(4, 5, 3)), rng.random((4, 5))
+    state = rng.integers(0, 3, (4, 5))
+    take = JointRecording(Tracks(NAMES, positions, 30.0, told), state, Sensor.OTHER)
+
+    found = known_body(take)
+
+    hips, knee = found.names.index("HipCenter"), found.names.index("KneeLeft")
+    middle = (positions[:, 1] + positions[:, 2]) / 2.0
+    assert_allclose(found.tracks.positions[:, hips], middle, atol=1e-12)
+    assert_array_equal(found.tracks.confidence[:, hips], np.minimum(told[:, 1], told[:, 2]))
+    assert_array_equal(found.tracking_state[:, hips], np.minimum(state[:, 1], state[:, 2]))
+    assert_array_equal(found.tracks.positions[:, knee], positions[:, 3])
+    assert_array_equal(found.tracks.confidence[:, knee], told[:, 3])
+    assert_array_equal(found.tracking_state[:, knee], state[:, 3])
+
+
+def test_what_the_tracker_does_not_tell_is_not_made_up():
+    take = JointRecording(Tracks(NAMES, np.ones((4, 5, 3)), 30.0), None, Sensor.OTHER)
+
+    found = known_body(take)
+
+    assert found.tracking_state is None
+    assert found.tracks.confidence is None
