@@ -119,7 +119,7 @@ def steady_way(
     told = np.isfinite(local).all(axis=-1)
     weights = np.where(told, trust, 0.0)
     mixed = weights[:, None] * np.where(told[:, None], local, 0.0) + USUAL * unit(straight_on)
-    steady = unit(_smoothest(mixed, weights + USUAL, (STEADY * frame_rate) ** 2))
+    steady = unit(smoothest(mixed, weights + USUAL, (STEADY * frame_rate) ** 2))
     lengths = np.linalg.norm(seen, axis=-1, keepdims=True)
     return np.asarray(rotate(above, steady) * lengths)
 
@@ -144,11 +144,11 @@ def twisted(
 def _steady(seen: NDArray[np.complex128], weights: Array, stiffness: float) -> Array:
     """Return the path z that minimises w |z - seen|^2 + u |z - 1|^2 + s |z' - z|^2, summed."""
     told = weights * seen + USUAL
-    parts = _smoothest(np.stack([told.real, told.imag], -1), weights + USUAL, stiffness)
+    parts = smoothest(np.stack([told.real, told.imag], -1), weights + USUAL, stiffness)
     return np.asarray(parts[:, 0] + 1j * parts[:, 1])
 
 
-def _smoothest(told: Array, weights: Array, stiffness: float) -> Array:
+def smoothest(told: Array, weights: Array, stiffness: float) -> Array:
     """Solve (W + s D'D) z = told for paths z, shape (n_frames, n)."""
     n_frames = len(told)
     if n_frames == 1:
