@@ -163,7 +163,7 @@ class _Body:
         """Return the way to a child: to its very place where the bone is long."""
         length = float(np.linalg.norm(self.skeleton.offsets[child]))
         above = self.skeleton.parents[joint]
-        if self.hands & {joint, above} and not self.skeleton.children[child]:
+        if self.hands & {joint, above}:
             seen = self.places[:, child] - self.places[:, joint]
             return steady_way(
                 seen, self.world[:, above], self.skeleton.offsets[joint],
