@@ -74,10 +74,7 @@ def reconstruct_postures(
     positions = posture_positions(recording)
     trust = _posture_trust(recording, positions, reliability.combined)
     if (trust > 0.0).sum(axis=1).max(initial=0) < FEWEST:
-        raise InvalidMotionError(
-            f"No frame shows {FEWEST} joints of a body; choose a recording of an actor who was"
-            " tracked."
-        )
+        raise InvalidMotionError(_why_none(positions))
     rate = recording.frame_rate
     seen = normalise(positions, rate, trust)
     lengths = body_lengths(seen.postures, trust)
@@ -94,6 +91,20 @@ def reconstruct_postures(
         rebuilt, motion, reliability, found.confidence[:, anchors(tracks.names)],
         _words(settings, library),
     )  # fmt: skip
+
+
+def _why_none(positions: Array) -> str:
+    shown = np.isfinite(positions).all(axis=-1).sum(axis=1).max(initial=0)
+    if shown >= FEWEST:
+        return (
+            "Joints are there, but the tracker calls all of them not tracked or inferred, so"
+            " that nothing can be trusted; raise what inferred joints count for, or leave out"
+            " the tracking state."
+        )
+    return (
+        f"No frame shows {FEWEST} joints of a body; choose a recording of an actor who was"
+        " tracked."
+    )
 
 
 def _posture_trust(recording: JointRecording, positions: Array, combined: Array) -> Array:
