@@ -111,6 +111,7 @@ def rebuild(
         solution.motion,
         finish.planting,
         finish.contacts,
+        reliability=solution.reliability,
         progress=within(progress, 0.8, 0.9),
     )
     motion = _eased(problem.body, motion, finish.ease)

@@ -109,7 +109,7 @@ def _rebuilt(given: Any, task: Task, guides: Guides, progress: Progress) -> Rebu
     planting = settings_from_arguments(task.arguments, PlantSettings) if feet else None
     if isinstance(given, Motion):
         whole = reconstruct_motion(given, *guides, settings=settings, progress=progress)
-        footing = try_to_plant(whole.motion, planting)
+        footing = try_to_plant(whole.motion, planting, reliability=whole.reliability)
         remarks = (*whole.remarks, *footing.remarks)
         slide = _slide(footing.planted)
         return Rebuilt(footing.motion, None, whole.rebuilt_share, whole.method, remarks, slide)

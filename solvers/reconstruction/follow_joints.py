@@ -20,6 +20,7 @@ from ..motion.rotations import IDENTITY, multiply, rotate, rotation_between, sle
 from .body_size import FEWEST, RELIABLE
 from .girdles import with_girdles
 from .limb_twist import HINGES, Limb, hinge_turns, steady_way, thumb_turns
+from .reach_ankles import pelvis_shift, reach_ankles
 
 Array = NDArray[np.float64]
 SHORT = 1e-3
@@ -74,6 +75,16 @@ class _Body:
             if parents == [first, second] and first > 0:
                 found[first] = Limb(first, second, end, HINGES[upper[-3:]])
         return found
+
+    def legs(self) -> dict[int, Limb]:
+        """Return those limbs that are legs, by their upper joints."""
+        uppers = [self.roles.get(f"{side}UpperLeg", -1) for side in ("left", "right")]
+        return {upper: limb for upper, limb in self.limbs.items() if upper in uppers}
+
+    def give_way(self) -> None:
+        """Move the pelvis to where straight legs reach the ankles."""
+        legs = list(self.legs().values())
+        self.at[:, 0] += pelvis_shift(self.places, self.at, self.trust, legs, self.frame_rate)
 
     def turn_all(self) -> None:
         """Turn every joint and put its children in place."""
@@ -152,7 +163,7 @@ class _Body:
         """Return the way to a child: to its very place where the bone is long."""
         length = float(np.linalg.norm(self.skeleton.offsets[child]))
         above = self.skeleton.parents[joint]
-        if self.hands & {joint, above} and not self.skeleton.children[child]:
+        if self.hands & {joint, above}:
             seen = self.places[:, child] - self.places[:, joint]
             return steady_way(
                 seen, self.world[:, above], self.skeleton.offsets[joint],
@@ -201,13 +212,14 @@ def follow_joints(
 ) -> Motion:
     """Let a skeleton of constant bone lengths go where joints were tracked or rebuilt.
 
-    The root is where it was seen. Pelvis and chest turn so that hips, shoulders, spine and neck
-    come nearest to where they are (`best_turns`), and the spine between them shares the twist.
-    All else points at the place of its child, so that an error is not handed down. How far an
-    upper arm or a thigh is twisted is told by the plane in which elbow or knee bends, where it
-    bends; where it is straight, by the bends before and after, and by the trunk
-    (`hinge_turns`). A thumb tells the same of its hand, whose tip is steadied. Everywhere else
-    a joint turns the short way out of its parent's turn.
+    The root is where it was seen, or as near as straight legs let it be (`pelvis_shift`); knees
+    bend until ankles are where they were seen (`reach_ankles`). Pelvis and chest turn so that
+    hips, shoulders, spine and neck come nearest to where they are (`best_turns`), and the spine
+    between them shares the twist. All else points at the place of its child, so that an error
+    is not handed down. How far an upper arm or a thigh is twisted is told by the plane in which
+    elbow or knee bends, where it bends; where it is straight, by the bends before and after,
+    and by the trunk (`hinge_turns`). A thumb tells the same of its hand, whose palm and tip are
+    steadied. Everywhere else a joint turns the short way out of its parent's turn.
 
     Parameters
     ----------
@@ -241,9 +253,13 @@ def follow_joints(
     points = _points_of(made, tracks.names)
     body = _Body(made, tracks.positions[:, points], trust[:, points], tracks.frame_rate)
     body.turn_all()
+    if body.legs():
+        body.give_way()
+        body.turn_all()
     rotations = local_rotations(made, body.world)
     rotations[:, [not children for children in made.children]] = IDENTITY
-    return Motion(made, rotations, body.places[:, 0], tracks.frame_rate)
+    motion = Motion(made, rotations, body.at[:, 0], tracks.frame_rate)
+    return reach_ankles(motion, body.places, body.legs())
 
 
 def _points_of(skeleton: Skeleton, names: Sequence[str]) -> list[int]:

@@ -20,6 +20,15 @@ STEADY = 0.1
 USUAL = 0.02
 """Weight of no twist against the trunk; a bend has 1."""
 
+SURE, FAINT = 10.0, 1e-6
+"""Weights, against that of steadiness, of an angle that all bends about it agree on, and of
+one of which nothing is told."""
+NEAR, FAR = 0.02, 0.05
+"""Metres. A palm that is seen nearer to its wrist tells no direction; beyond the second it
+does."""
+FOLDED, OPEN = np.radians([100.0, 70.0])
+"""Bends of a palm against its forearm that are wrong, and up to which all are right."""
+
 
 class Limb(NamedTuple):
     """Joints of an arm or a leg."""
@@ -43,7 +52,7 @@ def hinge_turns(
     The twist of each frame is a point on a circle. What bends tell of it is weighed by how far
     they bend and are trusted, and by how near they are to what a joint can do; the path is the
     one that fits them best while it is steady and near to no twist at all (least squares in
-    the plane of the circle, so that nothing ever jumps by a turn).
+    the plane of the circle; where that path passes near the circle's middle it is led over).
 
     Parameters
     ----------
@@ -117,11 +126,19 @@ def steady_way(
     """
     local = rotate(inverse(above), unit(seen))
     told = np.isfinite(local).all(axis=-1)
-    weights = np.where(told, trust, 0.0)
+    weights = np.where(told, trust * _likely(seen, local, straight_on), 0.0)
     mixed = weights[:, None] * np.where(told[:, None], local, 0.0) + USUAL * unit(straight_on)
-    steady = unit(_smoothest(mixed, weights + USUAL, (STEADY * frame_rate) ** 2))
+    steady = unit(smoothest(mixed, weights + USUAL, (STEADY * frame_rate) ** 2))
     lengths = np.linalg.norm(seen, axis=-1, keepdims=True)
     return np.asarray(rotate(above, steady) * lengths)
+
+
+def _likely(seen: Array, local: Array, straight_on: Array) -> Array:
+    """Return 0 for ways that are too short or too far folded to be a palm's, 1 for others."""
+    length = np.linalg.norm(seen, axis=-1)
+    bend = np.arccos(np.clip(local @ unit(straight_on), -1.0, 1.0))
+    long = np.clip((length - NEAR) / (FAR - NEAR), 0.0, 1.0)
+    return np.asarray(long * np.clip((FOLDED - bend) / (FOLDED - OPEN), 0.0, 1.0))
 
 
 def twisted(
@@ -137,18 +154,32 @@ def twisted(
     told = np.isfinite(cos) & np.isfinite(sin) & (size > 0.0)
     seen = np.where(told, (cos + 1j * sin) / np.where(told, size, 1.0), 0.0)
     weights = np.where(told, weights * (0.5 + 0.5 * seen.real), 0.0)
-    twist = np.angle(_steady(seen, weights, (STEADY * frame_rate) ** 2))
+    stiffness = (STEADY * frame_rate) ** 2
+    twist = _without_turns(_steady(seen, weights, stiffness), stiffness)
     return multiply(quaternion_from_rotation_vector(twist[:, None] * axis), turns)
 
 
-def _steady(seen: NDArray[np.complex128], weights: Array, stiffness: float) -> Array:
+def _steady(
+    seen: NDArray[np.complex128], weights: Array, stiffness: float
+) -> NDArray[np.complex128]:
     """Return the path z that minimises w |z - seen|^2 + u |z - 1|^2 + s |z' - z|^2, summed."""
     told = weights * seen + USUAL
-    parts = _smoothest(np.stack([told.real, told.imag], -1), weights + USUAL, stiffness)
+    parts = smoothest(np.stack([told.real, told.imag], -1), weights + USUAL, stiffness)
     return np.asarray(parts[:, 0] + 1j * parts[:, 1])
 
 
-def _smoothest(told: Array, weights: Array, stiffness: float) -> Array:
+def _without_turns(path: NDArray[np.complex128], stiffness: float) -> Array:
+    """Return the angles of a path in the plane, radians, shape (n_frames,).
+
+    Where the path passes near 0 an angle may change by half a turn in a frame. There it tells
+    little, and is led over steadily.
+    """
+    weights = SURE * stiffness * np.abs(path) ** 4 + FAINT
+    told = weights * np.unwrap(np.angle(path))
+    return smoothest(told[:, None], weights, stiffness)[:, 0]
+
+
+def smoothest(told: Array, weights: Array, stiffness: float) -> Array:
     """Solve (W + s D'D) z = told for paths z, shape (n_frames, n)."""
     n_frames = len(told)
     if n_frames == 1:

@@ -6,12 +6,20 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..motion import joint_parents
-from ..motion.rotations import inverse, rotate, rotation_between
+from ..motion.rigid_fit import best_turns
+from ..motion.rotations import IDENTITY, inverse, multiply, rotate, rotation_between
 from .posture_joints import N_JOINTS, PARENTS, POSTURE_JOINTS, joints_of_names
 
 Array = NDArray[np.float64]
 
-DOWN = np.array([0.0, 0.0, -1.0])
+TRUNK = {
+    "chest": (0.0, 0.0, 1.0),
+    "leftUpperArm": (0.5, 0.0, 1.0),
+    "rightUpperArm": (-0.5, 0.0, 1.0),
+    "leftUpperLeg": (0.5, 0.0, 0.0),
+    "rightUpperLeg": (-0.5, 0.0, 0.0),
+}
+"""Where these are about the hips of a body that stands and faces -Y; only ways count."""
 
 
 def anchors(names: Sequence[str]) -> NDArray[np.intp]:
@@ -42,8 +50,10 @@ def all_joints(
 ) -> Array:
     """Return where all tracked joints are when those of postures were moved.
 
-    A joint of its own keeps its place about its anchor, which turns as the bone that leads to
-    the anchor does; where it was not trusted, that is its usual place.
+    A joint of its own keeps its place about its anchor, which turns the short way as the bone
+    that leads to the anchor does; where it was not trusted, that is its usual place. The usual
+    place is told in axes that the bone carries along from where it mostly points on the body,
+    so that they turn round quickly only where it points the very other way.
 
     Parameters
     ----------
@@ -56,31 +66,50 @@ def all_joints(
     """
     own = {place: POSTURE_JOINTS.index(role) for role, place in joints_of_names(names).items()}
     result = np.empty_like(seen)
-    turn_before, turn_after = _bone_turns(before), _bone_turns(after)
+    bones_before, bones_after = _bones(before), _bones(after)
+    trunk = _trunk_turns(after)
     for joint, anchor in enumerate(anchors(names)):
         if joint in own:
             result[:, joint] = after[:, own[joint]]
             continue
-        way = rotate(inverse(turn_before[:, anchor]), seen[:, joint] - before[:, anchor])
-        told = np.isfinite(way).all(axis=-1)
+        bones = bones_before[:, anchor], bones_after[:, anchor]
+        axes_before, axes_after = (_carried(trunk, bone, bones[1]) for bone in bones)
+        way = seen[:, joint] - before[:, anchor]
+        turned = rotate(_turn(*bones), way)
+        told = np.isfinite(turned).all(axis=-1)
         weight = np.where(told, trust[:, joint], 0.0)
-        sure = weight >= 0.5 * weight.max(initial=0.0)
-        usual = np.median(way[told & sure], axis=0) if (told & sure).any() else np.zeros(3)
-        blend = weight[:, None] * np.where(told[:, None], way, 0.0)
-        blend += (1.0 - weight)[:, None] * usual
-        result[:, joint] = after[:, anchor] + rotate(turn_after[:, anchor], blend)
+        sure = told & (weight >= 0.5 * weight.max(initial=0.0))
+        local = rotate(inverse(axes_before[sure]), way[sure])
+        usual = np.median(local, axis=0) if sure.any() else np.zeros(3)
+        blend = weight[:, None] * np.where(told[:, None], turned, 0.0)
+        blend += (1.0 - weight)[:, None] * rotate(axes_after, usual)
+        result[:, joint] = after[:, anchor] + blend
     return result
 
 
-def _bone_turns(postures: Array) -> Array:
-    """Turns from straight down to the bone that leads to each joint, (n_frames, 20, 4)."""
-    turns = np.empty((*postures.shape[:2], 4))
-    for joint in range(N_JOINTS):
-        end = joint or 1  # the hips turn as the bone above them
-        bone = postures[:, end] - postures[:, PARENTS[end]]
-        told = np.isfinite(bone).all(axis=-1, keepdims=True)
-        down = np.broadcast_to(DOWN, bone.shape)
-        turns[:, joint] = np.where(
-            told, rotation_between(down, np.where(told, bone, DOWN)), np.nan
-        )
-    return turns
+def _bones(postures: Array) -> Array:
+    """Return the bone that leads to each joint, shape (n_frames, 20, 3); to hips the spine."""
+    ends = [joint or 1 for joint in range(N_JOINTS)]
+    return np.asarray(postures[:, ends] - postures[:, [PARENTS[end] for end in ends]])
+
+
+def _trunk_turns(postures: Array) -> Array:
+    """Return how the trunk is turned against one that stands and faces -Y, (n_frames, 4)."""
+    seen = postures[:, [POSTURE_JOINTS.index(role) for role in TRUNK]] - postures[:, :1]
+    turns = best_turns(np.array(list(TRUNK.values())), seen)
+    return np.where(np.isfinite(turns), turns, IDENTITY)
+
+
+def _carried(trunk: Array, bones: Array, all_bones: Array) -> Array:
+    """Return the trunk's axes, turned the short way to a bone from its usual direction."""
+    known = np.isfinite(all_bones).all(axis=-1)
+    local = rotate(inverse(trunk[known]), all_bones[known])
+    usual = local.mean(axis=0) if known.any() else np.zeros(3)
+    return multiply(_turn(rotate(trunk, usual), bones), trunk)
+
+
+def _turn(start: Array, stop: Array) -> Array:
+    """Return the short turns between ways, shape (n_frames, 4); NaN where one is not known."""
+    told = (np.isfinite(start) & np.isfinite(stop)).all(axis=-1, keepdims=True)
+    turns = rotation_between(np.where(told, start, 1.0), np.where(told, stop, 1.0))
+    return np.where(told, turns, np.nan)

@@ -1,5 +1,6 @@
 """A recording whose joints hang together, whatever its tracker calls them."""
 
+from dataclasses import replace
 from typing import TypeVar
 
 import numpy as np
@@ -21,6 +22,7 @@ STATURE = 1.75
 LONG_GAP = 1.0
 """Seconds without any joint, from which on the result is a guess that is worth a word."""
 UNITS = {0.001: "millimetres", 0.01: "centimetres", 0.0254: "inches", 1000.0: "kilometres"}
+LEGS = ("leftUpperLeg", "rightUpperLeg")
 KINECT_V1 = dict(zip(POSTURE_JOINTS, JOINTS[Sensor.KINECT_V1], strict=True))
 """What the first Kinect calls the joints of postures."""
 Word = TypeVar("Word", np.int8, np.float64)
@@ -30,7 +32,7 @@ def known_body(recording: JointRecording) -> JointRecording:
     """Return the recording, or its joints under the names of the first Kinect's.
 
     Names of which it is known how they hang together stay. Others are understood by their
-    humanoid roles; where only the hips themselves are missing, they are put between the legs.
+    humanoid roles. Hips that are missing, or never tracked, are put between the legs.
 
     Raises
     ------
@@ -40,8 +42,8 @@ def known_body(recording: JointRecording) -> JointRecording:
     check_tracked(recording)
     parents = recording.parents
     if parents.count(-1) == 1 and "hips" in joints_of_names(recording.names):
-        return recording
-    return _by_roles(recording)
+        return _with_hips(recording)
+    return _with_hips(_by_roles(recording))
 
 
 def check_tracked(recording: JointRecording) -> None:
@@ -58,6 +60,22 @@ def check_tracked(recording: JointRecording) -> None:
         raise InvalidMotionError(
             f"Only one joint ({name}) is ever tracked; poses need hips and limbs."
         )
+
+
+def _with_hips(recording: JointRecording) -> JointRecording:
+    """Put hips that no frame shows between the legs."""
+    tracks, state = recording.tracks, recording.tracking_state
+    places = joints_of_names(tracks.names)
+    legs = [places[role] for role in LEGS if role in places]
+    hips = places["hips"]
+    if tracks.visible[:, hips].any() or len(legs) < 2:
+        return recording
+    positions = tracks.positions.copy()
+    positions[:, hips] = positions[:, legs].mean(axis=1)
+    if state is not None:
+        state = state.copy()
+        state[:, hips] = state[:, legs].min(axis=1)
+    return replace(recording, tracks=tracks.with_positions(positions), tracking_state=state)
 
 
 def _by_roles(recording: JointRecording) -> JointRecording:

@@ -89,8 +89,24 @@ def reconstruct_recording(
             rebuilt.reliability.combined,
             skeleton=skeleton,
         )
-    footing = try_to_plant(motion, planting, progress=within(progress, 0.8, 1.0))
+    footing = try_to_plant(
+        motion,
+        planting,
+        reliability=_of_joints(motion.skeleton, known.names, rebuilt.reliability.combined),
+        progress=within(progress, 0.8, 1.0),
+    )
     progress(1.0, "Done")
     remarks = (*gap_remarks(known), *footing.remarks)
     guessed = rebuilt_joints(known, rebuilt)
     return ReconstructedMotion(footing.motion, rebuilt, footing.planted, guessed, remarks)
+
+
+def _of_joints(
+    skeleton: Skeleton, names: tuple[str, ...], reliability: NDArray[np.float64]
+) -> NDArray[np.float64]:
+    """Return the reliability of a skeleton's joints; NaN of those that were not tracked."""
+    result = np.full((len(reliability), skeleton.n_joints), np.nan)
+    for joint, name in enumerate(skeleton.names):
+        if name in names:
+            result[:, joint] = reliability[:, names.index(name)]
+    return result

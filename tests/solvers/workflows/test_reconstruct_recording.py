@@ -199,3 +199,28 @@ def test_the_motion_of_any_other_rig_is_rebuilt_too():
     assert result.motion.skeleton is walk.skeleton
     known = np.isfinite(result.reliability).all(axis=0)
     assert 15 <= known.sum() < walk.n_joints or known.all()
+
+
+def test_hips_that_are_never_tracked_are_between_the_legs(recordings):
+    recording = read_recording(recordings / "kinect" / "irds" / "215_18_5_3_1_stand.txt")
+    hips, *legs = (recording.names.index(each) for each in ("SpineBase", "HipLeft", "HipRight"))
+    blind = recording.tracks.positions.copy()
+    blind[:, hips] = np.nan
+    blind_recording = recording.with_tracks(recording.tracks.with_positions(blind))
+
+    found = reconstruct_recording(
+        blind_recording, planting=None
+    ).reconstruction.tracks.positions
+
+    true = recording.tracks.positions[:, hips]
+    assert np.nanmax(np.linalg.norm(found[:, hips] - true, axis=-1)) < 0.06
+    assert np.linalg.norm(found[:, hips] - found[:, legs].mean(axis=1), axis=-1).max() < 0.06
+    assert np.isnan(blind_recording.tracks.positions[:, hips]).all()
+
+
+def test_a_tracker_that_vouches_for_nothing_is_told_so(truth):
+    tracks = Tracks(JOINTS[Sensor.KINECT_V1], truth, 30.0)
+    blind = JointRecording(tracks, np.zeros(truth.shape[:2], np.int8), Sensor.KINECT_V1)
+
+    with pytest.raises(InvalidMotionError, match="the tracker calls all of them"):
+        reconstruct_recording(blind)

@@ -1,0 +1,70 @@
+"""Thumbs, tips and noses move with their bones, whichever way those point."""
+
+import numpy as np
+import pytest
+from numpy.testing import assert_allclose
+
+from solvers.motion import JOINTS, Sensor
+from solvers.reconstruction.other_joints import all_joints
+from solvers.reconstruction.posture_joints import POSTURE_JOINTS, joints_of_names
+from solvers.recordings import read_recording
+
+NAMES = JOINTS[Sensor.KINECT_V2]
+WRIST, ELBOW = (POSTURE_JOINTS.index(role) for role in ("leftHand", "leftLowerArm"))
+THUMB = NAMES.index("ThumbLeft")
+
+
+@pytest.fixture
+def take(recordings):
+    recording = read_recording(recordings / "kinect" / "kimore" / "JointPositionExercise1.csv")
+    seen = recording.tracks.positions[:60].copy()
+    places = joints_of_names(recording.names)
+    return seen, seen[:, [places[role] for role in POSTURE_JOINTS]]
+
+
+def raised(postures: np.ndarray, aside: tuple[float, float]) -> np.ndarray:
+    """The forearm points straight up, but for so many metres."""
+    up = postures.copy()
+    up[:, WRIST] = up[:, ELBOW] + (*aside, 0.25)
+    return up
+
+
+@pytest.mark.parametrize("trust", [1.0, 0.0])
+def test_a_thumb_of_a_raised_arm_does_not_flip(take, trust):
+    """The forearm is corrected by 14 mm."""
+    seen, postures = take
+    before, after = raised(postures, (0.01, 0.0)), raised(postures, (0.0, 0.01))
+    way = np.array([0.05, 0.0, 0.05])
+    seen[:, THUMB] = before[:, WRIST] + way
+    weights = np.ones(seen.shape[:2])
+    weights[30:, THUMB] = trust
+
+    found = all_joints(NAMES, seen, weights, before, after)
+
+    assert np.linalg.norm(found[:, THUMB] - after[:, WRIST] - way, axis=-1).max() < 0.01
+
+
+def test_joints_go_with_a_bone_that_turns(take):
+    """A forearm that is turned by 90 degrees takes the thumb along."""
+    seen, postures = take
+    before, after = raised(postures, (0.0, 0.0)), raised(postures, (0.0, 0.0))
+    after[:, WRIST] = after[:, ELBOW] + (0.25, 0.0, 0.0)
+    seen[:, THUMB] = before[:, WRIST] + (0.0, 0.03, 0.05)
+
+    found = all_joints(NAMES, seen, np.ones(seen.shape[:2]), before, after)
+
+    assert_allclose(found[:, THUMB] - after[:, WRIST], np.tile((0.05, 0.03, 0.0), (60, 1)),
+                    atol=1e-9)  # fmt: skip
+
+
+def test_a_body_that_is_turned_is_rebuilt_turned(take):
+    seen, before = take
+    after = before + np.random.default_rng(3).normal(scale=0.02, size=before.shape)
+    weights = np.random.default_rng(4).uniform(size=seen.shape[:2])
+    cos, sin = np.cos(2.1), np.sin(2.1)
+    turn = np.array([[cos, -sin, 0.0], [sin, cos, 0.0], [0.0, 0.0, 1.0]]).T
+
+    first = all_joints(NAMES, seen, weights, before, after) @ turn
+    second = all_joints(NAMES, seen @ turn, weights, before @ turn, after @ turn)
+
+    assert_allclose(second, first, atol=1e-9)

@@ -1,0 +1,90 @@
+"""Legs reach the ankles that were seen: the pelvis gives way, knees bend for the rest."""
+
+import numpy as np
+import pytest
+from kinect_walks import true_positions
+
+from solvers import samples
+from solvers.motion import JOINTS, Motion, Sensor, Tracks, forward_kinematics, joint_parents
+from solvers.reconstruction import posture_joints
+from solvers.reconstruction.follow_joints import follow_joints
+from solvers.recordings import read_recording
+
+NAMES = JOINTS[Sensor.KINECT_V1]
+ANKLES = ("AnkleLeft", "AnkleRight")
+REAL = (
+    "irds/215_18_6_4_1_stand.txt",
+    "irds/215_18_6_9_2_stand.txt",
+    "irds/216_18_1_1_1_stand.txt",
+    "kimore/JointPositionExercise1.csv",
+    "kimore/JointPositionExercise5.csv",
+)
+
+
+@pytest.fixture
+def walk() -> np.ndarray:
+    return true_positions(samples, posture_joints)
+
+
+def places_of(motion: Motion, names: tuple[str, ...]) -> np.ndarray:
+    order = [motion.skeleton.index(name) for name in names]
+    return forward_kinematics(motion).positions[:, order]
+
+
+def followed(positions: np.ndarray, names=NAMES) -> Motion:
+    return follow_joints(Tracks(names, positions, 30.0), joint_parents(names))
+
+
+@pytest.mark.parametrize("file", REAL)
+def test_ankles_of_real_takes_are_where_they_were_seen(recordings, file):
+    """Bones alone miss them by up to 12 cm, and the feet sink."""
+    recording = read_recording(recordings / "kinect" / file).slice(0, 300)
+    order = [recording.names.index(name) for name in ANKLES]
+    seen = recording.tracks.positions[:, order]
+
+    reached = places_of(follow_joints(recording.tracks, recording.parents), ANKLES)
+
+    missed = np.linalg.norm(reached - seen, axis=-1)
+    assert np.nanmean(missed) < 0.01
+    assert np.nanpercentile(missed, 95) < 0.02
+
+
+def test_hips_that_are_seen_low_for_a_while_do_not_push_the_feet_through_the_floor(walk):
+    low = walk.copy()
+    above = [place for place, name in enumerate(NAMES) if not name.startswith(("Ank", "Foot"))]
+    low[40:60, above, 2] -= 0.06
+    order = [NAMES.index(name) for name in ANKLES]
+
+    reached = places_of(followed(low), ANKLES)
+
+    assert np.linalg.norm(reached - low[:, order], axis=-1)[40:60].max() < 0.02
+
+
+def test_the_pelvis_gives_way_for_straight_legs_and_knees_stay(walk):
+    """Legs seen 6 cm too short: bent knees would come 16 cm forward."""
+    standing = np.repeat(walk[:1], 40, axis=0)
+    for side, across in (("Left", 0.1), ("Right", -0.1)):
+        for part, height in (("Hip", 0.92), ("Knee", 0.5), ("Ankle", 0.1)):
+            standing[:, NAMES.index(part + side)] = (across, 0.0, height)
+        standing[:, NAMES.index(f"Foot{side}")] = (across, -0.15, 0.05)
+    standing[:, NAMES.index("HipCenter")] = (0.0, 0.0, 0.95)
+    above = [place for place, name in enumerate(NAMES) if standing[0, place, 2] > 0.6]
+    short = standing.copy()
+    short[15:25, above, 2] -= 0.06
+
+    motion = followed(short)
+
+    knees = places_of(motion, ("KneeLeft", "KneeRight"))
+    order = [NAMES.index(name) for name in ("KneeLeft", "KneeRight")]
+    assert np.abs((knees - short[:, order])[..., 1])[18:22].max() < 0.1
+
+
+def test_what_fits_already_is_left(walk):
+    once = followed(walk)
+    names = tuple(name for name in once.skeleton.names if name in NAMES)
+    again = np.array(walk)
+    again[:, [NAMES.index(name) for name in names]] = places_of(once, names)
+
+    twice = places_of(followed(again), names)
+
+    assert np.linalg.norm(twice - places_of(once, names), axis=-1).max() < 0.02

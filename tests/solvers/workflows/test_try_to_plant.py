@@ -1,0 +1,120 @@
+"""Feet are planted by what was trusted: lost toes do not lead still ankles astray."""
+
+import numpy as np
+import pytest
+from kinect_walks import true_positions
+
+from solvers import samples
+from solvers.denoising import PlantSettings
+from solvers.motion import JOINTS, Motion, Sensor, Tracks, forward_kinematics, joint_parents
+from solvers.reconstruction import posture_joints
+from solvers.reconstruction.follow_joints import follow_joints
+from solvers.recordings import read_recording
+from solvers.workflows import reconstruct_recording, try_to_plant
+
+NAMES = JOINTS[Sensor.KINECT_V1]
+PLANTING = PlantSettings()
+STANDING = np.ones((60, 2), bool)
+
+
+def places_of(motion: Motion, name: str) -> np.ndarray:
+    return forward_kinematics(motion).positions[:, motion.skeleton.index(name)]
+
+
+def trust_of(motion: Motion, name: str, trust: float) -> np.ndarray:
+    """All joints are trusted but one."""
+    reliability = np.ones((motion.n_frames, motion.n_joints))
+    reliability[:, motion.skeleton.index(name)] = trust
+    return reliability
+
+
+def standing(toe: np.ndarray) -> Motion:
+    """A body that stands for 2 s while its left toe is seen at these places about the ankle."""
+    still = np.repeat(true_positions(samples, posture_joints)[:1], 60, axis=0)
+    for side, across in (("Left", 0.1), ("Right", -0.1)):
+        for part, height in (("Hip", 0.92), ("Knee", 0.5), ("Ankle", 0.08)):
+            still[:, NAMES.index(part + side)] = (across, -0.01 * (part == "Knee"), height)
+        still[:, NAMES.index(f"Foot{side}")] = (across, -0.14, 0.02)
+    still[:, NAMES.index("HipCenter")] = (0.0, 0.0, 0.95)
+    still[:, NAMES.index("FootLeft")] = still[:, NAMES.index("AnkleLeft")] + toe
+    return follow_joints(Tracks(NAMES, still, 30.0), joint_parents(NAMES))
+
+
+def wandering() -> Motion:
+    """The toe goes round the ankle by 140 degrees, forth and back."""
+    angles = np.radians(70.0) * np.sin(np.linspace(0.0, 2.0 * np.pi, 60))
+    return standing(
+        np.stack([0.15 * np.sin(angles), -0.15 * np.cos(angles), np.full(60, -0.06)], axis=-1)
+    )
+
+
+def test_an_ankle_that_stands_still_stays_whatever_its_lost_toe_does():
+    motion = wandering()
+
+    planted = try_to_plant(
+        motion, PLANTING, STANDING, reliability=trust_of(motion, "FootLeft", 0.0)
+    )
+
+    moved = places_of(planted.motion, "AnkleLeft") - places_of(motion, "AnkleLeft")
+    assert np.linalg.norm(moved, axis=-1).max() < 0.01
+    toe = places_of(planted.motion, "FootLeft") - places_of(planted.motion, "AnkleLeft")
+    assert np.abs(np.degrees(np.arctan2(toe[:, 0], -toe[:, 1]))).max() < 30.0
+
+
+def test_a_trusted_still_ankle_is_never_planted_far_off():
+    motion = wandering()
+
+    planted = try_to_plant(
+        motion, PLANTING, STANDING, reliability=trust_of(motion, "Head", 1.0)
+    )
+
+    moved = places_of(planted.motion, "AnkleLeft") - places_of(motion, "AnkleLeft")
+    assert np.linalg.norm(moved, axis=-1).max() < 0.04
+
+
+def test_a_lost_toe_that_points_up_is_laid_down():
+    motion = standing(np.array([0.0, -0.1, 0.1]))
+
+    planted = try_to_plant(
+        motion, PLANTING, STANDING, reliability=trust_of(motion, "FootLeft", 0.0)
+    ).motion
+
+    toe = places_of(planted, "FootLeft") - places_of(planted, "AnkleLeft")
+    assert (toe[:, 2] < -0.02).all()
+    assert (toe[:, 1] < -0.08).all()
+    seen, shown = (
+        np.linalg.norm(places_of(each, "FootLeft") - places_of(each, "AnkleLeft"), axis=-1)
+        for each in (motion, planted)
+    )
+    np.testing.assert_allclose(shown, seen, atol=1e-9)
+
+
+def test_feet_that_were_seen_well_are_planted_as_ever():
+    body = samples.walking_gait(samples.GaitSettings(duration=3.0, frame_rate=30.0))
+
+    plain = try_to_plant(body, PLANTING)
+    trusted = try_to_plant(body, PLANTING, reliability=np.ones((body.n_frames, body.n_joints)))
+
+    off = np.abs(
+        forward_kinematics(plain.motion).positions
+        - forward_kinematics(trusted.motion).positions
+    )
+    assert off.max() < 0.02
+    assert trusted.planted.slide_after < 0.2 * trusted.planted.slide_before
+
+
+@pytest.mark.parametrize("number", [1, 2, 3])
+def test_feet_of_real_takes_stand_flat_where_their_ankles_are(recordings, number):
+    """Planting moved trusted ankles by up to 15 cm, and toes pointed up in 63 % of take 2."""
+    path = recordings / "kinect" / "kimore" / f"JointPositionExercise{number}.csv"
+    recording = read_recording(path).slice(0, 300)
+
+    found = reconstruct_recording(recording)
+
+    before = found.reconstruction.motion
+    for side, name in enumerate(("Left", "Right")):
+        contact = found.planted.contacts[:, side]
+        ankle, toe = (places_of(found.motion, f"{part}{name}") for part in ("Ankle", "Foot"))
+        assert (toe > ankle)[contact, 2].mean() < 0.1
+        moved = np.linalg.norm(ankle - places_of(before, f"Ankle{name}"), axis=-1)
+        assert np.percentile(moved, 95) < 0.06
