@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 from ..motion import JointRecording, Sensor, Tracks
 from ..progress import Progress, unwatched, within
 from ..settings import Settings, setting
+from .bridge_gaps import bridged_losses
 from .correct_postures import CorrectionMethod, CorrectionSettings, correct_postures
 from .exchanges import undo_exchanges
 from .follow_joints import follow_joints
@@ -143,8 +144,16 @@ def reconstruct(
         return replace(rebuilt, motion=motion)
     lost = np.clip((DOUBTED - trust.combined) / (DOUBTED - LOST), 0.0, 1.0)
     sure = np.maximum(trust.combined, lost * rebuilt.confidence)
+    places = rebuilt.tracks
+    if not settings.causal:
+        believed = recording.tracks.visible & (lost <= 0.0)
+        places = places.with_positions(
+            bridged_losses(
+                recording.tracks.positions, believed, places.positions, recording.frame_rate
+            )
+        )
     corrected = correct_postures(
-        replace(recording, tracks=_blended(recording.tracks, rebuilt.tracks, lost)),
+        replace(recording, tracks=_blended(recording.tracks, places, lost)),
         prior or shipped_residual_prior(),
         reliability=replace(trust, combined=sure),
         settings=_correction(settings, known),
