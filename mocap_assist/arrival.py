@@ -1,5 +1,6 @@
 """Recordings that come into the scene one after the other, and go again if need be."""
 
+import logging
 from collections.abc import Sequence
 from dataclasses import replace
 from pathlib import Path
@@ -18,6 +19,8 @@ from .scene.origin import note_origin, origin_of_file
 from .scene.scene_objects import Numbers, all_or_nothing, choose, in_object_mode, remove
 from .scene.scene_rate import FrameRate, extend_duration, set_scene_rate
 from .scene.scene_state import SceneState
+
+logger = logging.getLogger(__name__)
 
 NOTED = 3  # recordings that the redo panel lists
 READING = 0.6  # share of the time that goes into reading
@@ -87,11 +90,13 @@ class Arrival:
         else:
             self._made.append(made)
             self._tops.append(top.session_uid)
-            self._said.append(sentence)
+            self._said.append(" ".join([sentence, *[f"{told}." for told in warnings[:1]]]))
             self._figures.append(_figures(recording, warnings))
 
     def refuse(self, path: Path, error: MocapAssistError) -> None:
         """Note that a file failed."""
+        for note in getattr(error, "__notes__", ()):  # where that was not foreseen
+            logger.error("%s: %s", path, note)
         named = path.name in str(error)
         self._failed.append(str(error) if named else f"{path.name}: {error}")
 

@@ -7,10 +7,11 @@ from pathlib import Path
 
 import bpy
 
-from ..solvers.errors import MocapAssistError
+from ..solvers.errors import InvalidFileError, MocapAssistError
 from .arrival import READING, Arrival
 from .import_choices import ImportChoices
-from .jobs.reading import Read, read_files
+from .jobs.job import ProcessDied
+from .jobs.reading import Known, Read, read_files
 from .recent_files import State, remember, state_of
 from .recording_objects import wanted_of
 from .watch import Watch
@@ -37,6 +38,7 @@ class ImportJob:
         self._wanted = wanted_of(context, choices)
         self._batches = deque(batches(paths))
         self._n_files, self._n_read, self._n_in = len(paths), 0, 0
+        self._shown = 0.0
         self._states: list[State] = []
         self._read: deque[tuple[Path, State, Read | MocapAssistError]] = deque()
         self.watch = Watch(context, self._next_batch())
@@ -64,14 +66,21 @@ class ImportJob:
         return partial(read_files, self._batches[0], self._wanted)
 
     def _fetch(self) -> None:
-        """Take over what was read, and let the next files be read meanwhile."""
+        """Take over what was read, and let the next files be read meanwhile.
+
+        Where the process has died, nobody knows of which file: halves of them are read again,
+        until it is alone.
+        """
         paths = self._batches.popleft()
         try:
             found = self.watch.job.result()
-        except MocapAssistError as error:  # The process has died; nobody knows of which file.
-            found = [error] * len(paths)
-        self._read.extend(zip(paths, self._states, found, strict=True))
-        self._n_read += len(paths)
+        except (ProcessDied, MemoryError) as error:
+            if half := len(paths) // 2:
+                self._batches.extendleft([paths[half:], paths[:half]])
+            found = [] if half else [_refusal(paths[0], error)]
+        if found:
+            self._read.extend(zip(paths, self._states, found, strict=True))
+            self._n_read += len(paths)
         if self._batches:
             self.watch.go_on(self._next_batch())
 
@@ -85,8 +94,9 @@ class ImportJob:
         if isinstance(found, MocapAssistError):
             self.arrival.refuse(path, found)
         else:
-            remember(path, state, found.recording)
-            self.arrival.add(context, path, found.recording, moving=found.moving)
+            recording, moving, warnings = found
+            remember(path, state, Known(recording, warnings))
+            self.arrival.add(context, path, recording, moving=moving, warnings=warnings)
 
     def _show(self, context: bpy.types.Context) -> None:
         fraction, message = 0.0, ""
@@ -97,7 +107,8 @@ class ImportJob:
             message = f"Bringing in {self._read[0][0].name}"
         reading = READING * (self._n_read + fraction)
         done = (reading + (1.0 - READING) * self._n_in) / self._n_files
-        self.watch.show(context, done, message)
+        self._shown = max(self._shown, done)  # less is done where files are read once more
+        self.watch.show(context, self._shown, message)
 
 
 def batches(paths: Iterable[Path]) -> Iterator[list[Path]]:
@@ -113,3 +124,15 @@ def batches(paths: Iterable[Path]) -> Iterator[list[Path]]:
         room -= size
     if batch:
         yield batch
+
+
+def _refusal(path: Path, error: ProcessDied | MemoryError) -> MocapAssistError:
+    """Say which file it was that could not be read."""
+    if isinstance(error, MemoryError):
+        return InvalidFileError(
+            f"{path} needs more memory than there is. Import a part of the take."
+        )
+    return InvalidFileError(
+        f"{path} made its reader end early, {error.cause}. Import a part of the take, or have"
+        f" it exported anew.{error.last_words}"
+    )

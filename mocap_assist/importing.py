@@ -47,7 +47,7 @@ def preview(context: bpy.types.Context, paths: list[Path]) -> str:
         size = path.stat().st_size
         if size > QUICKLY_READ:
             return f"{path.name}: {size / 1e6:.0f} MB; {plays}"
-        recording = read_again(path)
+        recording = read_again(path).recording
     except MocapAssistError as error:
         return str(error)
     except OSError as error:
@@ -71,30 +71,21 @@ def import_files(
     try:
         for index, path in enumerate(paths):
             share = within(progress, index / len(paths), (index + 1) / len(paths))
-            reading = _Listener(within(share, 0.0, READING))
             try:
-                recording = read_again(path, reading)
+                known = read_again(path, within(share, 0.0, READING))
             except SolveCancelled:
                 raise
             except MocapAssistError as error:
                 arrival.refuse(path, error)
             else:
-                building = within(share, READING, 1.0)
-                arrival.add(context, path, recording, building, warnings=reading.warnings)
+                arrival.add(
+                    context,
+                    path,
+                    known.recording,
+                    within(share, READING, 1.0),
+                    warnings=known.warnings,
+                )
     except BaseException:
         arrival.take_back(context)
         raise
     return arrival.end(context)
-
-
-class _Listener:
-    """A Progress that keeps what a reader says beyond that it reads."""
-
-    def __init__(self, progress: Progress) -> None:
-        self._progress = progress
-        self.warnings: list[str] = []
-
-    def __call__(self, fraction: float, message: str = "") -> None:
-        if message not in {"", "Reading", *self.warnings}:
-            self.warnings.append(message)
-        self._progress(fraction, message)

@@ -5,29 +5,28 @@ from pathlib import Path
 from ..solvers.errors import InvalidFileError
 from ..solvers.motion import JointRecording, Motion
 from ..solvers.progress import Progress, unwatched
-from ..solvers.recordings import read_recording
 from ..solvers.recordings.acclaim import find_skeleton
-from .jobs.reading import Recording
+from .jobs.reading import Known, Recording, read_file
 
 MOST = 20_000_000  # numbers that are kept
 
 State = tuple[tuple[str, int, int], ...]
-_read: dict[State, Recording] = {}
+_read: dict[State, Known] = {}
 
 
-def read_again(path: Path, progress: Progress = unwatched) -> Recording:
-    """Return what a file holds, as `read_recording` does; what has not changed is read once."""
+def read_again(path: Path, progress: Progress = unwatched) -> Known:
+    """Return what a file holds, as `read_file` does; what has not changed is read once."""
     state = state_of(path)
-    recording = _read.pop(state, None) or read_recording(path, progress=progress)
-    remember(path, state, recording)
-    return recording
+    known = _read.pop(state, None) or read_file(path, progress)
+    remember(path, state, known)
+    return known
 
 
-def remember(path: Path, state: State, recording: Recording) -> None:
+def remember(path: Path, state: State, known: Known) -> None:
     """Keep what was read from a file in this state, unless it has changed since."""
     if state and state == state_of(path):
-        _read[state] = recording
-    while sum(map(_size, _read.values())) > MOST:
+        _read[state] = known
+    while sum(_size(known.recording) for known in _read.values()) > MOST:
         _read.pop(next(iter(_read)))
 
 

@@ -30,6 +30,25 @@ ALONE = ("-s", "-P")
 NO_WINDOW = getattr(subprocess, "CREATE_NO_WINDOW", 0)  # no console flashes up on Windows
 
 
+class ProcessDied(MocapAssistError):
+    """The process of a solve ended without an answer.
+
+    Parameters
+    ----------
+    cause : str
+        How it ended: "with status 1".
+    said : str
+        The last line that it printed, if any.
+    """
+
+    def __init__(self, cause: str, said: str) -> None:
+        self.cause = cause
+        self.last_words = f" Its last words: {said}" if said else ""
+        super().__init__(
+            f"The solver process ended early, {cause}. Nothing was changed.{self.last_words}"
+        )
+
+
 class Quick(partial[Result]):
     """A solve that is so short that it needs no process of its own."""
 
@@ -104,8 +123,10 @@ class Job(Generic[Result]):
         ------
         SolveCancelled
             `cancel` was called.
+        ProcessDied
+            It has left no answer.
         MocapAssistError
-            The process died; or whatever the solver itself raised.
+            Or whatever the solver itself raised.
         """
         status = self._process.wait()
         said, answer = last_words(self._path), self._path / RESULT
@@ -117,7 +138,7 @@ class Job(Generic[Result]):
         if self._cancelled:
             raise SolveCancelled("Cancelled.")
         if outcome is None:
-            raise MocapAssistError(_obituary(status, said))
+            raise ProcessDied(_cause(status), said)
         if isinstance(outcome, Exception):
             raise outcome
         result: Result = outcome[0]
@@ -135,11 +156,10 @@ def _search_path() -> str:
     return os.pathsep.join(path for path in sys.path if path)
 
 
-def _obituary(status: int, said: str) -> str:
+def _cause(status: int) -> str:
     cause = f"with status {status}"
     if status < 0:
         cause = f"by signal {signal.Signals(-status).name}"
         if -status == signal.SIGKILL:
             cause += ", which often means that memory ran out"
-    said = f" Its last words: {said}" if said else ""
-    return f"The solver process ended early, {cause}. Nothing was changed.{said}"
+    return cause

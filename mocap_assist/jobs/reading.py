@@ -1,9 +1,10 @@
 """What the button Import has done for it before anything comes into the scene."""
 
-from collections.abc import Sequence
+import traceback
+from collections.abc import Callable, Sequence
 from dataclasses import replace
 from pathlib import Path
-from typing import NamedTuple
+from typing import NamedTuple, TypeVar
 
 from ...solvers.errors import InvalidFileError, MocapAssistError, SolveCancelled
 from ...solvers.motion import (
@@ -19,6 +20,7 @@ from ...solvers.progress import Progress, unwatched
 from ...solvers.recordings import read_recording
 
 Recording = Motion | Tracks | JointRecording
+Result = TypeVar("Result")
 
 
 class Wanted(NamedTuple):
@@ -31,11 +33,21 @@ class Wanted(NamedTuple):
     """Frames per second to resample to; None leaves each recording its own."""
 
 
+class Known(NamedTuple):
+    """What a file holds."""
+
+    recording: Recording
+    warnings: tuple[str, ...] = ()
+    """What its reader said of it."""
+
+
 class Read(NamedTuple):
     """What a file holds, and what is to be seen of it."""
 
     recording: Recording
     moving: Motion | Tracks
+    warnings: tuple[str, ...] = ()
+    """What its reader said of it."""
 
 
 def read_files(
@@ -50,19 +62,55 @@ def read_files(
 
         share(0.0)
         try:
-            recording = read_recording(path, progress=share)
-            found.append(Read(recording, as_wanted(recording, wanted)))
+            known = read_file(path, share)
+            moving = _tried(path, lambda known=known: as_wanted(known.recording, wanted))
+            found.append(Read(known.recording, moving, known.warnings))
         except SolveCancelled:
             raise
         except MocapAssistError as error:
             found.append(error)
-        except MemoryError:
-            found.append(
-                InvalidFileError(
-                    f"{path} needs more memory than there is. Import a part of the take."
-                )
-            )
     return found
+
+
+def read_file(path: Path, progress: Progress = unwatched) -> Known:
+    """Read a file, as `read_recording` does, and keep what its reader says.
+
+    Whatever goes wrong is a MocapAssistError, so that other files are read all the same.
+    """
+    listener = _Listener(progress)
+    recording = _tried(path, lambda: read_recording(path, progress=listener))
+    return Known(recording, tuple(listener.warnings))
+
+
+def _tried(path: Path, read: Callable[[], Result]) -> Result:
+    try:
+        return read()
+    except MocapAssistError:
+        raise
+    except MemoryError:
+        raise InvalidFileError(
+            f"{path} needs more memory than there is. Import a part of the take."
+        ) from None
+    except Exception as error:  # of the reader, which must not keep other files out
+        refusal = InvalidFileError(
+            f"{path} cannot be read, since its reader fails ({type(error).__name__}: {error})."
+            " Please report that, with the file."
+        )
+        refusal.add_note(traceback.format_exc())
+        raise refusal from None
+
+
+class _Listener:
+    """A Progress that keeps what a reader says beyond that it reads."""
+
+    def __init__(self, progress: Progress) -> None:
+        self._progress = progress
+        self.warnings: list[str] = []
+
+    def __call__(self, fraction: float, message: str = "") -> None:
+        if message not in {"", "Reading", *self.warnings}:
+            self.warnings.append(message)
+        self._progress(fraction, message)
 
 
 def as_wanted(recording: Recording, wanted: Wanted) -> Motion | Tracks:

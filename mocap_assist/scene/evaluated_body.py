@@ -1,6 +1,7 @@
 """Read the body of a generated control rig as Blender shows it: constraints decide there."""
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
+from contextlib import contextmanager
 from dataclasses import replace
 from itertools import pairwise
 
@@ -18,6 +19,7 @@ from ...solvers.motion.rotations import (
     rotate,
 )
 from . import compat
+from .animated_values import values_kept
 from .compat import Source
 from .rig import placement_of
 from .rigify import original_of
@@ -94,14 +96,8 @@ def _shown(
     source: Source,
 ) -> tuple[Array, Array]:
     """Return world rotations of bones, (n_frames, n_bones, 4), and places of the first, m."""
-    before = scene.frame_current, scene.frame_subframe
-    animation = armature.animation_data
-    played = animation.action, animation.action_slot
-    other = played != source
     rotations, places = [], []
-    try:
-        if other:
-            compat.assign(armature, *source)
+    with values_kept(armature, source), _played(scene, armature, source):
         for frame in take.frames:
             scene.frame_set(int(np.floor(frame)), subframe=float(frame - np.floor(frame)))
             shown = armature.evaluated_get(bpy.context.evaluated_depsgraph_get())
@@ -111,11 +107,26 @@ def _shown(
             rotations.append(multiply(turn, quaternion_from_matrix(linear)))
             head = shown.matrix_world @ Matrix(pose[0]).translation
             places.append(take.rest.scale / scale * np.array(head))
+    return np.stack(rotations), np.stack(places)
+
+
+@contextmanager
+def _played(
+    scene: bpy.types.Scene, armature: bpy.types.Object, source: Source
+) -> Iterator[None]:
+    """Let the armature play an action for a while; go back to its own and the same frame."""
+    before = scene.frame_current, scene.frame_subframe
+    animation = armature.animation_data
+    played = animation.action, animation.action_slot
+    other = played != source
+    try:
+        if other:
+            compat.assign(armature, *source)
+        yield
     finally:
         if other:
             compat.assign(armature, *played)
         scene.frame_set(before[0], subframe=before[1])
-    return np.stack(rotations), np.stack(places)
 
 
 def _parent(role: str, ordered: list[str]) -> int:

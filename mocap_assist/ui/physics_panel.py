@@ -30,7 +30,7 @@ class PhysicsPanel:
         simulate = context.scene.mocap_assist.simulate
         for item in fields(SimulateSettings):
             row = column.row()
-            row.active = item.name != "ground_height" or simulate.ground == Ground.HEIGHT.name
+            row.active = item.name != "ground_height" or simulate.ground != Ground.FEET.name
             row.prop(simulate, item.name)
         layout.operator(SIMULATE, icon="PHYSICS")
         if reason := why_not_simulate(context):

@@ -58,23 +58,26 @@ class Motion:
                 f"The root goes as far as {farthest:.3g} m; give the scale of the recording, or"
                 " take those frames out."
             )
-        for start in range(0, len(rotations), FRAMES_AT_ONCE):
-            self._normalize(rotations[start : start + FRAMES_AT_ONCE])
+        self._normalize(rotations)
         object.__setattr__(self, "rotations", rotations)
         object.__setattr__(self, "root_positions", root_positions)
         object.__setattr__(self, "frame_rate", float(self.frame_rate))
 
     def _normalize(self, rotations: NDArray[np.float64]) -> None:
-        """Change rotations of some frames to unit length, if they are nearly."""
-        norms = np.linalg.norm(rotations, axis=-1, keepdims=True)
-        wrong = (np.abs(norms - 1.0) > UNIT_TOLERANCE).any(axis=(0, 2))
+        """Change rotations to unit length, if they are nearly; block by block saves memory."""
+        wrong = np.zeros(self.skeleton.n_joints, dtype=np.bool_)
+        for start in range(0, len(rotations), FRAMES_AT_ONCE):
+            block = rotations[start : start + FRAMES_AT_ONCE]
+            norms = np.linalg.norm(block, axis=-1, keepdims=True)
+            off = np.abs(norms - 1.0)
+            wrong |= (off > UNIT_TOLERANCE).any(axis=(0, 2))
+            if not wrong.any():
+                np.divide(block, norms, out=block, where=~(off <= ROUNDING))
         if wrong.any():
             names = [self.skeleton.names[joint] for joint in np.flatnonzero(wrong)]
             raise InvalidMotionError(
                 f"Rotations must be unit quaternions; these are not: {', '.join(names)}."
             )
-        unit = np.abs(norms - 1.0) <= ROUNDING
-        np.divide(rotations, norms, out=rotations, where=~unit)
 
     @property
     def n_frames(self) -> int:

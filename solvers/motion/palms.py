@@ -8,9 +8,12 @@ from .skeleton import Skeleton
 
 Array = NDArray[np.float64]
 
-TURNED = np.radians(45.0)
-"""Palms that are turned less from facing down, in rests as most rigs have them, stay as they
-are: knuckles lie a little aslant in all hands."""
+ASLANT, TURNED = np.radians([30.0, 60.0])
+"""Palms that are turned less than the first from facing down, in rests as most rigs have them,
+stay as they are: knuckles lie a little aslant in all hands. From the second on they are turned
+back wholly, in between partly, so that nearly equal rests are treated nearly alike."""
+ALIKE = np.radians([30.0, 60.0])
+"""By how much both hands may differ, wholly and at all."""
 ALONG_ARM = np.array([1.0, 0.0, 0.0])
 FINGERS = ("Little", "Ring", "Middle")
 
@@ -20,8 +23,8 @@ def with_palms_down(alignment: Array, skeleton: Skeleton, joints: dict[str, int]
 
     Bones alone do not tell how a hand is turned about the arm. Its knuckles do: in the T-pose
     they lie one behind the other, the index finger in front. Where those of both hands are
-    turned from there by more than `TURNED` and alike (palms that face forward), hands are taken
-    to be turned, and forearms by half, as forearms twist.
+    turned from there, alike and by more than a little (palms that face forward), hands are
+    taken to be turned, and forearms by half, as forearms twist.
 
     Parameters
     ----------
@@ -31,12 +34,14 @@ def with_palms_down(alignment: Array, skeleton: Skeleton, joints: dict[str, int]
     joints : dict of role to joint
     """
     left, right = (_roll(alignment, skeleton, joints, side) for side in ("left", "right"))
-    if left is None or right is None or min(abs(left), abs(right)) < TURNED:
+    if left is None or right is None:
         return alignment
     apart = (right - left + np.pi) % (2.0 * np.pi) - np.pi
-    if abs(apart) > TURNED:
+    share = _rising(min(abs(left), abs(right)), ASLANT, TURNED)
+    share *= 1.0 - _rising(abs(apart), *ALIKE)
+    if share == 0.0:
         return alignment
-    turned, roll = alignment.copy(), left + 0.5 * apart
+    turned, roll = alignment.copy(), share * (left + 0.5 * apart)
     half, whole = (
         quaternion_from_rotation_vector(part * roll * ALONG_ARM) for part in (0.5, 1.0)
     )
@@ -62,3 +67,9 @@ def _roll(
     rest = skeleton.rest_positions
     backwards = rotate(inverse(alignment[hand]), rest[other] - rest[index])
     return float(np.arctan2(backwards[2], backwards[1]))
+
+
+def _rising(value: float, start: float, stop: float) -> float:
+    """Return 0 up to `start`, 1 from `stop` on, smoothly in between."""
+    share = float(np.clip((value - start) / (stop - start), 0.0, 1.0))
+    return share * share * (3.0 - 2.0 * share)

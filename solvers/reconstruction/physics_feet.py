@@ -18,6 +18,8 @@ from ..motion.rotations import inverse, rotate
 from .physics_body import Capsule, PhysicsBody
 
 Array = NDArray[np.float64]
+LONG = 0.5
+"""Seconds in which a foot stands that is on the ground, and not in the middle of a leap."""
 STANDING = 25.0
 """Percentile of the heights of a foot in contact at which it stands flat."""
 
@@ -49,6 +51,14 @@ def find_ground(motion: Motion, humanoid: HumanoidMap, size: float) -> float:
         usual = (ANKLE if toe == ankle else BALL)[0] * size
         heights.append(_standing(positions[:, toe, 2], contacts[:, side]) - usual)
     return min(heights)
+
+
+def stands_for_long(motion: Motion, humanoid: HumanoidMap) -> bool:
+    """Whether a foot of the take stands, now and then, for half a second in all."""
+    if not has_feet(humanoid):
+        return False
+    stands = detect_contacts(motion, humanoid).any(axis=1)
+    return bool(stands.sum() * motion.dt >= LONG)
 
 
 def with_soles(

@@ -34,9 +34,22 @@ def told(followed: NDArray[np.bool_], given_up: bool, smoothing: float) -> str:
     )
 
 
-def about_ground(ground: float, under_feet: float, size: float) -> str:
-    """Say that the ground is not where the take stands; nothing where it is."""
-    if abs(under_feet - ground) <= OTHER_GROUND * size:
+def stands_on(ground: float, under_feet: float, size: float) -> bool:
+    """Whether a body of this size stands on the ground, or near it: both are heights."""
+    return abs(under_feet - ground) <= OTHER_GROUND * size
+
+
+def about_ground(ground: float, under_feet: float, size: float, given: float | None) -> str:
+    """Say that the ground is not where the take stands, or not at the height that was given.
+
+    `given` is None where it must not be there; nothing is said where all is as expected.
+    """
+    if given is not None and not stands_on(given, ground, size):
+        return (
+            f" The take stands at a height of {ground:.2f} m, far from {given:.2f} m: the"
+            " ground is taken to be under its feet."
+        )
+    if stands_on(ground, under_feet, size):
         return ""
     return (
         f" The take stands at a height of {under_feet:.2f} m, the ground is at {ground:.2f} m:"

@@ -5,6 +5,7 @@ from numpy.typing import NDArray
 
 from ..errors import InvalidMotionError
 from ..motion import JointRecording, motion_from_points
+from ..motion.joint_recording import INFERRED
 from ..progress import Progress, unwatched, within
 from .body_size import body_lengths
 from .follow_postures import follow_postures
@@ -73,11 +74,7 @@ def reconstruct_postures(
         reliability = measure_reliability(recording, progress=within(progress, 0.0, 0.1))
     positions = posture_positions(recording)
     trust = _posture_trust(recording, positions, reliability.combined)
-    if (trust > 0.0).sum(axis=1).max(initial=0) < FEWEST:
-        raise InvalidMotionError(
-            f"No frame shows {FEWEST} joints of a body; choose a recording of an actor who was"
-            " tracked."
-        )
+    _check_seen(recording, positions, trust)
     rate = recording.frame_rate
     seen = normalise(positions, rate, trust)
     lengths = body_lengths(seen.postures, trust)
@@ -94,6 +91,38 @@ def reconstruct_postures(
         rebuilt, motion, reliability, found.confidence[:, anchors(tracks.names)],
         _words(settings, library),
     )  # fmt: skip
+
+
+def _check_seen(recording: JointRecording, positions: Array, trust: Array) -> None:
+    """Raise InvalidMotionError where no frame has joints enough, and say why."""
+    if _most(trust > 0.0) >= FEWEST:
+        return
+    known = joints_of_names(recording.names)
+    if len(known) < FEWEST:
+        raise InvalidMotionError(
+            f"Only {len(known)} joints of a body are recognised in the names of the joints"
+            f" ({', '.join(known)}); postures need {FEWEST}, among them hips and limbs."
+        )
+    state = recording.tracking_state
+    if state is None or _most(np.isfinite(positions)[..., 0]) < FEWEST:
+        raise InvalidMotionError(
+            f"No frame shows {FEWEST} joints of a body; choose a recording of an actor who was"
+            " tracked."
+        )
+    if (state == INFERRED).any():
+        raise InvalidMotionError(
+            f"No frame has {FEWEST} joints that the tracker saw: it calls the others inferred."
+            " Raise the setting `inferred`, if its guesses are to count."
+        )
+    raise InvalidMotionError(
+        f"No frame has {FEWEST} joints that the tracker calls seen, though their places are"
+        " there. Leave the states out of the recording, if the places are right."
+    )
+
+
+def _most(seen: NDArray[np.bool_]) -> int:
+    """Return how many joints are seen in the frame that has most, of (n_frames, n_joints)."""
+    return int(seen.sum(axis=1).max(initial=0))
 
 
 def _posture_trust(recording: JointRecording, positions: Array, combined: Array) -> Array:

@@ -6,6 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.ndimage import gaussian_filter1d
 
+from ..errors import InvalidMotionError
 from ..motion import JointRecording, Tracks
 from .body_size import USUAL_LENGTHS, body_lengths
 from .heading import Normalised, normalise, turned
@@ -60,8 +61,12 @@ def calm_postures(
             positions[:, seen], calm * rate, axis=0, mode="nearest"
         )
     normal = normalise(positions, rate, weights)
-    size = USUAL_LENGTHS.sum() / body_lengths(positions).sum()
-    return CalmPostures(positions, normal, normal.postures * size)
+    length = body_lengths(positions).sum()
+    if length == 0.0:
+        raise InvalidMotionError(
+            "The joints are all in one place; choose a recording of an actor who was tracked."
+        )
+    return CalmPostures(positions, normal, normal.postures * USUAL_LENGTHS.sum() / length)
 
 
 def bridged(positions: Array) -> Array:

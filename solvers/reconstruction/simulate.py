@@ -12,8 +12,8 @@ from ..progress import Progress, unwatched, within
 from ..settings import Settings, setting
 from .physics_body import PhysicsBody, check_size, physics_body
 from .physics_engine import load_engine
-from .physics_feet import find_ground, with_soles
-from .physics_figures import about_ground, mean_distance, told
+from .physics_feet import find_ground, stands_for_long, with_soles
+from .physics_figures import about_ground, mean_distance, stands_on, told
 from .physics_piece import Conditions, Piece, find_pieces, simulated_piece
 from .physics_surface import penetration, slide
 from .physics_target import blended, filled
@@ -33,6 +33,8 @@ TOO_MANY = 0.3
 class Ground(Enum):
     """Where the ground is."""
 
+    LIKELY = "likely"
+    """At the given height where the take stands near it, or else under the feet."""
     HEIGHT = "height"
     FEET = "auto"
 
@@ -46,10 +48,13 @@ class SimulateSettings(Settings):
         minimum=0.0, maximum=1.0,
     )  # fmt: skip
     ground: Ground = setting(
-        Ground.HEIGHT, "Where the ground is: at a given height, or under the feet of the take"
+        Ground.LIKELY,
+        "Where the ground is: at a given height, or under the feet of the take;"
+        " or, likely, at the height if the take stands near it, else under the feet",
     )
     ground_height: float = setting(
-        0.0, "Height of the ground, where it is given", unit="m", minimum=-1e4, maximum=1e4,
+        0.0, "Height of the ground, unless it is under the feet",
+        unit="m", minimum=-1e4, maximum=1e4,
     )  # fmt: skip
     response: float = setting(
         5.0, "How quickly joints are pulled to the captured pose; higher follows it closer,"
@@ -177,8 +182,7 @@ def simulate(
     bare = physics_body(whole, humanoid)
     check_size(bare, motion.frame_rate)
     under_feet = find_ground(whole, humanoid, bare.size)
-    in_air = settings.ground is Ground.HEIGHT
-    ground = settings.ground_height if in_air else under_feet
+    ground = _height(settings, whole, humanoid, under_feet, bare.size)
     body = with_soles(bare, whole, humanoid, ground)
     conditions = Conditions(
         ground, settings.response, settings.smoothing, settings.friction, settings.support
@@ -195,6 +199,26 @@ def simulate(
     ]
     progress(1.0, "Simulated")
     return _put_together(motion, whole, body, pieces, settings, ground, under_feet)
+
+
+def _height(
+    settings: SimulateSettings,
+    take: Motion,
+    humanoid: HumanoidMap,
+    under_feet: float,
+    size: float,
+) -> float:
+    """Return the height of the ground in metres.
+
+    Who is far above the given height may be in the middle of a leap; nobody is far below it.
+    """
+    given = settings.ground_height
+    if settings.ground is Ground.HEIGHT:
+        return given
+    if settings.ground is Ground.FEET:
+        return under_feet
+    leaps = under_feet > given and not stands_for_long(take, humanoid)
+    return given if leaps or stands_on(given, under_feet, size) else under_feet
 
 
 def with_strength(motion: Motion, simulated: Simulated, strength: float) -> Motion:
@@ -231,6 +255,7 @@ def _put_together(
     if share.any():
         result = blended(whole, whole.with_poses(rotations, roots), body.joints, share)
     smoothing = max(piece.smoothing for piece in pieces)
+    given = settings.ground_height if settings.ground is Ground.LIKELY else None
     contacts = np.concatenate([piece.contacts for piece in pieces])
     return Simulated(
         motion=result.with_poses(),
@@ -245,7 +270,7 @@ def _put_together(
         smoothing=smoothing,
         distance=mean_distance(whole, filled(result), body.joints),
         message=told(followed, given_up, smoothing if smoothing > settings.smoothing else 0.0)
-        + about_ground(ground, under_feet, body.size),
+        + about_ground(ground, under_feet, body.size, given),
     )
 
 

@@ -84,7 +84,8 @@ def read_azure_csv(
     """
     check_scale(scale)
     reader = LineReader(path)
-    per_joint = PER_JOINT.match(b"\n".join(reader.peek(2)))
+    headings = [line for line in reader.peek(4) if line.strip()]  # "\r\r\n" leaves blank ones
+    per_joint = PER_JOINT.match(b"\n".join(headings[:2]))
     read = _read_joint_lines if per_joint else _read_frame_lines
     names, values = read(reader, path, within(progress, 0.0, 0.9))
     states = values[..., 3].astype(np.int8) if values.shape[-1] > 3 else None

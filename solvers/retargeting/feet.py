@@ -118,7 +118,9 @@ def _on_soles(
         ankle, turn = ankles[number], np.tile(IDENTITY, (len(before.positions), 1))
         if rests_on_ground(target):
             allowed = allowed_depths(source, transfer.seen, side, placement)
-            sole = sole_above_ground(target, before, side, ankle, ground, allowed)
+            sole = sole_above_ground(
+                target, before, side, ankle, ground, allowed, transfer.frame_rate
+            )
             rotations = with_sole(target, rotations, before, side, sole)
             ankle, turn = ankle + sole.lift[:, None] * UP, sole.turn
         theirs = transfer.seen.positions[:, list(foot_bone(source, side))]

@@ -19,8 +19,9 @@ Array = NDArray[np.float64]
 TOPS = ("neck", "head")
 TOP = 0.5
 """How much of the swing the chest takes, which is turned as the source's but for that."""
-UPRIGHT = 0.75
-"""Quantile of the trunk's uprightness: frames above it show how much it leans usually."""
+BENT = np.cos(np.radians(20.0))
+"""Cosine of how far the trunk is bent from its rest where it comes to lean fully as the
+source's: straighter ones are left as they are, as rest poses are drawn differently."""
 SMALL = np.radians(5.0)
 """Half of a swing of this size is left out, and most of smaller ones: they are noise."""
 ROUNDS = 6
@@ -39,8 +40,8 @@ def leaning_swings(
 
     Vertebrae of another body sit elsewhere: turned as the source's, they lead the neck
     elsewhere, in deep bows by 10 to 20 degrees. A swing of all of them is added with which the
-    line from hips to neck points as the source's does, apart from how the two differ at rest
-    and when they are most upright. Whatever hangs on the trunk keeps its turn.
+    line from hips to neck points as the source's does, apart from how the two differ at rest;
+    trunks that are hardly bent stay as they are. Whatever hangs on the trunk keeps its turn.
 
     Parameters
     ----------
@@ -71,7 +72,7 @@ def leaning_swings(
         }
         way = _way(target, swung, target.joints[top])
         swing = swing + rotation_vector_from_quaternion(rotation_between(way, wanted))
-    swing = swing - rotate(hips, _usual(rotate(inverse(hips), swing), wanted))
+    swing = swing * _bent(hips, wanted, _rest_way(target, top))
     square = (swing * swing).sum(axis=1, keepdims=True)
     swing = swing * square / (square + SMALL**2)
     return {
@@ -79,22 +80,30 @@ def leaning_swings(
     }
 
 
-def _usual(swing: Array, way: Array) -> Array:
-    """Return the mean swing of the most upright frames, shape (3,)."""
-    upright = way[:, 2] / np.linalg.norm(way, axis=1)
-    return np.asarray(swing[upright >= np.quantile(upright, UPRIGHT)].mean(axis=0))
+def _bent(hips: Array, way: Array, rest: Array) -> Array:
+    """Return 0 for straight trunks, 1 for bent ones, smoothly, shape (n_frames, 1).
+
+    It looks at one frame alone, so that a cut of a take leans as within it.
+    """
+    length = np.linalg.norm(way, axis=1) * np.linalg.norm(rest)
+    straight = (rotate(inverse(hips), way) @ rest) / np.maximum(length, 1e-9)
+    share = np.clip((1.0 - straight) / (1.0 - BENT), 0.0, 1.0)[:, None]
+    return np.asarray(share * share * (3.0 - 2.0 * share))
 
 
 def _wanted_way(source: Body, target: Body, seen: WorldPoses, hips: Array, top: str) -> Array:
     """Return where the target's neck should be from its hips, but for the distance."""
-    rests = []
-    for body in (source, target):
-        low, high = body.joints["hips"], body.joints[top]
-        rests.append(rotate(inverse(body.alignment[low]), body.rest[high] - body.rest[low]))
+    rests = [_rest_way(body, top) for body in (source, target)]
     places = seen.positions
     way = places[:, source.joints[top]] - places[:, source.joints["hips"]]
     upright = rotate(inverse(hips), way)
     return np.asarray(rotate(hips, rotate(rotation_between(*rests), upright)))
+
+
+def _rest_way(body: Body, top: str) -> Array:
+    """Return the way from hips to neck in the canonical T-pose, shape (3,), metres."""
+    low, high = body.joints["hips"], body.joints[top]
+    return np.asarray(rotate(inverse(body.alignment[low]), body.rest[high] - body.rest[low]))
 
 
 def _way(target: Body, turned: dict[int, Array], top: int) -> Array:

@@ -97,6 +97,11 @@ def check_size(recording: JointRecording) -> None:
     if not np.isfinite(shares).any():
         return
     size = float(np.nanmedian(shares))
+    if size == 0.0:
+        raise InvalidMotionError(
+            "The joints are all in one place, as some exporters write them where no body is"
+            " tracked; choose a recording of an actor who was tracked."
+        )
     if SMALLEST <= size <= LARGEST:
         return
     unit = min(UNITS, key=lambda factor: abs(np.log(size * factor)))

@@ -1,91 +1,8 @@
 """Import from a window: files are read in a process of its own; here Blender pretends to."""
 
-import tempfile
-import time
-from pathlib import Path
-from types import SimpleNamespace
-
 import numpy as np
 import pytest
-
-WALK = "07_01.bvh"
-
-
-@pytest.fixture(autouse=True)
-def own_temporary_folder(tmp_path, monkeypatch):
-    """Others that solve on this machine at the same time leave their folders elsewhere."""
-    (tmp_path / "jobs").mkdir()
-    monkeypatch.setattr(tempfile, "tempdir", str(tmp_path / "jobs"))
-
-
-@pytest.fixture
-def walk(recordings, tmp_path):
-    """Three files of a folder of their own: two walks, and between them one that is cut."""
-    content = (recordings / "mocap" / "cmu_walk" / WALK).read_bytes()
-    for name in ("first.bvh", "second.bvh"):
-        (tmp_path / name).write_bytes(content)
-    (tmp_path / "cut.bvh").write_bytes(content[:9000])
-    return tmp_path
-
-
-@pytest.fixture
-def window(blank):
-    """The context that an operator gets in one, and what it does to it."""
-    seen = SimpleNamespace(timers=[], status=[], reports=[])
-    seen.job = blank.context.window_manager.mocap_assist_job
-    seen.context = SimpleNamespace(
-        scene=blank.context.scene,
-        view_layer=blank.context.view_layer,
-        window=None,
-        window_manager=SimpleNamespace(
-            event_timer_add=lambda *_, **__: seen.timers.append("timer") or "timer",
-            event_timer_remove=seen.timers.remove,
-            modal_handler_add=lambda _: None,
-            mocap_assist_job=seen.job,
-            windows=[],
-        ),
-        workspace=SimpleNamespace(status_text_set=seen.status.append),
-    )
-    return seen
-
-
-@pytest.fixture
-def press(load, window, walk):
-    """Import files of the folder; return the operator, which waits."""
-    choices = load("mocap_assist.import_choices")
-    module = load("mocap_assist.import_operator")
-
-    def start(*names, **chosen):
-        class Operator(module.WaitingImport):
-            directory, filepath = str(walk), ""
-            files = tuple(SimpleNamespace(name=name) for name in names)
-            poll_message_set = window.reports.append
-
-            def settings(self):
-                return choices.ImportSettings(choices.ImportChoices(**chosen))
-
-            def report(self, kind, message):
-                window.reports.append((kind, message))
-
-        operator = Operator()
-        assert operator.invoke(window.context, None) == {"RUNNING_MODAL"}
-        return operator
-
-    return start
-
-
-def event(kind, value="NOTHING"):
-    return SimpleNamespace(type=kind, value=value)
-
-
-def wait(operator, window, until=lambda: False):
-    """Let time pass until the operator ends, or something has happened."""
-    while not until():
-        outcome = operator.modal(window.context, event("TIMER"))
-        if outcome != {"RUNNING_MODAL"}:
-            return outcome
-        time.sleep(0.02)
-    return None
+from modal_events import event, nothing_is_left, wait
 
 
 @pytest.fixture
@@ -107,18 +24,13 @@ def everything(blank):
 
 
 @pytest.fixture
-def posing(blank, bring, walk):
+def posing(blank, bring, walks):
     """An animator poses one armature; another is selected too."""
-    other, active = bring(walk / "second.bvh"), bring(walk / "first.bvh")
+    other, active = bring(walks / "second.bvh"), bring(walks / "first.bvh")
     other.select_set(True)
     blank.context.view_layer.objects.active = active
     blank.ops.object.mode_set(mode="POSE")
     return active
-
-
-def nothing_is_left(window):
-    jobs = list(Path(tempfile.gettempdir()).iterdir())
-    return not (jobs or window.timers or window.job.running) and window.status[-1] is None
 
 
 @pytest.mark.parametrize("key", ["ESC", "RIGHTMOUSE"])
@@ -178,12 +90,12 @@ def test_all_that_can_be_read_comes_in(press, window, load, monkeypatch, blank, 
 @pytest.mark.parametrize("joints", [False, True])
 @pytest.mark.parametrize("chosen", [{}, {"frame_rate": "RESAMPLE", "global_scale": 2.0}])
 def test_it_is_what_a_script_gets(
-    chosen, joints, press, window, bring, walk, blank, poses, load, recordings
+    chosen, joints, press, window, bring, walks, blank, poses, load, recordings
 ):
     if joints:
         take = recordings / "kinect" / "irds" / "215_18_5_8_1_stand.txt"
-        (walk / "first.bvh").write_bytes(take.read_bytes())
-    expected = poses(bring(walk / "first.bvh", **chosen), [1, 30])
+        (walks / "first.bvh").write_bytes(take.read_bytes())
+    expected = poses(bring(walks / "first.bvh", **chosen), [1, 30])
     blank.data.objects.remove(blank.context.object)
     if chosen:
         rates = load("mocap_assist.scene.scene_rate").FrameRate
@@ -197,30 +109,17 @@ def test_it_is_what_a_script_gets(
         np.testing.assert_array_equal(found[name], matrices)
 
 
-def test_the_redo_panel_need_not_read_again(press, window, load, walk, monkeypatch, blank):
+def test_the_redo_panel_need_not_read_again(press, window, load, walks, monkeypatch, blank):
     operator = press("first.bvh")
     wait(operator, window)
 
     def fail(*_, **__):
         raise AssertionError("It was read again.")
 
-    monkeypatch.setattr(load("mocap_assist.recent_files"), "read_recording", fail)
+    monkeypatch.setattr(load("mocap_assist.recent_files"), "read_file", fail)
     operator.execute(blank.context)
 
     assert len(blank.data.objects) == 2
-
-
-def test_a_reader_that_dies_takes_nothing_along(posing, press, window, everything):
-    before = everything()
-    operator = press("first.bvh", "second.bvh")
-
-    operator._job.watch.job._process.kill()
-
-    assert wait(operator, window) == {"CANCELLED"}
-    ((kind, said),) = window.reports
-    assert kind == {"ERROR"} and "ended early" in said
-    assert everything() == before
-    assert nothing_is_left(window)
 
 
 def test_closing_the_window_ends_it(posing, press, window, everything):
@@ -261,7 +160,7 @@ def test_one_at_a_time(press, window, blank):
 
 @pytest.mark.parametrize("fault", ["cut", "half way"])
 def test_a_script_too_keeps_pose_mode_and_selection_where_all_fails(
-    posing, everything, walk, blank, load, monkeypatch, fault
+    posing, everything, walks, blank, load, monkeypatch, fault
 ):
     before = everything()
     if fault == "half way":
@@ -274,20 +173,20 @@ def test_a_script_too_keeps_pose_mode_and_selection_where_all_fails(
     name = "cut.bvh" if fault == "cut" else "first.bvh"
 
     with pytest.raises(RuntimeError, match=name):
-        blank.ops.mocap_assist.import_recording(filepath=str(walk / name))
+        blank.ops.mocap_assist.import_recording(filepath=str(walks / name))
 
     assert everything() == before
 
 
-def test_the_dialog_does_not_wait_for_a_large_file(load, walk, monkeypatch, blank):
+def test_the_dialog_does_not_wait_for_a_large_file(load, walks, monkeypatch, blank):
     importing = load("mocap_assist.importing")
-    small = importing.preview(blank.context, [walk / "first.bvh"])
+    small = importing.preview(blank.context, [walks / "first.bvh"])
     monkeypatch.setattr(importing, "QUICKLY_READ", 1000)
     monkeypatch.setattr(importing, "read_again", None)
     blank.context.scene.render.fps = 24
 
-    large = importing.preview(blank.context, [walk / "first.bvh"])
+    large = importing.preview(blank.context, [walks / "first.bvh"])
 
     assert small == "first.bvh: 317 frames at 120 Hz; the scene plays 24 frames per second"
     assert large == "first.bvh: 0 MB; the scene plays 24 frames per second"
-    assert "cannot be read" in importing.preview(blank.context, [walk / "gone.bvh"])
+    assert "cannot be read" in importing.preview(blank.context, [walks / "gone.bvh"])

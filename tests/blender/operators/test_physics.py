@@ -61,7 +61,7 @@ def test_a_take_that_cannot_be_followed_is_said_and_left(walker, blank, keys_of,
     raw = walker.animation_data.action
     before = keys_of(raw)
 
-    assert blank.ops.mocap_assist.simulate(ground_height=-20.0) == {"FINISHED"}
+    assert blank.ops.mocap_assist.simulate(ground="HEIGHT", ground_height=-20.0) == {"FINISHED"}
 
     action = walker.animation_data.action
     assert json.loads(action["mocap_assist_history"])[-1]["frames_not_followed"] == 60

@@ -16,7 +16,7 @@ QUICK = ["--local-points", "10", "--whole-points", "10", "--sample", "50"]
 
 @pytest.fixture
 def stage(tmp_path):
-    """Three walks as an optical system and as a sensor that sees the knees 8 cm too far apart."""
+    """Three walks of an optical system, and of a sensor that sees knees too far apart."""
     (tmp_path / "kinect").mkdir()
     (tmp_path / "truth").mkdir()
     for name, speed in (("anna_1", 0.9), ("anna_2", 1.2), ("bob_1", 1.5)):

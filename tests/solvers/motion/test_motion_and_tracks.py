@@ -25,6 +25,16 @@ def test_names_the_joints_whose_rotations_are_none(swinging_leg):
         swinging_leg.with_poses(rotations)
 
 
+def test_names_those_of_all_frames_however_far_apart(leg):
+    rotations = np.zeros((5000, 4, 4))
+    rotations[..., 0] = 1.0
+    rotations[10, 2] = 0.0
+    rotations[4500, 1] = 0.0
+
+    with pytest.raises(InvalidMotionError, match="these are not: knee, ankle"):
+        Motion(leg, rotations, np.zeros((5000, 3)), 30.0)
+
+
 def test_one_missing_component_hides_the_rotation(swinging_leg):
     rotations = swinging_leg.rotations.copy()
     rotations[5, 1, 2] = np.nan

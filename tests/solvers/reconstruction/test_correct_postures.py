@@ -302,3 +302,8 @@ def test_a_broken_file_is_refused(prior, tmp_path_factory, data):
         load_residual_prior(path)
     except InvalidFileError as refused:
         assert str(path) in str(refused)
+
+
+def test_joints_that_are_all_in_one_place_are_refused(prior):
+    with pytest.raises(InvalidMotionError, match="all in one place"):
+        correct_postures(recording(np.zeros((40, 20, 3))), prior)

@@ -10,6 +10,7 @@ from solvers.reconstruction import Ground, SimulateSettings, simulate, with_stre
 from solvers.samples import CorruptionSettings, GaitSettings, corrupt, walking_gait
 
 CENTIMETRE = 0.01
+AT_ZERO = SimulateSettings(ground=Ground.HEIGHT)
 
 
 @pytest.fixture(scope="module")
@@ -78,7 +79,7 @@ def test_who_is_held_by_nothing_falls_as_stones_do(standing):
 
 @pytest.mark.parametrize("depth", [0.05, 1.0])
 def test_who_is_under_the_floor_comes_up(walk, simulated, depth):
-    result = simulate(raised(walk, -depth))
+    result = simulate(raised(walk, -depth), settings=AT_ZERO)
 
     assert result.penetration_before > 0.9 * depth
     assert result.penetration_after < 0.5 * CENTIMETRE
@@ -105,6 +106,17 @@ def test_the_ground_is_where_it_is_said_to_be_or_under_the_feet(walk, simulated)
     for each in (at_height, under_feet):
         assert each.followed.all()
         assert distance(raised(simulated.motion, 3.0), each.motion) < 2.5 * CENTIMETRE
+
+
+@pytest.mark.parametrize("height", [-0.73, 1.2])
+def test_a_take_that_is_measured_from_the_camera_stays_where_it_stands(walk, simulated, height):
+    result = simulate(raised(walk, height))
+
+    assert_allclose(result.ground, height, atol=0.02)
+    assert "far from 0.00 m: the ground is taken to be under its feet" in result.message
+    assert distance(raised(simulated.motion, height), result.motion) < 2.5 * CENTIMETRE
+    assert "far from" not in simulated.message
+    assert simulated.ground == simulate(raised(walk, 0.1)).ground == 0.0
 
 
 def test_friction_holds_feet_that_the_take_drags_about(standing):

@@ -10,7 +10,7 @@ from numpy.testing import assert_allclose
 
 from solvers.errors import InvalidMotionError
 from solvers.motion import Motion, Skeleton, forward_kinematics
-from solvers.reconstruction import SimulateSettings, simulate
+from solvers.reconstruction import Ground, SimulateSettings, simulate
 from solvers.samples import GaitSettings, walking_gait
 
 WALK = walking_gait(GaitSettings(duration=1.0, frame_rate=30.0))
@@ -20,7 +20,7 @@ STILL = [1.0, 0.0, 0.0, 0.0]
 def test_who_is_in_the_sky_is_left_there_and_told_why():
     sky = WALK.with_poses(root_positions=WALK.root_positions + np.array([0, 0, 10.0]))
 
-    result = simulate(sky)
+    result = simulate(sky, settings=SimulateSettings(ground=Ground.HEIGHT))
 
     assert np.array_equal(result.motion.rotations, sky.rotations)
     assert np.array_equal(result.motion.root_positions, sky.root_positions)

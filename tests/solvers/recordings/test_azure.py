@@ -138,6 +138,17 @@ def test_a_line_per_frame(write, values):
     assert_allclose(recording.tracks.positions, upright(values))
 
 
+@pytest.mark.parametrize("layout", [azure_lines, azure_columns])
+@pytest.mark.parametrize("end", ["\r\n", "\r\r\n", "\r"])
+def test_lines_may_end_in_any_way(write, values, layout, end):
+    """A table that was twice written as text of Windows has a blank line after each."""
+    text = layout([{1: frame} for frame in values] if layout is azure_lines else values)
+
+    recording = read_recording(write(text.replace("\n", end)))
+
+    assert_allclose(recording.tracks.positions, upright(values))
+
+
 def test_scale_is_metres_per_unit(write, values):
     assert_allclose(
         read_azure_csv(write(azure_columns(values)), scale=1.0).tracks.positions,

@@ -70,6 +70,27 @@ def test_knuckles_a_little_aslant_are_left_alone():
     )
 
 
+@pytest.mark.parametrize("degrees", [30.0, 45.0, 59.0])
+def test_nearly_equal_rests_are_treated_nearly_alike(degrees):
+    """Before, palms turned by 44 degrees were left, and by 46 turned back wholly."""
+    rigs = [with_palms_turned(with_all_fingers(), degrees + more) for more in (0.0, 1.0)]
+
+    one, other = (t_pose_alignment(rig, find_humanoid_map(rig)) for rig in rigs)
+
+    assert np.degrees(angle_between(one, other)).max() < 5.0
+
+
+@pytest.mark.parametrize("degrees", [40.0, 50.0])
+def test_palms_are_turned_back_partly(degrees):
+    rig = with_palms_turned(with_all_fingers(), degrees)
+    hand = rig.index("mixamorig:LeftHand")
+
+    turned = t_pose_alignment(rig, find_humanoid_map(rig))[hand]
+
+    plain = t_pose_alignment(with_all_fingers(), find_humanoid_map(with_all_fingers()))[hand]
+    assert 5.0 < np.degrees(angle_between(turned, plain)) < degrees - 5.0
+
+
 def test_one_hand_alone_tells_nothing():
     rig = with_all_fingers()
     other = with_palms_turned(rig, 90.0, sides=("Left",))

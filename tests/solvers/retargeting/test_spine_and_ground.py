@@ -25,6 +25,7 @@ from solvers.samples import GaitSettings, walking_gait
 
 CMU_METRES = 0.0254 / 0.45
 STAGE = np.array([0.0, 0.0, 3.0])
+SWINGS = "solvers.retargeting.pose_transfer.leaning_swings"
 TRUNK = ("hips", "spine", "chest", "upperChest")
 
 
@@ -36,8 +37,12 @@ TRUNK = ("hips", "spine", "chest", "upperChest")
         (("chest", "upperChest"), (0.0, 1.0)),
     ],
 )
-def test_a_bow_is_shared_evenly_by_the_spine_there_is(lost, shares):
-    """A source whose three vertebrae bow by 20 degrees each; targets of three, two and one."""
+def test_a_bow_is_shared_evenly_by_the_spine_there_is(monkeypatch, lost, shares):
+    """A source whose three vertebrae bow by 20 degrees each; targets of three, two and one.
+
+    So it is before the trunk is swung to lean as the source's.
+    """
+    monkeypatch.setattr(SWINGS, lambda *nothing: {})
     bow = bowing(20.0)
     target_map = without(find_humanoid_map(mixamo()), lost)
 
@@ -48,7 +53,8 @@ def test_a_bow_is_shared_evenly_by_the_spine_there_is(lost, shares):
 
 
 @pytest.mark.parametrize("lost", [("upperChest",), ("chest", "upperChest")])
-def test_a_bow_of_few_vertebrae_is_shared_by_many(lost):
+def test_a_bow_of_few_vertebrae_is_shared_by_many(monkeypatch, lost):
+    monkeypatch.setattr(SWINGS, lambda *nothing: {})
     bow = bowing(20.0)
     source_map = without(find_humanoid_map(bow.skeleton), lost)
     target_map = find_humanoid_map(mixamo())

@@ -37,6 +37,17 @@ def test_without_the_swing_it_would_not(monkeypatch):
     assert np.abs((ours - ours[0]) - (theirs - theirs[0])).max() > 3.0
 
 
+@pytest.mark.parametrize("family", RIGS)
+def test_a_cut_of_a_take_leans_as_within_it(family):
+    """Even where all that is left of it is the bow, and where it is a single frame."""
+    bow = bowing(mixamo(), 70.0)
+    whole = lean(given_to(bow, RIGS[family]()))
+
+    for first, last in ((40, 60), (0, 35), (59, 60)):
+        cut = given_to(bow.slice(first, last), RIGS[family]())
+        assert lean(cut) == pytest.approx(whole[first:last], abs=1e-6)
+
+
 def test_heads_and_arms_keep_their_turns():
     bow = bowing(mixamo(), 70.0)
     rig = rigify_deform()

@@ -16,7 +16,7 @@ from solvers.motion import (
     forward_kinematics,
     motion_from_points,
 )
-from solvers.reconstruction import posture_joints
+from solvers.reconstruction import ReconstructSettings, posture_joints
 from solvers.recordings import read_joint_csv, read_recording
 from solvers.workflows import reconstruct_motion, reconstruct_recording
 
@@ -112,12 +112,36 @@ def as_recording(positions: np.ndarray, names=JOINTS[Sensor.KINECT_V1]) -> Joint
         (lambda p: 1000.0 * p, "millimetres were taken for metres.*scale of 0.001"),
         (lambda p: 100.0 * p, "centimetres were taken for metres.*scale of 0.01"),
         (lambda p: 0.001 * p, "scale of 1000"),
+        (np.zeros_like, "The joints are all in one place"),
     ],
-    ids=["nothing", "one joint", "millimetres", "centimetres", "kilometres"],
+    ids=["nothing", "one joint", "millimetres", "centimetres", "kilometres", "zeros"],
 )
 def test_what_cannot_be_is_told_in_one_sentence(truth, spoil, said):
     with pytest.raises(InvalidMotionError, match=said):
         reconstruct_recording(as_recording(spoil(truth)))
+
+
+@pytest.mark.parametrize(
+    ("state", "settings", "said"),
+    [
+        (0, ReconstructSettings(), "tracker calls seen, though their places are there"),
+        (1, ReconstructSettings(inferred=0.0), "calls the others inferred. Raise the setting"),
+    ],
+)
+def test_places_for_which_the_tracker_does_not_answer(truth, state, settings, said):
+    tracks = as_recording(truth).tracks
+    recording = JointRecording(tracks, np.full(truth.shape[:2], state, np.int8), Sensor.OTHER)
+
+    with pytest.raises(InvalidMotionError, match=said):
+        reconstruct_recording(recording, settings=settings)
+
+
+def test_a_spine_alone_is_no_body(truth):
+    columns = [JOINTS[Sensor.KINECT_V1].index(name) for name in ("HipCenter", "Spine")]
+    recording = as_recording(truth[:, columns], ("SpineBase", "SpineMid"))
+
+    with pytest.raises(InvalidMotionError, match=r"Only 2 joints .* \(hips, spine\)"):
+        reconstruct_recording(recording)
 
 
 def test_names_that_mean_no_body_are_told(truth):

@@ -1,0 +1,125 @@
+"""Readers that fail or die, and what readers say: import from a window, and by a script."""
+
+from pathlib import Path
+
+import pytest
+from modal_events import nothing_is_left, wait
+
+DEADLY = b"deadly"
+READ = """
+(lambda reading, os: lambda paths, wanted, *, progress: (
+    os.abort() if any({deadly!r} in path.read_bytes()[:9] for path in paths)
+    else reading.read_files(paths, wanted, progress=progress)
+))(__import__("importlib").import_module({reading!r}), __import__("os"))
+"""
+UNEVEN = [f"{frame / 30 + 0.002 * (frame % 3)},1,2,{frame},1,1,1" for frame in range(40)]
+LATE = "\n".join(["mocap-assist-joints,1,units=m", "time,A.x,A.y,A.z,B.x,B.y,B.z", *UNEVEN, ""])
+
+
+class DyingReader:
+    """What reads files in the other process, which cannot import this file."""
+
+    def __init__(self, reading):
+        self.reading = reading
+
+    def __call__(self, *_, **__):
+        raise AssertionError("It was read in this process.")
+
+    def __reduce__(self):
+        text = READ.format(deadly=DEADLY, reading=self.reading)
+        return eval, ("".join(text.splitlines()),)
+
+
+@pytest.fixture
+def dying(load, monkeypatch):
+    """Files that begin with a certain word end the process that reads them."""
+    reading = load("mocap_assist.jobs.reading")
+    monkeypatch.setattr(
+        load("mocap_assist.import_job"), "read_files", DyingReader(reading.__name__)
+    )
+
+
+def test_a_reader_that_dies_once_takes_no_file_along(press, window, blank):
+    operator = press("first.bvh", "second.bvh")
+
+    operator._job.watch.job._process.kill()
+
+    assert wait(operator, window) == {"FINISHED"}
+    assert sorted(blank.data.objects.keys()) == ["first", "second"]
+    ((kind, said),) = window.reports
+    assert kind == {"INFO"} and "early" not in said
+    assert nothing_is_left(window)
+
+
+@pytest.mark.parametrize("deadly", [["c.bvh"], ["a.bvh", "e.bvh"]])
+def test_files_that_end_their_reader_are_named_and_the_others_come(
+    dying, deadly, press, window, walks, blank
+):
+    names = [f"{letter}.bvh" for letter in "abcde"]
+    for name in names:
+        content = DEADLY if name in deadly else (walks / "first.bvh").read_bytes()
+        (walks / name).write_bytes(content)
+    operator = press(*names)
+
+    assert wait(operator, window) == {"FINISHED"}
+
+    good = [Path(name).stem for name in names if name not in deadly]
+    assert sorted(blank.data.objects.keys()) == good
+    ((kind, said),) = window.reports
+    assert kind == {"ERROR"} and said.startswith(f"{len(deadly)} of 5 files failed.")
+    for name in deadly:
+        assert f"{walks / name} made its reader end early, by signal SIGABRT" in said
+    assert said.count("early") == len(deadly) and "Nothing was changed" not in said
+    assert nothing_is_left(window)
+    told = [float(text.split("%")[0].split()[-1]) for text in window.status if text]
+    assert told == sorted(told)
+
+
+def test_where_all_end_their_reader_the_scene_stays(dying, press, window, walks, blank):
+    for name in ("first.bvh", "second.bvh"):
+        (walks / name).write_bytes(DEADLY)
+
+    assert wait(press("first.bvh", "second.bvh"), window) == {"CANCELLED"}
+
+    assert not blank.data.objects
+    assert nothing_is_left(window)
+
+
+@pytest.mark.parametrize("fault", [RecursionError("too deep"), ValueError("0"), MemoryError()])
+def test_a_fault_of_a_reader_keeps_no_other_file_out(load, walks, monkeypatch, fault):
+    reading = load("mocap_assist.jobs.reading")
+    read = reading.read_recording
+
+    def fail(path, **more):
+        if path.name == "cut.bvh":
+            raise fault
+        return read(path, **more)
+
+    monkeypatch.setattr(reading, "read_recording", fail)
+    paths = [walks / name for name in ("first.bvh", "cut.bvh", "second.bvh")]
+
+    first, refusal, second = reading.read_files(paths, reading.Wanted(True, 1.0, None))
+
+    assert first.recording.n_frames == second.recording.n_frames == 317
+    assert isinstance(refusal, load("solvers.errors").InvalidFileError)
+    assert str(walks / "cut.bvh") in str(refusal)
+    if not isinstance(fault, MemoryError):
+        assert f"{type(fault).__name__}: {fault}" in str(refusal)
+        assert "in fail" in refusal.__notes__[0]
+
+
+def test_what_readers_say_is_told_in_a_window_and_by_a_script(press, window, walks, blank):
+    (walks / "late.csv").write_text(LATE)
+    operator = press("late.csv", "first.bvh")
+
+    assert wait(operator, window) == {"FINISHED"}
+
+    ((_, said),) = window.reports
+    assert "40 frames at 30 Hz. Resampled to 30 Hz. first: " in said
+    assert operator.note == said
+    figures = operator._job.arrival.end(blank.context).figures
+    assert figures[0]["warnings"].startswith("Resampled to 30 Hz.")
+    assert not figures[1]["warnings"]
+    for _ in range(2):  # read, or remembered
+        operator.execute(blank.context)
+        assert window.reports[-1][1].count("Resampled to 30 Hz.") == 1

@@ -1,0 +1,149 @@
+"""Heels stay above the ground, and toes bend as toes do, whatever the source."""
+
+import numpy as np
+import pytest
+from numpy.testing import assert_allclose
+from rigs import mixamo
+
+from solvers.motion import (
+    Motion,
+    Skeleton,
+    Tracks,
+    detect_contacts,
+    find_humanoid_map,
+    foot_points,
+    forward_kinematics,
+    joint_parents,
+    motion_from_points,
+)
+from solvers.motion.rotations import quaternion_from_rotation_vector, rotate
+from solvers.recordings import read_recording
+from solvers.retargeting import retarget
+from solvers.retargeting.body import find_body
+from solvers.retargeting.soles import Depths, sole_above_ground
+from solvers.retargeting.toes import toes_up
+
+RIG = mixamo()
+FEET = [
+    [RIG.index(f"mixamorig:{side}{bone}") for bone in ("Foot", "ToeBase", "Toe_end")]
+    for side in ("Left", "Right")
+]
+REST = RIG.rest_positions[FEET[0]]
+ACROSS = np.array([1.0, 0.0, 0.0])
+BENT_AT_REST = 27.0
+LEFT = np.zeros(1)
+SENSED = ("msr_action3d/a11_s03_e03", "msr_action3d/a13_s01_e01", "irds/215_18_0_5_1")
+TAKES = ("cmu_walk/07_05.bvh", "cmu_walk/07_01.bvh", "05_13.amc")
+
+
+@pytest.mark.parametrize("take", SENSED)
+def test_sensed_feet_below_the_floor_do_not_bend_the_toes_up(recordings, take):
+    """Sensors know no tips of toes: all that the foot lacked was taken out by the toes."""
+    folder, name = take.split("/")
+    path = next((recordings / "kinect" / folder).glob(f"{name}*"))
+
+    result = given_to_rig(sensed(read_recording(path)))
+
+    assert np.nanmax(bends(result)) < 60.0
+
+
+@pytest.mark.parametrize("take", TAKES)
+def test_heels_stay_up_and_toes_in_the_plane_of_their_foot(recordings, take):
+    motion = first_frames(read_recording(recordings / "mocap" / take))
+
+    result = given_to_rig(motion)
+
+    world = forward_kinematics(result)
+    stands = detect_contacts(motion)
+    ankles = foot_points(RIG, find_humanoid_map(RIG))[:, 0]
+    heights = world.positions[:, ankles, 2] - RIG.rest_positions[ankles, 2]
+    assert heights[stands].min() > -0.01
+    for foot, ball, tip in FEET:
+        toes = world.positions[:, tip] - world.positions[:, ball]
+        across = rotate(world.rotations[:, foot], ACROSS)
+        aside = (toes * across).sum(axis=1) / np.linalg.norm(toes, axis=1)
+        assert np.degrees(np.arcsin(np.abs(aside).max())) < 10.0
+        low = world.positions[:, [ball, tip], 2] - RIG.rest_positions[[ball, tip], 2]
+        assert low[:, 0].min() > -0.005
+        assert low[:, 1].min() > -0.045
+    assert bends(result).max() < 75.0
+
+
+@pytest.mark.parametrize("tilt", [-50.0, -25.0, 0.0, 10.0])
+def test_a_small_lift_of_the_tip_is_exact_whatever_the_slope(tilt):
+    feet = turned(tilt)
+    toes = rotate(turned(tilt - 10.0), REST[2] - REST[1])
+
+    turn = toes_up(REST, feet, toes, np.array([0.004]), 30.0)
+
+    assert_allclose((rotate(turn, toes) - toes)[0, 2], 0.004, atol=1e-4)
+    assert abs((rotate(turn, toes) - toes)[0, 0]) < 0.002
+
+
+def test_toes_bend_no_further_than_toes_do():
+    toes = rotate(turned(-70.0), REST[2] - REST[1])
+
+    turn = toes_up(REST, turned(-60.0), toes, np.array([0.1]), 30.0)
+
+    foot = rotate(turned(-60.0), REST[1] - REST[0])
+    assert 20.0 < angle(foot, rotate(turn, toes))[0] - BENT_AT_REST < 33.0
+    soles_up = toes_up(REST, turned(-170.0), toes, np.array([0.1]), 30.0)
+    assert_allclose(np.abs(soles_up[0]), [1.0, 0.0, 0.0, 0.0], atol=1e-9)
+
+
+@pytest.mark.parametrize(("tilt", "least"), [(0.0, 0.98), (40.0, 0.97), (90.0, 0.78)])
+def test_an_ankle_on_the_floor_is_lifted_to_where_its_heel_is_on_it(tilt, least):
+    """Toes up by 90 degrees, as who lies on the back, the heel is behind the ankle."""
+    body = find_body(RIG, find_humanoid_map(RIG), "target's")
+    pose = np.tile([1.0, 0.0, 0.0, 0.0], (1, len(body.kept), 1))
+    pose[:, body.joints["leftFoot"]] = turned(tilt)
+    world = forward_kinematics(Motion(body.skeleton, pose, body.rest[:1], 30.0))
+    ankle = body.rest[[body.joints["leftFoot"]]]
+
+    sole = sole_above_ground(
+        body, world, "left", ankle * (1.0, 1.0, 0.0), 0.0, Depths(LEFT, LEFT, LEFT), 30.0
+    )
+
+    assert least - 0.03 < sole.lift[0] / ankle[0, 2] < 1.0
+    deep = Depths(*np.full((3, 1), ankle[0, 2]))
+    free = sole_above_ground(body, world, "left", ankle * (1.0, 1.0, 0.0), 0.0, deep, 30.0)
+    assert free.lift[0] == pytest.approx(0.0, abs=1e-9)
+
+
+def turned(degrees: float) -> np.ndarray:
+    """Toes up by so much, shape (1, 4)."""
+    return quaternion_from_rotation_vector([[-np.radians(degrees), 0.0, 0.0]])
+
+
+def angle(one: np.ndarray, other: np.ndarray) -> np.ndarray:
+    lengths = np.linalg.norm(one, axis=-1) * np.linalg.norm(other, axis=-1)
+    return np.degrees(np.arccos(np.clip((one * other).sum(axis=-1) / lengths, -1.0, 1.0)))
+
+
+def bends(motion: Motion) -> np.ndarray:
+    """By how much the balls of both feet are bent, shape (2, n_frames), degrees."""
+    places = forward_kinematics(motion).positions
+    return np.array([
+        angle(places[:, ball] - places[:, foot], places[:, tip] - places[:, ball])
+        for foot, ball, tip in FEET
+    ])
+
+
+def sensed(recording) -> Motion:
+    kept = [j for j, up in enumerate(recording.parents) if up >= 0 or j in recording.parents]
+    names = tuple(recording.tracks.names[joint] for joint in kept)
+    tracks = Tracks(names, recording.tracks.positions[:300, kept], recording.tracks.frame_rate)
+    return motion_from_points(tracks, joint_parents(names))
+
+
+def first_frames(motion: Motion) -> Motion:
+    """Every second of the first 900, without the T-pose."""
+    few = slice(3, 900, 2)
+    return Motion(
+        motion.skeleton, motion.rotations[few], motion.root_positions[few],
+        motion.frame_rate / 2.0,
+    )  # fmt: skip
+
+
+def given_to_rig(motion: Motion, rig: Skeleton = RIG) -> Motion:
+    return retarget(motion, find_humanoid_map(motion.skeleton), rig, find_humanoid_map(rig))
