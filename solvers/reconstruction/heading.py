@@ -4,7 +4,7 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.ndimage import gaussian_filter1d
+from scipy.ndimage import gaussian_filter1d, uniform_filter1d
 
 from .posture_joints import HIPS, MIRROR_IMAGES, POSTURE_JOINTS
 
@@ -18,6 +18,11 @@ STEADY = 0.1
 """Seconds of the Gaussian that steadies the heading: jitter must not turn the whole body."""
 SHORTEST = 0.02
 """Metres. A level line from right to left that is shorter tells no heading."""
+
+AROUND = 1.0
+"""Seconds in which most frames must tell one heading, for those against it to be wrong."""
+AGREED = 0.3
+"""Length of the mean of unit vectors from which on they do: 0 is none, 1 the same."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -67,9 +72,20 @@ def normalise(positions: Array, frame_rate: float, weights: Array | None = None)
     if not told.any():
         left[:], told = (1.0, 0.0), np.ones(len(left), bool)
     unit = _filled(left / np.maximum(np.linalg.norm(left, axis=-1, keepdims=True), 1e-9), told)
+    unit = _filled(unit, ~_reversed(unit, frame_rate))
     unit = gaussian_filter1d(unit, STEADY * frame_rate, axis=0, mode="nearest")
     headings = np.arctan2(unit[:, 1], unit[:, 0])
     return Normalised(turned(positions - places[:, None], -headings), places, headings)
+
+
+def _reversed(unit: Array, frame_rate: float) -> NDArray[np.bool_]:
+    """Tell where left points against most of the second around: nobody turns so fast.
+
+    A tracker that exchanges left and right does so. Nothing is told of who spins.
+    """
+    most = uniform_filter1d(unit, 2 * round(0.5 * AROUND * frame_rate) + 1, axis=0)
+    agreed = np.linalg.norm(most, axis=-1) > AGREED
+    return np.asarray(agreed & ((unit * most).sum(axis=-1) < 0.0))
 
 
 def turned(postures: Array, angles: Array) -> Array:

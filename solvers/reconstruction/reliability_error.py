@@ -30,7 +30,7 @@ STRETCHED = 0.2
 """Seconds over which errors of lengths count."""
 CENTIMETRE = 0.01
 JUMPED = 0.05
-"""Metres that a joint counts as off its path in the mean, however far it jumped away: frames
+"""Metres that a joint counts as off its path in means, however far it jumped away: frames
 beside it are wrong more often than others, but mostly they are right."""
 
 

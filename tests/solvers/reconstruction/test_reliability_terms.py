@@ -14,6 +14,7 @@ from solvers.reconstruction.reliability_terms import (
     behaviour_term,
     gaussian_mean,
     kinematics_term,
+    tracking_term,
 )
 
 CAUSAL = ReliabilitySettings(causal=True)
@@ -195,3 +196,17 @@ def test_published_is_the_least_term_seen_through_the_window():
         share = weights[: len(past)] / weights[: len(past)].sum()
         assert_allclose(found.combined[frame], share @ past, atol=1e-12)
     assert 0.05 < found.combined.mean() < 0.95
+
+
+@pytest.mark.parametrize("inferred", [0.0, 0.5])
+def test_a_confidence_in_the_place_of_a_state_counts_from_inferred_to_one(inferred):
+    told = np.array([[0.0, 0.5, 1.0]])
+    tracks = Tracks(("a", "b", "c"), np.zeros((1, 3, 3)), 30.0, told)
+    settings = ReliabilitySettings(inferred=inferred)
+    state = np.array([[2, 1, 0]])
+
+    found = tracking_term(JointRecording(tracks, None, Sensor.OTHER), settings)
+    by_state = tracking_term(JointRecording(tracks, state, Sensor.OTHER), settings)
+
+    assert_allclose(found, [[inferred, (1.0 + inferred) / 2.0, 1.0]])
+    assert_allclose(by_state, [[1.0, inferred, 0.0]])
