@@ -19,9 +19,9 @@ Array = NDArray[np.float64]
 TOPS = ("neck", "head")
 TOP = 0.5
 """How much of the swing the chest takes, which is turned as the source's but for that."""
-BENT = np.cos(np.radians(20.0))
-"""Cosine of how far the trunk is bent from its rest where it comes to lean fully as the
-source's: straighter ones are left as they are, as rest poses are drawn differently."""
+STRAIGHT, BENT = np.cos(np.radians([10.0, 30.0]))
+"""Cosines of how far the trunk is bent from its rest: up to the first it is left as it is, as
+rest poses are drawn differently; from the second on it leans fully as the source's."""
 SMALL = np.radians(5.0)
 """Half of a swing of this size is left out, and most of smaller ones: they are noise."""
 ROUNDS = 6
@@ -87,7 +87,7 @@ def _bent(hips: Array, way: Array, rest: Array) -> Array:
     """
     length = np.linalg.norm(way, axis=1) * np.linalg.norm(rest)
     straight = (rotate(inverse(hips), way) @ rest) / np.maximum(length, 1e-9)
-    share = np.clip((1.0 - straight) / (1.0 - BENT), 0.0, 1.0)[:, None]
+    share = np.clip((straight - STRAIGHT) / (BENT - STRAIGHT), 0.0, 1.0)[:, None]
     return np.asarray(share * share * (3.0 - 2.0 * share))
 
 

@@ -17,14 +17,19 @@ from solvers.samples import GaitSettings, walking_gait
 
 @pytest.mark.parametrize("family", RIGS)
 def test_a_deep_bow_leans_as_the_sources(family):
-    """Half of it in the lowest vertebra, which the rigs have elsewhere."""
+    """Most of it in the lowest vertebra, which the rigs have elsewhere.
+
+    On its way it may be off by a little more, as the swing comes gradually.
+    """
     bow = bowing(mixamo(), 70.0)
 
     result = given_to(bow, RIGS[family]())
 
     theirs, ours = (lean(motion) for motion in (bow, result))
     assert theirs[-1] - theirs[0] > 50.0
-    assert np.abs((ours - ours[0]) - (theirs - theirs[0])).max() < 3.0
+    off = np.abs((ours - ours[0]) - (theirs - theirs[0]))
+    assert off.max() < 4.0
+    assert off[-1] < 3.0
 
 
 def test_without_the_swing_it_would_not(monkeypatch):
