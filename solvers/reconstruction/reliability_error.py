@@ -21,8 +21,6 @@ Flags = NDArray[np.bool_]
 
 SMOOTH = 1.0 / 3.0
 """Seconds of a piece of path that is held to be a polynomial."""
-FEWEST = 9
-"""Frames that such a piece has at least."""
 DEGREE = 4
 AGITATED = 0.4
 """Seconds over which deviations from that path count for a joint."""
@@ -117,13 +115,13 @@ def _off_the_smooth_path(positions: Array, frame_rate: float) -> Array:
     """Return distances from the smoothed path, (n_frames, n_joints); NaN where not seen.
 
     The path is smoothed with polynomials of the fourth degree, which follow a body however fast
-    it goes (Savitzky and Golay 1964). Of a slow camera the pieces last longer: a polynomial
-    through all of few frames would follow every error.
+    it goes (Savitzky and Golay 1964). The degree is lower where a slow camera has few frames
+    in a piece: a polynomial through all of them would follow every error.
     """
     from scipy.signal import savgol_filter  # takes a second to import: only when needed
 
     longest = len(positions) - 1 + len(positions) % 2
-    n_frames = min(max(2 * round(0.5 * SMOOTH * frame_rate) + 1, FEWEST), longest)
+    n_frames = min(2 * round(0.5 * SMOOTH * frame_rate) + 1, longest)
     degree = min(DEGREE, n_frames // 2)
     smooth = savgol_filter(_bridged(positions), n_frames, degree, axis=0)
     return lengths_of(positions - smooth)
