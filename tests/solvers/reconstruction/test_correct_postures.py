@@ -1,55 +1,25 @@
-"""Residual priors: learned from made sensors whose errors are known, applied, kept in files."""
+"""Residual priors: learned from made sensors whose errors are known, and applied."""
 
 from dataclasses import replace
 
 import numpy as np
 import pytest
-from damage import damaged, searching
-from hypothesis import given
-from hypothesis import strategies as st
+from bad_sensor import HAND, KNEE, NAMES, QUICK, pair, recording, seen_by_a_bad_sensor, truth
 from scipy.optimize import minimize
 
-from solvers.errors import InvalidFileError, InvalidMotionError
-from solvers.motion import JOINTS, JointRecording, Sensor, Tracks
+from solvers.errors import InvalidMotionError
+from solvers.motion import Tracks
 from solvers.reconstruction import (
     CorrectionMethod,
     CorrectionSettings,
     ResidualMethod,
-    ResidualPriorSettings,
     correct_postures,
     learn_residual_prior,
-    load_residual_prior,
 )
 from solvers.reconstruction.correct_postures import _frame_by_frame, chance_within
 from solvers.reconstruction.heading import mirrored, turned
-from solvers.reconstruction.posture_joints import MIRROR_IMAGES, motion_postures
+from solvers.reconstruction.posture_joints import MIRROR_IMAGES
 from solvers.reconstruction.steady_paths import followed, smoothed
-from solvers.samples import GaitSettings, walking_gait
-
-NAMES = JOINTS[Sensor.KINECT_V1]
-KNEE, HAND = NAMES.index("KneeLeft"), NAMES.index("HandLeft")
-QUICK = ResidualPriorSettings(local_points=20, whole_points=30, sample=100, mirror=False)
-
-
-def truth(speed: float, frames: int = 90) -> np.ndarray:
-    walk = walking_gait(GaitSettings(duration=4.0, frame_rate=30.0, speed=speed))
-    return motion_postures(walk)[:frames]
-
-
-def seen_by_a_bad_sensor(true: np.ndarray, offset: float = 0.03) -> np.ndarray:
-    """The knee is too far out by `offset`, and too low by half of how far it is forward."""
-    wrong = true.copy()
-    wrong[:, KNEE, 0] += offset
-    wrong[:, KNEE, 2] -= 0.5 * np.abs(true[:, KNEE, 1] - true[:, 0, 1])
-    return wrong
-
-
-def recording(positions: np.ndarray, rate: float = 30.0) -> JointRecording:
-    return JointRecording(Tracks(NAMES, positions, rate), None, Sensor.KINECT_V1)
-
-
-def pair(true: np.ndarray, offset: float = 0.03) -> tuple[JointRecording, Tracks]:
-    return recording(seen_by_a_bad_sensor(true, offset)), Tracks(NAMES, true, 30.0)
 
 
 @pytest.fixture(scope="module")
@@ -263,47 +233,3 @@ def test_pairs_must_fit():
     blind = Tracks(NAMES, np.full((90, 20, 3), np.nan), 30.0)
     with pytest.raises(InvalidMotionError, match="No joint is known in both"):
         learn_residual_prior([(seen, blind)], settings=QUICK)
-
-
-def test_a_prior_comes_back_from_its_file(prior, tmp_path):
-    path = tmp_path / "prior.npz"
-    prior.save(path)
-    again = load_residual_prior(path)
-    given_ = recording(seen_by_a_bad_sensor(truth(1.3)))
-    np.testing.assert_array_equal(
-        correct_postures(given_, prior).tracks.positions,
-        correct_postures(given_, again).tracks.positions,
-    )
-
-
-@pytest.mark.parametrize(
-    ("change", "said"),
-    [
-        ({"kernels": np.ones((2, 9))}, "shapes do not fit"),
-        ({"kernels": -np.ones((20, 9))}, "not positive"),
-        ({"means": np.full((20, 51, 3), np.nan)}, "not all numbers are finite"),
-        ({"joints": np.array(["tail"] * 20)}, "unknown joints"),
-    ],
-)
-def test_a_damaged_prior_is_refused(prior, tmp_path, change, said):
-    path = tmp_path / "prior.npz"
-    replace(prior, **change).save(path)
-    with pytest.raises(InvalidFileError, match=said):
-        load_residual_prior(path)
-
-
-@given(data=st.data())
-@searching(20)
-def test_a_broken_file_is_refused(prior, tmp_path_factory, data):
-    path = tmp_path_factory.mktemp("broken") / "prior.npz"
-    prior.save(path)
-    path.write_bytes(data.draw(damaged(path.read_bytes(), [b"0", b"\xff", b"PK"])))
-    try:
-        load_residual_prior(path)
-    except InvalidFileError as refused:
-        assert str(path) in str(refused)
-
-
-def test_joints_that_are_all_in_one_place_are_refused(prior):
-    with pytest.raises(InvalidMotionError, match="all in one place"):
-        correct_postures(recording(np.zeros((40, 20, 3))), prior)

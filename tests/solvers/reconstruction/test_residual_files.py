@@ -1,0 +1,62 @@
+"""Residual priors in files: whole, damaged, broken."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from bad_sensor import QUICK, pair, recording, seen_by_a_bad_sensor, truth
+from damage import damaged, searching
+from hypothesis import given
+from hypothesis import strategies as st
+
+from solvers.errors import InvalidFileError, InvalidMotionError
+from solvers.reconstruction import correct_postures, learn_residual_prior, load_residual_prior
+
+
+@pytest.fixture(scope="module")
+def prior():
+    return learn_residual_prior([pair(truth(speed)) for speed in (0.9, 1.6)], settings=QUICK)
+
+
+def test_a_prior_comes_back_from_its_file(prior, tmp_path):
+    path = tmp_path / "prior.npz"
+    prior.save(path)
+    again = load_residual_prior(path)
+    given_ = recording(seen_by_a_bad_sensor(truth(1.3)))
+    np.testing.assert_array_equal(
+        correct_postures(given_, prior).tracks.positions,
+        correct_postures(given_, again).tracks.positions,
+    )
+
+
+@pytest.mark.parametrize(
+    ("change", "said"),
+    [
+        ({"kernels": np.ones((2, 9))}, "shapes do not fit"),
+        ({"kernels": -np.ones((20, 9))}, "not positive"),
+        ({"means": np.full((20, 51, 3), np.nan)}, "not all numbers are finite"),
+        ({"joints": np.array(["tail"] * 20)}, "unknown joints"),
+    ],
+)
+def test_a_damaged_prior_is_refused(prior, tmp_path, change, said):
+    path = tmp_path / "prior.npz"
+    replace(prior, **change).save(path)
+    with pytest.raises(InvalidFileError, match=said):
+        load_residual_prior(path)
+
+
+@given(data=st.data())
+@searching(20)
+def test_a_broken_file_is_refused(prior, tmp_path_factory, data):
+    path = tmp_path_factory.mktemp("broken") / "prior.npz"
+    prior.save(path)
+    path.write_bytes(data.draw(damaged(path.read_bytes(), [b"0", b"\xff", b"PK"])))
+    try:
+        load_residual_prior(path)
+    except InvalidFileError as refused:
+        assert str(path) in str(refused)
+
+
+def test_joints_that_are_all_in_one_place_are_refused(prior):
+    with pytest.raises(InvalidMotionError, match="all in one place"):
+        correct_postures(recording(np.zeros((40, 20, 3))), prior)
