@@ -32,7 +32,9 @@ TAUGHT = ("e01", "e04", "e07")
 """Repetitions of each exercise whose true postures a library is made of."""
 PRIORS = {
     ResidualMethod.HIERARCHICAL: ResidualPriorSettings(),
-    ResidualMethod.PUBLISHED: ResidualPriorSettings(method=ResidualMethod.PUBLISHED, calm=0.0),
+    ResidualMethod.PUBLISHED: ResidualPriorSettings(
+        method=ResidualMethod.PUBLISHED, calm=0.0, mirror=False
+    ),
 }
 
 
