@@ -38,7 +38,7 @@ class ArmatureReading(NamedTuple):
         check_writable(armature)
         bones = chosen_bones(armature, choices.bones)
         played = played_source(armature)
-        recorded = history.raw_of(played[0]) or played
+        recorded = history.cleaned_from(played)
         raw = read_take(armature, scene, choices.frame_range, recorded)
         return cls(scene, armature, recorded, played, raw, bones)
 

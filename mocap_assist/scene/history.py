@@ -15,6 +15,8 @@ from .compat import Source
 HISTORY = "mocap_assist_history"
 SOURCE = "mocap_assist_source"
 GIVEN_BY = "mocap_assist_given_by"
+REMADE = ("reconstruct", "simulate", "retarget")
+"""Operations that make another motion, which may be cleaned in its turn."""
 
 
 def record(
@@ -72,6 +74,21 @@ def raw_of(action: bpy.types.Action, slot: bpy.types.ActionSlot | None = None) -
     same = next((each for each in source.slots if each.handle == handle), None)
     found = same or compat.slot_called(source, entries[0].get("slot", ""))
     return None if found is None else (source, found)
+
+
+def cleaned_from(played: Source) -> Source:
+    """Return what Clean starts from: the recorded action, or what made another motion of it.
+
+    Cleaning again starts anew; what Reconstruct or Physics made is kept.
+    """
+    action, slot = played
+    while (entries := history(action)) and entries[-1].get("operation") not in REMADE:
+        before = bpy.data.actions.get(str(entries[-1].get("source", "")))
+        found = before and compat.slot_called(before, str(entries[-1].get("slot", "")))
+        if not found or history(before) != entries[:-1]:
+            return raw_of(*played) or played
+        action, slot = before, found
+    return action, slot
 
 
 def played_result(armature: bpy.types.Object) -> Source | None:
