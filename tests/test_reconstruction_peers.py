@@ -5,7 +5,7 @@ import pytest
 from numpy.testing import assert_allclose
 
 from solvers.motion import JointRecording, Sensor, Tracks
-from solvers.reconstruction.posture_joints import POSTURE_JOINTS
+from solvers.motion.posture_joints import POSTURE_JOINTS
 from tests.benchmarks.kinect_damage import Damaged, occluded, swapped, without
 from tests.benchmarks.kinect_errors import compared
 from tests.benchmarks.kinect_folds import seen_of

@@ -7,9 +7,9 @@ from typing import Any
 
 from ..errors import InvalidFileError, InvalidMotionError
 from ..motion import JointRecording, Motion, Tracks, resample
+from ..motion.posture_joints import POSTURE_JOINTS, motion_postures
 from ..progress import Progress, within
 from ..reconstruction import ResidualPriorSettings, learn_residual_prior
-from ..reconstruction.posture_joints import POSTURE_JOINTS, motion_postures
 from ..recordings import read_recording, recordings_in
 from .options import arguments_from, settings_from_arguments
 from .verb import Outcome, Task

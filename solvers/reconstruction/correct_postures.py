@@ -8,11 +8,11 @@ from numpy.typing import NDArray
 from scipy.special import gammainc
 
 from ..motion import JointRecording
+from ..motion.posture_joints import N_JOINTS, POSTURE_JOINTS, joints_of_names, posture_positions
 from ..progress import Progress, unwatched, within
 from ..settings import Settings, setting
 from .follow_joints import follow_joints
 from .other_joints import all_joints, anchors
-from .posture_joints import N_JOINTS, POSTURE_JOINTS, joints_of_names, posture_positions
 from .reliability import Reliability, measure_reliability
 from .residual_inputs import bridged, calm_postures
 from .residual_prior import Foretold, ResidualPrior

@@ -7,7 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..motion import JointRecording
-from .posture_joints import SIDES, joints_of_names
+from ..motion.posture_joints import SIDES, joints_of_names
 from .reliability_terms import lengths_of
 
 Array = NDArray[np.float64]

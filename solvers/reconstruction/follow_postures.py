@@ -7,15 +7,15 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.ndimage import gaussian_filter1d
 
+from ..motion.bone_directions import bone_changes
+from ..motion.posture_heading import Normalised
+from ..motion.posture_joints import HIPS
 from ..progress import Progress, within
-from .bone_directions import bone_changes
-from .heading import Normalised
 from .keep_lengths import keep_lengths
 from .leave_out import Errors, leave_out
 from .library_body import BodyPostures, anatomy_turns, on_body
 from .neighbours import PostureIndex, Query, index_postures, nearest_postures
 from .posture_energy import Demands
-from .posture_joints import HIPS
 from .posture_library import PostureLibrary
 from .posture_search import search_in_turn
 from .posture_settings import PostureMethod, PostureSettings

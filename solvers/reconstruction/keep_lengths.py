@@ -3,8 +3,8 @@
 import numpy as np
 from numpy.typing import NDArray
 
+from ..motion.posture_joints import N_JOINTS, PARENTS
 from .body_size import segment_lengths
-from .posture_joints import N_JOINTS, PARENTS
 
 Array = NDArray[np.float64]
 

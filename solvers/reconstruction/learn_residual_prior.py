@@ -9,10 +9,10 @@ from numpy.typing import NDArray
 
 from ..errors import InvalidMotionError
 from ..motion import JointRecording, Tracks
+from ..motion.posture_heading import mirrored, turned
+from ..motion.posture_joints import MIRROR_IMAGES, N_JOINTS, POSTURE_JOINTS, posture_positions
 from ..progress import Progress, unwatched
 from ..settings import Settings, setting
-from .heading import mirrored, turned
-from .posture_joints import MIRROR_IMAGES, N_JOINTS, POSTURE_JOINTS, posture_positions
 from .residual_inputs import calm_postures, filled, neighbourhood
 from .residual_kernel import Kernel, learn_kernel
 from .residual_prior import ResidualPrior, whole_posture

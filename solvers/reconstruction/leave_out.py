@@ -6,7 +6,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from .posture_joints import N_JOINTS
+from ..motion.posture_joints import N_JOINTS
 
 Array = NDArray[np.float64]
 Places = NDArray[np.intp]

@@ -5,8 +5,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from .bone_directions import ABOVE, along_bones
-from .posture_joints import CHEST, HIPS, N_JOINTS, POSTURE_JOINTS, SPINE
+from ..motion.bone_directions import ABOVE, along_bones
+from ..motion.posture_joints import CHEST, HIPS, N_JOINTS, POSTURE_JOINTS, SPINE
 
 Array = NDArray[np.float64]
 Single = NDArray[np.float32]

@@ -6,9 +6,9 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from ..motion.posture_joints import N_JOINTS
 from ..progress import Progress, unwatched
 from .library_body import BodyPostures
-from .posture_joints import N_JOINTS
 
 Array = NDArray[np.float64]
 Single = NDArray[np.float32]

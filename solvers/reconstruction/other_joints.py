@@ -6,9 +6,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..motion import joint_parents
+from ..motion.posture_joints import N_JOINTS, PARENTS, POSTURE_JOINTS, joints_of_names
 from ..motion.rigid_fit import best_turns
 from ..motion.rotations import IDENTITY, inverse, multiply, rotate, rotation_between
-from .posture_joints import N_JOINTS, PARENTS, POSTURE_JOINTS, joints_of_names
 
 Array = NDArray[np.float64]
 

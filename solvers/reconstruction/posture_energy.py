@@ -6,8 +6,8 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from .bone_directions import ABOVE
-from .posture_joints import N_JOINTS
+from ..motion.bone_directions import ABOVE
+from ..motion.posture_joints import N_JOINTS
 
 Array = NDArray[np.float64]
 N_BONES = N_JOINTS - 1

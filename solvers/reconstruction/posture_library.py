@@ -11,12 +11,12 @@ from numpy.typing import NDArray
 from ..errors import InvalidFileError, InvalidMotionError
 from ..files import read_archive, write_archive
 from ..motion import Motion, resample
+from ..motion.bone_directions import bone_changes, bone_directions
+from ..motion.posture_heading import mirrored, normalise
+from ..motion.posture_joints import N_JOINTS, motion_postures
 from ..progress import Progress, unwatched, within
 from ..settings import Settings, setting
-from .bone_directions import bone_changes, bone_directions, mirrored
-from .heading import normalise
 from .posture_groups import group_postures
-from .posture_joints import N_JOINTS, motion_postures
 from .thin_out import thin_out
 
 Array = NDArray[np.float64]

@@ -5,7 +5,7 @@ from dataclasses import dataclass, fields
 import numpy as np
 from numpy.typing import NDArray
 
-from .posture_joints import N_JOINTS
+from ..motion.posture_joints import N_JOINTS
 
 Array = NDArray[np.float64]
 

@@ -3,10 +3,10 @@
 import numpy as np
 from numpy.typing import NDArray
 
-from .bone_directions import ABOVE
+from ..motion.bone_directions import ABOVE
+from ..motion.posture_joints import N_JOINTS
 from .in_turn import in_turn
 from .posture_energy import N_BONES, Demands, posture_energy, style_distances
-from .posture_joints import N_JOINTS
 from .posture_space import PostureSpaces
 
 Array = NDArray[np.float64]

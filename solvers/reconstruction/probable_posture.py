@@ -3,8 +3,8 @@
 import numpy as np
 from numpy.typing import NDArray
 
+from ..motion.posture_joints import N_JOINTS
 from .posture_energy import Demands
-from .posture_joints import N_JOINTS
 from .posture_space import PostureSpaces
 
 Array = NDArray[np.float64]

@@ -5,7 +5,7 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from .posture_joints import joints_of_names
+from ..motion.posture_joints import joints_of_names
 from .reliability_terms import lengths_of
 
 Array = NDArray[np.float64]

@@ -9,8 +9,8 @@ from numpy.typing import NDArray
 
 from ..errors import InvalidFileError
 from ..files import read_archive, write_archive
-from .heading import mirrored
-from .posture_joints import MIRROR_IMAGES, N_JOINTS, POSTURE_JOINTS
+from ..motion.posture_heading import mirrored
+from ..motion.posture_joints import MIRROR_IMAGES, N_JOINTS, POSTURE_JOINTS
 from .residual_inputs import LARGEST, CalmPostures, filled, neighbourhood
 from .residual_kernel import Kernel, squared_distances
 from .residual_sparse import basis, shared_columns

@@ -5,6 +5,7 @@ from numpy.typing import NDArray
 
 from ..errors import InvalidMotionError
 from ..motion import HumanoidMap, Motion, find_humanoid_map, forward_kinematics, local_rotations
+from ..motion.posture_joints import CHEST, HIPS, N_JOINTS, POSTURE_JOINTS, motion_postures
 from ..motion.rigid_fit import best_turns
 from ..motion.rotations import (
     inverse,
@@ -13,7 +14,6 @@ from ..motion.rotations import (
     rotation_between,
     slerp,
 )
-from .posture_joints import CHEST, HIPS, N_JOINTS, POSTURE_JOINTS, motion_postures
 
 Array = NDArray[np.float64]
 AIMS = {

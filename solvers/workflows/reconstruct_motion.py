@@ -15,15 +15,15 @@ from ..motion import (
     forward_kinematics,
     joint_parents,
 )
-from ..progress import Progress, unwatched, within
-from ..reconstruction import PostureLibrary, ReconstructSettings, ResidualPrior, reconstruct
-from ..reconstruction.follow_joints import follow_joints
-from ..reconstruction.posture_joints import (
+from ..motion.posture_joints import (
     POSTURE_JOINTS,
     joints_of_names,
     motion_postures,
     posture_positions,
 )
+from ..progress import Progress, unwatched, within
+from ..reconstruction import PostureLibrary, ReconstructSettings, ResidualPrior, reconstruct
+from ..reconstruction.follow_joints import follow_joints
 from ..reconstruction.turn_to_postures import turn_to_postures
 from .known_body import KINECT_V1, check_size, check_tracked, gap_remarks
 from .measured_joints import measured_joints

@@ -6,8 +6,8 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from solvers.reconstruction.heading import normalise, turned
-from solvers.reconstruction.posture_joints import (
+from solvers.motion.posture_heading import normalise, turned
+from solvers.motion.posture_joints import (
     N_JOINTS,
     PARENTS,
     POSTURE_JOINTS,

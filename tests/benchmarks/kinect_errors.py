@@ -3,7 +3,7 @@
 import numpy as np
 from numpy.typing import NDArray
 
-from solvers.reconstruction.posture_joints import N_JOINTS, PARENTS
+from solvers.motion.posture_joints import N_JOINTS, PARENTS
 
 from .kinect_pairs import Pair
 

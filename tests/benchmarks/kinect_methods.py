@@ -6,6 +6,8 @@ from functools import cache, partial
 import numpy as np
 from numpy.typing import NDArray
 
+from solvers.motion.posture_heading import normalise, turned
+from solvers.motion.posture_joints import N_JOINTS, posture_positions
 from solvers.reconstruction import (
     CorrectionMethod,
     CorrectionSettings,
@@ -24,8 +26,6 @@ from solvers.reconstruction import (
     reconstruct_postures,
 )
 from solvers.reconstruction.correct_postures import smoothed
-from solvers.reconstruction.heading import normalise, turned
-from solvers.reconstruction.posture_joints import N_JOINTS, posture_positions
 from solvers.reconstruction.residual_inputs import calm_postures
 
 from .kinect_folds import optical_library, others, residual_prior, seen_of, truth_of

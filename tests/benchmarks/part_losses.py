@@ -11,8 +11,8 @@ from functools import cache, partial
 import numpy as np
 from numpy.typing import NDArray
 
+from solvers.motion.posture_heading import normalise
 from solvers.reconstruction import PostureMethod, ReconstructMethod
-from solvers.reconstruction.heading import normalise
 from solvers.reconstruction.residual_inputs import calm_postures
 
 from .kinect_damage import Damaged, hidden, lost, shaken, swapped

@@ -10,17 +10,17 @@ from numpy.typing import NDArray
 from scipy.interpolate import CubicSpline, PchipInterpolator
 
 from solvers.motion import JOINTS, JointRecording, Motion, Sensor, Tracks
-from solvers.reconstruction.body_size import body_lengths, segment_lengths
-from solvers.reconstruction.bone_directions import ABOVE, bone_changes
-from solvers.reconstruction.heading import normalise
-from solvers.reconstruction.library_body import on_body
-from solvers.reconstruction.neighbours import Query, index_postures, nearest_postures
-from solvers.reconstruction.posture_energy import Demands
-from solvers.reconstruction.posture_joints import (
+from solvers.motion.bone_directions import ABOVE, bone_changes
+from solvers.motion.posture_heading import normalise
+from solvers.motion.posture_joints import (
     N_JOINTS,
     motion_postures,
     posture_positions,
 )
+from solvers.reconstruction.body_size import body_lengths, segment_lengths
+from solvers.reconstruction.library_body import on_body
+from solvers.reconstruction.neighbours import Query, index_postures, nearest_postures
+from solvers.reconstruction.posture_energy import Demands
 from solvers.reconstruction.posture_library import PostureLibrary, build_posture_library
 from solvers.reconstruction.posture_search import search_in_turn
 from solvers.reconstruction.posture_settings import PostureSettings

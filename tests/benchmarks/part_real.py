@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 
 from solvers.motion import JointRecording, Tracks, forward_kinematics
 from solvers.motion.joint_recording import TRACKED
+from solvers.motion.posture_joints import posture_positions
 from solvers.reconstruction import (
     Reconstruction,
     ReconstructMethod,
@@ -17,7 +18,6 @@ from solvers.reconstruction import (
     reconstruct,
 )
 from solvers.reconstruction.body_size import segment_lengths
-from solvers.reconstruction.posture_joints import posture_positions
 from solvers.recordings import read_recording
 
 from .clips import DATA

@@ -7,6 +7,12 @@ from itertools import pairwise
 import numpy as np
 from numpy.typing import NDArray
 
+from solvers.motion.posture_joints import (
+    N_JOINTS,
+    POSTURE_JOINTS,
+    joints_of_names,
+    posture_positions,
+)
 from solvers.reconstruction import (
     CorrectionMethod,
     CorrectionSettings,
@@ -16,12 +22,6 @@ from solvers.reconstruction import (
     Reliability,
     measure_reliability,
     reconstruct_postures,
-)
-from solvers.reconstruction.posture_joints import (
-    N_JOINTS,
-    POSTURE_JOINTS,
-    joints_of_names,
-    posture_positions,
 )
 
 from .kinect_damage import shaken, swapped

@@ -8,8 +8,7 @@ from kinect_walks import tracked_walk, true_positions
 
 from solvers import motion as vocabulary
 from solvers import samples
-from solvers.motion import JOINTS, Sensor, Tracks
-from solvers.reconstruction import posture_joints
+from solvers.motion import JOINTS, Sensor, Tracks, posture_joints
 from solvers.recordings import read_bvh, read_joint_csv, write_bvh, write_joint_csv, write_trc
 
 

@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 
 from solvers.motion import JOINTS, JointRecording, Sensor, Tracks
+from solvers.motion.posture_joints import motion_postures
 from solvers.reconstruction import load_residual_prior
-from solvers.reconstruction.posture_joints import motion_postures
 from solvers.recordings import read_recording, write_bvh, write_joint_csv
 from solvers.samples import GaitSettings, walking_gait
 

@@ -9,6 +9,8 @@ from scipy.optimize import minimize
 
 from solvers.errors import InvalidMotionError
 from solvers.motion import Tracks
+from solvers.motion.posture_heading import mirrored, turned
+from solvers.motion.posture_joints import MIRROR_IMAGES
 from solvers.reconstruction import (
     CorrectionMethod,
     CorrectionSettings,
@@ -17,8 +19,6 @@ from solvers.reconstruction import (
     learn_residual_prior,
 )
 from solvers.reconstruction.correct_postures import _frame_by_frame, chance_within
-from solvers.reconstruction.heading import mirrored, turned
-from solvers.reconstruction.posture_joints import MIRROR_IMAGES
 from solvers.reconstruction.steady_paths import followed, smoothed
 
 

@@ -6,8 +6,8 @@ import pytest
 from numpy.testing import assert_allclose, assert_array_equal
 
 from solvers import motion, samples
-from solvers.motion import JointRecording, Tracks
-from solvers.reconstruction import posture_joints, reconstruct
+from solvers.motion import JointRecording, Tracks, posture_joints
+from solvers.reconstruction import reconstruct
 from solvers.reconstruction.exchanges import undo_exchanges
 from solvers.recordings import read_recording
 

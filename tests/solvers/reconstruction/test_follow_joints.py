@@ -17,9 +17,9 @@ from solvers.motion import (
     forward_kinematics,
     joint_parents,
     motion_from_points,
+    posture_joints,
 )
 from solvers.motion.rotations import angle_between, rotate
-from solvers.reconstruction import posture_joints
 from solvers.reconstruction.follow_joints import follow_joints
 from solvers.recordings import read_recording
 

@@ -3,13 +3,13 @@
 import numpy as np
 import pytest
 
+from solvers.motion.posture_joints import PARENTS
 from solvers.reconstruction.body_size import USUAL_LENGTHS, resize, segment_lengths
 from solvers.reconstruction.keep_lengths import keep_lengths
 from solvers.reconstruction.library_body import BodyPostures
 from solvers.reconstruction.neighbours import Query, index_postures, nearest_postures
 from solvers.reconstruction.posture_energy import Demands, EnergyWeights, posture_energy
 from solvers.reconstruction.posture_groups import group_postures
-from solvers.reconstruction.posture_joints import PARENTS
 from solvers.reconstruction.posture_search import search_in_turn, search_postures
 from solvers.reconstruction.posture_space import local_pca
 from solvers.reconstruction.posture_synthesis import solve_in_turn, solve_postures

@@ -5,13 +5,13 @@ import pytest
 
 from solvers.errors import InvalidMotionError, SolveCancelled
 from solvers.motion import JOINTS, JointRecording, Sensor, Tracks, forward_kinematics
-from solvers.reconstruction.heading import turned
-from solvers.reconstruction.other_joints import all_joints, anchors
-from solvers.reconstruction.posture_joints import (
+from solvers.motion.posture_heading import turned
+from solvers.motion.posture_joints import (
     POSTURE_JOINTS,
     joints_of_names,
     motion_postures,
 )
+from solvers.reconstruction.other_joints import all_joints, anchors
 from solvers.reconstruction.posture_library import build_posture_library
 from solvers.reconstruction.posture_settings import PostureMethod, PostureSettings
 from solvers.reconstruction.reconstruct_postures import reconstruct_postures

@@ -5,15 +5,15 @@ import pytest
 
 from solvers.errors import InvalidMotionError
 from solvers.motion import JOINTS, Sensor, Tracks
-from solvers.reconstruction.body_size import body_lengths, resize, segment_lengths
-from solvers.reconstruction.heading import normalise, turned
-from solvers.reconstruction.posture_joints import (
+from solvers.motion.posture_heading import normalise, turned
+from solvers.motion.posture_joints import (
     PARENTS,
     POSTURE_JOINTS,
     joints_of_names,
     motion_postures,
     posture_positions,
 )
+from solvers.reconstruction.body_size import body_lengths, resize, segment_lengths
 from solvers.samples import GaitSettings, walking_gait
 
 

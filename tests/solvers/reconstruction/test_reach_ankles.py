@@ -5,8 +5,15 @@ import pytest
 from kinect_walks import true_positions
 
 from solvers import samples
-from solvers.motion import JOINTS, Motion, Sensor, Tracks, forward_kinematics, joint_parents
-from solvers.reconstruction import posture_joints
+from solvers.motion import (
+    JOINTS,
+    Motion,
+    Sensor,
+    Tracks,
+    forward_kinematics,
+    joint_parents,
+    posture_joints,
+)
 from solvers.reconstruction.follow_joints import follow_joints
 from solvers.recordings import read_recording
 

@@ -5,14 +5,13 @@ import numpy as np
 import pytest
 
 from solvers import motion, samples
-from solvers.motion import JointRecording, forward_kinematics
+from solvers.motion import JointRecording, forward_kinematics, posture_joints
+from solvers.motion.posture_heading import turned
 from solvers.reconstruction import (
     ReconstructMethod,
     ReconstructSettings,
-    posture_joints,
     reconstruct,
 )
-from solvers.reconstruction.heading import turned
 
 LOST, HIDDEN = kinect_walks.LOST, [5, 6, 7]
 SEEN = [joint for joint in range(20) if joint not in HIDDEN]

@@ -6,8 +6,8 @@ from numpy.testing import assert_allclose
 
 from solvers.errors import InvalidMotionError
 from solvers.motion import Tracks
+from solvers.motion.posture_heading import turned
 from solvers.reconstruction import measure_marker_reliability
-from solvers.reconstruction.heading import turned
 from solvers.recordings import read_c3d
 
 N_FRAMES = 300

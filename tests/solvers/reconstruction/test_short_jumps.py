@@ -6,11 +6,10 @@ import pytest
 from numpy.testing import assert_array_equal
 
 from solvers import motion, samples
-from solvers.motion import JointRecording
+from solvers.motion import JointRecording, posture_joints
 from solvers.reconstruction import (
     ReliabilitySettings,
     measure_reliability,
-    posture_joints,
     reconstruct,
 )
 from solvers.reconstruction.short_jumps import short_jumps

@@ -15,13 +15,6 @@ SHORT = 5e-3
 REACH = 0.1
 """Seconds to both sides over which a change is measured."""
 ABOVE = np.maximum(PARENTS, 0)
-MIRROR = np.array([
-    POSTURE_JOINTS.index(
-        name.replace("left", "right") if "left" in name else name.replace("right", "left")
-    )
-    for name in POSTURE_JOINTS
-])  # fmt: skip
-"""Which joint is on the other side."""
 STANDS_FOR = {"spine": "chest", "chest": "spine", "leftToes": "", "rightToes": ""}
 """Whose direction a bone without one has, where it is not that of the joint above."""
 FORWARD = (0.0, -1.0, 0.0)
@@ -62,11 +55,6 @@ def bone_changes(directions: Array, frame_rate: float) -> Array:
     time = np.maximum(after - before, 1) / frame_rate
     ways = directions[after] - directions[before]
     return np.asarray(ways / time.reshape(-1, *(1,) * (directions.ndim - 1)))
-
-
-def mirrored(vectors: Array) -> Array:
-    """Exchange left and right of postures, or of directions, shape (..., 20, 3)."""
-    return np.asarray(vectors[..., MIRROR, :] * (-1.0, 1.0, 1.0))
 
 
 def along_bones(vectors: NDArray[Real], lengths: NDArray[Real]) -> NDArray[Real]:

@@ -95,9 +95,9 @@ def turned(postures: Array, angles: Array) -> Array:
     return np.stack([cos * x - sin * y, sin * x + cos * y, z], axis=-1)
 
 
-def mirrored(postures: Array) -> Array:
-    """Return postures or offsets without heading, (..., 20, 3), as a mirror shows them."""
-    return np.asarray(postures[..., list(MIRROR_IMAGES), :] * (-1.0, 1.0, 1.0))
+def mirrored(vectors: Array) -> Array:
+    """Return vectors of joints without heading, (..., 20, 3), as a mirror shows them."""
+    return np.asarray(vectors[..., list(MIRROR_IMAGES), :] * (-1.0, 1.0, 1.0))
 
 
 def _filled(values: Array, told: NDArray[np.bool_]) -> Array:

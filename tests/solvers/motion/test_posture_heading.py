@@ -6,9 +6,9 @@ import pytest
 from numpy.testing import assert_allclose
 
 from solvers import samples
-from solvers.reconstruction import posture_joints
-from solvers.reconstruction.heading import normalise, turned
-from solvers.reconstruction.posture_joints import MIRROR_IMAGES
+from solvers.motion import posture_joints
+from solvers.motion.posture_heading import normalise, turned
+from solvers.motion.posture_joints import MIRROR_IMAGES
 
 
 @pytest.fixture(scope="module")

@@ -10,16 +10,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..errors import InvalidMotionError
-from ..motion import (
-    HumanoidMap,
-    JointRecording,
-    Motion,
-    Skeleton,
-    Tracks,
-    find_humanoid_map,
-    forward_kinematics,
-    roles_by_name,
-)
+from .humanoid import HumanoidMap, find_humanoid_map
+from .humanoid_names import roles_by_name
+from .joint_recording import JointRecording
+from .kinematics import forward_kinematics
+from .motion import Motion
+from .skeleton import Skeleton
+from .tracks import Tracks
 
 Array = NDArray[np.float64]
 
