@@ -15,9 +15,9 @@ from ..motion import (
     roles_by_name,
     skeleton_from_points,
 )
+from ..motion.body_size import FEWEST, RELIABLE
 from ..motion.rigid_fit import best_turns
 from ..motion.rotations import IDENTITY, multiply, rotate, rotation_between, slerp
-from .body_size import FEWEST, RELIABLE
 from .girdles import with_girdles
 from .limb_twist import HINGES, Limb, hinge_turns, steady_way, thumb_turns
 from .reach_ankles import pelvis_shift, reach_ankles

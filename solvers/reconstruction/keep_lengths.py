@@ -3,8 +3,8 @@
 import numpy as np
 from numpy.typing import NDArray
 
+from ..motion.body_size import segment_lengths
 from ..motion.posture_joints import N_JOINTS, PARENTS
-from .body_size import segment_lengths
 
 Array = NDArray[np.float64]
 

@@ -3,8 +3,8 @@
 import numpy as np
 from numpy.typing import NDArray
 
+from ..motion.body_size import USUAL_LENGTHS
 from ..motion.bone_directions import along_bones
-from .body_size import USUAL_LENGTHS
 
 Single = NDArray[np.float32]
 

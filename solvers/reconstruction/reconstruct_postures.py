@@ -5,11 +5,11 @@ from numpy.typing import NDArray
 
 from ..errors import InvalidMotionError
 from ..motion import JointRecording, motion_from_points
+from ..motion.body_size import body_lengths
 from ..motion.joint_recording import INFERRED
 from ..motion.posture_heading import normalise
 from ..motion.posture_joints import N_JOINTS, POSTURE_JOINTS, joints_of_names, posture_positions
 from ..progress import Progress, unwatched, within
-from .body_size import body_lengths
 from .follow_postures import follow_postures
 from .other_joints import all_joints, anchors
 from .posture_library import PostureLibrary, load_posture_library

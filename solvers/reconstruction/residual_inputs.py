@@ -8,9 +8,9 @@ from scipy.ndimage import gaussian_filter1d
 
 from ..errors import InvalidMotionError
 from ..motion import JointRecording, Tracks
+from ..motion.body_size import USUAL_LENGTHS, body_lengths
 from ..motion.posture_heading import Normalised, normalise, turned
 from ..motion.posture_joints import N_JOINTS, PARENTS, posture_positions
-from .body_size import USUAL_LENGTHS, body_lengths
 
 Array = NDArray[np.float64]
 

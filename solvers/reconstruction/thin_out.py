@@ -3,10 +3,10 @@
 import numpy as np
 from numpy.typing import NDArray
 
+from ..motion.body_size import USUAL_LENGTHS
 from ..motion.bone_directions import along_bones
 from ..motion.posture_joints import N_JOINTS
 from ..progress import Progress, unwatched
-from .body_size import USUAL_LENGTHS
 
 Array = NDArray[np.float64]
 

@@ -8,13 +8,13 @@ from numpy.typing import NDArray
 
 from ..errors import InvalidMotionError
 from ..motion import JOINTS, JointRecording, Sensor, Tracks
+from ..motion.body_size import USUAL_LENGTHS, segment_lengths
 from ..motion.posture_joints import (
     PARENTS,
     POSTURE_JOINTS,
     joints_of_names,
     posture_positions,
 )
-from ..reconstruction.body_size import USUAL_LENGTHS, segment_lengths
 
 LARGEST, SMALLEST = 3.0, 0.2
 """Sizes of a body, in usual adults, beyond which the unit must be wrong."""

@@ -18,7 +18,7 @@ import numpy as np
 from numpy.typing import NDArray
 from threadpoolctl import threadpool_limits
 
-from solvers.reconstruction.body_size import USUAL_LENGTHS
+from solvers.motion.body_size import USUAL_LENGTHS
 from solvers.reconstruction.library_body import BodyPostures, on_body
 from solvers.reconstruction.neighbours import Query, index_postures, nearest_postures
 from solvers.reconstruction.posture_groups import group_postures

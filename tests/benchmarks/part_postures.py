@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 from scipy.interpolate import CubicSpline, PchipInterpolator
 
 from solvers.motion import JOINTS, JointRecording, Motion, Sensor, Tracks
+from solvers.motion.body_size import body_lengths, segment_lengths
 from solvers.motion.bone_directions import ABOVE, bone_changes
 from solvers.motion.posture_heading import normalise
 from solvers.motion.posture_joints import (
@@ -17,7 +18,6 @@ from solvers.motion.posture_joints import (
     motion_postures,
     posture_positions,
 )
-from solvers.reconstruction.body_size import body_lengths, segment_lengths
 from solvers.reconstruction.library_body import on_body
 from solvers.reconstruction.neighbours import Query, index_postures, nearest_postures
 from solvers.reconstruction.posture_energy import Demands

@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from solvers.motion import JointRecording, Tracks, forward_kinematics
+from solvers.motion.body_size import segment_lengths
 from solvers.motion.joint_recording import TRACKED
 from solvers.motion.posture_joints import posture_positions
 from solvers.reconstruction import (
@@ -17,7 +18,6 @@ from solvers.reconstruction import (
     measure_reliability,
     reconstruct,
 )
-from solvers.reconstruction.body_size import segment_lengths
 from solvers.recordings import read_recording
 
 from .clips import DATA

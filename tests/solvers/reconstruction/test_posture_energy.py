@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
+from solvers.motion.body_size import USUAL_LENGTHS, resize, segment_lengths
 from solvers.motion.posture_joints import PARENTS
-from solvers.reconstruction.body_size import USUAL_LENGTHS, resize, segment_lengths
 from solvers.reconstruction.keep_lengths import keep_lengths
 from solvers.reconstruction.library_body import BodyPostures
 from solvers.reconstruction.neighbours import Query, index_postures, nearest_postures

@@ -5,6 +5,7 @@ import pytest
 
 from solvers.errors import InvalidFileError, InvalidMotionError
 from solvers.files import write_archive
+from solvers.motion.body_size import USUAL_LENGTHS, body_lengths
 from solvers.motion.bone_directions import (
     along_bones,
     bone_changes,
@@ -12,7 +13,6 @@ from solvers.motion.bone_directions import (
 )
 from solvers.motion.posture_heading import mirrored, normalise
 from solvers.motion.posture_joints import POSTURE_JOINTS, motion_postures
-from solvers.reconstruction.body_size import USUAL_LENGTHS, body_lengths
 from solvers.reconstruction.library_body import ANATOMY, anatomy_turns, on_body
 from solvers.reconstruction.posture_library import (
     KIND,

@@ -5,6 +5,7 @@ import pytest
 
 from solvers.errors import InvalidMotionError
 from solvers.motion import JOINTS, Sensor, Tracks
+from solvers.motion.body_size import body_lengths, resize, segment_lengths
 from solvers.motion.posture_heading import normalise, turned
 from solvers.motion.posture_joints import (
     PARENTS,
@@ -13,7 +14,6 @@ from solvers.motion.posture_joints import (
     motion_postures,
     posture_positions,
 )
-from solvers.reconstruction.body_size import body_lengths, resize, segment_lengths
 from solvers.samples import GaitSettings, walking_gait
 
 

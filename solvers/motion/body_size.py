@@ -3,7 +3,7 @@
 import numpy as np
 from numpy.typing import NDArray
 
-from ..motion.posture_joints import HIPS, N_JOINTS, PARENTS
+from .posture_joints import HIPS, N_JOINTS, PARENTS
 
 Array = NDArray[np.float64]
 

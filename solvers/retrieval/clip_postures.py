@@ -1,0 +1,92 @@
+"""Clips as postures of one body that stands in one place and faces one way [ZH14, 3.2]."""
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..errors import InvalidMotionError
+from ..motion import JointRecording, Motion, Tracks, resample
+from ..motion.body_size import USUAL_LENGTHS, resize
+from ..motion.posture_heading import normalise
+from ..motion.posture_joints import motion_postures, posture_positions
+
+Array = NDArray[np.float64]
+Recording = Motion | Tracks | JointRecording
+
+
+@dataclass(frozen=True, eq=False)
+class ClipPostures:
+    """What of a recording can be compared with other people's.
+
+    Attributes
+    ----------
+    positions : shape (n_frames, 20, 3), metres
+        Joints of the standard body relative to its hips, facing -Y; in the order of
+        `POSTURE_JOINTS`. NaN: not tracked, or hung on a joint that is not.
+    travel : shape (n_frames, 3), metres per second
+        How fast the hips move to the left, backward and up, as the actor faces.
+    turning : shape (n_frames,), radians per second
+    frame_rate : float, hertz
+    """
+
+    positions: Array
+    travel: Array
+    turning: Array
+    frame_rate: float
+
+    @property
+    def n_frames(self) -> int:
+        """How many frames there are."""
+        return len(self.positions)
+
+
+def clip_postures(recording: Recording, frame_rate: float | None = None) -> ClipPostures:
+    """Take heading, place and the size of the actor out of a recording.
+
+    Bones keep their directions and get the lengths of a standard body (eq. 3.2 and 3.3), so
+    that rigs, actors and sensors can be compared.
+
+    Parameters
+    ----------
+    recording : Motion, Tracks or JointRecording
+        Skeletons need arms and legs that are recognised; points must be named as those of a
+        Kinect or by humanoid roles.
+    frame_rate : float, hertz, optional
+        At which to see it; that of the recording without.
+
+    Raises
+    ------
+    InvalidMotionError
+        No body is recognised, or nothing of it was tracked.
+    """
+    tracks = recording.tracks if isinstance(recording, JointRecording) else recording
+    if frame_rate is not None and frame_rate != tracks.frame_rate:
+        tracks = resample(tracks, frame_rate)
+    rate = tracks.frame_rate
+    positions = (
+        motion_postures(tracks) if isinstance(tracks, Motion) else posture_positions(tracks)
+    )
+    if not np.isfinite(positions).any():
+        raise InvalidMotionError("No joint was tracked in any frame.")
+    body = normalise(positions, rate)
+    turns = np.unwrap(body.headings)
+    return ClipPostures(
+        resize(body.postures, USUAL_LENGTHS),
+        _level(_per_second(body.places, rate), body.headings),
+        _per_second(turns, rate),
+        rate,
+    )
+
+
+def _per_second(values: Array, frame_rate: float) -> Array:
+    if len(values) < 2:
+        return np.zeros_like(values)
+    return np.asarray(np.gradient(values, 1.0 / frame_rate, axis=0))
+
+
+def _level(velocity: Array, headings: Array) -> Array:
+    """Return world velocities as the actor sees them."""
+    cos, sin = np.cos(headings), np.sin(headings)
+    x, y, z = velocity.T
+    return np.stack([cos * x + sin * y, cos * y - sin * x, z], axis=-1)
