@@ -61,12 +61,13 @@ def clip_postures(recording: Recording, frame_rate: float | None = None) -> Clip
         No body is recognised, or nothing of it was tracked.
     """
     tracks = recording.tracks if isinstance(recording, JointRecording) else recording
-    if frame_rate is not None and frame_rate != tracks.frame_rate:
-        tracks = resample(tracks, frame_rate)
-    rate = tracks.frame_rate
-    positions = (
-        motion_postures(tracks) if isinstance(tracks, Motion) else posture_positions(tracks)
-    )
+    rate = frame_rate or tracks.frame_rate
+    if isinstance(tracks, Motion):
+        positions = motion_postures(
+            tracks if rate == tracks.frame_rate else resample(tracks, rate)
+        )
+    else:
+        positions = posture_positions(resample(tracks, rate))
     if not np.isfinite(positions).any():
         raise InvalidMotionError("No joint was tracked in any frame.")
     body = normalise(positions, rate)
