@@ -67,4 +67,4 @@ class FindSettings(Settings):
         return np.asarray(weights * len(weights) / weights.sum())
 
 
-STANDARD = FindSettings()
+USUAL = FindSettings()

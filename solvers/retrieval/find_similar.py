@@ -12,7 +12,7 @@ from .body_parts import part_coverage
 from .clip import ClipEntry, Match
 from .clip_library import ClipLibrary
 from .clip_postures import Recording, clip_postures
-from .find_settings import STANDARD, FindSettings
+from .find_settings import USUAL, FindSettings
 from .rank_clips import Ranking, rank_clips
 from .spans import RATE, describe
 from .vocabulary import Vocabulary
@@ -29,7 +29,7 @@ def find_similar(
     query: Recording,
     library: ClipLibrary,
     *,
-    settings: FindSettings = STANDARD,
+    settings: FindSettings = USUAL,
     ignore: Collection[str] = (),
     progress: Progress = unwatched,
 ) -> tuple[Match, ...]:
