@@ -10,10 +10,12 @@
 
 from .measure_variation import measure_variation
 from .partitions import Partition
-from .synthesize import VarySettings, synthesize
+from .synthesize import synthesize
 from .variation_model import VariationModel, learn_variation_model, load_variation_model
+from .vary_settings import Method, VarySettings
 
 __all__ = [
+    "Method",
     "Partition",
     "VariationModel",
     "VarySettings",

@@ -13,7 +13,8 @@ from ..motion import Motion, Skeleton, resample
 from ..motion.rotations import mean_rotation
 from ..progress import Progress, unwatched
 from .align_examples import Alignment, align_examples, body_positions
-from .course import N_ROOT, Course, course_of, headings, without_heading
+from .course import HEIGHT, N_ROOT, Course, course_of, headings, without_heading
+from .curve_sampling import sample_curves
 from .mixing_kernel import MixingKernel, learn_mixing_kernel
 
 Array = NDArray[np.float64]
@@ -200,17 +201,11 @@ def _as_first(motion: Motion, first: Motion) -> Motion:
 
 def _in_common_time(course: Course, times: Array) -> Course:
     """Return a course at its frames `times`; ways are those between them."""
-    before = np.minimum(times.astype(int), max(len(course.root) - 2, 0))
-    part = (times - before)[:, None]
-    after = np.minimum(before + 1, len(course.root) - 1)
-    joints = course.joints[before] + part[..., None] * (
-        course.joints[after] - course.joints[before]
-    )
-    ways = np.cumsum(course.root[:, :3], axis=0)
-    made = ways[before] + part * (ways[after] - ways[before])
-    height = course.root[:, 3:]
-    heights = height[before] + part * (height[after] - height[before])
-    return Course(np.column_stack([np.diff(made, axis=0, prepend=made[:1]), heights]), joints)
+    joints = sample_curves(course.joints, times)
+    places = np.column_stack([np.cumsum(course.root[:, :HEIGHT], axis=0), course.root[:, HEIGHT:]])
+    root = sample_curves(places, times)
+    root[:, :HEIGHT] = np.diff(root[:, :HEIGHT], axis=0, prepend=root[:1, :HEIGHT])
+    return Course(root, joints)
 
 
 def _same_turns(joints: Array, centre: int) -> Array:
