@@ -1,8 +1,8 @@
 """Deviations drawn as mixtures of the examples' own, with shares that change in time.
 
-A share vector is partly drawn around one example and partly Gaussian: the first is a smoothed
+A share vector is mostly drawn around one example and partly Gaussian: the first is a smoothed
 bootstrap (Silverman 1986, Density estimation, 6.4.1), which keeps variants where examples are
-dense, the second reaches between them. Both have the covariance that was learned.
+dense, the second reaches between them. Both have the covariance of the examples.
 """
 
 import numpy as np
@@ -14,11 +14,11 @@ from .variation_model import VariationModel
 
 Array = NDArray[np.float64]
 
-NEAR = 0.75
+NEAR = 0.9
 """Part of the variance of shares that is drawn around one example at a time."""
-SHARP = 3.0
+SHARP = 4.0
 """How clearly one example prevails over others there; higher is closer to copying it."""
-TOGETHER = np.array([0.95, 0.6, 0.6, 0.95, 0.95])
+TOGETHER = np.array([0.95, 0.7, 0.7, 0.95, 0.95])
 """Part of the variance that each partition has in common with the others: limbs go with each
 other, and legs with the hips that they carry."""
 FARTHEST = 1.6

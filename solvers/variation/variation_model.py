@@ -15,7 +15,7 @@ from ..progress import Progress, unwatched
 from .align_examples import Alignment, align_examples, body_positions
 from .course import HEIGHT, N_ROOT, Course, course_of, headings, without_heading
 from .curve_sampling import sample_curves
-from .mixing_kernel import MixingKernel, learn_mixing_kernel
+from .mixing_kernel import MixingKernel
 
 Array = NDArray[np.float64]
 
@@ -156,10 +156,9 @@ def learn_variation_model(
         np.log(np.gradient(alignment.times, axis=1)) if root.shape[1] > 1 else 0 * root[..., 0]
     )
     centre = motions[alignment.centre]
-    kernel = _kernel(joints, root, haste, root.shape[1] / rate)
     progress(1.0)
     return VariationModel(
-        motions[0].skeleton, rate, usual, root, joints, haste, kernel, alignment.centre,
+        motions[0].skeleton, rate, usual, root, joints, haste, MixingKernel(), alignment.centre,
         _loops(centre, turns[alignment.centre]), _odd_one(alignment),
     )  # fmt: skip
 
@@ -215,12 +214,6 @@ def _same_turns(joints: Array, centre: int) -> Array:
     stay = np.linalg.norm(joints - joints[centre], axis=-1, keepdims=True).mean(axis=1)
     turn = np.linalg.norm(other - joints[centre], axis=-1, keepdims=True).mean(axis=1)
     return np.where((turn < stay)[:, None], other, joints)
-
-
-def _kernel(joints: Array, root: Array, haste: Array, seconds: float) -> MixingKernel:
-    flat = joints.reshape(*joints.shape[:2], -1)
-    told = np.concatenate([flat, root[..., 3:]], axis=-1)
-    return learn_mixing_kernel(told - told.mean(axis=0), seconds)
 
 
 def _loops(motion: Motion, turns: Array) -> bool:
