@@ -54,7 +54,7 @@ def draw_shares(model: VariationModel, n_variants: int, rng: np.random.Generator
     farthest = FARTHEST * np.sqrt(n) * usual
     shares *= np.where(length > farthest, farthest / np.maximum(length, 1e-12), 1.0)
     seen = np.linspace(0.0, few - 1.0, moments)
-    return np.moveaxis(sample_curves(np.moveaxis(shares, 2, 0), seen), 0, 2)
+    return np.asarray(np.moveaxis(sample_curves(np.moveaxis(shares, 2, 0), seen), 0, 2))
 
 
 def mixed_deviations(model: VariationModel, shares: Array) -> tuple[Array, Array, Array]:

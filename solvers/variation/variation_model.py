@@ -201,7 +201,10 @@ def _as_first(motion: Motion, first: Motion) -> Motion:
 def _in_common_time(course: Course, times: Array) -> Course:
     """Return a course at its frames `times`; ways are those between them."""
     joints = sample_curves(course.joints, times)
-    places = np.column_stack([np.cumsum(course.root[:, :HEIGHT], axis=0), course.root[:, HEIGHT:]])
+    places = np.column_stack([
+        np.cumsum(course.root[:, :HEIGHT], axis=0),
+        course.root[:, HEIGHT:],
+    ])
     root = sample_curves(places, times)
     root[:, :HEIGHT] = np.diff(root[:, :HEIGHT], axis=0, prepend=root[:1, :HEIGHT])
     return Course(root, joints)

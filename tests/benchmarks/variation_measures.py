@@ -45,9 +45,7 @@ class Judge:
         bodies = [_body(one) for one in variants]
         windows = np.concatenate([_windows(one) for one in variants])
         covered = [cdist(one, windows).min(axis=1) < self.near for one in self.windows]
-        nearest = [
-            min(warp(one, other).cost for other in self.bodies) for one in bodies[:10]
-        ]
+        nearest = [min(warp(one, other).cost for other in self.bodies) for one in bodies[:10]]
         slides = np.array([_slides(one) for one in variants[:PLANTED]])
         beyond = [limit_excess(one, self.limits) for one in variants[:10]]
         return {
@@ -58,7 +56,8 @@ class Judge:
             "jerk ratio": float(np.mean([_jerk(one) for one in variants])) / self.jerk,
             "slide": 100.0 * float(np.nanmean(slides[:, 0])),
             "slide planted": 100.0 * float(np.nanmean(slides[:, 1])),
-            "beyond limits %": 100.0 * float(np.mean([(one > BEYOND).mean() for one in beyond])),
+            "beyond limits %": 100.0
+            * float(np.mean([(one > BEYOND).mean() for one in beyond])),
             "spectrum": _alike(self.spectrum, _spectrum(variants)),
         }
 

@@ -1,5 +1,6 @@
 """Examples to vary: real clips of one behaviour of one actor each."""
 
+import itertools
 from collections.abc import Iterator
 
 import numpy as np
@@ -29,7 +30,9 @@ def development_sets() -> dict[str, list[Motion]]:
 
 def scored_sets() -> dict[str, list[Motion]]:
     """Sets whose figures are published."""
-    found = {f"{name} {actor}": hdm05(name, actor) for name in CLASSES for actor in ("bk", "dg")}
+    found = {
+        f"{name} {actor}": hdm05(name, actor) for name in CLASSES for actor in ("bk", "dg")
+    }
     found["walk 35"] = walking_cycles("35")
     for side, spans in HOPS.items():
         found[f"hop on the {side} leg 49"] = single_hops(spans)
@@ -40,7 +43,7 @@ def scored_sets() -> dict[str, list[Motion]]:
 def hdm05(name: str, actor: str) -> list[Motion]:
     """Return clips of an actor, 120 Hz."""
     paths = sorted(clips.HDM05.glob(f"HDM_{actor}_{CLASSES[name]}_*_120.amc"))
-    return [read_acclaim(path) for path in paths[: MOST]]
+    return [read_acclaim(path) for path in paths[:MOST]]
 
 
 def walking_cycles(subject: str) -> list[Motion]:
@@ -53,7 +56,7 @@ def walking_cycles(subject: str) -> list[Motion]:
         peaks, _ = find_peaks(apart, distance=round(CYCLE * motion.frame_rate), height=0.2)
         if len(peaks) > 2:
             found.append(motion.slice(int(peaks[0]), int(peaks[1]) + 1))
-    return found[: MOST]
+    return found[:MOST]
 
 
 HOPS = {
@@ -89,5 +92,5 @@ def _between_lows(motion: Motion) -> list[Motion]:
 def _cut(motion: Motion, highs: np.ndarray, least: float) -> Iterator[Motion]:
     width = round(least * motion.frame_rate)
     peaks, _ = find_peaks(highs, distance=width, prominence=0.25 * np.ptp(highs))
-    for start, stop in zip(peaks[:-1], peaks[1:], strict=True):
+    for start, stop in itertools.pairwise(peaks):
         yield motion.slice(int(start), int(stop) + 1)
