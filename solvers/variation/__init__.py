@@ -8,10 +8,11 @@
 5
 """
 
+from .learn_variation import learn_variation_model
 from .measure_variation import measure_variation
 from .partitions import Partition
 from .synthesize import synthesize
-from .variation_model import VariationModel, learn_variation_model, load_variation_model
+from .variation_model import VariationModel, load_variation_model
 from .vary_settings import Method, VarySettings
 
 __all__ = [

@@ -14,9 +14,9 @@ Array = NDArray[np.float64]
 
 RATE = 20.0
 """Hertz at which examples are lined up."""
-CALM = 0.1
+CALM = 0.2
 """Seconds over which the alignment is smoothed: its steps are no haste of the actor's."""
-SLOWEST, FASTEST = 0.25, 4.0
+SLOWEST, FASTEST = 0.4, 2.5
 """Speeds between which the time of one example passes in that of another."""
 WINDOW = 0.3
 """Part of the clip by which the time of an example may run ahead of another's."""

@@ -80,4 +80,5 @@ def _mixed(curves: Array, shares: Array) -> Array:
     n, moments = curves.shape[:2]
     beside = (curves - curves.mean(axis=0)).reshape(n, moments, -1)
     sums = np.matmul(shares.transpose(1, 0, 2), beside.transpose(1, 0, 2))
-    return sums.transpose(1, 0, 2).reshape(shares.shape[0], moments, *curves.shape[2:])
+    shape = (shares.shape[0], moments, *curves.shape[2:])
+    return np.asarray(sums.transpose(1, 0, 2).reshape(shape))

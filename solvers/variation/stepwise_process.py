@@ -1,6 +1,7 @@
 """Gaussian processes from features of two frames to the next rotation of one joint.
 
-Both forms take y = Phi c(x), three channels c, each a process with the kernel of [ZH14, eq. 4.3]
+Both forms take y = Phi c(x) with three channels c, made of processes with the kernel of [ZH14,
+eq. 4.3]
 
     u_p(x, x') = exp(-|x - x'|^2 / (2 l_p^2)) + b_p + n_p [x = x'].
 
@@ -51,6 +52,16 @@ class Hyperparameters:
     noises: Array
     mixing: Array
 
+    def packed(self) -> Array:
+        """Return all numbers in a row, shape (18,)."""
+        return np.concatenate([self.lengths, self.biases, self.noises, self.mixing.ravel()])
+
+    @classmethod
+    def unpacked(cls, numbers: Array) -> "Hyperparameters":
+        """Read what `packed` gave."""
+        told = numbers[: 3 * N].reshape(3, N)
+        return cls(told[0], told[1], told[2], numbers[3 * N :].reshape(N, N))
+
     def weights(self, published: bool) -> Array:
         """Return how much of each u_p is in the kernel of each channel, shape (3, 3)."""
         return self.mixing**2 if published else np.eye(N)
@@ -94,7 +105,7 @@ def learn_hyperparameters(
 
 
 def kernel_of(far: Array, found: Hyperparameters, weights: Array) -> Array:
-    """Return the kernels of channels without their noise, shape (3, ...), by squared distances."""
+    """Return kernels of channels without noise, shape (3, ...), by squared distances."""
     by_process = [
         np.exp(-0.5 * far / length**2) + bias
         for length, bias in zip(found.lengths, found.biases, strict=True)
@@ -109,8 +120,7 @@ def _spread(outputs: Array) -> Array:
 
 
 def _read(point: Array) -> Hyperparameters:
-    logs = np.exp(point[: 3 * N]).reshape(3, N)
-    return Hyperparameters(logs[0], logs[1], logs[2], point[3 * N :].reshape(N, N))
+    return Hyperparameters.unpacked(np.concatenate([np.exp(point[: 3 * N]), point[3 * N :]]))
 
 
 def _parts(far: Array, length: float, bias: float) -> tuple[Array, Array]:

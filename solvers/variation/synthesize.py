@@ -12,8 +12,9 @@ from .course import Course, motion_of
 from .mixtures import draw_shares, mixed_deviations
 from .own_time import in_own_time
 from .partitions import partition_joints
+from .stepwise_draw import stepwise_deviations
 from .variation_model import VariationModel
-from .vary_settings import VarySettings
+from .vary_settings import USUAL, Method, VarySettings
 
 Array = NDArray[np.float64]
 
@@ -29,7 +30,7 @@ def synthesize(
     model: VariationModel,
     n_variants: int,
     *,
-    settings: VarySettings = VarySettings(),
+    settings: VarySettings = USUAL,
     progress: Progress = unwatched,
 ) -> tuple[Motion, ...]:
     """Draw variants from what was learned of the examples.
@@ -55,7 +56,8 @@ def synthesize(
     Raises
     ------
     InvalidMotionError
-        No variants are asked for, or there is no such example.
+        No variants are asked for, there is no such example, or the model was learned for
+        another method.
     """
     if n_variants < 1:
         raise InvalidMotionError(f"{n_variants} variants cannot be made; ask for at least one.")
@@ -63,16 +65,39 @@ def synthesize(
         raise InvalidMotionError(
             f"There is no example {settings.base}; the model has {model.n_examples}."
         )
+    stepwise = model.stepwise
+    wanted = settings.method is Method.PUBLISHED
+    if settings.method is not Method.MIXTURE and (
+        stepwise is None or stepwise.published != wanted
+    ):
+        raise InvalidMotionError(
+            f"The model was not learned for the method {settings.method.value}; learn it with"
+            " the same settings."
+        )
     rng = np.random.default_rng(settings.seed)
     base = settings.base - 1 if settings.base else model.centre
     at_once = max(BATCH // (model.n_moments * (model.skeleton.n_joints + 2) * 3), 1)
     variants: list[Motion] = []
     while len(variants) < n_variants:
-        shares = draw_shares(model, min(at_once, n_variants - len(variants)), rng)
-        for drawn in zip(*mixed_deviations(model, shares), strict=True):
+        n = min(at_once, n_variants - len(variants))
+        for drawn in zip(*_deviations(model, settings.method, n, rng), strict=True):
             variants.append(_variant(model, settings, base, drawn))
             progress(len(variants) / n_variants, f"Variant {len(variants)}")
     return tuple(variants)
+
+
+def _deviations(
+    model: VariationModel, method: Method, n_variants: int, rng: np.random.Generator
+) -> tuple[Array, Array, Array]:
+    """Return by how much n variants deviate from the mean: joints, root and haste."""
+    shares = draw_shares(model, n_variants, rng)
+    joints, root, haste = mixed_deviations(model, shares)
+    if method is not Method.MIXTURE and model.stepwise:
+        own = stepwise_deviations(model.stepwise, shares, model.skeleton.n_joints, rng)
+        if model.stepwise.published:
+            return *own, haste
+        return joints + own[0], root + own[1], haste
+    return joints, root, haste
 
 
 def _variant(

@@ -70,3 +70,6 @@ class VarySettings(Settings):
     def amounts(self) -> Array:
         """Return the amount of each partition, shape (5,)."""
         return self.amount * np.array([getattr(self, part.name.lower()) for part in Partition])
+
+
+USUAL = VarySettings()
