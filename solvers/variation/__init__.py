@@ -8,6 +8,7 @@
 5
 """
 
+from .borrow_variation import borrow_variation
 from .learn_variation import learn_variation_model
 from .measure_variation import measure_variation
 from .partitions import Partition
@@ -20,6 +21,7 @@ __all__ = [
     "Partition",
     "VariationModel",
     "VarySettings",
+    "borrow_variation",
     "learn_variation_model",
     "load_variation_model",
     "measure_variation",

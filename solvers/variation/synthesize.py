@@ -75,13 +75,13 @@ def synthesize(
             " the same settings."
         )
     rng = np.random.default_rng(settings.seed)
-    base = settings.base - 1 if settings.base else model.centre
+    given = _given(model, settings)
     at_once = max(BATCH // (model.n_moments * (model.skeleton.n_joints + 2) * 3), 1)
     variants: list[Motion] = []
     while len(variants) < n_variants:
         n = min(at_once, n_variants - len(variants))
         for drawn in zip(*_deviations(model, settings.method, n, rng), strict=True):
-            variants.append(_variant(model, settings, base, drawn))
+            variants.append(_variant(model, settings, given, drawn))
             progress(len(variants) / n_variants, f"Variant {len(variants)}")
     return tuple(variants)
 
@@ -100,21 +100,6 @@ def _deviations(
     return joints, root, haste
 
 
-def _variant(
-    model: VariationModel, settings: VarySettings, base: int, drawn: tuple[Array, ...]
-) -> Motion:
-    """Return one variant that deviates so from the mean: joints, root and haste."""
-    amounts = settings.amounts()
-    by_joint = (amounts[:, None] * partition_joints(model.skeleton)).sum(axis=0)
-    pinned = _pinned(model, settings)
-    joints = _free(_range(model.joints, base), by_joint[:, None], drawn[0], pinned)
-    root = _free(_range(model.root, base), amounts[[0, 3, 4]].mean(), drawn[1], pinned)
-    hasty = np.asarray(settings.amount * settings.timing)
-    haste = _free(_range(model.haste, base), hasty, drawn[2], np.ones(len(pinned)))
-    course = in_own_time(Course(root, joints), np.exp(haste) * settings.length)
-    return motion_of(course, model.skeleton, model.usual, model.frame_rate, np.zeros(3))
-
-
 class _Range(NamedTuple):
     """What examples do: the one that is varied, their mean, and how far they go."""
 
@@ -124,9 +109,45 @@ class _Range(NamedTuple):
     high: Array
 
 
+class _Given(NamedTuple):
+    """What all variants have in common."""
+
+    joints: _Range
+    root: _Range
+    haste: _Range
+    by_joint: Array
+    """Amount of each joint, shape (n_joints, 1)."""
+    pinned: Array
+
+
+def _given(model: VariationModel, settings: VarySettings) -> _Given:
+    base = settings.base - 1 if settings.base else model.centre
+    by_joint = (settings.amounts()[:, None] * partition_joints(model.skeleton)).sum(axis=0)
+    return _Given(
+        joints=_range(model.joints, base),
+        root=_range(model.root, base),
+        haste=_range(model.haste, base),
+        by_joint=by_joint[:, None],
+        pinned=_pinned(model, settings),
+    )
+
+
 def _range(curves: Array, base: int) -> _Range:
     low, high = curves.min(axis=(0, 1)), curves.max(axis=(0, 1))
     return _Range(curves[base], curves.mean(axis=0), low, high)
+
+
+def _variant(
+    model: VariationModel, settings: VarySettings, given: _Given, drawn: tuple[Array, ...]
+) -> Motion:
+    """Return one variant that deviates so from the mean: joints, root and haste."""
+    amounts, pinned = settings.amounts(), given.pinned
+    joints = _free(given.joints, given.by_joint, drawn[0], pinned)
+    root = _free(given.root, amounts[[0, 3, 4]].mean(), drawn[1], pinned)
+    hasty = np.asarray(settings.amount * settings.timing)
+    haste = _free(given.haste, hasty, drawn[2], np.ones(len(pinned)))
+    course = in_own_time(Course(root, joints), np.exp(haste) * settings.length)
+    return motion_of(course, model.skeleton, model.usual, model.frame_rate, np.zeros(3))
 
 
 def _free(seen: _Range, amount: Array, beside: Array, pinned: Array) -> Array:
