@@ -12,6 +12,8 @@ from solvers.motion import Motion, warp
 from solvers.motion.rotations import inverse, multiply, rotation_vector_from_quaternion
 from solvers.variation.align_examples import RATE, body_positions
 
+from .clips import every
+
 WINDOW, WINDOW_RATE = 11, 30.0
 PAIRS = 60
 """Pairs of variants whose distance is measured: as many as tell the mean."""
@@ -94,7 +96,11 @@ def _turns(motion: Motion) -> np.ndarray:
 
 
 def _jerk(motion: Motion) -> float:
-    """Return the mean absolute third difference of joint angles, rad/s3."""
+    """Return the mean absolute third difference of joint angles at 30 Hz, rad/s3.
+
+    At 30 Hz for all, since some methods know no more.
+    """
+    motion = every(motion, max(round(motion.frame_rate / WINDOW_RATE), 1))
     return float(np.abs(np.diff(_turns(motion), n=2, axis=0)).mean() * motion.frame_rate**2)
 
 
