@@ -2,7 +2,8 @@
 
 A share vector is mostly drawn around one example and partly Gaussian: the first is a smoothed
 bootstrap (Silverman 1986, Density estimation, 6.4.1), which keeps variants where examples are
-dense, the second reaches between them. Both have the covariance of the examples.
+dense, the second reaches between them. The first sums to 1: while one example gives way to
+another a variant lies between the two, and what both have in common is not exaggerated.
 """
 
 import numpy as np
@@ -14,9 +15,9 @@ from .variation_model import VariationModel
 
 Array = NDArray[np.float64]
 
-NEAR = 0.9
+NEAR = 0.8
 """Part of the variance of shares that is drawn around one example at a time."""
-SHARP = 4.0
+SHARP = 8.0
 """How clearly one example prevails over others there; higher is closer to copying it."""
 TOGETHER = np.array([0.95, 0.7, 0.7, 0.95, 0.95])
 """Part of the variance that each partition has in common with the others: limbs go with each
@@ -34,7 +35,7 @@ COMMON = len(Partition)
 def draw_shares(model: VariationModel, n_variants: int, rng: np.random.Generator) -> Array:
     """Return shares of the examples, shape (6, n_variants, n_moments, n_examples).
 
-    For each partition and, last, for the root and the time; their squares sum to about 1.
+    For each partition and, last, for the root and the time.
     """
     n, moments = model.n_examples, model.n_moments
     seconds = (moments - 1) / model.frame_rate
@@ -48,7 +49,7 @@ def draw_shares(model: VariationModel, n_variants: int, rng: np.random.Generator
     mixed = np.sqrt(common) * drawn[:, -1:] + np.sqrt(1.0 - common) * drawn
     usual = 1.0 / np.sqrt(max(n - 1, 1))
     around = np.exp(SHARP * mixed[0])
-    around /= np.linalg.norm(around, axis=-1, keepdims=True) * np.sqrt((n - 1) / n or 1.0)
+    around /= around.sum(axis=-1, keepdims=True)
     shares = np.sqrt(NEAR) * around + np.sqrt(1.0 - NEAR) * usual * mixed[1]
     length = np.linalg.norm(shares, axis=-1, keepdims=True)
     farthest = FARTHEST * np.sqrt(n) * usual
