@@ -8,6 +8,7 @@ another a variant lies between the two, and what both have in common is not exag
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.ndimage import gaussian_filter1d
 
 from .curve_sampling import sample_curves
 from .partitions import Partition, partition_joints
@@ -15,8 +16,9 @@ from .variation_model import VariationModel
 
 Array = NDArray[np.float64]
 
-NEAR = 0.8
-"""Part of the variance of shares that is drawn around one example at a time."""
+NEAR = 0.9
+"""Part of the variance of shares that is drawn around one example at a time, of many; of n
+examples it is less by 1 / n, since two variants are often drawn around the same."""
 SHARP = 8.0
 """How clearly one example prevails over others there; higher is closer to copying it."""
 TOGETHER = np.array([0.95, 0.7, 0.7, 0.95, 0.95])
@@ -25,8 +27,12 @@ other, and legs with the hips that they carry."""
 FARTHEST = 1.6
 """Times the usual length of a mixture's shares, beyond which it is drawn back: variants stay
 near the examples."""
+CALM = 0.1
+"""Seconds: what changes more slowly is each partition's own."""
 RATE = 30.0
 """Hertz at which shares are drawn; they change slowly."""
+LONGEST = 2000
+"""Moments at which shares are drawn at most; in clips over a minute they change more slowly."""
 JITTER = 1e-9
 COMMON = len(Partition)
 """Row of the shares that the way of the root and the time have, after those of partitions."""
@@ -39,7 +45,7 @@ def draw_shares(model: VariationModel, n_variants: int, rng: np.random.Generator
     """
     n, moments = model.n_examples, model.n_moments
     seconds = (moments - 1) / model.frame_rate
-    few = max(min(moments, round(seconds * RATE) + 1), 2)
+    few = max(min(moments, round(seconds * RATE) + 1, LONGEST), 2)
     times = np.linspace(0.0, seconds, few)
     covariance = model.kernel.covariance(times, seconds if model.loops else None)
     root = np.linalg.cholesky(covariance + JITTER * few * np.eye(few))
@@ -50,7 +56,8 @@ def draw_shares(model: VariationModel, n_variants: int, rng: np.random.Generator
     usual = 1.0 / np.sqrt(max(n - 1, 1))
     around = np.exp(SHARP * mixed[0])
     around /= around.sum(axis=-1, keepdims=True)
-    shares = np.sqrt(NEAR) * around + np.sqrt(1.0 - NEAR) * usual * mixed[1]
+    near = max(NEAR - 1.0 / n, 0.0)
+    shares = np.sqrt(near * n / max(n - 1, 1)) * around + np.sqrt(1.0 - near) * usual * mixed[1]
     length = np.linalg.norm(shares, axis=-1, keepdims=True)
     farthest = FARTHEST * np.sqrt(n) * usual
     shares *= np.where(length > farthest, farthest / np.maximum(length, 1e-12), 1.0)
@@ -61,6 +68,10 @@ def draw_shares(model: VariationModel, n_variants: int, rng: np.random.Generator
 def mixed_deviations(model: VariationModel, shares: Array) -> tuple[Array, Array, Array]:
     """Return by how much variants deviate from the mean of the examples in common time.
 
+    What changes quickly is mixed with the same shares everywhere: in captures the jitter of one
+    joint makes up for that of another, and feet and hands shook if limbs had it from different
+    examples.
+
     Returns
     -------
     joints : shape (n_variants, n_moments, n_joints, 3), radians
@@ -68,9 +79,10 @@ def mixed_deviations(model: VariationModel, shares: Array) -> tuple[Array, Array
     haste : shape (n_variants, n_moments)
     """
     n, moments = model.n_examples, model.n_moments
-    joints = np.zeros((shares.shape[1], *model.joints.shape[1:]))
+    joints = _mixed(model.joints, shares[COMMON])
+    calm = gaussian_filter1d(model.joints, CALM * model.frame_rate, axis=1, mode="nearest")
     for members, share in zip(partition_joints(model.skeleton), shares[:COMMON], strict=True):
-        joints[:, :, members] = _mixed(model.joints[:, :, members], share)
+        joints[:, :, members] += _mixed(calm[:, :, members], share - shares[COMMON])
     rest = np.concatenate([model.root, model.haste.reshape(n, moments, 1)], axis=-1)
     root = _mixed(rest, shares[COMMON])
     return joints, root[..., :-1], root[..., -1]

@@ -13,12 +13,16 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .mixtures import COMMON
+from .soft_limits import softly_within
 from .stepwise_features import WAY, curves_of, step_features
 from .stepwise_model import StepwiseModel
 
 Array = NDArray[np.float64]
 
-PULL = 0.1
+GUARD = 0.05
+"""Part of a channel's whole range by which a variant may leave, more and more slowly, the range
+that examples have at the same moment."""
+PULL = 0.2
 """Part of the way to the mixture of examples that each step is drawn back."""
 
 
@@ -83,7 +87,8 @@ def _coregionalised(
     rng : numpy.random.Generator
     """
     functions = model.steps.draw_functions(len(mixed), rng)
-    low, high = model.states.min(axis=0), model.states.max(axis=0)
+    beyond = GUARD * np.ptp(model.states, axis=(0, 1))
+    low, high = model.states.min(axis=0) - beyond, model.states.max(axis=0) + beyond
     innovations = np.einsum("gvsn,nsgk->vsgk", shares, model.residuals)
     states = mixed.copy()
     for step in range(3, states.shape[1]):
@@ -92,7 +97,7 @@ def _coregionalised(
         wanted = model.steps.followed(step_features(before, extra), functions)
         wanted += innovations[:, step]
         wanted += PULL * (mixed[:, step] - wanted)
-        states[:, step] = np.clip(wanted, low[step], high[step])
+        states[:, step] = softly_within(wanted, low[step], high[step], beyond)
     return states
 
 

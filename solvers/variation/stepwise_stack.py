@@ -22,6 +22,8 @@ N_INDUCING = 150
 N_LEARNING = 120
 """Examples that hyper-parameters are learned on."""
 TINY = 1e-6
+AT_ONCE = 500
+"""Steps whose kernels are held in memory together."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -93,7 +95,11 @@ class ProcessStack:
 
     def expected(self, features: Array) -> Array:
         """Return the mean of the outputs, shape (n, n_triples, 3)."""
-        return self.outputs(np.einsum("gcnm,gcm->gcn", self.kernels(features), self.mean))
+        parts = []
+        for start in range(0, len(features), AT_ONCE):
+            kernels = self.kernels(features[start : start + AT_ONCE])
+            parts.append(self.outputs(np.einsum("gcnm,gcm->gcn", kernels, self.mean)))
+        return np.concatenate(parts)
 
     def sampled(self, features: Array, rng: np.random.Generator) -> Array:
         """Return outputs drawn from the predictive distribution, shape (n, n_triples, 3)."""

@@ -12,6 +12,7 @@ from .course import Course, motion_of
 from .mixtures import draw_shares, mixed_deviations
 from .own_time import in_own_time
 from .partitions import partition_joints
+from .soft_limits import softly_within
 from .stepwise_draw import stepwise_deviations
 from .variation_model import VariationModel
 from .vary_settings import USUAL, Method, VarySettings
@@ -158,17 +159,9 @@ def _free(seen: _Range, amount: Array, beside: Array, pinned: Array) -> Array:
     centre = seen.own + np.minimum(amount, 1.0) * (seen.middle - seen.own)
     beyond = MARGIN * (seen.high - seen.low)
     wanted = centre + amount * beside
-    free = _softly_within(wanted, seen.low - beyond, seen.high + beyond, beyond)
+    free = softly_within(wanted, seen.low - beyond, seen.high + beyond, beyond)
     weight = pinned.reshape(-1, *(1,) * (seen.own.ndim - 1)) * (amount > 0.0)
     return np.asarray(seen.own + weight * (free - seen.own))
-
-
-def _softly_within(values: Array, low: Array, high: Array, soft: Array) -> Array:
-    """Let values near a limit slow down and never pass it."""
-    soft = np.maximum(soft, 1e-12)
-    over, under = values - (high - soft), (low + soft) - values
-    values = np.where(over > 0.0, high - soft + soft * np.tanh(over / soft), values)
-    return np.where(under > 0.0, low + soft - soft * np.tanh(under / soft), values)
 
 
 def _pinned(model: VariationModel, settings: VarySettings) -> Array:
