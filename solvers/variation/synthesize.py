@@ -160,7 +160,7 @@ def _free(seen: _Range, amount: Array, beside: Array, pinned: Array) -> Array:
     beyond = MARGIN * (seen.high - seen.low)
     wanted = centre + amount * beside
     free = softly_within(wanted, seen.low - beyond, seen.high + beyond, beyond)
-    weight = pinned.reshape(-1, *(1,) * (seen.own.ndim - 1)) * (amount > 0.0)
+    weight = pinned.reshape(-1, *(1,) * (seen.own.ndim - 1))
     return np.asarray(seen.own + weight * (free - seen.own))
 
 
