@@ -1,6 +1,6 @@
 """Variants against copies, Perlin noise and two methods written from their papers.
 
-make bench-variation                    # some ten minutes
+make bench-variation                    # some seven minutes
 make bench-variation ARGUMENTS=--docs   # into docs/benchmarks_variation.md
 make bench-variation ARGUMENTS=--dev    # sets to tune on, a minute
 """
@@ -42,7 +42,7 @@ ENOUGH = 9
 EXCUSED = ("published", "Lau et al., from its description")
 """Methods that a classifier always tells from captures."""
 SECONDS, LEARNING = "s per s", "s to learn"
-UNIT = "mean ± standard deviation over sets"
+UNIT = "each set counts as one clip"
 
 
 def main() -> None:
