@@ -1,0 +1,106 @@
+"""Quick gestures: claps and waves."""
+
+from collections import deque
+
+from .gesture_events import Gesture, GestureEvent
+from .gesture_settings import GestureSettings
+from .gesture_signals import Hands
+
+BELLY, CHIN = -0.8, 0.3
+"""Heights of the hands' middle, from the shoulders, between which they clap."""
+IN_FRONT, ASIDE = 0.1, 0.5
+"""How far in front of the shoulders the hands' middle must be in a clap, and may be aside."""
+PARTED = 1.3
+"""Share of the touching distance from which on hands that touched are parted."""
+HAND_HIGH = -0.65
+"""Height of the right wrist from its shoulder from which on it can wave."""
+FLAT = 0.6
+"""Share of a wave's way that its height may change."""
+OUTSIDE, ACROSS = 0.3, -0.1
+"""How far right of its shoulder the wrist ends a wave to the right, or to the left."""
+HANGS = -0.45
+"""Height of the left wrist below which that arm takes no part in a wave."""
+
+
+class Clap:
+    """Hands come from apart, touch before the chest, and part: quickly."""
+
+    def __init__(self, settings: GestureSettings) -> None:
+        self._settings = settings
+        self.forget()
+
+    def forget(self) -> None:
+        """Begin anew."""
+        self._apart_at: float | None = None
+        self._touched_at: float | None = None
+        self._began = 0.0
+
+    def see(self, hands: Hands) -> GestureEvent | None:
+        """Return an event (of a start; who listens knows whether it is an end) at the end."""
+        wanted, time = self._settings, hands.time
+        if self._touched_at is not None:
+            return self._part(hands)
+        if hands.sideways >= wanted.apart:
+            self._apart_at = time
+        elif self._apart_at is not None and hands.gap <= wanted.together:
+            quick = time - self._apart_at <= wanted.clap_within
+            if quick and _before_the_chest(hands):
+                self._touched_at, self._began = time, self._apart_at
+            self._apart_at = None
+        return None
+
+    def _part(self, hands: Hands) -> GestureEvent | None:
+        assert self._touched_at is not None
+        if hands.time - self._touched_at > self._settings.touch_for:
+            self.forget()
+        elif hands.gap >= PARTED * self._settings.together or hands.between[2] < BELLY:
+            began = self._began
+            self.forget()
+            return GestureEvent(Gesture.CAPTURE_START, hands.time, began)
+        return None
+
+
+def _before_the_chest(hands: Hands) -> bool:
+    right, forward, up = hands.between
+    return bool(BELLY <= up <= CHIN and forward >= IN_FRONT and abs(right) <= ASIDE)
+
+
+class Wave:
+    """The right hand goes far to one side, quickly and level; the left one hangs."""
+
+    def __init__(self, settings: GestureSettings) -> None:
+        self._settings = settings
+        self.forget()
+
+    def forget(self) -> None:
+        """Begin anew."""
+        self._path: deque[Hands] = deque()
+        self._pause_until = float("-inf")
+
+    def see(self, hands: Hands) -> GestureEvent | None:
+        """Return an event at the end of a wave."""
+        able = hands.right[2] >= HAND_HIGH and hands.left[2] < HANGS
+        if not able or hands.time < self._pause_until:
+            self._path.clear()
+            return None
+        self._path.append(hands)
+        while hands.time - self._path[0].time > self._settings.wave_within:
+            self._path.popleft()
+        event = self._ended(hands, 1.0) or self._ended(hands, -1.0)
+        if event is not None:
+            self._path.clear()
+            self._pause_until = hands.time + self._settings.wave_pause
+        return event
+
+    def _ended(self, hands: Hands, way: float) -> GestureEvent | None:
+        """Return the wave to one side (1: right, -1: left) that ends here, if one does."""
+        x = hands.right[0]
+        if (x < OUTSIDE) if way > 0 else (x > ACROSS):
+            return None
+        start = min(self._path, key=lambda seen: way * seen.right[0])
+        far = way * (x - start.right[0])
+        rise = abs(hands.right[2] - start.right[2])
+        if far < self._settings.wave or rise > FLAT * far:
+            return None
+        gesture = Gesture.PAGE_NEXT if way > 0 else Gesture.PAGE_BACK
+        return GestureEvent(gesture, hands.time, start.time)
