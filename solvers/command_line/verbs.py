@@ -15,6 +15,7 @@ from .denoise_verb import add_denoise_options, learn_once, perform_denoise
 from .files import add_reading_options, read, read_all
 from .options import arguments_from, settings_from_arguments
 from .reconstruct_verb import add_reconstruct_options, perform_reconstruct, read_guides
+from .replay_verb import add_replay_options, perform_replay
 from .residuals_verb import add_residuals_options, perform_residuals
 from .retarget_verbs import (
     add_retarget_options,
@@ -126,6 +127,12 @@ VERBS = {
         add_retarget_options,
         perform_retarget,
         prepare=read_target,
+    ),
+    "replay": Verb(
+        "Send recordings to this machine as a live stream, as a depth camera's tracker would.",
+        add_replay_options,
+        perform_replay,
+        Makes.WORDS,
     ),
     "unbake": Verb(
         "Replace a key on every frame by few keys with handles.",

@@ -1,4 +1,4 @@
-"""What the project itself makes: a walk, ways to spoil it, and gestures; for tests and the like.
+"""What the project itself makes: a walk, ways to spoil it, and gestures, for tests and demos.
 
 >>> from solvers.samples import CorruptionSettings, GaitSettings, corrupt, walking_gait
 >>> walk = walking_gait(GaitSettings(duration=2.0, frame_rate=30.0))
