@@ -30,7 +30,7 @@ class GestureSettings(Settings):
     )
     patience: float = _time(0.25, "How long a lost hand is taken to be where it was", 2.0)
     raised: float = _length(0.45, "Height of the raised wrist above its shoulder")
-    raised_for: float = _time(0.8, "How long the raised hand must be held still")
+    raised_for: float = _time(1.0, "How long the raised hand must be held still")
     still: float = _length(0.22, "How far a hand that is held still may stray")
     wave: float = _length(0.5, "Way of the hand that is a wave; higher needs wider waves")
     wave_within: float = _time(0.6, "Time in which the hand makes that way", 2.0)

@@ -44,6 +44,8 @@ class Hands:
     """From hand to hand."""
     sideways: float
     """How far the right wrist is to the right of the left one."""
+    newest_gap: float
+    """From wrist to wrist as last seen, unsteadied; NaN while either is not seen."""
 
     @property
     def reach(self) -> float:
@@ -93,6 +95,12 @@ class HandReader:
     def _steady(self, joint: int) -> Array:
         return np.asarray(np.median(np.stack(self._samples[joint]), axis=0))
 
+    def _newest_gap(self, time: float) -> float:
+        right, left = RIGHT[2], LEFT[2]
+        if min(self._seen_at[right], self._seen_at[left]) < time:
+            return float("nan")
+        return float(np.linalg.norm(self._samples[right][-1] - self._samples[left][-1]))
+
     def _arm_length(self, joints: dict[int, Array]) -> float:
         for shoulder, elbow, wrist, _ in (RIGHT, LEFT):
             upper = np.linalg.norm(joints[elbow] - joints[shoulder])
@@ -125,4 +133,5 @@ class HandReader:
             actor_from_world @ (wrists - shoulders),
             min(gaps) / length,
             float((actor_from_world @ (joints[RIGHT[2]] - joints[LEFT[2]]))[0]),
+            self._newest_gap(time) / length,
         )

@@ -1,6 +1,7 @@
 """Quick gestures: claps and waves."""
 
 from collections import deque
+from math import isnan
 
 from .gesture_events import Gesture, GestureEvent
 from .gesture_settings import GestureSettings
@@ -23,7 +24,11 @@ HANGS = -0.45
 
 
 class Clap:
-    """Hands come from apart, touch before the chest, and part: quickly."""
+    """Hands come from apart, touch before the chest, and part: quickly.
+
+    Hands that are lost while they close in on each other are taken to go on: that is when depth
+    cameras lose them.
+    """
 
     def __init__(self, settings: GestureSettings) -> None:
         self._settings = settings
@@ -34,26 +39,47 @@ class Clap:
         self._apart_at: float | None = None
         self._touched_at: float | None = None
         self._began = 0.0
+        self._before: Hands | None = None
+        self._last: Hands | None = None
 
     def see(self, hands: Hands) -> GestureEvent | None:
         """Return an event (of a start; who listens knows whether it is an end) at the end."""
-        wanted, time = self._settings, hands.time
         if self._touched_at is not None:
             return self._part(hands)
-        if hands.sideways >= wanted.apart:
-            self._apart_at = time
-        elif self._apart_at is not None and hands.gap <= wanted.together:
-            quick = time - self._apart_at <= wanted.clap_within
-            if quick and _before_the_chest(hands):
-                self._touched_at, self._began = time, self._apart_at
-            self._apart_at = None
+        if isnan(hands.newest_gap):
+            self.lose(hands.time)
+            return None
+        if hands.sideways >= self._settings.apart:
+            self._apart_at = hands.time
+        elif self._apart_at is not None and hands.gap <= self._settings.together:
+            self._touch(hands, hands.time)
+        self._before, self._last = self._last, hands
         return None
+
+    def lose(self, time: float) -> None:
+        """Note that the hands are not seen."""
+        before, last = self._before, self._last
+        if None in {self._apart_at, before, last} or self._touched_at is not None:
+            return
+        assert before is not None and last is not None
+        closing = (before.newest_gap - last.newest_gap) / (last.time - before.time)
+        gap = last.newest_gap - closing * (time - last.time)
+        if closing > 0.0 and gap <= self._settings.together:
+            self._touch(last, time)
+
+    def _touch(self, hands: Hands, time: float) -> None:
+        assert self._apart_at is not None
+        quick = time - self._apart_at <= self._settings.clap_within
+        if quick and _before_the_chest(hands):
+            self._touched_at, self._began = time, self._apart_at
+        self._apart_at = self._before = self._last = None
 
     def _part(self, hands: Hands) -> GestureEvent | None:
         assert self._touched_at is not None
+        parted = hands.gap >= PARTED * self._settings.together or hands.between[2] < BELLY
         if hands.time - self._touched_at > self._settings.touch_for:
             self.forget()
-        elif hands.gap >= PARTED * self._settings.together or hands.between[2] < BELLY:
+        elif parted:
             began = self._began
             self.forget()
             return GestureEvent(Gesture.CAPTURE_START, hands.time, began)

@@ -84,6 +84,7 @@ class GestureRecogniser:
         if time - self._hands_at > LONGEST_BREAK:
             self._forget()
         if hands is None:
+            self._clap.lose(time)
             return events
         self._hands_at = time
         return (*events, *self._react(hands))
