@@ -13,6 +13,8 @@ IN_FRONT, ASIDE = 0.1, 0.5
 """How far in front of the shoulders the hands' middle must be in a clap, and may be aside."""
 PARTED = 1.3
 """Share of the touching distance from which on hands that touched are parted."""
+SHARED = 0.2
+"""Share of the way inwards that each hand makes at least in a clap."""
 HAND_HIGH = -0.65
 """Height of the right wrist from its shoulder from which on it can wave."""
 FLAT = 0.6
@@ -36,7 +38,7 @@ class Clap:
 
     def forget(self) -> None:
         """Begin anew."""
-        self._apart_at: float | None = None
+        self._apart: Hands | None = None
         self._touched_at: float | None = None
         self._began = 0.0
         self._before: Hands | None = None
@@ -50,8 +52,8 @@ class Clap:
             self.lose(hands.time)
             return None
         if hands.sideways >= self._settings.apart:
-            self._apart_at = hands.time
-        elif self._apart_at is not None and hands.gap <= self._settings.together:
+            self._apart = hands
+        elif self._apart is not None and hands.gap <= self._settings.together:
             self._touch(hands, hands.time)
         self._before, self._last = self._last, hands
         return None
@@ -59,7 +61,7 @@ class Clap:
     def lose(self, time: float) -> None:
         """Note that the hands are not seen."""
         before, last = self._before, self._last
-        if None in {self._apart_at, before, last} or self._touched_at is not None:
+        if None in (self._apart, before, last) or self._touched_at is not None:
             return
         assert before is not None and last is not None
         closing = (before.newest_gap - last.newest_gap) / (last.time - before.time)
@@ -68,11 +70,11 @@ class Clap:
             self._touch(last, time)
 
     def _touch(self, hands: Hands, time: float) -> None:
-        assert self._apart_at is not None
-        quick = time - self._apart_at <= self._settings.clap_within
-        if quick and _before_the_chest(hands):
-            self._touched_at, self._began = time, self._apart_at
-        self._apart_at = self._before = self._last = None
+        assert self._apart is not None
+        quick = time - self._apart.time <= self._settings.clap_within
+        if quick and _before_the_chest(hands) and _both_came(self._apart, hands):
+            self._touched_at, self._began = time, self._apart.time
+        self._apart = self._before = self._last = None
 
     def _part(self, hands: Hands) -> GestureEvent | None:
         assert self._touched_at is not None
@@ -84,6 +86,12 @@ class Clap:
             self.forget()
             return GestureEvent(Gesture.CAPTURE_START, hands.time, began)
         return None
+
+
+def _both_came(apart: Hands, near: Hands) -> bool:
+    """Whether each hand moved inwards: one that comes alone strikes or reaches."""
+    right, left = apart.right[0] - near.right[0], near.left[0] - apart.left[0]
+    return bool(min(right, left) >= SHARED * (right + left))
 
 
 def _before_the_chest(hands: Hands) -> bool:
