@@ -1,6 +1,6 @@
 """Hands that are held still: the right one up, or those that take hold of the view."""
 
-from math import atan2, pi
+from math import atan2, exp, pi
 
 import numpy as np
 from numpy.typing import NDArray
@@ -31,6 +31,8 @@ TILT = 0.4
 """Height above or below the shoulder up to which a straight arm is level."""
 SAG = 0.3
 """Height that hands may gain or lose before they let go: who lowers them moves nothing."""
+STEADIED = 0.12
+"""Seconds over which what the hands give is steadied."""
 FASTEST_ZOOM = 4.0
 """Change of the logarithm of the gap in a second. Hands that meet faster clap."""
 FASTEST_TURN = 4.0
@@ -94,7 +96,7 @@ class Grip:
         """Let go."""
         self._hold = Hold(self._settings.still)
         self._given: float | None = None
-        self._last = self._last_time = 0.0
+        self._steady = self._time = 0.0
         self._heights = np.zeros(1)
 
     @property
@@ -117,17 +119,20 @@ class Grip:
             self.forget()
         elif self._given is None:
             if self._hold.see(time, place) >= self._settings.engage_for:
-                self._given, self._last, self._last_time = value, value, time
+                self._given, self._steady, self._time = value, value, time
                 self._heights = place[2::3]
-        elif self._strays(time, place, value):
+        elif self._strays(place, value):
             self.forget()
         else:
-            self._last, self._last_time = value, time
-            return self._change(value)
+            share = 1.0 - exp((self._time - time) / STEADIED)
+            self._steady += share * _nearest(value - self._steady)
+            self._time = time
+            return self._change(self._steady)
         return 0.0
 
-    def _strays(self, time: float, place: Array, value: float) -> bool:
-        speed = abs(_nearest(value - self._last)) / max(time - self._last_time, 1e-6)
+    def _strays(self, place: Array, value: float) -> bool:
+        """Whether the hands go too fast, by how far the steadied value lags, or up or down."""
+        speed = abs(_nearest(value - self._steady)) / STEADIED
         sag = np.abs(place[2::3] - self._heights).max()
         return bool(speed > self._fastest or sag > SAG)
 

@@ -46,7 +46,8 @@ class GestureSettings(Settings):
     )
     together: float = _length(0.4, "Distance of the hands from which on they touch")
     clap_within: float = _time(0.6, "Time in which the hands come together in a clap", 2.0)
-    touch_for: float = _time(0.7, "How long the hands may touch in a clap", 3.0)
+    touch_for: float = _time(1.0, "How long the hands may touch in a clap", 3.0)
+    clap_pause: float = _time(0.8, "Time between claps of one applause, which counts once", 5.0)
     longest_capture: float = _time(
         60.0, "Time after which a performance that no clap has ended is dropped", 600.0
     )

@@ -53,6 +53,7 @@ class GestureRecogniser:
         self._zoom, self._turn = Zoom(settings), Turn(settings)
         self._mode = Mode.IDLE
         self._mode_since = self._time = self._hands_at = float("-inf")
+        self._clapped_at = float("-inf")
 
     @property
     def mode(self) -> Mode:
@@ -103,7 +104,7 @@ class GestureRecogniser:
     def _react(self, hands: Hands) -> tuple[GestureEvent, ...]:
         clap = self._clap.see(hands)
         if clap is not None:
-            return (self._clapped(clap),)
+            return self._clapped(clap)
         if self._mode is Mode.CAPTURING:
             return ()
         browsing = self._mode is Mode.BROWSING or not self._settings.waves_need_hand_up
@@ -114,11 +115,14 @@ class GestureRecogniser:
             self._enter(Mode.BROWSING, hands.time)
         return events
 
-    def _clapped(self, clap: GestureEvent) -> GestureEvent:
+    def _clapped(self, clap: GestureEvent) -> tuple[GestureEvent, ...]:
+        since, self._clapped_at = clap.time - self._clapped_at, clap.time
+        if since < self._settings.clap_pause:
+            return ()
         ends = self._mode is Mode.CAPTURING
         self._enter(Mode.IDLE if ends else Mode.CAPTURING, clap.time)
         self._forget()
-        return replace(clap, gesture=Gesture.CAPTURE_END) if ends else clap
+        return (replace(clap, gesture=Gesture.CAPTURE_END) if ends else clap,)
 
     def _enter(self, mode: Mode, time: float) -> None:
         self._mode, self._mode_since = mode, time
