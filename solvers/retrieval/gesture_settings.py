@@ -42,10 +42,10 @@ class GestureSettings(Settings):
         True, "Count waves only while the library is shown", advanced=True
     )
     apart: float = _length(
-        0.95, "Sideways distance of the hands from which on a clap may start"
+        0.85, "Sideways distance of the hands from which on a clap may start"
     )
     together: float = _length(0.4, "Distance of the hands from which on they touch")
-    clap_within: float = _time(0.6, "Time in which the hands come together in a clap", 2.0)
+    clap_within: float = _time(0.8, "Time in which the hands come together in a clap", 2.0)
     touch_for: float = _time(1.0, "How long the hands may touch in a clap", 3.0)
     clap_pause: float = _time(0.8, "Time between claps of one applause, which counts once", 5.0)
     longest_capture: float = _time(

@@ -11,13 +11,15 @@ BELLY, CHIN = -0.8, 0.3
 """Heights of the hands' middle, from the shoulders, between which they clap."""
 IN_FRONT, ASIDE = 0.1, 0.5
 """How far in front of the shoulders the hands' middle must be in a clap, and may be aside."""
+RAISED = -0.1, -0.85
+"""How far before the shoulders, and above them, the hands' middle is where a clap begins."""
 PARTED = 1.3
 """Share of the touching distance from which on hands that touched are parted."""
 SHARED = 0.2
 """Share of the way inwards that each hand makes at least in a clap."""
 HAND_HIGH = -0.65
 """Height of the right wrist from its shoulder from which on it can wave."""
-FLAT = 0.6
+FLAT = 0.9
 """Share of a wave's way that its height may change."""
 OUTSIDE, ACROSS = 0.3, -0.1
 """How far right of its shoulder the wrist ends a wave to the right, or to the left."""
@@ -51,7 +53,7 @@ class Clap:
         if isnan(hands.newest_gap):
             self.lose(hands.time)
             return None
-        if hands.sideways >= self._settings.apart:
+        if hands.sideways >= self._settings.apart and _raised(hands):
             self._apart = hands
         elif self._apart is not None and hands.gap <= self._settings.together:
             self._touch(hands, hands.time)
@@ -86,6 +88,11 @@ class Clap:
             self.forget()
             return GestureEvent(Gesture.CAPTURE_START, hands.time, began)
         return None
+
+
+def _raised(hands: Hands) -> bool:
+    """Whether the hands are before the body, and do not hang."""
+    return bool(hands.between[1] >= RAISED[0] and hands.between[2] >= RAISED[1])
 
 
 def _both_came(apart: Hands, near: Hands) -> bool:

@@ -21,7 +21,10 @@ from .clips import DATA
 Array = NDArray[np.float64]
 
 KINECT, UTD = DATA / "kinect", DATA / "depth" / "utd_mhad"
-UTD_ORDER = ("head", "chest", "spine", "hips", *tuple(side + part for parts in (("UpperArm", "LowerArm", "Hand", "HandEnd"), ("UpperLeg", "LowerLeg", "Foot", "Toes")) for side in ("left", "right") for part in parts))
+ARM, LEG = ("UpperArm", "LowerArm", "Hand", "HandEnd"), ("UpperLeg", "LowerLeg", "Foot", "Toes")
+LIMBS = [(side, limb) for limb in (ARM, LEG) for side in ("left", "right")]
+UTD_ORDER = ["head", "chest", "spine", "hips"]
+UTD_ORDER += [side + part for side, limb in LIMBS for part in limb]
 ALWAYS = GestureSettings(waves_need_hand_up=False)
 ONE_GRIP = 1.0
 """Seconds without zoom or turn, after which the next one is another."""
