@@ -13,6 +13,8 @@ from .tracked_joints import joint_recording
 
 NEW_STREAM = 2.0
 """Seconds by which a frame must be too old to be the first of another stream."""
+RESTARTED = 5
+"""Late frames in a row, each later than the one before, that tell of another stream, too."""
 LET_GO = 1.0
 """Seconds without the body that is followed, after which another is."""
 PERFORMANCE = "The performance"
@@ -42,13 +44,15 @@ class StreamReader:
     """Turns datagrams into the frames of one body, in order; nothing in them raises.
 
     The body that came first is followed until it has been away for a second. Frames that are
-    two seconds too old, or more, are those of a sender that was started again.
+    two seconds too old, or more, are those of a sender that was started again; so are some in
+    a row that are late, but in order.
     """
 
     def __init__(self) -> None:
         self.heard = Heard()
         self._body: int | None = None
         self._time = float("-inf")
+        self._late: list[float] = []
 
     def read(self, datagram: bytes) -> list[LiveFrame]:
         """Return the frames in a datagram that count, in their order."""
@@ -72,12 +76,20 @@ class StreamReader:
         if frame.body != self._body and not fresh:
             self.heard.others += 1
             return False
-        if not (fresh or since > 0.0):
+        if not (fresh or since > 0.0 or self._restarts(frame.time)):
             self.heard.late += 1
             return False
         self._body, self._time = frame.body, frame.time
+        self._late.clear()
         self.heard.frames += 1
         return True
+
+    def _restarts(self, time: float) -> bool:
+        """Note a late frame; tell whether it is one of another stream."""
+        if self._late and time <= self._late[-1]:
+            self._late.clear()
+        self._late.append(time)
+        return len(self._late) >= RESTARTED
 
 
 def recording_of(frames: Sequence[LiveFrame]) -> JointRecording:

@@ -113,6 +113,7 @@ def test_refuses_what_does_not_belong_there(changes, words):
         b"[1]",
         b"\xff\xfe",
         line()[:-1],
+        line()[:-1] + b', "more": NaN}',
         line().replace(b"1.5", b"NaN"),
         line().replace(b"1.5", b"Infinity"),
         line().replace(b"1.5", b"1e999"),

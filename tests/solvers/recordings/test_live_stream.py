@@ -43,6 +43,24 @@ def test_a_sender_that_was_started_again_is_heard():
     assert came == [(100.0, 0), (0.0, 0), (0.1, 0)]
 
 
+def test_a_short_take_that_is_sent_again_is_heard_but_for_its_first_frames():
+    reader = StreamReader()
+    times = [number / 30 for number in range(30)]
+
+    came = read(reader, *[frame(time) for time in times + times])
+
+    assert [time for time, _ in came] == pytest.approx(times + times[4:], abs=1e-6)
+
+
+def test_two_senders_at_once_do_not_take_turns():
+    reader = StreamReader()
+    pairs = [(1.0 + number / 30, number / 30) for number in range(30)]
+
+    came = read(reader, *[frame(time) for pair in pairs for time in pair])
+
+    assert [time for time, _ in came] == pytest.approx([time for time, _ in pairs], abs=1e-6)
+
+
 def test_the_first_body_is_followed_until_it_is_gone():
     reader = StreamReader()
 

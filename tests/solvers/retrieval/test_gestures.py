@@ -137,12 +137,14 @@ def test_the_left_hand_says_nothing():
     assert recognise(performance.times, mirrored) == ()
 
 
-def test_slow_hands_that_meet_do_not_clap():
-    performance = perform(["clap"])
+@pytest.mark.parametrize(("seconds", "expected"), [(0.3, [Gesture.CAPTURE_START]), (4.0, [])])
+def test_hands_that_come_near_slowly_do_not_clap(monkeypatch, seconds, expected):
+    ready, clapped, *rest = GESTURES["clap"]
+    near = (-0.1, 0.65, -0.35)
+    slowed = (ready, (seconds, near, near), (0.15, *clapped[1:]), *rest)
+    monkeypatch.setitem(GESTURES, "clap", slowed)
 
-    slow = recognise(performance.times * 4.0, performance.positions)
-
-    assert not [event for event in slow if event.gesture is Gesture.CAPTURE_START]
+    assert [each for each in told(perform(["clap"])) if each is not Gesture.ZOOM] == expected
 
 
 def test_a_clap_above_the_head_is_none(monkeypatch):
@@ -166,14 +168,50 @@ def test_a_clap_whose_touch_is_hidden_is_told(hidden_within):
     assert told(performance) == [Gesture.CAPTURE_START]
 
 
-def test_one_hand_that_comes_to_the_other_does_not_clap():
-    performance = perform(["clap"])
-    left = [5, 6, 7]
-    performance.positions[:, left] = performance.positions[
-        np.argmin(performance.positions[:, 10, 0]), left
-    ]
+def test_applause_counts_once(monkeypatch):
+    ready, clapped, parted, _, done, *rest = GESTURES["clap"]
+    again = (clapped[0], *clapped[1:]), (0.25, *ready[1:])
+    monkeypatch.setitem(
+        GESTURES, "clap", (ready, clapped, (0.25, *ready[1:]), *again, *again, done, *rest)
+    )
+    assert parted[1:] == clapped[1:]
 
-    assert told(performance) == []
+    assert told(perform(["clap", "rest", "clap"])) == [
+        Gesture.CAPTURE_START, Gesture.CAPTURE_END,
+    ]  # fmt: skip
+
+
+def test_hands_that_drop_do_not_zoom(monkeypatch):
+    """They come together as they fall, after they have had hold of the view."""
+    near, held, *_ = GESTURES["zoom out"]
+    fall = (0.6, (-0.1, 0.35, -0.9), (-0.1, 0.35, -0.9))
+    monkeypatch.setitem(GESTURES, "zoom out", (near, held, fall))
+
+    performance = perform(["zoom out"])
+    events = recognise(performance.times, performance.positions)
+
+    assert np.prod([event.amount for event in events]) == pytest.approx(1.0, abs=0.2)
+
+
+@pytest.mark.parametrize(("share", "expected"), [(0.5, [Gesture.CAPTURE_START]), (1.0, [])])
+def test_one_hand_that_comes_to_the_other_does_not_clap(monkeypatch, share, expected):
+    """From 0.98 arm lengths between the hands to 0.08, by the right one alone or by both."""
+    seconds = [key[0] for key in GESTURES["clap"] if key]
+    apart = (0.3, 0.6, -0.4), (0.0, 0.6, -0.4)
+    way = 0.9 * share, 0.9 * (1.0 - share)
+    near = tuple((x - far, y, z) for (x, y, z), far in zip(apart, way, strict=True))
+    keys = (apart, near, near, apart, ((0.05, 0.05, -0.96),) * 2)
+    made = tuple((time, *key) for time, key in zip(seconds, keys, strict=False))
+    monkeypatch.setitem(GESTURES, "clap", made)
+
+    assert told(perform(["clap"])) == expected
+
+
+def test_both_hands_up_show_nothing(monkeypatch):
+    both = tuple(step and (step[0], step[1], step[1]) for step in GESTURES["hand up"])
+    monkeypatch.setitem(GESTURES, "hand up", both)
+
+    assert told(perform(["hand up"])) == []
 
 
 def test_a_capture_that_nobody_ends_is_dropped():
