@@ -140,7 +140,7 @@ def test_the_left_hand_says_nothing():
 @pytest.mark.parametrize(("seconds", "expected"), [(0.3, [Gesture.CAPTURE_START]), (4.0, [])])
 def test_hands_that_come_near_slowly_do_not_clap(monkeypatch, seconds, expected):
     ready, clapped, *rest = GESTURES["clap"]
-    near = (-0.1, 0.65, -0.35)
+    near = (-0.03, 0.65, -0.35)
     slowed = (ready, (seconds, near, near), (0.15, *clapped[1:]), *rest)
     monkeypatch.setitem(GESTURES, "clap", slowed)
 
