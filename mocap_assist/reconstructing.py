@@ -24,7 +24,7 @@ from .scene.compat import Source
 from .scene.contacts import animators_contacts, write_contacts
 from .scene.curves import GENERATED, MEASURED
 from .scene.origin import origin_of
-from .scene.reliability_curves import write_reliability
+from .scene.reliability_curves import Term, write_reliability
 from .scene.sensor_words import read_states
 from .scene.take import ArmatureTake
 from .selection import played_source, selected_armature, why_not_clean
@@ -104,8 +104,10 @@ def write_reconstructed(
     action, slot = write_take(
         armature, found.recorded, take, bones, _key_types(names, rebuilt), suffix=SUFFIX
     )
-    reliability = dict(zip(names, rebuilt.solution.reliability.T, strict=True))
-    write_reliability(armature, action, slot, take.frames, reliability)
+    for term in Term:
+        values = getattr(rebuilt.solution.trust, term.name.lower())
+        trusted = dict(zip(names, values.T, strict=True))
+        write_reliability(armature, action, slot, take.frames, trusted, term)
     if rebuilt.planted is not None:
         detected = animators_contacts(found.played, take.frames) is None
         contacts = rebuilt.planted.contacts

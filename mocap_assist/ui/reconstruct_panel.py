@@ -11,6 +11,7 @@ from ..reconstructing import why_not_reconstruct
 from .clean_panel import folded
 from .drawing import draw_job, draw_sentence, exists
 from .example_list import RECONSTRUCT, draw_examples
+from .heat_switch import draw_heat_switch
 
 BUTTON = "mocap_assist.reconstruct"
 
@@ -44,7 +45,7 @@ class ReconstructPanel:
         button.operator(BUTTON, icon="OUTLINER_OB_ARMATURE")
         if reason := why_not_reconstruct(context):
             draw_sentence(layout, context, reason, icon="INFO")
-        layout.prop(context.window_manager, "mocap_assist_heat", toggle=True, icon="COLOR")
+        draw_heat_switch(layout, context)
 
 
 def _draw_folded(column: bpy.types.UILayout, settings: bpy.types.PropertyGroup) -> None:
