@@ -95,7 +95,7 @@ class ImportJob:
             self.arrival.refuse(path, found)
         else:
             recording, moving, warnings = found
-            remember(path, state, Known(recording, warnings))
+            remember(path, state, Known(recording, warnings), self._wanted.unit)
             self.arrival.add(context, path, recording, moving=moving, warnings=warnings)
 
     def _show(self, context: bpy.types.Context) -> None:

@@ -54,6 +54,7 @@ def wanted_of(context: bpy.types.Context, choices: ImportChoices) -> Wanted:
         choices.target is Target.ARMATURE,
         choices.global_scale,
         scene_rate(context.scene) if resampled else None,
+        choices.unit.metres,
     )
 
 

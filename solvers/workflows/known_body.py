@@ -8,17 +8,13 @@ from numpy.typing import NDArray
 
 from ..errors import InvalidMotionError
 from ..motion import JOINTS, JointRecording, Sensor, Tracks
-from ..motion.body_size import USUAL_LENGTHS, segment_lengths
+from ..motion.body_size import LARGEST, SMALLEST, STATURE, size_of_body
 from ..motion.posture_joints import (
-    PARENTS,
     POSTURE_JOINTS,
     joints_of_names,
     posture_positions,
 )
 
-LARGEST, SMALLEST = 3.0, 0.2
-"""Sizes of a body, in usual adults, beyond which the unit must be wrong."""
-STATURE = 1.75
 LONG_GAP = 1.0
 """Seconds without any joint, from which on the result is a guess that is worth a word."""
 UNITS = {0.001: "millimetres", 0.01: "centimetres", 0.0254: "inches", 1000.0: "kilometres"}
@@ -108,13 +104,9 @@ def _least(told: NDArray[Word], chosen: list[list[int]]) -> NDArray[Word]:
 
 def check_size(recording: JointRecording) -> None:
     """Raise InvalidMotionError, and guess the unit, where the body is not of human size."""
-    lengths = segment_lengths(posture_positions(recording))
-    usual = np.where(np.isfinite(lengths), USUAL_LENGTHS, np.nan)
-    bones = [joint for joint, above in enumerate(PARENTS) if above >= 0]
-    shares = lengths[:, bones] / usual[:, bones]
-    if not np.isfinite(shares).any():
+    size = size_of_body(posture_positions(recording))
+    if np.isnan(size):
         return
-    size = float(np.nanmedian(shares))
     if size == 0.0:
         raise InvalidMotionError(
             "The joints are all in one place, as some exporters write them where no body is"
