@@ -129,23 +129,35 @@ def _problem(
             f"The hips of {armature.name} are tracked in no frame; there is nothing to"
             " reconstruct."
         )
-    examples = None
-    if settings.choices.postures is Postures.EXAMPLES:
-        examples = read_examples(scene, armature, settings.choices.examples)
+    choices, examples, postures = settings.choices, None, None
+    if choices.postures is Postures.EXAMPLES:
+        examples = read_examples(scene, armature, choices.examples)
+    elif choices.postures is Postures.LEARNED:
+        if not choices.postures_file:
+            raise InvalidMotionError("Choose the file of postures, or other postures.")
+        postures = _dated(choices.postures_file)
     state = read_states(found.recorded, body.skeleton.names, found.take.frames)
     return RebuildProblem(
         body=body,
         tracking_state=state,
-        source=_file_of(found.recorded[0]),
+        source=_source_of(found.recorded[0]),
         settings=settings.rebuilding,
         examples=examples,
+        postures_file=postures,
+        residuals_file=_dated(choices.residuals_file) if choices.residuals_file else None,
     )
 
 
-def _file_of(action: bpy.types.Action) -> tuple[str, int] | None:
-    """Return the file that an action was imported from, and its date."""
-    path = Path(bpy.path.abspath(str(origin_of(action).get("file", ""))))
-    return (str(path), path.stat().st_mtime_ns) if path.is_file() else None
+def _source_of(action: bpy.types.Action) -> tuple[str, int] | None:
+    """Return the file that an action was imported from, and its date; None if it is gone."""
+    path = str(origin_of(action).get("file", ""))
+    return _dated(path) if Path(bpy.path.abspath(path)).is_file() else None
+
+
+def _dated(file: str) -> tuple[str, int]:
+    """Return a file and its date; 0 where it is missing, which its reader says better."""
+    path = Path(bpy.path.abspath(file))
+    return str(path), path.stat().st_mtime_ns if path.is_file() else 0
 
 
 def _key_types(names: tuple[str, ...], rebuilt: Rebuilt) -> dict[str, NDArray[np.uint8]]:

@@ -37,6 +37,8 @@ class ReconstructPanel:
         column.prop(settings, "postures", text="Postures")
         if settings.postures == Postures.EXAMPLES.name:
             draw_examples(column, settings, RECONSTRUCT)
+        elif settings.postures == Postures.LEARNED.name:
+            column.prop(settings, "postures_file")
         for name in ("frame_range", "result_as", "plant_feet"):
             column.prop(settings, name)
         _draw_folded(column, settings)
@@ -53,7 +55,7 @@ def _draw_folded(column: bpy.types.UILayout, settings: bpy.types.PropertyGroup) 
     header.label(text="Advanced")
     if body is None:
         return
-    for name in folded(ReconstructSettings, ()):
+    for name in ("residuals_file", *folded(ReconstructSettings, ())):
         body.prop(settings, name)
     feet = body.column()
     feet.active = settings.plant_feet

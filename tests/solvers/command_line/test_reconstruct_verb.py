@@ -9,6 +9,7 @@ from kinect_walks import tracked_walk, true_positions
 from solvers import motion as vocabulary
 from solvers import samples
 from solvers.motion import JOINTS, Sensor, Tracks, posture_joints
+from solvers.reconstruction import build_posture_library
 from solvers.recordings import read_bvh, read_joint_csv, write_bvh, write_joint_csv, write_trc
 
 
@@ -138,3 +139,21 @@ def test_a_recording_of_which_nothing_was_tracked(call, tmp_path):
     status, _, err = call("reconstruct", path, tmp_path / "out.bvh")
 
     assert status == 2 and err.count("\n") == 1 and "empty.csv" in err
+
+
+def test_a_library_of_your_own_is_read(call, walk_file, tmp_path):
+    clip = samples.walking_gait(samples.GaitSettings(duration=2.0, frame_rate=30.0))
+    build_posture_library([clip], trained_on="Anna's walk").save(tmp_path / "own.npz")
+    words = (
+        "reconstruct",
+        walk_file,
+        tmp_path / "walk.bvh",
+        "--postures",
+        tmp_path / "own.npz",
+    )
+
+    status, out, _ = call(*words)
+    twice, _, err = call(*words, "--train", walk_file)
+
+    assert status == 0 and "Anna's walk" in out
+    assert twice == 2 and "give one" in err
