@@ -124,11 +124,6 @@ def _problem(
     settings: ReconstructBundle,
 ) -> RebuildProblem:
     body = found.body
-    if not np.isfinite(body.root_positions).all(axis=-1).any():
-        raise InvalidMotionError(
-            f"The hips of {armature.name} are tracked in no frame; there is nothing to"
-            " reconstruct."
-        )
     choices, examples, postures = settings.choices, None, None
     if choices.postures is Postures.EXAMPLES:
         examples = read_examples(scene, armature, choices.examples)

@@ -16,6 +16,7 @@ from ...solvers.motion import (
     motion_from_points,
     resample,
 )
+from ...solvers.motion.unseen_hips import with_hips
 from ...solvers.progress import Progress, unwatched
 from ...solvers.recordings import read_recording
 
@@ -144,7 +145,7 @@ def _joined(recording: Recording, armature: bool) -> Motion | Tracks:
     if not isinstance(recording, JointRecording):
         return recording
     if armature and in_one_tree(recording):
-        kept, tracks = hanging(recording), recording.tracks
+        kept, tracks = hanging(recording), with_hips(recording).tracks
         names = tuple(tracks.names[joint] for joint in kept)
         body = Tracks(names, tracks.positions[:, kept], tracks.frame_rate)
         return motion_from_points(body, joint_parents(names))

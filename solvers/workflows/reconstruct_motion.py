@@ -200,7 +200,8 @@ def _postures_of(
 ) -> tuple[JointRecording, dict[int, int]]:
     """Return where the joints of postures are, under the names of a tracker."""
     positions = motion_postures(motion, humanoid_map)
-    there = np.flatnonzero(np.isfinite(positions).all(axis=-1).any(axis=0))
+    seen = np.isfinite(positions).all(axis=-1).any(axis=0)
+    there = np.flatnonzero(seen | ~seen.any())  # all, to be refused, where none is seen
     names = tuple(KINECT_V1[POSTURE_JOINTS[joint]] for joint in there)
     tracks = Tracks(names, positions[:, there], motion.frame_rate)
     places = humanoid_map.indices(motion.skeleton)

@@ -8,6 +8,7 @@ from kinect_walks import HIDDEN, LOST, tracked_walk, true_positions
 
 import solvers.motion as motion_module
 from solvers import samples
+from solvers.errors import InvalidMotionError
 from solvers.motion import motion_from_points, posture_joints
 from solvers.workflows import reconstruct_motion
 
@@ -77,3 +78,14 @@ def test_joints_that_no_body_has_have_no_trust():
     for term in (result.trust.combined, result.trust.behaviour, result.confidence):
         assert np.isnan(term[:, umbrella]).all()
         assert np.isfinite(np.delete(term, umbrella, axis=1)).any()
+
+
+@pytest.mark.parametrize("tracked", [True, False])
+def test_a_skeleton_that_is_nowhere_is_refused(moved, tracked):
+    motion = moved
+    if not tracked:
+        motion = samples.walking_gait(samples.GaitSettings(duration=1.0, frame_rate=30.0))
+    lost = motion.with_poses(motion.rotations, np.full_like(motion.root_positions, np.nan))
+
+    with pytest.raises(InvalidMotionError, match="No joint is tracked in any of the"):
+        reconstruct_motion(lost)
