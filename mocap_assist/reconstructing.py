@@ -175,19 +175,12 @@ def _entry(settings: ReconstructBundle, rebuilt: Rebuilt) -> dict[str, Any]:
 
 
 def _said(name: str, rebuilt: Rebuilt, n_modified: int) -> str:
-    n_frames = rebuilt.motion.n_frames
-    said = [
-        f"{name}: {n_frames} frames; {100 * rebuilt.solution.rebuilt_share:.1f} % of the joints"
-        " were lost or wrong, and are rebuilt."
-    ]
-    if rebuilt.planted is not None:
-        said.append(
-            f"Feet slid {100 * rebuilt.planted.slide_before:.1f} cm, now"
-            f" {100 * rebuilt.planted.slide_after:.1f} cm."
-        )
-    if method := rebuilt.solution.method.rstrip("."):
-        said.append(f"{method[0].upper()}{method[1:]}.")
-    said += rebuilt.remarks
+    """Return what a status bar has room for, and what the animator must know."""
+    short = f"{name}: {100 * rebuilt.solution.rebuilt_share:.1f} % of joints rebuilt"
+    if planted := rebuilt.planted:
+        slides = (100 * planted.slide_before, 100 * planted.slide_after)
+        short += ", feet slid {:.1f} cm and now {:.1f} cm".format(*slides)
+    said = [f"{short}.", *rebuilt.remarks]
     if n_modified:
         said.append(f"The modifiers of {n_modified} curves are part of the new keys now.")
     return " ".join(said)

@@ -27,8 +27,8 @@ TERMS = (
 )
 MISSING = {
     Term.KINEMATICS: (
-        "Lengths: those of an armature never change. What the camera measured is known as long"
-        " as the imported file is there and the action is as it came in."
+        "Lengths: an armature's never change; the camera's are known while the imported file is"
+        " there and the action unedited."
     ),
     Term.TRACKING: "Sensor: the recording does not tell how well the sensor saw each joint.",
 }
@@ -45,9 +45,9 @@ def draw_heat_switch(layout: bpy.types.UILayout, context: bpy.types.Context) -> 
     if not manager.mocap_assist_heat or armature is None or armature.type != "ARMATURE":
         return
     told = terms_told(armature)
-    row = layout.row(align=True)
+    signs = layout.grid_flow(row_major=True, columns=2, even_columns=True, align=True)
     for term, _, _ in TERMS:
-        cell = row.row(align=True)
+        cell = signs.row(align=True)
         cell.enabled = term in told
         cell.prop_enum(manager, "mocap_assist_heat_term", term.name)
     for sentence in _missing(told):

@@ -28,7 +28,7 @@ class ReconstructPanel:
 
     def draw(self, context: bpy.types.Context) -> None:
         layout = self.layout
-        running = draw_job(layout, context)
+        running = draw_job(layout, context, "reconstruct")
         column = layout.column()
         column.enabled = not running
         settings = context.scene.mocap_assist.reconstruct
