@@ -34,7 +34,7 @@ class ReconstructChoices(Settings):
         " semicolons; any rig serves",
     )
     postures_file: str = setting(
-        "", "File of postures, as a posture library of your own is saved (.npz)"
+        "", "Postures of your own, as learn-postures wrote them (.npz)"
     )
     residuals_file: str = setting(
         "",

@@ -52,7 +52,7 @@ def add_reconstruct_options(parser: argparse.ArgumentParser) -> None:
     )  # fmt: skip
     parser.add_argument(
         "--postures", type=Path, metavar="FILE",
-        help="A posture library of your own, as PostureLibrary.save wrote it, in their place",
+        help="Postures of your own, as learn-postures wrote them, in their place",
     )  # fmt: skip
     parser.add_argument(
         "--residuals", type=Path, metavar="FILE",
