@@ -14,6 +14,7 @@ from .convert import convert
 from .denoise_verb import add_denoise_options, learn_once, perform_denoise
 from .files import add_reading_options, read, read_all
 from .options import arguments_from, settings_from_arguments
+from .postures_verb import add_postures_options, perform_postures
 from .reconstruct_verb import add_reconstruct_options, perform_reconstruct, read_guides
 from .residuals_verb import add_residuals_options, perform_residuals
 from .retarget_verbs import (
@@ -110,6 +111,12 @@ VERBS = {
         "Learn how a depth camera errs from takes that another system saw as well.",
         add_residuals_options,
         perform_residuals,
+        Makes.ONE_FILE,
+    ),
+    "learn-postures": Verb(
+        "Keep the postures of clean clips, for reconstruct to guess lost joints from.",
+        add_postures_options,
+        perform_postures,
         Makes.ONE_FILE,
     ),
     "simulate": Verb(
