@@ -14,6 +14,7 @@ from .convert import convert
 from .denoise_verb import add_denoise_options, learn_once, perform_denoise
 from .files import add_reading_options, read, read_all
 from .options import arguments_from, settings_from_arguments
+from .postures_verb import add_postures_options, perform_postures
 from .reconstruct_verb import add_reconstruct_options, perform_reconstruct, read_guides
 from .replay_verb import add_replay_options, perform_replay
 from .residuals_verb import add_residuals_options, perform_residuals
@@ -26,6 +27,7 @@ from .retarget_verbs import (
 )
 from .simulate_verb import add_simulate_options, perform_simulate
 from .solve_verb import add_solve_options, perform_solve
+from .vary_verb import add_vary_options, perform_vary
 from .verb import Makes, Outcome, Task, Verb
 
 
@@ -112,10 +114,22 @@ VERBS = {
         perform_residuals,
         Makes.ONE_FILE,
     ),
+    "learn-postures": Verb(
+        "Keep the postures of clean clips, for reconstruct to guess lost joints from.",
+        add_postures_options,
+        perform_postures,
+        Makes.ONE_FILE,
+    ),
     "simulate": Verb(
         "Let a body with mass and muscles, on solid ground, make motions of a skeleton.",
         add_simulate_options,
         perform_simulate,
+    ),
+    "vary": Verb(
+        "Make new motions like a few clips of one behaviour, each different.",
+        add_vary_options,
+        perform_vary,
+        Makes.MANY_FILES,
     ),
     "convert": Verb(
         "Write recordings of any known format as BVH, or as C3D or TRC where they are points.",
