@@ -117,5 +117,6 @@ def recording_of(frames: Sequence[LiveFrame]) -> JointRecording:
         confidence=np.stack([frame.confidence for frame in frames]),
         times=np.array([frame.time for frame in frames]),
         nan_only=True,
+        scale=1.0,
         progress=unwatched,
     )
