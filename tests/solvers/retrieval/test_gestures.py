@@ -102,11 +102,14 @@ def test_hands_that_zoom_out_do_not_clap():
         assert Gesture.CAPTURE_START not in told(perform(["zoom out", "rest"], spoilt))
 
 
-def test_an_arm_that_turns_the_view_does_not_wave():
-    performance = perform(["turn", "rest"])
+def test_an_arm_that_turns_the_view_does_not_wave(monkeypatch):
+    raised, held, (_, _, left), *rest = GESTURES["turn"]
+    across = (-0.3, 0.9, 0.0)
+    swung = (raised, held, (0.8, across, left), (0.3, across, left), *rest[2:])
+    monkeypatch.setitem(GESTURES, "turn", swung)
     always = GestureSettings(waves_need_hand_up=False)
 
-    assert set(told(performance, always)) == {Gesture.TURN}
+    assert set(told(perform(["turn", "rest"]), always)) == {Gesture.TURN}
 
 
 def test_turn_is_the_angle_of_the_stretched_arm():
