@@ -160,6 +160,11 @@ class Zoom:
         """Let go."""
         self._grip.forget()
 
+    @property
+    def holds(self) -> bool:
+        """Whether it has hold of the view."""
+        return self._grip.holds
+
     def see(self, hands: Hands) -> GestureEvent | None:
         """Return by which factor the hands have moved apart, once they have hold."""
         place = np.concatenate([hands.right, hands.left]) if _offered(hands) else None
@@ -187,6 +192,11 @@ class Turn:
     def forget(self) -> None:
         """Let go."""
         self._grip.forget()
+
+    @property
+    def holds(self) -> bool:
+        """Whether it has hold of the view."""
+        return self._grip.holds
 
     def see(self, hands: Hands) -> GestureEvent | None:
         """Return by how much the arm has turned, once it has hold."""

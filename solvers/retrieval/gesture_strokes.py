@@ -46,8 +46,11 @@ class Clap:
         self._before: Hands | None = None
         self._last: Hands | None = None
 
-    def see(self, hands: Hands) -> GestureEvent | None:
-        """Return an event (of a start; who listens knows whether it is an end) at the end."""
+    def see(self, hands: Hands, held: bool = False) -> GestureEvent | None:
+        """Return an event (of a start; who listens knows whether it is an end) at the end.
+
+        Hands that have hold of the view (`held`) come together without clapping.
+        """
         if self._touched_at is not None:
             return self._part(hands)
         if isnan(hands.newest_gap):
@@ -55,7 +58,7 @@ class Clap:
             return None
         if hands.sideways >= self._settings.apart and _raised(hands):
             self._apart = hands
-        elif self._apart is not None and hands.gap <= self._settings.together:
+        elif self._apart is not None and hands.gap <= self._settings.together and not held:
             self._touch(hands, hands.time)
         self._before, self._last = self._last, hands
         return None

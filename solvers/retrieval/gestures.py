@@ -102,18 +102,19 @@ class GestureRecogniser:
         return ()
 
     def _react(self, hands: Hands) -> tuple[GestureEvent, ...]:
-        clap = self._clap.see(hands)
+        zoom, turn = self._zoom.see(hands), self._turn.see(hands)
+        clap = self._clap.see(hands, self._zoom.holds)
         if clap is not None:
             return self._clapped(clap)
         if self._mode is Mode.CAPTURING:
             return ()
         browsing = self._mode is Mode.BROWSING or not self._settings.waves_need_hand_up
         up, wave = self._hand_up.see(hands), self._wave.see(hands)
-        said = [up, wave if browsing else None, self._zoom.see(hands), self._turn.see(hands)]
-        events = tuple(event for event in said if event is not None)
-        if up is not None or (wave is not None and browsing):
+        if not browsing or self._turn.holds:
+            wave = None
+        if up is not None or wave is not None:
             self._enter(Mode.BROWSING, hands.time)
-        return events
+        return tuple(event for event in (up, wave, zoom, turn) if event is not None)
 
     def _clapped(self, clap: GestureEvent) -> tuple[GestureEvent, ...]:
         since, self._clapped_at = clap.time - self._clapped_at, clap.time

@@ -94,6 +94,24 @@ def test_zoom_is_the_factor_by_which_the_hands_moved_apart():
         assert np.prod([event.amount for event in events]) == pytest.approx(factor, rel=0.2)
 
 
+def test_hands_that_zoom_out_do_not_clap():
+    """Though they end as near each other as hands that touch, and quickly enough."""
+    for seed in range(10):
+        spoilt = PerformanceSettings(noise=0.02, seed=seed)
+
+        assert Gesture.CAPTURE_START not in told(perform(["zoom out", "rest"], spoilt))
+
+
+def test_an_arm_that_turns_the_view_does_not_wave(monkeypatch):
+    raised, held, (_, _, left), *rest = GESTURES["turn"]
+    across = (-0.3, 0.9, 0.0)
+    swung = (raised, held, (0.8, across, left), (0.3, across, left), *rest[2:])
+    monkeypatch.setitem(GESTURES, "turn", swung)
+    always = GestureSettings(waves_need_hand_up=False)
+
+    assert set(told(perform(["turn", "rest"]), always)) == {Gesture.TURN}
+
+
 def test_turn_is_the_angle_of_the_stretched_arm():
     """From (0.7, 0.66) to straight ahead: counter-clockwise as seen from above."""
     performance = perform(["turn"])
