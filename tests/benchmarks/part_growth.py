@@ -202,7 +202,7 @@ def _megabytes(path: Path) -> float:
 
 
 def _peak() -> float:
-    """Return the most memory that this process has had; what it was started from not counted."""
+    """Return the most memory that this process has had, less what it was started from."""
     status = Path("/proc/self/status").read_text(encoding="ascii")
     return float(status.split("VmHWM:")[1].split()[0]) / 1e3
 
