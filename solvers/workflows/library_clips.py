@@ -17,7 +17,12 @@ Fetch = Callable[[ClipEntry], Recording]
 AROUND = 0.5
 """Seconds before and after what matches that are taken along."""
 MOST_NAMED = 5
-FOUND = FindSettings(n_matches=12, n_aligned=12)
+FOUND = FindSettings(n_matches=12, n_aligned=12, n_alike=0)
+"""By likeness with the take alone: the best that a library without the like has are like each
+other all the same."""
+ALIKE = 0.16
+"""Score from which on a clip is an example. Those of the same movement by another actor have 0.2
+to 0.5 (HDM05, and CMU's walks), others at most 0.15."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -41,7 +46,7 @@ class LibraryClips:
     def sentence(self) -> str:
         """Say which clips are learned from."""
         if not self.matches:
-            return " ".join(["Nothing in the library is of use for this take.", *self.remarks])
+            return " ".join(["Nothing in the library is like this take.", *self.remarks])
         named = ", ".join(match.clip for match in self.matches[:MOST_NAMED])
         more = len(self.matches) - MOST_NAMED
         rest = f" and {more} more" if more > 0 else ""
@@ -92,9 +97,13 @@ def library_clips(
     SolveCancelled
         Raised by `progress`.
     """
-    matches = find_similar(
-        query, library, settings=settings, ignore=ignore, progress=within(progress, 0.0, 0.3)
-    )
+    matches = [
+        match
+        for match in find_similar(
+            query, library, settings=settings, ignore=ignore, progress=within(progress, 0, 0.3)
+        )
+        if match.score >= ALIKE
+    ]
     entries = {entry.name: entry for entry in library.entries}
     motions, used, remarks = [], [], []
     for place, match in enumerate(matches):
