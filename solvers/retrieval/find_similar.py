@@ -77,7 +77,8 @@ def find_similar(
         return ()
     features = vocabulary.features(postures)
     whole = np.array([[0, len(features)]], dtype=np.int32)
-    left_out = [number for number, entry in entries.items() if entry.name in set(ignore)]
+    away = set(ignore)
+    left_out = [number for number, entry in entries.items() if entry.name in away]
     ranking = rank_clips(
         describe(features, whole, vocabulary), weights, library.blocks, settings, left_out
     )
