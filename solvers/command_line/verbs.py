@@ -13,6 +13,12 @@ from ..progress import Progress, within
 from .convert import convert
 from .denoise_verb import add_denoise_options, learn_once, perform_denoise
 from .files import add_reading_options, read, read_all
+from .library_verbs import (
+    add_find_options,
+    add_index_options,
+    perform_find,
+    perform_index,
+)
 from .options import arguments_from, settings_from_arguments
 from .reconstruct_verb import add_reconstruct_options, perform_reconstruct, read_guides
 from .residuals_verb import add_residuals_options, perform_residuals
@@ -115,6 +121,18 @@ VERBS = {
         "Let a body with mass and muscles, on solid ground, make motions of a skeleton.",
         add_simulate_options,
         perform_simulate,
+    ),
+    "index": Verb(
+        "Put recordings into a library in which there can be searched, and keep it up to date.",
+        add_index_options,
+        perform_index,
+        Makes.LIBRARY,
+    ),
+    "find": Verb(
+        "Find what in a library is like a recording, and where in which clip it is.",
+        add_find_options,
+        perform_find,
+        Makes.MATCHES,
     ),
     "convert": Verb(
         "Write recordings of any known format as BVH, or as C3D or TRC where they are points.",

@@ -1,5 +1,6 @@
 """What joins families: whole ways from a recording to a result."""
 
+from .index_files import IndexReport, index_files
 from .motion_from_markers import MarkerMotion, MarkerMotionSettings, motion_from_markers
 from .postures_of import postures_of
 from .reconstruct_motion import RebuiltMotion, reconstruct_motion
@@ -8,10 +9,12 @@ from .try_to_plant import Footing, try_to_plant
 
 __all__ = [
     "Footing",
+    "IndexReport",
     "MarkerMotion",
     "MarkerMotionSettings",
     "RebuiltMotion",
     "ReconstructedMotion",
+    "index_files",
     "motion_from_markers",
     "postures_of",
     "reconstruct_motion",
