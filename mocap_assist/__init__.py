@@ -7,9 +7,11 @@ Blender is imported only on `register`: a solve in a process of its own passes t
 def register() -> None:
     """Make properties, commands and panels known to Blender."""
     from . import batch, scene_properties, ui, watch
+    from .library import properties
     from .scene import contacts
 
     scene_properties.register()
+    properties.register()
     contacts.register()
     watch.register()
     batch.register()
@@ -19,10 +21,12 @@ def register() -> None:
 def unregister() -> None:
     """Take them away again."""
     from . import batch, scene_properties, ui, watch
+    from .library import properties
     from .scene import contacts
 
     ui.unregister()
     batch.unregister()
     watch.unregister()
     contacts.unregister()
+    properties.unregister()
     scene_properties.unregister()

@@ -3,6 +3,7 @@
 import bpy
 
 from .denoise import MOCAP_OT_denoise
+from .find_similar import MOCAP_OT_find_similar
 from .import_job import MOCAP_OT_import_job
 from .import_recording import MOCAP_OT_import_recording
 from .jump_to_spot import MOCAP_OT_jump_to_spot
@@ -30,6 +31,7 @@ OPERATORS = (
     MOCAP_OT_retarget,
     MOCAP_OT_reduce_keys,
     MOCAP_OT_revert_to_raw,
+    MOCAP_OT_find_similar,
 )
 
 

@@ -1,19 +1,13 @@
 """What the button Index has done for it: files and .blend files become clips of a library."""
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
 from ...solvers.errors import InvalidMotionError
 from ...solvers.progress import Progress, unwatched, within
-from ...solvers.recordings import recordings_in
-from ...solvers.retrieval import (
-    Clip,
-    ClipLibrary,
-    Origin,
-    build_clip_library,
-    load_clip_library,
-)
+from ...solvers.retrieval import Clip, ClipLibrary, Origin, describe_clip, open_clip_library
+from ...solvers.workflows import index_files
 from .in_blender import BlendClip, BlendRead, read_blends
 from .job import ProcessDied
 
@@ -81,26 +75,31 @@ def index_places(problem: IndexProblem, *, progress: Progress = unwatched) -> In
     """
     path = Path(problem.library)
     path.parent.mkdir(parents=True, exist_ok=True)
-    if not path.exists():
-        build_clip_library(()).save(path)
-    refused = [
-        f"{place.path} is missing." for place in problem.places if not Path(place.path).exists()
-    ]
-    blends = list(_blends(problem.places))
-    share = 0.5 if blends else 1.0
-    with load_clip_library(path) as library:
-        counts = _Counts(library, problem.tags, refused)
-        counts.index_blends(blends, problem.blender, within(progress, 1.0 - share, 1.0))
+    there = [place for place in problem.places if Path(place.path).exists()]
+    missing = [place.path for place in problem.places if place not in there]
+    blends = list(_blends(there))
+    files = [place.path for place in there if not place.path.endswith(BLEND)]
+    share = len(files) / max(len(files) + len(blends), 1)
+    report = index_files(path, files, tags=problem.tags, progress=within(progress, 0.0, share))
+    refused = [f"There is no file or folder {each}." for each in missing]
+    refused += [why for _, why in report.refused]
+    with open_clip_library(path) as library:
+        indexing = _Indexing(library, problem.tags, refused)
+        indexing.index_blends(blends, problem.blender, within(progress, share, 1.0))
         return Indexed(
-            len(library.entries), counts.added, counts.kept, counts.removed, tuple(refused)
+            n_clips=len(library.entries),
+            n_added=len(report.added) + len(report.changed) + indexing.added,
+            n_kept=len(report.unchanged) + indexing.kept,
+            n_removed=len(report.removed) + indexing.removed,
+            refused=tuple(refused),
         )
 
 
-def _blends(places: tuple[Place, ...]) -> Iterator[_Blend]:
+def _blends(places: Sequence[Place]) -> Iterator[_Blend]:
     """Yield the .blend files in these places, each once; not the backups beside them."""
     seen = set()
     for place in places:
-        top = Path(place.path)
+        top = Path(place.path).resolve()
         inside = sorted(top.rglob(f"*{BLEND}")) if top.is_dir() else [top]
         for path in inside:
             hidden = any(part.startswith(".") for part in path.relative_to(top).parts)
@@ -111,7 +110,7 @@ def _blends(places: tuple[Place, ...]) -> Iterator[_Blend]:
             yield _Blend(path, below.with_suffix("").as_posix(), place.assets_only)
 
 
-class _Counts:
+class _Indexing:
     """Adds clips to a library, and counts them."""
 
     def __init__(self, library: ClipLibrary, tags: tuple[str, ...], refused: list[str]) -> None:
@@ -136,7 +135,7 @@ class _Counts:
             if entry.origin is not None and entry.origin.path == str(blend.path)
         }
         known = states == {blend.state}
-        self.kept += known * len(self._names(blend))
+        self.kept += len(self._names(blend)) if known else 0
         return known
 
     def _names(self, blend: _Blend) -> list[str]:
@@ -169,9 +168,15 @@ class _Counts:
         """Put what a file holds now in the place of what it held."""
         before = self._names(blend)
         others = {entry.name for entry in self._library.entries} - set(before)
-        clips = [self._clip(blend, clip, others) for clip in read.clips]
         self._refused += read.refused
-        added = self._add(clips)
+        described = []
+        for clip in read.clips:
+            try:
+                described.append(describe_clip(self._clip(blend, clip, others)))
+            except InvalidMotionError as error:
+                self._refused.append(str(error))
+        self._library.add_described(described)
+        added = {clip.entry.name for clip in described}
         gone = [name for name in before if name not in added]
         self._library.remove(gone)
         self.added += len(added)
@@ -186,17 +191,6 @@ class _Counts:
         tags = tuple(dict.fromkeys([*self._tags, *clip.tags]))
         return Clip(name, clip.motion, tags, Origin(str(blend.path), clip.item, *blend.state))
 
-    def _add(self, clips: list[Clip]) -> set[str]:
-        """Add all at once, or each by itself where one shows no body."""
-        try:
-            self._library.add(clips)
-            return {clip.name for clip in clips}
-        except InvalidMotionError as error:
-            if len(clips) > 1:
-                return {name for clip in clips for name in self._add([clip])}
-            self._refused.append(str(error))
-            return set()
-
 
 def _batches(blends: list[_Blend]) -> Iterator[list[_Blend]]:
     batch: list[_Blend] = []
@@ -210,10 +204,3 @@ def _batches(blends: list[_Blend]) -> Iterator[list[_Blend]]:
         room -= size
     if batch:
         yield batch
-
-
-def holds_recordings(path: Path) -> bool:
-    """Whether a place holds recordings, besides .blend files."""
-    if path.is_dir():
-        return next(iter(recordings_in(path)), None) is not None
-    return path.is_file() and path.suffix != BLEND

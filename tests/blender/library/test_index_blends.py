@@ -72,7 +72,7 @@ def test_a_deleted_file_stays_in_the_library_and_is_told_of(index, entries, blen
     done = index(blend_file)
 
     assert len(entries()) == 3
-    assert "missing" in " ".join(done.refused)
+    assert done.refused == (f"There is no file or folder {blend_file}.",)
 
 
 @pytest.mark.parametrize("content", [b"", b"no blend file at all", b"BLENDER-v405" + bytes(99)])
@@ -131,3 +131,15 @@ def test_nothing_in_a_file_is_executed(blank, index, entries, blend_file, tmp_pa
     index(blend_file)
 
     assert len(entries()) == 3 and not trap.exists()
+
+
+def test_files_and_blend_files_of_one_folder(index, entries, blend_file, clip_files):
+    blend_file.rename(clip_files / "shot.blend")
+    (clip_files / "empty.bvh").write_bytes(b"")
+    (clip_files / "notes.txt").write_text("nothing of ours")
+
+    done = index(clip_files)
+
+    assert len(entries()) == done.n_clips == 9
+    assert {"walk_0", "shot/walk_0"} <= set(entries())
+    assert index(clip_files).n_kept == 9
