@@ -9,7 +9,7 @@ import bpy
 
 from .check_choices import CheckSettings
 from .clean_choices import CleanSettings
-from .library.choices import FindBundle, LibraryBundle
+from .library.choices import FindBundle, LibraryBundle, LoadBundle
 from .reconstruct_choices import ReconstructBundle
 from .retarget_choices import RetargetBundle, UnbakeBundle
 from .settings_properties import settings_from
@@ -62,6 +62,11 @@ class MOCAP_PG_find(bpy.types.PropertyGroup):
     """Settings of the button Find Similar."""
 
 
+@settings_from(LoadBundle)
+class MOCAP_PG_load(bpy.types.PropertyGroup):
+    """Settings of the button Append as Action."""
+
+
 class MOCAP_PG_bone_pair(bpy.types.PropertyGroup):
     """Bones of source and target that play one part of the body; `name` is the role's."""
 
@@ -106,6 +111,7 @@ class MOCAP_PG_scene(bpy.types.PropertyGroup):
     unbake: bpy.props.PointerProperty(type=MOCAP_PG_unbake)
     library: bpy.props.PointerProperty(type=MOCAP_PG_library)
     find: bpy.props.PointerProperty(type=MOCAP_PG_find)
+    load: bpy.props.PointerProperty(type=MOCAP_PG_load)
     bone_map: bpy.props.PointerProperty(type=MOCAP_PG_bone_map)
     checked: bpy.props.StringProperty(
         name="Checked", description="Action that was checked last, whose spots are listed"
@@ -133,6 +139,7 @@ CLASSES = (
     MOCAP_PG_reconstruct,
     MOCAP_PG_library,
     MOCAP_PG_find,
+    MOCAP_PG_load,
     MOCAP_PG_bone_pair,
     MOCAP_PG_bone_map,
     MOCAP_PG_spot,

@@ -18,7 +18,7 @@ class MOCAP_OT_find_similar(SolverOperator, bpy.types.Operator):
         "List the clips of the library that are most like this motion, and where in them they"
         " are like it. Nothing is changed"
     )
-    bl_options: ClassVar = {"REGISTER"}  # the list is no part of the file: nothing to undo
+    bl_options: ClassVar = set[str]()  # the list is no part of the file
 
     settings_group = "find"
     why_not = why_not_find

@@ -1,11 +1,13 @@
 """What an animator chooses for Index and Find Similar, besides the settings of the search."""
 
 from dataclasses import dataclass
+from enum import Enum
 from typing import NamedTuple
 
 from ...solvers.retrieval import FindSettings
 from ...solvers.settings import Settings, setting
 from ..clean_choices import Bones
+from ..scene.armature_write import Output
 from ..scene.frames import FrameRange
 
 
@@ -50,3 +52,31 @@ class FindBundle(NamedTuple):
 
     choices: FindChoices
     finding: FindSettings
+
+
+class Part(Enum):
+    """What of the clip is taken."""
+
+    MATCH = "what matches"
+    WHOLE = "whole clip"
+
+
+@dataclass(frozen=True, kw_only=True)
+class LoadChoices(Settings):
+    """How a clip comes to the armature."""
+
+    part: Part = setting(Part.MATCH, "Take the frames that are like the query, or all of them")
+    result_as: Output = setting(
+        Output.ACTION,
+        "Let the armature play the clip in the place of its action, or put it on an NLA track"
+        " at the current frame, as long as what it is like",
+    )
+    at_query: bool = setting(
+        True, "Let it begin where the query stands, facing the same way", label="Stand There"
+    )
+
+
+class LoadBundle(NamedTuple):
+    """All that the button offers."""
+
+    choices: LoadChoices

@@ -119,3 +119,29 @@ def entries(load, tmp_path):
             return {entry.name: entry for entry in opened.entries}
 
     return listed
+
+
+@pytest.fixture
+def find(blank, index, clip_files, tmp_path):
+    """Index the six recordings and press Find Similar; return the rows of the list."""
+    index(clip_files)
+    blank.context.scene.mocap_assist.library.library_file = str(tmp_path / "clips.library")
+
+    def press(**settings):
+        assert blank.ops.mocap_assist.find_similar(**settings) == {"FINISHED"}
+        return list(blank.context.window_manager.mocap_assist_matches.rows)
+
+    return press
+
+
+@pytest.fixture
+def newcomer(bring, clip_motions, load, tmp_path, blank):
+    """An armature that moves as no recording of the library does: `newcomer("wave")`."""
+    blank.context.scene.render.fps = 30
+
+    def make(kind, seed=7, **more):
+        path = tmp_path / f"new_{kind}.bvh"
+        load("solvers.recordings").write_bvh(clip_motions(kind, seed, **more), path)
+        return bring(path)
+
+    return make

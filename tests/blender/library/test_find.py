@@ -4,32 +4,6 @@ import numpy as np
 import pytest
 
 
-@pytest.fixture
-def find(blank, index, clip_files, tmp_path):
-    """Index the six recordings and press Find Similar; return the rows of the list."""
-    index(clip_files)
-    blank.context.scene.mocap_assist.library.library_file = str(tmp_path / "clips.library")
-
-    def press(**settings):
-        assert blank.ops.mocap_assist.find_similar(**settings) == {"FINISHED"}
-        return list(blank.context.window_manager.mocap_assist_matches.rows)
-
-    return press
-
-
-@pytest.fixture
-def newcomer(bring, clip_motions, load, tmp_path, blank):
-    """An armature that moves as no recording of the library does: `newcomer("wave")`."""
-    blank.context.scene.render.fps = 30
-
-    def make(kind, seed=7, **more):
-        path = tmp_path / f"new_{kind}.bvh"
-        load("solvers.recordings").write_bvh(clip_motions(kind, seed, **more), path)
-        return bring(path)
-
-    return make
-
-
 @pytest.mark.parametrize("kind", ["walk", "wave", "squat"])
 def test_the_kind_comes_first(find, newcomer, kind):
     newcomer(kind)

@@ -38,6 +38,10 @@ class Noted:
         for index, item in enumerate(getattr(data, name)):
             kind.draw_item(None, self.bpy.context, self, data, item, 0, data, active, index)
 
+    def template_icon(self, icon_value, scale=1.0):
+        assert icon_value >= 0
+        self.drawn.append("icon")
+
     def menu(self, name, **_):
         self.drawn.append(name)
         assert hasattr(self.bpy.types, name)
