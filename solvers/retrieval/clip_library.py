@@ -23,6 +23,9 @@ from .vocabulary import MOST_FRAMES, Vocabulary, learn_vocabulary
 
 OUTGROWN = 4
 """A library of so many times the frames that its words were learned of learns new ones."""
+LARGEST_BLOCK = 50_000
+"""Spans from which on blocks are not put together: SQLite stores no more than about four times
+as many in one row, and a merge would need much memory."""
 WELL_LEARNED = 8 * MOST_FRAMES
 """Frames from which on words are good for whatever comes."""
 
@@ -215,7 +218,11 @@ class ClipLibrary:
         files.write_vocabulary(self._database, vocabulary)
         self._database.execute("DELETE FROM blocks")
         described = _described(postures, vocabulary, progress)
-        files.write_block(self._database, block_of(numbers, described))
+        ends = np.cumsum([len(spans.frames) for spans in described]) // LARGEST_BLOCK
+        for one in np.unique(ends):
+            first, last = np.searchsorted(ends, one), np.searchsorted(ends, one, side="right")
+            block = block_of(numbers[first:last], described[first:last])
+            files.write_block(self._database, block)
 
     def _index(
         self, numbers: list[int], postures: list[ClipPostures], progress: Progress
@@ -225,7 +232,8 @@ class ClipLibrary:
         block = block_of(numbers, _described(postures, self._vocabulary, progress))
         together = [block]
         for number, before in sorted(self._blocks.items(), reverse=True):
-            if before.n_spans > 2 * sum(one.n_spans for one in together):
+            n_spans = sum(one.n_spans for one in together)
+            if before.n_spans > 2 * n_spans or before.n_spans + n_spans > LARGEST_BLOCK:
                 break
             together.insert(0, before)
             self._database.execute("DELETE FROM blocks WHERE number = ?", (number,))

@@ -1,5 +1,6 @@
 """What joins families: whole ways from a recording to a result."""
 
+from .clean_from_library import LibraryBases, bases_from_library, clean_from_library
 from .index_files import IndexReport, index_files
 from .motion_from_markers import MarkerMotion, MarkerMotionSettings, motion_from_markers
 from .postures_of import postures_of
@@ -10,10 +11,13 @@ from .try_to_plant import Footing, try_to_plant
 __all__ = [
     "Footing",
     "IndexReport",
+    "LibraryBases",
     "MarkerMotion",
     "MarkerMotionSettings",
     "RebuiltMotion",
     "ReconstructedMotion",
+    "bases_from_library",
+    "clean_from_library",
     "index_files",
     "motion_from_markers",
     "postures_of",
