@@ -26,6 +26,8 @@ Recording = Motion | Tracks | JointRecording
 
 MOST = 48
 """Matches that are listed: nobody looks at more."""
+PER_WITNESS = 20
+"""Clips for each match that is asked as well: the five best of six are not all alike."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -92,9 +94,14 @@ def find_clips(problem: FindProblem, *, progress: Progress = unwatched) -> Findi
     """
     stage = stage_of(problem.query)
     wanted = min(problem.settings.n_matches or MOST, MOST)
-    settings = replace(problem.settings, n_matches=wanted, n_aligned=wanted)
     with load_clip_library(Path(problem.library)) as library:
         entries = library.numbered()
+        settings = replace(
+            problem.settings,
+            n_matches=wanted,
+            n_aligned=wanted,
+            n_alike=min(problem.settings.n_alike, len(entries) // PER_WITNESS),
+        )
         ignore = {
             entry.name
             for entry in entries.values()

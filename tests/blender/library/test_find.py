@@ -17,6 +17,16 @@ def test_the_kind_comes_first(find, newcomer, kind):
     assert all(0 <= row.start < row.stop < 75 for row in rows)
 
 
+def test_the_very_motion_has_the_full_score(find, bring, clip_files, tmp_path):
+    copy = tmp_path / "copy.bvh"
+    copy.write_bytes((clip_files / "walk_0.bvh").read_bytes())
+    bring(copy)
+
+    best = find()[0]
+
+    assert best.name == "walk_0" and best.score > 0.9
+
+
 def test_what_it_was_imported_from_is_not_told(find, bring, clip_files):
     bring(clip_files / "wave_0.bvh")
 

@@ -58,4 +58,4 @@ def test_matches_with_their_pictures_and_what_can_be_done(draw, matched, blank):
 def test_what_was_forgotten_is_asked_for_again(draw, matched, blank):
     blank.context.window_manager.mocap_assist_matches.search = -1
 
-    assert "Press Find Similar again." in draw("MOCAP_PT_library")
+    assert "Press Find Similar again." in " ".join(draw("MOCAP_PT_library"))
