@@ -7,7 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...solvers.motion import JointRecording, Motion, Tracks
-from ...solvers.motion.body_size import USUAL_LENGTHS, body_lengths
+from ...solvers.motion.body_size import body_lengths
 from ...solvers.motion.posture_heading import normalise
 from ...solvers.motion.posture_joints import motion_postures, posture_positions
 from ...solvers.progress import Progress, unwatched, within
@@ -43,14 +43,14 @@ class FindProblem:
 
 @dataclass(frozen=True, eq=False)
 class Stage:
-    """Where the query stands, frame by frame, and how large the actor is."""
+    """Where the query stands, frame by frame, and how the actor is built."""
 
     places: Array
     """Of the hips, shape (n_frames, 3), metres."""
     headings: Array
     """Shape (n_frames,), radians."""
-    scale: float
-    """Of the actor to the standard body."""
+    lengths: Array
+    """Of the actor's bones, shape (20,), metres."""
     frame_rate: float
 
 
@@ -133,7 +133,7 @@ def _shown(match: Match, number: int, library: ClipLibrary) -> Found:
 
 
 def stage_of(query: Recording) -> Stage:
-    """Return where a recording stands and how large its actor is.
+    """Return where a recording stands and how its actor is built.
 
     Raises InvalidMotionError where no body is recognised in it.
     """
@@ -143,5 +143,5 @@ def stage_of(query: Recording) -> Stage:
     else:
         positions = posture_positions(tracks)
     body = normalise(positions, tracks.frame_rate)
-    scale = body_lengths(body.postures).sum() / USUAL_LENGTHS.sum()
-    return Stage(body.places, np.unwrap(body.headings), float(scale), tracks.frame_rate)
+    lengths = body_lengths(body.postures)
+    return Stage(body.places, np.unwrap(body.headings), lengths, tracks.frame_rate)

@@ -3,6 +3,7 @@
 import numpy as np
 from numpy.typing import NDArray
 
+from ...solvers.motion.body_size import resize
 from ...solvers.motion.posture_heading import turned
 from ...solvers.motion.posture_joints import PARENTS
 from ..jobs.finding import Found, Stage
@@ -12,7 +13,7 @@ BONES = np.array([(parent, joint) for joint, parent in enumerate(PARENTS) if par
 
 
 def ghost_lines(stage: Stage, found: Found, query_frame: float) -> Array:
-    """Return what the clip does when the query is at a frame, where the query is.
+    """Return what the clip does when the query is at a frame: where it is, with its build.
 
     Parameters
     ----------
@@ -29,7 +30,8 @@ def ghost_lines(stage: Stage, found: Found, query_frame: float) -> Array:
     posture = _posture_at(found, clip_frame(found, query_frame))
     row = int(np.clip(round(query_frame), 0, len(stage.places) - 1))
     heading = np.array([stage.headings[row]])
-    joints = turned(stage.scale * posture[None], heading)[0] + stage.places[row]
+    body = resize(posture[None], stage.lengths)
+    joints = turned(body, heading)[0] + stage.places[row]
     lines = joints[BONES]
     return lines[np.isfinite(lines).all(axis=(1, 2))]
 

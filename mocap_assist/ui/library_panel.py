@@ -10,7 +10,8 @@ from ..library import searches
 from ..library.finding import why_not_find
 from ..library.previews import icon_of
 from .clean_panel import folded
-from .drawing import draw_job, draw_sentence, exists
+from .drawing import draw_job, draw_sentence, exists, is_wide
+from .figures import frames_text
 from .source_list import draw_sources
 
 INDEX, FIND = "mocap_assist.index_library", "mocap_assist.find_similar"
@@ -32,9 +33,13 @@ class MOCAP_UL_matches(bpy.types.UIList):
         row = layout.row()
         if search is not None and index < len(search.finding.found):
             row.template_icon(icon_of(search, index), scale=ROW)
-        column = row.split(factor=0.62)
-        column.label(text=item.name.rpartition("/")[2], translate=False)
-        column.label(text=f"{item.score:.0%}  {item.start}–{item.stop}", translate=False)
+        texts = row.split(factor=0.5 if is_wide(context) else 0.75)
+        texts.label(text=item.name, translate=False)
+        if is_wide(context):
+            texts = texts.split(factor=0.4)
+        texts.label(text=f"{item.score:.0%}", translate=False)
+        if is_wide(context):
+            texts.label(text=frames_text(item.start, item.stop), translate=False)
 
 
 class LibraryPanel:
@@ -130,10 +135,12 @@ def _draw_chosen(
         f"{entry.name}: frames {frames.start}–{frames.stop - 1} of {entry.n_frames},"
         f" {entry.frame_rate:g} Hz.{tags}",
     )
-    column.prop(context.window_manager, "mocap_assist_ghost", toggle=True, icon="GHOST_ENABLED")
+    switch = column.row()
+    switch.use_property_split = False
+    switch.prop(context.window_manager, "mocap_assist_ghost", toggle=True, icon="GHOST_ENABLED")
     load = context.scene.mocap_assist.load
     column.prop(load, "part")
-    column.prop(load, "at_query")
+    column.prop(load, "at_query", text="Stand where it does")
     row = column.row(align=True)
     row.operator(LOAD, text="Append", icon="ACTION").result_as = "ACTION"
     row.operator(LOAD, text="To NLA", icon="NLA").result_as = "NLA_TRACK"

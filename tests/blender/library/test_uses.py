@@ -46,7 +46,7 @@ def test_the_ghost_of_the_very_motion_is_where_the_query_is(
         joints = lines.reshape(-1, 3)
         for bone in ("Hips", "LeftFoot", "RightHand", "LeftLeg"):
             place = found[bone][0][:3, 3]
-            assert np.linalg.norm(joints - place, axis=-1).min() < 0.16, (bone, frame)
+            assert np.linalg.norm(joints - place, axis=-1).min() < 0.08, (bone, frame)
 
 
 def test_the_ghost_stands_still_before_and_after(find, newcomer, ghost, load, blank):
