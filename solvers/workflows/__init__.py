@@ -4,6 +4,11 @@ from .clean_from_library import LibraryBases, bases_from_library, clean_from_lib
 from .index_files import IndexReport, index_files
 from .motion_from_markers import MarkerMotion, MarkerMotionSettings, motion_from_markers
 from .postures_of import postures_of
+from .reconstruct_from_library import (
+    LibraryPostures,
+    postures_from_library,
+    reconstruct_from_library,
+)
 from .reconstruct_motion import RebuiltMotion, reconstruct_motion
 from .reconstruct_recording import ReconstructedMotion, reconstruct_recording
 from .try_to_plant import Footing, try_to_plant
@@ -12,6 +17,7 @@ __all__ = [
     "Footing",
     "IndexReport",
     "LibraryBases",
+    "LibraryPostures",
     "MarkerMotion",
     "MarkerMotionSettings",
     "RebuiltMotion",
@@ -20,7 +26,9 @@ __all__ = [
     "clean_from_library",
     "index_files",
     "motion_from_markers",
+    "postures_from_library",
     "postures_of",
+    "reconstruct_from_library",
     "reconstruct_motion",
     "reconstruct_recording",
     "try_to_plant",

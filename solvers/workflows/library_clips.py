@@ -21,8 +21,8 @@ FOUND = FindSettings(n_matches=12, n_aligned=12, n_alike=0)
 """By likeness with the take alone: the best that a library without the like has are like each
 other all the same."""
 ALIKE = 0.16
-"""Score from which on a clip is an example. Those of the same movement by another actor have 0.2
-to 0.5 (HDM05, and CMU's walks), others at most 0.15."""
+"""Score from which on a clip is an example. The same movement by another actor has one of 0.2
+to 0.5 (HDM05, CMU walks), other movements at most 0.15."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -75,6 +75,7 @@ def library_clips(
     settings: FindSettings = FOUND,
     ignore: Collection[str] = (),
     fetch: Fetch = read_origin,
+    at_least: float = ALIKE,
     progress: Progress = unwatched,
 ) -> LibraryClips:
     """Find clips that are like a take, and read the parts of them that are.
@@ -88,6 +89,8 @@ def library_clips(
     ignore : names of clips, optional
     fetch : callable, optional
         Returns a clip's recording; it is read from its file without.
+    at_least : float
+        Score from which on a clip is one.
     progress : Progress
 
     Raises
@@ -102,7 +105,7 @@ def library_clips(
         for match in find_similar(
             query, library, settings=settings, ignore=ignore, progress=within(progress, 0, 0.3)
         )
-        if match.score >= ALIKE
+        if match.score >= at_least
     ]
     entries = {entry.name: entry for entry in library.entries}
     motions, used, remarks = [], [], []

@@ -137,6 +137,17 @@ def reconstruct_motion(
     return RebuiltMotion(turned, reliability, confidence, told, rebuilt.method, remarks)
 
 
+def postures_recording(motion: Motion) -> JointRecording:
+    """Return the joints of postures of a skeleton's motion, as a tracker would name them.
+
+    Raises
+    ------
+    InvalidMotionError
+        No body is recognised.
+    """
+    return _postures_of(motion, find_humanoid_map(motion.skeleton))[0]
+
+
 def _is_tracked(names: tuple[str, ...]) -> bool:
     """Whether all joints are a known tracker's, and so hang together as is known."""
     return joint_parents(names).count(-1) == 1 and "hips" in joints_of_names(names)

@@ -98,7 +98,7 @@ def gaps(chosen: argparse.Namespace) -> list[Scores]:
 def library(chosen: argparse.Namespace) -> list[Scores]:
     """Examples that a library finds."""
     most = FULL_LIBRARY_CLIPS if chosen.full else QUICK_LIBRARY_CLIPS
-    return compare_libraries(chosen.clips or most, chosen.dev)
+    return compare_libraries(chosen.clips or most, chosen.dev, chosen.full)
 
 
 def markers(chosen: argparse.Namespace) -> list[Scores]:
