@@ -16,6 +16,7 @@ class Postures(Enum):
 
     SHIPPED = "shipped"
     EXAMPLES = "examples"
+    LIBRARY = "library"
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -24,8 +25,8 @@ class ReconstructChoices(Settings):
 
     postures: Postures = setting(
         Postures.SHIPPED,
-        "Guess lost joints from the postures that come with Mocap Assist, or from clean clips"
-        " of the same kind of motion",
+        "Guess lost joints from the postures that come with Mocap Assist, from clean clips of"
+        " the same kind of motion, or from clips of the library that are like the take",
     )
     examples: str = setting(
         "",

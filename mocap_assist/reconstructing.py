@@ -16,6 +16,7 @@ from .cleaning import ease_of
 from .examples import read_examples
 from .jobs.job import Quick
 from .jobs.reconstructing import RebuildFinish, RebuildProblem, Rebuilt, rebuild
+from .library.prior import library_prior
 from .reconstruct_choices import Postures, ReconstructBundle
 from .scene import history
 from .scene.armature_read import read_take
@@ -130,6 +131,9 @@ def _problem(
     examples = None
     if settings.choices.postures is Postures.EXAMPLES:
         examples = read_examples(scene, armature, settings.choices.examples)
+    library = None
+    if settings.choices.postures is Postures.LIBRARY:
+        library = library_prior(scene, armature)
     state = read_states(found.recorded, body.skeleton.names, found.take.frames)
     return RebuildProblem(
         body=body,
@@ -137,6 +141,7 @@ def _problem(
         source=_file_of(found.recorded[0]),
         settings=settings.rebuilding,
         examples=examples,
+        library=library,
     )
 
 

@@ -4,7 +4,7 @@ The slow part, `solve`, does not depend on the feet: what it returns is kept, so
 panel has only `finish` to repeat.
 """
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -27,6 +27,7 @@ from ...solvers.workflows import (
     try_to_plant,
 )
 from .cleaning import Examples, toward
+from .library_prior import LibraryPrior
 
 Array = NDArray[np.float64]
 
@@ -43,6 +44,8 @@ class RebuildProblem:
     settings: ReconstructSettings
     examples: Examples | None
     """Clips of natural postures; None for those that are shipped."""
+    library: LibraryPrior | None = None
+    """In which clips of natural postures are found, in the place of examples."""
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -72,11 +75,15 @@ class Rebuilt:
 
 def solve(problem: RebuildProblem, *, progress: Progress = unwatched) -> RebuiltMotion:
     """Rebuild the poses of the body."""
-    postures = None
-    if problem.examples is not None:
+    postures, said = None, ""
+    sharing = within(progress, 0.0, 0.2)
+    if problem.library is not None:
+        found = problem.library.postures(problem.body, sharing)
+        postures, said = found.postures, found.said
+    elif problem.examples is not None:
         clips = [*problem.examples.motions, *map(read_motion_or_tracks, problem.examples.files)]
-        postures = postures_of(clips, progress=within(progress, 0.0, 0.2))
-    return reconstruct_motion(
+        postures = postures_of(clips, progress=sharing)
+    rebuilt = reconstruct_motion(
         problem.body,
         postures,
         source=_source(problem),
@@ -84,6 +91,7 @@ def solve(problem: RebuildProblem, *, progress: Progress = unwatched) -> Rebuilt
         settings=problem.settings,
         progress=within(progress, 0.0 if postures is None else 0.2, 1.0),
     )
+    return replace(rebuilt, remarks=(said, *rebuilt.remarks)) if said else rebuilt
 
 
 def _source(problem: RebuildProblem) -> JointRecording | None:
