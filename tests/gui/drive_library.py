@@ -126,7 +126,7 @@ def use(armature):
     yield from settle()
     bgui.shot("6-uses.png")
     job = bpy.context.window_manager.mocap_assist_job
-    yield from press('load_match(result_as="ACTION")', column=0.2)
+    yield from press("load_match(result_as='ACTION')", column=0.2)
     yield 1.0
     yield from wait_for(lambda: not job.running)
     yield from wait_for(lambda: armature.animation_data.action != before)
