@@ -14,6 +14,7 @@ from ..reconstruction import (
     PostureLibrary,
     ReconstructSettings,
     ResidualPrior,
+    load_posture_library,
     load_residual_prior,
 )
 from ..recordings import read_recording, write_joint_csv
@@ -52,6 +53,10 @@ def add_reconstruct_options(parser: argparse.ArgumentParser) -> None:
         help="Clean clips of skeletons, or folders of them, to learn postures from; without"
         " them those that come with Mocap Assist guide",
     )  # fmt: skip
+    postures.add_argument(
+        "--postures", type=Path, metavar="FILE",
+        help="Postures of your own, as learn-postures wrote them, in their place",
+    )  # fmt: skip
     parser.add_argument(
         "--residuals", type=Path, metavar="FILE",
         help="How the sensor errs, as learn-residuals wrote it; without it a Kinect v2's",
@@ -81,10 +86,10 @@ class Guides(NamedTuple):
 def read_guides(arguments: argparse.Namespace, progress: Progress) -> Guides:
     """Learn and read, once for all files of a run, what guides them."""
     check_library(arguments.library)
-    given = arguments.residuals
+    given, library = arguments.residuals, arguments.postures
     residuals = None if given is None else load_residual_prior(given)
     if not arguments.train:
-        return Guides(None, residuals)
+        return Guides(library and load_posture_library(library), residuals)
     clips = read_all(arguments.train, arguments, within(progress, 0.0, 0.7))
     return Guides(postures_of(clips, progress=within(progress, 0.7, 1.0)), residuals)
 

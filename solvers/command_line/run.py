@@ -21,6 +21,7 @@ FILES = {
     Makes.FILES: "The recording and the file to write; with --output-folder any recordings, and"
     " folders of them",
     Makes.ONE_FILE: "Recordings to read, or folders of them",
+    Makes.MANY_FILES: "Recordings to read, or folders of them",
     Makes.LIBRARY: "The library, and then recordings to put into it, or folders of them",
     Makes.MATCHES: "The recording to which there may be something like, and then the library",
 }
@@ -93,7 +94,7 @@ def _add_common_options(parser: argparse.ArgumentParser, makes: Makes) -> None:
             "--report", action="store_true",
             help=f"Write DIR/{PAGE} and report.json about the whole batch, with pictures",
         )  # fmt: skip
-    if makes not in {Makes.ONE_FILE, Makes.MATCHES}:
+    if makes not in {Makes.ONE_FILE, Makes.MANY_FILES, Makes.MATCHES}:
         parser.add_argument(
             "--jobs", type=int, default=1, metavar="N",
             help="How many files to work on at a time [default 1]",

@@ -50,6 +50,7 @@ class Makes(Enum):
     ONE_FILE = "one file of all files"
     LIBRARY = "a library, which is named first, of all other files"
     MATCHES = "what there is like a file in a library, which is named last"
+    MANY_FILES = "a folder of files of all files"
 
 
 def nothing_to_prepare(arguments: argparse.Namespace, progress: Progress) -> None:

@@ -20,6 +20,7 @@ from .library_verbs import (
     perform_index,
 )
 from .options import arguments_from, settings_from_arguments
+from .postures_verb import add_postures_options, perform_postures
 from .reconstruct_verb import add_reconstruct_options, perform_reconstruct, read_guides
 from .residuals_verb import add_residuals_options, perform_residuals
 from .retarget_verbs import (
@@ -31,6 +32,7 @@ from .retarget_verbs import (
 )
 from .simulate_verb import add_simulate_options, perform_simulate
 from .solve_verb import add_solve_options, perform_solve
+from .vary_verb import add_vary_options, perform_vary
 from .verb import Makes, Outcome, Task, Verb
 
 
@@ -117,6 +119,12 @@ VERBS = {
         perform_residuals,
         Makes.ONE_FILE,
     ),
+    "learn-postures": Verb(
+        "Keep the postures of clean clips, for reconstruct to guess lost joints from.",
+        add_postures_options,
+        perform_postures,
+        Makes.ONE_FILE,
+    ),
     "simulate": Verb(
         "Let a body with mass and muscles, on solid ground, make motions of a skeleton.",
         add_simulate_options,
@@ -133,6 +141,12 @@ VERBS = {
         add_find_options,
         perform_find,
         Makes.MATCHES,
+    ),
+    "vary": Verb(
+        "Make new motions like a few clips of one behaviour, each different.",
+        add_vary_options,
+        perform_vary,
+        Makes.MANY_FILES,
     ),
     "convert": Verb(
         "Write recordings of any known format as BVH, or as C3D or TRC where they are points.",

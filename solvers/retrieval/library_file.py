@@ -12,7 +12,7 @@ from pathlib import Path
 
 import numpy as np
 
-from ..errors import InvalidFileError
+from ..errors import InvalidFileError, MocapAssistError
 from .clip import ClipEntry, Origin
 from .clip_postures import ClipPostures
 from .index_block import IndexBlock, block_arrays, block_from_arrays
@@ -107,7 +107,7 @@ def told_in_words(path: Path | None) -> Iterator[None]:
             ) from None
         raise InvalidFileError(f"{name} cannot be used: {error}.") from None
     except (sqlite3.DatabaseError, ValueError, KeyError, TypeError) as error:
-        if isinstance(error, InvalidFileError):
+        if isinstance(error, MocapAssistError):
             raise
         raise InvalidFileError(f"{name} is no clip library, or is damaged.") from None
 

@@ -12,6 +12,7 @@ from .reconstruct_from_library import (
 from .reconstruct_motion import RebuiltMotion, reconstruct_motion
 from .reconstruct_recording import ReconstructedMotion, reconstruct_recording
 from .try_to_plant import Footing, try_to_plant
+from .vary_motions import Variants, vary_motions
 
 __all__ = [
     "Footing",
@@ -22,6 +23,7 @@ __all__ = [
     "MarkerMotionSettings",
     "RebuiltMotion",
     "ReconstructedMotion",
+    "Variants",
     "bases_from_library",
     "clean_from_library",
     "index_files",
@@ -32,4 +34,5 @@ __all__ = [
     "reconstruct_motion",
     "reconstruct_recording",
     "try_to_plant",
+    "vary_motions",
 ]
