@@ -1,7 +1,6 @@
-"""What Blender does on each gesture. Whoever has a library connects it here.
+"""What Blender does on each gesture.
 
-`LIBRARY` holds the three functions of the library; `connect_library` puts others in their
-place. Each returns the sentence that is shown. Zoom and turn move the 3D Views of the window
+Each function returns the sentence that is shown. Zoom and turn move the 3D Views of the window
 in which Listen was pressed.
 """
 
@@ -12,10 +11,9 @@ import bpy
 
 from ...solvers.motion import JointRecording
 from ...solvers.retrieval.gesture_events import Gesture, GestureEvent
+from ..library.performing import page, search_with, show_library
 from ..scene.view_control import turn_views, zoom_views
 
-NO_LIBRARY = "Right hand up. There is no library to show yet."
-NO_PAGES = "A wave. There is no library to page yet."
 STARTED = "Perform what you search for, then clap."
 VIEWS = (Gesture.ZOOM, Gesture.TURN)
 
@@ -33,6 +31,10 @@ class Library:
     """For a performance."""
 
 
+LIBRARY = Library(show_library, page, search_with)
+"""The one that gestures reach."""
+
+
 def last_performance() -> JointRecording | None:
     """Return what was performed last between two claps, until Blender is closed."""
     return _performed[-1] if _performed else None
@@ -42,9 +44,9 @@ def obey(context: bpy.types.Context, event: GestureEvent) -> str:
     """Do what a gesture asks for; return the sentence to show."""
     gesture = event.gesture
     if gesture is Gesture.HAND_UP:
-        return LIBRARY[-1].show(context)
+        return LIBRARY.show(context)
     if gesture in {Gesture.PAGE_NEXT, Gesture.PAGE_BACK}:
-        return LIBRARY[-1].page(context, 1 if gesture is Gesture.PAGE_NEXT else -1)
+        return LIBRARY.page(context, 1 if gesture is Gesture.PAGE_NEXT else -1)
     if gesture is Gesture.ZOOM:
         return zoom_views(context.window, event.amount)
     if gesture is Gesture.TURN:
@@ -61,28 +63,4 @@ def obey_all(context: bpy.types.Context, events: Sequence[GestureEvent]) -> str:
 def search_for(context: bpy.types.Context, query: JointRecording) -> str:
     """Keep a performance, and search for it; return the sentence to show."""
     _performed[:] = [query]
-    return LIBRARY[-1].search(context, query)
-
-
-def connect_library(library: Library) -> None:
-    """Let gestures reach a library."""
-    LIBRARY[:] = [library]
-
-
-def _not_shown(context: bpy.types.Context) -> str:
-    return NO_LIBRARY
-
-
-def _not_paged(context: bpy.types.Context, step: int) -> str:
-    return NO_PAGES
-
-
-def _not_searched(context: bpy.types.Context, query: JointRecording) -> str:
-    return (
-        f"Captured {query.n_frames} frames at {query.frame_rate:g} Hz. There is no library to"
-        " search yet."
-    )
-
-
-LIBRARY = [Library(_not_shown, _not_paged, _not_searched)]
-"""The one that gestures reach."""
+    return LIBRARY.search(context, query)

@@ -12,15 +12,13 @@ from numpy.testing import assert_allclose
 def library(load, monkeypatch):
     """What the library was told; the real one is put back."""
     commands = load("mocap_assist.live.commands")
-    monkeypatch.setattr(commands, "LIBRARY", list(commands.LIBRARY))
     told = []
-    commands.connect_library(
-        commands.Library(
-            show=lambda context: told.append("show") or "The library.",
-            page=lambda context, step: told.append(step) or "A page.",
-            search=lambda context, query: told.append(query) or "Searched.",
-        )
+    library = commands.Library(
+        show=lambda context: told.append("show") or "The library.",
+        page=lambda context, step: told.append(step) or "A page.",
+        search=lambda context, query: told.append(query) or "Searched.",
     )
+    monkeypatch.setattr(commands, "LIBRARY", library)
     return told
 
 
