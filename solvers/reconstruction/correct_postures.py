@@ -9,12 +9,13 @@ from scipy.special import gammainc
 
 from ..motion import JointRecording
 from ..motion.posture_joints import N_JOINTS, POSTURE_JOINTS, joints_of_names, posture_positions
+from ..motion.straight_gaps import bridged
 from ..progress import Progress, unwatched, within
 from ..settings import Settings, setting
 from .follow_joints import follow_joints
 from .other_joints import all_joints, anchors
 from .reliability import Reliability, measure_reliability
-from .residual_inputs import bridged, calm_postures
+from .residual_inputs import calm_postures
 from .residual_prior import Foretold, ResidualPrior
 from .result import Reconstruction
 from .steady_paths import followed, smoothed

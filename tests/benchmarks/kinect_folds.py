@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 
 from solvers.motion import joint_parents, motion_from_points
 from solvers.motion.posture_joints import posture_positions
+from solvers.motion.straight_gaps import bridged
 from solvers.reconstruction import (
     PostureLibrary,
     ResidualMethod,
@@ -21,7 +22,6 @@ from solvers.reconstruction import (
     load_posture_library,
     load_residual_prior,
 )
-from solvers.reconstruction.residual_inputs import bridged
 
 from .kinect_pairs import Pair, read_pairs
 

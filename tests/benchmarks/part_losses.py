@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 
 from solvers.motion.posture_heading import normalise
 from solvers.reconstruction import PostureMethod, ReconstructMethod
-from solvers.reconstruction.residual_inputs import calm_postures
+from solvers.reconstruction.residual_inputs import CalmPostures, calm_postures
 
 from .kinect_damage import Damaged, hidden, lost, shaken, swapped
 from .kinect_folds import SUBJECTS, others, seen_of, takes_of, truth_of
@@ -118,9 +118,9 @@ def seen_examples(subject: str) -> Array:
     return together.reshape(len(together), -1)
 
 
-def _size(calm: object) -> float:
-    features, postures = calm.features, calm.normalised.postures  # type: ignore[attr-defined]
-    return float(np.nanmax(np.abs(features)) / np.nanmax(np.abs(postures)))
+def _size(calm: CalmPostures) -> float:
+    sizes = [np.nanmax(np.abs(one)) for one in (calm.features, calm.normalised.postures)]
+    return float(sizes[0] / sizes[1])
 
 
 FILLED: dict[str, Method] = {
