@@ -57,7 +57,7 @@ class CorrectionSettings(Settings):
         " to the joint; false leaves joints on average where they were seen",
     )  # fmt: skip
     change: float = setting(
-        0.75, "How much is applied of the offsets' change with posture; 1 takes the prior at"
+        0.9, "How much is applied of the offsets' change with posture; 1 takes the prior at"
         " its word, also in movements that it has never seen",
         minimum=0.0, maximum=1.0, advanced=True,
     )  # fmt: skip
@@ -121,7 +121,7 @@ def correct_postures(
     weights = posture_reliability(recording, trust.combined)
     calm = calm_postures(recording, float(prior.calm), weights)
     progress(0.4, "Correcting")
-    told = prior.predict(calm)
+    told = prior.predict(calm, ahead=settings.method is CorrectionMethod.WHOLE_TAKE)
     foretold = calm.positions + calm.turn_back(_offsets(told, weights, settings))
     variances = told.variances + prior.lasting_variances(constant=settings.shift)
     if settings.method is CorrectionMethod.PUBLISHED:
@@ -152,8 +152,7 @@ def correct_postures(
 def _offsets(told: Foretold, weights: Array, settings: CorrectionSettings) -> Array:
     """Return the offsets to apply: their mean over the take, and what changes with posture.
 
-    Of the change a part is applied, and none of it in takes unlike those that were learned:
-    in exercises that were left out the whole of it harms, three quarters help.
+    Of the change a part is applied, and less of it in takes unlike those that were learned.
     """
     weighed = np.maximum(weights, LEAST)[..., None]
     mean = (weighed * told.offsets).sum(axis=0) / weighed.sum(axis=0)

@@ -39,11 +39,13 @@ class CalmPostures:
         The same without heading and place.
     features : shape (n_frames, 20, 3)
         The same for a body of usual size; NaN where `normalised` is.
+    frame_rate : float, hertz
     """
 
     positions: Array
     normalised: Normalised
     features: Array
+    frame_rate: float
 
     def turn_back(self, offsets: Array) -> Array:
         """Return offsets of these frames as the world sees them, (n_frames, n, 3)."""
@@ -67,7 +69,8 @@ def calm_postures(
         raise InvalidMotionError(
             "The joints are all in one place; choose a recording of an actor who was tracked."
         )
-    return CalmPostures(positions, normal, normal.postures * USUAL_LENGTHS.sum() / length)
+    usual = normal.postures * USUAL_LENGTHS.sum() / length
+    return CalmPostures(positions, normal, usual, rate)
 
 
 def filled(features: Array, usual: Array) -> Array:

@@ -32,12 +32,14 @@ class Errors:
     jerk: float
     seconds: float
     subjects: NDArray[np.str_]
+    matched: NDArray[np.bool_]
+    """Frames of takes whose markers are of what the Kinect saw."""
 
 
 def errors_of(method: Method, n_repetitions: int) -> Errors:
     """Let a method rebuild the first repetitions of all exercises of all subjects."""
     found: list[tuple[Array, Array, Array]] = []
-    jerks, whose, taken = [], [], 0.0
+    jerks, whose, matched, taken = [], [], [], 0.0
     for subject in SUBJECTS:
         takes = takes_of(subject, n_repetitions)
         method(takes[0], subject)  # what is learned or read once is no time of a frame
@@ -48,10 +50,11 @@ def errors_of(method: Method, n_repetitions: int) -> Errors:
             found.append(compared(made, truth_of(pair)))
             jerks.append(jerk(made, pair))
             whose += [subject] * len(made)
+            matched += [pair.matched] * len(made)
     absolute, relative, free = (np.concatenate(parts) for parts in zip(*found, strict=True))
     return Errors(
         absolute, relative, free, float(np.nanmean(np.concatenate(jerks))), taken,
-        np.array(whose),
+        np.array(whose), np.array(matched),
     )  # fmt: skip
 
 

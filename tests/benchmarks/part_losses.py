@@ -135,13 +135,13 @@ FILLED: dict[str, Method] = {
 OURS: dict[str, Method] = {
     "[SHJT13] postures, as published": joints(by_postures, method=PostureMethod.PUBLISHED),
     "postures": joints(by_postures, method=PostureMethod.PROBABLE),
-    "postures, taught by the others too": joints(
-        by_postures, method=PostureMethod.PROBABLE, taught=True
+    "postures, of CMU alone": joints(
+        by_postures, method=PostureMethod.PROBABLE, others_too=False
     ),
     "residuals": joints(by_reconstruct, method=ReconstructMethod.RESIDUALS),
     "ours (both)": joints(by_reconstruct, method=ReconstructMethod.BOTH),
-    "ours (both), taught by the others too": joints(
-        by_reconstruct, method=ReconstructMethod.BOTH, taught=True
+    "ours (both), CMU alone": joints(
+        by_reconstruct, method=ReconstructMethod.BOTH, others_too=False
     ),
 }
 CALMED: dict[str, Method] = {
