@@ -119,17 +119,8 @@ def correct_postures(
     """
     trust = reliability or measure_reliability(recording, progress=within(progress, 0.0, 0.3))
     weights = posture_reliability(recording, trust.combined)
-    calm = calm_postures(recording, float(prior.calm), weights)
     progress(0.4, "Correcting")
-    told = prior.predict(calm, ahead=settings.method is CorrectionMethod.WHOLE_TAKE)
-    foretold = calm.positions + calm.turn_back(_offsets(told, weights, settings))
-    variances = told.variances + prior.lasting_variances(constant=settings.shift)
-    if settings.method is CorrectionMethod.PUBLISHED:
-        corrected = _frame_by_frame(recording, foretold, variances, weights, settings)
-    else:
-        steady = followed if settings.method is CorrectionMethod.CAUSAL else smoothed
-        frames = settings.smoothing * recording.frame_rate
-        corrected = steady(foretold, np.maximum(weights, LEAST), frames)
+    corrected, told, variances = foretell_places(recording, prior, weights, settings)
     progress(0.9, "Correcting")
     asked = settings.change > 0.0 or settings.shift
     heard = told.coverage if asked else 0.0
@@ -147,6 +138,25 @@ def correct_postures(
     if asked:
         method += f" with a residual prior of {prior.source}"
     return Reconstruction(rebuilt, motion, trust, confidence, method)
+
+
+def foretell_places(
+    recording: JointRecording,
+    prior: ResidualPrior,
+    weights: Array,
+    settings: CorrectionSettings,
+) -> tuple[Array, Foretold, Array]:
+    """Return the joints of postures where they were, what the prior told, and variances."""
+    calm = calm_postures(recording, float(prior.calm), weights)
+    told = prior.predict(calm, ahead=settings.method is CorrectionMethod.WHOLE_TAKE)
+    foretold = calm.positions + calm.turn_back(_offsets(told, weights, settings))
+    variances = told.variances + prior.lasting_variances(constant=settings.shift)
+    if settings.method is CorrectionMethod.PUBLISHED:
+        places = _frame_by_frame(recording, foretold, variances, weights, settings)
+        return places, told, variances
+    steady = followed if settings.method is CorrectionMethod.CAUSAL else smoothed
+    frames = settings.smoothing * recording.frame_rate
+    return steady(foretold, np.maximum(weights, LEAST), frames), told, variances
 
 
 def _offsets(told: Foretold, weights: Array, settings: CorrectionSettings) -> Array:

@@ -72,8 +72,8 @@ def energy_weights() -> str:
         rows[name] = [*cells, number(float(np.nanmean(jerks)))]
     columns = ["lost joints, cm", "to the joint above, cm", "lengths vary by, cm", "jerk, m/s³"]
     head = (
-        "**Weights of the energy of [SHJT13]** (eq. 10 to 15; published 1, .5, 1.5, .25; minima"
-        f" by Gauss-Newton), joints lost for {SECONDS}, {len(asked)} takes, subject left out\n\n"
+        "**Weights of the energy of [SHJT13]** (eq. 10 to 15; published 1, .5, 1.5, .25;"
+        f" Gauss-Newton), joints lost for {SECONDS}, {len(asked)} cases, subject left out\n\n"
     )
     return head + table(["terms", *columns], rows) + "\n"
 
