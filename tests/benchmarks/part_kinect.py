@@ -101,8 +101,8 @@ def accuracy(n_repetitions: int) -> list[str]:
     rows["markers"] = ["0", "0", "0", "0", number(float(np.nanmean(truth))), "-"]
     n_frames = len(unmended[n_repetitions].free)
     head = (
-        f"**Accuracy, subject left out**, {len(takes)} takes, {n_frames} frames; of what is slow,"
-        f" [SHJT13] as published, {FEW} repetitions alone\n\n"
+        f"**Accuracy, subject left out**, {len(takes)} takes, {n_frames} frames; of"
+        f" [SHJT13] as published, which is slow, {FEW} repetitions alone\n\n"
     )
     tail = "\n**Offset-free error of each subject left out** (cm)\n\n"
     return [
