@@ -110,9 +110,10 @@ class ResidualPrior:
 
         With `ahead` a few frames of each second are foretold, what lies between is
         interpolated, and where postures go to is looked at. Else each frame is foretold by
-        itself.
+        itself. Joints that no teacher showed, as the ends of hands, are not looked at.
         """
-        features = filled(calm.features, self.usual)
+        told_of = (self.usual != 0.0).any(axis=-1, keepdims=True)
+        features = np.where(told_of, filled(calm.features, self.usual), 0.0)
         step = max(round(calm.frame_rate / FORETOLD), 1) if ahead else 1
         last = len(features) - 1
         frames = np.unique(np.append(np.arange(0, last + 1, step), last))

@@ -97,6 +97,30 @@ def test_a_joint_that_was_never_tracked_hurts_no_other(prior):
     assert np.isfinite(np.delete(result.tracks.positions, HAND, axis=1)).all()
 
 
+def test_a_joint_that_no_teacher_showed_makes_nothing_strange():
+    """Sensors that tell the ends of hands, and a prior of one that does not."""
+    ends = [NAMES.index("HandRight"), NAMES.index("HandLeft")]
+
+    def blind(positions):
+        return np.where(np.isin(np.arange(20), ends)[:, None], np.nan, positions)
+
+    takes = []
+    for speed in (0.9, 1.1, 1.45, 1.6):
+        seen, true = pair(truth(speed))
+        takes.append((recording(blind(seen.tracks.positions)), true))
+    handless = learn_residual_prior(takes, settings=QUICK)
+    seen = seen_by_a_bad_sensor(truth(1.3))
+
+    with_ends, without = (
+        correct_postures(recording(one), handless) for one in (seen, blind(seen))
+    )
+
+    shared = [joint for joint in range(20) if joint not in ends]
+    np.testing.assert_allclose(
+        with_ends.confidence[:, shared], without.confidence[:, shared], atol=0.02
+    )
+
+
 def test_gaps_are_bridged(prior):
     positions = seen_by_a_bad_sensor(truth(1.3))
     positions[40:46, KNEE] = np.nan
