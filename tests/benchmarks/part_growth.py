@@ -8,8 +8,8 @@ turned by some degrees, shaken, mirrored. They are varied as postures of the sta
 which all actors have the same bone lengths anyway; to read and describe a real clip of two
 seconds takes about 15 ms beside that. Each query is a clip of the library, at another speed and
 shaken again; it is found when that clip comes first, or among the first ten. At each size a
-process of its own searches, so that its memory can be told. Times are of the processor, with one
-thread: other work on the machine does not count.
+process of its own searches, so that its memory can be told. Times are of the processor, with
+one thread: other work on the machine does not count.
 """
 
 import argparse
