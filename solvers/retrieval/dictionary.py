@@ -15,6 +15,9 @@ from .sparse_codes import SparseCodes, sparse_codes
 
 Array = NDArray[np.float64]
 
+LEAST_LEFT = 0.1
+"""Part of an atom's length that must be seen for it to be used."""
+
 
 @dataclass(frozen=True, kw_only=True)
 class DictionarySettings(Settings):
@@ -70,9 +73,9 @@ class PostureDictionary:
         signals, seen = seen_signals(postures.positions)
         atoms = self.atoms[:, seen]
         sizes = np.linalg.norm(atoms, axis=1, keepdims=True)
-        known = sizes > 0.1
+        known = sizes > LEAST_LEFT
         unit = np.where(known, atoms / np.where(known, sizes, 1.0), 0.0)
-        n_nonzeros = min(self.n_nonzeros, int(known.sum()), int(seen.sum()))
+        n_nonzeros = max(min(self.n_nonzeros, len(unit), int(seen.sum())), 1)
         return sparse_codes(signals[:, seen] - self.mean[seen], unit, n_nonzeros)
 
 
