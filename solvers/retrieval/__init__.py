@@ -1,0 +1,26 @@
+"""Libraries of clips, and what in them is like a given motion.
+
+>>> from solvers.retrieval import Clip, build_clip_library, find_similar
+>>> from solvers.samples import GaitSettings, walking_gait
+>>> fast, slow = (walking_gait(GaitSettings(duration=2.0, cadence=c)) for c in (130, 90))
+>>> library = build_clip_library([Clip("fast", fast), Clip("slow", slow)])
+>>> find_similar(slow, library)[0].clip
+'slow'
+"""
+
+from .clip import Clip, ClipEntry, Match, Origin
+from .clip_library import ClipLibrary, build_clip_library, load_clip_library
+from .find_settings import FindSettings
+from .find_similar import find_similar
+
+__all__ = [
+    "Clip",
+    "ClipEntry",
+    "ClipLibrary",
+    "FindSettings",
+    "Match",
+    "Origin",
+    "build_clip_library",
+    "find_similar",
+    "load_clip_library",
+]

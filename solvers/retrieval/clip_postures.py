@@ -7,7 +7,7 @@ from numpy.typing import NDArray
 
 from ..errors import InvalidMotionError
 from ..motion import JointRecording, Motion, Tracks, resample
-from ..motion.body_size import USUAL_LENGTHS, resize
+from ..motion.body_size import USUAL_LENGTHS, body_lengths, resize
 from ..motion.posture_heading import normalise
 from ..motion.posture_joints import motion_postures, posture_positions
 
@@ -23,16 +23,15 @@ class ClipPostures:
     ----------
     positions : shape (n_frames, 20, 3), metres
         Joints of the standard body relative to its hips, facing -Y; in the order of
-        `POSTURE_JOINTS`. NaN: not tracked, or hung on a joint that is not.
-    travel : shape (n_frames, 3), metres per second
-        How fast the hips move to the left, backward and up, as the actor faces.
-    turning : shape (n_frames,), radians per second
+        `POSTURE_JOINTS`. NaN: not tracked.
+    course : shape (n_frames, 4)
+        How fast the hips move to the left, backward and up, as the actor faces, in metres per
+        second, and how fast he turns, in radians per second.
     frame_rate : float, hertz
     """
 
     positions: Array
-    travel: Array
-    turning: Array
+    course: Array
     frame_rate: float
 
     @property
@@ -45,7 +44,8 @@ def clip_postures(recording: Recording, frame_rate: float | None = None) -> Clip
     """Take heading, place and the size of the actor out of a recording.
 
     Bones keep their directions and get the lengths of a standard body (eq. 3.2 and 3.3), so
-    that rigs, actors and sensors can be compared.
+    that rigs, actors and sensors can be compared. A joint that hangs on one that was not
+    tracked lies where it was seen, in the scale of the whole body.
 
     Parameters
     ----------
@@ -71,13 +71,17 @@ def clip_postures(recording: Recording, frame_rate: float | None = None) -> Clip
     if not np.isfinite(positions).any():
         raise InvalidMotionError("No joint was tracked in any frame.")
     body = normalise(positions, rate)
+    scale = USUAL_LENGTHS.sum() / max(body_lengths(body.postures).sum(), 1e-6)
+    resized = resize(body.postures, USUAL_LENGTHS)
     turns = np.unwrap(body.headings)
     return ClipPostures(
-        resize(body.postures, USUAL_LENGTHS),
-        _level(_per_second(body.places, rate), body.headings),
-        _per_second(turns, rate),
+        np.where(np.isfinite(resized), resized, scale * body.postures),
+        np.column_stack([
+            _level(_per_second(scale * body.places, rate), body.headings),
+            _per_second(turns, rate),
+        ]),
         rate,
-    )
+    )  # fmt: skip
 
 
 def _per_second(values: Array, frame_rate: float) -> Array:

@@ -1,0 +1,273 @@
+"""A library of clips that can be searched, grows and shrinks, in memory or in a file."""
+
+import sqlite3
+from collections.abc import Iterable, Sequence
+from pathlib import Path
+from types import TracebackType
+from typing import Self
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..errors import InvalidMotionError
+from ..files import written_whole
+from ..motion import JointRecording
+from ..progress import Progress, unwatched, within
+from . import library_file as files
+from .clip import Clip, ClipEntry
+from .clip_postures import ClipPostures, clip_postures
+from .index_block import IndexBlock, block_of, merged
+from .spans import RATE, Spans, describe_spans
+from .vocabulary import MOST_FRAMES, Vocabulary, learn_vocabulary
+
+OUTGROWN = 4
+"""A library of so many times the frames that its words were learned of learns new ones."""
+WELL_LEARNED = 8 * MOST_FRAMES
+"""Frames from which on words are good for whatever comes."""
+
+
+class ClipLibrary:
+    """Clips and the index that finds them. Made by `build_clip_library` or `load_clip_library`.
+
+    One that was loaded from a file is that file: what is added or removed is written at once,
+    as a whole or not at all, and others who have it open see it with their next search.
+    """
+
+    def __init__(self, database: sqlite3.Connection, path: Path | None = None) -> None:
+        """Wrap an open database; for the two makers only."""
+        self._database = database
+        self._path = path
+        self._seen = (-1, -1)
+        self._entries: dict[int, ClipEntry] = {}
+        self._blocks: dict[int, IndexBlock] = {}
+        self._alive: tuple[tuple[IndexBlock, NDArray[np.bool_]], ...] | None = None
+        self._words = -1
+        self._vocabulary: Vocabulary | None = None
+
+    @property
+    def path(self) -> Path | None:
+        """The file it lives in; None in memory."""
+        return self._path
+
+    @property
+    def entries(self) -> tuple[ClipEntry, ...]:
+        """What is told of the clips, in the order in which they came."""
+        return tuple(self.numbered().values())
+
+    @property
+    def vocabulary(self) -> Vocabulary | None:
+        """What the index is told in; None while the library is empty."""
+        self._refresh()
+        return self._vocabulary
+
+    @property
+    def blocks(self) -> tuple[tuple[IndexBlock, NDArray[np.bool_]], ...]:
+        """The index, and which spans of each block are of clips that are still there."""
+        self._refresh()
+        if self._alive is None:
+            numbers = np.array(list(self._entries))
+            self._alive = tuple(
+                (block, np.isin(block.clips, numbers)) for block in self._blocks.values()
+            )
+        return self._alive
+
+    def numbered(self) -> dict[int, ClipEntry]:
+        """Return what is told of the clips, by the numbers that the index calls them by."""
+        self._refresh()
+        return self._entries
+
+    def postures(self, number: int) -> ClipPostures:
+        """Return the postures of a clip at 20 Hz, as they were indexed."""
+        with files.told_in_words(self._path):
+            return files.read_postures(self._database, number)
+
+    def add(self, clips: Iterable[Clip], *, progress: Progress = unwatched) -> None:
+        """Add clips, in place of those of the same name.
+
+        Raises
+        ------
+        InvalidMotionError
+            A clip shows no body, or two have one name; the library is as it was.
+        SolveCancelled
+            Raised by `progress`; the library is as it was.
+        """
+        entries, postures = _seen_postures(list(clips), within(progress, 0.0, 0.5))
+        if not entries:
+            return
+        with files.told_in_words(self._path), files.transaction(self._database):
+            self._refresh()
+            numbers = [
+                files.write_clip(self._database, entry, clip)
+                for entry, clip in zip(entries, postures, strict=True)
+            ]
+            if self._outgrown(sum(clip.n_frames for clip in postures)):
+                self._index_all(within(progress, 0.5, 1.0))
+            else:
+                self._index(numbers, postures, within(progress, 0.5, 1.0))
+            progress(1.0)
+
+    def remove(self, names: Sequence[str]) -> None:
+        """Take clips out.
+
+        Raises
+        ------
+        InvalidMotionError
+            There is no clip of a name; the library is as it was.
+        """
+        with files.told_in_words(self._path), files.transaction(self._database):
+            for name in names:
+                if not self._database.execute(
+                    "DELETE FROM clips WHERE name = ?", (name,)
+                ).rowcount:
+                    raise InvalidMotionError(f"The library has no clip {name}.")
+
+    def save(self, path: Path | str) -> None:
+        """Write the library into a file, atomically.
+
+        Raises
+        ------
+        InvalidFileError
+            The folder is missing or may not be written to.
+        """
+        with written_whole(path) as part, files.told_in_words(Path(path)):
+            copy = sqlite3.connect(part)
+            try:
+                self._database.backup(copy)
+            finally:
+                copy.close()
+
+    def close(self) -> None:
+        """Let go of the file."""
+        self._database.close()
+
+    def __enter__(self) -> Self:
+        """Return itself."""
+        return self
+
+    def __exit__(
+        self,
+        kind: type[BaseException] | None,
+        error: BaseException | None,
+        trace: TracebackType | None,
+    ) -> None:
+        """Close."""
+        self.close()
+
+    def _refresh(self) -> None:
+        """See what others have written, and what was written here."""
+        with files.told_in_words(self._path):
+            version = self._database.execute("PRAGMA data_version").fetchone()[0]
+            seen = (version, self._database.total_changes)
+            if seen == self._seen:
+                return
+            words = files.vocabulary_number(self._database)
+            if words != self._words:
+                self._blocks = {}
+                self._vocabulary = files.read_vocabulary(self._database)
+                self._words = words
+            self._entries = files.read_entries(self._database)
+            numbers = files.block_numbers(self._database)
+            known, n_words = self._blocks, 0
+            if self._vocabulary is not None:
+                n_words = self._vocabulary.words.shape[1]
+            self._blocks = {
+                number: known.get(number) or files.read_block(self._database, number, n_words)
+                for number in numbers
+            }
+            self._alive = None
+            self._seen = seen
+
+    def _outgrown(self, n_frames: int) -> bool:
+        """Tell whether the words were learned of too little for a library of this size."""
+        if self._vocabulary is None:
+            return True
+        learned = self._vocabulary.n_frames
+        stored = sum(entry.seconds for entry in self._entries.values()) * RATE
+        return learned < WELL_LEARNED and stored + n_frames > OUTGROWN * learned
+
+    def _index_all(self, progress: Progress) -> None:
+        """Learn words anew and describe all clips by them."""
+        numbers = files.clip_numbers(self._database)
+        postures = [files.read_postures(self._database, number) for number in numbers]
+        vocabulary = learn_vocabulary(postures)
+        files.write_vocabulary(self._database, vocabulary)
+        self._database.execute("DELETE FROM blocks")
+        described = _described(postures, vocabulary, progress)
+        files.write_block(self._database, block_of(numbers, described))
+
+    def _index(
+        self, numbers: list[int], postures: list[ClipPostures], progress: Progress
+    ) -> None:
+        """Describe clips, and put them into one block with the smaller ones before."""
+        assert self._vocabulary is not None
+        block = block_of(numbers, _described(postures, self._vocabulary, progress))
+        together = [block]
+        for number, before in sorted(self._blocks.items(), reverse=True):
+            if before.n_spans > 2 * sum(one.n_spans for one in together):
+                break
+            together.insert(0, before)
+            self._database.execute("DELETE FROM blocks WHERE number = ?", (number,))
+        if len(together) > 1:
+            block = merged(together, np.array(files.clip_numbers(self._database)))
+        files.write_block(self._database, block)
+
+
+def build_clip_library(clips: Iterable[Clip], *, progress: Progress = unwatched) -> ClipLibrary:
+    """Index clips in a library in memory; `save` writes it to a file.
+
+    Parameters
+    ----------
+    clips : Clip, any number
+        With recordings of bodies: armatures with humanoid roles, Kinect-style joints.
+
+    Raises
+    ------
+    InvalidMotionError
+        A clip shows no body, or two have one name.
+    """
+    library = ClipLibrary(files.create_database())
+    library.add(clips, progress=progress)
+    return library
+
+
+def load_clip_library(path: Path | str) -> ClipLibrary:
+    """Open the library in a file; nothing in it is ever executed.
+
+    Raises
+    ------
+    InvalidFileError
+        There is no such file, it is no library or damaged, or of a newer version.
+    """
+    path = Path(path)
+    return ClipLibrary(files.open_database(path), path)
+
+
+def _described(
+    postures: list[ClipPostures], vocabulary: Vocabulary, progress: Progress
+) -> list[Spans]:
+    described = []
+    for place, clip in enumerate(postures):
+        progress(place / len(postures), "Indexing")
+        described.append(describe_spans(clip, vocabulary))
+    return described
+
+
+def _seen_postures(
+    clips: list[Clip], progress: Progress
+) -> tuple[list[ClipEntry], list[ClipPostures]]:
+    names = [clip.name for clip in clips]
+    if doubled := {name for name in names if names.count(name) > 1}:
+        raise InvalidMotionError(f"Two clips are called {min(doubled)}.")
+    entries, postures = [], []
+    for place, clip in enumerate(clips):
+        progress(place / len(clips), clip.name)
+        recording = clip.recording
+        frames = recording.tracks if isinstance(recording, JointRecording) else recording
+        try:
+            postures.append(clip_postures(recording, RATE))
+        except InvalidMotionError as error:
+            raise InvalidMotionError(f"{clip.name}: {error}") from None
+        entries.append(
+            ClipEntry(clip.name, clip.tags, clip.origin, frames.n_frames, frames.frame_rate)
+        )
+    return entries, postures

@@ -1,0 +1,70 @@
+"""What is alike, and how closely it is looked at."""
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..errors import InvalidMotionError
+from ..settings import Settings, setting
+from .body_parts import BodyPart
+
+SEEN = 0.25
+"""Share of a part that must have been tracked for it to be compared."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class FindSettings(Settings):
+    """Settings of `find_similar`."""
+
+    n_matches: int = setting(
+        0, "Clips that are told, the best first; 0 ranks all of them",
+        minimum=0, maximum=1_000_000, label="Matches",
+    )  # fmt: skip
+    trunk: bool = setting(True, "Compare trunk and head, and how the body travels")
+    left_arm: bool = setting(True, "Compare the left arm")
+    right_arm: bool = setting(True, "Compare the right arm")
+    left_leg: bool = setting(True, "Compare the left leg")
+    right_leg: bool = setting(True, "Compare the right leg")
+    n_warped: int = setting(
+        64, "Best clips whose course in time is compared as well; more is slower",
+        minimum=0, maximum=10_000, advanced=True, label="Warped",
+    )  # fmt: skip
+    warping: float = setting(
+        1.0, "How much the course in time counts beside which postures there are",
+        minimum=0.0, maximum=100.0, advanced=True,
+    )  # fmt: skip
+    n_alike: int = setting(
+        5, "Best matches that are asked as well: what is like them is like the query",
+        minimum=0, maximum=100, advanced=True, label="Ask the Best",
+    )  # fmt: skip
+    n_aligned: int = setting(
+        8, "Best matches whose frames are aligned with the query's",
+        minimum=0, maximum=10_000, advanced=True, label="Aligned",
+    )  # fmt: skip
+
+    def part_weights(self, coverage: NDArray[np.float64]) -> NDArray[np.float64]:
+        """Return how much each part counts, shape (5,), on average 1.
+
+        Parameters
+        ----------
+        coverage : shape (5,)
+            How much of each part was tracked.
+
+        Raises
+        ------
+        InvalidMotionError
+            No part is chosen, or none of those that are was tracked.
+        """
+        chosen = [part for part in BodyPart if getattr(self, part.name.lower())]
+        if not chosen:
+            raise InvalidMotionError("No part of the body is chosen; choose at least one.")
+        wanted = np.array([part in chosen for part in BodyPart])
+        weights = np.where(wanted & (coverage >= SEEN), coverage, 0.0)
+        if not weights.any():
+            names = ", ".join(part.value for part in chosen)
+            raise InvalidMotionError(f"The query shows nothing of what is asked for: {names}.")
+        return np.asarray(weights * len(weights) / weights.sum())
+
+
+USUAL = FindSettings()

@@ -1,0 +1,148 @@
+"""Find the clips of a library that are like a recording, and where in them it is."""
+
+from collections.abc import Collection
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..motion import JointRecording
+from ..progress import Progress, unwatched, within
+from .align_clip import aligned
+from .body_parts import part_coverage
+from .clip import ClipEntry, Match
+from .clip_library import ClipLibrary
+from .clip_postures import Recording, clip_postures
+from .find_settings import USUAL, FindSettings
+from .rank_clips import Ranking, rank_clips
+from .spans import RATE, describe
+from .vocabulary import Vocabulary
+
+Array = NDArray[np.float64]
+
+STEEPNESS = 2.0
+"""Of the score over the distance: what has nothing in common is about 1.5 apart."""
+AROUND = 0.5
+"""Part of a span's length by which what is found may begin before it and end after."""
+
+
+def find_similar(
+    query: Recording,
+    library: ClipLibrary,
+    *,
+    settings: FindSettings = USUAL,
+    ignore: Collection[str] = (),
+    progress: Progress = unwatched,
+) -> tuple[Match, ...]:
+    """Rank the clips of a library by how like the query they are.
+
+    Histograms of words in an inverted index find candidates [1]_, dynamic time warping compares
+    how those go on in time, and the best of them are asked as well (average query expansion
+    [2]_): another actor's kick is more like other kicks than like this one.
+
+    Parameters
+    ----------
+    query : Motion, Tracks or JointRecording
+        Gaps are filled in as is probable; a part of the body that was hardly tracked is left
+        out of the comparison.
+    library : ClipLibrary
+    settings : FindSettings
+    ignore : names of clips, optional
+        That are not told, as the query itself.
+    progress : Progress
+
+    Returns
+    -------
+    tuple of Match
+        Best first. Long clips are matched in part where that fits better; frames are those
+        of the aligned path for the best matches and those of the indexed span for others.
+
+    Raises
+    ------
+    InvalidMotionError
+        The query shows no body, or no part of it that is to be compared was tracked.
+
+    References
+    ----------
+    .. [1] Sivic, Zisserman (2003). Video Google. ICCV. doi:10.1109/ICCV.2003.1238663
+    .. [2] Chum et al. (2007). Total recall. ICCV. doi:10.1109/ICCV.2007.4408891
+    """
+    progress(0.0, "Searching")
+    postures = clip_postures(query, RATE)
+    seen = np.isfinite(postures.positions).all(axis=-1)
+    weights = settings.part_weights(part_coverage(seen))
+    vocabulary, entries = library.vocabulary, library.numbered()
+    if vocabulary is None or not entries:
+        return ()
+    features = vocabulary.features(postures)
+    whole = np.array([[0, len(features)]], dtype=np.int32)
+    left_out = [number for number, entry in entries.items() if entry.name in set(ignore)]
+    ranking = rank_clips(
+        describe(features, whole, vocabulary), weights, library.blocks, settings, left_out
+    )
+    told = settings.n_matches or len(ranking.clips)
+    tracks = query.tracks if isinstance(query, JointRecording) else query
+    alignment = _Alignment(features, weights, vocabulary, tracks.n_frames, tracks.frame_rate)
+    aligning = within(progress, 0.3, 1.0)
+    matches = []
+    for place in range(min(told, len(ranking.clips))):
+        entry = entries[int(ranking.clips[place])]
+        if place < settings.n_aligned:
+            aligning(place / settings.n_aligned, "Aligning")
+            matches.append(alignment.match(ranking, place, entry, library))
+        else:
+            matches.append(_match(ranking, place, entry))
+    progress(1.0)
+    return tuple(matches)
+
+
+def _match(ranking: Ranking, place: int, entry: ClipEntry) -> Match:
+    """Return a match whose frames are those of the span."""
+    start, stop = ranking.frames[place]
+    frames = range(_own(start, entry), min(_own(stop, entry) + 1, entry.n_frames))
+    return Match(entry.name, frames, _score(ranking.distances[place]))
+
+
+def _own(frame: float, entry: ClipEntry) -> int:
+    """Return the clip's own frame at a frame of the index."""
+    return min(round(float(frame) / RATE * entry.frame_rate), entry.n_frames - 1)
+
+
+def _score(distance: float) -> float:
+    return float(np.exp(-STEEPNESS * max(float(distance), 0.0)))
+
+
+class _Alignment:
+    """Aligns a query with clips."""
+
+    def __init__(
+        self,
+        features: Array,
+        weights: Array,
+        vocabulary: Vocabulary,
+        n_frames: int,
+        frame_rate: float,
+    ) -> None:
+        self._weights = np.sqrt(weights)[:, None]
+        self._features = (features * self._weights).reshape(len(features), -1)
+        self._vocabulary = vocabulary
+        self._last, self._frame_rate = n_frames - 1, frame_rate
+
+    def match(
+        self, ranking: Ranking, place: int, entry: ClipEntry, library: ClipLibrary
+    ) -> Match:
+        """Return a match whose frames are those that the query is aligned with."""
+        clip = library.postures(int(ranking.clips[place]))
+        start, stop = ranking.frames[place]
+        around = round(AROUND * (stop - start))
+        first = max(start - around, 0)
+        features = self._vocabulary.features(clip)[first : stop + around]
+        told = (features * self._weights).reshape(len(features), -1)
+        path = aligned(self._features, told)
+        theirs = [_own(frame + first, entry) for frame in path[:, 1]]
+        ours = np.minimum(np.round(path[:, 0] / RATE * self._frame_rate), self._last)
+        return Match(
+            entry.name,
+            range(theirs[0], theirs[-1] + 1),
+            _score(ranking.distances[place]),
+            np.column_stack([ours.astype(np.intp), np.array(theirs, dtype=np.intp)]),
+        )

@@ -1,0 +1,109 @@
+"""Spans of clips that were indexed together, ready to be searched."""
+
+from dataclasses import dataclass, fields
+
+import numpy as np
+from numpy.typing import NDArray
+
+from .body_parts import N_PARTS
+from .posting_lists import PostingLists, posting_lists
+from .spans import N_CUBES, N_STEPS, Spans
+from .vocabulary import N_AXES
+
+STEP_SHAPE = (N_STEPS, N_PARTS, N_AXES)
+
+
+@dataclass(frozen=True, eq=False)
+class IndexBlock:
+    """Spans of some clips of a library; it is never changed.
+
+    Attributes
+    ----------
+    clips : int64, shape (n_spans,)
+        Number of the clip that each span is of.
+    frames : int32, shape (n_spans, 2)
+        At 20 Hz.
+    histograms : uint8, shape (n_spans, n_bins)
+        Of words, for each part of the body and each stretch of time (`Spans`).
+    summaries : float16, shape (n_spans, 24, 5, 8)
+    postings : PostingLists
+    """
+
+    clips: NDArray[np.int64]
+    frames: NDArray[np.int32]
+    histograms: NDArray[np.uint8]
+    summaries: NDArray[np.float16]
+    postings: PostingLists
+
+    @property
+    def n_spans(self) -> int:
+        """How many spans there are."""
+        return len(self.clips)
+
+
+def block_of(clips: list[int], described: list[Spans]) -> IndexBlock:
+    """Put the spans of clips into one block."""
+    sizes = [len(spans.frames) for spans in described]
+    histograms = np.concatenate([spans.histograms for spans in described])
+    flat = histograms.reshape(len(histograms), -1)
+    return IndexBlock(
+        np.repeat(np.array(clips, dtype=np.int64), sizes),
+        np.concatenate([spans.frames for spans in described]),
+        flat,
+        np.concatenate([spans.summaries for spans in described]),
+        posting_lists(flat),
+    )
+
+
+def merged(blocks: list[IndexBlock], alive: NDArray[np.int64]) -> IndexBlock:
+    """Put blocks together, without the spans of clips that are no longer `alive`."""
+    kept = [np.isin(block.clips, alive) for block in blocks]
+    columns = {
+        item.name: np.concatenate([
+            getattr(block, item.name)[keep] for block, keep in zip(blocks, kept, strict=True)
+        ])
+        for item in fields(IndexBlock)
+        if item.name != "postings"
+    }  # fmt: skip
+    return IndexBlock(**columns, postings=posting_lists(columns["histograms"]))
+
+
+def block_arrays(block: IndexBlock) -> dict[str, bytes]:
+    """Return what is stored of a block, by the names of the columns."""
+    return {
+        "clips": block.clips.astype("<i8").tobytes(),
+        "frames": block.frames.astype("<i4").tobytes(),
+        "histograms": block.histograms.tobytes(),
+        "summaries": block.summaries.astype("<f2").tobytes(),
+        "starts": block.postings.starts.astype("<i8").tobytes(),
+        "spans": block.postings.spans.astype("<i4").tobytes(),
+        "weights": block.postings.weights.tobytes(),
+    }
+
+
+def block_from_arrays(stored: dict[str, bytes], n_words: int) -> IndexBlock:
+    """Return the block that `block_arrays` told.
+
+    Raises
+    ------
+    ValueError
+        The sizes do not fit each other, or a number points beyond them.
+    """
+    n_bins = N_PARTS * N_CUBES * n_words
+    clips = np.frombuffer(stored["clips"], "<i8")
+    n_spans = len(clips)
+    starts = np.frombuffer(stored["starts"], "<i8").reshape(n_bins + 1)
+    spans = np.frombuffer(stored["spans"], "<i4")
+    weights = np.frombuffer(stored["weights"], np.uint8)
+    beyond = len(spans) and not (spans.min() >= 0 and spans.max() < n_spans)
+    if beyond or len(weights) != len(spans) or starts[0] or starts[-1] != len(spans):
+        raise ValueError("The index does not fit itself.")
+    if (np.diff(starts) < 0).any():
+        raise ValueError("The index is not in order.")
+    return IndexBlock(
+        clips,
+        np.frombuffer(stored["frames"], "<i4").reshape(n_spans, 2),
+        np.frombuffer(stored["histograms"], np.uint8).reshape(n_spans, n_bins),
+        np.frombuffer(stored["summaries"], "<f2").reshape(n_spans, *STEP_SHAPE),
+        PostingLists(starts, spans, weights, n_spans),
+    )

@@ -1,0 +1,156 @@
+"""Words for what a part of the body does in an instant, learned from the clips of a library.
+
+[ZH14, 3.3] codes whole postures sparsely by atoms of a dictionary. Here each part of the body
+has a dictionary of its own, an instant is a posture with its speeds, and the code is that of
+the few nearest words (locality-constrained rather than greedy: the support of a greedy code
+changes with the least noise).
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.cluster.vq import kmeans2
+
+from .body_parts import N_FEATURES, N_PARTS, part_features
+from .clip_postures import ClipPostures
+from .usual_postures import N_COORDINATES, UsualPostures, usual_postures
+
+Array = NDArray[np.float64]
+
+N_AXES = 8
+N_WORDS = 64
+FRAMES_PER_WORD = 4
+N_NEAREST = 3
+"""Words that share a frame between them."""
+MOST_FRAMES = 12000
+"""Of which words are learned: more make it slower, and no better."""
+SHAPES = {
+    "centre": (N_PARTS, N_FEATURES),
+    "axes": (N_PARTS, N_FEATURES, N_AXES),
+    "words": (N_PARTS, -1, N_AXES),
+    "spread": (N_PARTS,),
+    "mean": (N_COORDINATES,),
+    "covariance": (N_COORDINATES, N_COORDINATES),
+    "n_frames": (),
+}
+LEARNED = ("centre", "axes", "words", "spread")
+
+
+@dataclass(frozen=True, eq=False)
+class Vocabulary:
+    """What is known of how bodies move.
+
+    Attributes
+    ----------
+    centre, axes : shapes (5, 22) and (5, 22, 8)
+        Of the principal components of each part's features.
+    words : shape (5, n_words, 8)
+    spread : shape (5,), squared metres
+        Usual squared distance of a frame from its nearest word.
+    usual : UsualPostures
+        By which joints that are not tracked are filled in.
+    n_frames : int
+        Of how many it was learned.
+    """
+
+    centre: Array
+    axes: Array
+    words: Array
+    spread: Array
+    usual: UsualPostures
+    n_frames: int
+
+    def features(self, postures: ClipPostures) -> Array:
+        """Return what each part does, shape (n_frames, 5, 8), metres."""
+        positions = self.usual.filled(postures)
+        told = part_features(positions, postures.course, postures.frame_rate)
+        return np.asarray(np.einsum("fpd,pdk->fpk", told - self.centre, self.axes))
+
+    def codes(self, features: Array) -> Array:
+        """Return how far each word says what each part does, shape (n_frames, 5, n_words).
+
+        The three nearest words share one frame between them, the nearer the more.
+        """
+        apart: Array = (
+            (features**2).sum(axis=-1)[..., None]
+            - 2.0 * np.einsum("fpk,pwk->fpw", features, self.words)
+            + (self.words**2).sum(axis=-1)
+        )
+        few = min(N_NEAREST, self.words.shape[1])
+        nearest = np.argpartition(apart, few - 1, axis=-1)[..., :few]
+        near = np.take_along_axis(apart, nearest, axis=-1)
+        beyond = near - near.min(axis=-1, keepdims=True)
+        shares = np.exp(-0.5 * beyond / self.spread[:, None])
+        codes = np.zeros_like(apart)
+        np.put_along_axis(codes, nearest, shares / shares.sum(axis=-1, keepdims=True), axis=-1)
+        return codes
+
+
+def learn_vocabulary(clips: list[ClipPostures], seed: int = 0) -> Vocabulary:
+    """Learn the words of clips, in which gaps are left out.
+
+    Principal components, then k-means with the seeding of Arthur and Vassilvitskii (2007).
+    """
+    rng = np.random.default_rng(seed)
+    n_frames = sum(clip.n_frames for clip in clips)
+    usual = usual_postures(clips)
+    step = max(n_frames // MOST_FRAMES, 1)
+    told = np.concatenate([
+        part_features(usual.filled(clip), clip.course, clip.frame_rate)[
+            rng.integers(min(step, clip.n_frames)) :: step
+        ]
+        for clip in clips
+    ])  # fmt: skip
+    centre = told.mean(axis=0)
+    beside = told - centre
+    _, axes = np.linalg.eigh(np.einsum("fpd,fpe->pde", beside, beside) / len(told))
+    axes = axes[..., ::-1][..., :N_AXES]
+    features = np.einsum("fpd,pdk->fpk", beside, axes)
+    n_words = max(min(N_WORDS, len(told) // FRAMES_PER_WORD), 1)
+    words = np.stack([_words(features[:, part], n_words, rng) for part in range(N_PARTS)])
+    nearest = np.stack([
+        ((features[:, part, None] - words[part]) ** 2).sum(axis=-1).min(axis=-1)
+        for part in range(N_PARTS)
+    ])  # fmt: skip
+    spread = np.maximum(np.median(nearest, axis=-1), 1e-6)
+    return Vocabulary(centre, axes, words, spread, usual, n_frames)
+
+
+def _words(features: Array, n_words: int, rng: np.random.Generator) -> Array:
+    """Return the middles of clusters; of those that lost all they had, any frame."""
+    words, of = kmeans2(features, n_words, minit="++", seed=rng, missing="warn")
+    empty = np.setdiff1d(np.arange(n_words), of)
+    words[empty] = features[rng.integers(len(features), size=len(empty))]
+    return np.asarray(words)
+
+
+def vocabulary_arrays(vocabulary: Vocabulary) -> dict[str, bytes]:
+    """Return what is stored of a vocabulary: little-endian doubles, by name."""
+    numbers = {
+        "mean": vocabulary.usual.mean,
+        "covariance": vocabulary.usual.covariance,
+        "n_frames": np.array(vocabulary.n_frames),
+    } | {name: getattr(vocabulary, name) for name in LEARNED}
+    return {name: values.astype("<f8").tobytes() for name, values in numbers.items()}
+
+
+def vocabulary_from_arrays(stored: dict[str, bytes]) -> Vocabulary:
+    """Return the vocabulary that `vocabulary_arrays` told.
+
+    Raises
+    ------
+    KeyError, ValueError
+        A part is missing, of another size, or no number.
+    """
+    read = {
+        name: np.frombuffer(stored[name], "<f8").reshape(shape)
+        for name, shape in SHAPES.items()
+    }
+    if not all(np.isfinite(values).all() for values in read.values()):
+        raise ValueError("Some numbers are no numbers.")
+    return Vocabulary(
+        **{name: read[name] for name in LEARNED},
+        usual=UsualPostures(read["mean"], read["covariance"]),
+        n_frames=int(read["n_frames"]),
+    )
