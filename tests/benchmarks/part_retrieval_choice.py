@@ -79,7 +79,12 @@ def choose() -> tuple[Pyramids, str]:
         for method in _variants(best, tried):
             scores = asked.score(method)
             rows.append((float(np.mean(scores)), scores, method))
-            print(f"{rows[-1][0]:.4f}", *(f"{one:.3f}" for one in scores), _words(method), flush=True)
+            print(
+                f"{rows[-1][0]:.4f}",
+                *(f"{one:.3f}" for one in scores),
+                _words(method),
+                flush=True,
+            )
         rows.sort(key=lambda row: -row[0])
         best = rows[0][2]
         tables.append(_table(rows[:5]))

@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from solvers.motion import JointRecording, Motion, Tracks
+from solvers.motion.posture_heading import mirrored
 from solvers.motion.posture_joints import POSTURE_JOINTS, motion_postures, posture_positions
 from solvers.recordings import read_acclaim, read_recording
 
@@ -112,21 +113,25 @@ def _clip(name: str, label: str, actor: str, motion: Motion) -> LabelledClip:
 KINECT = {
     "squat1Reps": ("ui_prmd", "m01_s*_e*.npz"),
     "kickLFront1Reps": ("msr_action3d", "a14_*.txt"),
-    "throwBasketball": ("msr_action3d", "a06_*.txt"),
     "jogLeftCircle4StepsRstart": ("msr_action3d", "a16_*.txt"),
+    "throwBasketball": ("msr_action3d", "a06_*.txt"),
 }
+"""Deep squat; forward kick, with the right leg, so that its mirror image is asked for; jogging
+on the spot; and a high throw, with one hand where the library's are with two."""
+MIRRORED = frozenset({"kickLFront1Reps"})
 
 
 @cache
 def kinect_queries() -> tuple[LabelledClip, ...]:
-    """Kinect takes of what the library holds too."""
+    """Kinect takes of what the library holds too, more or less."""
     found = []
     for label, (folder, pattern) in KINECT.items():
         for path in sorted((clips.DATA / "kinect" / folder).glob(pattern)):
             recording = read_recording(path)
             assert isinstance(recording, JointRecording)
-            tracks = Tracks(
-                POSTURE_JOINTS, posture_positions(recording), recording.tracks.frame_rate
-            )
+            postures = posture_positions(recording)
+            if label in MIRRORED:
+                postures = mirrored(postures)
+            tracks = Tracks(POSTURE_JOINTS, postures, recording.tracks.frame_rate)
             found.append(LabelledClip(path.stem, label, "kinect", tracks))
     return tuple(found)

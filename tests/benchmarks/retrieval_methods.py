@@ -1,0 +1,44 @@
+"""The methods of the benchmark of retrieval, by the names of its tables."""
+
+from solvers.retrieval.dictionary import DictionarySettings
+from solvers.retrieval.pyramid_matching import PyramidSettings
+
+from .peers.clip_alignment import Resampled, Warped
+from .peers.clip_statistics import BagOfWords, Covariances
+from .peers.motion_volumes import MotionVolumes
+from .peers.string_matching import StringMatching
+from .pyramid_methods import Pyramids
+from .retrieval_default import Default
+from .retrieval_fusion import Fused
+from .retrieval_protocol import Method
+
+OURS = "ours, find_similar"
+PUBLISHED = "[ZLLS14] as published"
+
+CHOSEN = Pyramids(
+    DictionarySettings(n_atoms=12, n_nonzeros=1),
+    PyramidSettings(gap=0.1, n_levels=3, normalise_cubes=True),
+    frame_rate=30.0,
+)
+"""By `part_retrieval_choice`, on the training classes."""
+WARPED, LOGARITHMS = Warped(), Covariances(ridge=1e-4)
+N_NEIGHBOURS = 6
+
+METHODS: dict[str, Method] = {
+    OURS: Default(),
+    PUBLISHED: Pyramids(),
+    "[ZLLS14], cubes normalised": Pyramids(pyramid=PyramidSettings(normalise_cubes=True)),
+    "pyramids, settings chosen": CHOSEN,
+    "DTW of 12 components": WARPED,
+    "covariances": Covariances(),
+    "log-covariances": LOGARITHMS,
+    "Euclidean, resampled": Resampled(),
+    "bag of words": BagOfWords(),
+    "low-rank volumes, as [SJF11]": MotionVolumes(),
+    "strings of patterns, as [DGL09]": StringMatching(),
+    "DTW + log-covariances": Fused((WARPED, LOGARITHMS)),
+    "pyramids + DTW": Fused((CHOSEN, WARPED)),
+    "pyramids + DTW + log-covariances": Fused((CHOSEN, WARPED, LOGARITHMS)),
+    "all three, manifold ranking": Fused((CHOSEN, WARPED, LOGARITHMS), N_NEIGHBOURS),
+}
+"""Peers with an "as" were written from what can be had of their papers."""
