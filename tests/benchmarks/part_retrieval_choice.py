@@ -10,12 +10,12 @@ import numpy as np
 from solvers.motion import Tracks
 from solvers.retrieval.clip_postures import ClipPostures, clip_postures
 from solvers.retrieval.dictionary import DictionarySettings
-from solvers.retrieval.pyramid_matching import PyramidSettings, pyramid_descriptor
+from solvers.retrieval.pyramid_matching import PyramidSettings
 
 from .pyramid_methods import PyramidLibrary, Pyramids
 from .retrieval_clips import training_library
 from .retrieval_damage import DAMAGES
-from .retrieval_protocol import Query, answer, mean_precision, queries
+from .retrieval_protocol import Method, Query, answer, mean_precision, queries
 from .tables import table
 
 ASKED = ("clean", "joints lost", "lost at random", "0.7x speed")
@@ -26,11 +26,14 @@ START = Pyramids(
     PyramidSettings(gap=0.1, normalise_cubes=True),
     frame_rate=30.0,
 )
-TRIED: tuple[dict[str, tuple[Any, ...]], ...] = (
-    {"n_atoms": (12, 16, 24, 32, 64), "n_nonzeros": (1, 2, 3, 5), "centred": (False, True)},
-    {"gap": (0.033, 0.067, 0.1, 0.15, 0.25, 0.4), "n_levels": (1, 2, 3, 4)},
-    {"normalise_cubes": (False, True), "cosine": (False, True)},
-    {"n_atoms": (12, 16, 24, 32, 64), "n_nonzeros": (1, 2, 3, 5), "centred": (False, True)},
+SIZES: dict[str, tuple[Any, ...]] = {
+    "n_atoms": (16, 24, 32, 48, 64, 128), "n_nonzeros": (1, 2, 3, 5),
+}  # fmt: skip
+TRIED = (
+    SIZES,
+    {"gap": (0.033, 0.067, 0.1, 0.15, 0.25), "n_levels": (1, 2, 3)},
+    {"normalise_cubes": (False, True), "cosine": (False, True), "centred": (False, True)},
+    SIZES,
 )
 """Settings that are chosen together; one set after the other, with the best of those before."""
 
@@ -47,7 +50,7 @@ class PostureQueries:
             self.asked.append((name, found))
         self.postures: dict[int, ClipPostures] = {}
 
-    def score(self, method: Pyramids) -> list[float]:
+    def score(self, method: Method) -> list[float]:
         """Return MAP of each kind of damage, with all clips of the actor left out."""
         prepared = method.prepare(self.tracks)
         seen = _Seen(prepared, self.postures)
@@ -66,8 +69,7 @@ class _Seen:
         method = self._prepared.method
         if id(tracks) not in self._postures:
             self._postures[id(tracks)] = clip_postures(tracks, method.frame_rate)
-        postures = self._postures[id(tracks)]
-        return pyramid_descriptor(postures, self._prepared.dictionary, method.pyramid)
+        return self._prepared.described(self._postures[id(tracks)])
 
 
 def choose() -> tuple[Pyramids, str]:

@@ -1,19 +1,22 @@
 """Clips of known classes for the benchmark of retrieval, and what is done to queries.
 
-Settings are chosen with queries of TRAINING classes only, in a library of those alone. Figures
-are published of queries of the other classes, in a library of all.
+Settings are chosen with queries of TRAINING classes and EXERCISES only, in a library of those
+alone. Figures are published of queries of the other classes, in a library of all.
 """
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cache
+from pathlib import Path
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.ndimage import gaussian_filter1d
 
 from solvers.motion import JointRecording, Motion, Tracks
 from solvers.motion.posture_heading import mirrored
 from solvers.motion.posture_joints import POSTURE_JOINTS, motion_postures, posture_positions
 from solvers.recordings import read_acclaim, read_recording
+from solvers.retrieval.seen_signals import seen_signals
 
 from . import clips
 
@@ -26,6 +29,11 @@ TRAINING = frozenset({
     "depositFloorR", "hopBothLegs1hops", "lieDownFloor", "squat1Reps", "walk",
 })  # fmt: skip
 """Every third class of HDM05 by the alphabet, and CMU's walks."""
+KINECT_FOLDER = clips.DATA / "kinect"
+EXERCISES = tuple(f"m{number:02}" for number in range(2, 11))
+"""Of UI-PRMD, classes to choose settings on besides: with five classes alone the best
+dictionaries are too small for more. Two takes of each person; the first exercise, a squat, is
+kept for queries."""
 HOPS = {
     "hopLeftLeg": {"49_02": (8.0, 12.0), "49_03": (4.0, 5.5)},
     "hopRightLeg": {"49_02": (12.5, 15.5), "49_03": (6.0, 7.5)},
@@ -55,7 +63,16 @@ def library() -> tuple[LabelledClip, ...]:
 @cache
 def training_library() -> tuple[LabelledClip, ...]:
     """The clips that settings may be chosen on."""
-    return tuple(clip for clip in library() if clip.label in TRAINING)
+    return (*(clip for clip in library() if clip.label in TRAINING), *_exercises())
+
+
+def _exercises() -> list[LabelledClip]:
+    found = []
+    for exercise in EXERCISES:
+        for path in sorted((KINECT_FOLDER / "ui_prmd").glob(f"{exercise}_s*_e0[37].npz")):
+            actor = path.stem.split("_")[1]
+            found.append(LabelledClip(path.stem, exercise, actor, _seen(path)))
+    return found
 
 
 def _hdm05() -> list[LabelledClip]:
@@ -119,6 +136,10 @@ KINECT = {
 """Deep squat; forward kick, with the right leg, so that its mirror image is asked for; jogging
 on the spot; and a high throw, with one hand where the library's are with two."""
 MIRRORED = frozenset({"kickLFront1Reps"})
+SMOOTH = 0.15
+"""Seconds."""
+STILL = 0.25
+"""Part of the greatest speed of a take, of all joints together, below which it stands still."""
 
 
 @cache
@@ -126,12 +147,26 @@ def kinect_queries() -> tuple[LabelledClip, ...]:
     """Kinect takes of what the library holds too, more or less."""
     found = []
     for label, (folder, pattern) in KINECT.items():
-        for path in sorted((clips.DATA / "kinect" / folder).glob(pattern)):
-            recording = read_recording(path)
-            assert isinstance(recording, JointRecording)
-            postures = posture_positions(recording)
+        for path in sorted((KINECT_FOLDER / folder).glob(pattern)):
+            tracks = _moving(_seen(path))
             if label in MIRRORED:
-                postures = mirrored(postures)
-            tracks = Tracks(POSTURE_JOINTS, postures, recording.tracks.frame_rate)
+                tracks = replace(tracks, positions=mirrored(tracks.positions))
             found.append(LabelledClip(path.stem, label, "kinect", tracks))
     return tuple(found)
+
+
+def _seen(path: Path) -> Tracks:
+    recording = read_recording(path)
+    assert isinstance(recording, JointRecording)
+    postures = posture_positions(recording)
+    return Tracks(POSTURE_JOINTS, postures, recording.tracks.frame_rate)
+
+
+def _moving(tracks: Tracks) -> Tracks:
+    """Cut off what stands still before and after, as one would of a query."""
+    signals, seen = seen_signals(tracks.positions)
+    smooth = gaussian_filter1d(signals[:, seen], SMOOTH * tracks.frame_rate, axis=0)
+    speeds = np.linalg.norm(np.gradient(smooth, axis=0), axis=1)
+    moving = np.flatnonzero(speeds > STILL * speeds.max())
+    kept = slice(moving[0], moving[-1] + 1)
+    return replace(tracks, positions=tracks.positions[kept])

@@ -14,6 +14,8 @@ from .retrieval_protocol import Method
 
 OURS = "ours, find_similar"
 PUBLISHED = "[ZLLS14] as published"
+CUBES = "[ZLLS14], cubes normalised"
+RANKED = "all three, manifold ranking"
 
 CHOSEN = Pyramids(
     DictionarySettings(n_atoms=12, n_nonzeros=1),
@@ -27,7 +29,7 @@ N_NEIGHBOURS = 6
 METHODS: dict[str, Method] = {
     OURS: Default(),
     PUBLISHED: Pyramids(),
-    "[ZLLS14], cubes normalised": Pyramids(pyramid=PyramidSettings(normalise_cubes=True)),
+    CUBES: Pyramids(pyramid=PyramidSettings(normalise_cubes=True)),
     "pyramids, settings chosen": CHOSEN,
     "DTW of 12 components": WARPED,
     "covariances": Covariances(),
@@ -39,6 +41,6 @@ METHODS: dict[str, Method] = {
     "DTW + log-covariances": Fused((WARPED, LOGARITHMS)),
     "pyramids + DTW": Fused((CHOSEN, WARPED)),
     "pyramids + DTW + log-covariances": Fused((CHOSEN, WARPED, LOGARITHMS)),
-    "all three, manifold ranking": Fused((CHOSEN, WARPED, LOGARITHMS), N_NEIGHBOURS),
+    RANKED: Fused((CHOSEN, WARPED, LOGARITHMS), N_NEIGHBOURS),
 }
 """Peers with an "as" were written from what can be had of their papers."""
