@@ -12,7 +12,7 @@ from solvers.retrieval.clip_postures import ClipPostures, clip_postures
 from solvers.retrieval.dictionary import DictionarySettings
 from solvers.retrieval.pyramid_matching import PyramidSettings
 
-from .pyramid_methods import PyramidLibrary, Pyramids
+from .pyramid_methods import BODY, PARTS, PyramidLibrary, Pyramids
 from .retrieval_clips import training_library
 from .retrieval_damage import DAMAGES
 from .retrieval_protocol import Method, Query, answer, mean_precision, queries
@@ -26,14 +26,11 @@ START = Pyramids(
     PyramidSettings(gap=0.1, normalise_cubes=True),
     frame_rate=30.0,
 )
-SIZES: dict[str, tuple[Any, ...]] = {
-    "n_atoms": (16, 24, 32, 48, 64, 128), "n_nonzeros": (1, 2, 3, 5),
-}  # fmt: skip
-TRIED = (
-    SIZES,
-    {"gap": (0.033, 0.067, 0.1, 0.15, 0.25), "n_levels": (1, 2, 3)},
+TRIED: tuple[dict[str, tuple[Any, ...]], ...] = (
+    {"parts": (BODY, PARTS), "n_atoms": (16, 32, 64), "n_nonzeros": (1, 2, 3, 5)},
+    {"gap": (0.033, 0.067, 0.1, 0.15), "n_levels": (1, 2, 3, 4)},
     {"normalise_cubes": (False, True), "cosine": (False, True), "centred": (False, True)},
-    SIZES,
+    {"filled": (False, True), "n_atoms": (24, 32, 48)},
 )
 """Settings that are chosen together; one set after the other, with the best of those before."""
 
@@ -113,10 +110,11 @@ def changed(method: Pyramids, name: str, value: Any) -> Pyramids:
 def _words(method: Pyramids) -> str:
     atoms, pyramid = method.dictionary, method.pyramid
     return (
+        f"{'parts, ' if method.parts == PARTS else ''}"
         f"{atoms.n_atoms} atoms, {atoms.n_nonzeros} non-zeros"
         f"{', centred' if atoms.centred else ''}, gap {pyramid.gap:.3f} s,"
         f" {pyramid.n_levels} levels{', cubes' if pyramid.normalise_cubes else ''}"
-        f"{', cosine' if method.cosine else ''}"
+        f"{', cosine' if method.cosine else ''}{', filled' if method.filled else ''}"
     )
 
 

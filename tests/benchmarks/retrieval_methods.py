@@ -1,5 +1,6 @@
 """The methods of the benchmark of retrieval, by the names of its tables."""
 
+from solvers.retrieval import FindSettings
 from solvers.retrieval.dictionary import DictionarySettings
 from solvers.retrieval.pyramid_matching import PyramidSettings
 
@@ -28,6 +29,8 @@ N_NEIGHBOURS = 6
 
 METHODS: dict[str, Method] = {
     OURS: Default(),
+    "ours, without asking the best": Default(FindSettings(n_alike=0, n_aligned=0)),
+    "ours, words alone": Default(FindSettings(n_alike=0, n_aligned=0, n_warped=0)),
     PUBLISHED: Pyramids(),
     CUBES: Pyramids(pyramid=PyramidSettings(normalise_cubes=True)),
     "pyramids, settings chosen": CHOSEN,
