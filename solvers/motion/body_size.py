@@ -45,20 +45,29 @@ def body_lengths(positions: Array, reliability: Array | None = None) -> Array:
     return lengths
 
 
-def resize(postures: Array, lengths: Array) -> Array:
+def resize(postures: Array, lengths: Array, scale: float | None = None) -> Array:
     """Give every bone its length and leave it its direction; the hips stay.
 
     Parameters
     ----------
     postures : shape (..., 20, 3), metres
-        NaN where not tracked; all below such a joint becomes NaN.
+        NaN where not tracked.
     lengths : shape (20,), metres
+    scale : float, optional
+        By which the way from the nearest joint above that was tracked is scaled, for what
+        hangs on a joint that was not; without it all below such a joint becomes NaN.
     """
-    result = np.array(postures, dtype=np.float64)
+    result = np.full(postures.shape, np.nan)
+    result[..., 0, :] = postures[..., 0, :]
     for joint in range(1, N_JOINTS):
         above = PARENTS[joint]
         bone = postures[..., joint, :] - postures[..., above, :]
         size = np.linalg.norm(bone, axis=-1, keepdims=True)
         way = bone / np.where(size > 0.0, size, 1.0)
-        result[..., joint, :] = result[..., above, :] + lengths[joint] * way
+        found = result[..., above, :] + lengths[joint] * way
+        while scale is not None and above > 0:
+            above = PARENTS[above]
+            bone = postures[..., joint, :] - postures[..., above, :]
+            found = np.where(np.isfinite(found), found, result[..., above, :] + scale * bone)
+        result[..., joint, :] = found
     return result

@@ -11,9 +11,10 @@ from .posture_joints import HIPS, MIRROR_IMAGES, POSTURE_JOINTS
 Array = NDArray[np.float64]
 
 ACROSS = tuple(
-    (POSTURE_JOINTS.index(f"left{part}"), POSTURE_JOINTS.index(f"right{part}"))
-    for part in ("UpperLeg", "UpperArm")
+    tuple(POSTURE_JOINTS.index(name) for name in (f"left{part}", f"right{part}", middle))
+    for part, middle in (("UpperLeg", "hips"), ("UpperArm", "chest"))
 )
+"""Joints on the left and on the right, and one between for where either is not tracked."""
 STEADY = 0.1
 """Seconds of the Gaussian that steadies the heading: jitter must not turn the whole body."""
 SHORTEST = 0.02
@@ -64,9 +65,12 @@ def normalise(positions: Array, frame_rate: float, weights: Array | None = None)
     trust = np.ones(positions.shape[:2]) if weights is None else weights
     places = _filled(positions[:, HIPS], trust[:, HIPS] > 0.0)
     left = np.zeros((len(positions), 2))
-    for one, other in ACROSS:
-        line = (positions[:, one] - positions[:, other])[:, :2]
-        sure = np.minimum(trust[:, one], trust[:, other])
+    for one, other, middle in ACROSS:
+        line, sure = _to_the_left(positions, trust, one, other)
+        for half in ((one, middle), (middle, other)):
+            part, known = _to_the_left(positions, trust, *half)
+            lost = ~np.isfinite(line[:, 0])
+            line[lost], sure[lost] = 2.0 * part[lost], known[lost]
         left += np.where(np.isfinite(line), line, 0.0) * (1e-3 + sure[:, None])
     told = np.linalg.norm(left, axis=-1) > SHORTEST * 1e-3
     if not told.any():
@@ -76,6 +80,12 @@ def normalise(positions: Array, frame_rate: float, weights: Array | None = None)
     unit = gaussian_filter1d(unit, STEADY * frame_rate, axis=0, mode="nearest")
     headings = np.arctan2(unit[:, 1], unit[:, 0])
     return Normalised(turned(positions - places[:, None], -headings), places, headings)
+
+
+def _to_the_left(positions: Array, trust: Array, left: int, right: int) -> tuple[Array, Array]:
+    """Return the level way from one joint to another, and how far both are to be trusted."""
+    line = (positions[:, left] - positions[:, right])[:, :2]
+    return line, np.minimum(trust[:, left], trust[:, right])
 
 
 def _reversed(unit: Array, frame_rate: float) -> NDArray[np.bool_]:

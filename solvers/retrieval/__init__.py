@@ -2,7 +2,7 @@
 
 >>> from solvers.retrieval import Clip, build_clip_library, find_similar
 >>> from solvers.samples import GaitSettings, walking_gait
->>> fast, slow = (walking_gait(GaitSettings(duration=2.0, cadence=c)) for c in (130, 90))
+>>> fast, slow = (walking_gait(GaitSettings(duration=2.0, cadence=c)) for c in (130, 100))
 >>> library = build_clip_library([Clip("fast", fast), Clip("slow", slow)])
 >>> find_similar(slow, library)[0].clip
 'slow'

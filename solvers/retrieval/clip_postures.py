@@ -72,10 +72,9 @@ def clip_postures(recording: Recording, frame_rate: float | None = None) -> Clip
         raise InvalidMotionError("No joint was tracked in any frame.")
     body = normalise(positions, rate)
     scale = USUAL_LENGTHS.sum() / max(body_lengths(body.postures).sum(), 1e-6)
-    resized = resize(body.postures, USUAL_LENGTHS)
     turns = np.unwrap(body.headings)
     return ClipPostures(
-        np.where(np.isfinite(resized), resized, scale * body.postures),
+        resize(body.postures, USUAL_LENGTHS, scale),
         np.column_stack([
             _level(_per_second(scale * body.places, rate), body.headings),
             _per_second(turns, rate),

@@ -9,8 +9,9 @@ from ..errors import InvalidMotionError
 from ..settings import Settings, setting
 from .body_parts import BodyPart
 
-SEEN = 0.25
-"""Share of a part that must have been tracked for it to be compared."""
+BELIEF = 0.25
+"""Power of the tracked share of a part by which it counts: what is filled in of it is mostly
+right, since the other parts tell."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -27,7 +28,7 @@ class FindSettings(Settings):
     left_leg: bool = setting(True, "Compare the left leg")
     right_leg: bool = setting(True, "Compare the right leg")
     n_warped: int = setting(
-        64, "Best clips whose course in time is compared as well; more is slower",
+        128, "Best clips whose course in time is compared as well; more is slower",
         minimum=0, maximum=10_000, advanced=True, label="Warped",
     )  # fmt: skip
     warping: float = setting(
@@ -60,7 +61,7 @@ class FindSettings(Settings):
         if not chosen:
             raise InvalidMotionError("No part of the body is chosen; choose at least one.")
         wanted = np.array([part in chosen for part in BodyPart])
-        weights = np.where(wanted & (coverage >= SEEN), coverage, 0.0)
+        weights = np.where(wanted, coverage**BELIEF, 0.0)
         if not weights.any():
             names = ", ".join(part.value for part in chosen)
             raise InvalidMotionError(f"The query shows nothing of what is asked for: {names}.")

@@ -18,9 +18,11 @@ from .spans import RATE, describe
 from .vocabulary import Vocabulary
 
 Array = NDArray[np.float64]
+Frames = NDArray[np.intp]
 
 STEEPNESS = 2.0
 """Of the score over the distance: what has nothing in common is about 1.5 apart."""
+ROUNDING = 1e-6
 AROUND = 0.5
 """Part of a span's length by which what is found may begin before it and end after."""
 
@@ -97,14 +99,16 @@ def find_similar(
 
 def _match(ranking: Ranking, place: int, entry: ClipEntry) -> Match:
     """Return a match whose frames are those of the span."""
-    start, stop = ranking.frames[place]
-    frames = range(_own(start, entry), min(_own(stop, entry) + 1, entry.n_frames))
-    return Match(entry.name, frames, _score(ranking.distances[place]))
+    ends = ranking.frames[place] - np.array([0, 1])
+    start, stop = _own_frames(ends, entry.n_frames, entry.frame_rate)
+    return Match(entry.name, range(start, stop + 1), _score(ranking.distances[place]))
 
 
-def _own(frame: float, entry: ClipEntry) -> int:
-    """Return the clip's own frame at a frame of the index."""
-    return min(round(float(frame) / RATE * entry.frame_rate), entry.n_frames - 1)
+def _own_frames(frames: Frames, n_frames: int, frame_rate: float) -> Frames:
+    """Return a recording's own frames at frames of the index; its last is that of the index."""
+    last = int((n_frames - 1) * RATE / frame_rate + ROUNDING)
+    own = np.round(frames / RATE * frame_rate).astype(np.intp)
+    return np.where(frames >= last, n_frames - 1, np.minimum(own, n_frames - 1))
 
 
 def _score(distance: float) -> float:
@@ -125,7 +129,7 @@ class _Alignment:
         self._weights = np.sqrt(weights)[:, None]
         self._features = (features * self._weights).reshape(len(features), -1)
         self._vocabulary = vocabulary
-        self._last, self._frame_rate = n_frames - 1, frame_rate
+        self._n_frames, self._frame_rate = n_frames, frame_rate
 
     def match(
         self, ranking: Ranking, place: int, entry: ClipEntry, library: ClipLibrary
@@ -138,11 +142,11 @@ class _Alignment:
         features = self._vocabulary.features(clip)[first : stop + around]
         told = (features * self._weights).reshape(len(features), -1)
         path = aligned(self._features, told)
-        theirs = [_own(frame + first, entry) for frame in path[:, 1]]
-        ours = np.minimum(np.round(path[:, 0] / RATE * self._frame_rate), self._last)
+        theirs = _own_frames(path[:, 1] + first, entry.n_frames, entry.frame_rate)
+        ours = _own_frames(path[:, 0], self._n_frames, self._frame_rate)
         return Match(
             entry.name,
             range(theirs[0], theirs[-1] + 1),
             _score(ranking.distances[place]),
-            np.column_stack([ours.astype(np.intp), np.array(theirs, dtype=np.intp)]),
+            np.column_stack([ours, theirs]),
         )

@@ -10,6 +10,10 @@ from .posting_lists import PostingLists, posting_lists
 from .spans import N_CUBES, N_STEPS, Spans
 from .vocabulary import N_AXES
 
+MOST_POSTINGS = 1_000_000
+"""That are read of a block for one query."""
+IN_DETAIL = 512
+"""Spans of a large block whose histograms are compared exactly."""
 STEP_SHAPE = (N_STEPS, N_PARTS, N_AXES)
 
 
@@ -25,7 +29,7 @@ class IndexBlock:
         At 20 Hz.
     histograms : uint8, shape (n_spans, n_bins)
         Of words, for each part of the body and each stretch of time (`Spans`).
-    summaries : float16, shape (n_spans, 24, 5, 8)
+    summaries : float16, shape (n_spans, 16, 5, 8)
     postings : PostingLists
     """
 
@@ -39,6 +43,23 @@ class IndexBlock:
     def n_spans(self) -> int:
         """How many spans there are."""
         return len(self.clips)
+
+    def common(self, query: NDArray[np.float32]) -> NDArray[np.float32]:
+        """Return how much each span has in common with histograms, shape (n_spans,).
+
+        All is compared in a small block; in a large one, the inverted index says which spans
+        are compared exactly, and about how much the others have in common.
+
+        Parameters
+        ----------
+        query : shape (n_bins,)
+        """
+        if self.histograms.size <= MOST_POSTINGS:
+            return self.histograms.astype(np.float32) @ query
+        common = self.postings.scores(query, MOST_POSTINGS)
+        best = np.argpartition(-common, min(IN_DETAIL, self.n_spans - 1))[:IN_DETAIL]
+        common[best] = self.histograms[best].astype(np.float32) @ query
+        return common
 
 
 def block_of(clips: list[int], described: list[Spans]) -> IndexBlock:

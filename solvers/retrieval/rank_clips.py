@@ -16,11 +16,6 @@ from .spans import FULL, N_CUBES, Spans
 Single = NDArray[np.float32]
 Numbers = NDArray[np.int64]
 
-MOST_POSTINGS = 1_000_000
-"""That are read of each block of the index for one query."""
-IN_DETAIL = 512
-"""Spans whose histograms are compared exactly where not all postings were read."""
-
 
 @dataclass(frozen=True, eq=False)
 class SpanQuery:
@@ -31,7 +26,7 @@ class SpanQuery:
     histograms : shape (n, n_bins)
         With the weights of the parts of the body; the product with those of a span is 1 for
         the same words, 0 where there is none in common.
-    summaries : shape (n, 24, 40)
+    summaries : shape (n, 16, 40)
         With the square roots of the weights.
     weights : shape (5,)
     """
@@ -77,7 +72,7 @@ class Ranking:
 
 
 def weighted(summaries: NDArray[np.float16], weights: NDArray[np.float64]) -> Single:
-    """Return summaries, (n, 24, 5, 8), as vectors with the parts weighted, (n, 24, 40)."""
+    """Return summaries, (n, 16, 5, 8), as vectors with the parts weighted, (n, 16, 40)."""
     scaled = summaries.astype(np.float32) * np.sqrt(weights).astype(np.float32)[:, None]
     return scaled.reshape(*summaries.shape[:2], -1)
 
@@ -135,12 +130,7 @@ class _Index:
     def common(self, query: SpanQuery) -> Single:
         """Return how much of the words each span has in common, shape (n_spans,), 0 to 1."""
         asked = query.histograms.mean(axis=0)
-        told = [block.postings.scores(asked, MOST_POSTINGS) for block in self._blocks]
-        common = np.concatenate(told)
-        if any(len(block.postings.spans) > MOST_POSTINGS for block in self._blocks):
-            best = np.argpartition(-common, min(IN_DETAIL, len(common) - 1))[:IN_DETAIL]
-            common[best] = self.stored(best)[0] @ asked
-        return common
+        return np.concatenate([block.common(asked) for block in self._blocks])
 
     def best_spans(self, apart: Single) -> tuple[Single, Numbers]:
         """Return the least distance of each clip, and the number of the span that has it."""

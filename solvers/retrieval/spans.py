@@ -20,7 +20,7 @@ SHORTEST_PART = 2.0
 MOST_OF = 0.7
 """Of the clip: parts that are longer are the clip."""
 N_CUBES = 3
-N_STEPS = 24
+N_STEPS = 16
 """Moments by which a span is compared in detail."""
 MOST_FRAMES = 1200
 """Of a span that are looked at, evenly spread."""
@@ -38,7 +38,7 @@ class Spans:
         First frame and the one after the last, at 20 Hz; the first span is the whole clip.
     histograms : uint8, shape (n_spans, 5, 3, n_words)
         For each part of the body, over all the time and over either half of it.
-    summaries : float16, shape (n_spans, 24, 5, 8), metres
+    summaries : float16, shape (n_spans, 16, 5, 8), metres
         What each part does, evenly spread over the span.
     """
 
@@ -92,7 +92,7 @@ def _histograms(features: Array, vocabulary: Vocabulary) -> Array:
 
 
 def _summary(features: Array) -> Array:
-    """Return the features at evenly spread moments, shape (24, 5, 8)."""
+    """Return the features at evenly spread moments, shape (16, 5, 8)."""
     moments = np.linspace(0.0, len(features) - 1.0, N_STEPS)
     before = np.minimum(moments.astype(int), max(len(features) - 2, 0))
     after = np.minimum(before + 1, len(features) - 1)

@@ -23,6 +23,8 @@ N_WORDS = 64
 FRAMES_PER_WORD = 4
 N_NEAREST = 3
 """Words that share a frame between them."""
+TINY = 1e-6
+"""Metres by which frames that are the same are set apart: clusters cannot be."""
 MOST_FRAMES = 12000
 """Of which words are learned: more make it slower, and no better."""
 SHAPES = {
@@ -119,7 +121,8 @@ def learn_vocabulary(clips: list[ClipPostures], seed: int = 0) -> Vocabulary:
 
 def _words(features: Array, n_words: int, rng: np.random.Generator) -> Array:
     """Return the middles of clusters; of those that lost all they had, any frame."""
-    words, of = kmeans2(features, n_words, minit="++", seed=rng, missing="warn")
+    apart = features + rng.normal(scale=TINY, size=features.shape)
+    words, of = kmeans2(apart, n_words, minit="++", seed=rng, missing="warn")
     empty = np.setdiff1d(np.arange(n_words), of)
     words[empty] = features[rng.integers(len(features), size=len(empty))]
     return np.asarray(words)

@@ -1,0 +1,95 @@
+"""Who did it, where, and how large he is are no part of a clip's postures."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from acted import act
+from numpy.testing import assert_allclose
+
+from solvers.errors import InvalidMotionError
+from solvers.motion import Tracks
+from solvers.motion.body_size import USUAL_LENGTHS, segment_lengths
+from solvers.motion.posture_joints import POSTURE_JOINTS
+from solvers.recordings import read_recording
+from solvers.retrieval.clip_postures import clip_postures
+from solvers.samples import GaitSettings, walking_gait
+
+
+@pytest.mark.parametrize("name", ["step", "kick"])
+def test_turned_moved_and_larger_is_the_same(name):
+    here = clip_postures(act(name))
+    there = clip_postures(act(name, heading=2.5, place=(7.0, -2.0)))
+    assert_allclose(there.positions, here.positions, atol=1e-9)
+    assert_allclose(there.course, here.course, atol=1e-9)
+    assert_allclose(clip_postures(act(name, size=1.3)).positions, here.positions, atol=1e-9)
+
+
+def test_bones_have_the_usual_lengths():
+    found = segment_lengths(clip_postures(act("kick", size=0.8)).positions)
+    assert_allclose(found, np.tile(USUAL_LENGTHS, (60, 1)), atol=1e-9)
+
+
+def test_the_course_is_told_as_the_actor_sees_it():
+    seen = clip_postures(act("step", heading=1.0))
+    forward = -seen.course[5:-5, 1]
+    assert_allclose(seen.course[5:-5, 0], 0.0, atol=1e-9)
+    assert forward.min() > 1.0
+    assert_allclose(seen.course[:, 3], 0.0, atol=1e-9)
+
+
+def test_turning_is_told_in_radians_per_second():
+    still = act("kick", seconds=3.0, amount=0.0)
+    angles = 1.5 * np.arange(90) / 30.0
+    cos, sin = np.cos(angles)[:, None], np.sin(angles)[:, None]
+    x, y, z = np.moveaxis(still.positions, -1, 0)
+    turned = np.stack([cos * x - sin * y, sin * x + cos * y, z], axis=-1)
+    course = clip_postures(replace(still, positions=turned)).course
+    assert_allclose(course[20:-20, 3], 1.5, atol=0.01)
+
+
+def test_another_rate_shows_the_same_moments():
+    fine = clip_postures(act("kick", frame_rate=60.0), 20.0)
+    coarse = clip_postures(act("kick", frame_rate=20.0))
+    assert fine.n_frames == coarse.n_frames == 40
+    assert_allclose(fine.positions, coarse.positions, atol=0.01)
+
+
+def test_a_joint_past_a_lost_one_lies_where_it_was_seen():
+    whole, lost = act("wave", size=1.2), act("wave", size=1.2)
+    elbow, wrist = (POSTURE_JOINTS.index(f"right{part}") for part in ("LowerArm", "Hand"))
+    lost.positions[:, elbow] = np.nan
+    seen = clip_postures(lost).positions
+    assert not np.isfinite(seen[:, elbow]).any()
+    assert_allclose(seen[:, wrist], clip_postures(whole).positions[:, wrist], atol=0.05)
+
+
+@pytest.mark.parametrize(
+    "lost", [("leftUpperLeg", "rightUpperArm"), ("leftUpperArm", "leftUpperLeg")]
+)
+def test_the_heading_is_known_from_one_of_each_pair(lost):
+    whole, part = act("bow", heading=2.0), act("bow", heading=2.0)
+    part.positions[:, [POSTURE_JOINTS.index(name) for name in lost]] = np.nan
+    head = POSTURE_JOINTS.index("head")
+    assert_allclose(
+        clip_postures(part).positions[:, head],
+        clip_postures(whole).positions[:, head],
+        atol=0.03,
+    )
+
+
+def test_motions_points_and_sensors_are_read(recordings):
+    motion = walking_gait(GaitSettings(duration=1.0))
+    assert np.isfinite(clip_postures(motion).positions[:, 1:4]).all()
+    for name in ("mocap/hdm05", "mocap/cmu_walk", "kinect/irds", "kinect/msr_action3d"):
+        files = sorted((recordings / name).iterdir())
+        file = next(file for file in files if file.suffix in {".amc", ".bvh", ".txt"})
+        seen = clip_postures(read_recording(file), 20.0)
+        assert np.isfinite(seen.positions).mean() > 0.8
+        assert np.abs(seen.positions[np.isfinite(seen.positions)]).max() < 1.5
+
+
+def test_what_shows_no_body_is_refused():
+    points = Tracks(("a", "b"), np.zeros((3, 2, 3)), 30.0)
+    with pytest.raises(InvalidMotionError, match="No body was recognised"):
+        clip_postures(points)

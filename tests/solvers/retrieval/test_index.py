@@ -1,0 +1,179 @@
+"""Words, spans and posting lists, each against a plainer way to the same numbers."""
+
+from dataclasses import fields, replace
+
+import numpy as np
+import pytest
+from acted import ACTS, act
+from hypothesis import given
+from hypothesis import strategies as st
+from numpy.testing import assert_allclose, assert_array_equal
+
+from solvers.motion.posture_joints import POSTURE_JOINTS
+from solvers.retrieval import index_block
+from solvers.retrieval.body_parts import BodyPart, part_coverage, part_features
+from solvers.retrieval.clip_postures import clip_postures
+from solvers.retrieval.index_block import block_arrays, block_from_arrays, block_of, merged
+from solvers.retrieval.posting_lists import posting_lists
+from solvers.retrieval.spans import FULL, describe_spans, span_frames
+from solvers.retrieval.vocabulary import (
+    learn_vocabulary,
+    vocabulary_arrays,
+    vocabulary_from_arrays,
+)
+
+CLIPS = [clip_postures(act(name, 2.5), 20.0) for name in ACTS]
+
+
+@pytest.fixture(scope="module")
+def words():
+    return learn_vocabulary(CLIPS)
+
+
+@given(seed=st.integers(0, 500), most=st.sampled_from([10_000, 40, 1]))
+def test_posting_lists_add_up_like_a_product(seed, most):
+    rng = np.random.default_rng(seed)
+    histograms = (rng.integers(0, 255, (20, 12)) * (rng.random((20, 12)) < 0.3)).astype(
+        np.uint8
+    )
+    query = (rng.random(12) * (rng.random(12) < 0.6)).astype(np.float32)
+    lists = posting_lists(histograms)
+    found = lists.scores(query, most)
+    exact = histograms.astype(np.float32) @ query
+    if most == 10_000:
+        assert_allclose(found, exact, rtol=1e-5)
+    assert (found <= exact + 1e-3).all()
+
+
+def test_a_part_of_the_body_tells_nothing_of_the_others():
+    still, waving = act("wave", amount=0.0), act("wave")
+    told = [
+        part_features(seen.positions, seen.course, 30.0)
+        for seen in (clip_postures(still), clip_postures(waving))
+    ]
+    moved = np.abs(told[1] - told[0]).max(axis=(0, 2))
+    arm = list(BodyPart).index(BodyPart.RIGHT_ARM)
+    assert moved[arm] > 0.3
+    assert np.delete(moved, arm).max() < 1e-9
+
+
+def test_coverage_is_the_share_of_what_was_tracked():
+    seen = np.ones((10, 20), bool)
+    seen[:5, POSTURE_JOINTS.index("leftHand")] = False
+    assert_allclose(part_coverage(seen), [1.0, 1.0 - 0.5 / 3.0, 1.0, 1.0, 1.0])
+
+
+def test_codes_are_shares_of_the_nearest_words(words):
+    features = words.features(CLIPS[0])
+    codes = words.codes(features)
+    assert_allclose(codes.sum(axis=-1), 1.0)
+    assert ((codes > 0).sum(axis=-1) <= 3).all()
+    apart = ((features[:, :, None] - words.words) ** 2).sum(axis=-1)
+    assert_array_equal(codes.argmax(axis=-1), apart.argmin(axis=-1))
+
+
+def test_words_are_the_same_for_the_same_seed_and_survive_storage(words):
+    again = learn_vocabulary(CLIPS)
+    stored = vocabulary_from_arrays(vocabulary_arrays(words))
+    for item in fields(words):
+        if item.name != "usual":
+            assert_array_equal(getattr(again, item.name), getattr(words, item.name))
+            assert_array_equal(getattr(stored, item.name), getattr(words, item.name))
+    assert_array_equal(stored.usual.covariance, words.usual.covariance)
+
+
+def test_lost_joints_are_expected_where_they_are(words):
+    hidden = replace(CLIPS[1], positions=CLIPS[1].positions.copy())
+    knee = POSTURE_JOINTS.index("leftLowerLeg")
+    hidden.positions[10:40, knee] = np.nan
+    filled = words.usual.filled(hidden)
+    assert np.abs(filled - CLIPS[1].positions).max() < 0.06
+    assert_array_equal(filled[:, :knee], CLIPS[1].positions[:, :knee])
+
+
+def test_short_clips_are_one_span_and_long_ones_also_their_parts():
+    assert_array_equal(span_frames(80, 20.0), [[0, 80]])
+    spans = span_frames(240, 20.0)
+    assert_array_equal(spans[0], [0, 240])
+    lengths = set((spans[1:, 1] - spans[1:, 0]).tolist())
+    assert lengths == {40, 80, 160}
+    for length in lengths:
+        starts = np.sort(spans[1:][spans[1:, 1] - spans[1:, 0] == length][:, 0])
+        assert starts[0] == 0
+        assert starts[-1] + length == 240
+        assert np.diff(starts).max() <= length / 2 + 1
+
+
+@pytest.mark.parametrize("n_frames", [1, 2, 81, 10_000])
+def test_spans_lie_within_the_clip(n_frames):
+    spans = span_frames(n_frames, 20.0)
+    assert (spans[:, 0] >= 0).all()
+    assert (spans[:, 1] > spans[:, 0]).all()
+    assert (spans[:, 1] <= n_frames).all()
+    assert len(spans) <= 1 + n_frames / 10
+
+
+def test_histograms_are_of_length_one(words):
+    spans = describe_spans(CLIPS[3], words)
+    lengths = np.linalg.norm(spans.histograms / FULL, axis=-1)
+    assert_allclose(lengths, 1.0, atol=0.02)
+    assert spans.summaries.shape == (1, 16, 5, 8)
+    features = words.features(CLIPS[3])
+    assert_allclose(spans.summaries[0, [0, -1]], features[[0, -1]], atol=2e-3)
+
+
+def test_the_halves_of_a_clip_are_told_apart(words):
+    rising = CLIPS[1]
+    rising = replace(rising, positions=rising.positions[:25], course=0.0 * rising.course[:25])
+    falling = replace(rising, positions=rising.positions[::-1])
+    up, down = (describe_spans(clip, words).histograms[0] / FULL for clip in (rising, falling))
+    legs = [list(BodyPart).index(part) for part in (BodyPart.LEFT_LEG, BodyPart.RIGHT_LEG)]
+    alike = np.einsum("pcw,pdw->cd", up[legs], down[legs]) / 2.0
+    assert alike[1, 2] > alike[1, 1] + 0.1
+    assert alike[2, 1] > alike[2, 2] + 0.04
+
+
+def test_a_large_block_finds_the_same_best_spans(words, monkeypatch):
+    block = block_of(list(range(5)), [describe_spans(clip, words) for clip in CLIPS])
+    query = (block.histograms[2] / FULL).astype(np.float32)
+    exact = block.common(query)
+    monkeypatch.setattr(index_block, "MOST_POSTINGS", 300)
+    monkeypatch.setattr(index_block, "IN_DETAIL", 2)
+    rough = block.common(query)
+    assert rough.argmax() == exact.argmax() == 2
+    assert_allclose(np.sort(rough)[-2:], np.sort(exact)[-2:], rtol=1e-5)
+    assert (rough <= exact + 1e-3).all()
+
+
+def test_blocks_survive_storage_and_merging(words):
+    described = [describe_spans(clip, words) for clip in CLIPS]
+    whole = block_of([1, 2, 3, 4, 5], described)
+    n_words = words.words.shape[1]
+    read = block_from_arrays(block_arrays(whole), n_words)
+    together = merged(
+        [block_of([1, 2], described[:2]), block_of([3, 4, 5], described[2:])],
+        np.array([1, 2, 4, 5]),
+    )
+    kept = whole.clips != 3
+    query = (whole.histograms[0] / FULL).astype(np.float32)
+    assert_array_equal(read.common(query), whole.common(query))
+    assert_array_equal(together.clips, whole.clips[kept])
+    assert_array_equal(together.summaries, whole.summaries[kept])
+    assert_array_equal(together.common(query), whole.common(query)[kept])
+
+
+@pytest.mark.parametrize(
+    ("column", "damage"),
+    [
+        ("spans", lambda raw: raw[:-4] + (2**30).to_bytes(4, "little")),
+        ("spans", lambda raw: raw[:-4]),
+        ("starts", lambda raw: raw[8:] + raw[:8]),
+        ("histograms", lambda raw: raw[:-1]),
+        ("frames", lambda raw: raw[:-2]),
+    ],
+)
+def test_an_index_that_does_not_fit_itself_is_refused(words, column, damage):
+    stored = block_arrays(block_of([1], [describe_spans(CLIPS[0], words)]))
+    stored[column] = damage(stored[column])
+    with pytest.raises(ValueError):
+        block_from_arrays(stored, words.words.shape[1])
