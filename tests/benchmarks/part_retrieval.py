@@ -10,9 +10,10 @@ from time import process_time
 import numpy as np
 
 from .report import PICTURES
-from .retrieval_clips import TRAINING, LabelledClip, kinect_queries, library
+from .retrieval_clips import TRAINING, LabelledClip, library
 from .retrieval_damage import DAMAGES
 from .retrieval_default import DefaultLibrary
+from .retrieval_kinect import kinect_queries
 from .retrieval_methods import OURS, PUBLISHED
 from .retrieval_pictures import draw_confusion, draw_curves
 from .retrieval_protocol import (
@@ -102,16 +103,16 @@ def damaged(found: Mapping[str, Found]) -> str:
 
 
 def seen_by_kinect(found: Mapping[str, Found]) -> str:
-    """Return MAP and TP@20 of Kinect takes, class by class."""
-    labels = list(dict.fromkeys(clip.label for clip in kinect_queries()))
+    """Return MAP of Kinect takes, set by set."""
+    sets = np.array([clip.actor for clip in kinect_queries()])
+    names = list(dict.fromkeys(sets))
     rows = {}
     for name, each in found.items():
-        by_class = [[one for one in each.kinect if one.label == label] for label in labels]
-        cells = [f"{mean_precision(one):.3f}" for one in by_class]
-        means = [np.mean([measure(one) for one in by_class]) for measure in MEASURES]
-        rows[name] = [*cells, *(f"{mean:.3f}" for mean in means)]
-    header = ["method", *(f"{label}, MAP" for label in labels), "mean MAP", "mean TP@20"]
-    return f"**Kinect takes as queries**\n\n{table(header, rows)}\n"
+        precisions = np.array([one.precision for one in each.kinect])
+        means = [float(precisions[sets == one].mean()) for one in names]
+        rows[name] = [f"{mean:.3f}" for mean in (*means, float(np.mean(means)))]
+    header = ["method", *names, "mean"]
+    return f"**Kinect takes as queries**, MAP\n\n{table(header, rows)}\n"
 
 
 def each_class(found: Mapping[str, Found]) -> str:

@@ -4,19 +4,16 @@ Settings are chosen with queries of TRAINING classes and EXERCISES only, in a li
 alone. Figures are published of queries of the other classes, in a library of all.
 """
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from functools import cache
 from pathlib import Path
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.ndimage import gaussian_filter1d
 
 from solvers.motion import JointRecording, Motion, Tracks
-from solvers.motion.posture_heading import mirrored
 from solvers.motion.posture_joints import POSTURE_JOINTS, motion_postures, posture_positions
 from solvers.recordings import read_acclaim, read_recording
-from solvers.retrieval.seen_signals import seen_signals
 
 from . import clips
 
@@ -71,7 +68,7 @@ def _exercises() -> list[LabelledClip]:
     for exercise in EXERCISES:
         for path in sorted((KINECT_FOLDER / "ui_prmd").glob(f"{exercise}_s*_e0[37].npz")):
             actor = path.stem.split("_")[1]
-            found.append(LabelledClip(path.stem, exercise, actor, _seen(path)))
+            found.append(LabelledClip(path.stem, exercise, actor, sensor_tracks(path)))
     return found
 
 
@@ -127,46 +124,9 @@ def _clip(name: str, label: str, actor: str, motion: Motion) -> LabelledClip:
     return LabelledClip(name, label, actor, tracks)
 
 
-KINECT = {
-    "squat1Reps": ("ui_prmd", "m01_s*_e*.npz"),
-    "kickLFront1Reps": ("msr_action3d", "a14_*.txt"),
-    "jogLeftCircle4StepsRstart": ("msr_action3d", "a16_*.txt"),
-    "throwBasketball": ("msr_action3d", "a06_*.txt"),
-}
-"""Deep squat; forward kick, with the right leg, so that its mirror image is asked for; jogging
-on the spot; and a high throw, with one hand where the library's are with two."""
-MIRRORED = frozenset({"kickLFront1Reps"})
-SMOOTH = 0.15
-"""Seconds."""
-STILL = 0.25
-"""Part of the greatest speed of a take, of all joints together, below which it stands still."""
-
-
-@cache
-def kinect_queries() -> tuple[LabelledClip, ...]:
-    """Kinect takes of what the library holds too, more or less."""
-    found = []
-    for label, (folder, pattern) in KINECT.items():
-        for path in sorted((KINECT_FOLDER / folder).glob(pattern)):
-            tracks = _moving(_seen(path))
-            if label in MIRRORED:
-                tracks = replace(tracks, positions=mirrored(tracks.positions))
-            found.append(LabelledClip(path.stem, label, "kinect", tracks))
-    return tuple(found)
-
-
-def _seen(path: Path) -> Tracks:
+def sensor_tracks(path: Path) -> Tracks:
+    """Return the joints of postures in what a Kinect saw."""
     recording = read_recording(path)
     assert isinstance(recording, JointRecording)
     postures = posture_positions(recording)
     return Tracks(POSTURE_JOINTS, postures, recording.tracks.frame_rate)
-
-
-def _moving(tracks: Tracks) -> Tracks:
-    """Cut off what stands still before and after, as one would of a query."""
-    signals, seen = seen_signals(tracks.positions)
-    smooth = gaussian_filter1d(signals[:, seen], SMOOTH * tracks.frame_rate, axis=0)
-    speeds = np.linalg.norm(np.gradient(smooth, axis=0), axis=1)
-    moving = np.flatnonzero(speeds > STILL * speeds.max())
-    kept = slice(moving[0], moving[-1] + 1)
-    return replace(tracks, positions=tracks.positions[kept])
