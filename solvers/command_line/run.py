@@ -91,7 +91,7 @@ def _add_common_options(parser: argparse.ArgumentParser, makes: Makes) -> None:
             "--report", action="store_true",
             help=f"Write DIR/{PAGE} and report.json about the whole batch, with pictures",
         )  # fmt: skip
-    if makes is not Makes.ONE_FILE:
+    if makes not in {Makes.ONE_FILE, Makes.MANY_FILES}:
         parser.add_argument(
             "--jobs", type=int, default=1, metavar="N",
             help="How many files to work on at a time [default 1]",

@@ -46,6 +46,7 @@ class Makes(Enum):
     WORDS = "figures of each file"
     FILES = "a file of each file"
     ONE_FILE = "one file of all files"
+    MANY_FILES = "a folder of files of all files"
 
 
 def nothing_to_prepare(arguments: argparse.Namespace, progress: Progress) -> None:

@@ -25,6 +25,7 @@ from .retarget_verbs import (
 )
 from .simulate_verb import add_simulate_options, perform_simulate
 from .solve_verb import add_solve_options, perform_solve
+from .vary_verb import add_vary_options, perform_vary
 from .verb import Makes, Outcome, Task, Verb
 
 
@@ -115,6 +116,12 @@ VERBS = {
         "Let a body with mass and muscles, on solid ground, make motions of a skeleton.",
         add_simulate_options,
         perform_simulate,
+    ),
+    "vary": Verb(
+        "Make new motions like a few clips of one behaviour, each different.",
+        add_vary_options,
+        perform_vary,
+        Makes.MANY_FILES,
     ),
     "convert": Verb(
         "Write recordings of any known format as BVH, or as C3D or TRC where they are points.",

@@ -5,6 +5,7 @@ from .postures_of import postures_of
 from .reconstruct_motion import RebuiltMotion, reconstruct_motion
 from .reconstruct_recording import ReconstructedMotion, reconstruct_recording
 from .try_to_plant import Footing, try_to_plant
+from .vary_motions import Variants, vary_motions
 
 __all__ = [
     "Footing",
@@ -12,9 +13,11 @@ __all__ = [
     "MarkerMotionSettings",
     "RebuiltMotion",
     "ReconstructedMotion",
+    "Variants",
     "motion_from_markers",
     "postures_of",
     "reconstruct_motion",
     "reconstruct_recording",
     "try_to_plant",
+    "vary_motions",
 ]

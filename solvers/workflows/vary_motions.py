@@ -1,0 +1,69 @@
+"""From a few clips to many: variants with planted feet."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+from ..denoising import PlantSettings
+from ..motion import Motion
+from ..progress import Progress, unwatched, within
+from ..variation import VarySettings, learn_variation_model, synthesize
+from .try_to_plant import try_to_plant
+
+
+@dataclass(frozen=True, eq=False)
+class Variants:
+    """New motions, and what is to be said of them.
+
+    Attributes
+    ----------
+    motions : tuple of Motion
+    remarks : tuple of str
+        What seems wrong with the examples, or why feet could not be planted.
+    """
+
+    motions: tuple[Motion, ...]
+    remarks: tuple[str, ...]
+
+
+USUAL, PLANTING = VarySettings(), PlantSettings()
+
+
+def vary_motions(
+    examples: Sequence[Motion],
+    n_variants: int,
+    *,
+    settings: VarySettings = USUAL,
+    planting: PlantSettings | None = PLANTING,
+    progress: Progress = unwatched,
+) -> Variants:
+    """Make variants of examples of one behaviour, and plant their feet.
+
+    Parameters
+    ----------
+    examples : Motion
+        Of one rig and without gaps.
+    n_variants : int
+    settings : VarySettings
+    planting : PlantSettings or None
+        None leaves feet as they are.
+    progress : Progress
+
+    Raises
+    ------
+    InvalidMotionError
+        The examples do not go together; see `learn_variation_model`.
+    """
+    model = learn_variation_model(examples, progress=within(progress, 0.0, 0.3))
+    drawn = synthesize(
+        model, n_variants, settings=settings, progress=within(progress, 0.3, 0.4)
+    )
+    remarks = [model.warning] if model.warning else []
+    planted = []
+    for place, motion in enumerate(drawn):
+        part = within(progress, 0.4 + 0.6 * place / n_variants, 1.0)
+        part(0.0, f"Planting feet of variant {place + 1}")
+        footing = try_to_plant(motion, planting)
+        remarks += [remark for remark in footing.remarks if remark not in remarks]
+        planted.append(footing.motion)
+    progress(1.0)
+    return Variants(tuple(planted), tuple(remarks))

@@ -1,0 +1,67 @@
+"""Variants stand on their feet, and what is wrong with the examples is said."""
+
+import numpy as np
+import pytest
+from numpy.testing import assert_array_equal
+
+from solvers.denoising import measure_quality
+from solvers.motion import Motion
+from solvers.recordings import read_recording
+from solvers.samples import GaitSettings, walking_gait
+from solvers.variation import VarySettings
+from solvers.workflows import vary_motions
+
+
+@pytest.fixture(scope="module")
+def walks():
+    return [
+        walking_gait(GaitSettings(duration=1.1, frame_rate=60.0, seed=seed, cadence=cadence))
+        for seed, cadence in ((1, 110), (2, 106), (3, 114))
+    ]
+
+
+def test_feet_slide_no_more_than_in_the_examples(recordings):
+    folder = recordings / "mocap" / "hdm05"
+    files = sorted(folder.glob("HDM_bd_squat1Reps_*.amc"))[:4]
+    examples = [read_recording(file) for file in files]
+    variants = vary_motions(examples, 3)
+    assert not variants.remarks
+    slides = [
+        np.mean([measure_quality(motion).foot_slide for motion in motions])
+        for motions in (examples, variants.motions)
+    ]
+    assert slides[1] <= slides[0]
+
+
+def test_feet_are_left_as_they_are_where_asked(walks):
+    planted = vary_motions(walks, 1)
+    free = vary_motions(walks, 1, planting=None)
+    assert planted.motions[0].n_frames == free.motions[0].n_frames
+    assert np.abs(planted.motions[0].rotations - free.motions[0].rotations).max() > 1e-3
+
+
+def test_the_same_seed_makes_the_same_variants(walks):
+    one, same, other = (
+        vary_motions(walks, 2, settings=VarySettings(seed=seed)).motions for seed in (4, 4, 5)
+    )
+    assert_array_equal(one[1].rotations, same[1].rotations)
+    assert one[0].n_frames != other[0].n_frames or not np.allclose(
+        one[0].rotations, other[0].rotations, atol=1e-3
+    )
+
+
+def test_an_example_of_another_behaviour_is_named(walks):
+    still = walks[0]
+    rotations = np.repeat(still.rotations[:1], still.n_frames, axis=0)
+    standing = Motion(still.skeleton, rotations, still.root_positions * 0.3, still.frame_rate)
+    remarks = vary_motions([*walks, standing], 1, planting=None).remarks
+    assert len(remarks) == 1
+    assert "Example 4" in remarks[0]
+    assert "another behaviour" in remarks[0]
+
+
+def test_progress_goes_from_nothing_to_all(walks):
+    told = []
+    vary_motions(walks, 2, progress=lambda fraction, message="": told.append(fraction))
+    assert told == sorted(told)
+    assert told[-1] == 1.0
