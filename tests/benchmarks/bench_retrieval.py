@@ -22,6 +22,7 @@ def main() -> None:
     """Print the tables."""
     parser = argparse.ArgumentParser(description=(__doc__ or "").splitlines()[0])
     parser.add_argument("--method", help="only methods with this in their name")
+    parser.add_argument("--jobs", type=int, default=2, help="methods at a time")
     parser.add_argument("--choose", action="store_true", help="settings of pyramids")
     parser.add_argument(
         "--docs", action="store_true", help="rewrite docs/benchmarks_retrieval.md"
@@ -29,16 +30,13 @@ def main() -> None:
     chosen = parser.parse_args()
     report = Report(chosen.docs, DOCS / "benchmarks_retrieval.md")
     started = perf_counter()
-    with threadpool_limits(1):
-        if chosen.choose:
-            report.part("choice", [choose()[1]], perf_counter() - started)
-            return
-        methods = {
-            name: method
-            for name, method in METHODS.items()
-            if not chosen.method or chosen.method.lower() in name.lower()
-        }
-        found = part.find_all(methods, _say)
+    if chosen.choose:
+        with threadpool_limits(1):
+            tables = [choose()[1]]
+        report.part("choice", tables, perf_counter() - started)
+        return
+    names = [name for name in METHODS if (chosen.method or "").lower() in name.lower()]
+    found = part.find_all(names, chosen.jobs, _say)
     tables = [part.accuracy(found), part.damaged(found), part.seen_by_kinect(found),
               part.each_class(found)]  # fmt: skip
     if chosen.docs:

@@ -2,23 +2,25 @@
 
 import pickle
 from collections.abc import Callable, Mapping, Sequence
+from concurrent.futures import ProcessPoolExecutor
 from dataclasses import dataclass, field
+from multiprocessing import get_context
 from pathlib import Path
 from tempfile import TemporaryDirectory
 from time import process_time
 
 import numpy as np
+from threadpoolctl import threadpool_limits
 
 from .report import PICTURES
 from .retrieval_clips import TRAINING, LabelledClip, library
 from .retrieval_damage import DAMAGES
 from .retrieval_default import DefaultLibrary
 from .retrieval_kinect import kinect_queries
-from .retrieval_methods import OURS, PUBLISHED
+from .retrieval_methods import METHODS, OURS, PUBLISHED
 from .retrieval_pictures import draw_confusion, draw_curves
 from .retrieval_protocol import (
     Answer,
-    Method,
     Prepared,
     Query,
     answer,
@@ -48,14 +50,23 @@ class Found:
         return [each for each in self.answers[kind] if each.label not in TRAINING]
 
 
-def find_all(methods: Mapping[str, Method], say: Say) -> dict[str, Found]:
-    """Ask every method everything; damaged queries are of the test classes only."""
+def find_all(names: Sequence[str], n_jobs: int, say: Say) -> dict[str, Found]:
+    """Ask every method everything, `n_jobs` methods at a time."""
+    result = {}
+    with ProcessPoolExecutor(n_jobs, get_context("spawn")) as pool:
+        for name, found in zip(names, pool.map(found_by, names), strict=True):
+            result[name] = found
+            say(f"{name}: MAP {mean_precision(found.tested('clean')):.3f}")
+    return result
+
+
+def found_by(name: str) -> Found:
+    """Ask one method everything; damaged queries are of the test classes only."""
     clips = library()
     asked = [clip for clip in clips if clip.label not in TRAINING]
-    result = {}
-    for name, method in methods.items():
+    with threadpool_limits(1):
         started = process_time()
-        prepared = method.prepare([clip.tracks for clip in clips])
+        prepared = METHODS[name].prepare([clip.tracks for clip in clips])
         found = Found(process_time() - started, megabytes(prepared))
         for kind, damage in DAMAGES.items():
             of = clips if kind == "clean" else asked
@@ -63,9 +74,7 @@ def find_all(methods: Mapping[str, Method], say: Say) -> dict[str, Found]:
         others = queries(clips, clips, DAMAGES["clean"], other_actors=True)
         found.answers[OTHERS] = answer(prepared, clips, others)
         found.kinect = answer(prepared, clips, _kinect(clips))
-        result[name] = found
-        say(f"{name}: MAP {mean_precision(found.tested('clean')):.3f}")
-    return result
+    return found
 
 
 def _kinect(clips: Sequence[LabelledClip]) -> list[Query]:

@@ -12,6 +12,8 @@ from solvers.retrieval import Clip, ClipLibrary, FindSettings, build_clip_librar
 Array = NDArray[np.float64]
 Flags = NDArray[np.bool_]
 
+TINY = 1e-300
+
 
 @dataclass(frozen=True)
 class Default:
@@ -40,6 +42,6 @@ class DefaultLibrary:
         ignored = [str(number) for number in np.flatnonzero(~allowed)]
         found = find_similar(query, self.library, settings=self.settings, ignore=ignored)
         result = np.full(self.n_clips, np.inf)
-        for rank, match in enumerate(found):
-            result[int(match.clip)] = rank
+        for match in found:
+            result[int(match.clip)] = -np.log(max(match.score, TINY))
         return result

@@ -8,7 +8,7 @@ from .peers.clip_alignment import Resampled, Warped
 from .peers.clip_statistics import BagOfWords, Covariances
 from .peers.motion_volumes import MotionVolumes
 from .peers.string_matching import StringMatching
-from .pyramid_methods import Pyramids
+from .pyramid_methods import PARTS, Pyramids
 from .retrieval_default import Default
 from .retrieval_fusion import Fused
 from .retrieval_protocol import Method
@@ -19,13 +19,15 @@ CUBES = "[ZLLS14], cubes normalised"
 RANKED = "all three, manifold ranking"
 
 CHOSEN = Pyramids(
-    DictionarySettings(n_atoms=12, n_nonzeros=1),
-    PyramidSettings(gap=0.1, n_levels=3, normalise_cubes=True),
+    DictionarySettings(n_atoms=32, n_nonzeros=1),
+    PyramidSettings(gap=1 / 30, n_levels=4, normalise_cubes=True),
     frame_rate=30.0,
+    parts=PARTS,
+    filled=True,
 )
 """By `part_retrieval_choice`, on the training classes."""
 WARPED, LOGARITHMS = Warped(), Covariances(ridge=1e-4)
-N_NEIGHBOURS = 6
+N_NEIGHBOURS = 3
 
 METHODS: dict[str, Method] = {
     OURS: Default(),
@@ -41,8 +43,8 @@ METHODS: dict[str, Method] = {
     "bag of words": BagOfWords(),
     "low-rank volumes, as [SJF11]": MotionVolumes(),
     "strings of patterns, as [DGL09]": StringMatching(),
+    "ours + log-covariances": Fused((Default(), LOGARITHMS)),
     "DTW + log-covariances": Fused((WARPED, LOGARITHMS)),
-    "pyramids + DTW": Fused((CHOSEN, WARPED)),
     "pyramids + DTW + log-covariances": Fused((CHOSEN, WARPED, LOGARITHMS)),
     RANKED: Fused((CHOSEN, WARPED, LOGARITHMS), N_NEIGHBOURS),
 }
