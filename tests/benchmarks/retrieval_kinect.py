@@ -42,7 +42,7 @@ class QuerySet:
 
 
 SETS = (
-    QuerySet("squat (UI-PRMD, v2)", "squat1Reps", "kinect/ui_prmd/m01_s*_e*.npz"),
+    QuerySet("squat (UI-PRMD, v2)", "squat1Reps", "kinect/ui_prmd/m01_s*_e0[258].npz"),
     QuerySet("squat (UTD, v1)", "squat1Reps", "depth/utd_mhad/a27_*_skeleton.mat"),
     QuerySet("basketball (UTD)", "throwBasketball", "depth/utd_mhad/a7_*_skeleton.mat"),
     QuerySet("kick (MSR)", "kickLFront1Reps", "kinect/msr_action3d/a14_*.txt", mirror=True),
