@@ -114,7 +114,8 @@ def damaged(found: Mapping[str, Found]) -> str:
         name: [f"{mean_precision(each.damaged(kind)):.3f}" for kind in DAMAGES]
         for name, each in found.items()
     }
-    return f"**Damaged queries of test classes**, each second clip, MAP\n\n{table(['method', *DAMAGES], rows)}\n"
+    title = "**Damaged queries of test classes**, each second clip, MAP"
+    return f"{title}\n\n{table(['method', *DAMAGES], rows)}\n"
 
 
 def seen_by_kinect(found: Mapping[str, Found]) -> str:
