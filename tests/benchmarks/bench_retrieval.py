@@ -4,6 +4,8 @@ make bench-retrieval                                # some 20 minutes
 make bench-retrieval ARGUMENTS="--method DTW"       # those with this in their name
 make bench-retrieval ARGUMENTS=--docs               # into docs/benchmarks_retrieval.md
 make bench-retrieval ARGUMENTS=--choose             # settings of pyramids, training classes
+
+What methods answer is kept under build/retrieval, and told of all methods that are there.
 """
 
 import argparse
@@ -21,7 +23,9 @@ from .retrieval_methods import METHODS
 def main() -> None:
     """Print the tables."""
     parser = argparse.ArgumentParser(description=(__doc__ or "").splitlines()[0])
-    parser.add_argument("--method", help="only methods with this in their name")
+    parser.add_argument(
+        "--method", default="", help="ask only those with this in their name anew"
+    )
     parser.add_argument("--jobs", type=int, default=2, help="methods at a time")
     parser.add_argument("--choose", action="store_true", help="settings of pyramids")
     parser.add_argument(
@@ -35,8 +39,9 @@ def main() -> None:
             tables = [choose()[1]]
         report.part("choice", tables, perf_counter() - started)
         return
-    names = [name for name in METHODS if (chosen.method or "").lower() in name.lower()]
-    found = part.find_all(names, chosen.jobs, _say)
+    names = [name for name in METHODS if chosen.method.lower() in name.lower()]
+    part.find_all(names, chosen.jobs, _say)
+    found = part.kept()
     tables = [part.accuracy(found), part.damaged(found), part.seen_by_kinect(found),
               part.each_class(found)]  # fmt: skip
     if chosen.docs:

@@ -1,8 +1,9 @@
 """How well clips of a class are found: clean, damaged and seen by a Kinect."""
 
 import pickle
+import re
 from collections.abc import Callable, Mapping, Sequence
-from concurrent.futures import ProcessPoolExecutor
+from concurrent.futures import ProcessPoolExecutor, as_completed
 from dataclasses import dataclass, field
 from multiprocessing import get_context
 from pathlib import Path
@@ -32,7 +33,8 @@ from .tables import number, table
 
 Say = Callable[[str], None]
 OTHERS = "other actors"
-EVERY = 2
+KEPT = Path("build") / "retrieval"
+EVERY = 4
 """Of the clips of test classes, that many-th is damaged and asked for."""
 
 
@@ -56,14 +58,26 @@ class Found:
         return self.tested(kind)[:: EVERY if kind == "clean" else 1]
 
 
-def find_all(names: Sequence[str], n_jobs: int, say: Say) -> dict[str, Found]:
-    """Ask every method everything, `n_jobs` methods at a time."""
-    result = {}
+def find_all(names: Sequence[str], n_jobs: int, say: Say) -> None:
+    """Ask these methods everything, `n_jobs` at a time, and keep what they answer."""
+    KEPT.mkdir(parents=True, exist_ok=True)
     with ProcessPoolExecutor(n_jobs, get_context("spawn")) as pool:
-        for name, found in zip(names, pool.map(found_by, names), strict=True):
-            result[name] = found
-            say(f"{name}: MAP {mean_precision(found.tested('clean')):.3f}")
-    return result
+        asked = {pool.submit(found_by, name): name for name in names}
+        for each in as_completed(asked):
+            found = each.result()
+            _kept(asked[each]).write_bytes(pickle.dumps(found))
+            say(f"{asked[each]}: MAP {mean_precision(found.tested('clean')):.3f}")
+
+
+def kept() -> dict[str, Found]:
+    """Return what was found by this run and those before."""
+    return {
+        name: pickle.loads(_kept(name).read_bytes()) for name in METHODS if _kept(name).exists()
+    }
+
+
+def _kept(name: str) -> Path:
+    return KEPT / f"{re.sub('[^a-zA-Z0-9]+', '_', name)}.pickle"
 
 
 def found_by(name: str) -> Found:
@@ -114,7 +128,7 @@ def damaged(found: Mapping[str, Found]) -> str:
         name: [f"{mean_precision(each.damaged(kind)):.3f}" for kind in DAMAGES]
         for name, each in found.items()
     }
-    title = "**Damaged queries of test classes**, each second clip, MAP"
+    title = "**Damaged queries of test classes**, each fourth clip, MAP"
     return f"{title}\n\n{table(['method', *DAMAGES], rows)}\n"
 
 
