@@ -43,7 +43,7 @@ METHODS: dict[str, Method] = {
     "bag of words": BagOfWords(),
     "low-rank volumes, as [SJF11]": MotionVolumes(),
     "strings of patterns, as [DGL09]": StringMatching(),
-    "ours + log-covariances": Fused((Default(), LOGARITHMS)),
+    "find_similar + log-covariances": Fused((Default(), LOGARITHMS)),
     "DTW + log-covariances": Fused((WARPED, LOGARITHMS)),
     "pyramids + DTW + log-covariances": Fused((CHOSEN, WARPED, LOGARITHMS)),
     RANKED: Fused((CHOSEN, WARPED, LOGARITHMS), N_NEIGHBOURS),
