@@ -7,11 +7,13 @@ Blender is imported only on `register`: a solve in a process of its own passes t
 def register() -> None:
     """Make properties, commands and panels known to Blender."""
     from . import batch, scene_properties, ui, watch
+    from .live import listening
     from .scene import contacts
 
     scene_properties.register()
     contacts.register()
     watch.register()
+    listening.register()
     batch.register()
     ui.register()
 
@@ -19,10 +21,12 @@ def register() -> None:
 def unregister() -> None:
     """Take them away again."""
     from . import batch, scene_properties, ui, watch
+    from .live import listening
     from .scene import contacts
 
     ui.unregister()
     batch.unregister()
+    listening.unregister()
     watch.unregister()
     contacts.unregister()
     scene_properties.unregister()

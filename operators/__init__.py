@@ -7,6 +7,7 @@ from .import_job import MOCAP_OT_import_job
 from .import_recording import MOCAP_OT_import_recording
 from .jump_to_spot import MOCAP_OT_jump_to_spot
 from .learn_patterns import MOCAP_OT_learn_patterns
+from .listen import MOCAP_OT_listen
 from .measure_quality import MOCAP_OT_measure_quality
 from .plant_feet import MOCAP_OT_plant_feet
 from .reconstruct import MOCAP_OT_reconstruct
@@ -26,6 +27,7 @@ OPERATORS = (
     MOCAP_OT_plant_feet,
     MOCAP_OT_learn_patterns,
     MOCAP_OT_simulate,
+    MOCAP_OT_listen,
     MOCAP_OT_solve_skeleton,
     MOCAP_OT_retarget,
     MOCAP_OT_reduce_keys,

@@ -18,7 +18,11 @@ from ...solvers.denoising import (
 from ...solvers.errors import MocapAssistError
 from ...solvers.motion import JointRecording, Motion
 from ...solvers.progress import Progress, unwatched, within
-from ...solvers.reconstruction import ReconstructSettings
+from ...solvers.reconstruction import (
+    ReconstructSettings,
+    load_posture_library,
+    load_residual_prior,
+)
 from ...solvers.recordings import read_motion_or_tracks, read_recording
 from ...solvers.workflows import (
     RebuiltMotion,
@@ -42,7 +46,11 @@ class RebuildProblem:
     """The file that the take was imported from, if it is there, and its date."""
     settings: ReconstructSettings
     examples: Examples | None
-    """Clips of natural postures; None for those that are shipped."""
+    """Clips of natural postures; None for those that are shipped, or of a file."""
+    postures_file: tuple[str, int] | None = None
+    """The file of a posture library, and its date."""
+    residuals_file: tuple[str, int] | None = None
+    """The file of a residual prior, and its date; None for the one that is shipped."""
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -72,17 +80,22 @@ class Rebuilt:
 
 def solve(problem: RebuildProblem, *, progress: Progress = unwatched) -> RebuiltMotion:
     """Rebuild the poses of the body."""
-    postures = None
+    postures = prior = None
+    if problem.postures_file is not None:
+        postures = load_posture_library(problem.postures_file[0])
+    if problem.residuals_file is not None:
+        prior = load_residual_prior(problem.residuals_file[0])
     if problem.examples is not None:
         clips = [*problem.examples.motions, *map(read_motion_or_tracks, problem.examples.files)]
         postures = postures_of(clips, progress=within(progress, 0.0, 0.2))
     return reconstruct_motion(
         problem.body,
         postures,
+        prior,
         source=_source(problem),
         tracking_state=problem.tracking_state,
         settings=problem.settings,
-        progress=within(progress, 0.0 if postures is None else 0.2, 1.0),
+        progress=within(progress, 0.0 if problem.examples is None else 0.2, 1.0),
     )
 
 

@@ -28,7 +28,7 @@ class CleanPanel:
 
     def draw(self, context: bpy.types.Context) -> None:
         layout = self.layout
-        running = draw_job(layout, context)
+        running = draw_job(layout, context, "clean")
         column = layout.column()
         column.enabled = not running
         clean = context.scene.mocap_assist.clean

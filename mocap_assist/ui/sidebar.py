@@ -8,6 +8,7 @@ from .compare_panel import ComparePanel
 from .feet_panel import FeetPanel
 from .import_panel import ImportPanel
 from .markers_panel import MarkersPanel
+from .perform_panel import PerformPanel
 from .physics_panel import PhysicsPanel
 from .preferences import preferred
 from .reconstruct_panel import ReconstructPanel
@@ -37,6 +38,7 @@ BODIES = (
     PhysicsPanel,
     MarkersPanel,
     RetargetPanel,
+    PerformPanel,
 )
 PANELS = [panel for body in BODIES for panel in _in_every_editor(body)]
 

@@ -7,13 +7,14 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from ..denoising import Planted, PlantSettings, compare_quality, measure_quality
-from ..errors import InvalidMotionError
+from ..errors import InvalidMotionError, InvalidSettingError
 from ..motion import JointRecording, Motion, Sensor, Tracks
 from ..progress import Progress, within
 from ..reconstruction import (
     PostureLibrary,
     ReconstructSettings,
     ResidualPrior,
+    load_posture_library,
     load_residual_prior,
 )
 from ..recordings import read_recording, write_joint_csv
@@ -50,6 +51,10 @@ def add_reconstruct_options(parser: argparse.ArgumentParser) -> None:
         " them those that come with Mocap Assist guide",
     )  # fmt: skip
     parser.add_argument(
+        "--postures", type=Path, metavar="FILE",
+        help="Postures of your own, as learn-postures wrote them, in their place",
+    )  # fmt: skip
+    parser.add_argument(
         "--residuals", type=Path, metavar="FILE",
         help="How the sensor errs, as learn-residuals wrote it; without it a Kinect v2's",
     )  # fmt: skip
@@ -77,10 +82,14 @@ class Guides(NamedTuple):
 
 def read_guides(arguments: argparse.Namespace, progress: Progress) -> Guides:
     """Learn and read, once for all files of a run, what guides them."""
-    given = arguments.residuals
+    given, library = arguments.residuals, arguments.postures
+    if library is not None and arguments.train:
+        raise InvalidSettingError(
+            "--postures and --train both say where postures come from; give one."
+        )
     residuals = None if given is None else load_residual_prior(given)
     if not arguments.train:
-        return Guides(None, residuals)
+        return Guides(library and load_posture_library(library), residuals)
     clips = read_all(arguments.train, arguments, within(progress, 0.0, 0.7))
     return Guides(postures_of(clips, progress=within(progress, 0.7, 1.0)), residuals)
 

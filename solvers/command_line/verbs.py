@@ -14,7 +14,9 @@ from .convert import convert
 from .denoise_verb import add_denoise_options, learn_once, perform_denoise
 from .files import add_reading_options, read, read_all
 from .options import arguments_from, settings_from_arguments
+from .postures_verb import add_postures_options, perform_postures
 from .reconstruct_verb import add_reconstruct_options, perform_reconstruct, read_guides
+from .replay_verb import add_replay_options, perform_replay
 from .residuals_verb import add_residuals_options, perform_residuals
 from .retarget_verbs import (
     add_retarget_options,
@@ -112,6 +114,12 @@ VERBS = {
         perform_residuals,
         Makes.ONE_FILE,
     ),
+    "learn-postures": Verb(
+        "Keep the postures of clean clips, for reconstruct to guess lost joints from.",
+        add_postures_options,
+        perform_postures,
+        Makes.ONE_FILE,
+    ),
     "simulate": Verb(
         "Let a body with mass and muscles, on solid ground, make motions of a skeleton.",
         add_simulate_options,
@@ -133,6 +141,12 @@ VERBS = {
         add_retarget_options,
         perform_retarget,
         prepare=read_target,
+    ),
+    "replay": Verb(
+        "Send recordings to this machine as a live stream, as a depth camera's tracker would.",
+        add_replay_options,
+        perform_replay,
+        Makes.WORDS,
     ),
     "unbake": Verb(
         "Replace a key on every frame by few keys with handles.",
