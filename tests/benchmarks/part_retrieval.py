@@ -17,6 +17,7 @@ from .report import PICTURES
 from .retrieval_clips import TRAINING, LabelledClip, library
 from .retrieval_damage import DAMAGES
 from .retrieval_default import DefaultLibrary
+from .retrieval_fusion import FusedLibrary
 from .retrieval_kinect import kinect_queries
 from .retrieval_methods import METHODS, OURS, PUBLISHED
 from .retrieval_pictures import draw_confusion, draw_curves
@@ -192,4 +193,6 @@ def megabytes(prepared: Prepared) -> float:
             path = Path(folder) / "library"
             prepared.library.save(path)
             return path.stat().st_size / 1e6
+    if isinstance(prepared, FusedLibrary):
+        return sum(map(megabytes, prepared.prepared)) + prepared.between.nbytes / 1e6
     return len(pickle.dumps(prepared)) / 1e6
