@@ -7,11 +7,18 @@ Blender is imported only on `register`: a solve in a process of its own passes t
 def register() -> None:
     """Make properties, commands and panels known to Blender."""
     from . import batch, scene_properties, ui, watch
+    from .library import background, ghost_drawing, previews, properties
+    from .live import listening
     from .scene import contacts
 
     scene_properties.register()
+    properties.register()
+    ghost_drawing.register()
+    background.register()
+    previews.register()
     contacts.register()
     watch.register()
+    listening.register()
     batch.register()
     ui.register()
 
@@ -19,10 +26,17 @@ def register() -> None:
 def unregister() -> None:
     """Take them away again."""
     from . import batch, scene_properties, ui, watch
+    from .library import background, ghost_drawing, previews, properties
+    from .live import listening
     from .scene import contacts
 
     ui.unregister()
     batch.unregister()
+    listening.unregister()
     watch.unregister()
     contacts.unregister()
+    previews.unregister()
+    background.unregister()
+    ghost_drawing.unregister()
+    properties.unregister()
     scene_properties.unregister()

@@ -22,6 +22,7 @@ from .scene.scene_state import SceneState
 
 logger = logging.getLogger(__name__)
 
+TOLD = 2  # of what a reader said
 NOTED = 3  # recordings that the redo panel lists
 READING = 0.6  # share of the time that goes into reading
 
@@ -90,7 +91,7 @@ class Arrival:
         else:
             self._made.append(made)
             self._tops.append(top.session_uid)
-            self._said.append(" ".join([sentence, *[f"{told}." for told in warnings[:1]]]))
+            self._said.append(" ".join([sentence, *[f"{told}." for told in warnings[:TOLD]]]))
             self._figures.append(_figures(recording, warnings))
 
     def refuse(self, path: Path, error: MocapAssistError) -> None:

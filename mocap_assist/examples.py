@@ -1,5 +1,6 @@
-"""The clean motion that an animator picks to learn from: actions of this file, or files."""
+"""The clean motion that an animator picks to learn from: actions, .blend files, recordings."""
 
+from collections.abc import Sequence
 from pathlib import Path
 
 import bpy
@@ -11,7 +12,8 @@ from .clean_choices import CleanChoices, Prior
 from .jobs.cleaning import Examples
 from .scene import compat
 from .scene.armature_read import read_take
-from .scene.bone_channels import animated_curves, bone_path
+from .scene.fitting import fits, plays
+from .scene.linked_clips import is_blend, linked_clips
 
 SEPARATOR = ";"
 
@@ -30,7 +32,9 @@ def read_prior(
 
 
 def read_examples(scene: bpy.types.Scene, armature: bpy.types.Object, listed: str) -> Examples:
-    """Read the actions named in a list; leave files to be read where it is solved.
+    """Read the actions named in a list; leave recordings to be read where it is solved.
+
+    Of a .blend file in the list all actions are read that fit an armature there.
 
     Raises
     ------
@@ -49,9 +53,13 @@ def read_examples(scene: bpy.types.Scene, armature: bpy.types.Object, listed: st
         raise InvalidMotionError(
             f"There is neither an action nor a file called {', '.join(missing)}."
         )
-    files = [str(file) for path in files for file in _recordings_of(Path(path))]
-    motions = [_read_action(scene, armature, bpy.data.actions[name]) for name in actions]
-    return Examples(motions=tuple(motions), files=tuple(files))
+    armatures = _who_may_fit(scene, armature)
+    motions = [_read_named(scene, armatures, bpy.data.actions[name]) for name in actions]
+    for path in filter(is_blend, map(Path, files)):
+        motions += _read_blend(scene, path)
+    others = [Path(path) for path in files if not is_blend(Path(path))]
+    recordings = tuple(str(file) for path in others for file in _recordings_of(path))
+    return Examples(motions=tuple(motions), files=recordings)
 
 
 def _recordings_of(path: Path) -> list[Path]:
@@ -63,34 +71,45 @@ def _recordings_of(path: Path) -> list[Path]:
     return found
 
 
-def _read_action(
-    scene: bpy.types.Scene, armature: bpy.types.Object, action: bpy.types.Action
-) -> Motion:
-    """Read the body's motion from an action, on the armature that plays it or that it fits."""
+def _who_may_fit(scene: bpy.types.Scene, asking: bpy.types.Object) -> list[bpy.types.Object]:
+    """Return the armatures of a scene, first the one for which examples are asked."""
     armatures = [each for each in scene.objects if each.type == "ARMATURE"]
+    return [*[each for each in (asking,) if each.type == "ARMATURE"], *armatures]
+
+
+def _read_named(
+    scene: bpy.types.Scene, armatures: Sequence[bpy.types.Object], action: bpy.types.Action
+) -> Motion:
+    """Read the body's motion from an action of this file."""
+    motion = _read_action(scene, armatures, action)
+    if motion is None:
+        raise InvalidMotionError(
+            f"No armature of this scene has the bones of the action {action.name}. Add the rig"
+            " that it was made for, or pick another example."
+        )
+    return motion
+
+
+def _read_blend(scene: bpy.types.Scene, path: Path) -> list[Motion]:
+    """Read the motions of all actions in another .blend file that fit an armature there."""
+    with linked_clips(path) as clips:
+        found = [_read_action(scene, clips.armatures, action) for action in clips.actions]
+    motions = [motion for motion in found if motion is not None]
+    if not motions:
+        raise InvalidMotionError(
+            f"{path} has no armature with an action for it."
+            " Choose a file that has the rig, too."
+        )
+    return motions
+
+
+def _read_action(
+    scene: bpy.types.Scene, armatures: Sequence[bpy.types.Object], action: bpy.types.Action
+) -> Motion | None:
+    """Read the body's motion on the armature that plays the action, or the first that fits."""
     players = [each for each in armatures if plays(each, action)]
-    asking = [armature] if armature.type == "ARMATURE" else []
-    for other in [*players, *asking, *armatures]:
+    for other in [*players, *armatures]:
         for slot in action.slots:
-            if slot.target_id_type in compat.TARGETS and _fits(other, action, slot):
+            if slot.target_id_type in compat.TARGETS and fits(other, action, slot):
                 return read_take(other, scene, source=(action, slot)).parts[0].motion
-    raise InvalidMotionError(
-        f"No armature of this scene has the bones of the action {action.name}. Add the rig that"
-        " it was made for, or pick another example."
-    )
-
-
-def plays(armature: bpy.types.Object, action: bpy.types.Action) -> bool:
-    """Whether the action is the one that the armature plays now."""
-    animation = armature.animation_data
-    return animation is not None and animation.action == action
-
-
-def _fits(
-    armature: bpy.types.Object, action: bpy.types.Action, slot: bpy.types.ActionSlot
-) -> bool:
-    """Whether most animated bones of the action are bones of the armature."""
-    paths = {path.rpartition(".")[0] for path, _ in animated_curves(action, slot)}
-    bones = {bone_path(bone.name, "")[:-1] for bone in armature.pose.bones}
-    animated = {path for path in paths if path.startswith("pose.bones[")}
-    return bool(animated) and 2 * len(animated & bones) > len(animated)
+    return None

@@ -27,6 +27,23 @@ class Rotation(Enum):
     ZYX = "euler (ZYX)"
 
 
+class Unit(Enum):
+    """What the lengths of files are measured in."""
+
+    GUESS = "guess"
+    METRES = "metres"
+    CENTIMETRES = "centimetres"
+    MILLIMETRES = "millimetres"
+
+    @property
+    def metres(self) -> float | None:
+        """Metres in one of these; None for what the file says, or its reader guesses."""
+        return METRES.get(self)
+
+
+METRES = {Unit.METRES: 1.0, Unit.CENTIMETRES: 0.01, Unit.MILLIMETRES: 0.001}
+
+
 @dataclass(frozen=True, kw_only=True)
 class ImportChoices(Settings):
     """How recordings come into the scene."""
@@ -35,6 +52,11 @@ class ImportChoices(Settings):
         Target.ARMATURE,
         "Joints of a depth camera become the bones of an armature, or one empty each, which"
         " keeps every measured position. Markers always become empties",
+    )
+    unit: Unit = setting(
+        Unit.GUESS,
+        "What the lengths of the files are measured in. Guess takes the file's word or, where"
+        " it says nothing, what makes a human body, and tells which that was",
     )
     global_scale: float = setting(
         1.0,

@@ -41,7 +41,7 @@ class ImportJob:
         self._shown = 0.0
         self._states: list[State] = []
         self._read: deque[tuple[Path, State, Read | MocapAssistError]] = deque()
-        self.watch = Watch(context, self._next_batch())
+        self.watch = Watch(context, self._next_batch(), "import")
 
     def step(self, context: bpy.types.Context) -> bool:
         """Do a little; return whether all is done, and nothing is shown any more."""
@@ -95,7 +95,7 @@ class ImportJob:
             self.arrival.refuse(path, found)
         else:
             recording, moving, warnings = found
-            remember(path, state, Known(recording, warnings))
+            remember(path, state, Known(recording, warnings), self._wanted.unit)
             self.arrival.add(context, path, recording, moving=moving, warnings=warnings)
 
     def _show(self, context: bpy.types.Context) -> None:

@@ -47,12 +47,13 @@ def preview(context: bpy.types.Context, paths: list[Path]) -> str:
         size = path.stat().st_size
         if size > QUICKLY_READ:
             return f"{path.name}: {size / 1e6:.0f} MB; {plays}"
-        recording = read_again(path).recording
+        recording, warnings = read_again(path)
     except MocapAssistError as error:
         return str(error)
     except OSError as error:
         return f"{path} cannot be read ({error.strerror})."
-    return f"{path.name}: {recording.n_frames} frames at {recording.frame_rate:g} Hz; {plays}"
+    frames = f"{recording.n_frames} frames at {recording.frame_rate:g} Hz"
+    return ". ".join([f"{path.name}: {frames}; {plays}", *warnings])
 
 
 def import_files(
@@ -72,7 +73,7 @@ def import_files(
         for index, path in enumerate(paths):
             share = within(progress, index / len(paths), (index + 1) / len(paths))
             try:
-                known = read_again(path, within(share, 0.0, READING))
+                known = read_again(path, within(share, 0.0, READING), unit=choices.unit.metres)
             except SolveCancelled:
                 raise
             except MocapAssistError as error:

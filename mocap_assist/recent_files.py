@@ -11,21 +11,23 @@ from .jobs.reading import Known, Recording, read_file
 MOST = 20_000_000  # numbers that are kept
 
 State = tuple[tuple[str, int, int], ...]
-_read: dict[State, Known] = {}
+_read: dict[tuple[State, float | None], Known] = {}
 
 
-def read_again(path: Path, progress: Progress = unwatched) -> Known:
+def read_again(
+    path: Path, progress: Progress = unwatched, *, unit: float | None = None
+) -> Known:
     """Return what a file holds, as `read_file` does; what has not changed is read once."""
     state = state_of(path)
-    known = _read.pop(state, None) or read_file(path, progress)
-    remember(path, state, known)
+    known = _read.pop((state, unit), None) or read_file(path, progress, unit=unit)
+    remember(path, state, known, unit)
     return known
 
 
-def remember(path: Path, state: State, known: Known) -> None:
-    """Keep what was read from a file in this state, unless it has changed since."""
+def remember(path: Path, state: State, known: Known, unit: float | None) -> None:
+    """Keep what was read from a file in this state and unit, unless it has changed since."""
     if state and state == state_of(path):
-        _read[state] = known
+        _read[state, unit] = known
     while sum(_size(known.recording) for known in _read.values()) > MOST:
         _read.pop(next(iter(_read)))
 

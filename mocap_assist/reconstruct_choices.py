@@ -16,6 +16,8 @@ class Postures(Enum):
 
     SHIPPED = "shipped"
     EXAMPLES = "examples"
+    LEARNED = "learned file"
+    LIBRARY = "library"
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -24,13 +26,23 @@ class ReconstructChoices(Settings):
 
     postures: Postures = setting(
         Postures.SHIPPED,
-        "Guess lost joints from the postures that come with Mocap Assist, or from clean clips"
-        " of the same kind of motion",
+        "Guess lost joints from the postures that come with Mocap Assist, from clean clips of"
+        " the same kind of motion, from a file of postures, or from clips of the library that"
+        " are like the take",
     )
     examples: str = setting(
         "",
         "Clean actions of this file, or recordings and folders of them on disk, separated by"
         " semicolons; any rig serves",
+    )
+    postures_file: str = setting(
+        "", "Postures of your own, as learn-postures wrote them (.npz)"
+    )
+    residuals_file: str = setting(
+        "",
+        "How your own sensor errs, as learn-residuals wrote it (.npz); without it that of a"
+        " Kinect v2 is taken out of recordings of such a one",
+        label="Sensor's errors",
     )
     frame_range: FrameRange = setting(
         FrameRange.ACTION, "Change all frames of the action, or only some of them"

@@ -16,6 +16,7 @@ from .cleaning import ease_of
 from .examples import read_examples
 from .jobs.job import Quick
 from .jobs.reconstructing import RebuildFinish, RebuildProblem, Rebuilt, rebuild
+from .library.prior import library_prior
 from .reconstruct_choices import Postures, ReconstructBundle
 from .scene import history
 from .scene.armature_read import read_take
@@ -24,7 +25,7 @@ from .scene.compat import Source
 from .scene.contacts import animators_contacts, write_contacts
 from .scene.curves import GENERATED, MEASURED
 from .scene.origin import origin_of
-from .scene.reliability_curves import write_reliability
+from .scene.reliability_curves import Term, write_reliability
 from .scene.sensor_words import read_states
 from .scene.take import ArmatureTake
 from .selection import played_source, selected_armature, why_not_clean
@@ -104,8 +105,10 @@ def write_reconstructed(
     action, slot = write_take(
         armature, found.recorded, take, bones, _key_types(names, rebuilt), suffix=SUFFIX
     )
-    reliability = dict(zip(names, rebuilt.solution.reliability.T, strict=True))
-    write_reliability(armature, action, slot, take.frames, reliability)
+    for term in Term:
+        values = getattr(rebuilt.solution.trust, term.name.lower())
+        trusted = dict(zip(names, values.T, strict=True))
+        write_reliability(armature, action, slot, take.frames, trusted, term)
     if rebuilt.planted is not None:
         detected = animators_contacts(found.played, take.frames) is None
         contacts = rebuilt.planted.contacts
@@ -122,28 +125,38 @@ def _problem(
     settings: ReconstructBundle,
 ) -> RebuildProblem:
     body = found.body
-    if not np.isfinite(body.root_positions).all(axis=-1).any():
-        raise InvalidMotionError(
-            f"The hips of {armature.name} are tracked in no frame; there is nothing to"
-            " reconstruct."
-        )
-    examples = None
-    if settings.choices.postures is Postures.EXAMPLES:
-        examples = read_examples(scene, armature, settings.choices.examples)
+    choices, examples, postures, library = settings.choices, None, None, None
+    if choices.postures is Postures.EXAMPLES:
+        examples = read_examples(scene, armature, choices.examples)
+    elif choices.postures is Postures.LIBRARY:
+        library = library_prior(scene, armature)
+    elif choices.postures is Postures.LEARNED:
+        if not choices.postures_file:
+            raise InvalidMotionError("Choose the file of postures, or other postures.")
+        postures = _dated(choices.postures_file)
     state = read_states(found.recorded, body.skeleton.names, found.take.frames)
     return RebuildProblem(
         body=body,
         tracking_state=state,
-        source=_file_of(found.recorded[0]),
+        source=_source_of(found.recorded[0]),
         settings=settings.rebuilding,
         examples=examples,
+        postures_file=postures,
+        residuals_file=_dated(choices.residuals_file) if choices.residuals_file else None,
+        library=library,
     )
 
 
-def _file_of(action: bpy.types.Action) -> tuple[str, int] | None:
-    """Return the file that an action was imported from, and its date."""
-    path = Path(bpy.path.abspath(str(origin_of(action).get("file", ""))))
-    return (str(path), path.stat().st_mtime_ns) if path.is_file() else None
+def _source_of(action: bpy.types.Action) -> tuple[str, int] | None:
+    """Return the file that an action was imported from, and its date; None if it is gone."""
+    path = str(origin_of(action).get("file", ""))
+    return _dated(path) if Path(bpy.path.abspath(path)).is_file() else None
+
+
+def _dated(file: str) -> tuple[str, int]:
+    """Return a file and its date; 0 where it is missing, which its reader says better."""
+    path = Path(bpy.path.abspath(file))
+    return str(path), path.stat().st_mtime_ns if path.is_file() else 0
 
 
 def _key_types(names: tuple[str, ...], rebuilt: Rebuilt) -> dict[str, NDArray[np.uint8]]:
@@ -166,19 +179,12 @@ def _entry(settings: ReconstructBundle, rebuilt: Rebuilt) -> dict[str, Any]:
 
 
 def _said(name: str, rebuilt: Rebuilt, n_modified: int) -> str:
-    n_frames = rebuilt.motion.n_frames
-    said = [
-        f"{name}: {n_frames} frames; {100 * rebuilt.solution.rebuilt_share:.1f} % of the joints"
-        " were lost or wrong, and are rebuilt."
-    ]
-    if rebuilt.planted is not None:
-        said.append(
-            f"Feet slid {100 * rebuilt.planted.slide_before:.1f} cm, now"
-            f" {100 * rebuilt.planted.slide_after:.1f} cm."
-        )
-    if method := rebuilt.solution.method.rstrip("."):
-        said.append(f"{method[0].upper()}{method[1:]}.")
-    said += rebuilt.remarks
+    """Return what a status bar has room for, and what the animator must know."""
+    short = f"{name}: {100 * rebuilt.solution.rebuilt_share:.1f} % of joints rebuilt"
+    if planted := rebuilt.planted:
+        slides = (100 * planted.slide_before, 100 * planted.slide_after)
+        short += ", feet slid {:.1f} cm and now {:.1f} cm".format(*slides)
+    said = [f"{short}.", *rebuilt.remarks]
     if n_modified:
         said.append(f"The modifiers of {n_modified} curves are part of the new keys now.")
     return " ".join(said)

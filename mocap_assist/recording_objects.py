@@ -8,6 +8,7 @@ from numpy.typing import NDArray
 
 from ..solvers.errors import InvalidMotionError
 from ..solvers.motion import JointRecording, Motion, Tracks
+from ..solvers.motion.unseen_hips import with_hips
 from ..solvers.progress import Progress, unwatched
 from .import_choices import ImportChoices, Target
 from .jobs.reading import Recording, Wanted, as_wanted, hanging
@@ -54,6 +55,7 @@ def wanted_of(context: bpy.types.Context, choices: ImportChoices) -> Wanted:
         choices.target is Target.ARMATURE,
         choices.global_scale,
         scene_rate(context.scene) if resampled else None,
+        choices.unit.metres,
     )
 
 
@@ -88,13 +90,17 @@ def make_objects(
         what += ", since nothing tells which joint hangs on which"
     elif wanted and (n_loose := recording.n_joints - len(hanging(recording))):
         what += f", without {n_loose} points that hang on no joint"
-    return made._replace(what=what + _never_seen(recording))
+    return made._replace(what=what + _never_seen(recording, made.top.type == "ARMATURE"))
 
 
-def _never_seen(recording: Recording) -> str:
-    """Name the joints or markers that were left out."""
+def _never_seen(recording: Recording, in_armature: bool) -> str:
+    """Name the joints or markers that were left out, or put where they must have been."""
     if isinstance(recording, Motion):
         return ""
+    if in_armature and isinstance(recording, JointRecording):
+        whole = with_hips(recording)
+        if whole is not recording:
+            return f", with hips, never seen, between the legs{_never_seen(whole, True)}"
     tracks = recording.tracks if isinstance(recording, JointRecording) else recording
     lost = [tracks.names[point] for point in np.flatnonzero(~tracks.visible.any(axis=0))]
     if not lost:

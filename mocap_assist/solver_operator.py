@@ -79,7 +79,7 @@ class SolverOperator:
             if isinstance(solve, Quick):
                 return self._finish(run(solve))
             self._asked = fingerprint(solve.args[0])
-            self._watch = Watch(context, solve)
+            self._watch = Watch(context, solve, self.settings_group)
         except MocapAssistError as error:
             return self._give_up(error)
         context.window_manager.modal_handler_add(self)

@@ -19,9 +19,13 @@ _on: list["Watch"] = []
 class Watch:
     """A job, and what the status bar and the sidebar say about it until it ends."""
 
-    def __init__(self, context: bpy.types.Context, solve: Callable[..., Any]) -> None:
+    def __init__(
+        self, context: bpy.types.Context, solve: Callable[..., Any], owner: str
+    ) -> None:
+        """Start to solve; `owner` names the panel that tells how far it is."""
         self.job: Job[Any] = Job(solve)
         manager = context.window_manager
+        manager.mocap_assist_job.owner = owner
         self._timer = manager.event_timer_add(BETWEEN_LOOKS, window=context.window)
         _on.append(self)
         self.show(context, 0.0, "Starting")

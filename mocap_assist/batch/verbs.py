@@ -23,6 +23,7 @@ from ..scene import history
 from ..scene.armature_read import read_take
 from ..scene.marker_take import read_markers
 from ..selection import played_result, played_source
+from .library_verbs import FIND_HELP, add_find_options, check_find, perform_find
 from .reconstruct_verb import add_reconstruct_options, perform_reconstruct
 from .retarget_verbs import (
     add_retarget_options,
@@ -70,6 +71,11 @@ def _clean_options(parser: argparse.ArgumentParser) -> None:
         "--train", nargs="+", default=[], metavar="FILE",
         help="clean recordings to learn from; short for --prior examples --examples",
     )  # fmt: skip
+    parser.add_argument(
+        "--library", metavar="FILE",
+        help="clip library, of which what is like the take is learned from; short for --prior"
+        " library",
+    )  # fmt: skip
     arguments_from(parser, *get_type_hints(CleanSettings).values())
 
 
@@ -85,6 +91,9 @@ def _clean(
             settings.choices, prior=Prior.EXAMPLES, examples=SEPARATOR.join(arguments.train)
         )
         settings = settings._replace(choices=choices)
+    elif arguments.library:
+        scene.mocap_assist.library.library_file = arguments.library
+        settings = settings._replace(choices=replace(settings.choices, prior=Prior.LIBRARY))
     cleaned = run(read_cleaning(scene, armature, settings), progress)
     sentence = write_cleaned(scene, armature, settings, cleaned)
     action, _ = played_result(armature)
@@ -202,5 +211,6 @@ VERBS = {
         perform_unbake,
         on_markers=False,
     ),
+    "find": Verb(FIND_HELP, add_find_options, perform_find, writes=False, check=check_find),
 }
 """A new verb is a new entry here."""

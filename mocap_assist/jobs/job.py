@@ -5,7 +5,7 @@ import pickle
 import signal
 import subprocess
 import sys
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from functools import partial
 from pathlib import Path
 from tempfile import TemporaryDirectory
@@ -25,6 +25,7 @@ ONE_THREAD = {
     "OPENBLAS_NUM_THREADS": "1",
     "VECLIB_MAXIMUM_THREADS": "1",
 }
+OURS = {"PYTHONUTF8": "1", "PYTHONNOUSERSITE": "1"}
 # Neither what the user installed for a Python of his own, nor the script's folder is looked in.
 ALONE = ("-s", "-P")
 NO_WINDOW = getattr(subprocess, "CREATE_NO_WINDOW", 0)  # no console flashes up on Windows
@@ -53,7 +54,11 @@ class Quick(partial[Result]):
     """A solve that is so short that it needs no process of its own."""
 
 
-def run(solve: Callable[..., Result], progress: Progress = unwatched) -> Result:
+def run(
+    solve: Callable[..., Result],
+    progress: Progress = unwatched,
+    program: Sequence[str] = (),
+) -> Result:
     """Solve and wait for the result, in a process of its own unless the solve is quick.
 
     In that process linear algebra has one thread, whatever Blender's has: on matrices of this
@@ -61,7 +66,7 @@ def run(solve: Callable[..., Result], progress: Progress = unwatched) -> Result:
     """
     if isinstance(solve, Quick):
         return solve(progress=progress)
-    job = Job(solve)
+    job = Job(solve, program)
     try:
         while not job.done():
             progress(*job.progress())
@@ -77,10 +82,10 @@ class Job(Generic[Result]):
     """Start `solve(progress=…)`; ask `done` now and then; fetch `result` once.
 
     `solve` must be picklable. A crash of its process, or a lack of memory, leaves this one
-    unharmed.
+    unharmed. `program` is the command that runs it, by default a bare Python with child.py.
     """
 
-    def __init__(self, solve: Callable[..., Result]) -> None:
+    def __init__(self, solve: Callable[..., Result], program: Sequence[str] = ()) -> None:
         self._cancelled = False
         # On Windows a file that is still open cannot be removed; that is no reason to fail.
         self._folder = TemporaryDirectory(prefix="mocap_assist_", ignore_cleanup_errors=True)
@@ -88,12 +93,12 @@ class Job(Generic[Result]):
         (self._path / REQUEST).write_bytes(pickle.dumps(solve))
         with (self._path / LOG).open("wb") as log:
             self._process = subprocess.Popen(
-                [_python(), *ALONE, str(CHILD), str(self._path), EXTENSION],
+                [*(program or alone(CHILD)), str(self._path), EXTENSION],
                 stdin=subprocess.PIPE,  # nothing is said: it closes when this process ends
                 stdout=log,
                 stderr=subprocess.STDOUT,
                 creationflags=NO_WINDOW,
-                env=os.environ | ONE_THREAD | {"PYTHONPATH": _search_path(), "PYTHONUTF8": "1"},
+                env=os.environ | ONE_THREAD | OURS | {"PYTHONPATH": _search_path()},
             )
 
     def progress(self) -> tuple[float, str]:
@@ -145,6 +150,11 @@ class Job(Generic[Result]):
         return result
 
 
+def alone(script: Path) -> tuple[str, ...]:
+    """Return the command that runs a script in a Python that sees nothing of the user's."""
+    return (_python(), *ALONE, str(script))
+
+
 def _python() -> str:
     if not sys.executable:
         raise MocapAssistError("This Blender does not say where its Python is; reinstall it.")
@@ -152,8 +162,12 @@ def _python() -> str:
 
 
 def _search_path() -> str:
-    """Where this process finds modules, the extension's wheels too; not the present folder."""
-    return os.pathsep.join(path for path in sys.path if path)
+    """Where this process finds modules, the extension's wheels too; not the present folder.
+
+    Blender's scripts come last: in one that is a module of Python they would hide that.
+    """
+    paths = sorted(filter(None, sys.path), key=lambda path: "scripts" in Path(path).parts)
+    return os.pathsep.join(paths)
 
 
 def _cause(status: int) -> str:

@@ -16,6 +16,7 @@ from ...solvers.motion import (
     motion_from_points,
     resample,
 )
+from ...solvers.motion.unseen_hips import with_hips
 from ...solvers.progress import Progress, unwatched
 from ...solvers.recordings import read_recording
 
@@ -31,6 +32,8 @@ class Wanted(NamedTuple):
     scale: float
     frame_rate: float | None
     """Frames per second to resample to; None leaves each recording its own."""
+    unit: float | None = None
+    """Metres in one unit of the files; None for what they say, or their readers guess."""
 
 
 class Known(NamedTuple):
@@ -62,7 +65,7 @@ def read_files(
 
         share(0.0)
         try:
-            known = read_file(path, share)
+            known = read_file(path, share, unit=wanted.unit)
             moving = _tried(path, lambda known=known: as_wanted(known.recording, wanted))
             found.append(Read(known.recording, moving, known.warnings))
         except SolveCancelled:
@@ -72,13 +75,17 @@ def read_files(
     return found
 
 
-def read_file(path: Path, progress: Progress = unwatched) -> Known:
+def read_file(
+    path: Path, progress: Progress = unwatched, *, unit: float | None = None
+) -> Known:
     """Read a file, as `read_recording` does, and keep what its reader says.
+
+    `unit` is its metres in one unit of the file.
 
     Whatever goes wrong is a MocapAssistError, so that other files are read all the same.
     """
     listener = _Listener(progress)
-    recording = _tried(path, lambda: read_recording(path, progress=listener))
+    recording = _tried(path, lambda: read_recording(path, scale=unit, progress=listener))
     return Known(recording, tuple(listener.warnings))
 
 
@@ -138,7 +145,7 @@ def _joined(recording: Recording, armature: bool) -> Motion | Tracks:
     if not isinstance(recording, JointRecording):
         return recording
     if armature and in_one_tree(recording):
-        kept, tracks = hanging(recording), recording.tracks
+        kept, tracks = hanging(recording), with_hips(recording).tracks
         names = tuple(tracks.names[joint] for joint in kept)
         body = Tracks(names, tracks.positions[:, kept], tracks.frame_rate)
         return motion_from_points(body, joint_parents(names))

@@ -7,8 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from . import history
-from .compat import Source
-from .reliability_curves import reliability_at
+from .reliability_curves import Term, kept_terms, reliability_at
 
 Array = NDArray[np.float32]
 SHADES = np.array([
@@ -38,17 +37,15 @@ def shade(reliability: float) -> Array:
     return np.array(columns, np.float32)
 
 
-def told(armature: bpy.types.Object) -> Source | None:
-    """Return the result that the armature plays, if it says how far joints were trusted."""
+def terms_told(armature: bpy.types.Object) -> frozenset[Term]:
+    """Return what the result that an armature plays says of how far joints were trusted."""
     source = history.played_result(armature)
-    if source is None:
-        return None
-    names = [bone.name for bone in armature.pose.bones]
-    frame = source[0].frame_range[0]
-    return source if reliability_at(source, names, frame) else None
+    return frozenset() if source is None else kept_terms(source)
 
 
-def heat_at(armature: bpy.types.Object, frame: float) -> Heat | None:
+def heat_at(
+    armature: bpy.types.Object, frame: float, term: Term = Term.COMBINED
+) -> Heat | None:
     """Return the posed bones of an armature in the colours of a frame.
 
     A bone goes from the colour of its own joint to that of the joint at its tail.
@@ -57,7 +54,7 @@ def heat_at(armature: bpy.types.Object, frame: float) -> Heat | None:
     bones = list(armature.pose.bones)
     if source is None or not bones:
         return None
-    trusted = reliability_at(source, [bone.name for bone in bones], frame)
+    trusted = reliability_at(source, [bone.name for bone in bones], frame, term)
     if not trusted:
         return None
     ends = np.array([[bone.head, bone.tail] for bone in bones], np.float32)

@@ -5,7 +5,7 @@ import bpy
 from ...solvers.errors import InvalidMotionError
 from ..scene import history
 from ..selection import played_result, played_source, selected_subject
-from .drawing import draw_sentence, exists, is_wide
+from .drawing import draw_job, draw_sentence, exists, is_wide
 from .figures import figure_rows, frames_text
 
 CHECK, JUMP = "mocap_assist.measure_quality", "mocap_assist.jump_to_spot"
@@ -46,6 +46,7 @@ class CheckPanel:
 
     def draw(self, context: bpy.types.Context) -> None:
         layout, found = self.layout, context.scene.mocap_assist
+        draw_job(layout, context, "check")
         row = layout.row()
         row.scale_y = 1.3
         row.operator(CHECK, icon="VIEWZOOM")

@@ -28,7 +28,7 @@ class CleanPanel:
 
     def draw(self, context: bpy.types.Context) -> None:
         layout = self.layout
-        running = draw_job(layout, context)
+        running = draw_job(layout, context, "clean")
         column = layout.column()
         column.enabled = not running
         clean = context.scene.mocap_assist.clean
@@ -53,7 +53,7 @@ def _draw_main(
     column.prop(clean, "prior", text="Learn from")
     if clean.prior == Prior.EXAMPLES.name:
         draw_examples(column, clean)
-    if clean.prior != Prior.TAKE.name:
+    if clean.prior in {Prior.EXAMPLES.name, Prior.LEARNED.name}:
         _draw_learned(column, clean)
     for name in MAIN:
         if joints or name not in OF_JOINTS:

@@ -52,10 +52,13 @@ def sidebar_width(context: bpy.types.Context) -> float:
     return context.region.width / scale if context.region is not None and scale else 0.0
 
 
-def draw_job(layout: bpy.types.UILayout, context: bpy.types.Context) -> bool:
-    """Draw how far the running solve is; return whether there is one."""
+def draw_job(layout: bpy.types.UILayout, context: bpy.types.Context, *owners: str) -> bool:
+    """Draw how far the running solve is, if it is one of these owners'.
+
+    Return whether any runs: settings can wait until it has ended.
+    """
     job = context.window_manager.mocap_assist_job
-    if job.running:
+    if job.running and job.owner in owners:
         column = layout.column(align=True)
         text = f"{job.message} {job.fraction:.0%}"
         column.progress(factor=job.fraction, type="BAR", text=text, translate=False)

@@ -15,7 +15,7 @@ ADD_FOLDER = "mocap_assist.add_example_folder"
 REMOVE = "mocap_assist.remove_example"
 CLEAN, RECONSTRUCT = "clean", "reconstruct"
 """Whose list it is: a property of `scene.mocap_assist`."""
-RECORDINGS = "*.bvh;*.amc;*.c3d;*.trc"
+RECORDINGS = "*.bvh;*.amc;*.c3d;*.trc;*.blend"
 CHANGES_A_LIST = {"INTERNAL", "UNDO"}
 LONGEST_MENU = 30
 
@@ -141,8 +141,11 @@ class MOCAP_OT_remove_example(bpy.types.Operator):
 class MOCAP_OT_add_example_files(bpy.types.Operator):
     bl_idname = ADD_FILES
     bl_options: ClassVar = CHANGES_A_LIST
-    bl_label = "Recordings on Disk..."
-    bl_description = "Learn from clean recordings on disk too, of any rig"
+    bl_label = "Recordings or .blend Files..."
+    bl_description = (
+        "Learn from clean recordings on disk too, of any rig, or from all actions of .blend"
+        " files that have their rig with them"
+    )
 
     directory: bpy.props.StringProperty(subtype="DIR_PATH", options={"HIDDEN", "SKIP_SAVE"})
     files: bpy.props.CollectionProperty(

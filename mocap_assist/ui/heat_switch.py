@@ -7,13 +7,60 @@ import gpu
 import numpy as np
 from bpy.types import SpaceView3D
 
-from ..scene.heat import Heat, heat_at
+from ..scene.heat import Heat, heat_at, terms_told
 from ..scene.overlay_drawing import refresh
+from ..scene.reliability_curves import Term
+from .drawing import draw_sentence
 from .preferences import preferred
 
 WIDER = 2.0
 """Times as wide as the lines of the overlay, for they lie upon the bones."""
+TERMS = (
+    (Term.COMBINED, "Combined", "How likely each joint is right, all in all"),
+    (Term.BEHAVIOUR, "Movement", "Red joints shake to and fro as no limb does"),
+    (
+        Term.KINEMATICS,
+        "Lengths",
+        "Red joints are at the ends of bones that are longer or shorter than they should be",
+    ),
+    (Term.TRACKING, "Sensor", "Red joints are those that the sensor itself lost or guessed"),
+)
+MISSING = {
+    Term.KINEMATICS: (
+        "Lengths: an armature's never change; the camera's are known while the imported file is"
+        " there and the action unedited."
+    ),
+    Term.TRACKING: "Sensor: the recording does not tell how well the sensor saw each joint.",
+}
+OLDER = "Made by an earlier version, which did not tell why. Press Reconstruct again."
+NOTHING_TOLD = "This action tells nothing of trust. Press Reconstruct, or choose its result."
 _handle: list[Any] = []
+
+
+def draw_heat_switch(layout: bpy.types.UILayout, context: bpy.types.Context) -> None:
+    """Draw the switch and, while it is on, whose trust is shown and what is not known."""
+    manager = context.window_manager
+    layout.prop(manager, "mocap_assist_heat", toggle=True, icon="COLOR")
+    armature = context.view_layer.objects.active
+    if not manager.mocap_assist_heat or armature is None or armature.type != "ARMATURE":
+        return
+    told = terms_told(armature)
+    signs = layout.grid_flow(row_major=True, columns=2, even_columns=True, align=True)
+    for term, _, _ in TERMS:
+        cell = signs.row(align=True)
+        cell.enabled = term in told
+        cell.prop_enum(manager, "mocap_assist_heat_term", term.name)
+    for sentence in _missing(told):
+        draw_sentence(layout, context, sentence, icon="INFO")
+
+
+def _missing(told: frozenset[Term]) -> list[str]:
+    """Say what cannot be shown, and why."""
+    if not told:
+        return [NOTHING_TOLD]
+    if told == {Term.COMBINED}:
+        return [OLDER]
+    return [MISSING[term] for term in MISSING if term not in told]
 
 
 def _switched(self: bpy.types.WindowManager, context: bpy.types.Context) -> None:
@@ -30,7 +77,8 @@ def _draw() -> None:
         return
     if armature is None or armature.type != "ARMATURE":
         return
-    heat = heat_at(armature, context.scene.frame_current_final)
+    term = Term[context.window_manager.mocap_assist_heat_term]
+    heat = heat_at(armature, context.scene.frame_current_final, term)
     if heat is not None:
         _draw_heat(heat, armature.matrix_world, WIDER * preferred("line_width"))
 
@@ -64,10 +112,20 @@ def register() -> None:
         ),
         update=_switched,
     )
+    bpy.types.WindowManager.mocap_assist_heat_term = bpy.props.EnumProperty(
+        name="Sign",
+        description="Which sign of trust the colours show",
+        items=[
+            (term.name, label, description, number)
+            for number, (term, label, description) in enumerate(TERMS)
+        ],
+        update=_switched,
+    )
     _handle.append(SpaceView3D.draw_handler_add(_draw, (), "WINDOW", "POST_VIEW"))
 
 
 def unregister() -> None:
     """Take the switch and the drawing away."""
     SpaceView3D.draw_handler_remove(_handle.pop(), "WINDOW")
+    del bpy.types.WindowManager.mocap_assist_heat_term
     del bpy.types.WindowManager.mocap_assist_heat

@@ -5,7 +5,7 @@ from pathlib import PurePath
 import bpy
 
 from ..scene.origin import origin_of
-from .drawing import exists
+from .drawing import draw_job, exists
 from .import_menu import IMPORT
 
 
@@ -20,6 +20,7 @@ class ImportPanel:
 
     def draw(self, context: bpy.types.Context) -> None:
         layout = self.layout
+        draw_job(layout, context, "import")
         layout.operator(IMPORT, text="Import Motion Capture", icon="IMPORT")
         active = context.view_layer.objects.active
         origin = origin_of(active) if active is not None else {}

@@ -9,7 +9,7 @@ from ...solvers.markers import SolveSettings
 from ...solvers.workflows import MarkerMotionSettings
 from ..selection import selected_subject
 from ..solving import why_not_solve
-from .drawing import draw_sentence, exists
+from .drawing import draw_job, draw_sentence, exists
 
 SOLVE = "mocap_assist.solve_skeleton"
 
@@ -27,7 +27,9 @@ class MarkersPanel:
 
     def draw(self, context: bpy.types.Context) -> None:
         layout = self.layout
+        running = draw_job(layout, context, "solve")
         column = layout.column()
+        column.enabled = not running
         column.use_property_split = True
         column.use_property_decorate = False
         solve = context.scene.mocap_assist.solve

@@ -7,7 +7,7 @@ import bpy
 
 from ...solvers.reconstruction import Ground, SimulateSettings
 from ..selection import why_not_simulate
-from .drawing import draw_sentence, exists
+from .drawing import draw_job, draw_sentence, exists
 
 SIMULATE = "mocap_assist.simulate"
 
@@ -24,7 +24,9 @@ class PhysicsPanel:
 
     def draw(self, context: bpy.types.Context) -> None:
         layout = self.layout
+        running = draw_job(layout, context, "simulate")
         column = layout.column()
+        column.enabled = not running
         column.use_property_split = True
         column.use_property_decorate = False
         simulate = context.scene.mocap_assist.simulate

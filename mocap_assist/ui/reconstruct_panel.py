@@ -11,6 +11,7 @@ from ..reconstructing import why_not_reconstruct
 from .clean_panel import folded
 from .drawing import draw_job, draw_sentence, exists
 from .example_list import RECONSTRUCT, draw_examples
+from .heat_switch import draw_heat_switch
 
 BUTTON = "mocap_assist.reconstruct"
 
@@ -27,7 +28,7 @@ class ReconstructPanel:
 
     def draw(self, context: bpy.types.Context) -> None:
         layout = self.layout
-        running = draw_job(layout, context)
+        running = draw_job(layout, context, "reconstruct")
         column = layout.column()
         column.enabled = not running
         settings = context.scene.mocap_assist.reconstruct
@@ -36,6 +37,8 @@ class ReconstructPanel:
         column.prop(settings, "postures", text="Postures")
         if settings.postures == Postures.EXAMPLES.name:
             draw_examples(column, settings, RECONSTRUCT)
+        elif settings.postures == Postures.LEARNED.name:
+            column.prop(settings, "postures_file")
         for name in ("frame_range", "result_as", "plant_feet"):
             column.prop(settings, name)
         _draw_folded(column, settings)
@@ -44,7 +47,7 @@ class ReconstructPanel:
         button.operator(BUTTON, icon="OUTLINER_OB_ARMATURE")
         if reason := why_not_reconstruct(context):
             draw_sentence(layout, context, reason, icon="INFO")
-        layout.prop(context.window_manager, "mocap_assist_heat", toggle=True, icon="COLOR")
+        draw_heat_switch(layout, context)
 
 
 def _draw_folded(column: bpy.types.UILayout, settings: bpy.types.PropertyGroup) -> None:
@@ -52,7 +55,7 @@ def _draw_folded(column: bpy.types.UILayout, settings: bpy.types.PropertyGroup) 
     header.label(text="Advanced")
     if body is None:
         return
-    for name in folded(ReconstructSettings, ()):
+    for name in ("residuals_file", *folded(ReconstructSettings, ())):
         body.prop(settings, name)
     feet = body.column()
     feet.active = settings.plant_feet

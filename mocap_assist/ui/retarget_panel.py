@@ -35,7 +35,7 @@ class RetargetPanel:
 
     def draw(self, context: bpy.types.Context) -> None:
         layout = self.layout
-        running = draw_job(layout, context)
+        running = draw_job(layout, context, "retarget", "unbake")
         shown = context.scene.mocap_assist.retarget
         reason = why_not_pressed(context)
         column = layout.column()

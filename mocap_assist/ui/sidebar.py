@@ -7,7 +7,9 @@ from .clean_panel import CleanPanel
 from .compare_panel import ComparePanel
 from .feet_panel import FeetPanel
 from .import_panel import ImportPanel
+from .library_panel import LibraryPanel
 from .markers_panel import MarkersPanel
+from .perform_panel import PerformPanel
 from .physics_panel import PhysicsPanel
 from .preferences import preferred
 from .reconstruct_panel import ReconstructPanel
@@ -37,6 +39,8 @@ BODIES = (
     PhysicsPanel,
     MarkersPanel,
     RetargetPanel,
+    LibraryPanel,
+    PerformPanel,
 )
 PANELS = [panel for body in BODIES for panel in _in_every_editor(body)]
 

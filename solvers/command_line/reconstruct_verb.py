@@ -14,6 +14,7 @@ from ..reconstruction import (
     PostureLibrary,
     ReconstructSettings,
     ResidualPrior,
+    load_posture_library,
     load_residual_prior,
 )
 from ..recordings import read_recording, write_joint_csv
@@ -24,6 +25,7 @@ from ..workflows import (
     try_to_plant,
 )
 from .files import JOINTS, add_reading_options, read_all, write
+from .from_library import add_library_option, check_library, postures_for
 from .options import arguments_from, settings_from_arguments
 from .verb import Outcome, Task
 
@@ -44,10 +46,16 @@ class Rebuilt(NamedTuple):
 def add_reconstruct_options(parser: argparse.ArgumentParser) -> None:
     """Add the options of `reconstruct`."""
     add_reading_options(parser)
-    parser.add_argument(
+    postures = parser.add_mutually_exclusive_group()
+    add_library_option(postures)
+    postures.add_argument(
         "--train", nargs="+", type=Path, default=[], metavar="FILE",
         help="Clean clips of skeletons, or folders of them, to learn postures from; without"
         " them those that come with Mocap Assist guide",
+    )  # fmt: skip
+    postures.add_argument(
+        "--postures", type=Path, metavar="FILE",
+        help="Postures of your own, as learn-postures wrote them, in their place",
     )  # fmt: skip
     parser.add_argument(
         "--residuals", type=Path, metavar="FILE",
@@ -77,10 +85,11 @@ class Guides(NamedTuple):
 
 def read_guides(arguments: argparse.Namespace, progress: Progress) -> Guides:
     """Learn and read, once for all files of a run, what guides them."""
-    given = arguments.residuals
+    check_library(arguments.library)
+    given, library = arguments.residuals, arguments.postures
     residuals = None if given is None else load_residual_prior(given)
     if not arguments.train:
-        return Guides(None, residuals)
+        return Guides(library and load_posture_library(library), residuals)
     clips = read_all(arguments.train, arguments, within(progress, 0.0, 0.7))
     return Guides(postures_of(clips, progress=within(progress, 0.7, 1.0)), residuals)
 
@@ -90,7 +99,9 @@ def perform_reconstruct(task: Task, prepared: Guides, progress: Progress) -> Out
     given = read_recording(
         task.source, scale=task.arguments.scale, progress=within(progress, 0.0, 0.1)
     )
-    rebuilt = _rebuilt(given, task, prepared, within(progress, 0.1, 0.8))
+    guides, said = _guides_for(given, task, prepared, within(progress, 0.1, 0.3))
+    rebuilt = _rebuilt(given, task, guides, within(progress, 0.3, 0.8))
+    rebuilt = rebuilt._replace(remarks=(*said, *rebuilt.remarks))
     assert task.target is not None
     if task.target.suffix.lower() != JOINTS:
         write(rebuilt.motion, task.target, within(progress, 0.9, 1.0))
@@ -101,6 +112,17 @@ def perform_reconstruct(task: Task, prepared: Guides, progress: Progress) -> Out
     else:
         write_joint_csv(rebuilt.joints, task.target, progress=within(progress, 0.9, 1.0))
     return _outcome(given, rebuilt)
+
+
+def _guides_for(
+    given: Any, task: Task, guides: Guides, progress: Progress
+) -> tuple[Guides, tuple[str, ...]]:
+    """Return what guides one recording; what is like it in a library, where there is one."""
+    if task.arguments.library is None:
+        return guides, ()
+    subject = given if isinstance(given, Motion) else _joints_of(given, task.source)
+    found = postures_for(subject, task.source, task.arguments, progress)
+    return guides._replace(postures=found.postures), (found.said,)
 
 
 def _rebuilt(given: Any, task: Task, guides: Guides, progress: Progress) -> Rebuilt:

@@ -18,6 +18,8 @@ class Outcome:
     """For people."""
     figures: dict[str, Any] = field(default_factory=dict)
     """For programs: what `--json` prints."""
+    failures: tuple[str, ...] = ()
+    """A sentence for each part of it that failed."""
 
 
 class Task(NamedTuple):
@@ -46,6 +48,9 @@ class Makes(Enum):
     WORDS = "figures of each file"
     FILES = "a file of each file"
     ONE_FILE = "one file of all files"
+    LIBRARY = "a library, which is named first, of all other files"
+    MATCHES = "what there is like a file in a library, which is named last"
+    MANY_FILES = "a folder of files of all files"
 
 
 def nothing_to_prepare(arguments: argparse.Namespace, progress: Progress) -> None:

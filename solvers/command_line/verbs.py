@@ -13,8 +13,16 @@ from ..progress import Progress, within
 from .convert import convert
 from .denoise_verb import add_denoise_options, learn_once, perform_denoise
 from .files import add_reading_options, read, read_all
+from .library_verbs import (
+    add_find_options,
+    add_index_options,
+    perform_find,
+    perform_index,
+)
 from .options import arguments_from, settings_from_arguments
+from .postures_verb import add_postures_options, perform_postures
 from .reconstruct_verb import add_reconstruct_options, perform_reconstruct, read_guides
+from .replay_verb import add_replay_options, perform_replay
 from .residuals_verb import add_residuals_options, perform_residuals
 from .retarget_verbs import (
     add_retarget_options,
@@ -25,6 +33,7 @@ from .retarget_verbs import (
 )
 from .simulate_verb import add_simulate_options, perform_simulate
 from .solve_verb import add_solve_options, perform_solve
+from .vary_verb import add_vary_options, perform_vary
 from .verb import Makes, Outcome, Task, Verb
 
 
@@ -111,10 +120,34 @@ VERBS = {
         perform_residuals,
         Makes.ONE_FILE,
     ),
+    "learn-postures": Verb(
+        "Keep the postures of clean clips, for reconstruct to guess lost joints from.",
+        add_postures_options,
+        perform_postures,
+        Makes.ONE_FILE,
+    ),
     "simulate": Verb(
         "Let a body with mass and muscles, on solid ground, make motions of a skeleton.",
         add_simulate_options,
         perform_simulate,
+    ),
+    "index": Verb(
+        "Put recordings into a library in which there can be searched, and keep it up to date.",
+        add_index_options,
+        perform_index,
+        Makes.LIBRARY,
+    ),
+    "find": Verb(
+        "Find what in a library is like a recording, and where in which clip it is.",
+        add_find_options,
+        perform_find,
+        Makes.MATCHES,
+    ),
+    "vary": Verb(
+        "Make new motions like a few clips of one behaviour, each different.",
+        add_vary_options,
+        perform_vary,
+        Makes.MANY_FILES,
     ),
     "convert": Verb(
         "Write recordings of any known format as BVH, or as C3D or TRC where they are points.",
@@ -126,6 +159,12 @@ VERBS = {
         add_retarget_options,
         perform_retarget,
         prepare=read_target,
+    ),
+    "replay": Verb(
+        "Send recordings to this machine as a live stream, as a depth camera's tracker would.",
+        add_replay_options,
+        perform_replay,
+        Makes.WORDS,
     ),
     "unbake": Verb(
         "Replace a key on every frame by few keys with handles.",

@@ -14,6 +14,10 @@ USUAL_LENGTHS = np.array(
 )  # fmt: skip
 """Metres of the way to each joint from the one above, in an adult of 1.75 m
 (Drillis and Contini's shares of stature, and the Kinect's flat shoulders and hips)."""
+STATURE = 1.75
+"""Metres, of that adult."""
+LARGEST, SMALLEST = 3.0, 0.2
+"""Sizes of a body, in such adults, beyond which the unit must be wrong."""
 RELIABLE = 0.6
 """Joints that are trusted more than this tell the lengths, where there are enough of them."""
 FEWEST = 15
@@ -23,6 +27,18 @@ def segment_lengths(positions: Array) -> Array:
     """Return the way from the joint above to each joint, shape (n_frames, 20), metres."""
     above = np.maximum(PARENTS, 0)
     return np.asarray(np.linalg.norm(positions - positions[..., above, :], axis=-1))
+
+
+def size_of_body(positions: Array) -> float:
+    """Return how many times as large as an adult a body is; NaN where no bone is seen.
+
+    Parameters
+    ----------
+    positions : shape (n_frames, 20, 3), metres
+    """
+    bones = np.array(PARENTS) >= 0
+    shares = segment_lengths(positions)[:, bones] / USUAL_LENGTHS[bones]
+    return float(np.nanmedian(shares)) if np.isfinite(shares).any() else np.nan
 
 
 def body_lengths(positions: Array, reliability: Array | None = None) -> Array:

@@ -10,6 +10,7 @@ from scipy.ndimage import convolve1d
 from ..errors import InvalidMotionError
 from .motion import Motion
 from .rotations import normalize, unroll
+from .straight_gaps import bridged
 from .tracks import Tracks
 
 STOPBAND = 60.0
@@ -17,6 +18,9 @@ STOPBAND = 60.0
 
 PASSED = 0.7
 """Part of the new Nyquist frequency up to which motion is kept."""
+
+NUMBERS_AT_ONCE = 4_000_000
+"""Of which more would need much memory: two hours of a skeleton are thirty times as many."""
 
 STENCIL = 4
 """Frames that take part in one interpolated value."""
@@ -55,7 +59,7 @@ def resample(recording: Recording, frame_rate: float) -> Recording:
     times = _moments(recording.n_frames, recording.frame_rate, frame_rate)
     slowdown = frame_rate / recording.frame_rate
     if isinstance(recording, Motion):
-        rotations = normalize(_sampled(unroll(recording.rotations), times, slowdown))
+        rotations = _sampled_rotations(recording.rotations, times, slowdown)
         places = _sampled(recording.root_positions, times, slowdown)
         return Motion(recording.skeleton, rotations, places, frame_rate)
     confidence = recording.confidence
@@ -75,31 +79,30 @@ def _moments(n_frames: int, old_rate: float, new_rate: float) -> NDArray[np.floa
     return np.asarray(np.minimum(times, n_frames - 1))
 
 
+def _sampled_rotations(
+    rotations: NDArray[np.float64], times: NDArray[np.float64], slowdown: float
+) -> NDArray[np.float64]:
+    """Return rotations at fractional frames, some joints at a time."""
+    result = np.empty((len(times), *rotations.shape[1:]))
+    step = max(NUMBERS_AT_ONCE // (4 * len(rotations)), 1)
+    for joint in range(0, rotations.shape[1], step):
+        some = slice(joint, joint + step)
+        result[:, some] = normalize(_sampled(unroll(rotations[:, some]), times, slowdown))
+    return result
+
+
 def _sampled(
     values: NDArray[np.float64], times: NDArray[np.float64], slowdown: float
 ) -> NDArray[np.float64]:
     """Return `values`, shape (n_frames, ..., n), at fractional frames; gaps stay NaN."""
     observed = np.isfinite(values).all(axis=-1)
-    filled = _bridged(values, observed)
+    filled = np.nan_to_num(bridged(values))
     if slowdown < 1.0 and len(values) > 1:
         filled = _low_passed(filled, slowdown)
     result = _interpolated(filled, times)
     seen = observed[np.floor(times).astype(int)] & observed[np.ceil(times).astype(int)]
     result[~seen] = np.nan
     return result
-
-
-def _bridged(values: NDArray[np.float64], observed: NDArray[np.bool_]) -> NDArray[np.float64]:
-    """Bridge gaps by straight lines, for the filter's sake; what is never seen becomes 0."""
-    flat = values.reshape(len(values), -1).copy()
-    seen = np.repeat(observed.reshape(len(values), -1), values.shape[-1], axis=1)
-    frames = np.arange(len(values))
-    for column in np.flatnonzero(~seen.all(axis=0)):
-        known = seen[:, column]
-        flat[:, column] = (
-            np.interp(frames, frames[known], flat[known, column]) if known.any() else 0.0
-        )
-    return flat.reshape(values.shape)
 
 
 def _low_passed(values: NDArray[np.float64], slowdown: float) -> NDArray[np.float64]:

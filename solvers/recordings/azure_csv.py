@@ -92,10 +92,12 @@ def read_azure_csv(
     return joint_recording(
         path,
         names,
-        from_azure_space(values[..., :3]) * (MILLIMETRE if scale is None else scale),
+        from_azure_space(values[..., :3]),
         Sensor.AZURE_KINECT,
         states=states,
         frame_rate=frame_rate,
+        scale=scale,
+        usual_unit=MILLIMETRE,
         progress=progress,
     )
 

@@ -92,9 +92,11 @@ def read_azure_json(
     return joint_recording(
         path,
         joints,
-        from_azure_space(positions) * (MILLIMETRE if scale is None else scale),
+        from_azure_space(positions),
         Sensor.AZURE_KINECT,
         times=None if np.isnan(times).all() else MICROSECOND * np.array(times),
+        scale=scale,
+        usual_unit=MILLIMETRE,
         progress=progress,
     )
 

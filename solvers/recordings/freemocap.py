@@ -10,6 +10,7 @@ from ..motion import JointRecording, Sensor, Tracks
 from ..motion.mediapipe import BODY, CENTRES, HAND
 from ..progress import Progress, unwatched
 from .axes import check_scale, z_up_from_y_up
+from .body_unit import guessed_unit
 from .stored_arrays import MAGIC, read_array
 from .time_stamps import USUAL_RATE
 
@@ -77,8 +78,9 @@ def read_freemocap(
     is_body = names[0] == BODY[0]
     if is_body:
         names, points = _with_centres(names, _z_up(points))
-    tracks = Tracks(names, points * (_unit(points) if scale is None else scale), frame_rate)
-    progress(1.0, "Reading")
+    unit = _unit(points) if scale is None else scale
+    tracks = Tracks(names, points * unit, frame_rate)
+    progress(1.0, guessed_unit(unit) if scale is None and is_body else "Reading")
     return JointRecording(tracks, None, Sensor.MEDIAPIPE) if is_body else tracks
 
 

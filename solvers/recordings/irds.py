@@ -96,10 +96,11 @@ def read_irds(
     return joint_recording(
         path,
         NAMES,
-        from_kinect_space(positions) * (1.0 if scale is None else scale),
+        from_kinect_space(positions),
         Sensor.KINECT_V2,
         states=np.stack([frame.states for frame in frames]),
         times=MILLISECOND * np.array([frame.time for frame in frames]),
+        scale=scale,
         progress=progress,
     )
 

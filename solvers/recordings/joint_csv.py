@@ -86,16 +86,15 @@ def read_joint_csv(
             f"{path}: neither a frame_rate in its first line nor a column {TIME} tells when"
             " each frame was seen."
         )
-    positions = values.positions
-    positions *= header.unit if scale is None else scale
     return told_recording(
         path,
         _joint_names(columns),
         header,
-        positions,
+        values.positions,
         states=values.states,
         confidence=values.confidence,
         times=values.times,
+        scale=scale,
         progress=progress,
     )
 

@@ -26,12 +26,12 @@ UP = ("x", "y", "z", "-x", "-y", "-z")
 class JointHeader:
     """What the numbers mean.
 
-    Frame rate in hertz, or None where each frame has its time; metres per unit; the axis that
-    is up; the sensor.
+    Frame rate in hertz, or None where each frame has its time; metres per unit, or None where
+    it does not say; the axis that is up; the sensor.
     """
 
     frame_rate: float | None
-    unit: float
+    unit: float | None
     up: str
     sensor: Sensor
 
@@ -61,11 +61,11 @@ def joint_header(said: Mapping[str, Any], place: str) -> JointHeader:
             f"{place}: a frame_rate of {shown(str(rate))} is not above 0; write hertz, or leave"
             " it out and give each frame its time."
         )
-    units = _choice(said, "units", "m", tuple(METRES), place)
+    unit = METRES[_choice(said, "units", "m", tuple(METRES), place)]
     up = _choice(said, "up", "z", UP, place)
     sensors = tuple(sensor.value for sensor in Sensor)
     sensor = _choice(said, "sensor", Sensor.OTHER.value, sensors, place)
-    return JointHeader(frame_rate, METRES[units], up, Sensor(sensor))
+    return JointHeader(frame_rate, unit if "units" in said else None, up, Sensor(sensor))
 
 
 def _choice(
@@ -88,11 +88,12 @@ def told_recording(
     states: NDArray[np.float64] | None,
     confidence: NDArray[np.float64] | None,
     times: NDArray[np.float64] | None,
+    scale: float | None,
     progress: Progress,
 ) -> JointRecording:
     """Make a recording as `joint_recording` does, by a header; what has no state has state 0.
 
-    Positions are in metres, in the axes of the file. Times count where there is no frame rate.
+    Positions are in the unit and axes of the file. Times count where there is no frame rate.
     """
     if confidence is not None:
         confidence = np.nan_to_num(confidence)
@@ -108,6 +109,7 @@ def told_recording(
         times=times if header.frame_rate is None else None,
         frame_rate=header.frame_rate or 1.0,
         nan_only=True,
+        scale=header.unit if scale is None else scale,
         progress=progress,
     )
 

@@ -91,10 +91,11 @@ def read_joint_json(
         path,
         names,
         header,
-        positions * (header.unit if scale is None else scale),
+        positions,
         states=_stacked([frame.states for frame in frames]),
         confidence=_stacked([frame.confidence for frame in frames]),
         times=times,
+        scale=scale,
         progress=progress,
     )
 

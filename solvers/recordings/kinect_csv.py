@@ -92,11 +92,12 @@ def read_kinect_csv(
     return joint_recording(
         path,
         NAMES,
-        from_kinect_space(joints[..., :3]) * (1.0 if scale is None else scale),
+        from_kinect_space(joints[..., :3]),
         Sensor.KINECT_V2,
         states=checked_states(joints[..., 3], path),
         times=rows[:, 0] * TICK if width > WITHOUT_TIME else None,
         frame_rate=frame_rate,
+        scale=scale,
         progress=progress,
     )
 

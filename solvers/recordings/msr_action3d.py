@@ -100,9 +100,10 @@ def read_msr_action3d(
     return joint_recording(
         path,
         NAMES,
-        from_kinect_space(joints[..., :3]) * (1.0 if scale is None else scale),
+        from_kinect_space(joints[..., :3]),
         Sensor.KINECT_V1,
         confidence=np.clip(np.nan_to_num(joints[..., 3]), 0.0, 1.0),
         frame_rate=frame_rate,
+        scale=scale,
         progress=progress,
     )

@@ -91,9 +91,10 @@ def read_ntu_skeleton(
     return joint_recording(
         path,
         NAMES,
-        from_kinect_space(joints[..., :3]) * (1.0 if scale is None else scale),
+        from_kinect_space(joints[..., :3]),
         Sensor.KINECT_V2,
         states=checked_states(joints[..., 3], path),
+        scale=scale,
         progress=progress,
     )
 

@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 from ..errors import InvalidFileError
 from ..motion import JointRecording, Sensor, Tracks
 from ..progress import Progress
+from .body_unit import in_unit_of_body
 from .time_stamps import USUAL_RATE, ConstantRate
 
 
@@ -23,6 +24,8 @@ def joint_recording(
     times: NDArray[np.float64] | None = None,
     frame_rate: float = USUAL_RATE,
     nan_only: bool = False,
+    scale: float | None,
+    usual_unit: float = 1.0,
     progress: Progress,
 ) -> JointRecording:
     """Make a recording of what a file holds.
@@ -32,7 +35,7 @@ def joint_recording(
     path : Path or str
         For error messages.
     names : sequence of str
-    positions : float array, shape (n_frames, n_joints, 3), metres, Z up
+    positions : float array, shape (n_frames, n_joints, 3), in the file's unit, Z up
         What is NaN, exactly 0, or in state 0 was not observed: its state becomes 0, and the
         position NaN.
     sensor : Sensor
@@ -45,8 +48,12 @@ def joint_recording(
     nan_only : bool
         True: only NaN was not observed; the origin is a place like others, and a joint that was
         not tracked keeps the place that it was given.
+    scale : float, metres per unit of the file, or None
+        None: the usual unit, or the one that makes a human body where that does not.
+    usual_unit : float, metres
+        The one that such files have.
     progress : Progress
-        Told that this is done.
+        Told that this is done, and of the unit where it is guessed.
 
     Returns
     -------
@@ -73,5 +80,8 @@ def joint_recording(
         states = None if states is None else clock.states(states)
         confidence = None if confidence is None else clock.confidence(confidence)
     progress(1.0, "Reading" if times is None else f"Resampled to {frame_rate:.4g} Hz")
+    unit = usual_unit if scale is None else scale
+    positions *= unit  # a copy of what was given
     tracks = Tracks(tuple(names), positions, frame_rate, confidence)
-    return JointRecording(tracks, states, sensor)
+    recording = JointRecording(tracks, states, sensor)
+    return recording if scale is not None else in_unit_of_body(recording, unit, progress)

@@ -85,9 +85,10 @@ def read_ui_prmd_pair(
     recording = joint_recording(
         path,
         NAMES,
-        kinect * metres,
+        kinect,
         Sensor.KINECT_V2,
         frame_rate=float(frame_rate),
+        scale=metres,
         progress=within(progress, 0.0, 0.9),
     )
     unseen = (markers == 0.0).all(axis=-1) | ~np.isfinite(markers).all(axis=-1)

@@ -1,6 +1,5 @@
 """A recording whose joints hang together, whatever its tracker calls them."""
 
-from dataclasses import replace
 from typing import TypeVar
 
 import numpy as np
@@ -8,21 +7,17 @@ from numpy.typing import NDArray
 
 from ..errors import InvalidMotionError
 from ..motion import JOINTS, JointRecording, Sensor, Tracks
-from ..motion.body_size import USUAL_LENGTHS, segment_lengths
+from ..motion.body_size import LARGEST, SMALLEST, STATURE, size_of_body
 from ..motion.posture_joints import (
-    PARENTS,
     POSTURE_JOINTS,
     joints_of_names,
     posture_positions,
 )
+from ..motion.unseen_hips import LEGS, with_hips
 
-LARGEST, SMALLEST = 3.0, 0.2
-"""Sizes of a body, in usual adults, beyond which the unit must be wrong."""
-STATURE = 1.75
 LONG_GAP = 1.0
 """Seconds without any joint, from which on the result is a guess that is worth a word."""
 UNITS = {0.001: "millimetres", 0.01: "centimetres", 0.0254: "inches", 1000.0: "kilometres"}
-LEGS = ("leftUpperLeg", "rightUpperLeg")
 KINECT_V1 = dict(zip(POSTURE_JOINTS, JOINTS[Sensor.KINECT_V1], strict=True))
 """What the first Kinect calls the joints of postures."""
 Word = TypeVar("Word", np.int8, np.float64)
@@ -42,8 +37,8 @@ def known_body(recording: JointRecording) -> JointRecording:
     check_tracked(recording)
     parents = recording.parents
     if parents.count(-1) == 1 and "hips" in joints_of_names(recording.names):
-        return _with_hips(recording)
-    return _with_hips(_by_roles(recording))
+        return with_hips(recording)
+    return with_hips(_by_roles(recording))
 
 
 def check_tracked(recording: JointRecording) -> None:
@@ -62,28 +57,12 @@ def check_tracked(recording: JointRecording) -> None:
         )
 
 
-def _with_hips(recording: JointRecording) -> JointRecording:
-    """Put hips that no frame shows between the legs."""
-    tracks, state = recording.tracks, recording.tracking_state
-    places = joints_of_names(tracks.names)
-    legs = [places[role] for role in LEGS if role in places]
-    hips = places["hips"]
-    if tracks.visible[:, hips].any() or len(legs) < 2:
-        return recording
-    positions = tracks.positions.copy()
-    positions[:, hips] = positions[:, legs].mean(axis=1)
-    if state is not None:
-        state = state.copy()
-        state[:, hips] = state[:, legs].min(axis=1)
-    return replace(recording, tracks=tracks.with_positions(positions), tracking_state=state)
-
-
 def _by_roles(recording: JointRecording) -> JointRecording:
     tracks, state = recording.tracks, recording.tracking_state
     places = joints_of_names(tracks.names)
     joints = {role: [place] for role, place in places.items()}
-    legs = [places[leg] for leg in ("leftUpperLeg", "rightUpperLeg") if leg in places]
-    if "hips" not in places and len(legs) == 2:
+    legs = [places[leg] for leg in LEGS if leg in places]
+    if "hips" not in places and len(legs) == len(LEGS):
         joints["hips"] = legs
     if "hips" not in joints or len(joints) < 2:
         raise InvalidMotionError(
@@ -108,13 +87,9 @@ def _least(told: NDArray[Word], chosen: list[list[int]]) -> NDArray[Word]:
 
 def check_size(recording: JointRecording) -> None:
     """Raise InvalidMotionError, and guess the unit, where the body is not of human size."""
-    lengths = segment_lengths(posture_positions(recording))
-    usual = np.where(np.isfinite(lengths), USUAL_LENGTHS, np.nan)
-    bones = [joint for joint, above in enumerate(PARENTS) if above >= 0]
-    shares = lengths[:, bones] / usual[:, bones]
-    if not np.isfinite(shares).any():
+    size = size_of_body(posture_positions(recording))
+    if np.isnan(size):
         return
-    size = float(np.nanmedian(shares))
     if size == 0.0:
         raise InvalidMotionError(
             "The joints are all in one place, as some exporters write them where no body is"

@@ -5,11 +5,20 @@ from collections.abc import Sequence
 from ..errors import InvalidMotionError
 from ..motion import Motion, Tracks
 from ..progress import Progress, unwatched
-from ..reconstruction.posture_library import PostureLibrary, build_posture_library
+from ..reconstruction.posture_library import (
+    PostureLibrary,
+    PostureLibrarySettings,
+    build_posture_library,
+)
+
+USUAL = PostureLibrarySettings()
 
 
 def postures_of(
-    clips: Sequence[Motion | Tracks], *, progress: Progress = unwatched
+    clips: Sequence[Motion | Tracks],
+    *,
+    settings: PostureLibrarySettings = USUAL,
+    progress: Progress = unwatched,
 ) -> PostureLibrary:
     """Build a library of the postures of clean clips.
 
@@ -24,4 +33,4 @@ def postures_of(
             "Postures are learned from the motions of skeletons; these clips are points."
         )
     said = "1 clip of your own" if len(motions) == 1 else f"{len(motions)} clips of your own"
-    return build_posture_library(motions, trained_on=said, progress=progress)
+    return build_posture_library(motions, settings=settings, trained_on=said, progress=progress)

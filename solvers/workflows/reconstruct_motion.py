@@ -22,7 +22,14 @@ from ..motion.posture_joints import (
     posture_positions,
 )
 from ..progress import Progress, unwatched, within
-from ..reconstruction import PostureLibrary, ReconstructSettings, ResidualPrior, reconstruct
+from ..reconstruction import (
+    PostureLibrary,
+    Reconstruction,
+    ReconstructSettings,
+    Reliability,
+    ResidualPrior,
+    reconstruct,
+)
 from ..reconstruction.follow_joints import follow_joints
 from ..reconstruction.turn_to_postures import turn_to_postures
 from .known_body import KINECT_V1, check_size, check_tracked, gap_remarks
@@ -31,6 +38,8 @@ from .rebuilt_joints import rebuilt_joints
 
 Array = NDArray[np.float64]
 REBUILDING = ReconstructSettings()
+SAME = 1e-6
+"""Share of a length that is no change."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -41,9 +50,11 @@ class RebuiltMotion:
     ----------
     motion : Motion
         Of the skeleton that was given; without gaps.
-    reliability, confidence : shape (n_frames, n_joints), 0 to 1
-        How far each joint was trusted, and how sure its result is; NaN for joints that are
-        not among those by which bodies are compared.
+    trust : Reliability
+        How far each joint was trusted, and why; NaN for joints that are not among those by
+        which bodies are compared, and all NaN for a term of which the take tells nothing.
+    confidence : shape (n_frames, n_joints), 0 to 1
+        How sure the result is of each joint; NaN likewise.
     rebuilt : bool, shape (n_frames, n_joints)
         Which of these joints were lost, or are put elsewhere than they were recorded.
     method : str
@@ -53,11 +64,16 @@ class RebuiltMotion:
     """
 
     motion: Motion
-    reliability: Array
+    trust: Reliability
     confidence: Array
     rebuilt: NDArray[np.bool_]
     method: str
     remarks: tuple[str, ...]
+
+    @property
+    def reliability(self) -> Array:
+        """How far each joint was trusted, shape (n_frames, n_joints), 0 to 1."""
+        return self.trust.combined
 
     @property
     def rebuilt_share(self) -> float:
@@ -125,16 +141,51 @@ def reconstruct_motion(
         )
     else:
         turned = turn_to_postures(motion, posture_positions(rebuilt.tracks), humanoid_map)
-    shape = (motion.n_frames, motion.n_joints)
-    reliability, confidence = np.full(shape, np.nan), np.full(shape, np.nan)
-    told, guessed = np.zeros(shape, bool), rebuilt_joints(recording, rebuilt)
-    for joint, column in columns.items():
-        reliability[:, joint] = rebuilt.reliability.combined[:, column]
-        confidence[:, joint] = rebuilt.confidence[:, column]
-        told[:, joint] = guessed[:, column]
+    trust, confidence, told = _of_skeleton(motion.n_joints, recording, rebuilt, columns)
     progress(1.0, "Done")
     remarks = tuple(gap_remarks(recording))
-    return RebuiltMotion(turned, reliability, confidence, told, rebuilt.method, remarks)
+    return RebuiltMotion(turned, trust, confidence, told, rebuilt.method, remarks)
+
+
+def _of_skeleton(
+    n_joints: int, recording: JointRecording, rebuilt: Reconstruction, columns: dict[int, int]
+) -> tuple[Reliability, Array, NDArray[np.bool_]]:
+    """Return trust, confidence and what was rebuilt, of the joints of a skeleton."""
+    joints, places = list(columns), list(columns.values())
+    shape = (recording.n_frames, n_joints)
+
+    def spread(values: Array) -> Array:
+        result = np.full(shape, np.nan)
+        result[:, joints] = values[:, places]
+        return result
+
+    found = rebuilt.reliability
+    says_nothing = recording.tracking_state is None and recording.tracks.confidence is None
+    trust = Reliability(
+        spread(found.combined),
+        spread(found.behaviour),
+        np.full(shape, np.nan) if _never_vary(found.kinematics) else spread(found.kinematics),
+        np.full(shape, np.nan) if says_nothing else spread(found.tracking),
+    )
+    told = np.zeros(shape, bool)
+    told[:, joints] = rebuilt_joints(recording, rebuilt)[:, places]
+    return trust, spread(rebuilt.confidence), told
+
+
+def _never_vary(kinematics: Array) -> bool:
+    """Whether lengths are the same in all frames, as those of any skeleton; 0 is not seen."""
+    return bool(((kinematics < SAME) | (kinematics > 1.0 - SAME)).all())
+
+
+def postures_recording(motion: Motion) -> JointRecording:
+    """Return the joints of postures of a skeleton's motion, as a tracker would name them.
+
+    Raises
+    ------
+    InvalidMotionError
+        No body is recognised.
+    """
+    return _postures_of(motion, find_humanoid_map(motion.skeleton))[0]
 
 
 def _is_tracked(names: tuple[str, ...]) -> bool:
@@ -160,7 +211,8 @@ def _postures_of(
 ) -> tuple[JointRecording, dict[int, int]]:
     """Return where the joints of postures are, under the names of a tracker."""
     positions = motion_postures(motion, humanoid_map)
-    there = np.flatnonzero(np.isfinite(positions).all(axis=-1).any(axis=0))
+    seen = np.isfinite(positions).all(axis=-1).any(axis=0)
+    there = np.flatnonzero(seen | ~seen.any())  # all, to be refused, where none is seen
     names = tuple(KINECT_V1[POSTURE_JOINTS[joint]] for joint in there)
     tracks = Tracks(names, positions[:, there], motion.frame_rate)
     places = humanoid_map.indices(motion.skeleton)

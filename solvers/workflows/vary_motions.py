@@ -53,7 +53,9 @@ def vary_motions(
     InvalidMotionError
         The examples do not go together; see `learn_variation_model`.
     """
-    model = learn_variation_model(examples, progress=within(progress, 0.0, 0.3))
+    model = learn_variation_model(
+        examples, settings=settings, progress=within(progress, 0.0, 0.3)
+    )
     drawn = synthesize(
         model, n_variants, settings=settings, progress=within(progress, 0.3, 0.4)
     )

@@ -20,7 +20,9 @@ from types import ModuleType
 import numpy as np
 import pytest
 
-pytest_plugins = ("armature_fixtures", "common_fixtures", "rig_fixtures")
+pytest_plugins = (
+    "armature_fixtures", "common_fixtures", "panel_fixtures", "rig_fixtures", "window_fixtures",
+)  # fmt: skip
 
 PACKAGE = "bl_ext.user_default.mocap_assist"
 CHECKOUT = Path(__file__).resolve().parents[2]

@@ -50,6 +50,34 @@ def most_mixed(armature):
     return max(range(*map(int, action.frame_range)), key=spread)
 
 
+def look_at(armature):
+    """Turn the view, a little from the side, to where an armature is."""
+    view = bgui.area().spaces.active
+    view.overlay.show_relationship_lines = False
+    view.region_3d.view_location = armature.pose.bones[0].head
+    view.region_3d.view_distance = 2.6
+    view.region_3d.view_rotation = (0.79, 0.57, 0.13, 0.18)
+
+
+def choices(armature):
+    """Show the signs of trust, and where postures may come from."""
+    manager, settings = bpy.context.window_manager, bpy.context.scene.mocap_assist.reconstruct
+    manager.mocap_assist_heat_term = "TRACKING"
+    yield from settle()
+    bgui.shot("2b-sensor.png")
+    manager.mocap_assist_heat_term = "COMBINED"
+    settings.postures, settings.examples = "EXAMPLES", "walk.clean; /captures/clean"
+    yield from settle()
+    bgui.shot("3-examples.png")
+    settings.postures = "LEARNED"
+    raw = armature.animation_data.action["mocap_assist_source"]
+    raw["mocap_assist_recording"] = "{}"  # as if the file were gone
+    with bgui.override("WINDOW"):
+        assert bpy.ops.mocap_assist.reconstruct() == {"FINISHED"}
+    yield from settle()
+    bgui.shot("4-own-postures-without-the-file.png")
+
+
 def steps():
     for each in list(bpy.data.objects):
         bpy.data.objects.remove(each)
@@ -59,13 +87,8 @@ def steps():
         )
     unfold_reconstruct_alone()
     yield from bgui.open_sidebar("Mocap")
-    view = bgui.area().spaces.active
-    view.overlay.show_relationship_lines = False
     armature = bpy.context.object
-    hips = armature.pose.bones[0].head
-    view.region_3d.view_location = hips
-    view.region_3d.view_distance = 2.6
-    view.region_3d.view_rotation = (0.79, 0.57, 0.13, 0.18)  # a little from the side
+    look_at(armature)
     yield from settle()
     bgui.shot("1-recorded.png")
     with bgui.override("WINDOW"):
@@ -79,10 +102,7 @@ def steps():
     bpy.context.scene.frame_set(most_mixed(armature))
     yield from settle()
     bgui.shot("2-trust.png")
-    bpy.context.scene.mocap_assist.reconstruct.postures = "EXAMPLES"
-    bpy.context.scene.mocap_assist.reconstruct.examples = "walk.clean; /captures/clean"
-    yield from settle()
-    bgui.shot("3-examples.png")
+    yield from choices(armature)
 
 
 bgui.run(steps, timeout=300)

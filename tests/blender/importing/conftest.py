@@ -1,6 +1,5 @@
-"""The button Import, and a window in which it waits."""
+"""The button Import, pressed by a script or in a window."""
 
-import tempfile
 from types import SimpleNamespace
 
 import pytest
@@ -24,13 +23,6 @@ def bring(blank):
 
 
 @pytest.fixture
-def own_temporary_folder(tmp_path, monkeypatch):
-    """Others that solve on this machine at the same time leave their folders elsewhere."""
-    (tmp_path / "jobs").mkdir()
-    monkeypatch.setattr(tempfile, "tempdir", str(tmp_path / "jobs"))
-
-
-@pytest.fixture
 def walks(recordings, tmp_path):
     """Three files of a folder of their own: two walks, and between them one that is cut."""
     content = (recordings / "mocap" / "cmu_walk" / WALK).read_bytes()
@@ -38,27 +30,6 @@ def walks(recordings, tmp_path):
         (tmp_path / name).write_bytes(content)
     (tmp_path / "cut.bvh").write_bytes(content[:9000])
     return tmp_path
-
-
-@pytest.fixture
-def window(blank, own_temporary_folder):
-    """The context that an operator gets in one, and what it does to it."""
-    seen = SimpleNamespace(timers=[], status=[], reports=[])
-    seen.job = blank.context.window_manager.mocap_assist_job
-    seen.context = SimpleNamespace(
-        scene=blank.context.scene,
-        view_layer=blank.context.view_layer,
-        window=None,
-        window_manager=SimpleNamespace(
-            event_timer_add=lambda *_, **__: seen.timers.append("timer") or "timer",
-            event_timer_remove=seen.timers.remove,
-            modal_handler_add=lambda _: None,
-            mocap_assist_job=seen.job,
-            windows=[],
-        ),
-        workspace=SimpleNamespace(status_text_set=seen.status.append),
-    )
-    return seen
 
 
 @pytest.fixture

@@ -1,46 +1,17 @@
 """A button that was pressed in a window waits for its solve; here Blender pretends to."""
 
 import tempfile
-import time
 from pathlib import Path
 from types import SimpleNamespace
 
 import pytest
+from modal_events import event, wait
 
 BUSY = "Another solve is running"
 
 
-@pytest.fixture(autouse=True)
-def own_temporary_folder(tmp_path, monkeypatch):
-    """Others that solve on this machine at the same time leave their folders elsewhere."""
-    monkeypatch.setattr(tempfile, "tempdir", str(tmp_path))
-
-
 def folders():
     return set(Path(tempfile.gettempdir()).glob("mocap_assist_*"))
-
-
-@pytest.fixture
-def window(load, blank, monkeypatch):
-    """The context that a button gets there, and what it does to it."""
-    monkeypatch.setattr(load("mocap_assist.solver_operator"), "in_background", lambda: False)
-    monkeypatch.setattr(load("mocap_assist.redo"), "_last", {})  # every solve takes a while
-    seen = SimpleNamespace(timers=[], status=[], reports=[])
-    seen.job = blank.context.window_manager.mocap_assist_job
-    seen.context = SimpleNamespace(
-        scene=blank.context.scene,
-        view_layer=blank.context.view_layer,
-        window=None,
-        window_manager=SimpleNamespace(
-            event_timer_add=lambda *_, **__: seen.timers.append("timer") or "timer",
-            event_timer_remove=seen.timers.remove,
-            modal_handler_add=lambda _: None,
-            mocap_assist_job=seen.job,
-            windows=[],
-        ),
-        workspace=SimpleNamespace(status_text_set=seen.status.append),
-    )
-    return seen
 
 
 @pytest.fixture
@@ -53,7 +24,7 @@ def make_button(load, window):
         kind = next(each for each in vars(acts).values() if hasattr(each, "read_scene"))
 
         class Button(operator):
-            bl_idname = kind.bl_idname
+            bl_idname, settings_group = kind.bl_idname, kind.settings_group
             why_not, read_scene = kind.why_not, kind.read_scene
             write_scene = kind.write_scene
             poll_message_set = window.reports.append
@@ -92,16 +63,6 @@ def press_clean(make_button, window, load):
     return press
 
 
-def event(kind, value="NOTHING"):
-    return SimpleNamespace(type=kind, value=value)
-
-
-def wait(button, window):
-    while (outcome := button.modal(window.context, event("TIMER"))) == {"RUNNING_MODAL"}:
-        time.sleep(0.05)
-    return outcome
-
-
 @pytest.mark.parametrize("key", ["ESC", "RIGHTMOUSE"])
 def test_escape_ends_the_solve_and_writes_nothing(noisy, press_clean, window, blank, key):
     actions = blank.data.actions.keys()
@@ -109,6 +70,7 @@ def test_escape_ends_the_solve_and_writes_nothing(noisy, press_clean, window, bl
     button = press_clean()
 
     assert window.job.running and window.status[-1] == "Starting 0%   Esc: cancel"
+    assert window.job.owner == "clean"
     for other in (event("TIMER"), event("LEFTMOUSE", "PRESS")):
         assert button.modal(window.context, other) == {"RUNNING_MODAL"}
     assert button.modal(window.context, event(key, "PRESS")) == {"CANCELLED"}

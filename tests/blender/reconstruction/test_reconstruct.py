@@ -167,6 +167,15 @@ def test_clips_of_your_own_teach_postures(
     assert "1 clip of your own" in json.loads(result[HISTORY])[-1]["method"]
 
 
+def test_the_status_bar_has_room_for_what_is_said(walk, reconstruct, capfd):
+    reconstruct(plant_feet=True)
+
+    told = capfd.readouterr().out.strip().splitlines()[-1].removeprefix("Info: ")
+    assert len(told) < 100
+    assert told.startswith("walk.reconstructed: 6.") and "% of joints rebuilt" in told
+    assert "feet slid" in told and told.endswith(" cm.")
+
+
 def test_the_button_is_grey_without_an_armature(blank):
     blank.ops.object.empty_add()
 

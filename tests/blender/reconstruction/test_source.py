@@ -76,3 +76,54 @@ def test_the_file_helps_where_a_joint_hangs_on_a_lost_one(
 
     assert errors[0] < 0.03
     assert errors[0] < 0.8 * errors[1]
+
+
+@pytest.mark.parametrize(("first", "last"), [(25, 65), (1, 40), (50, 90)])
+def test_a_part_of_the_take_is_found_in_its_file(
+    walk, walk_file, load, blank, reconstruct, first, last
+):
+    scene = blank.context.scene
+    scene.use_preview_range = True
+    scene.frame_preview_start, scene.frame_preview_end = first, last
+    ranges = load("mocap_assist.scene.frames").FrameRange
+    take = load("mocap_assist.scene.armature_read").read_take(walk, scene, ranges.PREVIEW)
+    recording = load("solvers.recordings").read_recording(walk_file)
+
+    found = load("solvers.workflows.measured_joints").measured_joints(
+        take.parts[0].motion, recording
+    )
+    reconstruct(frame_range="PREVIEW")
+
+    wrists = (each.tracks.positions for each in (found, recording))
+    mine, theirs = (
+        places[:, each.names.index("WristLeft")]
+        for places, each in zip(wrists, (found, recording), strict=True)
+    )
+    assert np.allclose(mine, theirs[first - 1 : last], atol=1e-4)
+    terms = load("mocap_assist.scene.heat").terms_told(walk)
+    assert "KINEMATICS" in {term.name for term in terms}
+
+
+def test_hips_that_were_never_tracked_are_between_the_legs(
+    load, truth, bring, tmp_path, reconstruct, capfd
+):
+    from kinect_walks import tracked_walk
+
+    motion, recordings = load("solvers.motion"), load("solvers.recordings")
+    recording = tracked_walk(motion, truth)
+    positions = np.array(recording.tracks.positions)
+    positions[:, recording.names.index("HipCenter")] = np.nan
+    path = tmp_path / "walk.csv"
+    recordings.write_joint_csv(
+        recording.with_tracks(recording.tracks.with_positions(positions)), path
+    )
+
+    armature = bring(path)
+    told = capfd.readouterr().out
+    result = reconstruct()
+
+    assert "with hips, never seen, between the legs," in told
+    assert "HipCenter" in armature.pose.bones
+    assert result.name == "walk.reconstructed"
+    terms = load("mocap_assist.scene.heat").terms_told(armature)
+    assert "KINEMATICS" in {term.name for term in terms}

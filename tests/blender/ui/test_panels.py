@@ -79,16 +79,31 @@ def test_recordings_on_disk_are_examples_too(blank, draw, tmp_path):
     assert {"a.bvh", "b.bvh"} <= set(draw("MOCAP_PT_clean"))
 
 
-def test_a_running_solve_shows_how_far_it_is(blank, draw, actor):
+PANELS = {
+    "import": "import", "clean": "clean", "reconstruct": "reconstruct", "check": "check",
+    "simulate": "physics", "solve": "markers", "retarget": "retarget", "unbake": "retarget",
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("owner", PANELS)
+def test_a_running_solve_shows_how_far_it_is_in_its_own_panel(blank, draw, actor, owner):
+    if owner == "solve":
+        blank.ops.object.empty_add()  # the panel is there for markers
+        holder = blank.context.object
+        blank.ops.object.empty_add()
+        blank.context.object.parent = holder
+        blank.context.object.keyframe_insert("location")
     job = blank.context.window_manager.mocap_assist_job
-    job.running, job.fraction, job.message = True, 0.4, "Denoising"
+    job.running, job.fraction, job.message, job.owner = True, 0.4, "Working", owner
     try:
-        shown = draw("MOCAP_PT_clean")
+        shown = {panel: draw(f"MOCAP_PT_{panel}") for panel in PANELS.values()}
     finally:
         job.running = False
 
-    assert "Denoising 40%" in shown
-    assert "Esc cancels" in shown
+    assert {panel for panel, texts in shown.items() if "Working 40%" in texts} == {
+        PANELS[owner]
+    }
+    assert "Esc cancels" in shown[PANELS[owner]]
 
 
 def test_a_checked_take_lists_its_spots_and_ways_to_them(blank, draw, actor):

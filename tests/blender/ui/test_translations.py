@@ -20,12 +20,13 @@ def said_by(blank, draw, actor):
     found, clean = set(), blank.context.scene.mocap_assist.clean
     assert blank.ops.mocap_assist.denoise() == {"FINISHED"}
     assert blank.ops.mocap_assist.measure_quality() == {"FINISHED"}
-    blank.context.window_manager.mocap_assist_job.running = True
+    job = blank.context.window_manager.mocap_assist_job
+    job.running, job.owner = True, "clean"
     for prior in ("EXAMPLES", "LEARNED"):
         clean.prior = prior
         for panel in PANELS:
             found |= {getattr(blank.types, panel).bl_label, *draw(panel)}
-    blank.context.window_manager.mocap_assist_job.running = False
+    job.running = False
     return found
 
 

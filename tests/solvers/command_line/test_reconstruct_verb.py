@@ -1,6 +1,7 @@
 """`reconstruct`: from files of joints to motions or joints."""
 
 import json
+import re
 
 import numpy as np
 import pytest
@@ -9,6 +10,7 @@ from kinect_walks import tracked_walk, true_positions
 from solvers import motion as vocabulary
 from solvers import samples
 from solvers.motion import JOINTS, Sensor, Tracks, posture_joints
+from solvers.reconstruction import load_posture_library
 from solvers.recordings import read_bvh, read_joint_csv, write_bvh, write_joint_csv, write_trc
 
 
@@ -138,3 +140,39 @@ def test_a_recording_of_which_nothing_was_tracked(call, tmp_path):
     status, _, err = call("reconstruct", path, tmp_path / "out.bvh")
 
     assert status == 2 and err.count("\n") == 1 and "empty.csv" in err
+
+
+@pytest.fixture
+def clips(tmp_path):
+    """A folder with two clean walks."""
+    (tmp_path / "clips").mkdir()
+    for name, speed in (("slow", 0.9), ("fast", 1.6)):
+        gait = samples.GaitSettings(duration=2.0, frame_rate=30.0, speed=speed)
+        write_bvh(samples.walking_gait(gait), tmp_path / "clips" / f"{name}.bvh")
+    return tmp_path / "clips"
+
+
+def test_postures_of_your_own_are_learned_once(call, walk_file, clips, tmp_path):
+    own = tmp_path / "own.npz"
+    status, out, err = call("learn-postures", clips, "--output", own, "--n-postures", 40)
+    assert (status, err) == (0, "")
+    assert re.match(r"Kept 40 of \d{3} postures of 2 clips of your own in ", out)
+    assert load_posture_library(own).n_postures == 40
+
+    words = ("reconstruct", walk_file, tmp_path / "walk.bvh", "--postures", own)
+    status, out, _ = call(*words)
+    twice, _, contradiction = call(*words, "--train", clips)
+
+    assert status == 0 and "2 clips of your own" in out and "CMU" not in out
+    assert twice == 2 and "not allowed with" in contradiction
+
+
+def test_points_have_no_postures(call, walk, tmp_path):
+    write_trc(walk.tracks, tmp_path / "points.trc")
+
+    status, _, err = call(
+        "learn-postures", tmp_path / "points.trc", "--output", tmp_path / "own.npz"
+    )
+
+    assert status == 2 and "motions of skeletons" in err
+    assert not (tmp_path / "own.npz").exists()

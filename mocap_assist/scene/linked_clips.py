@@ -1,0 +1,58 @@
+"""Actions and armatures of another .blend file, linked for as long as they are looked at."""
+
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+from typing import NamedTuple
+
+import bpy
+
+from ...solvers.errors import InvalidFileError
+
+ENDING = ".blend"
+
+
+class Linked(NamedTuple):
+    """What another file holds."""
+
+    actions: tuple[bpy.types.Action, ...]
+    armatures: tuple[bpy.types.Object, ...]
+    """In the present scene meanwhile, so that Blender knows where they stand."""
+
+
+def is_blend(path: Path) -> bool:
+    """Whether a file is called as Blender's own."""
+    return path.suffix.lower() == ENDING
+
+
+@contextmanager
+def linked_clips(path: Path) -> Iterator[Linked]:
+    """Link what a file holds; afterwards all is as it was.
+
+    Raises
+    ------
+    InvalidFileError
+        Blender cannot read the file.
+    """
+    scene = bpy.context.scene
+    libraries = {each.session_uid for each in bpy.data.libraries}
+    present = {each.session_uid for each in scene.objects}
+    try:
+        with bpy.data.libraries.load(str(path), link=True) as (there, into):
+            into.actions, into.objects = list(there.actions), list(there.objects)
+    except OSError:
+        raise InvalidFileError(
+            f"{path} cannot be read as a .blend file. Save it anew, or choose another."
+        ) from None
+    armatures = [each for each in into.objects if each is not None and each.type == "ARMATURE"]
+    strangers = [each for each in armatures if each.session_uid not in present]
+    try:
+        for each in strangers:
+            scene.collection.objects.link(each)
+        yield Linked(tuple(filter(None, into.actions)), tuple(armatures))
+    finally:
+        for each in strangers:
+            scene.collection.objects.unlink(each)
+        for library in list(bpy.data.libraries):
+            if library.session_uid not in libraries:
+                bpy.data.libraries.remove(library)

@@ -1,0 +1,40 @@
+"""`learn-postures`: a library of how bodies stand and move, from clean clips."""
+
+import argparse
+from pathlib import Path
+
+from ..progress import Progress, within
+from ..reconstruction import PostureLibrarySettings
+from ..workflows import postures_of
+from .files import add_reading_options, read_all
+from .options import arguments_from, settings_from_arguments
+from .verb import Outcome, Task
+
+
+def add_postures_options(parser: argparse.ArgumentParser) -> None:
+    """Add the options of `learn-postures`."""
+    parser.add_argument(
+        "--output", type=Path, required=True, metavar="FILE",
+        help="The .npz file to write; reconstruct --postures and the button Reconstruct read"
+        " it",
+    )  # fmt: skip
+    add_reading_options(parser)
+    arguments_from(parser, PostureLibrarySettings)
+
+
+def perform_postures(task: Task, prepared: None, progress: Progress) -> Outcome:
+    """Collect the postures of all clips and write those that are most different."""
+    clips = read_all(task.sources, task.arguments, within(progress, 0.0, 0.5))
+    library = postures_of(
+        clips,
+        settings=settings_from_arguments(task.arguments, PostureLibrarySettings),
+        progress=within(progress, 0.5, 1.0),
+    )
+    assert task.target is not None
+    library.save(task.target)
+    text = (
+        f"Kept {library.n_postures} of {library.n_seen} postures of {library.trained_on} in"
+        f" {task.target}."
+    )
+    figures = {"n_postures": library.n_postures, "n_seen": library.n_seen}
+    return Outcome(text, figures)

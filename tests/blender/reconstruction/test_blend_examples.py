@@ -1,0 +1,116 @@
+"""Other .blend files as libraries of clean clips: linked to be read, and gone again."""
+
+import json
+
+import numpy as np
+import pytest
+
+
+@pytest.fixture
+def stroll(load, tmp_path):
+    """A clean walk, as a file."""
+    samples = load("solvers.samples")
+    clip = samples.walking_gait(samples.GaitSettings(duration=2.0, frame_rate=30.0))
+    path = tmp_path / "stroll.bvh"
+    load("solvers.recordings").write_bvh(clip, path)
+    return path
+
+
+@pytest.fixture
+def library(stroll, bring, blank, tmp_path):
+    """A .blend with that walk on its rig, which leans, and a second action of the rig."""
+    armature = bring(stroll)
+    armature.rotation_euler.x = 0.3
+    second = armature.animation_data.action.copy()
+    second.name = "again"
+    lamp = blank.data.objects.new("lamp", None)
+    lamp.keyframe_insert("location")
+    door = lamp.animation_data.action  # of nothing that is a rig
+    path = tmp_path / "library.blend"
+    blank.data.libraries.write(str(path), {armature, second, door}, fake_user=True)
+    blank.ops.wm.read_homefile(use_empty=True, use_factory_startup=True)
+    return path
+
+
+@pytest.fixture
+def all_there_is(blank):
+    """Names of everything in the file, by kind."""
+
+    def names():
+        kinds = ("libraries", "objects", "actions", "armatures", "collections")
+        return {
+            kind: sorted(each.name_full for each in getattr(blank.data, kind)) for kind in kinds
+        }
+
+    return names
+
+
+def test_all_actions_of_a_blend_teach_postures_and_nothing_of_it_stays(
+    library, walk, reconstruct, all_there_is
+):
+    before = all_there_is()
+
+    result = reconstruct(postures="EXAMPLES", examples=str(library))
+
+    assert "2 clips of your own" in json.loads(result["mocap_assist_history"])[-1]["method"]
+    after = all_there_is()
+    assert after.pop("actions") == sorted([*before.pop("actions"), result.name])
+    assert after == before
+
+
+def test_a_rig_is_read_where_it_stands_in_its_own_file(library, walk, load, blank, stroll):
+    examples = load("mocap_assist.examples").read_examples(
+        blank.context.scene, walk, str(library)
+    )
+
+    kinematics = load("solvers.motion").forward_kinematics
+    true = kinematics(load("solvers.recordings").read_recording(stroll)).positions
+    cosine, sine = np.cos(0.3), np.sin(0.3)
+    leaning = true @ np.array([[1, 0, 0], [0, cosine, -sine], [0, sine, cosine]]).T
+    assert len(examples.motions) == 2 and not examples.files
+    for motion in examples.motions:
+        places = kinematics(motion).positions
+        assert np.allclose(places[:, 0], leaning[:, 0], atol=1e-4)
+
+
+def test_it_may_be_linked_already(library, walk, reconstruct, blank, all_there_is):
+    with blank.data.libraries.load(str(library), link=True) as (there, into):
+        into.objects = list(there.objects)
+    blank.context.scene.collection.objects.link(into.objects[0])
+    blank.context.view_layer.objects.active = walk
+
+    reconstruct(postures="EXAMPLES", examples=str(library))
+
+    assert len(all_there_is()["libraries"]) == 1
+    assert into.objects[0].name in blank.context.scene.collection.objects
+
+
+@pytest.mark.parametrize("content", ["text", "no rig"])
+def test_what_cannot_serve_is_told_in_one_sentence(
+    content, walk, blank, tmp_path, all_there_is
+):
+    path = tmp_path / "other.blend"
+    if content == "text":
+        path.write_text("No Blender file.")
+    else:
+        blank.data.libraries.write(str(path), {walk.animation_data.action}, fake_user=True)
+    before = all_there_is()
+
+    with pytest.raises(RuntimeError) as error:
+        blank.ops.mocap_assist.reconstruct(postures="EXAMPLES", examples=str(path))
+
+    sentence = "cannot be read as a .blend" if content == "text" else "has no armature with"
+    assert sentence in str(error.value) and "other.blend" in str(error.value)
+    assert all_there_is() == before
+
+
+def test_clean_learns_from_it_too(library, stroll, bring, blank):
+    bring(stroll)
+
+    said = blank.ops.mocap_assist.denoise(
+        prior="EXAMPLES", examples=str(library), plant_feet=False
+    )
+
+    assert said == {"FINISHED"}
+    action = blank.context.object.animation_data.action
+    assert action.name == "stroll.clean" and not blank.data.libraries

@@ -1,0 +1,102 @@
+"""The three signs of trust, apart: kept with the action, shown one by one."""
+
+import numpy as np
+import pytest
+from kinect_walks import LOST
+
+INSIDE = LOST.start + 15
+TERMS = {"COMBINED", "BEHAVIOUR", "KINEMATICS", "TRACKING"}
+
+
+@pytest.fixture
+def curves(load):
+    return load("mocap_assist.scene.reliability_curves")
+
+
+@pytest.fixture
+def heat(load):
+    return load("mocap_assist.scene.heat")
+
+
+@pytest.fixture
+def switch(blank):
+    """The switch of the colours, on."""
+    manager = blank.context.window_manager
+    manager.mocap_assist_heat = True
+    yield manager
+    manager.mocap_assist_heat, manager.mocap_assist_heat_term = False, "COMBINED"
+
+
+def names(terms):
+    return {term.name for term in terms}
+
+
+def test_each_sign_says_its_own_of_the_hidden_hand(walk, reconstruct, curves):
+    source = (reconstruct(), walk.animation_data.action_slot)
+
+    def trust(term, frame):
+        bone = ["WristLeft"]
+        return curves.reliability_at(source, bone, frame, curves.Term[term])["WristLeft"]
+
+    assert trust("TRACKING", INSIDE) == pytest.approx(0.5)
+    assert trust("TRACKING", 10) == 1.0
+    inside = range(LOST.start + 3, LOST.stop - 3)
+    assert np.mean([trust("BEHAVIOUR", frame) for frame in inside]) < 0.7
+    assert np.mean([trust("KINEMATICS", frame) for frame in inside]) < 0.8
+    assert np.mean([trust("KINEMATICS", frame) for frame in range(1, LOST.start - 3)]) > 0.85
+
+
+def test_colours_are_those_of_the_sign(walk, reconstruct, heat, curves):
+    reconstruct()
+    wrist = [bone.name for bone in walk.pose.bones].index("WristLeft")
+
+    shown = {
+        term: heat.heat_at(walk, INSIDE, curves.Term[term]).colors[wrist, 0] for term in TERMS
+    }
+
+    assert np.allclose(shown["TRACKING"], heat.shade(0.5), atol=1e-6)
+    assert not np.allclose(shown["COMBINED"], shown["TRACKING"], atol=0.05)
+    assert names(heat.terms_told(walk)) == TERMS
+
+
+def test_lengths_are_told_while_the_file_is_there(walk, walk_file, reconstruct, heat, curves):
+    walk_file.unlink()
+
+    reconstruct()
+
+    assert names(heat.terms_told(walk)) == TERMS - {"KINEMATICS"}
+    assert heat.heat_at(walk, INSIDE, curves.Term.KINEMATICS) is None
+
+
+def test_the_panel_offers_the_signs_and_says_what_is_missing(
+    walk, walk_file, reconstruct, draw, switch
+):
+    assert "This action tells nothing of trust." in " ".join(draw("MOCAP_PT_reconstruct"))
+    reconstruct()
+    shown = draw("MOCAP_PT_reconstruct")
+    assert set(shown) >= TERMS
+    assert "Lengths:" not in " ".join(shown)
+
+    walk_file.unlink()
+    reconstruct()
+
+    assert "Lengths: an armature's" in " ".join(draw("MOCAP_PT_reconstruct"))
+
+
+def test_a_sensor_that_was_silent_is_said_to_be(make_armature, animate, reconstruct, draw,
+                                                switch, blank):  # fmt: skip
+    animate(make_armature())
+    blank.context.scene.render.fps = 30
+
+    reconstruct()
+
+    assert "Sensor: the recording" in " ".join(draw("MOCAP_PT_reconstruct"))
+
+
+def test_results_of_earlier_versions_are_told_so(walk, reconstruct, draw, switch, curves):
+    bag = reconstruct().layers[0].strips[0].channelbags[0]
+    for curve in list(bag.fcurves):
+        if "mocap_reliability_" in curve.data_path:
+            bag.fcurves.remove(curve)
+
+    assert "earlier version" in " ".join(draw("MOCAP_PT_reconstruct"))

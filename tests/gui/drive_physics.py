@@ -1,0 +1,75 @@
+"""Press Physics in a Blender with a window, as an animator does; take pictures.
+
+    make extension-plain
+    BG_DEBS="python3-scipy python3-pil" BG_FILES=walk.bvh \
+        bash ../shared/tools/blender-gui.sh run dist/mocap_assist-0.1.0-plain.zip \
+        tests/gui/drive_physics.py build/gui/physics/physics.png
+
+Runs inside that Blender; `bgui` comes with the tool. The take, of a skeleton, is copied beside
+this script as walk.bvh. The plain zip brings no MuJoCo: where Blender has none, the button says
+so in one sentence, and that is what the pictures show.
+"""
+
+from importlib.util import find_spec
+from pathlib import Path
+
+import bgui
+import bpy
+
+FOLDER = Path(__file__).parent
+TAKE = FOLDER / "walk.bvh"
+HAS_ENGINE = find_spec("mujoco") is not None
+
+
+def settle():
+    """Wait until everything is drawn."""
+    for _ in range(3):
+        bgui.redraw()
+        yield 0.5
+
+
+def unfold_physics_alone():
+    """Take the other panels away, and unfold this one, before the tab is first drawn."""
+    for name in ("import", "reconstruct", "clean", "check", "compare", "feet", "retarget"):
+        bpy.utils.unregister_class(getattr(bpy.types, f"MOCAP_PT_{name}"))
+    panel = bpy.types.MOCAP_PT_physics
+    bpy.utils.unregister_class(panel)
+    panel.bl_options = set()
+    bpy.utils.register_class(panel)
+
+
+def steps():
+    for each in list(bpy.data.objects):
+        bpy.data.objects.remove(each)
+    unfold_physics_alone()
+    yield from bgui.open_sidebar("Mocap")
+    view = bgui.area().spaces.active
+    view.overlay.show_relationship_lines = False
+    yield from settle()
+    bgui.shot("1-nothing.png")
+    with bgui.override("WINDOW"):
+        bpy.ops.mocap_assist.import_recording(
+            directory=str(FOLDER), files=[{"name": TAKE.name}], frame_rate="UPDATE"
+        )
+    armature = bpy.context.object
+    view.region_3d.view_location = (0.0, 0.0, 0.9)
+    view.region_3d.view_distance = 6.0
+    bpy.context.scene.frame_set(40)
+    yield from settle()
+    bgui.shot("2-before.png")
+    with bgui.override("WINDOW"):
+        assert bpy.ops.mocap_assist.simulate("INVOKE_DEFAULT") == {"RUNNING_MODAL"}
+    bgui.redraw()
+    yield 0.3
+    bgui.shot("3-pressed.png")
+    for _ in range(240):
+        yield 0.5
+        if not bpy.context.window_manager.mocap_assist_job.running:
+            break
+    yield from settle()
+    bgui.shot("4-after.png")
+    made = armature.animation_data.action.name.endswith(".physics")
+    assert made == HAS_ENGINE, armature.animation_data.action.name
+
+
+bgui.run(steps, timeout=300)

@@ -1,0 +1,143 @@
+"""Where a file of joints does not say its unit, the size of the body tells it."""
+
+import re
+
+import numpy as np
+import pytest
+from kinect_walks import tracked_walk, true_positions
+
+import solvers.motion as motion_module
+from solvers import samples
+from solvers.errors import MocapAssistError
+from solvers.motion import JointRecording, Sensor, Tracks, posture_joints
+from solvers.recordings import read_recording, write_joint_csv
+from solvers.recordings.body_unit import in_unit_of_body
+from solvers.recordings.tracked_joints import joint_recording
+
+WORDS = {1.0: "metres", 0.01: "centimetres", 0.001: "millimetres"}
+
+
+class Told:
+    """A Progress that keeps what it is told."""
+
+    def __init__(self):
+        self.messages = []
+
+    def __call__(self, fraction, message=""):
+        self.messages.append(message)
+
+    @property
+    def units(self):
+        return [word for word in self.messages if "Lengths" in word]
+
+
+@pytest.fixture(scope="module")
+def walk():
+    return tracked_walk(motion_module, true_positions(samples, posture_joints))
+
+
+@pytest.mark.parametrize("usual", WORDS)
+@pytest.mark.parametrize("true", WORDS)
+def test_whatever_the_usual_unit_a_man_comes_out(walk, usual, true):
+    told = Told()
+
+    found = joint_recording(
+        "take", walk.names, walk.tracks.positions / true, Sensor.KINECT_V1,
+        scale=None, usual_unit=usual, progress=told,
+    )  # fmt: skip
+
+    assert np.allclose(found.tracks.positions, walk.tracks.positions)
+    if true == usual:
+        assert not told.units
+    else:
+        (said,) = told.units
+        assert f"taken for {WORDS[true]}," in said and "give the unit" in said
+
+
+@pytest.mark.parametrize("size", [0.4, 2.5])
+def test_a_child_or_a_giant_stays_what_it_is(walk, size):
+    told = Told()
+    other = walk.with_tracks(walk.tracks.with_positions(size * walk.tracks.positions))
+
+    assert in_unit_of_body(other, 1.0, told) is other
+    assert not told.units
+
+
+def test_who_gives_the_unit_is_obeyed(walk):
+    told, positions = Told(), 1000.0 * walk.tracks.positions
+
+    found = joint_recording(
+        "take", walk.names, positions, Sensor.KINECT_V1, scale=1.0, progress=told
+    )
+
+    assert np.allclose(found.tracks.positions, positions)
+    assert not told.units
+
+
+@pytest.mark.parametrize("names", [("A", "B", "C"), ("Head", "ElbowLeft", "WristLeft")])
+def test_what_is_no_body_keeps_its_unit(names):
+    points = Tracks(names, 1000.0 * np.random.default_rng(0).random((4, 3, 3)), 30.0)
+    recording = JointRecording(points, None, Sensor.OTHER)
+
+    assert in_unit_of_body(recording, 1.0, Told()) is recording
+
+
+def test_joints_all_in_one_place_have_no_size(walk):
+    flat = walk.with_tracks(walk.tracks.with_positions(np.ones_like(walk.tracks.positions)))
+
+    assert in_unit_of_body(flat, 1.0, Told()) is flat
+
+
+def test_no_unit_makes_a_man_of_an_ant(walk):
+    ant = walk.with_tracks(walk.tracks.with_positions(0.002 * walk.tracks.positions / 100.0))
+
+    assert in_unit_of_body(ant, 0.001, Told()) is ant
+
+
+def test_our_own_table_counts_by_its_word_and_is_guessed_without(walk, tmp_path):
+    larger = walk.with_tracks(walk.tracks.with_positions(1000.0 * walk.tracks.positions))
+    said, silent = tmp_path / "said.csv", tmp_path / "silent.csv"
+    write_joint_csv(larger, said)
+    text = said.read_text()
+    assert "units=m," in text
+    silent.write_text(text.replace("units=m,", "", 1))
+    told = Told()
+
+    by_word, guessed = read_recording(said), read_recording(silent, progress=told)
+    given = read_recording(silent, scale=0.01)
+
+    assert np.allclose(by_word.tracks.positions, larger.tracks.positions, atol=1e-3)
+    assert np.allclose(guessed.tracks.positions, walk.tracks.positions, atol=1e-3)
+    assert np.allclose(given.tracks.positions, 0.01 * larger.tracks.positions, atol=1e-3)
+    assert len(told.units) == 1
+
+
+def test_a_kinect_file_in_millimetres_is_the_same_take(recordings, tmp_path):
+    path = recordings / "kinect" / "irds" / "215_18_5_8_1_stand.txt"
+    true, told = read_recording(path), Told()
+
+    def thousandfold(place):
+        return place[1] + ",".join(f"{1000.0 * float(word):.5f}" for word in place.groups()[1:])
+
+    number = "(-?[0-9.e-]+)"
+    text = path.read_text()
+    larger = re.sub(rf"(\(\w+,\w+,){number},{number},{number}", thousandfold, text)
+    assert larger != text
+    (tmp_path / "mm.txt").write_text(larger)
+
+    found = read_recording(tmp_path / "mm.txt", progress=told)
+
+    assert np.allclose(found.tracks.positions, true.tracks.positions, atol=1e-5, equal_nan=True)
+    assert len(told.units) == 1
+
+
+def test_no_recording_of_ours_is_guessed_anew(recordings):
+    """A guess is for files in a unit that is not their format's; these all are in it."""
+    paths = sorted((recordings / "kinect").glob("*/*"))
+    for path in [each for each in paths if each.is_file()][::9]:
+        told = Told()
+        try:
+            read_recording(path, progress=told)
+        except MocapAssistError:  # no recording
+            continue
+        assert not told.units, path

@@ -1,0 +1,91 @@
+"""Why a joint of an armature was trusted or not: three signs, and which tell nothing."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from kinect_walks import HIDDEN, LOST, tracked_walk, true_positions
+
+import solvers.motion as motion_module
+from solvers import samples
+from solvers.errors import InvalidMotionError
+from solvers.motion import motion_from_points, posture_joints
+from solvers.workflows import reconstruct_motion
+
+GUESSED = 0.5  # what an inferred joint counts for
+
+
+@pytest.fixture
+def walk():
+    return tracked_walk(motion_module, true_positions(samples, posture_joints))
+
+
+@pytest.fixture
+def moved(walk):
+    """The motion of an armature that the recording was imported as."""
+    return motion_from_points(walk.tracks, walk.parents)
+
+
+def of(values, motion, name):
+    return values[:, motion.skeleton.index(name)]
+
+
+def test_the_sensor_is_told_as_it_spoke(walk, moved):
+    order = [walk.names.index(name) for name in moved.skeleton.names]
+
+    trust = reconstruct_motion(moved, tracking_state=walk.tracking_state[:, order]).trust
+
+    for name in HIDDEN:
+        said = of(trust.tracking, moved, name)
+        assert np.allclose(said[LOST], GUESSED)
+        assert np.allclose(np.delete(said, np.arange(LOST.start, LOST.stop)), 1.0)
+    assert np.allclose(of(trust.tracking, moved, "WristRight"), 1.0)
+
+
+def test_a_sensor_that_said_nothing_is_not_taken_for_sure(moved):
+    trust = reconstruct_motion(moved).trust
+
+    assert np.isnan(trust.tracking).all()
+    assert np.isfinite(trust.combined).all() and np.isfinite(trust.behaviour).all()
+
+
+def test_lengths_of_an_armature_tell_nothing_and_those_of_its_recording_do(walk, moved):
+    alone = reconstruct_motion(moved).trust
+    with_file = reconstruct_motion(moved, source=walk).trust
+
+    assert np.isnan(alone.kinematics).all()
+    elbow = of(with_file.kinematics, moved, "ElbowLeft")
+    assert elbow[LOST].mean() < 0.8 < np.median(elbow[: LOST.start])
+
+
+def test_a_joint_that_shakes_is_told_by_its_movement(walk, moved):
+    trust = reconstruct_motion(moved, source=walk).trust
+
+    wrist = of(trust.behaviour, moved, "WristLeft")
+    assert wrist[LOST].mean() < 0.7
+    assert np.allclose(wrist[: LOST.start - 3], 1.0)
+
+
+def test_joints_that_no_body_has_have_no_trust():
+    walk = samples.walking_gait(samples.GaitSettings(duration=1.0, frame_rate=30.0))
+    names = list(walk.skeleton.names)
+    names[names.index("LeftHand")] = "Umbrella"
+    renamed = replace(walk, skeleton=replace(walk.skeleton, names=tuple(names)))
+
+    result = reconstruct_motion(renamed)
+
+    umbrella = names.index("Umbrella")
+    for term in (result.trust.combined, result.trust.behaviour, result.confidence):
+        assert np.isnan(term[:, umbrella]).all()
+        assert np.isfinite(np.delete(term, umbrella, axis=1)).any()
+
+
+@pytest.mark.parametrize("tracked", [True, False])
+def test_a_skeleton_that_is_nowhere_is_refused(moved, tracked):
+    motion = moved
+    if not tracked:
+        motion = samples.walking_gait(samples.GaitSettings(duration=1.0, frame_rate=30.0))
+    lost = motion.with_poses(motion.rotations, np.full_like(motion.root_positions, np.nan))
+
+    with pytest.raises(InvalidMotionError, match="No joint is tracked in any of the"):
+        reconstruct_motion(lost)
