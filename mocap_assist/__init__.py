@@ -7,7 +7,8 @@ Blender is imported only on `register`: a solve in a process of its own passes t
 def register() -> None:
     """Make properties, commands and panels known to Blender."""
     from . import batch, scene_properties, ui, watch
-    from .library import background, ghost_drawing, previews, properties
+    from .library import background, ghost_drawing, performing, previews, properties
+    from .live import listening
     from .scene import contacts
 
     scene_properties.register()
@@ -15,8 +16,10 @@ def register() -> None:
     ghost_drawing.register()
     background.register()
     previews.register()
+    performing.register()
     contacts.register()
     watch.register()
+    listening.register()
     batch.register()
     ui.register()
 
@@ -25,10 +28,12 @@ def unregister() -> None:
     """Take them away again."""
     from . import batch, scene_properties, ui, watch
     from .library import background, ghost_drawing, previews, properties
+    from .live import listening
     from .scene import contacts
 
     ui.unregister()
     batch.unregister()
+    listening.unregister()
     watch.unregister()
     contacts.unregister()
     previews.unregister()

@@ -40,6 +40,7 @@ CHAPTERS = {
     "bpy.types.mocap_pg_find*": "library",
     "bpy.types.mocap_pg_load*": "library",
     "bpy.types.windowmanager.mocap_assist_ghost*": "library",
+    "bpy.ops.mocap_assist.listen*": "perform",
     "bpy.ops.mocap_assist.reset_preferences*": "preferences",
     "bpy.types.mocap_pg_clean*": "clean",
     "bpy.types.mocap_pg_check*": "check",

@@ -22,6 +22,7 @@ from .library_verbs import (
 from .options import arguments_from, settings_from_arguments
 from .postures_verb import add_postures_options, perform_postures
 from .reconstruct_verb import add_reconstruct_options, perform_reconstruct, read_guides
+from .replay_verb import add_replay_options, perform_replay
 from .residuals_verb import add_residuals_options, perform_residuals
 from .retarget_verbs import (
     add_retarget_options,
@@ -158,6 +159,12 @@ VERBS = {
         add_retarget_options,
         perform_retarget,
         prepare=read_target,
+    ),
+    "replay": Verb(
+        "Send recordings to this machine as a live stream, as a depth camera's tracker would.",
+        add_replay_options,
+        perform_replay,
+        Makes.WORDS,
     ),
     "unbake": Verb(
         "Replace a key on every frame by few keys with handles.",
