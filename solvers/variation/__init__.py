@@ -8,15 +8,20 @@
 5
 """
 
+from .borrow_variation import borrow_variation
+from .learn_variation import learn_variation_model
 from .measure_variation import measure_variation
 from .partitions import Partition
-from .synthesize import VarySettings, synthesize
-from .variation_model import VariationModel, learn_variation_model, load_variation_model
+from .synthesize import synthesize
+from .variation_model import VariationModel, load_variation_model
+from .vary_settings import Method, VarySettings
 
 __all__ = [
+    "Method",
     "Partition",
     "VariationModel",
     "VarySettings",
+    "borrow_variation",
     "learn_variation_model",
     "load_variation_model",
     "measure_variation",

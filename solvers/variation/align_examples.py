@@ -14,9 +14,11 @@ Array = NDArray[np.float64]
 
 RATE = 20.0
 """Hertz at which examples are lined up."""
-CALM = 0.1
+LONGEST = 1500
+"""Steps of an example that are lined up at most; longer ones are seen less often."""
+CALM = 0.2
 """Seconds over which the alignment is smoothed: its steps are no haste of the actor's."""
-SLOWEST, FASTEST = 0.25, 4.0
+SLOWEST, FASTEST = 0.4, 2.5
 """Speeds between which the time of one example passes in that of another."""
 WINDOW = 0.3
 """Part of the clip by which the time of an example may run ahead of another's."""
@@ -55,7 +57,10 @@ def body_positions(motion: Motion, turns: Array | None = None) -> Array:
 
 def align_examples(motions: Sequence[Motion], turns: Sequence[Array]) -> Alignment:
     """Line examples up in time by dynamic time warping, with the one in the middle of them."""
-    steps = [max(round(motion.frame_rate / RATE), 1) for motion in motions]
+    steps = [
+        max(round(motion.frame_rate / RATE), motion.n_frames // LONGEST, 1)
+        for motion in motions
+    ]
     bodies = [
         body_positions(motion, turn)[::step]
         for motion, turn, step in zip(motions, turns, steps, strict=True)

@@ -1,0 +1,133 @@
+"""What is measured of variants; definitions in docs/benchmarks_variation.md."""
+
+from collections.abc import Sequence
+from itertools import combinations
+
+import numpy as np
+from scipy.spatial.distance import cdist
+
+from solvers.denoising import learn_joint_limits, limit_excess, plant_feet
+from solvers.errors import MocapAssistError
+from solvers.motion import Motion, warp
+from solvers.motion.rotations import inverse, multiply, rotation_vector_from_quaternion
+from solvers.variation.align_examples import RATE, body_positions
+
+from .clips import every
+
+WINDOW, WINDOW_RATE = 11, 30.0
+PAIRS = 60
+"""Pairs of variants whose distance is measured: as many as tell the mean."""
+BEYOND = np.radians(0.5)
+"""Radians beyond a limit that count as passing it."""
+PLANTED = 3
+"""Variants of a set whose feet are planted to see how far they slide."""
+
+
+class Judge:
+    """What variants of these examples are held against."""
+
+    def __init__(self, examples: Sequence[Motion]) -> None:
+        self.examples = list(examples)
+        self.bodies = [_body(one) for one in examples]
+        self.variation, apart = _variation(self.bodies)
+        self.nearest = float(np.median(np.nanmin(apart, axis=1)))
+        self.windows = [_windows(one) for one in examples]
+        gaps = [
+            cdist(one, np.concatenate(self.windows[:i] + self.windows[i + 1 :])).min(axis=1)
+            for i, one in enumerate(self.windows)
+        ]
+        self.near = float(np.median(np.concatenate(gaps)))
+        self.jerk = float(np.mean([_jerk(one) for one in examples]))
+        self.limits = learn_joint_limits(examples)
+        self.spectrum = _spectrum(examples)
+        self.slide = float(np.mean([_slides(one)[0] for one in examples[:PLANTED]]))
+
+    def figures(self, variants: Sequence[Motion]) -> dict[str, float]:
+        """Return all figures of some variants; for copies V is 0 or 1, the jerk 1."""
+        bodies = [_body(one) for one in variants]
+        windows = np.concatenate([_windows(one) for one in variants])
+        covered = [cdist(one, windows).min(axis=1) < self.near for one in self.windows]
+        nearest = [min(warp(one, other).cost for other in self.bodies) for one in bodies[:10]]
+        slides = np.array([_slides(one) for one in variants[:PLANTED]])
+        beyond = [limit_excess(one, self.limits) for one in variants[:10]]
+        return {
+            "V": 100.0 * _variation(bodies)[0],
+            "V ratio": _variation(bodies)[0] / self.variation,
+            "coverage": float(np.concatenate(covered).mean()),
+            "nearest example": float(np.median(nearest)) / self.nearest,
+            "jerk ratio": float(np.mean([_jerk(one) for one in variants])) / self.jerk,
+            "slide": 100.0 * float(np.nanmean(slides[:, 0])),
+            "slide planted": 100.0 * float(np.nanmean(slides[:, 1])),
+            "beyond limits %": 100.0
+            * float(np.mean([(one > BEYOND).mean() for one in beyond])),
+            "spectrum": _alike(self.spectrum, _spectrum(variants)),
+        }
+
+
+def _body(motion: Motion) -> np.ndarray:
+    return body_positions(motion)[:: max(round(motion.frame_rate / RATE), 1)]
+
+
+def _variation(bodies: Sequence[np.ndarray]) -> tuple[float, np.ndarray]:
+    """Return the mean distance of pairs and all distances, NaN where not measured."""
+    apart = np.full((len(bodies), len(bodies)), np.nan)
+    pairs = list(combinations(range(len(bodies)), 2))
+    if len(pairs) > PAIRS + 10:
+        chosen = np.random.default_rng(0).choice(len(pairs), PAIRS, replace=False)
+        pairs = [pairs[place] for place in chosen]
+    for i, j in pairs:
+        apart[i, j] = apart[j, i] = warp(bodies[i], bodies[j]).cost
+    return float(np.nanmean(apart)), apart
+
+
+def _windows(motion: Motion) -> np.ndarray:
+    """Return stretches of 11 frames at 30 Hz, shape (n, n_numbers), in metres of mean joint."""
+    body = body_positions(motion)[:: max(round(motion.frame_rate / WINDOW_RATE), 1)]
+    body = body.reshape(len(body), -1) / np.sqrt(body.shape[1])
+    starts = range(max(len(body) - WINDOW + 1, 1))
+    held = [np.minimum(np.arange(start, start + WINDOW), len(body) - 1) for start in starts]
+    return np.stack([body[frames].ravel() for frames in held])
+
+
+def _turns(motion: Motion) -> np.ndarray:
+    """Return the angular velocities of joints from frame to frame, radians per second."""
+    steps = multiply(inverse(motion.rotations[:-1]), motion.rotations[1:])
+    return np.asarray(rotation_vector_from_quaternion(steps) * motion.frame_rate)
+
+
+def _jerk(motion: Motion) -> float:
+    """Return the mean absolute third difference of joint angles at 30 Hz, rad/s3.
+
+    At 30 Hz for all, since some methods know no more.
+    """
+    motion = every(motion, max(round(motion.frame_rate / WINDOW_RATE), 1))
+    return float(np.abs(np.diff(_turns(motion), n=2, axis=0)).mean() * motion.frame_rate**2)
+
+
+def _spectrum(motions: Sequence[Motion]) -> np.ndarray:
+    """Return the mean power of angular velocity by frequency to 15 Hz and channel."""
+    grid, powers = np.linspace(0.0, 15.0, 46), []
+    for motion in motions:
+        turns = _turns(motion).reshape(motion.n_frames - 1, -1)
+        size = max(round(4 * motion.frame_rate), len(turns))
+        power = np.abs(np.fft.rfft(turns, size, axis=0)) ** 2
+        tones = np.fft.rfftfreq(size, 1.0 / motion.frame_rate)
+        powers.append(np.stack([np.interp(grid, tones, one) for one in power.T], axis=-1))
+    return np.asarray(np.mean(powers, axis=0))
+
+
+def _alike(one: np.ndarray, other: np.ndarray) -> float:
+    """Return the Bhattacharyya coefficient of spectra by channel, weighted by power: to 1."""
+    weights = one.sum(axis=0)
+    shapes = [each / np.maximum(each.sum(axis=0), 1e-12) for each in (one, other)]
+    alike = np.sqrt(shapes[0] * shapes[1]).sum(axis=0)
+    return float((weights * alike).sum() / weights.sum())
+
+
+def _slides(motion: Motion) -> tuple[float, float]:
+    """Return how far a foot in contact slides per second, before and after planting, metres."""
+    try:
+        planted = plant_feet(motion)
+    except MocapAssistError:
+        return np.nan, np.nan
+    return planted.slide_before, planted.slide_after

@@ -1,0 +1,35 @@
+"""Examples that a test can make: walks that differ, and one that loops."""
+
+import pytest
+
+from solvers.motion import Motion
+from solvers.samples import GaitSettings, walking_gait
+from solvers.variation import Method, VariationModel, VarySettings, learn_variation_model
+
+
+@pytest.fixture(scope="session")
+def walks() -> list[Motion]:
+    return [
+        walking_gait(
+            GaitSettings(
+                duration=120.0 / cadence,
+                frame_rate=60.0,
+                seed=seed,
+                cadence=cadence,
+                speed=speed,
+            )
+        )
+        for seed, cadence, speed in ((1, 110, 1.2), (2, 106, 1.1), (3, 120, 1.35), (4, 95, 1.0))
+    ]
+
+
+@pytest.fixture(scope="session")
+def model(walks) -> VariationModel:
+    return learn_variation_model(walks)
+
+
+@pytest.fixture(scope="session", params=Method, ids=lambda method: method.value)
+def learned(request, walks) -> tuple[VariationModel, VarySettings]:
+    """Return a model for each method, and the settings that go with it."""
+    settings = VarySettings(method=request.param)
+    return learn_variation_model(walks, settings=settings), settings

@@ -1,0 +1,178 @@
+"""Laws of variants, for every method."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from numpy.testing import assert_allclose, assert_array_equal
+
+from solvers.errors import InvalidMotionError, SolveCancelled
+from solvers.motion import forward_kinematics, warp
+from solvers.motion.rotations import inverse, multiply, rotation_vector_from_quaternion
+from solvers.variation import (
+    Method,
+    Partition,
+    VarySettings,
+    learn_variation_model,
+    measure_variation,
+    synthesize,
+)
+from solvers.variation.align_examples import body_positions
+from solvers.variation.course import course_of, headings
+from solvers.variation.partitions import partition_joints
+from solvers.variation.synthesize import MARGIN
+
+
+def turn_between(one, other):
+    return np.linalg.norm(
+        rotation_vector_from_quaternion(multiply(inverse(one), other)), axis=-1
+    )
+
+
+def test_the_same_seed_gives_the_same_bits(learned):
+    model, settings = learned
+    first, again = (synthesize(model, 3, settings=settings) for _ in range(2))
+    other = synthesize(model, 3, settings=replace(settings, seed=5))
+
+    for one, two in zip(first, again, strict=True):
+        assert_array_equal(one.rotations, two.rotations)
+        assert_array_equal(one.root_positions, two.root_positions)
+    assert first[0].rotations.shape != other[0].rotations.shape or not np.allclose(
+        first[0].rotations, other[0].rotations
+    )
+
+
+def test_no_amount_is_the_example_itself(learned, walks):
+    model, settings = learned
+    centre = walks[model.centre]
+
+    copy = synthesize(model, 2, settings=replace(settings, amount=0.0))[1]
+
+    assert copy.n_frames == centre.n_frames
+    assert turn_between(copy.rotations[:, 1:], centre.rotations[:, 1:]).max() < 1e-5
+    assert_allclose(body_positions(copy), body_positions(centre), atol=1e-5)
+
+
+@pytest.mark.parametrize("method", [Method.MIXTURE, Method.COREGIONALISED])
+def test_variation_grows_with_the_amount(method, walks):
+    model = learn_variation_model(walks, settings=VarySettings(method=method))
+    found = [
+        measure_variation(
+            synthesize(model, 8, settings=VarySettings(method=method, amount=amount))
+        )
+        for amount in (0.25, 0.5, 1.0, 2.0)
+    ]
+
+    assert found == sorted(found)
+    assert found[3] > 1.3 * found[2]
+
+
+def test_variants_are_as_varied_as_the_examples(walks, model):
+    ratio = measure_variation(synthesize(model, 12)) / measure_variation(walks)
+
+    assert 0.7 < ratio < 1.4
+
+
+@pytest.mark.parametrize("partition", Partition)
+def test_a_frozen_partition_is_that_of_the_base(partition, learned, walks):
+    model, settings = learned
+    frozen = replace(settings, timing=0.0, **{partition.name.lower(): 0.0})
+    members = partition_joints(model.skeleton)[list(Partition).index(partition)]
+    members[0] = False
+
+    variant = synthesize(model, 1, settings=frozen)[0]
+
+    apart = turn_between(variant.rotations, walks[model.centre].rotations)
+    assert apart[:, members].max() < 1e-5
+    assert apart[:, ~members].max() > 0.01
+
+
+def test_a_little_varies_a_little_around_the_base(learned, walks):
+    model, settings = learned
+    farthest = (model.centre + 1) % len(walks)
+    little = replace(settings, amount=0.02, base=farthest + 1)
+
+    for variant in synthesize(model, 3, settings=little):
+        apart = warp(body_positions(variant), body_positions(walks[farthest])).cost
+        assert 1e-5 < apart < 0.15 * measure_variation(walks)
+
+
+def test_pins_hold_whatever_the_timing(learned, walks):
+    model, settings = learned
+    pinned = replace(settings, pin_start=True, pin_end=True)
+    example = body_positions(walks[model.centre])
+
+    for variant in synthesize(model, 3, settings=pinned):
+        seen = body_positions(variant)
+        # Millimetres: the heading that `body_positions` takes out is averaged over frames.
+        assert_allclose(seen[0], example[0], atol=3e-3)
+        assert_allclose(seen[-1], example[-1], atol=3e-3)
+        assert warp(seen, example).distances.max() > 0.005
+
+
+@pytest.mark.parametrize("amount", [1.0, 2.0])
+def test_no_joint_goes_far_beyond_the_examples(amount, learned):
+    model, settings = learned
+    low, high = model.joints.min(axis=(0, 1)), model.joints.max(axis=(0, 1))
+    # Between moments splines overshoot a little; those through white noise, as published, far.
+    times = 6.0 if settings.method is Method.PUBLISHED else 1.2
+    slack = times * MARGIN * (high - low) + 1e-6
+
+    for variant in synthesize(model, 5, settings=replace(settings, amount=amount)):
+        joints = course_of(variant, headings(variant), model.usual).joints[:, 1:]
+        assert (joints > (low - slack)[1:]).all()
+        assert (joints < (high + slack)[1:]).all()
+
+
+def test_length_is_kept(model, walks):
+    usual, slow = (
+        synthesize(model, 1, settings=VarySettings(length=length))[0] for length in (1.0, 2.0)
+    )
+
+    assert abs(slow.n_frames - 2 * usual.n_frames) <= 2
+
+
+def test_timing_alone_changes_the_length_and_nothing_else(model):
+    """Without timing all variants take the base's time."""
+    same = {one.n_frames for one in synthesize(model, 6, settings=VarySettings(timing=0.0))}
+    different = {one.n_frames for one in synthesize(model, 6)}
+
+    assert same == {model.n_moments}
+    assert len(different) > 2
+
+
+def test_variants_begin_above_the_origin_and_face_the_viewer(model):
+    for variant in synthesize(model, 3):
+        assert_allclose(variant.root_positions[0, :2], 0.0, atol=0.05)
+        assert abs(headings(variant)[0]) < 0.2
+        assert np.isfinite(forward_kinematics(variant).positions).all()
+
+
+def test_more_variants_do_not_change_the_first_of_a_batch_in_size(learned):
+    model, settings = learned
+    many = synthesize(model, 7, settings=settings)
+
+    assert len(many) == 7
+    assert len({one.rotations.tobytes() for one in many}) == 7
+
+
+def test_refusals_say_what_to_do(model):
+    with pytest.raises(InvalidMotionError, match="ask for at least one"):
+        synthesize(model, 0)
+    with pytest.raises(InvalidMotionError, match="There is no example 9; the model has 4"):
+        synthesize(model, 1, settings=VarySettings(base=9))
+    with pytest.raises(InvalidMotionError, match="not learned for the method published"):
+        synthesize(model, 1, settings=VarySettings(method=Method.PUBLISHED))
+
+
+def test_progress_rises_to_one_and_may_cancel(model):
+    told = []
+    synthesize(model, 4, progress=lambda fraction, message="": told.append(fraction))
+
+    def cancel(fraction, message=""):
+        raise SolveCancelled
+
+    assert told == sorted(told)
+    assert told[-1] == 1.0
+    with pytest.raises(SolveCancelled):
+        synthesize(model, 4, progress=cancel)
