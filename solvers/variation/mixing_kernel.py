@@ -8,7 +8,7 @@ the examples, between channels and in time, stays together.
 
 Scale and bias are not learned by marginal likelihood: where moments are not quite lined up the
 likeliest shares change within .1 s, and variants made of them jerk and look like no example
-(docs/variation_methods.md). They are the same for all behaviours, chosen on squats and hops.
+(docs/variation.md). They are the same for all behaviours, chosen on squats and hops.
 
 .. [1] Teh, Seeger, Jordan (2005). Semiparametric latent factor models. AISTATS.
 """
