@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from ..denoising import PlantSettings
 from ..motion import Motion
 from ..progress import Progress, unwatched, within
-from ..variation import VarySettings, learn_variation_model, synthesize
+from ..variation import VarySettings, borrow_variation, learn_variation_model, synthesize
 from .try_to_plant import try_to_plant
 
 
@@ -41,7 +41,7 @@ def vary_motions(
     Parameters
     ----------
     examples : Motion
-        Of one rig and without gaps.
+        Of one rig and without gaps. How a single one varies is borrowed, and said.
     n_variants : int
     settings : VarySettings
     planting : PlantSettings or None
@@ -53,9 +53,12 @@ def vary_motions(
     InvalidMotionError
         The examples do not go together; see `learn_variation_model`.
     """
-    model = learn_variation_model(
-        examples, settings=settings, progress=within(progress, 0.0, 0.3)
-    )
+    if len(examples) == 1:
+        model = borrow_variation(examples[0])
+    else:
+        model = learn_variation_model(
+            examples, settings=settings, progress=within(progress, 0.0, 0.3)
+        )
     drawn = synthesize(
         model, n_variants, settings=settings, progress=within(progress, 0.3, 0.4)
     )

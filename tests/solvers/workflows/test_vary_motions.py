@@ -8,7 +8,7 @@ from solvers.denoising import measure_quality
 from solvers.motion import Motion
 from solvers.recordings import read_recording
 from solvers.samples import GaitSettings, walking_gait
-from solvers.variation import VarySettings
+from solvers.variation import VarySettings, measure_variation
 from solvers.workflows import vary_motions
 
 
@@ -65,3 +65,9 @@ def test_progress_goes_from_nothing_to_all(walks):
     vary_motions(walks, 2, progress=lambda fraction, message="": told.append(fraction))
     assert told == sorted(told)
     assert told[-1] == 1.0
+
+
+def test_one_example_varies_by_what_is_borrowed_and_that_is_said(walks):
+    variants = vary_motions(walks[:1], 3, planting=None)
+    assert measure_variation(variants.motions) > 0.003
+    assert variants.remarks == ("There is one example; how it varies is borrowed.",)
