@@ -7,9 +7,14 @@ Blender is imported only on `register`: a solve in a process of its own passes t
 def register() -> None:
     """Make properties, commands and panels known to Blender."""
     from . import batch, scene_properties, ui, watch
+    from .library import background, ghost_drawing, previews, properties
     from .scene import contacts
 
     scene_properties.register()
+    properties.register()
+    ghost_drawing.register()
+    background.register()
+    previews.register()
     contacts.register()
     watch.register()
     batch.register()
@@ -19,10 +24,15 @@ def register() -> None:
 def unregister() -> None:
     """Take them away again."""
     from . import batch, scene_properties, ui, watch
+    from .library import background, ghost_drawing, previews, properties
     from .scene import contacts
 
     ui.unregister()
     batch.unregister()
     watch.unregister()
     contacts.unregister()
+    previews.unregister()
+    background.unregister()
+    ghost_drawing.unregister()
+    properties.unregister()
     scene_properties.unregister()

@@ -12,7 +12,7 @@ from .clean_choices import CleanChoices, Prior
 from .jobs.cleaning import Examples
 from .scene import compat
 from .scene.armature_read import read_take
-from .scene.bone_channels import animated_curves, bone_path
+from .scene.fitting import fits, plays
 from .scene.linked_clips import is_blend, linked_clips
 
 SEPARATOR = ";"
@@ -110,22 +110,6 @@ def _read_action(
     players = [each for each in armatures if plays(each, action)]
     for other in [*players, *armatures]:
         for slot in action.slots:
-            if slot.target_id_type in compat.TARGETS and _fits(other, action, slot):
+            if slot.target_id_type in compat.TARGETS and fits(other, action, slot):
                 return read_take(other, scene, source=(action, slot)).parts[0].motion
     return None
-
-
-def plays(armature: bpy.types.Object, action: bpy.types.Action) -> bool:
-    """Whether the action is the one that the armature plays now."""
-    animation = armature.animation_data
-    return animation is not None and animation.action == action
-
-
-def _fits(
-    armature: bpy.types.Object, action: bpy.types.Action, slot: bpy.types.ActionSlot
-) -> bool:
-    """Whether most animated bones of the action are bones of the armature."""
-    paths = {path.rpartition(".")[0] for path, _ in animated_curves(action, slot)}
-    bones = {bone_path(bone.name, "")[:-1] for bone in armature.pose.bones}
-    animated = {path for path in paths if path.startswith("pose.bones[")}
-    return bool(animated) and 2 * len(animated & bones) > len(animated)

@@ -9,6 +9,7 @@ import bpy
 
 from .check_choices import CheckSettings
 from .clean_choices import CleanSettings
+from .library.choices import FindBundle, LibraryBundle, LoadBundle
 from .reconstruct_choices import ReconstructBundle
 from .retarget_choices import RetargetBundle, UnbakeBundle
 from .settings_properties import settings_from
@@ -49,6 +50,21 @@ class MOCAP_PG_unbake(bpy.types.PropertyGroup):
 @settings_from(ReconstructBundle)
 class MOCAP_PG_reconstruct(bpy.types.PropertyGroup):
     """Settings of the button Reconstruct."""
+
+
+@settings_from(LibraryBundle)
+class MOCAP_PG_library(bpy.types.PropertyGroup):
+    """Settings of the button Index."""
+
+
+@settings_from(FindBundle)
+class MOCAP_PG_find(bpy.types.PropertyGroup):
+    """Settings of the button Find Similar."""
+
+
+@settings_from(LoadBundle)
+class MOCAP_PG_load(bpy.types.PropertyGroup):
+    """Settings of the button Append as Action."""
 
 
 class MOCAP_PG_bone_pair(bpy.types.PropertyGroup):
@@ -93,6 +109,9 @@ class MOCAP_PG_scene(bpy.types.PropertyGroup):
     simulate: bpy.props.PointerProperty(type=MOCAP_PG_simulate)
     retarget: bpy.props.PointerProperty(type=MOCAP_PG_retarget)
     unbake: bpy.props.PointerProperty(type=MOCAP_PG_unbake)
+    library: bpy.props.PointerProperty(type=MOCAP_PG_library)
+    find: bpy.props.PointerProperty(type=MOCAP_PG_find)
+    load: bpy.props.PointerProperty(type=MOCAP_PG_load)
     bone_map: bpy.props.PointerProperty(type=MOCAP_PG_bone_map)
     checked: bpy.props.StringProperty(
         name="Checked", description="Action that was checked last, whose spots are listed"
@@ -119,6 +138,9 @@ CLASSES = (
     MOCAP_PG_simulate,
     MOCAP_PG_unbake,
     MOCAP_PG_reconstruct,
+    MOCAP_PG_library,
+    MOCAP_PG_find,
+    MOCAP_PG_load,
     MOCAP_PG_bone_pair,
     MOCAP_PG_bone_map,
     MOCAP_PG_spot,

@@ -3,10 +3,16 @@
 import bpy
 
 from .denoise import MOCAP_OT_denoise
+from .find_similar import MOCAP_OT_find_similar
 from .import_job import MOCAP_OT_import_job
 from .import_recording import MOCAP_OT_import_recording
+from .index_library import MOCAP_OT_index_library
 from .jump_to_spot import MOCAP_OT_jump_to_spot
+from .learn_from_matches import MOCAP_OT_learn_from_matches
 from .learn_patterns import MOCAP_OT_learn_patterns
+from .link_match import MOCAP_OT_link_match
+from .load_match import MOCAP_OT_load_match
+from .mark_asset import MOCAP_OT_mark_asset
 from .measure_quality import MOCAP_OT_measure_quality
 from .plant_feet import MOCAP_OT_plant_feet
 from .reconstruct import MOCAP_OT_reconstruct
@@ -30,6 +36,12 @@ OPERATORS = (
     MOCAP_OT_retarget,
     MOCAP_OT_reduce_keys,
     MOCAP_OT_revert_to_raw,
+    MOCAP_OT_index_library,
+    MOCAP_OT_find_similar,
+    MOCAP_OT_load_match,
+    MOCAP_OT_link_match,
+    MOCAP_OT_learn_from_matches,
+    MOCAP_OT_mark_asset,
 )
 
 

@@ -17,6 +17,7 @@ from .each_verb import HELP as EACH_HELP
 from .each_verb import add_each_options, perform_each
 from .import_verb import HELP as IMPORT_HELP
 from .import_verb import add_import_options, perform_import
+from .library_verbs import INDEX_HELP, add_index_options, perform_index
 from .pictures import draw_played
 from .saving import STDOUT, add_output_options, in_a_folder, save, target_file
 from .verbs import VERBS
@@ -105,6 +106,9 @@ def _parser() -> SentenceParser:
     add_output_options(described, saves=True)
     add_import_options(described)
     described.set_defaults(work=perform_import)
+    described = choices.add_parser("index", help=INDEX_HELP, description=INDEX_HELP)
+    add_index_options(described)
+    described.set_defaults(work=perform_index)
     described = choices.add_parser("each", help=EACH_HELP, description=EACH_HELP)
     add_each_options(described)
     described.set_defaults(work=perform_each)

@@ -23,6 +23,7 @@ from ..scene import history
 from ..scene.armature_read import read_take
 from ..scene.marker_take import read_markers
 from ..selection import played_result, played_source
+from .library_verbs import FIND_HELP, add_find_options, check_find, perform_find
 from .reconstruct_verb import add_reconstruct_options, perform_reconstruct
 from .retarget_verbs import (
     add_retarget_options,
@@ -202,5 +203,6 @@ VERBS = {
         perform_unbake,
         on_markers=False,
     ),
+    "find": Verb(FIND_HELP, add_find_options, perform_find, writes=False, check=check_find),
 }
 """A new verb is a new entry here."""

@@ -5,7 +5,7 @@ import pickle
 import signal
 import subprocess
 import sys
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from functools import partial
 from pathlib import Path
 from tempfile import TemporaryDirectory
@@ -53,7 +53,11 @@ class Quick(partial[Result]):
     """A solve that is so short that it needs no process of its own."""
 
 
-def run(solve: Callable[..., Result], progress: Progress = unwatched) -> Result:
+def run(
+    solve: Callable[..., Result],
+    progress: Progress = unwatched,
+    program: Sequence[str] = (),
+) -> Result:
     """Solve and wait for the result, in a process of its own unless the solve is quick.
 
     In that process linear algebra has one thread, whatever Blender's has: on matrices of this
@@ -61,7 +65,7 @@ def run(solve: Callable[..., Result], progress: Progress = unwatched) -> Result:
     """
     if isinstance(solve, Quick):
         return solve(progress=progress)
-    job = Job(solve)
+    job = Job(solve, program)
     try:
         while not job.done():
             progress(*job.progress())
@@ -77,10 +81,10 @@ class Job(Generic[Result]):
     """Start `solve(progress=…)`; ask `done` now and then; fetch `result` once.
 
     `solve` must be picklable. A crash of its process, or a lack of memory, leaves this one
-    unharmed.
+    unharmed. `program` is the command that runs it, by default a bare Python with child.py.
     """
 
-    def __init__(self, solve: Callable[..., Result]) -> None:
+    def __init__(self, solve: Callable[..., Result], program: Sequence[str] = ()) -> None:
         self._cancelled = False
         # On Windows a file that is still open cannot be removed; that is no reason to fail.
         self._folder = TemporaryDirectory(prefix="mocap_assist_", ignore_cleanup_errors=True)
@@ -88,7 +92,7 @@ class Job(Generic[Result]):
         (self._path / REQUEST).write_bytes(pickle.dumps(solve))
         with (self._path / LOG).open("wb") as log:
             self._process = subprocess.Popen(
-                [_python(), *ALONE, str(CHILD), str(self._path), EXTENSION],
+                [*(program or alone(CHILD)), str(self._path), EXTENSION],
                 stdin=subprocess.PIPE,  # nothing is said: it closes when this process ends
                 stdout=log,
                 stderr=subprocess.STDOUT,
@@ -143,6 +147,11 @@ class Job(Generic[Result]):
             raise outcome
         result: Result = outcome[0]
         return result
+
+
+def alone(script: Path) -> tuple[str, ...]:
+    """Return the command that runs a script in a Python that sees nothing of the user's."""
+    return (_python(), *ALONE, str(script))
 
 
 def _python() -> str:

@@ -2,18 +2,30 @@
 
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from ...solvers.errors import InvalidMotionError
 from ...solvers.motion import HumanoidMap, Motion, Skeleton, forward_kinematics
+from ...solvers.motion.posture_heading import normalise
+from ...solvers.motion.posture_joints import motion_postures
 from ...solvers.motion.rotations import IDENTITY, inverse, multiply, rotate
 from ...solvers.progress import Progress, unwatched, within
 from ...solvers.retargeting import RetargetSettings, RootMotion, ground_path, retarget
 from .controls import BoneKeys, Carried, TargetRig, keys_of
 
 Array = NDArray[np.float64]
+
+
+class Start(NamedTuple):
+    """Where the body is to stand on the target's stage at first, and which way it faces."""
+
+    place: Array
+    """On the ground, shape (2,), metres."""
+    heading: float
+    """Radians about the vertical; 0 is -Y."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -25,6 +37,8 @@ class Clip:
     """Where the source's armature stands on the ground, shape (3,), metres."""
     turn: Array
     """How it is turned about the vertical, shape (4,)."""
+    start: Start | None = None
+    """Without, the target stands as the source does."""
 
     def on_stage(self) -> Motion:
         """Return the motion with the armature in the middle, facing as it was built."""
@@ -58,12 +72,12 @@ def retarget_clips(problem: RetargetProblem, *, progress: Progress = unwatched) 
     found, n_clips = [], len(problem.clips)
     for index, clip in enumerate(problem.clips):
         share = within(progress, index / n_clips, (index + 1) / n_clips)
-        found.append(_retarget(clip.on_stage(), problem, share))
+        found.append(_retarget(clip, problem, share))
     return tuple(found)
 
 
 def _retarget(
-    motion: Motion, problem: RetargetProblem, progress: Progress
+    clip: Clip, problem: RetargetProblem, progress: Progress
 ) -> Mapping[str, BoneKeys]:
     target, settings = problem.target, problem.settings
     on_root = settings.root_motion is RootMotion.ROOT_BONE
@@ -74,7 +88,7 @@ def _retarget(
         )
     kept = RootMotion.KEEP if on_root else settings.root_motion
     result = retarget(
-        motion,
+        clip.on_stage(),
         problem.roles,
         target.skeleton,
         target.humanoid,
@@ -82,6 +96,8 @@ def _retarget(
         progress=within(progress, 0.0, 0.8),
     )
     progress(0.8, "Moving the controls")
+    if clip.start is not None:
+        result = _started(result, target.humanoid, clip.start)
     gaps = ~np.isfinite(result.rotations).all(axis=-1)
     gaps[:, 0] |= ~np.isfinite(result.root_positions).all(axis=-1)
     whole = result.with_poses(
@@ -93,6 +109,18 @@ def _retarget(
         control.bone: _with_gaps(keys[control.bone], gaps[:, max(control.joint, 0)])
         for control in target.controls
     }
+
+
+def _started(motion: Motion, roles: HumanoidMap, start: Start) -> Motion:
+    """Return the motion turned and shifted as a whole, so that it begins at `start`."""
+    body = normalise(motion_postures(motion, roles), motion.frame_rate)
+    half = 0.5 * (start.heading - body.headings[0])
+    turn = np.array([np.cos(half), 0.0, 0.0, np.sin(half)])
+    first = body.places[0] * (1.0, 1.0, 0.0)
+    rotations = np.array(motion.rotations)
+    rotations[:, 0] = multiply(turn, rotations[:, 0])
+    places = rotate(turn, motion.root_positions - first) + np.append(start.place, 0.0)
+    return motion.with_poses(rotations, places)
 
 
 def _travel(motion: Motion, target: TargetRig, settings: RetargetSettings) -> Carried:

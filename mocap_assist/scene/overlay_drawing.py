@@ -56,7 +56,7 @@ def draw(context: bpy.types.Context, colors: tuple[Color, Color], width: float) 
     elif (holder := holder_of(active)) is not None:
         for played, color in zip(marker_overlay.raw_and_clean(holder), colors, strict=True):
             lines = marker_overlay.lines_at(played, context.scene)
-            _draw_lines(lines, Matrix.Identity(4), color, width)
+            draw_lines(lines, Matrix.Identity(4), color, width)
 
 
 def _draw_figures(
@@ -65,10 +65,10 @@ def _draw_figures(
     for source, color in zip(overlay.raw_and_clean(armature), colors, strict=True):
         if source is not None:
             lines = overlay.figures_at(armature, source, frame).segments(frame)
-            _draw_lines(lines, armature.matrix_world, color, width)
+            draw_lines(lines, armature.matrix_world, color, width)
 
 
-def _draw_lines(lines: np.ndarray, matrix: Any, color: Color, width: float) -> None:
+def draw_lines(lines: np.ndarray, matrix: Any, color: Color, width: float) -> None:
     """Draw lines of shape (n_lines, 2, 3) in the space of `matrix`, in front of everything."""
     from gpu_extras.batch import batch_for_shader
 

@@ -5,12 +5,14 @@ from . import (
     example_list,
     heat_switch,
     import_menu,
+    library_panel,
     manual,
     menus,
     overlay_switch,
     preferences,
     retarget_panel,
     sidebar,
+    source_list,
     translations,
 )
 
@@ -20,6 +22,8 @@ PARTS = (
     example_list,
     bone_list,
     retarget_panel,
+    source_list,
+    library_panel,
     sidebar,
     menus,
     import_menu,

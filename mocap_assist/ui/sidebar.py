@@ -7,6 +7,7 @@ from .clean_panel import CleanPanel
 from .compare_panel import ComparePanel
 from .feet_panel import FeetPanel
 from .import_panel import ImportPanel
+from .library_panel import LibraryPanel
 from .markers_panel import MarkersPanel
 from .physics_panel import PhysicsPanel
 from .preferences import preferred
@@ -37,6 +38,7 @@ BODIES = (
     PhysicsPanel,
     MarkersPanel,
     RetargetPanel,
+    LibraryPanel,
 )
 PANELS = [panel for body in BODIES for panel in _in_every_editor(body)]
 

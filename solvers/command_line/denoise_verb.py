@@ -1,7 +1,7 @@
 """`denoise`: take jitter, spikes and gaps out, guided by clean clips where there are any."""
 
 import argparse
-from dataclasses import fields
+from dataclasses import fields, replace
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..denoising import (
+    Denoised,
     DenoiseSettings,
     FilterBases,
     FilterBasesSettings,
@@ -26,6 +27,7 @@ from ..markers import Swap, unswap_markers
 from ..motion import JointLimits, Motion, Tracks
 from ..progress import Progress, within
 from .files import add_reading_options, read, read_all, write
+from .from_library import add_library_option, bases_for, check_library
 from .options import arguments_from, settings_from_arguments
 from .verb import Outcome, Task
 
@@ -49,6 +51,7 @@ def add_denoise_options(parser: argparse.ArgumentParser) -> None:
         "--bases", type=Path, metavar="FILE",
         help="What was learned of clean clips before, by the verb learn or the button Learn",
     )  # fmt: skip
+    add_library_option(examples)
     parser.add_argument(
         "--joint-limits", action="store_true",
         help="Hold joints softly within the angles to which they turn in the clips of --train",
@@ -84,6 +87,7 @@ def learn_once(arguments: argparse.Namespace, progress: Progress) -> Learned:
     settings = settings_from_arguments(arguments, FilterBasesSettings)
     if not arguments.train:
         _refuse_what_needs_clips(arguments)
+        check_library(arguments.library)
         return Learned(arguments.bases and load_filter_bases(arguments.bases))
     clips = read_all(arguments.train, arguments, within(progress, 0.0, 0.5))
     bases = learn_filter_bases(clips, settings=settings, progress=within(progress, 0.5, 0.9))
@@ -98,11 +102,11 @@ def _refuse_what_needs_clips(arguments: argparse.Namespace) -> None:
         raise InvalidSettingError(
             "Joint limits are learned from clean clips; name some with --train."
         )
-    for item in fields(FilterBasesSettings):
+    for item in fields(FilterBasesSettings) if arguments.library is None else ():
         if hasattr(arguments, item.name):
             raise InvalidSettingError(
                 f"--{item.name.replace('_', '-')} is for learning; name clean clips with"
-                " --train, or give it to the verb learn."
+                " --train or a --library, or give it to the verb learn."
             )
 
 
@@ -110,13 +114,7 @@ def perform_denoise(task: Task, learned: Learned, progress: Progress) -> Outcome
     """Clean one recording and write it; tell its quality before and after."""
     recording = read(task.source, task.arguments, within(progress, 0.0, 0.05))
     labelled, swaps = _labelled(recording, task.arguments, within(progress, 0.05, 0.1))
-    denoised = denoise(
-        labelled,
-        learned.bases,
-        limits=learned.limits,
-        settings=settings_from_arguments(task.arguments, DenoiseSettings),
-        progress=within(progress, 0.1, 0.7),
-    )
+    denoised = _denoised(labelled, task, learned, within(progress, 0.1, 0.7))
     clean = denoised.recording
     clean, contacts, feet = _with_feet_planted(
         clean, task.arguments, within(progress, 0.7, 0.8)
@@ -145,6 +143,22 @@ def perform_denoise(task: Task, learned: Learned, progress: Progress) -> Outcome
         "after": after.figures(),
     }
     return Outcome(text, figures)
+
+
+def _denoised(
+    recording: Motion | Tracks, task: Task, learned: Learned, progress: Progress
+) -> Denoised:
+    """Denoise with what was learned for all files, or is in a library for this one."""
+    bases, said = learned.bases, ""
+    settings = settings_from_arguments(task.arguments, DenoiseSettings)
+    if task.arguments.library is not None:
+        finding, progress = within(progress, 0.0, 0.5), within(progress, 0.5, 1.0)
+        found = bases_for(recording, task.source, task.arguments, finding)
+        bases, said = found.bases, found.said
+    denoised = denoise(
+        recording, bases, limits=learned.limits, settings=settings, progress=progress
+    )
+    return replace(denoised, prior_used=f"{said} {denoised.prior_used}".lstrip())
 
 
 def _labelled(

@@ -25,6 +25,7 @@ from ..workflows import (
     try_to_plant,
 )
 from .files import JOINTS, add_reading_options, read_all, write
+from .from_library import add_library_option, check_library, postures_for
 from .options import arguments_from, settings_from_arguments
 from .verb import Outcome, Task
 
@@ -45,7 +46,9 @@ class Rebuilt(NamedTuple):
 def add_reconstruct_options(parser: argparse.ArgumentParser) -> None:
     """Add the options of `reconstruct`."""
     add_reading_options(parser)
-    parser.add_argument(
+    postures = parser.add_mutually_exclusive_group()
+    add_library_option(postures)
+    postures.add_argument(
         "--train", nargs="+", type=Path, default=[], metavar="FILE",
         help="Clean clips of skeletons, or folders of them, to learn postures from; without"
         " them those that come with Mocap Assist guide",
@@ -82,6 +85,7 @@ class Guides(NamedTuple):
 
 def read_guides(arguments: argparse.Namespace, progress: Progress) -> Guides:
     """Learn and read, once for all files of a run, what guides them."""
+    check_library(arguments.library)
     given, library = arguments.residuals, arguments.postures
     if library is not None and arguments.train:
         raise InvalidSettingError(
@@ -99,7 +103,9 @@ def perform_reconstruct(task: Task, prepared: Guides, progress: Progress) -> Out
     given = read_recording(
         task.source, scale=task.arguments.scale, progress=within(progress, 0.0, 0.1)
     )
-    rebuilt = _rebuilt(given, task, prepared, within(progress, 0.1, 0.8))
+    guides, said = _guides_for(given, task, prepared, within(progress, 0.1, 0.3))
+    rebuilt = _rebuilt(given, task, guides, within(progress, 0.3, 0.8))
+    rebuilt = rebuilt._replace(remarks=(*said, *rebuilt.remarks))
     assert task.target is not None
     if task.target.suffix.lower() != JOINTS:
         write(rebuilt.motion, task.target, within(progress, 0.9, 1.0))
@@ -110,6 +116,17 @@ def perform_reconstruct(task: Task, prepared: Guides, progress: Progress) -> Out
     else:
         write_joint_csv(rebuilt.joints, task.target, progress=within(progress, 0.9, 1.0))
     return _outcome(given, rebuilt)
+
+
+def _guides_for(
+    given: Any, task: Task, guides: Guides, progress: Progress
+) -> tuple[Guides, tuple[str, ...]]:
+    """Return what guides one recording; what is like it in a library, where there is one."""
+    if task.arguments.library is None:
+        return guides, ()
+    subject = given if isinstance(given, Motion) else _joints_of(given, task.source)
+    found = postures_for(subject, task.source, task.arguments, progress)
+    return guides._replace(postures=found.postures), (found.said,)
 
 
 def _rebuilt(given: Any, task: Task, guides: Guides, progress: Progress) -> Rebuilt:

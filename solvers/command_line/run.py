@@ -16,6 +16,14 @@ from .screen import Screen
 from .tasks import tasks_of
 from .verb import Makes, Outcome, Task, Verb
 
+FILES = {
+    Makes.WORDS: "Recordings to read, or folders of them",
+    Makes.FILES: "The recording and the file to write; with --output-folder any recordings, and"
+    " folders of them",
+    Makes.ONE_FILE: "Recordings to read, or folders of them",
+    Makes.LIBRARY: "The library, and then recordings to put into it, or folders of them",
+    Makes.MATCHES: "The recording to which there may be something like, and then the library",
+}
 FAILED = 2
 INTERRUPTED = 130
 
@@ -70,13 +78,7 @@ def _parser(verbs: Mapping[str, Verb], prog: str) -> SentenceParser:
 
 
 def _add_common_options(parser: argparse.ArgumentParser, makes: Makes) -> None:
-    meaning = "Recordings to read, or folders of them"
-    if makes is Makes.FILES:
-        meaning = (
-            "The recording and the file to write; with --output-folder any recordings, and"
-            " folders of them"
-        )
-    parser.add_argument("files", nargs="+", type=Path, metavar="FILE", help=meaning)
+    parser.add_argument("files", nargs="+", type=Path, metavar="FILE", help=FILES[makes])
     if makes is Makes.FILES:
         parser.add_argument(
             "--output-folder", type=Path, metavar="DIR",
@@ -91,7 +93,7 @@ def _add_common_options(parser: argparse.ArgumentParser, makes: Makes) -> None:
             "--report", action="store_true",
             help=f"Write DIR/{PAGE} and report.json about the whole batch, with pictures",
         )  # fmt: skip
-    if makes not in {Makes.ONE_FILE, Makes.MANY_FILES}:
+    if makes not in {Makes.ONE_FILE, Makes.MANY_FILES, Makes.MATCHES}:
         parser.add_argument(
             "--jobs", type=int, default=1, metavar="N",
             help="How many files to work on at a time [default 1]",
@@ -116,16 +118,17 @@ def _work(verb: Verb, arguments: argparse.Namespace, screen: Screen) -> int:
     tasks = tasks_of(verb, arguments)
     made = None if folder is None else Made(folder)
     entries = {task.sources: Entry(task, None) for task in tasks}
+    partly = False
     try:
         for finished in _worked(verb, tasks, made, n_jobs, screen):
             figures = finished.outcome.figures if finished.outcome else None
             entry = Entry(finished.task, figures, finished.failure)
             entries[finished.task.sources] = entry
-            _report(finished, len(tasks) > 1)
+            partly |= _report(finished, len(tasks) > 1, screen)
     finally:
         if folder is not None and reporting:
             write_report(folder, arguments.verb, list(entries.values()))
-    return FAILED if any(entry.failure for entry in entries.values()) else 0
+    return FAILED if partly or any(entry.failure for entry in entries.values()) else 0
 
 
 def _worked(
@@ -150,8 +153,14 @@ def _worked(
         yield finished
 
 
-def _report(finished: Finished, one_of_many: bool) -> None:
-    """Print what came of a task on stdout: a line of JSON, or text."""
+def _report(finished: Finished, one_of_many: bool, screen: Screen) -> bool:
+    """Print what came of a task on stdout: a line of JSON, or text.
+
+    Returns
+    -------
+    bool
+        Whether a part of it failed, which is told on stderr.
+    """
     task, outcome = finished.task, finished.outcome
     arguments = task.arguments
     if arguments.json:
@@ -166,3 +175,7 @@ def _report(finished: Finished, one_of_many: bool) -> None:
         title = f"{task.source}\n" if one_of_many else ""
         sys.stdout.write(f"{title}{outcome.text}\n")
     sys.stdout.flush()
+    failures = outcome.failures if outcome is not None else ()
+    for sentence in failures:
+        screen.say(sentence)
+    return bool(failures)

@@ -40,12 +40,31 @@ def tasks_of(verb: Verb, arguments: argparse.Namespace) -> list[Task]:
             )
         sources = tuple(path for path, _ in found_in(files, not_in=arguments.output))
         return [Task(sources, arguments.output, arguments)]
+    if verb.makes in {Makes.LIBRARY, Makes.MATCHES}:
+        return [_task_with_library(verb.makes, files, arguments)]
     if verb.makes is Makes.ONE_FILE:
         sources = tuple(path for path, _ in found_in(files))
         _refuse_reading_and_writing(sources, [arguments.output])
         refuse_target(arguments.output, LEARNED)
         return [Task(sources, arguments.output, arguments)]
     return [Task((path,), target, arguments) for path, target in _pairs(verb, arguments)]
+
+
+def _task_with_library(
+    makes: Makes, files: Sequence[Path], arguments: argparse.Namespace
+) -> Task:
+    if makes is Makes.LIBRARY:
+        if len(files) < 2:
+            raise InvalidSettingError(
+                f"Only {files[0]} is named: name the library and then recordings, or folders"
+                " of them."
+            )
+        return Task(tuple(files[1:]), files[0], arguments)
+    if len(files) != 2:
+        raise InvalidSettingError(
+            f"Name the recording and then the library; the names are {len(files)}."
+        )
+    return Task(tuple(files), None, arguments)
 
 
 def _pairs(verb: Verb, arguments: argparse.Namespace) -> list[tuple[Path, Path]]:

@@ -18,6 +18,8 @@ class Outcome:
     """For people."""
     figures: dict[str, Any] = field(default_factory=dict)
     """For programs: what `--json` prints."""
+    failures: tuple[str, ...] = ()
+    """A sentence for each part of it that failed."""
 
 
 class Task(NamedTuple):
@@ -47,6 +49,8 @@ class Makes(Enum):
     FILES = "a file of each file"
     ONE_FILE = "one file of all files"
     MANY_FILES = "a folder of files of all files"
+    LIBRARY = "a library, which is named first, of all other files"
+    MATCHES = "what there is like a file in a library, which is named last"
 
 
 def nothing_to_prepare(arguments: argparse.Namespace, progress: Progress) -> None:

@@ -13,6 +13,12 @@ from ..progress import Progress, within
 from .convert import convert
 from .denoise_verb import add_denoise_options, learn_once, perform_denoise
 from .files import add_reading_options, read, read_all
+from .library_verbs import (
+    add_find_options,
+    add_index_options,
+    perform_find,
+    perform_index,
+)
 from .options import arguments_from, settings_from_arguments
 from .postures_verb import add_postures_options, perform_postures
 from .reconstruct_verb import add_reconstruct_options, perform_reconstruct, read_guides
@@ -129,6 +135,18 @@ VERBS = {
         add_vary_options,
         perform_vary,
         Makes.MANY_FILES,
+    ),
+    "index": Verb(
+        "Put recordings into a library in which there can be searched, and keep it up to date.",
+        add_index_options,
+        perform_index,
+        Makes.LIBRARY,
+    ),
+    "find": Verb(
+        "Find what in a library is like a recording, and where in which clip it is.",
+        add_find_options,
+        perform_find,
+        Makes.MATCHES,
     ),
     "convert": Verb(
         "Write recordings of any known format as BVH, or as C3D or TRC where they are points.",

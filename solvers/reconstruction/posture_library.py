@@ -116,6 +116,18 @@ def load_posture_library(path: Path | str = SHIPPED) -> PostureLibrary:
     )
 
 
+def joined_postures(first: PostureLibrary, second: PostureLibrary) -> PostureLibrary:
+    """Return a library of the postures of two."""
+    directions = np.concatenate([first.directions, second.directions])
+    return PostureLibrary(
+        directions,
+        np.concatenate([first.changes, second.changes]),
+        group_postures(directions),
+        first.n_seen + second.n_seen,
+        f"{first.trained_on}, and {second.trained_on}",
+    )
+
+
 def _fault(arrays: dict[str, NDArray[Any]]) -> str:
     """Return what keeps postures from a file from being used, or nothing."""
     kinds = {"directions": "i", "changes": "i", "groups": "i", "n_seen": "i", "trained_on": "U"}

@@ -9,7 +9,13 @@
 """
 
 from .clip import Clip, ClipEntry, Match, Origin
-from .clip_library import ClipLibrary, build_clip_library, load_clip_library
+from .clip_library import (
+    ClipLibrary,
+    build_clip_library,
+    load_clip_library,
+    open_clip_library,
+)
+from .describe_clip import DescribedClip, describe_clip
 from .find_settings import FindSettings
 from .find_similar import find_similar
 
@@ -17,10 +23,13 @@ __all__ = [
     "Clip",
     "ClipEntry",
     "ClipLibrary",
+    "DescribedClip",
     "FindSettings",
     "Match",
     "Origin",
     "build_clip_library",
+    "describe_clip",
     "find_similar",
     "load_clip_library",
+    "open_clip_library",
 ]

@@ -1,6 +1,7 @@
 """A library of clips that can be searched, grows and shrinks, in memory or in a file."""
 
 import sqlite3
+from collections import Counter
 from collections.abc import Iterable, Sequence
 from pathlib import Path
 from types import TracebackType
@@ -11,17 +12,20 @@ from numpy.typing import NDArray
 
 from ..errors import InvalidMotionError
 from ..files import written_whole
-from ..motion import JointRecording
 from ..progress import Progress, unwatched, within
 from . import library_file as files
 from .clip import Clip, ClipEntry
-from .clip_postures import ClipPostures, clip_postures
+from .clip_postures import ClipPostures
+from .describe_clip import DescribedClip, describe_clip
 from .index_block import IndexBlock, block_of, merged
 from .spans import RATE, Spans, describe_spans
 from .vocabulary import MOST_FRAMES, Vocabulary, learn_vocabulary
 
 OUTGROWN = 4
 """A library of so many times the frames that its words were learned of learns new ones."""
+LARGEST_BLOCK = 50_000
+"""Spans from which on blocks are not put together: SQLite stores no more than about four times
+as many in one row, and a merge would need much memory."""
 WELL_LEARNED = 8 * MOST_FRAMES
 """Frames from which on words are good for whatever comes."""
 
@@ -91,19 +95,40 @@ class ClipLibrary:
         SolveCancelled
             Raised by `progress`; the library is as it was.
         """
-        entries, postures = _seen_postures(list(clips), within(progress, 0.0, 0.5))
-        if not entries:
+        clips = list(clips)
+        described = []
+        for place, clip in enumerate(clips):
+            progress(0.5 * place / len(clips), clip.name)
+            described.append(describe_clip(clip))
+        self.add_described(described, progress=within(progress, 0.5, 1.0))
+
+    def add_described(
+        self, clips: Sequence[DescribedClip], *, progress: Progress = unwatched
+    ) -> None:
+        """Add clips that `describe_clip` has described, here or in another process.
+
+        Raises
+        ------
+        InvalidMotionError
+            Two clips have one name; the library is as it was.
+        SolveCancelled
+            Raised by `progress`; the library is as it was.
+        """
+        names = Counter(clip.entry.name for clip in clips)
+        if doubled := [name for name, count in names.items() if count > 1]:
+            raise InvalidMotionError(f"Two clips are called {min(doubled)}.")
+        if not clips:
             return
+        postures = [clip.postures for clip in clips]
         with files.told_in_words(self._path), files.transaction(self._database):
             self._refresh()
             numbers = [
-                files.write_clip(self._database, entry, clip)
-                for entry, clip in zip(entries, postures, strict=True)
+                files.write_clip(self._database, clip.entry, clip.postures) for clip in clips
             ]
             if self._outgrown(sum(clip.n_frames for clip in postures)):
-                self._index_all(within(progress, 0.5, 1.0))
+                self._index_all(progress)
             else:
-                self._index(numbers, postures, within(progress, 0.5, 1.0))
+                self._index(numbers, postures, progress)
             progress(1.0)
 
     def remove(self, names: Sequence[str]) -> None:
@@ -193,7 +218,11 @@ class ClipLibrary:
         files.write_vocabulary(self._database, vocabulary)
         self._database.execute("DELETE FROM blocks")
         described = _described(postures, vocabulary, progress)
-        files.write_block(self._database, block_of(numbers, described))
+        ends = np.cumsum([len(spans.frames) for spans in described]) // LARGEST_BLOCK
+        for one in np.unique(ends):
+            first, last = np.searchsorted(ends, one), np.searchsorted(ends, one, side="right")
+            block = block_of(numbers[first:last], described[first:last])
+            files.write_block(self._database, block)
 
     def _index(
         self, numbers: list[int], postures: list[ClipPostures], progress: Progress
@@ -203,7 +232,8 @@ class ClipLibrary:
         block = block_of(numbers, _described(postures, self._vocabulary, progress))
         together = [block]
         for number, before in sorted(self._blocks.items(), reverse=True):
-            if before.n_spans > 2 * sum(one.n_spans for one in together):
+            n_spans = sum(one.n_spans for one in together)
+            if before.n_spans > 2 * n_spans or before.n_spans + n_spans > LARGEST_BLOCK:
                 break
             together.insert(0, before)
             self._database.execute("DELETE FROM blocks WHERE number = ?", (number,))
@@ -242,6 +272,20 @@ def load_clip_library(path: Path | str) -> ClipLibrary:
     return ClipLibrary(files.open_database(path), path)
 
 
+def open_clip_library(path: Path | str) -> ClipLibrary:
+    """Open the library in a file; where there is no file, begin one without clips.
+
+    Raises
+    ------
+    InvalidFileError
+        It is no library or damaged, of a newer version, or cannot be written.
+    """
+    path = Path(path)
+    if not path.exists() or (path.is_file() and not path.stat().st_size):
+        files.begin_file(path)
+    return load_clip_library(path)
+
+
 def _described(
     postures: list[ClipPostures], vocabulary: Vocabulary, progress: Progress
 ) -> list[Spans]:
@@ -250,24 +294,3 @@ def _described(
         progress(place / len(postures), "Indexing")
         described.append(describe_spans(clip, vocabulary))
     return described
-
-
-def _seen_postures(
-    clips: list[Clip], progress: Progress
-) -> tuple[list[ClipEntry], list[ClipPostures]]:
-    names = [clip.name for clip in clips]
-    if doubled := {name for name in names if names.count(name) > 1}:
-        raise InvalidMotionError(f"Two clips are called {min(doubled)}.")
-    entries, postures = [], []
-    for place, clip in enumerate(clips):
-        progress(place / len(clips), clip.name)
-        recording = clip.recording
-        frames = recording.tracks if isinstance(recording, JointRecording) else recording
-        try:
-            postures.append(clip_postures(recording, RATE))
-        except InvalidMotionError as error:
-            raise InvalidMotionError(f"{clip.name}: {error}") from None
-        entries.append(
-            ClipEntry(clip.name, clip.tags, clip.origin, frames.n_frames, frames.frame_rate)
-        )
-    return entries, postures

@@ -47,10 +47,28 @@ ENTRY_COLUMNS = "name, tags, path, item, size, modified, n_frames, frame_rate"
 def create_database() -> sqlite3.Connection:
     """Return an empty library in memory."""
     database = sqlite3.connect(":memory:", isolation_level=None, check_same_thread=False)
-    database.executescript(TABLES)
-    database.execute(f"PRAGMA application_id = {APPLICATION}")
-    database.execute(f"PRAGMA user_version = {VERSION}")
+    _lay_out(database)
     return database
+
+
+def begin_file(path: Path) -> None:
+    """Lay out an empty library in a file that is not there, or empty.
+
+    Where another process does so at the same time, one of them does it.
+
+    Raises
+    ------
+    InvalidFileError
+        The folder is missing or may not be written to.
+    """
+    with told_in_words(path):
+        database = sqlite3.connect(path, timeout=PATIENCE, isolation_level=None)
+        try:
+            with transaction(database):
+                if not database.execute("SELECT count(*) FROM sqlite_master").fetchone()[0]:
+                    _lay_out(database)
+        finally:
+            database.close()
 
 
 def open_database(path: Path) -> sqlite3.Connection:
@@ -104,6 +122,13 @@ def transaction(database: sqlite3.Connection) -> Iterator[None]:
         database.execute("ROLLBACK")
         raise
     database.execute("COMMIT")
+
+
+def _lay_out(database: sqlite3.Connection) -> None:
+    for statement in TABLES.split(";"):
+        database.execute(statement)
+    database.execute(f"PRAGMA application_id = {APPLICATION}")
+    database.execute(f"PRAGMA user_version = {VERSION}")
 
 
 def _check(database: sqlite3.Connection, path: Path) -> None:

@@ -1,7 +1,14 @@
 """What joins families: whole ways from a recording to a result."""
 
+from .clean_from_library import LibraryBases, bases_from_library, clean_from_library
+from .index_files import IndexReport, index_files
 from .motion_from_markers import MarkerMotion, MarkerMotionSettings, motion_from_markers
 from .postures_of import postures_of
+from .reconstruct_from_library import (
+    LibraryPostures,
+    postures_from_library,
+    reconstruct_from_library,
+)
 from .reconstruct_motion import RebuiltMotion, reconstruct_motion
 from .reconstruct_recording import ReconstructedMotion, reconstruct_recording
 from .try_to_plant import Footing, try_to_plant
@@ -9,13 +16,21 @@ from .vary_motions import Variants, vary_motions
 
 __all__ = [
     "Footing",
+    "IndexReport",
+    "LibraryBases",
+    "LibraryPostures",
     "MarkerMotion",
     "MarkerMotionSettings",
     "RebuiltMotion",
     "ReconstructedMotion",
     "Variants",
+    "bases_from_library",
+    "clean_from_library",
+    "index_files",
     "motion_from_markers",
+    "postures_from_library",
     "postures_of",
+    "reconstruct_from_library",
     "reconstruct_motion",
     "reconstruct_recording",
     "try_to_plant",

@@ -177,6 +177,17 @@ def _never_vary(kinematics: Array) -> bool:
     return bool(((kinematics < SAME) | (kinematics > 1.0 - SAME)).all())
 
 
+def postures_recording(motion: Motion) -> JointRecording:
+    """Return the joints of postures of a skeleton's motion, as a tracker would name them.
+
+    Raises
+    ------
+    InvalidMotionError
+        No body is recognised.
+    """
+    return _postures_of(motion, find_humanoid_map(motion.skeleton))[0]
+
+
 def _is_tracked(names: tuple[str, ...]) -> bool:
     """Whether all joints are a known tracker's, and so hang together as is known."""
     return joint_parents(names).count(-1) == 1 and "hips" in joints_of_names(names)

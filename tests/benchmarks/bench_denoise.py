@@ -30,6 +30,7 @@ from .ours import OURS, SHORT_NAMES
 from .part_classes import class_cases, compare_classes
 from .part_denoise import compare, leave_one_out, peers
 from .part_gaps import FILLERS, compare_gaps
+from .part_library import compare_libraries
 from .part_markers import FILLERS as MARKER_FILLERS
 from .part_markers import compare_markers
 from .part_speed import measure_speed
@@ -38,6 +39,7 @@ from .report import Report
 from .tables import Scores, table
 
 QUICK_CLASS_CLIPS, FULL_CLASS_CLIPS = 2, 6
+QUICK_LIBRARY_CLIPS, FULL_LIBRARY_CLIPS = 1, 3
 QUICK_MARKER_GAPS, FULL_MARKER_GAPS = 6, 25
 WINDOW_CLIPS, PRIOR_CLIPS = 3, 6
 
@@ -93,6 +95,12 @@ def gaps(chosen: argparse.Namespace) -> list[Scores]:
     return compare_gaps(cases, _named(chosen, FILLERS))
 
 
+def library(chosen: argparse.Namespace) -> list[Scores]:
+    """Examples that a library finds."""
+    most = FULL_LIBRARY_CLIPS if chosen.full else QUICK_LIBRARY_CLIPS
+    return compare_libraries(chosen.clips or most, chosen.dev, chosen.full)
+
+
 def markers(chosen: argparse.Namespace) -> list[Scores]:
     """Lost optical markers."""
     draws = chosen.clips or (FULL_MARKER_GAPS if chosen.full else QUICK_MARKER_GAPS)
@@ -124,6 +132,7 @@ PARTS: dict[str, Callable[[argparse.Namespace], Sequence[Scores | str]]] = {
     "gaps": gaps,
     "windows": windows,
     "priors": priors,
+    "library": library,
     "markers": markers,
     "speed": speed,
 }

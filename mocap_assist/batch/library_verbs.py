@@ -1,0 +1,143 @@
+"""The verbs `index` and `find`: what the buttons of the library do."""
+
+import argparse
+import json
+import sys
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Any, get_type_hints
+
+import bpy
+
+from ...solvers.command_line import arguments_from, settings_from_arguments
+from ...solvers.command_line.screen import Screen
+from ...solvers.errors import InvalidFileError
+from ...solvers.files import written_whole
+from ...solvers.progress import Progress
+from ..jobs.finding import Found
+from ..jobs.indexing import IndexProblem, Place, index_places
+from ..jobs.job import run
+from ..library import searches
+from ..library.background import said_of
+from ..library.choices import FindBundle, LibraryChoices
+from ..library.finding import list_found, read_finding
+from ..library.places import asset_folders, blender, library_path
+from .saving import STDOUT
+
+INDEX_HELP = "Put the clips of recordings, .blend files and asset libraries into a library."
+FIND_HELP = "List the clips of a library that are like what armatures or markers play."
+Said = tuple[str, dict[str, Any]]
+
+
+def add_index_options(parser: argparse.ArgumentParser) -> None:
+    """Add the options of `index`."""
+    parser.add_argument(
+        "places", nargs="*", type=Path, metavar="FILE",
+        help="recordings, .blend files and folders of them",
+    )  # fmt: skip
+    _add_library(parser)
+    parser.add_argument(
+        "--asset-libraries", action="store_true",
+        help="also the actions that are assets in the asset libraries of the preferences",
+    )  # fmt: skip
+    parser.add_argument("--tag", action="append", default=[], help="a tag for these clips")
+    parser.add_argument(
+        "--json", nargs="?", type=Path, const=STDOUT, metavar="FILE",
+        help="write one line of JSON to FILE; without FILE print it",
+    )  # fmt: skip
+
+
+def perform_index(arguments: argparse.Namespace, screen: Screen) -> None:
+    """Bring a library up to date; tell what is of no use, and do the rest.
+
+    Raises
+    ------
+    InvalidFileError
+        Something could not be read, or nothing was named.
+    """
+    places = [Place(str(path.resolve())) for path in arguments.places]
+    if arguments.asset_libraries:
+        places += [Place(folder, assets_only=True) for folder in asset_folders()]
+    if not places:
+        raise InvalidFileError("Nothing was named to index: name files or folders.")
+    path = library_path(LibraryChoices(library_file=arguments.library))
+    screen.title = "Index"
+    problem = IndexProblem(str(path), tuple(places), tuple(arguments.tag), blender())
+    indexed = index_places(problem, progress=screen.progress)
+    screen.clear()
+    figures = {
+        "library": str(path),
+        "n_clips": indexed.n_clips,
+        "read": indexed.n_added,
+        "unchanged": indexed.n_kept,
+        "removed": indexed.n_removed,
+        "refused": list(indexed.refused),
+    }
+    sys.stdout.write(
+        f"{json.dumps(figures) if arguments.json == STDOUT else said_of(indexed)}\n"
+    )
+    sys.stdout.flush()
+    if arguments.json not in {None, STDOUT}:
+        with written_whole(arguments.json) as part:
+            part.write_text(json.dumps(figures) + "\n", encoding="utf-8")
+    if indexed.refused:
+        raise InvalidFileError(" ".join(indexed.refused))
+
+
+def add_find_options(parser: argparse.ArgumentParser) -> None:
+    """Add the options of `find`; those of the button, and the library."""
+    _add_library(parser)
+    arguments_from(parser, *get_type_hints(FindBundle).values())
+
+
+def check_find(arguments: argparse.Namespace, subjects: Sequence[bpy.types.Object]) -> None:
+    """Raise InvalidFileError where there is no library."""
+    path = library_path(LibraryChoices(library_file=arguments.library))
+    if not path.is_file():
+        raise InvalidFileError(f"There is no clip library {path}. Make one with index.")
+
+
+def perform_find(
+    scene: bpy.types.Scene,
+    subject: bpy.types.Object,
+    arguments: argparse.Namespace,
+    progress: Progress,
+) -> Said:
+    """Search for what the armature, or the markers, play."""
+    classes = get_type_hints(FindBundle)
+    settings = FindBundle(**{
+        name: settings_from_arguments(arguments, each) for name, each in classes.items()
+    })
+    scene.mocap_assist.library.library_file = arguments.library
+    finding = run(read_finding(scene, subject, settings), progress)
+    sentence = list_found(scene, subject, settings, finding)
+    search = searches.listed(bpy.context)
+    found = search.finding.found if search is not None else ()
+    figures = {"matches": [_figures(each) for each in found]}
+    return "\n".join([sentence, *map(_row, found)]), figures
+
+
+def _row(found: Found) -> str:
+    frames = found.match.frames
+    return f"{found.match.score:5.0%}  {frames.start}-{frames.stop - 1}  {found.entry.name}"
+
+
+def _figures(found: Found) -> dict[str, Any]:
+    origin, frames = found.entry.origin, found.match.frames
+    return {
+        "clip": found.entry.name,
+        "score": found.match.score,
+        "first_frame": frames.start,
+        "last_frame": frames.stop - 1,
+        "frame_rate_hz": found.entry.frame_rate,
+        "tags": list(found.entry.tags),
+        "path": origin.path if origin else None,
+        "item": origin.item if origin else None,
+    }
+
+
+def _add_library(parser: argparse.ArgumentParser) -> None:
+    parser.add_argument(
+        "--library", default="", metavar="FILE",
+        help="the library [default: the one that all files share]",
+    )  # fmt: skip

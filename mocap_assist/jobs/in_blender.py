@@ -1,0 +1,76 @@
+"""Work for a background Blender, asked for by who has none himself."""
+
+import importlib
+from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import partial
+from pathlib import Path
+from typing import Any
+
+from ...solvers.motion import Motion
+from ...solvers.progress import Progress, unwatched
+from .job import EXTENSION, alone, run
+
+BLEND_CHILD = Path(__file__).with_name("blend_child.py")
+READER = "mocap_assist.library.blend_clips"
+
+
+@dataclass(frozen=True, eq=False)
+class BlendClip:
+    """An armature's action in a .blend file."""
+
+    item: str
+    """Name of the action; with that of the slot where several move armatures."""
+    motion: Motion
+    tags: tuple[str, ...] = ()
+
+
+@dataclass(frozen=True, eq=False)
+class BlendRead:
+    """What a .blend file holds."""
+
+    clips: tuple[BlendClip, ...]
+    refused: tuple[str, ...] = ()
+    """A sentence for each action that cannot be read, or for the file."""
+
+
+def read_blends(
+    blender: str,
+    paths: Sequence[str],
+    *,
+    assets_only: bool = False,
+    items: Sequence[str] = (),
+    progress: Progress = unwatched,
+) -> list[BlendRead]:
+    """Read the armature actions of .blend files in a Blender of their own.
+
+    Parameters
+    ----------
+    blender : path of the program; empty where Blender is a module of Python
+    paths : of the files
+    assets_only : leave out actions that are not marked as assets
+    items : read only these actions; all without
+
+    Raises
+    ------
+    ProcessDied
+        Blender has crashed over one of the files.
+    """
+    asked = partial(_asked, tuple(paths), assets_only, tuple(items))
+    return run(asked, progress, _program(blender))
+
+
+def _asked(
+    paths: tuple[str, ...], assets_only: bool, items: tuple[str, ...], *, progress: Progress
+) -> list[BlendRead]:
+    """Read, where there is a Blender: only there can the reader be imported."""
+    reader: Any = importlib.import_module(f"{EXTENSION}.{READER}")
+    read: list[BlendRead] = reader.read_files(paths, assets_only, items, progress=progress)
+    return read
+
+
+def _program(blender: str) -> tuple[str, ...]:
+    if not blender:
+        return (*alone(BLEND_CHILD), "--")
+    quietly = ("--background", "--factory-startup", "--python-exit-code", "1")
+    return (blender, *quietly, "--python", str(BLEND_CHILD), "--")

@@ -1,0 +1,206 @@
+"""What the button Index has done for it: files and .blend files become clips of a library."""
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+from ...solvers.errors import InvalidMotionError
+from ...solvers.progress import Progress, unwatched, within
+from ...solvers.retrieval import Clip, ClipLibrary, Origin, describe_clip, open_clip_library
+from ...solvers.workflows import index_files
+from .in_blender import BlendClip, BlendRead, read_blends
+from .job import ProcessDied
+
+BLEND = ".blend"
+BYTES_AT_ONCE = 100_000_000
+"""Of .blend files that one Blender reads: what it has read is kept if the next one crashes."""
+
+
+@dataclass(frozen=True)
+class Place:
+    """A file or a folder that clips come from."""
+
+    path: str
+    assets_only: bool = False
+    """Of .blend files, leave out actions that are not marked as assets."""
+
+
+@dataclass(frozen=True)
+class IndexProblem:
+    """What is to be indexed."""
+
+    library: str
+    places: tuple[Place, ...]
+    tags: tuple[str, ...]
+    """Given to all clips."""
+    blender: str
+    """Path of the program; empty where Blender is a module of Python."""
+
+
+@dataclass(frozen=True)
+class Indexed:
+    """What became of it."""
+
+    n_clips: int
+    """In the library now."""
+    n_added: int = 0
+    n_kept: int = 0
+    """That were indexed before, and have not changed."""
+    n_removed: int = 0
+    refused: tuple[str, ...] = ()
+    """A sentence for each file or action that could not be read."""
+
+
+@dataclass(frozen=True)
+class _Blend:
+    """A .blend file, and by which name its clips begin."""
+
+    path: Path
+    name: str
+    assets_only: bool
+
+    @property
+    def state(self) -> tuple[int, int]:
+        found = self.path.stat()
+        return found.st_size, found.st_mtime_ns
+
+
+def index_places(problem: IndexProblem, *, progress: Progress = unwatched) -> Indexed:
+    """Index what is new or has changed since; clips of other places stay.
+
+    Raises
+    ------
+    InvalidFileError
+        The library cannot be read or written.
+    """
+    path = Path(problem.library)
+    path.parent.mkdir(parents=True, exist_ok=True)
+    there = [place for place in problem.places if Path(place.path).exists()]
+    missing = [place.path for place in problem.places if place not in there]
+    blends = list(_blends(there))
+    files = [place.path for place in there if not place.path.endswith(BLEND)]
+    share = len(files) / max(len(files) + len(blends), 1)
+    report = index_files(path, files, tags=problem.tags, progress=within(progress, 0.0, share))
+    refused = [f"There is no file or folder {each}." for each in missing]
+    refused += [why for _, why in report.refused]
+    with open_clip_library(path) as library:
+        indexing = _Indexing(library, problem.tags, refused)
+        indexing.index_blends(blends, problem.blender, within(progress, share, 1.0))
+        return Indexed(
+            n_clips=len(library.entries),
+            n_added=len(report.added) + len(report.changed) + indexing.added,
+            n_kept=len(report.unchanged) + indexing.kept,
+            n_removed=len(report.removed) + indexing.removed,
+            refused=tuple(refused),
+        )
+
+
+def _blends(places: Sequence[Place]) -> Iterator[_Blend]:
+    """Yield the .blend files in these places, each once; not the backups beside them."""
+    seen = set()
+    for place in places:
+        top = Path(place.path).resolve()
+        inside = sorted(top.rglob(f"*{BLEND}")) if top.is_dir() else [top]
+        for path in inside:
+            hidden = any(part.startswith(".") for part in path.relative_to(top).parts)
+            if path.suffix != BLEND or hidden or path in seen or not path.is_file():
+                continue
+            seen.add(path)
+            below = path.relative_to(top.parent if path == top else top)
+            yield _Blend(path, below.with_suffix("").as_posix(), place.assets_only)
+
+
+class _Indexing:
+    """Adds clips to a library, and counts them."""
+
+    def __init__(self, library: ClipLibrary, tags: tuple[str, ...], refused: list[str]) -> None:
+        self._library, self._tags, self._refused = library, tags, refused
+        self.added = self.kept = self.removed = 0
+
+    def index_blends(self, blends: list[_Blend], blender: str, progress: Progress) -> None:
+        """Read the .blend files that are new or have changed, and replace their clips."""
+        changed = [blend for blend in blends if not self._known(blend)]
+        done = 0
+        for batch in _batches(changed):
+            start, stop = done / len(changed), (done + len(batch)) / len(changed)
+            for blend, read in self._read(batch, blender, within(progress, start, stop)):
+                self._replace(blend, read)
+            done += len(batch)
+
+    def _known(self, blend: _Blend) -> bool:
+        """Whether all clips of the file are as they were."""
+        states = {
+            (entry.origin.size, entry.origin.modified)
+            for entry in self._library.entries
+            if entry.origin is not None and entry.origin.path == str(blend.path)
+        }
+        known = states == {blend.state}
+        self.kept += len(self._names(blend)) if known else 0
+        return known
+
+    def _names(self, blend: _Blend) -> list[str]:
+        return [
+            entry.name
+            for entry in self._library.entries
+            if entry.origin is not None and entry.origin.path == str(blend.path)
+        ]
+
+    def _read(
+        self, batch: list[_Blend], blender: str, progress: Progress
+    ) -> Iterator[tuple[_Blend, BlendRead]]:
+        """Read files together; where Blender crashes, each by itself."""
+        for assets_only in (False, True):
+            paths = [each for each in batch if each.assets_only == assets_only]
+            if not paths:
+                continue
+            names = [str(each.path) for each in paths]
+            try:
+                found = read_blends(blender, names, assets_only=assets_only, progress=progress)
+            except ProcessDied as error:
+                if len(paths) > 1:
+                    for each in paths:
+                        yield from self._read([each], blender, progress)
+                    continue
+                found = [BlendRead((), (f"{names[0]} made Blender end, {error.cause}.",))]
+            yield from zip(paths, found, strict=True)
+
+    def _replace(self, blend: _Blend, read: BlendRead) -> None:
+        """Put what a file holds now in the place of what it held."""
+        before = self._names(blend)
+        others = {entry.name for entry in self._library.entries} - set(before)
+        self._refused += read.refused
+        described = []
+        for clip in read.clips:
+            try:
+                described.append(describe_clip(self._clip(blend, clip, others)))
+            except InvalidMotionError as error:
+                self._refused.append(str(error))
+        self._library.add_described(described)
+        added = {clip.entry.name for clip in described}
+        gone = [name for name in before if name not in added]
+        self._library.remove(gone)
+        self.added += len(added)
+        self.removed += len(gone)
+
+    def _clip(self, blend: _Blend, clip: BlendClip, others: set[str]) -> Clip:
+        name = plain = f"{blend.name}/{clip.item}"
+        number = 1
+        while name in others:  # in another folder there is one that is called the same
+            number += 1
+            name = f"{plain} ({number})"
+        tags = tuple(dict.fromkeys([*self._tags, *clip.tags]))
+        return Clip(name, clip.motion, tags, Origin(str(blend.path), clip.item, *blend.state))
+
+
+def _batches(blends: list[_Blend]) -> Iterator[list[_Blend]]:
+    batch: list[_Blend] = []
+    room = BYTES_AT_ONCE
+    for blend in blends:
+        size = blend.state[0]
+        if batch and size > room:
+            yield batch
+            batch, room = [], BYTES_AT_ONCE
+        batch.append(blend)
+        room -= size
+    if batch:
+        yield batch

@@ -1,0 +1,1 @@
+"""Clips from folders, .blend files and asset libraries, and what is done with them."""

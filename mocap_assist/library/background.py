@@ -1,0 +1,103 @@
+"""Index beside the animator's work: the window stays free, and one is enough at a time."""
+
+from collections.abc import Callable
+
+import bpy
+from bpy.app import handlers
+
+from ..jobs.indexing import Indexed
+from ..jobs.job import Job
+
+RUNNING = "The library is being indexed. Let it end, or press Esc."
+
+_on: list["Indexing"] = []
+
+
+class Indexing:
+    """A running Index, and what the sidebar says about it until it ends."""
+
+    def __init__(self, context: bpy.types.Context, solve: Callable[..., Indexed]) -> None:
+        self.job: Job[Indexed] = Job(solve)
+        _on.append(self)
+        self.show(context)
+
+    @property
+    def is_on(self) -> bool:
+        """Whether it still runs; not after another file was loaded."""
+        return self in _on
+
+    def show(self, context: bpy.types.Context) -> None:
+        """Say how far it is."""
+        state = context.window_manager.mocap_assist_indexing
+        fraction, message = self.job.progress()
+        changed = (state.running, state.fraction, state.message) != (True, fraction, message)
+        if changed:
+            state.running, state.fraction, state.message = True, fraction, message
+            redraw(context)
+
+    def end(self, context: bpy.types.Context, said: str) -> None:
+        """Show nothing more but what it has done."""
+        _on.remove(self)
+        state = context.window_manager.mocap_assist_indexing
+        state.running, state.said = False, said
+        redraw(context)
+
+    def abandon(self, context: bpy.types.Context) -> None:
+        """End the job too; what it has written stays."""
+        self.job.cancel()
+        self.job.tidy_up()
+        self.end(context, "")
+
+
+def redraw(context: bpy.types.Context) -> None:
+    """Draw everything again."""
+    for window in context.window_manager.windows:
+        for area in window.screen.areas:
+            area.tag_redraw()
+
+
+def why_indexing() -> str:
+    """Return why no other Index can start, or nothing."""
+    return RUNNING if _on else ""
+
+
+def said_of(indexed: Indexed) -> str:
+    """Return a sentence about what was done."""
+    parts = [
+        f"{count} {what}"
+        for count, what in (
+            (indexed.n_added, "read"),
+            (indexed.n_kept, "as they were"),
+            (indexed.n_removed, "taken out"),
+            (len(indexed.refused), "of no use"),
+        )
+        if count
+    ]
+    clips = "1 clip" if indexed.n_clips == 1 else f"{indexed.n_clips} clips"
+    return f"The library has {clips}: {', '.join(parts) or 'nothing to do'}."
+
+
+@handlers.persistent
+def _abandon_all(*_: object) -> None:
+    while _on:
+        _on[-1].abandon(bpy.context)
+
+
+@handlers.persistent
+def _nothing_runs(*_: object) -> None:
+    """A file that was saved while it ran says that it still does."""
+    for manager in bpy.data.window_managers:
+        manager.mocap_assist_indexing.running = False
+
+
+def register() -> None:
+    """End it before another file is loaded."""
+    handlers.load_pre.append(_abandon_all)
+    handlers.load_post.append(_nothing_runs)
+
+
+def unregister() -> None:
+    """End it with the extension, too."""
+    _abandon_all()
+    handlers.load_post.remove(_nothing_runs)
+    handlers.load_pre.remove(_abandon_all)

@@ -1,0 +1,123 @@
+"""Read armature actions out of .blend files, in a background Blender."""
+
+from collections.abc import Sequence
+from pathlib import Path
+
+import bpy
+
+from ...solvers.errors import MocapAssistError
+from ...solvers.motion import Motion
+from ...solvers.progress import Progress, unwatched
+from ..jobs.in_blender import BlendClip, BlendRead
+from ..scene import compat, history
+from ..scene.armature_read import read_take
+from ..scene.compat import Source
+from ..scene.evaluated_body import body_bones, with_body_shown
+from ..scene.fitting import fitting_slots, plays
+from ..scene.rigify import is_rigify
+from ..scene.target_read import find_roles
+from .catalogs import NONE, catalog_file, read_catalogs
+
+
+def read_files(
+    paths: Sequence[str],
+    assets_only: bool,
+    items: Sequence[str],
+    *,
+    progress: Progress = unwatched,
+) -> list[BlendRead]:
+    """Open each file, with its scripts and drivers off, and read its actions."""
+    found = []
+    for place, path in enumerate(paths):
+        progress(place / len(paths), f"Reading {Path(path).name}")
+        found.append(_read_file(path, assets_only, items))
+    return found
+
+
+def actions_of(assets_only: bool) -> list[bpy.types.Action]:
+    """Return the actions of the open file itself, not those that it links."""
+    return [
+        action
+        for action in bpy.data.actions
+        if action.library is None and (action.asset_data is not None or not assets_only)
+    ]
+
+
+def item_of(source: Source, n_slots: int) -> str:
+    """Return the name by which a library knows an action in a .blend file."""
+    action, slot = source
+    return action.name if n_slots == 1 else f"{action.name}:{slot.name_display}"
+
+
+def sources_of(action: bpy.types.Action) -> dict[str, tuple[bpy.types.Object, Source]]:
+    """Return the slots of an action that move armatures, each with its armature, by item.
+
+    An armature that plays the action comes first, then the one that it was made for.
+    """
+    armatures = [each for each in bpy.data.objects if each.type == "ARMATURE"]
+    made_for = history.given_to(action)
+    ranked = sorted(
+        armatures, key=lambda each: (not plays(each, action), each.name != made_for)
+    )
+    found: dict[int, tuple[bpy.types.Object, Source]] = {}
+    for armature in ranked:
+        for slot in fitting_slots(armature, action):
+            found.setdefault(slot.handle, (armature, (action, slot)))
+    return {item_of(source, len(found)): (each, source) for each, source in found.values()}
+
+
+def read_source(scene: bpy.types.Scene, armature: bpy.types.Object, source: Source) -> Motion:
+    """Return how the body moves; that of a control rig as its constraints show it."""
+    take = read_take(armature, scene, source=source)
+    bones = armature.data.bones
+    if is_rigify(bones) and armature.name in scene.objects:
+        body = body_bones(find_roles(armature), bones)
+        take = with_body_shown(scene, armature, take, body, source)
+    return take.parts[0].motion
+
+
+def _read_file(path: str, assets_only: bool, items: Sequence[str]) -> BlendRead:
+    try:
+        bpy.ops.wm.open_mainfile(filepath=path, load_ui=False, use_scripts=False)
+    except RuntimeError as error:  # damaged, or no .blend file at all
+        said = str(error).strip().removeprefix("Error:").strip().splitlines()
+        return BlendRead((), (f"{path} cannot be read: {said[0] if said else 'no reason'}",))
+    catalogs = read_catalogs(catalog_file(Path(path).parent))
+    clips, refused = [], []
+    for action in actions_of(assets_only):
+        sources = sources_of(action)
+        if not sources and _moves_bones(action):
+            refused.append(
+                f"{path}: no armature in the file has the bones of the action {action.name}."
+            )
+        for item, (armature, source) in sources.items():
+            if items and item not in items:
+                continue
+            try:
+                motion = read_source(bpy.context.scene, armature, source)
+            except MocapAssistError as error:
+                refused.append(f"{path}, {item}: {error}")
+            else:
+                clips.append(BlendClip(item, motion, _tags(action, catalogs)))
+    return BlendRead(tuple(clips), tuple(refused))
+
+
+def _moves_bones(action: bpy.types.Action) -> bool:
+    bags = [compat.channelbag(action, slot) for slot in action.slots]
+    return any(
+        curve.data_path.startswith("pose.bones[")
+        for bag in bags
+        if bag
+        for curve in bag.fcurves
+    )
+
+
+def _tags(action: bpy.types.Action, catalogs: dict[str, str]) -> tuple[str, ...]:
+    """Return the tags of an asset, and the path of its catalog."""
+    if action.asset_data is None:
+        return ()
+    tags = [tag.name for tag in action.asset_data.tags]
+    number = action.asset_data.catalog_id.lower()
+    if number != NONE and number in catalogs:
+        tags.append(catalogs[number])
+    return tuple(dict.fromkeys(tags))

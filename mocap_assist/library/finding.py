@@ -1,0 +1,121 @@
+"""What the button Find Similar reads from the scene, and the list that it fills."""
+
+from functools import partial
+from typing import Any, NamedTuple
+
+import bpy
+
+from ...solvers.errors import InvalidMotionError
+from ...solvers.motion import Motion, Tracks
+from ...solvers.retrieval import FindSettings
+from ..clean_choices import Bones
+from ..jobs.finding import Finding, FindProblem, find_clips
+from ..scene.armature_read import read_take
+from ..scene.frames import FrameRange, Grid
+from ..scene.marker_take import read_markers
+from ..scene.origin import origin_of
+from ..scene.units import unit_of
+from ..selection import chosen_bones, played_source, why_not_read
+from ..subject import check_unchanged
+from . import searches
+from .choices import FindBundle
+from .chosen_parts import parts_of_bones
+from .places import library_path
+
+
+class Query(NamedTuple):
+    """What is looked for."""
+
+    recording: Motion | Tracks
+    grid: Grid
+
+
+def why_not_find(context: bpy.types.Context) -> str:
+    """Return why nothing can be looked for, or nothing."""
+    if reason := why_not_read(context):
+        return reason
+    path = library_path(context.scene.mocap_assist.library.settings().choices)
+    return "" if path.is_file() else "There is no library yet. Add folders, and press Index."
+
+
+def read_query(scene: bpy.types.Scene, subject: bpy.types.Object, choice: FrameRange) -> Query:
+    """Read what the armature, or the markers, play within a range of frames."""
+    if subject.type == "ARMATURE":
+        take = read_take(subject, scene, choice, played_source(subject))
+        return Query(take.parts[0].motion, take.grid)
+    markers = read_markers(subject, scene, choice)
+    return Query(markers.tracks, markers.grid)
+
+
+def read_finding(
+    scene: bpy.types.Scene, subject: bpy.types.Object, settings: FindBundle
+) -> "partial[Finding]":
+    """Read what is looked for; return what is to be solved, which may be pickled."""
+    problem, _ = _problem(scene, subject, settings)
+    return partial(find_clips, problem)
+
+
+def list_found(
+    scene: bpy.types.Scene,
+    subject: bpy.types.Object,
+    settings: FindBundle,
+    finding: Finding,
+    asked: str | None = None,
+) -> str:
+    """List what was found; return a sentence about it."""
+    problem, query = _problem(scene, subject, settings)
+    check_unchanged(subject, asked, problem)
+    grid = (float(query.grid.frames[0]), query.grid.step)
+    name = played_source(subject)[0].name
+    fill_list(bpy.context, searches.keep(name, grid, unit_of(scene), finding))
+    n_found = len(finding.found)
+    if not n_found:
+        return f"Nothing in the library ({finding.n_clips} clips) is like {name}."
+    best = finding.found[0]
+    return (
+        f"{n_found} of {finding.n_clips} clips; most like {name} is {best.entry.name}"
+        f" ({best.match.score:.0%})."
+    )
+
+
+def fill_list(context: bpy.types.Context, search: searches.Search) -> None:
+    """Show in the sidebar what was found."""
+    listed = context.window_manager.mocap_assist_matches
+    listed.rows.clear()
+    for found in search.finding.found:
+        row = listed.rows.add()
+        row.name = found.entry.name
+        row.score = found.match.score
+        row.start, row.stop = found.match.frames.start, found.match.frames.stop - 1
+        row.tags = ", ".join(found.entry.tags)
+    listed.search, listed.query, listed.active = search.number, search.query, 0
+
+
+def _problem(
+    scene: bpy.types.Scene, subject: bpy.types.Object, settings: FindBundle
+) -> tuple[FindProblem, Query]:
+    choices = settings.choices
+    query = read_query(scene, subject, choices.frame_range)
+    library = library_path(scene.mocap_assist.library.settings().choices)
+    wanted = _parts(subject, query, settings)
+    return FindProblem(query.recording, str(library), wanted, _own(subject)), query
+
+
+def _parts(subject: bpy.types.Object, query: Query, settings: FindBundle) -> FindSettings:
+    if settings.choices.bones is Bones.ALL:
+        return settings.finding
+    if not isinstance(query.recording, Motion):
+        raise InvalidMotionError("Markers are no parts of a body. Choose the parts themselves.")
+    bones = chosen_bones(subject, Bones.SELECTED)
+    return parts_of_bones(query.recording.skeleton, bones, settings.finding)
+
+
+def _own(subject: bpy.types.Object) -> tuple[tuple[str, str], ...]:
+    """Return where the query is from, as a library would name it."""
+    action = played_source(subject)[0]
+    origin: dict[str, Any] = origin_of(action)
+    own = [(str(origin["file"]), "")] if origin.get("file") else []
+    holder = action.library.filepath if action.library else bpy.data.filepath
+    if holder:
+        own.append((bpy.path.abspath(holder), action.name))
+    return tuple(own)

@@ -1,0 +1,68 @@
+"""Draw the ghost of the chosen match over the 3D Views."""
+
+from typing import Any
+
+import bpy
+from bpy.types import SpaceView3D
+from mathutils import Matrix
+
+from ...solvers.errors import InvalidMotionError
+from ..scene.overlay_drawing import Color, draw_lines
+from . import searches
+from .ghost import Array, ghost_lines
+
+COLOR: Color = (0.45, 0.95, 0.55, 0.95)
+WIDTH = 4.0
+
+_handle: list[Any] = []
+
+
+def ghost_now(context: bpy.types.Context) -> Array | None:
+    """Return the lines of the ghost at this frame, in the scene's units; None without one."""
+    try:
+        search, found = searches.chosen(context)
+    except InvalidMotionError:
+        return None
+    frame = (context.scene.frame_current_final - search.start) / search.step
+    lines: Array = ghost_lines(search.finding.stage, found, frame) / search.metres
+    return lines
+
+
+def redraw(context: bpy.types.Context) -> None:
+    """Let every 3D View be drawn again."""
+    for window in context.window_manager.windows:
+        for area in window.screen.areas:
+            if area.type == "VIEW_3D":
+                area.tag_redraw()
+
+
+def _draw() -> None:
+    context = bpy.context
+    if not context.window_manager.mocap_assist_ghost:
+        return
+    lines = ghost_now(context)
+    if lines is not None and context.space_data.overlay.show_overlays:
+        draw_lines(lines, Matrix.Identity(4), COLOR, WIDTH)
+
+
+def _switched(self: bpy.types.WindowManager, context: bpy.types.Context) -> None:
+    redraw(context)
+
+
+def register() -> None:
+    """Add the switch; nothing is drawn until it is on."""
+    bpy.types.WindowManager.mocap_assist_ghost = bpy.props.BoolProperty(
+        name="Ghost",
+        description=(
+            "Draw the clip that is chosen as a stick figure over the 3D View: where the query"
+            " stands, and in its time"
+        ),
+        update=_switched,
+    )
+    _handle.append(SpaceView3D.draw_handler_add(_draw, (), "WINDOW", "POST_VIEW"))
+
+
+def unregister() -> None:
+    """Take the switch and the drawing away."""
+    SpaceView3D.draw_handler_remove(_handle.pop(), "WINDOW")
+    del bpy.types.WindowManager.mocap_assist_ghost

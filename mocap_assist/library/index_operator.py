@@ -1,0 +1,114 @@
+"""The button Index: it waits without holding anybody up."""
+
+import logging
+from functools import partial
+from typing import Any, ClassVar
+
+import bpy
+
+from ...solvers.errors import MocapAssistError, SolveCancelled
+from ..jobs.indexing import Indexed, index_places
+from ..jobs.job import run
+from ..solver_operator import in_background
+from .background import Indexing, said_of, why_indexing
+from .places import index_problem
+
+logger = logging.getLogger(__name__)
+
+BETWEEN_LOOKS = 0.25  # seconds
+MOST_NAMED = 3
+"""Files of no use that are told of in the window; the log has all."""
+
+
+class WaitingIndex:
+    """Mix in before bpy.types.Operator.
+
+    The window stays free meanwhile: nothing of the scene is read or written. Only Esc is taken,
+    and ends it.
+    """
+
+    setting_names: ClassVar[tuple[str, ...]]
+    """Supplied by the decorator `settings_from`, as is the method `settings`."""
+
+    @classmethod
+    def poll(cls, context: bpy.types.Context) -> bool:
+        if reason := why_indexing():
+            cls.poll_message_set(reason)
+        return not reason
+
+    def prepare(self, context: bpy.types.Context) -> None:
+        """Take over the sidebar's settings, but for those that the caller gave."""
+        shown = context.scene.mocap_assist.library
+        for name in type(self).setting_names:
+            if not self.properties.is_property_set(name):
+                setattr(self, name, getattr(shown, name))
+
+    def execute(self, context: bpy.types.Context) -> set[str]:
+        """Index while a script waits."""
+        self.prepare(context)
+        try:
+            return self._tell(run(self._solve()))
+        except MocapAssistError as error:
+            return self._give_up(error)
+
+    def invoke(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
+        if in_background():
+            return self.execute(context)
+        self.prepare(context)
+        try:
+            self._indexing = Indexing(context, self._solve())
+        except MocapAssistError as error:
+            return self._give_up(error)
+        manager = context.window_manager
+        self._timer = manager.event_timer_add(BETWEEN_LOOKS, window=context.window)
+        manager.modal_handler_add(self)
+        return {"RUNNING_MODAL"}
+
+    def modal(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
+        indexing = self._indexing
+        if not indexing.is_on:
+            self._stop_looking(context)
+            return {"CANCELLED"}
+        escaped = event.type == "ESC" and event.value == "PRESS"
+        if escaped:
+            indexing.job.cancel()
+        elif event.type != "TIMER":
+            return {"PASS_THROUGH"}
+        elif not indexing.job.done():
+            indexing.show(context)
+            return {"PASS_THROUGH"}
+        self._stop_looking(context)
+        try:
+            indexed = indexing.job.result()
+        except MocapAssistError as error:
+            indexing.end(context, "")
+            return self._give_up(error)
+        indexing.end(context, said_of(indexed))
+        return self._tell(indexed)
+
+    def cancel(self, context: bpy.types.Context) -> None:
+        """Blender ends the operator: another file is loaded, or the window closes."""
+        if self._indexing.is_on:
+            self._indexing.abandon(context)
+            self._stop_looking(context)
+
+    def _solve(self) -> "partial[Indexed]":
+        settings: Any = self.settings()
+        return partial(index_places, index_problem(settings.choices))
+
+    def _stop_looking(self, context: bpy.types.Context) -> None:
+        context.window_manager.event_timer_remove(self._timer)
+
+    def _tell(self, indexed: Indexed) -> set[str]:
+        for sentence in indexed.refused:
+            logger.warning("%s", sentence)
+        more = len(indexed.refused) - MOST_NAMED
+        named = [*indexed.refused[:MOST_NAMED], *[f"And {more} more."] * (more > 0)]
+        level = {"WARNING"} if indexed.refused else {"INFO"}
+        self.report(level, " ".join([said_of(indexed), *named]))
+        return {"FINISHED"}
+
+    def _give_up(self, error: MocapAssistError) -> set[str]:
+        cancelled = isinstance(error, SolveCancelled)
+        self.report({"INFO"} if cancelled else {"ERROR"}, str(error))
+        return {"CANCELLED"}

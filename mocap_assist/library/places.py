@@ -1,0 +1,58 @@
+"""Where the library is, and where its clips come from."""
+
+from pathlib import Path
+
+import bpy
+
+from ...solvers.errors import InvalidFileError
+from ..examples import SEPARATOR
+from ..jobs.indexing import IndexProblem, Place
+from .choices import LibraryChoices
+
+EXTENSION = __package__.rsplit(".", 2)[0]
+SHARED = "clips.library"
+
+
+def library_path(choices: LibraryChoices) -> Path:
+    """Return the library's file: the chosen one, or that which all files share."""
+    if choices.library_file:
+        return Path(bpy.path.abspath(choices.library_file))
+    return Path(bpy.utils.extension_path_user(EXTENSION)) / SHARED
+
+
+def asset_folders() -> tuple[str, ...]:
+    """Return the folders of all asset libraries of the preferences."""
+    libraries = bpy.context.preferences.filepaths.asset_libraries
+    return tuple(bpy.path.abspath(each.path) for each in libraries if each.path)
+
+
+def places_of(choices: LibraryChoices) -> tuple[Place, ...]:
+    """Return what is to be indexed."""
+    named = [each.strip() for each in choices.sources.split(SEPARATOR) if each.strip()]
+    places = [Place(str(Path(bpy.path.abspath(each)))) for each in named]
+    if choices.asset_libraries:
+        places += [Place(folder, assets_only=True) for folder in asset_folders()]
+    return tuple(places)
+
+
+def index_problem(choices: LibraryChoices) -> IndexProblem:
+    """Return what is to be indexed, for another process.
+
+    Raises
+    ------
+    InvalidFileError
+        Nothing was named.
+    """
+    places = places_of(choices)
+    if not places:
+        raise InvalidFileError(
+            "Nothing is listed to index. Add folders or files, or switch asset libraries on."
+        )
+    tags = tuple(tag.strip() for tag in choices.tags.split(",") if tag.strip())
+    library = library_path(choices)
+    return IndexProblem(str(library), places, tags, blender())
+
+
+def blender() -> str:
+    """Return the path of this Blender; nothing where it is a module of Python."""
+    return str(bpy.app.binary_path)

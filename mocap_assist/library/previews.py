@@ -1,0 +1,48 @@
+"""The small pictures of matches as icons, kept for as long as their search is listed."""
+
+from typing import Any
+
+import bpy.utils.previews
+import numpy as np
+from numpy.typing import NDArray
+
+from .searches import Search
+
+_icons: list[Any] = []
+_shown: list[int] = []
+
+
+def icon_of(search: Search, place: int) -> int:
+    """Return the number of the icon of a match; 0 where none can be made."""
+    if not _icons:
+        return 0
+    icons = _icons[0]
+    if _shown != [search.number]:
+        icons.clear()
+        _shown[:] = [search.number]
+    name = str(place)
+    if name not in icons:
+        pixels = search.finding.found[place].picture
+        height, width, _ = pixels.shape
+        icon = icons.new(name)
+        icon.image_size = (width, height)
+        icon.image_pixels_float.foreach_set(as_blender_wants(pixels).ravel())
+    return int(icons[name].icon_id)
+
+
+def as_blender_wants(pixels: NDArray[np.uint8]) -> NDArray[np.float32]:
+    """Return red, green, blue and alpha from 0 to 1, the lowest row first."""
+    opaque = np.ones((*pixels.shape[:2], 1), dtype=np.float32)
+    colors = pixels[::-1].astype(np.float32) / np.float32(255.0)
+    return np.concatenate([colors, opaque], axis=-1)
+
+
+def register() -> None:
+    """Make room for icons."""
+    _icons.append(bpy.utils.previews.new())
+
+
+def unregister() -> None:
+    """Forget them."""
+    bpy.utils.previews.remove(_icons.pop())
+    _shown.clear()

@@ -1,0 +1,26 @@
+"""Button: list the clips of the library that are like the action."""
+
+from typing import ClassVar
+
+import bpy
+
+from ..mocap_assist.library.choices import FindBundle
+from ..mocap_assist.library.finding import list_found, read_finding, why_not_find
+from ..mocap_assist.settings_properties import settings_from
+from ..mocap_assist.solver_operator import SolverOperator
+
+
+@settings_from(FindBundle)
+class MOCAP_OT_find_similar(SolverOperator, bpy.types.Operator):
+    bl_idname = "mocap_assist.find_similar"
+    bl_label = "Find Similar"
+    bl_description = (
+        "List the clips of the library that are most like this motion, and where in them they"
+        " are like it. Nothing is changed"
+    )
+    bl_options: ClassVar = set[str]()  # the list is no part of the file
+
+    settings_group = "find"
+    why_not = why_not_find
+    read_scene = read_finding
+    write_scene = list_found

@@ -1,0 +1,45 @@
+"""Button: let Clean or Reconstruct learn from the best matches."""
+
+from typing import ClassVar
+
+import bpy
+
+from ..mocap_assist.library.learning import CLEAN, RECONSTRUCT, learn_from_best
+from ..mocap_assist.library.searches import why_none
+from ..solvers.errors import MocapAssistError
+
+
+class MOCAP_OT_learn_from_matches(bpy.types.Operator):
+    bl_idname = "mocap_assist.learn_from_matches"
+    bl_label = "Learn from Matches"
+    bl_description = "Put the best of these clips on the list of examples, in place of others"
+    bl_options: ClassVar = {"REGISTER", "UNDO"}
+
+    group: bpy.props.EnumProperty(
+        name="For",
+        description="Which button learns from them",
+        items=[(CLEAN, "Clean", ""), (RECONSTRUCT, "Reconstruct", "")],
+        options={"SKIP_SAVE"},
+    )
+    n_best: bpy.props.IntProperty(
+        name="Clips",
+        description="How many of the best serve; more teach more, and less to the point",
+        default=5,
+        min=1,
+        max=48,
+        options={"SKIP_SAVE"},
+    )
+
+    @classmethod
+    def poll(cls, context: bpy.types.Context) -> bool:
+        if reason := why_none(context):
+            cls.poll_message_set(reason)
+        return not reason
+
+    def execute(self, context: bpy.types.Context) -> set[str]:
+        try:
+            self.report({"INFO"}, learn_from_best(context, self.group, self.n_best))
+        except MocapAssistError as error:
+            self.report({"ERROR"}, str(error))
+            return {"CANCELLED"}
+        return {"FINISHED"}

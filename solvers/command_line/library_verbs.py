@@ -1,0 +1,163 @@
+"""`index` and `find`: libraries of clips, and what in them is like a recording."""
+
+import argparse
+from pathlib import Path
+from typing import Any
+
+from ..errors import InvalidMotionError, InvalidSettingError
+from ..motion import JointRecording
+from ..progress import Progress, within
+from ..recordings import read_recording
+from ..retrieval import ClipEntry, FindSettings, Match, find_similar, load_clip_library
+from ..workflows import IndexReport, index_files
+from .options import arguments_from, settings_from_arguments
+from .verb import Outcome, Task
+
+SHOWN = 10
+"""Matches that are told where nothing is said."""
+
+
+def add_index_options(parser: argparse.ArgumentParser) -> None:
+    """Add the options of `index`."""
+    parser.add_argument(
+        "--tag", action="append", default=[], metavar="WORD",
+        help="A word by which these clips are known; may be given several times",
+    )  # fmt: skip
+    parser.add_argument(
+        "--remove-missing", action="store_true",
+        help="Take out of the library what was in these folders and is there no more",
+    )  # fmt: skip
+
+
+def perform_index(task: Task, prepared: None, progress: Progress) -> Outcome:
+    """Bring a library up to date with files and folders."""
+    arguments = task.arguments
+    assert task.target is not None
+    report = index_files(
+        task.target,
+        task.sources,
+        tags=arguments.tag,
+        jobs=arguments.jobs,
+        remove_missing=arguments.remove_missing,
+        progress=progress,
+    )
+    figures = {
+        "library": str(task.target),
+        "n_clips": report.n_clips,
+        "added": list(report.added),
+        "changed": list(report.changed),
+        "unchanged": list(report.unchanged),
+        "removed": list(report.removed),
+        "refused": [{"file": path, "why": why} for path, why in report.refused],
+    }
+    failures = tuple(why for _, why in report.refused)
+    return Outcome(_told(report, task.target), figures, failures)
+
+
+def _told(report: IndexReport, library: Path) -> str:
+    parts = [
+        f"{len(names)} {what}"
+        for names, what in (
+            (report.added, "added"),
+            (report.changed, "read again"),
+            (report.unchanged, "as they were"),
+            (report.removed, "removed"),
+            (report.refused, "of no use"),
+        )
+        if names
+    ]
+    clips = "1 clip" if report.n_clips == 1 else f"{report.n_clips} clips"
+    return f"{', '.join(parts) or 'Nothing to do'}; {library} has {clips}."
+
+
+def add_find_options(parser: argparse.ArgumentParser) -> None:
+    """Add the options of `find`."""
+    parser.add_argument(
+        "--frames", type=_frames, metavar="A:B",
+        help="Frames of the recording to search with, from A to before B; the first is 0"
+        " [default: all]",
+    )  # fmt: skip
+    parser.add_argument(
+        "--ignore", nargs="+", default=[], metavar="CLIP",
+        help="Names of clips that are not told, as the recording itself",
+    )  # fmt: skip
+    parser.add_argument(
+        "--scale", type=float, metavar="X",
+        help="Metres in one unit of the recording [default: as the file says, or guessed from"
+        " the size of the body]",
+    )  # fmt: skip
+    arguments_from(parser, FindSettings)
+
+
+def perform_find(task: Task, prepared: None, progress: Progress) -> Outcome:
+    """Search a library with a recording."""
+    arguments = task.arguments
+    library_file = task.sources[1]
+    query = read_recording(
+        task.source, scale=arguments.scale, progress=within(progress, 0.0, 0.5)
+    )
+    tracks = query.tracks if isinstance(query, JointRecording) else query
+    if arguments.frames is not None:
+        first, last = arguments.frames
+        last = min(tracks.n_frames, last)
+        if first >= last:
+            raise InvalidSettingError(
+                f"{task.source} has {tracks.n_frames} frames, none of them from {first} on."
+            )
+        query = query.slice(first, last)
+    if not hasattr(arguments, "n_matches"):
+        arguments.n_matches = SHOWN
+    with load_clip_library(library_file) as library:
+        entries = {entry.name: entry for entry in library.entries}
+        if not entries:
+            raise InvalidMotionError(f"There is no clip in {library_file}; put some in first.")
+        matches = find_similar(
+            query,
+            library,
+            settings=settings_from_arguments(arguments, FindSettings),
+            ignore=arguments.ignore,
+            progress=within(progress, 0.5, 1.0),
+        )
+    told = [_figures(match, entries[match.clip]) for match in matches]
+    return Outcome(_table(matches, entries), {"matches": told})
+
+
+def _figures(match: Match, entry: ClipEntry) -> dict[str, Any]:
+    origin = entry.origin
+    return {
+        "clip": match.clip,
+        "score": match.score,
+        "first_frame": match.frames.start,
+        "last_frame": match.frames.stop - 1,
+        "frame_rate_hz": entry.frame_rate,
+        "tags": list(entry.tags),
+        "path": None if origin is None else origin.path,
+        "item": None if origin is None else origin.item,
+    }
+
+
+def _table(matches: tuple[Match, ...], entries: dict[str, ClipEntry]) -> str:
+    if not matches:
+        return "Nothing was found."
+    rows = [("clip", "score", "frames", "seconds", "tags")]
+    for match in matches:
+        entry = entries[match.clip]
+        first, last = match.frames.start, match.frames.stop - 1
+        begin, end = (frame / entry.frame_rate for frame in (first, last))
+        rows.append((
+            match.clip, f"{match.score:.2f}", f"{first}-{last}", f"{begin:.1f}-{end:.1f}",
+            ", ".join(entry.tags),
+        ))  # fmt: skip
+    widths = [max(map(len, column)) for column in zip(*rows, strict=True)]
+    return "\n".join(
+        "  ".join(cell.ljust(width) for cell, width in zip(row, widths, strict=True)).rstrip()
+        for row in rows
+    )
+
+
+def _frames(words: str) -> tuple[int, int]:
+    first, _, last = words.partition(":")
+    return int(first or 0), int(last) if last else 2**62
+
+
+_frames.__name__ = "range of frames"

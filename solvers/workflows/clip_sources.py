@@ -1,0 +1,73 @@
+"""Which files make up a library, and what each clip is called in it."""
+
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+from ..errors import InvalidFileError
+from ..recordings import recordings_in
+from ..retrieval import Origin
+
+
+@dataclass(frozen=True)
+class ClipSource:
+    """A file that a clip is read from.
+
+    Attributes
+    ----------
+    path : Path
+        Absolute.
+    place : tuple of str
+        Folders within the one that was named, and the file's name; before them the folder
+        that was named.
+    """
+
+    path: Path
+    place: tuple[str, ...]
+
+    def origin(self) -> Origin:
+        """Return the origin with the file's size and date as they are now.
+
+        Raises
+        ------
+        OSError
+            The file has just gone.
+        """
+        found = self.path.stat()
+        return Origin(str(self.path), "", found.st_size, found.st_mtime_ns)
+
+    def names(self) -> Iterable[str]:
+        """Yield names for the clip, the plainest first, until one is free."""
+        *folders, file = self.place
+        stem = Path(file).stem
+        inside = folders[1:]
+        yield "/".join([*inside, stem])
+        yield "/".join([*inside, file])
+        yield "/".join([*folders, stem])
+        yield "/".join([*folders, file])
+        number = 2
+        while True:
+            yield "/".join([*folders, f"{file} ({number})"])
+            number += 1
+
+
+def clip_sources(files_or_folders: Sequence[Path | str]) -> list[ClipSource]:
+    """Return every file, and in place of a folder the recordings in it and below, each once.
+
+    Raises
+    ------
+    InvalidFileError
+        There is no such file or folder.
+    """
+    found: dict[Path, ClipSource] = {}
+    for named in map(Path, files_or_folders):
+        whole = named.resolve()
+        if not whole.exists():
+            raise InvalidFileError(f"There is no file or folder {named}.")
+        inside = recordings_in(whole) if whole.is_dir() else [whole]
+        for path in inside:
+            place: tuple[str, ...] = (whole.parent.name, path.name)
+            if whole.is_dir():
+                place = (whole.name, *path.relative_to(whole).parts)
+            found.setdefault(path, ClipSource(path, place))
+    return list(found.values())

@@ -1,0 +1,116 @@
+"""Read files and describe them for a library, one after the other or several at a time."""
+
+import os
+import signal
+from collections import deque
+from collections.abc import Iterable, Iterator
+from concurrent.futures import Future, ProcessPoolExecutor
+from concurrent.futures.process import BrokenProcessPool
+from multiprocessing import get_context
+from pathlib import Path
+from typing import NamedTuple
+
+from ..errors import MocapAssistError, SolveCancelled
+from ..recordings import read_recording
+from ..retrieval import Clip, DescribedClip, Origin, describe_clip
+
+AHEAD = 2
+"""Files that are given to each process before their results are asked for."""
+ONE_THREAD = {"OMP_NUM_THREADS": "1", "OPENBLAS_NUM_THREADS": "1", "MKL_NUM_THREADS": "1"}
+
+
+class Wanted(NamedTuple):
+    """A file that is to be a clip."""
+
+    name: str
+    origin: Origin
+    tags: tuple[str, ...]
+
+
+class Described(NamedTuple):
+    """What came of a file."""
+
+    wanted: Wanted
+    clip: DescribedClip | None
+    """None where it was refused."""
+    sentence: str = ""
+
+
+def describe_files(files: Iterable[Wanted], jobs: int) -> Iterator[Described]:
+    """Yield what comes of each file, in the order in which they are given.
+
+    A file that cannot be used is refused with one sentence and stops nobody; neither does one
+    that takes the process down that reads it.
+    """
+    if jobs <= 1:
+        yield from map(described, files)
+        return
+    os.environ.update({name: os.environ.get(name, one) for name, one in ONE_THREAD.items()})
+    waiting = deque(files)
+    while waiting:
+        yield from _until_one_dies(waiting, jobs)
+
+
+def described(wanted: Wanted) -> Described:
+    """Read and describe one file."""
+    path = wanted.origin.path
+    try:
+        clip = Clip(wanted.name, read_recording(path), wanted.tags, wanted.origin)
+        return Described(wanted, describe_clip(clip))
+    except SolveCancelled:
+        raise
+    except MocapAssistError as error:
+        sentence = str(error).removeprefix(f"{wanted.name}: ")
+        named = Path(path).name in sentence
+        return Described(wanted, None, sentence if named else f"{path}: {sentence}")
+    except OSError as error:
+        return Described(wanted, None, f"{error.filename or path}: {error.strerror}.")
+    except MemoryError:
+        return Described(
+            wanted, None, f"{path} needs more memory than there is; cut the take into parts."
+        )
+
+
+def _until_one_dies(waiting: "deque[Wanted]", jobs: int) -> Iterator[Described]:
+    """Work on files, taking them off as they are done, until all are or a process dies.
+
+    The one that was asked for when it happened is then tried alone, to know whether it was it.
+    """
+    running: deque[Future[Described]] = deque()
+    with _processes(jobs) as pool:
+        try:
+            while waiting:
+                while len(running) < min(len(waiting), AHEAD * jobs):
+                    running.append(pool.submit(described, waiting[len(running)]))
+                done = running[0].result()
+                running.popleft()
+                waiting.popleft()
+                yield done
+            return
+        except BrokenProcessPool:
+            pass
+        finally:
+            pool.shutdown(cancel_futures=True)
+    yield _alone(waiting.popleft())
+
+
+def _alone(wanted: Wanted) -> Described:
+    with _processes(1) as pool:
+        try:
+            return pool.submit(described, wanted).result()
+        except BrokenProcessPool:
+            return Described(
+                wanted,
+                None,
+                f"{wanted.origin.path}: the process that read it has died, perhaps for want of"
+                " memory; cut the take into parts.",
+            )
+
+
+def _processes(count: int) -> ProcessPoolExecutor:
+    return ProcessPoolExecutor(count, get_context("spawn"), _die_on_interrupt)
+
+
+def _die_on_interrupt() -> None:
+    """Leave Ctrl-C to the parent, which tells it in one sentence."""
+    signal.signal(signal.SIGINT, signal.SIG_DFL)

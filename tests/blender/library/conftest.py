@@ -1,0 +1,147 @@
+"""Clips, a library of them, and .blend files that hold some."""
+
+import numpy as np
+import pytest
+
+KINDS = ("walk", "wave", "squat")
+
+
+@pytest.fixture(scope="session")
+def clip_motions(load):
+    """Motions of three kinds of one figure, 2.5 s at 30 Hz: `clip_motions("walk", seed)`."""
+    samples = load("solvers.samples")
+    rotations = load("solvers.motion.rotations")
+
+    def make(kind, seed=0, seconds=2.5):
+        rng = np.random.default_rng(seed)
+        speed = rng.uniform(0.9, 1.1)
+        gait = samples.GaitSettings(
+            duration=seconds, frame_rate=30.0, cadence=100.0 * speed, speed=1.2 * speed
+        )
+        walk = samples.walking_gait(gait)
+        if kind == "walk":
+            return walk
+        shape = (walk.n_frames, len(walk.skeleton.names), 3)
+        sway = np.cumsum(rng.normal(scale=0.01, size=shape), axis=0)
+        still = rotations.quaternion_from_rotation_vector(sway)
+        places = np.tile(walk.root_positions[0], (walk.n_frames, 1))
+        time = np.arange(walk.n_frames) / 30.0
+        swing = np.sin(2.0 * np.pi * 0.8 * speed * time + rng.uniform(0, 1))
+        names = walk.skeleton.names
+        turns = WAVE if kind == "wave" else SQUAT
+        for joint, (axis, middle, reach) in turns.items():
+            angles = middle + reach * swing
+            still[:, names.index(joint)] = rotations.quaternion_from_rotation_vector(
+                angles[:, None] * np.array(axis)
+            )
+        if kind == "squat":
+            places[:, 2] -= 0.15 * (1.0 + swing)
+        return walk.with_poses(still, places)
+
+    return make
+
+
+WAVE = {"RightArm": ((0, 1, 0), 1.2, 0.3), "RightForeArm": ((0, 1, 0), 0.6, 0.6)}
+SQUAT = {
+    "LeftUpLeg": ((1, 0, 0), -0.5, -0.5),
+    "RightUpLeg": ((1, 0, 0), -0.5, -0.5),
+    "LeftLeg": ((1, 0, 0), 1.0, 1.0),
+    "RightLeg": ((1, 0, 0), 1.0, 1.0),
+}
+
+
+@pytest.fixture
+def clip_files(clip_motions, load, tmp_path):
+    """A folder of six recordings: walk_0.bvh, walk_1.bvh, wave_0.bvh ..."""
+    folder = tmp_path / "clips"
+    folder.mkdir()
+    write_bvh = load("solvers.recordings").write_bvh
+    for kind in KINDS:
+        for seed in (0, 1):
+            write_bvh(clip_motions(kind, seed), folder / f"{kind}_{seed}.bvh")
+    return folder
+
+
+@pytest.fixture
+def bring(blank):
+    """Import recordings, each as an armature whose action has the file's name."""
+
+    def press(*paths):
+        for path in paths:
+            said = blank.ops.mocap_assist.import_recording(filepath=str(path))
+            assert said == {"FINISHED"}
+        return blank.context.object
+
+    return press
+
+
+@pytest.fixture
+def blend_file(blank, bring, clip_files, tmp_path):
+    """A .blend with the actions walk_0, wave_0 and squat_0; wave_0 is an asset."""
+    blank.context.scene.render.fps = 30
+    bring(*(clip_files / f"{kind}_0.bvh" for kind in KINDS))
+    asset = blank.data.actions["wave_0"]
+    asset.asset_mark()
+    asset.asset_data.tags.new("greeting")
+    folder = tmp_path / "shots"
+    folder.mkdir()
+    number = "11111111-2222-3333-4444-555555555555"
+    (folder / "blender_assets.cats.txt").write_text(
+        f"# ours\nVERSION 1\n\n{number}:Gestures/Hello:Gestures-Hello\n"
+    )
+    asset.asset_data.catalog_id = number
+    path = folder / "shot.blend"
+    blank.ops.wm.save_as_mainfile(filepath=str(path), copy=True)
+    blank.ops.wm.read_homefile(use_empty=True, use_factory_startup=True)
+    return path
+
+
+@pytest.fixture
+def index(load, tmp_path):
+    """Index places into a library: `index(folder, ...)`; return what became of it."""
+    indexing = load("mocap_assist.jobs.indexing")
+
+    def do(*places, tags=(), assets_only=False, library=tmp_path / "clips.library"):
+        found = tuple(indexing.Place(str(place), assets_only) for place in places)
+        return indexing.index_places(
+            indexing.IndexProblem(str(library), found, tuple(tags), "")
+        )
+
+    return do
+
+
+@pytest.fixture
+def entries(load, tmp_path):
+    """What the library holds, by name."""
+
+    def listed(library=tmp_path / "clips.library"):
+        with load("solvers.retrieval").load_clip_library(library) as opened:
+            return {entry.name: entry for entry in opened.entries}
+
+    return listed
+
+
+@pytest.fixture
+def find(blank, index, clip_files, tmp_path):
+    """Index the six recordings and press Find Similar; return the rows of the list."""
+    index(clip_files)
+    blank.context.scene.mocap_assist.library.library_file = str(tmp_path / "clips.library")
+
+    def press(**settings):
+        assert blank.ops.mocap_assist.find_similar(**settings) == {"FINISHED"}
+        return list(blank.context.window_manager.mocap_assist_matches.rows)
+
+    return press
+
+
+@pytest.fixture
+def newcomer(bring, clip_motions, load, tmp_path, blank):
+    """An armature that moves as no recording of the library does: `newcomer("wave")`."""
+    blank.context.scene.render.fps = 30
+
+    def make(kind, seed=7, **more):
+        path = tmp_path / f"new_{kind}.bvh"
+        load("solvers.recordings").write_bvh(clip_motions(kind, seed, **more), path)
+        return bring(path)
+
+    return make

@@ -1,0 +1,72 @@
+"""`blender FILE --command mocap_assist index ...` and `find`."""
+
+import json
+
+import pytest
+
+
+@pytest.fixture
+def command(load, capsys):
+    run = load("mocap_assist.batch.command").run
+
+    def call(*words):
+        status = run(list(map(str, words)))
+        return status, *capsys.readouterr()
+
+    return call
+
+
+def lines_of(out):
+    return [json.loads(line) for line in out.splitlines() if line.startswith("{")]
+
+
+def test_index_then_find(command, newcomer, blend_file, clip_files, tmp_path):
+    library = tmp_path / "all.library"
+
+    status, out, err = command(
+        "index", clip_files, blend_file, "--library", library, "--tag", "hall", "--json"
+    )
+    assert (status, err) == (0, "")
+    assert [lines_of(out)[0][name] for name in ("n_clips", "read")] == [9, 9]
+
+    newcomer("wave")
+    status, out, err = command("find", "--library", library, "--json", "--n-matches", "3")
+    assert (status, err) == (0, "")
+    (said,) = lines_of(out)
+    assert len(said["matches"]) == 3
+    assert {match["clip"] for match in said["matches"]} == {"wave_0", "wave_1", "shot/wave_0"}
+    assert said["matches"][0]["tags"][0] == "hall"
+
+    status, out, _ = command("find", "--library", library)
+    assert status == 0 and "most like" in out and "shot/wave_0" in out
+
+
+def test_what_cannot_be_read_is_told_and_the_rest_is_done(command, clip_files, tmp_path):
+    (clip_files / "cut.bvh").write_bytes((clip_files / "walk_0.bvh").read_bytes()[:900])
+    target = tmp_path / "index.json"
+
+    status, _, err = command(
+        "index", clip_files, "--library", tmp_path / "a.library", "--json", target
+    )
+
+    assert status == 2 and "cut.bvh" in err
+    assert json.loads(target.read_text())["n_clips"] == 6
+
+
+@pytest.mark.parametrize(
+    ("words", "said"),
+    [
+        (["index"], "Nothing was named to index"),
+        (["index", "nowhere"], "There is no file or folder"),
+        (["find", "--library", "none.library"], "There is no clip library"),
+    ],
+)
+def test_slips_are_told_in_one_sentence(command, newcomer, words, said, tmp_path, monkeypatch):
+    newcomer("walk")
+    monkeypatch.chdir(tmp_path)
+    if words[0] == "index":
+        words = [*words, "--library", "b.library"]
+
+    status, _, err = command(*words)
+
+    assert status == 2 and said in err and err.count("\n") == 1

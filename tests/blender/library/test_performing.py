@@ -1,0 +1,47 @@
+"""What gestures do with the library."""
+
+import pytest
+
+
+@pytest.fixture
+def performing(load):
+    return load("mocap_assist.library.performing")
+
+
+@pytest.fixture
+def performance(load, recordings):
+    """What a camera has seen of somebody."""
+    path = recordings / "kinect" / "irds" / "215_18_5_8_1_stand.txt"
+    return load("solvers.recordings").read_recording(path)
+
+
+def test_a_performance_fills_the_list_and_waves_page_it(
+    find, newcomer, performing, performance, blank
+):
+    newcomer("walk")
+    find()
+    listed = blank.context.window_manager.mocap_assist_matches
+
+    said = performing.search_with(blank.context, performance)
+
+    assert listed.query == "your performance" and len(listed.rows) == 6
+    assert said == performing.chosen_sentence(blank.context) and said.startswith("1 of 6: ")
+    assert performing.page(blank.context, 1).startswith("2 of 6: ")
+    assert performing.page(blank.context, -1) == said
+    assert performing.page(blank.context, -1).startswith("6 of 6: ")
+    assert performing.page(blank.context, 1) == said
+
+
+def test_the_library_is_shown(performing, blank):
+    blank.context.window_manager.mocap_assist_matches.rows.clear()
+    blank.context.window_manager.mocap_assist_ghost = False
+
+    assert performing.show_library(blank.context) == "Nothing was searched for yet."
+    assert blank.context.window_manager.mocap_assist_ghost
+    assert performing.page(blank.context, 1) == "Nothing was searched for yet."
+
+
+def test_without_a_library_it_says_so(performing, performance, blank, tmp_path):
+    blank.context.scene.mocap_assist.library.library_file = str(tmp_path / "none")
+
+    assert "There is no library yet" in performing.search_with(blank.context, performance)

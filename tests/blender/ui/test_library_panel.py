@@ -1,0 +1,61 @@
+"""The panel Library."""
+
+import numpy as np
+import pytest
+
+
+@pytest.fixture
+def matched(load, blank):
+    """A list of two matches, as a search leaves it."""
+    finding, retrieval = load("mocap_assist.jobs.finding"), load("solvers.retrieval")
+    searches = load("mocap_assist.library.searches")
+    pairs = np.array([[0, 0], [9, 9]])
+    found = tuple(
+        finding.Found(
+            retrieval.ClipEntry(f"folder/{name}", ("calm",), None, 20, 20.0),
+            retrieval.Match(f"folder/{name}", range(10), 0.9, pairs),
+            np.zeros((10, 20, 3), np.float32),
+            20.0,
+            np.full((128, 128, 3), 255, np.uint8),
+        )
+        for name in ("walk", "run")
+    )
+    stage = finding.Stage(np.zeros((10, 3)), np.zeros(10), np.ones(20), 20.0)
+    search = searches.keep("take", (1.0, 1.0), 1.0, finding.Finding(found, stage, 5))
+    load("mocap_assist.library.finding").fill_list(blank.context, search)
+    return search
+
+
+def test_without_matches_it_offers_index_and_find(draw, blank):
+    blank.context.window_manager.mocap_assist_matches.rows.clear()
+
+    shown = draw("MOCAP_PT_library")
+
+    assert {"mocap_assist.index_library", "mocap_assist.find_similar"} <= set(shown)
+    assert "mocap_assist.load_match" not in shown
+    assert "Select an armature" in " ".join(shown)
+
+
+def test_every_setting_of_the_search_is_there_once(draw, blank, actor):
+    find = blank.context.scene.mocap_assist.find
+
+    shown = draw("MOCAP_PT_library")
+
+    names = set(type(find).setting_names)
+    assert sorted(names - {"n_aligned"}) == sorted(name for name in shown if name in names)
+
+
+def test_matches_with_their_pictures_and_what_can_be_done(draw, matched, blank):
+    shown = draw("MOCAP_PT_library")
+
+    assert shown.count("icon") == 3
+    assert {"folder/walk", "folder/run", "90%", "mocap_assist_ghost"} <= set(shown)
+    for button in ("load_match", "link_match", "learn_from_matches", "mark_asset"):
+        assert f"mocap_assist.{button}" in shown
+    assert "frames 0–9 of 20" in " ".join(shown) and "calm" in " ".join(shown)
+
+
+def test_what_was_forgotten_is_asked_for_again(draw, matched, blank):
+    blank.context.window_manager.mocap_assist_matches.search = -1
+
+    assert "Press Find Similar again." in " ".join(draw("MOCAP_PT_library"))

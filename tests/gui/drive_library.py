@@ -1,0 +1,153 @@
+"""Index clips and find similar ones in a Blender with a window, as an animator does.
+
+    make extension-plain
+    BG_DEBS="python3-scipy python3-pil" BG_FILES="clips" \
+        bash ../shared/tools/blender-gui.sh run dist/mocap_assist-0.1.0-plain.zip \
+        tests/gui/drive_library.py build/gui/library/library.png
+
+Runs inside that Blender; `bgui` comes with the tool. The folder `clips` holds recordings, and
+is copied beside this script; what is like the last of them is looked for. The first is also
+written as a .blend file, so that another Blender has to read that.
+"""
+
+from pathlib import Path
+
+import bgui
+import bpy
+
+FOLDER = Path(__file__).parent
+CLIPS = FOLDER / "clips"
+LIBRARY = FOLDER / "clips.library"
+OTHERS = (
+    "import", "reconstruct", "clean", "check", "compare", "feet", "physics", "markers",
+    "retarget",
+)  # fmt: skip
+UNTIL_DONE = 600  # tenths of a second
+
+
+def settle(times=4):
+    """Wait until everything is drawn."""
+    for _ in range(times):
+        bgui.redraw()
+        yield 0.4
+
+
+def empty_scene():
+    for each in list(bpy.data.objects):
+        bpy.data.objects.remove(each)
+    for name in OTHERS:
+        bpy.utils.unregister_class(getattr(bpy.types, f"MOCAP_PT_{name}"))
+    panel = bpy.types.MOCAP_PT_library
+    bpy.utils.unregister_class(panel)
+    panel.bl_options = set()
+    bpy.utils.register_class(panel)
+
+
+def bring(path):
+    with bgui.override("WINDOW"):
+        bpy.ops.mocap_assist.import_recording(
+            directory=str(path.parent), files=[{"name": path.name}], frame_rate="UPDATE"
+        )
+    return bpy.context.view_layer.objects.active
+
+
+def write_blend(path):
+    """Keep what is in the scene as a .blend file, with one action as an asset."""
+    action = bpy.context.view_layer.objects.active.animation_data.action
+    action.asset_mark()
+    action.asset_data.tags.new("asset of ours")
+    bpy.ops.wm.save_as_mainfile(filepath=str(path), copy=True)
+    action.asset_clear()
+
+
+def press(text):
+    yield from bgui.scan()
+    yield from bgui.click(*bgui.at(text))
+
+
+def wait_for(until):
+    for _ in range(UNTIL_DONE):
+        if until():
+            return
+        yield 0.1
+    raise AssertionError("It does not end.")
+
+
+def state():
+    return bpy.context.window_manager.mocap_assist_indexing
+
+
+def matches():
+    return bpy.context.window_manager.mocap_assist_matches
+
+
+def look_at(armature):
+    view = bgui.area().spaces.active.region_3d
+    view.view_location = armature.matrix_world @ armature.pose.bones[0].head
+    view.view_rotation = (0.76, 0.6, 0.15, 0.2)
+    view.view_distance = 4.5
+
+
+def index():
+    bpy.context.scene.mocap_assist.library.library_file = str(LIBRARY)
+    bpy.context.scene.mocap_assist.library.sources = str(CLIPS)
+    yield from settle()
+    bgui.shot("1-sources.png")
+    yield from press("mocap_assist.index_library")
+    yield 1.0
+    assert state().running
+    yield from settle(2)
+    bgui.shot("2-indexing.png")
+    yield from wait_for(lambda: not state().running)
+    assert state().said.startswith("The library has "), state().said
+    yield from settle()
+    bgui.shot("3-indexed.png")
+
+
+def find():
+    yield from press("mocap_assist.find_similar")
+    job = bpy.context.window_manager.mocap_assist_job
+    yield 1.0
+    yield from wait_for(lambda: not job.running)
+    assert len(matches().rows) > 2
+    bpy.context.window_manager.mocap_assist_ghost = True
+    yield from settle()
+    bgui.shot("4-found.png")
+
+
+def use(armature):
+    before = armature.animation_data.action
+    bpy.context.scene.frame_set(int(before.frame_range[0]) + 60)
+    look_at(armature)
+    matches().active = 1
+    yield from settle()
+    bgui.shot("5-ghost.png")
+    bgui.move(1500, 700)
+    bgui.scroll(60)
+    yield from settle()
+    bgui.shot("6-uses.png")
+    job = bpy.context.window_manager.mocap_assist_job
+    with bgui.override("UI"):
+        bpy.ops.mocap_assist.load_match("INVOKE_DEFAULT", result_as="ACTION")
+    yield from wait_for(lambda: not job.running)
+    yield from wait_for(lambda: armature.animation_data.action != before)
+    yield from settle()
+    bgui.shot("7-appended.png")
+
+
+def steps():
+    empty_scene()
+    paths = sorted(CLIPS.glob("*.bvh"))
+    other = bring(paths[0])
+    write_blend(CLIPS / "shot.blend")
+    bpy.data.objects.remove(other)
+    armature = bring(paths[-1])
+    look_at(armature)
+    bgui.area().spaces.active.show_region_ui = True
+    yield from bgui.open_sidebar("Mocap", 420)
+    yield from index()
+    yield from find()
+    yield from use(armature)
+
+
+bgui.run(steps, timeout=500)
