@@ -21,6 +21,7 @@ FILES = {
     Makes.FILES: "The recording and the file to write; with --output-folder any recordings, and"
     " folders of them",
     Makes.ONE_FILE: "Recordings to read, or folders of them",
+    Makes.MANY_FILES: "Recordings to read, or folders of them",
     Makes.LIBRARY: "The library, and then recordings to put into it, or folders of them",
     Makes.MATCHES: "The recording to which there may be something like, and then the library",
 }

@@ -16,7 +16,9 @@ def walker(blank, load, tmp_path):
         )
         recordings.write_bvh(samples.walking_gait(settings), tmp_path / f"walk_{seed}.bvh")
         blank.ops.mocap_assist.import_recording(filepath=str(tmp_path / f"walk_{seed}.bvh"))
-    others = [each for each in blank.data.objects if each.animation_data.action.name != "walk_1"]
+    others = [
+        each for each in blank.data.objects if each.animation_data.action.name != "walk_1"
+    ]
     for each in others:
         blank.data.objects.remove(each)
     (armature,) = blank.data.objects
