@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...solvers.denoising import PlantSettings
-from ...solvers.motion import Motion
+from ...solvers.motion import Motion, resample
 from ...solvers.motion.posture_heading import normalise
 from ...solvers.motion.posture_joints import motion_postures
 from ...solvers.motion.rotations import multiply, rotate
@@ -30,6 +30,8 @@ class VaryProblem:
     settings: VarySettings
     planting: PlantSettings | None
     """None leaves feet as they are."""
+    frame_rate: float
+    """Hertz, of the scene: more keys than frames would only fill the file."""
 
 
 class Varied(NamedTuple):
@@ -55,7 +57,9 @@ def vary(problem: VaryProblem, *, progress: Progress = unwatched) -> Varied:
         progress(0.9 + 0.1 * place / len(made.motions), "Drawing")
         seen = normalise(motion_postures(motion), motion.frame_rate)
         turn = float(first.headings[0] - seen.headings[0])
-        motions.append(moved(motion, seen.places[0], turn, first.places[0]))
+        there = moved(motion, seen.places[0], turn, first.places[0])
+        finer = motion.frame_rate > problem.frame_rate
+        motions.append(resample(there, problem.frame_rate) if finer else there)
         pictures.append(thumbnail(seen.postures))
     return Varied(tuple(motions), tuple(pictures), made.remarks)
 

@@ -12,11 +12,12 @@ from ..jobs.controls import BoneKeys
 from ..scene import compat
 from ..scene.bone_channels import animated_curves
 from ..scene.compat import Source
-from ..scene.curves import CONSTANT, write_first
+from ..scene.curves import CONSTANT, deselect, write_first
 from ..scene.rig import Placement
 from ..scene.take import ArmatureTake, Part, basis_rotations, root_locations
 
 Array = NDArray[np.float64]
+STILL = 1e-6
 
 
 class Held(NamedTuple):
@@ -54,9 +55,9 @@ class Stage(NamedTuple):
         return cls(takes[0], frozenset(turned), held)
 
     def frames(self, n_frames: int) -> Array:
-        """Return scene frames from the example's first on, as far apart as there."""
+        """Return scene frames from the example's first on: as far apart as there, or whole."""
         grid = self.take.grid
-        return np.asarray(grid.frames[0] + grid.step * np.arange(n_frames))
+        return np.asarray(grid.frames[0] + max(grid.step, 1.0) * np.arange(n_frames))
 
     def keys(self, motion: Motion) -> Mapping[str, BoneKeys]:
         """Return the channels of the bones that move the body as a motion does."""
@@ -69,12 +70,21 @@ class Stage(NamedTuple):
         root = body.bones[0]
         return {
             rig.bones[bone]: BoneKeys(
-                turns[bone] if bone in self.turned or bone == root else None,
+                _once_if_still(turns[bone]),
                 root_locations(part, rig) if bone == root else None,
             )
             for bone in turns
             if bone in self.turned or bone == root
         }
+
+
+def _once_if_still(rotations: Array) -> Array:
+    """Return rotations, (n_frames, 4), of which only the first is kept if nothing turns."""
+    if np.abs(rotations - rotations[:1]).max() > STILL:
+        return rotations
+    kept = np.full_like(rotations, np.nan)
+    kept[0] = rotations[0]
+    return kept
 
 
 def hold_others(action: bpy.types.Action, slot: bpy.types.ActionSlot, stage: Stage) -> None:
@@ -86,6 +96,7 @@ def hold_others(action: bpy.types.Action, slot: bpy.types.ActionSlot, stage: Sta
         if path not in there:
             curve = compat.new_curve(bag, path, index, group)
             write_first(curve, start, np.array([value]), interpolation=CONSTANT)
+            deselect(curve)
 
 
 def _group(curve: bpy.types.FCurve) -> str:

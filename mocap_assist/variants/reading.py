@@ -13,6 +13,7 @@ from ..scene.armature_read import read_take
 from ..scene.armature_write import check_writable
 from ..scene.compat import Source
 from ..scene.rigify import is_rigify
+from ..scene.scene_rate import scene_rate
 from ..scene.take import ArmatureTake
 from ..selection import played_source, selected_armature
 from .choices import VaryBundle, VaryChoices
@@ -82,5 +83,6 @@ def read(scene: bpy.types.Scene, armature: bpy.types.Object, settings: VaryBundl
         settings.choices.n_variants,
         settings.varying,
         settings.planting if settings.choices.plant_feet else None,
+        scene_rate(scene),
     )
     return Reading(sources, takes, problem)

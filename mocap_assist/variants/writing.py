@@ -64,11 +64,11 @@ class VariantsWriter:
         motion, stage = self._varied.motions[place], self._stage
         frames, keys = stage.frames(motion.n_frames), stage.keys(motion)
         action, slot = write_action(armature, self._names[place], frames, keys, {})
+        self._made.append(action.session_uid)
         hold_others(action, slot, stage)
         history.record(action, self._source(), self._entry(place), of_another_rig=True)
         tag(action, self._examples, place + 1, self._settings.varying.seed)
         give_picture(action, self._varied.pictures[place])
-        self._made.append(action.session_uid)
         if len(self._made) < len(self._names):
             return ""
         check_writable(armature)
