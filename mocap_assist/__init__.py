@@ -8,6 +8,7 @@ def register() -> None:
     """Make properties, commands and panels known to Blender."""
     from . import batch, scene_properties, ui, watch
     from .library import background, ghost_drawing, previews, properties
+    from .live import listening
     from .scene import contacts
 
     scene_properties.register()
@@ -17,6 +18,7 @@ def register() -> None:
     previews.register()
     contacts.register()
     watch.register()
+    listening.register()
     batch.register()
     ui.register()
 
@@ -25,10 +27,12 @@ def unregister() -> None:
     """Take them away again."""
     from . import batch, scene_properties, ui, watch
     from .library import background, ghost_drawing, previews, properties
+    from .live import listening
     from .scene import contacts
 
     ui.unregister()
     batch.unregister()
+    listening.unregister()
     watch.unregister()
     contacts.unregister()
     previews.unregister()

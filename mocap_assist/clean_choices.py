@@ -23,6 +23,7 @@ class Prior(Enum):
     TAKE = "this take"
     EXAMPLES = "examples"
     LEARNED = "learned file"
+    LIBRARY = "library"
 
 
 class Limits(Enum):
@@ -48,7 +49,8 @@ class CleanChoices(Settings):
     prior: Prior = setting(
         Prior.TAKE,
         "Learn how this body moves from the take itself, from clean examples of the same kind"
-        " of motion, or use what was learned before",
+        " of motion, use what was learned before, or let clips be found in the library that are"
+        " like the take",
     )
     examples: str = setting(
         "",

@@ -16,8 +16,9 @@ from .clean_choices import Bones, CleanChoices, CleanSettings, Limits, Prior
 from .clean_markers import MarkerReading
 from .clean_report import clean_report, entry_of
 from .examples import read_prior
-from .jobs.cleaning import Cleaned, Finish, Problem, Recordings, clean, names_of
+from .jobs.cleaning import Cleaned, Examples, Finish, Problem, Recordings, clean, names_of
 from .jobs.job import Quick
+from .library.prior import library_prior
 from .scene.curves import GENERATED, MEASURED
 from .scene.frames import Grid
 from .scene.marker_take import MarkerTake
@@ -110,10 +111,18 @@ def _problem(
     return Problem(
         recordings=raw.recordings,
         settings=replace(settings.denoising, strength=1.0),
-        examples=read_prior(scene, subject, choices),
+        examples=_examples(scene, subject, choices),
         learn_limits=learn_limits,
         unswap=choices.unswap and choices.bones is Bones.ALL and isinstance(raw, MarkerTake),
     )
+
+
+def _examples(
+    scene: bpy.types.Scene, subject: bpy.types.Object, choices: CleanChoices
+) -> Examples:
+    if choices.prior is Prior.LIBRARY:
+        return Examples(library=library_prior(scene, subject))
+    return read_prior(scene, subject, choices)
 
 
 def ease_of(grid: Grid) -> NDArray[np.float64]:

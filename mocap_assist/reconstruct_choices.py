@@ -17,6 +17,7 @@ class Postures(Enum):
     SHIPPED = "shipped"
     EXAMPLES = "examples"
     LEARNED = "learned file"
+    LIBRARY = "library"
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -26,7 +27,8 @@ class ReconstructChoices(Settings):
     postures: Postures = setting(
         Postures.SHIPPED,
         "Guess lost joints from the postures that come with Mocap Assist, from clean clips of"
-        " the same kind of motion, or from a file of postures",
+        " the same kind of motion, from a file of postures, or from clips of the library that"
+        " are like the take",
     )
     examples: str = setting(
         "",

@@ -16,6 +16,7 @@ from .cleaning import ease_of
 from .examples import read_examples
 from .jobs.job import Quick
 from .jobs.reconstructing import RebuildFinish, RebuildProblem, Rebuilt, rebuild
+from .library.prior import library_prior
 from .reconstruct_choices import Postures, ReconstructBundle
 from .scene import history
 from .scene.armature_read import read_take
@@ -124,9 +125,11 @@ def _problem(
     settings: ReconstructBundle,
 ) -> RebuildProblem:
     body = found.body
-    choices, examples, postures = settings.choices, None, None
+    choices, examples, postures, library = settings.choices, None, None, None
     if choices.postures is Postures.EXAMPLES:
         examples = read_examples(scene, armature, choices.examples)
+    elif choices.postures is Postures.LIBRARY:
+        library = library_prior(scene, armature)
     elif choices.postures is Postures.LEARNED:
         if not choices.postures_file:
             raise InvalidMotionError("Choose the file of postures, or other postures.")
@@ -140,6 +143,7 @@ def _problem(
         examples=examples,
         postures_file=postures,
         residuals_file=_dated(choices.residuals_file) if choices.residuals_file else None,
+        library=library,
     )
 
 

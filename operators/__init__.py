@@ -14,6 +14,7 @@ from .keep_variants import MOCAP_OT_keep_variants
 from .learn_from_matches import MOCAP_OT_learn_from_matches
 from .learn_patterns import MOCAP_OT_learn_patterns
 from .link_match import MOCAP_OT_link_match
+from .listen import MOCAP_OT_listen
 from .load_match import MOCAP_OT_load_match
 from .mark_asset import MOCAP_OT_mark_asset
 from .mark_variants import MOCAP_OT_mark_variants
@@ -38,6 +39,7 @@ OPERATORS = (
     MOCAP_OT_plant_feet,
     MOCAP_OT_learn_patterns,
     MOCAP_OT_simulate,
+    MOCAP_OT_listen,
     MOCAP_OT_solve_skeleton,
     MOCAP_OT_retarget,
     MOCAP_OT_reduce_keys,

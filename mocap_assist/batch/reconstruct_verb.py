@@ -23,6 +23,11 @@ def add_reconstruct_options(parser: argparse.ArgumentParser) -> None:
         help="clean recordings, or folders of them, to learn postures from; short for"
         " --postures examples --examples",
     )  # fmt: skip
+    parser.add_argument(
+        "--library", metavar="FILE",
+        help="clip library, of which postures are taken from what is like the take; short for"
+        " --postures library",
+    )  # fmt: skip
     arguments_from(parser, *get_type_hints(ReconstructBundle).values())
 
 
@@ -43,6 +48,10 @@ def perform_reconstruct(
             postures=Postures.EXAMPLES,
             examples=SEPARATOR.join(arguments.train),
         )
+        settings = settings._replace(choices=choices)
+    elif arguments.library:
+        scene.mocap_assist.library.library_file = arguments.library
+        choices = replace(settings.choices, postures=Postures.LIBRARY)
         settings = settings._replace(choices=choices)
     rebuilt = run(read_reconstructing(scene, armature, settings), progress)
     sentence = write_reconstructed(scene, armature, settings, rebuilt)

@@ -73,6 +73,11 @@ def _clean_options(parser: argparse.ArgumentParser) -> None:
         "--train", nargs="+", default=[], metavar="FILE",
         help="clean recordings to learn from; short for --prior examples --examples",
     )  # fmt: skip
+    parser.add_argument(
+        "--library", metavar="FILE",
+        help="clip library, of which what is like the take is learned from; short for --prior"
+        " library",
+    )  # fmt: skip
     arguments_from(parser, *get_type_hints(CleanSettings).values())
 
 
@@ -88,6 +93,9 @@ def _clean(
             settings.choices, prior=Prior.EXAMPLES, examples=SEPARATOR.join(arguments.train)
         )
         settings = settings._replace(choices=choices)
+    elif arguments.library:
+        scene.mocap_assist.library.library_file = arguments.library
+        settings = settings._replace(choices=replace(settings.choices, prior=Prior.LIBRARY))
     cleaned = run(read_cleaning(scene, armature, settings), progress)
     sentence = write_cleaned(scene, armature, settings, cleaned)
     action, _ = played_result(armature)

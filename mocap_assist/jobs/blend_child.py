@@ -6,11 +6,6 @@ import sys
 from pathlib import Path
 
 if __name__ == "__main__":
-    for path in os.environ["PYTHONPATH"].split(os.pathsep):  # which Blender itself ignores
-        if path not in sys.path:
-            sys.path.append(path)
-    # Scripts of a Blender that is a module of Python would hide the module itself.
-    sys.path.sort(key=lambda path: "scripts" in Path(path).parts)
     child = str(Path(__file__).with_name("child.py"))
     sys.argv = [child, *sys.argv[sys.argv.index("--") + 1 :]]
     runpy.run_path(child, run_name="__main__")

@@ -32,6 +32,7 @@ from ...solvers.motion import JointLimits, Motion, Tracks
 from ...solvers.motion.rotations import angle_between, slerp
 from ...solvers.progress import Progress, unwatched, within
 from ...solvers.recordings import read_motion_or_tracks
+from .library_prior import LibraryPrior
 
 Array = NDArray[np.float64]
 Recordings = tuple[Motion | Tracks, ...]
@@ -44,6 +45,8 @@ class Learned(NamedTuple):
 
     bases: FilterBases | None
     limits: JointLimits | None
+    said: str = ""
+    """A sentence on where it is from, if there is more to say than what was chosen."""
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -53,9 +56,13 @@ class Examples:
     motions: tuple[Motion, ...] = ()
     files: tuple[str, ...] = ()
     bases_file: str = ""
+    library: LibraryPrior | None = None
 
-    def learned(self, limits: bool, progress: Progress) -> Learned:
+    def learned(self, body: Motion | Tracks, limits: bool, progress: Progress) -> Learned:
         """Learn from the examples, or load what was learned."""
+        if self.library is not None:
+            found = self.library.bases(body, progress)
+            return Learned(found.bases, None, found.said)
         if self.bases_file:
             return Learned(load_filter_bases(self.bases_file), None)
         clips = [*self.motions, *map(read_motion_or_tracks, self.files)]
@@ -138,17 +145,16 @@ def solve(problem: Problem, *, progress: Progress = unwatched) -> Solution:
     if problem.unswap and isinstance(body, Tracks):
         unswapped = unswap_markers(body, progress=within(progress, 0.0, 0.2))
         body, swaps = unswapped.tracks, unswapped.swaps
-    learned = problem.examples.learned(problem.learn_limits, within(progress, 0.2, 0.3))
+    learned = problem.examples.learned(body, problem.learn_limits, within(progress, 0.2, 0.3))
     settings = replace(problem.settings, strength=1.0)
-    results = [
-        denoise(
-            body,
-            learned.bases,
-            limits=learned.limits,
-            settings=settings,
-            progress=within(progress, 0.3, 0.8),
-        )
-    ]
+    result = denoise(
+        body,
+        learned.bases,
+        limits=learned.limits,
+        settings=settings,
+        progress=within(progress, 0.3, 0.8),
+    )
+    results = [replace(result, prior_used=f"{learned.said} {result.prior_used}".strip())]
     for index, recording in enumerate(others):
         share = (0.8 + 0.2 * index / len(others), 0.8 + 0.2 * (index + 1) / len(others))
         results.append(denoise(recording, settings=settings, progress=within(progress, *share)))

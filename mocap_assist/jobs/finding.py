@@ -19,6 +19,7 @@ from ...solvers.retrieval import (
     find_similar,
     load_clip_library,
 )
+from .library_prior import Own, own_clips
 from .thumbnails import Pixels, thumbnail
 
 Array = NDArray[np.float64]
@@ -37,7 +38,7 @@ class FindProblem:
     query: Recording
     library: str
     settings: FindSettings
-    own: tuple[tuple[str, str], ...] = ()
+    own: Own = ()
     """Files, and actions in them, that the query itself is from; they are not told."""
 
 
@@ -102,17 +103,11 @@ def find_clips(problem: FindProblem, *, progress: Progress = unwatched) -> Findi
             n_aligned=wanted,
             n_alike=min(problem.settings.n_alike, len(entries) // PER_WITNESS),
         )
-        ignore = {
-            entry.name
-            for entry in entries.values()
-            if entry.origin is not None
-            and (entry.origin.path, entry.origin.item) in problem.own
-        }
         matches = find_similar(
             problem.query,
             library,
             settings=settings,
-            ignore=ignore,
+            ignore=own_clips(library, problem.own),
             progress=within(progress, 0.0, 0.7),
         )
         numbers = {entry.name: number for number, entry in entries.items()}

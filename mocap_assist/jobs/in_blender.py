@@ -72,5 +72,6 @@ def _asked(
 def _program(blender: str) -> tuple[str, ...]:
     if not blender:
         return (*alone(BLEND_CHILD), "--")
-    quietly = ("--background", "--factory-startup", "--python-exit-code", "1")
-    return (blender, *quietly, "--python", str(BLEND_CHILD), "--")
+    # It finds the extension's wheels by PYTHONPATH, which Blender otherwise ignores.
+    own = ("--python-use-system-env", "--background", "--factory-startup")
+    return (blender, *own, "--python-exit-code", "1", "--python", str(BLEND_CHILD), "--")

@@ -25,6 +25,7 @@ ONE_THREAD = {
     "OPENBLAS_NUM_THREADS": "1",
     "VECLIB_MAXIMUM_THREADS": "1",
 }
+OURS = {"PYTHONUTF8": "1", "PYTHONNOUSERSITE": "1"}
 # Neither what the user installed for a Python of his own, nor the script's folder is looked in.
 ALONE = ("-s", "-P")
 NO_WINDOW = getattr(subprocess, "CREATE_NO_WINDOW", 0)  # no console flashes up on Windows
@@ -97,7 +98,7 @@ class Job(Generic[Result]):
                 stdout=log,
                 stderr=subprocess.STDOUT,
                 creationflags=NO_WINDOW,
-                env=os.environ | ONE_THREAD | {"PYTHONPATH": _search_path(), "PYTHONUTF8": "1"},
+                env=os.environ | ONE_THREAD | OURS | {"PYTHONPATH": _search_path()},
             )
 
     def progress(self) -> tuple[float, str]:
@@ -161,8 +162,12 @@ def _python() -> str:
 
 
 def _search_path() -> str:
-    """Where this process finds modules, the extension's wheels too; not the present folder."""
-    return os.pathsep.join(path for path in sys.path if path)
+    """Where this process finds modules, the extension's wheels too; not the present folder.
+
+    Blender's scripts come last: in one that is a module of Python they would hide that.
+    """
+    paths = sorted(filter(None, sys.path), key=lambda path: "scripts" in Path(path).parts)
+    return os.pathsep.join(paths)
 
 
 def _cause(status: int) -> str:

@@ -4,7 +4,7 @@ The slow part, `solve`, does not depend on the feet: what it returns is kept, so
 panel has only `finish` to repeat.
 """
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -31,6 +31,7 @@ from ...solvers.workflows import (
     try_to_plant,
 )
 from .cleaning import Examples, toward
+from .library_prior import LibraryPrior
 
 Array = NDArray[np.float64]
 
@@ -51,6 +52,8 @@ class RebuildProblem:
     """The file of a posture library, and its date."""
     residuals_file: tuple[str, int] | None = None
     """The file of a residual prior, and its date; None for the one that is shipped."""
+    library: LibraryPrior | None = None
+    """In which clips of natural postures are found, in the place of examples."""
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -80,23 +83,28 @@ class Rebuilt:
 
 def solve(problem: RebuildProblem, *, progress: Progress = unwatched) -> RebuiltMotion:
     """Rebuild the poses of the body."""
-    postures = prior = None
+    postures, prior, said = None, None, ""
+    sharing = within(progress, 0.0, 0.2)
     if problem.postures_file is not None:
         postures = load_posture_library(problem.postures_file[0])
     if problem.residuals_file is not None:
         prior = load_residual_prior(problem.residuals_file[0])
-    if problem.examples is not None:
+    if problem.library is not None:
+        found = problem.library.postures(problem.body, sharing)
+        postures, said = found.postures, found.said
+    elif problem.examples is not None:
         clips = [*problem.examples.motions, *map(read_motion_or_tracks, problem.examples.files)]
-        postures = postures_of(clips, progress=within(progress, 0.0, 0.2))
-    return reconstruct_motion(
+        postures = postures_of(clips, progress=sharing)
+    rebuilt = reconstruct_motion(
         problem.body,
         postures,
         prior,
         source=_source(problem),
         tracking_state=problem.tracking_state,
         settings=problem.settings,
-        progress=within(progress, 0.0 if problem.examples is None else 0.2, 1.0),
+        progress=within(progress, 0.2, 1.0),
     )
+    return replace(rebuilt, remarks=(said, *rebuilt.remarks)) if said else rebuilt
 
 
 def _source(problem: RebuildProblem) -> JointRecording | None:

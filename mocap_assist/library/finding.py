@@ -1,7 +1,7 @@
 """What the button Find Similar reads from the scene, and the list that it fills."""
 
 from functools import partial
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import bpy
 
@@ -13,7 +13,6 @@ from ..jobs.finding import Finding, FindProblem, find_clips
 from ..scene.armature_read import read_take
 from ..scene.frames import FrameRange, Grid
 from ..scene.marker_take import read_markers
-from ..scene.origin import origin_of
 from ..scene.units import unit_of
 from ..selection import chosen_bones, played_source, why_not_read
 from ..subject import check_unchanged
@@ -21,6 +20,7 @@ from . import searches
 from .choices import FindBundle
 from .chosen_parts import parts_of_bones
 from .places import library_path
+from .prior import own_origins
 
 
 class Query(NamedTuple):
@@ -98,7 +98,7 @@ def _problem(
     query = read_query(scene, subject, choices.frame_range)
     library = library_path(scene.mocap_assist.library.settings().choices)
     wanted = _parts(subject, query, settings)
-    return FindProblem(query.recording, str(library), wanted, _own(subject)), query
+    return FindProblem(query.recording, str(library), wanted, own_origins(subject)), query
 
 
 def _parts(subject: bpy.types.Object, query: Query, settings: FindBundle) -> FindSettings:
@@ -108,14 +108,3 @@ def _parts(subject: bpy.types.Object, query: Query, settings: FindBundle) -> Fin
         raise InvalidMotionError("Markers are no parts of a body. Choose the parts themselves.")
     bones = chosen_bones(subject, Bones.SELECTED)
     return parts_of_bones(query.recording.skeleton, bones, settings.finding)
-
-
-def _own(subject: bpy.types.Object) -> tuple[tuple[str, str], ...]:
-    """Return where the query is from, as a library would name it."""
-    action = played_source(subject)[0]
-    origin: dict[str, Any] = origin_of(action)
-    own = [(str(origin["file"]), "")] if origin.get("file") else []
-    holder = action.library.filepath if action.library else bpy.data.filepath
-    if holder:
-        own.append((bpy.path.abspath(holder), action.name))
-    return tuple(own)

@@ -53,7 +53,7 @@ def _draw_main(
     column.prop(clean, "prior", text="Learn from")
     if clean.prior == Prior.EXAMPLES.name:
         draw_examples(column, clean)
-    if clean.prior != Prior.TAKE.name:
+    if clean.prior in {Prior.EXAMPLES.name, Prior.LEARNED.name}:
         _draw_learned(column, clean)
     for name in MAIN:
         if joints or name not in OF_JOINTS:

@@ -145,9 +145,10 @@ def _draw_chosen(
     row.operator(LOAD, text="Append", icon="ACTION").result_as = "ACTION"
     row.operator(LOAD, text="To NLA", icon="NLA").result_as = "NLA_TRACK"
     row.operator(LINK, text="Link", icon="LINKED")
+    column.label(text="Learn from the best for:")
     row = column.row(align=True)
-    row.operator(LEARN, text="Clean from These", icon="BRUSH_DATA").group = "clean"
-    row.operator(LEARN, text="Reconstruct", icon="OUTLINER_OB_ARMATURE").group = "reconstruct"
+    row.operator(LEARN, text="Clean", icon="BRUSH_DATA").group = "clean"
+    row.operator(LEARN, text="Reconstruct", icon="ARMATURE_DATA").group = "reconstruct"
     column.operator(MARK, icon="ASSET_MANAGER")
 
 

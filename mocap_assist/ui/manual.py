@@ -30,6 +30,7 @@ CHAPTERS = {
     "bpy.types.mocap_pg_retarget*": "retarget",
     "bpy.types.mocap_pg_bone*": "retarget",
     "bpy.types.mocap_pg_unbake*": "unbake",
+    "bpy.ops.mocap_assist.listen*": "perform",
     "bpy.ops.mocap_assist.index_library*": "library",
     "bpy.ops.mocap_assist.*_source*": "library",
     "bpy.ops.mocap_assist.find_similar*": "library",

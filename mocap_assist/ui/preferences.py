@@ -5,6 +5,7 @@ from typing import Any, ClassVar
 
 import bpy
 
+from ...solvers.recordings.live_frames import PORT
 from ..scene import overlay_drawing
 from ..scene.armature_write import Output
 
@@ -58,6 +59,13 @@ class MOCAP_AP_preferences(bpy.types.AddonPreferences):
         ],
         default=Output.ACTION.name,
     )
+    live_port: bpy.props.IntProperty(
+        name="Port",
+        description="UDP port of this machine on which Listen hears a live stream of joints",
+        default=PORT,
+        min=1024,
+        max=65535,
+    )
     raw_color: bpy.props.FloatVectorProperty(
         name="Raw figure",
         description="Color in which the overlay draws the recorded action",
@@ -92,7 +100,7 @@ class MOCAP_AP_preferences(bpy.types.AddonPreferences):
         layout = self.layout
         layout.use_property_split = True
         layout.use_property_decorate = False
-        for name in ("tab", "result_as"):
+        for name in ("tab", "result_as", "live_port"):
             layout.prop(self, name)
         overlay = layout.column(heading="Overlay")
         for name in ("raw_color", "clean_color", "line_width"):

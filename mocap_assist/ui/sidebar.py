@@ -9,6 +9,7 @@ from .feet_panel import FeetPanel
 from .import_panel import ImportPanel
 from .library_panel import LibraryPanel
 from .markers_panel import MarkersPanel
+from .perform_panel import PerformPanel
 from .physics_panel import PhysicsPanel
 from .preferences import preferred
 from .reconstruct_panel import ReconstructPanel
@@ -41,6 +42,7 @@ BODIES = (
     RetargetPanel,
     LibraryPanel,
     VaryPanel,
+    PerformPanel,
 )
 PANELS = [panel for body in BODIES for panel in _in_every_editor(body)]
 

@@ -7,7 +7,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from ..denoising import Planted, PlantSettings, compare_quality, measure_quality
-from ..errors import InvalidMotionError, InvalidSettingError
+from ..errors import InvalidMotionError
 from ..motion import JointRecording, Motion, Sensor, Tracks
 from ..progress import Progress, within
 from ..reconstruction import (
@@ -53,7 +53,7 @@ def add_reconstruct_options(parser: argparse.ArgumentParser) -> None:
         help="Clean clips of skeletons, or folders of them, to learn postures from; without"
         " them those that come with Mocap Assist guide",
     )  # fmt: skip
-    parser.add_argument(
+    postures.add_argument(
         "--postures", type=Path, metavar="FILE",
         help="Postures of your own, as learn-postures wrote them, in their place",
     )  # fmt: skip
@@ -87,10 +87,6 @@ def read_guides(arguments: argparse.Namespace, progress: Progress) -> Guides:
     """Learn and read, once for all files of a run, what guides them."""
     check_library(arguments.library)
     given, library = arguments.residuals, arguments.postures
-    if library is not None and arguments.train:
-        raise InvalidSettingError(
-            "--postures and --train both say where postures come from; give one."
-        )
     residuals = None if given is None else load_residual_prior(given)
     if not arguments.train:
         return Guides(library and load_posture_library(library), residuals)

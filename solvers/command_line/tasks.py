@@ -33,6 +33,8 @@ def tasks_of(verb: Verb, arguments: argparse.Namespace) -> list[Task]:
     files: list[Path] = arguments.files
     if verb.makes is Makes.WORDS:
         return [Task((path,), None, arguments) for path, _ in found_in(files)]
+    if verb.makes in {Makes.LIBRARY, Makes.MATCHES}:
+        return [_task_with_library(verb.makes, files, arguments)]
     if verb.makes is Makes.MANY_FILES:
         if arguments.output.exists() and not arguments.output.is_dir():
             raise InvalidSettingError(
@@ -40,8 +42,6 @@ def tasks_of(verb: Verb, arguments: argparse.Namespace) -> list[Task]:
             )
         sources = tuple(path for path, _ in found_in(files, not_in=arguments.output))
         return [Task(sources, arguments.output, arguments)]
-    if verb.makes in {Makes.LIBRARY, Makes.MATCHES}:
-        return [_task_with_library(verb.makes, files, arguments)]
     if verb.makes is Makes.ONE_FILE:
         sources = tuple(path for path, _ in found_in(files))
         _refuse_reading_and_writing(sources, [arguments.output])

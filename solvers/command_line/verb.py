@@ -48,9 +48,9 @@ class Makes(Enum):
     WORDS = "figures of each file"
     FILES = "a file of each file"
     ONE_FILE = "one file of all files"
-    MANY_FILES = "a folder of files of all files"
     LIBRARY = "a library, which is named first, of all other files"
     MATCHES = "what there is like a file in a library, which is named last"
+    MANY_FILES = "a folder of files of all files"
 
 
 def nothing_to_prepare(arguments: argparse.Namespace, progress: Progress) -> None:

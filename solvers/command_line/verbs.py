@@ -22,6 +22,7 @@ from .library_verbs import (
 from .options import arguments_from, settings_from_arguments
 from .postures_verb import add_postures_options, perform_postures
 from .reconstruct_verb import add_reconstruct_options, perform_reconstruct, read_guides
+from .replay_verb import add_replay_options, perform_replay
 from .residuals_verb import add_residuals_options, perform_residuals
 from .retarget_verbs import (
     add_retarget_options,
@@ -130,12 +131,6 @@ VERBS = {
         add_simulate_options,
         perform_simulate,
     ),
-    "vary": Verb(
-        "Make new motions like a few clips of one behaviour, each different.",
-        add_vary_options,
-        perform_vary,
-        Makes.MANY_FILES,
-    ),
     "index": Verb(
         "Put recordings into a library in which there can be searched, and keep it up to date.",
         add_index_options,
@@ -148,6 +143,12 @@ VERBS = {
         perform_find,
         Makes.MATCHES,
     ),
+    "vary": Verb(
+        "Make new motions like a few clips of one behaviour, each different.",
+        add_vary_options,
+        perform_vary,
+        Makes.MANY_FILES,
+    ),
     "convert": Verb(
         "Write recordings of any known format as BVH, or as C3D or TRC where they are points.",
         add_reading_options,
@@ -158,6 +159,12 @@ VERBS = {
         add_retarget_options,
         perform_retarget,
         prepare=read_target,
+    ),
+    "replay": Verb(
+        "Send recordings to this machine as a live stream, as a depth camera's tracker would.",
+        add_replay_options,
+        perform_replay,
+        Makes.WORDS,
     ),
     "unbake": Verb(
         "Replace a key on every frame by few keys with handles.",

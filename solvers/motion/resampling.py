@@ -18,6 +18,9 @@ STOPBAND = 60.0
 PASSED = 0.7
 """Part of the new Nyquist frequency up to which motion is kept."""
 
+NUMBERS_AT_ONCE = 4_000_000
+"""Of which more would need much memory: two hours of a skeleton are thirty times as many."""
+
 STENCIL = 4
 """Frames that take part in one interpolated value."""
 
@@ -55,7 +58,7 @@ def resample(recording: Recording, frame_rate: float) -> Recording:
     times = _moments(recording.n_frames, recording.frame_rate, frame_rate)
     slowdown = frame_rate / recording.frame_rate
     if isinstance(recording, Motion):
-        rotations = normalize(_sampled(unroll(recording.rotations), times, slowdown))
+        rotations = _sampled_rotations(recording.rotations, times, slowdown)
         places = _sampled(recording.root_positions, times, slowdown)
         return Motion(recording.skeleton, rotations, places, frame_rate)
     confidence = recording.confidence
@@ -73,6 +76,18 @@ def _moments(n_frames: int, old_rate: float, new_rate: float) -> NDArray[np.floa
     nearest = np.round(times)
     times = np.where(np.abs(times - nearest) < 1e-6, nearest, times)
     return np.asarray(np.minimum(times, n_frames - 1))
+
+
+def _sampled_rotations(
+    rotations: NDArray[np.float64], times: NDArray[np.float64], slowdown: float
+) -> NDArray[np.float64]:
+    """Return rotations at fractional frames, some joints at a time."""
+    result = np.empty((len(times), *rotations.shape[1:]))
+    step = max(NUMBERS_AT_ONCE // (4 * len(rotations)), 1)
+    for joint in range(0, rotations.shape[1], step):
+        some = slice(joint, joint + step)
+        result[:, some] = normalize(_sampled(unroll(rotations[:, some]), times, slowdown))
+    return result
 
 
 def _sampled(

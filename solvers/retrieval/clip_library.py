@@ -180,7 +180,7 @@ class ClipLibrary:
 
     def _refresh(self) -> None:
         """See what others have written, and what was written here."""
-        with files.told_in_words(self._path):
+        with files.told_in_words(self._path), files.one_state(self._database):
             version = self._database.execute("PRAGMA data_version").fetchone()[0]
             seen = (version, self._database.total_changes)
             if seen == self._seen:
@@ -190,7 +190,7 @@ class ClipLibrary:
                 self._blocks = {}
                 self._vocabulary = files.read_vocabulary(self._database)
                 self._words = words
-            self._entries = files.read_entries(self._database)
+            self._entries = files.read_entries(self._database, self._entries)
             numbers = files.block_numbers(self._database)
             known, n_words = self._blocks, 0
             if self._vocabulary is not None:

@@ -11,7 +11,7 @@ from .align_clip import aligned
 from .body_parts import part_coverage
 from .clip import ClipEntry, Match
 from .clip_library import ClipLibrary
-from .clip_postures import Recording, clip_postures
+from .clip_postures import ClipPostures, Recording, clip_postures
 from .find_settings import USUAL, FindSettings
 from .rank_clips import Ranking, rank_clips
 from .spans import RATE, describe
@@ -77,7 +77,8 @@ def find_similar(
         return ()
     features = vocabulary.features(postures)
     whole = np.array([[0, len(features)]], dtype=np.int32)
-    left_out = [number for number, entry in entries.items() if entry.name in set(ignore)]
+    away = set(ignore)
+    left_out = [number for number, entry in entries.items() if entry.name in away]
     ranking = rank_clips(
         describe(features, whole, vocabulary), weights, library.blocks, settings, left_out
     )
@@ -139,7 +140,9 @@ class _Alignment:
         start, stop = ranking.frames[place]
         around = round(AROUND * (stop - start))
         first = max(start - around, 0)
-        features = self._vocabulary.features(clip)[first : stop + around]
+        near = slice(first, stop + around)
+        part = ClipPostures(clip.positions[near], clip.course[near], clip.frame_rate)
+        features = self._vocabulary.features(part)
         told = (features * self._weights).reshape(len(features), -1)
         path = aligned(self._features, told)
         theirs = _own_frames(path[:, 1] + first, entry.n_frames, entry.frame_rate)

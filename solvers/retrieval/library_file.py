@@ -6,13 +6,14 @@ memory, and leaves it whole when a process dies. Nothing in it is ever executed.
 
 import json
 import sqlite3
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
+from functools import lru_cache
 from pathlib import Path
 
 import numpy as np
 
-from ..errors import InvalidFileError
+from ..errors import InvalidFileError, MocapAssistError
 from .clip import ClipEntry, Origin
 from .clip_postures import ClipPostures
 from .index_block import IndexBlock, block_arrays, block_from_arrays
@@ -107,7 +108,7 @@ def told_in_words(path: Path | None) -> Iterator[None]:
             ) from None
         raise InvalidFileError(f"{name} cannot be used: {error}.") from None
     except (sqlite3.DatabaseError, ValueError, KeyError, TypeError) as error:
-        if isinstance(error, InvalidFileError):
+        if isinstance(error, MocapAssistError):
             raise
         raise InvalidFileError(f"{name} is no clip library, or is damaged.") from None
 
@@ -122,6 +123,19 @@ def transaction(database: sqlite3.Connection) -> Iterator[None]:
         database.execute("ROLLBACK")
         raise
     database.execute("COMMIT")
+
+
+@contextmanager
+def one_state(database: sqlite3.Connection) -> Iterator[None]:
+    """Read all that is read within as it was at one moment."""
+    if database.in_transaction:
+        yield
+        return
+    database.execute("BEGIN")
+    try:
+        yield
+    finally:
+        database.execute("ROLLBACK")
 
 
 def _lay_out(database: sqlite3.Connection) -> None:
@@ -207,16 +221,30 @@ def clip_numbers(database: sqlite3.Connection) -> list[int]:
     return [number for (number,) in database.execute("SELECT number FROM clips ORDER BY 1")]
 
 
-def read_entries(database: sqlite3.Connection) -> dict[int, ClipEntry]:
-    """Return what is told of each clip, by its number."""
-    rows = database.execute(f"SELECT number, {ENTRY_COLUMNS} FROM clips ORDER BY number")
-    return {number: _entry(row) for number, *row in rows}
+def read_entries(
+    database: sqlite3.Connection, known: Mapping[int, ClipEntry]
+) -> dict[int, ClipEntry]:
+    """Return what is told of each clip, by its number; what is known is not read again.
+
+    Numbers grow, and what is told of one never changes.
+    """
+    there = sorted(number for (number,) in database.execute("SELECT number FROM clips"))
+    rows = database.execute(
+        f"SELECT number, {ENTRY_COLUMNS} FROM clips WHERE number > ?", (max(known, default=0),)
+    )
+    new = {number: _entry(row) for number, *row in rows}
+    return {number: known.get(number) or new[number] for number in there}
+
+
+@lru_cache(maxsize=1024)
+def _tags(stored: str) -> tuple[str, ...]:
+    return tuple(json.loads(stored))
 
 
 def _entry(row: list) -> ClipEntry:  # type: ignore[type-arg]
     name, tags, path, item, size, modified, n_frames, frame_rate = row
     origin = None if path is None else Origin(path, item, size, modified)
-    return ClipEntry(name, tuple(json.loads(tags)), origin, n_frames, frame_rate)
+    return ClipEntry(name, _tags(tags), origin, n_frames, frame_rate)
 
 
 def read_postures(database: sqlite3.Connection, number: int) -> ClipPostures:

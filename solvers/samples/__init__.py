@@ -1,4 +1,4 @@
-"""A walk that the project itself makes, and ways to spoil it: for the demo, tests, benchmarks.
+"""What the project itself makes: a walk, ways to spoil it, and gestures, for tests and demos.
 
 >>> from solvers.samples import CorruptionSettings, GaitSettings, corrupt, walking_gait
 >>> walk = walking_gait(GaitSettings(duration=2.0, frame_rate=30.0))
@@ -9,6 +9,16 @@
 
 from .corruption import CorruptionSettings, corrupt
 from .gait import GaitSettings, walking_gait
+from .performance import Performance, PerformanceSettings, perform
 from .walker import walker_skeleton
 
-__all__ = ["CorruptionSettings", "GaitSettings", "corrupt", "walker_skeleton", "walking_gait"]
+__all__ = [
+    "CorruptionSettings",
+    "GaitSettings",
+    "Performance",
+    "PerformanceSettings",
+    "corrupt",
+    "perform",
+    "walker_skeleton",
+    "walking_gait",
+]

@@ -60,8 +60,8 @@ def write_blend(path):
     action.asset_clear()
 
 
-def press(text):
-    yield from bgui.scan()
+def press(text, column=0.5):
+    yield from bgui.scan(columns=(column,))
     yield from bgui.click(*bgui.at(text))
 
 
@@ -122,13 +122,12 @@ def use(armature):
     matches().active = 1
     yield from settle()
     bgui.shot("5-ghost.png")
-    bgui.move(1500, 700)
-    bgui.scroll(60)
+    bpy.context.preferences.view.ui_scale = 0.7  # then all of the panel is seen at once
     yield from settle()
     bgui.shot("6-uses.png")
     job = bpy.context.window_manager.mocap_assist_job
-    with bgui.override("UI"):
-        bpy.ops.mocap_assist.load_match("INVOKE_DEFAULT", result_as="ACTION")
+    yield from press("load_match(result_as='ACTION')", column=0.2)
+    yield 1.0
     yield from wait_for(lambda: not job.running)
     yield from wait_for(lambda: armature.animation_data.action != before)
     yield from settle()

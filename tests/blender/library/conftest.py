@@ -1,5 +1,8 @@
 """Clips, a library of them, and .blend files that hold some."""
 
+import shutil
+from pathlib import Path
+
 import numpy as np
 import pytest
 
@@ -50,16 +53,21 @@ SQUAT = {
 }
 
 
-@pytest.fixture
-def clip_files(clip_motions, load, tmp_path):
-    """A folder of six recordings: walk_0.bvh, walk_1.bvh, wave_0.bvh ..."""
-    folder = tmp_path / "clips"
-    folder.mkdir()
+@pytest.fixture(scope="session")
+def written_clips(clip_motions, load, tmp_path_factory):
+    """The recordings that tests get copies of."""
+    folder = tmp_path_factory.mktemp("clips")
     write_bvh = load("solvers.recordings").write_bvh
     for kind in KINDS:
         for seed in (0, 1):
             write_bvh(clip_motions(kind, seed), folder / f"{kind}_{seed}.bvh")
     return folder
+
+
+@pytest.fixture
+def clip_files(written_clips, tmp_path):
+    """A folder of six recordings: walk_0.bvh, walk_1.bvh, wave_0.bvh ..."""
+    return Path(shutil.copytree(written_clips, tmp_path / "clips"))
 
 
 @pytest.fixture

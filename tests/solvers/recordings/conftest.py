@@ -1,4 +1,6 @@
-"""What the tests of BVH share."""
+"""What the tests of readers share."""
+
+import socket
 
 import pytest
 
@@ -15,3 +17,15 @@ def read(tmp_path):
         return read_bvh(path, **options)
 
     return read_text
+
+
+@pytest.fixture
+def send_to():
+    """Send datagrams to a port of this machine, and no farther."""
+
+    def send(port, *datagrams):
+        with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as sender:
+            for datagram in datagrams:
+                sender.sendto(datagram, ("127.0.0.1", port))
+
+    return send

@@ -1,0 +1,36 @@
+"""The library of a scene, as what Clean and Reconstruct learn from."""
+
+from pathlib import Path
+from typing import Any
+
+import bpy
+
+from ...solvers.errors import InvalidFileError
+from ..jobs.library_prior import LibraryPrior, Own
+from ..scene.origin import origin_of
+from ..selection import played_source
+from .places import blender, library_path
+
+
+def library_prior(scene: bpy.types.Scene, subject: bpy.types.Object) -> LibraryPrior:
+    """Return the library, but for what is played; raise InvalidFileError without one."""
+    path = library_path(scene.mocap_assist.library.settings().choices)
+    if not path.is_file():
+        raise InvalidFileError(
+            "There is no clip library to learn from. Make one on the panel Library: add"
+            " folders, and press Index."
+        )
+    found = path.stat()
+    state = (found.st_size, found.st_mtime_ns)
+    return LibraryPrior(str(path), state, own_origins(subject), blender())
+
+
+def own_origins(subject: bpy.types.Object) -> Own:
+    """Return where what the subject plays is from, as a library would name it."""
+    action = played_source(subject)[0]
+    origin: dict[str, Any] = origin_of(action)
+    own = [(str(Path(str(origin["file"])).resolve()), "")] if origin.get("file") else []
+    holder = action.library.filepath if action.library else bpy.data.filepath
+    if holder:
+        own.append((str(Path(bpy.path.abspath(holder)).resolve()), action.name))
+    return tuple(own)

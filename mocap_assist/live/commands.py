@@ -1,0 +1,66 @@
+"""What Blender does on each gesture.
+
+Each function returns the sentence that is shown. Zoom and turn move the 3D Views of the window
+in which Listen was pressed.
+"""
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+
+import bpy
+
+from ...solvers.motion import JointRecording
+from ...solvers.retrieval.gesture_events import Gesture, GestureEvent
+from ..library.performing import page, search_with, show_library
+from ..scene.view_control import turn_views, zoom_views
+
+STARTED = "Perform what you search for, then clap."
+VIEWS = (Gesture.ZOOM, Gesture.TURN)
+
+_performed: list[JointRecording] = []
+
+
+@dataclass(frozen=True)
+class Library:
+    """What the library can be told to do."""
+
+    show: Callable[[bpy.types.Context], str]
+    page: Callable[[bpy.types.Context, int], str]
+    """By 1 (the next page) or -1."""
+    search: Callable[[bpy.types.Context, JointRecording], str]
+    """For a performance."""
+
+
+LIBRARY = Library(show_library, page, search_with)
+"""The one that gestures reach."""
+
+
+def last_performance() -> JointRecording | None:
+    """Return what was performed last between two claps, until Blender is closed."""
+    return _performed[-1] if _performed else None
+
+
+def obey(context: bpy.types.Context, event: GestureEvent) -> str:
+    """Do what a gesture asks for; return the sentence to show."""
+    gesture = event.gesture
+    if gesture is Gesture.HAND_UP:
+        return LIBRARY.show(context)
+    if gesture in {Gesture.PAGE_NEXT, Gesture.PAGE_BACK}:
+        return LIBRARY.page(context, 1 if gesture is Gesture.PAGE_NEXT else -1)
+    if gesture is Gesture.ZOOM:
+        return zoom_views(context.window, event.amount)
+    if gesture is Gesture.TURN:
+        return turn_views(context.window, event.amount)
+    return STARTED if gesture is Gesture.CAPTURE_START else ""
+
+
+def obey_all(context: bpy.types.Context, events: Sequence[GestureEvent]) -> str:
+    """Do what gestures ask for, in their order; return the last sentence there is."""
+    said = [obey(context, event) for event in events]
+    return next((sentence for sentence in reversed(said) if sentence), "")
+
+
+def search_for(context: bpy.types.Context, query: JointRecording) -> str:
+    """Keep a performance, and search for it; return the sentence to show."""
+    _performed[:] = [query]
+    return LIBRARY.search(context, query)

@@ -1,0 +1,56 @@
+"""The button that starts and ends listening."""
+
+from typing import ClassVar
+
+import bpy
+
+from ...solvers.errors import MocapAssistError
+from ..ui.preferences import preferred
+from . import listening
+
+NO_WINDOW = "Listening needs Blender's window."
+
+
+class ListenButton:
+    """Mix in before bpy.types.Operator: pressed once it listens, and again it stops."""
+
+    bl_options: ClassVar = set()  # the views and the library: nothing to undo
+
+    @classmethod
+    def poll(cls, context: bpy.types.Context) -> bool:
+        if bpy.app.background:
+            cls.poll_message_set(NO_WINDOW)
+            return False
+        return True
+
+    def invoke(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
+        running = listening.current()
+        if running is not None:
+            running.end(context)
+            return {"FINISHED"}
+        try:
+            self._listening = listening.Listening(
+                context,
+                preferred("live_port"),
+                tuple(preferred("clean_color")),
+                preferred("line_width"),
+            )
+        except MocapAssistError as error:
+            self.report({"ERROR"}, str(error))
+            return {"CANCELLED"}
+        context.window_manager.modal_handler_add(self)
+        return {"RUNNING_MODAL"}
+
+    def modal(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
+        if not self._listening.is_on:
+            return {"CANCELLED"}
+        if event.type == "ESC" and event.value == "PRESS":
+            self._listening.end(context)
+            return {"FINISHED"}
+        if event.type == "TIMER":
+            self._listening.look(context)
+        return {"PASS_THROUGH"}
+
+    def cancel(self, context: bpy.types.Context) -> None:
+        """Blender ends the operator: another file is loaded, or the window closes."""
+        self._listening.end(context)

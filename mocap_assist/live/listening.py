@@ -1,0 +1,124 @@
+"""The one session that listens beside Blender's work, and what is shown of it."""
+
+import logging
+from typing import Any
+
+import bpy
+from bpy.app import handlers
+
+from ...solvers.recordings.live_receiver import Receiver
+from ...solvers.recordings.live_stream import Heard
+from ...solvers.retrieval.gestures import Mode
+from ...solvers.workflows.live_session import LiveSession
+from ..scene.live_figure import LiveFigure
+from ..scene.overlay_drawing import Color
+from .commands import obey_all, search_for
+
+logger = logging.getLogger(__name__)
+
+BETWEEN_LOOKS = 1.0 / 30.0
+"""Seconds."""
+WAITING = "Nobody is seen yet. Start the tracker, or python -m solvers replay."
+MODES = {
+    Mode.IDLE: "Clap to perform, right hand up for the library",
+    Mode.BROWSING: "Wave to page, clap to perform",
+    Mode.CAPTURING: "Performing; clap to end",
+}
+
+_on: list["Listening"] = []
+
+
+class Listening:
+    """A socket, a session, the figure of the actor; shown in the status bar until it ends.
+
+    Raises
+    ------
+    InvalidSettingError
+        The port is taken.
+    """
+
+    def __init__(
+        self, context: bpy.types.Context, port: int, color: Color, width: float
+    ) -> None:
+        self.receiver = Receiver(port)
+        self.session = LiveSession()
+        self.said = ""
+        self.figure = LiveFigure(color, width)
+        manager = context.window_manager
+        self._timer = manager.event_timer_add(BETWEEN_LOOKS, window=context.window)
+        _on.append(self)
+        self._show(context)
+
+    @property
+    def is_on(self) -> bool:
+        """Whether it still listens; not after another file was loaded."""
+        return self in _on
+
+    @property
+    def heard(self) -> Heard:
+        """How many frames came in, and how many were dropped."""
+        return self.session.heard
+
+    def state(self) -> str:
+        """Return what can be done now, in a few words."""
+        return MODES[self.session.mode] if self.heard.frames else WAITING
+
+    def look(self, context: bpy.types.Context) -> None:
+        """Take what has come in, do what it asks for, and show it."""
+        came = self.receiver.poll()
+        if not came:
+            return
+        news = self.session.hear(came)
+        if news.frame is not None:
+            self.figure.show(news.frame)
+        said = obey_all(context, news.events)
+        if news.query is not None:
+            said = search_for(context, news.query)
+        self.said = news.message or said or self.said
+        self._show(context)
+
+    def end(self, context: bpy.types.Context) -> None:
+        """Listen no more; again does nothing."""
+        if not self.is_on:
+            return
+        _on.remove(self)
+        self.receiver.close()
+        self.figure.remove()
+        context.window_manager.event_timer_remove(self._timer)
+        context.workspace.status_text_set(None)
+        logger.info("Listened to %d frames, dropped %d", self.heard.frames, self.heard.dropped)
+        _redraw(context)
+
+    def _show(self, context: bpy.types.Context) -> None:
+        said = f"{self.said}   " if self.said else ""
+        context.workspace.status_text_set(f"{said}{self.state()}   Esc: stop listening")
+        _redraw(context)
+
+
+def current() -> Listening | None:
+    """Return what listens now."""
+    return _on[-1] if _on else None
+
+
+def _redraw(context: bpy.types.Context) -> None:
+    for window in context.window_manager.windows:
+        for area in window.screen.areas:
+            if area.type == "VIEW_3D":
+                area.tag_redraw()
+
+
+@handlers.persistent
+def _end_all(*_: Any) -> None:
+    while _on:
+        _on[-1].end(bpy.context)
+
+
+def register() -> None:
+    """End before the file is replaced."""
+    handlers.load_pre.append(_end_all)
+
+
+def unregister() -> None:
+    """End with the extension, too."""
+    _end_all()
+    handlers.load_pre.remove(_end_all)

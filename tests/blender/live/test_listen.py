@@ -1,0 +1,195 @@
+"""The button Listen: from datagrams on a real socket to what Blender does."""
+
+import socket
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+from numpy.testing import assert_allclose
+
+
+@pytest.fixture
+def library(load, monkeypatch):
+    """What the library was told; the real one is put back."""
+    commands = load("mocap_assist.live.commands")
+    told = []
+    library = commands.Library(
+        show=lambda context: told.append("show") or "The library.",
+        page=lambda context, step: told.append(step) or "A page.",
+        search=lambda context, query: told.append(query) or "Searched.",
+    )
+    monkeypatch.setattr(commands, "LIBRARY", library)
+    return told
+
+
+def test_off_until_it_is_pressed(load, blank):
+    assert load("mocap_assist.live.listening").current() is None
+
+
+def test_without_a_window_the_button_is_grey(blank):
+    assert not blank.ops.mocap_assist.listen.poll()
+
+
+def test_pressed_it_listens_on_loopback_only_and_pressed_again_it_stops(
+    listen, load, window, port
+):
+    button = listen()
+
+    current = load("mocap_assist.live.listening").current()
+    assert button.outcome == {"RUNNING_MODAL"} and window.modals == [button]
+    assert current.receiver.address == ("127.0.0.1", port)
+    assert "Nobody is seen yet" in window.status[-1] and "Esc" in window.status[-1]
+
+    again = listen()
+
+    assert again.outcome == {"FINISHED"} and window.modals == [button]
+    assert load("mocap_assist.live.listening").current() is None
+    assert window.timers == [] and window.status[-1] is None
+    with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as free:
+        free.bind(("127.0.0.1", port))
+
+
+def test_the_first_button_ends_once_the_second_stopped_it(listen, window, event):
+    button = listen()
+    listen()
+
+    assert button.modal(window.context, event("TIMER")) == {"CANCELLED"}
+
+
+def test_esc_stops_it_and_other_keys_pass(listen, load, window, event):
+    button = listen()
+
+    assert button.modal(window.context, event("A", "PRESS")) == {"PASS_THROUGH"}
+    assert button.modal(window.context, event("ESC", "RELEASE")) == {"PASS_THROUGH"}
+    assert button.modal(window.context, event("ESC", "PRESS")) == {"FINISHED"}
+    assert load("mocap_assist.live.listening").current() is None and window.timers == []
+
+
+def test_another_file_stops_it(listen, load, blank, window, event):
+    button = listen()
+    listening = load("mocap_assist.live.listening")
+
+    for each in list(blank.app.handlers.load_pre):
+        if each.__module__ == listening.__name__:
+            with pytest.MonkeyPatch.context() as patched:
+                patched.setattr(listening.bpy, "context", window.context, raising=False)
+                each()
+
+    assert listening.current() is None
+    assert button.modal(window.context, event("TIMER")) == {"CANCELLED"}
+
+
+def test_a_port_that_is_taken_is_told(listen, load, window, port):
+    with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as other:
+        other.bind(("127.0.0.1", port))
+
+        button = listen()
+
+    assert button.outcome == {"CANCELLED"}
+    ((kind, message),) = window.reports
+    assert kind == {"ERROR"} and f"port {port}: another program" in message
+    assert load("mocap_assist.live.listening").current() is None and window.timers == []
+
+
+def test_gestures_reach_the_library_and_a_performance_is_searched_for(
+    listen, act, library, load, window
+):
+    button = listen()
+
+    outcomes = act(
+        button, "hand up", "rest", "wave right", "wave left", "clap", "wave right", "clap"
+    )
+
+    assert outcomes == {"PASS_THROUGH"}
+    assert library[:3] == ["show", 1, -1]
+    (query,) = library[3:]
+    assert query.n_frames > 30 and query.frame_rate == 30.0
+    assert query is load("mocap_assist.live.commands").last_performance()
+    assert window.status[-1].startswith("Searched.")
+
+
+def test_without_a_library_it_says_so_and_keeps_the_performance(listen, act, load, window):
+    button = listen()
+
+    act(button, "hand up", "clap", "rest", "clap")
+
+    assert "There is no library to search yet" in window.status[-1]
+    assert load("mocap_assist.live.commands").last_performance().n_frames >= 15
+
+
+def test_zoom_and_turn_move_the_view_of_the_window(listen, act, view):
+    act(listen(), "zoom in")
+    assert view.view_distance == pytest.approx(10.0 / (1.27 / 0.57), rel=0.2)
+    view.view_distance = 10.0
+    listen()
+
+    act(listen(), "turn")
+
+    swung = np.pi / 2 - np.arctan2(0.66, 0.7)
+    assert view.view_distance == 10.0
+    assert view.view_rotation.to_euler().z == pytest.approx(-swung, abs=0.1)
+
+
+def test_a_view_through_a_camera_stays(listen, act, view, window):
+    view.view_perspective = "CAMERA"
+
+    act(listen(), "zoom in")
+
+    assert view.view_distance == 10.0
+    assert "no 3D View" in window.status[-1]
+
+
+def test_rubbish_is_counted_and_nothing_else(listen, load, window, port, event):
+    button = listen()
+    with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as sender:
+        for junk in (b"", b"\xff" * 1000, b'{"format": "mocap-assist-live"}', b"x" * 60_000):
+            sender.sendto(junk, ("127.0.0.1", port))
+
+    assert button.modal(window.context, event("TIMER")) == {"PASS_THROUGH"}
+
+    heard = load("mocap_assist.live.listening").current().heard
+    assert (heard.frames, heard.unreadable) == (0, 3)
+
+
+def test_the_figure_stands_on_the_ground_at_the_origin(listen, act, load):
+    act(listen(), "rest")
+
+    lines = load("mocap_assist.live.listening").current().figure.lines()
+
+    assert lines.shape == (19, 2, 3)
+    assert 0.0 < lines[..., 2].min() < 0.1 and 1.5 < lines[..., 2].max() < 1.8
+    assert np.abs(lines[..., :2]).max() < 0.5
+
+
+def test_bones_that_are_not_seen_are_not_drawn(load):
+    figure = load("mocap_assist.scene.live_figure").LiveFigure((1, 1, 1, 1), 2.0)
+    frames, motion = load("solvers.recordings.live_frames"), load("solvers.motion")
+    names = motion.JOINTS[motion.Sensor.KINECT_V1]
+    places, sure = np.ones((20, 3)), np.ones(20)
+    places[7], sure[11] = np.nan, 0.1
+
+    assert figure.lines().shape == (0, 2, 3)
+    figure.show(frames.LiveFrame(0.0, 0, names, places, sure))
+
+    assert figure.lines().shape == (17, 2, 3)
+    figure.remove()
+    figure.remove()
+
+
+def test_turning_goes_round_the_vertical_and_zoom_has_ends(load, view):
+    control = load("mocap_assist.scene.view_control")
+    area = SimpleNamespace(
+        type="VIEW_3D",
+        spaces=SimpleNamespace(active=SimpleNamespace(region_3d=view)),
+        tag_redraw=lambda: None,
+    )
+    window = SimpleNamespace(screen=SimpleNamespace(areas=[area]))
+
+    for _ in range(4):
+        control.turn_views(window, np.pi / 2)
+    for _ in range(100):
+        control.zoom_views(window, 100.0)
+
+    assert_allclose(np.abs(view.view_rotation), (1, 0, 0, 0), atol=1e-6)
+    assert view.view_distance == pytest.approx(1e-3)
+    assert control.zoom_views(None, 2.0).startswith("There is no 3D View")

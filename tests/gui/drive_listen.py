@@ -1,0 +1,89 @@
+"""Press Listen in a Blender with a window, and let the made actor give commands; take pictures.
+
+    make extension-plain
+    BG_DEBS="python3-scipy python3-pil" bash ../shared/tools/blender-gui.sh run \
+        dist/mocap_assist-0.1.0-plain.zip tests/gui/drive_listen.py build/gui/listen.png
+
+Runs inside that Blender; `bgui` comes with the tool and moves a real pointer. The actor's
+frames go over a real socket, each at its time.
+"""
+
+import socket
+import time
+from importlib import import_module
+
+import bgui
+import bpy
+
+PACKAGE = "bl_ext.user_default.mocap_assist"
+OTHERS = (
+    "import", "reconstruct", "clean", "check", "compare", "feet", "physics", "markers",
+    "retarget",
+)  # fmt: skip
+
+
+def load(name):
+    return import_module(f"{PACKAGE}.{name}")
+
+
+def unfold_perform_alone():
+    """Take the other panels away, and unfold this one, before the tab is first drawn."""
+    for name in OTHERS:
+        bpy.utils.unregister_class(getattr(bpy.types, f"MOCAP_PT_{name}"))
+    panel = bpy.types.MOCAP_PT_perform
+    bpy.utils.unregister_class(panel)
+    panel.bl_options = set()
+    bpy.utils.register_class(panel)
+
+
+def perform(*gestures):
+    """Send the frames of the made actor at their times."""
+    samples, frames = load("solvers.samples"), load("solvers.recordings.live_frames")
+    made = samples.perform(gestures, samples.PerformanceSettings(noise=0.004))
+    start = time.monotonic()
+    with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as sender:
+        for frame in frames.frames_of(made.recording()):
+            while time.monotonic() - start < frame.time:
+                yield 0.01
+            sender.sendto(frames.encode_frame(frame), ("127.0.0.1", frames.PORT))
+    yield 0.3
+
+
+def steps():
+    for each in list(bpy.data.objects):
+        bpy.data.objects.remove(each)
+    unfold_perform_alone()
+    yield from bgui.open_sidebar("Mocap")
+    view = bgui.area().spaces.active.region_3d
+    view.view_location, view.view_distance = (0.0, 0.0, 0.9), 5.0
+    listening = load("mocap_assist.live.listening")
+    yield 0.5
+    yield from bgui.scan()
+    bgui.shot("1-off.png")
+    yield from bgui.click(*bgui.at("mocap_assist.listen"))
+    assert listening.current() is not None
+    yield 0.5
+    bgui.shot("2-nobody.png")
+    yield from perform("hand up", "wave right")
+    assert "wave" in listening.current().said
+    bgui.shot("3-wave.png")
+    yield from perform("zoom in", "turn")
+    assert view.view_distance < 4.0
+    bgui.shot("4-zoomed-and-turned.png")
+    yield from perform("clap", "wave left", "clap", "hand up")
+    commands = load("mocap_assist.live.commands")
+    assert commands.last_performance().n_frames > 30
+    bgui.shot("5-captured.png")
+    bgui.move(*middle_of_view())
+    yield from bgui.key("Escape")
+    yield 0.5
+    assert listening.current() is None
+    bgui.shot()
+
+
+def middle_of_view():
+    region = bgui.region("WINDOW")
+    return region.x + region.width // 3, region.y + region.height // 2
+
+
+bgui.run(steps, timeout=200)

@@ -1,0 +1,134 @@
+"""`index` makes libraries and `find` searches them; other verbs learn from them."""
+
+import json
+import shutil
+
+import pytest
+
+from solvers.recordings import read_bvh, write_bvh
+from solvers.retrieval import load_clip_library, open_clip_library
+from solvers.samples import GaitSettings, walking_gait
+
+
+@pytest.fixture(scope="module")
+def walks(tmp_path_factory):
+    """A folder of walks, slow and fast."""
+    folder = tmp_path_factory.mktemp("walks")
+    for cadence in (100, 120, 140):
+        settings = GaitSettings(speed=0.9, cadence=cadence, duration=3.0, frame_rate=30.0)
+        write_bvh(walking_gait(settings), folder / f"walk_{cadence}.bvh")
+    return folder
+
+
+@pytest.fixture
+def library(call, walks, tmp_path):
+    path = tmp_path / "library.clips"
+    told = call("index", path, walks, "--tag", "walk")
+    assert told == (0, f"3 added; {path} has 3 clips.\n", "")
+    return path
+
+
+def test_index_tells_what_it_did_and_does_it_once(call, walks, library):
+    assert call("index", library, walks)[1] == f"3 as they were; {library} has 3 clips.\n"
+    status, said, _ = call("index", library, walks, "--tag", "loud", "--json", "--jobs", 1)
+    told = json.loads(said)
+    assert status == 0
+    assert told["changed"] == ["walk_100", "walk_120", "walk_140"]
+    assert (told["n_clips"], told["added"], told["refused"]) == (3, [], [])
+    assert told["output"] == told["library"] == str(library)
+
+
+def test_index_says_each_file_that_is_of_no_use_and_fails(call, walks, library, tmp_path):
+    shutil.copytree(walks, tmp_path / "more")
+    (tmp_path / "more" / "broken.bvh").write_text("HIERARCHY\nROOT")
+    (tmp_path / "more" / "walk_100.bvh").unlink()
+
+    status, said, failed = call("index", library, tmp_path / "more")
+
+    assert status == 2
+    assert said == f"2 added, 1 of no use; {library} has 5 clips.\n"
+    assert failed.count("\n") == 1
+    assert "broken.bvh" in failed
+
+
+def test_index_removes_what_has_gone(call, walks, tmp_path):
+    folder = shutil.copytree(walks, tmp_path / "walks")
+    path = tmp_path / "library.clips"
+    call("index", path, folder)
+    (folder / "walk_140.bvh").unlink()
+
+    assert call("index", path, folder)[1].endswith("has 3 clips.\n")
+    said = call("index", path, folder, "--remove-missing")[1]
+    assert said == f"2 as they were, 1 removed; {path} has 2 clips.\n"
+
+
+def test_find_prints_a_table_best_first(call, walks, library):
+    status, said, _ = call("find", walks / "walk_140.bvh", library, "--n-alike", 0)
+    header, *rows = said.splitlines()
+    assert status == 0
+    assert header.split() == ["clip", "score", "frames", "seconds", "tags"]
+    name, score, frames, _, tags = rows[0].split()
+    assert (name, frames, tags) == ("walk_140", "0-89", "walk")
+    assert float(score) > 0.95
+    assert len(rows) == 3
+
+
+def test_find_searches_with_frames_and_parts_of_the_body(call, walks, library):
+    words = ("find", walks / "walk_100.bvh", library, "--json", "--n-alike", 0)
+    told = json.loads(call(*words, "--frames", "30:60", "--no-left-arm")[1])
+    best = told["matches"][0]
+    assert best["clip"] == "walk_100"
+    assert abs(best["first_frame"] - 30) < 5
+    assert abs(best["last_frame"] - 59) < 5
+    assert best["path"] == str((walks / "walk_100.bvh").resolve())
+    ignored = json.loads(call(*words, "--ignore", "walk_100", "--n-matches", 1)[1])
+    assert [match["clip"] for match in ignored["matches"]] != ["walk_100"]
+    assert len(ignored["matches"]) == 1
+
+
+def test_slips_are_said_in_one_sentence(call, walks, library, tmp_path):
+    query, none = walks / "walk_100.bvh", tmp_path / "none"
+    (tmp_path / "empty").touch()
+    limbs = ("left-arm", "right-arm", "left-leg", "right-leg")
+    parts = [f"--no-{part}" for part in ("trunk", *limbs)]
+    for words, sentence in (
+        (("find", query), "Name the recording and then the library; the names are 1."),
+        (("find", query, none), "There is no clip library"),
+        (("find", query, query), "is no clip library"),
+        (("find", query, tmp_path / "empty"), "is no clip library"),
+        (("find", none, library), "There is no file"),
+        (("find", query, library, "--frames", "90:"), "has 90 frames, none of them from 90 on"),
+        (("find", query, library, *parts), "No part of the body is chosen"),
+        (("index", library), "name the library and then recordings"),
+        (("index", library, none), "There is no file or folder"),
+        (("index", none / "library", walks), "cannot be used"),
+        (("denoise", query, tmp_path / "a.bvh", "--library", none), "There is no clip library"),
+        (("reconstruct", query, tmp_path / "a.bvh", "--library", none), "no clip library"),
+    ):
+        status, _, failed = call(*words)
+        assert status == 2
+        assert sentence in failed, words
+        assert failed.count("\n") == 1
+
+
+@pytest.mark.parametrize("verb", ["denoise", "reconstruct"])
+def test_a_take_learns_from_what_is_like_it_and_not_from_itself(
+    call, walks, library, tmp_path, verb
+):
+    target = tmp_path / "clean.bvh"
+    status, said, failed = call(verb, walks / "walk_120.bvh", target, "--library", library)
+
+    assert (status, failed) == (0, "")
+    first = next(line for line in said.splitlines() if line.startswith("Learned from"))
+    assert first.startswith("Learned from 2 clips of the library: walk_1")
+    assert "walk_120" not in first
+    assert read_bvh(target).n_frames == 90
+
+
+def test_a_library_without_clips_is_refused(call, walks, tmp_path):
+    open_clip_library(tmp_path / "new").close()
+    words = ("denoise", walks / "walk_100.bvh", tmp_path / "a.bvh", "--library")
+    assert "has no clips; index some first" in call(*words, tmp_path / "new")[2]
+    words = ("find", walks / "walk_100.bvh", tmp_path / "new")
+    assert "put some in first" in call(*words)[2]
+    assert not load_clip_library(tmp_path / "new").entries

@@ -1,0 +1,65 @@
+"""The made actor keeps the lengths of his bones, and does what he is told when he says."""
+
+import itertools
+
+import numpy as np
+import pytest
+from numpy.testing import assert_allclose
+
+from solvers.errors import InvalidSettingError
+from solvers.motion import JOINTS, Sensor
+from solvers.samples import PerformanceSettings, perform
+
+NAMES = JOINTS[Sensor.KINECT_V1]
+
+
+def joint(performance, name):
+    return performance.positions[:, NAMES.index(name)]
+
+
+def test_arms_keep_their_lengths():
+    performance = perform(["hand up", "wave left", "clap", "zoom in", "turn"])
+
+    for side in ("Left", "Right"):
+        chain = [joint(performance, part + side) for part in ("Shoulder", "Elbow", "Wrist")]
+        upper, fore = (
+            np.linalg.norm(far - near, axis=-1) for near, far in itertools.pairwise(chain)
+        )
+        assert_allclose(upper, 0.28, atol=1e-9)
+        assert_allclose(fore, 0.25, atol=1e-9)
+
+
+def test_gestures_are_done_when_it_is_said():
+    performance = perform(["hand up", "clap"])
+    (_, up), (_, clapped) = performance.made
+    frames = [int(np.argmin(np.abs(performance.times - time))) for time in (up, clapped - 0.35)]
+
+    height = joint(performance, "WristRight")[frames[0], 2]
+    assert height == pytest.approx(joint(performance, "ShoulderRight")[0, 2] + 0.45, abs=0.01)
+    hands = joint(performance, "WristRight") - joint(performance, "WristLeft")
+    assert np.linalg.norm(hands[frames[1]]) < 0.08
+
+
+def test_faces_the_camera_with_the_right_hand_at_its_left():
+    performance = perform(["zoom in"])
+
+    assert (joint(performance, "ShoulderRight")[:, 0] < 0).all()
+    assert joint(performance, "WristRight")[:, 1].min() < -0.25
+    assert joint(performance, "FootLeft")[0, 2] == pytest.approx(0.03)
+
+
+def test_noise_comes_again_with_its_seed():
+    settings = PerformanceSettings(noise=0.01, hidden=1.0, lost=0.2, lateness=0.01, seed=3)
+
+    one, two = perform(["clap"], settings), perform(["clap"], settings)
+
+    for name in ("times", "positions", "confidence"):
+        assert_allclose(getattr(one, name), getattr(two, name))
+    plain = perform(["clap"])
+    assert 0.6 < len(one.times) / len(plain.times) < 1.0 and (one.confidence < 0.5).any()
+    assert (np.diff(one.times) >= 0).all()
+
+
+def test_an_unknown_gesture_is_refused():
+    with pytest.raises(InvalidSettingError, match="shrug: not a gesture of rest, hand up"):
+        perform(["shrug"])

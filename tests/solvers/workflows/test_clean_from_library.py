@@ -1,0 +1,209 @@
+"""A take learns from what a library has that is like it, and from nothing else."""
+
+import sys
+
+import numpy as np
+import pytest
+from numpy.testing import assert_array_equal
+
+from solvers.denoising import denoise
+from solvers.errors import InvalidFileError, InvalidMotionError, SolveCancelled
+from solvers.motion import Motion, Tracks, resample
+from solvers.motion.rotations import (
+    angle_between,
+    multiply,
+    quaternion_from_rotation_vector,
+)
+from solvers.recordings import read_acclaim, write_bvh
+from solvers.retrieval import Clip, Origin, build_clip_library, load_clip_library
+from solvers.samples import GaitSettings, walking_gait
+from solvers.workflows import bases_from_library, clean_from_library, index_files
+from solvers.workflows.library_clips import read_origin
+
+
+def walk(cadence: float, speed: float = 1.0, duration: float = 3.0) -> Motion:
+    return walking_gait(
+        GaitSettings(cadence=cadence, speed=speed, duration=duration, frame_rate=30.0)
+    )
+
+
+WALKS = {f"walk {cadence}": walk(cadence) for cadence in (100, 110, 120, 130)}
+
+
+@pytest.fixture(scope="module")
+def library():
+    return build_clip_library(Clip(name, motion) for name, motion in WALKS.items())
+
+
+def fetched(entry):
+    return WALKS[entry.name]
+
+
+def without_a_leg(motion: Motion, frames=slice(30, 60)) -> Motion:
+    rotations = motion.rotations.copy()
+    top = next(joint for joint, name in enumerate(motion.skeleton.names) if name == "LeftUpLeg")
+    leg = [top, *motion.skeleton.subtree(top)]
+    rotations[frames, leg] = np.nan
+    return motion.with_poses(rotations)
+
+
+def error(found: Motion, truth: Motion, frames=slice(30, 60)) -> float:
+    apart = angle_between(found.rotations, truth.rotations)
+    return float(np.degrees(apart[frames]).mean())
+
+
+def test_a_lost_leg_is_rebuilt_from_clips_like_the_take(library):
+    truth = walk(115)
+    dirty = without_a_leg(truth)
+    before, told = dirty.rotations.copy(), []
+
+    cleaned = clean_from_library(
+        dirty, library, fetch=fetched,
+        progress=lambda fraction, message="": told.append(fraction),
+    )  # fmt: skip
+
+    assert "Learned from 4 clips of the library: walk 1" in cleaned.prior_used
+    assert error(cleaned.recording, truth) < 0.5 * error(denoise(dirty).recording, truth)
+    assert np.isfinite(cleaned.recording.rotations).all()
+    assert_array_equal(dirty.rotations, before)
+    assert told == sorted(told)
+    assert told[-1] == 1.0
+
+
+def test_what_is_learned_is_what_those_clips_teach(library):
+    learned = bases_from_library(walk(115), library, fetch=fetched)
+
+    assert set(learned.clips) == set(WALKS)
+    assert int(learned.bases.n_clips) == 4
+    assert learned.said.startswith("Learned from 4 clips of the library: ")
+
+
+def test_clips_that_are_to_be_ignored_teach_nothing(library):
+    away = ["walk 110", "walk 120"]
+    learned = bases_from_library(walk(115), library, ignore=away, fetch=fetched)
+    assert set(learned.clips) == {"walk 100", "walk 130"}
+
+
+def test_only_the_frames_that_match_are_learned_from(monkeypatch, library):
+    learned_of = []
+    monkeypatch.setattr(
+        sys.modules["solvers.workflows.clean_from_library"],
+        "learn_filter_bases",
+        lambda clips, **options: learned_of.extend(clips),
+    )
+    long = walk(115, duration=30.0)
+    of_one = build_clip_library([Clip("long", long)])
+
+    bases_from_library(walk(115).slice(0, 90), of_one, fetch=lambda entry: long)
+
+    assert 90 <= learned_of[0].n_frames <= 90 + 2 * 15 + 45
+
+
+def test_a_library_of_other_movements_does_no_harm(recordings):
+    hdm05 = recordings / "mocap" / "hdm05"
+    files = {kind: sorted(hdm05.glob(f"HDM_d*_{kind}*_120.amc"))[:3]
+             for kind in ("squat1Reps", "lieDownFloor", "kickLFront1Reps")}  # fmt: skip
+    clips = {path.stem: resample(read_acclaim(path), 30.0)
+             for paths in files.values() for path in paths}  # fmt: skip
+    of_others = build_clip_library(Clip(name, motion) for name, motion in clips.items())
+    own = clips[files["squat1Reps"][0].stem]
+    squats = [path.stem for path in files["squat1Reps"]]
+
+    def fetch(entry):
+        return clips[entry.name]
+
+    harmless = clean_from_library(own, of_others, ignore=squats, fetch=fetch)
+    helped = bases_from_library(own, of_others, ignore=squats[:1], fetch=fetch)
+
+    assert harmless.prior_used.startswith("Nothing in the library is like this take. ")
+    assert_array_equal(harmless.recording.rotations, denoise(own).recording.rotations)
+    assert set(helped.clips) == set(squats[1:])
+
+
+def test_clips_are_read_again_from_their_files_and_the_lost_are_told(tmp_path):
+    for name, motion in WALKS.items():
+        write_bvh(motion, tmp_path / f"{name}.bvh")
+    index_files(tmp_path / "library", [tmp_path])
+    (tmp_path / "walk 110.bvh").unlink()
+
+    with load_clip_library(tmp_path / "library") as library:
+        learned = bases_from_library(walk(115), library)
+        assert set(learned.clips) == set(WALKS) - {"walk 110"}
+        assert "walk 110 was left out: There is no file" in learned.said
+        for path in tmp_path.glob("*.bvh"):
+            path.unlink()
+        cleaned = clean_from_library(walk(115), library)
+
+    assert cleaned.prior_used.count("was left out") == 4
+    assert_array_equal(cleaned.recording.rotations, denoise(walk(115)).recording.rotations)
+
+
+def test_clips_that_came_from_no_file_are_told(library):
+    learned = bases_from_library(walk(115), library)
+    assert learned.bases is None
+    assert "walk 110 was left out: walk 110 came from no file" in learned.said
+
+
+def test_an_action_is_left_to_whoever_can_read_it():
+    origin = Origin("/somewhere/rig.blend", "Walk")
+    library = build_clip_library([Clip("Walk", walk(110), origin=origin)])
+    assert bases_from_library(walk(115), library).bases is None
+    told = bases_from_library(walk(115), library, fetch=lambda entry: walk(110))
+    assert told.clips == ("Walk",)
+
+
+def test_what_a_sensor_saw_is_no_example(library):
+    joints = Tracks(("a",), np.zeros((9, 1, 3)), 30.0)
+    assert bases_from_library(walk(115), library, fetch=lambda entry: joints).bases is None
+
+
+def test_clips_too_short_to_learn_from_are_told():
+    short = {name: motion.slice(0, 5) for name, motion in WALKS.items()}
+    library = build_clip_library(Clip(name, motion) for name, motion in short.items())
+    learned = bases_from_library(
+        walk(110).slice(0, 5), library, fetch=lambda entry: short[entry.name]
+    )
+    assert learned.bases is None
+    assert "That was of no use: No example is as long as the window" in learned.said
+
+
+def test_an_empty_library_changes_nothing():
+    cleaned = clean_from_library(walk(115), build_clip_library([]))
+    assert cleaned.prior_used.startswith("Nothing in the library is like this take. ")
+
+
+def test_points_are_refused(library):
+    markers = Tracks(("a", "b"), np.zeros((9, 2, 3)), 30.0)
+    with pytest.raises(InvalidMotionError, match="solve a skeleton from them first"):
+        clean_from_library(markers, library)
+
+
+def test_it_may_be_cancelled_while_clips_are_read(library):
+    def cancel(fraction, message=""):
+        if message.startswith("Reading walk"):
+            raise SolveCancelled
+
+    with pytest.raises(SolveCancelled):
+        clean_from_library(walk(115), library, fetch=fetched, progress=cancel)
+
+
+def test_a_search_with_noise_finds_the_same_clips(library, rng):
+    truth = walk(115)
+    shape = (*truth.rotations.shape[:2], 3)
+    noise = quaternion_from_rotation_vector(np.radians(3.0) * rng.normal(size=shape))
+    noisy = truth.with_poses(multiply(truth.rotations, noise))
+
+    cleaned = clean_from_library(noisy, library, fetch=fetched)
+
+    everywhere = slice(0, None)
+    assert "Learned from 4 clips" in cleaned.prior_used
+    assert error(cleaned.recording, truth, everywhere) < 0.5 * error(noisy, truth, everywhere)
+
+
+def test_what_is_read_again_is_refused_as_files_are(tmp_path):
+    with pytest.raises(InvalidFileError, match="There is no file"):
+        read_origin(
+            build_clip_library([
+                Clip("a", walk(110), origin=Origin(str(tmp_path / "gone.bvh")))
+            ]).entries[0]
+        )

@@ -1,0 +1,219 @@
+"""A library is kept as its files are: what is new, changed, gone or of no use."""
+
+import os
+import shutil
+import sys
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from solvers.errors import InvalidFileError, SolveCancelled
+from solvers.motion import Tracks
+from solvers.recordings import write_bvh, write_trc
+from solvers.retrieval import FindSettings, find_similar, load_clip_library
+from solvers.samples import GaitSettings, walking_gait
+from solvers.workflows import describe_files, index_files
+
+indexing = sys.modules["solvers.workflows.index_files"]
+"""The module; under its name the package has the verb."""
+
+
+def walk(cadence: float = 110.0, duration: float = 1.0):
+    return walking_gait(
+        GaitSettings(speed=0.9, cadence=cadence, duration=duration, frame_rate=30.0)
+    )
+
+
+@pytest.fixture
+def folder(tmp_path):
+    """Two folders of walks, and markers that are no body."""
+    for place, cadence in (("a/slow", 80), ("a/fast", 140), ("b/slow", 90)):
+        path = tmp_path / "clips" / f"{place}.bvh"
+        path.parent.mkdir(parents=True, exist_ok=True)
+        write_bvh(walk(cadence), path)
+    markers = Tracks(("m1", "m2"), np.ones((9, 2, 3)), 30.0)
+    write_trc(markers, tmp_path / "clips" / "markers.trc")
+    (tmp_path / "clips" / "notes.txt").write_text("not a recording")
+    return tmp_path / "clips"
+
+
+@pytest.fixture
+def library(tmp_path):
+    return tmp_path / "library.clips"
+
+
+def entries(path):
+    with load_clip_library(path) as library:
+        return {entry.name: entry for entry in library.entries}
+
+
+def test_a_folder_becomes_clips_named_by_their_places(folder, library):
+    report = index_files(library, [folder], tags=["walk", "walk"])
+
+    assert report.added == ("a/fast", "a/slow", "b/slow")
+    assert report.n_clips == 3
+    ((path, sentence),) = report.refused
+    assert path == str(folder / "markers.trc")
+    assert "markers.trc: No body was recognised" in sentence
+    found = entries(library)
+    stat = (folder / "a" / "fast.bvh").stat()
+    origin = found["a/fast"].origin
+    assert origin.path == str(folder.resolve() / "a" / "fast.bvh")
+    assert (origin.item, origin.size, origin.modified) == ("", stat.st_size, stat.st_mtime_ns)
+    assert found["a/fast"].tags == ("walk",)
+    with load_clip_library(library) as opened:
+        best = find_similar(walk(140), opened, settings=FindSettings(n_alike=0))[0]
+    assert best.clip == "a/fast"
+
+
+def test_what_has_not_changed_is_not_read_again(folder, library, monkeypatch):
+    index_files(library, [folder])
+    (folder / "markers.trc").unlink()
+    monkeypatch.setattr(describe_files, "read_recording", None)
+
+    report = index_files(library, [folder])
+
+    assert report.unchanged == ("a/fast", "a/slow", "b/slow")
+    assert not (report.added or report.changed or report.removed or report.refused)
+
+
+def test_what_has_changed_is_read_again_under_its_name(folder, library):
+    index_files(library, [folder])
+    write_bvh(walk(70, duration=2.0), folder / "a" / "fast.bvh")
+    moved = (folder / "a" / "slow.bvh").stat().st_mtime_ns + 10**9
+    os.utime(folder / "a" / "slow.bvh", ns=(moved, moved))
+
+    report = index_files(library, [folder / "a"])
+
+    assert report.changed == ("a/fast", "a/slow")
+    assert report.n_clips == 3
+    assert entries(library)["a/fast"].n_frames == 60
+
+
+def test_tags_are_added_and_kept(folder, library):
+    index_files(library, [folder], tags=["walk"])
+    assert index_files(library, [folder / "a"], tags=["loud"]).changed == ("a/fast", "a/slow")
+    assert len(index_files(library, [folder]).unchanged) == 3
+
+    found = entries(library)
+    assert found["a/fast"].tags == ("walk", "loud")
+    assert found["b/slow"].tags == ("walk",)
+
+
+def test_what_has_gone_is_removed_if_that_is_asked_for(folder, library):
+    index_files(library, [folder])
+    (folder / "a" / "fast.bvh").unlink()
+    shutil.rmtree(folder / "b")
+
+    assert index_files(library, [folder]).n_clips == 3
+    inside = index_files(library, [folder / "a"], remove_missing=True)
+    assert (inside.removed, inside.n_clips) == (("a/fast",), 2)
+    assert index_files(library, [folder], remove_missing=True).removed == ("b/slow",)
+    with load_clip_library(library) as opened:
+        assert [match.clip for match in find_similar(walk(), opened)] == ["a/slow"]
+
+
+def test_a_file_that_is_damaged_later_is_forgotten(folder, library):
+    index_files(library, [folder])
+    (folder / "a" / "fast.bvh").write_text("HIERARCHY\nROOT")
+
+    report = index_files(library, [folder])
+
+    assert report.removed == ("a/fast",)
+    assert {Path(path).name for path, _ in report.refused} == {"fast.bvh", "markers.trc"}
+    assert "a/fast" not in entries(library)
+
+
+def test_clips_of_one_name_are_told_apart(folder, library):
+    shutil.copytree(folder / "a", folder.parent / "other")
+    shutil.copy(folder / "a" / "slow.bvh", folder.parent / "slow.bvh")
+    (folder / "a" / "slow.BVH").write_bytes((folder / "a" / "slow.bvh").read_bytes())
+
+    index_files(library, [folder / "a"])
+    index_files(library, [folder.parent / "other"])
+    report = index_files(library, [folder.parent / "slow.bvh", folder / "a" / "slow.bvh"])
+
+    assert len(report.unchanged) == 1
+    names = set(entries(library))
+    assert len(names) == 6
+    assert {"fast", "slow", "fast.bvh", "slow.bvh"} <= names
+
+
+def test_a_file_named_twice_is_one_clip(folder, library):
+    report = index_files(library, [folder / "a", folder, folder / "a" / "slow.bvh"])
+    assert report.added == ("fast", "slow", "b/slow")
+
+
+def test_processes_side_by_side_make_the_same_library(folder, tmp_path):
+    alone, together = tmp_path / "1", tmp_path / "2"
+    first = index_files(alone, [folder])
+    assert index_files(together, [folder], jobs=2) == first
+    assert entries(alone) == entries(together)
+
+
+def test_an_interrupt_loses_no_more_than_a_batch(folder, library, monkeypatch):
+    monkeypatch.setattr(indexing, "BATCH", 2)
+    for number in range(5):
+        write_bvh(walk(100 + number), folder / f"{number}.bvh")
+
+    def cancel(fraction, message=""):
+        if message == "4.bvh":
+            raise SolveCancelled
+
+    with pytest.raises(SolveCancelled):
+        index_files(library, [folder], progress=cancel)
+    assert len(entries(library)) == 4
+    rest = index_files(library, [folder])
+    assert (len(rest.unchanged), rest.n_clips) == (4, 8)
+
+
+def test_long_takes_are_written_sooner(folder, library, monkeypatch):
+    monkeypatch.setattr(indexing, "BATCH_FRAMES", 30)
+    written = []
+    monkeypatch.setattr(
+        "solvers.retrieval.ClipLibrary.add_described",
+        lambda self, clips, **options: written.append(len(clips)),
+    )
+    index_files(library, [folder])
+    assert written == [2, 1]
+
+
+def test_progress_rises_to_one(folder, library):
+    told = []
+    index_files(library, [folder], progress=lambda fraction, message="": told.append(fraction))
+    assert told == sorted(told)
+    assert (told[0], told[-1]) == (0.0, 1.0)
+
+
+def test_what_is_not_there_is_refused_before_anything_is_done(folder, library, tmp_path):
+    with pytest.raises(InvalidFileError, match="There is no file or folder"):
+        index_files(library, [folder, tmp_path / "none"])
+    assert not library.exists()
+    library.write_text("no library at all, though long enough to be something else")
+    with pytest.raises(InvalidFileError, match="no clip library"):
+        index_files(library, [folder])
+
+
+def test_sources_may_go_after_they_were_indexed(folder, library):
+    index_files(library, [folder])
+    shutil.rmtree(folder)
+    with load_clip_library(library) as opened:
+        assert len(find_similar(walk(80), opened)) == 3
+
+
+def test_rigs_of_all_kinds_are_found_together(recordings, library):
+    """BVH of CMU and AMC of HDM05 and what a Kinect saw: a squat finds squats."""
+    hdm05 = recordings / "mocap" / "hdm05"
+    squats = sorted(hdm05.glob("HDM_bd_squat1Reps_*.amc"))[:3]
+    kicks = sorted(hdm05.glob("HDM_bd_kickLFront1Reps_*.amc"))[:3]
+    walks = sorted((recordings / "mocap" / "cmu_walk").glob("35_0*.bvh"))[:3]
+    deep_squats = sorted((recordings / "kinect" / "ui_prmd").glob("m01_s01_e*.npz"))[:3]
+
+    report = index_files(library, [*squats, *kicks, *walks, *deep_squats])
+
+    assert (report.n_clips, report.refused) == (12, ())
+    query = describe_files.read_recording(deep_squats[0])
+    with load_clip_library(library) as opened:
+        found = [m.clip for m in find_similar(query, opened, ignore=[deep_squats[0].stem])]
+    assert set(found[:5]) == {path.stem for path in (*squats, *deep_squats[1:])}

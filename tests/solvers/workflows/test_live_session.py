@@ -1,0 +1,139 @@
+"""Frames in, commands and performances out, as if an actor stood there."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from numpy.testing import assert_allclose
+
+from solvers.motion import JOINTS, JointRecording, Sensor
+from solvers.motion.posture_joints import POSTURE_JOINTS
+from solvers.recordings.live_frames import LiveFrame, encode_frame, frames_of
+from solvers.retrieval.gesture_events import Gesture
+from solvers.retrieval.gesture_settings import GestureSettings
+from solvers.retrieval.gestures import Mode
+from solvers.samples import PerformanceSettings, perform
+from solvers.workflows.live_session import DROPPED, TOO_SHORT, LiveSession, posture_of
+
+
+def lines_of(made, body=0, since=0.0, **settings):
+    recording = perform(made, PerformanceSettings(**settings)).recording()
+    return [
+        encode_frame(replace(frame, time=frame.time + since))
+        for frame in frames_of(recording, body)
+    ]
+
+
+def heard(session, lines):
+    """All events, queries and messages, as Blender would get them: a few lines at a time."""
+    news = [session.hear(lines[start : start + 3]) for start in range(0, len(lines), 3)]
+    events = [event.gesture for each in news for event in each.events]
+    queries = [each.query for each in news if each.query is not None]
+    return events, queries, [each.message for each in news if each.message]
+
+
+def test_what_is_performed_between_claps_is_the_query():
+    made = ["clap", "hand up", "wave left", "clap", "rest"]
+    performance = perform(made)
+    session = LiveSession()
+
+    events, queries, messages = heard(session, lines_of(made))
+
+    assert events == [Gesture.CAPTURE_START, Gesture.CAPTURE_END] and not messages
+    (query,) = queries
+    assert isinstance(query, JointRecording) and query.sensor is Sensor.KINECT_V1
+    assert query.names == JOINTS[Sensor.KINECT_V1] and query.frame_rate == 30.0
+    began, ended = (done for name, done in performance.made if name == "clap")
+    assert query.n_frames / 30.0 == pytest.approx(ended - began - 0.65, abs=0.3)
+    start = int(
+        np.argmin(np.abs(performance.positions - query.tracks.positions[0]).sum((1, 2)))
+    )
+    expected = performance.positions[start : start + query.n_frames]
+    assert_allclose(query.tracks.positions, expected, atol=1e-3)
+
+
+def test_a_session_of_all_commands():
+    made = ["hand up", "wave right", "rest", "clap", "rest", "clap", "rest", "zoom in"]
+
+    events, queries, _ = heard(LiveSession(), lines_of(made, noise=0.005))
+
+    assert events[:4] == [
+        Gesture.HAND_UP, Gesture.PAGE_NEXT, Gesture.CAPTURE_START, Gesture.CAPTURE_END,
+    ]  # fmt: skip
+    assert set(events[4:]) == {Gesture.ZOOM} and len(queries) == 1
+
+
+def test_a_performance_of_no_time_is_none():
+    session = LiveSession()
+
+    events, queries, messages = heard(session, lines_of(["clap", "clap", "rest"]))
+    assert events == [Gesture.CAPTURE_START, Gesture.CAPTURE_END]
+    n_frames = [query.n_frames for query in queries]
+    assert n_frames == [] or n_frames[0] >= 15
+    assert messages == ([] if queries else [TOO_SHORT])
+
+
+def test_a_sender_that_is_started_again_drops_the_performance():
+    session = LiveSession()
+    heard(session, lines_of(["rest", "rest", "clap", "rest"]))
+    assert session.mode is Mode.CAPTURING
+
+    events, queries, messages = heard(session, lines_of(["hand up"]))
+
+    assert (events[0], queries, messages) == (Gesture.CAPTURE_DROPPED, [], [DROPPED])
+    assert events[1:] == [Gesture.HAND_UP]
+
+
+def test_another_actor_does_not_end_the_first_ones_performance():
+    session = LiveSession()
+    heard(session, lines_of(["clap"], body=1))
+
+    events, _, _ = heard(session, lines_of(["clap"], body=2, since=10.0))
+
+    assert events == [Gesture.CAPTURE_DROPPED, Gesture.CAPTURE_START]
+
+
+def test_what_is_kept_is_bounded():
+    session = LiveSession(GestureSettings(longest_capture=600.0))
+    heard(session, lines_of(["clap"]))
+    (last,) = lines_of(["rest"])[:1]
+    del last
+    still = lines_of(["rest"] * 20, since=20.0, frame_rate=240.0)
+
+    heard(session, still)
+
+    assert session.mode is Mode.CAPTURING
+    assert len(session._performed) <= 20_000
+
+
+def test_rubbish_says_nothing_and_is_counted():
+    session = LiveSession()
+
+    news = session.hear([b"", b"rubbish", b"\x00" * 100, b"{}"])
+
+    assert (news.frame, news.events, news.query, news.message) == (None, (), None, "")
+    assert session.heard.unreadable == 3
+
+
+@pytest.mark.parametrize("names", [("a", "b"), ("Head",), ("hips", "head")])
+def test_joints_that_are_no_arms_say_nothing(names):
+    session = LiveSession()
+    places = np.ones((len(names), 3))
+
+    for number in range(60):
+        frame = LiveFrame(number / 30, 0, names, places, np.ones(len(names)))
+        assert session.hear([encode_frame(frame)]).events == ()
+
+
+def test_the_joints_of_every_sensor_are_found():
+    for sensor in (Sensor.KINECT_V1, Sensor.KINECT_V2, Sensor.AZURE_KINECT):
+        names = JOINTS[sensor]
+        places = np.arange(3.0 * len(names)).reshape(-1, 3)
+
+        positions, confidence = posture_of(
+            LiveFrame(0.0, 0, names, places, np.ones(len(names)))
+        )
+
+        assert np.isfinite(positions).all() and (confidence == 1.0).all()
+        wrist = positions[POSTURE_JOINTS.index("rightHand")]
+        assert wrist.tolist() == places[names.index("WristRight")].tolist()
