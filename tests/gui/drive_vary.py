@@ -20,7 +20,7 @@ FOLDER = Path(__file__).parent
 KICKS = FOLDER / "kicks"
 OTHERS = (
     "import", "reconstruct", "clean", "check", "compare", "feet", "physics", "markers",
-    "retarget", "library",
+    "retarget", "library", "perform",
 )  # fmt: skip
 UNTIL_DONE = 2400  # looks
 N_CROWD, N_MANY = 8, 200
@@ -98,7 +98,7 @@ def make(armature):
     yield from settle()
     bgui.shot("1-nothing.png")
     shown.actions = "; ".join(action.name for action in bpy.data.actions)
-    yield from press("mocap_assist.vary")
+    yield from press("mocap_assist.vary()")
     yield 2.0
     bgui.shot("2-running.png")
     yield from longest_wait()
@@ -143,7 +143,7 @@ def crowd(armature):
 
 def undo_and_redo():
     """One step takes all back; another brings them again, with their pictures."""
-    yield from press("mocap_assist.vary")
+    yield from press("mocap_assist.vary()")
     yield from longest_wait()
     assert n_variants() == 40
     with bgui.override("WINDOW"):
@@ -162,7 +162,7 @@ def many():
     bpy.context.scene.mocap_assist.vary.n_variants = N_MANY
     yield from settle()
     bgui.scroll(-200)
-    yield from press("mocap_assist.vary")
+    yield from press("mocap_assist.vary()")
     longest = yield from longest_wait()
     print(f"The window was held for {longest:.2f} s at most.")
     assert len(bpy.context.scene.mocap_assist.variants.rows) == N_MANY
