@@ -18,6 +18,7 @@ from ...solvers.variation import VarySettings
 from ...solvers.workflows import vary_motions
 from .thumbnails import Pixels, thumbnail
 
+ALIKE = "They are all alike: tick more actions, or raise the amount."
 SHEET = StickFigureSettings(n_figures=10, height=140)
 
 
@@ -61,7 +62,17 @@ def vary(problem: VaryProblem, *, progress: Progress = unwatched) -> Varied:
         finer = motion.frame_rate > problem.frame_rate
         motions.append(resample(there, problem.frame_rate) if finer else there)
         pictures.append(thumbnail(seen.postures))
-    return Varied(tuple(motions), tuple(pictures), made.remarks)
+    remarks = (*made.remarks, ALIKE) if are_alike(motions) else made.remarks
+    return Varied(tuple(motions), tuple(pictures), remarks)
+
+
+def are_alike(motions: Sequence[Motion]) -> bool:
+    """Whether there are several motions, and no two of them differ."""
+    first, *others = motions
+    return bool(others) and all(
+        each.n_frames == first.n_frames and np.allclose(each.rotations, first.rotations)
+        for each in others
+    )
 
 
 def moved(

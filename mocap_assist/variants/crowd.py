@@ -13,6 +13,7 @@ from ..scene.scene_rate import scene_rate
 from ..scene.units import unit_of
 from . import listing
 from .choices import CrowdBundle, CrowdChoices
+from .tags import is_variant
 
 
 class Member(NamedTuple):
@@ -91,7 +92,7 @@ def assign(
     for armature, member in zip(armatures, members, strict=True):
         check_writable(armature)
         given.append(listing.source_for(armature, actions[member.variant]))
-    ours = set(actions) | {row.action for row in scene.mocap_assist.variants.rows}
+    ours = {action for action in bpy.data.actions if is_variant(action)}
     for armature, member, (action, slot) in zip(armatures, members, given, strict=True):
         _clear(armature, ours)
         frame = scene.frame_current + round(member.delay * scene_rate(scene))
@@ -125,7 +126,7 @@ def why_not_stack(context: bpy.types.Context) -> str:
     """Return why the variants cannot become strips, or nothing."""
     if reason := listing.why_none(context):
         return reason
-    armature = context.scene.mocap_assist.variants.armature
+    armature = listing.armature_of(context.scene)
     if armature is None:
         return "The armature that the variants were made for was deleted. Press Vary again."
     try:
@@ -138,7 +139,7 @@ def why_not_stack(context: bpy.types.Context) -> str:
 def stack(context: bpy.types.Context) -> str:
     """Put the variants on NLA tracks of their armature, one after the other; say so."""
     scene = context.scene
-    armature, actions = scene.mocap_assist.variants.armature, listing.chosen(scene)
+    armature, actions = listing.armature_of(scene), listing.chosen(scene)
     sources = [listing.source_for(armature, action) for action in actions]
     _clear(armature, set(actions))
     frame = scene.frame_current

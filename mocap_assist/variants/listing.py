@@ -12,9 +12,11 @@ from ..scene.fitting import fitting_slots
 
 
 def fill(
-    scene: bpy.types.Scene, armature: bpy.types.Object, actions: Sequence[bpy.types.Action]
+    scene: bpy.types.Scene,
+    armature: bpy.types.Object | None,
+    actions: Sequence[bpy.types.Action],
 ) -> None:
-    """List new variants; the armature plays the first."""
+    """List new variants; the armature, if there is one, plays the first."""
     variants = scene.mocap_assist.variants
     variants.rows.clear()
     variants.armature = armature
@@ -22,6 +24,13 @@ def fill(
         row = variants.rows.add()
         row.name, row.action = action.name, action
     variants.active = 0
+
+
+def armature_of(scene: bpy.types.Scene) -> bpy.types.Object | None:
+    """Return the armature that the variants were made for, if it is still in the scene."""
+    armature = scene.mocap_assist.variants.armature
+    there = armature is not None and scene.objects.get(armature.name) == armature
+    return armature if there else None
 
 
 def play_active(variants: bpy.types.PropertyGroup, context: bpy.types.Context) -> None:
@@ -69,9 +78,7 @@ def keep_picked(scene: bpy.types.Scene) -> str:
     variants = scene.mocap_assist.variants
     kept = chosen(scene)
     others = [row.action for row in variants.rows if row.action not in {None, *kept}]
-    armature = variants.armature
-    if armature is not None:
-        fill(scene, armature, kept)
+    fill(scene, variants.armature, kept)
     spared = [action for action in others if is_used(action)]
     for action in others:
         if action not in spared:
