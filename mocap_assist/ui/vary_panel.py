@@ -10,6 +10,7 @@ from ...solvers.variation import VarySettings
 from ..selection import selected_armature
 from ..variants.listing import chosen
 from ..variants.reading import candidates, why_not_vary
+from ..variants.tags import short_name
 from .drawing import draw_job, draw_sentence, exists
 from .example_list import listed
 from .retarget_panel import TICK
@@ -42,7 +43,7 @@ class MOCAP_UL_variants(bpy.types.UIList):
             row.label(text="Deleted", icon="ORPHAN_DATA")
             return
         row.template_icon(picture_of(item.action), scale=ROW)
-        row.label(text=item.action.name, translate=False)
+        row.label(text=short_name(item.action), translate=False)
         icon = "SOLO_ON" if item.picked else "SOLO_OFF"
         row.prop(item, "picked", text="", icon=icon, emboss=False)
 

@@ -30,6 +30,12 @@ def examples_of(action: bpy.types.Action) -> list[str]:
     return [str(name) for name in names] if isinstance(names, list) else []
 
 
+def short_name(action: bpy.types.Action) -> str:
+    """Return what tells a variant from the others of its kind: variant 01."""
+    _, between, number = action.name.rpartition(BETWEEN)
+    return f"{between}{number}".removeprefix(".")
+
+
 def names_for(example: bpy.types.Action, n_variants: int) -> list[str]:
     """Return names for new variants of an action: their numbers follow those there are."""
     stem = NUMBER.sub("", example.name).removesuffix(".clean")

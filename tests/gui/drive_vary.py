@@ -24,6 +24,8 @@ OTHERS = (
 )  # fmt: skip
 UNTIL_DONE = 2400  # looks
 N_CROWD, N_MANY = 8, 200
+MARGIN = (1034, 500)
+"""Of the panel: the wheel scrolls it there, not a list or a number."""
 
 
 def settle(times=4):
@@ -114,7 +116,7 @@ def pick(armature):
     for place in range(1, 6):
         variants.rows[place].picked = True
     assert armature.animation_data.action == variants.rows[3].action
-    bgui.move(1450, 500)
+    bgui.move(*MARGIN)
     bgui.scroll(80)
     yield from settle()
     bgui.shot("4-picked.png")
@@ -161,7 +163,6 @@ def undo_and_redo():
 def many():
     bpy.context.scene.mocap_assist.vary.n_variants = N_MANY
     yield from settle()
-    bgui.scroll(-200)
     yield from press("mocap_assist.vary()")
     longest = yield from longest_wait()
     print(f"The window was held for {longest:.2f} s at most.")
@@ -183,6 +184,7 @@ def steps():
     yield from make(armature)
     yield from pick(armature)
     yield from crowd(armature)
+    bgui.move(*MARGIN)
     bgui.scroll(-200)
     yield from settle()
     yield from undo_and_redo()
