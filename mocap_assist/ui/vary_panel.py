@@ -136,8 +136,9 @@ def _draw_variants(column: bpy.types.UILayout, context: bpy.types.Context) -> No
         if action is not None:
             column.template_icon(picture_of(action), scale=LARGE)
     picked = any(row.picked for row in variants.rows)
-    which = "picked" if picked else "all"
-    draw_sentence(column, context, f"With {which} {len(chosen(context.scene))}:")
+    n_chosen = len(chosen(context.scene))
+    which = f"the {n_chosen} picked" if picked else f"all {n_chosen}"
+    draw_sentence(column, context, f"With {which}:")
     column.operator(KEEP, icon="SOLO_ON")
     row = column.row(align=True)
     row.operator(STACK, icon="NLA")

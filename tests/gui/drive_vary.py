@@ -24,6 +24,7 @@ OTHERS = (
 )  # fmt: skip
 UNTIL_DONE = 2400  # looks
 N_CROWD, N_MANY = 8, 200
+WHEEL_UP, WHEEL_DOWN = 4, 5
 TOP = (1152, 872)
 """Of the panel: scrolled from there, no list comes under the mouse, which it would scroll."""
 
@@ -74,6 +75,15 @@ def press(text):
     yield from bgui.click(*bgui.at(text))
 
 
+def scroll(wheel):
+    """Show the end of the panel, or its beginning."""
+    bgui.move(*TOP)
+    for _ in range(40):
+        bgui.x("click", wheel)
+        yield 0.05
+    yield from settle()
+
+
 def job():
     return bpy.context.window_manager.mocap_assist_job
 
@@ -116,8 +126,7 @@ def pick(armature):
     for place in range(1, 6):
         variants.rows[place].picked = True
     assert armature.animation_data.action == variants.rows[3].action
-    bgui.move(*TOP)
-    bgui.scroll(80)
+    yield from scroll(WHEEL_DOWN)
     yield from settle()
     bgui.shot("4-picked.png")
 
@@ -184,9 +193,7 @@ def steps():
     yield from make(armature)
     yield from pick(armature)
     yield from crowd(armature)
-    bgui.move(*TOP)
-    bgui.scroll(-200)
-    yield from settle()
+    yield from scroll(WHEEL_UP)
     yield from undo_and_redo()
     yield from many()
 
