@@ -56,7 +56,7 @@ test-blender-5.2: optional-5.2 zip  ## the installed zip, in Blender 5.2
 
 # --- What there is to see ---
 
-.PHONY: demo docs bench-denoise bench-feet bench-bvh bench-scene bench-retarget bench-retarget-rig bench-import bench-reliability bench-physics bench-reconstruct bench-gestures
+.PHONY: demo docs bench-denoise bench-feet bench-bvh bench-scene bench-retarget bench-retarget-rig bench-import bench-reliability bench-physics bench-reconstruct bench-gestures bench-retrieval
 demo: .venv-4.5/ready zip  ## clean a sample, or CLIP=path.bvh, in Blender 4.5: build/demo
 	@mkdir -p build/demo
 	MOCAP_ASSIST_ZIP=$(ZIP) $(AT_MOST) $(PYTHON_4.5) .ci/demo.py build/demo $(if $(CLIP),"$(CLIP)")
@@ -86,6 +86,9 @@ bench-reliability: .venv-4.5/ready  ## measure how well wrong joints of a Kinect
 
 bench-reconstruct: .venv-4.5/ready  ## measure rebuilding of Kinect joints against peers
 	$(PYTHON_4.5) -m tests.benchmarks.bench_reconstruct $(ARGUMENTS)
+
+bench-retrieval: .venv-4.5/ready  ## measure finding of similar clips against peers
+	$(PYTHON_4.5) -m tests.benchmarks.bench_retrieval $(ARGUMENTS)
 
 bench-retarget: .venv-4.5/ready  ## measure retargeting and unbaking against Blender's Decimate
 	$(PYTHON_4.5) -m tests.benchmarks.bench_retarget $(ARGUMENTS)

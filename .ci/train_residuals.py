@@ -29,7 +29,7 @@ WORDS = "UI-PRMD: ten exercises by five actors, Kinect v2 against markers"
 
 def main() -> None:
     """Learn from all takes and save where it is shipped, in single precision."""
-    pairs = list(read_pairs())
+    pairs = [pair for pair in read_pairs() if pair.matched]
     prior = learn_residual_prior(
         [(pair.kinect, pair.truth) for pair in pairs],
         actors=[pair.subject for pair in pairs],
@@ -42,11 +42,13 @@ def main() -> None:
 
 
 def small(prior: ResidualPrior) -> ResidualPrior:
-    """Return the same in single precision."""
+    """Return the same in single precision, and the many points in half of it."""
     names = ("usual", "components", "local_points", "whole_points", "means", "covariances")
     return replace(
         prior,
         source=np.array(WORDS),
+        movement=prior.movement
+        and replace(prior.movement, points=prior.movement.points.astype(np.float16)),
         **{name: getattr(prior, name).astype(np.float32) for name in names},
     )
 

@@ -27,8 +27,6 @@ Recording = Motion | Tracks | JointRecording
 
 MOST = 48
 """Matches that are listed: nobody looks at more."""
-PER_WITNESS = 20
-"""Clips for each match that is asked as well: the five best of six are not all alike."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -101,7 +99,6 @@ def find_clips(problem: FindProblem, *, progress: Progress = unwatched) -> Findi
             problem.settings,
             n_matches=wanted,
             n_aligned=wanted,
-            n_alike=min(problem.settings.n_alike, len(entries) // PER_WITNESS),
         )
         matches = find_similar(
             problem.query,

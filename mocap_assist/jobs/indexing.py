@@ -6,7 +6,14 @@ from pathlib import Path
 
 from ...solvers.errors import InvalidMotionError
 from ...solvers.progress import Progress, unwatched, within
-from ...solvers.retrieval import Clip, ClipLibrary, Origin, describe_clip, open_clip_library
+from ...solvers.retrieval import (
+    Clip,
+    ClipEntry,
+    ClipLibrary,
+    Origin,
+    describe_clip,
+    open_clip_library,
+)
 from ...solvers.workflows import index_files
 from .in_blender import BlendClip, BlendRead, read_blends
 from .job import ProcessDied
@@ -128,19 +135,18 @@ class _Indexing:
             done += len(batch)
 
     def _known(self, blend: _Blend) -> bool:
-        """Whether all clips of the file are as they were."""
-        states = {
-            (entry.origin.size, entry.origin.modified)
-            for entry in self._library.entries
-            if entry.origin is not None and entry.origin.path == str(blend.path)
-        }
-        known = states == {blend.state}
-        self.kept += len(self._names(blend)) if known else 0
+        """Whether all clips of the file are as they were, and have all the tags."""
+        entries = self._entries(blend)
+        states = {(each.origin.size, each.origin.modified) for each in entries if each.origin}
+        tagged = all(set(self._tags) <= set(each.tags) for each in entries)
+        known = tagged and states == {blend.state}
+        self.kept += len(entries) if known else 0
         return known
 
-    def _names(self, blend: _Blend) -> list[str]:
+    def _entries(self, blend: _Blend) -> list[ClipEntry]:
+        """Return what the library has of a file."""
         return [
-            entry.name
+            entry
             for entry in self._library.entries
             if entry.origin is not None and entry.origin.path == str(blend.path)
         ]
@@ -166,7 +172,7 @@ class _Indexing:
 
     def _replace(self, blend: _Blend, read: BlendRead) -> None:
         """Put what a file holds now in the place of what it held."""
-        before = self._names(blend)
+        before = [entry.name for entry in self._entries(blend)]
         others = {entry.name for entry in self._library.entries} - set(before)
         self._refused += read.refused
         described = []

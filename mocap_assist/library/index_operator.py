@@ -88,9 +88,9 @@ class WaitingIndex:
 
     def cancel(self, context: bpy.types.Context) -> None:
         """Blender ends the operator: another file is loaded, or the window closes."""
+        self._stop_looking(context)
         if self._indexing.is_on:
             self._indexing.abandon(context)
-            self._stop_looking(context)
 
     def _solve(self) -> "partial[Indexed]":
         settings: Any = self.settings()

@@ -1,6 +1,6 @@
 """The library for somebody who stands before a camera: show, page, and search by performing.
 
-Plain functions for whoever listens to gestures; each returns a sentence to show.
+Each function returns a sentence to show.
 """
 
 from functools import partial
@@ -28,23 +28,23 @@ def show_library(context: bpy.types.Context) -> str:
     for area in context.window.screen.areas if context.window else ():
         if area.type == "VIEW_3D":
             area.spaces.active.show_region_ui = True
-    context.window_manager.mocap_assist_ghost = True
-    redraw(context)
-    return chosen_sentence(context)
+    bpy.context.window_manager.mocap_assist_ghost = True
+    redraw(bpy.context)
+    return chosen_sentence()
 
 
 def page(context: bpy.types.Context, step: int) -> str:
     """Choose the next match, or the one before; from the last one on to the first."""
-    listed = context.window_manager.mocap_assist_matches
+    listed = bpy.context.window_manager.mocap_assist_matches
     if listed.rows:
         listed.active = (listed.active + step) % len(listed.rows)
-        redraw(context)
-    return chosen_sentence(context)
+        redraw(bpy.context)
+    return chosen_sentence()
 
 
 def search_with(context: bpy.types.Context, query: JointRecording) -> str:
     """Search with a recording; the list is filled when that is done, nobody waits for it."""
-    scene = context.scene
+    scene = bpy.context.scene
     library = library_path(scene.mocap_assist.library.settings().choices)
     if not library.is_file():
         return "There is no library yet. Add folders, and press Index."
@@ -59,9 +59,9 @@ def search_with(context: bpy.types.Context, query: JointRecording) -> str:
     return f"Searching with {query.n_frames} frames ..."
 
 
-def chosen_sentence(context: bpy.types.Context) -> str:
+def chosen_sentence() -> str:
     """Say which match is chosen."""
-    listed = context.window_manager.mocap_assist_matches
+    listed = bpy.context.window_manager.mocap_assist_matches
     if not listed.rows:
         return "Nothing was searched for yet."
     place = min(listed.active, len(listed.rows) - 1)
@@ -83,4 +83,4 @@ def _look(job: Job[Finding], grid: tuple[float, float], metres: float) -> float 
 
 def _listed(finding: Finding, grid: tuple[float, float], metres: float) -> str:
     fill_list(bpy.context, searches.keep(PERFORMED, grid, metres, finding))
-    return chosen_sentence(bpy.context)
+    return chosen_sentence()

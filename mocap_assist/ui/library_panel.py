@@ -55,7 +55,7 @@ class LibraryPanel:
     def draw(self, context: bpy.types.Context) -> None:
         layout = self.layout
         _draw_library(layout, context)
-        running = draw_job(layout, context)
+        running = draw_job(layout, context, "find", "load")
         column = layout.column()
         column.enabled = not running
         _draw_query(column, context)

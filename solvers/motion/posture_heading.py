@@ -7,6 +7,7 @@ from numpy.typing import NDArray
 from scipy.ndimage import gaussian_filter1d, uniform_filter1d
 
 from .posture_joints import HIPS, MIRROR_IMAGES, POSTURE_JOINTS
+from .straight_gaps import bridged
 
 Array = NDArray[np.float64]
 
@@ -63,7 +64,7 @@ def normalise(positions: Array, frame_rate: float, weights: Array | None = None)
         How far each joint is to be trusted.
     """
     trust = np.ones(positions.shape[:2]) if weights is None else weights
-    places = _filled(positions[:, HIPS], trust[:, HIPS] > 0.0)
+    places = np.nan_to_num(bridged(positions[:, HIPS], trust[:, HIPS] > 0.0))
     left = np.zeros((len(positions), 2))
     for one, other, middle in ACROSS:
         line, sure = _to_the_left(positions, trust, one, other)
@@ -75,8 +76,8 @@ def normalise(positions: Array, frame_rate: float, weights: Array | None = None)
     told = np.linalg.norm(left, axis=-1) > SHORTEST * 1e-3
     if not told.any():
         left[:], told = (1.0, 0.0), np.ones(len(left), bool)
-    unit = _filled(left / np.maximum(np.linalg.norm(left, axis=-1, keepdims=True), 1e-9), told)
-    unit = _filled(unit, ~_reversed(unit, frame_rate))
+    unit = bridged(left / np.maximum(np.linalg.norm(left, axis=-1, keepdims=True), 1e-9), told)
+    unit = np.nan_to_num(bridged(unit, ~_reversed(unit, frame_rate)))
     unit = gaussian_filter1d(unit, STEADY * frame_rate, axis=0, mode="nearest")
     headings = np.arctan2(unit[:, 1], unit[:, 0])
     return Normalised(turned(positions - places[:, None], -headings), places, headings)
@@ -108,14 +109,3 @@ def turned(postures: Array, angles: Array) -> Array:
 def mirrored(vectors: Array) -> Array:
     """Return vectors of joints without heading, (..., 20, 3), as a mirror shows them."""
     return np.asarray(vectors[..., list(MIRROR_IMAGES), :] * (-1.0, 1.0, 1.0))
-
-
-def _filled(values: Array, told: NDArray[np.bool_]) -> Array:
-    """Fill rows that tell nothing, along straight lines; at the ends with the nearest."""
-    told = told & np.isfinite(values).all(axis=-1)
-    if not told.any():
-        return np.zeros_like(values)
-    frames = np.arange(len(values))
-    return np.stack(
-        [np.interp(frames, frames[told], column[told]) for column in values.T], axis=-1
-    )

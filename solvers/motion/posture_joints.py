@@ -5,6 +5,7 @@ All that is learned of postures is told in these joints, so that whatever tracks
 """
 
 from collections.abc import Sequence
+from functools import lru_cache
 
 import numpy as np
 from numpy.typing import NDArray
@@ -46,7 +47,13 @@ PALM = 0.13
 
 def joints_of_names(names: Sequence[str]) -> dict[str, int]:
     """Return which of these tracked joints plays which of `POSTURE_JOINTS`."""
-    roles = dict(roles_by_name(tuple(names)))
+    return dict(_found(tuple(names)))
+
+
+@lru_cache(maxsize=64)
+def _found(names: tuple[str, ...]) -> tuple[tuple[str, int], ...]:
+    """Return roles and joints; a solve asks many times for the same names."""
+    roles = dict(roles_by_name(names))
     between = [name for name in BETWEEN_SHOULDERS if name in names]
     if between or "neck" in roles:
         roles["chest"] = between[0] if between else roles["neck"]
@@ -56,7 +63,7 @@ def joints_of_names(names: Sequence[str]) -> dict[str, int]:
         if name in names and roles.get(f"{side}Hand") != name:
             roles[f"{side}HandEnd"] = name
     roles |= {name: name for name in names if name in POSTURE_JOINTS}
-    return {role: list(names).index(roles[role]) for role in POSTURE_JOINTS if role in roles}
+    return tuple((role, names.index(roles[role])) for role in POSTURE_JOINTS if role in roles)
 
 
 def posture_positions(recording: JointRecording | Tracks) -> Array:

@@ -10,6 +10,7 @@ from scipy.ndimage import convolve1d
 from ..errors import InvalidMotionError
 from .motion import Motion
 from .rotations import normalize, unroll
+from .straight_gaps import bridged
 from .tracks import Tracks
 
 STOPBAND = 60.0
@@ -95,26 +96,13 @@ def _sampled(
 ) -> NDArray[np.float64]:
     """Return `values`, shape (n_frames, ..., n), at fractional frames; gaps stay NaN."""
     observed = np.isfinite(values).all(axis=-1)
-    filled = _bridged(values, observed)
+    filled = np.nan_to_num(bridged(values))
     if slowdown < 1.0 and len(values) > 1:
         filled = _low_passed(filled, slowdown)
     result = _interpolated(filled, times)
     seen = observed[np.floor(times).astype(int)] & observed[np.ceil(times).astype(int)]
     result[~seen] = np.nan
     return result
-
-
-def _bridged(values: NDArray[np.float64], observed: NDArray[np.bool_]) -> NDArray[np.float64]:
-    """Bridge gaps by straight lines, for the filter's sake; what is never seen becomes 0."""
-    flat = values.reshape(len(values), -1).copy()
-    seen = np.repeat(observed.reshape(len(values), -1), values.shape[-1], axis=1)
-    frames = np.arange(len(values))
-    for column in np.flatnonzero(~seen.all(axis=0)):
-        known = seen[:, column]
-        flat[:, column] = (
-            np.interp(frames, frames[known], flat[known, column]) if known.any() else 0.0
-        )
-    return flat.reshape(values.shape)
 
 
 def _low_passed(values: NDArray[np.float64], slowdown: float) -> NDArray[np.float64]:

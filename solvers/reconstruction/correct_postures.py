@@ -9,12 +9,13 @@ from scipy.special import gammainc
 
 from ..motion import JointRecording
 from ..motion.posture_joints import N_JOINTS, POSTURE_JOINTS, joints_of_names, posture_positions
+from ..motion.straight_gaps import bridged
 from ..progress import Progress, unwatched, within
 from ..settings import Settings, setting
 from .follow_joints import follow_joints
 from .other_joints import all_joints, anchors
 from .reliability import Reliability, measure_reliability
-from .residual_inputs import bridged, calm_postures
+from .residual_inputs import calm_postures
 from .residual_prior import Foretold, ResidualPrior
 from .result import Reconstruction
 from .steady_paths import followed, smoothed
@@ -56,7 +57,7 @@ class CorrectionSettings(Settings):
         " to the joint; false leaves joints on average where they were seen",
     )  # fmt: skip
     change: float = setting(
-        0.75, "How much is applied of the offsets' change with posture; 1 takes the prior at"
+        0.9, "How much is applied of the offsets' change with posture; 1 takes the prior at"
         " its word, also in movements that it has never seen",
         minimum=0.0, maximum=1.0, advanced=True,
     )  # fmt: skip
@@ -118,17 +119,8 @@ def correct_postures(
     """
     trust = reliability or measure_reliability(recording, progress=within(progress, 0.0, 0.3))
     weights = posture_reliability(recording, trust.combined)
-    calm = calm_postures(recording, float(prior.calm), weights)
     progress(0.4, "Correcting")
-    told = prior.predict(calm)
-    foretold = calm.positions + calm.turn_back(_offsets(told, weights, settings))
-    variances = told.variances + prior.lasting_variances(constant=settings.shift)
-    if settings.method is CorrectionMethod.PUBLISHED:
-        corrected = _frame_by_frame(recording, foretold, variances, weights, settings)
-    else:
-        steady = followed if settings.method is CorrectionMethod.CAUSAL else smoothed
-        frames = settings.smoothing * recording.frame_rate
-        corrected = steady(foretold, np.maximum(weights, LEAST), frames)
+    corrected, told, variances = foretell_places(recording, prior, weights, settings)
     progress(0.9, "Correcting")
     asked = settings.change > 0.0 or settings.shift
     heard = told.coverage if asked else 0.0
@@ -148,11 +140,29 @@ def correct_postures(
     return Reconstruction(rebuilt, motion, trust, confidence, method)
 
 
+def foretell_places(
+    recording: JointRecording,
+    prior: ResidualPrior,
+    weights: Array,
+    settings: CorrectionSettings,
+) -> tuple[Array, Foretold, Array]:
+    """Return the joints of postures where they were, what the prior told, and variances."""
+    calm = calm_postures(recording, float(prior.calm), weights)
+    told = prior.predict(calm, ahead=settings.method is CorrectionMethod.WHOLE_TAKE)
+    foretold = calm.positions + calm.turn_back(_offsets(told, weights, settings))
+    variances = told.variances + prior.lasting_variances(constant=settings.shift)
+    if settings.method is CorrectionMethod.PUBLISHED:
+        places = _frame_by_frame(recording, foretold, variances, weights, settings)
+        return places, told, variances
+    steady = followed if settings.method is CorrectionMethod.CAUSAL else smoothed
+    frames = settings.smoothing * recording.frame_rate
+    return steady(foretold, np.maximum(weights, LEAST), frames), told, variances
+
+
 def _offsets(told: Foretold, weights: Array, settings: CorrectionSettings) -> Array:
     """Return the offsets to apply: their mean over the take, and what changes with posture.
 
-    Of the change a part is applied, and none of it in takes unlike those that were learned:
-    in exercises that were left out the whole of it harms, three quarters help.
+    Of the change a part is applied, and less of it in takes unlike those that were learned.
     """
     weighed = np.maximum(weights, LEAST)[..., None]
     mean = (weighed * told.offsets).sum(axis=0) / weighed.sum(axis=0)

@@ -13,6 +13,7 @@ from ..motion.posture_heading import mirrored, turned
 from ..motion.posture_joints import MIRROR_IMAGES, N_JOINTS, POSTURE_JOINTS, posture_positions
 from ..progress import Progress, unwatched
 from ..settings import Settings, setting
+from .learn_movement_process import Take, learn_movement_process
 from .residual_inputs import calm_postures, filled, neighbourhood
 from .residual_kernel import Kernel, learn_kernel
 from .residual_prior import ResidualPrior, whole_posture
@@ -53,6 +54,11 @@ class ResidualPriorSettings(Settings):
     whole_points: int = setting(
         100, "Inducing points of whole postures; more is finer and slower",
         minimum=5, maximum=500, advanced=True,
+    )  # fmt: skip
+    movement_points: int = setting(
+        1500, "Movements that errors are compared with, where the method is hierarchical; more"
+        " is finer, slower and larger",
+        minimum=20, maximum=5000, advanced=True,
     )  # fmt: skip
     sample: int = setting(
         500, "Frames that the hyper-parameters are learned from; more is surer and slower",
@@ -122,7 +128,8 @@ def learn_residual_prior(
        representation and Gaussian processes. PhD thesis, City University of Hong Kong, 5.2.1.
     """
     people = _checked(pairs, actors)
-    examples, usual = _gathered(pairs, people, settings)
+    takes = _read(pairs, people, settings.calm)
+    examples, usual = _gathered(takes, settings)
     centred = (examples.features - usual)[:, 1:].reshape(len(examples.takes), -1)
     n_components = min(N_COMPONENTS, *centred.shape)
     components = np.linalg.svd(centred, full_matrices=False)[2][:n_components].T
@@ -137,6 +144,12 @@ def learn_residual_prior(
             learned[joint] = _learn_joint(examples, joint, known, whole, whole_points, settings)
     if not learned:
         raise InvalidMotionError("No joint is known in both recordings of any pair.")
+    movement = None
+    if settings.method is ResidualMethod.HIERARCHICAL:
+        whole_takes = [replace(one, features=filled(one.features, usual)) for one in takes]
+        movement = learn_movement_process(
+            whole_takes, settings.frame_rate, settings.movement_points, settings.mirror
+        )
     progress(1.0, "Learned")
     return ResidualPrior(
         np.array([POSTURE_JOINTS[joint] for joint in learned]),
@@ -150,6 +163,7 @@ def learn_residual_prior(
         np.array(settings.calm),
         np.array(settings.mirror),
         np.array(f"{len(pairs)} takes of {len(set(people))} actors"),
+        movement,
     )
 
 
@@ -171,26 +185,36 @@ def _checked(
     return people
 
 
+def _read(
+    pairs: Sequence[tuple[JointRecording, Tracks]], people: Sequence[str], calm: float
+) -> list[Take]:
+    """Calm all recordings; errors are told without heading."""
+    takes = []
+    for (seen, true), actor in zip(pairs, people, strict=True):
+        found = calm_postures(seen, calm)
+        off = posture_positions(true) - found.positions
+        errors = turned(off, -found.normalised.headings)
+        takes.append(Take(found.features, errors, seen.frame_rate, actor))
+    return takes
+
+
 def _gathered(
-    pairs: Sequence[tuple[JointRecording, Tracks]],
-    people: Sequence[str],
-    settings: ResidualPriorSettings,
+    all_takes: Sequence[Take], settings: ResidualPriorSettings
 ) -> tuple[_Examples, Array]:
-    """Thin all pairs out and put their frames together; also the mean posture."""
+    """Thin all takes out and put their frames together; also the mean posture."""
     features, errors, takes = [], [], []
-    for take, (seen, true) in enumerate(pairs):
-        calm = calm_postures(seen, settings.calm)
-        error = turned(posture_positions(true) - calm.positions, -calm.normalised.headings)
-        step = max(round(seen.frame_rate / settings.frame_rate), 1)
-        features.append(calm.features[step // 2 :: step])
-        errors.append(error[step // 2 :: step])
-        takes += [take] * len(features[-1])
+    for number, one in enumerate(all_takes):
+        step = max(round(one.frame_rate / settings.frame_rate), 1)
+        features.append(one.features[step // 2 :: step])
+        errors.append(one.errors[step // 2 :: step])
+        takes += [number] * len(features[-1])
+    people = [one.actor for one in all_takes]
     names = sorted(set(people))
     actors = [names.index(people[take]) for take in takes]
     if settings.mirror:
         features += [mirrored(one) for one in features]
         errors += [mirrored(one) for one in errors]
-        takes += [len(pairs) + take for take in takes]
+        takes += [len(people) + take for take in takes]
         actors += [len(names) + actor for actor in actors]
     together = np.concatenate(features)
     known = np.isfinite(together).all(axis=-1)

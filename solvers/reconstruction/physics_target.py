@@ -10,7 +10,8 @@ from scipy.ndimage import gaussian_filter1d
 
 from ..errors import InvalidMotionError
 from ..motion import Motion
-from ..motion.rotations import IDENTITY, inverse, multiply, normalize, slerp, unroll
+from ..motion.rotations import inverse, multiply, normalize, slerp, unroll
+from ..motion.straight_gaps import bridged, bridged_rotations
 
 Array = NDArray[np.float64]
 SPLINE_VARIANCE = 1.0 / 3.0
@@ -143,30 +144,9 @@ def filled(motion: Motion) -> Motion:
     """
     if motion.observed.all():
         return motion
-    seen = np.isfinite(motion.root_positions).all(axis=-1)
-    if not seen.any():
+    if not np.isfinite(motion.root_positions).all(axis=-1).any():
         raise InvalidMotionError(
             "The place of the root is never observed, so there is nothing to simulate."
         )
-    frames = np.arange(motion.n_frames)
-    roots = motion.root_positions.copy()
-    for axis in range(3):
-        roots[~seen, axis] = np.interp(frames[~seen], frames[seen], roots[seen, axis])
-    rotations = motion.rotations.copy()
-    known = np.isfinite(rotations).all(axis=-1)
-    for joint in np.flatnonzero(~known.all(axis=0)):
-        rotations[:, joint] = _bridged(rotations[:, joint], known[:, joint])
-    return motion.with_poses(rotations, roots)
-
-
-def _bridged(rotations: Array, known: NDArray[np.bool_]) -> Array:
-    """Turn evenly from the last known rotation to the next, shape (n_frames, 4)."""
-    if not known.any():
-        return np.broadcast_to(IDENTITY, rotations.shape)
-    where, frames = np.flatnonzero(known), np.arange(len(known))
-    after = np.searchsorted(where, frames).clip(0, len(where) - 1)
-    before = (np.searchsorted(where, frames, side="right") - 1).clip(0)
-    start, stop = where[before], where[after]
-    fraction = (frames - start) / np.maximum(stop - start, 1)
-    between = slerp(rotations[start], rotations[stop], fraction.clip(0.0, 1.0))
-    return np.where(known[:, None], rotations, between)
+    rotations = bridged_rotations(motion.rotations)
+    return motion.with_poses(rotations, bridged(motion.root_positions))

@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 from scipy.ndimage import uniform_filter1d
 from scipy.special import ndtr
 
+from ..motion.straight_gaps import bridged
 from .reliability_settings import SENSOR_RATE
 from .reliability_terms import frames_in, lengths_of, weighted_sum
 from .short_jumps import short_jumps
@@ -123,7 +124,7 @@ def _off_the_smooth_path(positions: Array, frame_rate: float) -> Array:
     longest = len(positions) - 1 + len(positions) % 2
     n_frames = min(2 * round(0.5 * SMOOTH * frame_rate) + 1, longest)
     degree = min(DEGREE, n_frames // 2)
-    smooth = savgol_filter(_bridged(positions), n_frames, degree, axis=0)
+    smooth = savgol_filter(np.nan_to_num(bridged(positions)), n_frames, degree, axis=0)
     return lengths_of(positions - smooth)
 
 
@@ -135,22 +136,6 @@ def _second_differences(positions: Array, frame_rate: float) -> Array:
         now, once, before = positions[2 * step :], positions[step:-step], positions[: -2 * step]
         off[2 * step :] = lengths_of(now - 2.0 * once + before)
     return off
-
-
-def _bridged(positions: Array) -> Array:
-    """Fill gaps along straight lines, and at the ends with the nearest place."""
-    if np.isfinite(positions.sum()):
-        return positions
-    seen = np.isfinite(positions).all(axis=-1)
-    filled = np.where(seen[..., None], positions, 0.0)
-    frames = np.arange(len(positions))
-    for joint in np.flatnonzero(seen.any(axis=0) & ~seen.all(axis=0)):
-        known = seen[:, joint]
-        for axis in range(3):
-            filled[:, joint, axis] = np.interp(
-                frames, frames[known], positions[known, joint, axis]
-            )
-    return filled
 
 
 def _root_mean_square(values: Array, window: float, frame_rate: float, causal: bool) -> Array:

@@ -11,6 +11,7 @@ from ..motion import JointRecording, Tracks
 from ..motion.body_size import USUAL_LENGTHS, body_lengths
 from ..motion.posture_heading import Normalised, normalise, turned
 from ..motion.posture_joints import N_JOINTS, PARENTS, posture_positions
+from ..motion.straight_gaps import bridged
 
 Array = NDArray[np.float64]
 
@@ -38,11 +39,13 @@ class CalmPostures:
         The same without heading and place.
     features : shape (n_frames, 20, 3)
         The same for a body of usual size; NaN where `normalised` is.
+    frame_rate : float, hertz
     """
 
     positions: Array
     normalised: Normalised
     features: Array
+    frame_rate: float
 
     def turn_back(self, offsets: Array) -> Array:
         """Return offsets of these frames as the world sees them, (n_frames, n, 3)."""
@@ -66,21 +69,8 @@ def calm_postures(
         raise InvalidMotionError(
             "The joints are all in one place; choose a recording of an actor who was tracked."
         )
-    return CalmPostures(positions, normal, normal.postures * USUAL_LENGTHS.sum() / length)
-
-
-def bridged(positions: Array) -> Array:
-    """Bridge the gaps of each joint along straight lines; joints never seen stay NaN."""
-    result = np.array(positions, dtype=np.float64)
-    frames = np.arange(len(result))
-    seen = np.isfinite(result).all(axis=-1)
-    for joint in np.flatnonzero(seen.any(axis=0) & ~seen.all(axis=0)):
-        known = seen[:, joint]
-        for axis in range(3):
-            result[:, joint, axis] = np.interp(
-                frames, frames[known], result[known, joint, axis]
-            )
-    return result
+    usual = normal.postures * USUAL_LENGTHS.sum() / length
+    return CalmPostures(positions, normal, usual, rate)
 
 
 def filled(features: Array, usual: Array) -> Array:

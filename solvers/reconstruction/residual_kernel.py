@@ -8,6 +8,7 @@ take how one actor differs from others for something that postures tell, and be 
 """
 
 from dataclasses import dataclass
+from typing import TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -15,6 +16,7 @@ from scipy.linalg import cho_factor, cho_solve
 from scipy.optimize import minimize
 
 Array = NDArray[np.float64]
+Real = TypeVar("Real", NDArray[np.float64], NDArray[np.float32])
 
 LOCAL, WHOLE = 0, 1
 SMALLEST, LARGEST = 1e-4, 10.0
@@ -50,10 +52,13 @@ class Kernel:
         return cls((l1, l2), (a1, a2), (p1, p2), take, actor, noise)
 
 
-def squared_distances(one: Array, other: Array) -> Array:
+def squared_distances(one: Real, other: Real) -> Real:
     """Return the squared distance of each row to each row, shape (n_one, n_other)."""
-    sums = (one**2).sum(axis=1)[:, None] + (other**2).sum(axis=1)
-    return np.asarray(np.maximum(sums - 2.0 * one @ other.T, 0.0))
+    result = one @ other.T
+    result *= -2.0
+    result += (one**2).sum(axis=1)[:, None]
+    result += (other**2).sum(axis=1)
+    return np.maximum(result, 0.0, out=result)
 
 
 def alike(one: Array, other: Array, length: float) -> Array:

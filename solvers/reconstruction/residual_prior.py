@@ -11,6 +11,7 @@ from ..errors import InvalidFileError
 from ..files import read_archive, write_archive
 from ..motion.posture_heading import mirrored
 from ..motion.posture_joints import MIRROR_IMAGES, N_JOINTS, POSTURE_JOINTS
+from .movement_process import MovementProcess, movement_of
 from .residual_inputs import LARGEST, CalmPostures, filled, neighbourhood
 from .residual_kernel import Kernel, squared_distances
 from .residual_sparse import basis, shared_columns
@@ -18,8 +19,13 @@ from .residual_sparse import basis, shared_columns
 Array = NDArray[np.float64]
 
 KIND = "residual prior"
-VERSION = 1
-
+VERSION = 2
+MOVEMENT = "movement_"
+"""What the names of the movement process's arrays begin with in a file."""
+LED_BY = 0.6
+"""Share of the movement process in what is foretold; the rest is of joints and postures."""
+FORETOLD = 15.0
+"""Hertz. Errors change slowly: what lies between is interpolated."""
 
 FAR_LOCAL, FAR_WHOLE = (0.15, 0.1), (0.35, 0.15)
 """Metres of features from the nearest inducing point up to which postures count as known, and
@@ -71,6 +77,8 @@ class ResidualPrior:
         Right limbs are not among the joints, but err as left ones do in a mirror.
     source : shape (), str
         What it was learned from.
+    movement : MovementProcess, optional
+        What postures tell together with where they come from and go to.
     """
 
     joints: NDArray[np.str_]
@@ -84,19 +92,54 @@ class ResidualPrior:
     calm: Array
     mirrored: NDArray[np.bool_]
     source: NDArray[np.str_]
+    movement: MovementProcess | None = None
 
     def save(self, path: Path | str) -> None:
         """Write the prior to a file; `load_residual_prior` reads it."""
-        arrays = {one.name: np.asarray(getattr(self, one.name)) for one in fields(self)}
+        arrays = {name: np.asarray(getattr(self, name)) for name in OWN}
+        if self.movement is not None:
+            arrays |= {MOVEMENT + name: one for name, one in self.movement.arrays().items()}
         write_archive(path, KIND, VERSION, arrays)
 
     def kernel(self, place: int) -> Kernel:
         """Return the hyper-parameters of one of the joints."""
         return Kernel.from_logs(np.log(self.kernels[place]))
 
-    def predict(self, calm: CalmPostures) -> "Foretold":
-        """Foretell true minus seen place of every joint."""
-        features = filled(calm.features, self.usual)
+    def predict(self, calm: CalmPostures, ahead: bool = True) -> "Foretold":
+        """Foretell true minus seen place of every joint.
+
+        With `ahead` a few frames of each second are foretold, what lies between is
+        interpolated, and where postures go to is looked at. Else each frame is foretold by
+        itself. Joints that no teacher showed, as the ends of hands, are not looked at.
+        """
+        told_of = (self.usual != 0.0).any(axis=-1, keepdims=True)
+        features = np.where(told_of, filled(calm.features, self.usual), 0.0)
+        step = max(round(calm.frame_rate / FORETOLD), 1) if ahead else 1
+        last = len(features) - 1
+        frames = np.unique(np.append(np.arange(0, last + 1, step), last))
+        told = self._still(features[frames])
+        if ahead and self.movement is not None:
+            told = self._moving(
+                told, *self.movement.foretell(features, calm.frame_rate, frames)
+            )
+        return told if len(frames) == len(features) else _between(told, frames)
+
+    def _moving(self, still: "Foretold", offsets: Array, nearness: Array) -> "Foretold":
+        """Bring together what postures tell, and what movements tell of the same frames."""
+        assert self.movement is not None
+        known = np.zeros(N_JOINTS, dtype=np.bool_)
+        known[self.movement.joints] = True
+        known &= np.isfinite(still.variances).all(axis=0)
+        share = np.where(known, LED_BY, 0.0)[:, None]
+        near = np.where(known, nearness[:, None], 1.0)
+        return Foretold(
+            share * offsets + (1.0 - share) * still.offsets,
+            still.variances,
+            near * still.coverage,
+        )
+
+    def _still(self, features: Array) -> "Foretold":
+        """Foretell from each posture alone."""
         told = self._foretell(features)
         if not self.mirrored:
             return told
@@ -160,10 +203,30 @@ def _nearness(features: Array, points: Array, far: tuple[float, float]) -> Array
     return np.asarray(np.exp(-0.5 * (np.maximum(distance - near, 0.0) / fall) ** 2))
 
 
+def _between(told: Foretold, frames: NDArray[np.intp]) -> Foretold:
+    """Return what is told of all frames, along straight lines between those that are told."""
+    every = np.arange(frames[-1] + 1)
+    after = np.searchsorted(frames, every)
+    before = np.maximum(after - 1, 0)
+    share = (frames[after] - every) / np.maximum(frames[after] - frames[before], 1)
+
+    def led(values: Array) -> Array:
+        part = share.reshape(-1, *[1] * (values.ndim - 1))
+        return np.asarray(part * values[before] + (1.0 - part) * values[after])
+
+    known = np.isfinite(told.variances)
+    variances = led(np.where(known, told.variances, 0.0))
+    variances[:, ~known.all(axis=0)] = np.inf
+    return Foretold(led(told.offsets), variances, led(told.coverage))
+
+
 def whole_posture(features: Array, usual: Array, components: Array) -> Array:
     """Return principal components of postures, shape (n_frames, n_components)."""
     flat = (features - usual)[:, 1:].reshape(len(features), -1)
     return np.asarray(flat @ components)
+
+
+OWN = tuple(one.name for one in fields(ResidualPrior) if one.name != "movement")
 
 
 def load_residual_prior(path: Path | str) -> ResidualPrior:
@@ -175,15 +238,24 @@ def load_residual_prior(path: Path | str) -> ResidualPrior:
         The file is missing, damaged, or holds something else.
     """
     arrays = read_archive(path, KIND, VERSION)
-    names = [one.name for one in fields(ResidualPrior)]
-    missing = [name for name in names if name not in arrays]
+    moving = {
+        name.removeprefix(MOVEMENT): arrays.pop(name)
+        for name in list(arrays)
+        if name.startswith(MOVEMENT)
+    }
+    missing = [name for name in OWN if name not in arrays]
     fault = f"{', '.join(map(repr, missing))} missing" if missing else _fault(arrays)
+    movement = None
+    if not fault and moving:
+        fault, movement = movement_of(moving)
     if fault:
         raise InvalidFileError(f"{path} holds a damaged prior ({fault}). Learn it again.")
     joints, source = arrays.pop("joints"), arrays.pop("source")
     alike = arrays.pop("mirrored").astype(np.bool_)
-    numbers = {name: arrays[name].astype(np.float64) for name in names if name in arrays}
-    return ResidualPrior(joints=joints, mirrored=alike, source=source, **numbers)
+    numbers = {name: arrays[name].astype(np.float64) for name in OWN if name in arrays}
+    return ResidualPrior(
+        joints=joints, mirrored=alike, source=source, movement=movement, **numbers
+    )
 
 
 def _fault(arrays: dict[str, NDArray[Any]]) -> str:

@@ -14,6 +14,7 @@ from ..motion.rotations import (
     rotation_between,
     slerp,
 )
+from ..motion.straight_gaps import bridged, bridged_rotations
 
 Array = NDArray[np.float64]
 AIMS = {
@@ -72,25 +73,8 @@ def turn_to_postures(
 
 def without_gaps(motion: Motion) -> Motion:
     """Bridge gaps the short way, joint by joint; before and after all that is known, hold."""
-    rotations = np.array(motion.rotations)
-    frames = np.arange(motion.n_frames, dtype=float)
-    for joint in range(motion.n_joints):
-        known = np.flatnonzero(np.isfinite(rotations[:, joint]).all(axis=-1))
-        if len(known) in {0, motion.n_frames}:
-            rotations[:, joint] = rotations[:, joint] if len(known) else (1.0, 0.0, 0.0, 0.0)
-            continue
-        after = np.searchsorted(known, frames).clip(max=len(known) - 1)
-        before = (np.searchsorted(known, frames, side="right") - 1).clip(min=0)
-        start, stop = known[before], known[after]
-        share = np.where(stop > start, (frames - start) / np.maximum(stop - start, 1), 0.0)
-        rotations[:, joint] = slerp(rotations[start, joint], rotations[stop, joint], share)
-    places = np.array(motion.root_positions)
-    seen = np.isfinite(places).all(axis=-1)
-    if not seen.any():
-        return motion.with_poses(rotations, np.zeros_like(places))
-    for axis in range(3):
-        places[:, axis] = np.interp(frames, frames[seen], places[seen, axis])
-    return motion.with_poses(rotations, places)
+    places = np.nan_to_num(bridged(motion.root_positions))
+    return motion.with_poses(bridged_rotations(motion.rotations), places)
 
 
 class _Follower:

@@ -63,8 +63,9 @@ class LineReader:
 
     def peek(self, n_lines: int = 1) -> list[bytes]:
         """Return the next lines, fewer at the end; they are not taken."""
-        while len(self._lines) - self._at < n_lines and self._more():
-            pass
+        more = True
+        while more and len(self._lines) - self._at < n_lines:
+            more = self._more()
         return self._lines[self._at : self._at + n_lines]
 
     def take(self, n_lines: int = 1) -> list[bytes]:

@@ -16,6 +16,9 @@ from .spans import FULL, N_CUBES, Spans
 Single = NDArray[np.float32]
 Numbers = NDArray[np.int64]
 
+CLIPS_PER_WITNESS = 20
+"""Clips for each match that is asked as well: the five best of six are not all alike."""
+
 
 @dataclass(frozen=True, eq=False)
 class SpanQuery:
@@ -91,8 +94,9 @@ def rank_clips(
     near = np.argsort(apart, kind="stable")[: settings.n_warped]
     apart = _with_courses(apart, near, index.warped(asked, spans[near])[0], settings.warping)
     order = np.argsort(apart, kind="stable")
-    if settings.n_alike and len(near):
-        best = order[: settings.n_alike]
+    n_alike = min(settings.n_alike, len(order) // CLIPS_PER_WITNESS)
+    if n_alike and len(near):
+        best = order[:n_alike]
         others = SpanQuery.of(*index.stored(spans[best]), weights)
         courses = index.warped(others, spans[near]).mean(axis=0)
         alike = 1.0 - index.common(others)[spans]

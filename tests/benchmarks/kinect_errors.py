@@ -26,6 +26,16 @@ def compared(made: Array, truth: Array) -> tuple[Array, Array, Array]:
     return absolute, relative, free
 
 
+def apart_free(made: Array, truth: Array) -> Array:
+    """Return errors of the way from the joint above beside their means, (n_frames, 20)."""
+    off = made - truth
+    between = off - off[:, ABOVE]
+    between[:, 0] = np.nan
+    known = np.isfinite(between).any(axis=(0, 2))
+    between[:, known] -= np.nanmean(between[:, known], axis=0)
+    return np.asarray(np.linalg.norm(between, axis=-1))
+
+
 def jerk(made: Array, pair: Pair) -> Array:
     """Sizes of the third differences, m/s³."""
     third = np.diff(made, 3, axis=0) * pair.kinect.frame_rate**3

@@ -3,33 +3,30 @@
 Delete that folder after a change of how priors are learned.
 """
 
+from collections.abc import Callable
 from functools import cache
 from pathlib import Path
 
 import numpy as np
 from numpy.typing import NDArray
 
-from solvers.motion import joint_parents, motion_from_points
 from solvers.motion.posture_joints import posture_positions
 from solvers.reconstruction import (
     PostureLibrary,
     ResidualMethod,
     ResidualPrior,
     ResidualPriorSettings,
-    build_posture_library,
     learn_residual_prior,
     load_posture_library,
     load_residual_prior,
 )
-from solvers.reconstruction.residual_inputs import bridged
 
 from .kinect_pairs import Pair, read_pairs
+from .posture_sources import cmu_library, exercise_library, joined
 
 Array = NDArray[np.float64]
 KEPT = Path(__file__).resolve().parents[2] / "build" / "reconstruct"
 SUBJECTS = ("s01", "s02", "s03", "s04", "s05")
-TAUGHT = ("e01", "e04", "e07")
-"""Repetitions of each exercise whose true postures a library is made of."""
 PRIORS = {
     ResidualMethod.HIERARCHICAL: ResidualPriorSettings(),
     ResidualMethod.PUBLISHED: ResidualPriorSettings(
@@ -54,8 +51,8 @@ def takes_of(subject: str, n_repetitions: int, after: int = 0) -> list[Pair]:
 
 
 def others(subject: str) -> list[Pair]:
-    """Takes of everyone else."""
-    return [pair for pair in pairs() if pair.subject != subject]
+    """Takes of everyone else that one can learn from."""
+    return [pair for pair in pairs() if pair.subject != subject and pair.matched]
 
 
 @cache
@@ -74,30 +71,28 @@ def residual_prior(subject: str, method: ResidualMethod) -> ResidualPrior:
 
 
 @cache
-def optical_library(subject: str) -> PostureLibrary:
-    """Return the shipped library, and true postures of the others besides."""
-    path = KEPT / f"postures_{subject}.npz"
+def posture_library(subject: str, others_too: bool = True) -> PostureLibrary:
+    """Return the library that is shipped as it would be without this subject.
+
+    Or, without the others too, its CMU captures alone.
+    """
+    if not others_too:
+        return _kept("cmu", cmu_library)
+    mine = _kept(f"exercises_{subject}", lambda: exercise_library(_postures_of_others(subject)))
+    return joined(_kept("cmu", cmu_library), mine)
+
+
+def _postures_of_others(subject: str) -> list[Pair]:
+    """Their true postures are true whatever the Kinect saw meanwhile."""
+    return [pair for pair in pairs() if pair.subject != subject]
+
+
+def _kept(name: str, build: Callable[[], PostureLibrary]) -> PostureLibrary:
+    path = KEPT / f"{name}.npz"
     if not path.exists():
         path.parent.mkdir(parents=True, exist_ok=True)
-        motions = []
-        for pair in others(subject):
-            seen = np.isfinite(pair.truth.positions).any(axis=(0, 2)).all()
-            if pair.name[-3:] in TAUGHT and seen:
-                whole = pair.truth.with_positions(bridged(pair.truth.positions))
-                motions.append(motion_from_points(whole, joint_parents(whole.names)))
-        build_posture_library(motions).save(path)
-    return joined(load_posture_library(), load_posture_library(path))
-
-
-def joined(one: PostureLibrary, other: PostureLibrary) -> PostureLibrary:
-    """Put two libraries together."""
-    return PostureLibrary(
-        np.concatenate([one.directions, other.directions]),
-        np.concatenate([one.changes, other.changes]),
-        np.concatenate([one.groups, one.groups.max() + 1 + other.groups]),
-        one.n_seen + other.n_seen,
-        f"{one.trained_on} and UI-PRMD",
-    )
+        build().save(path)
+    return load_posture_library(path)
 
 
 def truth_of(pair: Pair) -> Array:

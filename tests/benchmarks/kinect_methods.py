@@ -20,7 +20,6 @@ from solvers.reconstruction import (
     ReliabilitySettings,
     ResidualMethod,
     correct_postures,
-    load_posture_library,
     measure_reliability,
     reconstruct,
     reconstruct_postures,
@@ -28,7 +27,7 @@ from solvers.reconstruction import (
 from solvers.reconstruction.correct_postures import smoothed
 from solvers.reconstruction.residual_inputs import calm_postures
 
-from .kinect_folds import optical_library, others, residual_prior, seen_of, truth_of
+from .kinect_folds import others, posture_library, residual_prior, seen_of, truth_of
 from .kinect_pairs import Pair
 from .peers import posture_regression
 from .peers.kalman import constant_velocity
@@ -133,21 +132,18 @@ def _calmed(positions: Array, pair: Pair) -> Array:
 
 
 def by_postures(
-    pair: Pair, subject: str, *, method: PostureMethod, taught: bool = False
+    pair: Pair, subject: str, *, method: PostureMethod, others_too: bool = True
 ) -> Reconstruction:
     """[SHJT13]: a library of postures alone."""
     published = method is PostureMethod.PUBLISHED
     return reconstruct_postures(
         pair.kinect,
-        optical_library(subject) if taught else _shipped_library(),
+        posture_library(subject, others_too),
         settings=PostureSettings(method=method),
         reliability=measure_reliability(pair.kinect, settings=SIGNS_PUBLISHED)
         if published
         else None,
     )
-
-
-_shipped_library = cache(load_posture_library)
 
 
 def by_published_residuals(
@@ -163,12 +159,12 @@ def by_published_residuals(
 
 
 def by_reconstruct(
-    pair: Pair, subject: str, *, method: ReconstructMethod, taught: bool = False
+    pair: Pair, subject: str, *, method: ReconstructMethod, others_too: bool = True
 ) -> Reconstruction:
     """Ours, with the offsets of the sensor that the prior knows."""
     return reconstruct(
         pair.kinect,
-        optical_library(subject) if taught else _shipped_library(),
+        posture_library(subject, others_too),
         residual_prior(subject, ResidualMethod.HIERARCHICAL),
         settings=ReconstructSettings(method=method, shift=True),
     )
@@ -198,13 +194,13 @@ METHODS: dict[str, Method] = {
     "kNN mean, true postures": partial(from_examples, posture_regression.nearest_mean),
     "[SHJT13] postures, as published": joints(by_postures, method=PostureMethod.PUBLISHED),
     "postures": joints(by_postures, method=PostureMethod.PROBABLE),
-    "postures, taught by the others too": joints(
-        by_postures, method=PostureMethod.PROBABLE, taught=True
+    "postures, of CMU alone": joints(
+        by_postures, method=PostureMethod.PROBABLE, others_too=False
     ),
     "[ZH14] residuals, as published": joints(by_published_residuals),
     "residuals": joints(by_reconstruct, method=ReconstructMethod.RESIDUALS),
     "ours (both)": joints(by_reconstruct, method=ReconstructMethod.BOTH),
-    "ours (both), taught by the others too": joints(
-        by_reconstruct, method=ReconstructMethod.BOTH, taught=True
+    "ours (both), CMU alone": joints(
+        by_reconstruct, method=ReconstructMethod.BOTH, others_too=False
     ),
 }

@@ -8,7 +8,8 @@ turned by some degrees, shaken, mirrored. They are varied as postures of the sta
 which all actors have the same bone lengths anyway; to read and describe a real clip of two
 seconds takes about 15 ms beside that. Each query is a clip of the library, at another speed and
 shaken again; it is found when that clip comes first, or among the first ten. At each size a
-process of its own searches, so that its memory can be told.
+process of its own searches, so that its memory can be told. Times are of the processor, with
+one thread: other work on the machine does not count.
 """
 
 import argparse
@@ -19,7 +20,7 @@ from collections.abc import Sequence
 from dataclasses import asdict, dataclass
 from pathlib import Path
 from tempfile import TemporaryDirectory
-from time import perf_counter
+from time import process_time
 
 import numpy as np
 from numpy.typing import NDArray
@@ -97,9 +98,9 @@ def run(sizes: Sequence[int] = SIZES, n_queries: int = N_QUERIES) -> list[Row]:
                 while done < size:
                     numbers = range(done, min(done + BATCH, size))
                     found = [described(number) for number in numbers]
-                    began = perf_counter()
+                    began = process_time()
                     library.add_described(found)
-                    adding += perf_counter() - began
+                    adding += process_time() - began
                     seconds += sum(clip.entry.seconds for clip in found)
                     done += len(found)
                 built = (size, seconds / 3600.0, adding)
@@ -172,11 +173,11 @@ _ORIGINALS: list[ClipPostures] = []
 
 def search(path: Path, n_queries: int) -> dict[str, float]:
     """Open a library, ask it for some of its clips, and tell what came of it."""
-    began = perf_counter()
+    began = process_time()
     library = load_clip_library(path)
     entries = library.entries
     assert library.blocks
-    opened = perf_counter() - began
+    opened = process_time() - began
     rng = np.random.default_rng(len(entries))
     asked = rng.permutation(len(entries))[:n_queries]
     told = [_asked(library, int(number)) for number in asked]
@@ -196,12 +197,12 @@ def _asked(library: ClipLibrary, number: int) -> tuple[float, float, bool, bool,
     query = asking(number)
     vocabulary = library.vocabulary
     assert vocabulary is not None
-    began = perf_counter()
+    began = process_time()
     features = vocabulary.features(clip_postures(query, RATE))
     describe(features, np.array([[0, len(features)]], dtype=np.int32), vocabulary)
-    asked = perf_counter()
+    asked = process_time()
     matches = find_similar(query, library, settings=FindSettings(n_matches=TOLD))
-    found = perf_counter()
+    found = process_time()
     ten = [int(match.clip) for match in matches[:10]]
     kin = np.mean([one % len(originals()) == number % len(originals()) for one in ten])
     description = asked - began

@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 
 from solvers.motion.posture_heading import normalise
 from solvers.reconstruction import PostureMethod, ReconstructMethod
-from solvers.reconstruction.residual_inputs import calm_postures
+from solvers.reconstruction.residual_inputs import CalmPostures, calm_postures
 
 from .kinect_damage import Damaged, hidden, lost, shaken, swapped
 from .kinect_folds import SUBJECTS, others, seen_of, takes_of, truth_of
@@ -118,9 +118,9 @@ def seen_examples(subject: str) -> Array:
     return together.reshape(len(together), -1)
 
 
-def _size(calm: object) -> float:
-    features, postures = calm.features, calm.normalised.postures  # type: ignore[attr-defined]
-    return float(np.nanmax(np.abs(features)) / np.nanmax(np.abs(postures)))
+def _size(calm: CalmPostures) -> float:
+    sizes = [np.nanmax(np.abs(one)) for one in (calm.features, calm.normalised.postures)]
+    return float(sizes[0] / sizes[1])
 
 
 FILLED: dict[str, Method] = {
@@ -135,13 +135,13 @@ FILLED: dict[str, Method] = {
 OURS: dict[str, Method] = {
     "[SHJT13] postures, as published": joints(by_postures, method=PostureMethod.PUBLISHED),
     "postures": joints(by_postures, method=PostureMethod.PROBABLE),
-    "postures, taught by the others too": joints(
-        by_postures, method=PostureMethod.PROBABLE, taught=True
+    "postures, of CMU alone": joints(
+        by_postures, method=PostureMethod.PROBABLE, others_too=False
     ),
     "residuals": joints(by_reconstruct, method=ReconstructMethod.RESIDUALS),
     "ours (both)": joints(by_reconstruct, method=ReconstructMethod.BOTH),
-    "ours (both), taught by the others too": joints(
-        by_reconstruct, method=ReconstructMethod.BOTH, taught=True
+    "ours (both), CMU alone": joints(
+        by_reconstruct, method=ReconstructMethod.BOTH, others_too=False
     ),
 }
 CALMED: dict[str, Method] = {

@@ -23,7 +23,7 @@ from solvers.reconstruction.neighbours import Query, index_postures, nearest_pos
 from solvers.reconstruction.posture_energy import Demands
 from solvers.reconstruction.posture_library import PostureLibrary, build_posture_library
 from solvers.reconstruction.posture_search import search_in_turn
-from solvers.reconstruction.posture_settings import PostureSettings
+from solvers.reconstruction.posture_settings import USUAL, PostureSettings
 from solvers.reconstruction.posture_space import local_pca
 from solvers.reconstruction.posture_synthesis import solve_in_turn
 from solvers.reconstruction.reconstruct_postures import reconstruct_postures
@@ -111,7 +111,12 @@ def kinect_clips(dev: bool) -> tuple[Clip, ...]:
     )
 
 
-def ours(postures: Array, lost: Flags, library: PostureLibrary, **settings: object) -> Array:
+def ours(
+    postures: Array,
+    lost: Flags,
+    library: PostureLibrary,
+    settings: PostureSettings = USUAL,
+) -> Array:
     """Reconstruct as the verb does, with all that is not lost trusted."""
     seen = np.where(lost[..., None], np.nan, postures)
     trust = np.isfinite(seen).all(axis=-1).astype(float)
@@ -119,9 +124,11 @@ def ours(postures: Array, lost: Flags, library: PostureLibrary, **settings: obje
         Tracks(JOINTS[Sensor.KINECT_V1], seen, RATE), None, Sensor.KINECT_V1
     )
     return reconstruct_postures(
-        recording, library, settings=PostureSettings(**settings),  # type: ignore[arg-type]
+        recording,
+        library,
+        settings=settings,
         reliability=Reliability(trust, trust, trust, trust),
-    ).tracks.positions  # fmt: skip
+    ).tracks.positions
 
 
 def interpolated(
@@ -177,7 +184,7 @@ def _projected(mean: Array, axes: Array, postures: Array) -> Array:
 
 METHODS: dict[str, Method] = {
     "ours": ours,
-    "ours, causal": partial(ours, causal=True),
+    "ours, causal": partial(ours, settings=PostureSettings(causal=True)),
     "linear": partial(interpolated, "linear", False),
     "PCHIP": partial(interpolated, "PCHIP", False),
     "cubic": partial(interpolated, "cubic", False),

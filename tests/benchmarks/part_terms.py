@@ -25,7 +25,7 @@ from solvers.reconstruction import (
 )
 
 from .kinect_damage import shaken, swapped
-from .kinect_folds import SUBJECTS, takes_of, truth_of
+from .kinect_folds import SUBJECTS, posture_library, takes_of, truth_of
 from .kinect_methods import (
     SIGNS_PUBLISHED,
     Method,
@@ -35,6 +35,7 @@ from .kinect_methods import (
     raw,
 )
 from .kinect_pairs import Pair
+from .part_energy import classes, energy_weights
 from .part_kinect import WORST, Errors, errors_of
 from .part_losses import Found, errors_table
 from .part_losses import errors_of as damage_errors
@@ -64,7 +65,7 @@ WITHIN = 0.05
 
 
 def terms(n_repetitions: int) -> list[str]:
-    """Return table 5.3 of [ZH14], and the reliability terms of [SHJT13] on damaged takes."""
+    """Return table 5.3 of [ZH14]; energy, table IV and reliability terms of [SHJT13]."""
     few = max(n_repetitions // 2, 1)
     before = errors_of(raw, few)
     worst = before.free >= np.nanquantile(before.free, 1.0 - WORST)
@@ -73,7 +74,12 @@ def terms(n_repetitions: int) -> list[str]:
         rows[name] = _cells(errors_of(_published(*weights), few), worst)
     columns = ["absolute, cm", "offset-free, cm", "worst tenth, cm", "jerk, m/s³"]
     head = "**Terms of [ZH14], as published, used alone and together** (table 5.3)\n\n"
-    return [head + table(["terms", *columns], rows) + "\n", *signs()]
+    return [
+        head + table(["terms", *columns], rows) + "\n",
+        energy_weights(),
+        classes(),
+        *signs(),
+    ]
 
 
 def _published(spatial: float, temporal: float, trust: float) -> Method:
@@ -118,7 +124,9 @@ def _trusting(pair: Pair, subject: str, used: tuple[str, ...] | None) -> Reconst
     trust = measure_reliability(pair.kinect)
     if used is not None:
         trust = _only(measure_reliability(pair.kinect, settings=SIGNS_PUBLISHED), used)
-    return reconstruct_postures(pair.kinect, reliability=trust, settings=PostureSettings())
+    return reconstruct_postures(
+        pair.kinect, posture_library(subject), reliability=trust, settings=PostureSettings()
+    )
 
 
 def _only(trust: Reliability, used: tuple[str, ...]) -> Reliability:

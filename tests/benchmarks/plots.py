@@ -32,7 +32,7 @@ def draw_scores(scores: Scores, path: Path) -> None:
     for place, (x, column) in enumerate(zip(across, scores.columns, strict=False)):
         lower = 14.0 * (place % 2) if len(scores.columns) > 6 else 0.0
         canvas.text(x, axis.bottom + 14.0 + lower, column, FAINT, "mm")
-    for place, (name, color) in enumerate(_colors(scores.methods).items()):
+    for place, (name, color) in enumerate(colors(scores.methods).items()):
         width = 3.5 if name.startswith("ours") else 1.5
         for run in _runs(scores, name, across, axis):
             if len(run) > 1:
@@ -83,7 +83,7 @@ def _runs(
     return [run for run in runs if run]
 
 
-def _colors(methods: list[str]) -> dict[str, Color]:
+def colors(methods: list[str]) -> dict[str, Color]:
     greys = iter([INK, FAINT, FAINT])
     others = [name for name in methods if not name.startswith("ours")]
     hues = {name: place / max(len(others), 1) for place, name in enumerate(others)}

@@ -20,7 +20,7 @@ CLIPS = FOLDER / "clips"
 LIBRARY = FOLDER / "clips.library"
 OTHERS = (
     "import", "reconstruct", "clean", "check", "compare", "feet", "physics", "markers",
-    "retarget",
+    "retarget", "perform",
 )  # fmt: skip
 UNTIL_DONE = 600  # tenths of a second
 

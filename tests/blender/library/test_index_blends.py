@@ -48,6 +48,10 @@ def test_only_what_has_changed_is_read_again(index, entries, blend_file, monkeyp
     again = index(blend_file)
     assert (again.n_kept, again.n_added, read) == (3, 0, [])
 
+    assert index(blend_file, tags=("new",)).n_added == 3
+    assert index(blend_file).n_kept == 3
+
+    read.clear()
     os.utime(blend_file, ns=(1, 1))
     changed = index(blend_file)
     assert (changed.n_kept, changed.n_added, changed.n_removed) == (0, 3, 0)

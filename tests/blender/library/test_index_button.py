@@ -125,6 +125,12 @@ def test_escape_ends_it(waiting):
 
 def test_another_file_ends_it(waiting, blank):
     blank.ops.wm.read_homefile(use_empty=True, use_factory_startup=True)
+    waiting.context.window_manager.mocap_assist_indexing = (
+        blank.context.window_manager.mocap_assist_indexing
+    )
+    waiting.operator.cancel(waiting.context)
+
+    assert not waiting.timers
 
     assert not list(waiting.jobs.iterdir())
     assert not blank.context.window_manager.mocap_assist_indexing.running

@@ -113,7 +113,7 @@ def test_without_a_library_it_says_so_and_keeps_the_performance(listen, act, loa
 
     act(button, "hand up", "clap", "rest", "clap")
 
-    assert "There is no library to search yet" in window.status[-1]
+    assert "There is no library yet" in window.status[-1]
     assert load("mocap_assist.live.commands").last_performance().n_frames >= 15
 
 

@@ -1,0 +1,57 @@
+"""Finding clips of the same class: ours, [ZLLS14] as published, and peers.
+
+make bench-retrieval                                # some 20 minutes
+make bench-retrieval ARGUMENTS="--method DTW"       # those with this in their name
+make bench-retrieval ARGUMENTS=--docs               # into docs/benchmarks_retrieval.md
+make bench-retrieval ARGUMENTS=--choose             # settings of pyramids, training classes
+
+What methods answer is kept under build/retrieval, and told of all methods that are there.
+"""
+
+import argparse
+import sys
+from time import perf_counter
+
+from threadpoolctl import threadpool_limits
+
+from . import part_retrieval as part
+from .part_retrieval_choice import choose
+from .report import DOCS, Report
+from .retrieval_methods import METHODS
+
+
+def main() -> None:
+    """Print the tables."""
+    parser = argparse.ArgumentParser(description=(__doc__ or "").splitlines()[0])
+    parser.add_argument(
+        "--method", default="", help="ask only those with this in their name anew"
+    )
+    parser.add_argument("--jobs", type=int, default=2, help="methods at a time")
+    parser.add_argument("--choose", action="store_true", help="settings of pyramids")
+    parser.add_argument(
+        "--docs", action="store_true", help="rewrite docs/benchmarks_retrieval.md"
+    )
+    chosen = parser.parse_args()
+    report = Report(chosen.docs, DOCS / "benchmarks_retrieval.md")
+    started = perf_counter()
+    if chosen.choose:
+        with threadpool_limits(1):
+            tables = [choose()[1]]
+        report.part("choice", tables, perf_counter() - started)
+        return
+    names = [name for name in METHODS if chosen.method.lower() in name.lower()]
+    part.find_all(names, chosen.jobs, _say)
+    found = part.kept()
+    tables = [part.accuracy(found), part.damaged(found), part.seen_by_kinect(found),
+              part.each_class(found)]  # fmt: skip
+    if chosen.docs:
+        tables.append(part.pictures(found))
+    report.part("retrieval", tables, perf_counter() - started)
+
+
+def _say(what: str) -> None:
+    print(f"Done: {what}", file=sys.stderr, flush=True)
+
+
+if __name__ == "__main__":
+    main()

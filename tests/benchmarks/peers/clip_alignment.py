@@ -1,0 +1,118 @@
+"""Peers of retrieval that compare frame by frame: resampled to one length, or warped."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.spatial.distance import cdist
+
+from solvers.motion import Tracks
+
+from .whole_postures import WholePostures, learn_whole, resampled
+
+Array = NDArray[np.float64]
+Flags = NDArray[np.bool_]
+
+BATCH = 32
+"""Clips of about the same length that are warped at once."""
+
+
+@dataclass(frozen=True)
+class Resampled:
+    """Euclidean distance of clips that are all brought to the same number of frames."""
+
+    n_frames: int = 30
+    frame_rate: float = 30.0
+
+    def prepare(self, clips: Sequence[Tracks]) -> "ResampledLibrary":
+        whole, found = learn_whole(clips, self.frame_rate)
+        rows = np.stack([resampled(frames, self.n_frames).ravel() for frames in found])
+        return ResampledLibrary(whole, rows, self.n_frames)
+
+
+@dataclass(frozen=True, eq=False)
+class ResampledLibrary:
+    whole: WholePostures
+    rows: Array
+    n_frames: int
+
+    def describe(self, tracks: Tracks) -> Array:
+        return resampled(self.whole(tracks), self.n_frames).ravel()
+
+    def distances(self, query: Array, allowed: Flags) -> Array:
+        return np.asarray(cdist(query[None], self.rows)[0])
+
+
+@dataclass(frozen=True)
+class Warped:
+    """Dynamic time warping of principal components; own, all clips of a length at once.
+
+    As `solvers.motion.warp`, without path: divided by the frames of both instead of its steps.
+    """
+
+    n_components: int | None = 12
+    frame_rate: float = 30.0
+
+    def prepare(self, clips: Sequence[Tracks]) -> "WarpedLibrary":
+        whole, found = learn_whole(clips, self.frame_rate)
+        axes = np.linalg.eigh(whole.covariance)[1][:, ::-1][:, : self.n_components]
+        short = [(frames - whole.mean) @ axes for frames in found]
+        order = np.argsort([len(frames) for frames in short], kind="stable")
+        batches = [order[start : start + BATCH] for start in range(0, len(order), BATCH)]
+        padded = [_padded([short[place] for place in batch]) for batch in batches]
+        lengths = np.array([len(frames) for frames in short])
+        return WarpedLibrary(whole, axes, batches, padded, lengths)
+
+
+@dataclass(frozen=True, eq=False)
+class WarpedLibrary:
+    whole: WholePostures
+    axes: Array
+    batches: list[NDArray[np.intp]]
+    padded: list[Array]
+    lengths: NDArray[np.intp]
+
+    def describe(self, tracks: Tracks) -> Array:
+        return np.asarray((self.whole(tracks) - self.whole.mean) @ self.axes)
+
+    def distances(self, query: Array, allowed: Flags) -> Array:
+        result = np.empty(len(self.lengths))
+        for batch, padded in zip(self.batches, self.padded, strict=True):
+            result[batch] = warped_totals(query, padded, self.lengths[batch])
+        return np.asarray(result / (self.lengths + len(query)))
+
+
+def warped_totals(query: Array, padded: Array, lengths: NDArray[np.intp]) -> Array:
+    """Return the least total distance along a path to each clip.
+
+    Parameters
+    ----------
+    query : shape (n, n_features)
+    padded : shape (n_clips, longest, n_features)
+    lengths : shape (n_clips,)
+    """
+    n_clips, longest, n_features = padded.shape
+    n = len(query)
+    apart = cdist(query, padded.reshape(-1, n_features)).reshape(n, n_clips, longest)
+    # Row k of `skewed` is the anti-diagonal i + j = k, at i; outside it is infinite.
+    skewed = np.full((n + longest - 1, n, n_clips), np.inf)
+    for i in range(n):
+        skewed[i : i + longest, i] = apart[i].T
+    before, last = np.full((2, n + 1, n_clips), np.inf)
+    before[0] = 0.0
+    totals = np.empty(n_clips)
+    for k, row in enumerate(skewed):
+        now = np.full((n + 1, n_clips), np.inf)
+        now[1:] = row + np.minimum(np.minimum(last[1:], last[:-1]), before[:-1])
+        ended = lengths - 1 + n - 1 == k
+        totals[ended] = now[n, ended]
+        before, last = last, now
+    return totals
+
+
+def _padded(found: list[Array]) -> Array:
+    longest = max(map(len, found))
+    return np.stack([
+        np.pad(each, ((0, longest - len(each)), (0, 0)), "edge") for each in found
+    ])

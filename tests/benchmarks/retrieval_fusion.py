@@ -1,0 +1,94 @@
+"""Several methods as one, and the library's own likenesses: manifold ranking."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from solvers.motion import Tracks
+
+from .retrieval_protocol import Method, Prepared
+
+Array = NDArray[np.float64]
+Flags = NDArray[np.bool_]
+
+SPREADING = 0.95
+"""Part of what a clip is told that it passes on (alpha of [ZBL04])."""
+
+
+@dataclass(frozen=True)
+class Fused:
+    """The sum of distances of several methods, each with mean 0 and deviation 1 over clips.
+
+    With `n_neighbours`, manifold ranking [ZBL04] comes after: each clip is linked to that many
+    nearest, the query's own nearest are told 1, and all pass on what they are told.
+
+    [ZBL04] Zhou, Weston, Gretton, Bousquet, Schoelkopf (2004). Ranking on data manifolds. NIPS.
+    """
+
+    methods: tuple[Method, ...]
+    n_neighbours: int = 0
+
+    def prepare(self, clips: Sequence[Tracks]) -> "FusedLibrary":
+        prepared = [method.prepare(clips) for method in self.methods]
+        between = np.zeros((len(clips), len(clips)))
+        fused = FusedLibrary(prepared, between, self.n_neighbours)
+        if self.n_neighbours:
+            allowed = ~np.eye(len(clips), dtype=bool)
+            for place, clip in enumerate(clips):
+                between[place] = fused.plain(fused.describe(clip), allowed[place])
+        return fused
+
+
+@dataclass(frozen=True, eq=False)
+class FusedLibrary:
+    prepared: list[Prepared]
+    between: Array
+    n_neighbours: int
+
+    def describe(self, tracks: Tracks) -> list[Any]:
+        return [each.describe(tracks) for each in self.prepared]
+
+    def distances(self, query: list[Any], allowed: Flags) -> Array:
+        plain = self.plain(query, allowed)
+        if not self.n_neighbours:
+            return plain
+        places = np.flatnonzero(allowed)
+        result = np.full(len(allowed), np.inf)
+        within = self.between[np.ix_(places, places)]
+        told = manifold_ranking(within, plain[places], self.n_neighbours)
+        # Clips that nothing reaches come last, in the order of plain distances.
+        result[places] = -told + 1e-6 * plain[places]
+        return result
+
+    def plain(self, query: list[Any], allowed: Flags) -> Array:
+        total = np.zeros(len(allowed))
+        for each, described in zip(self.prepared, query, strict=True):
+            apart = each.distances(described, allowed)
+            known = apart[allowed]
+            total += (apart - known.mean()) / max(float(known.std()), 1e-12)
+        return total
+
+
+def manifold_ranking(between: Array, query: Array, n_neighbours: int) -> Array:
+    """Return how much each clip is told.
+
+    Parameters
+    ----------
+    between : shape (n_clips, n_clips)
+        Distances; that of a clip to itself is not looked at.
+    query : shape (n_clips,)
+    """
+    n_clips, few = len(query), min(n_neighbours, len(query) - 1)
+    apart = np.where(np.eye(n_clips, dtype=bool), np.inf, between)
+    nearest = np.argpartition(apart, few - 1, axis=1)[:, :few]
+    links = np.zeros((n_clips, n_clips))
+    np.put_along_axis(links, nearest, 1.0, axis=1)
+    links = np.maximum(links, links.T)
+    size = np.sqrt(links.sum(axis=1))
+    asked = np.zeros(n_clips)
+    asked[np.argsort(query)[:n_neighbours]] = 1.0
+    spread = np.eye(n_clips) - SPREADING * links / np.outer(size, size)
+    return np.asarray(np.linalg.solve(spread, asked))

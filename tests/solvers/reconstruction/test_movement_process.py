@@ -1,0 +1,192 @@
+"""The Gaussian process of movements: exact, the same in a mirror, silent far away."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from bad_sensor import KNEE, QUICK, pair, recording, seen_by_a_bad_sensor, truth
+from numpy.testing import assert_allclose
+
+from solvers.errors import InvalidFileError
+from solvers.motion.posture_heading import mirrored
+from solvers.reconstruction import learn_residual_prior, load_residual_prior
+from solvers.reconstruction.learn_movement_process import (
+    ACTOR,
+    MEAN,
+    TAKE,
+    Take,
+    learn_movement_process,
+)
+from solvers.reconstruction.movement_process import (
+    CONTEXT,
+    MOVEMENT,
+    PERSONAL,
+    POSTURE,
+    SHARED,
+    movement_parts,
+)
+from solvers.reconstruction.residual_inputs import calm_postures
+
+RATE = 30.0
+
+
+def take(speed: float, actor: str) -> Take:
+    """A walk, whose errors depend on posture and on speed."""
+    features = truth(speed)
+    features = features - features[:, :1]
+    errors = 0.1 * np.roll(features, 1, axis=1) + 0.02 * np.gradient(features, axis=0) * RATE
+    return Take(features, errors, RATE, actor)
+
+
+TAKES = (take(0.9, "a"), take(1.2, "a"), take(1.6, "b"))
+
+
+@pytest.fixture(scope="module")
+def process():
+    return learn_movement_process(TAKES, 3.0, 500, mirror=True)
+
+
+def test_equals_the_whole_process_written_down_naively(process):
+    """Each example and its mirror image in one dense system, joint after joint."""
+    parts, errors, takes, actors = [], [], [], []
+    for image in (False, True):
+        for number, one in enumerate(TAKES):
+            seen, off = movement_parts(one.features, RATE)[:, 5::10], one.errors[5::10]
+            parts.append(mirrored(seen) if image else seen)
+            errors.append(mirrored(off) if image else off)
+            takes += [number + 10 * image] * len(off)
+            actors += [one.actor + "m" * image] * len(off)
+    examples, asked = (
+        np.concatenate(parts, axis=1),
+        movement_parts(take(1.4, "c").features, RATE),
+    )
+    same_take, same_actor = (np.equal.outer(one, one) for one in (takes, np.array(actors)))
+    covariance = naive(examples, examples, SHARED) + MEAN + TAKE * same_take
+    covariance += same_actor * (naive(examples, examples, PERSONAL) + ACTOR)
+    covariance += np.eye(len(covariance))
+    expected = (naive(asked, examples, SHARED) + MEAN) @ np.linalg.solve(
+        covariance, np.concatenate(errors).reshape(len(covariance), -1)
+    )
+
+    offsets, _ = process.foretell(take(1.4, "c").features, RATE, np.arange(90))
+
+    assert_allclose(offsets.reshape(90, -1), expected, atol=2e-4)
+    assert np.abs(expected).max() > 0.05
+
+
+def naive(one: np.ndarray, other: np.ndarray, strengths: tuple) -> np.ndarray:
+    """The covariance by its definition, from (5, n, 20, 3) parts."""
+    far = ((one[:, :, None] - other[:, None]) ** 2).sum(axis=(-2, -1))
+    centre = np.concatenate([movement_parts(t.features, RATE)[0, 5::10] for t in TAKES])
+    centre = 0.5 * (centre + mirrored(centre)).mean(axis=0)
+    slope = np.einsum("ijk,mjk->im", one[0] - centre, other[0] - centre)
+    a, b, c, d = strengths
+    return (
+        a * np.exp(-0.5 * far[0] / POSTURE**2)
+        + b * slope
+        + c * np.exp(-0.5 * far[:3].sum(axis=0) / CONTEXT**2)
+        + d * np.exp(-0.5 * far[3:].sum(axis=0) / MOVEMENT**2)
+    )
+
+
+def test_it_foretells_errors_of_a_speed_that_it_has_not_seen(process):
+    new = take(1.4, "c")
+
+    offsets, nearness = process.foretell(new.features, RATE, np.arange(90))
+
+    left = np.linalg.norm(offsets - new.errors, axis=-1).mean()
+    assert left < 0.3 * np.linalg.norm(new.errors, axis=-1).mean()
+    assert nearness.min() > 0.9
+
+
+def test_in_a_mirror_errors_are_mirrored(process):
+    new = take(1.4, "c").features
+    here, near = process.foretell(new, RATE, np.arange(90))
+    there, also_near = process.foretell(mirrored(new), RATE, np.arange(90))
+
+    assert_allclose(mirrored(here), there, atol=1e-5)
+    assert_allclose(near, also_near, atol=1e-5)
+
+
+def test_far_away_it_knows_that_it_does_not_know(process):
+    upside_down = take(1.4, "c").features * (1.0, 1.0, -1.0)
+
+    _, nearness = process.foretell(upside_down, RATE, np.arange(90))
+
+    assert nearness.max() < 0.01
+
+
+def test_joints_that_are_hardly_known_are_left_to_others():
+    blind = replace(TAKES[0], errors=TAKES[0].errors.copy())
+    blind.errors[:, KNEE] = np.nan
+    blind.errors[::2, 3] = np.nan
+
+    made = learn_movement_process((blind, TAKES[1]), 30.0, 500, mirror=False)
+
+    assert KNEE in made.joints
+    assert len(made.points) == 90
+    both = replace(TAKES[1], errors=blind.errors)
+    assert KNEE not in learn_movement_process((blind, both), 30.0, 500, mirror=False).joints
+
+
+def test_too_few_examples_teach_nothing():
+    short = replace(TAKES[0], features=TAKES[0].features[:9], errors=TAKES[0].errors[:9])
+
+    assert learn_movement_process((short,), 30.0, 500, mirror=True) is None
+
+
+@pytest.mark.parametrize("n_frames", [1, 2, 5, 30])
+def test_short_takes_and_blocks_of_frames(process, n_frames):
+    features = take(1.4, "c").features[:n_frames]
+
+    offsets, nearness = process.foretell(features, RATE, np.arange(n_frames))
+
+    assert np.isfinite(offsets).all()
+    assert nearness.shape == (n_frames,)
+
+
+@pytest.fixture(scope="module")
+def prior():
+    return learn_residual_prior([pair(truth(speed)) for speed in (0.9, 1.6)], settings=QUICK)
+
+
+def test_between_the_frames_that_are_foretold_hardly_anything_is_lost(prior):
+    """Every second frame and straight lines; the error of the knee has cusps."""
+    calm = calm_postures(recording(seen_by_a_bad_sensor(truth(1.3))), 1 / 30)
+    few = prior.predict(calm)
+    all_frames = prior.predict(replace(calm, frame_rate=10.0))
+    still = replace(prior, movement=None)
+
+    each = still.predict(calm, ahead=False)
+    some = still.predict(calm)
+
+    assert few.offsets.shape == all_frames.offsets.shape == each.offsets.shape
+    assert_allclose(some.offsets[::2], each.offsets[::2], atol=1e-12)
+    assert_allclose(some.variances[::2], each.variances[::2], atol=1e-12)
+    assert np.abs(some.offsets - each.offsets).max() < 0.15 * np.abs(each.offsets).max()
+
+
+def test_what_goes_on_ahead_is_not_looked_at_where_it_must_not_be(prior):
+    """The first second is foretold alike whatever comes after."""
+    calm = calm_postures(recording(seen_by_a_bad_sensor(truth(1.3))), 0.0)
+    cut = replace(calm, features=calm.features[:30])
+
+    whole, begun = (prior.predict(one, ahead=False).offsets for one in (calm, cut))
+
+    assert_allclose(whole[:30], begun, atol=1e-9)
+
+
+@pytest.mark.parametrize(
+    ("change", "said"),
+    [
+        ({"mean": np.zeros(4)}, "shapes of the movements"),
+        ({"joints": np.arange(1, 21)}, "unknown joints"),
+        ({"weights": np.full((1, 1), np.nan)}, "shapes of the movements"),
+    ],
+)
+def test_damaged_movements_are_refused(prior, tmp_path, change, said):
+    path = tmp_path / "prior.npz"
+    replace(prior, movement=replace(prior.movement, **change)).save(path)
+
+    with pytest.raises(InvalidFileError, match=said):
+        load_residual_prior(path)

@@ -1,0 +1,98 @@
+"""What was lost of a take is rebuilt from the postures of clips that are like it."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from solvers.motion import Motion, resample
+from solvers.reconstruction import load_posture_library, reconstruct
+from solvers.reconstruction.posture_library import joined_postures
+from solvers.recordings import read_acclaim
+from solvers.retrieval import Clip, build_clip_library
+from solvers.workflows import postures_from_library, reconstruct_from_library
+from solvers.workflows.reconstruct_motion import postures_recording
+
+LOST = ("KneeLeft", "AnkleLeft", "FootLeft")
+
+
+@pytest.fixture(scope="module")
+def clips(request) -> dict[str, Motion]:
+    """Lying down, squats and kicks of two actors, at 30 Hz."""
+    hdm05 = request.getfixturevalue("recordings") / "mocap" / "hdm05"
+    return {
+        path.stem.removeprefix("HDM_"): resample(read_acclaim(path), 30.0)
+        for actor in ("bk", "dg")
+        for kind in ("lieDownFloor", "squat1Reps", "kickLFront1Reps")
+        for path in sorted(hdm05.glob(f"HDM_{actor}_{kind}_*_120.amc"))[:3]
+    }
+
+
+@pytest.fixture(scope="module")
+def library(clips):
+    return build_clip_library(Clip(name, motion) for name, motion in clips.items())
+
+
+@pytest.fixture
+def squat(clips):
+    """A squat whose left leg is lost in the middle, and where it truly is."""
+    name = next(name for name in clips if name.startswith("dg_squat"))
+    truth = postures_recording(clips[name])
+    positions = truth.tracks.positions.copy()
+    columns = [truth.tracks.names.index(joint) for joint in LOST]
+    middle = len(positions) // 2
+    hidden = slice(middle - 12, middle + 12)
+    positions[hidden, columns] = np.nan
+    recording = replace(truth, tracks=truth.tracks.with_positions(positions))
+    return recording, truth.tracks.positions[hidden][:, columns], hidden, columns
+
+
+def of_others(clips):
+    return [name for name in clips if name.startswith("dg")]
+
+
+def test_lost_limbs_are_nearer_than_with_what_is_shipped(clips, library, squat):
+    recording, truth, hidden, columns = squat
+
+    found = reconstruct_from_library(
+        recording, library, ignore=of_others(clips), fetch=lambda entry: clips[entry.name]
+    )
+    usual = reconstruct(recording)
+
+    errors = [
+        np.linalg.norm(one.tracks.positions[hidden][:, columns] - truth, axis=-1).mean()
+        for one in (found, usual)
+    ]
+    assert errors[0] < 0.9 * errors[1]
+    assert found.method.startswith("Learned from 9 clips of the library: bk_squat1Reps")
+
+
+def test_a_skeletons_motion_is_searched_with_as_well(clips, library):
+    name = next(iter(of_others(clips)))
+    found = postures_from_library(
+        clips[name], library, ignore=of_others(clips), fetch=lambda entry: clips[entry.name]
+    )
+    assert found.clips[0].startswith("bk_lieDownFloor")
+    assert found.postures.n_postures > load_posture_library().n_postures
+
+
+def test_without_a_clip_all_is_as_without_a_library(squat):
+    recording = squat[0]
+    empty = reconstruct_from_library(recording, build_clip_library([]))
+    usual = reconstruct(recording)
+    np.testing.assert_array_equal(empty.tracks.positions, usual.tracks.positions)
+    assert empty.method.startswith("Nothing in the library is like this take; ")
+
+
+def test_joined_postures_are_those_of_both():
+    shipped = load_posture_library()
+    part = replace(
+        shipped, directions=shipped.directions[:50], changes=shipped.changes[:50],
+        groups=shipped.groups[:50], n_seen=60, trained_on="a few",
+    )  # fmt: skip
+    joined = joined_postures(part, shipped)
+    assert joined.n_postures == shipped.n_postures + 50
+    assert joined.n_seen == shipped.n_seen + 60
+    assert joined.trained_on == f"a few, and {shipped.trained_on}"
+    np.testing.assert_array_equal(joined.directions[50:], shipped.directions)
+    assert joined.groups.shape == (joined.n_postures,)
