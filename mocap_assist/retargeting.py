@@ -114,16 +114,21 @@ def chosen_sources(source: bpy.types.Object, choices: RetargetChoices) -> tuple[
     names = [name.strip() for name in choices.actions.split(SEPARATOR) if name.strip()]
     if not names:
         raise InvalidMotionError("No action is listed. Add one to the list.")
-    listed = []
-    for name in names:
-        action = bpy.data.actions.get(name)
-        slot = None if action is None else _fitting_slot(action, source)
-        if slot is None:
-            raise InvalidMotionError(
-                f"There is no action {name} with keys for the bones of {source.name}."
-            )
-        listed.append((action, slot))
-    return tuple(listed)
+    return tuple(source_called(name, source) for name in names)
+
+
+def source_called(name: str, armature: bpy.types.Object) -> Source:
+    """Return the action of that name, and its slot that keys any of the armature's bones.
+
+    Raises InvalidMotionError where there is none.
+    """
+    action = bpy.data.actions.get(name)
+    slot = None if action is None else _fitting_slot(action, armature)
+    if slot is None:
+        raise InvalidMotionError(
+            f"There is no action {name} with keys for the bones of {armature.name}."
+        )
+    return action, slot
 
 
 def fitting_actions(armature: bpy.types.Object) -> tuple[Source, ...]:

@@ -15,6 +15,9 @@ from .retarget_choices import RetargetBundle, UnbakeBundle
 from .settings_properties import settings_from
 from .simulating import SimulateBundle
 from .solving import SolveBundle
+from .variants.choices import CrowdBundle, VaryBundle
+from .variants.properties import CLASSES as VARIANTS
+from .variants.properties import MOCAP_PG_variants
 
 
 @settings_from(CleanSettings)
@@ -67,6 +70,16 @@ class MOCAP_PG_load(bpy.types.PropertyGroup):
     """Settings of the button Append as Action."""
 
 
+@settings_from(VaryBundle)
+class MOCAP_PG_vary(bpy.types.PropertyGroup):
+    """Settings of the button Vary."""
+
+
+@settings_from(CrowdBundle)
+class MOCAP_PG_crowd(bpy.types.PropertyGroup):
+    """Settings of the button Assign to Selected."""
+
+
 class MOCAP_PG_bone_pair(bpy.types.PropertyGroup):
     """Bones of source and target that play one part of the body; `name` is the role's."""
 
@@ -112,6 +125,9 @@ class MOCAP_PG_scene(bpy.types.PropertyGroup):
     library: bpy.props.PointerProperty(type=MOCAP_PG_library)
     find: bpy.props.PointerProperty(type=MOCAP_PG_find)
     load: bpy.props.PointerProperty(type=MOCAP_PG_load)
+    vary: bpy.props.PointerProperty(type=MOCAP_PG_vary)
+    crowd: bpy.props.PointerProperty(type=MOCAP_PG_crowd)
+    variants: bpy.props.PointerProperty(type=MOCAP_PG_variants)
     bone_map: bpy.props.PointerProperty(type=MOCAP_PG_bone_map)
     checked: bpy.props.StringProperty(
         name="Checked", description="Action that was checked last, whose spots are listed"
@@ -141,6 +157,9 @@ CLASSES = (
     MOCAP_PG_library,
     MOCAP_PG_find,
     MOCAP_PG_load,
+    MOCAP_PG_vary,
+    MOCAP_PG_crowd,
+    *VARIANTS,
     MOCAP_PG_bone_pair,
     MOCAP_PG_bone_map,
     MOCAP_PG_spot,

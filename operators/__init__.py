@@ -2,18 +2,22 @@
 
 import bpy
 
+from .assign_variants import MOCAP_OT_assign_variants
 from .denoise import MOCAP_OT_denoise
+from .draw_variants import MOCAP_OT_draw_variants
 from .find_similar import MOCAP_OT_find_similar
 from .import_job import MOCAP_OT_import_job
 from .import_recording import MOCAP_OT_import_recording
 from .index_library import MOCAP_OT_index_library
 from .jump_to_spot import MOCAP_OT_jump_to_spot
+from .keep_variants import MOCAP_OT_keep_variants
 from .learn_from_matches import MOCAP_OT_learn_from_matches
 from .learn_patterns import MOCAP_OT_learn_patterns
 from .link_match import MOCAP_OT_link_match
 from .listen import MOCAP_OT_listen
 from .load_match import MOCAP_OT_load_match
 from .mark_asset import MOCAP_OT_mark_asset
+from .mark_variants import MOCAP_OT_mark_variants
 from .measure_quality import MOCAP_OT_measure_quality
 from .plant_feet import MOCAP_OT_plant_feet
 from .reconstruct import MOCAP_OT_reconstruct
@@ -22,6 +26,8 @@ from .retarget import MOCAP_OT_retarget
 from .revert_to_raw import MOCAP_OT_revert_to_raw
 from .simulate import MOCAP_OT_simulate
 from .solve_skeleton import MOCAP_OT_solve_skeleton
+from .stack_variants import MOCAP_OT_stack_variants
+from .vary import MOCAP_OT_vary
 
 OPERATORS = (
     MOCAP_OT_import_recording,
@@ -44,6 +50,12 @@ OPERATORS = (
     MOCAP_OT_link_match,
     MOCAP_OT_learn_from_matches,
     MOCAP_OT_mark_asset,
+    MOCAP_OT_vary,
+    MOCAP_OT_keep_variants,
+    MOCAP_OT_assign_variants,
+    MOCAP_OT_stack_variants,
+    MOCAP_OT_mark_variants,
+    MOCAP_OT_draw_variants,
 )
 
 

@@ -33,6 +33,8 @@ from .retarget_verbs import (
     retarget_target,
 )
 from .simulate_verb import add_simulate_options, perform_simulate
+from .vary_verb import HELP as VARY_HELP
+from .vary_verb import add_vary_options, perform_vary
 
 Bundle = TypeVar("Bundle", bound=NamedTuple)
 Said = tuple[str, dict[str, Any]]
@@ -211,6 +213,7 @@ VERBS = {
         perform_unbake,
         on_markers=False,
     ),
+    "vary": Verb(VARY_HELP, add_vary_options, perform_vary, on_markers=False),
     "find": Verb(FIND_HELP, add_find_options, perform_find, writes=False, check=check_find),
 }
 """A new verb is a new entry here."""

@@ -1,6 +1,7 @@
 """An action as an asset: with tags, a catalog and a picture of what it does."""
 
 import json
+from collections.abc import Iterable
 from pathlib import Path
 
 import bpy
@@ -14,7 +15,7 @@ from ..scene.armature_read import read_take
 from ..selection import played_source, selected_armature
 from .catalogs import catalog_file, ensure_catalog
 from .loading import CLIP
-from .previews import as_blender_wants
+from .previews import give_picture
 
 
 def why_not_mark(context: bpy.types.Context) -> str:
@@ -43,15 +44,19 @@ def mark_played(context: bpy.types.Context, tags: str, catalog: str) -> str:
     """
     armature = selected_armature(context)
     action, slot = played_source(armature)
-    number = _catalog(catalog) if catalog.strip() else ""
+    mark(action, [*clip_tags(action), *tags.split(",")], catalog_number(catalog))
+    pictured = _picture(armature, action, slot, context.scene)
+    return f"{action.name} is an asset{'' if pictured else ', without a picture of a body'}."
+
+
+def mark(action: bpy.types.Action, tags: Iterable[str], number: str) -> None:
+    """Let an action be an asset, with tags and in the catalog of that number, if any."""
     action.asset_mark()
-    for tag in [*clip_tags(action), *tags.split(",")]:
+    for tag in tags:
         if tag.strip():
             action.asset_data.tags.new(tag.strip(), skip_if_exists=True)
     if number:
         action.asset_data.catalog_id = number
-    pictured = _picture(armature, action, slot, context.scene)
-    return f"{action.name} is an asset{'' if pictured else ', without a picture of a body'}."
 
 
 def clip_tags(action: bpy.types.Action) -> list[str]:
@@ -63,7 +68,16 @@ def clip_tags(action: bpy.types.Action) -> list[str]:
     return [str(tag) for tag in tags]
 
 
-def _catalog(catalog: str) -> str:
+def catalog_number(catalog: str) -> str:
+    """Return the number of a catalog beside the open file, which is made; empty for none.
+
+    Raises
+    ------
+    InvalidFileError
+        The file was never saved, or its folder cannot be written.
+    """
+    if not catalog.strip():
+        return ""
     if not bpy.data.filepath:
         raise InvalidFileError("Save the file first: its catalogs are kept beside it.")
     return ensure_catalog(catalog_file(Path(bpy.data.filepath).parent), catalog)
@@ -82,8 +96,5 @@ def _picture(
     except InvalidMotionError:
         return False
     reach = np.nanmax(np.linalg.norm(body.postures, axis=-1))
-    pixels = thumbnail(body.postures / max(float(reach), 1e-6))
-    preview = action.preview_ensure()
-    preview.image_size = pixels.shape[1::-1]
-    preview.image_pixels_float.foreach_set(as_blender_wants(pixels).ravel())
+    give_picture(action, thumbnail(body.postures / max(float(reach), 1e-6)))
     return True

@@ -37,6 +37,13 @@ def as_blender_wants(pixels: NDArray[np.uint8]) -> NDArray[np.float32]:
     return np.concatenate([colors, opaque], axis=-1)
 
 
+def give_picture(action: bpy.types.Action, pixels: NDArray[np.uint8]) -> None:
+    """Let pixels, shape (height, width, 3), be the preview of an action."""
+    preview = action.preview_ensure()
+    preview.image_size = pixels.shape[1::-1]
+    preview.image_pixels_float.foreach_set(as_blender_wants(pixels).ravel())
+
+
 def register() -> None:
     """Make room for icons."""
     _icons.append(bpy.utils.previews.new())

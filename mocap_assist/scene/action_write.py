@@ -10,7 +10,7 @@ from ..jobs.controls import BoneKeys
 from . import compat
 from .bone_channels import bone_path
 from .compat import Source
-from .curves import CONSTANT, write_values
+from .curves import CONSTANT, deselect, write_first
 from .rotation_modes import channels_from_quaternions, rotation_property
 
 Array = NDArray[np.float64]
@@ -66,7 +66,8 @@ def _write(
 ) -> None:
     for index, column in enumerate(values.T):
         curve = compat.new_curve(bag, bone_path(bone, prop), index, bone)
-        write_values(curve, frames, column)
+        write_first(curve, frames, column)
+        deselect(curve)
 
 
 def _write_switches(
@@ -80,4 +81,5 @@ def _write_switches(
             continue
         path = bone_path(bone, "")[:-1] + f'["{bpy.utils.escape_identifier(prop)}"]'
         curve = compat.new_curve(bag, path, 0, bone)
-        write_values(curve, frames[:1], np.array([value]), interpolation=CONSTANT)
+        write_first(curve, frames[:1], np.array([value]), interpolation=CONSTANT)
+        deselect(curve)

@@ -85,6 +85,13 @@ def write_first(
     curve.update()
 
 
+def deselect(curve: bpy.types.FCurve) -> None:
+    """Let no key of a curve be selected: Blender selects those that are new."""
+    points = curve.keyframe_points
+    for name in SELECTED:
+        points.foreach_set(name, np.zeros(len(points), np.bool_))
+
+
 def write_values(
     curve: bpy.types.FCurve,
     frames: Array,

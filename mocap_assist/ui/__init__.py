@@ -14,6 +14,7 @@ from . import (
     sidebar,
     source_list,
     translations,
+    vary_panel,
 )
 
 PARTS = (
@@ -24,6 +25,7 @@ PARTS = (
     retarget_panel,
     source_list,
     library_panel,
+    vary_panel,
     sidebar,
     menus,
     import_menu,

@@ -120,13 +120,14 @@ def _draw_unbake(layout: bpy.types.UILayout, context: bpy.types.Context) -> None
 
 class MOCAP_OT_tick_action(bpy.types.Operator):
     bl_idname = TICK
-    bl_label = "Retarget This Action"
-    bl_description = "Retarget this action too, or no longer"
+    bl_label = "Choose This Action"
+    bl_description = "Take this action too, or no longer"
     bl_options: ClassVar = {"INTERNAL", "UNDO"}
 
     action: bpy.props.StringProperty(
         name="Action", description="Name of the action", options={"SKIP_SAVE"}
     )
+    group: bpy.props.StringProperty(default="retarget", options={"HIDDEN", "SKIP_SAVE"})
 
     def execute(self, context: bpy.types.Context) -> set[str]:
         if SEPARATOR in self.action:
@@ -134,7 +135,7 @@ class MOCAP_OT_tick_action(bpy.types.Operator):
                 {"ERROR"}, f"Rename {self.action}: {SEPARATOR} parts names in the list."
             )
             return {"CANCELLED"}
-        shown = context.scene.mocap_assist.retarget
+        shown = getattr(context.scene.mocap_assist, self.group)
         names = listed(shown.actions)
         others = [name for name in names if name != self.action]
         shown.actions = joined(others if len(others) < len(names) else [*names, self.action])

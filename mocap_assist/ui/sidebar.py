@@ -14,6 +14,7 @@ from .physics_panel import PhysicsPanel
 from .preferences import preferred
 from .reconstruct_panel import ReconstructPanel
 from .retarget_panel import RetargetPanel
+from .vary_panel import VaryPanel
 
 EDITORS = {"": "VIEW_3D", "_graph": "GRAPH_EDITOR", "_dopesheet": "DOPESHEET_EDITOR"}
 TAB = "Mocap"
@@ -40,6 +41,7 @@ BODIES = (
     MarkersPanel,
     RetargetPanel,
     LibraryPanel,
+    VaryPanel,
     PerformPanel,
 )
 PANELS = [panel for body in BODIES for panel in _in_every_editor(body)]

@@ -1,0 +1,48 @@
+"""The verb `vary`: what the button Vary does."""
+
+import argparse
+from pathlib import Path
+from typing import Any, get_type_hints
+
+import bpy
+
+from ...solvers.command_line import arguments_from, settings_from_arguments
+from ...solvers.progress import Progress, within
+from ..jobs.job import run
+from ..variants.choices import VaryBundle
+from ..variants.listing import chosen
+from ..variants.reading import read_varying
+from ..variants.sheet import write_sheet
+from ..variants.writing import VariantsWriter
+
+HELP = "Make many new actions of a few of one behaviour, each different."
+
+
+def add_vary_options(parser: argparse.ArgumentParser) -> None:
+    """Add the options of `vary`; those of the button, and the contact sheet."""
+    parser.add_argument(
+        "--sheet", type=Path, metavar="FILE", help="draw all variants to a PNG file"
+    )
+    arguments_from(parser, *get_type_hints(VaryBundle).values())
+
+
+def perform_vary(
+    scene: bpy.types.Scene,
+    armature: bpy.types.Object,
+    arguments: argparse.Namespace,
+    progress: Progress,
+) -> tuple[str, dict[str, Any]]:
+    """Make variants of the armature's actions; it plays the first."""
+    classes = get_type_hints(VaryBundle)
+    settings = VaryBundle(**{
+        name: settings_from_arguments(arguments, each) for name, each in classes.items()
+    })
+    varied = run(read_varying(scene, armature, settings), within(progress, 0.0, 0.8))
+    writer, said = VariantsWriter(scene, armature, settings, varied), ""
+    while not said:
+        said = writer.step(scene, armature)
+        within(progress, 0.8, 1.0)(writer.fraction, "Writing")
+    if arguments.sheet is not None:
+        said += " " + write_sheet(scene, arguments.sheet)
+    names = [action.name for action in chosen(scene)]
+    return said, {"actions": names, "remarks": list(varied.remarks)}

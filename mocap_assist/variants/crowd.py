@@ -1,0 +1,149 @@
+"""Variants for many armatures: who plays which, when it begins, and where it stands."""
+
+from typing import NamedTuple
+
+import bpy
+import numpy as np
+from mathutils import Euler
+
+from ...solvers.errors import InvalidMotionError
+from ..library.nla import add_strip
+from ..scene.armature_write import check_writable
+from ..scene.scene_rate import scene_rate
+from ..scene.units import unit_of
+from . import listing
+from .choices import CrowdBundle, CrowdChoices
+from .tags import is_variant
+
+
+class Member(NamedTuple):
+    """What one armature of a crowd does."""
+
+    variant: int
+    delay: float
+    """Seconds."""
+    place: tuple[float, float]
+    """Metres from where it stands."""
+    turn: float
+    """Radians."""
+
+
+def draw_members(n_members: int, n_variants: int, choices: CrowdChoices) -> list[Member]:
+    """Draw a crowd: no variant comes again before all were given, nobody stands close by rule.
+
+    The first members stay the same however many follow.
+    """
+    members: list[Member] = []
+    orders: list[int] = []
+    for place in range(n_members):
+        rng = np.random.default_rng([choices.crowd_seed, place])
+        if not orders:
+            whole = np.random.default_rng([choices.crowd_seed, place, n_variants])
+            orders = whole.permutation(n_variants).tolist()
+        distance, angle, delay, turn = rng.uniform(size=4)
+        way = choices.spread * np.sqrt(distance)  # even over the disc
+        members.append(
+            Member(
+                orders.pop(0),
+                float(choices.delay * delay),
+                (
+                    float(way * np.cos(2 * np.pi * angle)),
+                    float(way * np.sin(2 * np.pi * angle)),
+                ),
+                float(choices.turn * (2.0 * turn - 1.0)),
+            )
+        )
+    return members
+
+
+def why_not_assign(context: bpy.types.Context) -> str:
+    """Return why the variants cannot be given to anybody, or nothing."""
+    if reason := listing.why_none(context):
+        return reason
+    if not crowd_of(context):
+        return "Select the armatures that are to play the variants."
+    return ""
+
+
+def crowd_of(context: bpy.types.Context) -> list[bpy.types.Object]:
+    """Return the selected armatures, by name."""
+    selected = [each for each in context.view_layer.objects if each.select_get()]
+    return sorted(
+        (each for each in selected if each.type == "ARMATURE"), key=lambda each: each.name
+    )
+
+
+def assign(
+    context: bpy.types.Context, armatures: list[bpy.types.Object], settings: CrowdBundle
+) -> str:
+    """Give each armature a variant on an NLA track of its own; return a sentence.
+
+    A member is shifted and turned by its delta transforms, so that a second press replaces
+    what the first did, and its own location stays free.
+
+    Raises
+    ------
+    InvalidMotionError
+        Somebody cannot play them; nothing is changed then.
+    """
+    scene, actions = context.scene, listing.chosen(context.scene)
+    members = draw_members(len(armatures), len(actions), settings.choices)
+    given = []
+    for armature, member in zip(armatures, members, strict=True):
+        check_writable(armature)
+        given.append(listing.source_for(armature, actions[member.variant]))
+    ours = {action for action in bpy.data.actions if is_variant(action)}
+    for armature, member, (action, slot) in zip(armatures, members, given, strict=True):
+        _clear(armature, ours)
+        frame = scene.frame_current + round(member.delay * scene_rate(scene))
+        strip = add_strip(armature, action, slot, frame, 1.0)
+        strip.extrapolation = "HOLD"  # before it begins a member waits in its first pose
+        _stand(armature, member, unit_of(scene))
+    shown = "1 armature plays" if len(armatures) == 1 else f"{len(armatures)} armatures play"
+    return f"{shown} {min(len(armatures), len(actions))} variants, on NLA tracks."
+
+
+def _clear(armature: bpy.types.Object, ours: set[bpy.types.Action]) -> None:
+    """Take away what of the variants the armature played before."""
+    animation = armature.animation_data
+    if animation is None:
+        return
+    if animation.action in ours:
+        animation.action = None
+    for track in list(animation.nla_tracks):
+        if len(track.strips) and all(strip.action in ours for strip in track.strips):
+            animation.nla_tracks.remove(track)
+
+
+def _stand(armature: bpy.types.Object, member: Member, metres: float) -> None:
+    armature.delta_location = (*(each / metres for each in member.place), 0.0)
+    turn = Euler((0.0, 0.0, member.turn))
+    armature.delta_rotation_euler = turn
+    armature.delta_rotation_quaternion = turn.to_quaternion()
+
+
+def why_not_stack(context: bpy.types.Context) -> str:
+    """Return why the variants cannot become strips, or nothing."""
+    if reason := listing.why_none(context):
+        return reason
+    armature = listing.armature_of(context.scene)
+    if armature is None:
+        return "The armature that the variants were made for was deleted. Press Vary again."
+    try:
+        check_writable(armature)
+    except InvalidMotionError as error:
+        return str(error)
+    return ""
+
+
+def stack(context: bpy.types.Context) -> str:
+    """Put the variants on NLA tracks of their armature, one after the other; say so."""
+    scene = context.scene
+    armature, actions = listing.armature_of(scene), listing.chosen(scene)
+    sources = [listing.source_for(armature, action) for action in actions]
+    _clear(armature, set(actions))
+    frame = scene.frame_current
+    for action, slot in sources:
+        strip = add_strip(armature, action, slot, frame, 1.0)
+        frame = int(np.ceil(strip.frame_end)) + 1
+    return f"{len(actions)} strips on the NLA of {armature.name}."

@@ -1,0 +1,103 @@
+"""The keys of a variant, in the channels of the bones of its armature."""
+
+from collections.abc import Mapping, Sequence
+from typing import NamedTuple
+
+import bpy
+import numpy as np
+from numpy.typing import NDArray
+
+from ...solvers.motion import Motion
+from ..jobs.controls import BoneKeys
+from ..scene import compat
+from ..scene.bone_channels import animated_curves
+from ..scene.compat import Source
+from ..scene.curves import CONSTANT, deselect, write_first
+from ..scene.rig import Placement
+from ..scene.take import ArmatureTake, Part, basis_rotations, root_locations
+
+Array = NDArray[np.float64]
+STILL = 1e-6
+
+
+class Held(NamedTuple):
+    """A channel that no variant changes, and its value at the example's first frame."""
+
+    path: str
+    index: int
+    group: str
+    value: float
+
+
+class Stage(NamedTuple):
+    """The first example, of which all that is not the body's motion is taken."""
+
+    take: ArmatureTake
+    turned: frozenset[int]
+    """Bones whose turn any of the examples keys."""
+    held: tuple[Held, ...]
+
+    @classmethod
+    def of(cls, takes: Sequence[ArmatureTake], first: Source) -> "Stage":
+        """Take it from the examples."""
+        turned = {
+            index
+            for take in takes
+            for index, each in enumerate(take.channels)
+            if each.rotation_keyed
+        }
+        start = takes[0].frames[:1]
+        held = tuple(
+            Held(path, index, _group(channel.curve), float(channel.values(start)[0]))
+            for (path, index), channel in animated_curves(*first).items()
+            if channel.is_on
+        )
+        return cls(takes[0], frozenset(turned), held)
+
+    def frames(self, n_frames: int) -> Array:
+        """Return scene frames from the example's first on: as far apart as there, or whole."""
+        grid = self.take.grid
+        return np.asarray(grid.frames[0] + max(grid.step, 1.0) * np.arange(n_frames))
+
+    def keys(self, motion: Motion) -> Mapping[str, BoneKeys]:
+        """Return the channels of the bones that move the body as a motion does."""
+        rig, body = self.take.rig, self.take.parts[0]
+        carrier = Placement(
+            body.carrier.rotations[:1], body.carrier.origins[:1], body.carrier.scale
+        )
+        part = Part(motion, body.bones, carrier)
+        turns = basis_rotations(part, rig, self.take.rest)
+        root = body.bones[0]
+        return {
+            rig.bones[bone]: BoneKeys(
+                _once_if_still(turns[bone]),
+                root_locations(part, rig) if bone == root else None,
+            )
+            for bone in turns
+            if bone in self.turned or bone == root
+        }
+
+
+def _once_if_still(rotations: Array) -> Array:
+    """Return rotations, (n_frames, 4), of which only the first is kept if nothing turns."""
+    if np.abs(rotations - rotations[:1]).max() > STILL:
+        return rotations
+    kept = np.full_like(rotations, np.nan)
+    kept[0] = rotations[0]
+    return kept
+
+
+def hold_others(action: bpy.types.Action, slot: bpy.types.ActionSlot, stage: Stage) -> None:
+    """Give one key to each channel that the example has, and the action has not."""
+    bag = compat.channelbag(action, slot, ensure=True)
+    there = {curve.data_path for curve in bag.fcurves}
+    start = stage.take.frames[:1]
+    for path, index, group, value in stage.held:
+        if path not in there:
+            curve = compat.new_curve(bag, path, index, group)
+            write_first(curve, start, np.array([value]), interpolation=CONSTANT)
+            deselect(curve)
+
+
+def _group(curve: bpy.types.FCurve) -> str:
+    return str(curve.group.name) if curve.group is not None else "Object"

@@ -1,0 +1,20 @@
+"""Variants as assets."""
+
+import bpy
+
+from ..library.marking import catalog_number, clip_tags, mark
+from . import listing
+
+TAG = "variant"
+
+
+def mark_variants(scene: bpy.types.Scene, tags: str, catalog: str) -> str:
+    """Let the picked variants, or all, be assets; return a sentence.
+
+    Raises InvalidFileError where a catalog was named, and there is no place for it.
+    """
+    number = catalog_number(catalog)
+    actions = listing.chosen(scene)
+    for action in actions:
+        mark(action, [TAG, *clip_tags(action), *tags.split(",")], number)
+    return f"{len(actions)} variants are assets."

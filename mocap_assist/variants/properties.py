@@ -1,0 +1,29 @@
+"""The variants that the sidebar lists; a .blend keeps them."""
+
+import bpy
+
+from . import listing
+
+
+class MOCAP_PG_variant(bpy.types.PropertyGroup):
+    """One variant; without an action it was deleted."""
+
+    action: bpy.props.PointerProperty(type=bpy.types.Action)
+    picked: bpy.props.BoolProperty(
+        name="Picked", description="One of those that you like", options=set()
+    )
+
+
+class MOCAP_PG_variants(bpy.types.PropertyGroup):
+    """What Vary made last, and for which armature."""
+
+    armature: bpy.props.PointerProperty(type=bpy.types.Object)
+    rows: bpy.props.CollectionProperty(type=MOCAP_PG_variant)
+    active: bpy.props.IntProperty(
+        name="Variant",
+        description="Variant that is chosen; the armature plays it",
+        update=listing.play_active,
+    )
+
+
+CLASSES = (MOCAP_PG_variant, MOCAP_PG_variants)

@@ -1,0 +1,39 @@
+"""A picture of all variants, one below the other."""
+
+from functools import partial
+from pathlib import Path
+
+import bpy
+
+from ...solvers.errors import InvalidFileError
+from ..jobs.job import run
+from ..jobs.varying import draw_sheet
+from ..scene.armature_read import read_take
+from . import listing
+
+MOST = 50
+
+
+def write_sheet(scene: bpy.types.Scene, path: Path) -> str:
+    """Draw the picked variants, or all, to a PNG file; return a sentence.
+
+    Raises
+    ------
+    InvalidFileError
+        There is no such folder.
+    """
+    if not path.resolve().parent.is_dir():
+        raise InvalidFileError(f"There is no folder {path.resolve().parent} to write to.")
+    armature, actions = listing.armature_of(scene), listing.chosen(scene)
+    motions = [
+        (
+            action.name,
+            read_take(armature, scene, source=listing.source_for(armature, action))
+            .parts[0]
+            .motion,
+        )
+        for action in actions[:MOST]
+    ]
+    n_drawn = run(partial(draw_sheet, motions, str(path)))
+    rest = f"; the first {MOST} of {len(actions)}" if len(actions) > MOST else ""
+    return f"{n_drawn} variants in {path.name}{rest}."

@@ -1,0 +1,58 @@
+"""How a variant is known: by what its action says of itself."""
+
+import json
+import re
+from typing import Any
+
+import bpy
+
+VARIANT = "mocap_assist_variant"
+"""Custom property of actions that Vary made: of which, its number, and the seed."""
+BETWEEN = ".variant "
+NUMBER = re.compile(re.escape(BETWEEN) + r"(\d+)(\.\d{3,})?$")
+FEWEST_DIGITS = 2
+
+
+def tag(action: bpy.types.Action, examples: list[str], number: int, seed: int) -> None:
+    """Let an action say what it is a variant of."""
+    said = {"examples": examples, "number": number, "seed": seed}
+    action[VARIANT] = json.dumps(said, ensure_ascii=False)
+
+
+def is_variant(action: bpy.types.Action) -> bool:
+    """Whether Vary made it."""
+    return VARIANT in action
+
+
+def examples_of(action: bpy.types.Action) -> list[str]:
+    """Return the names of the actions that it is a variant of; nothing for others."""
+    names = _said(action).get("examples", [])
+    return [str(name) for name in names] if isinstance(names, list) else []
+
+
+def short_name(action: bpy.types.Action) -> str:
+    """Return what tells a variant from the others of its kind: variant 01."""
+    _, between, number = action.name.rpartition(BETWEEN)
+    return f"{between}{number}".removeprefix(".")
+
+
+def names_for(example: bpy.types.Action, n_variants: int) -> list[str]:
+    """Return names for new variants of an action: their numbers follow those there are."""
+    stem = NUMBER.sub("", example.name).removesuffix(".clean")
+    there = [
+        int(found[1])
+        for action in bpy.data.actions
+        if action.name.startswith(stem + BETWEEN) and (found := NUMBER.search(action.name))
+    ]
+    first = max(there, default=0) + 1
+    digits = max(len(str(first + n_variants - 1)), FEWEST_DIGITS)
+    numbers = range(first, first + n_variants)
+    return [f"{stem}{BETWEEN}{number:0{digits}}" for number in numbers]
+
+
+def _said(action: bpy.types.Action) -> dict[str, Any]:
+    try:
+        said = json.loads(action.get(VARIANT, "{}"))
+    except (TypeError, ValueError):  # edited by hand
+        return {}
+    return said if isinstance(said, dict) else {}

@@ -1,0 +1,42 @@
+"""Button: a crowd plays the variants."""
+
+from typing import ClassVar
+
+import bpy
+
+from ..mocap_assist.settings_properties import settings_from
+from ..mocap_assist.variants.choices import CrowdBundle
+from ..mocap_assist.variants.crowd import assign, crowd_of, why_not_assign
+from ..solvers.errors import MocapAssistError
+
+
+@settings_from(CrowdBundle)
+class MOCAP_OT_assign_variants(bpy.types.Operator):
+    bl_idname = "mocap_assist.assign_variants"
+    bl_label = "Assign to Selected"
+    bl_description = (
+        "Let each selected armature play another of the picked variants, or of all, on an NLA"
+        " track, from another moment on and beside where it stands"
+    )
+    bl_options: ClassVar = {"REGISTER", "UNDO"}
+
+    @classmethod
+    def poll(cls, context: bpy.types.Context) -> bool:
+        if reason := why_not_assign(context):
+            cls.poll_message_set(reason)
+        return not reason
+
+    def invoke(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
+        for name in type(self).setting_names:
+            if not self.properties.is_property_set(name):
+                setattr(self, name, getattr(context.scene.mocap_assist.crowd, name))
+        return self.execute(context)
+
+    def execute(self, context: bpy.types.Context) -> set[str]:
+        try:
+            said = assign(context, crowd_of(context), self.settings())
+        except MocapAssistError as error:
+            self.report({"ERROR"}, str(error))
+            return {"CANCELLED"}
+        self.report({"INFO"}, said)
+        return {"FINISHED"}

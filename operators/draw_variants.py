@@ -1,0 +1,48 @@
+"""Button: a picture of all variants."""
+
+from pathlib import Path
+from typing import ClassVar
+
+import bpy
+
+from ..mocap_assist.variants.crowd import why_not_stack
+from ..mocap_assist.variants.sheet import write_sheet
+from ..solvers.errors import MocapAssistError
+
+PNG = ".png"
+
+
+class MOCAP_OT_draw_variants(bpy.types.Operator):
+    bl_idname = "mocap_assist.draw_variants"
+    bl_label = "Contact Sheet"
+    bl_description = (
+        "Draw the picked variants, or all, as stick figures, one below the other, to a PNG file"
+    )
+    bl_options: ClassVar = {"REGISTER"}
+
+    filepath: bpy.props.StringProperty(
+        name="File", description="PNG file to write", subtype="FILE_PATH", options={"SKIP_SAVE"}
+    )
+    filter_glob: bpy.props.StringProperty(default=f"*{PNG}", options={"HIDDEN", "SKIP_SAVE"})
+    check_existing: bpy.props.BoolProperty(default=True, options={"HIDDEN", "SKIP_SAVE"})
+
+    @classmethod
+    def poll(cls, context: bpy.types.Context) -> bool:
+        if reason := why_not_stack(context):
+            cls.poll_message_set(reason)
+        return not reason
+
+    def invoke(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
+        if not self.filepath:
+            self.filepath = bpy.path.abspath(f"//variants{PNG}")
+        context.window_manager.fileselect_add(self)
+        return {"RUNNING_MODAL"}
+
+    def execute(self, context: bpy.types.Context) -> set[str]:
+        path = Path(bpy.path.abspath(self.filepath)).with_suffix(PNG)
+        try:
+            self.report({"INFO"}, write_sheet(context.scene, path))
+        except (MocapAssistError, OSError) as error:
+            self.report({"ERROR"}, str(error))
+            return {"CANCELLED"}
+        return {"FINISHED"}

@@ -1,0 +1,21 @@
+"""Button: many new motions of a few."""
+
+import bpy
+
+from ..mocap_assist.settings_properties import settings_from
+from ..mocap_assist.sliced_operator import SlicedOperator
+from ..mocap_assist.variants.choices import VaryBundle
+from ..mocap_assist.variants.reading import read_varying, why_not_vary
+from ..mocap_assist.variants.writing import VariantsWriter
+
+
+@settings_from(VaryBundle)
+class MOCAP_OT_vary(SlicedOperator, bpy.types.Operator):
+    bl_idname = "mocap_assist.vary"
+    bl_label = "Vary"
+    bl_description = (
+        "Make many new actions of one to ten of one behaviour: each different in space and in"
+        " time, natural, and with planted feet. The same seed makes the same ones"
+    )
+    settings_group = "vary"
+    why_not, read_scene, write_scene = why_not_vary, read_varying, VariantsWriter

@@ -1,0 +1,76 @@
+"""Variants that come into the scene a few at a time, while Blender only pretends to wait."""
+
+import pytest
+from modal_events import event, nothing_is_left, wait
+
+
+@pytest.fixture
+def button(load, window, walker, monkeypatch):
+    """Vary, pressed for two walks; one variant is written between two looks."""
+    sliced, acts = load("mocap_assist.sliced_operator"), load("operators.vary")
+    choices = load("mocap_assist.variants.choices")
+    monkeypatch.setattr(sliced, "AT_ONCE", 0.0)
+    settings = choices.VaryBundle(
+        choices.VaryChoices(actions="walk_1; walk_2", n_variants=4, plant_feet=False),
+        choices.VarySettings(),
+        choices.PlantSettings(),
+    )
+    kind = acts.MOCAP_OT_vary
+
+    class Button(sliced.SlicedOperator):
+        bl_idname, settings_group = kind.bl_idname, kind.settings_group
+        why_not, read_scene, write_scene = kind.why_not, kind.read_scene, kind.write_scene
+        poll_message_set = window.reports.append
+
+        def prepare(self, context):
+            pass
+
+        def settings(self):
+            return settings
+
+        def report(self, kind, message):
+            window.reports.append((kind, message))
+
+    pressed = Button()
+    assert pressed.invoke(window.context, None) == {"RUNNING_MODAL"}
+    return pressed
+
+
+def n_variants(blank):
+    return sum(".variant" in each.name for each in blank.data.actions)
+
+
+def test_they_come_one_by_one_and_the_last_ends_it(button, window, blank):
+    seen = []
+
+    def look():
+        seen.append(n_variants(blank))
+        return False
+
+    assert wait(button, window, look) == {"FINISHED"}
+
+    assert next(n for n in seen if n) == 1 and {1, 2, 3} <= set(seen)
+    assert n_variants(blank) == 4 and nothing_is_left(window)
+    assert window.reports[-1] == ({"INFO"}, "4 variants of 2 actions.")
+
+
+@pytest.mark.parametrize("n_written", [0, 2])
+def test_esc_leaves_nothing_behind(button, window, blank, walker, n_written):
+    played = walker.animation_data.action
+    wait(button, window, lambda: n_variants(blank) == n_written)
+
+    outcome = button.modal(window.context, event("ESC", "PRESS"))
+
+    assert outcome == {"CANCELLED"} and window.reports[-1] == ({"INFO"}, "Cancelled.")
+    assert n_variants(blank) == 0 and nothing_is_left(window)
+    assert walker.animation_data.action == played
+
+
+def test_an_example_that_is_changed_or_deleted_meanwhile(button, window, blank):
+    wait(button, window, lambda: n_variants(blank) == 2)
+    blank.data.actions.remove(blank.data.actions["walk_1"])
+
+    assert wait(button, window) == {"CANCELLED"}
+
+    assert "walk_1 was deleted meanwhile" in window.reports[-1][1]
+    assert n_variants(blank) == 0 and nothing_is_left(window)

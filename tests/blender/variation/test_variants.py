@@ -1,0 +1,160 @@
+"""What becomes of variants: picked, given to a crowd, strips, assets, a contact sheet."""
+
+import numpy as np
+import pytest
+
+
+@pytest.fixture
+def variants(vary, blank):
+    """The list of four variants."""
+    vary()
+    return blank.context.scene.mocap_assist.variants
+
+
+@pytest.fixture
+def crowd(blank, variants, walker):
+    """The walker and four more of its kind, all selected."""
+    members = [walker]
+    for _ in range(4):
+        member = walker.copy()
+        member.animation_data_clear()
+        member.location.x += 2.0 * len(members)
+        blank.context.scene.collection.objects.link(member)
+        members.append(member)
+    for member in members:
+        member.select_set(True)
+    return members
+
+
+def test_a_click_plays_a_variant_and_each_has_its_picture(variants, walker):
+    assert [row.name for row in variants.rows] == [f"walk_1.variant 0{n}" for n in (1, 2, 3, 4)]
+    for place in (2, 0, 3):
+        variants.active = place
+        assert walker.animation_data.action == variants.rows[place].action
+        assert walker.animation_data.action_slot is not None
+    pictures = []
+    for row in variants.rows:
+        preview = row.action.preview
+        pixels = np.empty(4 * preview.image_size[0] * preview.image_size[1], np.float32)
+        preview.image_pixels_float.foreach_get(pixels)
+        pictures.append(pixels)
+    assert len({picture.tobytes() for picture in pictures}) == 4
+
+
+def test_keep_picked_deletes_the_others_but_what_is_used(variants, walker, blank):
+    assert not blank.ops.mocap_assist.keep_variants.poll()
+    other = blank.data.objects.new("Other", walker.data)
+    other.animation_data_create().action = variants.rows[3].action
+    variants.rows[1].picked = True
+
+    assert blank.ops.mocap_assist.keep_variants() == {"FINISHED"}
+
+    left = [each.name for each in blank.data.actions if ".variant" in each.name]
+    assert left == ["walk_1.variant 02", "walk_1.variant 04"]
+    assert [row.name for row in variants.rows] == ["walk_1.variant 02"]
+    assert walker.animation_data.action.name == "walk_1.variant 02"
+
+
+def placed(crowd):
+    return [
+        (
+            [strip.action.name for track in each.animation_data.nla_tracks
+             for strip in track.strips],
+            each.animation_data.nla_tracks[-1].strips[0].frame_start,
+            tuple(each.delta_location), each.delta_rotation_euler.z,
+        )
+        for each in crowd
+    ]  # fmt: skip
+
+
+def test_a_crowd_plays_them_at_other_times_and_places_the_same_for_a_seed(
+    crowd, blank, walker, poses
+):
+    where = [tuple(each.location) for each in crowd]
+    settings = {"delay": 2.0, "spread": 0.5, "turn": 0.3}
+
+    assert blank.ops.mocap_assist.assign_variants(**settings) == {"FINISHED"}
+
+    first = placed(crowd)
+    played = [strips[-1] for strips, *_ in first]
+    assert len(set(played[:4])) == 4 and played[4] in played[:4]
+    starts = [start for _, start, *_ in first]
+    assert len(set(starts)) > 2 and all(1 <= start <= 61 for start in starts)
+    shifts = [np.hypot(*place[:2]) for *_, place, _ in first]
+    assert len(set(shifts)) == 5 and max(shifts) <= 0.5
+    assert [tuple(each.location) for each in crowd] == where
+    assert not np.allclose(*(poses(crowd[1], [frame])["Hips"][0] for frame in (70, 80)))
+    blank.context.scene.frame_set(1)
+    for seed, same in ((0, True), (1, False), (0, True)):
+        blank.ops.mocap_assist.assign_variants(crowd_seed=seed, **settings)
+        assert (placed(crowd) == first) == same
+    blank.ops.mocap_assist.assign_variants(delay=0.0, spread=0.0, turn=0.0)
+    assert all(place == (0.0, 0.0, 0.0) and turn == 0.0 for *_, place, turn in placed(crowd))
+
+
+def test_somebody_with_other_bones_is_said_and_nobody_gets_anything(
+    crowd, make_armature, blank
+):
+    stranger = make_armature(bones={"Wheel": (None, (0, 0, 0), (0, 0, 1), False)}, name="Car")
+    stranger.select_set(True)
+
+    with pytest.raises(RuntimeError, match="Car has not the bones of walk_1"):
+        blank.ops.mocap_assist.assign_variants()
+
+    assert crowd[1].animation_data is None
+
+
+def test_strips_follow_one_another(variants, walker, blank):
+    for place in (0, 2):
+        variants.rows[place].picked = True
+    blank.context.scene.frame_set(10)
+
+    assert blank.ops.mocap_assist.stack_variants() == {"FINISHED"}
+
+    strips = [track.strips[0] for track in walker.animation_data.nla_tracks]
+    assert [strip.action.name[-2:] for strip in strips] == ["01", "03"]
+    assert strips[0].frame_start == 10 and strips[1].frame_start > strips[0].frame_end
+    assert walker.animation_data.action is None
+
+
+def test_assets_with_tags_and_a_sheet(variants, blank, tmp_path):
+    variants.rows[2].picked = True
+    blank.ops.wm.save_as_mainfile(filepath=str(tmp_path / "shot.blend"))
+
+    assert blank.ops.mocap_assist.mark_variants(tags="crowd", catalog="Walks") == {"FINISHED"}
+    sheet = tmp_path / "sheet.png"
+    assert blank.ops.mocap_assist.draw_variants(filepath=str(sheet)) == {"FINISHED"}
+
+    assets = [each for each in blank.data.actions if each.asset_data is not None]
+    assert [each.name for each in assets] == ["walk_1.variant 03"]
+    assert {tag.name for tag in assets[0].asset_data.tags} == {"variant", "crowd"}
+    assert "Walks" in (tmp_path / "blender_assets.cats.txt").read_text()
+    assert 100 < blank.data.images.load(str(sheet)).size[1] < 350  # one row
+    with pytest.raises(RuntimeError, match="There is no folder"):
+        blank.ops.mocap_assist.draw_variants(filepath=str(tmp_path / "no" / "sheet.png"))
+
+
+def test_a_saved_file_keeps_the_list_and_the_pictures(variants, blank, tmp_path):
+    blank.ops.wm.save_as_mainfile(filepath=str(tmp_path / "shot.blend"))
+    blank.ops.wm.open_mainfile(filepath=str(tmp_path / "shot.blend"))
+
+    rows = blank.context.scene.mocap_assist.variants.rows
+    assert [row.action.name for row in rows][:1] == ["walk_1.variant 01"]
+    assert tuple(rows[3].action.preview.image_size) == (128, 128)
+
+
+def test_the_panel_shows_them_and_what_is_missing(blank, draw, walker, vary):
+    shown = draw("MOCAP_PT_vary")
+    assert "mocap_assist.vary" in shown and "mocap_assist.keep_variants" not in shown
+
+    vary(n_variants=2)
+
+    shown = draw("MOCAP_PT_vary")
+    assert {"mocap_assist.keep_variants", "mocap_assist.draw_variants", "icon"} <= set(shown)
+    assert {"variant 01", "variant 02", "With all 2:"} <= set(shown)
+    blank.ops.mocap_assist.tick_action(action="walk_2", group="vary")
+    assert blank.context.scene.mocap_assist.vary.actions == "walk_2"
+    blank.data.objects.remove(walker)
+    assert "Select the armature whose actions are to be varied." in " ".join(
+        draw("MOCAP_PT_vary")
+    )
