@@ -16,7 +16,7 @@ from .clip_library import (
     open_clip_library,
 )
 from .describe_clip import DescribedClip, describe_clip
-from .find_settings import FindSettings
+from .find_settings import FindMethod, FindSettings
 from .find_similar import find_similar
 
 __all__ = [
@@ -24,6 +24,7 @@ __all__ = [
     "ClipEntry",
     "ClipLibrary",
     "DescribedClip",
+    "FindMethod",
     "FindSettings",
     "Match",
     "Origin",

@@ -6,6 +6,7 @@ from collections.abc import Iterable, Sequence
 from pathlib import Path
 from types import TracebackType
 from typing import Self
+from weakref import finalize
 
 import numpy as np
 from numpy.typing import NDArray
@@ -40,6 +41,7 @@ class ClipLibrary:
     def __init__(self, database: sqlite3.Connection, path: Path | None = None) -> None:
         """Wrap an open database; for the two makers only."""
         self._database = database
+        finalize(self, database.close)  # one that nobody closed lets go of its file, too
         self._path = path
         self._seen = (-1, -1)
         self._entries: dict[int, ClipEntry] = {}

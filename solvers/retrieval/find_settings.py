@@ -1,6 +1,7 @@
 """What is alike, and how closely it is looked at."""
 
 from dataclasses import dataclass
+from enum import Enum
 
 import numpy as np
 from numpy.typing import NDArray
@@ -14,9 +15,22 @@ BELIEF = 0.25
 right, since the other parts tell."""
 
 
+class FindMethod(Enum):
+    """How clips are compared."""
+
+    WORDS = "words and warping"
+    PUBLISHED = "published"
+
+
 @dataclass(frozen=True, kw_only=True)
 class FindSettings(Settings):
     """Settings of `find_similar`."""
+
+    method: FindMethod = setting(
+        FindMethod.WORDS, "Words of each part of the body and warping measured best; published"
+        " is pyramids of sparse codes of the whole body, which is slow and finds less",
+        advanced=True,
+    )  # fmt: skip
 
     n_matches: int = setting(
         0, "Clips that are told, the best first; 0 ranks all of them",

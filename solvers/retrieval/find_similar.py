@@ -12,8 +12,9 @@ from .body_parts import part_coverage
 from .clip import ClipEntry, Match
 from .clip_library import ClipLibrary
 from .clip_postures import ClipPostures, Recording, clip_postures
-from .find_settings import USUAL, FindSettings
+from .find_settings import USUAL, FindMethod, FindSettings
 from .rank_clips import Ranking, rank_clips
+from .rank_pyramids import rank_pyramids
 from .spans import RATE, describe
 from .vocabulary import Vocabulary
 
@@ -76,12 +77,16 @@ def find_similar(
     if vocabulary is None or not entries:
         return ()
     features = vocabulary.features(postures)
-    whole = np.array([[0, len(features)]], dtype=np.int32)
     away = set(ignore)
     left_out = [number for number, entry in entries.items() if entry.name in away]
-    ranking = rank_clips(
-        describe(features, whole, vocabulary), weights, library.blocks, settings, left_out
-    )
+    if settings.method is FindMethod.PUBLISHED:
+        ranking = rank_pyramids(
+            postures, library, left_out, progress=within(progress, 0.0, 0.3)
+        )
+    else:
+        whole = np.array([[0, len(features)]], dtype=np.int32)
+        described = describe(features, whole, vocabulary)
+        ranking = rank_clips(described, weights, library.blocks, settings, left_out)
     told = settings.n_matches or len(ranking.clips)
     tracks = query.tracks if isinstance(query, JointRecording) else query
     alignment = _Alignment(features, weights, vocabulary, tracks.n_frames, tracks.frame_rate)

@@ -3,6 +3,7 @@
 import sqlite3
 import subprocess
 import sys
+from contextlib import closing
 
 import pytest
 
@@ -70,7 +71,7 @@ def test_a_query_of_one_frame(find, newcomer, blank):
 def test_a_library_of_a_newer_version_is_refused_everywhere(find, newcomer, blank, tmp_path):
     newcomer("walk")
     path = tmp_path / "clips.library"
-    with sqlite3.connect(path) as database:
+    with closing(sqlite3.connect(path)) as database, database:
         database.execute("PRAGMA user_version = 99")
     database.close()
     before = path.read_bytes()

@@ -10,7 +10,7 @@ from numpy.testing import assert_array_equal
 from solvers.errors import InvalidMotionError
 from solvers.motion import JointRecording, Sensor, Tracks
 from solvers.motion.posture_joints import POSTURE_JOINTS
-from solvers.retrieval import Clip, FindSettings, build_clip_library, find_similar
+from solvers.retrieval import Clip, FindMethod, FindSettings, build_clip_library, find_similar
 
 KEPT = dict.fromkeys(("trunk", "left_arm", "right_arm", "left_leg", "right_leg"), False)
 
@@ -163,3 +163,21 @@ def test_what_cannot_be_asked_is_said(library):
     blind.positions[:] = np.nan
     with pytest.raises(InvalidMotionError, match="No joint was tracked"):
         find_similar(blind, library)
+
+
+def test_the_published_form_can_be_chosen():
+    """Acts in place, since it looks at postures only; kept while the library is as it was."""
+    library = build_clip_library([
+        Clip(f"{name} {number}", act(name, seconds, amount=amount), (name,))
+        for name in ("wave", "squat", "kick", "bow")
+        for number, (seconds, amount) in enumerate([(4.0, 1.0), (3.2, 0.9), (4.5, 1.1)])
+    ])  # fmt: skip
+    published = FindSettings(method=FindMethod.PUBLISHED)
+    first = find_similar(act("kick", 4.0), library, settings=published)
+    assert first[0].clip == "kick 0"
+    assert first[0].score > 1.5 * first[-1].score
+    assert len(first) == 12
+    others = find_similar(act("kick", 4.0), library, settings=published, ignore=["kick 0"])
+    assert "kick 0" not in [match.clip for match in others]
+    library.remove(["kick 0"])
+    assert len(find_similar(act("kick", 4.0), library, settings=published)) == 11

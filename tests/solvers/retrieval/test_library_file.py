@@ -6,6 +6,7 @@ import sqlite3
 import subprocess
 import sys
 import time
+from contextlib import closing
 from pathlib import Path
 
 import pytest
@@ -123,7 +124,8 @@ def test_a_newer_version_is_refused_in_one_sentence(path):
 
 def test_what_is_no_library_is_refused(tmp_path):
     other = tmp_path / "other.sqlite"
-    sqlite3.connect(other).executescript("CREATE TABLE clips (a); INSERT INTO clips VALUES (1)")
+    with closing(sqlite3.connect(other)) as database:
+        database.executescript("CREATE TABLE clips (a); INSERT INTO clips VALUES (1)")
     text, pickled = tmp_path / "text", tmp_path / "pickle"
     text.write_text("HIERARCHY\nROOT Hips" * 999)
     pickled.write_bytes(pickle.dumps({"clips": [1, 2, 3]}) * 100)
@@ -175,13 +177,13 @@ def test_a_damaged_file_is_refused_or_works(whole, tmp_path, data):
 
 @pytest.mark.parametrize("table", ["clips", "blocks", "vocabulary"])
 def test_a_table_that_is_missing_or_garbled_is_said(path, table):
-    with sqlite3.connect(path) as database:
+    with closing(sqlite3.connect(path)) as database, database:
         columns = [row[1] for row in database.execute(f"PRAGMA table_info({table})")]
         database.execute(f"UPDATE {table} SET {columns[-1]} = x'0102030405'")
     with pytest.raises(InvalidFileError, match="damaged"), load_clip_library(path) as library:
         ranking(library)
 
-    with sqlite3.connect(path) as database:
+    with closing(sqlite3.connect(path)) as database, database:
         database.execute(f"DROP TABLE {table}")
     with pytest.raises(InvalidFileError, match="cannot be used"):
         ranking(load_clip_library(path))
@@ -251,5 +253,5 @@ def test_every_error_of_it_is_one_of_ours():
 
 
 def sound(path: Path) -> bool:
-    with sqlite3.connect(path) as database:
+    with closing(sqlite3.connect(path)) as database, database:
         return database.execute("PRAGMA integrity_check").fetchone() == ("ok",)
