@@ -83,6 +83,7 @@ class SlicedOperator(SolverOperator):
 
     def _write(self, writer: Writer, until: float = float("inf")) -> str:
         """Write until all is written, or some time has come; return the sentence, if any."""
-        while not (said := writer.step(*self._subject.find())) and monotonic() < until:
-            pass
+        said = writer.step(*self._subject.find())
+        while not said and monotonic() < until:
+            said = writer.step(*self._subject.find())
         return said

@@ -6,10 +6,11 @@ memory, and leaves it whole when a process dies. Nothing in it is ever executed.
 
 import json
 import sqlite3
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from functools import lru_cache
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
@@ -241,7 +242,7 @@ def _tags(stored: str) -> tuple[str, ...]:
     return tuple(json.loads(stored))
 
 
-def _entry(row: list) -> ClipEntry:  # type: ignore[type-arg]
+def _entry(row: Sequence[Any]) -> ClipEntry:
     name, tags, path, item, size, modified, n_frames, frame_rate = row
     origin = None if path is None else Origin(path, item, size, modified)
     return ClipEntry(name, _tags(tags), origin, n_frames, frame_rate)

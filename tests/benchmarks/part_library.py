@@ -19,7 +19,7 @@ from . import clips
 from .cases import Case, Level
 from .noise import angle_error, learn_channels
 from .part_classes import SHORT
-from .part_gaps import Filler, Gap, cut, score
+from .part_gaps import Array, Filler, Gap, cut, score
 from .tables import Scores
 
 WALK = "walk"
@@ -159,12 +159,12 @@ def compare_libraries(n_clips: int, dev: bool, unsearched: bool) -> list[Scores]
 def _filler(clean: Cleaner, joints: Collection[int], frames: slice) -> Filler:
     """Return what fills a gap, given to the cleaner as rotations that are not known."""
 
-    def fill(case: Case, gapped: object) -> object:
+    def fill(case: Case, gapped: Array) -> Array:
         rotations = case.truth.rotations.copy()
         rotations[frames, list(joints)] = float("nan")
         return case.values(clean(case.truth.with_poses(rotations)))
 
-    return fill  # type: ignore[return-value]
+    return fill
 
 
 @lru_cache(maxsize=2)

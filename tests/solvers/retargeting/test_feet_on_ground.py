@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+from given_motions import every_fourth, given_to, growth
 from numpy.testing import assert_allclose
 from rigs import RIGS, child, mixamo
 
@@ -12,7 +13,6 @@ from solvers.motion import (
     find_humanoid_map,
     foot_points,
     forward_kinematics,
-    leg_length,
 )
 from solvers.motion.rotations import (
     angle_between,
@@ -21,7 +21,6 @@ from solvers.motion.rotations import (
     rotate,
 )
 from solvers.recordings import read_recording
-from solvers.retargeting import retarget
 from solvers.retargeting.body import find_body
 from solvers.retargeting.planting import planting_shift
 from solvers.retargeting.soles import Depths, sole_above_ground
@@ -167,21 +166,3 @@ def slower_steps(motion: Motion) -> np.ndarray:
     feet = foot_points(motion.skeleton, find_humanoid_map(motion.skeleton))
     steps = np.diff(forward_kinematics(motion).positions[:, feet, :2], axis=0)
     return np.linalg.norm(steps, axis=-1).min(axis=-1)
-
-
-def every_fourth(motion: Motion) -> Motion:
-    return Motion(
-        motion.skeleton,
-        motion.rotations[::4],
-        motion.root_positions[::4],
-        motion.frame_rate / 4,
-    )
-
-
-def given_to(motion: Motion, rig: Skeleton) -> Motion:
-    return retarget(motion, find_humanoid_map(motion.skeleton), rig, find_humanoid_map(rig))
-
-
-def growth(motion: Motion, rig: Skeleton) -> float:
-    legs = [leg_length(x, find_humanoid_map(x)) for x in (motion.skeleton, rig)]
-    return legs[1] / legs[0]

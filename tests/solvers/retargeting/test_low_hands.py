@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+from given_motions import every_fourth, given_to, growth
 from numpy.testing import assert_allclose
 from rigs import RIGS, mixamo
 
@@ -10,12 +11,10 @@ from solvers.motion import (
     Skeleton,
     find_humanoid_map,
     forward_kinematics,
-    leg_length,
     reach,
 )
 from solvers.motion.rotations import quaternion_from_rotation_vector
 from solvers.recordings import read_recording
-from solvers.retargeting import retarget
 from solvers.retargeting.low_hands import within_reach
 from solvers.samples import GaitSettings, walking_gait
 
@@ -150,24 +149,6 @@ def on_all_fours() -> Motion:
 
 def about_x(angle: float) -> np.ndarray:
     return quaternion_from_rotation_vector([angle, 0.0, 0.0])
-
-
-def every_fourth(motion: Motion) -> Motion:
-    return Motion(
-        motion.skeleton,
-        motion.rotations[::4],
-        motion.root_positions[::4],
-        motion.frame_rate / 4,
-    )
-
-
-def given_to(motion: Motion, rig: Skeleton) -> Motion:
-    return retarget(motion, find_humanoid_map(motion.skeleton), rig, find_humanoid_map(rig))
-
-
-def growth(motion: Motion, rig: Skeleton) -> float:
-    legs = [leg_length(x, find_humanoid_map(x)) for x in (motion.skeleton, rig)]
-    return legs[1] / legs[0]
 
 
 def place(motion: Motion, role: str) -> np.ndarray:

@@ -1,0 +1,35 @@
+"""What the buttons that make assets of actions ask for, and what they do with the answer."""
+
+import bpy
+
+from ...solvers.errors import MocapAssistError
+
+
+class MarkOperator:
+    """Mixed into an operator, which says in `mark` what is marked."""
+
+    tags: bpy.props.StringProperty(
+        name="Tags", description="Separated by commas", options={"SKIP_SAVE"}
+    )
+    catalog: bpy.props.StringProperty(
+        name="Catalog",
+        description="Path of the catalog, such as Locomotion/Walks; empty for none",
+        options={"SKIP_SAVE"},
+    )
+
+    def mark(self, context: bpy.types.Context) -> str:
+        """Mark, and return what to say."""
+        raise NotImplementedError
+
+    def invoke(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
+        """Ask for tags and catalog."""
+        return context.window_manager.invoke_props_dialog(self)
+
+    def execute(self, context: bpy.types.Context) -> set[str]:
+        """Mark, and say so, or why not."""
+        try:
+            self.report({"INFO"}, self.mark(context))
+        except MocapAssistError as error:
+            self.report({"ERROR"}, str(error))
+            return {"CANCELLED"}
+        return {"FINISHED"}
