@@ -1,0 +1,1 @@
+"""From depth pictures to motion: body model, tracker, detector, and both together."""
