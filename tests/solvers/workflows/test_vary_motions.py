@@ -23,7 +23,7 @@ def walks():
 @pytest.mark.parametrize("behaviour", ["bd_squat1Reps", "bk_kickLFront1Reps"])
 def test_feet_stand_as_long_as_in_the_examples_and_slide_no_more(behaviour, recordings):
     folder = recordings / "mocap" / "hdm05"
-    files = sorted(folder.glob(f"HDM_{behaviour}_*.amc"))[:4]
+    files = sorted(folder.glob(f"HDM_{behaviour}_*.amc"))[:6]
     examples = [read_recording(file) for file in files]
     variants = vary_motions(examples, 3)
     assert not variants.remarks
@@ -36,7 +36,7 @@ def test_feet_stand_as_long_as_in_the_examples_and_slide_no_more(behaviour, reco
         np.mean([foot.contact.mean() for one in each for foot in one.feet]) for each in measured
     ]
     assert slides[1] <= slides[0]
-    assert stands[1] > 0.85 * stands[0]
+    assert stands[1] > 0.9 * stands[0]
 
 
 def test_feet_are_left_as_they_are_where_asked(walks):
