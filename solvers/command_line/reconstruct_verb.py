@@ -17,7 +17,7 @@ from ..reconstruction import (
     load_posture_library,
     load_residual_prior,
 )
-from ..recordings import read_recording, write_joint_csv
+from ..recordings import read_tracked, write_joint_csv
 from ..workflows import (
     postures_of,
     reconstruct_motion,
@@ -96,7 +96,7 @@ def read_guides(arguments: argparse.Namespace, progress: Progress) -> Guides:
 
 def perform_reconstruct(task: Task, prepared: Guides, progress: Progress) -> Outcome:
     """Reconstruct one recording and write it; tell what was lost, and the quality."""
-    given = read_recording(
+    given = read_tracked(
         task.source, scale=task.arguments.scale, progress=within(progress, 0.0, 0.1)
     )
     guides, said = _guides_for(given, task, prepared, within(progress, 0.1, 0.3))
