@@ -17,7 +17,7 @@ from ..reconstruction import (
     load_posture_library,
     load_residual_prior,
 )
-from ..recordings import read_recording, write_joint_csv
+from ..recordings import read_tracked, write_joint_csv
 from ..workflows import (
     postures_of,
     reconstruct_motion,
@@ -98,7 +98,7 @@ def perform_reconstruct(task: Task, prepared: Guides, progress: Progress) -> Out
     """Reconstruct one recording and write it; tell what was lost, and the quality."""
     told: list[str] = []
     listening = overheard(within(progress, 0.0, 0.1), told)
-    given = read_recording(task.source, scale=task.arguments.scale, progress=listening)
+    given = read_tracked(task.source, scale=task.arguments.scale, progress=listening)
     guides, said = _guides_for(given, task, prepared, within(progress, 0.1, 0.3))
     rebuilt = _rebuilt(given, task, guides, within(progress, 0.3, 0.8))
     rebuilt = rebuilt._replace(remarks=(*(f"{one}." for one in told), *said, *rebuilt.remarks))
