@@ -10,6 +10,7 @@ from ..progress import Progress, unwatched
 from .depth_folder import layout_of, read_depth_folder
 from .depth_held import upright
 from .depth_mat import is_depth_mat, read_depth_mat
+from .depth_mkv import is_depth_mkv, read_depth_mkv
 from .depth_npz import is_depth_npz, read_depth_npz
 from .depth_raw import is_depth_raw, read_depth_raw
 from .depth_settings import USUAL, DepthSettings, Held
@@ -41,6 +42,7 @@ class DepthFormat(NamedTuple):
 
 DEPTH_FILES = (
     DepthFormat("NPZ", is_depth_npz, read_depth_npz),
+    DepthFormat("Azure Kinect MKV", is_depth_mkv, read_depth_mkv),
     DepthFormat("MATLAB", is_depth_mat, read_depth_mat),
     DepthFormat("raw frames", is_depth_raw, read_depth_raw),
 )
