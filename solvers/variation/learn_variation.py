@@ -12,7 +12,8 @@ from ..motion.rotations import mean_rotation
 from ..progress import Progress, unwatched
 from .align_examples import Alignment, align_examples, body_positions
 from .course import HEIGHT, Course, course_of, headings, without_heading
-from .curve_sampling import sample_curves
+from .curve_sampling import between_frames, sample_curves
+from .footing import footing_of
 from .mixing_kernel import MixingKernel
 from .stepwise_model import learn_stepwise
 from .variation_model import VariationModel
@@ -64,12 +65,13 @@ def learn_variation_model(
         ])
     )  # fmt: skip
     courses = [
-        _in_common_time(course_of(motion, turn, usual), times)
+        _in_common_time(course_of(motion, turn, usual), footing_of(motion), times)
         for motion, turn, times in zip(motions, turns, alignment.times, strict=True)
     ]
     root = np.stack([course.root for course in courses])
     joints = np.stack([course.joints for course in courses])
     joints = _same_turns(joints, alignment.centre)
+    footing = np.stack([course.footing for course in courses if course.footing is not None])
     rate = motions[0].frame_rate
     haste = (
         np.log(np.gradient(alignment.times, axis=1)) if root.shape[1] > 1 else 0 * root[..., 0]
@@ -81,8 +83,9 @@ def learn_variation_model(
         stepwise = learn_stepwise(motions[0].skeleton, joints, root, rate, published)
     progress(1.0)
     return VariationModel(
-        motions[0].skeleton, rate, usual, root, joints, haste, MixingKernel(), alignment.centre,
-        _loops(centre, turns[alignment.centre]), _odd_one(alignment), stepwise,
+        motions[0].skeleton, rate, usual, root, joints, haste, footing, MixingKernel(),
+        alignment.centre, _loops(centre, turns[alignment.centre]), _odd_one(alignment),
+        stepwise,
     )  # fmt: skip
 
 
@@ -121,7 +124,7 @@ def _as_first(motion: Motion, first: Motion) -> Motion:
     return replace(motion, skeleton=first.skeleton, root_positions=places)
 
 
-def _in_common_time(course: Course, times: Array) -> Course:
+def _in_common_time(course: Course, footing: Array, times: Array) -> Course:
     """Return a course at its frames `times`; ways are those between them."""
     joints = sample_curves(course.joints, times)
     places = np.column_stack([
@@ -130,7 +133,7 @@ def _in_common_time(course: Course, times: Array) -> Course:
     ])
     root = sample_curves(places, times)
     root[:, :HEIGHT] = np.diff(root[:, :HEIGHT], axis=0, prepend=root[:1, :HEIGHT])
-    return Course(root, joints)
+    return Course(root, joints, between_frames(footing, times))
 
 
 def _same_turns(joints: Array, centre: int) -> Array:

@@ -7,7 +7,7 @@ from pathlib import Path
 from ..errors import MocapAssistError, SolveCancelled
 from ..motion import JointRecording, Motion, Tracks
 from ..progress import Progress, unwatched, within
-from ..recordings import read_recording
+from ..recordings import read_tracked
 from ..retrieval import ClipEntry, ClipLibrary, FindSettings, Match, find_similar
 
 Recording = Motion | Tracks | JointRecording
@@ -65,7 +65,7 @@ def read_origin(entry: ClipEntry) -> Recording:
     origin = entry.origin
     if origin is None or origin.item:
         raise MocapAssistError(f"{entry.name} came from no file that can be read here.")
-    return read_recording(Path(origin.path))
+    return read_tracked(Path(origin.path))
 
 
 def library_clips(

@@ -5,9 +5,16 @@ from dataclasses import dataclass
 
 from ..denoising import PlantSettings
 from ..motion import Motion
+from ..motion.contacts import detect_contacts
 from ..progress import Progress, unwatched, within
-from ..variation import VarySettings, borrow_variation, learn_variation_model, synthesize
-from .try_to_plant import try_to_plant
+from ..variation import (
+    Variant,
+    VarySettings,
+    borrow_variation,
+    draw_variants,
+    learn_variation_model,
+)
+from .try_to_plant import Footing, try_to_plant
 
 
 @dataclass(frozen=True, eq=False)
@@ -59,16 +66,24 @@ def vary_motions(
         model = learn_variation_model(
             examples, settings=settings, progress=within(progress, 0.0, 0.3)
         )
-    drawn = synthesize(
+    drawn = draw_variants(
         model, n_variants, settings=settings, progress=within(progress, 0.3, 0.4)
     )
     remarks = [model.warning] if model.warning else []
     planted = []
-    for place, motion in enumerate(drawn):
+    for place, variant in enumerate(drawn):
         part = within(progress, 0.4 + 0.6 * place / n_variants, 1.0)
         part(0.0, f"Planting feet of variant {place + 1}")
-        footing = try_to_plant(motion, planting)
+        footing = stand(variant, planting)
         remarks += [remark for remark in footing.remarks if remark not in remarks]
         planted.append(footing.motion)
     progress(1.0)
     return Variants(tuple(planted), tuple(remarks))
+
+
+def stand(variant: Variant, planting: PlantSettings | None = PLANTING) -> Footing:
+    """Plant the feet of a variant when those of its examples stood, and its own stand."""
+    contacts = variant.contacts
+    if contacts is not None and planting is not None:
+        contacts = contacts | detect_contacts(variant.motion)
+    return try_to_plant(variant.motion, planting, contacts)
