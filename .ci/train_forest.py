@@ -30,7 +30,7 @@ from tests.benchmarks.forest_sources import (  # noqa: E402
 )
 
 SETTINGS = PixelForestSettings(
-    n_trees=3, n_pictures=16_000, n_pixels=200, levels=18, n_candidates=120, least_pixels=60
+    n_trees=4, n_pictures=12_000, n_pixels=120, levels=18, n_candidates=100, least_pixels=50
 )
 
 

@@ -79,12 +79,25 @@ class PoseMixer:
                 if f"{side}{role}" in joints
             ]
             pose[legs] = other[legs]
+        if rng.random() < loose / 2.0:
+            self._stand(pose, joints, rng)
         for side, sign in (("left", 1.0), ("right", -1.0)):
             if rng.random() < loose:
                 self._loosen_arm(pose, joints, side, sign, rng)
             if rng.random() < loose / 4.0:
                 self._loosen_leg(pose, joints, side, sign, rng)
         return pose
+
+    @staticmethod
+    def _stand(pose: Array, joints: dict[str, int], rng: np.random.Generator) -> None:
+        """Let the legs stand side by side, as most people before a camera do most of the time."""
+        pose[joints["hips"]] = quaternion_from_rotation_vector(0.05 * rng.standard_normal(3))
+        for sign, side in ((1.0, "left"), (-1.0, "right")):
+            hip = [0.06 * rng.standard_normal(), -sign * rng.uniform(-0.06, 0.15), 0.0]
+            turns = (hip, [rng.uniform(0.0, 0.1), 0.0, 0.0], [0.0] * 3)
+            for role, turn in zip(LEG_ROLES, turns, strict=False):
+                if f"{side}{role}" in joints:
+                    pose[joints[f"{side}{role}"]] = quaternion_from_rotation_vector(turn)
 
     @staticmethod
     def _loosen_arm(

@@ -88,6 +88,16 @@ class SkinnedBody:
                 found[outer & (found == inner_part)] = PARTS.index(f"{side}{segment}End")
         return found
 
+    @cached_property
+    def vertex_normals(self) -> Array:
+        """Which way is out at each vertex, shape (n_vertices, 3), unit length."""
+        a, b, c = self.vertices[self.triangles.T]
+        faces = np.cross(b - a, c - a)
+        normals = np.zeros_like(self.vertices)
+        for corner in self.triangles.T:
+            np.add.at(normals, corner, faces)
+        return normals / np.maximum(np.linalg.norm(normals, axis=1, keepdims=True), 1e-12)
+
     def pose(self, rotations: Array, root: Array) -> tuple[Array, Array]:
         """Return where vertices and joints are in one pose, (n_vertices, 3) and (n_joints, 3).
 

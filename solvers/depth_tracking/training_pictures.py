@@ -12,6 +12,7 @@ from ..motion.camera import Camera
 from ..motion.canonical import canonical_rotations
 from ..settings import Settings, setting
 from .loose_poses import PoseMixer, most_different, without_heading
+from .parts import MIRRORED, N_PARTS, PARTS
 from .render_mesh import RenderedMesh, render_mesh
 from .sensor_noise import SensorNoiseSettings, with_sensor_noise
 from .skinned_body import SkinnedBody
@@ -20,7 +21,11 @@ Array = NDArray[np.float64]
 
 CAMERA = Camera(142.8, 142.8, 79.5, 59.5, 160, 120)
 """Half the resolution of a Kinect of the first kind."""
-SHAPE_LASTS = 20
+CLOTHED = np.array([0.3 if part.endswith(("Hand", "neck")) else 1.0 for part in PARTS])
+"""How much of the thickness of clothes each part may have; hair counts as such."""
+FLOOR = 0.12
+"""Metres above the lowest point that may be taken for the floor."""
+SHAPE_LASTS = 10
 """Pictures of a block, which show the same body."""
 AHEAD = 1.1
 """Radians to either side. Half of the bodies face the camera so nearly, the others anyhow."""
@@ -49,6 +54,14 @@ class TrainingPicturesSettings(Settings):
         0.08, "Standard deviation of the scale of height and of girth of a body",
         minimum=0.0, maximum=0.3,
     )  # fmt: skip
+    clothes: float = setting(
+        0.035, "How far clothes may hang off a body; more knows looser clothes",
+        unit="m", minimum=0.0, maximum=0.2,
+    )  # fmt: skip
+    lost_feet: float = setting(
+        0.3, "Share of pictures in which the lowest 12 cm or less went with the floor",
+        minimum=0.0, maximum=1.0,
+    )  # fmt: skip
     nearest: float = setting(
         1.3, "Least distance of the camera", unit="m", minimum=0.3, maximum=20.0
     )
@@ -73,7 +86,7 @@ class PictureSource:
     def pictures(self, block: int) -> list[RenderedMesh]:
         """Return pictures by `CAMERA`, (120, 160), of one shape of body in random poses."""
         rng = np.random.default_rng((self.seed, block))
-        body = reshaped(self.bodies, rng, self.settings.shape)
+        body = reshaped(self.bodies, rng, self.settings)
         drawn = [self.mixer.draw(rng, self.settings.loose) for _ in range(SHAPE_LASTS)]
         poses = from_canonical(np.stack(drawn), body.skeleton, body.humanoid)
         return [self._picture(body, pose, rng) for pose in poses]
@@ -82,8 +95,12 @@ class PictureSource:
         self, body: SkinnedBody, pose: Array, rng: np.random.Generator
     ) -> RenderedMesh:
         vertices, _ = body.pose(pose, np.zeros(3))
+        triangles = body.triangles
+        if rng.random() < self.settings.lost_feet:
+            above = vertices[:, 2] > vertices[:, 2].min() + rng.uniform(0.0, FLOOR)
+            triangles = triangles[above[triangles].all(axis=1)]
         vertices = _before_camera(vertices, rng, self.settings)
-        picture = render_mesh(vertices, body.triangles, body.vertex_parts, CAMERA)
+        picture = render_mesh(vertices, triangles, body.vertex_parts, CAMERA)
         if rng.random() >= self.settings.noise:
             return picture
         usual, strength = SensorNoiseSettings(), rng.uniform(0.5, 1.5)
@@ -123,18 +140,21 @@ def picture_source(
 
 
 def reshaped(
-    bodies: Sequence[SkinnedBody], rng: np.random.Generator, shape: float
+    bodies: Sequence[SkinnedBody], rng: np.random.Generator, settings: TrainingPicturesSettings
 ) -> SkinnedBody:
-    """Return a body between two of these where their meshes are alike, larger or thinner."""
+    """Return a body between two of these where their meshes are alike, resized and dressed."""
     body = bodies[rng.integers(len(bodies))]
     other = bodies[rng.integers(len(bodies))]
     share = rng.random()
-    girth, height = np.exp(shape * rng.standard_normal(2))
+    girth, height = np.exp(settings.shape * rng.standard_normal(2))
     scale = np.array([girth, girth, height])
     vertices, offsets = body.vertices, body.skeleton.offsets
     if other.vertices.shape == vertices.shape:
         vertices = (1.0 - share) * vertices + share * other.vertices
         offsets = (1.0 - share) * offsets + share * other.skeleton.offsets
+    dressed = CLOTHED * rng.uniform(0.0, settings.clothes, N_PARTS)
+    dressed = np.minimum(dressed, dressed[MIRRORED])
+    vertices = vertices + dressed[body.vertex_parts, np.newaxis] * body.vertex_normals
     skeleton = Skeleton(body.skeleton.names, body.skeleton.parents, offsets * scale)
     made = replace(body, skeleton=skeleton, vertices=vertices * scale)
     # Neither roles nor parts change with the shape, and both take long to find.
