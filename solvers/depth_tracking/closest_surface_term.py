@@ -5,7 +5,7 @@ from numpy.typing import NDArray
 
 from .body_tables import CAPSULE_SEGMENTS
 from .hypothesis import Hypothesis
-from .normal_equations import SegmentEquations, move_along
+from .normal_equations import SegmentEquations, SurfaceRows, segment_equations
 
 Array = NDArray[np.float64]
 Integers = NDArray[np.intp]
@@ -36,11 +36,18 @@ def closest_surface_term(
     .. [GM87] Geman, McClure (1987). Statistical methods for tomographic image reconstruction.
        Bulletin of the International Statistical Institute 52(4).
     """
+    return segment_equations(closest_surface_rows(hypothesis, points, weight, scale))
+
+
+def closest_surface_rows(
+    hypothesis: Hypothesis, points: Array, weight: float, scale: float
+) -> SurfaceRows:
+    """Return a row per point of `closest_surface_term`."""
     distances, directions, capsules = closest_surface(hypothesis, points)
     known = np.abs(distances) < _FAR
     distances, directions, capsules = distances[known], directions[known], capsules[known]
     weights = weight / (1.0 + (distances / scale) ** 2) ** 2
-    return move_along(points[known], directions, distances, weights, CAPSULE_SEGMENTS[capsules])
+    return SurfaceRows(points[known], directions, distances, weights, capsules)
 
 
 def closest_surface(hypothesis: Hypothesis, points: Array) -> tuple[Array, Array, Integers]:

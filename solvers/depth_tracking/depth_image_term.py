@@ -4,7 +4,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .hypothesis import Hypothesis
-from .normal_equations import SegmentEquations, move_along
+from .normal_equations import SegmentEquations, SurfaceRows, segment_equations
 from .observation import Observation
 from .pixel_groups import PixelGroups
 
@@ -40,15 +40,21 @@ def depth_image_term(
     .. [WZC12] Wei, Zhang, Chai (2012). Accurate realtime full-body motion capture using a
        single depth camera. ACM Transactions on Graphics 31(6).
     """
+    return segment_equations(depth_image_rows(hypothesis, observation, groups, weight))
+
+
+def depth_image_rows(
+    hypothesis: Hypothesis, observation: Observation, groups: PixelGroups, weight: float
+) -> SurfaceRows:
+    """Return a row per pixel of `depth_image_term`."""
     chosen = groups.comparable
     residuals = (
         observation.flat[hypothesis.picture.pixels[chosen]] - hypothesis.picture.depths[chosen]
     )
-    gradients = depth_gradients(hypothesis)[chosen]
-    weights = np.full(len(chosen), weight)
-    return move_along(
-        hypothesis.points[chosen], gradients, residuals, weights, hypothesis.segments[chosen]
-    )
+    return SurfaceRows(
+        hypothesis.points[chosen], depth_gradients(hypothesis)[chosen], residuals,
+        np.full(len(chosen), weight), hypothesis.picture.capsules[chosen],
+    )  # fmt: skip
 
 
 def depth_gradients(hypothesis: Hypothesis) -> Array:

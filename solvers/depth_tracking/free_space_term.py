@@ -4,7 +4,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .hypothesis import Hypothesis
-from .normal_equations import SegmentEquations, move_along, move_toward
+from .normal_equations import SegmentEquations, SurfaceRows, move_toward, segment_equations
 from .observation import Observation, rays_of
 from .pixel_groups import PixelGroups
 
@@ -34,15 +34,27 @@ def off_actor_term(
     weight : float, per square metre
     scale : float, metres
     """
+    return segment_equations(off_actor_rows(hypothesis, observation, groups, weight, scale))
+
+
+def off_actor_rows(
+    hypothesis: Hypothesis,
+    observation: Observation,
+    groups: PixelGroups,
+    weight: float,
+    scale: float,
+) -> SurfaceRows:
+    """Return two rows per pixel of `off_actor_term`."""
     chosen = groups.off_actor
     points = hypothesis.points[chosen]
     nearest = observation.nearest_pixel[hypothesis.picture.pixels[chosen]]
     aside = points[:, 2:] * rays_of(observation.camera, nearest) - points
     squares = aside[:, 0] ** 2 + aside[:, 1] ** 2
     weights = weight / (1.0 + squares / scale**2) ** 2
-    return move_along(
+    return SurfaceRows(
         np.repeat(points, 2, axis=0), np.tile(_SIDEWAYS, (len(points), 1)),
-        aside[:, :2].ravel(), np.repeat(weights, 2), np.repeat(hypothesis.segments[chosen], 2),
+        aside[:, :2].ravel(), np.repeat(weights, 2),
+        np.repeat(hypothesis.picture.capsules[chosen], 2),
     )  # fmt: skip
 
 

@@ -2,11 +2,13 @@
 
 from collections.abc import Iterable
 from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from .body_kinematics import N_SEGMENTS
+from .body_tables import CAPSULE_SEGMENTS
 
 Array = NDArray[np.float64]
 Integers = NDArray[np.intp]
@@ -43,6 +45,26 @@ class PoseEquations:
     vector: Array
     """Shape (34,)."""
     cost: float
+
+
+class SurfaceRows(NamedTuple):
+    """Rows of a least-squares term: how far points of the surface should move which way."""
+
+    points: Array
+    """Camera frame, shape (n, 3), metres."""
+    directions: Array
+    """Shape (n, 3); a direction's length scales its residual."""
+    residuals: Array
+    """What direction . (movement of the point) should be, shape (n,)."""
+    weights: Array
+    """Of the squares, shape (n,)."""
+    capsules: Integers
+    """Which capsule each point is on, shape (n,)."""
+
+
+def segment_equations(rows: SurfaceRows) -> SegmentEquations:
+    """Sum rows up per segment."""
+    return move_along(*rows[:4], CAPSULE_SEGMENTS[rows.capsules])
 
 
 def move_along(

@@ -10,6 +10,7 @@ from scipy.ndimage import distance_transform_edt
 from scipy.spatial import cKDTree
 
 from ..motion.camera import Camera
+from ..motion.depth_recording import DepthRecording
 
 Array = NDArray[np.float64]
 Integers = NDArray[np.intp]
@@ -77,6 +78,17 @@ class Observation:
             return self
         color = None if self.color is None else self.color[::step, ::step]
         return Observation(self.camera.every(step), self.depth[::step, ::step], color)
+
+
+def observe(depth: DepthRecording, frame: int, picture_width: int) -> Observation:
+    """Return what a frame shows, thinned out to about this many columns."""
+    color = depth.color(frame)
+    whole = Observation(
+        depth.camera,
+        depth.frame(frame).astype(np.float64),
+        None if color is None else color.astype(np.float64),
+    )
+    return whole.every(max(1, round(depth.camera.width / picture_width)))
 
 
 def rays_of(camera: Camera, pixels: Integers) -> Array:

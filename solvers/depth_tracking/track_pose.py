@@ -15,7 +15,7 @@ from .body_model import BodyModel
 from .body_tables import JOINTS
 from .coordinates import N_COORDINATES
 from .fit_quality import FitQuality, fit_quality, unseen
-from .observation import Observation
+from .observation import Observation, observe
 from .pose_priors import foretell, stay_near
 from .register_pose import register_pose
 from .tracker_settings import USUAL, TrackerSettings
@@ -86,20 +86,13 @@ def track_pose(
         raise InvalidMotionError(f"A pose has {N_COORDINATES} coordinates, none of them NaN.")
     poses, figures = [pose], []
     for frame in range(depth.n_frames):
-        observation = observe(depth, frame, settings)
+        observation = observe(depth, frame, settings.picture_width)
         expected = foretell(poses[1:] or poses, settings.trust)
         pose, quality = follow(body, expected, observation, settings)
         poses.append(pose)
         figures.append(quality)
         progress((frame + 1) / depth.n_frames, "Tracking")
     return tracked_motion(body, np.array(poses[1:]), figures, depth.frame_rate)
-
-
-def observe(depth: DepthRecording, frame: int, settings: TrackerSettings) -> Observation:
-    """Return what a frame shows, at the resolution of the settings."""
-    step = max(1, round(depth.camera.width / settings.picture_width))
-    picture = depth.frame(frame).astype(np.float64)
-    return Observation(depth.camera, picture).every(step)
 
 
 def follow(
