@@ -96,6 +96,11 @@ def read_depth_mkv(
         )
     frames = _frames(path, track, settings)
     good = np.frombuffer(track.sizes, np.int64) == width * height * PIXEL
+    if not good.any():
+        raise InvalidFileError(
+            f"{path} has no picture of {width} x {height} pixels, as its depth should have: it"
+            " is damaged. Copy or record it again."
+        )
     shown = np.where((frames.pictures != NONE) & good[frames.pictures], frames.pictures, NONE)
     places = np.where(shown == NONE, NONE, np.frombuffer(track.places, np.int64)[shown])
     metres = settings.scale or MILLIMETRE

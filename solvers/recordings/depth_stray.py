@@ -91,8 +91,9 @@ def _held(course: Array) -> tuple[Held, tuple[str, ...]]:
     if not len(poses):
         return Held.UPRIGHT, ()
     x, y, z, w = poses[:, 3:].T
-    up = np.median([2.0 * (x * y + z * w), 1.0 - 2.0 * (x * x + z * z)], axis=1)
-    moved = float(np.linalg.norm(np.ptp(poses[:, :3], axis=0)))
+    with np.errstate(invalid="ignore", over="ignore"):  # of damaged numbers
+        up = np.median([2.0 * (x * y + z * w), 1.0 - 2.0 * (x * x + z * z)], axis=1)
+        moved = float(np.linalg.norm(np.ptp(poses[:, :3], axis=0)))
     remarks = (
         (f"The camera moved by {moved:.1f} m; it is taken to stand still.",)
         if moved > STEADY
@@ -105,7 +106,7 @@ def _held(course: Array) -> tuple[Held, tuple[str, ...]]:
 
 def _times(course: Array, depth: tuple[str, ...]) -> Array | None:
     """Return the time of each picture, if all of them are known."""
-    known = dict(zip(course[:, 1].astype(int).tolist(), course[:, 0].tolist(), strict=True))
+    known = dict(zip(course[:, 1].tolist(), course[:, 0].tolist(), strict=True))
     numbers = [int(stem) if (stem := Path(name).stem).isdecimal() else -1 for name in depth]
     times = np.array([known.get(number, np.nan) for number in numbers])
     return times if np.isfinite(times).all() else None
