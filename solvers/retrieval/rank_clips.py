@@ -12,6 +12,7 @@ from .find_settings import FindSettings
 from .search_index import SearchIndex
 from .span_warping import frame_distances, warping_costs
 from .spans import FULL, N_CUBES, Spans
+from .vocabulary import N_AXES
 
 Single = NDArray[np.float32]
 Numbers = NDArray[np.int64]
@@ -99,7 +100,7 @@ def weighted_steps(
     scaled = np.asarray(summaries, dtype=np.float32)
     if (weights != 1.0).any():
         scaled = scaled * np.sqrt(weights).astype(np.float32)[:, None]
-    return scaled.reshape(*summaries.shape[:2], -1)
+    return scaled.reshape(*scaled.shape[:2], N_PARTS * N_AXES)
 
 
 def _least(values: Single, most: int) -> Numbers:
