@@ -2,6 +2,7 @@
 
 from collections.abc import Collection
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -10,7 +11,8 @@ from .body_parts import N_PARTS
 from .find_settings import FindSettings
 from .search_index import SearchIndex
 from .span_warping import frame_distances, warping_costs
-from .spans import FULL, N_CUBES, N_STEPS, Spans
+from .spans import FULL, N_CUBES, Spans
+from .vocabulary import N_AXES
 
 Single = NDArray[np.float32]
 Numbers = NDArray[np.int64]
@@ -23,6 +25,8 @@ MOST_BLAME = 1.5
 """Times its own distance that a clip is moved away at most: the query itself stays near."""
 STEPS_APART = 0.5
 """How much a metre between two clips at a moment counts, beside the words in common."""
+EVERY = 4
+"""Of the moments of clips, that many-th is compared with those of other clips."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -89,11 +93,14 @@ def weighted_words(histograms: NDArray[np.uint8], weights: NDArray[np.float64]) 
     return parted.reshape(len(histograms), -1)
 
 
-def weighted_steps(summaries: NDArray[np.float16], weights: NDArray[np.float64]) -> Single:
+def weighted_steps(
+    summaries: NDArray[np.floating[Any]], weights: NDArray[np.float64]
+) -> Single:
     """Return summaries, (n, 16, 5, 8), as vectors with the parts weighted, (n, 16, 40)."""
-    scaled = summaries.astype(np.float32)
-    scaled *= np.sqrt(weights).astype(np.float32)[:, None]
-    return scaled.reshape(*summaries.shape[:2], -1)
+    scaled = np.asarray(summaries, dtype=np.float32)
+    if (weights != 1.0).any():
+        scaled = scaled * np.sqrt(weights).astype(np.float32)[:, None]
+    return scaled.reshape(*scaled.shape[:2], N_PARTS * N_AXES)
 
 
 def _least(values: Single, most: int) -> Numbers:
@@ -105,19 +112,23 @@ def _least(values: Single, most: int) -> Numbers:
 
 
 def _between(words: NDArray[np.uint8], courses: Single, weights: NDArray[np.float64]) -> Single:
-    """Return how far clips are from each other, (n, n): words, and step by step."""
-    common = weighted_words(words, weights) @ words.astype(np.float32).T
-    flat = courses.reshape(len(courses), -1)
-    squares = (flat**2).sum(axis=-1)
+    """Return how far clips are from each other, (n, n): words of all their time, and steps."""
+    whole = words.reshape(len(words), N_PARTS, N_CUBES, -1)[:, :, 0]
+    common = weighted_words(whole, weights) @ whole.reshape(len(words), -1).astype(np.float32).T
+    steps = courses[:, ::EVERY]
+    flat = steps.reshape(len(words), -1)
+    squares = np.einsum("ij,ij->i", flat, flat)
     apart = squares[:, None] + squares - 2.0 * flat @ flat.T
-    steps = np.sqrt(np.maximum(apart, 0.0) / N_STEPS)
-    return np.asarray(1.0 - common + np.float32(STEPS_APART) * steps)
+    np.sqrt(np.maximum(apart, 0.0, out=apart), out=apart)
+    apart *= np.float32(STEPS_APART / np.sqrt(steps.shape[1]))
+    return np.asarray(apart - np.float32(N_CUBES) * common)
 
 
 def _with_likes(apart: Single, between: Single, n_alike: int) -> Single:
     """Return distances from the query that go by those of each clip's nearest as well."""
     np.fill_diagonal(between, np.inf)
-    nearest = np.argpartition(between, n_alike - 1, axis=1)[:, :n_alike]
+    farthest = np.partition(between, n_alike - 1, axis=1)[:, n_alike - 1, None]
+    nearest = (between <= farthest).astype(np.float32)
     believed = np.float32(BELIEF_IN_LIKES)
-    told = (apart + believed * apart[nearest].mean(axis=1)) / (1 + believed)
+    told = (apart + believed * (nearest @ apart) / nearest.sum(axis=1)) / (1 + believed)
     return np.minimum(told, np.float32(MOST_BLAME) * apart)

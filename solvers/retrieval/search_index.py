@@ -55,14 +55,16 @@ class SearchIndex:
             order = order[~np.isin(self.clips[order], list(ignore))]
         return apart[order], order
 
-    def stored(self, spans: Numbers) -> tuple[NDArray[np.uint8], NDArray[np.float16]]:
-        """Return histograms and summaries of these spans."""
+    def stored(self, spans: Numbers) -> tuple[NDArray[np.uint8], Single]:
+        """Return histograms and summaries of these spans, copied."""
+        if len(self._blocks) == 1:
+            return self._blocks[0].histograms[spans], self._blocks[0].steps(spans)
         of = np.searchsorted(self._starts, spans, side="right") - 1
         first = self._blocks[0]
         histograms = np.empty((len(spans), first.histograms.shape[1]), dtype=np.uint8)
-        summaries = np.empty((len(spans), *first.summaries.shape[1:]), dtype=np.float16)
+        summaries = np.empty((len(spans), *first.summaries.shape[1:]), dtype=np.float32)
         for one in np.unique(of):
             rows = spans[of == one] - self._starts[one]
             histograms[of == one] = self._blocks[one].histograms[rows]
-            summaries[of == one] = self._blocks[one].summaries[rows]
+            summaries[of == one] = self._blocks[one].steps(rows)
         return histograms, summaries

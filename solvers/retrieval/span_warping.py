@@ -19,7 +19,7 @@ def frame_distances(queries: Single, sequences: Single) -> Single:
     shape (n_queries, n_sequences, n_steps, n_frames)
     """
     flat = queries.reshape(-1, queries.shape[-1]), sequences.reshape(-1, sequences.shape[-1])
-    squares = [(one**2).sum(axis=-1) for one in flat]
+    squares = [np.einsum("ij,ij->i", one, one) for one in flat]
     apart = squares[0][:, None] + squares[1] - 2.0 * flat[0] @ flat[1].T
     np.sqrt(np.maximum(apart, 0.0, out=apart), out=apart)
     return np.asarray(apart.reshape(*queries.shape[:2], *sequences.shape[:2]).swapaxes(1, 2))
