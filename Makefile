@@ -64,6 +64,11 @@ demo: .venv-4.5/ready zip  ## clean a sample, or CLIP=path.bvh, in Blender 4.5: 
 docs: .venv-4.5/ready  ## the tables of settings and the pictures in README.md and docs
 	$(PYTHON_4.5) .ci/write_docs.py --pictures
 
+# Half an hour on two cores; the clips, bodies and licences are in tests/benchmarks/forest_sources.py.
+.PHONY: forest
+forest: .venv-4.5/ready  ## train the shipped forest that tells the parts of bodies in depth
+	$(PYTHON_4.5) .ci/train_forest.py $(ARGUMENTS)
+
 # Each prints tables; with ARGUMENTS=--docs it rewrites its own part of docs/benchmarks.md, and
 # ARGUMENTS=--help tells what else there is.
 bench-denoise: .venv-4.5/ready  ## measure denoising and gap filling against peers

@@ -18,7 +18,7 @@ from ...solvers.motion import (
 )
 from ...solvers.motion.unseen_hips import with_hips
 from ...solvers.progress import Progress, unwatched
-from ...solvers.recordings import read_recording
+from ...solvers.recordings import read_tracked
 
 Recording = Motion | Tracks | JointRecording
 Result = TypeVar("Result")
@@ -78,14 +78,14 @@ def read_files(
 def read_file(
     path: Path, progress: Progress = unwatched, *, unit: float | None = None
 ) -> Known:
-    """Read a file, as `read_recording` does, and keep what its reader says.
+    """Read a file, as `read_tracked` does, and keep what its reader says.
 
     `unit` is its metres in one unit of the file.
 
     Whatever goes wrong is a MocapAssistError, so that other files are read all the same.
     """
     listener = _Listener(progress)
-    recording = _tried(path, lambda: read_recording(path, scale=unit, progress=listener))
+    recording = _tried(path, lambda: read_tracked(path, scale=unit, progress=listener))
     return Known(recording, tuple(listener.warnings))
 
 

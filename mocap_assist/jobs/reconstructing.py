@@ -23,7 +23,7 @@ from ...solvers.reconstruction import (
     load_posture_library,
     load_residual_prior,
 )
-from ...solvers.recordings import read_motion_or_tracks, read_recording
+from ...solvers.recordings import read_motion_or_tracks, read_tracked
 from ...solvers.workflows import (
     RebuiltMotion,
     postures_of,
@@ -112,7 +112,7 @@ def _source(problem: RebuildProblem) -> JointRecording | None:
     if problem.source is None:
         return None
     try:
-        recording = read_recording(problem.source[0])
+        recording = read_tracked(problem.source[0])
     except MocapAssistError:
         return None
     return recording if isinstance(recording, JointRecording) else None

@@ -7,7 +7,7 @@ from typing import Any
 from ..errors import InvalidMotionError, InvalidSettingError
 from ..motion import JointRecording
 from ..progress import Progress, within
-from ..recordings import read_recording
+from ..recordings import read_tracked
 from ..retrieval import ClipEntry, FindSettings, Match, find_similar, load_clip_library
 from ..workflows import IndexReport, index_files
 from .options import arguments_from, settings_from_arguments
@@ -93,7 +93,7 @@ def perform_find(task: Task, prepared: None, progress: Progress) -> Outcome:
     """Search a library with a recording."""
     arguments = task.arguments
     library_file = task.sources[1]
-    query = read_recording(
+    query = read_tracked(
         task.source, scale=arguments.scale, progress=within(progress, 0.0, 0.5)
     )
     tracks = query.tracks if isinstance(query, JointRecording) else query

@@ -11,7 +11,7 @@ from ..errors import InvalidMotionError, InvalidSettingError
 from ..motion import JOINTS, JointRecording, Motion, Sensor, Tracks
 from ..motion.posture_joints import motion_postures
 from ..progress import Progress, within
-from ..recordings import read_recording
+from ..recordings import read_tracked
 from ..recordings.live_frames import MOST_JOINTS, PORT, LiveFrame, encode_frame, frames_of
 from .files import add_reading_options
 from .verb import Outcome, Task
@@ -46,7 +46,7 @@ def perform_replay(task: Task, prepared: None, progress: Progress) -> Outcome:
         raise InvalidSettingError(
             f"speed is {arguments.speed:g}; it must be above 0 and at most {FASTEST:g}."
         )
-    recording = read_recording(
+    recording = read_tracked(
         task.source, scale=arguments.scale, progress=within(progress, 0.0, 0.1)
     )
     joints = _joints(recording)

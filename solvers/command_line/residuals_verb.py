@@ -10,7 +10,7 @@ from ..motion import JointRecording, Motion, Tracks, resample
 from ..motion.posture_joints import POSTURE_JOINTS, motion_postures
 from ..progress import Progress, within
 from ..reconstruction import ResidualPriorSettings, learn_residual_prior
-from ..recordings import read_recording, recordings_in
+from ..recordings import read_tracked, recordings_in
 from .options import arguments_from, settings_from_arguments
 from .verb import Outcome, Task
 
@@ -65,10 +65,10 @@ def _pairs(
             raise InvalidFileError(
                 f"{arguments.truth} has no take named {path.stem}, as {path} is."
             )
-        seen = read_recording(path, scale=arguments.scale)
+        seen = read_tracked(path, scale=arguments.scale)
         if not isinstance(seen, JointRecording):
             raise InvalidMotionError(f"{path} holds no joints of a depth camera.")
-        true = _joints(read_recording(partners[path.stem]), partners[path.stem])
+        true = _joints(read_tracked(partners[path.stem]), partners[path.stem])
         true = resample(true, seen.frame_rate)
         n_frames = min(seen.n_frames, true.n_frames)
         yield seen.slice(0, n_frames), true.slice(0, n_frames)

@@ -147,14 +147,15 @@ def foretell_places(
     settings: CorrectionSettings,
 ) -> tuple[Array, Foretold, Array]:
     """Return the joints of postures where they were, what the prior told, and variances."""
-    calm = calm_postures(recording, float(prior.calm), weights)
+    causal = settings.method is CorrectionMethod.CAUSAL
+    calm = calm_postures(recording, float(prior.calm), weights, ahead=not causal)
     told = prior.predict(calm, ahead=settings.method is CorrectionMethod.WHOLE_TAKE)
     foretold = calm.positions + calm.turn_back(_offsets(told, weights, settings))
     variances = told.variances + prior.lasting_variances(constant=settings.shift)
     if settings.method is CorrectionMethod.PUBLISHED:
         places = _frame_by_frame(recording, foretold, variances, weights, settings)
         return places, told, variances
-    steady = followed if settings.method is CorrectionMethod.CAUSAL else smoothed
+    steady = followed if causal else smoothed
     frames = settings.smoothing * recording.frame_rate
     return steady(foretold, np.maximum(weights, LEAST), frames), told, variances
 

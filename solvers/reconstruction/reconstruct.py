@@ -7,9 +7,9 @@ from pathlib import Path
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.ndimage import gaussian_filter1d
 
 from ..motion import JointRecording, Sensor, Tracks
+from ..motion.steadying import steadied
 from ..motion.straight_gaps import bridged
 from ..progress import Progress, unwatched, within
 from ..settings import Settings, setting
@@ -97,11 +97,11 @@ def reconstruct(
 ) -> Reconstruction:
     """Rebuild clean poses from what a depth camera's tracker saw.
 
-    Left and right are given back where the tracker exchanged them for a moment (not if causal:
-    that takes the future to know). Each joint's reliability is measured. What is not reliable
-    is rebuilt from postures of clean clips that are like the rest (`reconstruct_postures`); how
-    the sensor errs in such postures is taken out (`correct_postures`); and a skeleton of
-    constant bone lengths follows.
+    Left and right are given back where the tracker exchanged them for a moment. Each joint's
+    reliability is measured. What is not reliable is rebuilt from postures of clean clips that
+    are like the rest (`reconstruct_postures`); how the sensor errs in such postures is taken
+    out (`correct_postures`); and a skeleton of constant bone lengths follows. Causal joints
+    know the actor and what came before, and so keep exchanges, which take the future to tell.
 
     Parameters
     ----------
@@ -152,7 +152,7 @@ def reconstruct(
     if settings.method is ReconstructMethod.POSTURES:
         motion = follow_joints(rebuilt.tracks, recording.parents, trust.combined)
         return replace(rebuilt, motion=motion)
-    lost = _lost(recording.tracks, trust.combined, rebuilt.tracks)
+    lost = _lost(recording.tracks, trust.combined, rebuilt.tracks, not settings.causal)
     sure = np.maximum(trust.combined, lost * rebuilt.confidence)
     places = rebuilt.tracks
     if not settings.causal:
@@ -176,7 +176,7 @@ def reconstruct(
     )  # fmt: skip
 
 
-def _lost(seen: Tracks, trust: Array, rebuilt: Tracks) -> Array:
+def _lost(seen: Tracks, trust: Array, rebuilt: Tracks, ahead: bool) -> Array:
     """Return how far postures are to replace what was seen, (n_frames, n_joints), 0 to 1.
 
     What was seen of a joint but is doubted says at least about where it is; a posture that has
@@ -184,8 +184,8 @@ def _lost(seen: Tracks, trust: Array, rebuilt: Tracks) -> Array:
     """
     lost = np.clip((DOUBTED - trust) / (DOUBTED - LOST), 0.0, 1.0)
     known = seen.visible.any(axis=0)
-    calm = bridged(seen.positions[:, known])
-    calm = gaussian_filter1d(calm, CALM * seen.frame_rate, axis=0, mode="nearest")
+    calm = bridged(seen.positions[:, known], ahead=ahead)
+    calm = steadied(calm, CALM * seen.frame_rate, ahead=ahead)
     away = np.zeros(trust.shape)
     away[:, known] = np.linalg.norm(rebuilt.positions[:, known] - calm, axis=-1)
     near = 1.0 / (1.0 + (away / FAR) ** 4)

@@ -20,6 +20,8 @@ from .bvh import read_bvh
 from .bvh_writing import write_bvh
 from .c3d import read_c3d
 from .c3d_writing import write_c3d
+from .depth import depth_format_of, read_depth
+from .depth_settings import DepthSettings, Held
 from .freemocap import read_freemocap
 from .irds import read_irds
 from .joint_csv import read_joint_csv, write_joint_csv
@@ -32,6 +34,7 @@ from .read_recording import (
     format_of,
     read_motion_or_tracks,
     read_recording,
+    read_tracked,
     recordings_in,
 )
 from .recording_figures import recording_figures
@@ -40,6 +43,9 @@ from .trc_writing import write_trc
 from .ui_prmd import read_ui_prmd, read_ui_prmd_pair
 
 __all__ = [
+    "DepthSettings",
+    "Held",
+    "depth_format_of",
     "format_of",
     "read_acclaim",
     "read_acclaim_limits",
@@ -47,6 +53,7 @@ __all__ = [
     "read_azure_json",
     "read_bvh",
     "read_c3d",
+    "read_depth",
     "read_freemocap",
     "read_irds",
     "read_joint_csv",
@@ -57,6 +64,7 @@ __all__ = [
     "read_msr_action3d",
     "read_ntu_skeleton",
     "read_recording",
+    "read_tracked",
     "read_trc",
     "read_ui_prmd",
     "read_ui_prmd_pair",

@@ -7,7 +7,7 @@ from ..motion import JointRecording
 from ..progress import Progress, unwatched
 from .joint_csv import write_joint_csv
 from .joint_json import write_joint_json
-from .read_recording import read_recording
+from .read_recording import read_tracked
 
 WRITERS = {".csv": write_joint_csv, ".json": write_joint_json}
 
@@ -20,7 +20,7 @@ def read_joints(
     Parameters and errors are those of `read_recording`; InvalidFileError also for a file that
     holds something else.
     """
-    recording = read_recording(path, scale=scale, progress=progress)
+    recording = read_tracked(path, scale=scale, progress=progress)
     if not isinstance(recording, JointRecording):
         raise InvalidFileError(
             f"{path} holds no joints of a depth camera. Read it with read_recording."

@@ -7,12 +7,16 @@ from typing import NamedTuple, Protocol
 
 from ..errors import InvalidFileError, InvalidMotionError
 from ..motion import JointRecording, Motion, Tracks
+from ..motion.depth_recording import DepthRecording
 from ..progress import Progress, unwatched
 from .acclaim import read_acclaim
+from .axes import check_scale
 from .azure_csv import is_azure_csv, read_azure_csv
 from .azure_json import is_azure_json, read_azure_json
 from .bvh import read_bvh
 from .c3d import read_c3d
+from .depth import depth_format_of, read_depth
+from .depth_settings import DepthSettings
 from .freemocap import is_npy, read_freemocap
 from .irds import is_irds, read_irds
 from .joint_csv import is_joint_csv, read_joint_csv
@@ -99,14 +103,14 @@ FORMATS = (
 
 def read_recording(
     path: Path | str, *, scale: float | None = None, progress: Progress = unwatched
-) -> Motion | Tracks | JointRecording:
-    """Read a recording of any format known here, told by what the file holds.
+) -> Motion | Tracks | JointRecording | DepthRecording:
+    """Read a recording of any format known here, told by what the file or folder holds.
 
     Parameters
     ----------
     path : Path or str
-        BVH; AMC with the actor's ASF beside it; C3D; TRC; joints of depth cameras
-        (docs/formats).
+        BVH; AMC with the actor's ASF beside it; C3D; TRC; joints of depth cameras; pictures of
+        depth (docs/formats).
     scale : float, metres per unit of the file, or None
         None leaves it to the reader of the format.
     progress : Progress
@@ -115,6 +119,8 @@ def read_recording(
     -------
     Motion, Tracks or JointRecording
         In metres, Z up; NaN where not observed.
+    DepthRecording
+        Of a camera's pictures; see `read_depth`, which takes more options.
 
     Raises
     ------
@@ -123,12 +129,36 @@ def read_recording(
     SolveCancelled
         Raised by `progress`.
     """
+    check_scale(scale)
+    if format_of(path) is None and depth_format_of(path) is not None:
+        return read_depth(path, DepthSettings(scale=scale or 0.0), progress=progress)
+    return read_tracked(path, scale=scale, progress=progress)
+
+
+def read_tracked(
+    path: Path | str, *, scale: float | None = None, progress: Progress = unwatched
+) -> Motion | Tracks | JointRecording:
+    """Read a recording as `read_recording` does, but no pictures of depth.
+
+    Raises
+    ------
+    InvalidFileError
+        Also for a recording of depth, in which nobody has found the actor yet.
+    """
     known = format_of(path)
     if known is not None:
         try:
             return known.read(path, scale=scale, progress=progress)
         except InvalidMotionError as error:  # Read as it says, but no recording.
             raise InvalidFileError(f"{path}: {error}") from None
+    if depth_format_of(path) is not None:
+        raise InvalidFileError(
+            f"{path} holds pictures of depth and no motion yet. Track the actor in it first."
+        )
+    if Path(path).is_dir():
+        raise InvalidFileError(
+            f"{path} is a folder without pictures of depth. Choose a file in it."
+        )
     names = ", ".join(each.name for each in FORMATS if each.read is not _refuse_skeleton)
     raise InvalidFileError(
         f"{path} is of no known format ({names}). Export it as one of these first."
@@ -138,11 +168,15 @@ def read_recording(
 def format_of(path: Path | str) -> Format | None:
     """Tell by its first bytes which format a file has; None for none that is known.
 
+    Pictures of depth are none of these: see `depth_format_of`.
+
     Raises
     ------
     InvalidFileError
         The file is missing, or cannot be read.
     """
+    if Path(path).is_dir():
+        return None
     try:
         with Path(path).open("rb") as file:
             head = file.read(HEAD).removeprefix(BYTE_ORDER_MARK)
@@ -171,6 +205,6 @@ def recordings_in(folder: Path) -> list[Path]:
 def read_motion_or_tracks(
     path: Path | str, *, scale: float | None = None, progress: Progress = unwatched
 ) -> Motion | Tracks:
-    """Read a recording as `read_recording` does, and take the joints of a camera as points."""
-    recording = read_recording(path, scale=scale, progress=progress)
+    """Read a recording as `read_tracked` does, and take the joints of a camera as points."""
+    recording = read_tracked(path, scale=scale, progress=progress)
     return recording.tracks if isinstance(recording, JointRecording) else recording

@@ -49,13 +49,19 @@ def read_archive(path: Path | str, names: tuple[str, ...]) -> list[NDArray[np.fl
         raise _damaged(path) from None
 
 
-def _read(file: IO[bytes], size: int) -> NDArray[np.float64]:
+def array_header(file: IO[bytes]) -> tuple[tuple[int, ...], bool, np.dtype[Any]]:
+    """Return shape, whether by column, and type, and stop where the numbers begin."""
     formats: Any = np.lib.format  # which has no types
     version = formats.read_magic(file)
     headers = {(1, 0): formats.read_array_header_1_0, (2, 0): formats.read_array_header_2_0}
     with warnings.catch_warnings():  # of headers that only an old Python or NumPy would read
         warnings.simplefilter("ignore")
         shape, by_column, kind = headers[version](file)
+    return shape, by_column, kind
+
+
+def _read(file: IO[bytes], size: int) -> NDArray[np.float64]:
+    shape, by_column, kind = array_header(file)
     if kind.kind not in "fiu" or prod(shape) * kind.itemsize > size:
         raise ValueError(kind)
     content: Any = file.read(prod(shape) * kind.itemsize)

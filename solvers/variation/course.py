@@ -34,6 +34,8 @@ class Course:
     joints : shape (n_frames, n_joints, 3), radians
         Rotation vectors (exponential map [1]_) about each joint's usual rotation; that of the
         root without its heading.
+    footing : shape (n_frames, 2), seconds, or None
+        By how much feet stand (`footing_of`), where that is known.
 
     References
     ----------
@@ -43,6 +45,7 @@ class Course:
 
     root: Array
     joints: Array
+    footing: Array | None = None
 
 
 def headings(motion: Motion) -> Array:

@@ -16,7 +16,7 @@ from .stepwise_process import Hyperparameters
 
 Array = NDArray[np.float64]
 
-KIND, VERSION = "a variation model", 1
+KIND, VERSION = "a variation model", 2
 
 
 @dataclass(frozen=True, eq=False)
@@ -35,6 +35,8 @@ class VariationModel:
     joints : shape (n_examples, n_moments, n_joints, 3), radians
     haste : shape (n_examples, n_moments)
         Logarithm of how many frames a moment lasts.
+    footing : shape (n_examples, n_moments, 2), seconds
+        By how much feet stand (`footing_of`); NaN where the rig has no feet.
     kernel : MixingKernel
     centre : int
         The example that is nearest to all others.
@@ -52,6 +54,7 @@ class VariationModel:
     root: Array
     joints: Array
     haste: Array
+    footing: Array
     kernel: MixingKernel
     centre: int
     loops: bool
@@ -73,7 +76,8 @@ class VariationModel:
         write_archive(path, KIND, VERSION, {
             "names": np.array(self.skeleton.names), "parents": np.array(self.skeleton.parents),
             "offsets": self.skeleton.offsets, "usual": self.usual, "root": self.root,
-            "joints": self.joints, "haste": self.haste, "warning": np.array(self.warning),
+            "joints": self.joints, "haste": self.haste, "footing": self.footing,
+            "warning": np.array(self.warning),
             "numbers": np.array([
                 self.frame_rate, self.kernel.scale, self.kernel.bias, self.centre, self.loops,
             ]),
@@ -109,8 +113,9 @@ def load_variation_model(path: Path | str) -> VariationModel:
         )
         return VariationModel(
             skeleton, rate, arrays["usual"].reshape(len(names), 4), root, joints,
-            arrays["haste"], MixingKernel(scale, bias), int(centre), bool(loops),
-            str(arrays["warning"]), stepwise,
+            arrays["haste"], arrays["footing"].reshape(n, moments, 2),
+            MixingKernel(scale, bias), int(centre), bool(loops), str(arrays["warning"]),
+            stepwise,
         )  # fmt: skip
     except (KeyError, ValueError, TypeError, IndexError) as error:
         raise InvalidFileError(f"{path} is damaged: it does not fit itself.") from error

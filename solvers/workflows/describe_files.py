@@ -11,7 +11,7 @@ from pathlib import Path
 from typing import NamedTuple
 
 from ..errors import MocapAssistError, SolveCancelled
-from ..recordings import read_recording
+from ..recordings import read_tracked
 from ..retrieval import Clip, DescribedClip, Origin, describe_clip
 
 AHEAD = 2
@@ -55,7 +55,7 @@ def described(wanted: Wanted) -> Described:
     """Read and describe one file."""
     path = wanted.origin.path
     try:
-        clip = Clip(wanted.name, read_recording(path), wanted.tags, wanted.origin)
+        clip = Clip(wanted.name, read_tracked(path), wanted.tags, wanted.origin)
         return Described(wanted, describe_clip(clip))
     except SolveCancelled:
         raise

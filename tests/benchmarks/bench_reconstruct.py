@@ -14,6 +14,7 @@ from time import perf_counter
 from threadpoolctl import threadpool_limits
 
 from . import part_kinect, part_losses, part_real, part_terms
+from .bench_reliability import tell_reliability
 from .report import DOCS, Report
 
 Part = Callable[[int], Sequence[str]]
@@ -26,19 +27,25 @@ PARTS: dict[str, Part] = {
     "confidence": part_terms.confidence,
     "real": part_real.recordings,
 }
+RELIABILITY = "reliability"
+"""Its tables stand in docs/reliability.md, and `make bench-reliability` makes them alone."""
 
 
 def main() -> None:
     """Print the tables of the parts that are asked for."""
     parser = argparse.ArgumentParser(description=(__doc__ or "").splitlines()[0])
-    parser.add_argument("--part", choices=PARTS, action="append", help="all by default")
+    parts = [*PARTS, RELIABILITY]
+    parser.add_argument("--part", choices=parts, action="append", help="all by default")
     parser.add_argument("--takes", type=int, default=10, help="repetitions of each exercise")
     parser.add_argument(
         "--docs", action="store_true", help="rewrite docs/benchmarks_reconstruction.md"
     )
     chosen = parser.parse_args()
     report = Report(chosen.docs, DOCS / "benchmarks_reconstruction.md")
-    for name in chosen.part or PARTS:
+    for name in chosen.part or parts:
+        if name == RELIABILITY:
+            tell_reliability(chosen.docs)
+            continue
         started = perf_counter()
         with threadpool_limits(1):
             tables = PARTS[name](chosen.takes)

@@ -1,22 +1,32 @@
 """How far joints are off on UI-PRMD, with the prior and libraries of the other subjects."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from functools import partial
 from time import process_time
 
 import numpy as np
 from numpy.typing import NDArray
 
-from solvers.reconstruction import CorrectionSettings, ResidualMethod, measure_reliability
+from solvers.motion import JointRecording
+from solvers.reconstruction import (
+    CorrectionSettings,
+    ResidualMethod,
+    measure_reliability,
+    reconstruct,
+    reconstruct_postures,
+)
 from solvers.reconstruction.correct_postures import foretell_places, posture_reliability
 
 from .kinect_errors import apart_free, compared, jerk
-from .kinect_folds import SUBJECTS, residual_prior, takes_of, truth_of
+from .kinect_folds import SUBJECTS, posture_library, residual_prior, takes_of, truth_of
 from .kinect_methods import METHODS, Method, raw
 from .kinect_pairs import Pair
 from .tables import number, table
 
 Array = NDArray[np.float64]
 
+LENGTHS = (3.0, 10.0, 30.0)
+"""Seconds."""
 WORST = 0.1
 """Share of the joint-frames, those in which raw is most off."""
 COLUMNS = (
@@ -116,6 +126,7 @@ def accuracy(n_repetitions: int) -> list[str]:
     tail = "\n**Offset-free error of each subject left out** (cm)\n\n"
     return [
         head + table(["method", *COLUMNS], rows) + "\n" + _correction_alone(takes),
+        _by_length(takes),
         OTHERWISE_TITLE + table(["method", *OTHERWISE], otherwise) + "\n",
         tail + table(["method", *SUBJECTS], by_subject) + "\n",
     ]
@@ -141,6 +152,41 @@ def _otherwise(found: Errors, before: Errors) -> list[str]:
         _centimetres(found.apart),
         _centimetres(found.apart[_worst(before.apart)]),
     ]
+
+
+def _by_length(takes: list[Pair]) -> str:
+    """Return what a frame takes in takes of many lengths, made of some, to and fro."""
+    library = posture_library(SUBJECTS[0])
+    prior = residual_prior(SUBJECTS[0], ResidualMethod.HIERARCHICAL)
+    some = [pair.kinect for pair in takes if pair.subject == SUBJECTS[0]][:: len(takes) // 15]
+    rows: dict[str, list[str]] = {"postures": [], "ours (both)": []}
+    for seconds in LENGTHS:
+        taken = dict.fromkeys(rows, 0.0)
+        for short in some:
+            long = _to_and_fro(short, round(seconds * short.frame_rate))
+            for name, solve in (
+                ("postures", partial(reconstruct_postures, long, library)),
+                ("ours (both)", partial(reconstruct, long, library, prior)),
+            ):
+                started = process_time()
+                solve()
+                taken[name] += (process_time() - started) / long.n_frames
+        for name, total in taken.items():
+            rows[name].append(f"{1e3 * total / len(some):.2f}")
+    head = "\n**Processor time by length of the take**, ms per frame\n\n"
+    return head + table(["method", *(f"{seconds:g} s" for seconds in LENGTHS)], rows) + "\n"
+
+
+def _to_and_fro(recording: JointRecording, n_frames: int) -> JointRecording:
+    """Return a take that goes on backwards, and forwards again, until it is long enough."""
+    n = recording.n_frames
+    order = np.arange(n_frames) % (2 * n)
+    order = np.where(order < n, order, 2 * n - 1 - order)
+    tracks = recording.tracks.with_positions(recording.tracks.positions[order])
+    state = recording.tracking_state
+    return replace(
+        recording, tracks=tracks, tracking_state=None if state is None else state[order]
+    )
 
 
 def _correction_alone(takes: list[Pair]) -> str:

@@ -88,14 +88,14 @@ def test_where_all_end_their_reader_the_scene_stays(dying, press, window, walks,
 @pytest.mark.parametrize("fault", [RecursionError("too deep"), ValueError("0"), MemoryError()])
 def test_a_fault_of_a_reader_keeps_no_other_file_out(load, walks, monkeypatch, fault):
     reading = load("mocap_assist.jobs.reading")
-    read = reading.read_recording
+    read = reading.read_tracked
 
     def fail(path, **more):
         if path.name == "cut.bvh":
             raise fault
         return read(path, **more)
 
-    monkeypatch.setattr(reading, "read_recording", fail)
+    monkeypatch.setattr(reading, "read_tracked", fail)
     paths = [walks / name for name in ("first.bvh", "cut.bvh", "second.bvh")]
 
     first, refusal, second = reading.read_files(paths, reading.Wanted(True, 1.0, None))

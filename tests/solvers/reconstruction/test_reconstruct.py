@@ -10,6 +10,7 @@ from solvers.motion.posture_heading import turned
 from solvers.reconstruction import (
     ReconstructMethod,
     ReconstructSettings,
+    follow_postures,
     reconstruct,
 )
 
@@ -97,3 +98,47 @@ def test_what_the_sensor_guessed_is_rebuilt_more_the_less_it_counts(walk, true):
     ]  # fmt: skip
     assert moved[0] > moved[1] > 0.5 * moved[2]
     assert moved[1] < 0.02
+
+
+def another_end(walk, start):
+    """Return the same frames, from `start` on backwards: the body is as long as it was."""
+    order = np.arange(len(walk.tracks.positions))
+    order[start:] = order[start:][::-1]
+    return frames_of(walk, order)
+
+
+def frames_of(walk, order):
+    tracks = walk.tracks.with_positions(walk.tracks.positions[order])
+    return JointRecording(tracks, walk.tracking_state[order], walk.sensor)
+
+
+@pytest.fixture
+def one_body(monkeypatch):
+    """The first take tells bodies and usual errors once and for all, as calibration would."""
+    for name in ("_body_of", "_errors"):
+        monkeypatch.setattr(follow_postures, name, held(getattr(follow_postures, name)))
+
+
+def held(measure):
+    results = []
+
+    def first(*given):
+        if not results:
+            results.append(measure(*given))
+        return results[0]
+
+    return first
+
+
+@pytest.mark.parametrize("method", list(ReconstructMethod))
+def test_causal_joints_know_nothing_of_what_comes_but_the_body(walk, method, one_body):
+    short = frames_of(walk, np.arange(15, 75))
+    far = {}
+    for causal in (True, False):
+        settings = ReconstructSettings(method=method, causal=causal)
+        one, other = (
+            reconstruct(take, settings=settings).tracks.positions[:40]
+            for take in (short, another_end(short, 40))
+        )
+        far[causal] = float(np.abs(one - other).max())
+    assert far[True] < 3e-4 < 1e-3 < far[False]

@@ -1,0 +1,157 @@
+"""Read depth that is kept in an archive of NumPy's: `depth` and the camera's numbers."""
+
+import struct
+import zipfile
+from math import prod
+from pathlib import Path
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from ..errors import InvalidFileError
+from ..files import DAMAGE
+from ..motion.camera import Camera
+from ..motion.depth_recording import DepthRecording
+from ..progress import Progress, unwatched
+from .depth_settings import USUAL, DepthSettings
+from .depth_stack import MILLIMETRE, ColorStack, DepthStack, check_size
+from .stored_arrays import array_header, read_archive
+from .stored_bytes import (
+    CHUNK,
+    DENSEST,
+    MOST_CHECKED,
+    PackedBytes,
+    PartOfBytes,
+    PlainBytes,
+    StoredBytes,
+)
+from .time_stamps import USUAL_RATE
+
+INTRINSICS = ("fx", "fy", "cx", "cy")
+LOCAL_HEADER = 30
+WITHOUT_HEADER = -15
+"""What zlib calls the window of packed bytes without its own header."""
+
+
+class _Member(NamedTuple):
+    """An array in an archive: the bytes of its numbers, and how they are laid out."""
+
+    content: StoredBytes
+    shape: tuple[int, ...]
+    kind: np.dtype[Any]
+
+
+def is_depth_npz(path: Path, head: bytes) -> bool:
+    """Tell whether a file is an archive with an array called depth."""
+    if head[:4] != b"PK\x03\x04":
+        return False
+    try:
+        with zipfile.ZipFile(path) as archive:
+            return "depth.npy" in archive.namelist()
+    except DAMAGE:
+        return b"depth.npy" in head
+
+
+def read_depth_npz(
+    path: Path | str,
+    settings: DepthSettings = USUAL,
+    *,
+    progress: Progress = unwatched,
+) -> DepthRecording:
+    """Read an `.npz` archive of depth pictures, each when it is asked for.
+
+    Keys: `depth` (frames, height, width), `fx`, `fy`, `cx`, `cy` in pixels, `frame_rate` in
+    hertz (30 without it), and `color` (frames, height, width, 3) uint8 if it was recorded.
+
+    Parameters and errors are those of `read_depth`. Whole numbers are millimetres and others
+    metres, unless a scale is given.
+    """
+    path = Path(path)
+    depth = _member(path, "depth")
+    if len(depth.shape) != 3 or not depth.shape[0]:
+        raise InvalidFileError(
+            f"{path}: its depth has the shape {depth.shape}; it must be (frames, rows,"
+            " columns)."
+        )
+    n_frames, height, width = depth.shape
+    check_size(path, height, width)
+    usual = MILLIMETRE if depth.kind.kind in "iu" else 1.0
+    stack = DepthStack(depth.content, depth.kind.str, (height, width), settings.scale or usual)
+    progress(1.0, "Reading")
+    return DepthRecording(
+        settings.camera(width, height) or _camera(path, height, width),
+        n_frames,
+        settings.frame_rate or _rate(path),
+        stack,
+        _color(path, depth.shape),
+    )
+
+
+def _member(path: Path, name: str) -> _Member:
+    """Find an array in the archive without reading its numbers."""
+    try:
+        with zipfile.ZipFile(path) as archive:
+            member = archive.getinfo(f"{name}.npy")
+            if member.file_size > DENSEST * member.compress_size + DENSEST:
+                raise ValueError(name)
+            with archive.open(member) as file:
+                shape, by_column, kind = array_header(file)
+                skipped = file.tell()
+                while member.file_size <= MOST_CHECKED and file.read(CHUNK):
+                    pass  # Its checksum is compared at the end.
+        size = prod(shape) * kind.itemsize
+        if by_column or kind.kind not in "fiu" or size > member.file_size - skipped:
+            raise ValueError(kind)
+        return _Member(_content(path, member, skipped, size), shape, kind)
+    except FileNotFoundError:
+        raise InvalidFileError(f"There is no file {path}.") from None
+    except (*DAMAGE, RuntimeError):  # RuntimeError: the member is encrypted.
+        raise InvalidFileError(
+            f"{path} has no readable array called {name}: it is damaged, cut short or of"
+            " another kind. Export it again."
+        ) from None
+
+
+def _content(path: Path, member: zipfile.ZipInfo, skipped: int, size: int) -> StoredBytes:
+    with path.open("rb") as file:
+        file.seek(member.header_offset)
+        head = file.read(LOCAL_HEADER)
+    name, extra = struct.unpack("<HH", head[26:30])
+    start = member.header_offset + LOCAL_HEADER + name + extra
+    if member.compress_type == zipfile.ZIP_STORED:
+        return PlainBytes(path, start + skipped, size)
+    if member.compress_type != zipfile.ZIP_DEFLATED:
+        raise NotImplementedError
+    packed = PackedBytes(path, start, member.compress_size, member.file_size, WITHOUT_HEADER)
+    return PartOfBytes(packed, skipped, size)
+
+
+def _camera(path: Path, height: int, width: int) -> Camera:
+    fx, fy, cx, cy = (_number(path, name) for name in INTRINSICS)
+    return Camera(fx, fy, cx, cy, width, height)
+
+
+def _rate(path: Path) -> float:
+    with zipfile.ZipFile(path) as archive:
+        known = "frame_rate.npy" in archive.namelist()
+    return _number(path, "frame_rate") if known else USUAL_RATE
+
+
+def _number(path: Path, name: str) -> float:
+    (array,) = read_archive(path, (name,))
+    if array.size != 1:
+        raise InvalidFileError(f"{path}: {name} is no single number.")
+    return float(array.reshape(()))
+
+
+def _color(path: Path, shape: tuple[int, ...]) -> ColorStack | None:
+    with zipfile.ZipFile(path) as archive:
+        if "color.npy" not in archive.namelist():
+            return None
+    color = _member(path, "color")
+    if color.shape != (*shape, 3) or color.kind != np.uint8:
+        raise InvalidFileError(
+            f"{path}: its color has the shape {color.shape} of {color.kind}; beside this depth"
+            f" it must be {(*shape, 3)} of uint8."
+        )
+    return ColorStack(color.content, (shape[1], shape[2]))
