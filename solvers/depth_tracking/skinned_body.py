@@ -96,7 +96,10 @@ class SkinnedBody:
         normals = np.zeros_like(self.vertices)
         for corner in self.triangles.T:
             np.add.at(normals, corner, faces)
-        return normals / np.maximum(np.linalg.norm(normals, axis=1, keepdims=True), 1e-12)
+        unit: Array = normals / np.maximum(
+            np.linalg.norm(normals, axis=1, keepdims=True), 1e-12
+        )
+        return unit
 
     def pose(self, rotations: Array, root: Array) -> tuple[Array, Array]:
         """Return where vertices and joints are in one pose, (n_vertices, 3) and (n_joints, 3).
