@@ -15,6 +15,7 @@ from ...solvers.motion.rotations import multiply, rotate
 from ...solvers.pictures import StickFigureSettings, draw_stick_figures, stack_pictures
 from ...solvers.progress import Progress, unwatched, within
 from ...solvers.variation import VarySettings
+from ...solvers.variation.loops import loop_at_rate
 from ...solvers.workflows import vary_motions
 from .thumbnails import Pixels, thumbnail
 
@@ -54,13 +55,14 @@ def vary(problem: VaryProblem, *, progress: Progress = unwatched) -> Varied:
     )
     first = normalise(motion_postures(problem.examples[0]), problem.examples[0].frame_rate)
     motions, pictures = [], []
-    for place, motion in enumerate(made.motions):
+    for place, (motion, is_loop) in enumerate(zip(made.motions, made.loops, strict=True)):
         progress(0.9 + 0.1 * place / len(made.motions), "Drawing")
         seen = normalise(motion_postures(motion), motion.frame_rate)
         turn = float(first.headings[0] - seen.headings[0])
         there = moved(motion, seen.places[0], turn, first.places[0])
+        seen_as = loop_at_rate if is_loop else resample
         finer = motion.frame_rate > problem.frame_rate
-        motions.append(resample(there, problem.frame_rate) if finer else there)
+        motions.append(seen_as(there, problem.frame_rate) if finer else there)
         pictures.append(thumbnail(seen.postures))
     remarks = (*made.remarks, ALIKE) if are_alike(motions) else made.remarks
     return Varied(tuple(motions), tuple(pictures), remarks)

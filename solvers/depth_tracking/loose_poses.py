@@ -90,7 +90,7 @@ class PoseMixer:
 
     @staticmethod
     def _stand(pose: Array, joints: dict[str, int], rng: np.random.Generator) -> None:
-        """Let the legs stand side by side, as those of most people do most of the time."""
+        """Let the legs stand side by side, as most people before a camera mostly do."""
         pose[joints["hips"]] = quaternion_from_rotation_vector(0.05 * rng.standard_normal(3))
         for sign, side in ((1.0, "left"), (-1.0, "right")):
             hip = [0.06 * rng.standard_normal(), -sign * rng.uniform(-0.06, 0.15), 0.0]

@@ -96,10 +96,8 @@ class SkinnedBody:
         normals = np.zeros_like(self.vertices)
         for corner in self.triangles.T:
             np.add.at(normals, corner, faces)
-        unit: Array = normals / np.maximum(
-            np.linalg.norm(normals, axis=1, keepdims=True), 1e-12
-        )
-        return unit
+        lengths = np.linalg.norm(normals, axis=1, keepdims=True)
+        return np.asarray(normals / np.maximum(lengths, 1e-12))
 
     def pose(self, rotations: Array, root: Array) -> tuple[Array, Array]:
         """Return where vertices and joints are in one pose, (n_vertices, 3) and (n_joints, 3).

@@ -21,6 +21,7 @@ from .bvh_writing import write_bvh
 from .c3d import read_c3d
 from .c3d_writing import write_c3d
 from .depth import depth_format_of, read_depth
+from .depth_settings import DepthSettings, Held
 from .freemocap import read_freemocap
 from .irds import read_irds
 from .joint_csv import read_joint_csv, write_joint_csv
@@ -42,6 +43,8 @@ from .trc_writing import write_trc
 from .ui_prmd import read_ui_prmd, read_ui_prmd_pair
 
 __all__ = [
+    "DepthSettings",
+    "Held",
     "depth_format_of",
     "format_of",
     "read_acclaim",

@@ -5,12 +5,15 @@ from pathlib import Path
 from typing import NamedTuple, Protocol
 
 from ..errors import InvalidFileError, InvalidMotionError
-from ..motion.camera import Camera
 from ..motion.depth_recording import DepthRecording
 from ..progress import Progress, unwatched
+from .depth_folder import layout_of, read_depth_folder
+from .depth_held import upright
 from .depth_mat import is_depth_mat, read_depth_mat
+from .depth_mkv import is_depth_mkv, read_depth_mkv
 from .depth_npz import is_depth_npz, read_depth_npz
 from .depth_raw import is_depth_raw, read_depth_raw
+from .depth_settings import USUAL, DepthSettings, Held
 
 HEAD = 4096
 
@@ -21,11 +24,9 @@ class DepthReader(Protocol):
     def __call__(
         self,
         path: Path | str,
+        settings: DepthSettings = USUAL,
         /,
         *,
-        scale: float | None = None,
-        camera: Camera | None = None,
-        frame_rate: float | None = None,
         progress: Progress = unwatched,
     ) -> DepthRecording:
         """Read a file or a folder."""
@@ -41,18 +42,21 @@ class DepthFormat(NamedTuple):
 
 DEPTH_FILES = (
     DepthFormat("NPZ", is_depth_npz, read_depth_npz),
+    DepthFormat("Azure Kinect MKV", is_depth_mkv, read_depth_mkv),
     DepthFormat("MATLAB", is_depth_mat, read_depth_mat),
     DepthFormat("raw frames", is_depth_raw, read_depth_raw),
 )
 """A new format is a new line here. The last has no mark of its own: it must stay the last."""
 
+FOLDER = DepthFormat(
+    "folder of 16-bit PNG", lambda path, head: path.is_dir(), read_depth_folder
+)
+
 
 def read_depth(
     path: Path | str,
+    settings: DepthSettings = USUAL,
     *,
-    scale: float | None = None,
-    camera: Camera | None = None,
-    frame_rate: float | None = None,
     progress: Progress = unwatched,
 ) -> DepthRecording:
     """Read a recording of depth of any format known here, told by what it holds.
@@ -62,13 +66,9 @@ def read_depth(
     Parameters
     ----------
     path : Path or str
-        See docs/formats/depth.md.
-    scale : float, metres per unit of a pixel, or None
-        None takes the file's word, or what its format means.
-    camera : Camera or None
-        None takes the file's word, or the camera that its format means.
-    frame_rate : float, hertz, or None
-        None takes the file's word, or 30.
+        A file or a folder: see docs/formats/depth.md.
+    settings : DepthSettings
+        What the files leave open. What is given counts more than what they say.
     progress : Progress
         Told how much is read, and what was amiss.
 
@@ -81,21 +81,19 @@ def read_depth(
     ------
     InvalidFileError
         What is there is missing, damaged, holds no depth, or does not tell the camera.
-    InvalidSettingError
-        The scale is not positive.
     SolveCancelled
         Raised by `progress`.
     """
     known = depth_format_of(path)
     if known is None:
-        names = ", ".join(each.name for each in DEPTH_FILES)
+        names = ", ".join(each.name for each in (*DEPTH_FILES, FOLDER))
         raise InvalidFileError(f"{path} holds no depth of a known format ({names}).")
     try:
-        return known.read(
-            path, scale=scale, camera=camera, frame_rate=frame_rate, progress=progress
-        )
+        recording = known.read(path, settings, progress=progress)
     except InvalidMotionError as error:  # Such as a camera that sees nothing.
         raise InvalidFileError(f"{path}: {error}") from None
+    held = Held.UPRIGHT if known is FOLDER else settings.held
+    return upright(recording, held, settings.mirrored)
 
 
 def depth_format_of(path: Path | str) -> DepthFormat | None:
@@ -107,6 +105,8 @@ def depth_format_of(path: Path | str) -> DepthFormat | None:
         The file is missing, or cannot be read.
     """
     path = Path(path)
+    if path.is_dir():
+        return FOLDER if layout_of(path) is not None else None
     try:
         with path.open("rb") as file:
             head = file.read(HEAD)

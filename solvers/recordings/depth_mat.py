@@ -6,7 +6,7 @@ from ..errors import InvalidFileError
 from ..motion.camera import Camera
 from ..motion.depth_recording import DepthRecording
 from ..progress import Progress, unwatched
-from .axes import check_scale
+from .depth_settings import USUAL, DepthSettings
 from .depth_stack import MILLIMETRE, DepthStack, check_size
 from .matlab_file import MatlabArray, is_matlab, matlab_arrays
 from .time_stamps import USUAL_RATE
@@ -28,10 +28,8 @@ def is_depth_mat(path: Path, head: bytes) -> bool:
 
 def read_depth_mat(
     path: Path | str,
+    settings: DepthSettings = USUAL,
     *,
-    scale: float | None = None,
-    camera: Camera | None = None,
-    frame_rate: float | None = None,
     progress: Progress = unwatched,
 ) -> DepthRecording:
     """Read a MATLAB file with an array `d_depth` (rows, columns, frames), millimetres [1]_.
@@ -49,7 +47,6 @@ def read_depth_mat(
        doi:10.1109/ICIP.2015.7350781
     """
     path = Path(path)
-    check_scale(scale)
     depth = _depth(path)
     if depth is None:
         raise InvalidFileError(
@@ -58,21 +55,24 @@ def read_depth_mat(
         )
     height, width, n_frames = depth.shape
     check_size(path, height, width)
-    if camera is None and (width, height) != (KINECT_V1.width, KINECT_V1.height):
+    given = settings.camera(width, height)
+    if given is None and (width, height) != (KINECT_V1.width, KINECT_V1.height):
         raise InvalidFileError(
             f"{path} has pictures of {width} x {height} pixels and does not say through which"
-            " camera. Give its focal lengths and centre."
+            " camera. Give its focal lengths fx and fy in pixels."
         )
     stack = DepthStack(
         depth.content,
         depth.kind,
         (height, width),
-        MILLIMETRE if scale is None else scale,
+        settings.scale or MILLIMETRE,
         by_column=True,
-        mirrored=camera is None,
+        mirrored=given is None,
     )
     progress(1.0, "Reading")
-    return DepthRecording(camera or KINECT_V1, n_frames, frame_rate or USUAL_RATE, stack)
+    return DepthRecording(
+        given or KINECT_V1, n_frames, settings.frame_rate or USUAL_RATE, stack
+    )
 
 
 def _depth(path: Path) -> MatlabArray | None:

@@ -13,7 +13,7 @@ from ..files import DAMAGE
 from ..motion.camera import Camera
 from ..motion.depth_recording import DepthRecording
 from ..progress import Progress, unwatched
-from .axes import check_scale
+from .depth_settings import USUAL, DepthSettings
 from .depth_stack import MILLIMETRE, ColorStack, DepthStack, check_size
 from .stored_arrays import array_header, read_archive
 from .stored_bytes import (
@@ -54,10 +54,8 @@ def is_depth_npz(path: Path, head: bytes) -> bool:
 
 def read_depth_npz(
     path: Path | str,
+    settings: DepthSettings = USUAL,
     *,
-    scale: float | None = None,
-    camera: Camera | None = None,
-    frame_rate: float | None = None,
     progress: Progress = unwatched,
 ) -> DepthRecording:
     """Read an `.npz` archive of depth pictures, each when it is asked for.
@@ -69,7 +67,6 @@ def read_depth_npz(
     metres, unless a scale is given.
     """
     path = Path(path)
-    check_scale(scale)
     depth = _member(path, "depth")
     if len(depth.shape) != 3 or not depth.shape[0]:
         raise InvalidFileError(
@@ -79,14 +76,12 @@ def read_depth_npz(
     n_frames, height, width = depth.shape
     check_size(path, height, width)
     usual = MILLIMETRE if depth.kind.kind in "iu" else 1.0
-    stack = DepthStack(
-        depth.content, depth.kind.str, (height, width), usual if scale is None else scale
-    )
+    stack = DepthStack(depth.content, depth.kind.str, (height, width), settings.scale or usual)
     progress(1.0, "Reading")
     return DepthRecording(
-        _camera(path, height, width) if camera is None else camera,
+        settings.camera(width, height) or _camera(path, height, width),
         n_frames,
-        _rate(path) if frame_rate is None else frame_rate,
+        settings.frame_rate or _rate(path),
         stack,
         _color(path, depth.shape),
     )

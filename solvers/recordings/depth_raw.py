@@ -8,7 +8,7 @@ from ..errors import InvalidFileError
 from ..motion.camera import Camera
 from ..motion.depth_recording import DepthRecording
 from ..progress import Progress, unwatched
-from .axes import check_scale
+from .depth_settings import USUAL, DepthSettings
 from .depth_stack import MILLIMETRE, DepthStack, check_size
 from .stored_bytes import PlainBytes
 from .time_stamps import USUAL_RATE
@@ -38,10 +38,8 @@ def is_depth_raw(path: Path, head: bytes) -> bool:
 
 def read_depth_raw(
     path: Path | str,
+    settings: DepthSettings = USUAL,
     *,
-    scale: float | None = None,
-    camera: Camera | None = None,
-    frame_rate: float | None = None,
     progress: Progress = unwatched,
 ) -> DepthRecording:
     """Read frames of unsigned 16-bit pixels, low byte first, row by row, without any header.
@@ -50,8 +48,14 @@ def read_depth_raw(
 
     Parameters and errors are those of `read_depth`.
     """
-    path, camera = Path(path), camera or KINECT_V1
-    check_scale(scale)
+    path = Path(path)
+    width, height = settings.width or KINECT_V1.width, settings.height or KINECT_V1.height
+    camera = settings.camera(width, height) or KINECT_V1
+    if (camera.width, camera.height) != (width, height):
+        raise InvalidFileError(
+            f"{path}: nobody knows through which camera pictures of {width} x {height} pixels"
+            " were taken. Give its focal lengths fx and fy in pixels."
+        )
     check_size(path, camera.height, camera.width)
     try:
         size = path.stat().st_size
@@ -67,7 +71,7 @@ def read_depth_raw(
         PlainBytes(path, 0, size),
         "<u2",
         (camera.height, camera.width),
-        MILLIMETRE if scale is None else scale,
+        settings.scale or MILLIMETRE,
     )
     progress(1.0, "Reading")
-    return DepthRecording(camera, n_frames, frame_rate or USUAL_RATE, stack)
+    return DepthRecording(camera, n_frames, settings.frame_rate or USUAL_RATE, stack)

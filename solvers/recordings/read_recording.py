@@ -10,11 +10,13 @@ from ..motion import JointRecording, Motion, Tracks
 from ..motion.depth_recording import DepthRecording
 from ..progress import Progress, unwatched
 from .acclaim import read_acclaim
+from .axes import check_scale
 from .azure_csv import is_azure_csv, read_azure_csv
 from .azure_json import is_azure_json, read_azure_json
 from .bvh import read_bvh
 from .c3d import read_c3d
 from .depth import depth_format_of, read_depth
+from .depth_settings import DepthSettings
 from .freemocap import is_npy, read_freemocap
 from .irds import is_irds, read_irds
 from .joint_csv import is_joint_csv, read_joint_csv
@@ -127,10 +129,10 @@ def read_recording(
     SolveCancelled
         Raised by `progress`.
     """
-    is_depth = format_of(path) is None and depth_format_of(path) is not None
-    read: Callable[..., Motion | Tracks | JointRecording | DepthRecording]
-    read = read_depth if is_depth else read_tracked
-    return read(path, scale=scale, progress=progress)
+    check_scale(scale)
+    if format_of(path) is None and depth_format_of(path) is not None:
+        return read_depth(path, DepthSettings(scale=scale or 0.0), progress=progress)
+    return read_tracked(path, scale=scale, progress=progress)
 
 
 def read_tracked(

@@ -99,6 +99,10 @@ class ConstantRate:
         moments = np.minimum(np.arange(n_frames) / self.frame_rate, seen[-1])
         self._place(moments, seen, self.frame_rate * steps)
 
+    def nearest(self) -> NDArray[np.intp]:
+        """Return the frame in the file nearest to each moment, -1 farther than half a frame."""
+        return np.asarray(np.where(self._near, self._nearest, -1))
+
     def positions(self, values: NDArray[np.float64]) -> NDArray[np.float64]:
         """Interpolate values of shape (n_in_file, n_points, n); gaps stay NaN."""
         result = self._weighted(values, self._curved)

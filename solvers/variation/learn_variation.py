@@ -10,10 +10,11 @@ from ..errors import InvalidMotionError
 from ..motion import Motion, resample
 from ..motion.rotations import mean_rotation
 from ..progress import Progress, unwatched
-from .align_examples import Alignment, align_examples, body_positions
+from .align_examples import Alignment, align_examples
 from .course import HEIGHT, Course, course_of, headings, without_heading
 from .curve_sampling import between_frames, sample_curves
 from .footing import footing_of
+from .loops import loops
 from .mixing_kernel import MixingKernel
 from .stepwise_model import learn_stepwise
 from .variation_model import VariationModel
@@ -23,8 +24,6 @@ Array = NDArray[np.float64]
 
 ODD = 2.0
 """An example that is so many times farther from the others than usual is of another kind."""
-LOOP_GAP = 0.06
-"""Metres by which joints may be beside where they began, for a clip to loop."""
 MEMORY = 600_000_000
 """Numbers in all curves together; more would not fit."""
 
@@ -76,7 +75,6 @@ def learn_variation_model(
     haste = (
         np.log(np.gradient(alignment.times, axis=1)) if root.shape[1] > 1 else 0 * root[..., 0]
     )
-    centre = motions[alignment.centre]
     stepwise = None
     if settings.method is not Method.MIXTURE:
         published = settings.method is Method.PUBLISHED
@@ -84,7 +82,7 @@ def learn_variation_model(
     progress(1.0)
     return VariationModel(
         motions[0].skeleton, rate, usual, root, joints, haste, footing, MixingKernel(),
-        alignment.centre, _loops(centre, turns[alignment.centre]), _odd_one(alignment),
+        alignment.centre, all(map(loops, motions, turns)), _odd_one(alignment),
         stepwise,
     )  # fmt: skip
 
@@ -143,13 +141,6 @@ def _same_turns(joints: Array, centre: int) -> Array:
     stay = np.linalg.norm(joints - joints[centre], axis=-1, keepdims=True).mean(axis=1)
     turn = np.linalg.norm(other - joints[centre], axis=-1, keepdims=True).mean(axis=1)
     return np.where((turn < stay)[:, None], other, joints)
-
-
-def _loops(motion: Motion, turns: Array) -> bool:
-    body = body_positions(motion, turns)
-    gap = np.linalg.norm(body[-1] - body[0], axis=-1).mean()
-    step = np.linalg.norm(np.diff(body, axis=0), axis=-1).mean()
-    return bool(gap < LOOP_GAP + step)
 
 
 def _odd_one(alignment: Alignment) -> str:

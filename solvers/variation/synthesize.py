@@ -1,5 +1,6 @@
 """New motions like the examples: different in space and in time, and none like another."""
 
+from dataclasses import replace
 from typing import NamedTuple
 
 import numpy as np
@@ -10,6 +11,7 @@ from ..motion import Motion
 from ..progress import Progress, unwatched
 from .course import Course, motion_of
 from .footing import contacts_from
+from .loops import close_loop, is_closed
 from .mixtures import draw_shares, mixed_deviations
 from .own_time import in_own_time
 from .partitions import FEET, partition_joints
@@ -35,6 +37,8 @@ class Variant(NamedTuple):
     contacts: NDArray[np.bool_] | None
     """Left and right, shape (n_frames, 2), as in the examples that were mixed there; None for
     rigs without feet, and as published, where no examples are mixed."""
+    loops: bool = False
+    """Whether it ends as it begins, because the examples do."""
 
 
 def synthesize(
@@ -173,14 +177,22 @@ def _variant(
 ) -> Variant:
     """Return one variant that deviates so from the mean: joints, root, haste, footing."""
     amounts, pinned = settings.amounts(), given.pinned
+    known = model.skeleton, model.usual, model.frame_rate, np.zeros(3)
     joints = _free(given.joints, given.by_joint, drawn[0], pinned)
     root = _free(given.root, amounts[[0, 3, 4]].mean(), drawn[1], pinned)
     hasty = np.asarray(settings.amount * settings.timing)
     haste = _free(given.haste, hasty, drawn[2], np.ones(len(pinned)))
     footing = _free(given.footing, amounts[FEET], drawn[3], pinned)
     course = in_own_time(Course(root, joints, footing), np.exp(haste) * settings.length)
-    motion = motion_of(course, model.skeleton, model.usual, model.frame_rate, np.zeros(3))
-    return Variant(motion, None if course.footing is None else contacts_from(course.footing))
+    if settings.method is Method.PUBLISHED:
+        return Variant(motion_of(course, *known), None)
+    if model.loops:
+        may_change = np.array([not settings.pin_start, not settings.pin_end], dtype=np.float64)
+        parts = np.minimum(given.by_joint[:, 0], 1.0)
+        course = close_loop(course, model.frame_rate, parts, may_change)
+        course = replace(course, joints=_within_range(given.joints, course.joints))
+    contacts = None if course.footing is None else contacts_from(course.footing)
+    return Variant(motion_of(course, *known), contacts, model.loops and is_closed(course))
 
 
 def _free(seen: _Range, amount: Array, beside: Array, pinned: Array) -> Array:
@@ -189,11 +201,14 @@ def _free(seen: _Range, amount: Array, beside: Array, pinned: Array) -> Array:
     Within the examples' range and a little beyond; the base's curve where nothing may vary.
     """
     centre = seen.own + np.minimum(amount, 1.0) * (seen.middle - seen.own)
-    beyond = MARGIN * (seen.high - seen.low)
-    wanted = centre + amount * beside
-    free = softly_within(wanted, seen.low - beyond, seen.high + beyond, beyond)
+    free = _within_range(seen, centre + amount * beside)
     weight = pinned.reshape(-1, *(1,) * (seen.own.ndim - 1))
     return np.asarray(seen.own + weight * (free - seen.own))
+
+
+def _within_range(seen: _Range, curves: Array) -> Array:
+    beyond = MARGIN * (seen.high - seen.low)
+    return softly_within(curves, seen.low - beyond, seen.high + beyond, beyond)
 
 
 def _pinned(model: VariationModel, settings: VarySettings) -> Array:

@@ -3,6 +3,8 @@
 from collections.abc import Sequence
 from dataclasses import dataclass
 
+import numpy as np
+
 from ..denoising import PlantSettings
 from ..motion import Motion
 from ..motion.contacts import detect_contacts
@@ -14,6 +16,7 @@ from ..variation import (
     draw_variants,
     learn_variation_model,
 )
+from ..variation.loops import middle_round, repeated
 from .try_to_plant import Footing, try_to_plant
 
 
@@ -24,14 +27,19 @@ class Variants:
     Attributes
     ----------
     motions : tuple of Motion
+    loops : tuple of bool
+        Which end as they begin, because the examples do.
     remarks : tuple of str
         What seems wrong with the examples, or why feet could not be planted.
     """
 
     motions: tuple[Motion, ...]
+    loops: tuple[bool, ...]
     remarks: tuple[str, ...]
 
 
+ROUNDS = 3
+"""Of a loop that are planted together: the middle one goes on at both ends."""
 USUAL, PLANTING = VarySettings(), PlantSettings()
 
 
@@ -78,12 +86,24 @@ def vary_motions(
         remarks += [remark for remark in footing.remarks if remark not in remarks]
         planted.append(footing.motion)
     progress(1.0)
-    return Variants(tuple(planted), tuple(remarks))
+    return Variants(tuple(planted), tuple(one.loops for one in drawn), tuple(remarks))
 
 
 def stand(variant: Variant, planting: PlantSettings | None = PLANTING) -> Footing:
-    """Plant the feet of a variant when those of its examples stood, and its own stand."""
-    contacts = variant.contacts
-    if contacts is not None and planting is not None:
-        contacts = contacts | detect_contacts(variant.motion)
-    return try_to_plant(variant.motion, planting, contacts)
+    """Plant the feet of a variant when those of its examples stood, and its own stand.
+
+    A loop stays one.
+    """
+    motion, contacts, is_loop = variant
+    if planting is None:
+        return try_to_plant(motion, None)
+    if is_loop:
+        motion = repeated(motion, ROUNDS)
+        if contacts is not None:
+            contacts = np.concatenate([*[contacts[:-1]] * ROUNDS, contacts[-1:]])
+    if contacts is not None:
+        contacts = contacts | detect_contacts(motion)
+    footing = try_to_plant(motion, planting, contacts)
+    if is_loop:
+        return footing._replace(motion=middle_round(footing.motion, variant.motion))
+    return footing

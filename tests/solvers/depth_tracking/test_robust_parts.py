@@ -95,11 +95,12 @@ def test_centres_are_found_among_wrong_pixels(rng, wrong):
         capsule = PART_CAPSULES[place]
         far = capsule_distances(BODY, frames, found.centres[place][None])[0, capsule]
         assert far < 0.03
-        plain = points[labels == place].mean(axis=0)
-        if wrong:
-            exact = points[parts == place].mean(axis=0)
-            shifted = np.linalg.norm(found.centres[place] - exact)
-            assert shifted < np.linalg.norm(plain - exact)
+    true_part = {point.tobytes(): part for point, part in zip(points, parts, strict=True)}
+    right = [
+        true_part[point.tobytes()] == label
+        for point, label in zip(found.points, found.labels, strict=True)
+    ]
+    assert 1.0 - np.mean(right) <= 0.6 * (1.0 - (labels == parts).mean())
 
 
 def test_parts_that_are_not_there_are_not_found(rng):

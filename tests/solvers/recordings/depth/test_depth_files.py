@@ -10,9 +10,11 @@ from numpy.testing import assert_allclose, assert_array_equal
 
 from solvers.errors import InvalidFileError, InvalidSettingError
 from solvers.motion.camera import Camera
-from solvers.recordings import read_depth, read_recording, read_tracked
+from solvers.recordings import DepthSettings, Held, read_depth, read_recording, read_tracked
+from solvers.recordings.depth_raw import read_depth_raw
 
 SMALL = Camera(9.0, 8.0, 3.5, 2.5, 8, 6)
+LENS = DepthSettings(fx=9.0, fy=8.0)
 
 
 @pytest.fixture
@@ -100,7 +102,7 @@ def test_frames_come_out_in_any_order(write, packed, kind):
         depth_npz(depth, packed) if kind == "npz" else matlab("d_depth", in_rows, packed, order)
     )
 
-    recording = read_depth(write(content), camera=SMALL)
+    recording = read_depth(write(content), LENS)
 
     for frame in [39, 0, 17, 18, 3, 38, 17]:
         assert_allclose(recording.frame(frame), depth[frame] * 0.001, rtol=1e-6)
@@ -135,9 +137,8 @@ def test_what_the_archive_says_of_camera_rate_and_colour_counts(write, rng):
     assert recording.camera == SMALL
     assert recording.frame_rate == 25.0
     assert_array_equal(recording.color(3), color[3])
-    other = Camera(5.0, 5.0, 4.0, 3.0, 8, 6)
-    told = read_depth(path, camera=other, frame_rate=12.0, scale=0.01)
-    assert (told.camera, told.frame_rate) == (other, 12.0)
+    told = read_depth(path, DepthSettings(fx=5.0, cx=4.0, frame_rate=12.0, scale=0.01))
+    assert (told.camera, told.frame_rate) == (Camera(5.0, 5.0, 4.0, 2.5, 8, 6), 12.0)
     assert_allclose(told.frame(1), 10.0 * recording.frame(1), rtol=1e-6)
 
 
@@ -193,7 +194,7 @@ def test_a_frame_behind_a_cut_is_refused_and_those_before_are_not(write, monkeyp
     content = matlab("depth", pictures(400).transpose(1, 2, 0))
     middle = len(content) // 2
     cut = content[:132] + struct.pack("<I", middle - 136) + content[136:middle]
-    recording = read_depth(write(cut), camera=SMALL)
+    recording = read_depth(write(cut), LENS)
 
     assert recording.frame(0).max() > 0.0
     with pytest.raises(InvalidFileError, match=r"is (damaged|cut short)"):
@@ -214,9 +215,50 @@ def test_a_file_that_was_removed_meanwhile_is_named(write):
 @pytest.mark.parametrize("scale", [0.0, -1.0, float("nan")])
 def test_a_scale_is_above_zero(write, scale):
     with pytest.raises(InvalidSettingError, match="it must be above 0"):
-        read_depth(write(depth_npz(pictures())), scale=scale)
+        read_recording(write(depth_npz(pictures())), scale=scale)
 
 
 def test_whoever_wants_joints_hears_what_to_do_with_depth(write):
     with pytest.raises(InvalidFileError, match="Track the actor in it first"):
         read_tracked(write(depth_npz(pictures())))
+
+
+@pytest.mark.parametrize("held", [Held.LEFT, Held.RIGHT, Held.UPSIDE_DOWN])
+@pytest.mark.parametrize("mirrored", [False, True])
+def test_a_camera_that_was_held_otherwise_sees_the_same_points(write, held, mirrored):
+    """Turned about the axis of the camera, and their left and right exchanged."""
+    path = write(depth_npz(pictures(), cx=2.0, cy=3.0))
+    seen, turned = (
+        read_depth(path),
+        read_depth(path, DepthSettings(held=held, mirrored=mirrored)),
+    )
+
+    points = [each.camera.back_project(each.frame(3)).reshape(-1, 3) for each in (seen, turned)]
+
+    x, y, z = (points[0] * (-1.0 if mirrored else 1.0, 1.0, 1.0)).T
+    expected = {
+        Held.LEFT: (-y, x, z),  # What was at the left, -x, is now above, -y.
+        Held.RIGHT: (y, -x, z),
+        Held.UPSIDE_DOWN: (-x, -y, z),
+    }[held]
+    assert_allclose(in_one_order(np.stack(expected, axis=-1)), in_one_order(points[1]))
+
+
+def in_one_order(points: np.ndarray) -> np.ndarray:
+    points = points[points[:, 2] > 0.0]
+    return points[np.lexsort(points.round(9).T)]
+
+
+def test_raw_frames_of_another_camera(write):
+    depth = pictures(3)
+
+    recording = read_depth_raw(
+        write(depth.tobytes()), DepthSettings(width=8, height=6, fx=9.0, fy=8.0)
+    )
+
+    assert (recording.n_frames, recording.camera) == (3, SMALL)
+    assert_allclose(recording.frame(2), depth[2] * 0.001, rtol=1e-6)
+    with pytest.raises(InvalidFileError, match=r"8 x 6 pixels were taken\. Give its focal"):
+        read_depth_raw(write(depth.tobytes()), DepthSettings(width=8, height=6))
+    with pytest.raises(InvalidFileError, match="are no whole pictures of 640 x 480"):
+        read_depth_raw(write(depth.tobytes()))

@@ -1,0 +1,102 @@
+"""Pictures of depth of which each is a PNG file of its own."""
+
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..errors import InvalidFileError
+from ..motion.depth_recording import ColorPicture, DepthPicture
+
+NONE = -1
+"""Stands for a frame without a picture."""
+
+
+@dataclass(frozen=True, eq=False)
+class DepthPictures:
+    """Reads the PNG file of a frame; to be `DepthRecording.read_depth`.
+
+    Attributes
+    ----------
+    folder : Path
+    names : tuple of str
+        Files in it.
+    frames : int array, shape (n_frames,)
+        Which of the files each frame has; -1: none, and the frame is empty.
+    shape : (int, int)
+        Rows and columns.
+    metres : float
+        Metres in one unit of a pixel.
+    confidence : tuple of str, or None
+        Files with the confidence of each pixel, beside `names`.
+    least : int
+        Confidence below which a pixel is left out.
+    """
+
+    folder: Path
+    names: tuple[str, ...]
+    frames: NDArray[np.intp]
+    shape: tuple[int, int]
+    metres: float
+    confidence: tuple[str, ...] | None = None
+    least: int = 0
+
+    def __call__(self, index: int) -> DepthPicture:
+        """Return the depth of a frame, metres; 0: no reading."""
+        number = self.frames[index]
+        if number == NONE:
+            return np.zeros(self.shape, np.float32)
+        path = self.folder / self.names[number]
+        pixels = read_pixels(path)
+        if pixels.shape != self.shape:
+            raise InvalidFileError(f"{path} is no picture of depth any more. Copy it again.")
+        depth = (pixels * self.metres).astype(np.float32)
+        if self.confidence is None or not self.least:
+            return depth
+        sure = read_pixels(self.folder / self.confidence[number])
+        return np.where(sure >= self.least, depth, np.float32(0.0))
+
+
+@dataclass(frozen=True, eq=False)
+class ColorPictures:
+    """Reads the colours of a frame; to be `DepthRecording.read_color`.
+
+    `names` and `frames` are as in `DepthPictures`. A picture of another size is brought to the
+    size of depth; a missing one is black.
+    """
+
+    folder: Path
+    names: tuple[str, ...]
+    frames: NDArray[np.intp]
+    shape: tuple[int, int]
+
+    def __call__(self, index: int) -> ColorPicture:
+        """Return the colours (height, width, 3) of a frame, 0 to 255."""
+        from PIL import Image
+
+        number = self.frames[index]
+        if number == NONE:
+            return np.zeros((*self.shape, 3), np.uint8)
+        path = self.folder / self.names[number]
+        try:
+            with Image.open(path) as image:
+                size = self.shape[::-1]
+                return np.asarray(image.convert("RGB").resize(size), np.uint8)
+        except (OSError, ValueError, SyntaxError, Image.DecompressionBombError):
+            raise _unreadable(path) from None
+
+
+def read_pixels(path: Path) -> NDArray[np.int32]:
+    """Return the numbers in a grey picture, shape (height, width)."""
+    from PIL import Image
+
+    try:
+        with Image.open(path, formats=("PNG",)) as image:
+            return np.asarray(image).astype(np.int32)
+    except (OSError, ValueError, SyntaxError, Image.DecompressionBombError):
+        raise _unreadable(path) from None
+
+
+def _unreadable(path: Path) -> InvalidFileError:
+    return InvalidFileError(f"{path} is missing or damaged. Copy or export it again.")
