@@ -26,7 +26,8 @@ REPEATS = 5
 def compare_pursuits() -> str:
     """Return a table of milliseconds for 300 postures, the least of five runs."""
     clips = [clip_postures(clip.tracks, RATE) for clip in training_library()]
-    postures = np.concatenate([seen_signals(clip.positions)[0] for clip in clips])
+    found = [seen_signals(clip.positions) for clip in clips]
+    postures = np.concatenate([signals for signals, seen in found if seen.all()])
     rng = np.random.default_rng(0)
     drawn = rng.permutation(len(postures))
     asked, first = postures[drawn[:N_SIGNALS]], postures[drawn[N_SIGNALS:][:N_ATOMS]]
