@@ -28,6 +28,10 @@ PART_CAPSULES, PART_SPANS = _spans()
 PART_SEGMENTS = CAPSULE_SEGMENTS[PART_CAPSULES]
 """Index of the segment that each part belongs to (N_PARTS,)."""
 
+CAPSULE_OF_PART = np.zeros((N_PARTS, len(CAPSULES)), dtype=np.float32)
+"""1 where a part is of a capsule: shares of parts @ CAPSULE_OF_PART are those of capsules."""
+CAPSULE_OF_PART[np.arange(N_PARTS), PART_CAPSULES] = 1.0
+
 
 def part_axes(body: BodyModel) -> Array:
     """Return both ends of each part's axis in its segment's frame, (N_PARTS, 2, 3), metres."""

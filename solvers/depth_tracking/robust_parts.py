@@ -57,6 +57,12 @@ class FoundParts:
     points: Array
     labels: NDArray[np.intp]
 
+    def exchanged(self, order: NDArray[np.intp]) -> "FoundParts":
+        """Return the same with each part taken for the part at its place in `order`."""
+        return FoundParts(
+            self.centres[order], self.weights[order], self.points, order[self.labels]
+        )
+
 
 def find_parts(
     points: Array,
