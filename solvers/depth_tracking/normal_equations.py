@@ -78,13 +78,13 @@ def joined(rows: Sequence[SurfaceRows]) -> SurfaceRows:
 def segment_equations(rows: SurfaceRows) -> SegmentEquations:
     """Sum rows up, per segment."""
     segments = CAPSULE_SEGMENTS[rows.capsules]
-    return moved_points(rows.points, rows.directions, rows.residuals, rows.weights, segments)
+    return move_along(rows.points, rows.directions, rows.residuals, rows.weights, segments)
 
 
-def moved_points(
+def move_along(
     points: Array, directions: Array, residuals: Array, weights: Array, segments: Integers
 ) -> SegmentEquations:
-    """Sum up what points on segments are asked for; arrays as those of `SurfaceRows`."""
+    """Ask points on segments to move along directions; arrays as those of `SurfaceRows`."""
     lines = screws(points, directions).T
     heavy = lines * weights
     products = np.empty((27, len(points)))
@@ -98,6 +98,14 @@ def moved_points(
     return SegmentEquations(matrices, sums[:, 21:], 0.5 * float(weights @ residuals**2))
 
 
+def move_toward(
+    points: Array, targets: Array, weights: Array, segments: Integers
+) -> SegmentEquations:
+    """Ask points (n, 3) on segments to move to targets (n, 3); `weights` are of the squares."""
+    rows = toward(points, targets, weights, segments)
+    return move_along(*rows)
+
+
 def screws(points: Array, directions: Array) -> Array:
     """Return (point x direction, direction) (n, 6): what a twist is multiplied with."""
     found = np.empty((len(points), 6))
@@ -108,18 +116,23 @@ def screws(points: Array, directions: Array) -> Array:
     return found
 
 
-def in_coordinates(equations: SegmentEquations, twists: Array) -> PoseEquations:
-    """Express equations of segments in the coordinates.
+def in_coordinates(equations: Iterable[SegmentEquations], twists: Array) -> PoseEquations:
+    """Add equations of segments up, and express them in the coordinates.
 
     Parameters
     ----------
-    equations : SegmentEquations
+    equations : iterable of SegmentEquations
     twists : shape (15, 6, 34)
         How the coordinates move the segments.
     """
+    found = list(equations)
+    matrices = np.sum([one.matrices for one in found], axis=0)
+    vectors = np.sum([one.vectors for one in found], axis=0)
     flat = twists.reshape(6 * N_SEGMENTS, -1)
-    pressed = (equations.matrices @ twists).reshape(6 * N_SEGMENTS, -1)
-    return PoseEquations(flat.T @ pressed, flat.T @ equations.vectors.ravel(), equations.cost)
+    pressed = (matrices @ twists).reshape(6 * N_SEGMENTS, -1)
+    return PoseEquations(
+        flat.T @ pressed, flat.T @ vectors.ravel(), sum(one.cost for one in found)
+    )
 
 
 def added(equations: Iterable[PoseEquations]) -> PoseEquations:

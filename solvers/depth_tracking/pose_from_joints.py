@@ -7,7 +7,7 @@ from .body_kinematics import segment_frames, segment_twists
 from .body_model import BodyModel
 from .body_tables import END_SEGMENTS, JOINTS, SEGMENTS
 from .coordinates import COORDINATES, N_COORDINATES, N_ROOT
-from .normal_equations import SegmentEquations, added, in_coordinates, moved_points, step
+from .normal_equations import added, in_coordinates, move_toward, step
 from .pose_priors import joint_limits, stay_near
 
 Array = NDArray[np.float64]
@@ -93,9 +93,9 @@ def _descend(
         frames = segment_frames(body, pose)
         carrier = frames[segments]
         places = np.einsum("nij,nj->ni", carrier[:, :3, :3], local) + carrier[:, :3, 3]
-        pulls = _pulls(places, targets, weights, segments)
+        pulls = move_toward(places, targets, weights, segments)
         found = added([
-            in_coordinates(pulls, segment_twists(pose, frames)),
+            in_coordinates([pulls], segment_twists(pose, frames)),
             joint_limits(pose, _LIMIT_WEIGHT), stay_near(pose, _rest(pose), _REST_WEIGHTS),
         ])  # fmt: skip
         if equations is None or found.cost < best[1]:
@@ -107,16 +107,6 @@ def _descend(
         if np.abs(change).max() < 1e-7:
             break
     return best
-
-
-def _pulls(
-    places: Array, targets: Array, weights: Array, segments: Integers
-) -> SegmentEquations:
-    axes = np.tile(np.eye(3), (len(places), 1))
-    return moved_points(
-        np.repeat(places, 3, axis=0), axes, (targets - places).ravel(),
-        np.repeat(weights, 3), np.repeat(segments, 3),
-    )  # fmt: skip
 
 
 _REST_WEIGHTS = np.array([0.0] * N_ROOT + [_REST_WEIGHT] * (N_COORDINATES - N_ROOT))

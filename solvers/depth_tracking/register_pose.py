@@ -106,7 +106,7 @@ class _Scene:
         hypothesis = imagine(self.body, pose, self.observation.camera)
         rows = likelihood_rows(hypothesis, self.observation, self.settings, self.memory)
         asked = [
-            in_coordinates(segment_equations(rows), hypothesis.twists),
+            in_coordinates([segment_equations(rows)], hypothesis.twists),
             self.prior(pose),
             joint_limits(pose, self.settings.limit_weight),
         ]

@@ -103,7 +103,7 @@ def _registered(
             return pose
         rows = segment_equations(pairs(hypothesis, observation))
         equations = added([
-            in_coordinates(rows, hypothesis.twists),
+            in_coordinates([rows], hypothesis.twists),
             joint_limits(pose, LIMIT_WEIGHT),
             stay_near(pose, expected, np.full(34, TURN_WEIGHT)),
         ])

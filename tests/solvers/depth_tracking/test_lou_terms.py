@@ -65,7 +65,7 @@ def test_a_step_of_each_term_brings_the_body_back(term):
 
     equations = term(hypothesis, observed(NATURAL), *extra, 1.0)
     change = step(
-        in_coordinates(segment_equations(equations), hypothesis.twists), np.full(34, 0.5)
+        in_coordinates([segment_equations(equations)], hypothesis.twists), np.full(34, 0.5)
     )
 
     assert change[:2] @ [0.03, -0.02] < 0.0
@@ -116,7 +116,7 @@ def test_colour_tells_how_far_a_limb_slid_along_itself():
     change = []
     for memory in (None, Memory(then.frames, before)):
         asked = segment_equations(surface_term(then, after, memory, 1.0))
-        change.append(step(in_coordinates(asked, then.twists), np.full(34, 0.5))[1])
+        change.append(step(in_coordinates([asked], then.twists), np.full(34, 0.5))[1])
     assert abs(change[1] + 0.03) < abs(change[0] + 0.03)
 
 

@@ -44,7 +44,7 @@ def test_equations_of_segments_equal_the_dense_ones(rng):
         hypothesis.points, directions, residuals, weights, hypothesis.picture.capsules
     )
 
-    found = in_coordinates(segment_equations(rows), hypothesis.twists)
+    found = in_coordinates([segment_equations(rows)], hypothesis.twists)
 
     jacobian = moved(hypothesis, directions)
     assert_allclose(found.matrix, jacobian.T @ (weights[:, None] * jacobian), atol=1e-8)
@@ -95,7 +95,7 @@ def test_the_silhouette_term_asks_back_where_the_outline_is(aside):
     hypothesis = imagine(BODY, there, CAMERA)
 
     asked = in_coordinates(
-        segment_equations(silhouette_term(hypothesis, observed(NATURAL), 1.0)),
+        [segment_equations(silhouette_term(hypothesis, observed(NATURAL), 1.0))],
         hypothesis.twists,
     ).vector[:2]
 
@@ -165,7 +165,7 @@ def test_every_depth_term_moves_the_body_nearer():
         closest_surface_term(hypothesis, observation.points, 1.0, 0.2),
     ):
         change = step(
-            in_coordinates(segment_equations(term), hypothesis.twists), np.full(34, 0.1)
+            in_coordinates([segment_equations(term)], hypothesis.twists), np.full(34, 0.1)
         )
         nearer = imagine(BODY, there + change, CAMERA).points[:, 2].mean()
         assert abs(nearer - observation.points[:, 2].mean()) < 0.03
