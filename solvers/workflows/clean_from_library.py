@@ -109,8 +109,9 @@ def bases_from_library(
 
     The more a clip is like it, the more it counts. Where joints were lost for long, clips that
     are only roughly like it must fill them at least as well as the take itself does, tried
-    where they were seen: else they are laid aside. The library is searched with a first estimate from the take alone,
-    and with nothing of what that is unsure of, such as limbs that were lost for long.
+    where they were seen: else they are laid aside. The library is searched with a first
+    estimate from the take alone, and with nothing of what that is unsure of, such as limbs
+    that were lost for long.
 
     Raises
     ------
