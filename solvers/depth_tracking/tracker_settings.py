@@ -58,6 +58,10 @@ class TrackerSettings(Settings):
         0.7, "How much of a movement is expected to go on; more follows quick movements",
         minimum=0.0, maximum=1.0, advanced=True,
     )  # fmt: skip
+    start_ahead: bool = setting(
+        True, "Start each frame where it is expected rather than at the frame before",
+        advanced=True,
+    )  # fmt: skip
     limit_weight: float = _weight(2000.0, "How hard the joint limits are", "1/rad2")
     damping: float = setting(
         1.0, "Least resistance to each step; more is safer and slower",
@@ -76,7 +80,7 @@ WZC12 = TrackerSettings(
     iterations=5, coarse_iterations=0, limit=0.08,
     closest_weight=0.0, off_actor_weight=0.0, too_near_weight=0.0,
     depth_weight=4.0, extra_weight=4.0 / 0.29**2, silhouette_weight=4.0 / 100.0**2,
-    shift_weight=1.0 / 14.3**2, turn_weight=1.0 / 14.3**2, trust=1.0,
+    shift_weight=1.0 / 14.3**2, turn_weight=1.0 / 14.3**2, trust=1.0, start_ahead=False,
     limit_weight=0.0, damping=1e-6, longest_step=10.0, accept_only_better=False,
 )  # fmt: skip
 """Terms and standard deviations of [WZC12] appendix A, in metres and radians; each pixel of
