@@ -5,18 +5,18 @@ from numpy.typing import NDArray
 
 from .body_tables import CAPSULE_SEGMENTS
 from .hypothesis import Hypothesis
-from .normal_equations import SegmentEquations, SurfaceRows, segment_equations
+from .normal_equations import SurfaceRows
 
 Array = NDArray[np.float64]
 Integers = NDArray[np.intp]
 
-_FAR = 1e3
+_FAR, _NOTHING = 1e3, 1e-12
 
 
 def closest_surface_term(
     hypothesis: Hypothesis, points: Array, weight: float, scale: float
-) -> SegmentEquations:
-    """Return what observed points ask of the surface, measured along its normal.
+) -> SurfaceRows:
+    """Return the rows with which observed points pull the surface along its normal.
 
     The closest point of a capsule is known in closed form, so that no points of the body need
     be searched. A surface that faces away from the camera cannot have been seen and does not
@@ -36,13 +36,6 @@ def closest_surface_term(
     .. [GM87] Geman, McClure (1987). Statistical methods for tomographic image reconstruction.
        Bulletin of the International Statistical Institute 52(4).
     """
-    return segment_equations(closest_surface_rows(hypothesis, points, weight, scale))
-
-
-def closest_surface_rows(
-    hypothesis: Hypothesis, points: Array, weight: float, scale: float
-) -> SurfaceRows:
-    """Return a row per point of `closest_surface_term`."""
     distances, directions, capsules = closest_surface(hypothesis, points)
     known = np.abs(distances) < _FAR
     distances, directions, capsules = distances[known], directions[known], capsules[known]
@@ -63,28 +56,32 @@ def closest_surface(hypothesis: Hypothesis, points: Array) -> tuple[Array, Array
         The capsules.
     """
     body, frames = hypothesis.body, hypothesis.frames[CAPSULE_SEGMENTS]
-    rotations = frames[:, :3, :3]
-    flat = rotations.transpose(1, 0, 2).reshape(3, -1)
-    rays = (points @ flat).reshape(len(points), -1, 3)
     scales = 1.0 / body.radii[:, [0, 1, 1]]
     starts, stops = body.capsule_ends.swapaxes(0, 1) * scales
-    origins = np.einsum("nji,nj->ni", rotations, frames[:, :3, 3])
     axes = stops - starts
-    from_start = rays * scales
-    from_start -= origins * scales + starts
-    along = np.einsum("pni,ni->pn", from_start, axes / (axes**2).sum(axis=1)[:, np.newaxis])
-    np.clip(along, 0.0, 1.0, out=along)
-    from_start -= along[..., np.newaxis] * axes
-    size = np.sqrt(np.einsum("pni,pni->pn", from_start, from_start)) + 1e-12
-    from_start *= scales
-    slope = np.sqrt(np.einsum("pni,pni->pn", from_start, from_start)) + 1e-12
+    # One array (n_points, n_capsules) per component: all steps run over whole arrays.
+    rays, out = [], []
+    along = 0.0
+    lengths = (axes**2).sum(axis=1)
+    for i in range(3):
+        column = frames[:, :3, i]
+        ray = points @ column.T
+        origin = np.einsum("ni,ni->n", column, frames[:, :3, 3])
+        part = ray * scales[:, i] - (origin * scales[:, i] + starts[:, i])
+        along = along + part * (axes[:, i] / lengths)
+        rays.append(ray)
+        out.append(part)
+    along = np.clip(along, 0.0, 1.0)
+    out = [part - along * axes[:, i] for i, part in enumerate(out)]
+    size = np.sqrt(out[0] ** 2 + out[1] ** 2 + out[2] ** 2) + _NOTHING
+    out = [part * scales[:, i] for i, part in enumerate(out)]
+    slope = np.sqrt(out[0] ** 2 + out[1] ** 2 + out[2] ** 2) + _NOTHING
     distances = (size - 1.0) * size / slope
-    distances[np.einsum("pni,pni->pn", from_start, rays) >= 0.0] = _FAR
+    facing = out[0] * rays[0] + out[1] * rays[1] + out[2] * rays[2]
+    distances[facing >= 0.0] = _FAR
     capsules = np.abs(distances).argmin(axis=1)
     each = np.arange(len(points))
-    normals = from_start[each, capsules] / slope[each, capsules, np.newaxis]
-    return (
-        distances[each, capsules],
-        np.einsum("pij,pj->pi", rotations[capsules], normals),
-        capsules,
-    )
+    normals = np.stack([part[each, capsules] for part in out], axis=1)
+    normals /= slope[each, capsules, np.newaxis]
+    outward = np.einsum("pij,pj->pi", frames[capsules, :3, :3], normals)
+    return distances[each, capsules], outward, capsules

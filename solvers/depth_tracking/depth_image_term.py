@@ -4,7 +4,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .hypothesis import Hypothesis
-from .normal_equations import SegmentEquations, SurfaceRows, segment_equations
+from .normal_equations import SurfaceRows
 from .observation import Observation
 from .pixel_groups import PixelGroups
 
@@ -16,8 +16,8 @@ _GRAZING = 0.25
 
 def depth_image_term(
     hypothesis: Hypothesis, observation: Observation, groups: PixelGroups, weight: float
-) -> SegmentEquations:
-    """Return the depth image term of [WZC12]_, eq. 4 and 15.
+) -> SurfaceRows:
+    """Return the rows of the depth image term of [WZC12]_, eq. 4 and 15.
 
     Only pixels that show the same part in both pictures count: those off the actor (B1) and
     those whose depths are far apart (B2, occlusions) are left to other terms. The image
@@ -40,13 +40,6 @@ def depth_image_term(
     .. [WZC12] Wei, Zhang, Chai (2012). Accurate realtime full-body motion capture using a
        single depth camera. ACM Transactions on Graphics 31(6).
     """
-    return segment_equations(depth_image_rows(hypothesis, observation, groups, weight))
-
-
-def depth_image_rows(
-    hypothesis: Hypothesis, observation: Observation, groups: PixelGroups, weight: float
-) -> SurfaceRows:
-    """Return a row per pixel of `depth_image_term`."""
     chosen = groups.comparable
     residuals = (
         observation.flat[hypothesis.picture.pixels[chosen]] - hypothesis.picture.depths[chosen]

@@ -5,7 +5,7 @@ from numpy.typing import NDArray
 
 from .depth_edges import edge_pixels
 from .hypothesis import Hypothesis
-from .normal_equations import SegmentEquations, move_toward
+from .normal_equations import SurfaceRows, toward
 from .observation import Observation
 
 Array = NDArray[np.float64]
@@ -14,10 +14,8 @@ WINDOW = 10
 """Pixels to each side that are searched, in a picture of 320 columns: 21 x 21."""
 
 
-def edge_term(
-    hypothesis: Hypothesis, observation: Observation, weight: float
-) -> SegmentEquations:
-    """Return the edge term of [LOU12]_, eq. 3.8 and 3.9.
+def edge_term(hypothesis: Hypothesis, observation: Observation, weight: float) -> SurfaceRows:
+    """Return the rows of the edge term of [LOU12]_, eq. 3.8 and 3.9.
 
     Canny's edges of both pictures are lifted to points in space by the depth of their pixels;
     each observed edge point pulls the closest drawn one within a window of 21 x 21 pixels (of
@@ -40,7 +38,7 @@ def edge_term(
     drawn = hypothesis.index_picture[edge_pixels(hypothesis.picture.depth_picture())]
     if not (len(there) and len(drawn)):
         nothing = np.zeros((0, 3))
-        return move_toward(nothing, nothing, np.zeros(0), np.zeros(0, dtype=np.intp))
+        return toward(nothing, nothing, np.zeros(0), np.zeros(0, dtype=np.intp))
     pixels = hypothesis.picture.pixels[drawn]
     rows = np.abs(there[:, np.newaxis] // width - pixels // width)
     columns = np.abs(there[:, np.newaxis] % width - pixels % width)
@@ -51,7 +49,7 @@ def edge_term(
     best = squares.argmin(axis=1)
     found = np.isfinite(squares[np.arange(len(there)), best])
     moved = drawn[best[found]]
-    return move_toward(
+    return toward(
         hypothesis.points[moved], targets[found], np.full(len(moved), weight),
-        hypothesis.segments[moved],
+        hypothesis.picture.capsules[moved],
     )  # fmt: skip

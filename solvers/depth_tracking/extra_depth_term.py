@@ -5,7 +5,7 @@ from numpy.typing import NDArray
 from scipy.spatial import cKDTree
 
 from .hypothesis import Hypothesis
-from .normal_equations import SegmentEquations, move_toward
+from .normal_equations import SurfaceRows, toward
 from .observation import Observation
 from .pixel_groups import PixelGroups
 
@@ -19,8 +19,8 @@ def extra_depth_term(
     groups: PixelGroups,
     weight: float,
     limit: float,
-) -> SegmentEquations:
-    """Return the extra depth term of [WZC12]_, eq. 5 and 17, with its four types of pairs.
+) -> SurfaceRows:
+    """Return the rows of the extra depth term of [WZC12]_, eq. 5 and 17: four types of pairs.
 
     Visible points off the actor (type 1) or in front of what was observed (type 3) are pushed
     to the closest observed point; observed points that the body does not cover (type 2) or that
@@ -38,20 +38,22 @@ def extra_depth_term(
     limit : float, metres
     """
     if not (len(hypothesis.points) and len(observation.points)):
-        return move_toward(np.zeros((0, 3)), np.zeros((0, 3)), np.zeros(0), np.zeros(0, int))
+        return toward(
+            np.zeros((0, 3)), np.zeros((0, 3)), np.zeros(0), np.zeros(0, dtype=np.intp)
+        )
     pushed = np.concatenate([groups.off_actor, groups.too_near])
     behind = hypothesis.picture.pixels[groups.too_far]
     pulling = observation.index_picture[np.concatenate([groups.uncovered, behind])]
-    drawn = cKDTree(hypothesis.points)
+    drawn = cKDTree(hypothesis.points, balanced_tree=False, compact_nodes=False)
     pushes = _one_to_one(pushed, *observation.tree.query(hypothesis.points[pushed]))
     pulls = _one_to_one(pulling, *drawn.query(observation.points[pulling]))
     moved = np.concatenate([pushes[0], pulls[1]])
     targets = observation.points[np.concatenate([pushes[1], pulls[0]])]
     near = np.abs(hypothesis.points[moved, 2] - targets[:, 2]) <= limit
     moved, targets = moved[near], targets[near]
-    return move_toward(
+    return toward(
         hypothesis.points[moved], targets, np.full(len(moved), weight),
-        hypothesis.segments[moved],
+        hypothesis.picture.capsules[moved],
     )  # fmt: skip
 
 

@@ -17,6 +17,8 @@ Array = NDArray[np.float64]
 
 JOINT_SEGMENTS: Integers = np.array([*range(N_SEGMENTS), *END_SEGMENTS])
 """Segment that carries each of `JOINTS`."""
+FITTING = 0.1
+"""Metres in depth from which on a pixel does not fit at all."""
 _UNSURE = 0.06
 """Standard deviation, metres, at which a joint's confidence is halved twice."""
 _ENOUGH_PIXELS = 8.0
@@ -31,13 +33,15 @@ class FitQuality(NamedTuple):
     """Mean distance in depth where body and actor overlap, metres; NaN where nowhere."""
     coverage: float
     """Share of the pixels of body or actor that show both [WZC12] section 5."""
+    score: float
+    """Share of the pixels of body or actor that fit, each by how near its depths are."""
     confidence: Array
     """Of each of `JOINTS`, 0 to 1, shape (21,)."""
 
 
 def unseen() -> FitQuality:
     """Return the figures of a frame without an actor."""
-    return FitQuality(np.nan, 0.0, np.zeros(len(JOINT_SEGMENTS)))
+    return FitQuality(np.nan, 0.0, 0.0, np.zeros(len(JOINT_SEGMENTS)))
 
 
 def fit_quality(
@@ -61,11 +65,13 @@ def fit_quality(
     overlap = int(both.sum())
     if not overlap:
         return unseen()
-    residual = float(np.abs(observed[both] - picture.depths[both]).mean())
-    coverage = overlap / (len(picture.pixels) + len(observation.pixels) - overlap)
+    apart = np.abs(observed[both] - picture.depths[both])
+    either = len(picture.pixels) + len(observation.pixels) - overlap
+    score = float(np.maximum(0.0, 1.0 - apart / FITTING).sum()) / either
     agreeing = _agreement(found, observation, limit)[JOINT_SEGMENTS]
     room = np.sqrt(_joint_variances(body, found))
-    return FitQuality(residual, coverage, agreeing / (1.0 + (room / _UNSURE) ** 2))
+    confidence = agreeing / (1.0 + (room / _UNSURE) ** 2)
+    return FitQuality(float(apart.mean()), overlap / either, score, confidence)
 
 
 def _agreement(found: Registered, observation: Observation, limit: float) -> Array:

@@ -4,7 +4,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .hypothesis import Hypothesis
-from .normal_equations import SegmentEquations, SurfaceRows, move_toward, segment_equations
+from .normal_equations import SurfaceRows, toward
 from .observation import Observation, rays_of
 from .pixel_groups import PixelGroups
 
@@ -19,7 +19,7 @@ def off_actor_term(
     groups: PixelGroups,
     weight: float,
     scale: float,
-) -> SegmentEquations:
+) -> SurfaceRows:
     """Ask visible points that no pixel of the actor shows to move sideways onto the actor.
 
     The target is the pixel of the actor nearest in the picture, at the point's own depth.
@@ -34,17 +34,6 @@ def off_actor_term(
     weight : float, per square metre
     scale : float, metres
     """
-    return segment_equations(off_actor_rows(hypothesis, observation, groups, weight, scale))
-
-
-def off_actor_rows(
-    hypothesis: Hypothesis,
-    observation: Observation,
-    groups: PixelGroups,
-    weight: float,
-    scale: float,
-) -> SurfaceRows:
-    """Return two rows per pixel of `off_actor_term`."""
     chosen = groups.off_actor
     points = hypothesis.points[chosen]
     nearest = observation.nearest_pixel[hypothesis.picture.pixels[chosen]]
@@ -64,7 +53,7 @@ def too_near_term(
     groups: PixelGroups,
     weight: float,
     scale: float,
-) -> SegmentEquations:
+) -> SurfaceRows:
     """Ask visible points far in front of what was observed to move to the closest observed one.
 
     Parameters
@@ -80,6 +69,6 @@ def too_near_term(
     points = hypothesis.points[chosen]
     distances, nearest = observation.tree.query(points)
     weights = weight / (1.0 + (distances / scale) ** 2) ** 2
-    return move_toward(
-        points, observation.points[nearest], weights, hypothesis.segments[chosen]
+    return toward(
+        points, observation.points[nearest], weights, hypothesis.picture.capsules[chosen]
     )

@@ -1,6 +1,6 @@
 """Sum up what terms ask of segments, and solve for the step of the coordinates."""
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from typing import NamedTuple
 
@@ -62,50 +62,58 @@ class SurfaceRows(NamedTuple):
     """Which capsule each point is on, shape (n,)."""
 
 
+def toward(points: Array, targets: Array, weights: Array, capsules: Integers) -> SurfaceRows:
+    """Return the rows that ask points (n, 3) to move to targets (n, 3), three for each."""
+    return SurfaceRows(
+        np.repeat(points, 3, axis=0), np.tile(np.eye(3), (len(points), 1)),
+        (targets - points).ravel(), np.repeat(weights, 3), np.repeat(capsules, 3),
+    )  # fmt: skip
+
+
+def joined(rows: Sequence[SurfaceRows]) -> SurfaceRows:
+    """Return the rows of several terms as one."""
+    return SurfaceRows(*(np.concatenate(parts) for parts in zip(*rows, strict=True)))
+
+
 def segment_equations(rows: SurfaceRows) -> SegmentEquations:
-    """Sum rows up per segment."""
-    return move_along(*rows[:4], CAPSULE_SEGMENTS[rows.capsules])
+    """Sum rows up, per segment."""
+    segments = CAPSULE_SEGMENTS[rows.capsules]
+    return move_along(rows.points, rows.directions, rows.residuals, rows.weights, segments)
 
 
 def move_along(
     points: Array, directions: Array, residuals: Array, weights: Array, segments: Integers
 ) -> SegmentEquations:
-    """Ask points on segments to move along directions.
-
-    Parameters
-    ----------
-    points, directions : shape (n, 3)
-        Camera frame; a direction's length scales its residual.
-    residuals : shape (n,)
-        What direction . (movement of the point) should be.
-    weights : shape (n,)
-        Of the squares.
-    segments : int, shape (n,)
-        Which segment each point is on.
-    """
-    rows = np.concatenate([np.cross(points, directions), directions], axis=1)
-    heavy = rows * weights[:, np.newaxis]
-    products = np.empty((len(rows), 27))
-    np.multiply(heavy[:, _ROWS], rows[:, _COLUMNS], out=products[:, :21])
-    np.multiply(heavy, residuals[:, np.newaxis], out=products[:, 21:])
-    belongs = np.zeros((N_SEGMENTS, len(rows)))
-    belongs[segments, np.arange(len(rows))] = 1.0
-    sums = belongs @ products
+    """Ask points on segments to move along directions; arrays as those of `SurfaceRows`."""
+    lines = screws(points, directions).T
+    heavy = lines * weights
+    products = np.empty((27, len(points)))
+    np.multiply(heavy[_ROWS], lines[_COLUMNS], out=products[:21])
+    np.multiply(heavy, residuals, out=products[21:])
+    belongs = np.zeros((N_SEGMENTS, len(points)))
+    belongs[segments, np.arange(len(points))] = 1.0
+    sums = belongs @ products.T
     matrices = np.empty((N_SEGMENTS, 6, 6))
     matrices[:, _ROWS, _COLUMNS] = matrices[:, _COLUMNS, _ROWS] = sums[:, :21]
-    cost = 0.5 * float(weights @ residuals**2)
-    return SegmentEquations(matrices, sums[:, 21:], cost)
+    return SegmentEquations(matrices, sums[:, 21:], 0.5 * float(weights @ residuals**2))
 
 
 def move_toward(
     points: Array, targets: Array, weights: Array, segments: Integers
 ) -> SegmentEquations:
     """Ask points (n, 3) on segments to move to targets (n, 3); `weights` are of the squares."""
-    axes = np.tile(np.eye(3), (len(points), 1))
-    return move_along(
-        np.repeat(points, 3, axis=0), axes, (targets - points).ravel(),
-        np.repeat(weights, 3), np.repeat(segments, 3),
-    )  # fmt: skip
+    rows = toward(points, targets, weights, segments)
+    return move_along(*rows)
+
+
+def screws(points: Array, directions: Array) -> Array:
+    """Return (point x direction, direction) (n, 6): what a twist is multiplied with."""
+    found = np.empty((len(points), 6))
+    x, y, z = points.T
+    u, v, w = directions.T
+    found[:, 0], found[:, 1], found[:, 2] = y * w - z * v, z * u - x * w, x * v - y * u
+    found[:, 3:] = directions
+    return found
 
 
 def in_coordinates(equations: Iterable[SegmentEquations], twists: Array) -> PoseEquations:

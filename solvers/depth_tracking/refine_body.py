@@ -12,13 +12,13 @@ from ..settings import Settings, setting
 from .body_model import BodyModel
 from .body_shape import MEASURES, N_LENGTHS, resized, shape_jacobian
 from .body_tables import CAPSULE_SEGMENTS
-from .closest_surface_term import closest_surface_rows
+from .closest_surface_term import closest_surface_term
 from .coordinates import N_COORDINATES
-from .depth_image_term import depth_image_rows
-from .free_space_term import off_actor_rows
+from .depth_image_term import depth_image_term
+from .free_space_term import off_actor_term
 from .hypothesis import Hypothesis, imagine
 from .likelihood import USUAL_AREA, pixel_area
-from .normal_equations import SurfaceRows
+from .normal_equations import SurfaceRows, joined, screws
 from .observation import Observation, observe
 from .pixel_groups import group_pixels
 from .pose_priors import joint_limits
@@ -155,43 +155,38 @@ def _frame_equations(
     """Return blocks of a frame's normal equations: pose, body, both, and right-hand sides."""
     hypothesis = imagine(body, pose, observation.camera)
     limits = joint_limits(pose, tracker.limit_weight)
-    of_pose = limits.matrix + _POSE_DAMPING * np.eye(N_COORDINATES)
-    asked = limits.vector.copy()
-    of_body = np.zeros((len(MEASURES), len(MEASURES)))
-    both, grown = np.zeros((N_COORDINATES, len(MEASURES))), np.zeros(len(MEASURES))
-    for rows in _rows(hypothesis, observation, tracker):
-        by_pose = pose_jacobian(hypothesis, rows)
-        by_shape = shape_jacobian(body, hypothesis.frames, rows)
-        heavy = rows.weights[:, np.newaxis] * by_pose
-        heavy_shape = rows.weights[:, np.newaxis] * by_shape
-        of_pose = of_pose + by_pose.T @ heavy
-        of_body += by_shape.T @ heavy_shape
-        both += heavy.T @ by_shape
-        asked += heavy.T @ rows.residuals
-        grown += heavy_shape.T @ rows.residuals
-    return of_pose, of_body, both, asked, grown
+    of_pose: Array = limits.matrix + _POSE_DAMPING * np.eye(N_COORDINATES)
+    rows = _rows(hypothesis, observation, tracker)
+    by_pose = pose_jacobian(hypothesis, rows)
+    by_shape = shape_jacobian(body, hypothesis.frames, rows)
+    heavy = rows.weights[:, np.newaxis] * by_pose
+    heavy_shape = rows.weights[:, np.newaxis] * by_shape
+    return (
+        np.add(of_pose, by_pose.T @ heavy), by_shape.T @ heavy_shape, heavy.T @ by_shape,
+        limits.vector + heavy.T @ rows.residuals, heavy_shape.T @ rows.residuals,
+    )  # fmt: skip
 
 
 def _rows(
     hypothesis: Hypothesis, observation: Observation, tracker: TrackerSettings
-) -> list[SurfaceRows]:
+) -> SurfaceRows:
     groups = group_pixels(hypothesis, observation, tracker.limit)
     area, scale = pixel_area(observation) / USUAL_AREA, tracker.robust_scale
-    return [
-        depth_image_rows(hypothesis, observation, groups, area * tracker.depth_weight),
-        closest_surface_rows(
+    return joined([
+        depth_image_term(hypothesis, observation, groups, area * tracker.depth_weight),
+        closest_surface_term(
             hypothesis, observation.points, area * tracker.closest_weight, scale
         ),
-        off_actor_rows(hypothesis, observation, groups, area * tracker.off_actor_weight, scale),
-    ]
+        off_actor_term(hypothesis, observation, groups, area * tracker.off_actor_weight, scale),
+    ])  # fmt: skip
 
 
 def pose_jacobian(hypothesis: Hypothesis, rows: SurfaceRows) -> Array:
     """Return how each row's point moves along its direction with each coordinate, (n, 34)."""
-    screws = np.concatenate([np.cross(rows.points, rows.directions), rows.directions], axis=1)
+    lines = screws(rows.points, rows.directions)
     segments = CAPSULE_SEGMENTS[rows.capsules]
-    moved = np.empty((len(screws), N_COORDINATES))
+    moved = np.empty((len(lines), N_COORDINATES))
     for segment in np.unique(segments):
         these = segments == segment
-        moved[these] = screws[these] @ hypothesis.twists[segment]
+        moved[these] = lines[these] @ hypothesis.twists[segment]
     return moved

@@ -9,8 +9,8 @@ from numpy.typing import NDArray
 from .body_model import BodyModel
 from .coordinates import N_COORDINATES
 from .hypothesis import Hypothesis, imagine
-from .likelihood import likelihood_terms
-from .normal_equations import PoseEquations, added, in_coordinates, step
+from .likelihood import likelihood_rows
+from .normal_equations import PoseEquations, added, in_coordinates, segment_equations, step
 from .observation import Observation
 from .pose_priors import joint_limits
 from .surface_term import Memory
@@ -104,9 +104,9 @@ class _Scene:
     def evaluate(self, pose: Array) -> Registered:
         """Return what likelihood, prior and joint limits ask of this pose."""
         hypothesis = imagine(self.body, pose, self.observation.camera)
-        terms = likelihood_terms(hypothesis, self.observation, self.settings, self.memory)
+        rows = likelihood_rows(hypothesis, self.observation, self.settings, self.memory)
         asked = [
-            in_coordinates(terms, hypothesis.twists),
+            in_coordinates([segment_equations(rows)], hypothesis.twists),
             self.prior(pose),
             joint_limits(pose, self.settings.limit_weight),
         ]

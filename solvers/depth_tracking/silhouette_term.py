@@ -4,7 +4,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .hypothesis import Hypothesis
-from .normal_equations import SegmentEquations, move_along
+from .normal_equations import SurfaceRows
 from .observation import Observation
 
 Array = NDArray[np.float64]
@@ -12,8 +12,8 @@ Array = NDArray[np.float64]
 
 def silhouette_term(
     hypothesis: Hypothesis, observation: Observation, weight: float
-) -> SegmentEquations:
-    """Return the silhouette image term of [WZC12]_, eq. 6 and 16.
+) -> SurfaceRows:
+    """Return the rows of the silhouette image term of [WZC12]_, eq. 6 and 16.
 
     The drawn silhouette is 1 inside and 0 outside; by central differences its gradient is not
     zero only beside the outline, and only those pixels of the body count. A point that moves
@@ -37,9 +37,9 @@ def silhouette_term(
     chosen = np.flatnonzero((across[pixels] != 0.0) | (down[pixels] != 0.0))
     pixels, points = pixels[chosen], hypothesis.points[chosen]
     residuals = (observation.flat[pixels] > 0.0) - 1.0
-    return move_along(
+    return SurfaceRows(
         points, -picture_gradients(across[pixels], down[pixels], points, hypothesis),
-        residuals, np.full(len(chosen), weight), hypothesis.segments[chosen],
+        residuals, np.full(len(chosen), weight), hypothesis.picture.capsules[chosen],
     )  # fmt: skip
 
 

@@ -7,7 +7,7 @@ from numpy.typing import NDArray
 
 from .body_tables import CAPSULE_SEGMENTS
 from .hypothesis import Hypothesis
-from .normal_equations import Integers, SegmentEquations, move_toward
+from .normal_equations import Integers, SurfaceRows, toward
 from .observation import Observation
 
 Array = NDArray[np.float64]
@@ -38,8 +38,8 @@ class Memory:
 
 def surface_term(
     hypothesis: Hypothesis, observation: Observation, memory: Memory | None, weight: float
-) -> SegmentEquations:
-    """Return the surface term of [LOU12]_, eq. 3.4 to 3.7.
+) -> SurfaceRows:
+    """Return the rows of the surface term of [LOU12]_, eq. 3.4 to 3.7.
 
     For points on a grid of pixels, the closest observed point is searched in a window of
     15 x 15 pixels (of 320 columns), where closeness is distance plus 0.0001 times the
@@ -76,9 +76,9 @@ def surface_term(
     each = np.arange(len(chosen))
     found = np.isfinite(costs[each, best])
     targets = points + apart[each, best]
-    return move_toward(
+    return toward(
         points[found], targets[found], np.full(int(found.sum()), weight),
-        hypothesis.segments[chosen[found]],
+        hypothesis.picture.capsules[chosen[found]],
     )  # fmt: skip
 
 

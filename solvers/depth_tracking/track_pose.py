@@ -109,6 +109,8 @@ class NextPose:
     expected : shape (34,)
     weights : shape (34,)
         How much the pose must be as expected.
+    last : shape (34,)
+        The frame before.
     similar : LocalPca or None
         What followed similar moments.
     similar_weight : float
@@ -116,6 +118,7 @@ class NextPose:
 
     expected: Array
     weights: Array
+    last: Array
     similar: LocalPca | None = None
     similar_weight: float = 0.0
 
@@ -135,7 +138,7 @@ def next_pose_prior(
     weights[:3] = settings.shift_weight
     similar = None if motion_prior is None else local_pca(motion_prior, poses[-1])
     expected = foretell(poses, settings.trust)
-    return NextPose(expected, weights, similar, settings.similar_weight)
+    return NextPose(expected, weights, poses[-1], similar, settings.similar_weight)
 
 
 def follow(
@@ -151,7 +154,8 @@ def follow(
     """
     if not len(observation.pixels):
         return prior.expected, unseen(), None
-    found = register_pose(body, prior.expected, observation, prior, settings, memory)
+    start = prior.expected if settings.start_ahead else prior.last
+    found = register_pose(body, start, observation, prior, settings, memory)
     quality = fit_quality(body, found, observation, settings.limit)
     return found.pose, quality, Memory(found.hypothesis.frames, observation)
 

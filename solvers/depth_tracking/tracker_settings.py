@@ -38,11 +38,11 @@ class TrackerSettings(Settings):
         unit="m", minimum=0.005, maximum=10.0, advanced=True,
     )  # fmt: skip
     closest_weight: float = _weight(4000.0, "How much observed points pull the surface")
-    off_actor_weight: float = _weight(1000.0, "How much the body must stay inside the outline")
+    off_actor_weight: float = _weight(300.0, "How much the body must stay inside the outline")
     too_near_weight: float = _weight(300.0, "How much the body must leave free space free")
     depth_weight: float = _weight(2000.0, "Weight of the depth image term of [WZC12]")
-    extra_weight: float = _weight(0.0, "Weight of the extra depth term of [WZC12]")
-    silhouette_weight: float = _weight(0.0, "Weight of the silhouette term of [WZC12]", "")
+    extra_weight: float = _weight(1000.0, "Weight of the extra depth term of [WZC12]")
+    silhouette_weight: float = _weight(0.1, "Weight of the silhouette term of [WZC12]", "")
     surface_weight: float = _weight(0.0, "Weight of the surface term of [LOU12]")
     edge_weight: float = _weight(0.0, "Weight of the edge term of [LOU12]")
     similar_weight: float = _weight(
@@ -52,11 +52,15 @@ class TrackerSettings(Settings):
         400.0, "How smoothly the hips move; more is steadier and follows slower"
     )
     turn_weight: float = _weight(
-        40.0, "How smoothly joints turn; more is steadier and follows slower", "1/rad2"
+        60.0, "How smoothly joints turn; more is steadier and follows slower", "1/rad2"
     )
     trust: float = setting(
         0.7, "How much of a movement is expected to go on; more follows quick movements",
         minimum=0.0, maximum=1.0, advanced=True,
+    )  # fmt: skip
+    start_ahead: bool = setting(
+        True, "Start each frame where it is expected rather than at the frame before",
+        advanced=True,
     )  # fmt: skip
     limit_weight: float = _weight(2000.0, "How hard the joint limits are", "1/rad2")
     damping: float = setting(
@@ -76,7 +80,7 @@ WZC12 = TrackerSettings(
     iterations=5, coarse_iterations=0, limit=0.08,
     closest_weight=0.0, off_actor_weight=0.0, too_near_weight=0.0,
     depth_weight=4.0, extra_weight=4.0 / 0.29**2, silhouette_weight=4.0 / 100.0**2,
-    shift_weight=1.0 / 14.3**2, turn_weight=1.0 / 14.3**2, trust=1.0,
+    shift_weight=1.0 / 14.3**2, turn_weight=1.0 / 14.3**2, trust=1.0, start_ahead=False,
     limit_weight=0.0, damping=1e-6, longest_step=10.0, accept_only_better=False,
 )  # fmt: skip
 """Terms and standard deviations of [WZC12] appendix A, in metres and radians; each pixel of

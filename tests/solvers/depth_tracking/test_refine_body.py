@@ -8,7 +8,7 @@ from numpy.testing import assert_allclose
 from solvers.depth_tracking.body_model import usual_body
 from solvers.depth_tracking.body_shape import MEASURES, resized, shape_jacobian
 from solvers.depth_tracking.body_tables import LENGTHS
-from solvers.depth_tracking.depth_image_term import depth_image_rows
+from solvers.depth_tracking.depth_image_term import depth_image_term
 from solvers.depth_tracking.hypothesis import imagine
 from solvers.depth_tracking.observation import Observation
 from solvers.depth_tracking.pixel_groups import group_pixels
@@ -24,7 +24,7 @@ def depth_rows(body, pose):
     hypothesis = imagine(body, pose, CAMERA)
     observation = Observation(CAMERA, hypothesis.picture.depth_picture())
     groups = group_pixels(hypothesis, observation, 0.08)
-    return hypothesis, depth_image_rows(hypothesis, observation, groups, 1.0)
+    return hypothesis, depth_image_term(hypothesis, observation, groups, 1.0)
 
 
 @pytest.mark.parametrize("measure", MEASURES)
