@@ -181,7 +181,7 @@ def _joint(cylinders: dict[str, Cylinder], part: str, end: int) -> Array:
     else:
         below = [one for one, above in ABOVE.items() if above == limb]
         other = f"{side}{below[0] if below else ''}"
-    place = cylinders[part].ends[end]
+    place: Array = cylinders[part].ends[end]
     if other not in cylinders:
         return place
     return np.asarray(0.5 * (place + cylinders[other].ends[1 - end]))
