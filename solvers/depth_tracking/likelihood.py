@@ -6,6 +6,7 @@ import numpy as np
 
 from .closest_surface_term import closest_surface_term
 from .depth_image_term import depth_image_term
+from .edge_term import edge_term
 from .extra_depth_term import extra_depth_term
 from .free_space_term import off_actor_term, too_near_term
 from .hypothesis import Hypothesis
@@ -13,6 +14,7 @@ from .normal_equations import SegmentEquations
 from .observation import Observation
 from .pixel_groups import group_pixels
 from .silhouette_term import silhouette_term
+from .surface_term import Memory, surface_term
 from .tracker_settings import TrackerSettings
 
 USUAL_AREA = 4e-4
@@ -20,9 +22,21 @@ USUAL_AREA = 4e-4
 
 
 def likelihood_terms(
-    hypothesis: Hypothesis, observation: Observation, settings: TrackerSettings
+    hypothesis: Hypothesis,
+    observation: Observation,
+    settings: TrackerSettings,
+    memory: Memory | None = None,
 ) -> list[SegmentEquations]:
-    """Return the normal equations of every term that has a weight."""
+    """Return the normal equations of every term that has a weight.
+
+    Parameters
+    ----------
+    hypothesis : Hypothesis
+    observation : Observation
+    settings : TrackerSettings
+    memory : Memory, optional
+        The frame before, for the colours of `surface_term`.
+    """
     groups = group_pixels(hypothesis, observation, settings.limit)
     area = pixel_area(observation) / USUAL_AREA
     scale, limit = settings.robust_scale, settings.limit
@@ -33,6 +47,8 @@ def likelihood_terms(
         (settings.silhouette_weight, lambda w: silhouette_term(*both, w)),
         (settings.closest_weight,
          lambda w: closest_surface_term(hypothesis, observation.points, w, scale)),
+        (settings.surface_weight, lambda w: surface_term(*both, memory, w)),
+        (settings.edge_weight, lambda w: edge_term(*both, w)),
         (settings.off_actor_weight, lambda w: off_actor_term(*both, groups, w, scale)),
         (settings.too_near_weight, lambda w: too_near_term(*both, groups, w, scale)),
     )  # fmt: skip

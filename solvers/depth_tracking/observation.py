@@ -11,6 +11,7 @@ from scipy.spatial import cKDTree
 
 from ..motion.camera import Camera
 from ..motion.depth_recording import DepthRecording
+from .depth_edges import edge_pixels
 
 Array = NDArray[np.float64]
 Integers = NDArray[np.intp]
@@ -66,6 +67,19 @@ class Observation:
         )
         pixels: Integers = (rows.astype(np.intp) * self.camera.width + columns).ravel()
         return pixels
+
+    @cached_property
+    def intensities(self) -> Array:
+        """Brightness of all pixels, 0 to 255, shape (height * width,); NaN without colours."""
+        if self.color is None:
+            return np.full(self.flat.shape, np.nan)
+        grey: Array = self.color.mean(axis=2).ravel()
+        return grey
+
+    @cached_property
+    def edges(self) -> Integers:
+        """Pixels of the actor at edges of depth, shape (n,)."""
+        return edge_pixels(self.depth, self.nearest_pixel)
 
     def points_at(self, pixels: Integers) -> Array:
         """Return where these pixels (n,) see the actor, shape (n, 3), metres."""

@@ -13,6 +13,7 @@ from .likelihood import likelihood_terms
 from .normal_equations import PoseEquations, added, in_coordinates, step
 from .observation import Observation
 from .pose_priors import joint_limits
+from .surface_term import Memory
 from .tracker_settings import USUAL, TrackerSettings
 
 Array = NDArray[np.float64]
@@ -54,6 +55,7 @@ def register_pose(
     observation: Observation,
     prior: Prior,
     settings: TrackerSettings = USUAL,
+    memory: Memory | None = None,
 ) -> Registered:
     """Return the most probable pose near `pose`.
 
@@ -71,6 +73,8 @@ def register_pose(
     prior : callable
         Takes a pose and returns what is asked of it.
     settings : TrackerSettings
+    memory : Memory, optional
+        The frame before, with its colours.
 
     References
     ----------
@@ -80,50 +84,50 @@ def register_pose(
     coarse = min(settings.coarse_iterations, settings.iterations - 1)
     half = observation.every(2)
     if coarse and len(half.pixels):
-        pose = _descend(body, pose, half, prior, settings, coarse).pose
-    found = _descend(body, pose, observation, prior, settings, settings.iterations - coarse)
+        scene = _Scene(body, half, prior, settings, memory)
+        pose = _descend(scene, pose, coarse).pose
+    scene = _Scene(body, observation, prior, settings, memory)
+    found = _descend(scene, pose, settings.iterations - coarse)
     return replace(found, iterations=found.iterations + coarse)
 
 
-def _descend(
-    body: BodyModel,
-    pose: Array,
-    observation: Observation,
-    prior: Prior,
-    settings: TrackerSettings,
-    iterations: int,
-) -> Registered:
+@dataclass(frozen=True, eq=False)
+class _Scene:
+    """What stays the same while a pose is searched."""
+
+    body: BodyModel
+    observation: Observation
+    prior: Prior
+    settings: TrackerSettings
+    memory: Memory | None
+
+    def evaluate(self, pose: Array) -> Registered:
+        """Return what likelihood, prior and joint limits ask of this pose."""
+        hypothesis = imagine(self.body, pose, self.observation.camera)
+        terms = likelihood_terms(hypothesis, self.observation, self.settings, self.memory)
+        asked = [
+            in_coordinates(terms, hypothesis.twists),
+            self.prior(pose),
+            joint_limits(pose, self.settings.limit_weight),
+        ]
+        return Registered(hypothesis, added(asked), 1)
+
+
+def _descend(scene: _Scene, pose: Array, iterations: int) -> Registered:
+    settings = scene.settings
     damping = settings.damping
-    best = evaluate(body, pose, observation, prior, settings)
+    best = scene.evaluate(pose)
     for iteration in range(1, iterations):
         change = step(best.equations, np.full(N_COORDINATES, damping))
         if np.abs(change).max() < _CLOSE_ENOUGH:
             break
-        trial = evaluate(
-            body, best.pose + _limited(change, settings), observation, prior, settings
-        )
+        trial = scene.evaluate(best.pose + _limited(change, settings))
         if not settings.accept_only_better or trial.equations.cost <= best.equations.cost:
             best, damping = trial, max(damping * _EASIER, settings.damping)
         else:
             damping = max(damping, 1.0) * _HARDER
         best = replace(best, iterations=iteration + 1)
     return best
-
-
-def evaluate(
-    body: BodyModel,
-    pose: Array,
-    observation: Observation,
-    prior: Prior,
-    settings: TrackerSettings,
-) -> Registered:
-    """Return what likelihood, prior and joint limits ask of this pose."""
-    hypothesis = imagine(body, pose, observation.camera)
-    likelihood = in_coordinates(
-        likelihood_terms(hypothesis, observation, settings), hypothesis.twists
-    )
-    limits = joint_limits(pose, settings.limit_weight)
-    return Registered(hypothesis, added([likelihood, prior(pose), limits]), 1)
 
 
 def _limited(change: Array, settings: TrackerSettings) -> Array:

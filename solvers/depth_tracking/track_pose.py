@@ -1,7 +1,6 @@
 """Follow a body through a depth recording, frame by frame, from a first pose."""
 
 from dataclasses import dataclass
-from functools import partial
 
 import numpy as np
 from numpy.typing import NDArray
@@ -15,9 +14,12 @@ from .body_model import BodyModel
 from .body_tables import JOINTS
 from .coordinates import N_COORDINATES
 from .fit_quality import FitQuality, fit_quality, unseen
+from .motion_prior import LocalPca, MotionPrior, local_pca
+from .normal_equations import PoseEquations, added
 from .observation import Observation, observe
 from .pose_priors import foretell, stay_near
 from .register_pose import register_pose
+from .surface_term import Memory
 from .tracker_settings import USUAL, TrackerSettings
 
 Array = NDArray[np.float64]
@@ -50,6 +52,7 @@ def track_pose(
     depth: DepthRecording,
     body: BodyModel,
     initial_pose: Array,
+    motion_prior: MotionPrior | None = None,
     *,
     settings: TrackerSettings = USUAL,
     progress: Progress = unwatched,
@@ -66,6 +69,8 @@ def track_pose(
     body : BodyModel
     initial_pose : shape (34,)
         Near the pose in frame 0.
+    motion_prior : MotionPrior, optional
+        Recorded motions; each pose is drawn to what followed the most similar moments.
     settings : TrackerSettings
     progress : Progress
 
@@ -84,28 +89,71 @@ def track_pose(
     pose = np.asarray(initial_pose, dtype=np.float64)
     if pose.shape != (N_COORDINATES,) or not np.isfinite(pose).all():
         raise InvalidMotionError(f"A pose has {N_COORDINATES} coordinates, none of them NaN.")
-    poses, figures = [pose], []
+    poses, figures, memory = [pose], [], None
     for frame in range(depth.n_frames):
         observation = observe(depth, frame, settings.picture_width)
-        expected = foretell(poses[1:] or poses, settings.trust)
-        pose, quality = follow(body, expected, observation, settings)
+        prior = next_pose_prior(poses[1:] or poses, settings, motion_prior)
+        pose, quality, memory = follow(body, prior, observation, settings, memory)
         poses.append(pose)
         figures.append(quality)
         progress((frame + 1) / depth.n_frames, "Tracking")
     return tracked_motion(body, np.array(poses[1:]), figures, depth.frame_rate)
 
 
-def follow(
-    body: BodyModel, expected: Array, observation: Observation, settings: TrackerSettings
-) -> tuple[Array, FitQuality]:
-    """Return the pose (34,) of one frame, searched near the one expected, and its figures."""
-    if not len(observation.pixels):
-        return expected, unseen()
+@dataclass(frozen=True, eq=False)
+class NextPose:
+    """What the frames before say about the next pose.
+
+    Attributes
+    ----------
+    expected : shape (34,)
+    weights : shape (34,)
+        How much the pose must be as expected.
+    similar : LocalPca or None
+        What followed similar moments.
+    similar_weight : float
+    """
+
+    expected: Array
+    weights: Array
+    similar: LocalPca | None = None
+    similar_weight: float = 0.0
+
+    def __call__(self, pose: Array) -> PoseEquations:
+        """Return what is asked of a pose."""
+        near = stay_near(pose, self.expected, self.weights)
+        if self.similar is None:
+            return near
+        return added([near, self.similar.equations(pose, self.similar_weight)])
+
+
+def next_pose_prior(
+    poses: list[Array], settings: TrackerSettings, motion_prior: MotionPrior | None = None
+) -> NextPose:
+    """Return what the poses (34,) of the frames before say about the next one."""
     weights = np.full(N_COORDINATES, settings.turn_weight)
     weights[:3] = settings.shift_weight
-    prior = partial(stay_near, expected=expected, weights=weights)
-    found = register_pose(body, expected, observation, prior, settings)
-    return found.pose, fit_quality(body, found, observation, settings.limit)
+    similar = None if motion_prior is None else local_pca(motion_prior, poses[-1])
+    expected = foretell(poses, settings.trust)
+    return NextPose(expected, weights, similar, settings.similar_weight)
+
+
+def follow(
+    body: BodyModel,
+    prior: NextPose,
+    observation: Observation,
+    settings: TrackerSettings,
+    memory: Memory | None = None,
+) -> tuple[Array, FitQuality, Memory | None]:
+    """Find the pose (34,) of one frame, near the one expected.
+
+    Returns it, its figures, and what the next frame should remember of this one.
+    """
+    if not len(observation.pixels):
+        return prior.expected, unseen(), None
+    found = register_pose(body, prior.expected, observation, prior, settings, memory)
+    quality = fit_quality(body, found, observation, settings.limit)
+    return found.pose, quality, Memory(found.hypothesis.frames, observation)
 
 
 def tracked_motion(

@@ -43,6 +43,11 @@ class TrackerSettings(Settings):
     depth_weight: float = _weight(2000.0, "Weight of the depth image term of [WZC12]")
     extra_weight: float = _weight(0.0, "Weight of the extra depth term of [WZC12]")
     silhouette_weight: float = _weight(0.0, "Weight of the silhouette term of [WZC12]", "")
+    surface_weight: float = _weight(0.0, "Weight of the surface term of [LOU12]")
+    edge_weight: float = _weight(0.0, "Weight of the edge term of [LOU12]")
+    similar_weight: float = _weight(
+        5.0, "How much poses must be like those of the motion prior, if there is one", "1/rad2"
+    )
     shift_weight: float = _weight(
         400.0, "How smoothly the hips move; more is steadier and follows slower"
     )
@@ -70,11 +75,23 @@ class TrackerSettings(Settings):
 WZC12 = TrackerSettings(
     iterations=5, coarse_iterations=0, limit=0.08,
     closest_weight=0.0, off_actor_weight=0.0, too_near_weight=0.0,
-    depth_weight=1.0, extra_weight=1.0 / 0.29**2, silhouette_weight=1.0 / 100.0**2,
+    depth_weight=4.0, extra_weight=4.0 / 0.29**2, silhouette_weight=4.0 / 100.0**2,
     shift_weight=1.0 / 14.3**2, turn_weight=1.0 / 14.3**2, trust=1.0,
     limit_weight=0.0, damping=1e-6, longest_step=10.0, accept_only_better=False,
 )  # fmt: skip
-"""Terms and standard deviations of [WZC12] appendix A, in metres and radians."""
+"""Terms and standard deviations of [WZC12] appendix A, in metres and radians; each pixel of
+ours counts as four of their 320 columns."""
+
+LOU12 = TrackerSettings(
+    picture_width=320, iterations=10, coarse_iterations=0,
+    closest_weight=0.0, off_actor_weight=0.0, too_near_weight=0.0,
+    depth_weight=0.0, extra_weight=0.0, silhouette_weight=0.0,
+    surface_weight=4.0, edge_weight=40.0, similar_weight=0.001,
+    shift_weight=1e-5, turn_weight=1e-5, trust=0.0,
+    limit_weight=0.0, damping=1e-6, longest_step=10.0, accept_only_better=False,
+)  # fmt: skip
+"""Terms and weights of [LOU12] sections 3.4 to 3.6: surface 1, edges 10, motion prior 0.001,
+smoothness 0.00001 (a pixel of 320 columns sees about a quarter of what weights are for)."""
 
 USUAL = TrackerSettings()
 """What measured best."""

@@ -58,7 +58,7 @@ class CorrectionSettings(Settings):
     )  # fmt: skip
     change: float = setting(
         0.9, "How much is applied of the offsets' change with posture; 1 takes the prior at"
-        " its word, also in movements that it has never seen",
+        " its word, also in movements that it has never seen (published: all, unless 0)",
         minimum=0.0, maximum=1.0, advanced=True,
     )  # fmt: skip
     spatial: float = setting(
@@ -168,7 +168,7 @@ def _offsets(told: Foretold, weights: Array, settings: CorrectionSettings) -> Ar
     weighed = np.maximum(weights, LEAST)[..., None]
     mean = (weighed * told.offsets).sum(axis=0) / weighed.sum(axis=0)
     constant = mean if settings.shift else np.zeros_like(mean)
-    if settings.method is CorrectionMethod.PUBLISHED:
+    if settings.method is CorrectionMethod.PUBLISHED and settings.change > 0.0:
         return np.asarray(told.offsets + (constant - mean))
     share = settings.change * told.coverage.mean(axis=0)
     return np.asarray(constant + share[:, None] * (told.offsets - mean))

@@ -82,6 +82,8 @@ def follow_postures(
     progress : Progress
     """
     take = _Seen(seen.postures, trust, frame_rate, lengths)
+    if settings.method is PostureMethod.PUBLISHED:
+        return _as_published(take, library, settings, progress)
     body = _body_of(take, library, settings)
     index = index_postures(body, library.groups)
     errors = _errors(take, body, index, settings)
@@ -107,6 +109,17 @@ def follow_postures(
     sure = 1.0 / (1.0 + (unsure / SURE) ** 2)
     postures = keep_lengths(course.values + errors.offset, lengths, trust, sure)
     return Followed(postures + shift, sure)
+
+
+def _as_published(
+    take: _Seen, library: PostureLibrary, settings: PostureSettings, progress: Progress
+) -> Followed:
+    """Search each frame's posture after that of the frame before, and do nothing else."""
+    body = on_body(library.directions, library.changes, take.lengths)
+    plain = replace(settings, causal=True, pace=0.0, smoothing=0.0)
+    made = _synthesise(take, body, index_postures(body, library.groups), plain, progress)
+    unsure = np.hypot(made.spread, MODEL)
+    return Followed(made.values, 1.0 / (1.0 + (unsure / SURE) ** 2))
 
 
 def _body_of(take: _Seen, library: PostureLibrary, settings: PostureSettings) -> BodyPostures:
@@ -232,8 +245,6 @@ def _corrected(
     made: Course, seen: Array, take: _Seen, size: Array, settings: PostureSettings
 ) -> Course:
     """Lead synthesised postures through what was seen."""
-    if settings.method is PostureMethod.PUBLISHED:
-        return Course(made.values, np.broadcast_to(size, take.trust.shape))
     dt, deviation = 1.0 / take.frame_rate, noise_of(take.trust, settings.noise)
     if settings.causal:
         course = causal_course(made.values, seen, deviation, dt, size, settings.memory)

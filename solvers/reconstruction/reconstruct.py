@@ -18,10 +18,10 @@ from .correct_postures import CorrectionMethod, CorrectionSettings, correct_post
 from .exchanges import undo_exchanges
 from .follow_joints import follow_joints
 from .posture_library import PostureLibrary
-from .posture_settings import PostureSettings
+from .posture_settings import PostureMethod, PostureSettings
 from .reconstruct_postures import reconstruct_postures
 from .reliability import measure_reliability
-from .reliability_settings import ReliabilitySettings
+from .reliability_settings import ReliabilityMethod, ReliabilitySettings
 from .residual_prior import ResidualPrior, load_residual_prior
 from .result import Reconstruction
 
@@ -48,9 +48,13 @@ class ReconstructMethod(Enum):
     BOTH = "both"
     """Lost joints by postures of clean clips, then all by the residual prior."""
     POSTURES = "postures"
-    """[SHJT13]: postures of clean clips alone."""
+    """Postures of clean clips alone."""
     RESIDUALS = "residuals"
-    """[ZH14]: the residual prior alone; gaps are bridged smoothly."""
+    """The residual prior alone; gaps are bridged smoothly."""
+    PUBLISHED_POSTURES = "published postures"
+    """[SHJT13]: its reliability, and its stochastic search frame after frame."""
+    PUBLISHED_RESIDUALS = "published residuals"
+    """[ZH14]: the same reliability, and its three terms frame after frame."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -60,7 +64,7 @@ class ReconstructSettings(Settings):
     method: ReconstructMethod = setting(
         ReconstructMethod.BOTH,
         "Both rebuilds lost joints from clean postures and then takes out how the sensor errs;"
-        " the others do one of these alone",
+        " the others do one of these alone, or as the papers have it",
     )
     smoothing: float = setting(
         0.05, "Movements shorter than about this are jitter; higher is smoother and blunter",
@@ -85,6 +89,8 @@ class ReconstructSettings(Settings):
 
 
 USUAL = ReconstructSettings()
+PUBLISHED = (ReconstructMethod.PUBLISHED_POSTURES, ReconstructMethod.PUBLISHED_RESIDUALS)
+RESIDUALS = (ReconstructMethod.RESIDUALS, ReconstructMethod.PUBLISHED_RESIDUALS)
 
 
 def reconstruct(
@@ -126,15 +132,15 @@ def reconstruct(
     SolveCancelled
         Raised by `progress`.
     """
-    if not settings.causal:
+    if not (settings.causal or settings.method in PUBLISHED):
         recording = undo_exchanges(recording)
     trust = measure_reliability(
         recording,
-        settings=ReliabilitySettings(causal=settings.causal, inferred=settings.inferred),
+        settings=_signs(settings),
         progress=within(progress, 0.0, 0.1),
     )
     known = prior is not None or recording.sensor is Sensor.KINECT_V2
-    if settings.method is ReconstructMethod.RESIDUALS:
+    if settings.method in RESIDUALS:
         return correct_postures(
             recording,
             prior or shipped_residual_prior(),
@@ -145,11 +151,11 @@ def reconstruct(
     rebuilt = reconstruct_postures(
         recording,
         postures,
-        settings=PostureSettings(causal=settings.causal, n_neighbours=settings.n_neighbours),
+        settings=_synthesis(settings),
         reliability=trust,
         progress=within(progress, 0.1, 0.7),
     )
-    if settings.method is ReconstructMethod.POSTURES:
+    if settings.method is not ReconstructMethod.BOTH:
         motion = follow_joints(rebuilt.tracks, recording.parents, trust.combined)
         return replace(rebuilt, motion=motion)
     lost = _lost(recording.tracks, trust.combined, rebuilt.tracks, not settings.causal)
@@ -200,9 +206,26 @@ def _blended(seen: Tracks, rebuilt: Tracks, lost: Array) -> Tracks:
     return seen.with_positions(share * rebuilt.positions + (1.0 - share) * places)
 
 
+def _signs(settings: ReconstructSettings) -> ReliabilitySettings:
+    if settings.method in PUBLISHED:
+        return ReliabilitySettings(method=ReliabilityMethod.PUBLISHED, causal=settings.causal)
+    return ReliabilitySettings(causal=settings.causal, inferred=settings.inferred)
+
+
+def _synthesis(settings: ReconstructSettings) -> PostureSettings:
+    published = settings.method in PUBLISHED
+    return PostureSettings(
+        method=PostureMethod.PUBLISHED if published else PostureMethod.PROBABLE,
+        causal=settings.causal,
+        n_neighbours=settings.n_neighbours,
+    )
+
+
 def _correction(settings: ReconstructSettings, known: bool) -> CorrectionSettings:
     """Return how to correct; what is not known of a sensor cannot be taken out."""
     method = CorrectionMethod.CAUSAL if settings.causal else CorrectionMethod.WHOLE_TAKE
+    if settings.method in PUBLISHED:
+        method = CorrectionMethod.PUBLISHED
     usual = CorrectionSettings()
     return CorrectionSettings(
         method=method,

@@ -26,6 +26,9 @@ BELIEVED = 0.5
 STEEPNESS = 2.0
 """Power of its score by which a clip counts."""
 TINY = 1e-3
+SURE = 0.25
+"""Score of the best from which on clips are believed to be of the same movement; below, they
+have to prove it where joints were lost."""
 LAID_ASIDE = "They foretell the joints that are lost worse than the take itself: laid aside."
 
 
@@ -104,10 +107,11 @@ def bases_from_library(
 ) -> LibraryBases:
     """Learn filter bases of those clips of a library that are like a dirty take.
 
-    The more a clip is like it, the more it counts. Where joints were lost for long, what was
-    learned must fill them about as well as the take itself does, tried where they were seen:
-    else it is laid aside. The library is searched with a first estimate from the take alone,
-    and with nothing of what that is unsure of, such as limbs that were lost for long.
+    The more a clip is like it, the more it counts. Where joints were lost for long, clips that
+    are only roughly like it must fill them at least as well as the take itself does, tried
+    where they were seen: else they are laid aside. The library is searched with a first
+    estimate from the take alone, and with nothing of what that is unsure of, such as limbs
+    that were lost for long.
 
     Raises
     ------
@@ -138,7 +142,8 @@ def bases_from_library(
         )
     except InvalidMotionError as error:
         return LibraryBases(None, (), f"{found.sentence()} That was of no use: {error}")
-    if not foretell_lost(recording, bases, within(progress, 0.85, 1.0)):
+    sure = found.matches[0].score >= SURE
+    if not sure and not foretell_lost(recording, bases, within(progress, 0.85, 1.0)):
         return LibraryBases(None, (), f"{found.sentence()} {LAID_ASIDE}")
     return LibraryBases(bases, names, found.sentence())
 

@@ -22,8 +22,6 @@ PART = 0.6
 MOST_TRIALS = 2
 AROUND = 4.0
 """Seconds of the take before and after what is hidden that a trial looks at."""
-WORSE = 1.25
-"""Times the error of the take alone that examples may have: a trial tells little."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -37,7 +35,7 @@ class _Trial:
 
 
 def foretell_lost(recording: Motion, bases: FilterBases, progress: Progress) -> bool:
-    """Tell whether examples fill the longest gap of a take about as well as the take itself.
+    """Tell whether examples fill the longest gap of a take as well as the take itself does.
 
     The same joints are hidden where they were seen, for as long if that can be, and filled
     with and without examples. Without a long gap, or where the lost joints are never seen for
@@ -55,7 +53,7 @@ def foretell_lost(recording: Motion, bases: FilterBases, progress: Progress) -> 
             place = (2 * number + way) / (2 * len(trials))
             step = within(progress, place, place + 0.5 / len(trials))
             errors[way] += _error(trial, examples, step)
-    return bool(errors[0] <= WORSE * errors[1])
+    return bool(errors[0] <= errors[1])
 
 
 def _error(trial: _Trial, bases: FilterBases | None, progress: Progress) -> float:

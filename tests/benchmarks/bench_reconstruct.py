@@ -1,6 +1,6 @@
 """Rebuilding what a Kinect saw, against the published methods and peers.
 
-    make bench-reconstruct                                   # half an hour
+    make bench-reconstruct                                   # an hour
     make bench-reconstruct ARGUMENTS="--takes 1"             # a tenth of the takes
     make bench-reconstruct ARGUMENTS="--part kinect --docs"  # docs/benchmarks_reconstruction.md
 
@@ -13,7 +13,7 @@ from time import perf_counter
 
 from threadpoolctl import threadpool_limits
 
-from . import part_kinect, part_losses, part_real, part_terms
+from . import part_kinect, part_losses, part_real, part_subsets, part_terms
 from .bench_reliability import tell_reliability
 from .report import DOCS, Report
 
@@ -23,6 +23,7 @@ PARTS: dict[str, Part] = {
     "kinect": part_kinect.accuracy,
     "losses": part_losses.losses,
     "damages": part_losses.damages,
+    "subsets": part_subsets.subsets,
     "terms": part_terms.terms,
     "confidence": part_terms.confidence,
     "real": part_real.recordings,

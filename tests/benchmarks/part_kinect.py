@@ -47,6 +47,12 @@ OTHERWISE = (
     "absolute, cm", "offset-free, cm", "worst tenth, cm",
     "to the joint above, cm", "the same, offset-free", "the same, worst tenth",
 )  # fmt: skip
+EXERCISES = {
+    "m01": "deep squat", "m02": "hurdle step", "m03": "inline lunge", "m04": "side lunge",
+    "m05": "sit to stand", "m06": "leg raise", "m07": "shoulder abduction",
+    "m08": "shoulder extension", "m09": "shoulder rotation", "m10": "shoulder scaption",
+}  # fmt: skip
+EXERCISES_TITLE = "\n**Absolute error by exercise** (cm; table 5.2 of [ZH14])\n\n"
 OTHERWISE_TITLE = (
     "\n**Counted otherwise**: the first three columns without the 40 takes whose markers are of"
     " another stance, the others of all takes by the way from the joint above (eq. 18 of"
@@ -67,6 +73,7 @@ class Errors:
     jerk: float
     seconds: float
     subjects: NDArray[np.str_]
+    exercises: NDArray[np.str_]
     matched: NDArray[np.bool_]
     """Frames of takes whose markers are of what the Kinect saw."""
 
@@ -75,7 +82,7 @@ def errors_of(method: Method, n_repetitions: int) -> Errors:
     """Let a method rebuild the first repetitions of all exercises of all subjects."""
     found: list[tuple[Array, Array, Array]] = []
     apart = []
-    jerks, whose, matched, taken = [], [], [], 0.0
+    jerks, whose, which, matched, taken = [], [], [], [], 0.0
     for subject in SUBJECTS:
         takes = takes_of(subject, n_repetitions)
         method(takes[0], subject)  # what is learned or read once is no time of a frame
@@ -87,11 +94,13 @@ def errors_of(method: Method, n_repetitions: int) -> Errors:
             apart.append(apart_free(made, truth_of(pair)))
             jerks.append(jerk(made, pair))
             whose += [subject] * len(made)
+            which += [pair.name[:3]] * len(made)
             matched += [pair.matched] * len(made)
     absolute, relative, free = (np.concatenate(parts) for parts in zip(*found, strict=True))
     return Errors(
         absolute, relative, free, np.concatenate(apart),
-        float(np.nanmean(np.concatenate(jerks))), taken, np.array(whose), np.array(matched),
+        float(np.nanmean(np.concatenate(jerks))), taken, np.array(whose), np.array(which),
+        np.array(matched),
     )  # fmt: skip
 
 
@@ -100,6 +109,7 @@ def accuracy(n_repetitions: int) -> list[str]:
     rows: dict[str, list[str]] = {}
     otherwise: dict[str, list[str]] = {}
     by_subject: dict[str, list[str]] = {}
+    by_exercise: dict[str, list[str]] = {}
     unmended = {n: errors_of(raw, n) for n in {n_repetitions, min(n_repetitions, FEW)}}
     for name, method in METHODS.items():
         n = min(n_repetitions, FEW) if name in SLOW else n_repetitions
@@ -113,6 +123,9 @@ def accuracy(n_repetitions: int) -> list[str]:
         otherwise[label] = _otherwise(found, before)
         by_subject[label] = [
             _centimetres(found.free[found.subjects == one]) for one in SUBJECTS
+        ]
+        by_exercise[label] = [
+            _centimetres(found.absolute[found.exercises == one]) for one in EXERCISES
         ]
         print(label, *rows[label], *otherwise[label], flush=True)
     takes = [pair for one in SUBJECTS for pair in takes_of(one, n_repetitions)]
@@ -129,6 +142,7 @@ def accuracy(n_repetitions: int) -> list[str]:
         _by_length(takes),
         OTHERWISE_TITLE + table(["method", *OTHERWISE], otherwise) + "\n",
         tail + table(["method", *SUBJECTS], by_subject) + "\n",
+        EXERCISES_TITLE + table(["method", *EXERCISES.values()], by_exercise) + "\n",
     ]
 
 

@@ -21,6 +21,8 @@ from solvers.recordings import read_depth
 
 KINECT = Camera(285.63, 285.63, 159.5, 119.5, 320, 240)
 UP = tilted(0.0)
+SUBTRACTED = ForegroundSettings(way=ForegroundWay.BACKGROUND)
+AS_RECORDED = ForegroundSettings(way=ForegroundWay.RECORDED)
 
 
 @pytest.fixture
@@ -38,9 +40,7 @@ def test_background_from_empty_frames(actor):
     nobody = DepthRecording(KINECT, 30, 30.0, lambda _: np.zeros((240, 320), np.float32))
     background = learn_background(in_room(nobody, empty, 0.0015), range(30))
 
-    alone = cut_out_actor(
-        in_room(actor, empty, 0.0015), way=ForegroundWay.BACKGROUND, background=background
-    )
+    alone = cut_out_actor(in_room(actor, empty, 0.0015), SUBTRACTED, background=background)
 
     for frame in range(0, actor.n_frames, 15):
         assert agreement(alone.frame(frame) > 0.0, actor.frame(frame) > 0.0) > 0.9
@@ -49,7 +49,9 @@ def test_background_from_empty_frames(actor):
 def test_cut_by_distance_and_floor(actor):
     taken = in_room(actor, room(KINECT, UP, 0.95, 4.5), 0.0015)
 
-    alone = cut_out_actor(taken, ForegroundSettings(farthest=4.2), floor=find_floor(taken))
+    alone = cut_out_actor(
+        taken, ForegroundSettings(way=ForegroundWay.CUT, farthest=4.2), floor=find_floor(taken)
+    )
 
     for frame in range(0, actor.n_frames, 15):
         assert agreement(alone.frame(frame) > 0.0, actor.frame(frame) > 0.0) > 0.88
@@ -58,7 +60,7 @@ def test_cut_by_distance_and_floor(actor):
 def test_as_recorded_only_noise_goes(recordings):
     for path in sorted((recordings / "depth" / "utd_mhad").glob("*_s5_t1_depth.mat")):
         taken = read_depth(path)
-        alone = cut_out_actor(taken, way=ForegroundWay.RECORDED)
+        alone = cut_out_actor(taken, AS_RECORDED)
         frame = taken.n_frames // 2
         assert agreement(alone.frame(frame) > 0.0, taken.frame(frame) > 0.0) > 0.99
 
@@ -72,7 +74,7 @@ def test_of_two_people_the_one_of_whom_more_is_seen_stays(actor):
         return np.where(first > 0.0, first, behind)
 
     taken = replace(actor, read_depth=with_another)
-    alone = cut_out_actor(taken, way=ForegroundWay.RECORDED)
+    alone = cut_out_actor(taken, AS_RECORDED)
 
     bodies = find_bodies(taken.frame(40), taken.camera, 0.08)
     assert len(bodies.areas) == 2
@@ -87,8 +89,8 @@ def test_where_nobody_is_nothing_is_left():
 
 def test_the_empty_room_must_be_known_and_fit(actor):
     with pytest.raises(InvalidMotionError, match="Name frames without the actor"):
-        cut_out_actor(actor, way=ForegroundWay.BACKGROUND)
-    with pytest.raises(InvalidMotionError, match="at least one frame"):
+        cut_out_actor(actor, SUBTRACTED)
+    with pytest.raises(InvalidMotionError, match="from no frame at all"):
         learn_background(actor, [])
 
 

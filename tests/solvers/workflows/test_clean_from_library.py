@@ -95,6 +95,19 @@ def test_the_more_a_clip_is_like_the_take_the_more_it_counts(monkeypatch, librar
     assert told[0] > 1.5 * told[-1]
 
 
+@pytest.mark.parametrize(("sure", "n_asked"), [(0.0, 0), (1.1, 1)])
+def test_clips_that_are_only_roughly_alike_have_to_prove_it(
+    monkeypatch, library, sure, n_asked
+):
+    here, asked = sys.modules["solvers.workflows.clean_from_library"], []
+    monkeypatch.setattr(here, "SURE", sure)
+    monkeypatch.setattr(here, "foretell_lost", lambda take, *_: asked.append(take))
+    learned = bases_from_library(without_a_leg(walk(115)), library, fetch=fetched)
+    assert len(asked) == n_asked
+    assert (learned.bases is None) == bool(n_asked)
+    assert ("laid aside" in learned.said) == bool(n_asked)
+
+
 def test_clips_that_are_to_be_ignored_teach_nothing(library):
     away = ["walk 110", "walk 120"]
     learned = bases_from_library(walk(115), library, ignore=away, fetch=fetched)
@@ -107,9 +120,6 @@ def test_only_the_frames_that_match_are_learned_from(monkeypatch, library):
         sys.modules["solvers.workflows.clean_from_library"],
         "learn_filter_bases",
         lambda clips, **options: learned_of.extend(clips),
-    )
-    monkeypatch.setattr(
-        sys.modules["solvers.workflows.clean_from_library"], "foretell_lost", lambda *_: True
     )
     long = walk(115, duration=30.0)
     of_one = build_clip_library([Clip("long", long)])

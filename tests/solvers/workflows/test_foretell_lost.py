@@ -39,13 +39,12 @@ def good():
     return learn_filter_bases([walk(110), walk(120)])
 
 
-def test_walks_foretell_a_walk_better_than_the_take_alone(take, good, monkeypatch):
-    monkeypatch.setattr(module, "WORSE", 0.8)
+def test_walks_foretell_a_walk_better_than_the_take_alone(take, good):
     assert foretell_lost(take, good, unwatched)
 
 
-@pytest.mark.parametrize(("times", "believed"), [(1.2, True), (1.3, False)])
-def test_what_is_much_worse_than_the_take_alone_is_not_believed(
+@pytest.mark.parametrize(("times", "believed"), [(0.9, True), (1.1, False)])
+def test_what_is_worse_than_the_take_alone_is_not_believed(
     take, good, monkeypatch, times, believed
 ):
     monkeypatch.setattr(
