@@ -9,7 +9,7 @@ from ..solvers.motion.depth_recording import DepthRecording
 from ..solvers.progress import Progress, unwatched
 from .import_choices import ImportChoices
 from .recording_objects import Made
-from .scene.depth_preview import Shown, build_preview
+from .scene.depth_preview import Shown, build_preview, cheap_step
 from .scene.scene_rate import timing
 from .scene.units import unit_of
 
@@ -27,7 +27,8 @@ def make_preview(
         context.scene, choices.frame_rate, recording.frame_rate, choices.frame_start
     )
     floor = find_floor(recording, progress=progress)
-    shown = Shown(str(path), choices.depth, samples.start, samples.step)
+    every = cheap_step(recording)
+    shown = Shown(str(path), choices.depth, samples.start, samples.step, every)
     scale = choices.global_scale / unit_of(context.scene)
     made = build_preview(context, path.stem, recording, shown, floor or LEVEL, scale)
     camera = recording.camera

@@ -30,8 +30,9 @@ PROBLEM = "mocap_assist_depth_problem"
 SEEN = "seen"
 """Attribute of a point: whether the camera saw anything there."""
 MOST_POINTS = 20_000
+N_SAMPLES = 5
 N_OPEN = 4
-"""Recordings that are kept open."""
+"""Pictures that tell how much is seen, and recordings that are kept open."""
 
 
 @dataclass(frozen=True)
@@ -42,6 +43,8 @@ class Shown:
     settings: DepthSettings
     start: float
     step: float
+    every: int
+    """Of the columns and rows of a picture, every so many are points."""
 
     def write(self, mesh: bpy.types.Mesh) -> None:
         """Keep this with a mesh."""
@@ -49,19 +52,20 @@ class Shown:
             name: value.name if isinstance(value, Enum) else value
             for name, value in asdict(self.settings).items()
         }
-        told = {"path": self.path, "start": self.start, "step": self.step, "depth": settings}
+        told = {**asdict(self), "settings": settings}
         mesh[KEY] = json.dumps(told, ensure_ascii=False)
 
     @classmethod
     def read(cls, mesh: bpy.types.Mesh) -> "Shown":
         """Return what a mesh shows; raises ValueError, TypeError or KeyError if nothing."""
         told = json.loads(mesh[KEY])
-        settings = {**told["depth"], "held": Held[told["depth"]["held"]]}
+        settings = {**told["settings"], "held": Held[told["settings"]["held"]]}
         return cls(
             str(told["path"]),
             DepthSettings(**settings),
             float(told["start"]),
             float(told["step"]),
+            max(int(told["every"]), 1),
         )
 
     def picture(self, frame: float, n_frames: int) -> int:
@@ -94,7 +98,8 @@ def build_preview(
     """
     in_object_mode(context)
     mesh = bpy.data.meshes.new(fitting_name(name))
-    mesh.vertices.add(len(_rays(recording)))
+    camera = recording.camera.every(shown.every)
+    mesh.vertices.add(min(camera.width * camera.height, MOST_POINTS))
     mesh.attributes.new(SEEN, "BOOLEAN", "POINT")
     made = bpy.data.objects.new(fitting_name(name), mesh)
     turn, shift = place.world_from_camera()
@@ -136,37 +141,47 @@ def _open(path: str, settings: DepthSettings) -> DepthRecording:
 
 
 @lru_cache(maxsize=N_OPEN)
-def _rays(recording: DepthRecording) -> NDArray[np.float32]:
-    step = _step(recording)
-    return recording.camera.every(step).rays().reshape(-1, 3).astype(np.float32)
+def _rays(recording: DepthRecording, every: int) -> NDArray[np.float32]:
+    return recording.camera.every(every).rays().astype(np.float32)
 
 
-def _step(recording: DepthRecording) -> int:
-    """Return every how many columns and rows there is a point."""
-    camera, step = recording.camera, 1
-    while camera.every(step).width * camera.every(step).height > MOST_POINTS:
-        step += 1
-    return step
+def cheap_step(recording: DepthRecording) -> int:
+    """Return of how many columns and rows one makes no more points than are cheap to show.
+
+    What counts is what is seen in some pictures: of an actor alone every pixel may be shown.
+    """
+    frames = np.linspace(0, recording.n_frames - 1, N_SAMPLES).astype(int).tolist()
+    pictures = [recording.frame(frame) > 0.0 for frame in frames]
+    every = 1
+    while max(seen[::every, ::every].sum() for seen in pictures) > MOST_POINTS:
+        every += 1
+    return every
 
 
 def _show(mesh: bpy.types.Mesh, frame: float) -> None:
     """Put the points of a mesh where they are at a frame of the scene."""
     try:
         recording, shown = recording_of(mesh), Shown.read(mesh)
-        step, rays = _step(recording), _rays(recording)
-        depth = recording.frame(shown.picture(frame, recording.n_frames))[::step, ::step]
+        rays = _rays(recording, shown.every)
+        depth = recording.frame(shown.picture(frame, recording.n_frames))
     except MocapAssistError as error:
         _hide(mesh, str(error))
         return
-    if len(mesh.vertices) != len(rays):
+    if SEEN not in mesh.attributes:
         _hide(mesh, f"{mesh.name} was edited: import the recording again.")
         return
     if PROBLEM in mesh:
         del mesh[PROBLEM]
-    flat = depth.reshape(-1)
-    points = rays * flat[:, np.newaxis]
+    depth = depth[:: shown.every, :: shown.every]
+    row, column = np.nonzero(depth)
+    n_points = len(mesh.vertices)
+    if len(row) > n_points:
+        kept = np.linspace(0, len(row) - 1, n_points).astype(int)
+        row, column = row[kept], column[kept]
+    points = np.zeros((n_points, 3), np.float32)
+    points[: len(row)] = rays[row, column] * depth[row, column, np.newaxis]
     mesh.attributes["position"].data.foreach_set("vector", points.ravel())
-    mesh.attributes[SEEN].data.foreach_set("value", flat > 0.0)
+    mesh.attributes[SEEN].data.foreach_set("value", np.arange(n_points) < len(row))
     mesh.update()
 
 
