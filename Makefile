@@ -56,13 +56,18 @@ test-blender-5.2: optional-5.2 zip  ## the installed zip, in Blender 5.2
 
 # --- What there is to see ---
 
-.PHONY: demo docs bench-denoise bench-feet bench-bvh bench-scene bench-retarget bench-retarget-rig bench-import bench-reliability bench-physics bench-reconstruct bench-gestures bench-retrieval bench-variation
+.PHONY: demo docs bench-denoise bench-feet bench-bvh bench-scene bench-retarget bench-retarget-rig bench-import bench-reliability bench-physics bench-reconstruct bench-gestures bench-retrieval bench-variation bench-depth
 demo: .venv-4.5/ready zip  ## clean a sample, or CLIP=path.bvh, in Blender 4.5: build/demo
 	@mkdir -p build/demo
 	MOCAP_ASSIST_ZIP=$(ZIP) $(AT_MOST) $(PYTHON_4.5) .ci/demo.py build/demo $(if $(CLIP),"$(CLIP)")
 
 docs: .venv-4.5/ready  ## the tables of settings and the pictures in README.md and docs
 	$(PYTHON_4.5) .ci/write_docs.py --pictures
+
+# Half an hour on two cores; the clips, bodies and licences are in tests/benchmarks/forest_sources.py.
+.PHONY: forest
+forest: .venv-4.5/ready  ## train the shipped forest that tells the parts of bodies in depth
+	$(PYTHON_4.5) .ci/train_forest.py $(ARGUMENTS)
 
 # Each prints tables; with ARGUMENTS=--docs it rewrites its own part of docs/benchmarks.md, and
 # ARGUMENTS=--help tells what else there is.
@@ -95,6 +100,9 @@ bench-retarget: .venv-4.5/ready  ## measure retargeting and unbaking against Ble
 
 bench-variation: .venv-4.5/ready  ## measure variants of a few clips against peers
 	$(PYTHON_4.5) -m tests.benchmarks.bench_variation $(ARGUMENTS)
+
+bench-depth: .venv-4.5/ready  ## measure the depth tracker against known joints and peers
+	$(PYTHON_4.5) -m tests.benchmarks.bench_depth $(ARGUMENTS)
 
 bench-physics: .venv-4.5/ready  ## measure Physics, before and after and at part of its strength
 	$(PYTHON_4.5) -m tests.benchmarks.bench_physics $(ARGUMENTS)

@@ -9,7 +9,7 @@ import bpy
 
 from .check_choices import CheckSettings
 from .clean_choices import CleanSettings
-from .library.choices import FindBundle, LibraryBundle, LoadBundle
+from .library.choices import FindBundle, LibraryBundle, LoadBundle, UseBundle
 from .reconstruct_choices import ReconstructBundle
 from .retarget_choices import RetargetBundle, UnbakeBundle
 from .settings_properties import settings_from
@@ -70,6 +70,11 @@ class MOCAP_PG_load(bpy.types.PropertyGroup):
     """Settings of the button Append as Action."""
 
 
+@settings_from(UseBundle)
+class MOCAP_PG_use(bpy.types.PropertyGroup):
+    """Settings of the button Use as Examples."""
+
+
 @settings_from(VaryBundle)
 class MOCAP_PG_vary(bpy.types.PropertyGroup):
     """Settings of the button Vary."""
@@ -125,6 +130,7 @@ class MOCAP_PG_scene(bpy.types.PropertyGroup):
     library: bpy.props.PointerProperty(type=MOCAP_PG_library)
     find: bpy.props.PointerProperty(type=MOCAP_PG_find)
     load: bpy.props.PointerProperty(type=MOCAP_PG_load)
+    use: bpy.props.PointerProperty(type=MOCAP_PG_use)
     vary: bpy.props.PointerProperty(type=MOCAP_PG_vary)
     crowd: bpy.props.PointerProperty(type=MOCAP_PG_crowd)
     variants: bpy.props.PointerProperty(type=MOCAP_PG_variants)
@@ -157,6 +163,7 @@ CLASSES = (
     MOCAP_PG_library,
     MOCAP_PG_find,
     MOCAP_PG_load,
+    MOCAP_PG_use,
     MOCAP_PG_vary,
     MOCAP_PG_crowd,
     *VARIANTS,

@@ -27,6 +27,7 @@ from .revert_to_raw import MOCAP_OT_revert_to_raw
 from .simulate import MOCAP_OT_simulate
 from .solve_skeleton import MOCAP_OT_solve_skeleton
 from .stack_variants import MOCAP_OT_stack_variants
+from .use_matches import MOCAP_OT_use_matches
 from .vary import MOCAP_OT_vary
 
 OPERATORS = (
@@ -49,6 +50,7 @@ OPERATORS = (
     MOCAP_OT_load_match,
     MOCAP_OT_link_match,
     MOCAP_OT_learn_from_matches,
+    MOCAP_OT_use_matches,
     MOCAP_OT_mark_asset,
     MOCAP_OT_vary,
     MOCAP_OT_keep_variants,

@@ -2,6 +2,9 @@
 
 from typing import Protocol
 
+READING = "Reading"
+"""What readers say of their work when there is nothing else to say."""
+
 
 class Progress(Protocol):
     """Called by a solver now and then."""
@@ -24,3 +27,21 @@ def within(progress: Progress, start: float, stop: float) -> Progress:
         progress(start + (stop - start) * fraction, message)
 
     return partly
+
+
+def overheard(progress: Progress, told: list[str]) -> Progress:
+    """Return a Progress that also writes down what a reader says of a recording when done.
+
+    Parameters
+    ----------
+    progress : Progress
+    told : list of str
+        Gets what goes beyond `READING`, as that lengths are taken for millimetres.
+    """
+
+    def listening(fraction: float, message: str = "") -> None:
+        if fraction >= 1.0 and message not in ("", READING, *told):
+            told.append(message)
+        progress(fraction, message)
+
+    return listening

@@ -46,6 +46,47 @@ class Fetched:
     n_frames: int
 
 
+@dataclass(frozen=True, eq=False)
+class FetchProblems:
+    """Several clips for the same target, and their names."""
+
+    problems: tuple[FetchProblem, ...]
+    names: tuple[str, ...]
+
+
+@dataclass(frozen=True, eq=False)
+class FetchedClips:
+    """Those that could be had, None for others, and what was wrong with the first of these."""
+
+    clips: tuple[Fetched | None, ...]
+    trouble: str
+
+
+def fetch_clips(wanted: FetchProblems, *, progress: Progress = unwatched) -> FetchedClips:
+    """Read several clips again, and give them to the target.
+
+    Raises
+    ------
+    InvalidFileError, InvalidMotionError
+        None can be had; see `fetch_clip`.
+    """
+    found: list[Fetched | None] = []
+    troubles: list[InvalidFileError | InvalidMotionError] = []
+    n = len(wanted.problems)
+    for place, (problem, name) in enumerate(zip(wanted.problems, wanted.names, strict=True)):
+        progress(place / n, f"Fetching {name}")
+        try:
+            found.append(
+                fetch_clip(problem, progress=within(progress, place / n, (place + 1) / n))
+            )
+        except (InvalidFileError, InvalidMotionError) as error:
+            found.append(None)
+            troubles.append(error)
+    if len(troubles) == n:
+        raise troubles[0]
+    return FetchedClips(tuple(found), str(troubles[0]) if troubles else "")
+
+
 def fetch_clip(problem: FetchProblem, *, progress: Progress = unwatched) -> Fetched:
     """Read a clip again from where it came from, and give it to the target.
 

@@ -8,18 +8,35 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...solvers.denoising import PlantSettings
-from ...solvers.motion import Motion, resample
+from ...solvers.motion import HUMANOID_ROLES, HumanoidMap, Motion, resample
 from ...solvers.motion.posture_heading import normalise
 from ...solvers.motion.posture_joints import motion_postures
 from ...solvers.motion.rotations import multiply, rotate
 from ...solvers.pictures import StickFigureSettings, draw_stick_figures, stack_pictures
 from ...solvers.progress import Progress, unwatched, within
+from ...solvers.retargeting import RetargetSettings
 from ...solvers.variation import VarySettings
+from ...solvers.variation.loops import loop_at_rate
 from ...solvers.workflows import vary_motions
+from .controls import TargetRig
+from .retargeting import Clip, Retargeted, RetargetProblem, retarget_clips
 from .thumbnails import Pixels, thumbnail
 
+Array = NDArray[np.float64]
 ALIKE = "They are all alike: tick more actions, or raise the amount."
 SHEET = StickFigureSettings(n_figures=10, height=140)
+
+
+@dataclass(frozen=True, eq=False)
+class Controls:
+    """How a rig is keyed whose bones constraints move: variants of its body are retargeted."""
+
+    rig: TargetRig
+    settings: RetargetSettings
+    origin: Array
+    """Where the armature stands on the ground, shape (3,), metres."""
+    turn: Array
+    """How it is turned about the vertical, shape (4,)."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -33,6 +50,8 @@ class VaryProblem:
     """None leaves feet as they are."""
     frame_rate: float
     """Hertz, of the scene: more keys than frames would only fill the file."""
+    controls: Controls | None = None
+    """Of a control rig; the joints of its examples are then named by roles."""
 
 
 class Varied(NamedTuple):
@@ -41,6 +60,8 @@ class Varied(NamedTuple):
     motions: tuple[Motion, ...]
     pictures: tuple[Pixels, ...]
     remarks: tuple[str, ...]
+    keys: Retargeted = ()
+    """Of a control rig: its channels for each motion."""
 
 
 def vary(problem: VaryProblem, *, progress: Progress = unwatched) -> Varied:
@@ -50,20 +71,35 @@ def vary(problem: VaryProblem, *, progress: Progress = unwatched) -> Varied:
         problem.n_variants,
         settings=problem.settings,
         planting=problem.planting,
-        progress=within(progress, 0.0, 0.9),
+        progress=within(progress, 0.0, 0.8),
     )
     first = normalise(motion_postures(problem.examples[0]), problem.examples[0].frame_rate)
     motions, pictures = [], []
-    for place, motion in enumerate(made.motions):
-        progress(0.9 + 0.1 * place / len(made.motions), "Drawing")
+    for place, (motion, is_loop) in enumerate(zip(made.motions, made.loops, strict=True)):
+        progress(0.8 + 0.1 * place / len(made.motions), "Drawing")
         seen = normalise(motion_postures(motion), motion.frame_rate)
         turn = float(first.headings[0] - seen.headings[0])
         there = moved(motion, seen.places[0], turn, first.places[0])
+        seen_as = loop_at_rate if is_loop else resample
         finer = motion.frame_rate > problem.frame_rate
-        motions.append(resample(there, problem.frame_rate) if finer else there)
+        motions.append(seen_as(there, problem.frame_rate) if finer else there)
         pictures.append(thumbnail(seen.postures))
     remarks = (*made.remarks, ALIKE) if are_alike(motions) else made.remarks
-    return Varied(tuple(motions), tuple(pictures), remarks)
+    keys = _keyed(motions, problem.controls, within(progress, 0.9, 1.0))
+    return Varied(tuple(motions), tuple(pictures), remarks, keys)
+
+
+def _keyed(
+    motions: Sequence[Motion], controls: Controls | None, progress: Progress
+) -> Retargeted:
+    """Return the channels of a control rig's bones for each motion of its body."""
+    if controls is None:
+        return ()
+    clips = tuple(Clip(motion, controls.origin, controls.turn) for motion in motions)
+    names = motions[0].skeleton.names
+    roles = HumanoidMap({name: name for name in names if name in HUMANOID_ROLES})
+    problem = RetargetProblem(clips, roles, controls.rig, controls.settings)
+    return retarget_clips(problem, progress=progress)
 
 
 def are_alike(motions: Sequence[Motion]) -> bool:
@@ -75,9 +111,7 @@ def are_alike(motions: Sequence[Motion]) -> bool:
     )
 
 
-def moved(
-    motion: Motion, pivot: NDArray[np.float64], turn: float, place: NDArray[np.float64]
-) -> Motion:
+def moved(motion: Motion, pivot: Array, turn: float, place: Array) -> Motion:
     """Turn a motion about the vertical through a point, which comes above a place.
 
     Parameters

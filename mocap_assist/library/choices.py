@@ -76,6 +76,22 @@ class LoadChoices(Settings):
     )
 
 
+@dataclass(frozen=True, kw_only=True)
+class UseChoices(Settings):
+    """Which matches become examples of Vary."""
+
+    n_best: int = setting(
+        5, "How many of the best serve; more show more of how the behaviour varies",
+        minimum=1, maximum=10, label="Clips",
+    )  # fmt: skip
+
+
+class UseBundle(NamedTuple):
+    """All that the button Use as Examples offers."""
+
+    choices: UseChoices
+
+
 class LoadBundle(NamedTuple):
     """All that the button offers."""
 

@@ -50,7 +50,7 @@ def read_loading(
 ) -> "partial[Fetched]":
     """Read the armature's rig; return what is to be solved, which may be pickled."""
     search, found = searches.chosen(bpy.context)
-    problem, _ = _problem(scene, armature, settings.choices, search, found)
+    problem, _ = problem_of(scene, armature, settings.choices, search, found)
     return partial(fetch_clip, problem)
 
 
@@ -63,7 +63,7 @@ def write_loaded(
 ) -> str:
     """Write the clip as a new action and put it to use; return a sentence about it."""
     search, found = searches.chosen(bpy.context)
-    problem, switches = _problem(scene, armature, settings.choices, search, found)
+    problem, switches = problem_of(scene, armature, settings.choices, search, found)
     check_unchanged(armature, asked, problem)
     check_writable(armature)
     frames = first_frame(search, found) + np.arange(fetched.n_frames, dtype=np.float64)
@@ -106,13 +106,14 @@ def time_scale(search: Search, found: Found) -> float:
     return float(query / clip) if query > 0.0 and clip > 0.0 else 1.0
 
 
-def _problem(
+def problem_of(
     scene: bpy.types.Scene,
     armature: bpy.types.Object,
     choices: LoadChoices,
     search: Search,
     found: Found,
 ) -> tuple[FetchProblem, dict[tuple[str, str], float]]:
+    """Return what is to be solved to give a match to an armature, and the rig's switches."""
     if found.entry.origin is None:
         raise InvalidMotionError(f"Nobody knows where {found.entry.name} came from.")
     retargeting = scene.mocap_assist.retarget.settings()

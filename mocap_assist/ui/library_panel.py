@@ -17,6 +17,7 @@ from .source_list import draw_sources
 INDEX, FIND = "mocap_assist.index_library", "mocap_assist.find_similar"
 LOAD, LINK = "mocap_assist.load_match", "mocap_assist.link_match"
 LEARN, MARK = "mocap_assist.learn_from_matches", "mocap_assist.mark_asset"
+USE = "mocap_assist.use_matches"
 PARTS = (("trunk",), ("left_arm", "right_arm"), ("left_leg", "right_leg"))
 SHOWN_APART = {"n_matches", "n_aligned", *(name for row in PARTS for name in row)}
 FEWEST, MOST = 3, 6  # rows of the list
@@ -55,7 +56,7 @@ class LibraryPanel:
     def draw(self, context: bpy.types.Context) -> None:
         layout = self.layout
         _draw_library(layout, context)
-        running = draw_job(layout, context, "find", "load")
+        running = draw_job(layout, context, "find", "load", "use")
         column = layout.column()
         column.enabled = not running
         _draw_query(column, context)
@@ -149,6 +150,10 @@ def _draw_chosen(
     row = column.row(align=True)
     row.operator(LEARN, text="Clean", icon="BRUSH_DATA").group = "clean"
     row.operator(LEARN, text="Reconstruct", icon="ARMATURE_DATA").group = "reconstruct"
+    column.label(text="Vary the best:")
+    row = column.row(align=True)
+    row.prop(context.scene.mocap_assist.use, "n_best")
+    row.operator(USE, icon="MOD_ARRAY")
     column.operator(MARK, icon="ASSET_MANAGER")
 
 

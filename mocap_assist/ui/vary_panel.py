@@ -7,6 +7,7 @@ import bpy
 
 from ...solvers.denoising import PlantSettings
 from ...solvers.variation import VarySettings
+from ..library import searches
 from ..selection import selected_armature
 from ..variants.listing import chosen
 from ..variants.reading import candidates, why_not_vary
@@ -22,6 +23,7 @@ VARY, KEEP, SHEET, STACK, MARK, ASSIGN = (
         "assign_variants",
     )
 )  # fmt: skip
+USE = "mocap_assist.use_matches"
 MAIN = ("amount", "timing", "length")
 PARTS = (("trunk",), ("left_arm", "right_arm"), ("left_leg", "right_leg"))
 OTHERS = ("pin_start", "pin_end")
@@ -60,7 +62,7 @@ class VaryPanel:
 
     def draw(self, context: bpy.types.Context) -> None:
         layout = self.layout
-        running = draw_job(layout, context, "vary")
+        running = draw_job(layout, context, "vary", "use")
         column = layout.column()
         column.enabled = not running
         column.use_property_split = True
@@ -90,6 +92,8 @@ def _draw_actions(column: bpy.types.UILayout, context: bpy.types.Context) -> Non
         icon = "CHECKBOX_HLT" if action.name in ticked else "CHECKBOX_DEHLT"
         button = box.operator(TICK, text=action.name, translate=False, icon=icon)
         button.action, button.group = action.name, "vary"
+    if search := searches.listed(context):
+        column.operator(USE, text=f"Best Matches of {search.query}", icon="VIEWZOOM")
     if len(found) > LONGEST:
         column.prop(context.scene.mocap_assist.vary, "actions")
 

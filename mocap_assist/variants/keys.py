@@ -1,6 +1,8 @@
 """The keys of a variant, in the channels of the bones of its armature."""
 
-from collections.abc import Mapping, Sequence
+import re
+from collections.abc import Collection, Mapping, Sequence
+from dataclasses import replace
 from typing import NamedTuple
 
 import bpy
@@ -18,6 +20,7 @@ from ..scene.take import ArmatureTake, Part, basis_rotations, root_locations
 
 Array = NDArray[np.float64]
 STILL = 1e-6
+BONE = re.compile(r'pose\.bones\["(.+?)"\]')
 
 
 class Held(NamedTuple):
@@ -38,8 +41,10 @@ class Stage(NamedTuple):
     held: tuple[Held, ...]
 
     @classmethod
-    def of(cls, takes: Sequence[ArmatureTake], first: Source) -> "Stage":
-        """Take it from the examples."""
+    def of(
+        cls, takes: Sequence[ArmatureTake], first: Source, movers: Collection[str] = ()
+    ) -> "Stage":
+        """Take it from the examples, but for the channels of some bones."""
         turned = {
             index
             for take in takes
@@ -50,7 +55,7 @@ class Stage(NamedTuple):
         held = tuple(
             Held(path, index, _group(channel.curve), float(channel.values(start)[0]))
             for (path, index), channel in animated_curves(*first).items()
-            if channel.is_on
+            if channel.is_on and not _moves(path, movers)
         )
         return cls(takes[0], frozenset(turned), held)
 
@@ -76,6 +81,22 @@ class Stage(NamedTuple):
             for bone in turns
             if bone in self.turned or bone == root
         }
+
+
+def without_still(keys: Mapping[str, BoneKeys]) -> Mapping[str, BoneKeys]:
+    """Return channels of which those that never turn have their first key only."""
+    return {
+        bone: replace(each, rotations=_once_if_still(each.rotations))
+        if each.rotations is not None and np.isfinite(each.rotations).all()
+        else each
+        for bone, each in keys.items()
+    }
+
+
+def _moves(path: str, movers: Collection[str]) -> bool:
+    """Whether a channel is of one of these bones."""
+    named = BONE.match(path)
+    return named is not None and named[1] in movers
 
 
 def _once_if_still(rotations: Array) -> Array:

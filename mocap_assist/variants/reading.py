@@ -1,23 +1,35 @@
 """What the button Vary reads from the scene."""
 
+from collections.abc import Mapping
+from dataclasses import replace
 from functools import partial
 from typing import NamedTuple
 
 import bpy
 
 from ...solvers.errors import InvalidMotionError
+from ...solvers.retargeting import RootMotion
 from ..examples import SEPARATOR
-from ..jobs.varying import Varied, VaryProblem, vary
+from ..jobs.varying import Controls, Varied, VaryProblem, vary
+from ..redo import fingerprint
 from ..retargeting import fitting_actions, source_called
 from ..scene.armature_read import read_take
 from ..scene.armature_write import check_writable
 from ..scene.compat import Source
+from ..scene.evaluated_body import body_bones, with_body_shown
+from ..scene.movers import movers_of
 from ..scene.rigify import is_rigify
 from ..scene.scene_rate import scene_rate
 from ..scene.take import ArmatureTake
+from ..scene.target_read import find_roles, read_target, vertical_part
 from ..selection import played_source, selected_armature
 from .choices import VaryBundle, VaryChoices
 from .tags import examples_of, is_variant
+
+Switches = Mapping[tuple[str, str], float]
+_shown: dict[str, ArmatureTake] = {}
+"""Bodies of control rigs that were read since the button was pressed: each frame takes
+milliseconds, and what was solved is read again before it is written."""
 
 
 class Reading(NamedTuple):
@@ -26,6 +38,10 @@ class Reading(NamedTuple):
     sources: tuple[Source, ...]
     takes: tuple[ArmatureTake, ...]
     problem: VaryProblem
+    switches: Switches
+    """Custom properties to be keyed of a control rig, by bone and name."""
+    movers: frozenset[str]
+    """Bones of a control rig that move its body: what they did in the examples is no more."""
 
 
 def why_not_vary(context: bpy.types.Context) -> str:
@@ -33,11 +49,6 @@ def why_not_vary(context: bpy.types.Context) -> str:
     armature = selected_armature(context)
     if armature is None:
         return "Select the armature whose actions are to be varied."
-    if is_rigify(armature.data.bones):
-        return (
-            f"{armature.name} is a control rig. Vary the captured skeleton, and retarget the"
-            " variants."
-        )
     try:
         check_writable(armature)
         chosen_sources(armature, context.scene.mocap_assist.vary.settings().choices)
@@ -71,18 +82,69 @@ def read_varying(
 ) -> "partial[Varied]":
     """Read the actions; return what is to be solved, which may be pickled."""
     check_writable(armature)
+    _shown.clear()
     return partial(vary, read(scene, armature, settings).problem)
 
 
 def read(scene: bpy.types.Scene, armature: bpy.types.Object, settings: VaryBundle) -> Reading:
-    """Read the chosen actions."""
+    """Read the chosen actions; of a control rig what its body does."""
     sources = chosen_sources(armature, settings.choices)
-    takes = tuple(read_take(armature, scene, source=each) for each in sources)
+    takes = tuple(_read_once(scene, armature, each) for each in sources)
+    controls, switches = (
+        read_controls(scene, armature, takes[0])
+        if is_rigify(armature.data.bones)
+        else (None, {})
+    )
     problem = VaryProblem(
         tuple(take.parts[0].motion for take in takes),
         settings.choices.n_variants,
         settings.varying,
         settings.planting if settings.choices.plant_feet else None,
         scene_rate(scene),
+        controls,
     )
-    return Reading(sources, takes, problem)
+    rig, body = takes[0].rig, takes[0].parts[0]
+    shown = [rig.bones[bone] for bone in body.bones] if controls is not None else []
+    return Reading(sources, takes, problem, switches, movers_of(armature, shown))
+
+
+def _read_once(
+    scene: bpy.types.Scene, armature: bpy.types.Object, source: Source
+) -> ArmatureTake:
+    """Read an action; the body of a control rig only once for each press of the button."""
+    if not is_rigify(armature.data.bones):
+        return read_take(armature, scene, source=source)
+    known = fingerprint((armature.session_uid, read_take(armature, scene, source=source)))
+    if known not in _shown:
+        _shown[known] = read_body(scene, armature, source)
+    return _shown[known]
+
+
+def read_body(
+    scene: bpy.types.Scene, armature: bpy.types.Object, source: Source
+) -> ArmatureTake:
+    """Read an action; where constraints move the body, as Blender shows it, named by roles."""
+    take = read_take(armature, scene, source=source)
+    if not is_rigify(armature.data.bones):
+        return take
+    bones = body_bones(find_roles(armature), armature.data.bones)
+    shown = with_body_shown(scene, armature, take, bones, source)
+    body, roles = shown.parts[0], {bone: role for role, bone in bones.joints.items()}
+    skeleton = body.motion.skeleton
+    names = tuple(roles[name] for name in skeleton.names)
+    named = replace(body.motion, skeleton=replace(skeleton, names=names))
+    return replace(shown, parts=(replace(body, motion=named), *shown.parts[1:]))
+
+
+def read_controls(
+    scene: bpy.types.Scene, armature: bpy.types.Object, take: ArmatureTake
+) -> tuple[Controls, Switches]:
+    """Read how a control rig is keyed, as the panel Retarget says."""
+    chosen = scene.mocap_assist.retarget.settings()
+    on_root = chosen.retargeting.root_motion is RootMotion.ROOT_BONE
+    rig, switches = read_target(
+        scene, armature, find_roles(armature), chosen.choices.limbs, on_root
+    )
+    origin = take.rest.origins[0] * (1.0, 1.0, 0.0)
+    turn = vertical_part(take.rest.rotations[0])
+    return Controls(rig, chosen.retargeting, origin, turn), switches

@@ -8,8 +8,8 @@ import bpy
 from ...solvers.errors import InvalidFileError
 from ..jobs.job import run
 from ..jobs.varying import draw_sheet
-from ..scene.armature_read import read_take
 from . import listing
+from .reading import read_body
 
 MOST = 50
 
@@ -28,9 +28,7 @@ def write_sheet(scene: bpy.types.Scene, path: Path) -> str:
     motions = [
         (
             action.name,
-            read_take(armature, scene, source=listing.source_for(armature, action))
-            .parts[0]
-            .motion,
+            read_body(scene, armature, listing.source_for(armature, action)).parts[0].motion,
         )
         for action in actions[:MOST]
     ]

@@ -12,7 +12,7 @@ from ..scene.compat import Source
 from ..subject import check_unchanged
 from . import listing
 from .choices import VaryBundle
-from .keys import Stage, hold_others
+from .keys import Stage, hold_others, without_still
 from .reading import read
 from .tags import names_for, tag
 
@@ -49,7 +49,8 @@ class VariantsWriter:
         self._settings, self._varied = settings, varied
         self._examples = [action.name for action, _ in found.sources]
         self._slot = found.sources[0][1].identifier
-        self._stage = Stage.of(found.takes, found.sources[0])
+        self._stage = Stage.of(found.takes, found.sources[0], found.movers)
+        self._switches = found.switches
         self._names = names_for(found.sources[0][0], len(varied.motions))
         self._made: list[int] = []
 
@@ -62,8 +63,10 @@ class VariantsWriter:
         """Write the next variant; return a sentence once all are written."""
         place = len(self._made)
         motion, stage = self._varied.motions[place], self._stage
-        frames, keys = stage.frames(motion.n_frames), stage.keys(motion)
-        action, slot = write_action(armature, self._names[place], frames, keys, {})
+        frames = stage.frames(motion.n_frames)
+        controls = self._varied.keys
+        keys = without_still(controls[place]) if controls else stage.keys(motion)
+        action, slot = write_action(armature, self._names[place], frames, keys, self._switches)
         self._made.append(action.session_uid)
         hold_others(action, slot, stage)
         history.record(action, self._source(), self._entry(place), of_another_rig=True)

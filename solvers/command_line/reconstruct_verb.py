@@ -9,7 +9,7 @@ import numpy as np
 from ..denoising import Planted, PlantSettings, compare_quality, measure_quality
 from ..errors import InvalidMotionError
 from ..motion import JointRecording, Motion, Sensor, Tracks
-from ..progress import Progress, within
+from ..progress import Progress, overheard, within
 from ..reconstruction import (
     PostureLibrary,
     ReconstructSettings,
@@ -96,12 +96,12 @@ def read_guides(arguments: argparse.Namespace, progress: Progress) -> Guides:
 
 def perform_reconstruct(task: Task, prepared: Guides, progress: Progress) -> Outcome:
     """Reconstruct one recording and write it; tell what was lost, and the quality."""
-    given = read_tracked(
-        task.source, scale=task.arguments.scale, progress=within(progress, 0.0, 0.1)
-    )
+    told: list[str] = []
+    listening = overheard(within(progress, 0.0, 0.1), told)
+    given = read_tracked(task.source, scale=task.arguments.scale, progress=listening)
     guides, said = _guides_for(given, task, prepared, within(progress, 0.1, 0.3))
     rebuilt = _rebuilt(given, task, guides, within(progress, 0.3, 0.8))
-    rebuilt = rebuilt._replace(remarks=(*said, *rebuilt.remarks))
+    rebuilt = rebuilt._replace(remarks=(*(f"{one}." for one in told), *said, *rebuilt.remarks))
     assert task.target is not None
     if task.target.suffix.lower() != JOINTS:
         write(rebuilt.motion, task.target, within(progress, 0.9, 1.0))

@@ -1,6 +1,7 @@
 """The verbs of `python -m solvers`."""
 
 import argparse
+from dataclasses import replace
 from pathlib import Path
 
 from ..denoising import (
@@ -9,7 +10,7 @@ from ..denoising import (
     learn_filter_bases,
     measure_quality,
 )
-from ..progress import Progress, within
+from ..progress import Progress, overheard, within
 from .convert import convert
 from .denoise_verb import add_denoise_options, learn_once, perform_denoise
 from .files import add_reading_options, read, read_all
@@ -77,8 +78,11 @@ def _quality(task: Task, prepared: None, progress: Progress) -> Outcome:
 
 
 def _convert(task: Task, prepared: None, progress: Progress) -> Outcome:
-    recording = read(task.source, task.arguments, within(progress, 0.0, 0.7))
-    return convert(recording, task.target, within(progress, 0.7, 1.0))
+    told: list[str] = []
+    listening = overheard(within(progress, 0.0, 0.7), told)
+    recording = read(task.source, task.arguments, listening)
+    done = convert(recording, task.target, within(progress, 0.7, 1.0))
+    return replace(done, text=" ".join([done.text, *(f"{one}." for one in told)]))
 
 
 VERBS = {

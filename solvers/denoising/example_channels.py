@@ -29,13 +29,19 @@ class ExampleChannels:
     """
 
     def __init__(
-        self, examples: Sequence[Motion | Tracks], frame_rate: float, window: int
+        self,
+        examples: Sequence[Motion | Tracks],
+        frame_rate: float,
+        window: int,
+        weights: Sequence[float],
     ) -> None:
         self._frame_rate, self._window = frame_rate, window
         self._takes = [
-            (example, *part) for example in examples for part in _whole_pieces(example)
+            (example, weight, *part)
+            for example, weight in zip(examples, weights, strict=True)
+            for part in _whole_pieces(example)
         ]
-        example, start, stop = self._takes[0]
+        example, _, start, stop = self._takes[0]
         first = encode(example.slice(start, stop))
         self.keys, self.references = first.keys, first.references
 
@@ -44,13 +50,15 @@ class ExampleChannels:
         """Number of channels."""
         return 3 * len(self.keys)
 
-    def read(self, progress: Progress) -> Iterator[list[Array]]:
-        """Yield each take as a list of interleaved clips, shape (n_frames, n_channels).
+    def read(self, progress: Progress) -> Iterator[tuple[float, list[Array]]]:
+        """Yield the weight of each take, and a list of interleaved clips of it.
+
+        Clips have shape (n_frames, n_channels).
 
         Those that are shorter than a window are left out, and so are takes that have no other.
         What an example does not have, or never shows, is NaN.
         """
-        for index, (example, start, stop) in enumerate(self._takes):
+        for index, (example, weight, start, stop) in enumerate(self._takes):
             take = example.slice(start, stop)
             channels = encode(take, self.references)
             place = {key: part for part, key in enumerate(channels.keys)}
@@ -62,7 +70,7 @@ class ExampleChannels:
             seen = np.isfinite(flat).any(axis=0)
             clips = _at_rate(interpolated(flat), take.frame_rate, self._frame_rate)
             if long := [clip for clip in clips if len(clip) >= self._window]:
-                yield [np.where(seen, clip, np.nan) for clip in long]
+                yield weight, [np.where(seen, clip, np.nan) for clip in long]
             progress((index + 1) / len(self._takes), "Reading examples")
 
 
@@ -74,20 +82,20 @@ class Moments:
         """Of each take; NaN where it lacks the channel."""
         self._counts, self._squares = np.empty((0, 1)), np.empty((0, n_channels))
 
-    def add(self, clips: Sequence[Array]) -> None:
-        """Add a take, a list of clips."""
+    def add(self, clips: Sequence[Array], weight: float) -> None:
+        """Add a take, a list of clips, that counts so much."""
         count = sum(map(len, clips))
         mean = sum(clip.sum(axis=0) for clip in clips) / count
         square = sum(((clip - mean) ** 2).sum(axis=0) for clip in clips)
         self.means = np.vstack([self.means, mean])
-        self._squares = np.vstack([self._squares, square])
-        self._counts = np.vstack([self._counts, [[count]]])
+        self._squares = np.vstack([self._squares, weight * square])
+        self._counts = np.vstack([self._counts, [[weight * count]]])
 
     def total(self) -> tuple[Array, Array]:
         """Return mean and standard deviation of each channel over all takes."""
         has = np.isfinite(self.means)
         counts = self._counts * has
-        n_frames = np.maximum(counts.sum(axis=0), 1)
+        n_frames = np.where(has.any(axis=0), counts.sum(axis=0), 1.0)
         mean = (counts * np.nan_to_num(self.means)).sum(axis=0) / n_frames
         between = counts * (np.nan_to_num(self.means) - mean) ** 2
         square = (np.nan_to_num(self._squares) + between).sum(axis=0)

@@ -179,6 +179,7 @@ def _fault(bases: FilterBases) -> str:
 def learn_filter_bases(
     examples: Sequence[Motion | Tracks],
     *,
+    weights: Sequence[float] | None = None,
     settings: FilterBasesSettings = FilterBasesSettings(),
     progress: Progress = unwatched,
 ) -> FilterBases:
@@ -194,6 +195,8 @@ def learn_filter_bases(
     ----------
     examples : sequence of Motion or Tracks
         Of one kind. Frame rates may differ; gaps are bridged by straight lines.
+    weights : sequence of float, optional
+        How much the frames of each example count, more than 0; all the same without.
     settings : FilterBasesSettings
     progress : Progress
 
@@ -205,8 +208,8 @@ def learn_filter_bases(
     Raises
     ------
     InvalidMotionError
-        There is no example, kinds are mixed, no example is as long as the window, or nothing
-        in them moves.
+        There is no example, kinds are mixed, weights do not fit them, no example is as long
+        as the window, or nothing in them moves.
     SolveCancelled
         Raised by `progress`.
 
@@ -214,12 +217,12 @@ def learn_filter_bases(
     ----------
     .. [1] Lou, Chai (2010). Example-based human motion denoising. IEEE TVCG 16(5), section 3.
     """
-    _check(examples)
+    shares = _checked(examples, weights)
     window = settings.n_frames
-    channels = ExampleChannels(examples, settings.frame_rate, window)
+    channels = ExampleChannels(examples, settings.frame_rate, window, shares)
     moments = Moments(channels.n_channels)
-    for clips in channels.read(within(progress, 0.0, 0.4)):
-        moments.add(clips)
+    for weight, clips in channels.read(within(progress, 0.0, 0.4)):
+        moments.add(clips, weight)
     if not len(moments.means):
         raise InvalidMotionError(
             f"No example is as long as the window of {settings.window:.2g} s; choose longer"
@@ -233,10 +236,10 @@ def learn_filter_bases(
     moving = np.flatnonzero(spread >= min(STILL, spread.max()))
     about_all, about_own = (LagCovariance(len(moving), window) for _ in range(2))
     reading = channels.read(within(progress, 0.4, 0.8))
-    for clips, own in zip(reading, moments.means, strict=True):
+    for (weight, clips), own in zip(reading, moments.means, strict=True):
         for clip in clips:
-            about_all.add(clip[:, moving], mean[moving])
-            about_own.add(clip[:, moving], own[moving])
+            about_all.add(clip[:, moving], mean[moving], weight)
+            about_own.add(clip[:, moving], own[moving], weight)
     progress(0.8, "Finding patterns")
     values, vectors = strongest(about_all.total(), KEPT_ENERGY)
     patterns = np.zeros((len(values), window, len(mean)))
@@ -255,11 +258,20 @@ def learn_filter_bases(
     )  # fmt: skip
 
 
-def _check(examples: Sequence[Motion | Tracks]) -> None:
+def _checked(
+    examples: Sequence[Motion | Tracks], weights: Sequence[float] | None
+) -> tuple[float, ...]:
+    """Return the weights of the examples, on average 1."""
     if not examples:
         raise InvalidMotionError("There is no example to learn from; choose clean clips.")
     if len({isinstance(example, Motion) for example in examples}) > 1:
         raise InvalidMotionError("Learn from motions or from tracks, not from both at once.")
+    given = np.ones(len(examples)) if weights is None else np.array(weights, dtype=float)
+    if given.shape != (len(examples),) or not (np.isfinite(given) & (given > 0.0)).all():
+        raise InvalidMotionError(
+            f"{given.size} weights for {len(examples)} examples; give each one above 0."
+        )
+    return tuple(map(float, given / given.mean()))
 
 
 def _waves(covariance: Array, window: int) -> tuple[Array, Array]:

@@ -75,10 +75,10 @@ class LagCovariance:
         self._products, self._window = LagProducts(n_channels, window), window
         self._n_windows = np.zeros(n_channels)
 
-    def add(self, clip: Array, mean: Array) -> None:
-        """Add a clip, shape (n_frames, n_channels)."""
-        self._products.add(np.nan_to_num(clip - mean))
-        self._n_windows += (len(clip) - self._window + 1) * np.isfinite(clip[0])
+    def add(self, clip: Array, mean: Array, weight: float = 1.0) -> None:
+        """Add a clip, shape (n_frames, n_channels), that counts as so many."""
+        self._products.add(np.sqrt(weight) * np.nan_to_num(clip - mean))
+        self._n_windows += weight * (len(clip) - self._window + 1) * np.isfinite(clip[0])
 
     def total(self) -> Array:
         """Return the covariance, as `LagProducts` does."""

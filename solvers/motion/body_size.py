@@ -73,17 +73,25 @@ def resize(postures: Array, lengths: Array, scale: float | None = None) -> Array
         By which the way from the nearest joint above that was tracked is scaled, for what
         hangs on a joint that was not; without it all below such a joint becomes NaN.
     """
-    result = np.full(postures.shape, np.nan)
+    above = np.maximum(PARENTS, 0)
+    bones = postures - postures[..., above, :]
+    sizes = np.linalg.norm(bones, axis=-1, keepdims=True)
+    result = lengths[:, None] * (bones / np.where(sizes > 0.0, sizes, 1.0))
     result[..., 0, :] = postures[..., 0, :]
+    broken = scale is not None and not np.isfinite(result).all()
     for joint in range(1, N_JOINTS):
-        above = PARENTS[joint]
-        bone = postures[..., joint, :] - postures[..., above, :]
-        size = np.linalg.norm(bone, axis=-1, keepdims=True)
-        way = bone / np.where(size > 0.0, size, 1.0)
-        found = result[..., above, :] + lengths[joint] * way
-        while scale is not None and above > 0:
-            above = PARENTS[above]
-            bone = postures[..., joint, :] - postures[..., above, :]
-            found = np.where(np.isfinite(found), found, result[..., above, :] + scale * bone)
-        result[..., joint, :] = found
-    return result
+        result[..., joint, :] += result[..., above[joint], :]
+        if broken:
+            _hang_on_those_above(result, postures, joint, scale or 1.0)
+    return np.asarray(result)
+
+
+def _hang_on_those_above(result: Array, postures: Array, joint: int, scale: float) -> None:
+    """Put a joint whose bone is not whole where it was seen from the nearest joint above."""
+    above = PARENTS[joint]
+    while above > 0:
+        above = PARENTS[above]
+        way = postures[..., joint, :] - postures[..., above, :]
+        found = result[..., joint, :]
+        seen = result[..., above, :] + scale * way
+        result[..., joint, :] = np.where(np.isfinite(found), found, seen)

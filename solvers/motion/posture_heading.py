@@ -4,9 +4,10 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.ndimage import gaussian_filter1d, uniform_filter1d
+from scipy.ndimage import uniform_filter1d
 
 from .posture_joints import HIPS, MIRROR_IMAGES, POSTURE_JOINTS
+from .steadying import steadied
 from .straight_gaps import bridged
 
 Array = NDArray[np.float64]
@@ -50,7 +51,9 @@ class Normalised:
         return turned(postures, self.headings) + self.places[:, None]
 
 
-def normalise(positions: Array, frame_rate: float, weights: Array | None = None) -> Normalised:
+def normalise(
+    positions: Array, frame_rate: float, weights: Array | None = None, *, ahead: bool = True
+) -> Normalised:
     """Take heading and place out.
 
     The heading follows the level lines from the right to the left hip and shoulder, and is
@@ -62,9 +65,11 @@ def normalise(positions: Array, frame_rate: float, weights: Array | None = None)
     frame_rate : float, hertz
     weights : shape (n_frames, 20), 0 to 1, optional
         How far each joint is to be trusted.
+    ahead : bool
+        Whether later frames tell of a heading, and of hips that are lost.
     """
     trust = np.ones(positions.shape[:2]) if weights is None else weights
-    places = np.nan_to_num(bridged(positions[:, HIPS], trust[:, HIPS] > 0.0))
+    places = np.nan_to_num(bridged(positions[:, HIPS], trust[:, HIPS] > 0.0, ahead=ahead))
     left = np.zeros((len(positions), 2))
     for one, other, middle in ACROSS:
         line, sure = _to_the_left(positions, trust, one, other)
@@ -76,9 +81,11 @@ def normalise(positions: Array, frame_rate: float, weights: Array | None = None)
     told = np.linalg.norm(left, axis=-1) > SHORTEST * 1e-3
     if not told.any():
         left[:], told = (1.0, 0.0), np.ones(len(left), bool)
-    unit = bridged(left / np.maximum(np.linalg.norm(left, axis=-1, keepdims=True), 1e-9), told)
-    unit = np.nan_to_num(bridged(unit, ~_reversed(unit, frame_rate)))
-    unit = gaussian_filter1d(unit, STEADY * frame_rate, axis=0, mode="nearest")
+    unit = left / np.maximum(np.linalg.norm(left, axis=-1, keepdims=True), 1e-9)
+    unit = bridged(unit, told, ahead=ahead)
+    if ahead:
+        unit = bridged(unit, ~_reversed(unit, frame_rate))
+    unit = steadied(np.nan_to_num(unit), STEADY * frame_rate, ahead=ahead)
     headings = np.arctan2(unit[:, 1], unit[:, 0])
     return Normalised(turned(positions - places[:, None], -headings), places, headings)
 

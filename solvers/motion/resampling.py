@@ -1,11 +1,11 @@
 """The same recording at another frame rate, with the same seconds."""
 
 from dataclasses import replace
+from functools import lru_cache
 from typing import TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.ndimage import convolve1d
 
 from ..errors import InvalidMotionError
 from .motion import Motion
@@ -97,24 +97,45 @@ def _sampled(
     """Return `values`, shape (n_frames, ..., n), at fractional frames; gaps stay NaN."""
     observed = np.isfinite(values).all(axis=-1)
     filled = np.nan_to_num(bridged(values))
-    if slowdown < 1.0 and len(values) > 1:
-        filled = _low_passed(filled, slowdown)
-    result = _interpolated(filled, times)
+    step = round(1.0 / slowdown)
+    if slowdown >= 1.0 or len(values) < 2:
+        result = _interpolated(filled, times)
+    elif len(times) > 1 and np.array_equal(times, step * np.arange(len(times))):
+        result = _low_passed(filled, slowdown, step)
+    else:
+        result = _interpolated(_low_passed(filled, slowdown), times)
     seen = observed[np.floor(times).astype(int)] & observed[np.ceil(times).astype(int)]
     result[~seen] = np.nan
     return result
 
 
-def _low_passed(values: NDArray[np.float64], slowdown: float) -> NDArray[np.float64]:
-    """Remove what lies above the new Nyquist frequency; the ends keep their trend."""
-    from scipy.signal import firwin, kaiserord  # takes a second to import: only when needed
+def _low_passed(
+    values: NDArray[np.float64], slowdown: float, step: int = 1
+) -> NDArray[np.float64]:
+    """Remove what lies above the new Nyquist frequency; the ends keep their trend.
 
-    n_taps, beta = kaiserord(STOPBAND, (1.0 - PASSED) * slowdown)
-    half = n_taps // 2
-    kernel = firwin(2 * half + 1, (1.0 + PASSED) / 2 * slowdown, window=("kaiser", beta))
+    With `step`, return that many-th frames only.
+    """
+    from scipy.signal import upfirdn  # takes a second to import: only when needed
+
+    kernel = _kernel(slowdown)
+    half = len(kernel) // 2
+    before = half + -2 * half % step
     width = [(half, half)] + [(0, 0)] * (values.ndim - 1)
     padded = np.pad(values, width, mode="reflect", reflect_type="odd")
-    return np.asarray(convolve1d(padded, kernel, axis=0)[half : half + len(values)])
+    late = np.concatenate([np.zeros((before - half, *values.shape[1:])), padded])
+    passed = upfirdn(kernel, late, down=step, axis=0)
+    first, n_wanted = (before + half) // step, -(-len(values) // step)
+    return np.asarray(passed[first : first + n_wanted])
+
+
+@lru_cache(maxsize=16)
+def _kernel(slowdown: float) -> NDArray[np.float64]:
+    from scipy.signal import firwin, kaiserord
+
+    n_taps, beta = kaiserord(STOPBAND, (1.0 - PASSED) * slowdown)
+    cutoff = (1.0 + PASSED) / 2 * slowdown
+    return np.asarray(firwin(2 * (n_taps // 2) + 1, cutoff, window=("kaiser", beta)))
 
 
 def _interpolated(

@@ -9,7 +9,7 @@ Array = NDArray[np.float64]
 Flags = NDArray[np.bool_]
 
 
-def bridged(values: Array, known: Flags | None = None) -> Array:
+def bridged(values: Array, known: Flags | None = None, *, ahead: bool = True) -> Array:
     """Bridge the gaps of each point along straight lines; before and after all known, hold.
 
     Parameters
@@ -18,6 +18,9 @@ def bridged(values: Array, known: Flags | None = None) -> Array:
         Points over time; NaN: not known.
     known : shape (n_frames, ...), optional
         Which of them to believe, where not all that are finite.
+    ahead : bool
+        Whether it is known where a gap leads to. If not, hold what was known last; before the
+        first that is known, that.
 
     Returns
     -------
@@ -37,6 +40,10 @@ def bridged(values: Array, known: Flags | None = None) -> Array:
         here = told[:, point]
         if not here.any():
             flat[:, point] = np.nan
+            continue
+        if not ahead:
+            last = np.maximum.accumulate(np.where(here, frames, here.argmax()))
+            flat[:, point] = flat[last, point]
             continue
         for axis in range(values.shape[-1]):
             flat[~here, point, axis] = np.interp(

@@ -58,7 +58,7 @@ class CorrectionSettings(Settings):
     )  # fmt: skip
     change: float = setting(
         0.9, "How much is applied of the offsets' change with posture; 1 takes the prior at"
-        " its word, also in movements that it has never seen",
+        " its word, also in movements that it has never seen (published: all, unless 0)",
         minimum=0.0, maximum=1.0, advanced=True,
     )  # fmt: skip
     spatial: float = setting(
@@ -147,14 +147,15 @@ def foretell_places(
     settings: CorrectionSettings,
 ) -> tuple[Array, Foretold, Array]:
     """Return the joints of postures where they were, what the prior told, and variances."""
-    calm = calm_postures(recording, float(prior.calm), weights)
+    causal = settings.method is CorrectionMethod.CAUSAL
+    calm = calm_postures(recording, float(prior.calm), weights, ahead=not causal)
     told = prior.predict(calm, ahead=settings.method is CorrectionMethod.WHOLE_TAKE)
     foretold = calm.positions + calm.turn_back(_offsets(told, weights, settings))
     variances = told.variances + prior.lasting_variances(constant=settings.shift)
     if settings.method is CorrectionMethod.PUBLISHED:
         places = _frame_by_frame(recording, foretold, variances, weights, settings)
         return places, told, variances
-    steady = followed if settings.method is CorrectionMethod.CAUSAL else smoothed
+    steady = followed if causal else smoothed
     frames = settings.smoothing * recording.frame_rate
     return steady(foretold, np.maximum(weights, LEAST), frames), told, variances
 
@@ -167,7 +168,7 @@ def _offsets(told: Foretold, weights: Array, settings: CorrectionSettings) -> Ar
     weighed = np.maximum(weights, LEAST)[..., None]
     mean = (weighed * told.offsets).sum(axis=0) / weighed.sum(axis=0)
     constant = mean if settings.shift else np.zeros_like(mean)
-    if settings.method is CorrectionMethod.PUBLISHED:
+    if settings.method is CorrectionMethod.PUBLISHED and settings.change > 0.0:
         return np.asarray(told.offsets + (constant - mean))
     share = settings.change * told.coverage.mean(axis=0)
     return np.asarray(constant + share[:, None] * (told.offsets - mean))

@@ -82,7 +82,9 @@ def follow_postures(
     progress : Progress
     """
     take = _Seen(seen.postures, trust, frame_rate, lengths)
-    body = _body_of(take, library, settings.pace)
+    if settings.method is PostureMethod.PUBLISHED:
+        return _as_published(take, library, settings, progress)
+    body = _body_of(take, library, settings)
     index = index_postures(body, library.groups)
     errors = _errors(take, body, index, settings)
     take = replace(take, postures=take.postures - errors.offset)
@@ -109,14 +111,25 @@ def follow_postures(
     return Followed(postures + shift, sure)
 
 
-def _body_of(take: _Seen, library: PostureLibrary, pace: float) -> BodyPostures:
+def _as_published(
+    take: _Seen, library: PostureLibrary, settings: PostureSettings, progress: Progress
+) -> Followed:
+    """Search each frame's posture after that of the frame before, and do nothing else."""
+    body = on_body(library.directions, library.changes, take.lengths)
+    plain = replace(settings, causal=True, pace=0.0, smoothing=0.0)
+    made = _synthesise(take, body, index_postures(body, library.groups), plain, progress)
+    unsure = np.hypot(made.spread, MODEL)
+    return Followed(made.values, 1.0 / (1.0 + (unsure / SURE) ** 2))
+
+
+def _body_of(take: _Seen, library: PostureLibrary, settings: PostureSettings) -> BodyPostures:
     """Bring the library to the actor's size, and to the tracker's idea of a body."""
     directions, changes, lengths = library.directions, library.changes, take.lengths
     body = on_body(directions, changes, lengths)
     frames = np.linspace(0, len(take.trust) - 1, ANATOMY_FRAMES).astype(int)
     frames = np.unique(frames)
-    speeds = bone_changes(take.postures, take.frame_rate)[frames]
-    some = Query(take.postures[frames], speeds, take.trust[frames], pace)
+    speeds = _speeds(take, settings)[frames]
+    some = Query(take.postures[frames], speeds, take.trust[frames], settings.pace)
     for _ in range(ANATOMY_ROUNDS):
         index = index_postures(body, library.groups)
         places, _ = nearest_postures(index, some, ANATOMY_NEIGHBOURS)
@@ -131,11 +144,17 @@ def _body_of(take: _Seen, library: PostureLibrary, pace: float) -> BodyPostures:
     return body
 
 
+def _speeds(take: _Seen, settings: PostureSettings) -> Array:
+    """Return how bones turn, which takes the frames to both sides to know: NaN if causal."""
+    speeds = bone_changes(take.postures, take.frame_rate)
+    return np.full_like(speeds, np.nan) if settings.causal else speeds
+
+
 def _errors(
     take: _Seen, body: BodyPostures, index: PostureIndex, settings: PostureSettings
 ) -> Errors:
     """Return what to expect of limbs that are not seen, by leaving them out."""
-    speeds = bone_changes(take.postures, take.frame_rate)
+    speeds = _speeds(take, settings)
 
     def synthesise(frames: NDArray[np.intp], trust: Array) -> Array:
         query = Query(take.postures[frames], speeds[frames], trust, settings.pace)
@@ -170,9 +189,7 @@ def _synthesise(
     progress: Progress,
 ) -> Course:
     """Choose a posture for each frame; spread is the deviation of each joint by its space."""
-    speeds = bone_changes(take.postures, take.frame_rate)
-    if settings.causal:
-        speeds = np.full_like(speeds, np.nan)
+    speeds = _speeds(take, settings)
     query = Query(take.postures, speeds, take.trust, settings.pace)
     places, _ = nearest_postures(
         index, query, settings.n_neighbours, progress=within(progress, 0.0, 0.4)
@@ -228,8 +245,6 @@ def _corrected(
     made: Course, seen: Array, take: _Seen, size: Array, settings: PostureSettings
 ) -> Course:
     """Lead synthesised postures through what was seen."""
-    if settings.method is PostureMethod.PUBLISHED:
-        return Course(made.values, np.broadcast_to(size, take.trust.shape))
     dt, deviation = 1.0 / take.frame_rate, noise_of(take.trust, settings.noise)
     if settings.causal:
         course = causal_course(made.values, seen, deviation, dt, size, settings.memory)

@@ -14,7 +14,8 @@ class PostureMethod(Enum):
     ENERGY = "energy"
     """That of least energy [SHJT13, eq. 15], by Gauss-Newton steps."""
     PUBLISHED = "published"
-    """The same by the stochastic search of [SHJT13], from frame to frame; nothing else."""
+    """The same by the stochastic search of [SHJT13], frame after frame; nothing else is done,
+    and `smoothing`, `memory`, `pace` and `rounds` are not looked at."""
 
 
 @dataclass(frozen=True, kw_only=True)

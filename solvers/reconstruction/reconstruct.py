@@ -7,9 +7,9 @@ from pathlib import Path
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.ndimage import gaussian_filter1d
 
 from ..motion import JointRecording, Sensor, Tracks
+from ..motion.steadying import steadied
 from ..motion.straight_gaps import bridged
 from ..progress import Progress, unwatched, within
 from ..settings import Settings, setting
@@ -18,10 +18,10 @@ from .correct_postures import CorrectionMethod, CorrectionSettings, correct_post
 from .exchanges import undo_exchanges
 from .follow_joints import follow_joints
 from .posture_library import PostureLibrary
-from .posture_settings import PostureSettings
+from .posture_settings import PostureMethod, PostureSettings
 from .reconstruct_postures import reconstruct_postures
 from .reliability import measure_reliability
-from .reliability_settings import ReliabilitySettings
+from .reliability_settings import ReliabilityMethod, ReliabilitySettings
 from .residual_prior import ResidualPrior, load_residual_prior
 from .result import Reconstruction
 
@@ -48,9 +48,13 @@ class ReconstructMethod(Enum):
     BOTH = "both"
     """Lost joints by postures of clean clips, then all by the residual prior."""
     POSTURES = "postures"
-    """[SHJT13]: postures of clean clips alone."""
+    """Postures of clean clips alone."""
     RESIDUALS = "residuals"
-    """[ZH14]: the residual prior alone; gaps are bridged smoothly."""
+    """The residual prior alone; gaps are bridged smoothly."""
+    PUBLISHED_POSTURES = "published postures"
+    """[SHJT13]: its reliability, and its stochastic search frame after frame."""
+    PUBLISHED_RESIDUALS = "published residuals"
+    """[ZH14]: the same reliability, and its three terms frame after frame."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -60,7 +64,7 @@ class ReconstructSettings(Settings):
     method: ReconstructMethod = setting(
         ReconstructMethod.BOTH,
         "Both rebuilds lost joints from clean postures and then takes out how the sensor errs;"
-        " the others do one of these alone",
+        " the others do one of these alone, or as the papers have it",
     )
     smoothing: float = setting(
         0.05, "Movements shorter than about this are jitter; higher is smoother and blunter",
@@ -85,6 +89,8 @@ class ReconstructSettings(Settings):
 
 
 USUAL = ReconstructSettings()
+PUBLISHED = (ReconstructMethod.PUBLISHED_POSTURES, ReconstructMethod.PUBLISHED_RESIDUALS)
+RESIDUALS = (ReconstructMethod.RESIDUALS, ReconstructMethod.PUBLISHED_RESIDUALS)
 
 
 def reconstruct(
@@ -97,11 +103,11 @@ def reconstruct(
 ) -> Reconstruction:
     """Rebuild clean poses from what a depth camera's tracker saw.
 
-    Left and right are given back where the tracker exchanged them for a moment (not if causal:
-    that takes the future to know). Each joint's reliability is measured. What is not reliable
-    is rebuilt from postures of clean clips that are like the rest (`reconstruct_postures`); how
-    the sensor errs in such postures is taken out (`correct_postures`); and a skeleton of
-    constant bone lengths follows.
+    Left and right are given back where the tracker exchanged them for a moment. Each joint's
+    reliability is measured. What is not reliable is rebuilt from postures of clean clips that
+    are like the rest (`reconstruct_postures`); how the sensor errs in such postures is taken
+    out (`correct_postures`); and a skeleton of constant bone lengths follows. Causal joints
+    know the actor and what came before, and so keep exchanges, which take the future to tell.
 
     Parameters
     ----------
@@ -126,15 +132,15 @@ def reconstruct(
     SolveCancelled
         Raised by `progress`.
     """
-    if not settings.causal:
+    if not (settings.causal or settings.method in PUBLISHED):
         recording = undo_exchanges(recording)
     trust = measure_reliability(
         recording,
-        settings=ReliabilitySettings(causal=settings.causal, inferred=settings.inferred),
+        settings=_signs(settings),
         progress=within(progress, 0.0, 0.1),
     )
     known = prior is not None or recording.sensor is Sensor.KINECT_V2
-    if settings.method is ReconstructMethod.RESIDUALS:
+    if settings.method in RESIDUALS:
         return correct_postures(
             recording,
             prior or shipped_residual_prior(),
@@ -145,14 +151,14 @@ def reconstruct(
     rebuilt = reconstruct_postures(
         recording,
         postures,
-        settings=PostureSettings(causal=settings.causal, n_neighbours=settings.n_neighbours),
+        settings=_synthesis(settings),
         reliability=trust,
         progress=within(progress, 0.1, 0.7),
     )
-    if settings.method is ReconstructMethod.POSTURES:
+    if settings.method is not ReconstructMethod.BOTH:
         motion = follow_joints(rebuilt.tracks, recording.parents, trust.combined)
         return replace(rebuilt, motion=motion)
-    lost = _lost(recording.tracks, trust.combined, rebuilt.tracks)
+    lost = _lost(recording.tracks, trust.combined, rebuilt.tracks, not settings.causal)
     sure = np.maximum(trust.combined, lost * rebuilt.confidence)
     places = rebuilt.tracks
     if not settings.causal:
@@ -176,7 +182,7 @@ def reconstruct(
     )  # fmt: skip
 
 
-def _lost(seen: Tracks, trust: Array, rebuilt: Tracks) -> Array:
+def _lost(seen: Tracks, trust: Array, rebuilt: Tracks, ahead: bool) -> Array:
     """Return how far postures are to replace what was seen, (n_frames, n_joints), 0 to 1.
 
     What was seen of a joint but is doubted says at least about where it is; a posture that has
@@ -184,8 +190,8 @@ def _lost(seen: Tracks, trust: Array, rebuilt: Tracks) -> Array:
     """
     lost = np.clip((DOUBTED - trust) / (DOUBTED - LOST), 0.0, 1.0)
     known = seen.visible.any(axis=0)
-    calm = bridged(seen.positions[:, known])
-    calm = gaussian_filter1d(calm, CALM * seen.frame_rate, axis=0, mode="nearest")
+    calm = bridged(seen.positions[:, known], ahead=ahead)
+    calm = steadied(calm, CALM * seen.frame_rate, ahead=ahead)
     away = np.zeros(trust.shape)
     away[:, known] = np.linalg.norm(rebuilt.positions[:, known] - calm, axis=-1)
     near = 1.0 / (1.0 + (away / FAR) ** 4)
@@ -200,9 +206,26 @@ def _blended(seen: Tracks, rebuilt: Tracks, lost: Array) -> Tracks:
     return seen.with_positions(share * rebuilt.positions + (1.0 - share) * places)
 
 
+def _signs(settings: ReconstructSettings) -> ReliabilitySettings:
+    if settings.method in PUBLISHED:
+        return ReliabilitySettings(method=ReliabilityMethod.PUBLISHED, causal=settings.causal)
+    return ReliabilitySettings(causal=settings.causal, inferred=settings.inferred)
+
+
+def _synthesis(settings: ReconstructSettings) -> PostureSettings:
+    published = settings.method in PUBLISHED
+    return PostureSettings(
+        method=PostureMethod.PUBLISHED if published else PostureMethod.PROBABLE,
+        causal=settings.causal,
+        n_neighbours=settings.n_neighbours,
+    )
+
+
 def _correction(settings: ReconstructSettings, known: bool) -> CorrectionSettings:
     """Return how to correct; what is not known of a sensor cannot be taken out."""
     method = CorrectionMethod.CAUSAL if settings.causal else CorrectionMethod.WHOLE_TAKE
+    if settings.method in PUBLISHED:
+        method = CorrectionMethod.PUBLISHED
     usual = CorrectionSettings()
     return CorrectionSettings(
         method=method,

@@ -76,7 +76,7 @@ def reconstruct_postures(
     trust = _posture_trust(recording, positions, reliability.combined)
     _check_seen(recording, positions, trust)
     rate = recording.frame_rate
-    seen = normalise(positions, rate, trust)
+    seen = normalise(positions, rate, trust, ahead=not settings.causal)
     lengths = body_lengths(seen.postures, trust)
     found = follow_postures(
         seen, trust, rate, lengths, library, settings, within(progress, 0.1, 0.9)

@@ -4,13 +4,13 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.ndimage import gaussian_filter1d
 
 from ..errors import InvalidMotionError
 from ..motion import JointRecording, Tracks
 from ..motion.body_size import USUAL_LENGTHS, body_lengths
 from ..motion.posture_heading import Normalised, normalise, turned
 from ..motion.posture_joints import N_JOINTS, PARENTS, posture_positions
+from ..motion.steadying import steadied
 from ..motion.straight_gaps import bridged
 
 Array = NDArray[np.float64]
@@ -53,17 +53,21 @@ class CalmPostures:
 
 
 def calm_postures(
-    recording: JointRecording | Tracks, calm: float, weights: Array | None = None
+    recording: JointRecording | Tracks,
+    calm: float,
+    weights: Array | None = None,
+    *,
+    ahead: bool = True,
 ) -> CalmPostures:
-    """Calm a recording with a Gaussian of `calm` seconds, bridge gaps, and normalise it."""
-    positions = bridged(posture_positions(recording))
+    """Calm a recording with a Gaussian of `calm` seconds, bridge gaps, and normalise it.
+
+    Without `ahead` a frame knows of no later one but the actor's size.
+    """
+    positions = bridged(posture_positions(recording), ahead=ahead)
     seen = np.isfinite(positions).all(axis=(0, 2))
     rate = recording.frame_rate
-    if calm > 0.0:
-        positions[:, seen] = gaussian_filter1d(
-            positions[:, seen], calm * rate, axis=0, mode="nearest"
-        )
-    normal = normalise(positions, rate, weights)
+    positions[:, seen] = steadied(positions[:, seen], calm * rate, ahead=ahead)
+    normal = normalise(positions, rate, weights, ahead=ahead)
     length = body_lengths(positions).sum()
     if length == 0.0:
         raise InvalidMotionError(

@@ -66,6 +66,13 @@ def alike(one: Array, other: Array, length: float) -> Array:
     return np.asarray(np.exp(-0.5 * squared_distances(one, other) / length**2))
 
 
+def nearness(features: Array, points: Array, far: tuple[float, float]) -> Array:
+    """Return 1 near the points, falling to 0 where the nearest is far, shape (n,)."""
+    near, fall = far
+    distance = np.sqrt(squared_distances(features, points).min(axis=1))
+    return np.asarray(np.exp(-0.5 * (np.maximum(distance - near, 0.0) / fall) ** 2))
+
+
 def learn_kernel(
     features: tuple[Array, Array],
     errors: Array,

@@ -1,6 +1,7 @@
 """Gaussian processes that know how a sensor errs: from what it saw to where the joint was."""
 
 from dataclasses import dataclass, fields
+from functools import cached_property
 from pathlib import Path
 from typing import Any
 
@@ -13,8 +14,8 @@ from ..motion.posture_heading import mirrored
 from ..motion.posture_joints import MIRROR_IMAGES, N_JOINTS, POSTURE_JOINTS
 from .movement_process import MovementProcess, movement_of
 from .residual_inputs import LARGEST, CalmPostures, filled, neighbourhood
-from .residual_kernel import Kernel, squared_distances
-from .residual_sparse import basis, shared_columns
+from .residual_kernel import Kernel, nearness
+from .residual_sparse import basis, shared_columns, triangle
 
 Array = NDArray[np.float64]
 
@@ -101,6 +102,15 @@ class ResidualPrior:
             arrays |= {MOVEMENT + name: one for name, one in self.movement.arrays().items()}
         write_archive(path, KIND, VERSION, arrays)
 
+    @cached_property
+    def _triangles(self) -> list[tuple[Array, Array]]:
+        """Of local and whole inducing points, joint by joint."""
+        found = []
+        for place, points in enumerate(self.local_points):
+            near, far = self.kernel(place).lengths
+            found.append((triangle(points, near), triangle(self.whole_points, far)))
+        return found
+
     def kernel(self, place: int) -> Kernel:
         """Return the hyper-parameters of one of the joints."""
         return Kernel.from_logs(np.log(self.kernels[place]))
@@ -160,13 +170,13 @@ class ResidualPrior:
         offsets, variances = np.zeros(shape), np.full(shape[:2], np.inf)
         coverage = np.zeros(shape[:2])
         whole = whole_posture(features, self.usual, self.components)
-        near = _nearness(whole, self.whole_points, FAR_WHOLE)
+        near = nearness(whole, self.whole_points, FAR_WHOLE)
         for place, name in enumerate(self.joints):
             joint, kernel = POSTURE_JOINTS.index(str(name)), self.kernel(place)
-            local = neighbourhood(features, joint)
+            local, roots = neighbourhood(features, joint), self._triangles[place]
             bases = (
-                basis(local, self.local_points[place], kernel.lengths[0]),
-                basis(whole, self.whole_points, kernel.lengths[1]),
+                basis(local, self.local_points[place], kernel.lengths[0], roots[0]),
+                basis(whole, self.whole_points, kernel.lengths[1], roots[1]),
             )
             columns = shared_columns(bases, kernel)
             offsets[:, joint] = columns @ self.means[place]
@@ -174,7 +184,7 @@ class ResidualPrior:
             for one, shared in zip(bases, kernel.shared, strict=True):
                 unknown += shared * np.maximum(1.0 - (one**2).sum(axis=1), 0.0)
             variances[:, joint] = unknown
-            coverage[:, joint] = near * _nearness(local, self.local_points[place], FAR_LOCAL)
+            coverage[:, joint] = near * nearness(local, self.local_points[place], FAR_LOCAL)
         return Foretold(offsets, variances, coverage)
 
     def lasting_variances(self, constant: bool = True) -> Array:
@@ -194,13 +204,6 @@ class ResidualPrior:
                 + (kernel.take + kernel.actor if constant else 0.0)
             )
         return result
-
-
-def _nearness(features: Array, points: Array, far: tuple[float, float]) -> Array:
-    """Return 1 near the points, falling to 0 where the nearest is far, shape (n,)."""
-    near, fall = far
-    distance = np.sqrt(squared_distances(features, points).min(axis=1))
-    return np.asarray(np.exp(-0.5 * (np.maximum(distance - near, 0.0) / fall) ** 2))
 
 
 def _between(told: Foretold, frames: NDArray[np.intp]) -> Foretold:

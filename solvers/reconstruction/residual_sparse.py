@@ -31,9 +31,18 @@ def inducing_points(features: Array, count: int, seed: int) -> Array:
     return np.asarray(centres)
 
 
-def basis(features: Array, points: Array, length: float) -> Array:
-    """Return functions of unit prior variance whose sum is the process, (n, n_points)."""
-    lower = np.linalg.cholesky(alike(points, points, length) + JITTER * np.eye(len(points)))
+def triangle(points: Array, length: float) -> Array:
+    """Return the lower triangular root of the inducing points' covariance."""
+    return np.linalg.cholesky(alike(points, points, length) + JITTER * np.eye(len(points)))
+
+
+def basis(features: Array, points: Array, length: float, lower: Array | None = None) -> Array:
+    """Return functions of unit prior variance whose sum is the process, (n, n_points).
+
+    `lower` is the `triangle` of the same points and length, if it is at hand.
+    """
+    if lower is None:
+        lower = triangle(points, length)
     values = alike(features, points, length)
     return np.asarray(solve_triangular(lower, values.T, lower=True, check_finite=False).T)
 

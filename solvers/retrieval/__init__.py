@@ -9,15 +9,11 @@
 """
 
 from .clip import Clip, ClipEntry, Match, Origin
-from .clip_library import (
-    ClipLibrary,
-    build_clip_library,
-    load_clip_library,
-    open_clip_library,
-)
+from .clip_library import ClipLibrary
 from .describe_clip import DescribedClip, describe_clip
 from .find_settings import FindMethod, FindSettings
 from .find_similar import find_similar
+from .open_library import build_clip_library, load_clip_library, open_clip_library
 
 __all__ = [
     "Clip",

@@ -15,10 +15,12 @@ from ..errors import InvalidMotionError
 from ..files import written_whole
 from ..progress import Progress, unwatched, within
 from . import library_file as files
-from .clip import Clip, ClipEntry
+from .clip import Clip, ClipEntry, Origin
 from .clip_postures import ClipPostures
 from .describe_clip import DescribedClip, describe_clip
 from .index_block import IndexBlock, block_of, merged
+from .refused_files import read_refused, write_refused
+from .search_index import SearchIndex
 from .spans import RATE, Spans, describe_spans
 from .vocabulary import MOST_FRAMES, Vocabulary, learn_vocabulary
 
@@ -32,7 +34,7 @@ WELL_LEARNED = 8 * MOST_FRAMES
 
 
 class ClipLibrary:
-    """Clips and the index that finds them. Made by `build_clip_library` or `load_clip_library`.
+    """Clips and the index that finds them. Made by the verbs of `open_library`.
 
     One that was loaded from a file is that file: what is added or removed is written at once,
     as a whole or not at all, and others who have it open see it with their next search.
@@ -46,7 +48,9 @@ class ClipLibrary:
         self._seen = (-1, -1)
         self._entries: dict[int, ClipEntry] = {}
         self._blocks: dict[int, IndexBlock] = {}
+        self._numbers: dict[str, int] | None = None
         self._alive: tuple[tuple[IndexBlock, NDArray[np.bool_]], ...] | None = None
+        self._index_of_all: SearchIndex | None = None
         self._words = -1
         self._vocabulary: Vocabulary | None = None
 
@@ -76,6 +80,21 @@ class ClipLibrary:
                 (block, np.isin(block.clips, numbers)) for block in self._blocks.values()
             )
         return self._alive
+
+    @property
+    def search_index(self) -> SearchIndex:
+        """The index as a whole; kept until the library changes."""
+        blocks = self.blocks
+        if self._index_of_all is None:
+            self._index_of_all = SearchIndex(blocks)
+        return self._index_of_all
+
+    def numbers_of(self, names: Iterable[str]) -> list[int]:
+        """Return the numbers of clips by their names; other names are passed over."""
+        entries = self.numbered()
+        if self._numbers is None:
+            self._numbers = {entry.name: number for number, entry in entries.items()}
+        return [self._numbers[name] for name in names if name in self._numbers]
 
     def numbered(self) -> dict[int, ClipEntry]:
         """Return what is told of the clips, by the numbers that the index calls them by."""
@@ -148,6 +167,16 @@ class ClipLibrary:
                 ).rowcount:
                     raise InvalidMotionError(f"The library has no clip {name}.")
 
+    def refused(self, reader: str) -> dict[Origin, str]:
+        """Return files that this version of a reader could not use, and why."""
+        with files.told_in_words(self._path):
+            return read_refused(self._database, reader)
+
+    def remember_refused(self, reader: str, refused: Sequence[tuple[Origin, str]]) -> None:
+        """Note files that are of no use as they are, and why."""
+        with files.told_in_words(self._path), files.transaction(self._database):
+            write_refused(self._database, reader, refused)
+
     def save(self, path: Path | str) -> None:
         """Write the library into a file, atomically.
 
@@ -201,7 +230,7 @@ class ClipLibrary:
                 number: known.get(number) or files.read_block(self._database, number, n_words)
                 for number in numbers
             }
-            self._alive = None
+            self._numbers = self._alive = self._index_of_all = None
             self._seen = seen
 
     def _outgrown(self, n_frames: int) -> bool:
@@ -242,50 +271,6 @@ class ClipLibrary:
         if len(together) > 1:
             block = merged(together, np.array(files.clip_numbers(self._database)))
         files.write_block(self._database, block)
-
-
-def build_clip_library(clips: Iterable[Clip], *, progress: Progress = unwatched) -> ClipLibrary:
-    """Index clips in a library in memory; `save` writes it to a file.
-
-    Parameters
-    ----------
-    clips : Clip, any number
-        With recordings of bodies: armatures with humanoid roles, Kinect-style joints.
-
-    Raises
-    ------
-    InvalidMotionError
-        A clip shows no body, or two have one name.
-    """
-    library = ClipLibrary(files.create_database())
-    library.add(clips, progress=progress)
-    return library
-
-
-def load_clip_library(path: Path | str) -> ClipLibrary:
-    """Open the library in a file; nothing in it is ever executed.
-
-    Raises
-    ------
-    InvalidFileError
-        There is no such file, it is no library or damaged, or of a newer version.
-    """
-    path = Path(path)
-    return ClipLibrary(files.open_database(path), path)
-
-
-def open_clip_library(path: Path | str) -> ClipLibrary:
-    """Open the library in a file; where there is no file, begin one without clips.
-
-    Raises
-    ------
-    InvalidFileError
-        It is no library or damaged, of a newer version, or cannot be written.
-    """
-    path = Path(path)
-    if not path.exists() or (path.is_file() and not path.stat().st_size):
-        files.begin_file(path)
-    return load_clip_library(path)
 
 
 def _described(

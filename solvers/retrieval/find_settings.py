@@ -46,12 +46,13 @@ class FindSettings(Settings):
         minimum=0, maximum=10_000, advanced=True, label="Warped",
     )  # fmt: skip
     warping: float = setting(
-        1.0, "How much the course in time counts beside which postures there are",
+        2.0, "How much the course in time counts beside which postures there are",
         minimum=0.0, maximum=100.0, advanced=True,
     )  # fmt: skip
     n_alike: int = setting(
-        5, "Best matches that are asked as well: what is like them is like the query",
-        minimum=0, maximum=100, advanced=True, label="Ask the Best",
+        8, "Clips most like each one that tell as well how like the query it is; at most one"
+        " of twenty clips",
+        minimum=0, maximum=100, advanced=True, label="Ask the Like",
     )  # fmt: skip
     n_aligned: int = setting(
         8, "Best matches whose frames are aligned with the query's",

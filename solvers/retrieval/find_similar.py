@@ -1,6 +1,8 @@
 """Find the clips of a library that are like a recording, and where in them it is."""
 
-from collections.abc import Collection
+from collections.abc import Collection, Mapping
+from dataclasses import replace
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -39,8 +41,8 @@ def find_similar(
     """Rank the clips of a library by how like the query they are.
 
     Histograms of words in an inverted index find candidates [1]_, dynamic time warping compares
-    how those go on in time, and the best of them are asked as well (average query expansion
-    [2]_): another actor's kick is more like other kicks than like this one.
+    how those go on in time, and each is judged by those that are like it as well, as in [2]_:
+    another actor's kick is like kicks that are more like this one.
 
     Parameters
     ----------
@@ -67,7 +69,8 @@ def find_similar(
     References
     ----------
     .. [1] Sivic, Zisserman (2003). Video Google. ICCV. doi:10.1109/ICCV.2003.1238663
-    .. [2] Chum et al. (2007). Total recall. ICCV. doi:10.1109/ICCV.2007.4408891
+    .. [2] Arandjelovic, Zisserman (2012). Three things everyone should know to improve object
+       retrieval. CVPR. doi:10.1109/CVPR.2012.6248018
     """
     progress(0.0, "Searching")
     postures = clip_postures(query, RATE)
@@ -77,8 +80,7 @@ def find_similar(
     if vocabulary is None or not entries:
         return ()
     features = vocabulary.features(postures)
-    away = set(ignore)
-    left_out = [number for number, entry in entries.items() if entry.name in away]
+    left_out = library.numbers_of(ignore)
     if settings.method is FindMethod.PUBLISHED:
         ranking = rank_pyramids(
             postures, library, left_out, progress=within(progress, 0.0, 0.3)
@@ -86,39 +88,41 @@ def find_similar(
     else:
         whole = np.array([[0, len(features)]], dtype=np.int32)
         described = describe(features, whole, vocabulary)
-        ranking = rank_clips(described, weights, library.blocks, settings, left_out)
+        ranking = rank_clips(described, weights, library.search_index, settings, left_out)
     told = settings.n_matches or len(ranking.clips)
+    matches = _matches(ranking, told, entries)
     tracks = query.tracks if isinstance(query, JointRecording) else query
     alignment = _Alignment(features, weights, vocabulary, tracks.n_frames, tracks.frame_rate)
     aligning = within(progress, 0.3, 1.0)
-    matches = []
-    for place in range(min(told, len(ranking.clips))):
-        entry = entries[int(ranking.clips[place])]
-        if place < settings.n_aligned:
-            aligning(place / settings.n_aligned, "Aligning")
-            matches.append(alignment.match(ranking, place, entry, library))
-        else:
-            matches.append(_match(ranking, place, entry))
+    for place in range(min(settings.n_aligned, len(matches))):
+        aligning(place / settings.n_aligned, "Aligning")
+        matches[place] = alignment.match(ranking, place, matches[place], library)
     progress(1.0)
     return tuple(matches)
 
 
-def _match(ranking: Ranking, place: int, entry: ClipEntry) -> Match:
-    """Return a match whose frames are those of the span."""
-    ends = ranking.frames[place] - np.array([0, 1])
-    start, stop = _own_frames(ends, entry.n_frames, entry.frame_rate)
-    return Match(entry.name, range(start, stop + 1), _score(ranking.distances[place]))
+def _matches(ranking: Ranking, most: int, entries: Mapping[int, ClipEntry]) -> list[Match]:
+    """Return matches whose frames are those of the spans."""
+    clips = [entries[number] for number in ranking.clips[:most].tolist()]
+    lengths = np.array([clip.n_frames for clip in clips], dtype=np.intp)
+    rates = np.array([clip.frame_rate for clip in clips])
+    spans = ranking.frames[:most]
+    starts = _own_frames(spans[:, 0], lengths, rates).tolist()
+    stops = (_own_frames(spans[:, 1] - 1, lengths, rates) + 1).tolist()
+    scores = np.exp(-STEEPNESS * np.maximum(ranking.distances[:most].astype(float), 0.0))
+    return [
+        Match(clip.name, range(start, stop), score)
+        for clip, start, stop, score in zip(clips, starts, stops, scores.tolist(), strict=True)
+    ]
 
 
-def _own_frames(frames: Frames, n_frames: int, frame_rate: float) -> Frames:
+def _own_frames(
+    frames: NDArray[np.integer[Any]], n_frames: int | Frames, frame_rate: float | Array
+) -> Frames:
     """Return a recording's own frames at frames of the index; its last is that of the index."""
-    last = int((n_frames - 1) * RATE / frame_rate + ROUNDING)
+    last = np.asarray((n_frames - 1) * RATE / frame_rate + ROUNDING).astype(np.intp)
     own = np.round(frames / RATE * frame_rate).astype(np.intp)
     return np.where(frames >= last, n_frames - 1, np.minimum(own, n_frames - 1))
-
-
-def _score(distance: float) -> float:
-    return float(np.exp(-STEEPNESS * max(float(distance), 0.0)))
 
 
 class _Alignment:
@@ -137,11 +141,10 @@ class _Alignment:
         self._vocabulary = vocabulary
         self._n_frames, self._frame_rate = n_frames, frame_rate
 
-    def match(
-        self, ranking: Ranking, place: int, entry: ClipEntry, library: ClipLibrary
-    ) -> Match:
+    def match(self, ranking: Ranking, place: int, match: Match, library: ClipLibrary) -> Match:
         """Return a match whose frames are those that the query is aligned with."""
-        clip = library.postures(int(ranking.clips[place]))
+        number = int(ranking.clips[place])
+        clip, entry = library.postures(number), library.numbered()[number]
         start, stop = ranking.frames[place]
         around = round(AROUND * (stop - start))
         first = max(start - around, 0)
@@ -152,9 +155,8 @@ class _Alignment:
         path = aligned(self._features, told)
         theirs = _own_frames(path[:, 1] + first, entry.n_frames, entry.frame_rate)
         ours = _own_frames(path[:, 0], self._n_frames, self._frame_rate)
-        return Match(
-            entry.name,
-            range(theirs[0], theirs[-1] + 1),
-            _score(ranking.distances[place]),
-            np.column_stack([ours, theirs]),
+        return replace(
+            match,
+            frames=range(int(theirs[0]), int(theirs[-1]) + 1),
+            alignment=np.column_stack([ours, theirs]),
         )

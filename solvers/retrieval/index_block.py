@@ -1,6 +1,7 @@
 """Spans of clips that were indexed together, ready to be searched."""
 
 from dataclasses import dataclass, fields
+from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
@@ -44,6 +45,21 @@ class IndexBlock:
         """How many spans there are."""
         return len(self.clips)
 
+    @cached_property
+    def _numbers(self) -> NDArray[np.float32]:
+        """Histograms of a small block, ready to be multiplied."""
+        return self.histograms.astype(np.float32)
+
+    @cached_property
+    def _steps(self) -> NDArray[np.float32]:
+        return self.summaries.astype(np.float32)
+
+    def steps(self, rows: NDArray[np.int64]) -> NDArray[np.float32]:
+        """Return summaries of some spans, (n, 16, 5, 8); those of small blocks are kept."""
+        if self.histograms.size <= MOST_POSTINGS:
+            return self._steps[rows]
+        return self.summaries[rows].astype(np.float32)
+
     def common(self, query: NDArray[np.float32]) -> NDArray[np.float32]:
         """Return how much each span has in common with histograms, shape (n_spans,).
 
@@ -55,7 +71,7 @@ class IndexBlock:
         query : shape (n_bins,)
         """
         if self.histograms.size <= MOST_POSTINGS:
-            return self.histograms.astype(np.float32) @ query
+            return np.asarray(self._numbers @ query)
         common = self.postings.scores(query, MOST_POSTINGS)
         best = np.argpartition(-common, min(IN_DETAIL, self.n_spans - 1))[:IN_DETAIL]
         common[best] = self.histograms[best].astype(np.float32) @ query

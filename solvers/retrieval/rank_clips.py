@@ -1,58 +1,32 @@
-"""The order of a library's clips for a query: words first, then warping, then the best ask."""
+"""The order of a library's clips for a query: words, then warping, then what is like each."""
 
-from collections.abc import Sequence
+from collections.abc import Collection
 from dataclasses import dataclass
-from typing import Self
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from .body_parts import N_PARTS
 from .find_settings import FindSettings
-from .index_block import IndexBlock
+from .search_index import SearchIndex
 from .span_warping import frame_distances, warping_costs
 from .spans import FULL, N_CUBES, Spans
+from .vocabulary import N_AXES
 
 Single = NDArray[np.float32]
 Numbers = NDArray[np.int64]
 
-CLIPS_PER_WITNESS = 20
-"""Clips for each match that is asked as well: the five best of six are not all alike."""
-
-
-@dataclass(frozen=True, eq=False)
-class SpanQuery:
-    """Spans that ask, n of them.
-
-    Attributes
-    ----------
-    histograms : shape (n, n_bins)
-        With the weights of the parts of the body; the product with those of a span is 1 for
-        the same words, 0 where there is none in common.
-    summaries : shape (n, 16, 40)
-        With the square roots of the weights.
-    weights : shape (5,)
-    """
-
-    histograms: Single
-    summaries: Single
-    weights: NDArray[np.float64]
-
-    @classmethod
-    def of(
-        cls,
-        histograms: NDArray[np.uint8],
-        summaries: NDArray[np.float16],
-        weights: NDArray[np.float64],
-    ) -> Self:
-        """Let stored spans ask, with these weights of the parts of the body."""
-        parted = histograms.reshape(len(histograms), N_PARTS, -1).astype(np.float32)
-        share = weights.astype(np.float32)[:, None] / (FULL**2 * N_PARTS * N_CUBES)
-        return cls(
-            (parted * share).reshape(len(histograms), -1),
-            weighted(summaries, weights),
-            weights,
-        )
+CLIPS_PER_LIKE = 20
+"""Clips for each other clip that is asked as well: the eight nearest of nine are not alike."""
+BELIEF_IN_LIKES = 4.0
+"""How much those that are like a clip count, beside it."""
+MOST_BLAME = 1.5
+"""Times its own distance that a clip is moved away at most: the query itself stays near."""
+STEPS_APART = 0.5
+"""How much a metre between two clips at a moment counts, beside the words in common."""
+EVERY = 4
+"""Of the moments of clips, that many-th is compared with those of other clips."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -74,91 +48,88 @@ class Ranking:
     distances: Single
 
 
-def weighted(summaries: NDArray[np.float16], weights: NDArray[np.float64]) -> Single:
-    """Return summaries, (n, 16, 5, 8), as vectors with the parts weighted, (n, 16, 40)."""
-    scaled = summaries.astype(np.float32) * np.sqrt(weights).astype(np.float32)[:, None]
-    return scaled.reshape(*summaries.shape[:2], -1)
-
-
 def rank_clips(
     query: Spans,
     weights: NDArray[np.float64],
-    blocks: Sequence[tuple[IndexBlock, NDArray[np.bool_]]],
+    index: SearchIndex,
     settings: FindSettings,
-    ignore: Sequence[int] = (),
+    ignore: Collection[int] = (),
 ) -> Ranking:
-    """Rank all clips of the index by the first span of a query."""
-    index = _Index(blocks, ignore)
-    asked = SpanQuery.of(query.histograms[:1], query.summaries[:1], weights)
-    apart, spans = index.best_spans(1.0 - index.common(asked))
-    near = np.argsort(apart, kind="stable")[: settings.n_warped]
-    apart = _with_courses(apart, near, index.warped(asked, spans[near])[0], settings.warping)
-    order = np.argsort(apart, kind="stable")
-    n_alike = min(settings.n_alike, len(order) // CLIPS_PER_WITNESS)
-    if n_alike and len(near):
-        best = order[:n_alike]
-        others = SpanQuery.of(*index.stored(spans[best]), weights)
-        courses = index.warped(others, spans[near]).mean(axis=0)
-        alike = 1.0 - index.common(others)[spans]
-        beside = _with_courses(alike, near, courses, settings.warping)
-        apart = (apart + len(best) * beside) / (1 + len(best))
-        order = np.argsort(apart, kind="stable")
-    spans = spans[order]
-    return Ranking(index.clips[spans], index.frames[spans], apart[order])
+    """Rank the clips of the index by the first span of a query.
+
+    As many as are asked for, or all.
+    """
+    asked = weighted_words(query.histograms[:1], weights)[0]
+    apart, spans = index.best_spans(1.0 - index.common(asked), ignore)
+    near = _least(apart, settings.n_warped)
+    words, summaries = index.stored(spans[near])
+    course = weighted_steps(query.summaries[:1], weights)
+    courses = weighted_steps(summaries, weights)
+    costs = warping_costs(frame_distances(course, courses))[0] if len(near) else apart[near]
+    share = np.float32(2.0 / (1.0 + settings.warping))
+    likely = share * (apart[near] + np.float32(settings.warping) * costs)
+    n_alike = min(settings.n_alike, len(spans) // CLIPS_PER_LIKE)
+    if 0 < n_alike < len(near):
+        among = _between(words, courses, weights)
+        likely = _with_likes(likely, among, n_alike)
+    order = np.argsort(likely, kind="stable")
+    found, distances = near[order], likely[order]
+    if not 0 < settings.n_matches <= len(found):
+        worst = np.float32(settings.warping) * costs.max(initial=0.0)
+        others = np.setdiff1d(np.arange(len(spans)), near, assume_unique=True)
+        others = others[np.argsort(apart[others], kind="stable")]
+        found = np.concatenate([found, others])
+        distances = np.concatenate([distances, share * (apart[others] + worst)])
+    spans = spans[found]
+    return Ranking(index.clips[spans], index.frames[spans], distances)
 
 
-def _with_courses(apart: Single, near: Numbers, courses: Single, weight: float) -> Single:
-    """Add what warping costs; clips that were not warped count as the worst of those."""
-    worst = courses.max() if len(courses) else np.float32(0.0)
-    total = apart + np.float32(weight) * worst
-    total[near] = apart[near] + np.float32(weight) * courses
-    return total
+def weighted_words(histograms: NDArray[np.uint8], weights: NDArray[np.float64]) -> Single:
+    """Return histograms, (n, ...), as vectors with the parts weighted, (n, n_bins).
+
+    Their product with those of a span is 1 for the same words, 0 for none in common.
+    """
+    parted = histograms.reshape(len(histograms), N_PARTS, -1).astype(np.float32)
+    parted *= weights.astype(np.float32)[:, None] / np.float32(FULL**2 * N_PARTS * N_CUBES)
+    return parted.reshape(len(histograms), -1)
 
 
-class _Index:
-    """All blocks as one, less the clips that are gone or not asked for."""
+def weighted_steps(
+    summaries: NDArray[np.floating[Any]], weights: NDArray[np.float64]
+) -> Single:
+    """Return summaries, (n, 16, 5, 8), as vectors with the parts weighted, (n, 16, 40)."""
+    scaled = np.asarray(summaries, dtype=np.float32)
+    if (weights != 1.0).any():
+        scaled = scaled * np.sqrt(weights).astype(np.float32)[:, None]
+    return scaled.reshape(*scaled.shape[:2], N_PARTS * N_AXES)
 
-    def __init__(
-        self,
-        blocks: Sequence[tuple[IndexBlock, NDArray[np.bool_]]],
-        ignore: Sequence[int],
-    ) -> None:
-        self._blocks = [block for block, _ in blocks]
-        self._starts = np.cumsum([0, *(block.n_spans for block in self._blocks)])
-        self.clips = np.concatenate([block.clips for block in self._blocks])
-        self.frames = np.concatenate([block.frames for block in self._blocks])
-        self._alive = np.concatenate([alive for _, alive in blocks])
-        for number in ignore:
-            self._alive = self._alive & (self.clips != number)
 
-    def common(self, query: SpanQuery) -> Single:
-        """Return how much of the words each span has in common, shape (n_spans,), 0 to 1."""
-        asked = query.histograms.mean(axis=0)
-        return np.concatenate([block.common(asked) for block in self._blocks])
+def _least(values: Single, most: int) -> Numbers:
+    """Return the places of so many of the least, in their order."""
+    if most >= len(values):
+        return np.argsort(values, kind="stable")
+    places = np.sort(np.argpartition(values, most)[:most])
+    return places[np.argsort(values[places], kind="stable")]
 
-    def best_spans(self, apart: Single) -> tuple[Single, Numbers]:
-        """Return the least distance of each clip, and the number of the span that has it."""
-        alive = np.flatnonzero(self._alive)
-        order = alive[np.lexsort((apart[alive], self.clips[alive]))]
-        first = np.r_[True, np.diff(self.clips[order]) > 0] if len(order) else []
-        spans = order[first]
-        return apart[spans], spans
 
-    def stored(self, spans: Numbers) -> tuple[NDArray[np.uint8], NDArray[np.float16]]:
-        """Return histograms and summaries of spans."""
-        of = np.searchsorted(self._starts, spans, side="right") - 1
-        rows = spans - self._starts[of]
-        histograms = [
-            self._blocks[one].histograms[row] for one, row in zip(of, rows, strict=True)
-        ]
-        summaries = [
-            self._blocks[one].summaries[row] for one, row in zip(of, rows, strict=True)
-        ]
-        return np.stack(histograms), np.stack(summaries)
+def _between(words: NDArray[np.uint8], courses: Single, weights: NDArray[np.float64]) -> Single:
+    """Return how far clips are from each other, (n, n): words of all their time, and steps."""
+    whole = words.reshape(len(words), N_PARTS, N_CUBES, -1)[:, :, 0]
+    common = weighted_words(whole, weights) @ whole.reshape(len(words), -1).astype(np.float32).T
+    steps = courses[:, ::EVERY]
+    flat = steps.reshape(len(words), -1)
+    squares = np.einsum("ij,ij->i", flat, flat)
+    apart = squares[:, None] + squares - 2.0 * flat @ flat.T
+    np.sqrt(np.maximum(apart, 0.0, out=apart), out=apart)
+    apart *= np.float32(STEPS_APART / np.sqrt(steps.shape[1]))
+    return np.asarray(apart - np.float32(N_CUBES) * common)
 
-    def warped(self, query: SpanQuery, spans: Numbers) -> Single:
-        """Return what it costs to warp each asking span onto these, shape (n, n_spans)."""
-        if not len(spans):
-            return np.zeros((len(query.summaries), 0), dtype=np.float32)
-        courses = weighted(self.stored(spans)[1], query.weights)
-        return warping_costs(frame_distances(query.summaries, courses))
+
+def _with_likes(apart: Single, between: Single, n_alike: int) -> Single:
+    """Return distances from the query that go by those of each clip's nearest as well."""
+    np.fill_diagonal(between, np.inf)
+    farthest = np.partition(between, n_alike - 1, axis=1)[:, n_alike - 1, None]
+    nearest = (between <= farthest).astype(np.float32)
+    believed = np.float32(BELIEF_IN_LIKES)
+    told = (apart + believed * (nearest @ apart) / nearest.sum(axis=1)) / (1 + believed)
+    return np.minimum(told, np.float32(MOST_BLAME) * apart)

@@ -1,7 +1,7 @@
 """The order of a library's clips by spatial temporal pyramid matching, as published."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from typing import Any
 from weakref import WeakKeyDictionary
 
@@ -78,4 +78,4 @@ def _pyramids(
 
 
 def _whole(clip: ClipPostures, vocabulary: Vocabulary) -> ClipPostures:
-    return replace(clip, positions=vocabulary.usual.filled(clip))
+    return vocabulary.usual.completed(clip)

@@ -19,7 +19,7 @@ def frame_distances(queries: Single, sequences: Single) -> Single:
     shape (n_queries, n_sequences, n_steps, n_frames)
     """
     flat = queries.reshape(-1, queries.shape[-1]), sequences.reshape(-1, sequences.shape[-1])
-    squares = [(one**2).sum(axis=-1) for one in flat]
+    squares = [np.einsum("ij,ij->i", one, one) for one in flat]
     apart = squares[0][:, None] + squares[1] - 2.0 * flat[0] @ flat[1].T
     np.sqrt(np.maximum(apart, 0.0, out=apart), out=apart)
     return np.asarray(apart.reshape(*queries.shape[:2], *sequences.shape[:2]).swapaxes(1, 2))
@@ -28,8 +28,8 @@ def frame_distances(queries: Single, sequences: Single) -> Single:
 def warping_costs(distances: Single) -> Single:
     """Return the least mean distance along a path from first to last frames of both.
 
-    Each row of the dynamic programme is a running minimum: less the cumulative sum of the
-    distances along the row, the cost never grows but where a path from above enters.
+    The dynamic programme goes along the diagonals, on which no cell waits for another, and
+    does all sequences at once.
 
     Parameters
     ----------
@@ -41,12 +41,17 @@ def warping_costs(distances: Single) -> Single:
         Sum along the path, by the sum of both lengths.
     """
     n_steps, n_frames = distances.shape[-2:]
-    along = np.cumsum(distances, axis=-1)
-    cost = along[..., 0, :]
-    for row in range(1, n_steps):
-        entered = cost.copy()
-        np.minimum(cost[..., 1:], cost[..., :-1], out=entered[..., 1:])
-        entered[..., 1:] -= along[..., row, :-1]
-        cost = np.minimum.accumulate(entered, axis=-1)
-        cost += along[..., row, :]
-    return np.asarray(cost[..., -1] / (n_steps + n_frames))
+    cells = np.ascontiguousarray(distances.reshape(-1, n_steps * n_frames).T)
+    before, last, cost = (
+        np.full((n_steps + 1, cells.shape[1]), np.inf, dtype=cells.dtype) for _ in range(3)
+    )
+    before[0] = 0.0  # What the first cell comes from.
+    for diagonal in range(n_steps + n_frames - 1):
+        low, high = max(0, diagonal - n_frames + 1), min(n_steps, diagonal + 1)
+        rows = np.arange(low, high)
+        entered = np.minimum(last[low:high], last[low + 1 : high + 1])
+        np.minimum(entered, before[low:high], out=entered)
+        cost[low + 1 : high + 1] = entered + cells[rows * n_frames + diagonal - rows]
+        cost[: low + 1] = cost[high + 1 :] = np.inf
+        before, last, cost = last, cost, before
+    return np.asarray(last[-1].reshape(distances.shape[:-2]) / (n_steps + n_frames))

@@ -65,8 +65,8 @@ class Vocabulary:
 
     def features(self, postures: ClipPostures) -> Array:
         """Return what each part does, shape (n_frames, 5, 8), metres."""
-        positions = self.usual.filled(postures)
-        told = part_features(positions, postures.course, postures.frame_rate)
+        whole = self.usual.completed(postures)
+        told = part_features(whole.positions, whole.course, whole.frame_rate)
         return np.asarray(np.einsum("fpd,pdk->fpk", told - self.centre, self.axes))
 
     def codes(self, features: Array) -> Array:
@@ -99,10 +99,10 @@ def learn_vocabulary(clips: list[ClipPostures], seed: int = 0) -> Vocabulary:
     usual = usual_postures(clips)
     step = max(n_frames // MOST_FRAMES, 1)
     told = np.concatenate([
-        part_features(usual.filled(clip), clip.course, clip.frame_rate)[
+        part_features(clip.positions, clip.course, clip.frame_rate)[
             rng.integers(min(step, clip.n_frames)) :: step
         ]
-        for clip in clips
+        for clip in map(usual.completed, clips)
     ])  # fmt: skip
     centre = told.mean(axis=0)
     beside = told - centre

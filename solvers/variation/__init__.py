@@ -12,16 +12,18 @@ from .borrow_variation import borrow_variation
 from .learn_variation import learn_variation_model
 from .measure_variation import measure_variation
 from .partitions import Partition
-from .synthesize import synthesize
+from .synthesize import Variant, draw_variants, synthesize
 from .variation_model import VariationModel, load_variation_model
 from .vary_settings import Method, VarySettings
 
 __all__ = [
     "Method",
     "Partition",
+    "Variant",
     "VariationModel",
     "VarySettings",
     "borrow_variation",
+    "draw_variants",
     "learn_variation_model",
     "load_variation_model",
     "measure_variation",

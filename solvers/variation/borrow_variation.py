@@ -76,6 +76,7 @@ def borrow_variation(motion: Motion, others: Sequence[VariationModel] = ()) -> V
         joints=np.concatenate([alone.joints, alone.joints + joints]),
         root=np.concatenate([alone.root, alone.root + root]),
         haste=np.concatenate([alone.haste, alone.haste + haste]),
+        footing=np.repeat(alone.footing, 1 + len(joints), axis=0),
         warning="There is one example; how it varies is borrowed.",
     )
 

@@ -11,6 +11,14 @@ BESIDE = 12
 """Frames by which curves are continued at either end, so that the ends do not show."""
 
 
+def between_frames(curves: Array, times: Array) -> Array:
+    """Return curves, (n_frames, n), at moments by straight lines: for those with corners."""
+    whole = np.clip(np.floor(times).astype(int), 0, max(len(curves) - 2, 0))
+    part = (times - whole)[:, None]
+    after = np.minimum(whole + 1, len(curves) - 1)
+    return np.asarray((1.0 - part) * curves[whole] + part * curves[after])
+
+
 def sample_curves(curves: Array, times: Array) -> Array:
     """Return curves at moments, shape (n_times, ...).
 

@@ -2,17 +2,21 @@
 
 from collections.abc import Sequence
 from dataclasses import replace
+from itertools import count
 
 import numpy as np
 from numpy.typing import NDArray
 
 from ..errors import InvalidMotionError
 from ..motion import Motion, resample
-from ..motion.rotations import mean_rotation
-from ..progress import Progress, unwatched
-from .align_examples import Alignment, align_examples, body_positions
-from .course import HEIGHT, Course, course_of, headings, without_heading
-from .curve_sampling import sample_curves
+from ..motion.rotations import inverse, mean_rotation, multiply, rotation_vector_from_quaternion
+from ..progress import Progress, unwatched, within
+from .align_examples import Alignment, align_examples
+from .course import HEIGHT, IMPOSSIBLE, Course, course_of, headings, without_heading
+from .curve_sampling import between_frames, sample_curves
+from .far_joints import CALM, tell_far_joints
+from .footing import footing_of
+from .loops import loops
 from .mixing_kernel import MixingKernel
 from .stepwise_model import learn_stepwise
 from .variation_model import VariationModel
@@ -22,8 +26,6 @@ Array = NDArray[np.float64]
 
 ODD = 2.0
 """An example that is so many times farther from the others than usual is of another kind."""
-LOOP_GAP = 0.06
-"""Metres by which joints may be beside where they began, for a clip to loop."""
 MEMORY = 600_000_000
 """Numbers in all curves together; more would not fit."""
 
@@ -58,31 +60,40 @@ def learn_variation_model(
     progress(0.1, "Lining up")
     alignment = align_examples(motions, turns)
     progress(0.6, "Learning")
-    usual = mean_rotation(
-        np.concatenate([
-            without_heading(motion, turn) for motion, turn in zip(motions, turns, strict=True)
-        ])
-    )  # fmt: skip
+    plain = [without_heading(motion, turn) for motion, turn in zip(motions, turns, strict=True)]
+    usual = mean_rotation(np.concatenate(plain))
     courses = [
-        _in_common_time(course_of(motion, turn, usual), times)
+        _in_common_time(course_of(motion, turn, usual), footing_of(motion), times)
         for motion, turn, times in zip(motions, turns, alignment.times, strict=True)
     ]
+    rate = motions[0].frame_rate
     root = np.stack([course.root for course in courses])
     joints = np.stack([course.joints for course in courses])
+    is_loop = all(map(loops, motions, turns))
+    joints, usual, carrier = tell_far_joints(
+        joints, usual, plain, alignment.times, alignment.centre, CALM * rate, is_loop
+    )
     joints = _same_turns(joints, alignment.centre)
-    rate = motions[0].frame_rate
+    footing = np.stack([course.footing for course in courses if course.footing is not None])
     haste = (
         np.log(np.gradient(alignment.times, axis=1)) if root.shape[1] > 1 else 0 * root[..., 0]
     )
-    centre = motions[alignment.centre]
+    warning = " ".join(filter(None, (*map(_flip, motions, count(1)), _odd_one(alignment))))
     stepwise = None
     if settings.method is not Method.MIXTURE:
         published = settings.method is Method.PUBLISHED
-        stepwise = learn_stepwise(motions[0].skeleton, joints, root, rate, published)
+        stepwise = learn_stepwise(
+            motions[0].skeleton,
+            joints,
+            root,
+            rate,
+            published,
+            progress=within(progress, 0.6, 1.0),
+        )
     progress(1.0)
     return VariationModel(
-        motions[0].skeleton, rate, usual, root, joints, haste, MixingKernel(), alignment.centre,
-        _loops(centre, turns[alignment.centre]), _odd_one(alignment), stepwise,
+        motions[0].skeleton, rate, usual, root, joints, haste, footing, carrier,
+        MixingKernel(), alignment.centre, is_loop, warning, stepwise,
     )  # fmt: skip
 
 
@@ -121,7 +132,7 @@ def _as_first(motion: Motion, first: Motion) -> Motion:
     return replace(motion, skeleton=first.skeleton, root_positions=places)
 
 
-def _in_common_time(course: Course, times: Array) -> Course:
+def _in_common_time(course: Course, footing: Array, times: Array) -> Course:
     """Return a course at its frames `times`; ways are those between them."""
     joints = sample_curves(course.joints, times)
     places = np.column_stack([
@@ -130,7 +141,7 @@ def _in_common_time(course: Course, times: Array) -> Course:
     ])
     root = sample_curves(places, times)
     root[:, :HEIGHT] = np.diff(root[:, :HEIGHT], axis=0, prepend=root[:1, :HEIGHT])
-    return Course(root, joints)
+    return Course(root, joints, between_frames(footing, times))
 
 
 def _same_turns(joints: Array, centre: int) -> Array:
@@ -142,11 +153,18 @@ def _same_turns(joints: Array, centre: int) -> Array:
     return np.where((turn < stay)[:, None], other, joints)
 
 
-def _loops(motion: Motion, turns: Array) -> bool:
-    body = body_positions(motion, turns)
-    gap = np.linalg.norm(body[-1] - body[0], axis=-1).mean()
-    step = np.linalg.norm(np.diff(body, axis=0), axis=-1).mean()
-    return bool(gap < LOOP_GAP + step)
+def _flip(motion: Motion, number: int) -> str:
+    """Return a sentence about a joint that turns as none can; empty without one."""
+    steps = multiply(inverse(motion.rotations[:-1]), motion.rotations[1:])
+    angles = np.linalg.norm(rotation_vector_from_quaternion(steps), axis=-1)
+    if not (angles > IMPOSSIBLE).any():
+        return ""
+    frame, joint = divmod(int((angles > IMPOSSIBLE).argmax()), angles.shape[1])
+    return (
+        f"{motion.skeleton.names[joint]} of example {number} turns by"
+        f" {np.degrees(angles[frame, joint]):.0f} degrees within a frame at"
+        f" {(frame + 1) / motion.frame_rate:.2f} s: clean it first, or variants jump too."
+    )
 
 
 def _odd_one(alignment: Alignment) -> str:

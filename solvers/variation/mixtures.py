@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from scipy.ndimage import gaussian_filter1d
 
 from .curve_sampling import sample_curves
-from .partitions import Partition, partition_joints
+from .partitions import FEET, Partition, partition_joints
 from .variation_model import VariationModel
 
 Array = NDArray[np.float64]
@@ -65,7 +65,7 @@ def draw_shares(model: VariationModel, n_variants: int, rng: np.random.Generator
     return np.asarray(np.moveaxis(sample_curves(np.moveaxis(shares, 2, 0), seen), 0, 2))
 
 
-def mixed_deviations(model: VariationModel, shares: Array) -> tuple[Array, Array, Array]:
+def mixed_deviations(model: VariationModel, shares: Array) -> tuple[Array, Array, Array, Array]:
     """Return by how much variants deviate from the mean of the examples in common time.
 
     What changes quickly is mixed with the same shares everywhere: in captures the jitter of one
@@ -77,6 +77,7 @@ def mixed_deviations(model: VariationModel, shares: Array) -> tuple[Array, Array
     joints : shape (n_variants, n_moments, n_joints, 3), radians
     root : shape (n_variants, n_moments, 4)
     haste : shape (n_variants, n_moments)
+    footing : shape (n_variants, n_moments, 2), seconds
     """
     n, moments = model.n_examples, model.n_moments
     joints = _mixed(model.joints, shares[COMMON])
@@ -85,7 +86,11 @@ def mixed_deviations(model: VariationModel, shares: Array) -> tuple[Array, Array
         joints[:, :, members] += _mixed(calm[:, :, members], share - shares[COMMON])
     rest = np.concatenate([model.root, model.haste.reshape(n, moments, 1)], axis=-1)
     root = _mixed(rest, shares[COMMON])
-    return joints, root[..., :-1], root[..., -1]
+    feet = [
+        _mixed(model.footing[..., side : side + 1], shares[leg])
+        for side, leg in enumerate(FEET)
+    ]
+    return joints, root[..., :-1], root[..., -1], np.concatenate(feet, axis=-1)
 
 
 def _mixed(curves: Array, shares: Array) -> Array:

@@ -18,6 +18,9 @@ class Partition(Enum):
     RIGHT_LEG = "right leg"
 
 
+FEET = [list(Partition).index(leg) for leg in (Partition.LEFT_LEG, Partition.RIGHT_LEG)]
+"""Rows of the partitions that stand on the ground, left and right."""
+
 FIRST_ROLES = {
     Partition.LEFT_ARM: ("leftShoulder", "leftUpperArm"),
     Partition.RIGHT_ARM: ("rightShoulder", "rightUpperArm"),

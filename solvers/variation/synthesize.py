@@ -1,5 +1,6 @@
 """New motions like the examples: different in space and in time, and none like another."""
 
+from dataclasses import replace
 from typing import NamedTuple
 
 import numpy as np
@@ -9,9 +10,11 @@ from ..errors import InvalidMotionError
 from ..motion import Motion
 from ..progress import Progress, unwatched
 from .course import Course, motion_of
+from .footing import contacts_from
+from .loops import close_loop, is_closed
 from .mixtures import draw_shares, mixed_deviations
 from .own_time import in_own_time
-from .partitions import partition_joints
+from .partitions import FEET, partition_joints
 from .soft_limits import softly_within
 from .stepwise_draw import stepwise_deviations
 from .variation_model import VariationModel
@@ -27,6 +30,17 @@ BATCH = 20_000_000
 """Numbers in the curves of all variants that are drawn at once."""
 
 
+class Variant(NamedTuple):
+    """A new motion, and when its feet should stand."""
+
+    motion: Motion
+    contacts: NDArray[np.bool_] | None
+    """Left and right, shape (n_frames, 2), as in the examples that were mixed there; None for
+    rigs without feet, and as published, where no examples are mixed."""
+    loops: bool = False
+    """Whether it ends as it begins, because the examples do."""
+
+
 def synthesize(
     model: VariationModel,
     n_variants: int,
@@ -34,7 +48,25 @@ def synthesize(
     settings: VarySettings = USUAL,
     progress: Progress = unwatched,
 ) -> tuple[Motion, ...]:
-    """Draw variants from what was learned of the examples.
+    """Draw variants from what was learned of the examples; see `draw_variants`.
+
+    Returns
+    -------
+    tuple of Motion
+        Their feet are not planted: see `solvers.workflows`.
+    """
+    drawn = draw_variants(model, n_variants, settings=settings, progress=progress)
+    return tuple(variant.motion for variant in drawn)
+
+
+def draw_variants(
+    model: VariationModel,
+    n_variants: int,
+    *,
+    settings: VarySettings = USUAL,
+    progress: Progress = unwatched,
+) -> tuple[Variant, ...]:
+    """Draw variants from what was learned of the examples, and when their feet should stand.
 
     A variant deviates from the mean of the examples, in common time, by curves that are drawn
     as `settings.method` says: as a mixture of the examples' deviations (`mixtures`), or step by
@@ -50,9 +82,9 @@ def synthesize(
 
     Returns
     -------
-    tuple of Motion
+    tuple of Variant
         The same for the same seed. They begin where the examples' first frame of the base
-        does, above the origin and facing -Y. Feet are not planted: see `solvers.workflows`.
+        does, above the origin and facing -Y.
 
     Raises
     ------
@@ -78,7 +110,7 @@ def synthesize(
     rng = np.random.default_rng(settings.seed)
     given = _given(model, settings)
     at_once = max(BATCH // (model.n_moments * (model.skeleton.n_joints + 2) * 3), 1)
-    variants: list[Motion] = []
+    variants: list[Variant] = []
     while len(variants) < n_variants:
         n = min(at_once, n_variants - len(variants))
         for drawn in zip(*_deviations(model, settings.method, n, rng), strict=True):
@@ -89,16 +121,16 @@ def synthesize(
 
 def _deviations(
     model: VariationModel, method: Method, n_variants: int, rng: np.random.Generator
-) -> tuple[Array, Array, Array]:
-    """Return by how much n variants deviate from the mean: joints, root and haste."""
+) -> tuple[Array, Array, Array, Array]:
+    """Return by how much n variants deviate from the mean: joints, root, haste, footing."""
     shares = draw_shares(model, n_variants, rng)
-    joints, root, haste = mixed_deviations(model, shares)
+    joints, root, haste, footing = mixed_deviations(model, shares)
     if method is not Method.MIXTURE and model.stepwise:
         own = stepwise_deviations(model.stepwise, shares, model.skeleton.n_joints, rng)
         if model.stepwise.published:
-            return *own, haste
-        return joints + own[0], root + own[1], haste
-    return joints, root, haste
+            return *own, haste, np.full_like(footing, np.nan)
+        return joints + own[0], root + own[1], haste, footing
+    return joints, root, haste, footing
 
 
 class _Range(NamedTuple):
@@ -116,6 +148,7 @@ class _Given(NamedTuple):
     joints: _Range
     root: _Range
     haste: _Range
+    footing: _Range
     by_joint: Array
     """Amount of each joint, shape (n_joints, 1)."""
     pinned: Array
@@ -128,6 +161,7 @@ def _given(model: VariationModel, settings: VarySettings) -> _Given:
         joints=_range(model.joints, base),
         root=_range(model.root, base),
         haste=_range(model.haste, base),
+        footing=_range(model.footing, base),
         by_joint=by_joint[:, None],
         pinned=_pinned(model, settings),
     )
@@ -140,15 +174,27 @@ def _range(curves: Array, base: int) -> _Range:
 
 def _variant(
     model: VariationModel, settings: VarySettings, given: _Given, drawn: tuple[Array, ...]
-) -> Motion:
-    """Return one variant that deviates so from the mean: joints, root and haste."""
+) -> Variant:
+    """Return one variant that deviates so from the mean: joints, root, haste, footing."""
     amounts, pinned = settings.amounts(), given.pinned
+    known = model.skeleton, model.usual, model.frame_rate, np.zeros(3)
     joints = _free(given.joints, given.by_joint, drawn[0], pinned)
     root = _free(given.root, amounts[[0, 3, 4]].mean(), drawn[1], pinned)
     hasty = np.asarray(settings.amount * settings.timing)
     haste = _free(given.haste, hasty, drawn[2], np.ones(len(pinned)))
-    course = in_own_time(Course(root, joints), np.exp(haste) * settings.length)
-    return motion_of(course, model.skeleton, model.usual, model.frame_rate, np.zeros(3))
+    footing = _free(given.footing, amounts[FEET], drawn[3], pinned)
+    course = in_own_time(
+        Course(root, joints, footing, model.carrier), np.exp(haste) * settings.length
+    )
+    if settings.method is Method.PUBLISHED:
+        return Variant(motion_of(course, *known), None)
+    if model.loops:
+        may_change = np.array([not settings.pin_start, not settings.pin_end], dtype=np.float64)
+        parts = np.minimum(given.by_joint[:, 0], 1.0)
+        course = close_loop(course, model.frame_rate, parts, may_change)
+        course = replace(course, joints=_within_range(given.joints, course.joints))
+    contacts = None if course.footing is None else contacts_from(course.footing)
+    return Variant(motion_of(course, *known), contacts, model.loops and is_closed(course))
 
 
 def _free(seen: _Range, amount: Array, beside: Array, pinned: Array) -> Array:
@@ -157,11 +203,14 @@ def _free(seen: _Range, amount: Array, beside: Array, pinned: Array) -> Array:
     Within the examples' range and a little beyond; the base's curve where nothing may vary.
     """
     centre = seen.own + np.minimum(amount, 1.0) * (seen.middle - seen.own)
-    beyond = MARGIN * (seen.high - seen.low)
-    wanted = centre + amount * beside
-    free = softly_within(wanted, seen.low - beyond, seen.high + beyond, beyond)
+    free = _within_range(seen, centre + amount * beside)
     weight = pinned.reshape(-1, *(1,) * (seen.own.ndim - 1))
     return np.asarray(seen.own + weight * (free - seen.own))
+
+
+def _within_range(seen: _Range, curves: Array) -> Array:
+    beyond = MARGIN * (seen.high - seen.low)
+    return softly_within(curves, seen.low - beyond, seen.high + beyond, beyond)
 
 
 def _pinned(model: VariationModel, settings: VarySettings) -> Array:

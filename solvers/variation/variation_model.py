@@ -16,7 +16,7 @@ from .stepwise_process import Hyperparameters
 
 Array = NDArray[np.float64]
 
-KIND, VERSION = "a variation model", 1
+KIND, VERSION = "a variation model", 2
 
 
 @dataclass(frozen=True, eq=False)
@@ -35,6 +35,10 @@ class VariationModel:
     joints : shape (n_examples, n_moments, n_joints, 3), radians
     haste : shape (n_examples, n_moments)
         Logarithm of how many frames a moment lasts.
+    footing : shape (n_examples, n_moments, 2), seconds
+        By how much feet stand (`footing_of`); NaN where the rig has no feet.
+    carrier : shape (n_moments, n_joints, 4), or None
+        What comes before `usual`: the centre's rotation, of joints that turn far.
     kernel : MixingKernel
     centre : int
         The example that is nearest to all others.
@@ -52,6 +56,8 @@ class VariationModel:
     root: Array
     joints: Array
     haste: Array
+    footing: Array
+    carrier: Array | None
     kernel: MixingKernel
     centre: int
     loops: bool
@@ -73,7 +79,9 @@ class VariationModel:
         write_archive(path, KIND, VERSION, {
             "names": np.array(self.skeleton.names), "parents": np.array(self.skeleton.parents),
             "offsets": self.skeleton.offsets, "usual": self.usual, "root": self.root,
-            "joints": self.joints, "haste": self.haste, "warning": np.array(self.warning),
+            "joints": self.joints, "haste": self.haste, "footing": self.footing,
+            "carrier": np.zeros(0) if self.carrier is None else self.carrier,
+            "warning": np.array(self.warning),
             "numbers": np.array([
                 self.frame_rate, self.kernel.scale, self.kernel.bias, self.centre, self.loops,
             ]),
@@ -101,6 +109,8 @@ def load_variation_model(path: Path | str) -> VariationModel:
         if not (0 <= centre < n and rate > 0 and scale > 0 and 0 <= bias <= 1):
             raise ValueError("Settings out of range.")
         skeleton = Skeleton(names, parents, arrays["offsets"])
+        told = arrays["carrier"]
+        carrier = told.reshape(moments, len(names), 4) if told.size else None
         root, found = arrays["root"].reshape(n, moments, N_ROOT), _unpacked(arrays["stepwise"])
         stepwise = (
             learn_stepwise(skeleton, joints, root, rate, len(found) > 1, found)
@@ -109,8 +119,9 @@ def load_variation_model(path: Path | str) -> VariationModel:
         )
         return VariationModel(
             skeleton, rate, arrays["usual"].reshape(len(names), 4), root, joints,
-            arrays["haste"], MixingKernel(scale, bias), int(centre), bool(loops),
-            str(arrays["warning"]), stepwise,
+            arrays["haste"], arrays["footing"].reshape(n, moments, 2), carrier,
+            MixingKernel(scale, bias), int(centre), bool(loops), str(arrays["warning"]),
+            stepwise,
         )  # fmt: skip
     except (KeyError, ValueError, TypeError, IndexError) as error:
         raise InvalidFileError(f"{path} is damaged: it does not fit itself.") from error

@@ -17,11 +17,19 @@ from ..errors import InvalidMotionError
 from ..motion import JointLimits, Motion, Tracks
 from ..progress import Progress, unwatched, within
 from ..retrieval import ClipLibrary, FindSettings
+from .foretell_lost import foretell_lost
 from .library_clips import FOUND, Fetch, library_clips, read_origin
 
 USUAL, LEARNING = DenoiseSettings(), FilterBasesSettings()
 BELIEVED = 0.5
 """Confidence of a first estimate from which on it is searched with."""
+STEEPNESS = 2.0
+"""Power of its score by which a clip counts."""
+TINY = 1e-3
+SURE = 0.25
+"""Score of the best from which on clips are believed to be of the same movement; below, they
+have to prove it where joints were lost."""
+LAID_ASIDE = "They foretell the joints that are lost worse than the take itself: laid aside."
 
 
 @dataclass(frozen=True, eq=False)
@@ -99,8 +107,11 @@ def bases_from_library(
 ) -> LibraryBases:
     """Learn filter bases of those clips of a library that are like a dirty take.
 
-    It is searched with a first estimate from the take alone, and with nothing of what that is
-    unsure of, such as limbs that were lost for long.
+    The more a clip is like it, the more it counts. Where joints were lost for long, clips that
+    are only roughly like it must fill them at least as well as the take itself does, tried
+    where they were seen: else they are laid aside. The library is searched with a first
+    estimate from the take alone, and with nothing of what that is unsure of, such as limbs
+    that were lost for long.
 
     Raises
     ------
@@ -124,10 +135,16 @@ def bases_from_library(
         return LibraryBases(None, (), found.sentence())
     try:
         bases = learn_filter_bases(
-            found.motions, settings=learning, progress=within(progress, 0.7, 1.0)
+            found.motions,
+            weights=[max(match.score, TINY) ** STEEPNESS for match in found.matches],
+            settings=learning,
+            progress=within(progress, 0.7, 0.85),
         )
     except InvalidMotionError as error:
         return LibraryBases(None, (), f"{found.sentence()} That was of no use: {error}")
+    sure = found.matches[0].score >= SURE
+    if not sure and not foretell_lost(recording, bases, within(progress, 0.85, 1.0)):
+        return LibraryBases(None, (), f"{found.sentence()} {LAID_ASIDE}")
     return LibraryBases(bases, names, found.sentence())
 
 

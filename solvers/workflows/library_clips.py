@@ -17,12 +17,12 @@ Fetch = Callable[[ClipEntry], Recording]
 AROUND = 0.5
 """Seconds before and after what matches that are taken along."""
 MOST_NAMED = 5
-FOUND = FindSettings(n_matches=12, n_aligned=12, n_alike=0)
+FOUND = FindSettings(n_matches=12, n_aligned=12, n_alike=0, warping=1.0)
 """By likeness with the take alone: the best that a library without the like has are like each
 other all the same."""
 ALIKE = 0.16
-"""Score from which on a clip is an example. The same movement by another actor has one of 0.2
-to 0.5 (HDM05, CMU walks), other movements at most 0.15."""
+"""Score that the best must have: the same movement by another actor has one of 0.2 to 0.5
+(HDM05, CMU walks), other movements at most 0.15. Where it has, the others help too."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -90,7 +90,7 @@ def library_clips(
     fetch : callable, optional
         Returns a clip's recording; it is read from its file without.
     at_least : float
-        Score from which on a clip is one.
+        Score that the best must have; else there is none.
     progress : Progress
 
     Raises
@@ -100,13 +100,11 @@ def library_clips(
     SolveCancelled
         Raised by `progress`.
     """
-    matches = [
-        match
-        for match in find_similar(
-            query, library, settings=settings, ignore=ignore, progress=within(progress, 0, 0.3)
-        )
-        if match.score >= at_least
-    ]
+    matches = find_similar(
+        query, library, settings=settings, ignore=ignore, progress=within(progress, 0, 0.3)
+    )
+    if matches and matches[0].score < at_least:
+        matches = ()
     entries = {entry.name: entry for entry in library.entries}
     motions, used, remarks = [], [], []
     for place, match in enumerate(matches):

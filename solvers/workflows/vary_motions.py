@@ -3,11 +3,21 @@
 from collections.abc import Sequence
 from dataclasses import dataclass
 
+import numpy as np
+
 from ..denoising import PlantSettings
 from ..motion import Motion
+from ..motion.contacts import detect_contacts
 from ..progress import Progress, unwatched, within
-from ..variation import VarySettings, borrow_variation, learn_variation_model, synthesize
-from .try_to_plant import try_to_plant
+from ..variation import (
+    Variant,
+    VarySettings,
+    borrow_variation,
+    draw_variants,
+    learn_variation_model,
+)
+from ..variation.loops import middle_round, repeated
+from .try_to_plant import Footing, try_to_plant
 
 
 @dataclass(frozen=True, eq=False)
@@ -17,14 +27,19 @@ class Variants:
     Attributes
     ----------
     motions : tuple of Motion
+    loops : tuple of bool
+        Which end as they begin, because the examples do.
     remarks : tuple of str
         What seems wrong with the examples, or why feet could not be planted.
     """
 
     motions: tuple[Motion, ...]
+    loops: tuple[bool, ...]
     remarks: tuple[str, ...]
 
 
+ROUNDS = 3
+"""Of a loop that are planted together: the middle one goes on at both ends."""
 USUAL, PLANTING = VarySettings(), PlantSettings()
 
 
@@ -59,16 +74,36 @@ def vary_motions(
         model = learn_variation_model(
             examples, settings=settings, progress=within(progress, 0.0, 0.3)
         )
-    drawn = synthesize(
+    drawn = draw_variants(
         model, n_variants, settings=settings, progress=within(progress, 0.3, 0.4)
     )
     remarks = [model.warning] if model.warning else []
     planted = []
-    for place, motion in enumerate(drawn):
+    for place, variant in enumerate(drawn):
         part = within(progress, 0.4 + 0.6 * place / n_variants, 1.0)
         part(0.0, f"Planting feet of variant {place + 1}")
-        footing = try_to_plant(motion, planting)
+        footing = stand(variant, planting)
         remarks += [remark for remark in footing.remarks if remark not in remarks]
         planted.append(footing.motion)
     progress(1.0)
-    return Variants(tuple(planted), tuple(remarks))
+    return Variants(tuple(planted), tuple(one.loops for one in drawn), tuple(remarks))
+
+
+def stand(variant: Variant, planting: PlantSettings | None = PLANTING) -> Footing:
+    """Plant the feet of a variant when those of its examples stood, and its own stand.
+
+    A loop stays one.
+    """
+    motion, contacts, is_loop = variant
+    if planting is None:
+        return try_to_plant(motion, None)
+    if is_loop:
+        motion = repeated(motion, ROUNDS)
+        if contacts is not None:
+            contacts = np.concatenate([*[contacts[:-1]] * ROUNDS, contacts[-1:]])
+    if contacts is not None:
+        contacts = contacts | detect_contacts(motion)
+    footing = try_to_plant(motion, planting, contacts)
+    if is_loop:
+        return footing._replace(motion=middle_round(footing.motion, variant.motion))
+    return footing

@@ -1,6 +1,6 @@
 """Rebuilding what a Kinect saw, against the published methods and peers.
 
-    make bench-reconstruct                                   # half an hour
+    make bench-reconstruct                                   # an hour
     make bench-reconstruct ARGUMENTS="--takes 1"             # a tenth of the takes
     make bench-reconstruct ARGUMENTS="--part kinect --docs"  # docs/benchmarks_reconstruction.md
 
@@ -13,7 +13,8 @@ from time import perf_counter
 
 from threadpoolctl import threadpool_limits
 
-from . import part_kinect, part_losses, part_real, part_terms
+from . import part_kinect, part_losses, part_real, part_subsets, part_terms
+from .bench_reliability import tell_reliability
 from .report import DOCS, Report
 
 Part = Callable[[int], Sequence[str]]
@@ -22,23 +23,30 @@ PARTS: dict[str, Part] = {
     "kinect": part_kinect.accuracy,
     "losses": part_losses.losses,
     "damages": part_losses.damages,
+    "subsets": part_subsets.subsets,
     "terms": part_terms.terms,
     "confidence": part_terms.confidence,
     "real": part_real.recordings,
 }
+RELIABILITY = "reliability"
+"""Its tables stand in docs/reliability.md, and `make bench-reliability` makes them alone."""
 
 
 def main() -> None:
     """Print the tables of the parts that are asked for."""
     parser = argparse.ArgumentParser(description=(__doc__ or "").splitlines()[0])
-    parser.add_argument("--part", choices=PARTS, action="append", help="all by default")
+    parts = [*PARTS, RELIABILITY]
+    parser.add_argument("--part", choices=parts, action="append", help="all by default")
     parser.add_argument("--takes", type=int, default=10, help="repetitions of each exercise")
     parser.add_argument(
         "--docs", action="store_true", help="rewrite docs/benchmarks_reconstruction.md"
     )
     chosen = parser.parse_args()
     report = Report(chosen.docs, DOCS / "benchmarks_reconstruction.md")
-    for name in chosen.part or PARTS:
+    for name in chosen.part or parts:
+        if name == RELIABILITY:
+            tell_reliability(chosen.docs)
+            continue
         started = perf_counter()
         with threadpool_limits(1):
             tables = PARTS[name](chosen.takes)

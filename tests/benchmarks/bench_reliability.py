@@ -52,16 +52,21 @@ def main() -> None:
     parser.add_argument("--docs", action="store_true", help="rewrite docs/reliability.md")
     parser.add_argument("--fit", action="store_true", help="print fitted models, no tables")
     chosen = parser.parse_args()
+    if chosen.fit:
+        print_models(read_pairs(KINECT / "ui_prmd"))
+        return
+    tell_reliability(chosen.docs)
+
+
+def tell_reliability(docs: bool) -> None:
+    """Print the tables; into docs/reliability.md, with its picture, if so."""
     started = perf_counter()
     with threadpool_limits(1):
         pairs = read_pairs(KINECT / "ui_prmd")
-        if chosen.fit:
-            print_models(pairs)
-            return
         tables = [areas(pairs), calibration(pairs), flags()]
-    report = Report(chosen.docs, DOCS / "reliability.md")
+    report = Report(docs, DOCS / "reliability.md")
     report.part("reliability", tables, perf_counter() - started)
-    if chosen.docs:
+    if docs:
         take = next(pair for pair in pairs if pair.name == TAKE)
         draw_take(take, PICTURES / "reliability.png")
 

@@ -4,6 +4,7 @@ make bench-retrieval                                # some 20 minutes
 make bench-retrieval ARGUMENTS="--method DTW"       # those with this in their name
 make bench-retrieval ARGUMENTS=--docs               # into docs/benchmarks_retrieval.md
 make bench-retrieval ARGUMENTS=--choose             # settings of pyramids, training classes
+make bench-retrieval ARGUMENTS=--pursuit            # sparse codes, beside scikit-learn's
 
 What methods answer is kept under build/retrieval, and told of all methods that are there.
 """
@@ -16,6 +17,7 @@ from threadpoolctl import threadpool_limits
 
 from . import part_retrieval as part
 from .part_retrieval_choice import choose
+from .part_sparse_codes import compare_pursuits
 from .report import DOCS, Report
 from .retrieval_methods import METHODS
 
@@ -28,6 +30,7 @@ def main() -> None:
     )
     parser.add_argument("--jobs", type=int, default=2, help="methods at a time")
     parser.add_argument("--choose", action="store_true", help="settings of pyramids")
+    parser.add_argument("--pursuit", action="store_true", help="time of sparse codes")
     parser.add_argument(
         "--docs", action="store_true", help="rewrite docs/benchmarks_retrieval.md"
     )
@@ -38,6 +41,11 @@ def main() -> None:
         with threadpool_limits(1):
             tables = [choose()[1]]
         report.part("choice", tables, perf_counter() - started)
+        return
+    if chosen.pursuit:
+        with threadpool_limits(1):
+            tables = [compare_pursuits()]
+        report.part("pursuit", tables, perf_counter() - started)
         return
     names = [name for name in METHODS if chosen.method.lower() in name.lower()]
     part.find_all(names, chosen.jobs, _say)

@@ -17,12 +17,14 @@ from threadpoolctl import threadpool_limits
 from solvers.motion import Motion
 from solvers.variation import (
     Method,
+    Variant,
     VariationModel,
     VarySettings,
     borrow_variation,
+    draw_variants,
     learn_variation_model,
-    synthesize,
 )
+from solvers.workflows.vary_motions import stand
 
 from . import variation_peers as peers
 from .plot_variation import draw_components, draw_strips
@@ -33,14 +35,15 @@ from .variation_measures import Judge
 from .variation_sets import development_sets, scored_sets
 
 Sets = dict[str, list[Motion]]
-Maker = Callable[[Sequence[Motion], int], Sequence[Motion]]
+Maker = Callable[..., Sequence[Variant]]
 
-N_VARIANTS = 20
+N_VARIANTS, N_PLANTED = 20, 6
 OURS = "mixture (default)"
 ENOUGH = 9
 """Examples that a set needs for one part of them to be held out."""
 EXCUSED = ("published", "Lau et al., from its description")
 """Methods that a classifier always tells from captures."""
+FEET = ("slide of examples", "slide drawn", "slide", "stands of examples %", "stands %")
 SECONDS, LEARNING = "s per s", "s to learn"
 UNIT = "each set counts as one clip"
 
@@ -70,18 +73,23 @@ def measured(sets: Sets) -> list[str]:
     """Measure all methods on all sets; then ours set by set."""
     whole = Scores(f"{len(sets)} sets, {N_VARIANTS} variants of each", UNIT, "")
     by_set = Scores(f"{OURS}, by set", "one set each", "")
+    feet = Scores(f"Feet of {OURS}, by set", "one set each", "")
     for name, examples in sets.items():
         judge = Judge(examples)
         for method, make in methods().items():
             variants, seconds, learning = _timed(make, examples)
-            figures = judge.figures(variants) | {SECONDS: seconds, LEARNING: learning}
+            planted = [stand(one).motion for one in variants[:N_PLANTED]]
+            figures = judge.figures([one.motion for one in variants])
+            figures |= judge.footing_of([one.motion for one in variants[:N_PLANTED]], planted)
+            figures |= {SECONDS: seconds, LEARNING: learning}
             for column, figure in figures.items():
                 whole.add(method, column, name, figure)
                 if method == OURS:
-                    by_set.add(name, column, name, figure)
-        by_set.add(name, "slide of examples", name, 100.0 * judge.slide)
+                    table_of_set = feet if column in FEET else by_set
+                    table_of_set.add(name, column, name, figure)
         print(f"Done: {name}", file=sys.stderr, flush=True)
-    return [whole.markdown(), by_set.markdown().replace(" ± 0.00", "")]
+    single = (one.markdown().replace(" ± 0.00", "") for one in (by_set, feet))
+    return [whole.markdown(), *single]
 
 
 def methods() -> dict[str, tuple[Callable[..., VariationModel] | None, Maker]]:
@@ -94,8 +102,11 @@ def methods() -> dict[str, tuple[Callable[..., VariationModel] | None, Maker]]:
     ):
         settings = VarySettings(method=method)
         learn = partial(learn_variation_model, settings=settings)
-        found[label] = (learn, partial(synthesize, settings=settings))
-    found["one clip, generic"] = (lambda examples: borrow_variation(examples[0]), synthesize)
+        found[label] = (learn, partial(draw_variants, settings=settings))
+    found["one clip, generic"] = (
+        lambda examples: borrow_variation(examples[0]),
+        draw_variants,
+    )
     for label, make in (
         ("copies", peers.copies),
         ("Perlin noise", peers.perlin),
@@ -108,13 +119,13 @@ def methods() -> dict[str, tuple[Callable[..., VariationModel] | None, Maker]]:
 
 def _seeded(
     make: Callable[..., list[Motion]], examples: Sequence[Motion], n: int
-) -> list[Motion]:
-    return make(examples, n, np.random.default_rng(0))
+) -> list[Variant]:
+    return [Variant(one, None) for one in make(examples, n, np.random.default_rng(0))]
 
 
 def _timed(
     way: tuple[Callable[..., VariationModel] | None, Maker], examples: Sequence[Motion]
-) -> tuple[Sequence[Motion], float, float]:
+) -> tuple[Sequence[Variant], float, float]:
     """Return variants, seconds per second of motion, and seconds that learning takes."""
     learn, make = way
     start = perf_counter()
@@ -122,7 +133,7 @@ def _timed(
     learned = perf_counter()
     variants = make(source, N_VARIANTS)
     made = perf_counter() - learned
-    length = sum(one.n_frames / one.frame_rate for one in variants)
+    length = sum(one.motion.n_frames / one.motion.frame_rate for one in variants)
     return variants, made / length, learned - start
 
 
@@ -137,8 +148,8 @@ def by_examples(sets: Sets) -> list[str]:
             if count > len(examples):
                 cells.append("-")
                 continue
-            variants = synthesize(learn_variation_model(examples[:count]), N_VARIANTS)
-            figures = judge.figures(variants)
+            variants = draw_variants(learn_variation_model(examples[:count]), N_VARIANTS)
+            figures = judge.figures([one.motion for one in variants])
             cells.append(f"{number(figures['V'])} / {number(figures['coverage'])}")
         rows[name] = cells
     title = "**V in cm / coverage, against the number of examples** (mixture)\n\n"
@@ -158,7 +169,12 @@ def discriminated(sets: Sets) -> list[str]:
             if method in EXCUSED:
                 continue
             variants = _timed(way, given)[0]
-            rows.setdefault(method, []).append(number(told_apart(held, variants)))
+            motions = [one.motion for one in variants]
+            rows.setdefault(method, []).append(number(told_apart(held, motions)))
+            if method == OURS:
+                planted = [stand(one).motion for one in variants]
+                told = number(told_apart(held, planted))
+                rows.setdefault(f"{OURS}, feet planted", []).append(told)
     title = "**Told from held-out captures** (balanced accuracy, %; 50 is chance)\n\n"
     return [title + table(["method", *large], rows) + "\n"]
 
@@ -166,7 +182,8 @@ def discriminated(sets: Sets) -> list[str]:
 def drawn(sets: Sets) -> list[str]:
     """Draw principal components and strips."""
     made = {
-        name: synthesize(learn_variation_model(examples), 15) for name, examples in sets.items()
+        name: [stand(one).motion for one in draw_variants(learn_variation_model(examples), 15)]
+        for name, examples in sets.items()
     }
     texts = [draw_components({name: (sets[name], made[name]) for name in list(sets)[:8]})]
     texts.extend(

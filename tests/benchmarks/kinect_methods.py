@@ -159,14 +159,19 @@ def by_published_residuals(
 
 
 def by_reconstruct(
-    pair: Pair, subject: str, *, method: ReconstructMethod, others_too: bool = True
+    pair: Pair,
+    subject: str,
+    *,
+    method: ReconstructMethod,
+    others_too: bool = True,
+    causal: bool = False,
 ) -> Reconstruction:
     """Ours, with the offsets of the sensor that the prior knows."""
     return reconstruct(
         pair.kinect,
         posture_library(subject, others_too),
         residual_prior(subject, ResidualMethod.HIERARCHICAL),
-        settings=ReconstructSettings(method=method, shift=True),
+        settings=ReconstructSettings(method=method, shift=True, causal=causal),
     )
 
 
@@ -203,4 +208,5 @@ METHODS: dict[str, Method] = {
     "ours (both), CMU alone": joints(
         by_reconstruct, method=ReconstructMethod.BOTH, others_too=False
     ),
+    "ours (both), causal": joints(by_reconstruct, method=ReconstructMethod.BOTH, causal=True),
 }

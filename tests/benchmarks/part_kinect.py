@@ -1,22 +1,32 @@
 """How far joints are off on UI-PRMD, with the prior and libraries of the other subjects."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from functools import partial
 from time import process_time
 
 import numpy as np
 from numpy.typing import NDArray
 
-from solvers.reconstruction import CorrectionSettings, ResidualMethod, measure_reliability
+from solvers.motion import JointRecording
+from solvers.reconstruction import (
+    CorrectionSettings,
+    ResidualMethod,
+    measure_reliability,
+    reconstruct,
+    reconstruct_postures,
+)
 from solvers.reconstruction.correct_postures import foretell_places, posture_reliability
 
 from .kinect_errors import apart_free, compared, jerk
-from .kinect_folds import SUBJECTS, residual_prior, takes_of, truth_of
+from .kinect_folds import SUBJECTS, posture_library, residual_prior, takes_of, truth_of
 from .kinect_methods import METHODS, Method, raw
 from .kinect_pairs import Pair
 from .tables import number, table
 
 Array = NDArray[np.float64]
 
+LENGTHS = (3.0, 10.0, 30.0)
+"""Seconds."""
 WORST = 0.1
 """Share of the joint-frames, those in which raw is most off."""
 COLUMNS = (
@@ -37,6 +47,12 @@ OTHERWISE = (
     "absolute, cm", "offset-free, cm", "worst tenth, cm",
     "to the joint above, cm", "the same, offset-free", "the same, worst tenth",
 )  # fmt: skip
+EXERCISES = {
+    "m01": "deep squat", "m02": "hurdle step", "m03": "inline lunge", "m04": "side lunge",
+    "m05": "sit to stand", "m06": "leg raise", "m07": "shoulder abduction",
+    "m08": "shoulder extension", "m09": "shoulder rotation", "m10": "shoulder scaption",
+}  # fmt: skip
+EXERCISES_TITLE = "\n**Absolute error by exercise** (cm; table 5.2 of [ZH14])\n\n"
 OTHERWISE_TITLE = (
     "\n**Counted otherwise**: the first three columns without the 40 takes whose markers are of"
     " another stance, the others of all takes by the way from the joint above (eq. 18 of"
@@ -57,6 +73,7 @@ class Errors:
     jerk: float
     seconds: float
     subjects: NDArray[np.str_]
+    exercises: NDArray[np.str_]
     matched: NDArray[np.bool_]
     """Frames of takes whose markers are of what the Kinect saw."""
 
@@ -65,7 +82,7 @@ def errors_of(method: Method, n_repetitions: int) -> Errors:
     """Let a method rebuild the first repetitions of all exercises of all subjects."""
     found: list[tuple[Array, Array, Array]] = []
     apart = []
-    jerks, whose, matched, taken = [], [], [], 0.0
+    jerks, whose, which, matched, taken = [], [], [], [], 0.0
     for subject in SUBJECTS:
         takes = takes_of(subject, n_repetitions)
         method(takes[0], subject)  # what is learned or read once is no time of a frame
@@ -77,11 +94,13 @@ def errors_of(method: Method, n_repetitions: int) -> Errors:
             apart.append(apart_free(made, truth_of(pair)))
             jerks.append(jerk(made, pair))
             whose += [subject] * len(made)
+            which += [pair.name[:3]] * len(made)
             matched += [pair.matched] * len(made)
     absolute, relative, free = (np.concatenate(parts) for parts in zip(*found, strict=True))
     return Errors(
         absolute, relative, free, np.concatenate(apart),
-        float(np.nanmean(np.concatenate(jerks))), taken, np.array(whose), np.array(matched),
+        float(np.nanmean(np.concatenate(jerks))), taken, np.array(whose), np.array(which),
+        np.array(matched),
     )  # fmt: skip
 
 
@@ -90,6 +109,7 @@ def accuracy(n_repetitions: int) -> list[str]:
     rows: dict[str, list[str]] = {}
     otherwise: dict[str, list[str]] = {}
     by_subject: dict[str, list[str]] = {}
+    by_exercise: dict[str, list[str]] = {}
     unmended = {n: errors_of(raw, n) for n in {n_repetitions, min(n_repetitions, FEW)}}
     for name, method in METHODS.items():
         n = min(n_repetitions, FEW) if name in SLOW else n_repetitions
@@ -104,6 +124,9 @@ def accuracy(n_repetitions: int) -> list[str]:
         by_subject[label] = [
             _centimetres(found.free[found.subjects == one]) for one in SUBJECTS
         ]
+        by_exercise[label] = [
+            _centimetres(found.absolute[found.exercises == one]) for one in EXERCISES
+        ]
         print(label, *rows[label], *otherwise[label], flush=True)
     takes = [pair for one in SUBJECTS for pair in takes_of(one, n_repetitions)]
     truth = np.concatenate([jerk(truth_of(pair), pair) for pair in takes])
@@ -116,8 +139,10 @@ def accuracy(n_repetitions: int) -> list[str]:
     tail = "\n**Offset-free error of each subject left out** (cm)\n\n"
     return [
         head + table(["method", *COLUMNS], rows) + "\n" + _correction_alone(takes),
+        _by_length(takes),
         OTHERWISE_TITLE + table(["method", *OTHERWISE], otherwise) + "\n",
         tail + table(["method", *SUBJECTS], by_subject) + "\n",
+        EXERCISES_TITLE + table(["method", *EXERCISES.values()], by_exercise) + "\n",
     ]
 
 
@@ -141,6 +166,41 @@ def _otherwise(found: Errors, before: Errors) -> list[str]:
         _centimetres(found.apart),
         _centimetres(found.apart[_worst(before.apart)]),
     ]
+
+
+def _by_length(takes: list[Pair]) -> str:
+    """Return what a frame takes in takes of many lengths, made of some, to and fro."""
+    library = posture_library(SUBJECTS[0])
+    prior = residual_prior(SUBJECTS[0], ResidualMethod.HIERARCHICAL)
+    some = [pair.kinect for pair in takes if pair.subject == SUBJECTS[0]][:: len(takes) // 15]
+    rows: dict[str, list[str]] = {"postures": [], "ours (both)": []}
+    for seconds in LENGTHS:
+        taken = dict.fromkeys(rows, 0.0)
+        for short in some:
+            long = _to_and_fro(short, round(seconds * short.frame_rate))
+            for name, solve in (
+                ("postures", partial(reconstruct_postures, long, library)),
+                ("ours (both)", partial(reconstruct, long, library, prior)),
+            ):
+                started = process_time()
+                solve()
+                taken[name] += (process_time() - started) / long.n_frames
+        for name, total in taken.items():
+            rows[name].append(f"{1e3 * total / len(some):.2f}")
+    head = "\n**Processor time by length of the take**, ms per frame\n\n"
+    return head + table(["method", *(f"{seconds:g} s" for seconds in LENGTHS)], rows) + "\n"
+
+
+def _to_and_fro(recording: JointRecording, n_frames: int) -> JointRecording:
+    """Return a take that goes on backwards, and forwards again, until it is long enough."""
+    n = recording.n_frames
+    order = np.arange(n_frames) % (2 * n)
+    order = np.where(order < n, order, 2 * n - 1 - order)
+    tracks = recording.tracks.with_positions(recording.tracks.positions[order])
+    state = recording.tracking_state
+    return replace(
+        recording, tracks=tracks, tracking_state=None if state is None else state[order]
+    )
 
 
 def _correction_alone(takes: list[Pair]) -> str:

@@ -80,7 +80,7 @@ class PyramidLibrary:
 
     def described(self, postures: ClipPostures) -> list[Any]:
         if self.method.filled:
-            postures = replace(postures, positions=self.usual.filled(postures))
+            postures = self.usual.completed(postures)
         return [
             pyramid_descriptor(
                 only(postures, root, joints), part.dictionary, self.method.pyramid

@@ -1,4 +1,4 @@
-"""The search that users have, as a method of the benchmark."""
+"""The search that users have, as a method of the benchmark: `find_similar` in two steps."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -7,19 +7,21 @@ import numpy as np
 from numpy.typing import NDArray
 
 from solvers.motion import Tracks
-from solvers.retrieval import Clip, ClipLibrary, FindSettings, build_clip_library, find_similar
+from solvers.retrieval import Clip, ClipLibrary, FindSettings, build_clip_library
+from solvers.retrieval.body_parts import part_coverage
+from solvers.retrieval.clip_postures import clip_postures
+from solvers.retrieval.rank_clips import rank_clips
+from solvers.retrieval.spans import RATE, Spans, describe
 
 Array = NDArray[np.float64]
 Flags = NDArray[np.bool_]
-
-TINY = 1e-300
 
 
 @dataclass(frozen=True)
 class Default:
     """`find_similar`, without alignment of what was found."""
 
-    settings: FindSettings = FindSettings(n_aligned=0)
+    settings: FindSettings = FindSettings()
 
     def prepare(self, clips: Sequence[Tracks]) -> "DefaultLibrary":
         library = build_clip_library([
@@ -34,14 +36,23 @@ class DefaultLibrary:
     n_clips: int
     settings: FindSettings
 
-    def describe(self, tracks: Tracks) -> Tracks:
-        return tracks
+    def describe(self, tracks: Tracks) -> tuple[Spans, Array]:
+        postures = clip_postures(tracks, RATE)
+        vocabulary = self.library.vocabulary
+        assert vocabulary is not None
+        features = vocabulary.features(postures)
+        whole = np.array([[0, len(features)]], dtype=np.int32)
+        seen = np.isfinite(postures.positions).all(axis=-1)
+        weights = self.settings.part_weights(part_coverage(seen))
+        return describe(features, whole, vocabulary), weights
 
-    def distances(self, query: Tracks, allowed: Flags) -> Array:
-        """Describes the query too: what it takes cannot be told apart."""
-        ignored = [str(number) for number in np.flatnonzero(~allowed)]
-        found = find_similar(query, self.library, settings=self.settings, ignore=ignored)
+    def distances(self, query: tuple[Spans, Array], allowed: Flags) -> Array:
+        entries = self.library.numbered()
+        ignored = self.library.numbers_of(map(str, np.flatnonzero(~allowed)))
+        index = self.library.search_index
+        ranking = rank_clips(*query, index, self.settings, ignored)
         result = np.full(self.n_clips, np.inf)
-        for match in found:
-            result[int(match.clip)] = -np.log(max(match.score, TINY))
+        result[[int(entries[number].name) for number in ranking.clips.tolist()]] = (
+            ranking.distances
+        )
         return result

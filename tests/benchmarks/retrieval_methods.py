@@ -31,8 +31,8 @@ N_NEIGHBOURS = 3
 
 METHODS: dict[str, Method] = {
     OURS: Default(),
-    "ours, without asking the best": Default(FindSettings(n_alike=0, n_aligned=0)),
-    "ours, words alone": Default(FindSettings(n_alike=0, n_aligned=0, n_warped=0)),
+    "ours, without asking the like": Default(FindSettings(n_alike=0)),
+    "ours, words alone": Default(FindSettings(n_alike=0, n_warped=0)),
     PUBLISHED: Pyramids(),
     CUBES: Pyramids(pyramid=PyramidSettings(normalise_cubes=True)),
     "pyramids, settings chosen": CHOSEN,

@@ -6,8 +6,7 @@ from itertools import combinations
 import numpy as np
 from scipy.spatial.distance import cdist
 
-from solvers.denoising import learn_joint_limits, limit_excess, plant_feet
-from solvers.errors import MocapAssistError
+from solvers.denoising import learn_joint_limits, limit_excess, measure_quality
 from solvers.motion import Motion, warp
 from solvers.motion.rotations import inverse, multiply, rotation_vector_from_quaternion
 from solvers.variation.align_examples import RATE, body_positions
@@ -19,8 +18,6 @@ PAIRS = 60
 """Pairs of variants whose distance is measured: as many as tell the mean."""
 BEYOND = np.radians(0.5)
 """Radians beyond a limit that count as passing it."""
-PLANTED = 3
-"""Variants of a set whose feet are planted to see how far they slide."""
 
 
 class Judge:
@@ -40,7 +37,21 @@ class Judge:
         self.jerk = float(np.mean([_jerk(one) for one in examples]))
         self.limits = learn_joint_limits(examples)
         self.spectrum = _spectrum(examples)
-        self.slide = float(np.mean([_slides(one)[0] for one in examples[:PLANTED]]))
+        self.footing = footing_figures(examples)
+
+    def footing_of(
+        self, drawn: Sequence[Motion], planted: Sequence[Motion]
+    ) -> dict[str, float]:
+        """Return figures of feet: of the examples, of variants as drawn and as finished."""
+        slides, stands = zip(*map(footing_figures, (drawn, planted)), strict=True)
+        return {
+            "slide of examples": self.footing[0],
+            "slide drawn": slides[0],
+            "slide": slides[1],
+            "stands of examples %": 100.0 * self.footing[1],
+            "stands %": 100.0 * stands[1],
+            "jerk finished": float(np.mean([_jerk(one) for one in planted])) / self.jerk,
+        }
 
     def figures(self, variants: Sequence[Motion]) -> dict[str, float]:
         """Return all figures of some variants; for copies V is 0 or 1, the jerk 1."""
@@ -48,7 +59,6 @@ class Judge:
         windows = np.concatenate([_windows(one) for one in variants])
         covered = [cdist(one, windows).min(axis=1) < self.near for one in self.windows]
         nearest = [min(warp(one, other).cost for other in self.bodies) for one in bodies[:10]]
-        slides = np.array([_slides(one) for one in variants[:PLANTED]])
         beyond = [limit_excess(one, self.limits) for one in variants[:10]]
         return {
             "V": 100.0 * _variation(bodies)[0],
@@ -56,8 +66,6 @@ class Judge:
             "coverage": float(np.concatenate(covered).mean()),
             "nearest example": float(np.median(nearest)) / self.nearest,
             "jerk ratio": float(np.mean([_jerk(one) for one in variants])) / self.jerk,
-            "slide": 100.0 * float(np.nanmean(slides[:, 0])),
-            "slide planted": 100.0 * float(np.nanmean(slides[:, 1])),
             "beyond limits %": 100.0
             * float(np.mean([(one > BEYOND).mean() for one in beyond])),
             "spectrum": _alike(self.spectrum, _spectrum(variants)),
@@ -124,10 +132,12 @@ def _alike(one: np.ndarray, other: np.ndarray) -> float:
     return float((weights * alike).sum() / weights.sum())
 
 
-def _slides(motion: Motion) -> tuple[float, float]:
-    """Return how far a foot in contact slides per second, before and after planting, metres."""
-    try:
-        planted = plant_feet(motion)
-    except MocapAssistError:
-        return np.nan, np.nan
-    return planted.slide_before, planted.slide_after
+def footing_figures(motions: Sequence[Motion]) -> tuple[float, float]:
+    """Return how fast feet in contact slide, cm/s, and in which part of the time they stand.
+
+    As Check says (`measure_quality`): the same measure for examples and variants.
+    """
+    measured = [measure_quality(motion) for motion in motions]
+    stands = [foot.contact.mean() for one in measured for foot in one.feet]
+    slides = [one.foot_slide for one in measured if np.isfinite(one.foot_slide)]
+    return 100.0 * float(np.mean(slides or [np.nan])), float(np.mean(stands))

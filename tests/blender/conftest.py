@@ -21,7 +21,8 @@ import numpy as np
 import pytest
 
 pytest_plugins = (
-    "armature_fixtures", "common_fixtures", "panel_fixtures", "rig_fixtures", "window_fixtures",
+    "armature_fixtures", "common_fixtures", "panel_fixtures", "rig_fixtures", "rigify_fixtures",
+    "window_fixtures",
 )  # fmt: skip
 
 PACKAGE = "bl_ext.user_default.mocap_assist"

@@ -9,7 +9,7 @@ import pytest
 IN_ONE_BLENDER = {
     "test_load.py": (5, 2), "test_uses.py": (5, 2),
     "test_bad_input.py": (4, 5), "test_learn_from_library.py": (4, 5),
-    "test_performing.py": (4, 5),
+    "test_performing.py": (4, 5), "test_use_matches.py": (5, 2),
 }  # fmt: skip
 """Long tests, each file of which runs in one of the two Blenders; the others run in both."""
 

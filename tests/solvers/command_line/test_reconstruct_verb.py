@@ -104,6 +104,21 @@ def test_metres_of_millimetres_are_asked_for(call, walk, tmp_path):
     assert 1.3 < height < 2.2
 
 
+def test_what_lengths_are_taken_for_is_told(call, walk, tmp_path):
+    write_joint_csv(walk, tmp_path / "said.csv")
+    large = walk.with_tracks(walk.tracks.with_positions(1000.0 * walk.tracks.positions))
+    write_joint_csv(large, tmp_path / "large.csv")
+    text = (tmp_path / "large.csv").read_text()
+    (tmp_path / "large.csv").write_text(text.replace("units=m,", "", 1))
+
+    for verb in ("reconstruct", "convert"):
+        target = tmp_path / f"{verb}.bvh" if verb == "reconstruct" else tmp_path / "out.trc"
+        status, out, _ = call(verb, tmp_path / "large.csv", target)
+        assert status == 0 and out.count("Lengths are taken for millimetres") == 1
+        status, out, _ = call(verb, tmp_path / "said.csv", target)
+        assert status == 0 and "Lengths" not in out
+
+
 def test_markers_are_refused(call, tmp_path):
     markers = Tracks(("LFHD", "RFHD", "LASI"), np.random.default_rng(1).random((9, 3, 3)), 30.0)
     write_trc(markers, tmp_path / "markers.trc")

@@ -9,6 +9,7 @@ from numpy.testing import assert_allclose
 
 from solvers.denoising import learn_filter_bases
 from solvers.denoising.lag_covariance import MOST_ENDS, LagProducts, strongest
+from solvers.errors import InvalidMotionError
 from solvers.samples import GaitSettings, walking_gait
 
 
@@ -96,3 +97,23 @@ def test_an_example_has_one_mean_pose_at_any_frame_rate(swinging_leg):
 
     assert swinging_leg.frame_rate == 2 * float(bases.frame_rate)
     assert len(bases.clip_means) == 2
+
+
+def test_an_example_of_twice_the_weight_counts_as_two():
+    first, second = (
+        walking_gait(GaitSettings(cadence=cadence, duration=3.0, frame_rate=30.0))
+        for cadence in (100, 120)
+    )
+    weighted = learn_filter_bases([first, second], weights=[3.0, 6.0])
+    doubled = learn_filter_bases([first, second, second])
+    plain = learn_filter_bases([first, second])
+    for name in ("mean", "slow", "fast"):
+        assert_allclose(getattr(weighted, name), getattr(doubled, name), rtol=1e-9, atol=1e-9)
+    assert np.abs(weighted.slow - plain.slow).max() > 0.01 * np.abs(plain.slow).max()
+
+
+@pytest.mark.parametrize("weights", [[1.0], [1.0, 0.0], [1.0, -2.0], [1.0, np.nan]])
+def test_weights_must_fit_the_examples(weights):
+    motion = walking_gait(GaitSettings(duration=2.0, frame_rate=30.0))
+    with pytest.raises(InvalidMotionError, match="weights for 2 examples"):
+        learn_filter_bases([motion, motion], weights=weights)

@@ -22,11 +22,12 @@ def test_a_share_of_one_is_the_example(model):
     shares = np.zeros((COMMON + 1, 1, model.n_moments, model.n_examples))
     shares[..., 2] = 1.0
 
-    joints, root, haste = mixed_deviations(model, shares)
+    joints, root, haste, footing = mixed_deviations(model, shares)
 
     assert_allclose(model.joints.mean(axis=0) + joints[0], model.joints[2], atol=1e-12)
     assert_allclose(model.root.mean(axis=0) + root[0], model.root[2], atol=1e-12)
     assert_allclose(model.haste.mean(axis=0) + haste[0], model.haste[2], atol=1e-12)
+    assert_allclose(model.footing.mean(axis=0) + footing[0], model.footing[2], atol=1e-12)
 
 
 def test_shares_change_slowly(model, rng):

@@ -20,17 +20,23 @@ def walks():
     ]
 
 
-def test_feet_slide_no_more_than_in_the_examples(recordings):
+@pytest.mark.parametrize("behaviour", ["bd_squat1Reps", "bk_kickLFront1Reps"])
+def test_feet_stand_as_long_as_in_the_examples_and_slide_no_more(behaviour, recordings):
     folder = recordings / "mocap" / "hdm05"
-    files = sorted(folder.glob("HDM_bd_squat1Reps_*.amc"))[:4]
+    files = sorted(folder.glob(f"HDM_{behaviour}_*.amc"))[:6]
     examples = [read_recording(file) for file in files]
     variants = vary_motions(examples, 3)
     assert not variants.remarks
-    slides = [
-        np.mean([measure_quality(motion).foot_slide for motion in motions])
+    measured = [
+        [measure_quality(motion) for motion in motions]
         for motions in (examples, variants.motions)
     ]
+    slides = [np.mean([one.foot_slide for one in each]) for each in measured]
+    stands = [
+        np.mean([foot.contact.mean() for one in each for foot in one.feet]) for each in measured
+    ]
     assert slides[1] <= slides[0]
+    assert stands[1] > 0.9 * stands[0]
 
 
 def test_feet_are_left_as_they_are_where_asked(walks):

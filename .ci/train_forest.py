@@ -1,0 +1,67 @@
+"""Train the pixel forest that is shipped, from captures and bodies that anyone may use.
+
+    python .ci/train_forest.py [--pictures N] [--trees N] [--jobs N] [--out FILE]
+
+CMU (mocap.cs.cmu.edu, created with funding from NSF EIA-0196217), UI-PRMD (Vakanski, Jun, Paul,
+Baker 2018, published as ODC-PDDL) and bodies in the public domain (CC0). The trees are those of
+`train_pixel_forest`; here they grow side by side.
+"""
+
+import argparse
+import sys
+from concurrent.futures import ProcessPoolExecutor
+from dataclasses import replace
+from functools import partial
+from pathlib import Path
+
+ROOT = Path(__file__).resolve().parents[1]
+sys.path.insert(0, str(ROOT))
+
+from solvers.depth_tracking.grow_tree import Tree  # noqa: E402
+from solvers.depth_tracking.pixel_forest import SHIPPED, PixelForest  # noqa: E402
+from solvers.depth_tracking.train_forest import (  # noqa: E402
+    PixelForestSettings,
+    train_pixel_forest,
+)
+from tests.benchmarks.forest_sources import (  # noqa: E402
+    WORDS,
+    all_bodies,
+    taught_motions,
+)
+
+SETTINGS = PixelForestSettings(
+    n_trees=4, n_pictures=12_000, n_pixels=120, levels=18, n_candidates=100, least_pixels=50
+)
+
+
+def grown(settings: PixelForestSettings, number: int) -> tuple[Tree, ...]:
+    """Grow one tree from pictures of its own."""
+    alone = replace(settings, n_trees=1, seed=settings.seed + number)
+    return train_pixel_forest(taught_motions(), all_bodies(), alone, progress=said).trees
+
+
+def said(fraction: float, message: str) -> None:
+    """Tell how far it is."""
+    print(f"{fraction:6.1%} {message}", flush=True)
+
+
+def main() -> None:
+    """Grow the trees and save them where they are shipped."""
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("--pictures", type=int, default=SETTINGS.n_pictures)
+    parser.add_argument("--trees", type=int, default=SETTINGS.n_trees)
+    parser.add_argument("--jobs", type=int, default=2)
+    parser.add_argument("--out", type=Path, default=SHIPPED)
+    given = parser.parse_args()
+    settings = replace(SETTINGS, n_pictures=given.pictures)
+    with ProcessPoolExecutor(given.jobs) as pool:
+        trees = pool.map(partial(grown, settings), range(given.trees))
+    forest = PixelForest(tuple(tree for each in trees for tree in each), WORDS)
+    given.out.parent.mkdir(exist_ok=True)
+    forest.save(given.out)
+    n_leaves = sum(len(tree.shares) for tree in forest.trees)
+    print(f"{n_leaves} leaves, {given.out.stat().st_size} bytes: {given.out}")
+
+
+if __name__ == "__main__":
+    main()

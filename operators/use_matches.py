@@ -1,0 +1,20 @@
+"""Button: the best matches are what Vary makes variants of."""
+
+import bpy
+
+from ..mocap_assist.library.choices import UseBundle
+from ..mocap_assist.library.varying import read_best, why_not_use, write_best
+from ..mocap_assist.settings_properties import settings_from
+from ..mocap_assist.solver_operator import SolverOperator
+
+
+@settings_from(UseBundle)
+class MOCAP_OT_use_matches(SolverOperator, bpy.types.Operator):
+    bl_idname = "mocap_assist.use_matches"
+    bl_label = "Use as Examples"
+    bl_description = (
+        "Take the best of these clips as the examples of Vary, whatever rig they were made for:"
+        " they become actions of the selected armature, and are ticked in the panel Vary"
+    )
+    settings_group = "use"
+    why_not, read_scene, write_scene = why_not_use, read_best, write_best

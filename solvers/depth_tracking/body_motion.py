@@ -1,0 +1,83 @@
+"""Poses of a body model as a motion of the scene: Z up, a T-pose at rest, humanoid roles."""
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..motion import Motion, Skeleton
+from ..motion.depth_floor import Floor
+from ..motion.rotations import inverse, multiply, quaternion_from_matrix, unroll
+from .body_kinematics import N_SEGMENTS, segment_frames, turns
+from .body_model import BodyModel
+from .body_tables import END_SEGMENTS, JOINTS, PARENTS, SEGMENTS
+
+Array = NDArray[np.float64]
+
+SCENE_FROM_CAMERA = np.array([[1.0, 0.0, 0.0], [0.0, 0.0, 1.0], [0.0, -1.0, 0.0]])
+"""Of a level camera that looks along +Y: who faces it faces -Y."""
+JOINT_PARENTS = (*PARENTS, *END_SEGMENTS)
+
+
+def body_skeleton(body: BodyModel) -> Skeleton:
+    """Return the skeleton of a body in the T-pose, its soles on the floor, facing -Y."""
+    turned = _t_pose_turns()
+    offsets = np.empty((len(JOINTS), 3))
+    for joint, parent in enumerate(JOINT_PARENTS):
+        carried = np.eye(3) if parent < 0 else turned[parent]
+        offsets[joint] = SCENE_FROM_CAMERA @ carried @ body.offsets[joint]
+    legs = [body.length(f"left{part}") for part in ("UpperLeg", "LowerLeg")]
+    offsets[0] = (0.0, 0.0, sum(legs) + 0.25 * body.length("leftFoot"))
+    return Skeleton(JOINTS, JOINT_PARENTS, offsets)
+
+
+def body_motion(
+    body: BodyModel, poses: Array, frame_rate: float, floor: Floor | None = None
+) -> Motion:
+    """Return the motion of a body in poses (n_frames, 34).
+
+    Parameters
+    ----------
+    body : BodyModel
+    poses : shape (n_frames, 34)
+    frame_rate : float, hertz
+    floor : Floor, optional
+        It becomes the plane z = 0, and its normal Z. Without it the camera is taken to be
+        level, at the origin.
+    """
+    frames = segment_frames(body, poses)
+    scene = scene_from_camera(floor)
+    turned = np.stack(_t_pose_turns())
+    world = scene[:3, :3] @ frames[..., :3, :3] @ turned.swapaxes(1, 2)
+    world = world @ SCENE_FROM_CAMERA.T
+    rotations = quaternion_from_matrix(world)
+    local = np.tile([1.0, 0.0, 0.0, 0.0], (len(poses), len(JOINTS), 1))
+    local[:, 0] = rotations[:, 0]
+    above = list(PARENTS[1:])
+    local[:, 1:N_SEGMENTS] = multiply(inverse(rotations[:, above]), rotations[:, 1:])
+    places = frames[:, 0, :3, 3] @ scene[:3, :3].T + scene[:3, 3]
+    return Motion(body_skeleton(body), unroll(local), places, frame_rate)
+
+
+def scene_from_camera(floor: Floor | None) -> Array:
+    """Return the transform (4, 4) from the camera's frame to a scene with Z up."""
+    scene = np.eye(4)
+    scene[:3, :3] = SCENE_FROM_CAMERA
+    if floor is None:
+        return scene
+    up = SCENE_FROM_CAMERA @ floor.up
+    axis = np.cross(up, [0.0, 0.0, 1.0])
+    sine = np.linalg.norm(axis)
+    if sine > 0.0:
+        level = turns(axis / sine * np.arctan2(sine, up[2]))
+        scene[:3, :3] = level @ SCENE_FROM_CAMERA
+    scene[2, 3] = float(floor.heights(np.zeros(3)))
+    return scene
+
+
+def _t_pose_turns() -> list[Array]:
+    """Return how each segment is turned in the T-pose, camera frame: arms out to the sides."""
+    turned = []
+    for segment in SEGMENTS:
+        arm = segment.endswith(("UpperArm", "LowerArm"))
+        out = -1.0 if segment.startswith("left") else 1.0
+        turned.append(turns(np.array([0.0, 0.0, out * arm * np.pi / 2.0])))
+    return turned

@@ -1,0 +1,111 @@
+"""A body in a pose as the camera would see it: every visible point, and its normal."""
+
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..motion.camera import Camera
+from .body_kinematics import segment_frames, segment_twists
+from .body_model import BodyModel
+from .body_tables import CAPSULE_SEGMENTS
+from .observation import rays_of
+from .ray_capsules import BodyPicture, cast_rays
+
+Array = NDArray[np.float64]
+Integers = NDArray[np.intp]
+
+
+@dataclass(frozen=True, eq=False)
+class Hypothesis:
+    """A pose under test.
+
+    Attributes
+    ----------
+    body : BodyModel
+    pose : shape (34,)
+    frames : shape (15, 4, 4)
+        Segments in this pose.
+    picture : BodyPicture
+    """
+
+    body: BodyModel
+    pose: Array
+    frames: Array
+    picture: BodyPicture
+
+    @cached_property
+    def segments(self) -> Integers:
+        """Segment of each visible point, shape (n,)."""
+        return self.picture.segments
+
+    @cached_property
+    def rays(self) -> Array:
+        """Where the pixels of visible points look, one metre forward, shape (n, 3)."""
+        return rays_of(self.picture.camera, self.picture.pixels)
+
+    @cached_property
+    def points(self) -> Array:
+        """Visible points of the surface, shape (n, 3), metres."""
+        return self.rays * self.picture.depths[:, np.newaxis]
+
+    @cached_property
+    def normals(self) -> Array:
+        """Outward unit normals at the visible points, shape (n, 3)."""
+        return capsule_normals(self.body, self.frames, self.points, self.picture.capsules)
+
+    @cached_property
+    def twists(self) -> Array:
+        """How each coordinate moves each segment, shape (15, 6, 34)."""
+        return segment_twists(self.pose, self.frames)
+
+    @cached_property
+    def index_picture(self) -> Integers:
+        """Which visible point each pixel sees, -1 for none, shape (height * width,)."""
+        camera = self.picture.camera
+        found = np.full(camera.width * camera.height, -1)
+        found[self.picture.pixels] = np.arange(len(self.picture.pixels))
+        return found
+
+
+def imagine(body: BodyModel, pose: Array, camera: Camera) -> Hypothesis:
+    """Return what `camera` would see of `body` in `pose` (34,)."""
+    frames = segment_frames(body, pose)
+    return Hypothesis(body, pose, frames, cast_rays(body, frames, camera))
+
+
+def capsule_normals(body: BodyModel, frames: Array, points: Array, capsules: Integers) -> Array:
+    """Return outward unit normals (n, 3) at points (n, 3) on these capsules (n,)."""
+    return _unit(capsule_offsets(body, frames, points, capsules)[1])
+
+
+def capsule_offsets(
+    body: BodyModel, frames: Array, points: Array, capsules: Integers
+) -> tuple[Array, Array]:
+    """Return how far points are outside their capsules, and which way is out.
+
+    Returns
+    -------
+    (n,) array
+        Distance from the axis in units of the radius there: 1 on the surface.
+    (n, 3) array
+        Gradient of it in the camera's frame, per metre.
+    """
+    frame = frames[CAPSULE_SEGMENTS[capsules]]
+    scales = 1.0 / body.radii[capsules][:, [0, 1, 1]]
+    local = np.einsum("nji,nj->ni", frame[:, :3, :3], points - frame[:, :3, 3])
+    ends = body.capsule_ends[capsules] * scales[:, np.newaxis]
+    axis = ends[:, 1] - ends[:, 0]
+    from_start = local * scales - ends[:, 0]
+    along = np.einsum("ni,ni->n", from_start, axis) / np.einsum("ni,ni->n", axis, axis)
+    out = from_start - np.clip(along, 0.0, 1.0)[:, np.newaxis] * axis
+    size = np.sqrt(np.einsum("ni,ni->n", out, out))
+    slope = scales * out / np.maximum(size, 1e-12)[:, np.newaxis]
+    return size, np.einsum("nij,nj->ni", frame[:, :3, :3], slope)
+
+
+def _unit(vectors: Array) -> Array:
+    sizes = np.sqrt(np.einsum("ni,ni->n", vectors, vectors))
+    unit: Array = vectors / np.maximum(sizes, 1e-12)[:, np.newaxis]
+    return unit

@@ -1,0 +1,114 @@
+"""What the camera saw of an actor in one frame, at one resolution."""
+
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.ndimage import distance_transform_edt
+from scipy.spatial import cKDTree
+
+from ..motion.camera import Camera
+from ..motion.depth_recording import DepthRecording
+from .depth_edges import edge_pixels
+
+Array = NDArray[np.float64]
+Integers = NDArray[np.intp]
+
+
+@dataclass(frozen=True, eq=False)
+class Observation:
+    """Depths of an actor; everything else in the picture is 0.
+
+    Attributes
+    ----------
+    camera : Camera
+    depth : shape (height, width), metres
+    color : shape (height, width, 3), 0 to 255, or None
+    """
+
+    camera: Camera
+    depth: Array
+    color: Array | None = None
+
+    @cached_property
+    def flat(self) -> Array:
+        """Depths of all pixels, shape (height * width,)."""
+        return self.depth.ravel()
+
+    @cached_property
+    def pixels(self) -> Integers:
+        """Which pixels see the actor, shape (n,): row * width + column."""
+        return np.flatnonzero(self.flat)
+
+    @cached_property
+    def points(self) -> Array:
+        """Where they see the actor, shape (n, 3), metres."""
+        return self.points_at(self.pixels)
+
+    @cached_property
+    def index_picture(self) -> Integers:
+        """Which of `points` each pixel sees, -1 for none, shape (height * width,)."""
+        found = np.full(self.flat.shape, -1)
+        found[self.pixels] = np.arange(len(self.pixels))
+        return found
+
+    @cached_property
+    def tree(self) -> Any:
+        """The points, ready to be asked for the nearest."""
+        return cKDTree(self.points)
+
+    @cached_property
+    def nearest_pixel(self) -> Integers:
+        """Which pixel that sees the actor is nearest to each pixel, shape (height * width,)."""
+        rows, columns = distance_transform_edt(
+            self.depth == 0.0, return_distances=False, return_indices=True
+        )
+        pixels: Integers = (rows.astype(np.intp) * self.camera.width + columns).ravel()
+        return pixels
+
+    @cached_property
+    def intensities(self) -> Array:
+        """Brightness of all pixels, 0 to 255, shape (height * width,); NaN without colours."""
+        if self.color is None:
+            return np.full(self.flat.shape, np.nan)
+        grey: Array = self.color.mean(axis=2).ravel()
+        return grey
+
+    @cached_property
+    def edges(self) -> Integers:
+        """Pixels of the actor at edges of depth, shape (n,)."""
+        return edge_pixels(self.depth, self.nearest_pixel)
+
+    def points_at(self, pixels: Integers) -> Array:
+        """Return where these pixels (n,) see the actor, shape (n, 3), metres."""
+        rays = rays_of(self.camera, pixels)
+        return rays * self.flat[pixels][:, np.newaxis]
+
+    def every(self, step: int) -> "Observation":
+        """Return every `step`-th column and row."""
+        if step == 1:
+            return self
+        color = None if self.color is None else self.color[::step, ::step]
+        return Observation(self.camera.every(step), self.depth[::step, ::step], color)
+
+
+def observe(depth: DepthRecording, frame: int, picture_width: int) -> Observation:
+    """Return what a frame shows, thinned out to about this many columns."""
+    color = depth.color(frame)
+    whole = Observation(
+        depth.camera,
+        depth.frame(frame).astype(np.float64),
+        None if color is None else color.astype(np.float64),
+    )
+    return whole.every(max(1, round(depth.camera.width / picture_width)))
+
+
+def rays_of(camera: Camera, pixels: Integers) -> Array:
+    """Return where pixels (n,) look, as far as one metre forward, shape (n, 3)."""
+    rows, columns = np.divmod(pixels, camera.width)
+    rays = np.ones((len(pixels), 3))
+    rays[:, 0] = (columns - camera.cx) / camera.fx
+    rays[:, 1] = (rows - camera.cy) / camera.fy
+    return rays

@@ -1,0 +1,48 @@
+"""What is asked of a pose before the picture is looked at."""
+
+import numpy as np
+from numpy.typing import NDArray
+
+from .coordinates import LEAST, MOST
+from .normal_equations import PoseEquations
+
+Array = NDArray[np.float64]
+
+
+def stay_near(pose: Array, expected: Array, weights: Array) -> PoseEquations:
+    """Ask the coordinates to be as expected.
+
+    With `expected` what the two frames before foretell this is the prior of [WZC12] eq. 7 and
+    18; with the frame before, the smoothness of [LOU12] eq. 3.15.
+
+    Parameters
+    ----------
+    pose, expected : shape (34,)
+    weights : shape (34,)
+        Of the squares.
+    """
+    change = expected - pose
+    return PoseEquations(np.diag(weights), weights * change, 0.5 * float(weights @ change**2))
+
+
+def foretell(poses: list[Array], trust: float) -> Array:
+    """Return the pose that goes on from the last ones as they went.
+
+    Parameters
+    ----------
+    poses : list of shape (34,)
+        The frames before, the last one last.
+    trust : float
+        Share of the last movement that goes on: 1 constant velocity, 0 standing still.
+    """
+    if len(poses) < 2:
+        return poses[-1]
+    expected: Array = poses[-1] + trust * (poses[-1] - poses[-2])
+    return expected
+
+
+def joint_limits(pose: Array, weight: float) -> PoseEquations:
+    """Ask coordinates beyond the soft limits to come back, the more the farther beyond."""
+    back = np.clip(pose, LEAST, MOST) - pose
+    weights = np.where(back != 0.0, weight, 0.0)
+    return PoseEquations(np.diag(weights), weights * back, 0.5 * float(weights @ back**2))

@@ -1,0 +1,75 @@
+"""Smooth the tracked poses of a take by what each of its pictures says."""
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..progress import Progress
+from .capture_passes import Actor
+from .coordinates import N_COORDINATES
+from .fit_quality import FitQuality, fit_quality, unseen
+from .hypothesis import imagine
+from .likelihood import likelihood_rows
+from .normal_equations import PoseEquations, added, in_coordinates, segment_equations
+from .observation import Observation, observe
+from .pose_priors import joint_limits
+from .register_pose import Registered
+from .smooth_take import smooth_take
+
+Array = NDArray[np.float64]
+
+USUAL_RATE = 30.0
+"""Frames per second for which smoothness is given."""
+_PIECE, _BORDER = 600, 60
+"""Frames smoothed at once, and how many of the next piece go along: bounded memory."""
+
+
+def smoothed_poses(
+    actor: Actor, poses: Array, smoothing: float, progress: Progress
+) -> tuple[Array, list[FitQuality]]:
+    """Return smoothed poses (n_frames, 34), and the figures of each frame."""
+    found, figures = poses.copy(), []
+    n_frames = len(poses)
+    if smoothing > 0.0 and n_frames >= 3:
+        for first in range(0, n_frames, _PIECE):
+            start, stop = max(0, first - _BORDER), min(n_frames, first + _PIECE + _BORDER)
+            smooth = _smoothed(actor, poses, range(start, stop), smoothing)
+            last = min(first + _PIECE, n_frames)
+            found[first:last] = smooth[first - start : last - start]
+            progress(0.5 * last / n_frames, "Smoothing")
+    for frame in range(n_frames):
+        figures.append(_judged(actor, found[frame], frame))
+        progress(0.5 + 0.5 * (frame + 1) / n_frames, "Judging")
+    return found, figures
+
+
+def _smoothed(actor: Actor, poses: Array, frames: range, smoothing: float) -> Array:
+    tracker = actor.tracker
+    # Second differences shrink with the square of the frame rate.
+    pace = (actor.depth.frame_rate / USUAL_RATE) ** 4
+    stiffness = np.full(N_COORDINATES, smoothing * pace * tracker.turn_weight)
+    stiffness[:3] = smoothing * pace * tracker.shift_weight
+    equations = []
+    for frame in frames:
+        observation = observe(actor.depth, frame, tracker.picture_width)
+        asked = _asked(actor, poses[frame], observation).equations
+        equations.append((asked.matrix, asked.vector))
+    return smooth_take(poses[frames.start : frames.stop], equations, stiffness)
+
+
+def _asked(actor: Actor, pose: Array, observation: Observation) -> Registered:
+    """Return what a picture asks of a pose, without what the frames before say."""
+    hypothesis = imagine(actor.body, pose, observation.camera)
+    limits = joint_limits(pose, actor.tracker.limit_weight)
+    if not len(observation.pixels):
+        return Registered(hypothesis, limits, 1)
+    rows = likelihood_rows(hypothesis, observation, actor.tracker)
+    seen: PoseEquations = in_coordinates([segment_equations(rows)], hypothesis.twists)
+    return Registered(hypothesis, added([seen, limits]), 1)
+
+
+def _judged(actor: Actor, pose: Array, frame: int) -> FitQuality:
+    observation = observe(actor.depth, frame, actor.tracker.picture_width)
+    if not len(observation.pixels):
+        return unseen()
+    found = _asked(actor, pose, observation)
+    return fit_quality(actor.body, found, observation, actor.tracker.limit)

@@ -1,0 +1,120 @@
+"""Segments go where a second, naive way puts them, and the derivative is exact."""
+
+import numpy as np
+import pytest
+from numpy.testing import assert_allclose
+from scipy.spatial.transform import Rotation
+
+from solvers.depth_tracking.body_kinematics import (
+    joint_positions,
+    segment_frames,
+    segment_twists,
+)
+from solvers.depth_tracking.body_model import usual_body
+from solvers.depth_tracking.body_tables import JOINTS, PARENTS, SEGMENTS
+from solvers.depth_tracking.coordinates import COORDINATES, TURNS
+
+
+def posed(**coordinates):
+    pose = np.zeros(34)
+    for name, value in coordinates.items():
+        pose[COORDINATES.index(name)] = value
+    return pose
+
+
+def at(pose, name, body=None):
+    body = body or usual_body()
+    return joint_positions(body, segment_frames(body, pose))[JOINTS.index(name)]
+
+
+def test_the_pose_of_zeros_stands_upright():
+    body, zeros = usual_body(), np.zeros(34)
+    assert_allclose(segment_frames(body, zeros)[:, :3, :3], np.tile(np.eye(3), (15, 1, 1)))
+    assert at(zeros, "leftHand")[0] > 0.1 > -0.1 > at(zeros, "rightHand")[0]
+    assert at(zeros, "head")[1] < at(zeros, "leftHand")[1] < at(zeros, "leftFoot")[1]
+    assert at(zeros, "leftToes")[2] < at(zeros, "leftFoot")[2]
+
+
+@pytest.mark.parametrize(
+    ("coordinate", "joint", "axis", "sign"),
+    [
+        ("leftRadius", "leftHand", 2, -1),  # the elbow bends forward
+        ("rightTibia", "rightFoot", 2, 1),  # the knee bends back
+        ("leftFemurX", "leftLowerLeg", 2, -1),
+        ("leftFemurZ", "leftLowerLeg", 0, 1),
+        ("rightFemurZ", "rightLowerLeg", 0, -1),
+        ("rightHumerusZ", "rightLowerArm", 0, -1),
+        ("leftHumerusX", "leftLowerArm", 2, -1),
+        ("leftClavicleZ", "leftUpperArm", 1, -1),  # shrugging
+        ("rightClavicleY", "rightUpperArm", 2, -1),
+        ("lowerBackX", "neck", 2, -1),  # bowing
+        ("headX", "head", 2, 0),
+    ],
+)
+def test_coordinates_turn_the_way_their_limits_assume(coordinate, joint, axis, sign):
+    moved = at(posed(**{coordinate: 0.3}), joint) - at(np.zeros(34), joint)
+
+    assert np.sign(np.round(moved[axis], 9)) == sign
+
+
+def test_equals_the_chain_by_hand(rng):
+    body, pose = usual_body(), rng.normal(scale=0.7, size=34)
+    frames = segment_frames(body, pose)
+    rotations = [Rotation.from_euler("YZX", pose[3:6])]
+    origins = [pose[:3]]
+    for segment, parent in list(enumerate(PARENTS))[1:]:
+        turned = Rotation.from_rotvec(TURNS[segment] @ pose)
+        origins.append(origins[parent] + rotations[parent].apply(body.offsets[segment]))
+        rotations.append(rotations[parent] * turned)
+
+    assert_allclose(frames[:, :3, 3], origins, atol=1e-12)
+    assert_allclose(frames[:, :3, :3], [r.as_matrix() for r in rotations], atol=1e-12)
+
+
+def test_many_poses_at_once_equal_each_alone(rng):
+    body, poses = usual_body(), rng.normal(size=(2, 3, 34))
+    alone = [[segment_frames(body, pose) for pose in row] for row in poses]
+
+    together = segment_frames(body, poses)
+
+    assert_allclose(together, alone, atol=1e-12)
+    assert joint_positions(body, together).shape == (2, 3, len(JOINTS), 3)
+
+
+@pytest.mark.parametrize("scale", [0.0, 1e-5, 0.6, 2.0])
+def test_the_derivative_equals_central_differences(rng, scale):
+    """A point fixed to each segment moves as the twists say, for every coordinate."""
+    body, step = usual_body(), 1e-6
+    pose = rng.normal(scale=scale, size=34) if scale else np.zeros(34)
+    pose[:3] = (0.3, -0.2, 3.0)
+    local = rng.normal(scale=0.2, size=(15, 3))
+
+    def points(q):
+        frames = segment_frames(body, q)
+        return np.einsum("sij,sj->si", frames[:, :3, :3], local) + frames[:, :3, 3]
+
+    differences = np.stack(
+        [(points(pose + step * e) - points(pose - step * e)) / (2 * step) for e in np.eye(34)],
+        axis=-1,
+    )
+    twists = segment_twists(pose, segment_frames(body, pose))
+    moved = np.cross(twists[:, :3], points(pose)[:, :, None], axis=1) + twists[:, 3:]
+
+    assert_allclose(moved, differences, atol=2e-8)
+
+
+def test_a_full_turn_brings_everything_back(rng):
+    body, pose = usual_body(), rng.normal(scale=0.4, size=34)
+    turned = pose.copy()
+    turned[COORDINATES.index("yaw")] += 2 * np.pi
+
+    assert_allclose(segment_frames(body, turned), segment_frames(body, pose), atol=1e-12)
+
+
+def test_the_lower_back_bends_spine_and_chest_by_half_each():
+    body = usual_body()
+    frames = segment_frames(body, posed(lowerBackY=0.8))
+    angles = Rotation.from_matrix(frames[:3, :3, :3]).magnitude()
+
+    assert_allclose(angles, [0.0, 0.4, 0.8], atol=1e-12)
+    assert SEGMENTS[:3] == ("hips", "spine", "chest")

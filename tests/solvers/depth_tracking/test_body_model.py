@@ -1,0 +1,123 @@
+"""The body has the parts, lengths and symmetry that its description promises."""
+
+import numpy as np
+import pytest
+from numpy.testing import assert_allclose, assert_array_equal
+
+from solvers.depth_tracking.body_kinematics import joint_positions, segment_frames
+from solvers.depth_tracking.body_model import BodyModel, load_body_model, usual_body
+from solvers.depth_tracking.body_tables import CAPSULES, JOINTS, LENGTHS, PARENTS, SEGMENTS
+from solvers.depth_tracking.coordinates import COORDINATES, mirrored_coordinates
+from solvers.errors import InvalidFileError, InvalidMotionError
+from solvers.motion.humanoid import HUMANOID_ROLES
+
+
+def joint(body, pose, name):
+    return joint_positions(body, segment_frames(body, pose))[JOINTS.index(name)]
+
+
+def test_the_parts_are_those_of_the_paper():
+    """[WZC12] section 2: 15 segments and 34 coordinates, head 3, neck 2, lower back 3, ..."""
+    assert (len(SEGMENTS), len(COORDINATES)) == (15, 34)
+    for start, n in {"lowerBack": 3, "lowerNeck": 2, "head": 3, "leftClavicle": 2,
+                     "rightHumerus": 3, "leftRadius": 1, "rightFemur": 3,
+                     "leftTibia": 1}.items():  # fmt: skip
+        assert sum(name.startswith(start) for name in COORDINATES) == n
+    assert set(JOINTS) <= set(HUMANOID_ROLES)
+    assert all(parent < child for child, parent in enumerate(PARENTS))
+
+
+def test_a_usual_body_is_as_tall_as_asked_for():
+    body = usual_body(1.75)
+    frames = segment_frames(body, np.zeros(34))
+    crown = crown_height(body, frames)
+    sole = joint(body, np.zeros(34), "leftFoot")[1] + 0.25 * body.length("leftFoot") + 0.038
+
+    assert_allclose(sole - crown, 1.75, atol=0.03)
+    assert_allclose(usual_body(1.4).lengths / usual_body(1.75).lengths, 1.4 / 1.75)
+
+
+def crown_height(body, frames):
+    head = CAPSULES.index("head")
+    top = frames[SEGMENTS.index("head"), :3, 3] + body.capsule_ends[head, 1]
+    return top[1] - body.radii[head, 1]
+
+
+def test_joints_are_as_far_apart_as_the_lengths_say(rng):
+    body, pose = usual_body(), rng.normal(scale=0.5, size=34)
+    for upper, lower, length in (
+        ("leftUpperArm", "leftLowerArm", "leftUpperArm"),
+        ("rightLowerArm", "rightHand", "rightLowerArm"),
+        ("leftUpperLeg", "leftLowerLeg", "leftUpperLeg"),
+        ("rightLowerLeg", "rightFoot", "rightLowerLeg"),
+    ):
+        apart = joint(body, pose, upper) - joint(body, pose, lower)
+        assert_allclose(np.linalg.norm(apart), body.length(length), atol=1e-12)
+    hips = joint(body, pose, "leftUpperLeg") - joint(body, pose, "rightUpperLeg")
+    assert_allclose(np.linalg.norm(hips), 2 * body.length("hipWidth"), atol=1e-12)
+
+
+def test_exchanging_left_and_right_mirrors_the_joints(rng):
+    body, pose = usual_body(), rng.normal(scale=0.4, size=34)
+    order, signs = mirrored_coordinates()
+    sides = {"left": "right", "right": "left"}
+    names = [
+        next((n.replace(a, b, 1) for a, b in sides.items() if n.startswith(a)), n)
+        for n in JOINTS
+    ]
+
+    mirrored = joint_positions(body, segment_frames(body, pose[order] * signs))
+
+    joints = joint_positions(body, segment_frames(body, pose))
+    expected = joints[[JOINTS.index(name) for name in names]] * [-1.0, 1.0, 1.0]
+    assert_allclose(mirrored, expected, atol=1e-12)
+
+
+def test_symmetric_takes_the_mean_of_both_sides():
+    body = usual_body().with_lengths(leftUpperArm=0.20, rightUpperArm=0.30, chest=0.33)
+
+    even = body.symmetric()
+
+    assert_allclose([even.length("leftUpperArm"), even.length("rightUpperArm")], 0.25)
+    assert even.length("chest") == 0.33
+    assert_allclose(even.symmetric().lengths, even.lengths)
+
+
+def test_saving_and_loading_changes_nothing(tmp_path):
+    body = usual_body(1.62).with_lengths(hipWidth=0.11)
+    body.save(tmp_path / "body.npz")
+
+    loaded = load_body_model(tmp_path / "body.npz")
+
+    assert_array_equal(loaded.lengths, body.lengths)
+    assert_array_equal(loaded.radii, body.radii)
+
+
+def test_damaged_or_foreign_files_are_refused(tmp_path):
+    body, path = usual_body(), tmp_path / "body.npz"
+    with pytest.raises(InvalidFileError, match="no file"):
+        load_body_model(path)
+    body.save(path)
+    path.write_bytes(path.read_bytes()[:200])
+    with pytest.raises(InvalidFileError, match="not a readable archive"):
+        load_body_model(path)
+    np.savez(path, kind="body model", version=1, lengths=body.lengths, radii=body.radii)
+    with pytest.raises(InvalidFileError, match="other parts"):
+        load_body_model(path)
+
+
+@pytest.mark.parametrize(
+    ("lengths", "radii", "words"),
+    [
+        (np.ones(3), np.ones((19, 2)), "lengths of a body have shape"),
+        (np.ones(20), np.ones((19, 1)), "radii of a body have shape"),
+        (np.full(20, np.nan), np.ones((19, 2)), "lengths of a body must all be above 0"),
+        (np.ones(20), -np.ones((19, 2)), "radii of a body must all be above 0"),
+    ],
+)
+def test_impossible_bodies_are_refused(lengths, radii, words):
+    assert (len(LENGTHS), len(CAPSULES)) == (20, 19)
+    with pytest.raises(InvalidMotionError, match=words):
+        BodyModel(lengths, radii)
+    with pytest.raises(InvalidMotionError, match=r"Nobody is 3 m tall"):
+        usual_body(3.0)

@@ -1,0 +1,138 @@
+"""Poses found in single pictures, with the forest that is shipped."""
+
+import numpy as np
+import pytest
+
+from solvers.depth_tracking.body_kinematics import joint_positions, segment_frames
+from solvers.depth_tracking.body_model import usual_body
+from solvers.depth_tracking.body_tables import JOINTS
+from solvers.depth_tracking.coordinates import COORDINATES, N_COORDINATES
+from solvers.depth_tracking.detect_pose import DetectorSettings, detect_pose
+from solvers.depth_tracking.hypothesis import imagine
+from solvers.depth_tracking.pixel_forest import classify_pixels, load_pixel_forest
+from solvers.errors import InvalidMotionError
+from solvers.motion.camera import Camera
+
+CAMERA = Camera(142.8, 142.8, 79.5, 59.5, 160, 120)
+BODY = usual_body()
+CMU = {
+    "head": "Head", "leftHand": "LeftHand", "rightHand": "RightHand",
+    "leftLowerLeg": "LeftLeg", "rightLowerLeg": "RightLeg", "leftFoot": "LeftFoot",
+    "rightFoot": "RightFoot", "leftLowerArm": "LeftForeArm", "rightLowerArm": "RightForeArm",
+}  # fmt: skip
+
+
+@pytest.fixture(scope="module")
+def forest():
+    return load_pixel_forest()
+
+
+def capsule_person(**angles):
+    pose = np.zeros(N_COORDINATES)
+    pose[:3] = 0.05, -0.1, 2.6
+    for name, angle in angles.items():
+        pose[COORDINATES.index(name)] = angle
+    return pose, imagine(BODY, pose, CAMERA).picture.depth_picture().astype(np.float32)
+
+
+@pytest.mark.parametrize(
+    "angles",
+    [
+        {"leftHumerusZ": 1.4, "rightHumerusZ": 1.4},
+        {"leftHumerusX": 1.0, "rightHumerusZ": 0.5, "yaw": 0.4},
+    ],
+)
+def test_a_person_of_capsules_is_found(forest, angles):
+    true, depth = capsule_person(**angles)
+    found = detect_pose(depth, CAMERA, BODY, forest)
+    exact = joint_positions(BODY, segment_frames(BODY, true))
+    apart = np.linalg.norm(found.joints - exact, axis=1)
+    assert apart.mean() < 0.05
+    assert found.overlap > 0.85
+    assert 0.0 < found.score <= 1.0
+    np.testing.assert_allclose(
+        found.joints, joint_positions(BODY, segment_frames(BODY, found.pose))
+    )
+
+
+def test_the_same_picture_gives_the_same_pose(forest):
+    _, depth = capsule_person(leftHumerusZ=1.0)
+    one, other = (detect_pose(depth, CAMERA, BODY, forest) for _ in range(2))
+    np.testing.assert_array_equal(one.pose, other.pose)
+
+
+def test_a_finer_camera_is_thinned_to_the_same(forest):
+    _, depth = capsule_person(leftHumerusZ=1.0, rightHumerusZ=1.0)
+    fine = np.repeat(np.repeat(depth, 4, axis=0), 4, axis=1)
+    camera = Camera(4 * 142.8, 4 * 142.8, 4 * 79.5, 4 * 59.5, 640, 480)
+    settings = DetectorSettings(most_pixels=int(np.count_nonzero(depth)))
+    small = detect_pose(depth, CAMERA, BODY, forest, settings)
+    large = detect_pose(fine, camera, BODY, forest, settings)
+    assert large.step == 4 * small.step
+    np.testing.assert_allclose(small.joints, large.joints, atol=1e-6)
+
+
+def test_what_is_not_in_the_picture_is_told(forest):
+    _, depth = capsule_person(leftHumerusZ=1.2, rightHumerusZ=1.2)
+    depth[62:] = 0.0
+    found = detect_pose(depth, CAMERA, BODY, forest)
+    assert {"leftFoot", "rightFoot"} <= set(found.unseen)
+    assert "head" not in found.unseen
+    assert np.isfinite(found.pose).all()
+
+
+@pytest.mark.parametrize("n_pixels", [0, 1, 30])
+def test_nobody_is_found_in_a_few_pixels(forest, n_pixels):
+    depth = np.zeros((120, 160), dtype=np.float32)
+    depth.reshape(-1)[5000 : 5000 + n_pixels] = 2.0
+    with pytest.raises(InvalidMotionError, match=r"Nobody is seen: \d+ pixels"):
+        detect_pose(depth, CAMERA, BODY, forest)
+
+
+def test_a_picture_full_of_noise_gives_a_finite_pose_of_low_score(forest, rng):
+    depth = rng.uniform(1.0, 4.0, (120, 160)).astype(np.float32)
+    depth[rng.random(depth.shape) < 0.7] = 0.0
+    found = detect_pose(depth, CAMERA, BODY, forest)
+    assert np.isfinite(found.pose).all()
+    assert found.overlap < 0.3
+
+
+@pytest.mark.parametrize(("take", "most"), [("walk_front", 0.05), ("jump", 0.06)])
+def test_frames_with_known_joints(recordings, forest, take, most):
+    """A skinned human seen by a noisy sensor, while the body is but the usual adult's."""
+    with np.load(recordings / "depth" / "truth" / f"{take}.npz") as truth:
+        depth, joints = truth["depth"], truth["joints"]
+        names = truth["joint_names"].tolist()
+        focal = [float(truth[name]) for name in ("fx", "fy", "cx", "cy")]
+    camera = Camera(*focal, 320, 240)
+    for frame in (5, 35, 65):
+        found = detect_pose((depth[frame] / 1000.0).astype(np.float32), camera, BODY, forest)
+        ours = found.joints[[JOINTS.index(joint) for joint in CMU]]
+        apart = ours - joints[frame][[names.index(joint) for joint in CMU.values()]]
+        assert np.linalg.norm(apart, axis=1).mean() < most
+
+
+def test_raw_frames_of_an_upper_body_say_that_legs_are_unseen(recordings, forest):
+    """skeltrack's frames: raw Kinect depth, somebody close up, cut off by the picture."""
+    path = sorted((recordings / "depth" / "skeltrack").iterdir())[0]
+    depth = np.fromfile(path, dtype="<u2").reshape(480, 640) / 1000.0
+    near = np.where((depth > 0.5) & (depth < 1.6), depth, 0.0).astype(np.float32)
+    camera = Camera(571.3, 571.3, 319.5, 239.5, 640, 480)
+    found = detect_pose(near, camera, BODY, forest)
+    assert {"head", "chest"}.isdisjoint(found.unseen)
+    assert {"leftFoot", "rightFoot"} <= set(found.unseen)
+
+
+def test_real_people_who_stand_have_their_heads_on_top(recordings, forest):
+    """UTD-MHAD: the forest knows the head of each subject who stands before a real Kinect."""
+    from scipy.io import loadmat
+
+    camera = Camera(285.63, 285.63, 160.0, 120.0, 320, 240).every(2)
+    for subject in (1, 3, 5, 7):
+        path = recordings / "depth" / "utd_mhad" / f"a1_s{subject}_t1_depth.mat"
+        depth = loadmat(path)["d_depth"][::2, ::2, 2] / 1000.0
+        pixels = classify_pixels(depth.astype(np.float32), camera, forest)
+        heads = pixels.rows[pixels.labels == 4]
+        assert len(heads) > 20
+        top, bottom = pixels.rows.min(), pixels.rows.max()
+        assert heads.mean() < top + 0.2 * (bottom - top)

@@ -1,0 +1,182 @@
+"""Colours, edges and recorded motions pull where they should."""
+
+import numpy as np
+import pytest
+from drawn_bodies import CAMERA, NATURAL, drawn, observed, recorded, waving
+from numpy.testing import assert_allclose, assert_array_equal
+
+from solvers.depth_tracking.body_model import usual_body
+from solvers.depth_tracking.coordinates import N_ROOT
+from solvers.depth_tracking.depth_edges import canny, edge_pixels
+from solvers.depth_tracking.edge_term import edge_term
+from solvers.depth_tracking.hypothesis import imagine
+from solvers.depth_tracking.motion_prior import (
+    LocalPca,
+    load_motion_prior,
+    local_pca,
+    motion_prior_of,
+)
+from solvers.depth_tracking.normal_equations import in_coordinates, segment_equations, step
+from solvers.depth_tracking.observation import Observation
+from solvers.depth_tracking.surface_term import Memory, remembered_intensities, surface_term
+from solvers.depth_tracking.track_pose import track_pose
+from solvers.depth_tracking.tracker_settings import LOU12
+from solvers.errors import InvalidFileError, InvalidMotionError
+
+BODY = usual_body()
+
+
+def test_canny_finds_a_step_as_one_line_in_its_place():
+    picture = np.zeros((20, 30))
+    picture[:, 12:] = 1.0
+
+    edges = canny(picture, 0.1, 0.05)
+
+    columns = np.flatnonzero(edges[5:15].all(axis=0))
+    assert len(columns) == 1 and columns[0] in {11, 12}
+    assert edges[5:15].sum() == 10
+
+
+def test_canny_keeps_weak_edges_only_where_they_touch_strong_ones():
+    rows = np.linspace(0.15, 1.0, 40)[:, np.newaxis]
+    picture = np.where(np.arange(40) >= 20, rows, 0.0)
+    lonely = np.where(np.arange(40) >= 30, 0.15, 0.0) * np.ones((40, 1))
+
+    assert canny(picture, 0.2, 0.04)[3:-3].any(axis=1).all()
+    assert not canny(lonely, 0.2, 0.04).any()
+    assert canny(lonely, 0.04, 0.04).any()
+
+
+def test_edges_of_an_actor_are_its_own_pixels_near_the_outline():
+    depth = drawn(NATURAL)
+    pixels = edge_pixels(depth)
+
+    assert (depth.ravel()[pixels] > 0.0).all()
+    assert len(np.unique(pixels)) == len(pixels) > 100
+    assert_array_equal(edge_pixels(np.zeros((10, 10))), [])
+
+
+@pytest.mark.parametrize("term", [surface_term, edge_term])
+def test_a_step_of_each_term_brings_the_body_back(term):
+    there = NATURAL.copy()
+    there[:2] += (0.03, -0.02)
+    hypothesis = imagine(BODY, there, CAMERA)
+    extra = (None,) if term is surface_term else ()
+
+    equations = term(hypothesis, observed(NATURAL), *extra, 1.0)
+    change = step(
+        in_coordinates([segment_equations(equations)], hypothesis.twists), np.full(34, 0.5)
+    )
+
+    assert change[:2] @ [0.03, -0.02] < 0.0
+
+
+def test_a_perfect_pose_is_left_alone():
+    hypothesis, observation = imagine(BODY, NATURAL, CAMERA), observed(NATURAL)
+    for equations in (
+        surface_term(hypothesis, observation, None, 1.0),
+        edge_term(hypothesis, observation, 1.0),
+    ):
+        assert_allclose(equations.residuals, 0.0, atol=1e-9)
+
+
+def striped(pose):
+    """A body whose colours are painted on its skin: each point's place along its segment."""
+    hypothesis = imagine(BODY, pose, CAMERA)
+    frame = hypothesis.frames[hypothesis.segments]
+    local = np.einsum("nji,nj->ni", frame[:, :3, :3], hypothesis.points - frame[:, :3, 3])
+    color = np.zeros((120 * 160, 3))
+    color[hypothesis.picture.pixels] = 127.0 + 120.0 * np.sin(40.0 * local[:, 1:2])
+    depth = hypothesis.picture.depth_picture()
+    return hypothesis, Observation(CAMERA, depth, color.reshape(120, 160, 3))
+
+
+def test_colours_are_remembered_where_the_skin_moved():
+    then, before = striped(NATURAL)
+    moved = NATURAL.copy()
+    moved[:3] += (0.05, 0.02, 0.0)
+    now, after = striped(moved)
+    chosen = np.arange(len(now.points))
+
+    remembered = remembered_intensities(now, chosen, Memory(then.frames, before))
+
+    actual = after.intensities[now.picture.pixels]
+    known = np.isfinite(remembered)
+    assert known.mean() > 0.8
+    off = np.abs(remembered - actual)[known]
+    assert np.median(off) < 25.0 < np.abs(127.0 - actual).mean()
+
+
+def test_colour_tells_how_far_a_limb_slid_along_itself():
+    """Depth alone hardly sees a body that rises a little; painted stripes do."""
+    then, before = striped(NATURAL)
+    risen = NATURAL.copy()
+    risen[1] -= 0.03
+    _, after = striped(risen)
+    change = []
+    for memory in (None, Memory(then.frames, before)):
+        asked = segment_equations(surface_term(then, after, memory, 1.0))
+        change.append(step(in_coordinates([asked], then.twists), np.full(34, 0.5))[1])
+    assert abs(change[1] + 0.03) < abs(change[0] + 0.03)
+
+
+def test_the_published_tracker_follows_a_slow_actor():
+    truth = waving(6)
+    prior = motion_prior_of([waving(60)])
+
+    tracked = track_pose(recorded(truth), BODY, truth[0], prior, settings=LOU12)
+
+    assert np.abs(tracked.joints.positions[0] - tracked.joints.positions[-1]).max() > 0.03
+    assert tracked.residual.max() < 0.03
+
+
+def test_the_local_plane_holds_what_followed():
+    """Poses on a line in pose space: one component, and poses off it are asked back."""
+    line = np.linspace(0.0, 1.0, 200)[:, np.newaxis] * np.eye(34)[10] + 0.1 * np.eye(34)[20]
+    prior = motion_prior_of([line])
+
+    plane = local_pca(prior, line[100])
+    asked = plane.equations(line[100] + 0.5 * np.eye(34)[15], 2.0)
+
+    assert plane.basis.shape == (28, 1)
+    assert plane.mean[10 - N_ROOT] > line[100, 10]
+    assert_allclose(asked.vector, -1.0 * np.eye(34)[15], atol=1e-9)
+    assert_allclose(asked.cost, 0.25)
+
+
+def test_planes_do_not_run_from_one_motion_into_the_next():
+    low, high = np.zeros((60, 34)), np.ones((60, 34))
+    low[:, 10] = np.linspace(0.0, 0.1, 60)
+    plane = local_pca(motion_prior_of([low, high]), low[-1])
+    assert (plane.mean < 0.2).all()
+
+
+def test_equations_equal_the_dense_ones(rng):
+    """Eq. 3.12: || (U U' - I)(q + dq - mean) ||^2 with the root left out."""
+    basis = np.linalg.qr(rng.normal(size=(28, 4)))[0]
+    plane, pose = LocalPca(rng.normal(size=28), basis), rng.normal(size=34)
+    jacobian = np.zeros((28, 34))
+    jacobian[:, N_ROOT:] = basis @ basis.T - np.eye(28)
+    off = jacobian @ pose - jacobian[:, N_ROOT:] @ plane.mean
+
+    found = plane.equations(pose, 3.0)
+
+    assert_allclose(found.matrix, 3.0 * jacobian.T @ jacobian, atol=1e-12)
+    assert_allclose(found.vector, -3.0 * jacobian.T @ off, atol=1e-12)
+    assert_allclose(found.cost, 1.5 * off @ off)
+
+
+def test_saving_and_loading_a_prior(tmp_path):
+    prior = motion_prior_of([waving(5), waving(3)], "two waves")
+    prior.save(tmp_path / "prior.npz")
+
+    loaded = load_motion_prior(tmp_path / "prior.npz")
+
+    assert_allclose(loaded.poses, prior.poses, atol=1e-6)
+    assert_array_equal(loaded.clips, [0] * 5 + [1] * 3)
+    assert loaded.trained_on == "two waves"
+    np.savez(tmp_path / "bad.npz", kind="motion prior", version=1, poses=np.zeros((2, 3)))
+    with pytest.raises(InvalidFileError, match="other parts"):
+        load_motion_prior(tmp_path / "bad.npz")
+    with pytest.raises(InvalidMotionError, match="no pose to learn"):
+        motion_prior_of([])

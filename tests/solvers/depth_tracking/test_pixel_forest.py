@@ -1,0 +1,265 @@
+"""Pixel forests: features, growing, telling pixels, files."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from box_person import box_person
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from solvers.depth_tracking.depth_differences import FAR, differences, pixel_views, with_margin
+from solvers.depth_tracking.grow_tree import (
+    EDGES,
+    N_BINS,
+    Tree,
+    TreeSettings,
+    _gains,
+    grow_tree,
+)
+from solvers.depth_tracking.parts import N_PARTS
+from solvers.depth_tracking.pixel_forest import (
+    KIND,
+    SHIPPED,
+    VERSION,
+    PixelForest,
+    classify_pixels,
+    load_pixel_forest,
+)
+from solvers.depth_tracking.render_mesh import NOTHING
+from solvers.depth_tracking.train_forest import (
+    PixelForestSettings,
+    draw_pictures,
+    draw_pixels,
+    train_pixel_forest,
+)
+from solvers.depth_tracking.training_pictures import CAMERA, picture_source
+from solvers.errors import InvalidFileError, InvalidMotionError
+from solvers.files import read_archive, write_archive
+from solvers.motion.camera import Camera
+from solvers.samples import GaitSettings, walking_gait
+
+SMALL = PixelForestSettings(
+    n_pictures=80,
+    n_pixels=100,
+    n_trees=2,
+    levels=8,
+    n_candidates=30,
+    least_pixels=20,
+    loose=0.0,
+)
+
+
+@pytest.fixture(scope="module")
+def gait():
+    return walking_gait(GaitSettings(duration=1.0, frame_rate=10.0))
+
+
+@pytest.fixture(scope="module")
+def bodies():
+    return [box_person(), box_person(1.2)]
+
+
+@pytest.fixture(scope="module")
+def forest(gait, bodies):
+    return train_pixel_forest([gait], bodies, SMALL, trained_on="a made walk")
+
+
+@pytest.fixture(scope="module")
+def unseen(gait, bodies):
+    """Pictures of another seed."""
+    source = picture_source([gait], bodies, SMALL, 99)
+    seen = draw_pictures(source, range(1))
+    depth = np.where(seen.pictures == FAR, 0, seen.pictures)[:, 1:-1, 1:-1] / 1000.0
+    return depth.astype(np.float32), seen.labels
+
+
+def probed(depth, camera, row, column, right, down):
+    """Depth in millimetres at one place, as the features define it."""
+    z = depth[row, column]
+    u = int(np.rint(column + camera.fx * right / z))
+    v = int(np.rint(row + camera.fy * down / z))
+    inside = 0 <= u < camera.width and 0 <= v < camera.height
+    return round(1000 * float(depth[v, u])) if inside and depth[v, u] > 0 else FAR
+
+
+@settings(max_examples=30)
+@given(seed=st.integers(0, 1000))
+def test_features_are_differences_at_places_in_metres(seed):
+    rng = np.random.default_rng(seed)
+    camera = Camera(rng.uniform(20, 60), rng.uniform(20, 60), 9.5, 7.5, 20, 16)
+    depth = (rng.uniform(0.5, 3, (16, 20)) * (rng.random((16, 20)) < 0.7)).astype(np.float32)
+    rows, columns = np.nonzero(depth)
+    offsets = rng.uniform(-1, 1, 4).astype(np.float32)
+    views = pixel_views(
+        with_margin(depth)[None], np.zeros(len(rows), int), rows, columns, camera
+    )
+    told = differences(views, offsets)
+    exact = [
+        probed(depth, camera, row, column, *offsets[:2])
+        - probed(depth, camera, row, column, *offsets[2:])
+        for row, column in zip(rows, columns, strict=True)
+    ]
+    # A place just between two pixels may fall to either by rounding.
+    assert (np.abs(told - exact) <= 1).mean() > 0.98
+
+
+def test_gains_are_those_of_entropies(rng):
+    counts = rng.integers(0, 9, (5, N_BINS, N_PARTS))
+    gain, edge = _gains(counts)
+
+    def entropy(parts):
+        shares = parts[parts > 0] / parts.sum() if parts.sum() else np.ones(1)
+        return -(shares * np.log(shares)).sum()
+
+    for node in range(5):
+        whole = counts[node].sum(axis=0)
+        each = []
+        for bins in range(1, N_BINS):
+            low = counts[node, :bins].sum(axis=0)
+            after = low.sum() * entropy(low) + (whole - low).sum() * entropy(whole - low)
+            each.append(whole.sum() * entropy(whole) - after)
+        np.testing.assert_allclose(gain[node], max(each), rtol=1e-3)
+        assert each[edge[node]] == pytest.approx(max(each), rel=1e-3)
+
+
+def test_a_tree_learns_what_one_feature_tells(rng):
+    """Half of the pixels have nothing to their right: one test must tell them apart."""
+    depth = np.full((40, 60), 2.0, dtype=np.float32)
+    depth[:, 30:] = 0.0
+    rows, columns = np.nonzero(depth)
+    views = pixel_views(
+        with_margin(depth)[None], np.zeros(len(rows), int), rows, columns, CAMERA
+    )
+    views = views._replace(width=60, height=40)
+    parts = np.where(columns >= 25, 4, 9).astype(np.uint8)
+    tree = grow_tree(views, parts, TreeSettings(levels=4, n_candidates=400), rng)
+    assert (tree.shares.max(axis=1) == 255).mean() > 0.6
+    assert tree.splits[0]
+    assert len(tree.splits) == 2 * tree.splits.sum() + 1
+
+
+def test_walking_down_the_trees_pixel_by_pixel_tells_the_same(forest, unseen):
+    depth = unseen[0][3]
+    found = classify_pixels(depth, CAMERA, forest)
+    for pixel in range(0, len(found.rows), 41):
+        spot = int(found.rows[pixel]), int(found.columns[pixel])
+        shares = np.mean([leaf(tree, depth, *spot) for tree in forest.trees], axis=0)
+        np.testing.assert_allclose(found.shares[pixel], shares, atol=1e-6)
+
+
+def leaf(tree, depth, row, column):
+    node = 0
+    while tree.splits[node]:
+        rank = int(tree.splits[:node].sum())
+        places = tree.offsets[rank].astype(np.float32) / np.float32(100)
+        told = probed(depth, CAMERA, row, column, *places[:2])
+        told -= probed(depth, CAMERA, row, column, *places[2:])
+        node = 1 + 2 * rank + (told > tree.thresholds[rank])
+    shares = tree.shares[int((~tree.splits[:node]).sum())].astype(float)
+    return shares / shares.sum()
+
+
+def test_unseen_pictures_are_told_far_better_than_by_chance(forest, unseen):
+    right, total = 0, 0
+    for depth, labels in zip(*unseen, strict=True):
+        found = classify_pixels(depth, CAMERA, forest)
+        right += (found.labels == labels[found.rows, found.columns]).sum()
+        total += len(found.rows)
+    assert right / total > 0.35  # The commonest part is a sixth of all pixels.
+
+
+def test_a_camera_of_twice_the_pixels_is_told_the_same(forest, unseen):
+    depth = unseen[0][5]
+    fine = np.repeat(np.repeat(depth, 2, axis=0), 2, axis=1)
+    camera = Camera(2 * 142.8, 2 * 142.8, 159.5, 119.5, 320, 240)
+    small = classify_pixels(depth, CAMERA, forest)
+    large = classify_pixels(fine, camera, forest)
+    told = np.full(fine.shape, -1)
+    told[large.rows, large.columns] = large.labels
+    assert (told[2 * small.rows, 2 * small.columns] == small.labels).mean() > 0.7
+
+
+def test_the_same_seed_grows_the_same_forest(gait, bodies, forest):
+    again = train_pixel_forest([gait], bodies, SMALL)
+    other = train_pixel_forest([gait], bodies, replace(SMALL, seed=1))
+    np.testing.assert_array_equal(again.trees[1].offsets, forest.trees[1].offsets)
+    np.testing.assert_array_equal(again.trees[1].shares, forest.trees[1].shares)
+    assert not np.array_equal(other.trees[0].offsets, forest.trees[0].offsets)
+
+
+def test_pixels_to_learn_from_are_of_bodies_and_none_twice(gait, bodies, rng):
+    seen = draw_pictures(picture_source([gait], bodies, SMALL, 0), range(1))
+    views, parts = draw_pixels(seen, 50, rng)
+    assert len(np.unique(views.place)) == len(views.place)
+    assert parts.max() < N_PARTS
+    assert (seen.labels != NOTHING).sum(axis=(1, 2)).clip(max=50).sum() == len(parts)
+
+
+def test_an_empty_picture_has_no_parts(forest):
+    found = classify_pixels(np.zeros((120, 160), np.float32), CAMERA, forest)
+    assert found.shares.shape == (0, N_PARTS)
+    assert found.labels.shape == (0,)
+
+
+def test_a_forest_comes_back_from_its_file(forest, unseen, tmp_path):
+    forest.save(tmp_path / "forest.npz")
+    loaded = load_pixel_forest(tmp_path / "forest.npz")
+    assert loaded.trained_on == "a made walk"
+    for mine, theirs in zip(forest.trees, loaded.trees, strict=True):
+        for name in ("splits", "offsets", "thresholds", "shares"):
+            np.testing.assert_array_equal(getattr(mine, name), getattr(theirs, name))
+    one, other = (classify_pixels(unseen[0][0], CAMERA, each) for each in (forest, loaded))
+    np.testing.assert_array_equal(one.shares, other.shares)
+
+
+@pytest.mark.parametrize(
+    ("name", "value", "fault"),
+    [
+        ("parts", np.array(["hips"]), "other parts"),
+        ("n_nodes", np.array([3]), "nodes do not fit"),
+        ("thresholds", np.zeros(2, np.int16), "shapes do not fit"),
+        ("offsets", np.zeros((2, 4)), "other kinds"),
+        ("shares", None, "missing"),
+    ],
+)
+def test_damaged_forests_are_refused(forest, tmp_path, name, value, fault):
+    path = tmp_path / "forest.npz"
+    forest.save(path)
+    arrays = read_archive(path, KIND, VERSION)
+    if value is None:
+        del arrays[name]
+    else:
+        arrays[name] = value
+    write_archive(path, KIND, VERSION, arrays)
+    with pytest.raises(InvalidFileError, match=fault):
+        load_pixel_forest(path)
+
+
+def test_leaves_that_tell_nothing_are_refused(forest, tmp_path):
+    shares = np.zeros_like(forest.trees[0].shares)
+    empty = PixelForest((Tree(*vars(replace(forest.trees[0], shares=shares)).values()),))
+    empty.save(tmp_path / "forest.npz")
+    with pytest.raises(InvalidFileError, match="tells nothing"):
+        load_pixel_forest(tmp_path / "forest.npz")
+
+
+def test_training_needs_poses_and_bodies(gait, bodies):
+    with pytest.raises(InvalidMotionError, match="at least one motion"):
+        train_pixel_forest([], bodies, SMALL)
+    with pytest.raises(InvalidMotionError, match="at least one motion"):
+        train_pixel_forest([gait], [], SMALL)
+    with pytest.raises(InvalidMotionError, match="at least one tree"):
+        PixelForest(())
+
+
+def test_edges_are_in_order():
+    assert (np.diff(EDGES) > 0).all()
+    np.testing.assert_array_equal(EDGES, -EDGES[::-1])
+
+
+def test_the_shipped_forest_is_small_and_says_what_it_learned_from():
+    forest = load_pixel_forest()
+    assert SHIPPED.stat().st_size <= 3_000_000
+    assert "CMU" in forest.trained_on
+    assert len(forest.trees) >= 3

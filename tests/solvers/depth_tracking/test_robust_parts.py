@@ -1,0 +1,190 @@
+"""Parts found among misclassified pixels, poses fitted to them, and what scores them."""
+
+import numpy as np
+import pytest
+
+from solvers.depth_tracking.body_kinematics import joint_positions, segment_frames
+from solvers.depth_tracking.body_model import usual_body
+from solvers.depth_tracking.body_tables import CAPSULE_SEGMENTS, CAPSULES
+from solvers.depth_tracking.coordinates import COORDINATES, N_COORDINATES
+from solvers.depth_tracking.hypothesis import imagine
+from solvers.depth_tracking.labelled_fit import (
+    capsule_distances,
+    first_pose,
+    fit_parts,
+    fit_pixels,
+)
+from solvers.depth_tracking.observation import Observation
+from solvers.depth_tracking.part_capsules import (
+    PART_CAPSULES,
+    PART_SEGMENTS,
+    PART_SPANS,
+    part_axes,
+)
+from solvers.depth_tracking.parts import MIRRORED, N_PARTS, PARTS
+from solvers.depth_tracking.pixel_forest import PixelParts
+from solvers.depth_tracking.pose_score import pose_score
+from solvers.depth_tracking.pose_trials import exchange_orders, trial_poses
+from solvers.depth_tracking.robust_parts import FoundParts, find_parts
+from solvers.motion.camera import Camera
+
+CAMERA = Camera(142.8, 142.8, 79.5, 59.5, 160, 120)
+BODY = usual_body()
+
+
+def standing(**angles: float):
+    """A pose at 2.8 m whose left elbow is bent, so that left and right differ."""
+    pose = np.zeros(N_COORDINATES)
+    pose[:3] = 0.05, 0.0, 2.8
+    told = {"leftHumerusX": 0.7, "leftRadius": 1.2, "rightHumerusZ": 0.6, "rightFemurX": 0.4}
+    for name, angle in (told | angles).items():
+        pose[COORDINATES.index(name)] = angle
+    return pose
+
+
+def seen_parts(pose):
+    """What the camera sees of the body: points, parts, rows and columns."""
+    picture = imagine(BODY, pose, CAMERA).picture
+    rows, columns = np.divmod(picture.pixels, CAMERA.width)
+    points = CAMERA.rays()[rows, columns] * picture.depths[:, None]
+    frames = segment_frames(BODY, pose)
+    parts = np.zeros(len(points), dtype=int)
+    for place, point in enumerate(points):
+        parts[place] = part_at(picture.capsules[place], point, frames)
+    return points, parts, rows, columns
+
+
+def part_at(capsule, point, frames):
+    """The part by brute force: of this capsule, and on the nearer half of its axis."""
+    of_it = [part for part in range(N_PARTS) if PART_CAPSULES[part] == capsule]
+    if len(of_it) == 1:
+        return of_it[0]
+    frame = frames[PART_SEGMENTS[of_it[0]]]
+    middles = [
+        frame[:3, :3] @ part_axes(BODY)[part].mean(axis=0) + frame[:3, 3] for part in of_it
+    ]
+    return of_it[int(np.argmin([np.linalg.norm(point - middle) for middle in middles]))]
+
+
+def joint_error(pose, true):
+    frames, exact = segment_frames(BODY, pose), segment_frames(BODY, true)
+    apart = joint_positions(BODY, frames) - joint_positions(BODY, exact)
+    return float(np.linalg.norm(apart, axis=1).mean())
+
+
+def test_every_part_has_a_capsule_and_halves_make_a_whole():
+    assert {CAPSULES[capsule] for capsule in PART_CAPSULES} == set(CAPSULES)
+    covered = np.zeros(len(CAPSULES))
+    np.add.at(covered, PART_CAPSULES, PART_SPANS[:, 1] - PART_SPANS[:, 0])
+    np.testing.assert_array_equal(covered, 1.0)
+
+
+@pytest.mark.parametrize("wrong", [0.0, 0.35])
+def test_centres_are_found_among_wrong_pixels(rng, wrong):
+    """A third of the pixels is told at random; middles stay within some centimetres."""
+    true = standing()
+    points, parts, _, _ = seen_parts(true)
+    labels = np.where(
+        rng.random(len(parts)) < wrong, rng.integers(0, N_PARTS, len(parts)), parts
+    )
+    found = find_parts(points, labels, BODY, rng)
+    frames = segment_frames(BODY, true)
+    for part in ("head", "rightUpperArm", "leftLowerLeg", "rightUpperLegEnd"):
+        place = PARTS.index(part)
+        assert found.weights[place] >= 0.4
+        capsule = PART_CAPSULES[place]
+        far = capsule_distances(BODY, frames, found.centres[place][None])[0, capsule]
+        assert far < 0.03
+    true_part = {point.tobytes(): part for point, part in zip(points, parts, strict=True)}
+    right = [
+        true_part[point.tobytes()] == label
+        for point, label in zip(found.points, found.labels, strict=True)
+    ]
+    assert 1.0 - np.mean(right) <= 0.6 * (1.0 - (labels == parts).mean())
+
+
+def test_parts_that_are_not_there_are_not_found(rng):
+    points, parts, _, _ = seen_parts(standing())
+    left = np.char.startswith(np.array(PARTS), "left")[parts]
+    found = find_parts(points[~left], parts[~left], BODY, rng)
+    assert not found.weights[np.char.startswith(np.array(PARTS), "left")].any()
+    assert np.isnan(found.centres[PARTS.index("leftFoot")]).all()
+
+
+@pytest.mark.parametrize("yaw", [0.0, 1.2, 3.0])
+def test_a_pose_is_fitted_to_its_parts(rng, yaw):
+    true = standing(yaw=yaw)
+    points, parts, _, _ = seen_parts(true)
+    found = find_parts(points, parts, BODY, rng)
+    start = first_pose(BODY, found)
+    turned = start[COORDINATES.index("yaw")] - yaw
+    assert abs(np.angle(np.exp(1j * turned))) < 0.5
+    shares = np.eye(N_PARTS, dtype=np.float32)[parts]
+    pose = fit_parts(BODY, found, start)
+    pose = fit_pixels(BODY, points[::3], shares[::3], pose)
+    assert joint_error(pose, true) < 0.05
+
+
+def test_distances_to_round_capsules_are_exact(rng):
+    pose = standing()
+    frames = segment_frames(BODY, pose)
+    points = rng.normal([0.05, 0.0, 2.8], 0.4, (50, 3))
+    far = capsule_distances(BODY, frames, points)
+    place = CAPSULES.index("leftLowerLeg")
+    frame = frames[CAPSULE_SEGMENTS[place]]
+    start, stop = BODY.capsule_ends[place] @ frame[:3, :3].T + frame[:3, 3]
+    along = np.clip((points - start) @ (stop - start) / ((stop - start) ** 2).sum(), 0, 1)
+    exact = np.linalg.norm(points - start - along[:, None] * (stop - start), axis=1)
+    np.testing.assert_allclose(far[:, place], exact - BODY.radii[place, 0], atol=1e-9)
+
+
+def test_the_true_pose_scores_best(rng):
+    true = standing()
+    hypothesis = imagine(BODY, true, CAMERA)
+    observation = Observation(CAMERA, hypothesis.picture.depth_picture())
+    _, parts, rows, columns = seen_parts(true)
+    order = np.argsort(rows * CAMERA.width + columns)
+    shares = np.eye(N_PARTS, dtype=np.float32)[parts[order]]
+    pixels = PixelParts(rows[order], columns[order], shares)
+    score, overlap = pose_score(hypothesis, observation, pixels, 0.3)
+    assert score == pytest.approx(1.0, abs=1e-6)
+    assert overlap == 1.0
+    for name, change in (("rootX", 0.05), ("leftRadius", -0.8), ("yaw", 0.4), ("rootZ", 0.05)):
+        other = true.copy()
+        other[COORDINATES.index(name)] += change
+        worse, _ = pose_score(imagine(BODY, other, CAMERA), observation, pixels, 0.3)
+        assert worse < score - 0.01
+    away = true.copy()
+    away[0] += 3.0
+    assert pose_score(imagine(BODY, away, CAMERA), observation, pixels, 0.3)[1] == 0.0
+
+
+def test_trials_exchange_sides_in_every_way():
+    orders = exchange_orders()
+    assert len({tuple(order) for order in orders}) == 4
+    np.testing.assert_array_equal(orders[0], np.arange(N_PARTS))
+    np.testing.assert_array_equal(orders[-1], MIRRORED)
+    for order in orders:
+        np.testing.assert_array_equal(order[order], np.arange(N_PARTS))
+
+
+def test_one_of_the_trials_finds_a_pose_whose_legs_were_told_wrong(rng):
+    true = standing(yaw=-1.3, leftFemurX=-0.3)
+    points, parts, _, _ = seen_parts(true)
+    legs = np.array([part.endswith(("Leg", "LegEnd", "Foot")) for part in PARTS])
+    told = np.where(legs[parts], MIRRORED[parts], parts)
+    shares = np.eye(N_PARTS, dtype=np.float32)[told]
+    found = find_parts(points, told, BODY, rng)
+    errors = [
+        joint_error(pose, true) for pose in trial_poses(BODY, found, points[::3], shares[::3])
+    ]
+    assert min(errors) < 0.06
+
+
+def test_exchanged_parts_carry_their_places(rng):
+    centres = rng.normal(size=(N_PARTS, 3))
+    parts = FoundParts(centres, np.arange(N_PARTS) / N_PARTS, centres, np.arange(N_PARTS))
+    other = parts.exchanged(MIRRORED)
+    left, right = PARTS.index("leftFoot"), PARTS.index("rightFoot")
+    np.testing.assert_array_equal(other.centres[left], centres[right])
+    np.testing.assert_array_equal(other.labels[left], right)

@@ -1,0 +1,72 @@
+"""Noise of a structured-light sensor: each of its causes alone."""
+
+from dataclasses import replace
+
+import numpy as np
+
+from solvers.depth_tracking.render_mesh import NOTHING, RenderedMesh
+from solvers.depth_tracking.sensor_noise import CLEAN, DISPARITY, with_sensor_noise
+from solvers.motion.camera import Camera
+
+CAMERA = Camera(280.0, 280.0, 79.5, 59.5, 160, 120)
+
+
+def wall(distance=3.0):
+    shape = (CAMERA.height, CAMERA.width)
+    return RenderedMesh(np.full(shape, distance, np.float32), np.zeros(shape, np.uint8))
+
+
+def test_a_clean_sensor_changes_nothing(rng):
+    depth = rng.uniform(1.0, 4.0, (120, 160)).astype(np.float32)
+    depth[:30] = 0.0
+    labels = np.where(depth > 0, 3, NOTHING).astype(np.uint8)
+    seen = with_sensor_noise(RenderedMesh(depth, labels), CAMERA, rng, CLEAN)
+    np.testing.assert_array_equal(seen.depth, depth)
+    np.testing.assert_array_equal(seen.labels, labels)
+
+
+def test_steps_grow_with_the_square_of_distance(rng):
+    ramp = wall()
+    ramp.depth[:] = np.linspace(1.0, 4.0, ramp.depth.size).reshape(ramp.depth.shape)
+    told = with_sensor_noise(ramp, CAMERA, rng, replace(CLEAN, step=1.0)).depth
+    steps = DISPARITY / told
+    np.testing.assert_allclose(steps, np.rint(steps), atol=1e-3)
+    levels = np.unique(told)
+    for z in (1.5, 3.0, 3.9):
+        step = np.diff(levels)[np.searchsorted(levels, z)]
+        np.testing.assert_allclose(step, z**2 / DISPARITY, rtol=0.03)
+
+
+def test_rough_disparity_is_rough_by_the_square_of_distance(rng):
+    for z in (1.0, 3.0):
+        told = with_sensor_noise(wall(z), CAMERA, rng, replace(CLEAN, disparity=0.2)).depth
+        np.testing.assert_allclose(told.std(), 0.2 * z**2 / DISPARITY, rtol=0.05)
+
+
+def test_a_bar_casts_a_shadow_to_its_left_as_wide_as_the_disparity(rng):
+    """The projector is to the right: from there, the bar hides what lies left of it."""
+    scene = wall()
+    scene.depth[:, 80:100] = 1.5
+    seen = with_sensor_noise(scene, CAMERA, rng, replace(CLEAN, baseline=0.075))
+    unseen = np.flatnonzero(seen.depth[60] == 0)
+    width = 280.0 * 0.075 * (1 / 1.5 - 1 / 3.0)
+    assert unseen.max() == 79
+    assert abs(len(unseen) - width) <= 1
+    assert (seen.labels[60, unseen] == NOTHING).all()
+
+
+def test_holes_come_as_often_as_asked_and_more_at_edges(rng):
+    scene = wall()
+    scene.depth[:, 80:] = 1.5
+    seen = with_sensor_noise(scene, CAMERA, rng, replace(CLEAN, holes=0.1, edge_holes=0.6))
+    hole = seen.depth == 0
+    assert abs(hole[:, [79, 80]].mean() - 0.6) < 0.1
+    assert abs(hole[:, :79].mean() - 0.1) < 0.01
+
+
+def test_labels_move_with_their_depth(rng):
+    scene = wall()
+    scene.depth[:, 80:], scene.labels[:, 80:] = 1.5, 7
+    seen = with_sensor_noise(scene, CAMERA, rng, replace(CLEAN, jitter=1.0))
+    np.testing.assert_array_equal(seen.labels == 7, seen.depth == 1.5)
+    assert (seen.depth[:, 80] == 3.0).any()

@@ -1,0 +1,181 @@
+"""Each term's equations are the derivatives of what it says it measures."""
+
+import numpy as np
+import pytest
+from drawn_bodies import CAMERA, NATURAL, observed, posed
+from numpy.testing import assert_allclose
+
+from solvers.depth_tracking.body_model import usual_body
+from solvers.depth_tracking.body_tables import CAPSULES, SEGMENTS
+from solvers.depth_tracking.closest_surface_term import closest_surface, closest_surface_term
+from solvers.depth_tracking.depth_image_term import depth_gradients, depth_image_term
+from solvers.depth_tracking.extra_depth_term import extra_depth_term
+from solvers.depth_tracking.free_space_term import off_actor_term, too_near_term
+from solvers.depth_tracking.hypothesis import imagine
+from solvers.depth_tracking.normal_equations import (
+    SurfaceRows,
+    in_coordinates,
+    segment_equations,
+    step,
+    toward,
+)
+from solvers.depth_tracking.observation import Observation
+from solvers.depth_tracking.pixel_groups import group_pixels
+from solvers.depth_tracking.silhouette_term import silhouette_term
+
+BODY = usual_body()
+
+
+def moved(hypothesis, directions):
+    """How fast visible points move along directions (n, 3) with each coordinate, (n, 34)."""
+    twists = hypothesis.twists[hypothesis.segments]
+    speeds = np.cross(twists[:, :3], hypothesis.points[:, :, None], axis=1) + twists[:, 3:]
+    return np.einsum("ni,nik->nk", directions, speeds)
+
+
+def test_equations_of_segments_equal_the_dense_ones(rng):
+    """One 6 x 6 matrix per segment holds what a Jacobian with a row per pixel holds."""
+    hypothesis = imagine(BODY, NATURAL, CAMERA)
+    n = len(hypothesis.points)
+    directions, residuals = rng.normal(size=(n, 3)), rng.normal(size=n)
+    weights = rng.uniform(0.5, 2.0, size=n)
+
+    rows = SurfaceRows(
+        hypothesis.points, directions, residuals, weights, hypothesis.picture.capsules
+    )
+
+    found = in_coordinates([segment_equations(rows)], hypothesis.twists)
+
+    jacobian = moved(hypothesis, directions)
+    assert_allclose(found.matrix, jacobian.T @ (weights[:, None] * jacobian), atol=1e-8)
+    assert_allclose(found.vector, jacobian.T @ (weights * residuals), atol=1e-8)
+    assert_allclose(found.cost, 0.5 * (weights * residuals**2).sum())
+
+
+def test_moving_toward_is_moving_along_three_axes(rng):
+    points, targets = rng.normal(size=(2, 7, 3))
+    weights, capsules = rng.uniform(size=7), rng.integers(0, 19, size=7)
+
+    found = segment_equations(toward(points, targets, weights, capsules))
+
+    parts = [
+        segment_equations(SurfaceRows(
+            points, np.tile(axis, (7, 1)), (targets - points) @ axis, weights, capsules))
+        for axis in np.eye(3)
+    ]  # fmt: skip
+    assert_allclose(found.matrices, sum(part.matrices for part in parts), atol=1e-12)
+    assert_allclose(found.vectors, sum(part.vectors for part in parts), atol=1e-12)
+
+
+def test_depth_of_a_pixel_changes_as_its_gradient_says():
+    """Central differences of drawn pictures, where neither outline nor other part is near."""
+    hypothesis, size = imagine(BODY, NATURAL, CAMERA), 1e-5
+    exact = moved(hypothesis, depth_gradients(hypothesis))
+    pixels = hypothesis.picture.pixels
+    facing = -np.einsum("ni,ni->n", hypothesis.normals, hypothesis.rays) > 0.4
+    for coordinate in (0, 2, 3, 5, 8, 11, 14, 16, 18, 20, 21, 23, 29, 33):
+        pictures = [
+            imagine(BODY, NATURAL + sign * size * np.eye(34)[coordinate], CAMERA).picture
+            for sign in (1.0, -1.0)
+        ]
+        high, low = (picture.depth_picture().ravel()[pixels] for picture in pictures)
+        same = (pictures[0].segment_picture() == pictures[1].segment_picture()).ravel()[pixels]
+        inner = facing & same & (high > 0.0) & (low > 0.0)
+        differences = (high - low)[inner] / (2 * size)
+        assert inner.sum() > 900
+        # Kinks where one capsule of a segment meets another are a few pixels only.
+        off = np.abs(differences - exact[inner, coordinate])
+        assert (off < 1e-4).mean() > 0.99
+
+
+@pytest.mark.parametrize("aside", [(0.03, 0.0), (0.0, -0.03)])
+def test_the_silhouette_term_asks_back_where_the_outline_is(aside):
+    there = NATURAL.copy()
+    there[:2] += aside
+    hypothesis = imagine(BODY, there, CAMERA)
+
+    asked = in_coordinates(
+        [segment_equations(silhouette_term(hypothesis, observed(NATURAL), 1.0))],
+        hypothesis.twists,
+    ).vector[:2]
+
+    assert asked @ np.array(aside) < 0.0
+    assert abs(asked @ np.array(aside)) > 0.9 * np.linalg.norm(asked) * np.linalg.norm(aside)
+
+
+def test_a_perfect_pose_is_asked_for_nothing():
+    hypothesis, observation = imagine(BODY, NATURAL, CAMERA), observed(NATURAL)
+    groups = group_pixels(hypothesis, observation, 0.08)
+
+    for term in (
+        depth_image_term(hypothesis, observation, groups, 1.0),
+        extra_depth_term(hypothesis, observation, groups, 1.0, 0.08),
+        silhouette_term(hypothesis, observation, 1.0),
+        closest_surface_term(hypothesis, observation.points, 1.0, 0.05),
+        off_actor_term(hypothesis, observation, groups, 1.0, 0.05),
+        too_near_term(hypothesis, observation, groups, 1.0, 0.05),
+    ):
+        assert_allclose(term.residuals, 0.0, atol=1e-9)
+
+
+def test_pixels_fall_into_the_groups_of_the_paper():
+    """An arm before the chest hides it; a raised arm is not where it was expected."""
+    acted = posed(leftHumerusX=1.0, leftHumerusY=1.0, leftRadius=1.6, rightHumerusZ=1.4)
+    hypothesis, observation = imagine(BODY, posed(), CAMERA), observed(acted)
+
+    groups = group_pixels(hypothesis, observation, 0.08)
+
+    together = [groups.comparable, groups.off_actor, groups.too_near, groups.too_far]
+    assert sorted(np.concatenate(together)) == list(range(len(hypothesis.points)))
+    assert (hypothesis.segments == SEGMENTS.index("chest"))[groups.too_far].sum() > 10
+    arm = hypothesis.segments == SEGMENTS.index("rightLowerArm")
+    assert arm[groups.off_actor].sum() > 0.7 * arm.sum()
+    assert len(groups.uncovered) > 30
+    assert set(observation.pixels) <= set(hypothesis.picture.pixels) | set(groups.uncovered)
+    back = group_pixels(imagine(BODY, acted, CAMERA), observed(posed()), 0.08)
+    assert len(back.too_near) > 10
+
+
+@pytest.mark.parametrize("away", [-0.02, 0.03])
+def test_the_closest_surface_of_a_round_limb_is_its_radius_from_the_axis(away):
+    hypothesis = imagine(BODY, posed(leftHumerusZ=1.2), CAMERA)
+    limb = CAPSULES.index("leftLowerArm")
+    frame = hypothesis.frames[SEGMENTS.index("leftLowerArm")]
+    middle = frame[:3, :3] @ BODY.capsule_ends[limb].mean(axis=0) + frame[:3, 3]
+    toward = -middle / np.linalg.norm(middle)
+    toward -= frame[:3, 1] * (frame[:3, 1] @ toward)
+    toward /= np.linalg.norm(toward)
+    point = middle + (BODY.radii[limb, 0] + away) * toward
+
+    distances, normals, capsules = closest_surface(hypothesis, point[np.newaxis])
+
+    assert capsules == limb
+    assert_allclose(distances, away, atol=1e-12)
+    assert_allclose(normals[0], toward, atol=1e-12)
+
+
+def test_every_depth_term_moves_the_body_nearer():
+    """A step of each term alone from 4 cm too near shortens the way to the truth."""
+    there = NATURAL.copy()
+    there[2] -= 0.04
+    hypothesis, observation = imagine(BODY, there, CAMERA), observed(NATURAL)
+    groups = group_pixels(hypothesis, observation, 0.08)
+    for term in (
+        depth_image_term(hypothesis, observation, groups, 1.0),
+        closest_surface_term(hypothesis, observation.points, 1.0, 0.2),
+    ):
+        change = step(
+            in_coordinates([segment_equations(term)], hypothesis.twists), np.full(34, 0.1)
+        )
+        nearer = imagine(BODY, there + change, CAMERA).points[:, 2].mean()
+        assert abs(nearer - observation.points[:, 2].mean()) < 0.03
+
+
+def test_depths_of_nobody_are_grouped_as_nothing():
+    empty = Observation(CAMERA, np.zeros((120, 160)))
+    hypothesis = imagine(BODY, NATURAL, CAMERA)
+    groups = group_pixels(hypothesis, empty, 0.08)
+
+    assert len(groups.off_actor) == len(hypothesis.points)
+    assert not len(groups.comparable) and not len(groups.uncovered)
+    assert not len(extra_depth_term(hypothesis, empty, groups, 1.0, 0.08).residuals)

@@ -1,0 +1,165 @@
+"""The tracker finds the pose that made the picture, from near it, and follows it."""
+
+import numpy as np
+import pytest
+from drawn_bodies import CAMERA, NATURAL, observed, recorded, waving
+from numpy.testing import assert_allclose, assert_array_equal
+
+from solvers.depth_tracking.body_kinematics import joint_positions, segment_frames
+from solvers.depth_tracking.body_model import usual_body
+from solvers.depth_tracking.body_tables import JOINTS
+from solvers.depth_tracking.coordinates import LEAST, MOST
+from solvers.depth_tracking.pose_priors import foretell, joint_limits, stay_near
+from solvers.depth_tracking.register_pose import register_pose
+from solvers.depth_tracking.track_pose import track_pose
+from solvers.depth_tracking.tracker_settings import USUAL, WZC12, TrackerSettings
+from solvers.errors import InvalidMotionError, SolveCancelled
+from solvers.motion.depth_recording import DepthRecording
+
+BODY = usual_body()
+
+
+def joints_of(poses, body=BODY):
+    return joint_positions(body, segment_frames(body, poses))
+
+
+def mean_error(poses, truth):
+    return np.linalg.norm(joints_of(poses) - joints_of(truth), axis=-1).mean()
+
+
+def no_prior(pose):
+    return stay_near(pose, pose, np.zeros(34))
+
+
+def test_converges_from_a_wide_basin(rng):
+    """From 3 cm and 6 degrees per joint away, nearly always to less than 1 cm."""
+    errors, before = [], []
+    for _ in range(12):
+        start = NATURAL + rng.normal(scale=0.1, size=34)
+        start[:3] = NATURAL[:3] + rng.normal(scale=0.02, size=3)
+        found = register_pose(
+            BODY, start, observed(NATURAL), no_prior, TrackerSettings(iterations=25)
+        )
+        before.append(mean_error(start, NATURAL))
+        errors.append(mean_error(found.pose, NATURAL))
+    assert np.mean(before) > 0.05
+    assert np.median(errors) < 0.01
+    assert np.mean(np.array(errors) < 0.03) >= 0.75
+
+
+def test_costs_only_fall_where_only_better_is_accepted(rng):
+    start = NATURAL + rng.normal(scale=0.1, size=34)
+    costs = [
+        register_pose(
+            BODY, start, observed(NATURAL), no_prior,
+            TrackerSettings(iterations=n, coarse_iterations=0),
+        ).equations.cost
+        for n in (1, 3, 6, 12)
+    ]  # fmt: skip
+    assert costs == sorted(costs, reverse=True)
+    assert costs[-1] < 0.2 * costs[0]
+
+
+@pytest.mark.parametrize(("settings", "worst"), [(USUAL, 0.02), (WZC12, 0.08)])
+def test_follows_someone_who_waves(settings, worst):
+    truth = waving(30)
+
+    tracked = track_pose(recorded(truth), BODY, truth[0], settings=settings)
+
+    assert mean_error(tracked.poses, truth) < worst
+    assert tracked.joints.names == JOINTS
+    assert_allclose(tracked.joints.positions, joints_of(tracked.poses))
+    assert tracked.residual.max() < 0.03
+    assert tracked.coverage.min() > 0.7
+
+
+def test_standing_still_would_be_worse():
+    truth = waving(30)
+    assert mean_error(np.tile(truth[0], (30, 1)), truth) > 0.1
+
+
+def test_the_same_numbers_every_time():
+    truth = waving(5)
+    first, second = (track_pose(recorded(truth), BODY, truth[0]) for _ in range(2))
+    assert_array_equal(first.poses, second.poses)
+
+
+def test_moving_the_actor_moves_the_result():
+    """Straight back by a step that keeps the rays: everything twice as far and twice as big."""
+    truth = waving(6)
+    far = truth.copy()
+    far[:, :3] *= 2.0
+
+    near_result = track_pose(recorded(truth), BODY, truth[0])
+    far_result = track_pose(recorded(far, BODY.scaled(2.0)), BODY.scaled(2.0), far[0])
+
+    assert_allclose(far_result.poses[:, 3:], near_result.poses[:, 3:], atol=0.12)
+
+
+def test_confidence_falls_where_a_limb_is_out_of_sight():
+    """The left arm behind the back, seen from the front, is surer from behind."""
+    front = waving(3) * 0.0 + NATURAL
+    behind = front.copy()
+    for pose in (front, behind):
+        pose[:, 3] = 0.0
+        pose[:, 16] = -0.7  # left humerus back
+        pose[:, 18] = -0.3
+        pose[:, 19] = 1.2
+    behind[:, 3] = np.pi
+    hand = JOINTS.index("leftHand")
+
+    from_front, from_behind = (
+        track_pose(recorded(poses), BODY, poses[0]).joints.confidence[-1, hand]
+        for poses in (front, behind)
+    )
+
+    assert from_front < 0.7 * from_behind
+
+
+def test_a_frame_without_anybody_is_bridged_and_told():
+    truth = waving(6)
+    recording = recorded(truth)
+
+    def read(frame):
+        return np.zeros((120, 160), dtype=np.float32) if frame == 3 else recording.frame(frame)
+
+    holed = DepthRecording(CAMERA, 6, 30.0, read)
+    tracked = track_pose(holed, BODY, truth[0])
+
+    assert np.isnan(tracked.residual[3]) and tracked.coverage[3] == 0.0
+    assert_array_equal(tracked.joints.confidence[3], 0.0)
+    assert mean_error(tracked.poses, truth) < 0.03
+
+
+def test_tells_progress_and_can_be_cancelled():
+    fractions = []
+    track_pose(recorded(waving(3)), BODY, NATURAL, progress=lambda f, _="": fractions.append(f))
+    assert_allclose(fractions, [1 / 3, 2 / 3, 1.0])
+
+    def stop(fraction, message=""):
+        raise SolveCancelled
+
+    with pytest.raises(SolveCancelled):
+        track_pose(recorded(waving(3)), BODY, NATURAL, progress=stop)
+
+
+@pytest.mark.parametrize("pose", [np.zeros(33), np.full(34, np.nan)])
+def test_no_pose_is_refused(pose):
+    with pytest.raises(InvalidMotionError, match="34 coordinates"):
+        track_pose(recorded(waving(1)), BODY, pose)
+
+
+def test_limits_ask_back_only_what_is_beyond():
+    inside = np.clip(np.zeros(34), LEAST, MOST) + 0.01 * np.isfinite(LEAST)
+    assert joint_limits(inside, 1.0).cost == 0.0
+    beyond = inside.copy()
+    beyond[10] = MOST[10] + 0.2
+    asked = joint_limits(beyond, 3.0)
+    assert_allclose(asked.vector, -0.6 * np.eye(34)[10], atol=1e-12)
+
+
+def test_foretells_constant_velocity():
+    poses = [np.full(34, 1.0), np.full(34, 1.5)]
+    assert_allclose(foretell(poses, 1.0), 2.0)
+    assert_allclose(foretell(poses, 0.0), 1.5)
+    assert_allclose(foretell(poses[:1], 1.0), 1.0)

@@ -1,0 +1,123 @@
+"""The order of clips, each step against a plainer way to the same numbers."""
+
+import numpy as np
+import pytest
+from acted import ACTS, act
+from hypothesis import given
+from hypothesis import strategies as st
+from numpy.testing import assert_allclose, assert_array_equal
+
+from solvers.motion.posture_heading import turned
+from solvers.motion.posture_joints import POSTURE_JOINTS
+from solvers.retrieval import Clip, FindSettings, build_clip_library, find_similar, rank_clips
+from solvers.retrieval.clip_postures import ClipPostures, clip_postures
+from solvers.retrieval.index_block import IndexBlock
+from solvers.retrieval.posting_lists import posting_lists
+from solvers.retrieval.search_index import SearchIndex
+from solvers.retrieval.usual_postures import usual_postures
+
+RNG = np.random.default_rng(5)
+BELIEVED, BLAMED = rank_clips.BELIEF_IN_LIKES, rank_clips.MOST_BLAME
+
+
+def block(clips, seed=0):
+    rng = np.random.default_rng(seed)
+    histograms = rng.integers(0, 255, (len(clips), 30)).astype(np.uint8)
+    return IndexBlock(
+        np.array(clips),
+        rng.integers(0, 9, (len(clips), 2)).astype(np.int32),
+        histograms,
+        rng.normal(size=(len(clips), 16, 5, 8)).astype(np.float16),
+        posting_lists(histograms),
+    )
+
+
+@given(seed=st.integers(0, 999))
+def test_the_best_span_of_each_clip_is_found(seed):
+    rng = np.random.default_rng(seed)
+    clips = [rng.integers(1, 6, size=size) for size in (4, 7)]
+    alive = [rng.random(len(one)) < 0.8 for one in clips]
+    index = SearchIndex(list(zip(map(block, clips), alive, strict=True)))
+    apart = rng.integers(0, 5, 11).astype(np.float32)
+
+    least, spans = index.best_spans(apart, [3])
+
+    numbers, living = np.concatenate(clips), np.concatenate(alive)
+    wanted = [one for one in np.unique(numbers[living]) if one != 3]
+    assert index.clips[spans].tolist() == wanted
+    for one, found, span in zip(wanted, least, spans, strict=True):
+        assert living[span]
+        assert found == apart[span] == apart[living & (numbers == one)].min()
+
+
+def test_spans_are_fetched_from_the_blocks_that_hold_them():
+    first, second = block([1, 2, 3]), block([4, 5], seed=1)
+    index = SearchIndex([(first, np.ones(3, bool)), (second, np.ones(2, bool))])
+    histograms, summaries = index.stored(np.array([4, 0, 3, 2]))
+    assert_array_equal(histograms[[0, 2]], second.histograms[[1, 0]])
+    assert_array_equal(histograms[[1, 3]], first.histograms[[0, 2]])
+    assert_array_equal(summaries[1], first.summaries[0].astype(np.float32))
+
+
+def test_each_clip_is_judged_by_those_nearest_to_it():
+    apart = RNG.random(9).astype(np.float32) + 0.5
+    between = RNG.random((9, 9)).astype(np.float32)
+    between += between.T
+    expected = []
+    for one in range(9):
+        others = sorted(
+            (between[one, other], apart[other]) for other in range(9) if other != one
+        )
+        told = np.mean([distance for _, distance in others[:3]])
+        mixed = (apart[one] + BELIEVED * told) / (1.0 + BELIEVED)
+        expected.append(min(mixed, BLAMED * apart[one]))
+    assert_allclose(rank_clips._with_likes(apart, between, 3), expected, rtol=1e-5)
+
+
+def test_what_is_nearly_the_query_stays_first_among_strangers():
+    apart = np.array([0.05, 0.5, 0.52, 0.55], dtype=np.float32)
+    between = np.array(
+        [[0, 2, 2.1, 2.2], [2, 0, 0.1, 0.1], [2.1, 0.1, 0, 0.1], [2.2, 0.1, 0.1, 0]],
+        dtype=np.float32,
+    )
+    assert rank_clips._with_likes(apart, between, 2).argmin() == 0
+
+
+@pytest.mark.parametrize(
+    "settings", [{}, {"n_warped": 0}, {"n_warped": 7}, {"n_alike": 0}, {"n_alike": 100}]
+)
+def test_all_are_ranked_or_as_many_as_are_asked_for(settings):
+    library = build_clip_library([
+        Clip(f"{name} {number}", act(name, 2.0 + 0.1 * number))
+        for name in ACTS
+        for number in range(8)
+    ])
+    found = find_similar(act("kick"), library, settings=FindSettings(**settings, n_aligned=0))
+    few = find_similar(
+        act("kick"), library, settings=FindSettings(**settings, n_aligned=0, n_matches=5)
+    )
+    assert len({match.clip for match in found}) == len(found) == 8 * len(ACTS)
+    assert [match.clip for match in few] == [match.clip for match in found[:5]]
+    scores = [match.score for match in found]
+    assert scores == sorted(scores, reverse=True)
+    assert {match.clip.split()[0] for match in few} == {"kick"}
+
+
+@pytest.mark.parametrize("angle", [-0.6, 0.3, 0.7])
+def test_a_body_without_some_joints_is_turned_where_it_usually_faces(angle):
+    clips = [clip_postures(act(name, 2.5), 20.0) for name in ACTS]
+    usual, true = usual_postures(clips), clips[0]
+    lost = [POSTURE_JOINTS.index(name) for name in ("leftUpperLeg", "rightUpperArm", "head")]
+    positions = turned(true.positions, np.full(true.n_frames, angle))
+    positions[:, lost] = np.nan
+    cos, sin = np.cos(angle), np.sin(angle)
+    course = true.course.copy()
+    course[:, :2] = course[:, :2] @ [[cos, sin], [-sin, cos]]
+
+    found = usual.completed(ClipPostures(positions, course, 20.0))
+
+    seen = np.setdiff1d(np.arange(20), lost)
+    assert np.abs(found.positions[:, seen] - true.positions[:, seen]).max() < 0.1
+    assert np.abs(found.course - true.course).max() < 0.2 * np.abs(true.course).max() + 1e-9
+    assert np.isfinite(found.positions).all()
+    assert not np.isfinite(positions[:, lost]).any()

@@ -1,0 +1,176 @@
+"""Loops stay loops: pose and velocity at the seam."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from numpy.testing import assert_allclose
+from scipy.signal import find_peaks
+
+from solvers.motion import forward_kinematics
+from solvers.motion.rotations import multiply, rotation_vector_from_quaternion
+from solvers.recordings import read_bvh
+from solvers.samples import GaitSettings, walking_gait
+from solvers.variation import (
+    VarySettings,
+    borrow_variation,
+    draw_variants,
+    learn_variation_model,
+)
+from solvers.variation.align_examples import body_positions
+from solvers.variation.course import Course, course_of, headings, motion_of
+from solvers.variation.loops import (
+    close_loop,
+    loop_at_rate,
+    loops,
+    middle_round,
+    repeated,
+)
+from solvers.workflows.vary_motions import stand
+
+CMU_METRES = 0.0254 / 0.45
+FREE = np.ones(2)
+
+
+def seam_of(motion):
+    """How far poses are apart at the seam, and its velocity step over the clip's largest."""
+    rounds, n = repeated(motion, 2), motion.n_frames
+    places = forward_kinematics(rounds).positions
+    gap = np.abs(places[n - 1] - forward_kinematics(motion).positions[-1]).max()
+    steps = np.linalg.norm(np.diff(places, n=2, axis=0), axis=-1).mean(axis=-1)
+    return gap, steps[n - 2] / np.delete(steps, n - 2).max()
+
+
+@pytest.fixture(scope="module")
+def cycles(recordings):
+    """Return cycles of CMU walks, from the left foot in front to that again, and closed."""
+    found = []
+    for path in sorted((recordings / "mocap" / "cmu_walk").glob("35_*.bvh"))[:4]:
+        motion = read_bvh(path, scale=CMU_METRES)
+        motion = motion.slice(1, motion.n_frames)
+        names, body = motion.skeleton.names, body_positions(motion)
+        apart = body[:, names.index("RightFoot"), 1] - body[:, names.index("LeftFoot"), 1]
+        peaks, _ = find_peaks(apart, distance=round(0.8 * motion.frame_rate), height=0.2)
+        cycle = motion.slice(int(peaks[0]), int(peaks[1]) + 1)
+        assert seam_of(cycle)[0] > 0.02
+        turns, usual = headings(cycle), cycle.rotations[0] * 0.0 + (1.0, 0.0, 0.0, 0.0)
+        course = course_of(cycle, turns, usual)
+        closed = close_loop(course, cycle.frame_rate, np.ones(len(names)), FREE)
+        start = np.append(cycle.root_positions[0, :2], turns[0])
+        found.append(motion_of(closed, cycle.skeleton, usual, cycle.frame_rate, start))
+    return found
+
+
+def test_a_cut_cycle_is_closed(cycles):
+    for cycle in cycles:
+        gap, step = seam_of(cycle)
+        assert gap < 1e-6
+        assert step < 1.0
+
+
+@pytest.mark.parametrize("planted", [False, True])
+@pytest.mark.parametrize("alone", [False, True])
+def test_variants_of_a_looping_walk_loop(alone, planted, cycles):
+    model = borrow_variation(cycles[0]) if alone else learn_variation_model(cycles)
+    assert model.loops
+
+    for variant in draw_variants(model, 4):
+        assert variant.loops
+        gap, step = seam_of(stand(variant).motion if planted else variant.motion)
+        assert gap < 2e-3
+        assert step < 1.0
+
+
+def test_variants_loop_at_the_rate_of_the_scene(cycles):
+    variant = draw_variants(learn_variation_model(cycles), 1)[0].motion
+
+    slow = loop_at_rate(variant, 24.0)
+
+    gap, step = seam_of(slow)
+    assert gap < 1e-3
+    assert step < 1.0
+    assert slow.frame_rate == 24.0
+    assert abs((slow.n_frames - 1) / 24.0 - (variant.n_frames - 1) / 120.0) < 0.5 / 24.0
+    assert_allclose(slow.root_positions[0], variant.root_positions[0], atol=5e-3)
+
+
+def test_pinned_at_both_ends_nothing_is_closed(cycles):
+    model = learn_variation_model(cycles)
+    shifted = replace(
+        model, joints=model.joints + 0.1 * np.eye(1, model.n_moments)[0, :, None, None]
+    )
+
+    pinned = draw_variants(shifted, 1, settings=VarySettings(pin_start=True, pin_end=True))[0]
+    free = draw_variants(shifted, 1, settings=VarySettings(pin_start=True))[0]
+
+    assert not pinned.loops
+    assert free.loops
+
+
+def test_what_does_not_loop_is_not_called_so(walks):
+    half = walks[0].slice(0, walks[0].n_frames // 2)
+    assert not loops(half, headings(half))
+    assert loops(walks[0], headings(walks[0]))
+    assert not any(one.loops for one in draw_variants(learn_variation_model([half]), 1))
+
+
+def test_a_straight_rise_is_bent_to_a_loop():
+    """From 0 to 1: half of the gap is taken at each end, slopes agree already."""
+    rise = np.linspace(0.0, 1.0, 21)
+    joints = np.zeros((21, 2, 3))
+    joints[:, 0, 0] = joints[:, 1, 0] = rise
+    course = Course(np.zeros((21, 4)), joints)
+
+    closed = close_loop(course, 10.0, np.array([1.0, 0.0]), FREE).joints
+    late = close_loop(course, 10.0, np.ones(2), np.array([0.0, 1.0])).joints
+
+    assert_allclose(closed[[0, -1], 0, 0], 0.5)
+    assert_allclose(closed[:, 1], joints[:, 1])
+    assert_allclose(closed[3:-3, 0], joints[3:-3, 0])
+    assert_allclose(late[:-3], joints[:-3])
+    assert_allclose(late[-1], 0.0, atol=1e-12)
+
+
+def test_slopes_that_differ_agree_after():
+    frames = np.arange(41.0)
+    joints = np.zeros((41, 1, 3))
+    joints[:, 0, 0] = (frames / 20.0 - 1.0) ** 2  # ends as high as it begins, but rising
+    closed = close_loop(Course(np.zeros((41, 4)), joints), 40.0, np.ones(1), FREE).joints
+    slopes = np.diff(closed[:, 0, 0])
+    assert abs(slopes[0] - slopes[-1]) < 0.25 * abs(2 * (joints[1, 0, 0] - joints[0, 0, 0]))
+
+
+def test_ways_go_on_as_fast():
+    root = np.zeros((31, 4))
+    root[1:, 1] = np.linspace(0.01, 0.03, 30)
+    closed = close_loop(Course(root, np.zeros((31, 1, 3))), 30.0, np.ones(1), FREE).root
+    extrapolated = 1.5 * closed[[1, -1], 1] - 0.5 * closed[[2, -2], 1]
+    assert abs(np.diff(extrapolated)[0]) < 0.25 * 0.02
+
+
+def test_rounds_begin_where_the_one_before_ended():
+    """Four rounds of a walk that turns by a right angle each come back to where it began."""
+    walk = walking_gait(GaitSettings(duration=1.0, frame_rate=30.0))
+    turn = np.linspace(0.0, np.pi / 2, walk.n_frames)
+    about = np.stack([np.cos(turn / 2), 0 * turn, 0 * turn, np.sin(turn / 2)], axis=-1)
+    rotations = walk.rotations.copy()
+    rotations[:, 0] = multiply(about, walk.rotations[:1, 0])
+    places = np.stack([np.sin(turn), 1 - np.cos(turn), 0 * turn + 0.9], axis=-1)
+    quarter = walk.with_poses(rotations, places)
+
+    circle = repeated(quarter, 4)
+
+    assert circle.n_frames == 4 * (walk.n_frames - 1) + 1
+    assert_allclose(circle.root_positions[-1], places[0], atol=1e-9)
+    assert np.linalg.norm(np.diff(circle.root_positions, axis=0), axis=-1).max() < 0.06
+    back = rotation_vector_from_quaternion(
+        multiply(circle.rotations[-1, 0], quarter.rotations[0, 0] * (1, -1, -1, -1))
+    )
+    assert_allclose(np.linalg.norm(back) % (2 * np.pi), 0.0, atol=1e-9)
+
+
+def test_the_middle_of_three_rounds_is_the_round(walks):
+    again = middle_round(repeated(walks[1], 3), walks[1])
+    assert_allclose(again.root_positions[:-1], walks[1].root_positions[:-1], atol=1e-9)
+    alike = np.abs(np.sum(again.rotations * walks[1].rotations, axis=-1))[:-1]
+    assert_allclose(alike, 1.0, atol=1e-9)

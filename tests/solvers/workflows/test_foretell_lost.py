@@ -1,0 +1,87 @@
+"""Examples of another movement are found out where the lost joints were seen."""
+
+import numpy as np
+import pytest
+
+from solvers.denoising import learn_filter_bases
+from solvers.errors import SolveCancelled
+from solvers.motion import Motion
+from solvers.progress import unwatched
+from solvers.samples import GaitSettings, walking_gait
+from solvers.workflows import foretell_lost as module
+from solvers.workflows.foretell_lost import foretell_lost
+
+
+def walk(cadence: float, duration: float = 4.0) -> Motion:
+    return walking_gait(
+        GaitSettings(cadence=cadence, duration=duration, frame_rate=30.0, speed=1.0)
+    )
+
+
+def leg(motion: Motion) -> list[int]:
+    return list(motion.skeleton.subtree(motion.skeleton.names.index("LeftUpLeg")))
+
+
+def without(motion: Motion, joints, frames: slice) -> Motion:
+    rotations = motion.rotations.copy()
+    rotations[frames, joints] = np.nan
+    return motion.with_poses(rotations)
+
+
+@pytest.fixture(scope="module")
+def take():
+    motion = walk(115)
+    return without(motion, leg(motion), slice(40, 70))
+
+
+@pytest.fixture(scope="module")
+def good():
+    return learn_filter_bases([walk(110), walk(120)])
+
+
+def test_walks_foretell_a_walk_better_than_the_take_alone(take, good):
+    assert foretell_lost(take, good, unwatched)
+
+
+@pytest.mark.parametrize(("times", "believed"), [(0.9, True), (1.1, False)])
+def test_what_is_worse_than_the_take_alone_is_not_believed(
+    take, good, monkeypatch, times, believed
+):
+    monkeypatch.setattr(
+        module, "_error", lambda trial, bases, progress: 1.0 if bases is None else times
+    )
+    assert foretell_lost(take, good, unwatched) is believed
+
+
+@pytest.mark.parametrize("frames", [slice(40, 45), slice(0, None), slice(0, 0)])
+def test_without_a_long_gap_or_sight_nothing_is_tried(frames, good, monkeypatch):
+    motion = walk(115)
+    monkeypatch.setattr(module, "denoise", None)
+    assert foretell_lost(without(motion, leg(motion), frames), good, unwatched)
+
+
+def test_what_is_hidden_was_seen_and_lies_within_the_take(take):
+    joints = leg(take)
+    trials = list(module._trials(take))
+    assert len(trials) == 2
+    for trial in trials:
+        frames, parts = np.nonzero(trial.lost)
+        assert set(parts) == set(joints)
+        assert 6 <= len(set(frames)) <= 30
+        assert np.isfinite(trial.truth.rotations[trial.lost]).all()
+        assert not np.isfinite(trial.hidden.rotations[trial.lost]).any()
+
+
+def test_a_long_take_is_tried_in_part(monkeypatch):
+    motion = walk(115, duration=60.0)
+    (first, _) = module._trials(without(motion, leg(motion), slice(300, 330)))
+    assert first.truth.n_frames <= 30 + 2 * 120
+
+
+def test_it_can_be_cancelled(take, good):
+    def cancel(fraction, message=""):
+        if fraction > 0.3:
+            raise SolveCancelled
+
+    with pytest.raises(SolveCancelled):
+        foretell_lost(take, good, cancel)
