@@ -4,13 +4,16 @@ import numpy as np
 import pytest
 from numpy.testing import assert_allclose
 
-from solvers.motion import JointRecording, Sensor, Tracks
+from solvers.motion import JointRecording, Sensor, Tracks, find_humanoid_map
 from solvers.motion.posture_joints import POSTURE_JOINTS
+from solvers.reconstruction.physics_body import physics_body
+from solvers.samples import GaitSettings, walking_gait
 from tests.benchmarks.kinect_damage import Damaged, occluded, swapped, without
 from tests.benchmarks.kinect_errors import compared
 from tests.benchmarks.kinect_folds import seen_of
 from tests.benchmarks.kinect_pairs import Pair
 from tests.benchmarks.peers.one_euro import one_euro
+from tests.benchmarks.physics_momentum import impossible_force, outside_cone
 
 LEFT_HAND, RIGHT_HAND = (POSTURE_JOINTS.index(f"{side}Hand") for side in ("left", "right"))
 
@@ -108,6 +111,22 @@ def test_regressions_find_a_linear_law(rng):
     usual = regressions.constant(features, offsets)(features[:5])
     assert_allclose(usual, np.tile(offsets.mean(axis=0), (5, 1)))
     assert_allclose(regressions.nearest_mean(np.ones((40, 3)))(features[:4]), 1.0)
+
+
+def test_only_forces_within_friction_can_come_from_the_ground():
+    forces = np.array([[0, 0, 1.0], [1, 0, 1], [1, 0, 0], [0, 0, -1], [0, 2, 0], [-3, 0, -4]])
+    assert_allclose(outside_cone(forces), [0, 0, np.sqrt(0.5), 1, np.sqrt(2), 5])
+
+
+def test_who_falls_needs_no_force_and_who_hovers_needs_all_of_it():
+    motion = walking_gait(GaitSettings(duration=1.0, frame_rate=100.0))
+    body = physics_body(motion, find_humanoid_map(motion.skeleton))
+    still = np.tile(motion.rotations[:1], (100, 1, 1))
+    high = np.tile(motion.root_positions[:1] + np.array([0.0, 0.0, 30.0]), (100, 1))
+    time = np.arange(100) / 100.0
+    falling = high - [[0.0, 0.0, 0.5 * 9.81 * each**2] for each in time]
+    assert impossible_force(body, motion.with_poses(still, high), 0.0) == pytest.approx(1.0)
+    assert impossible_force(body, motion.with_poses(still, falling), 0.0) < 0.01
 
 
 def recorded(positions: np.ndarray) -> Pair:

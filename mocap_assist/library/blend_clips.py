@@ -88,7 +88,8 @@ def _read_file(path: str, assets_only: bool, items: Sequence[str]) -> BlendRead:
         sources = sources_of(action)
         if not sources and _moves_bones(action):
             refused.append(
-                f"{path}: no armature in the file has the bones of the action {action.name}."
+                f"{path}: no armature in the file has the bones of the action {action.name};"
+                " link its rig into the file, or index the file that has both."
             )
         for item, (armature, source) in sources.items():
             if items and item not in items:

@@ -11,6 +11,10 @@ from ..settings import Settings, setting
 Array = NDArray[np.float64]
 Flags = NDArray[np.bool_]
 
+FARTHER, THICKER, CALMER = 0.12, 0.15, 0.65
+"""Standard deviations, metres and as a share, of the first changes to the best cylinder, and
+how much smaller they become by each round."""
+
 
 @dataclass(frozen=True, kw_only=True)
 class CylinderSettings(Settings):
@@ -21,7 +25,7 @@ class CylinderSettings(Settings):
         minimum=1, maximum=100_000,
     )  # fmt: skip
     rounds: int = setting(
-        4, "Times that cylinders near the best one are tried; more is finer and slower",
+        7, "Times that cylinders near the best one are tried; more is finer and slower",
         minimum=0, maximum=100,
     )  # fmt: skip
     most_pixels: int = setting(
@@ -64,9 +68,10 @@ def sample_cylinder(
 ) -> Cylinder | None:
     """Return the cylinder of greatest Q = inliers - outliers, or None of too few pixels [1]_.
 
-    A radius and two pixels of the part make a cylinder. Inliers are the part's pixels within
-    its picture; outliers are all other pixels there, those of other parts and of nothing.
-    After the first draw, ever smaller changes to the best cylinder are tried.
+    A radius and two pixels of the part make a cylinder, a radius behind the plane that the
+    part's pixels see. Inliers are the part's pixels within its picture; outliers are all other
+    pixels there, those of other parts and of nothing. After the first draw, ever smaller
+    changes to the best cylinder are tried.
 
     Parameters
     ----------
@@ -88,19 +93,33 @@ def sample_cylinder(
     if len(points) < 4:
         return None
     rays, mine = _looked_at(own, camera, settings.most_pixels)
-    radius = rng.uniform(*radii, settings.n_samples)
-    ends = points[rng.integers(len(points), size=(settings.n_samples, 2))]
-    ends = ends + radius[:, np.newaxis, np.newaxis] * _unit(ends)
-    best = _best(ends, radius, rays, mine)
+    ways = points / points[:, 2:]
+    surface = _surface(points)
+    ends = ways[rng.integers(len(points), size=(settings.n_samples, 2))]
+    best, cylinder = _best(ends, rng.uniform(*radii, settings.n_samples), surface, rays, mine)
+    near = float(np.median(points[:, 2]))
     for round_ in range(settings.rounds):
-        spread = 0.5 ** (round_ + 1)
+        spread = CALMER**round_
         n = settings.n_samples // 2
-        radius = best.radius * np.exp(0.3 * spread * rng.standard_normal(n))
-        radius = np.clip(radius, *radii)
-        moved = best.ends + 0.08 * spread * rng.standard_normal((n, 2, 3))
-        better = _best(moved, radius, rays, mine)
-        best = better if better.quality > best.quality else best
-    return best
+        radius = cylinder.radius * np.exp(THICKER * spread * rng.standard_normal(n))
+        which = rng.random((n, 2, 1)) < 0.6
+        aside = which * (FARTHER / near * spread * rng.standard_normal((n, 2, 3)))
+        aside[..., 2] = 0.0
+        moved, other = _best(best + aside, np.clip(radius, *radii), surface, rays, mine)
+        if other.quality > cylinder.quality:
+            best, cylinder = moved, other
+    return cylinder
+
+
+def _surface(points: Array) -> Array:
+    """Return the plane that pixels of a part see: depth = (1, x / z, y / z) . plane."""
+    rows = np.column_stack([np.ones(len(points)), points[:, :2] / points[:, 2:]])
+    kept = np.ones(len(points), dtype=np.bool_)
+    for _ in range(3):
+        plane = np.linalg.lstsq(rows[kept], points[kept, 2], rcond=None)[0]
+        apart = np.abs(rows @ plane - points[:, 2])
+        kept = apart <= max(3.0 * float(np.median(apart)), 1e-3)
+    return np.asarray(plane)
 
 
 def _looked_at(own: Flags, camera: Camera, most: int) -> tuple[Array, Flags]:
@@ -117,8 +136,15 @@ def _looked_at(own: Flags, camera: Camera, most: int) -> tuple[Array, Flags]:
     return _unit(rays), mine[::step, ::step].reshape(-1)
 
 
-def _best(ends: Array, radii: Array, rays: Array, mine: Flags) -> Cylinder:
-    """Return the best of cylinders with these ends (n, 2, 3) and radii (n,)."""
+def _best(
+    ways: Array, radii: Array, surface: Array, rays: Array, mine: Flags
+) -> tuple[Array, Cylinder]:
+    """Return the best of cylinders whose ends look that way (n, 2, 3), with radii (n,).
+
+    Their axes lie a radius behind the surface of the part.
+    """
+    depths = surface[0] + ways[..., :2] @ surface[1:] + radii[:, np.newaxis]
+    ends = ways * depths[..., np.newaxis]
     # Seen along a ray, a cylinder's axis is a line from a to b in the plane across the ray.
     along = np.einsum("nek,mk->nem", ends, rays)
     across = ends[:, :, np.newaxis] - along[..., np.newaxis] * rays
@@ -129,7 +155,8 @@ def _best(ends: Array, radii: Array, rays: Array, mine: Flags) -> Cylinder:
     inside = (far <= radii[:, np.newaxis] ** 2) & (place >= 0.0) & (place <= 1.0)
     quality = inside[:, mine].sum(axis=1) - inside[:, ~mine].sum(axis=1)
     best = int(quality.argmax())
-    return Cylinder(ends[best], float(radii[best]), float(quality[best] / max(mine.sum(), 1)))
+    share = float(quality[best] / max(mine.sum(), 1))
+    return ways[best], Cylinder(ends[best], float(radii[best]), share)
 
 
 def _unit(vectors: Array) -> Array:

@@ -15,10 +15,11 @@ from ..errors import InvalidMotionError
 from ..files import written_whole
 from ..progress import Progress, unwatched, within
 from . import library_file as files
-from .clip import Clip, ClipEntry
+from .clip import Clip, ClipEntry, Origin
 from .clip_postures import ClipPostures
 from .describe_clip import DescribedClip, describe_clip
 from .index_block import IndexBlock, block_of, merged
+from .refused_files import read_refused, write_refused
 from .search_index import SearchIndex
 from .spans import RATE, Spans, describe_spans
 from .vocabulary import MOST_FRAMES, Vocabulary, learn_vocabulary
@@ -165,6 +166,16 @@ class ClipLibrary:
                     "DELETE FROM clips WHERE name = ?", (name,)
                 ).rowcount:
                     raise InvalidMotionError(f"The library has no clip {name}.")
+
+    def refused(self, reader: str) -> dict[Origin, str]:
+        """Return files that this version of a reader could not use, and why."""
+        with files.told_in_words(self._path):
+            return read_refused(self._database, reader)
+
+    def remember_refused(self, reader: str, refused: Sequence[tuple[Origin, str]]) -> None:
+        """Note files that are of no use as they are, and why."""
+        with files.told_in_words(self._path), files.transaction(self._database):
+            write_refused(self._database, reader, refused)
 
     def save(self, path: Path | str) -> None:
         """Write the library into a file, atomically.

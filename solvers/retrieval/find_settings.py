@@ -46,7 +46,7 @@ class FindSettings(Settings):
         minimum=0, maximum=10_000, advanced=True, label="Warped",
     )  # fmt: skip
     warping: float = setting(
-        1.0, "How much the course in time counts beside which postures there are",
+        2.0, "How much the course in time counts beside which postures there are",
         minimum=0.0, maximum=100.0, advanced=True,
     )  # fmt: skip
     n_alike: int = setting(

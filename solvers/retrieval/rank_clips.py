@@ -66,7 +66,8 @@ def rank_clips(
     course = weighted_steps(query.summaries[:1], weights)
     courses = weighted_steps(summaries, weights)
     costs = warping_costs(frame_distances(course, courses))[0] if len(near) else apart[near]
-    likely = apart[near] + np.float32(settings.warping) * costs
+    share = np.float32(2.0 / (1.0 + settings.warping))
+    likely = share * (apart[near] + np.float32(settings.warping) * costs)
     n_alike = min(settings.n_alike, len(spans) // CLIPS_PER_LIKE)
     if 0 < n_alike < len(near):
         among = _between(words, courses, weights)
@@ -78,7 +79,7 @@ def rank_clips(
         others = np.setdiff1d(np.arange(len(spans)), near, assume_unique=True)
         others = others[np.argsort(apart[others], kind="stable")]
         found = np.concatenate([found, others])
-        distances = np.concatenate([distances, apart[others] + worst])
+        distances = np.concatenate([distances, share * (apart[others] + worst)])
     spans = spans[found]
     return Ranking(index.clips[spans], index.frames[spans], distances)
 

@@ -21,6 +21,8 @@ N_ROOT = 4
 """Columns of the root's way: to the left and backward as the actor faces, and turning, each
 from the frame before; and the height of the hips."""
 HEIGHT = 3
+IMPOSSIBLE = 2.0
+"""Radians that no joint turns within a frame."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -36,6 +38,8 @@ class Course:
         root without its heading.
     footing : shape (n_frames, 2), seconds, or None
         By how much feet stand (`footing_of`), where that is known.
+    carrier : shape (n_frames, n_joints, 4), or None
+        What comes before each joint's usual rotation; see `tell_far_joints`.
 
     References
     ----------
@@ -46,6 +50,7 @@ class Course:
     root: Array
     joints: Array
     footing: Array | None = None
+    carrier: Array | None = None
 
 
 def headings(motion: Motion) -> Array:
@@ -82,7 +87,7 @@ def course_of(motion: Motion, turns: Array, usual: Array) -> Course:
         motion.root_positions[:, 2],
     ])  # fmt: skip
     told = multiply(inverse(usual), without_heading(motion, turns))
-    return Course(root, _continuous(rotation_vector_from_quaternion(told)))
+    return Course(root, continuous(rotation_vector_from_quaternion(told)))
 
 
 def motion_of(
@@ -109,6 +114,8 @@ def motion_of(
         course.root[:, HEIGHT],
     ])  # fmt: skip
     rotations = multiply(usual, quaternion_from_rotation_vector(course.joints))
+    if course.carrier is not None:
+        rotations = multiply(course.carrier, rotations)
     rotations[:, 0] = multiply(_about_z(turns), rotations[:, 0])
     return Motion(skeleton, rotations, places, frame_rate)
 
@@ -118,13 +125,19 @@ def _about_z(angles: Array) -> Array:
     return np.stack([np.cos(angles / 2.0), zero, zero, np.sin(angles / 2.0)], axis=-1)
 
 
-def _continuous(vectors: Array) -> Array:
-    """Let no rotation vector jump by a whole turn: of two that mean the same, the nearer."""
+def continuous(vectors: Array) -> Array:
+    """Let no rotation vector jump by a whole turn: of two that mean the same, the nearer.
+
+    After a turn that nobody makes within a frame, as where a capture flips a thigh to and fro,
+    neither is nearer, and two flips the same way would wind the joint up for good: there the
+    shorter vector is taken.
+    """
     result = vectors.copy()
     for frame in range(1, len(result)):
         length = np.linalg.norm(result[frame], axis=-1, keepdims=True)
         other = result[frame] * (1.0 - 2.0 * np.pi / np.where(length > 0.0, length, np.inf))
         stay = np.linalg.norm(result[frame] - result[frame - 1], axis=-1, keepdims=True)
         turn = np.linalg.norm(other - result[frame - 1], axis=-1, keepdims=True)
-        result[frame] = np.where(turn < stay, other, result[frame])
+        near = (turn < stay) & (turn < IMPOSSIBLE)
+        result[frame] = np.where(near, other, result[frame])
     return result

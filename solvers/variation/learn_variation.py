@@ -2,17 +2,19 @@
 
 from collections.abc import Sequence
 from dataclasses import replace
+from itertools import count
 
 import numpy as np
 from numpy.typing import NDArray
 
 from ..errors import InvalidMotionError
 from ..motion import Motion, resample
-from ..motion.rotations import mean_rotation
-from ..progress import Progress, unwatched
+from ..motion.rotations import inverse, mean_rotation, multiply, rotation_vector_from_quaternion
+from ..progress import Progress, unwatched, within
 from .align_examples import Alignment, align_examples
-from .course import HEIGHT, Course, course_of, headings, without_heading
+from .course import HEIGHT, IMPOSSIBLE, Course, course_of, headings, without_heading
 from .curve_sampling import between_frames, sample_curves
+from .far_joints import CALM, tell_far_joints
 from .footing import footing_of
 from .loops import loops
 from .mixing_kernel import MixingKernel
@@ -58,32 +60,40 @@ def learn_variation_model(
     progress(0.1, "Lining up")
     alignment = align_examples(motions, turns)
     progress(0.6, "Learning")
-    usual = mean_rotation(
-        np.concatenate([
-            without_heading(motion, turn) for motion, turn in zip(motions, turns, strict=True)
-        ])
-    )  # fmt: skip
+    plain = [without_heading(motion, turn) for motion, turn in zip(motions, turns, strict=True)]
+    usual = mean_rotation(np.concatenate(plain))
     courses = [
         _in_common_time(course_of(motion, turn, usual), footing_of(motion), times)
         for motion, turn, times in zip(motions, turns, alignment.times, strict=True)
     ]
+    rate = motions[0].frame_rate
     root = np.stack([course.root for course in courses])
     joints = np.stack([course.joints for course in courses])
+    is_loop = all(map(loops, motions, turns))
+    joints, usual, carrier = tell_far_joints(
+        joints, usual, plain, alignment.times, alignment.centre, CALM * rate, is_loop
+    )
     joints = _same_turns(joints, alignment.centre)
     footing = np.stack([course.footing for course in courses if course.footing is not None])
-    rate = motions[0].frame_rate
     haste = (
         np.log(np.gradient(alignment.times, axis=1)) if root.shape[1] > 1 else 0 * root[..., 0]
     )
+    warning = " ".join(filter(None, (*map(_flip, motions, count(1)), _odd_one(alignment))))
     stepwise = None
     if settings.method is not Method.MIXTURE:
         published = settings.method is Method.PUBLISHED
-        stepwise = learn_stepwise(motions[0].skeleton, joints, root, rate, published)
+        stepwise = learn_stepwise(
+            motions[0].skeleton,
+            joints,
+            root,
+            rate,
+            published,
+            progress=within(progress, 0.6, 1.0),
+        )
     progress(1.0)
     return VariationModel(
-        motions[0].skeleton, rate, usual, root, joints, haste, footing, MixingKernel(),
-        alignment.centre, all(map(loops, motions, turns)), _odd_one(alignment),
-        stepwise,
+        motions[0].skeleton, rate, usual, root, joints, haste, footing, carrier,
+        MixingKernel(), alignment.centre, is_loop, warning, stepwise,
     )  # fmt: skip
 
 
@@ -141,6 +151,20 @@ def _same_turns(joints: Array, centre: int) -> Array:
     stay = np.linalg.norm(joints - joints[centre], axis=-1, keepdims=True).mean(axis=1)
     turn = np.linalg.norm(other - joints[centre], axis=-1, keepdims=True).mean(axis=1)
     return np.where((turn < stay)[:, None], other, joints)
+
+
+def _flip(motion: Motion, number: int) -> str:
+    """Return a sentence about a joint that turns as none can; empty without one."""
+    steps = multiply(inverse(motion.rotations[:-1]), motion.rotations[1:])
+    angles = np.linalg.norm(rotation_vector_from_quaternion(steps), axis=-1)
+    if not (angles > IMPOSSIBLE).any():
+        return ""
+    frame, joint = divmod(int((angles > IMPOSSIBLE).argmax()), angles.shape[1])
+    return (
+        f"{motion.skeleton.names[joint]} of example {number} turns by"
+        f" {np.degrees(angles[frame, joint]):.0f} degrees within a frame at"
+        f" {(frame + 1) / motion.frame_rate:.2f} s: clean it first, or variants jump too."
+    )
 
 
 def _odd_one(alignment: Alignment) -> str:

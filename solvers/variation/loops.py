@@ -20,6 +20,8 @@ FEWEST = 8
 """Frames of a clip that may loop."""
 LOOP_GAP = 0.06
 """Metres by which joints may be beside where they began, for a clip to loop."""
+FARTHEST = 0.25
+"""Metres by which any one joint may be."""
 HURRY = 2.5
 """Times the usual speed by which the speed there may differ."""
 EASE = 0.3
@@ -37,8 +39,9 @@ def loops(motion: Motion, turns: Array) -> bool:
     steps = np.diff(body, axis=0)
     usual = np.linalg.norm(steps, axis=-1).mean()
     gap, hurry = body[-1] - body[0], steps[-1] - steps[0]
-    apart, unlike = (np.linalg.norm(one, axis=-1).mean() for one in (gap, hurry))
-    return bool(apart < LOOP_GAP + usual and unlike < HURRY * usual)
+    apart, unlike = (np.linalg.norm(one, axis=-1) for one in (gap, hurry))
+    near = apart.mean() < LOOP_GAP + usual and apart.max() < FARTHEST + usual
+    return bool(near and unlike.mean() < HURRY * usual)
 
 
 def close_loop(course: Course, frame_rate: float, by_joint: Array, free: Array) -> Course:

@@ -4,6 +4,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.interpolate import PchipInterpolator
 
+from ..motion.rotations import normalize, unroll
 from .course import HEIGHT, Course
 from .curve_sampling import between_frames, sample_curves
 
@@ -30,4 +31,7 @@ def in_own_time(course: Course, durations: Array) -> Course:
     root = np.diff(seen[:, :HEIGHT], axis=0, prepend=seen[:1, :HEIGHT])
     joints = seen[:, HEIGHT + 1 :].reshape(n_frames, *course.joints.shape[1:])
     footing = None if course.footing is None else between_frames(course.footing, times)
-    return Course(np.column_stack([root, seen[:, HEIGHT]]), joints, footing)
+    carrier = course.carrier
+    if carrier is not None:
+        carrier = normalize(sample_curves(unroll(carrier), times))
+    return Course(np.column_stack([root, seen[:, HEIGHT]]), joints, footing, carrier)

@@ -7,7 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..motion import Skeleton
-from ..progress import Progress, unwatched
+from ..progress import Progress, unwatched, within
 from .stepwise_features import (
     CLOCK,
     N_CONTEXT,
@@ -108,7 +108,9 @@ def learn_stepwise(
         weights[-1] = CLOCK
     given: Sequence[list[Hyperparameters] | None]
     given = [list(one) for one in found] or [None] * 4
-    steps, learned = learn_stack(features, wanted, columns, weights, published, given[0])
+    steps, learned = learn_stack(
+        features, wanted, columns, weights, published, given[0], within(progress, 0.0, 0.8)
+    )
     progress(0.8, "Learning first frames")
     residuals = np.zeros_like(states)
     residuals[:, 3:] = (wanted - steps.expected(features)).reshape(states[:, 3:].shape)

@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 from scipy.linalg import cho_solve, solve_triangular
 from scipy.spatial.distance import cdist
 
+from ..progress import Progress, unwatched
 from .stepwise_process import JITTER, Hyperparameters, N, kernel_of, learn_hyperparameters
 
 Array = NDArray[np.float64]
@@ -22,6 +23,8 @@ N_INDUCING = 150
 N_LEARNING = 120
 """Examples that hyper-parameters are learned on."""
 TINY = 1e-6
+EXTRA = (0.0, 1e-12, 1e-10, 1e-8)
+"""Parts of the mean of a diagonal that are added to it where they have to be."""
 AT_ONCE = 500
 """Steps whose kernels are held in memory together."""
 
@@ -128,6 +131,7 @@ def learn_stack(
     weights: Array,
     published: bool,
     found: list[Hyperparameters] | None = None,
+    progress: Progress = unwatched,
 ) -> tuple[ProcessStack, list[Hyperparameters]]:
     """Learn the processes of all triples, or only fit them to hyper-parameters known before.
 
@@ -140,6 +144,7 @@ def learn_stack(
         How much each feature counts once it is scaled.
     published : bool
     found : list of Hyperparameters, optional
+    progress : Progress
     """
     rng = np.random.default_rng(0)
     order = rng.permutation(len(features))
@@ -147,6 +152,7 @@ def learn_stack(
     spread = np.maximum(features.std(axis=0), TINY)
     parts, learned = [], []
     for place, row in enumerate(columns):
+        progress(place / len(columns), "Learning joints")
         there = row >= 0
         center = np.where(there, features.mean(axis=0)[row], 0.0)
         scale = np.where(there, (weights / spread)[row], 0.0)
@@ -163,6 +169,20 @@ def learn_stack(
     return ProcessStack(*(np.stack(part) for part in zip(*parts, strict=True))), learned
 
 
+def _cholesky(matrix: Array) -> Array:
+    """Return the lower factor of a matrix that rounding may have made indefinite.
+
+    Of clips in which the same frames come again and again, the kernels' rows are the same too.
+    """
+    usual = np.trace(matrix) / len(matrix)
+    for part in EXTRA:
+        try:
+            return np.linalg.cholesky(matrix + part * usual * np.eye(len(matrix)))
+        except np.linalg.LinAlgError:
+            continue
+    return np.linalg.cholesky(matrix + JITTER * usual * np.eye(len(matrix)))
+
+
 def _fitted(
     seen: Array, wanted: Array, points: Array, found: Hyperparameters, published: bool
 ) -> tuple[Array, ...]:
@@ -176,7 +196,7 @@ def _fitted(
     eye = np.eye(len(points))
     for own, other, noise, told in zip(among, across, noises, channels, strict=True):
         steady = own + JITTER * np.trace(own) / len(own) * eye
-        lower = np.linalg.cholesky(noise * steady + other @ other.T)
+        lower = _cholesky(noise * steady + other @ other.T)
         means.append(cho_solve((lower, True), other @ told))
         roots.append(np.sqrt(noise) * solve_triangular(lower, eye, lower=True).T)
         knowns.append(np.linalg.inv(steady))

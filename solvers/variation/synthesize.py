@@ -183,7 +183,9 @@ def _variant(
     hasty = np.asarray(settings.amount * settings.timing)
     haste = _free(given.haste, hasty, drawn[2], np.ones(len(pinned)))
     footing = _free(given.footing, amounts[FEET], drawn[3], pinned)
-    course = in_own_time(Course(root, joints, footing), np.exp(haste) * settings.length)
+    course = in_own_time(
+        Course(root, joints, footing, model.carrier), np.exp(haste) * settings.length
+    )
     if settings.method is Method.PUBLISHED:
         return Variant(motion_of(course, *known), None)
     if model.loops:

@@ -37,6 +37,8 @@ class VariationModel:
         Logarithm of how many frames a moment lasts.
     footing : shape (n_examples, n_moments, 2), seconds
         By how much feet stand (`footing_of`); NaN where the rig has no feet.
+    carrier : shape (n_moments, n_joints, 4), or None
+        What comes before `usual`: the centre's rotation, of joints that turn far.
     kernel : MixingKernel
     centre : int
         The example that is nearest to all others.
@@ -55,6 +57,7 @@ class VariationModel:
     joints: Array
     haste: Array
     footing: Array
+    carrier: Array | None
     kernel: MixingKernel
     centre: int
     loops: bool
@@ -77,6 +80,7 @@ class VariationModel:
             "names": np.array(self.skeleton.names), "parents": np.array(self.skeleton.parents),
             "offsets": self.skeleton.offsets, "usual": self.usual, "root": self.root,
             "joints": self.joints, "haste": self.haste, "footing": self.footing,
+            "carrier": np.zeros(0) if self.carrier is None else self.carrier,
             "warning": np.array(self.warning),
             "numbers": np.array([
                 self.frame_rate, self.kernel.scale, self.kernel.bias, self.centre, self.loops,
@@ -105,6 +109,8 @@ def load_variation_model(path: Path | str) -> VariationModel:
         if not (0 <= centre < n and rate > 0 and scale > 0 and 0 <= bias <= 1):
             raise ValueError("Settings out of range.")
         skeleton = Skeleton(names, parents, arrays["offsets"])
+        told = arrays["carrier"]
+        carrier = told.reshape(moments, len(names), 4) if told.size else None
         root, found = arrays["root"].reshape(n, moments, N_ROOT), _unpacked(arrays["stepwise"])
         stepwise = (
             learn_stepwise(skeleton, joints, root, rate, len(found) > 1, found)
@@ -113,7 +119,7 @@ def load_variation_model(path: Path | str) -> VariationModel:
         )
         return VariationModel(
             skeleton, rate, arrays["usual"].reshape(len(names), 4), root, joints,
-            arrays["haste"], arrays["footing"].reshape(n, moments, 2),
+            arrays["haste"], arrays["footing"].reshape(n, moments, 2), carrier,
             MixingKernel(scale, bias), int(centre), bool(loops), str(arrays["warning"]),
             stepwise,
         )  # fmt: skip

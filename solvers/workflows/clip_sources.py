@@ -6,6 +6,7 @@ from pathlib import Path
 
 from ..errors import InvalidFileError
 from ..recordings import recordings_in
+from ..recordings.acclaim import find_skeleton
 from ..retrieval import Origin
 
 
@@ -28,13 +29,17 @@ class ClipSource:
     def origin(self) -> Origin:
         """Return the origin with the file's size and date as they are now.
 
+        Those of the skeleton beside it count, where it needs one: a clip has changed when
+        that has.
+
         Raises
         ------
         OSError
             The file has just gone.
         """
-        found = self.path.stat()
-        return Origin(str(self.path), "", found.st_size, found.st_mtime_ns)
+        found = [path.stat() for path in (self.path, *_skeletons(self.path))]
+        size = sum(each.st_size for each in found)
+        return Origin(str(self.path), "", size, max(each.st_mtime_ns for each in found))
 
     def names(self) -> Iterable[str]:
         """Yield names for the clip, the plainest first, until one is free."""
@@ -49,6 +54,16 @@ class ClipSource:
         while True:
             yield "/".join([*folders, f"{file} ({number})"])
             number += 1
+
+
+def _skeletons(path: Path) -> list[Path]:
+    """Return the file with the skeleton of an .amc, if there is one."""
+    if path.suffix.lower() != ".amc":
+        return []
+    try:
+        return [find_skeleton(path)]
+    except InvalidFileError:
+        return []
 
 
 def clip_sources(files_or_folders: Sequence[Path | str]) -> list[ClipSource]:

@@ -34,6 +34,8 @@ class Described(NamedTuple):
     clip: DescribedClip | None
     """None where it was refused."""
     sentence: str = ""
+    for_good: bool = False
+    """Refused for what is in the file: it will be again, until it changes."""
 
 
 def describe_files(files: Iterable[Wanted], jobs: int) -> Iterator[Described]:
@@ -62,7 +64,8 @@ def described(wanted: Wanted) -> Described:
     except MocapAssistError as error:
         sentence = str(error).removeprefix(f"{wanted.name}: ")
         named = Path(path).name in sentence
-        return Described(wanted, None, sentence if named else f"{path}: {sentence}")
+        told = sentence if named else f"{path}: {sentence}"
+        return Described(wanted, None, told, for_good=True)
     except OSError as error:
         return Described(wanted, None, f"{error.filename or path}: {error.strerror}.")
     except MemoryError:

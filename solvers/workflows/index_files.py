@@ -5,7 +5,8 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from ..progress import Progress, unwatched
-from ..retrieval import ClipEntry, ClipLibrary, DescribedClip, open_clip_library
+from ..retrieval import ClipEntry, ClipLibrary, DescribedClip, Origin, open_clip_library
+from ..version import version
 from .clip_sources import ClipSource, clip_sources
 from .describe_files import Described, Wanted, describe_files
 
@@ -50,8 +51,9 @@ def index_files(
 ) -> IndexReport:
     """Put recordings into the library in a file, which is made where there is none.
 
-    Files that are in it with the same size, date and tags are passed over. A clip is called as
-    its file lies in the folder that was named, without the ending; where that name is taken,
+    Files that are in it with the same size, date and tags are passed over; those that were
+    refused and have not changed since are refused again without being read. A clip is called
+    as its file lies in the folder that was named, without the ending; where that name is taken,
     with the ending, the folder's name or a number. It keeps its name when its file changes.
 
     Parameters
@@ -102,6 +104,8 @@ class _Indexing:
         self._added, self._changed = list[str](), list[str]()
         self._unchanged, self._removed = list[str](), list[str]()
         self._refused: list[tuple[str, str]] = []
+        self._known_refused = library.refused(version())
+        self._of_no_use: list[tuple[Origin, str]] = []
 
     def to_read(self, sources: Sequence[ClipSource]) -> list[Wanted]:
         """Return what is not in the library as it is, and under which names it will be."""
@@ -112,6 +116,9 @@ class _Indexing:
                 origin = source.origin()
             except OSError as error:
                 self._refused.append((str(source.path), f"{source.path}: {error.strerror}."))
+                continue
+            if sentence := self._known_refused.get(origin):
+                self._refused.append((str(source.path), sentence))
                 continue
             tags = self._tags
             if known is not None:
@@ -128,6 +135,8 @@ class _Indexing:
         wanted = done.wanted
         if done.clip is None:
             self._refused.append((wanted.origin.path, done.sentence))
+            if done.for_good:
+                self._of_no_use.append((wanted.origin, done.sentence))
             if wanted.origin.path in self._known:
                 self._remove([wanted.name])
             return
@@ -141,7 +150,9 @@ class _Indexing:
     def write(self) -> None:
         """Write what has been kept."""
         self._library.add_described(self._batch)
-        self._batch = []
+        if self._of_no_use:
+            self._library.remember_refused(version(), self._of_no_use)
+        self._batch, self._of_no_use = [], []
 
     def remove_missing(self, named: Sequence[Path]) -> None:
         """Take out clips whose files lay in these folders and are there no more."""

@@ -17,7 +17,7 @@ Fetch = Callable[[ClipEntry], Recording]
 AROUND = 0.5
 """Seconds before and after what matches that are taken along."""
 MOST_NAMED = 5
-FOUND = FindSettings(n_matches=12, n_aligned=12, n_alike=0)
+FOUND = FindSettings(n_matches=12, n_aligned=12, n_alike=0, warping=1.0)
 """By likeness with the take alone: the best that a library without the like has are like each
 other all the same."""
 ALIKE = 0.16

@@ -1,22 +1,23 @@
 """Physics before and after, and at part of its strength, on takes that it was not tuned on.
 
-    python -m tests.benchmarks.bench_physics            # about two minutes
-    python -m tests.benchmarks.bench_physics --full     # twice as many clips
+    python -m tests.benchmarks.bench_physics                   # about two minutes
+    python -m tests.benchmarks.bench_physics --full --docs     # twice as many, docs/physics.md
 
 Slide: speed of both feet over the ground, of the slowest point of the sole, while the input
 stands (contacts detected on the input). Deepest: how far the body's surface is under the ground
 at worst, and in the worst 1 % of the frames. Lengths: largest change of a bone's length. Jerk:
 mean third derivative of the joints' places. Distance: of the joints from the input, mean and
-95th percentile. Speed: seconds of take for one second of work, in one thread. Help: force from
-outside as a share of the weight. The ground is under the feet of each take.
+95th percentile. Speed: seconds of take for one second of one processor. Help: force from
+outside as a share of the weight. Impossible: what of the change of momentum neither gravity nor
+a push within friction by ground that is touched could give, mean, as a share of the weight. The
+ground is under the feet of each take.
 """
 
 import argparse
-import json
 import sys
 from collections.abc import Iterator
 from pathlib import Path
-from time import perf_counter
+from time import perf_counter, process_time
 from typing import NamedTuple
 
 import numpy as np
@@ -38,6 +39,10 @@ from solvers.reconstruction.physics_target import filled
 from solvers.recordings import read_recording
 from solvers.samples import CorruptionSettings, corrupt
 
+from .physics_momentum import impossible_force
+from .report import DOCS, Report
+from .tables import table
+
 DATA = Path(__file__).resolve().parents[3] / "shared" / "data"
 STRENGTHS = (0.25, 0.5, 1.0)
 LONGEST = 600
@@ -45,7 +50,7 @@ LONGEST = 600
 
 COLUMNS = (
     "slide cm/s", "deepest mm", "worst 1 % mm", "lengths mm", "jerk m/s³", "distance mm",
-    "95 % mm", "followed %", "help %", "speed x",
+    "95 % mm", "impossible %", "followed %", "help %", "speed x",
 )  # fmt: skip
 SETS = {
     "CMU walks and runs, 120 Hz": ("mocap/cmu_walk", ("10", "26", "27", "32", "35_")),
@@ -67,14 +72,16 @@ def main() -> None:
     """Print a table for each set of clips."""
     parser = argparse.ArgumentParser(description=(__doc__ or "").splitlines()[0])
     parser.add_argument("--full", action="store_true", help="twice as many clips")
-    parser.add_argument("--json", type=Path, metavar="FILE", help="write all figures there")
+    parser.add_argument("--docs", action="store_true", help="rewrite docs/physics.md")
     chosen = parser.parse_args()
-    tables = {}
+    started = perf_counter()
     with threadpool_limits(1):
-        for title in (*SETS, SHAKEN):
-            tables[title] = table(title, list(clips(title, 12 if chosen.full else 6)))
-    if chosen.json is not None:
-        chosen.json.write_text(json.dumps(tables, indent=1), encoding="utf-8")
+        tables = [
+            means(title, list(clips(title, 12 if chosen.full else 6)))
+            for title in (*SETS, SHAKEN)
+        ]
+    report = Report(chosen.docs, DOCS / "physics.md")
+    report.part("physics", tables, perf_counter() - started)
 
 
 def clips(title: str, at_most: int) -> Iterator[Motion]:
@@ -107,29 +114,25 @@ def motion_of(path: Path) -> Motion:
     return filled(motion_from_points(recording.tracks, joint_parents(recording.names)))
 
 
-def table(title: str, motions: list[Motion]) -> dict[str, list[float]]:
-    """Print and return the means over the clips, before and at each strength."""
+def means(title: str, motions: list[Motion]) -> str:
+    """Return the means over the clips, before and at each strength."""
     rows: dict[str, list[Row]] = {}
     for motion in motions:
-        started = perf_counter()
+        started = process_time()
         simulated = simulate(motion, settings=SimulateSettings(ground=Ground.FEET))
-        speed = motion.n_frames * motion.dt / (perf_counter() - started)
+        speed = motion.n_frames * motion.dt / (process_time() - started)
         rows.setdefault("before", []).append(row(motion, motion, simulated))
         for strength in STRENGTHS:
             result = with_strength(motion, simulated, strength)
             rows.setdefault(f"strength {strength:g}", []).append(
                 row(motion, result, simulated, speed)
             )
-    print(f"\n**{title}**, {len(motions)} clips, means\n")
-    print(f"| | {' | '.join(COLUMNS)} |\n|---|{'---|' * len(COLUMNS)}")
-    means = {}
+    cells = {}
     for name, found in rows.items():
         figures = np.array([each.figures for each in found]).mean(axis=0)
-        means[name] = figures.tolist()
-        cells = ["" if np.isnan(figure) else f"{figure:.3g}" for figure in figures]
-        print(f"| {name} | {' | '.join(cells)} |")
-    sys.stdout.flush()
-    return means
+        cells[name] = ["" if np.isnan(figure) else f"{figure:.3g}" for figure in figures]
+    print(f"Done: {title}", file=sys.stderr, flush=True)
+    return f"**{title}**, {len(motions)} clips, means\n\n{table(['', *COLUMNS], cells)}\n"
 
 
 def row(motion: Motion, result: Motion, simulated: Simulated, speed: float = np.nan) -> Row:
@@ -150,6 +153,7 @@ def row(motion: Motion, result: Motion, simulated: Simulated, speed: float = np.
         jerks.mean(),
         1000 * apart.mean(),
         1000 * np.percentile(apart, 95),
+        100 * impossible_force(body, result, simulated.ground),
         np.nan if is_input else 100 * simulated.followed.mean(),
         np.nan if is_input else 100 * simulated.support.mean(),
         speed,

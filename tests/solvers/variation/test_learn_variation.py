@@ -127,20 +127,6 @@ def test_clips_of_a_few_frames(walks, n_frames, method):
         assert variant.n_frames >= 2
 
 
-def test_twenty_thousand_frames(walks):
-    walk = walks[0]
-    times = 200
-    rotations = np.tile(walk.rotations, (times, 1, 1))[:20_000]
-    places = np.tile(walk.root_positions, (times, 1))[:20_000]
-    long = Motion(walk.skeleton, rotations, places, 60.0)
-    n = long.n_frames
-
-    variant = synthesize(learn_variation_model([long, long.slice(0, n - 60)]), 1)[0]
-
-    assert abs(variant.n_frames - n) < 200
-    assert np.isfinite(variant.rotations).all()
-
-
 def test_one_clip_alone_varies_only_by_what_is_borrowed(walks):
     alone, generic = learn_variation_model(walks[:1]), borrow_variation(walks[0])
     others = borrow_variation(walks[0], [learn_variation_model(walks[1:])])

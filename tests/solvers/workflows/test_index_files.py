@@ -2,7 +2,9 @@
 
 import os
 import shutil
+import sqlite3
 import sys
+from contextlib import closing
 from pathlib import Path
 
 import numpy as np
@@ -76,6 +78,65 @@ def test_what_has_not_changed_is_not_read_again(folder, library, monkeypatch):
 
     assert report.unchanged == ("a/fast", "a/slow", "b/slow")
     assert not (report.added or report.changed or report.removed or report.refused)
+
+
+def test_what_was_refused_is_not_read_again_until_it_changes(folder, library, monkeypatch):
+    first = index_files(library, [folder])
+    read, tried = describe_files.read_recording, []
+    monkeypatch.setattr(
+        describe_files, "read_recording", lambda path: tried.append(path) or read(path)
+    )
+
+    again = index_files(library, [folder])
+    assert again.refused == first.refused
+    assert not tried
+
+    write_bvh(walk(100), folder / "markers.trc")  # formats are told by content
+    assert index_files(library, [folder]).added == ("markers",)
+    assert len(tried) == 1
+
+
+def test_what_another_version_refused_is_tried_again(folder, library, monkeypatch):
+    index_files(library, [folder])
+    monkeypatch.setattr(indexing, "version", lambda: "later")
+    monkeypatch.setattr(describe_files, "read_recording", lambda path: walk())
+    assert index_files(library, [folder / "markers.trc"]).n_clips == 4
+
+
+def test_what_memory_could_not_hold_is_tried_again(folder, library, monkeypatch):
+    def too_large(path):
+        raise MemoryError
+
+    with monkeypatch.context() as patched:
+        patched.setattr(describe_files, "read_recording", too_large)
+        assert len(index_files(library, [folder / "a"]).refused) == 2
+    assert index_files(library, [folder / "a"]).added == ("fast", "slow")
+
+
+def test_a_library_from_before_refusals_were_kept_is_used(folder, library):
+    index_files(library, [folder / "a"])
+    with closing(sqlite3.connect(library)) as database, database:
+        database.execute("DROP TABLE IF EXISTS refused")
+    assert len(index_files(library, [folder]).refused) == 1
+    assert len(index_files(library, [folder]).refused) == 1
+
+
+def test_an_amc_has_changed_when_its_skeleton_has(tmp_path, library, recordings):
+    mocap = recordings / "mocap"
+    for name in ("05.asf", "05_13.amc"):
+        shutil.copy(mocap / name, tmp_path / name)
+    clip = tmp_path / "05_13.amc"
+    assert index_files(library, [clip]).n_clips == 1
+    assert len(index_files(library, [clip]).unchanged) == 1
+
+    text = (tmp_path / "05.asf").read_text()
+    (tmp_path / "05.asf").write_text(text + "\n")
+    assert index_files(library, [clip]).changed == ("05_13",)
+
+    (tmp_path / "05.asf").unlink()
+    assert "There is no skeleton" in index_files(library, [clip]).refused[0][1]
+    (tmp_path / "05.asf").write_text(text)
+    assert index_files(library, [clip]).added == ("05_13",)
 
 
 def test_what_has_changed_is_read_again_under_its_name(folder, library):

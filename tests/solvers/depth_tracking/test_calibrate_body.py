@@ -1,0 +1,143 @@
+"""Bodies measured in one frame: cylinders by random sampling, and whole bodies."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from solvers.depth_tracking.body_model import usual_body
+from solvers.depth_tracking.body_tables import CAPSULES
+from solvers.depth_tracking.calibrate_body import (
+    CalibrationSettings,
+    body_of_cylinders,
+    calibrate_body,
+)
+from solvers.depth_tracking.coordinates import COORDINATES, N_COORDINATES
+from solvers.depth_tracking.hypothesis import imagine
+from solvers.depth_tracking.pixel_forest import load_pixel_forest
+from solvers.depth_tracking.sample_cylinders import Cylinder, sample_cylinder
+from solvers.errors import InvalidMotionError
+from solvers.motion.camera import Camera
+from solvers.motion.depth_recording import DepthRecording
+
+CAMERA = Camera(285.63, 285.63, 159.5, 119.5, 320, 240)
+LIMBS = ("UpperArm", "LowerArm", "UpperLeg", "LowerLeg")
+
+
+@pytest.fixture(scope="module")
+def forest():
+    return load_pixel_forest()
+
+
+def arms_away(body, arms=0.7):
+    """A recording of one frame: the body faces the camera, arms lifted aside."""
+    pose = np.zeros(N_COORDINATES)
+    pose[:3] = 0.0, -0.05, 2.6
+    for name, angle in (
+        ("leftHumerusZ", arms), ("rightHumerusZ", arms),
+        ("leftFemurZ", 0.15), ("rightFemurZ", 0.15),
+    ):  # fmt: skip
+        pose[COORDINATES.index(name)] = angle
+    depth = imagine(body, pose, CAMERA).picture.depth_picture().astype(np.float32)
+    return DepthRecording(CAMERA, 1, 30.0, lambda frame: depth)
+
+
+def bar(start, stop, radius):
+    """Depth and outline of a capsule, by marching along every ray: no closed form."""
+    rays = CAMERA.rays()
+    rays /= np.linalg.norm(rays, axis=-1, keepdims=True)
+    depth = np.zeros(rays.shape[:2])
+    axis = stop - start
+    for distance in np.arange(1.5, 2.5, 0.002):
+        points = rays * distance
+        along = (points - start) @ axis / (axis @ axis)
+        off = np.linalg.norm(points - start - along[..., None] * axis, axis=-1)
+        hit = (off <= radius) & (along >= 0) & (along <= 1) & (depth == 0.0)
+        depth[hit] = points[hit][:, 2]
+    return depth
+
+
+@pytest.mark.parametrize("radius", [0.04, 0.07])
+def test_a_cylinder_is_measured(rng, radius):
+    start, stop = np.array([-0.2, -0.1, 2.0]), np.array([0.15, 0.1, 2.05])
+    depth = bar(start, stop, radius)
+    found = sample_cylinder(depth, depth > 0, CAMERA, (0.02, 0.12), rng)
+    assert found.quality > 0.9
+    np.testing.assert_allclose(found.radius, radius, rtol=0.1)
+    np.testing.assert_allclose(found.length, np.linalg.norm(stop - start), rtol=0.08)
+
+
+def test_pixels_of_others_are_outliers(rng):
+    """Half as long, when the other half of the bar is told to be another part."""
+    start, stop = np.array([-0.2, 0.0, 2.0]), np.array([0.2, 0.0, 2.0])
+    depth = bar(start, stop, 0.05)
+    own = depth > 0
+    own[:, : CAMERA.width // 2] = False
+    found = sample_cylinder(depth, own, CAMERA, (0.02, 0.12), rng)
+    np.testing.assert_allclose(found.length, 0.2, rtol=0.12)
+    assert found.ends[:, 0].min() > -0.02
+
+
+def test_a_cylinder_of_three_pixels_is_none(rng):
+    depth = np.zeros((240, 320))
+    depth[10, 10:13] = 2.0
+    assert sample_cylinder(depth, depth > 0, CAMERA, (0.02, 0.1), rng) is None
+
+
+def test_joints_lie_between_cylinders_and_sides_are_averaged():
+    arm = {
+        "leftUpperArm": Cylinder(np.array([[0, 0, 2], [0, 0.28, 2.0]]), 0.05, 1.0),
+        "leftLowerArm": Cylinder(np.array([[0, 0.32, 2], [0, 0.56, 2.0]]), 0.04, 1.0),
+        "rightUpperArm": Cylinder(np.array([[1, 0, 2], [1, 0.36, 2.0]]), 0.06, 1.0),
+    }
+    body = body_of_cylinders(arm, np.nan)
+    np.testing.assert_allclose(body.length("leftUpperArm"), (0.30 + 0.36) / 2)
+    np.testing.assert_allclose(body.length("leftLowerArm"), 0.26)
+    np.testing.assert_allclose(body.length("rightLowerArm"), 0.26)
+    for part, radius in (("leftUpperArm", 0.055), ("rightLowerArm", 0.04)):
+        np.testing.assert_allclose(body.radii[CAPSULES.index(part)], radius)
+    longer = body_of_cylinders(arm, 0.7)
+    trunk = sum(longer.length(name) for name in ("hips", "spine", "chest"))
+    np.testing.assert_allclose(trunk, 0.7)
+
+
+@pytest.mark.parametrize("stature", [1.55, 1.9])
+def test_bodies_of_capsules_are_measured(forest, stature):
+    true = usual_body(stature)
+    found = calibrate_body(arms_away(true), 0, forest)
+    for limb in LIMBS:
+        for side in ("left", "right"):
+            name = f"{side}{limb}"
+            np.testing.assert_allclose(found.length(name), true.length(name), rtol=0.08)
+    assert found.length("leftUpperArm") == found.length("rightUpperArm")
+
+
+def test_what_was_published_measures_coarser(forest):
+    true = usual_body(1.75)
+    plain = calibrate_body(
+        arms_away(true), 0, forest, settings=CalibrationSettings(refine=False)
+    )
+    trunk = sum(plain.length(name) for name in ("hips", "spine", "chest"))
+    assert 0.35 < trunk < 0.75
+    assert 0.15 < plain.length("leftUpperArm") < 0.4
+
+
+def test_the_same_frame_gives_the_same_body(forest):
+    depth = arms_away(usual_body())
+    settings = CalibrationSettings(refine=False, n_samples=60)
+    one, other = (calibrate_body(depth, 0, forest, settings=settings) for _ in range(2))
+    np.testing.assert_array_equal(one.lengths, other.lengths)
+    np.testing.assert_array_equal(one.radii, other.radii)
+
+
+def test_frames_that_show_too_little_are_refused(forest):
+    whole = arms_away(usual_body())
+    with pytest.raises(InvalidMotionError, match="no frame 3"):
+        calibrate_body(whole, 3, forest)
+    empty = replace(whole, read_depth=lambda frame: np.zeros((240, 320), np.float32))
+    with pytest.raises(InvalidMotionError, match="Frame 0 shows 0 arms and legs"):
+        calibrate_body(empty, 0, forest)
+    head = whole.frame(0).copy()
+    head[50:] = 0.0
+    with pytest.raises(InvalidMotionError, match="arms and legs well enough"):
+        calibrate_body(replace(whole, read_depth=lambda frame: head), 0, forest)

@@ -1,0 +1,159 @@
+"""Examples that rotation vectors, kernels and alignments could stumble over."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from solvers.motion import forward_kinematics, resample
+from solvers.motion.rotations import multiply, quaternion_from_rotation_vector
+from solvers.variation import (
+    Method,
+    VarySettings,
+    draw_variants,
+    learn_variation_model,
+    measure_variation,
+)
+from solvers.variation.align_examples import body_positions
+from solvers.variation.course import headings
+
+EVERY = [Method.MIXTURE, Method.COREGIONALISED]
+
+
+def about(axis, angles):
+    return quaternion_from_rotation_vector(np.asarray(angles)[:, None] * np.array(axis))
+
+
+def with_turn(motion, joint, axis, angles):
+    """Turn a joint further, by an angle in each frame, about an axis of its parent."""
+    rotations = motion.rotations.copy()
+    place = motion.skeleton.names.index(joint)
+    rotations[:, place] = multiply(about(axis, angles), rotations[:, place])
+    return motion.with_poses(rotations)
+
+
+def passing(motion, exponent):
+    """The part of the time that has passed, a little hastened or delayed."""
+    return np.linspace(0.0, 1.0, motion.n_frames) ** exponent
+
+
+def quickest(motions, joint):
+    """Metres per second that a joint moves at most, as the actor faces."""
+    place = motions[0].skeleton.names.index(joint)
+    return max(
+        np.linalg.norm(np.diff(body_positions(one)[:, place], axis=0), axis=-1).max()
+        * one.frame_rate
+        for one in motions
+    )
+
+
+@pytest.mark.parametrize("method", EVERY)
+def test_arms_that_go_round_twice_stay_whole(method, walks):
+    """Their rotation vectors pass pi again and again."""
+    mills = [
+        with_turn(walk, "LeftArm", (1, 0, 0), 4 * np.pi * passing(walk, power))
+        for walk, power in zip(walks, (1.0, 1.1, 0.95, 1.05), strict=True)
+    ]
+    settings = VarySettings(method=method)
+
+    drawn = draw_variants(learn_variation_model(mills, settings=settings), 6, settings=settings)
+
+    variants = [one.motion for one in drawn]
+    assert quickest(variants, "LeftHand") < 2.0 * quickest(mills, "LeftHand")
+    assert 0.4 < measure_variation(variants) / measure_variation(mills) < 1.6
+    place = walks[0].skeleton.names.index("LeftHand")
+    shoulder = walks[0].skeleton.names.index("LeftArm")
+    for motion in variants:
+        body = body_positions(motion)
+        arm = body[:, place] - body[:, shoulder]
+        turned = np.unwrap(np.arctan2(arm[:, 1], arm[:, 2]))
+        assert abs(abs(turned[-1] - turned[0]) - 4 * np.pi) < 1.0
+
+
+@pytest.mark.parametrize("method", EVERY)
+def test_arms_straight_up_do_not_flip(method, walks):
+    """Beyond straight up in some examples, short of it in others: half a turn from rest."""
+    raised = [
+        with_turn(walk, "LeftArm", (0, 1, 0), -np.pi / 2 - lift * passing(walk, 1.0))
+        for walk, lift in zip(walks, (1.4, 1.75, 1.5, 1.65), strict=True)
+    ]
+    settings = VarySettings(method=method)
+
+    drawn = draw_variants(
+        learn_variation_model(raised, settings=settings), 6, settings=settings
+    )
+
+    variants = [one.motion for one in drawn]
+    # The latent factor model is quicker where a clip begins; a flip would be ten times so.
+    times = 1.3 if method is Method.MIXTURE else 3.0
+    assert quickest(variants, "LeftHand") < times * quickest(raised, "LeftHand")
+
+
+@pytest.mark.parametrize("method", EVERY)
+def test_turning_on_the_spot_several_times(method, walks):
+    spun = []
+    for walk, power in zip(walks, (1.0, 1.1, 0.95, 1.05), strict=True):
+        turn = about((0, 0, 1), 6 * np.pi * passing(walk, power))
+        rotations = walk.rotations.copy()
+        rotations[:, 0] = multiply(turn, rotations[:, 0])
+        there = walk.root_positions * (0.0, 0.0, 1.0)
+        spun.append(walk.with_poses(rotations, there))
+    settings = VarySettings(method=method)
+
+    drawn = draw_variants(learn_variation_model(spun, settings=settings), 6, settings=settings)
+
+    wanted = np.mean([np.ptp(headings(one)) for one in spun])
+    for variant in drawn:
+        assert np.ptp(headings(variant.motion)) == pytest.approx(wanted, rel=0.1)
+
+
+def test_two_flips_the_same_way_do_not_wind_a_joint_up(walks):
+    """A thigh that is half a turn off for five frames: before and after all is as without."""
+    angles = np.zeros(walks[1].n_frames)
+    angles[25:30], angles[30:] = np.pi, 2.0 * np.pi
+    broken = with_turn(walks[1], "LeftUpLeg", (0.0, 0.0, 1.0), angles)
+    plain, odd = (
+        learn_variation_model([walks[0], one, *walks[2:]]) for one in (walks[1], broken)
+    )
+
+    apart = np.abs(odd.joints[1] - plain.joints[1]).max(axis=(1, 2))
+
+    assert apart[:15].max() < 0.6
+    assert apart[45:].max() < 0.6
+    assert odd.warning.startswith(
+        "LeftUpLeg of example 2 turns by 180 degrees within a frame at 0.42 s"
+    )
+    assert not plain.warning
+
+
+def test_twice_the_frame_rate_is_the_same_example(walks):
+    """Of another rate and length: variants go as fast and as far."""
+    quick = [walks[0], *(resample(walk, 150.0) for walk in walks[1:])]
+    usual, mixed = (
+        [one.motion for one in draw_variants(learn_variation_model(some), 8)]
+        for some in (walks, quick)
+    )
+
+    assert {one.frame_rate for one in mixed} == {60.0}
+    lengths = [np.mean([one.n_frames for one in some]) for some in (usual, mixed)]
+    assert lengths[1] == pytest.approx(lengths[0], rel=0.05)
+    ways = [
+        np.mean([np.ptp(one.root_positions[:, 1]) for one in some]) for some in (usual, mixed)
+    ]
+    assert ways[1] == pytest.approx(ways[0], rel=0.05)
+
+
+@pytest.mark.parametrize("method", Method)
+def test_twenty_thousand_frames(method, walks):
+    """Of a walk that comes again and again: many frames, and their kernels, are the same."""
+    walk = walks[0]
+    rotations = np.tile(walk.rotations, (400, 1, 1))[:20_000]
+    places = np.tile(walk.root_positions, (400, 1))[:20_000]
+    long = replace(walk, rotations=rotations, root_positions=places, frame_rate=400.0)
+    settings = VarySettings(method=method)
+
+    model = learn_variation_model([long, long.slice(0, 19_900)], settings=settings)
+    variant = draw_variants(model, 1, settings=settings)[0].motion
+
+    assert abs(variant.n_frames - 20_000) < 300
+    assert np.isfinite(forward_kinematics(variant).positions).all()
