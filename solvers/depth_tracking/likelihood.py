@@ -4,6 +4,7 @@ from collections.abc import Callable
 
 import numpy as np
 
+from .apart_term import apart_term
 from .closest_surface_term import closest_surface_term
 from .depth_image_term import depth_image_term
 from .edge_term import edge_term
@@ -55,7 +56,10 @@ def likelihood_rows(
         (settings.off_actor_weight, lambda w: off_actor_term(*both, groups, w, scale)),
         (settings.too_near_weight, lambda w: too_near_term(*both, groups, w, scale)),
     )  # fmt: skip
-    return joined([term(area * weight) for weight, term in terms if weight > 0.0])
+    rows = [term(area * weight) for weight, term in terms if weight > 0.0]
+    if settings.apart_weight > 0.0:
+        rows.append(apart_term(hypothesis, settings.apart_weight))
+    return joined(rows)
 
 
 def pixel_area(observation: Observation) -> float:
