@@ -39,6 +39,12 @@ def test_one_who_runs_is_one(speed):
     np.testing.assert_allclose(found.course[:, 0], speed * times - 2.0, atol=1e-9)
 
 
+def test_one_who_runs_is_one_though_another_stands_by():
+    found = followed((0.5, lambda time: (3.5 * time, 0.0, 3.0)), (0.3, standing(-2.0)))
+
+    np.testing.assert_allclose(found.course[:, 0], 3.5 * np.arange(151) / RATE, atol=1e-9)
+
+
 def test_two_who_pass_each_other_are_not_exchanged():
     """The second shows more surface on its way past, but less over the whole time."""
     found = followed(
