@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 from ..errors import InvalidMotionError
 from ..progress import Progress, unwatched, within
 from .depth_bodies import Bodies, find_bodies
-from .depth_floor import Floor, find_floor
+from .depth_floor import LEVEL, Floor, find_floor
 from .depth_foreground import (
     ActorPictures,
     Background,
@@ -30,6 +30,8 @@ FULL, WHOLE = 0.5, 0.75
 """Share of the picture above which it shows a room; and of what is seen that is the actor."""
 MOVING = 0.1
 """Share of a body's pixels that see it in front of the room, or it is furniture."""
+TALL = (0.6, 2.6)
+"""Metres that an actor whose feet are seen may measure from the lowest point to the highest."""
 CUT_OFF = 0.05
 """Share of the lowest row that is the actor, where the picture ends above the feet."""
 
@@ -115,10 +117,8 @@ def find_actor(
     alone = cut_out_actor(
         recording, settings, background=background, floor=floor, course=people.course
     )
-    cut_off = survey.cut_off()
-    return Actor(
-        alone, floor, way, seen, not cut_off, _remarks(people, seen, recording, cut_off)
-    )
+    remarks = (*_remarks(people, seen, recording), *survey.remarks())
+    return Actor(alone, floor, way, seen, not survey.cut_off(), remarks)
 
 
 _NOBODY = (
@@ -165,6 +165,7 @@ class _Survey:
         self._step = max(1, actor.recording.camera.width // COARSE_WIDTH)
         self._camera = actor.recording.camera.every(self._step)
         self._at_edge: list[bool] = []
+        self._heights: list[float] = []
 
     def __call__(self, frame: int) -> Bodies:
         """Return the people in a frame: bodies of their size that are no furniture."""
@@ -185,11 +186,29 @@ class _Survey:
         if kept.any():
             first = int(np.argmax(kept)) + 1
             self._at_edge.append(bool((found.labels[-1] == first).mean() >= CUT_OFF))
+            points = self._camera.back_project(depth)[found.labels == first]
+            heights = (self._actor.floor or LEVEL).heights(points)
+            self._heights.append(float(np.ptp(np.quantile(heights, [0.01, 0.99]))))
         return Bodies(found.labels, found.areas[kept], found.middles[kept])
+
+    def height(self) -> float:
+        """Return how tall the largest body usually is where it is seen best, metres."""
+        return float(np.quantile(self._heights, 0.9)) if self._heights else np.nan
 
     def cut_off(self) -> bool:
         """Whether the lower edge of the picture usually cut the largest body."""
         return bool(self._at_edge) and float(np.mean(self._at_edge)) > 0.5
+
+    def remarks(self) -> list[str]:
+        """Tell what is odd about the actor's body."""
+        if self.cut_off():
+            return ["The picture ends above the feet: legs are guessed or left out."]
+        if TALL[0] <= self.height() <= TALL[1]:
+            return []
+        return [
+            f"The actor would be {self.height():.1f} m tall: check the scale, and the focal"
+            " length of the camera."
+        ]
 
 
 def _followed(
@@ -207,7 +226,7 @@ def _followed(
 
 
 def _remarks(
-    people: People, seen: NDArray[np.bool_], recording: DepthRecording, cut_off: bool
+    people: People, seen: NDArray[np.bool_], recording: DepthRecording
 ) -> tuple[str, ...]:
     remarks = []
     crowd = np.flatnonzero(people.n_bodies > 1)
@@ -222,6 +241,4 @@ def _remarks(
         remarks.append(
             f"Nobody is seen in {(~seen).sum()} of {len(seen)} frames, from {first:.1f} s on."
         )
-    if cut_off:
-        remarks.append("The picture ends above the feet: legs are guessed or left out.")
     return tuple(remarks)

@@ -196,3 +196,13 @@ def test_looking_can_be_stopped(takes):
 
     with pytest.raises(SolveCancelled):
         find_actor(takes["walk_front"], progress=cancel)
+
+
+@pytest.mark.parametrize("factor", [0.25, 2.0])
+def test_a_wrong_focal_length_is_noticed_by_the_size_of_the_actor(takes, factor):
+    take = takes["walk_front"]
+    wrong = Camera(285.63 / factor, 285.63 / factor, 159.5, 119.5, 320, 240)
+
+    actor = find_actor(replace(take, camera=wrong), ForegroundSettings(smallest_body=0.01))
+
+    assert f"The actor would be {1.62 * factor:.1f} m tall: check" in actor.remarks[-1]
