@@ -9,7 +9,7 @@ def register() -> None:
     from . import batch, scene_properties, ui, watch
     from .library import background, ghost_drawing, previews, properties
     from .live import listening
-    from .scene import contacts
+    from .scene import contacts, depth_preview
 
     scene_properties.register()
     properties.register()
@@ -17,6 +17,7 @@ def register() -> None:
     background.register()
     previews.register()
     contacts.register()
+    depth_preview.register()
     watch.register()
     listening.register()
     batch.register()
@@ -28,12 +29,13 @@ def unregister() -> None:
     from . import batch, scene_properties, ui, watch
     from .library import background, ghost_drawing, previews, properties
     from .live import listening
-    from .scene import contacts
+    from .scene import contacts, depth_preview
 
     ui.unregister()
     batch.unregister()
     listening.unregister()
     watch.unregister()
+    depth_preview.unregister()
     contacts.unregister()
     previews.unregister()
     background.unregister()

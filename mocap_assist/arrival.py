@@ -10,8 +10,10 @@ import bpy
 
 from ..solvers.errors import MocapAssistError, SolveCancelled
 from ..solvers.motion import JointRecording, Motion, Tracks
+from ..solvers.motion.depth_recording import DepthRecording
 from ..solvers.progress import Progress, unwatched
 from ..solvers.recordings import recording_figures
+from .depth_objects import make_preview
 from .import_choices import ImportChoices
 from .jobs.reading import Recording, in_one_tree
 from .recording_objects import make_objects
@@ -129,10 +131,13 @@ class Arrival:
         choices = self._choices
         if self._tops and choices.frame_rate is FrameRate.UPDATE:  # the first has set the rate
             choices = replace(choices, frame_rate=FrameRate.SCALE)
-        made = make_objects(
-            context, path.stem, recording, choices, moving=moving, progress=progress
-        )
-        for owner in (made.top, made.action):
+        if isinstance(recording, DepthRecording):
+            made = make_preview(context, path, recording, choices, progress=progress)
+        else:
+            made = make_objects(
+                context, path.stem, recording, choices, moving=moving, progress=progress
+            )
+        for owner in filter(None, (made.top, made.action)):
             note_origin(owner, origin_of_file(path, recording))
         if choices.frame_rate is FrameRate.UPDATE:
             set_scene_rate(context.scene, recording.frame_rate)
@@ -144,7 +149,7 @@ class Arrival:
 
 def _figures(recording: Recording, warnings: Sequence[str]) -> dict[str, Any]:
     figures = recording_figures(recording)
-    lost = figures.pop("never_seen")
+    lost = figures.pop("never_seen", [])
     told = [*warnings, *[f"Never seen: {', '.join(lost)}"] * bool(lost)]
     if isinstance(recording, JointRecording) and not in_one_tree(recording):
         told.append("Nothing tells which joint hangs on which")

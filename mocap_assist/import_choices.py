@@ -4,6 +4,7 @@ from dataclasses import dataclass
 from enum import Enum
 from typing import NamedTuple
 
+from ..solvers.recordings import DepthSettings, Held
 from ..solvers.settings import Settings, setting
 from .scene.scene_rate import FrameRate
 
@@ -88,6 +89,33 @@ class ImportChoices(Settings):
         "Extend the scene's duration to the recording's (never shortens the scene)",
         label="Update Scene Duration",
     )
+    focal_length: float = setting(
+        0.0,
+        "Of a depth camera, in pixels, where the files do not tell it, as folders of pictures"
+        " often do not; more makes the actor narrower. 0 takes the file's word",
+        minimum=0.0,
+        maximum=100_000.0,
+    )
+    held: Held = setting(
+        Held.KNOWN,
+        "How the depth camera was held: turned left has the actor's head at the left of the"
+        " picture. Known takes the file's word",
+        label="Depth Camera",
+    )
+    mirrored: bool = setting(
+        False,
+        "The pictures of depth show the actor's right hand on the right, as a mirror does",
+    )
+
+    @property
+    def depth(self) -> DepthSettings:
+        """What this means for pictures of depth."""
+        return DepthSettings(
+            scale=self.unit.metres or 0.0,
+            fx=self.focal_length,
+            held=self.held,
+            mirrored=self.mirrored,
+        )
 
 
 class ImportSettings(NamedTuple):

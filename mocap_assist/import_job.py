@@ -9,6 +9,7 @@ import bpy
 
 from ..solvers.errors import InvalidFileError, MocapAssistError
 from .arrival import READING, Arrival
+from .depth_folders import readable
 from .import_choices import ImportChoices
 from .jobs.job import ProcessDied
 from .jobs.reading import Known, Read, read_files
@@ -35,6 +36,7 @@ class ImportJob:
         self, context: bpy.types.Context, paths: list[Path], choices: ImportChoices
     ) -> None:
         self.arrival = Arrival(context, choices)
+        paths = [readable(context, path, choices) for path in paths]
         self._wanted = wanted_of(context, choices)
         self._batches = deque(batches(paths))
         self._n_files, self._n_read, self._n_in = len(paths), 0, 0

@@ -7,6 +7,7 @@ import bpy
 from ..solvers.errors import MocapAssistError, SolveCancelled
 from ..solvers.progress import Progress, unwatched, within
 from .arrival import READING, Arrival, Imported
+from .depth_folders import is_take, readable, take_of
 from .import_choices import ImportChoices
 from .recent_files import read_again
 from .scene.scene_rate import scene_rate
@@ -16,21 +17,28 @@ QUICKLY_READ = 2_000_000  # bytes
 
 EXTENSIONS = (
     ".bvh", ".amc", ".asf", ".c3d", ".trc", ".skeleton", ".csv", ".json", ".txt", ".npy",
-    ".npz",
+    ".npz", ".mkv", ".mat",
 )  # fmt: skip
 """What files of a format known here may be called; what they hold decides."""
-FILTER = ";".join(f"*{extension}" for extension in EXTENSIONS)
+PICTURES = (".png", ".exr")
+"""What pictures of depth may be called, of which a folder is a recording."""
+FILTER = ";".join(f"*{extension}" for extension in (*EXTENSIONS, *PICTURES))
 
 
 def chosen_paths(operator: bpy.types.Operator) -> list[Path]:
     """Return the files that an operator was given, as a list in a folder or as one path.
 
-    The skeleton that an AMC file needs may be among them: it is found anyway.
+    The skeleton that an AMC file needs may be among them: it is found anyway. A folder of
+    pictures of depth may be given itself, by being the one that is looked at, or by files in
+    it.
     """
     folder = bpy.path.abspath(operator.directory)
     paths = [Path(folder, each.name) for each in operator.files if each.name]
     if not paths and operator.filepath:
         paths = [Path(bpy.path.abspath(operator.filepath))]
+    if not paths and folder and is_take(Path(folder)):
+        paths = [Path(folder)]
+    paths = list(dict.fromkeys(map(take_of, paths)))
     if any(path.suffix.lower() == ".amc" for path in paths):
         paths = [path for path in paths if path.suffix.lower() != ".asf"]
     return paths
@@ -73,7 +81,13 @@ def import_files(
         for index, path in enumerate(paths):
             share = within(progress, index / len(paths), (index + 1) / len(paths))
             try:
-                known = read_again(path, within(share, 0.0, READING), unit=choices.unit.metres)
+                source = readable(context, path, choices)
+                known = read_again(
+                    source,
+                    within(share, 0.0, READING),
+                    unit=choices.unit.metres,
+                    depth=choices.depth,
+                )
             except SolveCancelled:
                 raise
             except MocapAssistError as error:
@@ -81,7 +95,7 @@ def import_files(
             else:
                 arrival.add(
                     context,
-                    path,
+                    source,
                     known.recording,
                     within(share, READING, 1.0),
                     warnings=known.warnings,

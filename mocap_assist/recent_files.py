@@ -4,8 +4,11 @@ from pathlib import Path
 
 from ..solvers.errors import InvalidFileError
 from ..solvers.motion import JointRecording, Motion
+from ..solvers.motion.depth_recording import DepthRecording
 from ..solvers.progress import Progress, unwatched
+from ..solvers.recordings import DepthSettings
 from ..solvers.recordings.acclaim import find_skeleton
+from ..solvers.recordings.depth_settings import USUAL
 from .jobs.reading import Known, Recording, read_file
 
 MOST = 20_000_000  # numbers that are kept
@@ -15,17 +18,26 @@ _read: dict[tuple[State, float | None], Known] = {}
 
 
 def read_again(
-    path: Path, progress: Progress = unwatched, *, unit: float | None = None
+    path: Path,
+    progress: Progress = unwatched,
+    *,
+    unit: float | None = None,
+    depth: DepthSettings = USUAL,
 ) -> Known:
-    """Return what a file holds, as `read_file` does; what has not changed is read once."""
+    """Return what a file holds, as `read_file` does; what has not changed is read once.
+
+    Recordings of depth are opened anew: little is read for that.
+    """
     state = state_of(path)
-    known = _read.pop((state, unit), None) or read_file(path, progress, unit=unit)
+    known = _read.pop((state, unit), None) or read_file(path, progress, unit=unit, depth=depth)
     remember(path, state, known, unit)
     return known
 
 
 def remember(path: Path, state: State, known: Known, unit: float | None) -> None:
     """Keep what was read from a file in this state and unit, unless it has changed since."""
+    if isinstance(known.recording, DepthRecording):
+        return
     if state and state == state_of(path):
         _read[state, unit] = known
     while sum(_size(known.recording) for known in _read.values()) > MOST:

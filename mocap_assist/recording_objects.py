@@ -41,8 +41,9 @@ class Made(NamedTuple):
     """What a recording became."""
 
     top: bpy.types.Object
-    """The armature, or the empty that holds the markers."""
-    action: bpy.types.Action
+    """The armature, the empty that holds the markers, or the points of depth."""
+    action: bpy.types.Action | None
+    """None for depth, which is read from its files."""
     last_frame: float
     what: str
     """In words."""
@@ -56,6 +57,7 @@ def wanted_of(context: bpy.types.Context, choices: ImportChoices) -> Wanted:
         choices.global_scale,
         scene_rate(context.scene) if resampled else None,
         choices.unit.metres,
+        choices.depth,
     )
 
 

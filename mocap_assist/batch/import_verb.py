@@ -12,6 +12,7 @@ from ...solvers.command_line.files import found_in
 from ...solvers.command_line.screen import Screen
 from ...solvers.errors import InvalidFileError
 from ...solvers.files import written_whole
+from ..depth_folders import is_take
 from ..import_choices import ImportChoices
 from ..importing import import_files
 from .pictures import draw_played
@@ -37,7 +38,9 @@ def perform_import(arguments: argparse.Namespace, screen: Screen) -> None:
         Some recordings could not be read, or the file could not be saved.
     """
     target = target_file(arguments)
-    paths = [path for path, _ in found_in(arguments.files)]
+    takes = [path for path in arguments.files if is_take(path)]
+    others = [path for path in arguments.files if path not in takes]
+    paths = [*takes, *(path for path, _ in found_in(others))]
     screen.title = "Import"
     imported = import_files(
         bpy.context,

@@ -16,11 +16,13 @@ from ...solvers.motion import (
     motion_from_points,
     resample,
 )
+from ...solvers.motion.depth_recording import DepthRecording
 from ...solvers.motion.unseen_hips import with_hips
 from ...solvers.progress import Progress, unwatched
-from ...solvers.recordings import read_tracked
+from ...solvers.recordings import DepthSettings, is_depth, read_depth, read_tracked
+from ...solvers.recordings.depth_settings import USUAL
 
-Recording = Motion | Tracks | JointRecording
+Recording = Motion | Tracks | JointRecording | DepthRecording
 Result = TypeVar("Result")
 
 
@@ -34,6 +36,8 @@ class Wanted(NamedTuple):
     """Frames per second to resample to; None leaves each recording its own."""
     unit: float | None = None
     """Metres in one unit of the files; None for what they say, or their readers guess."""
+    depth: DepthSettings = USUAL
+    """How pictures of depth are to be understood."""
 
 
 class Known(NamedTuple):
@@ -48,7 +52,7 @@ class Read(NamedTuple):
     """What a file holds, and what is to be seen of it."""
 
     recording: Recording
-    moving: Motion | Tracks
+    moving: Motion | Tracks | DepthRecording
     warnings: tuple[str, ...] = ()
     """What its reader said of it."""
 
@@ -65,7 +69,7 @@ def read_files(
 
         share(0.0)
         try:
-            known = read_file(path, share, unit=wanted.unit)
+            known = read_file(path, share, unit=wanted.unit, depth=wanted.depth)
             moving = _tried(path, lambda known=known: as_wanted(known.recording, wanted))
             found.append(Read(known.recording, moving, known.warnings))
         except SolveCancelled:
@@ -76,16 +80,26 @@ def read_files(
 
 
 def read_file(
-    path: Path, progress: Progress = unwatched, *, unit: float | None = None
+    path: Path,
+    progress: Progress = unwatched,
+    *,
+    unit: float | None = None,
+    depth: DepthSettings = USUAL,
 ) -> Known:
-    """Read a file, as `read_tracked` does, and keep what its reader says.
+    """Read a file or folder, as `read_recording` does, and keep what its reader says.
 
-    `unit` is its metres in one unit of the file.
+    `unit` is its metres in one unit of the file, `depth` how pictures of depth are understood.
 
     Whatever goes wrong is a MocapAssistError, so that other files are read all the same.
     """
     listener = _Listener(progress)
-    recording = _tried(path, lambda: read_tracked(path, scale=unit, progress=listener))
+
+    def read() -> Recording:
+        if is_depth(path):
+            return read_depth(path, depth, progress=listener)
+        return read_tracked(path, scale=unit, progress=listener)
+
+    recording = _tried(path, read)
     return Known(recording, tuple(listener.warnings))
 
 
@@ -120,8 +134,10 @@ class _Listener:
         self._progress(fraction, message)
 
 
-def as_wanted(recording: Recording, wanted: Wanted) -> Motion | Tracks:
-    """Turn a recording into what moves as it does in the scene."""
+def as_wanted(recording: Recording, wanted: Wanted) -> Motion | Tracks | DepthRecording:
+    """Turn a recording into what moves as it does in the scene; depth stays what it is."""
+    if isinstance(recording, DepthRecording):
+        return recording
     moving = _scaled(_joined(recording, wanted.armature), wanted.scale)
     return moving if wanted.frame_rate is None else resample(moving, wanted.frame_rate)
 

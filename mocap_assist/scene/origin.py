@@ -7,6 +7,7 @@ from typing import Any
 import bpy
 
 from ...solvers.motion import JointRecording, Motion, Tracks
+from ...solvers.motion.depth_recording import DepthRecording
 
 ORIGIN = "mocap_assist_recording"
 
@@ -16,7 +17,9 @@ def note_origin(made: bpy.types.ID, origin: dict[str, Any]) -> None:
     made[ORIGIN] = json.dumps(origin, ensure_ascii=False)
 
 
-def origin_of_file(path: Path, recording: Motion | Tracks | JointRecording) -> dict[str, Any]:
+def origin_of_file(
+    path: Path, recording: Motion | Tracks | JointRecording | DepthRecording
+) -> dict[str, Any]:
     """Return what is to be noted about a recording that was read from a file."""
     origin = {
         "file": str(path),

@@ -9,7 +9,7 @@ from .scene_state import SceneState
 
 Numbers = dict[str, set[int]]
 """Session numbers of data, by their kind."""
-KINDS = ("objects", "armatures", "actions", "collections")
+KINDS = ("objects", "armatures", "meshes", "node_groups", "actions", "collections")
 
 
 def in_object_mode(context: bpy.types.Context) -> None:

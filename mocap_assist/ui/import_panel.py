@@ -4,6 +4,7 @@ from pathlib import PurePath
 
 import bpy
 
+from ..scene.depth_preview import problem_of
 from ..scene.origin import origin_of
 from .drawing import draw_job, exists
 from .import_menu import IMPORT
@@ -29,6 +30,8 @@ class ImportPanel:
             name = PurePath(str(origin.get("file", ""))).name
             column.label(text=name, icon="FILE", translate=False)
             column.label(text=_figures(origin), icon="BLANK1", translate=False)
+            if problem := problem_of(active):
+                column.label(text=problem, icon="ERROR", translate=False)
 
 
 def _figures(origin: dict[str, object]) -> str:

@@ -32,6 +32,7 @@ from .msr_action3d import read_msr_action3d
 from .ntu_skeleton import read_ntu_skeleton
 from .read_recording import (
     format_of,
+    is_depth,
     read_motion_or_tracks,
     read_recording,
     read_tracked,
@@ -47,6 +48,7 @@ __all__ = [
     "Held",
     "depth_format_of",
     "format_of",
+    "is_depth",
     "read_acclaim",
     "read_acclaim_limits",
     "read_azure_csv",

@@ -130,9 +130,17 @@ def read_recording(
         Raised by `progress`.
     """
     check_scale(scale)
-    if format_of(path) is None and depth_format_of(path) is not None:
+    if is_depth(path):
         return read_depth(path, DepthSettings(scale=scale or 0.0), progress=progress)
     return read_tracked(path, scale=scale, progress=progress)
+
+
+def is_depth(path: Path | str) -> bool:
+    """Tell whether a file or folder holds pictures of depth, of a format that is known.
+
+    Raises InvalidFileError where it is missing, or cannot be read.
+    """
+    return format_of(path) is None and depth_format_of(path) is not None
 
 
 def read_tracked(

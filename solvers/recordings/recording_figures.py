@@ -6,9 +6,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..motion import JointRecording, Motion, Tracks
+from ..motion.depth_recording import DepthRecording
 
 
-def recording_figures(recording: Motion | Tracks | JointRecording) -> dict[str, Any]:
+def recording_figures(
+    recording: Motion | Tracks | JointRecording | DepthRecording,
+) -> dict[str, Any]:
     """Return size, rate and gaps of a recording, with units in the names, ready for JSON.
 
     A gap is a stretch of frames in which a joint or marker is not observed. One that never is
@@ -18,8 +21,17 @@ def recording_figures(recording: Motion | Tracks | JointRecording) -> dict[str, 
     -------
     dict
         `joints` or `markers`, `n_frames`, `frame_rate_hz`, `duration_s`, `gaps`,
-        `missing_share`, `longest_gap_s`, `never_seen` (names), and the `sensor` of a camera.
+        `missing_share`, `longest_gap_s`, `never_seen` (names), and the `sensor` of a camera. Of
+        depth: `width_px`, `height_px`, `n_frames`, `frame_rate_hz`, `duration_s`.
     """
+    if isinstance(recording, DepthRecording):
+        return {
+            "width_px": recording.camera.width,
+            "height_px": recording.camera.height,
+            "n_frames": recording.n_frames,
+            "frame_rate_hz": recording.frame_rate,
+            "duration_s": recording.n_frames / recording.frame_rate,
+        }
     if isinstance(recording, Motion):
         skeleton = recording.skeleton
         columns = [

@@ -37,7 +37,7 @@ from .variation_sets import development_sets, scored_sets
 Sets = dict[str, list[Motion]]
 Maker = Callable[..., Sequence[Variant]]
 
-N_VARIANTS, N_PLANTED = 20, 6
+N_VARIANTS, N_PLANTED = 20, 4
 OURS = "mixture (default)"
 ENOUGH = 9
 """Examples that a set needs for one part of them to be held out."""

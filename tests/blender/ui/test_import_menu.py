@@ -5,7 +5,7 @@ import pytest
 IMPORT = "mocap_assist.import_recording"
 EXTENSIONS = {
     ".bvh", ".amc", ".asf", ".c3d", ".trc", ".skeleton", ".csv", ".json", ".txt", ".npy",
-    ".npz",
+    ".npz", ".mkv", ".mat",
 }  # fmt: skip
 
 

@@ -1,0 +1,86 @@
+"""Bring a recording of depth into a Blender with a window, play it, and take pictures.
+
+    make extension-plain
+    BG_DEBS="python3-scipy python3-pil" BG_FILES="walk.npz" \
+        bash ../shared/tools/blender-gui.sh run dist/mocap_assist-0.1.0-plain.zip \
+        tests/gui/drive_depth.py build/gui/depth.png
+
+Runs inside that Blender; `bgui` comes with the tool. The recording, such as one of
+`../shared/data/depth/truth`, is copied beside this script.
+"""
+
+import time
+from pathlib import Path
+
+import bgui
+import bpy
+
+FOLDER = Path(__file__).parent
+WALK = FOLDER / "walk.npz"
+UNTIL_DONE = 600  # tenths of a second
+
+
+def settle():
+    """Wait until everything is drawn."""
+    for _ in range(3):
+        bgui.redraw()
+        yield 0.5
+
+
+def look_at(center, distance, rotation):
+    view = bgui.area().spaces.active.region_3d
+    view.view_location = center
+    view.view_rotation = rotation
+    view.view_distance = distance
+    view.view_perspective = "PERSP"
+
+
+def bring_in():
+    """Drop the file; the dialog opens, and Return imports it in a process of its own."""
+    bgui.move(500, 500)
+    with bgui.override("WINDOW"):
+        bpy.ops.mocap_assist.import_recording(
+            "INVOKE_DEFAULT", directory=str(FOLDER), files=[{"name": WALK.name}]
+        )
+    yield 1.5
+    bgui.shot("1-dialog.png")
+    yield from bgui.key("Return")
+    job = bpy.context.window_manager.mocap_assist_job
+    for _ in range(UNTIL_DONE):
+        yield 0.1
+        if not job.running and bpy.context.object is not None:
+            break
+
+
+def steps():
+    # A walk seen from beside the camera, at three moments, and while it plays.
+    for each in list(bpy.data.objects):
+        bpy.data.objects.remove(each)
+    yield from bgui.open_sidebar("Mocap")
+    yield from bring_in()
+    made = bpy.context.object
+    assert made.type == "MESH", made
+    look_at((0.0, 3.0, 0.0), 5.0, (0.70, 0.66, 0.18, 0.20))
+    shown = []
+    for number, frame in enumerate((1, 20, 50), start=2):
+        bpy.context.scene.frame_set(frame)
+        yield from settle()
+        bgui.shot(f"{number}-frame-{frame}.png")
+        shown.append(tuple(made.data.vertices[0].co))
+    assert len(set(shown)) > 1, shown
+    started = time.perf_counter()
+    for frame in range(1, 31):
+        bpy.context.scene.frame_set(frame)
+    print(f"30 frames in {time.perf_counter() - started:.2f} s without drawing")
+    with bgui.override("WINDOW"):
+        bpy.ops.ed.undo_push(message="Frames")
+        bpy.ops.object.delete()
+        bpy.ops.ed.undo()
+    yield from settle()
+    bpy.context.scene.frame_set(40)
+    yield from settle()
+    bgui.shot("5-after-undo.png")
+    assert [each.name for each in bpy.data.objects] == ["walk"]
+
+
+bgui.run(steps, timeout=300)
