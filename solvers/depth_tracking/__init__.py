@@ -16,6 +16,7 @@ from .body_model import BodyModel, load_body_model, usual_body
 from .calibrate_body import CalibrationSettings, calibrate_body
 from .capture import Capture, CaptureSettings, capture
 from .detect_pose import DetectedPose, DetectorSettings, detect_pose
+from .learn_motion_prior import learn_motion_prior
 from .motion_prior import MotionPrior, load_motion_prior
 from .pixel_forest import PixelForest, load_pixel_forest
 from .refine_body import RefineBodySettings, refine_body
@@ -40,6 +41,7 @@ __all__ = [
     "calibrate_body",
     "capture",
     "detect_pose",
+    "learn_motion_prior",
     "load_body_model",
     "load_motion_prior",
     "load_pixel_forest",

@@ -2,8 +2,6 @@
 
 from collections.abc import Callable
 
-import numpy as np
-
 from .apart_term import apart_term
 from .closest_surface_term import closest_surface_term
 from .depth_image_term import depth_image_term
@@ -64,6 +62,4 @@ def likelihood_rows(
 
 def pixel_area(observation: Observation) -> float:
     """Return how much surface a pixel sees where the actor is, square metres."""
-    camera = observation.camera
-    distance = float(np.median(observation.points[:, 2]))
-    return distance**2 / (camera.fx * camera.fy)
+    return observation.pixel_area

@@ -16,9 +16,9 @@ from solvers.motion.depth_recording import DepthRecording
 
 TAKES = Path(__file__).resolve().parents[3] / "shared" / "data" / "depth" / "utd_mhad"
 KINECT_TAKES = tuple(
-    f"{take}_t1" for take in ("a1_s1", "a6_s3", "a7_s3", "a12_s5", "a22_s7", "a24_s5", "a26_s7")
+    f"{take}_t1" for take in ("a1_s1", "a6_s3", "a7_s3", "a12_s5", "a24_s5", "a26_s7")
 )
-"""Swipe, crossed arms, basketball, bowling, jogging, standing up, lunge."""
+"""Swipe, crossed arms, basketball, bowling, standing up, lunge."""
 LATE = 2
 """depth[t] fits skeleton[t - 2] (data/README.md)."""
 SDK_JOINTS = (
