@@ -20,9 +20,10 @@ from .learn_motion_prior import learn_motion_prior
 from .motion_prior import MotionPrior, load_motion_prior
 from .pixel_forest import PixelForest, load_pixel_forest
 from .refine_body import RefineBodySettings, refine_body
+from .skinned_body import SkinnedBody, load_skinned_body
 from .track_pose import TrackedMotion, track_pose
 from .tracker_settings import LOU12, WZC12, TrackerSettings
-from .train_forest import train_pixel_forest
+from .train_forest import PixelForestSettings, train_pixel_forest
 
 __all__ = [
     "LOU12",
@@ -35,7 +36,9 @@ __all__ = [
     "DetectorSettings",
     "MotionPrior",
     "PixelForest",
+    "PixelForestSettings",
     "RefineBodySettings",
+    "SkinnedBody",
     "TrackedMotion",
     "TrackerSettings",
     "calibrate_body",
@@ -45,6 +48,7 @@ __all__ = [
     "load_body_model",
     "load_motion_prior",
     "load_pixel_forest",
+    "load_skinned_body",
     "refine_body",
     "track_pose",
     "train_pixel_forest",

@@ -38,11 +38,32 @@ from solvers.depth_tracking.training_pictures import SHAPE_LASTS, picture_source
 
 from .depth_labels import LabelledFrame, truth_frames, unseen_frames
 from .forest_sources import TRUTH, all_bodies, taught_motions
+from .part_detector_kinect import kinect_rows
 
 Array = NDArray[np.float64]
 NEAR = 0.1
 """Metres: a joint found within counts as found."""
+EVERY = 15
+"""Every so manieth frame of a take is looked at."""
 PEER_PICTURES, PEER_PIXELS, PEER_FEATURES = 1500, 60, 400
+
+
+def detector() -> list[str]:
+    """Return all tables of the detector that is shipped, for `bench_depth`."""
+    forest = load_pixel_forest()
+    settings = DetectorSettings()
+    usual, true = (
+        pose_rows(forest, EVERY, settings, calibrated) for calibrated in (False, True)
+    )
+    tables = {
+        f"Parts told by pixel, at 160 x 120; {forest.trained_on}": accuracy_rows(forest, EVERY),
+        "Poses in single frames, body of the usual adult": usual,
+        "Poses in single frames, limbs of true length": true,
+        "Against scikit-learn's forest on the same features": peer_rows(EVERY),
+        "Bodies that were not learned from": body_rows(EVERY),
+        "Single frames of a real Kinect, against its SDK": kinect_rows(forest),
+    }
+    return [f"**{title}**\n\n" + "\n".join(rows) for title, rows in tables.items()]
 
 
 def confusion(frames: Iterable[LabelledFrame], forest: PixelForest) -> tuple[Array, float]:

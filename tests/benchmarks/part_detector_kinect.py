@@ -74,7 +74,25 @@ def kinect_take(action: int, subject: int, body: BodyModel, forest: PixelForest)
     return KinectTake(action, subject, frames, depth, found, reference)
 
 
-def kinect_rows(takes: list[KinectTake]) -> list[str]:
+def kinect_rows(forest: PixelForest) -> list[str]:
+    """Detect the body in frames of all actions, and return how far its joints are."""
+    bodies = {subject: kinect_body(subject, forest) for subject in SUBJECTS}
+    return distance_rows(all_takes(bodies, forest, N_ACTIONS))
+
+
+def all_takes(
+    bodies: dict[int, BodyModel], forest: PixelForest, n_actions: int
+) -> list[KinectTake]:
+    """Detect each subject in each of the first actions."""
+    return [
+        kinect_take(action, subject, bodies[subject], forest)
+        for action in range(1, n_actions + 1)
+        for subject in SUBJECTS
+        if (FOLDER / f"a{action}_s{subject}_t1_depth.mat").exists()
+    ]
+
+
+def distance_rows(takes: list[KinectTake]) -> list[str]:
     """Return tables of distances to the SDK's joints, less a constant offset of each joint."""
     apart = np.stack([pose.joints[OURS] for take in takes for pose in take.found])
     apart = apart - np.concatenate([take.reference for take in takes])
@@ -144,13 +162,8 @@ def main() -> None:
     given = parser.parse_args()
     forest = load_pixel_forest(given.forest)
     bodies = {subject: kinect_body(subject, forest) for subject in SUBJECTS}
-    takes = [
-        kinect_take(action, subject, bodies[subject], forest)
-        for action in range(1, given.actions + 1)
-        for subject in SUBJECTS
-        if (FOLDER / f"a{action}_s{subject}_t1_depth.mat").exists()
-    ]
-    print("\n".join(kinect_rows(takes)))
+    takes = all_takes(bodies, forest, given.actions)
+    print("\n".join(distance_rows(takes)))
     if given.pictures:
         given.pictures.mkdir(parents=True, exist_ok=True)
         drawn = [draw(take, bodies[take.subject], 1) for take in takes]
