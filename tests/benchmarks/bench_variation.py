@@ -163,7 +163,7 @@ def by_examples(sets: Sets) -> list[str]:
             figures = judge.figures([one.motion for one in variants])
             cells.append(f"{number(figures['V'])} / {number(figures['coverage'])}")
         rows[name] = cells
-    title = "**V in cm / coverage, against the number of examples** (mixture)\n\n"
+    title = "**V in cm / coverage, against the number of examples** (mixture; fig. 4.6)\n\n"
     return [title + table(["set", *map(str, counts)], rows) + "\n"]
 
 
