@@ -1,6 +1,6 @@
 """What the button Retarget reads from the scene, and what it writes back."""
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from functools import partial
 from typing import NamedTuple
 
@@ -19,7 +19,7 @@ from .scene import compat, history
 from .scene.action_write import write_action
 from .scene.armature_read import read_take
 from .scene.armature_write import check_writable
-from .scene.bone_channels import animated_curves, bone_path
+from .scene.bone_channels import animated_paths, bone_path
 from .scene.compat import Source
 from .scene.evaluated_body import body_bones, with_body_shown
 from .scene.rigify import is_rigify
@@ -123,7 +123,7 @@ def source_called(name: str, armature: bpy.types.Object) -> Source:
     Raises InvalidMotionError where there is none.
     """
     action = bpy.data.actions.get(name)
-    slot = None if action is None else _fitting_slot(action, armature)
+    slot = None if action is None else _fitting_slot(action, _paths_of(armature))
     if slot is None:
         raise InvalidMotionError(
             f"There is no action {name} with keys for the bones of {armature.name}."
@@ -131,27 +131,34 @@ def source_called(name: str, armature: bpy.types.Object) -> Source:
     return action, slot
 
 
-def fitting_actions(armature: bpy.types.Object) -> tuple[Source, ...]:
-    """Return all actions, linked ones too, that key any of the armature's bones.
+def fitting_actions(
+    armature: bpy.types.Object, actions: Iterable[bpy.types.Action] | None = None
+) -> tuple[Source, ...]:
+    """Return all actions, or all of these, that key any of the armature's bones.
 
-    What was given to another armature, whose bones may have the same names, is left out.
+    Linked ones too. What was given to another armature, whose bones may have the same names,
+    is left out.
     """
+    paths = _paths_of(armature)
     found = [
-        (each, _fitting_slot(each, armature))
-        for each in bpy.data.actions
+        (each, _fitting_slot(each, paths))
+        for each in (bpy.data.actions if actions is None else actions)
         if history.given_to(each) in {"", armature.name}
     ]
     return tuple((action, slot) for action, slot in found if slot is not None)
 
 
+def _paths_of(armature: bpy.types.Object) -> frozenset[str]:
+    return frozenset(bone_path(bone.name, "") for bone in armature.data.bones)
+
+
 def _fitting_slot(
-    action: bpy.types.Action, armature: bpy.types.Object
+    action: bpy.types.Action, paths: frozenset[str]
 ) -> bpy.types.ActionSlot | None:
-    """Return the first slot that keys any of the armature's bones."""
-    paths = {bone_path(bone.name, "") for bone in armature.data.bones}
+    """Return the first slot that keys any of the bones with these paths."""
     for slot in action.slots:
         if slot.target_id_type in compat.TARGETS and any(
-            path[: path.rfind(".") + 1] in paths for path, _ in animated_curves(action, slot)
+            path[: path.rfind(".") + 1] in paths for path in animated_paths(action, slot)
         ):
             return slot
     return None

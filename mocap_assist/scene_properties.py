@@ -15,6 +15,7 @@ from .retarget_choices import RetargetBundle, UnbakeBundle
 from .settings_properties import settings_from
 from .simulating import SimulateBundle
 from .solving import SolveBundle
+from .tracking import TrackBundle
 from .variants.choices import CrowdBundle, VaryBundle
 from .variants.properties import CLASSES as VARIANTS
 from .variants.properties import MOCAP_PG_variants
@@ -43,6 +44,11 @@ class MOCAP_PG_solve(bpy.types.PropertyGroup):
 @settings_from(SimulateBundle)
 class MOCAP_PG_simulate(bpy.types.PropertyGroup):
     """Settings of the button Physics."""
+
+
+@settings_from(TrackBundle)
+class MOCAP_PG_track(bpy.types.PropertyGroup):
+    """Settings of the button Track."""
 
 
 @settings_from(UnbakeBundle)
@@ -125,6 +131,7 @@ class MOCAP_PG_scene(bpy.types.PropertyGroup):
     solve: bpy.props.PointerProperty(type=MOCAP_PG_solve)
     reconstruct: bpy.props.PointerProperty(type=MOCAP_PG_reconstruct)
     simulate: bpy.props.PointerProperty(type=MOCAP_PG_simulate)
+    track: bpy.props.PointerProperty(type=MOCAP_PG_track)
     retarget: bpy.props.PointerProperty(type=MOCAP_PG_retarget)
     unbake: bpy.props.PointerProperty(type=MOCAP_PG_unbake)
     library: bpy.props.PointerProperty(type=MOCAP_PG_library)
@@ -158,6 +165,7 @@ CLASSES = (
     MOCAP_PG_solve,
     MOCAP_PG_retarget,
     MOCAP_PG_simulate,
+    MOCAP_PG_track,
     MOCAP_PG_unbake,
     MOCAP_PG_reconstruct,
     MOCAP_PG_library,

@@ -8,7 +8,7 @@ import bpy
 from ..solvers.errors import MocapAssistError
 from .solver_operator import SolverOperator
 
-AT_ONCE = 0.1
+AT_ONCE = 0.05
 """Seconds of writing between two looks at what the animator does."""
 
 

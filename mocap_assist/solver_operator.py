@@ -37,6 +37,8 @@ class SolverOperator:
     """Where the sidebar keeps the settings: a property of `scene.mocap_assist`."""
     setting_names: ClassVar[tuple[str, ...]]
     """Supplied by the decorator `settings_from`, as is the method `settings`."""
+    selected: ClassVar[Callable[..., bpy.types.Object | None]] = selected_subject
+    """From the context, what the button works on."""
     why_not: ClassVar[Callable[[bpy.types.Context], str]]
     """Return why the button is grey, or nothing."""
     read_scene: ClassVar[Callable[..., "partial[Any]"]]
@@ -62,7 +64,7 @@ class SolverOperator:
 
     def execute(self, context: bpy.types.Context) -> set[str]:
         if not hasattr(self, "_subject"):  # else it is done again, to the same subject
-            self._subject = Subject.of(context.scene, selected_subject(context))
+            self._subject = Subject.of(context.scene, type(self).selected(context))
         try:
             return self._finish(run(self._read()))
         except MocapAssistError as error:
@@ -72,7 +74,7 @@ class SolverOperator:
         self.prepare(context)
         if in_background():
             return self.execute(context)
-        self._subject = Subject.of(context.scene, selected_subject(context))
+        self._subject = Subject.of(context.scene, type(self).selected(context))
         self._started = monotonic()
         try:
             solve = self._read()

@@ -27,12 +27,14 @@ from .revert_to_raw import MOCAP_OT_revert_to_raw
 from .simulate import MOCAP_OT_simulate
 from .solve_skeleton import MOCAP_OT_solve_skeleton
 from .stack_variants import MOCAP_OT_stack_variants
+from .track_depth import MOCAP_OT_track_depth
 from .use_matches import MOCAP_OT_use_matches
 from .vary import MOCAP_OT_vary
 
 OPERATORS = (
     MOCAP_OT_import_recording,
     MOCAP_OT_import_job,
+    MOCAP_OT_track_depth,
     MOCAP_OT_denoise,
     MOCAP_OT_reconstruct,
     MOCAP_OT_measure_quality,

@@ -56,7 +56,7 @@ def test_commands_in_the_documents_exist_and_the_readme_shows_all():
         shown["blender"] |= set(re.findall(r"--command mocap_assist (\w+)", text))
 
     assert shown["solvers"] == set(VERBS)
-    assert shown["blender"] == blender_verbs() | {"import", "index", "each"}
+    assert shown["blender"] == blender_verbs() | {"import", "capture", "index", "each"}
 
 
 def blender_verbs() -> set[str]:

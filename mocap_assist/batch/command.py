@@ -13,6 +13,8 @@ from ...solvers.errors import InvalidFileError, InvalidSettingError, MocapAssist
 from ...solvers.files import written_whole
 from ..scene import history
 from ..scene.markers import markers_of
+from .capture_verb import HELP as CAPTURE_HELP
+from .capture_verb import add_capture_options, perform_capture
 from .each_verb import HELP as EACH_HELP
 from .each_verb import add_each_options, perform_each
 from .import_verb import HELP as IMPORT_HELP
@@ -31,7 +33,7 @@ def run(words: Sequence[str]) -> int:
     """Do what the command line says; return the exit status, 0 or 2.
 
     Each failure is one sentence on stderr. Nothing is saved if anything failed, but for
-    `import` and `each`, which do what can be done.
+    `import`, `capture` and `each`, which do what can be done.
     """
     screen = Screen()
     try:
@@ -72,7 +74,7 @@ def _understood(words: list[str]) -> list[str]:
         raise InvalidSettingError(
             f"{words[0]} saves no .blend file; each is for verbs that do, such as denoise."
         )
-    files = ["FILE"] if words[0] == "import" else []
+    files = ["FILE"] if words[0] in {"import", "capture"} else []
     _parser().parse_args([words[0], *files, *words[1:]])
     return words
 
@@ -106,6 +108,10 @@ def _parser() -> SentenceParser:
     add_output_options(described, saves=True)
     add_import_options(described)
     described.set_defaults(work=perform_import)
+    described = choices.add_parser("capture", help=CAPTURE_HELP, description=CAPTURE_HELP)
+    add_output_options(described, saves=True)
+    add_capture_options(described)
+    described.set_defaults(work=perform_capture)
     described = choices.add_parser("index", help=INDEX_HELP, description=INDEX_HELP)
     add_index_options(described)
     described.set_defaults(work=perform_index)

@@ -1,6 +1,6 @@
 """One bone's F-Curves as rotations and locations over the frames of a take."""
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 
 import bpy
 import numpy as np
@@ -25,6 +25,17 @@ def animated_curves(action: bpy.types.Action, slot: bpy.types.ActionSlot) -> Cur
     return {
         (each.curve.data_path, each.curve.array_index): each for each in channels if each.is_on
     }
+
+
+def animated_paths(action: bpy.types.Action, slot: bpy.types.ActionSlot) -> Iterator[str]:
+    """Yield the data paths of the slot's F-Curves that are not muted, one for each curve.
+
+    For panels, which ask at every redraw: whoever has seen enough may stop.
+    """
+    bag = compat.channelbag(action, slot)
+    for curve in () if bag is None else bag.fcurves:
+        if Channel(curve).is_on:
+            yield curve.data_path
 
 
 def bone_path(bone: str, name: str) -> str:

@@ -18,6 +18,8 @@ CHAPTERS = {
     "bpy.ops.mocap_assist.reconstruct*": "reconstruct",
     "bpy.types.mocap_pg_reconstruct*": "reconstruct",
     "bpy.types.windowmanager.mocap_assist_heat*": "reconstruct",
+    "bpy.ops.mocap_assist.track_depth*": "track",
+    "bpy.types.mocap_pg_track*": "track",
     "bpy.ops.mocap_assist.simulate*": "physics",
     "bpy.types.mocap_pg_simulate*": "physics",
     "bpy.ops.mocap_assist.solve_skeleton*": "markers",

@@ -5,6 +5,7 @@ import bpy
 from .drawing import exists
 
 BUTTONS = (
+    "mocap_assist.track_depth",
     "mocap_assist.reconstruct",
     "mocap_assist.denoise",
     "mocap_assist.measure_quality",

@@ -14,6 +14,7 @@ from .physics_panel import PhysicsPanel
 from .preferences import preferred
 from .reconstruct_panel import ReconstructPanel
 from .retarget_panel import RetargetPanel
+from .track_panel import TrackPanel
 from .vary_panel import VaryPanel
 
 EDITORS = {"": "VIEW_3D", "_graph": "GRAPH_EDITOR", "_dopesheet": "DOPESHEET_EDITOR"}
@@ -32,6 +33,7 @@ def _in_every_editor(body: type) -> list[type[bpy.types.Panel]]:
 
 BODIES = (
     ImportPanel,
+    TrackPanel,
     ReconstructPanel,
     CleanPanel,
     CheckPanel,

@@ -74,7 +74,8 @@ def chosen_sources(armature: bpy.types.Object, choices: VaryChoices) -> tuple[So
 
 def candidates(armature: bpy.types.Object) -> list[bpy.types.Action]:
     """Return the actions that may show a behaviour: those for the armature, but no variants."""
-    return [action for action, _ in fitting_actions(armature) if not is_variant(action)]
+    others = (action for action in bpy.data.actions if not is_variant(action))
+    return [action for action, _ in fitting_actions(armature, others)]
 
 
 def read_varying(

@@ -11,6 +11,7 @@ from ..denoising import (
     measure_quality,
 )
 from ..progress import Progress, overheard, within
+from .capture_verb import add_capture_options, perform_capture, read_body
 from .convert import convert
 from .denoise_verb import add_denoise_options, learn_once, perform_denoise
 from .files import add_reading_options, read, read_all
@@ -109,6 +110,14 @@ VERBS = {
         add_solve_options,
         perform_solve,
         writes_motions=True,
+    ),
+    "capture": Verb(
+        "Track the actor whom a depth camera recorded: pictures of depth become motion.",
+        add_capture_options,
+        perform_capture,
+        writes_motions=True,
+        writes_joints=True,
+        prepare=read_body,
     ),
     "reconstruct": Verb(
         "Rebuild clean poses from the joints that a depth camera's tracker saw.",

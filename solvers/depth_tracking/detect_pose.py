@@ -44,7 +44,7 @@ class DetectorSettings(RobustPartsSettings):
     )  # fmt: skip
     iterations: int = setting(10, "Steps of the tracker's refinement", minimum=0, maximum=200)
     label_weight: float = setting(
-        0.3, "How much the parts told by the forest count in choosing among poses",
+        1.0, "How much the parts told by the forest count in choosing among poses",
         minimum=0.0, maximum=10.0,
     )  # fmt: skip
     seed: int = setting(0, "Another seed draws other samples", minimum=0)

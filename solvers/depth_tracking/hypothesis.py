@@ -77,7 +77,21 @@ def imagine(body: BodyModel, pose: Array, camera: Camera) -> Hypothesis:
 
 def capsule_normals(body: BodyModel, frames: Array, points: Array, capsules: Integers) -> Array:
     """Return outward unit normals (n, 3) at points (n, 3) on these capsules (n,)."""
-    return _unit(capsule_offsets(body, frames, points, capsules)[1])
+    scales = 1.0 / body.radii[:, [0, 1, 1]]
+    placed = frames[CAPSULE_SEGMENTS]
+    # In frames that are stretched to radius 1, out is straight away from the axis.
+    stretch = scales[:, :, np.newaxis] * placed[:, :3, :3].swapaxes(1, 2)
+    starts, stops = (body.capsule_ends * scales[:, np.newaxis]).swapaxes(0, 1)
+    axes = stops - starts
+    starts = starts + np.einsum("cij,cj->ci", stretch, placed[:, :3, 3])
+    slopes = axes / (axes**2).sum(axis=1)[:, np.newaxis]
+    stretch, axes = stretch[capsules], axes[capsules]
+    out = np.einsum("nij,nj->ni", stretch, points) - starts[capsules]
+    along = np.einsum("ni,ni->n", out, slopes[capsules])
+    out -= np.clip(along, 0.0, 1.0)[:, np.newaxis] * axes
+    normals: Array = np.einsum("nji,nj->ni", stretch, out)
+    normals /= np.sqrt(np.einsum("ni,ni->n", normals, normals) + 1e-24)[:, np.newaxis]
+    return normals
 
 
 def capsule_offsets(
@@ -103,9 +117,3 @@ def capsule_offsets(
     size = np.sqrt(np.einsum("ni,ni->n", out, out))
     slope = scales * out / np.maximum(size, 1e-12)[:, np.newaxis]
     return size, np.einsum("nij,nj->ni", frame[:, :3, :3], slope)
-
-
-def _unit(vectors: Array) -> Array:
-    sizes = np.sqrt(np.einsum("ni,ni->n", vectors, vectors))
-    unit: Array = vectors / np.maximum(sizes, 1e-12)[:, np.newaxis]
-    return unit

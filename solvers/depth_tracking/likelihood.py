@@ -2,8 +2,7 @@
 
 from collections.abc import Callable
 
-import numpy as np
-
+from .apart_term import apart_term
 from .closest_surface_term import closest_surface_term
 from .depth_image_term import depth_image_term
 from .edge_term import edge_term
@@ -55,11 +54,12 @@ def likelihood_rows(
         (settings.off_actor_weight, lambda w: off_actor_term(*both, groups, w, scale)),
         (settings.too_near_weight, lambda w: too_near_term(*both, groups, w, scale)),
     )  # fmt: skip
-    return joined([term(area * weight) for weight, term in terms if weight > 0.0])
+    rows = [term(area * weight) for weight, term in terms if weight > 0.0]
+    if settings.apart_weight > 0.0:
+        rows.append(apart_term(hypothesis, settings.apart_weight))
+    return joined(rows)
 
 
 def pixel_area(observation: Observation) -> float:
     """Return how much surface a pixel sees where the actor is, square metres."""
-    camera = observation.camera
-    distance = float(np.median(observation.points[:, 2]))
-    return distance**2 / (camera.fx * camera.fy)
+    return observation.pixel_area

@@ -13,8 +13,6 @@ from .body_tables import CAPSULE_SEGMENTS
 Array = NDArray[np.float64]
 Integers = NDArray[np.intp]
 
-_ROWS, _COLUMNS = np.triu_indices(6)
-
 
 @dataclass(frozen=True, eq=False)
 class SegmentEquations:
@@ -85,17 +83,22 @@ def move_along(
     points: Array, directions: Array, residuals: Array, weights: Array, segments: Integers
 ) -> SegmentEquations:
     """Ask points on segments to move along directions; arrays as those of `SurfaceRows`."""
-    lines = screws(points, directions).T
-    heavy = lines * weights
-    products = np.empty((27, len(points)))
-    np.multiply(heavy[_ROWS], lines[_COLUMNS], out=products[:21])
-    np.multiply(heavy, residuals, out=products[21:])
-    belongs = np.zeros((N_SEGMENTS, len(points)))
-    belongs[segments, np.arange(len(points))] = 1.0
-    sums = belongs @ products.T
-    matrices = np.empty((N_SEGMENTS, 6, 6))
-    matrices[:, _ROWS, _COLUMNS] = matrices[:, _COLUMNS, _ROWS] = sums[:, :21]
-    return SegmentEquations(matrices, sums[:, 21:], 0.5 * float(weights @ residuals**2))
+    lines = np.empty((len(points), 7))
+    screws(points, directions, out=lines[:, :6])
+    lines[:, 6] = residuals
+    lines *= np.sqrt(weights)[:, np.newaxis]
+    # Sorted by segment, each one's sums are a product of two small matrices.
+    order = np.argsort(segments.astype(np.int16), kind="stable")
+    lines = lines[order]
+    ends = np.cumsum(np.bincount(segments, minlength=N_SEGMENTS))
+    sums = np.zeros((N_SEGMENTS, 7, 7))
+    start = 0
+    for segment, end in enumerate(ends):
+        if end > start:
+            block = lines[start:end]
+            sums[segment] = block.T @ block
+        start = end
+    return SegmentEquations(sums[:, :6, :6], sums[:, :6, 6], 0.5 * float(sums[:, 6, 6].sum()))
 
 
 def move_toward(
@@ -106,9 +109,9 @@ def move_toward(
     return move_along(*rows)
 
 
-def screws(points: Array, directions: Array) -> Array:
+def screws(points: Array, directions: Array, out: Array | None = None) -> Array:
     """Return (point x direction, direction) (n, 6): what a twist is multiplied with."""
-    found = np.empty((len(points), 6))
+    found = np.empty((len(points), 6)) if out is None else out
     x, y, z = points.T
     u, v, w = directions.T
     found[:, 0], found[:, 1], found[:, 2] = y * w - z * v, z * u - x * w, x * v - y * u

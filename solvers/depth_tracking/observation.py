@@ -55,6 +55,12 @@ class Observation:
         return found
 
     @cached_property
+    def pixel_area(self) -> float:
+        """How much surface a pixel sees where the actor is, square metres."""
+        distance = float(np.median(self.points[:, 2]))
+        return distance**2 / (self.camera.fx * self.camera.fy)
+
+    @cached_property
     def tree(self) -> Any:
         """The points, ready to be asked for the nearest."""
         return cKDTree(self.points)

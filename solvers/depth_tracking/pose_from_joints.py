@@ -20,7 +20,9 @@ _LIMIT_WEIGHT = 1.0
 _LONGEST_STEP = 0.5
 
 
-def pose_from_joints(body: BodyModel, joints: Array, *, iterations: int = 40) -> Array:
+def pose_from_joints(
+    body: BodyModel, joints: Array, *, start: Array | None = None, iterations: int = 40
+) -> Array:
     """Return the pose (34,) of the body whose joints are nearest to these.
 
     Parameters
@@ -28,13 +30,15 @@ def pose_from_joints(body: BodyModel, joints: Array, *, iterations: int = 40) ->
     body : BodyModel
     joints : shape (21, 3), metres
         The `JOINTS` in the camera's frame; NaN: unknown.
+    start : shape (34,), optional
+        A pose near it, such as that of the frame before; without, four headings are tried.
     iterations : int
     """
     known = np.flatnonzero(np.isfinite(joints).all(axis=1))
     local = np.concatenate([np.zeros((len(SEGMENTS), 3)), body.offsets[len(SEGMENTS) :]])
     return pose_from_points(
         body, _CARRIERS[known], local[known], joints[known],
-        np.ones(len(known)), iterations=iterations,
+        np.ones(len(known)), start=start, iterations=iterations,
     )  # fmt: skip
 
 

@@ -1,12 +1,16 @@
 """What is asked of a pose before the picture is looked at."""
 
+import re
+
 import numpy as np
 from numpy.typing import NDArray
 
-from .coordinates import LEAST, MOST
+from .coordinates import COORDINATES, LEAST, MOST, ROOT
 from .normal_equations import PoseEquations
 
 Array = NDArray[np.float64]
+
+_LIMB = re.compile("Humerus|Radius|Femur|Tibia")
 
 
 def stay_near(pose: Array, expected: Array, weights: Array) -> PoseEquations:
@@ -46,3 +50,15 @@ def joint_limits(pose: Array, weight: float) -> PoseEquations:
     back = np.clip(pose, LEAST, MOST) - pose
     weights = np.where(back != 0.0, weight, 0.0)
     return PoseEquations(np.diag(weights), weights * back, 0.5 * float(weights @ back**2))
+
+
+_LIMB_SHARE = 0.1
+_EASE = np.array([
+    0.0 if name in ROOT else _LIMB_SHARE if _LIMB.search(name) else 1.0 for name in COORDINATES
+])  # fmt: skip
+
+
+def natural_stance(pose: Array, weight: float) -> PoseEquations:
+    """Ask the joints to be as in upright standing: the trunk, head and clavicles above all."""
+    weights = weight * _EASE
+    return PoseEquations(np.diag(weights), -weights * pose, 0.5 * float(weights @ pose**2))

@@ -12,7 +12,7 @@ from .hypothesis import Hypothesis, imagine
 from .likelihood import likelihood_rows
 from .normal_equations import PoseEquations, added, in_coordinates, segment_equations, step
 from .observation import Observation
-from .pose_priors import joint_limits
+from .pose_priors import joint_limits, natural_stance
 from .surface_term import Memory
 from .tracker_settings import USUAL, TrackerSettings
 
@@ -109,6 +109,7 @@ class _Scene:
             in_coordinates([segment_equations(rows)], hypothesis.twists),
             self.prior(pose),
             joint_limits(pose, self.settings.limit_weight),
+            natural_stance(pose, self.settings.natural_weight),
         ]
         return Registered(hypothesis, added(asked), 1)
 

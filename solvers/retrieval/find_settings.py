@@ -13,6 +13,10 @@ from .body_parts import BodyPart
 BELIEF = 0.25
 """Power of the tracked share of a part by which it counts: what is filled in of it is mostly
 right, since the other parts tell."""
+STILL = 0.05
+"""Activity of the busiest part below which the query is a pose: all count alike, or nearly."""
+AT_REST = 0.2
+"""Of the busiest part's activity that one counts as having that does not move at all."""
 
 
 class FindMethod(Enum):
@@ -41,6 +45,11 @@ class FindSettings(Settings):
     right_arm: bool = setting(True, "Compare the right arm")
     left_leg: bool = setting(True, "Compare the left leg")
     right_leg: bool = setting(True, "Compare the right leg")
+    busy: float = setting(
+        0.5, "How much more those parts of the body count that move more in the query; at 0 an"
+        " arm that only hangs counts like any other",
+        minimum=0.0, maximum=4.0, advanced=True, label="Busy Parts",
+    )  # fmt: skip
     n_warped: int = setting(
         128, "Best clips whose course in time is compared as well; more is slower",
         minimum=0, maximum=10_000, advanced=True, label="Warped",
@@ -59,13 +68,17 @@ class FindSettings(Settings):
         minimum=0, maximum=10_000, advanced=True, label="Aligned",
     )  # fmt: skip
 
-    def part_weights(self, coverage: NDArray[np.float64]) -> NDArray[np.float64]:
+    def part_weights(
+        self, coverage: NDArray[np.float64], activity: NDArray[np.float64]
+    ) -> NDArray[np.float64]:
         """Return how much each part counts, shape (5,), on average 1.
 
         Parameters
         ----------
         coverage : shape (5,)
             How much of each part was tracked.
+        activity : shape (5,)
+            How much each part moves, as a share of the usual.
 
         Raises
         ------
@@ -76,7 +89,9 @@ class FindSettings(Settings):
         if not chosen:
             raise InvalidMotionError("No part of the body is chosen; choose at least one.")
         wanted = np.array([part in chosen for part in BodyPart])
-        weights = np.where(wanted, coverage**BELIEF, 0.0)
+        most = np.maximum(activity[wanted].max(), STILL)
+        moved = np.minimum(activity / most, 1.0) + AT_REST
+        weights = np.where(wanted, coverage**BELIEF * moved**self.busy, 0.0)
         if not weights.any():
             names = ", ".join(part.value for part in chosen)
             raise InvalidMotionError(f"The query shows nothing of what is asked for: {names}.")

@@ -75,11 +75,11 @@ def find_similar(
     progress(0.0, "Searching")
     postures = clip_postures(query, RATE)
     seen = np.isfinite(postures.positions).all(axis=-1)
-    weights = settings.part_weights(part_coverage(seen))
     vocabulary, entries = library.vocabulary, library.numbered()
     if vocabulary is None or not entries:
         return ()
     features = vocabulary.features(postures)
+    weights = settings.part_weights(part_coverage(seen), vocabulary.activity(features))
     left_out = library.numbers_of(ignore)
     if settings.method is FindMethod.PUBLISHED:
         ranking = rank_pyramids(

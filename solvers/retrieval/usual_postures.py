@@ -13,7 +13,7 @@ from .clip_postures import ClipPostures
 Array = NDArray[np.float64]
 
 N_COORDINATES = 3 * N_JOINTS
-NOISE = 0.01
+NOISE = 0.03
 """Metres by which a joint may be beside what the covariance says of it."""
 BRIDGED = 0.3
 """Seconds of a gap that a straight line bridges."""

@@ -69,6 +69,12 @@ class Vocabulary:
         told = part_features(whole.positions, whole.course, whole.frame_rate)
         return np.asarray(np.einsum("fpd,pdk->fpk", told - self.centre, self.axes))
 
+    def activity(self, features: Array) -> Array:
+        """Return how much each part moves in a clip, shape (5,), as a share of the usual."""
+        usual = self.words.var(axis=1).sum(axis=-1)
+        moves = features.var(axis=0).sum(axis=-1)
+        return np.asarray(np.sqrt(moves / np.maximum(usual, TINY)))
+
     def codes(self, features: Array) -> Array:
         """Return how far each word says what each part does, shape (n_frames, 5, n_words).
 

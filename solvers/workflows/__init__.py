@@ -1,5 +1,6 @@
 """What joins families: whole ways from a recording to a result."""
 
+from .capture_recording import CapturedMotion, capture_recording
 from .clean_from_library import LibraryBases, bases_from_library, clean_from_library
 from .index_files import IndexReport, index_files
 from .motion_from_markers import MarkerMotion, MarkerMotionSettings, motion_from_markers
@@ -15,6 +16,7 @@ from .try_to_plant import Footing, try_to_plant
 from .vary_motions import Variants, vary_motions
 
 __all__ = [
+    "CapturedMotion",
     "Footing",
     "IndexReport",
     "LibraryBases",
@@ -25,6 +27,7 @@ __all__ = [
     "ReconstructedMotion",
     "Variants",
     "bases_from_library",
+    "capture_recording",
     "clean_from_library",
     "index_files",
     "motion_from_markers",

@@ -17,9 +17,9 @@ Fetch = Callable[[ClipEntry], Recording]
 AROUND = 0.5
 """Seconds before and after what matches that are taken along."""
 MOST_NAMED = 5
-FOUND = FindSettings(n_matches=12, n_aligned=12, n_alike=0, warping=1.0)
-"""By likeness with the take alone: the best that a library without the like has are like each
-other all the same."""
+FOUND = FindSettings(n_matches=12, n_aligned=12, n_alike=0, warping=1.0, busy=0.0)
+"""By likeness of the whole body with the take alone: the best that a library without the like
+has are like each other all the same."""
 ALIKE = 0.16
 """Score that the best must have: the same movement by another actor has one of 0.2 to 0.5
 (HDM05, CMU walks), other movements at most 0.15. Where it has, the others help too."""

@@ -1,6 +1,6 @@
 """The detector: parts told by pixel, and poses found in single frames.
 
-    python -m tests.benchmarks.part_detector [--forest FILE] [--every N] [--peer]
+    python -m tests.benchmarks.part_detector [--forest FILE] [--every N] [--peer] [--bodies]
 
 The peer is scikit-learn's random forest on the same features: 400 of our random differences of
 depth of the same training pixels. It cannot draw new features at each node, nor would it fit
@@ -28,16 +28,42 @@ from solvers.depth_tracking.pixel_forest import (
 )
 from solvers.depth_tracking.pose_from_joints import body_of_joints
 from solvers.depth_tracking.render_mesh import NOTHING
-from solvers.depth_tracking.train_forest import PixelForestSettings, draw_pictures, draw_pixels
-from solvers.depth_tracking.training_pictures import picture_source
+from solvers.depth_tracking.train_forest import (
+    PixelForestSettings,
+    draw_pictures,
+    draw_pixels,
+    train_pixel_forest,
+)
+from solvers.depth_tracking.training_pictures import SHAPE_LASTS, picture_source
 
 from .depth_labels import LabelledFrame, truth_frames, unseen_frames
 from .forest_sources import TRUTH, all_bodies, taught_motions
+from .part_detector_kinect import kinect_rows
 
 Array = NDArray[np.float64]
 NEAR = 0.1
 """Metres: a joint found within counts as found."""
+EVERY = 15
+"""Every so manieth frame of a take is looked at."""
 PEER_PICTURES, PEER_PIXELS, PEER_FEATURES = 1500, 60, 400
+
+
+def detector() -> list[str]:
+    """Return all tables of the detector that is shipped, for `bench_depth`."""
+    forest = load_pixel_forest()
+    settings = DetectorSettings()
+    usual, true = (
+        pose_rows(forest, EVERY, settings, calibrated) for calibrated in (False, True)
+    )
+    tables = {
+        f"Parts told by pixel, at 160 x 120; {forest.trained_on}": accuracy_rows(forest, EVERY),
+        "Poses in single frames, body of the usual adult": usual,
+        "Poses in single frames, limbs of true length": true,
+        "Against scikit-learn's forest on the same features": peer_rows(EVERY),
+        "Bodies that were not learned from": body_rows(EVERY),
+        "Single frames of a real Kinect, against its SDK": kinect_rows(forest),
+    }
+    return [f"**{title}**\n\n" + "\n".join(rows) for title, rows in tables.items()]
 
 
 def confusion(frames: Iterable[LabelledFrame], forest: PixelForest) -> tuple[Array, float]:
@@ -134,7 +160,7 @@ def peer_rows(every: int) -> list[str]:
 
     settings = PixelForestSettings(n_pictures=PEER_PICTURES, n_pixels=PEER_PIXELS)
     source = picture_source(taught_motions(), all_bodies(), settings, 0)
-    seen = draw_pictures(source, range(PEER_PICTURES // 10))
+    seen = draw_pictures(source, range(PEER_PICTURES // SHAPE_LASTS))
     views, parts = draw_pixels(seen, PEER_PIXELS, np.random.default_rng(0))
     features = random_offsets(PEER_FEATURES, settings.reach, np.random.default_rng(1))
     offsets = features.astype(np.float32) / np.float32(100.0)
@@ -167,12 +193,33 @@ def peer_rows(every: int) -> list[str]:
     return rows + [f"| {name} | {count / total:.3f} |" for name, count in right.items()]
 
 
+def body_rows(every: int) -> list[str]:
+    """Return how small forests tell bodies whose shape they never saw, and those they did.
+
+    Every training body is resized and dressed at random, and mixed with another one.
+    """
+    kept_out = ("male_heavy", "female_slim")
+    small = PixelForestSettings(n_pictures=PEER_PICTURES, n_pixels=PEER_PIXELS, levels=15)
+    few = [body for body in all_bodies() if body.name not in kept_out]
+    rows = ["| small forest of | pixels right on the two others |", "|---|---|"]
+    for name, bodies in (("four bodies", all_bodies()), ("two bodies", few)):
+        forest = train_pixel_forest(taught_motions(), bodies, small)
+        counts = sum(
+            confusion(truth_frames(take, every), forest)[0]
+            for take, (_, _, body) in TRUTH.items()
+            if body in kept_out
+        )
+        rows.append(f"| {name} | {np.trace(counts) / np.sum(counts):.3f} |")
+    return rows
+
+
 def main() -> None:
     """Print the tables."""
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--forest", type=Path, default=SHIPPED)
     parser.add_argument("--every", type=int, default=10)
     parser.add_argument("--peer", action="store_true", help="also train scikit-learn's")
+    parser.add_argument("--bodies", action="store_true", help="also train without some bodies")
     given = parser.parse_args()
     forest = load_pixel_forest(given.forest)
     print("\n".join(accuracy_rows(forest, given.every)), flush=True)
@@ -183,7 +230,9 @@ def main() -> None:
             flush=True,
         )
     if given.peer:
-        print("\n" + "\n".join(peer_rows(given.every)))
+        print("\n" + "\n".join(peer_rows(given.every)), flush=True)
+    if given.bodies:
+        print("\n" + "\n".join(body_rows(given.every)))
 
 
 if __name__ == "__main__":

@@ -3,6 +3,7 @@
     python -m tests.benchmarks.part_detector_kinect [--forest FILE] [--pictures FOLDER]
 
 That skeleton is a reference, not truth. A depth frame fits the skeleton two frames before it.
+The sensor's pictures are mirrored, and so is its x axis; `read_depth` turns the pictures round.
 """
 
 import argparse
@@ -16,7 +17,7 @@ from PIL import Image
 from scipy.io import loadmat
 
 from solvers.depth_tracking.body_model import BodyModel
-from solvers.depth_tracking.body_tables import JOINTS
+from solvers.depth_tracking.body_tables import CAPSULES, JOINTS
 from solvers.depth_tracking.calibrate_body import calibrate_body
 from solvers.depth_tracking.detect_pose import DetectedPose, detect_pose
 from solvers.depth_tracking.hypothesis import imagine
@@ -33,7 +34,7 @@ SUBJECTS = (1, 3, 5, 7)
 N_ACTIONS = 27
 LATE = 2
 """Frames that the depth is behind the skeleton."""
-FRAMES_PER_TAKE = 3
+FRAMES_PER_TAKE = 2
 NEAR = 0.1
 SDK = {
     "hips": 3, "leftUpperArm": 4, "leftLowerArm": 5, "leftHand": 6, "rightUpperArm": 8,
@@ -69,11 +70,29 @@ def kinect_take(action: int, subject: int, body: BodyModel, forest: PixelForest)
     frames = np.linspace(LATE, last, FRAMES_PER_TAKE + 2)[1:-1].astype(int).tolist()
     found = [detect_pose(depth.frame(frame), depth.camera, body, forest) for frame in frames]
     told = skeleton[list(SDK.values())][:, :, [frame - LATE for frame in frames]]
-    reference = np.moveaxis(told, 2, 0) * [1.0, -1.0, 1.0]
+    reference = np.moveaxis(told, 2, 0) * [-1.0, -1.0, 1.0]
     return KinectTake(action, subject, frames, depth, found, reference)
 
 
-def kinect_rows(takes: list[KinectTake]) -> list[str]:
+def kinect_rows(forest: PixelForest) -> list[str]:
+    """Detect the body in frames of all actions, and return how far its joints are."""
+    bodies = {subject: kinect_body(subject, forest) for subject in SUBJECTS}
+    return distance_rows(all_takes(bodies, forest, N_ACTIONS))
+
+
+def all_takes(
+    bodies: dict[int, BodyModel], forest: PixelForest, n_actions: int
+) -> list[KinectTake]:
+    """Detect each subject in each of the first actions."""
+    return [
+        kinect_take(action, subject, bodies[subject], forest)
+        for action in range(1, n_actions + 1)
+        for subject in SUBJECTS
+        if (FOLDER / f"a{action}_s{subject}_t1_depth.mat").exists()
+    ]
+
+
+def distance_rows(takes: list[KinectTake]) -> list[str]:
     """Return tables of distances to the SDK's joints, less a constant offset of each joint."""
     apart = np.stack([pose.joints[OURS] for take in takes for pose in take.found])
     apart = apart - np.concatenate([take.reference for take in takes])
@@ -121,8 +140,6 @@ def draw(take: KinectTake, body: BodyModel, number: int) -> NDArray[np.uint8]:
 
 
 def _capsule_parts() -> NDArray[np.intp]:
-    from solvers.depth_tracking.body_tables import CAPSULES
-
     return np.array([PARTS.index(capsule) for capsule in CAPSULES])
 
 
@@ -145,13 +162,8 @@ def main() -> None:
     given = parser.parse_args()
     forest = load_pixel_forest(given.forest)
     bodies = {subject: kinect_body(subject, forest) for subject in SUBJECTS}
-    takes = [
-        kinect_take(action, subject, bodies[subject], forest)
-        for action in range(1, given.actions + 1)
-        for subject in SUBJECTS
-        if (FOLDER / f"a{action}_s{subject}_t1_depth.mat").exists()
-    ]
-    print("\n".join(kinect_rows(takes)))
+    takes = all_takes(bodies, forest, given.actions)
+    print("\n".join(distance_rows(takes)))
     if given.pictures:
         given.pictures.mkdir(parents=True, exist_ok=True)
         drawn = [draw(take, bodies[take.subject], 1) for take in takes]

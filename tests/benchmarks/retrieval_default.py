@@ -43,7 +43,8 @@ class DefaultLibrary:
         features = vocabulary.features(postures)
         whole = np.array([[0, len(features)]], dtype=np.int32)
         seen = np.isfinite(postures.positions).all(axis=-1)
-        weights = self.settings.part_weights(part_coverage(seen))
+        activity = vocabulary.activity(features)
+        weights = self.settings.part_weights(part_coverage(seen), activity)
         return describe(features, whole, vocabulary), weights
 
     def distances(self, query: tuple[Spans, Array], allowed: Flags) -> Array:

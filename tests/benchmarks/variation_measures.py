@@ -6,8 +6,11 @@ from itertools import combinations
 import numpy as np
 from scipy.spatial.distance import cdist
 
-from solvers.denoising import learn_joint_limits, limit_excess, measure_quality
-from solvers.motion import Motion, warp
+from solvers.denoising import learn_joint_limits, limit_excess
+from solvers.denoising.feet import SIDES, foot_joints
+from solvers.denoising.foot_slide import foot_slide
+from solvers.motion import Motion, forward_kinematics, warp
+from solvers.motion.contacts import detect_contacts
 from solvers.motion.rotations import inverse, multiply, rotation_vector_from_quaternion
 from solvers.variation.align_examples import RATE, body_positions
 
@@ -137,7 +140,16 @@ def footing_figures(motions: Sequence[Motion]) -> tuple[float, float]:
 
     As Check says (`measure_quality`): the same measure for examples and variants.
     """
-    measured = [measure_quality(motion) for motion in motions]
-    stands = [foot.contact.mean() for one in measured for foot in one.feet]
-    slides = [one.foot_slide for one in measured if np.isfinite(one.foot_slide)]
+    slides, stands = [], []
+    for motion in motions:
+        contacts, joints = detect_contacts(motion), foot_joints(motion)
+        places = forward_kinematics(motion).positions[:, joints]
+        feet = [
+            foot_slide(side, "", places[:, row], contacts[:, row], motion.frame_rate)
+            for row, side in enumerate(SIDES)
+        ]
+        speeds = np.concatenate([foot.speed for foot in feet])
+        if np.isfinite(speeds).any():
+            slides.append(float(np.nanmean(speeds)))
+        stands.append(float(contacts.mean()))
     return 100.0 * float(np.mean(slides or [np.nan])), float(np.mean(stands))

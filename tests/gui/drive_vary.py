@@ -23,6 +23,7 @@ OTHERS = (
     "retarget", "library", "perform",
 )  # fmt: skip
 UNTIL_DONE = 2400  # looks
+LOOKS_AFTER = 10
 N_CROWD, N_MANY = 8, 200
 WHEEL_UP, WHEEL_DOWN = 4, 5
 TOP = (1152, 872)
@@ -91,13 +92,18 @@ def job():
 def longest_wait():
     """Wait until no solve runs; return the longest time for which nothing could be done."""
     yield 0.5
-    longest, before = 0.0, monotonic()
+    waits, before, n_after = [], monotonic(), 0
     for _ in range(UNTIL_DONE):
-        if not job().running:
-            return longest
+        doing = f"{job().message} {job().fraction:.2f}" if job().running else "after the end"
+        n_after += not job().running
+        if n_after > LOOKS_AFTER:
+            waits.sort(reverse=True)
+            print("Longest waits:", *(f"{wait:.2f} s at {what};" for wait, what in waits[:8]))
+            return waits[0][0]
         yield 0.05
         now = monotonic()
-        longest, before = max(longest, now - before - 0.05), now
+        waits.append((now - before - 0.05, doing))
+        before = now
     raise AssertionError("It does not end.")
 
 

@@ -158,3 +158,22 @@ def test_the_panel_shows_them_and_what_is_missing(blank, draw, walker, vary):
     assert "Select the armature whose actions are to be varied." in " ".join(
         draw("MOCAP_PT_vary")
     )
+
+
+def test_the_panel_does_not_look_into_variants_however_many(vary, draw, load, monkeypatch):
+    retargeting, looks = load("mocap_assist.retargeting"), []
+    look = retargeting.animated_paths
+
+    def counted(action, slot):
+        for path in look(action, slot):
+            looks.append(action.name)
+            yield path
+
+    monkeypatch.setattr(retargeting, "animated_paths", counted)
+    vary(n_variants=12)
+    looks.clear()
+
+    draw("MOCAP_PT_vary")
+
+    assert set(looks) == {"walk_1", "walk_2", "walk_3"}
+    assert len(looks) < 20  # the first channel of a bone is enough

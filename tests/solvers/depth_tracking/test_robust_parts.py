@@ -5,7 +5,7 @@ import pytest
 
 from solvers.depth_tracking.body_kinematics import joint_positions, segment_frames
 from solvers.depth_tracking.body_model import usual_body
-from solvers.depth_tracking.body_tables import CAPSULE_SEGMENTS, CAPSULES
+from solvers.depth_tracking.body_tables import CAPSULE_SEGMENTS, CAPSULES, JOINTS
 from solvers.depth_tracking.coordinates import COORDINATES, N_COORDINATES
 from solvers.depth_tracking.hypothesis import imagine
 from solvers.depth_tracking.labelled_fit import (
@@ -188,3 +188,19 @@ def test_exchanged_parts_carry_their_places(rng):
     left, right = PARTS.index("leftFoot"), PARTS.index("rightFoot")
     np.testing.assert_array_equal(other.centres[left], centres[right])
     np.testing.assert_array_equal(other.labels[left], right)
+
+
+def test_pixels_told_wrong_go_to_the_part_they_lie_on(rng):
+    """The left shin is told to be rather the right one, and the start is the truth."""
+    true = standing(rightFemurX=0.0)
+    points, parts, _, _ = seen_parts(true)
+    told = parts.copy()
+    for end in ("", "End"):
+        shin = PARTS.index(f"leftLowerLeg{end}")
+        told[parts == shin] = MIRRORED[shin]
+    one_hot = np.eye(N_PARTS, dtype=np.float32)
+    shares = 0.7 * one_hot[told] + 0.3 * one_hot[parts]
+    pose = fit_pixels(BODY, points, shares, true)
+    ankles = [JOINTS.index(f"{side}Foot") for side in ("left", "right")]
+    found, exact = (joint_positions(BODY, segment_frames(BODY, one)) for one in (pose, true))
+    assert np.linalg.norm(found[ankles] - exact[ankles], axis=1).max() < 0.03

@@ -10,11 +10,13 @@ from numpy.testing import assert_allclose, assert_array_equal
 from solvers.motion.posture_heading import turned
 from solvers.motion.posture_joints import POSTURE_JOINTS
 from solvers.retrieval import Clip, FindSettings, build_clip_library, find_similar, rank_clips
+from solvers.retrieval.body_parts import BodyPart
 from solvers.retrieval.clip_postures import ClipPostures, clip_postures
 from solvers.retrieval.index_block import IndexBlock
 from solvers.retrieval.posting_lists import posting_lists
 from solvers.retrieval.search_index import SearchIndex
 from solvers.retrieval.usual_postures import usual_postures
+from solvers.retrieval.vocabulary import learn_vocabulary
 
 RNG = np.random.default_rng(5)
 BELIEVED, BLAMED = rank_clips.BELIEF_IN_LIKES, rank_clips.MOST_BLAME
@@ -121,3 +123,28 @@ def test_a_body_without_some_joints_is_turned_where_it_usually_faces(angle):
     assert np.abs(found.course - true.course).max() < 0.2 * np.abs(true.course).max() + 1e-9
     assert np.isfinite(found.positions).all()
     assert not np.isfinite(positions[:, lost]).any()
+
+
+def test_parts_that_move_count_more_and_hanging_arms_little():
+    clips = [clip_postures(act(name, 2.5), 20.0) for name in ACTS]
+    words = learn_vocabulary(clips)
+    activity = words.activity(words.features(clip_postures(act("kick", 2.5), 20.0)))
+    assert activity.argmax() == list(BodyPart).index(BodyPart.LEFT_LEG)
+
+    weights = FindSettings().part_weights(np.ones(5), activity)
+    assert weights.argmax() == activity.argmax()
+    assert weights.min() > 0.2
+    assert_allclose(weights.mean(), 1.0)
+    assert_allclose(FindSettings(busy=0.0).part_weights(np.ones(5), activity), 1.0)
+
+
+@pytest.mark.parametrize("activity", [np.zeros(5), np.array([0.0, 1e-9, 0.0, 1e-6, 0.0])])
+def test_all_parts_of_a_pose_count_alike(activity):
+    weights = FindSettings().part_weights(np.ones(5), activity)
+    assert_allclose(weights, 1.0, atol=1e-3)
+
+
+def test_a_part_that_is_not_asked_for_does_not_count_however_it_moves():
+    settings = FindSettings(left_leg=False)
+    weights = settings.part_weights(np.ones(5), np.array([1.0, 1.0, 1.0, 9.0, 1.0]))
+    assert_allclose(weights, [1.25, 1.25, 1.25, 0.0, 1.25])

@@ -1,0 +1,91 @@
+"""`capture`: Import and Track, to recordings of depth."""
+
+import argparse
+import json
+import sys
+from pathlib import Path
+from typing import get_type_hints
+
+import bpy
+
+from ...solvers.command_line import arguments_from, settings_from_arguments
+from ...solvers.command_line.screen import Screen
+from ...solvers.errors import InvalidFileError, MocapAssistError
+from ...solvers.files import written_whole
+from ..import_choices import ImportChoices
+from ..importing import import_files
+from ..jobs.job import run
+from ..tracking import TrackBundle, read_tracking, selected_preview, write_tracked
+from .pictures import draw_played
+from .saving import STDOUT, save, target_file
+
+HELP = "Track the actors of recordings of depth: armatures with actions in the .blend file."
+
+
+def add_capture_options(parser: argparse.ArgumentParser) -> None:
+    """Add the options of `capture`: those of the button, and of the files."""
+    parser.add_argument(
+        "files", nargs="+", type=Path, metavar="FILE",
+        help="recordings of depth: files, or folders of pictures",
+    )  # fmt: skip
+    arguments_from(parser, ImportChoices, *get_type_hints(TrackBundle).values())
+
+
+def perform_capture(arguments: argparse.Namespace, screen: Screen) -> None:
+    """Track all that can be tracked and save the file.
+
+    Raises
+    ------
+    InvalidFileError
+        Somebody could not be tracked, or the file could not be saved.
+    """
+    target = target_file(arguments)
+    settings = TrackBundle(**{
+        name: settings_from_arguments(arguments, each)
+        for name, each in get_type_hints(TrackBundle).items()
+    })
+    choices = settings_from_arguments(arguments, ImportChoices)
+    made, said, failed = [], [], []
+    for path in arguments.files:
+        screen.title = path.name
+        try:
+            said.append(_tracked(path, choices, settings, screen))
+            made.append(bpy.context.object)
+        except MocapAssistError as error:
+            failed.append(f"{path}: {error}")
+    screen.clear()
+    if made:
+        save(target)
+    _tell(arguments, made, said, failed)
+    if arguments.picture is not None and made:
+        draw_played(bpy.context.scene, made[0], arguments.picture)
+    if failed:
+        raise InvalidFileError(" ".join(failed))
+
+
+def _tracked(path: Path, choices: ImportChoices, settings: TrackBundle, screen: Screen) -> str:
+    """Bring in one recording and track it; the new armature becomes active."""
+    imported = import_files(bpy.context, [path], choices, progress=screen.progress)
+    if imported.failed:
+        raise InvalidFileError(imported.failed[0])
+    preview = selected_preview(bpy.context)
+    if preview is None:
+        raise InvalidFileError("It holds no depth. Bring it in with import.")
+    scene = bpy.context.scene
+    result = run(read_tracking(scene, preview, settings), screen.progress)
+    return write_tracked(scene, preview, settings, result)
+
+
+def _tell(
+    arguments: argparse.Namespace,
+    made: list[bpy.types.Object],
+    said: list[str],
+    failed: list[str],
+) -> None:
+    """Print what was done, and write the line of JSON that was asked for."""
+    line = json.dumps({"objects": [each.name for each in made], "said": said, "failed": failed})
+    sys.stdout.write("\n".join([line] if arguments.json == STDOUT else said) + "\n")
+    sys.stdout.flush()
+    if arguments.json not in {None, STDOUT}:
+        with written_whole(arguments.json) as part:
+            part.write_text(line + "\n", encoding="utf-8")

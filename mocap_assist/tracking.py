@@ -1,0 +1,167 @@
+"""What the button Track reads from the scene, and the armature that it adds."""
+
+import json
+from dataclasses import dataclass
+from functools import partial
+from typing import NamedTuple
+
+import bpy
+import numpy as np
+from mathutils import Matrix
+
+from ..solvers.denoising import PlantSettings
+from ..solvers.depth_tracking.capture import CaptureSettings
+from ..solvers.motion.depth_floor import LEVEL, Floor
+from ..solvers.motion.depth_foreground import ForegroundSettings
+from ..solvers.settings import Settings, setting
+from ..solvers.version import version
+from .jobs.tracking import Tracked, track_recording
+from .scene import compat, history
+from .scene.armature_build import build_armature
+from .scene.compat import Source
+from .scene.curves import write_first
+from .scene.depth_preview import KEY, Shown, problem_of, recording_of
+from .scene.new_action import write_motion
+from .scene.reliability_curves import write_reliability
+from .scene.scene_objects import all_or_nothing
+from .scene.units import unit_of
+from .subject import check_unchanged
+
+MODE = "QUATERNION"
+RESIDUAL = "mocap_residual"
+"""Custom property of the armature: metres between body and points, keyed."""
+CAPTURED = "mocap_assist_captured"
+"""Custom property of the action: how it was made, as JSON. To Clean it is raw."""
+MOST_SPOTS = 100
+
+
+@dataclass(frozen=True, kw_only=True)
+class TrackChoices(Settings):
+    """What is done besides tracking."""
+
+    plant_feet: bool = setting(
+        True, "Keep standing feet from sliding, where the pictures show feet"
+    )
+
+
+class TrackBundle(NamedTuple):
+    """All that the button offers."""
+
+    choices: TrackChoices
+    tracking: CaptureSettings
+    actor: ForegroundSettings
+    planting: PlantSettings
+
+
+def selected_preview(context: bpy.types.Context) -> bpy.types.Object | None:
+    """Return the active object if it shows a recording of depth."""
+    active = context.view_layer.objects.active
+    shows = active is not None and active.type == "MESH" and KEY in active.data
+    return active if shows else None
+
+
+def why_not_track(context: bpy.types.Context) -> str:
+    """Return why nobody can be tracked, or nothing."""
+    preview = selected_preview(context)
+    if preview is None:
+        return "Select the points of a depth recording. Import makes them."
+    return problem_of(preview)
+
+
+def read_tracking(
+    scene: bpy.types.Scene, preview: bpy.types.Object, settings: TrackBundle
+) -> "partial[Tracked]":
+    """Open the recording that is shown; return what is to be solved, which may be pickled."""
+    planting = settings.planting if settings.choices.plant_feet else None
+    recording = recording_of(preview.data)
+    return partial(track_recording, recording, settings.tracking, settings.actor, planting)
+
+
+def write_tracked(
+    scene: bpy.types.Scene,
+    preview: bpy.types.Object,
+    settings: TrackBundle,
+    result: Tracked,
+    asked: str | None = None,
+) -> str:
+    """Add an armature that moves as the actor did, over the points; return a sentence.
+
+    Raises InvalidMotionError if the points show something else than what was `asked`.
+    """
+    check_unchanged(preview, asked, recording_of(preview.data))
+    shown, context, metres = Shown.read(preview.data), bpy.context, unit_of(scene)
+    frames = shown.start + shown.step * np.arange(result.motion.n_frames)
+    with all_or_nothing(context):
+        name = f"{preview.name} tracked"
+        armature, bones = build_armature(context, name, result.motion.skeleton, metres, MODE)
+        source = write_motion(armature, bones, result.motion, frames, metres)
+        armature.matrix_world = _place(preview, result.floor) @ Matrix.Scale(metres, 4)
+        write_reliability(armature, *source, frames, result.confidence)
+        _write_residual(armature, source, frames, result.residual)
+    action = source[0]
+    action[CAPTURED] = json.dumps(_entry(settings, result, shown), ensure_ascii=False)
+    _list_doubts(scene, action, frames, result)
+    return f"{armature.name}: {_said(result)}"
+
+
+def _place(preview: bpy.types.Object, floor: Floor | None) -> Matrix:
+    """Return where the world of the motion is in the scene: as the points were put there."""
+    turn, shift = (floor or LEVEL).world_from_camera()
+    camera = np.eye(4)
+    camera[:3, :3], camera[:3, 3] = turn, shift
+    return preview.matrix_world @ Matrix(np.linalg.inv(camera).tolist())
+
+
+def _write_residual(
+    armature: bpy.types.Object, source: Source, frames: np.ndarray, residual: np.ndarray
+) -> None:
+    known = np.isfinite(residual)
+    if not known.any():
+        return
+    armature[RESIDUAL] = float(residual[known][0])
+    bag = compat.channelbag(*source, ensure=True)
+    curve = compat.new_curve(bag, f'["{RESIDUAL}"]', 0, "Track")
+    write_first(curve, frames[known], residual[known])
+
+
+def _list_doubts(
+    scene: bpy.types.Scene, action: bpy.types.Action, frames: np.ndarray, result: Tracked
+) -> None:
+    """Show the doubtful ranges in the list of Check, worst first."""
+    shown = scene.mocap_assist
+    shown.spots.clear()
+    shown.active_spot = 0
+    shown.checked, shown.report = action.name, _said(result)
+    for doubt in result.doubts[:MOST_SPOTS]:
+        item = shown.spots.add()
+        item.name, item.kind = doubt.joint, "doubtful"
+        item.start, item.stop = np.round(frames[[doubt.first, doubt.last]], 2)
+        item.severity = float(doubt.last - doubt.first + 1)
+        item.sentence = (
+            f"{doubt.joint} is out of sight or badly explained from frame {item.start:g} to"
+            f" {item.stop:g}, and was guessed."
+        )
+
+
+def _said(result: Tracked) -> str:
+    off = 100 * float(np.nanmean(result.residual))
+    n_doubts = len(result.doubts)
+    said = (
+        f"{result.motion.n_frames} frames, the body lies {off:.1f} cm beside the points of it."
+        f" The detector helped {len(result.restarts)} times after the start;"
+        f" {n_doubts} ranges are doubtful."
+    )
+    return " ".join([said, *result.remarks])
+
+
+def _entry(settings: TrackBundle, result: Tracked, shown: Shown) -> dict[str, object]:
+    return {
+        "version": version(),
+        "operation": "track_depth",
+        "settings": history.plain(*settings),
+        "recording": shown.path,
+        "mean_residual_cm": 100 * float(np.nanmean(result.residual)),
+        "coverage": result.coverage,
+        "restarts": list(result.restarts),
+        "doubtful_ranges": len(result.doubts),
+    }

@@ -1,0 +1,29 @@
+"""Button: track the actor whom a depth camera recorded."""
+
+import bpy
+
+from ..mocap_assist.settings_properties import settings_from
+from ..mocap_assist.solver_operator import SolverOperator
+from ..mocap_assist.tracking import (
+    TrackBundle,
+    read_tracking,
+    selected_preview,
+    why_not_track,
+    write_tracked,
+)
+
+
+@settings_from(TrackBundle)
+class MOCAP_OT_track_depth(SolverOperator, bpy.types.Operator):
+    bl_idname = "mocap_assist.track_depth"
+    bl_label = "Track"
+    bl_description = (
+        "Find the actor in a recording of depth and follow the body through all frames, without"
+        " a first pose. The result is an armature with an action, over the points"
+    )
+    settings_group = "track"
+    selected, why_not = selected_preview, why_not_track
+    read_scene, write_scene = read_tracking, write_tracked
+
+    def draw(self, context: bpy.types.Context) -> None:
+        """Nothing can be changed without tracking anew."""

@@ -1,0 +1,108 @@
+"""`capture`: the motion of the actor whom a depth recording shows."""
+
+import argparse
+from pathlib import Path
+
+import numpy as np
+
+from ..denoising import PlantSettings
+from ..depth_tracking.body_model import BodyModel, load_body_model
+from ..depth_tracking.body_tables import LENGTHS
+from ..depth_tracking.capture import CaptureSettings
+from ..motion import JointRecording, Sensor
+from ..motion.depth_foreground import ForegroundSettings
+from ..progress import Progress, overheard, within
+from ..recordings import read_depth, write_joint_csv
+from ..recordings.depth_settings import DepthSettings
+from ..workflows import CapturedMotion, capture_recording
+from .files import JOINTS, write
+from .options import arguments_from, settings_from_arguments
+from .verb import Outcome, Task
+
+
+def add_capture_options(parser: argparse.ArgumentParser) -> None:
+    """Add the options of `capture`."""
+    parser.add_argument(
+        "--body", type=Path, metavar="FILE",
+        help="The actor's body, as --keep-body wrote it; without it one is fitted",
+    )  # fmt: skip
+    parser.add_argument(
+        "--keep-body", type=Path, metavar="FILE", help="Also write the body that was fitted"
+    )
+    parser.add_argument(
+        "--empty", nargs=2, type=int, metavar=("FIRST", "LAST"),
+        help="Frames of the room without the actor, which then is subtracted",
+    )  # fmt: skip
+    parser.add_argument(
+        "--joints", action="store_true",
+        help="With --output-folder: write joints as .csv, as the camera saw them, with the"
+        " confidence of each, in the place of a skeleton's motion",
+    )  # fmt: skip
+    parser.add_argument(
+        "--feet", action=argparse.BooleanOptionalAction, default=True,
+        help="Whether to keep standing feet from sliding [default: yes, where they are seen]",
+    )  # fmt: skip
+    for title, settings in (
+        ("what the files leave open", DepthSettings), ("the actor", ForegroundSettings),
+        ("tracking", CaptureSettings), ("planting feet", PlantSettings),
+    ):  # fmt: skip
+        arguments_from(parser.add_argument_group(title), settings)
+
+
+def read_body(arguments: argparse.Namespace, progress: Progress) -> BodyModel | None:
+    """Read the body that serves all files of a run, if one is given."""
+    return None if arguments.body is None else load_body_model(arguments.body)
+
+
+def perform_capture(task: Task, prepared: BodyModel | None, progress: Progress) -> Outcome:
+    """Capture one recording and write it; tell how well it was followed."""
+    arguments, told = task.arguments, list[str]()
+    recording = read_depth(
+        task.source,
+        settings_from_arguments(arguments, DepthSettings),
+        progress=overheard(within(progress, 0.0, 0.02), told),
+    )
+    first, last = arguments.empty or (0, -1)
+    found = capture_recording(
+        recording,
+        prepared,
+        empty=range(first, last + 1),
+        settings=settings_from_arguments(arguments, CaptureSettings),
+        foreground=settings_from_arguments(arguments, ForegroundSettings),
+        planting=settings_from_arguments(arguments, PlantSettings) if arguments.feet else None,
+        progress=within(progress, 0.02, 0.98),
+    )
+    if arguments.keep_body is not None:
+        found.captured.body.save(arguments.keep_body)
+    assert task.target is not None
+    if task.target.suffix.lower() == JOINTS:
+        joints = JointRecording(found.captured.joints, None, Sensor.OTHER)
+        write_joint_csv(joints, task.target, progress=within(progress, 0.98, 1.0))
+    else:
+        write(found.motion, task.target, within(progress, 0.98, 1.0))
+    return _outcome(found, told)
+
+
+def _outcome(found: CapturedMotion, told: list[str]) -> Outcome:
+    captured, remarks = found.captured, [*(f"{one}." for one in told), *found.remarks]
+    restarts = len(captured.restarts)
+    times = "once" if restarts == 1 else f"{restarts} times"
+    off, covered = 100 * np.nanmean(captured.residual), 100 * captured.coverage.mean()
+    text = (
+        f"{found.motion.n_frames} frames: the body lies {off:.1f} cm beside what was seen of"
+        f" it, and {covered:.0f} % of their pictures agree. The detector had to help {times}"
+        " after the start."
+    )
+    figures = {
+        "n_frames": found.motion.n_frames,
+        "frame_rate_hz": found.motion.frame_rate,
+        "residual_m": float(np.nanmean(captured.residual)),
+        "coverage": float(captured.coverage.mean()),
+        "restarts": list(captured.restarts),
+        "doubtful_share": float(captured.doubtful.mean()),
+        "bone_lengths_m": dict(zip(LENGTHS, captured.body.lengths.tolist(), strict=True)),
+        "remarks": remarks,
+        "slide_before_m": found.planted and found.planted.slide_before,
+        "slide_after_m": found.planted and found.planted.slide_after,
+    }
+    return Outcome(" ".join([text, *remarks]), figures)

@@ -1,0 +1,107 @@
+"""From a depth recording, as it came from the camera, to motion of the actor."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from ..denoising import Planted, PlantSettings
+from ..depth_tracking.body_model import BodyModel
+from ..depth_tracking.capture import Capture, CaptureSettings, capture
+from ..depth_tracking.motion_prior import MotionPrior
+from ..motion import Motion
+from ..motion.depth_actor import Actor, find_actor
+from ..motion.depth_foreground import ForegroundSettings
+from ..motion.depth_recording import DepthRecording
+from ..progress import Progress, unwatched, within
+from .try_to_plant import try_to_plant
+
+CAPTURING = CaptureSettings()
+TELLING = ForegroundSettings()
+PLANTING = PlantSettings()
+MANY = 0.2
+"""Share of joints out of sight from which the report tells it."""
+
+
+@dataclass(frozen=True, eq=False)
+class CapturedMotion:
+    """The motion of an actor, and what was done for it.
+
+    Attributes
+    ----------
+    motion : Motion
+        Z up, without gaps; the feet are planted where that was asked for and can be done.
+    captured : Capture
+    actor : Actor
+    planted : Planted or None
+    remarks : tuple of str
+        Sentences on what the animator should know.
+    """
+
+    motion: Motion
+    captured: Capture
+    actor: Actor
+    planted: Planted | None
+    remarks: tuple[str, ...]
+
+
+def capture_recording(
+    recording: DepthRecording,
+    body: BodyModel | None = None,
+    *,
+    motion_prior: MotionPrior | None = None,
+    empty: Sequence[int] = (),
+    settings: CaptureSettings = CAPTURING,
+    foreground: ForegroundSettings = TELLING,
+    planting: PlantSettings | None = PLANTING,
+    progress: Progress = unwatched,
+) -> CapturedMotion:
+    """Tell the actor from the room, capture the motion, and plant the feet.
+
+    Parameters
+    ----------
+    recording : DepthRecording
+        With or without the room.
+    body : BodyModel, optional
+        Fitted to the recording by default.
+    motion_prior : MotionPrior, optional
+    empty : sequence of int
+        Frames of the room without the actor.
+    settings : CaptureSettings
+    foreground : ForegroundSettings
+    planting : PlantSettings or None
+        None leaves the feet as they are; so does a picture that ends above them.
+    progress : Progress
+
+    Raises
+    ------
+    InvalidMotionError
+        Nobody is seen.
+    SolveCancelled
+        Raised by `progress`.
+    """
+    actor = find_actor(recording, foreground, empty=empty, progress=within(progress, 0.0, 0.1))
+    found = capture(
+        actor.recording, body, motion_prior=motion_prior, floor=actor.floor,
+        settings=settings, progress=within(progress, 0.1, 0.95),
+    )  # fmt: skip
+    stands = planting if actor.feet_seen else None
+    footing = try_to_plant(found.motion, stands, progress=within(progress, 0.95, 1.0))
+    remarks = (*actor.remarks, *_remarks(actor, found), *footing.remarks)
+    return CapturedMotion(footing.motion, found, actor, footing.planted, remarks)
+
+
+def _remarks(actor: Actor, found: Capture) -> list[str]:
+    said = []
+    if actor.floor is None:
+        said.append("No floor is seen: the camera is taken to have been level.")
+    out_of_sight = float(found.doubtful.mean())
+    if out_of_sight > MANY:
+        said.append(
+            f"{100 * out_of_sight:.0f} % of the joints were out of sight or badly explained,"
+            " and are guessed from the frames before and after."
+        )
+    seen = np.isfinite(found.residual)
+    if not seen.all():
+        said.append(f"In {int((~seen).sum())} of {len(seen)} frames nobody is seen.")
+    return said

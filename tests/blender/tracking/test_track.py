@@ -1,0 +1,93 @@
+"""Track: an armature over the points of a depth recording."""
+
+import json
+
+import numpy as np
+import pytest
+
+QUICK = {"backward": False, "refine": False, "plant_feet": False}
+JOINTS = {
+    "leftUpperArm": "LeftArm", "rightLowerArm": "RightForeArm", "head": "Head",
+    "leftLowerLeg": "LeftLeg", "rightFoot": "RightFoot", "leftHand": "LeftHand",
+}  # fmt: skip
+
+
+def heads(armature, names):
+    return np.array([armature.matrix_world @ armature.pose.bones[name].head for name in names])
+
+
+def test_the_armature_stands_where_the_points_are(points, truth, blank):
+    place = np.array(points.matrix_world)
+    assert blank.ops.mocap_assist.track_depth(**QUICK) == {"FINISHED"}
+    armature = blank.context.object
+    assert armature.type == "ARMATURE" and armature.name == "walk tracked"
+
+    names = [str(name) for name in truth["joint_names"]]
+    for frame in (1, 6):
+        blank.context.scene.frame_set(frame)
+        seen = truth["joints"][frame - 1][[names.index(name) for name in JOINTS.values()]]
+        world = seen @ place[:3, :3].T + place[:3, 3]
+        off = np.linalg.norm(heads(armature, JOINTS) - world, axis=-1)
+        assert off.mean() < 0.08
+
+
+def test_it_follows_points_that_were_moved_and_scaled(points, truth, blank, load):
+    from mathutils import Matrix
+
+    points.matrix_world = Matrix.Translation((3.0, 1.0, 0.5)) @ Matrix.Scale(2.0, 4)
+    blank.context.view_layer.update()
+    assert blank.ops.mocap_assist.track_depth(**QUICK) == {"FINISHED"}
+
+    blank.context.scene.frame_set(1)
+    head = heads(blank.context.object, ["head"])[0]
+    names = [str(name) for name in truth["joint_names"]]
+    expected = 2.0 * truth["joints"][0][names.index("Head")] + (3.0, 1.0, 0.5)
+    assert np.linalg.norm(head - expected) < 2.0 * 0.12
+
+
+def test_residual_trust_and_how_it_was_made_are_kept_and_clean_takes_it(points, blank, load):
+    assert blank.ops.mocap_assist.track_depth(**QUICK) == {"FINISHED"}
+    armature = blank.context.object
+    action = armature.animation_data.action
+    told = json.loads(action["mocap_assist_captured"])
+    assert told["operation"] == "track_depth" and told["recording"].endswith("walk.npz")
+    assert 0.0 < told["mean_residual_cm"] < 5.0
+    compat = load("mocap_assist.scene.compat")
+    bag = compat.channelbag(action, armature.animation_data.action_slot)
+    residual = bag.fcurves.find('["mocap_residual"]')
+    keyed = [point.co[0] for point in residual.keyframe_points]
+    assert keyed == pytest.approx([1, 2, 3, 4, 5, 6], abs=1e-3)
+    assert 0.0 < armature["mocap_residual"] < 0.05
+    paths = {curve.data_path for curve in bag.fcurves}
+    assert 'pose.bones["leftLowerArm"]["mocap_reliability"]' in paths
+    assert blank.context.scene.mocap_assist.checked == action.name
+    assert points.name in blank.data.objects and len(blank.data.armatures) == 1
+
+    assert blank.ops.mocap_assist.denoise(plant_feet=False) == {"FINISHED"}  # raw to Clean
+    assert armature.animation_data.action is not action
+
+
+def test_without_points_the_button_says_why(blank):
+    blank.ops.object.armature_add()
+    assert not blank.ops.mocap_assist.track_depth.poll()
+    with pytest.raises(RuntimeError, match="Select the points of a depth recording"):
+        blank.ops.mocap_assist.track_depth()
+
+
+def test_a_recording_that_is_gone_is_named_and_nothing_is_added(points, blank, load, tmp_path):
+    (tmp_path / "walk.npz").unlink()
+    preview = load("mocap_assist.scene.depth_preview")
+    preview._loaded()
+    before = set(blank.data.objects.keys())
+    with pytest.raises(RuntimeError, match=r"walk\.npz"):
+        blank.ops.mocap_assist.track_depth(**QUICK)
+    assert set(blank.data.objects.keys()) == before
+
+
+def test_nobody_is_said_in_one_sentence(blank, tmp_path, truth):
+    path = tmp_path / "empty.npz"
+    np.savez_compressed(path, **{**truth, "depth": 0 * truth["depth"]})
+    blank.ops.mocap_assist.import_recording(filepath=str(path))
+    with pytest.raises(RuntimeError, match="Nobody"):
+        blank.ops.mocap_assist.track_depth(**QUICK)
+    assert len(blank.data.armatures) == 0

@@ -1,0 +1,65 @@
+"""Limbs that are inside each other are pushed apart, by as much as they overlap."""
+
+import numpy as np
+from drawn_bodies import CAMERA, posed
+from numpy.testing import assert_allclose
+
+from solvers.depth_tracking.apart_term import SOFTNESS, _closest, apart_term
+from solvers.depth_tracking.body_model import usual_body
+from solvers.depth_tracking.body_tables import CAPSULE_SEGMENTS
+from solvers.depth_tracking.coordinates import COORDINATES
+from solvers.depth_tracking.hypothesis import imagine
+from solvers.depth_tracking.normal_equations import in_coordinates, segment_equations, step
+from solvers.depth_tracking.pose_priors import natural_stance
+
+BODY = usual_body()
+
+
+def test_closest_points_of_segments_equal_a_fine_search(rng):
+    first, second = rng.normal(size=(2, 20, 2, 3))
+
+    near, far = _closest(first, second)
+
+    shares = np.linspace(0.0, 1.0, 401)
+    for pair in range(20):
+        a = first[pair, 0] + shares[:, None] * (first[pair, 1] - first[pair, 0])
+        b = second[pair, 0] + shares[:, None] * (second[pair, 1] - second[pair, 0])
+        least = np.linalg.norm(a[:, None] - b, axis=-1).min()
+        assert_allclose(np.linalg.norm(near[pair] - far[pair]), least, atol=0.01)
+
+
+def test_legs_beside_each_other_are_left_alone():
+    pose = posed(leftFemurZ=0.15, rightFemurZ=0.15, leftHumerusZ=0.5, rightHumerusZ=0.5)
+    rows = apart_term(imagine(BODY, pose, CAMERA), 1.0)
+    assert not len(rows.residuals)
+
+
+def test_crossed_legs_are_pushed_apart_until_they_touch():
+    pose = posed(leftFemurZ=-0.25, rightFemurZ=-0.25)
+    overlaps = []
+    for _ in range(15):
+        hypothesis = imagine(BODY, pose, CAMERA)
+        rows = apart_term(hypothesis, 1e4)
+        overlaps.append(rows.residuals.max(initial=0.0))
+        equations = in_coordinates([segment_equations(rows)], hypothesis.twists)
+        pose = pose + step(equations, np.full(34, 10.0))
+    assert overlaps[0] > 0.02
+    assert overlaps[-1] < 0.1 * overlaps[0]
+    assert SOFTNESS < 1.0
+
+
+def test_both_limbs_are_pushed_equally():
+    rows = apart_term(imagine(BODY, posed(leftFemurZ=-0.3, rightFemurZ=-0.3), CAMERA), 1.0)
+    n_pairs = len(rows.residuals) // 2
+    assert n_pairs > 0
+    assert_allclose(rows.directions[:n_pairs], -rows.directions[n_pairs:])
+    assert (CAPSULE_SEGMENTS[rows.capsules[:n_pairs]]
+            != CAPSULE_SEGMENTS[rows.capsules[n_pairs:]]).all()  # fmt: skip
+
+
+def test_a_natural_stance_is_asked_of_the_trunk_more_than_of_limbs():
+    asked = natural_stance(np.ones(34), 2.0)
+    assert_allclose(asked.vector[:6], 0.0)
+    trunk, limb = (COORDINATES.index(name) for name in ("lowerBackZ", "leftFemurX"))
+    assert asked.vector[trunk] < asked.vector[limb] < 0.0
+    assert_allclose(asked.cost, 0.5 * np.trace(asked.matrix))

@@ -1,0 +1,191 @@
+"""Without a first pose or a body: the whole way from pictures to motion."""
+
+import numpy as np
+import pytest
+from drawn_bodies import CAMERA, NATURAL, posed, recorded, waving
+from numpy.testing import assert_allclose, assert_array_equal
+
+from solvers.depth_tracking.body_kinematics import joint_positions, segment_frames
+from solvers.depth_tracking.body_model import usual_body
+from solvers.depth_tracking.body_motion import SCENE_FROM_CAMERA, body_motion, body_skeleton
+from solvers.depth_tracking.body_tables import JOINTS
+from solvers.depth_tracking.capture import Capture, CaptureSettings, capture
+from solvers.depth_tracking.choose_poses import choose_poses
+from solvers.depth_tracking.coordinates import COORDINATES
+from solvers.depth_tracking.smooth_take import smooth_take
+from solvers.errors import InvalidMotionError, SolveCancelled
+from solvers.motion import find_humanoid_map, forward_kinematics
+from solvers.motion.depth_floor import Floor
+from solvers.motion.depth_recording import DepthRecording
+
+BODY = usual_body()
+
+
+def joints_of(poses):
+    return joint_positions(BODY, segment_frames(BODY, poses))
+
+
+@pytest.fixture(scope="module")
+def captured() -> Capture:
+    return capture(recorded(waving(24)), BODY)
+
+
+def test_finds_the_first_pose_and_follows(captured):
+    truth = joints_of(waving(24))
+    assert np.linalg.norm(captured.joints.positions - truth, axis=-1).mean() < 0.03
+    assert captured.joints.names == JOINTS
+    assert captured.doubtful.shape == (24, 21)
+    assert captured.residual.max() < 0.03 and captured.coverage.min() > 0.75
+
+
+def test_the_motion_has_the_joints_where_they_were_seen(captured):
+    world = forward_kinematics(captured.motion).positions
+
+    expected = captured.joints.positions @ SCENE_FROM_CAMERA.T
+    assert_allclose(world, expected, atol=1e-9)
+
+
+def test_a_swap_in_the_middle_is_undone():
+    """From frame 8 on the tracker is thrown off by 12 frames in which legs cannot be seen."""
+    truth = waving(30)
+    truth[:, COORDINATES.index("rightHumerusZ")] = np.linspace(0.2, 1.4, 30)
+    recording = recorded(truth)
+
+    def read(frame):
+        picture = recording.frame(frame).copy()
+        if 8 <= frame < 14:
+            picture[:, 80:] = 0.0
+        return picture
+
+    found = capture(DepthRecording(CAMERA, 30, 30.0, read), BODY)
+
+    off = np.linalg.norm(found.joints.positions - joints_of(truth), axis=-1)
+    assert off[20:].mean() < 0.04
+    assert off[:8].mean() < 0.04
+
+
+def test_frames_without_anybody_are_bridged_and_flagged():
+    truth = waving(20)
+    recording = recorded(truth)
+
+    def read(frame):
+        empty = frame in {0, 1, 9, 10, 11}
+        return np.zeros((120, 160), np.float32) if empty else recording.frame(frame)
+
+    found = capture(DepthRecording(CAMERA, 20, 30.0, read), BODY)
+
+    assert found.doubtful[[0, 1, 9, 10, 11]].all()
+    assert not found.doubtful[[5, 15]].all()
+    assert np.isnan(found.residual[10])
+    assert np.isfinite(found.poses).all()
+    off = np.linalg.norm(found.joints.positions - joints_of(truth), axis=-1)
+    assert off[9:12].mean() < 0.06
+
+
+def test_nobody_is_refused():
+    empty = DepthRecording(CAMERA, 3, 30.0, lambda _: np.zeros((120, 160), np.float32))
+    for body in (BODY, None):
+        with pytest.raises(InvalidMotionError, match=r"[Nn]obody|anybody"):
+            capture(empty, body)
+
+
+def test_tells_progress_and_can_be_cancelled():
+    fractions = []
+    settings = CaptureSettings(backward=False)
+    capture(recorded(waving(3)), BODY, settings=settings,
+            progress=lambda f, _="": fractions.append(f))  # fmt: skip
+    assert fractions == sorted(fractions)
+    assert_allclose(fractions[-1], 1.0)
+
+    def stop(fraction, message=""):
+        raise SolveCancelled
+
+    with pytest.raises(SolveCancelled):
+        capture(recorded(waving(2)), BODY, progress=stop)
+
+
+def test_the_skeleton_rests_in_a_t_pose():
+    skeleton = body_skeleton(BODY)
+    rest = dict(zip(skeleton.names, skeleton.rest_positions, strict=True))
+
+    assert_allclose(rest["leftHand"][1:], rest["leftUpperArm"][1:], atol=1e-9)
+    assert rest["leftHand"][0] > 0.5 > -0.5 > rest["rightHand"][0]
+    assert rest["leftToes"][1] < rest["leftFoot"][1]
+    assert 0.0 <= rest["leftToes"][2] < 0.06
+    assert find_humanoid_map(skeleton).score > 0.9
+
+
+def test_a_tilted_camera_is_levelled_by_the_floor():
+    """The camera looks down by 20 degrees from 1.5 m; an upright actor stays upright."""
+    tilt = np.radians(20.0)
+    up = np.array([0.0, -np.cos(tilt), -np.sin(tilt)])
+    floor = Floor(up, 1.5)
+    pose = posed(pitch=tilt)
+
+    motion = body_motion(BODY, pose[np.newaxis], 30.0, floor)
+
+    world = dict(zip(JOINTS, forward_kinematics(motion).positions[0], strict=True))
+    assert_allclose((world["neck"] - world["hips"])[0], 0.0, atol=1e-9)
+    trunk = world["neck"] - world["hips"]
+    assert trunk[2] / np.linalg.norm(trunk) > 0.98
+    heights = floor.heights(joint_positions(BODY, segment_frames(BODY, pose)))
+    assert_allclose(forward_kinematics(motion).positions[0, :, 2], heights, atol=1e-9)
+
+
+def test_a_take_without_pictures_becomes_a_straight_line(rng):
+    """Two known frames, nothing between: second differences vanish on a line."""
+    start, stop = rng.normal(size=(2, 34))
+    poses = rng.normal(size=(9, 34))
+    poses[0], poses[-1] = start, stop
+    nothing = (np.zeros((34, 34)), np.zeros(34))
+    sure = (1e6 * np.eye(34), np.zeros(34))
+
+    smooth = smooth_take(poses, [sure, *[nothing] * 7, sure], np.full(34, 1e3))
+
+    shares = np.linspace(0.0, 1.0, 9)[:, np.newaxis]
+    assert_allclose(smooth, (1.0 - shares) * start + shares * stop, atol=1e-4)
+
+
+def test_smoothing_solves_the_dense_system(rng):
+    poses = rng.normal(size=(6, 34))
+    equations = []
+    for _ in range(6):
+        root = rng.normal(size=(34, 34))
+        equations.append((root @ root.T, rng.normal(size=34)))
+    stiffness = rng.uniform(1.0, 5.0, size=34)
+
+    smooth = smooth_take(poses, equations, stiffness)
+
+    second = np.kron(np.diff(np.eye(6), 2, axis=0), np.diag(np.sqrt(stiffness)))
+    dense = second.T @ second + 1e-6 * np.eye(6 * 34)
+    wanted = 1e-6 * poses.ravel()
+    for frame, (matrix, vector) in enumerate(equations):
+        place = slice(34 * frame, 34 * (frame + 1))
+        dense[place, place] += matrix
+        wanted[place] += matrix @ poses[frame] + vector
+    assert_allclose(smooth.ravel(), np.linalg.solve(dense, wanted), atol=1e-8)
+
+
+def test_a_short_mistake_is_not_chosen_though_it_scores_a_little_better():
+    """Candidate 1 jumps away for three frames: its joints have to come and go."""
+    joints = np.zeros((10, 2, 4, 3))
+    joints[4:7, 1] += 0.3
+    scores = np.full((10, 2), 0.7)
+    scores[:, 1] = 0.65
+    scores[4:7, 1] = 0.72
+    assert_array_equal(choose_poses(scores, joints, 40.0, 0.04), np.zeros(10))
+
+    scores[4:, 1] = 0.95
+    joints[4:, 1] = 0.3
+    assert_array_equal(choose_poses(scores, joints, 300.0, 0.04)[5:], np.ones(5))
+
+
+def test_a_missing_candidate_is_never_chosen():
+    scores = np.full((5, 2), 0.5)
+    scores[2, 0] = np.nan
+    assert choose_poses(scores, np.zeros((5, 2, 3, 3)), 40.0, 0.04)[2] == 1
+
+
+def test_a_still_natural_pose_is_sure_where_it_is_seen():
+    found = capture(recorded(np.tile(NATURAL, (4, 1))), BODY)
+    assert not found.doubtful[:, JOINTS.index("leftLowerArm")].any()
