@@ -145,16 +145,21 @@ def _way(
         return settings.way
     if len(empty):
         return ForegroundWay.BACKGROUND
-    alone = []
+    alone, step = [], _coarse_step(recording)
     for frame in frames[:: max(1, len(frames) // 12)].tolist():
-        depth = recording.frame(frame)
+        depth = recording.frame(frame)[::step, ::step]
         if not (depth > 0.0).any():
             continue
-        found = find_bodies(depth, recording.camera, settings.smallest_body)
+        found = find_bodies(depth, recording.camera.every(step), settings.smallest_body)
         shares = np.bincount(found.labels[depth > 0.0], minlength=2) / (depth > 0.0).sum()
         alone.append((depth > 0.0).mean() < FULL and 1.0 - shares[0] >= WHOLE)
     recorded = bool(alone) and np.mean(alone) > 0.5 and find_floor(recording) is None
     return ForegroundWay.RECORDED if recorded else ForegroundWay.AUTOMATIC
+
+
+def _coarse_step(recording: DepthRecording) -> int:
+    """Return of how many columns and rows one is enough to find bodies."""
+    return max(1, recording.camera.width // COARSE_WIDTH)
 
 
 class _Survey:
@@ -162,7 +167,7 @@ class _Survey:
 
     def __init__(self, actor: ActorPictures, room: Background | None) -> None:
         self._actor, self._room = actor, room
-        self._step = max(1, actor.recording.camera.width // COARSE_WIDTH)
+        self._step = _coarse_step(actor.recording)
         self._camera = actor.recording.camera.every(self._step)
         self._at_edge: list[bool] = []
         self._heights: list[float] = []
@@ -189,7 +194,7 @@ class _Survey:
             points = self._camera.back_project(depth)[found.labels == first]
             heights = (self._actor.floor or LEVEL).heights(points)
             self._heights.append(float(np.ptp(np.quantile(heights, [0.01, 0.99]))))
-        return Bodies(found.labels, found.areas[kept], found.middles[kept])
+        return replace(found, areas=found.areas[kept], middles=found.middles[kept])
 
     def height(self) -> float:
         """Return how tall the largest body usually is where it is seen best, metres."""

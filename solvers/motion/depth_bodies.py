@@ -12,6 +12,7 @@ from .camera import Camera
 
 Mask = NDArray[np.bool_]
 Depth = NDArray[np.floating[Any]]
+Points = NDArray[np.float64]
 
 STEP, STEP_SQUARED = 0.05, 0.005
 """Metres in depth, and metres per square metre of distance, between pixels of one surface."""
@@ -34,7 +35,11 @@ class Bodies:
 
     Attributes
     ----------
-    labels : int array, shape (height, width)
+    depth : float array, shape (height, width), metres
+        The picture.
+    step : int
+        Of the columns and rows, every so many were looked at.
+    labels : int array, shape (-(-height // step), -(-width // step))
         0 nothing, 1 the body with the largest surface, 2 the next, and so on.
     areas : float array, shape (n,), square metres
         Seen surface of each, as if it faced the camera.
@@ -42,9 +47,26 @@ class Bodies:
         Middle of each in the camera's frame.
     """
 
+    depth: Depth
+    step: int
     labels: NDArray[np.intp]
     areas: NDArray[np.float64]
     middles: NDArray[np.float64]
+
+    def mask(self, label: int) -> Mask:
+        """Return the pixels (height, width) of a body."""
+        own = self.labels == label
+        mask = np.zeros(self.depth.shape, dtype=bool)
+        if self.step == 1 or not own.any():
+            return own if self.step == 1 else mask
+        rows, columns = (_around(own.any(axis=axis)) for axis in (1, 0))
+        coarse = self.depth[:: self.step, :: self.step]
+        place = tuple(
+            slice(span.start * self.step, span.stop * self.step) for span in (rows, columns)
+        )
+        kept = np.where(own, coarse, 0.0)[rows, columns]
+        mask[place] = _refined(self.depth[place], kept, self.step)
+        return mask
 
 
 def find_bodies(depth: Depth, camera: Camera, smallest: float) -> Bodies:
@@ -54,35 +76,43 @@ def find_bodies(depth: Depth, camera: Camera, smallest: float) -> Bodies:
     a camera. Smaller pieces come to the body that they are nearest to, or to none. Where much
     is seen, every second or third pixel is looked at, and the others follow.
     """
-    if int((depth > 0.0).sum()) <= MOST_SEEN:
-        return _found(depth, camera, smallest)
-    step = -(-camera.width // COARSE_WIDTH)
-    coarse = depth[::step, ::step]
-    found = _found(coarse, camera.every(step), smallest)
-    labels = np.zeros(depth.shape, dtype=np.intp)
-    for place in range(len(found.areas), 0, -1):
-        labels[_refined(depth, np.where(found.labels == place, coarse, 0.0), step)] = place
-    return Bodies(labels, found.areas, found.middles)
-
-
-def _found(depth: Depth, camera: Camera, smallest: float) -> Bodies:
-    pieces, areas = _pieces(depth, camera)
-    points = camera.back_project(depth)
+    few = int((depth > 0.0).sum()) <= MOST_SEEN
+    step = 1 if few else -(-camera.width // COARSE_WIDTH)
+    coarse, camera = depth[::step, ::step], camera.every(step)
+    pieces, areas = _pieces(coarse, camera)
+    points = _grouped(pieces, camera.back_project(coarse))
     large = np.flatnonzero(areas >= smallest)
     large = large[np.argsort(-areas[large], kind="stable")]
     places = np.zeros(len(areas) + 1, dtype=np.intp)
     for piece in large + 1:
-        places[piece] = _whose_limb(piece, places, pieces, areas, points) or places.max() + 1
-    if len(large):
-        _join_small_pieces(places, pieces, areas, points)
-    labels = places[pieces]
-    kept = [labels == place for place in range(1, places.max() + 1)]
-    surfaces = _surface(depth, camera)
-    return Bodies(
-        labels,
-        np.array([surfaces[mask].sum() for mask in kept]),
-        np.array([np.median(points[mask], axis=0) for mask in kept]).reshape(-1, 3),
-    )
+        places[piece] = _whose_limb(piece, places, areas, points) or places.max() + 1
+    _join_small_pieces(places, areas, points)
+    n_bodies = int(places.max())
+    surfaces = np.zeros(n_bodies + 1)
+    np.add.at(surfaces, places[1:], areas)
+    middles = [np.median(each, axis=0) for each in _bodies(places, points)]
+    return Bodies(depth, step, places[pieces], surfaces[1:], np.array(middles).reshape(-1, 3))
+
+
+def _grouped(pieces: NDArray[np.intp], points: Points) -> list[Points]:
+    """Return the points of each piece, shape (n, 3), the first those of none."""
+    order = np.argsort(pieces, axis=None, kind="stable")
+    ends = np.cumsum(np.bincount(pieces.ravel()))[:-1]
+    return np.split(points.reshape(-1, 3)[order], ends)
+
+
+def _bodies(places: NDArray[np.intp], points: list[Points]) -> list[Points]:
+    """Return the points of each body."""
+    return [
+        np.concatenate([points[piece] for piece in np.flatnonzero(places == place)])
+        for place in range(1, int(places.max(initial=0)) + 1)
+    ]
+
+
+def _around(any_there: Mask) -> slice:
+    """Return the span of what is there, and one more on both sides."""
+    there = np.flatnonzero(any_there)
+    return slice(max(int(there[0]) - 1, 0), min(int(there[-1]) + 2, len(any_there)))
 
 
 def _refined(depth: Depth, coarse: Depth, step: int) -> Mask:
@@ -111,9 +141,9 @@ def _pieces(depth: Depth, camera: Camera) -> tuple[NDArray[np.intp], NDArray[np.
     n_pieces, labels = connected_components(graph, directed=False)
     pieces = np.zeros(depth.shape, dtype=np.intp)
     pieces[seen] = labels + 1
-    areas = np.zeros(n_pieces)
-    np.add.at(areas, labels, _surface(depth, camera)[seen])
-    return pieces, areas
+    surfaces = _surface(depth, camera)[seen]
+    areas = np.bincount(labels, weights=surfaces, minlength=n_pieces)
+    return pieces, areas.astype(np.float64)
 
 
 def _links(numbers: NDArray[Any], depth: Depth, axis: int) -> NDArray[Any]:
@@ -134,49 +164,42 @@ def _surface(depth: Depth, camera: Camera) -> NDArray[np.float64]:
 
 
 def _whose_limb(
-    piece: int,
-    places: NDArray[np.intp],
-    pieces: NDArray[np.intp],
-    areas: NDArray[np.float64],
-    points: NDArray[np.float64],
+    piece: int, places: NDArray[np.intp], areas: NDArray[np.float64], points: list[Points]
 ) -> int:
     """Return which of the bodies so far a large piece is a limb of, 0 for none."""
-    own = points[pieces == piece]
     for other in np.flatnonzero(places):
-        if areas[piece - 1] > LIMB * areas[other - 1]:
-            continue
-        body = points[pieces == other][::FEW]
-        if _gap(own, body) <= 0.0:
+        small = areas[piece - 1] <= LIMB * areas[other - 1]
+        if small and _gap(points[piece], points[other][::FEW]) <= 0.0:
             return int(places[other])
     return 0
 
 
 def _join_small_pieces(
-    places: NDArray[np.intp],
-    pieces: NDArray[np.intp],
-    areas: NDArray[np.float64],
-    points: NDArray[np.float64],
+    places: NDArray[np.intp], areas: NDArray[np.float64], points: list[Points]
 ) -> None:
     """Give small pieces to the body that they are beside, or that their middle is in reach of.
 
     `places` is which body each piece is, 0 for none, and is changed.
     """
-    labels = places[pieces]
-    bodies = [points[labels == place][::FEW] for place in range(1, places.max() + 1)]
+    bodies = [body[::FEW] for body in _bodies(places, points)]
     for piece in np.flatnonzero(areas >= SMALLEST_PIECE) + 1:
-        if places[piece]:
+        if places[piece] or not bodies:
             continue
-        own = points[pieces == piece]
-        middle = np.median(own, axis=0)
-        apart = [
-            min(float(np.linalg.norm(body - middle, axis=-1).min()) - REACH, _gap(own, body))
-            for body in bodies
-        ]
+        apart = [_out_of_reach(points[piece], body) for body in bodies]
         if min(apart) <= 0.0:
             places[piece] = int(np.argmin(apart)) + 1
 
 
-def _gap(own: NDArray[np.float64], body: NDArray[np.float64]) -> float:
+def _out_of_reach(own: Points, body: Points) -> float:
+    """Return how many metres a piece is out of reach of a body; it belongs to it below 0."""
+    box = np.maximum(body.min(axis=0) - own.max(axis=0), own.min(axis=0) - body.max(axis=0))
+    if box.max() > REACH:
+        return float(box.max())
+    to_middle = float(np.linalg.norm(body - np.median(own, axis=0), axis=-1).min())
+    return min(to_middle - REACH, _gap(own, body))
+
+
+def _gap(own: Points, body: Points) -> float:
     """Return how many metres more than `BESIDE` are between two sets of points."""
     few = own[:: max(1, len(own) // FEW)]
     return float(np.linalg.norm(few[:, np.newaxis] - body, axis=-1).min()) - BESIDE

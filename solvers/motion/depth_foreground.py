@@ -3,6 +3,7 @@
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from enum import Enum
+from functools import lru_cache
 
 import numpy as np
 from numpy.typing import NDArray
@@ -173,7 +174,7 @@ class ActorPictures:
         depth = self.stands_out(self.recording.frame(index))
         found = find_bodies(depth, self.recording.camera, self.settings.smallest_body)
         label = self._label(found, index)
-        return np.where(found.labels == label, depth, np.float32(0.0)) if label else 0.0 * depth
+        return np.where(found.mask(label), depth, np.float32(0.0)) if label else 0.0 * depth
 
     def _label(self, found: Bodies, index: int) -> int:
         """Return which of the bodies is the actor, 0 for none."""
@@ -254,4 +255,11 @@ def in_front_of(
 
 def above(depth: DepthPicture, camera: Camera, floor: Floor, least: float) -> NDArray[np.bool_]:
     """Tell which pixels see something at least so high above the floor, in metres."""
-    return np.asarray(floor.heights(camera.back_project(depth)) > least)
+    return np.asarray(depth * _rise(camera, tuple(floor.up)) + floor.height > least)
+
+
+@lru_cache(maxsize=4)
+def _rise(camera: Camera, up: tuple[float, ...]) -> DepthPicture:
+    """Return how far each pixel's ray goes up in a metre of depth, metres."""
+    rise: DepthPicture = (camera.rays() @ np.array(up)).astype(np.float32)
+    return rise

@@ -21,7 +21,7 @@ def followed(*people, n_frames=151):
         )
         middles = np.array([at for _, at in seen], dtype=np.float64).reshape(-1, 3)
         areas = np.array([area for area, _ in seen])
-        return Bodies(np.zeros((1, 1), np.intp), areas, middles)
+        return Bodies(np.zeros((1, 1)), 1, np.zeros((1, 1), np.intp), areas, middles)
 
     return follow_people(look, FRAMES, n_frames, RATE)
 
