@@ -142,7 +142,7 @@ def track_with_restarts(
     for done, frame in enumerate(frames):
         observation = observe(actor.depth, frame, actor.tracker.picture_width)
         score = np.nan
-        if course and len(observation.pixels):
+        if course and not observation.empty:
             prior = next_pose_prior(course[-2:], actor.tracker, actor.motion_prior)
             pose, quality, memory = follow(
                 actor.body, prior, observation, actor.tracker, memory
@@ -150,7 +150,7 @@ def track_with_restarts(
             score = quality.score
         elif course:
             pose = course[-1]
-        if len(observation.pixels) and watch.wants_detection(score):
+        if not observation.empty and watch.wants_detection(score):
             found = actor.detected(frame)
             if found is not None and not found[1].score <= score + actor.recovery.gain:
                 turned = _near_turn(found[0], course[-1] if course else found[0])

@@ -5,7 +5,7 @@ from numpy.typing import NDArray
 
 from .depth_edges import edge_pixels
 from .hypothesis import Hypothesis
-from .normal_equations import SurfaceRows, toward
+from .normal_equations import NO_ROWS, SurfaceRows, toward
 from .observation import Observation
 
 Array = NDArray[np.float64]
@@ -37,8 +37,7 @@ def edge_term(hypothesis: Hypothesis, observation: Observation, weight: float) -
     there = observation.edges
     drawn = hypothesis.index_picture[edge_pixels(hypothesis.picture.depth_picture())]
     if not (len(there) and len(drawn)):
-        nothing = np.zeros((0, 3))
-        return toward(nothing, nothing, np.zeros(0), np.zeros(0, dtype=np.intp))
+        return NO_ROWS
     pixels = hypothesis.picture.pixels[drawn]
     rows = np.abs(there[:, np.newaxis] // width - pixels // width)
     columns = np.abs(there[:, np.newaxis] % width - pixels % width)

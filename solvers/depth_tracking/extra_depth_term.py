@@ -5,7 +5,7 @@ from numpy.typing import NDArray
 from scipy.spatial import cKDTree
 
 from .hypothesis import Hypothesis
-from .normal_equations import SurfaceRows, toward
+from .normal_equations import NO_ROWS, SurfaceRows, toward
 from .observation import Observation
 from .pixel_groups import PixelGroups
 
@@ -38,9 +38,7 @@ def extra_depth_term(
     limit : float, metres
     """
     if not (len(hypothesis.points) and len(observation.points)):
-        return toward(
-            np.zeros((0, 3)), np.zeros((0, 3)), np.zeros(0), np.zeros(0, dtype=np.intp)
-        )
+        return NO_ROWS
     pushed = np.concatenate([groups.off_actor, groups.too_near])
     behind = hypothesis.picture.pixels[groups.too_far]
     pulling = observation.index_picture[np.concatenate([groups.uncovered, behind])]

@@ -68,9 +68,14 @@ def toward(points: Array, targets: Array, weights: Array, capsules: Integers) ->
     )  # fmt: skip
 
 
+NO_ROWS = toward(np.zeros((0, 3)), np.zeros((0, 3)), np.zeros(0), np.zeros(0, dtype=np.intp))
+"""Of a term that has nothing to say."""
+
+
 def joined(rows: Sequence[SurfaceRows]) -> SurfaceRows:
     """Return the rows of several terms as one."""
-    return SurfaceRows(*(np.concatenate(parts) for parts in zip(*rows, strict=True)))
+    parts = zip(NO_ROWS, *rows, strict=True)
+    return SurfaceRows(*(np.concatenate(part) for part in parts))
 
 
 def segment_equations(rows: SurfaceRows) -> SegmentEquations:

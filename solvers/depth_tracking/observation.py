@@ -16,6 +16,9 @@ from .depth_edges import edge_pixels
 Array = NDArray[np.float64]
 Integers = NDArray[np.intp]
 
+LEAST_AREA = 0.02
+"""Square metres: half a forearm. Who shows less is not there."""
+
 
 @dataclass(frozen=True, eq=False)
 class Observation:
@@ -41,6 +44,11 @@ class Observation:
     def pixels(self) -> Integers:
         """Which pixels see the actor, shape (n,): row * width + column."""
         return np.flatnonzero(self.flat)
+
+    @cached_property
+    def empty(self) -> bool:
+        """Whether too little of an actor is seen to tell anything."""
+        return not len(self.pixels) or len(self.pixels) * self.pixel_area < LEAST_AREA
 
     @cached_property
     def points(self) -> Array:

@@ -100,7 +100,7 @@ def refine_body(
         )
     chosen = _spread(depth.n_frames, settings.n_frames) if frames is None else frames
     observations = [observe(depth, int(frame), tracker.picture_width) for frame in chosen]
-    shown = [i for i, one in enumerate(observations) if len(one.pixels)]
+    shown = [i for i, one in enumerate(observations) if not one.empty]
     if not shown:
         raise InvalidMotionError("No frame shows an actor; check how depth was cut out.")
     seen = [observations[i] for i in shown]

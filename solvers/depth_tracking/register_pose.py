@@ -83,7 +83,7 @@ def register_pose(
     """
     coarse = min(settings.coarse_iterations, settings.iterations - 1)
     half = observation.every(2)
-    if coarse and len(half.pixels):
+    if coarse and not half.empty:
         scene = _Scene(body, half, prior, settings, memory)
         pose = _descend(scene, pose, coarse).pose
     scene = _Scene(body, observation, prior, settings, memory)

@@ -60,7 +60,7 @@ def _asked(actor: Actor, pose: Array, observation: Observation) -> Registered:
     """Return what a picture asks of a pose, without what the frames before say."""
     hypothesis = imagine(actor.body, pose, observation.camera)
     limits = joint_limits(pose, actor.tracker.limit_weight)
-    if not len(observation.pixels):
+    if observation.empty:
         return Registered(hypothesis, limits, 1)
     rows = likelihood_rows(hypothesis, observation, actor.tracker)
     seen: PoseEquations = in_coordinates([segment_equations(rows)], hypothesis.twists)
@@ -69,7 +69,7 @@ def _asked(actor: Actor, pose: Array, observation: Observation) -> Registered:
 
 def _judged(actor: Actor, pose: Array, frame: int) -> FitQuality:
     observation = observe(actor.depth, frame, actor.tracker.picture_width)
-    if not len(observation.pixels):
+    if observation.empty:
         return unseen()
     found = _asked(actor, pose, observation)
     return fit_quality(actor.body, found, observation, actor.tracker.limit)

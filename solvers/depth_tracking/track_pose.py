@@ -152,7 +152,7 @@ def follow(
 
     Returns it, its figures, and what the next frame should remember of this one.
     """
-    if not len(observation.pixels):
+    if observation.empty:
         return prior.expected, unseen(), None
     start = prior.expected if settings.start_ahead else prior.last
     found = register_pose(body, start, observation, prior, settings, memory)

@@ -15,10 +15,8 @@ from solvers.motion.camera import Camera
 from solvers.motion.depth_recording import DepthRecording
 
 TAKES = Path(__file__).resolve().parents[3] / "shared" / "data" / "depth" / "utd_mhad"
-KINECT_TAKES = tuple(
-    f"{take}_t1" for take in ("a1_s1", "a6_s3", "a7_s3", "a12_s5", "a24_s5", "a26_s7")
-)
-"""Swipe, crossed arms, basketball, bowling, standing up, lunge."""
+KINECT_TAKES = tuple(f"{take}_t1" for take in ("a1_s1", "a6_s3", "a7_s3", "a24_s5", "a26_s7"))
+"""Swipe, crossed arms, basketball, standing up, lunge."""
 LATE = 2
 """depth[t] fits skeleton[t - 2] (data/README.md)."""
 SDK_JOINTS = (

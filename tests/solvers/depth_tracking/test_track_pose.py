@@ -163,3 +163,32 @@ def test_foretells_constant_velocity():
     assert_allclose(foretell(poses, 1.0), 2.0)
     assert_allclose(foretell(poses, 0.0), 1.5)
     assert_allclose(foretell(poses[:1], 1.0), 1.0)
+
+
+def test_a_few_stray_pixels_are_nobody():
+    truth = waving(4)
+    recording = recorded(truth)
+
+    def read(frame):
+        if frame != 2:
+            return recording.frame(frame)
+        stray = np.zeros((120, 160), dtype=np.float32)
+        stray[10:13, 20:23] = 1.5
+        return stray
+
+    tracked = track_pose(DepthRecording(CAMERA, 4, 30.0, read), BODY, truth[0])
+
+    assert tracked.coverage[2] == 0.0
+    assert mean_error(tracked.poses, truth) < 0.03
+
+
+def test_without_any_term_the_pose_stays_where_it_is_expected():
+    nothing = TrackerSettings(
+        closest_weight=0.0, off_actor_weight=0.0, too_near_weight=0.0, depth_weight=0.0,
+        extra_weight=0.0, silhouette_weight=0.0, natural_weight=0.0, limit_weight=0.0,
+    )  # fmt: skip
+    truth = waving(2)
+
+    tracked = track_pose(recorded(truth), BODY, truth[0], settings=nothing)
+
+    assert_allclose(tracked.poses, np.tile(truth[0], (2, 1)), atol=1e-9)
