@@ -135,7 +135,7 @@ def _list_doubts(
     for doubt in result.doubts[:MOST_SPOTS]:
         item = shown.spots.add()
         item.name, item.kind = doubt.joint, "doubtful"
-        item.start, item.stop = frames[doubt.first], frames[doubt.last]
+        item.start, item.stop = np.round(frames[[doubt.first, doubt.last]], 2)
         item.severity = float(doubt.last - doubt.first + 1)
         item.sentence = (
             f"{doubt.joint} is out of sight or badly explained from frame {item.start:g} to"

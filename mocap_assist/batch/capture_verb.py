@@ -12,7 +12,6 @@ from ...solvers.command_line import arguments_from, settings_from_arguments
 from ...solvers.command_line.screen import Screen
 from ...solvers.errors import InvalidFileError, MocapAssistError
 from ...solvers.files import written_whole
-from ...solvers.recordings import DepthSettings
 from ..import_choices import ImportChoices
 from ..importing import import_files
 from ..jobs.job import run
@@ -29,7 +28,7 @@ def add_capture_options(parser: argparse.ArgumentParser) -> None:
         "files", nargs="+", type=Path, metavar="FILE",
         help="recordings of depth: files, or folders of pictures",
     )  # fmt: skip
-    arguments_from(parser, DepthSettings, *get_type_hints(TrackBundle).values())
+    arguments_from(parser, ImportChoices, *get_type_hints(TrackBundle).values())
 
 
 def perform_capture(arguments: argparse.Namespace, screen: Screen) -> None:
@@ -45,7 +44,7 @@ def perform_capture(arguments: argparse.Namespace, screen: Screen) -> None:
         name: settings_from_arguments(arguments, each)
         for name, each in get_type_hints(TrackBundle).items()
     })
-    choices = ImportChoices(depth=settings_from_arguments(arguments, DepthSettings))
+    choices = settings_from_arguments(arguments, ImportChoices)
     made, said, failed = [], [], []
     for path in arguments.files:
         screen.title = path.name

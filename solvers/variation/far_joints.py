@@ -20,7 +20,7 @@ from ..motion.rotations import (
     rotation_vector_from_quaternion,
     unroll,
 )
-from .course import continuous
+from .course import IMPOSSIBLE, continuous
 from .curve_sampling import sample_curves
 
 Array = NDArray[np.float64]
@@ -63,8 +63,10 @@ def tell_far_joints(
         As before, but for those that turn far: about the carrier.
     carrier : shape (n_moments, n_joints, 4), or None
         What comes before `usual`; the identity for other joints. None where no joint turns far.
+        About what jumps within a frame no other example can be told.
     """
-    far = np.flatnonzero(np.linalg.norm(joints, axis=-1).max(axis=(0, 1)) > FAR)
+    turned = np.linalg.norm(joints, axis=-1).max(axis=(0, 1)) > FAR
+    far = np.flatnonzero(turned & ~_flips(plain[centre]))
     if not len(far):
         return joints, usual, None
     seen = np.stack([
@@ -78,6 +80,13 @@ def tell_far_joints(
     joints[:, :, far] = np.stack([continuous(one) for one in told])
     usual[far] = IDENTITY
     return joints, usual, carrier
+
+
+def _flips(rotations: Array) -> NDArray[np.bool_]:
+    """Return which joints, of (n_frames, n_joints, 4), turn as none can."""
+    steps = multiply(inverse(rotations[:-1]), rotations[1:])
+    angles = np.linalg.norm(rotation_vector_from_quaternion(steps), axis=-1)
+    return np.asarray((angles > IMPOSSIBLE).any(axis=0))
 
 
 def _calm(rotations: Array, beside: float, is_loop: bool) -> Array:

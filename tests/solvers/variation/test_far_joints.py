@@ -84,3 +84,16 @@ def test_a_copy_of_a_windmill_is_the_windmill_and_a_file_keeps_it(walks, tmp_pat
     model.save(tmp_path / "mills.npz")
     again = synthesize(load_variation_model(tmp_path / "mills.npz"), 1)[0]
     assert_allclose(again.rotations, synthesize(model, 1)[0].rotations, atol=1e-9)
+
+
+def test_about_what_flips_nothing_is_told():
+    plain, _ = far()
+    plain[0][30:35, 1] = multiply(plain[0][30:35, 1], [0.0, 0.0, 0.0, 1.0])
+    joints = np.stack([rotation_vector_from_quaternion(one) for one in plain])
+    times = np.tile(np.arange(N, dtype=float), (2, 1))
+    usual = np.tile(IDENTITY, (2, 1))
+
+    told, _, carrier = tell_far_joints(joints, usual, plain, times, 0, 2.0, False)
+
+    assert carrier is None
+    assert_allclose(told, joints)

@@ -1,0 +1,73 @@
+"""Track an actor in a Blender with a window: bring in depth, press Track, look at the result.
+
+    make extension-plain
+    BG_DEBS="python3-scipy python3-pil" BG_FILES="walk.npz" \
+        bash ../shared/tools/blender-gui.sh run dist/mocap_assist-0.1.0-plain.zip \
+        tests/gui/drive_track.py build/gui/track/track.png
+
+Runs inside that Blender; `bgui` comes with the tool. The recording, such as the first 30 frames
+of one of `../shared/data/depth/truth`, is copied beside this script.
+"""
+
+from pathlib import Path
+
+import bgui
+import bpy
+
+FOLDER = Path(__file__).parent
+WALK = FOLDER / "walk.npz"
+UNTIL_DONE = 6000  # tenths of a second
+SIDE = (0.70, 0.66, 0.18, 0.20)
+
+
+def settle():
+    """Wait until everything is drawn."""
+    for _ in range(3):
+        bgui.redraw()
+        yield 0.5
+
+
+def look_at(center, distance, rotation):
+    view = bgui.area().spaces.active.region_3d
+    view.view_location = center
+    view.view_rotation = rotation
+    view.view_distance = distance
+    view.view_perspective = "PERSP"
+
+
+def steps():
+    # Points of depth, the panel, progress while it solves, and the body over the points.
+    for each in list(bpy.data.objects):
+        bpy.data.objects.remove(each)
+    bpy.context.scene.render.fps = 30
+    yield from bgui.open_sidebar("Mocap")
+    assert bpy.ops.mocap_assist.import_recording(filepath=str(WALK)) == {"FINISHED"}
+    name = bpy.context.object.name
+    look_at((0.0, 3.0, 0.0), 4.5, SIDE)
+    yield from settle()
+    bgui.shot("1-points.png")
+    with bgui.override("WINDOW"):
+        bpy.ops.ed.undo_push(message="Imported")
+        bpy.ops.mocap_assist.track_depth("INVOKE_DEFAULT")
+    job = bpy.context.window_manager.mocap_assist_job
+    assert job.running and job.owner == "track"
+    for tenth in range(UNTIL_DONE):
+        yield 0.1
+        if tenth == 80:
+            bgui.shot("2-solving.png")
+        if not job.running:
+            break
+    armature = bpy.context.object
+    assert armature is not None and armature.type == "ARMATURE", armature
+    armature.show_in_front = True
+    for number, frame in enumerate((1, 15, 30), start=3):
+        bpy.context.scene.frame_set(frame)
+        yield from settle()
+        bgui.shot(f"{number}-frame-{frame}.png")
+    with bgui.override("WINDOW"):
+        bpy.ops.ed.undo()
+    yield from settle()
+    assert [each.name for each in bpy.data.objects] == [name]
+
+
+bgui.run(steps, timeout=900)
