@@ -130,6 +130,11 @@ def detect_pose(
         )
     rng = np.random.default_rng(settings.seed)
     parts = find_parts(observation.points, pixels.labels, body, rng, settings)
+    if not parts.weights.any():
+        raise InvalidMotionError(
+            f"Nobody is seen: no part of a body is told apart in {len(pixels.rows)} pixels. Go"
+            " to a frame with a person, or mend what is taken for background."
+        )
     each = -(-len(observation.points) // settings.n_pixels)
     trials = trial_poses(body, parts, observation.points[::each], pixels.shares[::each])
     found = [

@@ -89,12 +89,24 @@ def test_nobody_is_found_in_a_few_pixels(forest, n_pixels):
         detect_pose(depth, CAMERA, BODY, forest)
 
 
-def test_a_picture_full_of_noise_gives_a_finite_pose_of_low_score(forest, rng):
+def test_nobody_is_found_in_pixels_that_are_far_apart(forest, rng):
+    depth = np.zeros((120, 160), dtype=np.float32)
+    depth[::14, ::14] = rng.uniform(1.0, 9.0, depth[::14, ::14].shape)
+    with pytest.raises(InvalidMotionError, match="no part of a body is told apart"):
+        detect_pose(depth, CAMERA, BODY, forest)
+
+
+def test_a_picture_full_of_noise_shows_nobody(forest, rng):
     depth = rng.uniform(1.0, 4.0, (120, 160)).astype(np.float32)
     depth[rng.random(depth.shape) < 0.7] = 0.0
-    found = detect_pose(depth, CAMERA, BODY, forest)
-    assert np.isfinite(found.pose).all()
-    assert found.overlap < 0.3
+    with pytest.raises(InvalidMotionError, match="Nobody is seen"):
+        detect_pose(depth, CAMERA, BODY, forest)
+
+
+def test_a_wall_is_no_person(forest):
+    """A flat wall has parts, as far as the forest can tell, but no pose explains it."""
+    wall = np.full((120, 160), 2.5, dtype=np.float32)
+    assert detect_pose(wall, CAMERA, BODY, forest).overlap < 0.4
 
 
 @pytest.mark.parametrize(("take", "most"), [("walk_front", 0.05), ("jump", 0.06)])
