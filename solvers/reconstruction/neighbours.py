@@ -6,9 +6,9 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from ..motion.posture_joints import N_JOINTS
 from ..progress import Progress, unwatched
 from .library_body import BodyPostures
+from .residual_kernel import squared_distances
 
 Array = NDArray[np.float64]
 Single = NDArray[np.float32]
@@ -214,8 +214,12 @@ def _keep(
 def _promises(index: PostureIndex, points: Single, weights: Single) -> Single:
     """Return the least distance to expect in each group, shape (n_frames, n_groups)."""
     result = np.zeros((len(points), len(index.centres)), dtype=np.float32)
-    for one in range(2 * N_JOINTS):
-        off = points[:, None, one] - index.centres[None, :, one]
-        way = np.sqrt(np.einsum("fgk,fgk->fg", off, off))
-        result += weights[:, [one]] * np.maximum(way - index.radii[:, one], 0.0) ** 2
+    for one in np.flatnonzero(weights.any(axis=0)):
+        way = squared_distances(points[:, one], index.centres[:, one])
+        np.sqrt(way, out=way)
+        way -= index.radii[:, one]
+        np.maximum(way, 0.0, out=way)
+        way *= way
+        way *= weights[:, [one]]
+        result += way
     return result
