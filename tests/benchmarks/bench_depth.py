@@ -171,8 +171,8 @@ def kinect() -> list[str]:
         found = capture(take.depth)
         apart = take.distances(found.joints.positions)
         for column, figure in {
-            "cm from SDK, stable joints": 100.0 * apart[STABLE].mean(),
-            "cm from SDK, hands": 100.0 * apart[HANDS].mean(),
+            "cm from SDK, stable joints": 100.0 * apart[list(STABLE)].mean(),
+            "cm from SDK, hands": 100.0 * apart[list(HANDS)].mean(),
             "cm in depth": 100.0 * float(np.nanmean(found.residual)),
             "coverage": float(found.coverage.mean()),
             "restarts": float(len(found.restarts)),

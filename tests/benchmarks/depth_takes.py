@@ -21,11 +21,12 @@ LATE = 2
 """depth[t] fits skeleton[t - 2] (data/README.md)."""
 SDK_JOINTS = (
     "head", "neck", "spine", "hips",
-    "leftUpperArm", "leftLowerArm", "leftHand", None,
     "rightUpperArm", "rightLowerArm", "rightHand", None,
-    "leftUpperLeg", "leftLowerLeg", "leftFoot", None,
+    "leftUpperArm", "leftLowerArm", "leftHand", None,
     "rightUpperLeg", "rightLowerLeg", "rightFoot", None,
+    "leftUpperLeg", "leftLowerLeg", "leftFoot", None,
 )  # fmt: skip
+"""Ours for each of theirs: the pictures are mirrored, so that their left is our right."""
 STABLE = tuple(
     place for place, name in enumerate(SDK_JOINTS)
     if name in {"head", "neck", "spine", "hips", "leftUpperArm", "rightUpperArm",
