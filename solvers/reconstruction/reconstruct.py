@@ -51,9 +51,9 @@ class ReconstructMethod(Enum):
     """Postures of clean clips alone."""
     RESIDUALS = "residuals"
     """The residual prior alone; gaps are bridged smoothly."""
-    PUBLISHED_POSTURES = "published postures"
+    PUBLISHED_POSTURES = "shum"
     """[SHJT13]: its reliability, and its stochastic search frame after frame."""
-    PUBLISHED_RESIDUALS = "published residuals"
+    PUBLISHED_RESIDUALS = "zhou"
     """[ZH14]: the same reliability, and its three terms frame after frame."""
 
 
@@ -64,7 +64,7 @@ class ReconstructSettings(Settings):
     method: ReconstructMethod = setting(
         ReconstructMethod.BOTH,
         "Both rebuilds lost joints from clean postures and then takes out how the sensor errs;"
-        " the others do one of these alone, or as the papers have it",
+        " the others do one of these alone; Shum and Zhou do so as their papers have it",
     )
     smoothing: float = setting(
         0.05, "Movements shorter than about this are jitter; higher is smoother and blunter",

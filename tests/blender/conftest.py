@@ -30,6 +30,16 @@ CHECKOUT = Path(__file__).resolve().parents[2]
 RESOURCES = pytest.StashKey[Path]()
 EXIT_STATUS = pytest.StashKey[int]()
 
+IN_ONE_BLENDER = {
+    "library/test_load.py": (5, 2), "library/test_uses.py": (5, 2),
+    "library/test_bad_input.py": (4, 5), "library/test_learn_from_library.py": (4, 5),
+    "library/test_performing.py": (4, 5), "importing/test_to_the_rig.py": (4, 5),
+    "importing/test_joint_recordings.py": (5, 2), "importing/test_failing_readers.py": (5, 2),
+    "operators/test_each_command.py": (4, 5), "operators/test_clean_guides.py": (5, 2),
+    "reconstruction/test_own_models.py": (4, 5), "reconstruction/test_then_clean.py": (5, 2),
+}  # fmt: skip
+"""Long tests, each file of which runs in one of the two Blenders; the others run in both."""
+
 # Blender may hang at exit once classes were registered, hence os._exit here and below.
 INSTALL = """
 import os, sys, traceback
@@ -73,6 +83,17 @@ def pytest_configure(config: pytest.Config) -> None:
     from addon_utils import enable
 
     assert enable(PACKAGE, default_set=True), f"{PACKAGE} cannot be switched on"
+
+
+def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item]) -> None:
+    import bpy
+
+    here, version = Path(__file__).parent, bpy.app.version[:2]
+    only = {here / name: where for name, where in IN_ONE_BLENDER.items()}
+    assert all(path.exists() for path in only)
+    elsewhere = [item for item in items if only.get(item.path, version) != version]
+    items[:] = [item for item in items if item not in elsewhere]
+    config.hook.pytest_deselected(items=elsewhere)
 
 
 def pytest_report_header(config: pytest.Config) -> str:

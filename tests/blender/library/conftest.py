@@ -6,28 +6,6 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-IN_ONE_BLENDER = {
-    "test_load.py": (5, 2), "test_uses.py": (5, 2),
-    "test_bad_input.py": (4, 5), "test_learn_from_library.py": (4, 5),
-    "test_performing.py": (4, 5), "test_use_matches.py": (5, 2),
-}  # fmt: skip
-"""Long tests, each file of which runs in one of the two Blenders; the others run in both."""
-
-
-def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item]) -> None:
-    import bpy
-
-    here = Path(__file__).parent
-    elsewhere = [
-        item
-        for item in items
-        if item.path.parent == here
-        and IN_ONE_BLENDER.get(item.path.name, bpy.app.version[:2]) != bpy.app.version[:2]
-    ]
-    items[:] = [item for item in items if item not in elsewhere]
-    config.hook.pytest_deselected(items=elsewhere)
-
-
 KINDS = ("walk", "wave", "squat")
 
 

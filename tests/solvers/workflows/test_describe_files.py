@@ -32,7 +32,7 @@ def wanted(tmp_path):
 
 
 def test_a_file_becomes_what_a_library_keeps_of_it(wanted):
-    _, clip, sentence = described(wanted[1])
+    _, clip, sentence, _ = described(wanted[1])
     assert (clip.entry.name, clip.entry.tags, clip.entry.n_frames) == ("clip 1", ("walk",), 60)
     assert clip.entry.origin == wanted[1].origin
     assert (clip.postures.n_frames, clip.postures.frame_rate, sentence) == (40, 20.0, "")
@@ -62,7 +62,7 @@ def test_what_is_wrong_is_one_sentence_that_names_the_file(wanted, tmp_path, mon
         def fail(path, error=error):
             raise error
 
-        monkeypatch.setattr(describing, "read_recording", fail)
+        monkeypatch.setattr(describing, "read_tracked", fail)
         sentence = described(wanted[0]).sentence
         assert sentence.startswith(wanted[0].origin.path)
         assert sentence.endswith(ending)
@@ -72,6 +72,6 @@ def test_who_cancels_is_not_refused(wanted, monkeypatch):
     def cancel(path):
         raise SolveCancelled
 
-    monkeypatch.setattr(describing, "read_recording", cancel)
+    monkeypatch.setattr(describing, "read_tracked", cancel)
     with pytest.raises(SolveCancelled):
         list(describe_files(wanted, jobs=1))

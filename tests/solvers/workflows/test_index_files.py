@@ -72,7 +72,7 @@ def test_a_folder_becomes_clips_named_by_their_places(folder, library):
 def test_what_has_not_changed_is_not_read_again(folder, library, monkeypatch):
     index_files(library, [folder])
     (folder / "markers.trc").unlink()
-    monkeypatch.setattr(describe_files, "read_recording", None)
+    monkeypatch.setattr(describe_files, "read_tracked", None)
 
     report = index_files(library, [folder])
 
@@ -82,9 +82,9 @@ def test_what_has_not_changed_is_not_read_again(folder, library, monkeypatch):
 
 def test_what_was_refused_is_not_read_again_until_it_changes(folder, library, monkeypatch):
     first = index_files(library, [folder])
-    read, tried = describe_files.read_recording, []
+    read, tried = describe_files.read_tracked, []
     monkeypatch.setattr(
-        describe_files, "read_recording", lambda path: tried.append(path) or read(path)
+        describe_files, "read_tracked", lambda path: tried.append(path) or read(path)
     )
 
     again = index_files(library, [folder])
@@ -99,7 +99,7 @@ def test_what_was_refused_is_not_read_again_until_it_changes(folder, library, mo
 def test_what_another_version_refused_is_tried_again(folder, library, monkeypatch):
     index_files(library, [folder])
     monkeypatch.setattr(indexing, "version", lambda: "later")
-    monkeypatch.setattr(describe_files, "read_recording", lambda path: walk())
+    monkeypatch.setattr(describe_files, "read_tracked", lambda path: walk())
     assert index_files(library, [folder / "markers.trc"]).n_clips == 4
 
 
@@ -108,7 +108,7 @@ def test_what_memory_could_not_hold_is_tried_again(folder, library, monkeypatch)
         raise MemoryError
 
     with monkeypatch.context() as patched:
-        patched.setattr(describe_files, "read_recording", too_large)
+        patched.setattr(describe_files, "read_tracked", too_large)
         assert len(index_files(library, [folder / "a"]).refused) == 2
     assert index_files(library, [folder / "a"]).added == ("fast", "slow")
 
@@ -274,7 +274,7 @@ def test_rigs_of_all_kinds_are_found_together(recordings, library):
     report = index_files(library, [*squats, *kicks, *walks, *deep_squats])
 
     assert (report.n_clips, report.refused) == (12, ())
-    query = describe_files.read_recording(deep_squats[0])
+    query = describe_files.read_tracked(deep_squats[0])
     with load_clip_library(library) as opened:
         found = [m.clip for m in find_similar(query, opened, ignore=[deep_squats[0].stem])]
     assert set(found[:5]) == {path.stem for path in (*squats, *deep_squats[1:])}
