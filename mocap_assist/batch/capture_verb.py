@@ -1,8 +1,6 @@
 """`capture`: Import and Track, to recordings of depth."""
 
 import argparse
-import json
-import sys
 from pathlib import Path
 from typing import get_type_hints
 
@@ -11,13 +9,12 @@ import bpy
 from ...solvers.command_line import arguments_from, settings_from_arguments
 from ...solvers.command_line.screen import Screen
 from ...solvers.errors import InvalidFileError, MocapAssistError
-from ...solvers.files import written_whole
 from ..import_choices import ImportChoices
 from ..importing import import_files
 from ..jobs.job import run
 from ..tracking import TrackBundle, read_tracking, selected_preview, write_tracked
 from .pictures import draw_played
-from .saving import STDOUT, save, target_file
+from .saving import save, target_file, tell
 
 HELP = "Track the actors of recordings of depth: armatures with actions in the .blend file."
 
@@ -56,7 +53,8 @@ def perform_capture(arguments: argparse.Namespace, screen: Screen) -> None:
     screen.clear()
     if made:
         save(target)
-    _tell(arguments, made, said, failed)
+    figures = {"objects": [each.name for each in made], "said": said, "failed": failed}
+    tell(arguments, figures, said)
     if arguments.picture is not None and made:
         draw_played(bpy.context.scene, made[0], arguments.picture)
     if failed:
@@ -74,18 +72,3 @@ def _tracked(path: Path, choices: ImportChoices, settings: TrackBundle, screen: 
     scene = bpy.context.scene
     result = run(read_tracking(scene, preview, settings), screen.progress)
     return write_tracked(scene, preview, settings, result)
-
-
-def _tell(
-    arguments: argparse.Namespace,
-    made: list[bpy.types.Object],
-    said: list[str],
-    failed: list[str],
-) -> None:
-    """Print what was done, and write the line of JSON that was asked for."""
-    line = json.dumps({"objects": [each.name for each in made], "said": said, "failed": failed})
-    sys.stdout.write("\n".join([line] if arguments.json == STDOUT else said) + "\n")
-    sys.stdout.flush()
-    if arguments.json not in {None, STDOUT}:
-        with written_whole(arguments.json) as part:
-            part.write_text(line + "\n", encoding="utf-8")

@@ -1,8 +1,6 @@
 """`import`: what the button Import does, to files and folders."""
 
 import argparse
-import json
-import sys
 from pathlib import Path
 
 import bpy
@@ -11,12 +9,11 @@ from ...solvers.command_line import arguments_from, settings_from_arguments
 from ...solvers.command_line.files import found_in
 from ...solvers.command_line.screen import Screen
 from ...solvers.errors import InvalidFileError
-from ...solvers.files import written_whole
 from ..depth_folders import is_take
 from ..import_choices import ImportChoices
 from ..importing import import_files
 from .pictures import draw_played
-from .saving import STDOUT, save, target_file
+from .saving import save, target_file, tell
 
 HELP = "Bring recordings of motion into the .blend file: armatures, and empties for markers."
 
@@ -51,17 +48,13 @@ def perform_import(arguments: argparse.Namespace, screen: Screen) -> None:
     screen.clear()
     if imported.made:
         save(target)
-    line = json.dumps({
+    figures = {
         "objects": [made.name for made in imported.made],
         "said": list(imported.said),
         "failed": list(imported.failed),
         "figures": list(imported.figures),
-    })
-    sys.stdout.write("\n".join([line] if arguments.json == STDOUT else imported.said) + "\n")
-    sys.stdout.flush()
-    if arguments.json not in {None, STDOUT}:
-        with written_whole(arguments.json) as part:
-            part.write_text(line + "\n", encoding="utf-8")
+    }
+    tell(arguments, figures, imported.said)
     if arguments.picture is not None and imported.made:
         draw_played(bpy.context.scene, imported.made[0], arguments.picture)
     if imported.failed:

@@ -1,11 +1,15 @@
 """Where a command saves the .blend file, and what it writes beside."""
 
 import argparse
+import json
+import sys
+from collections.abc import Iterable, Mapping
 from pathlib import Path
 
 import bpy
 
 from ...solvers.errors import InvalidFileError
+from ...solvers.files import written_whole
 
 STDOUT = Path("-")
 
@@ -54,3 +58,15 @@ def save(target: Path) -> None:
     except RuntimeError as error:
         reason = str(error).strip().removeprefix("Error: ")
         raise InvalidFileError(f"{target} was not saved: {reason}") from error
+
+
+def tell(
+    arguments: argparse.Namespace, figures: Mapping[str, object], said: Iterable[str]
+) -> None:
+    """Print what was done, in words or as the one line of JSON that was asked for."""
+    line = json.dumps(figures)
+    sys.stdout.write("\n".join([line] if arguments.json == STDOUT else said) + "\n")
+    sys.stdout.flush()
+    if arguments.json not in {None, STDOUT}:
+        with written_whole(arguments.json) as part:
+            part.write_text(line + "\n", encoding="utf-8")

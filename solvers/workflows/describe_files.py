@@ -6,6 +6,7 @@ from collections import deque
 from collections.abc import Iterable, Iterator
 from concurrent.futures import Future, ProcessPoolExecutor
 from concurrent.futures.process import BrokenProcessPool
+from contextlib import suppress
 from multiprocessing import get_context
 from pathlib import Path
 from typing import NamedTuple
@@ -82,16 +83,15 @@ def _until_one_dies(waiting: "deque[Wanted]", jobs: int) -> Iterator[Described]:
     running: deque[Future[Described]] = deque()
     with _processes(jobs) as pool:
         try:
-            while waiting:
-                while len(running) < min(len(waiting), AHEAD * jobs):
-                    running.append(pool.submit(described, waiting[len(running)]))
-                done = running[0].result()
-                running.popleft()
-                waiting.popleft()
-                yield done
-            return
-        except BrokenProcessPool:
-            pass
+            with suppress(BrokenProcessPool):
+                while waiting:
+                    while len(running) < min(len(waiting), AHEAD * jobs):
+                        running.append(pool.submit(described, waiting[len(running)]))
+                    done = running[0].result()
+                    running.popleft()
+                    waiting.popleft()
+                    yield done
+                return
         finally:
             pool.shutdown(cancel_futures=True)
     yield _alone(waiting.popleft())
