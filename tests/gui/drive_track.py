@@ -35,11 +35,22 @@ def look_at(center, distance, rotation):
     view.view_perspective = "PERSP"
 
 
+def unfold_track_alone():
+    """Take the other panels away, and unfold this one, before the tab is first drawn."""
+    for name in ("reconstruct", "clean", "compare", "feet", "physics", "retarget"):
+        bpy.utils.unregister_class(getattr(bpy.types, f"MOCAP_PT_{name}"))
+    panel = bpy.types.MOCAP_PT_track
+    bpy.utils.unregister_class(panel)
+    panel.bl_options = set()
+    bpy.utils.register_class(panel)
+
+
 def steps():
     # Points of depth, the panel, progress while it solves, and the body over the points.
     for each in list(bpy.data.objects):
         bpy.data.objects.remove(each)
     bpy.context.scene.render.fps = 30
+    unfold_track_alone()
     yield from bgui.open_sidebar("Mocap")
     assert bpy.ops.mocap_assist.import_recording(filepath=str(WALK)) == {"FINISHED"}
     name = bpy.context.object.name
