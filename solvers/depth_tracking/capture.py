@@ -68,7 +68,7 @@ class Capture:
     restarts : tuple of int
         Frames in which the detector had to help the tracker, after the first.
     body : BodyModel
-    poses : shape (n_frames, 34)
+    poses : shape (n_frames, 36)
     doubtful : bool, shape (n_frames, n_joints)
         Joints out of sight or badly explained; where they are was filled in from the frames
         before and after.

@@ -61,7 +61,7 @@ class Pass:
 
     Attributes
     ----------
-    poses : shape (n_frames, 34)
+    poses : shape (n_frames, 36)
     scores : shape (n_frames,)
         Share of pixels that fit; NaN where nobody was seen.
     restarts : tuple of int
@@ -129,7 +129,7 @@ def track_with_restarts(
     actor : Actor
     order : iterable of int
         Frames, ascending or descending.
-    start : shape (34,), optional
+    start : shape (36,), optional
         Near the pose in the first of them; without it the detector starts.
     progress : Progress
     """

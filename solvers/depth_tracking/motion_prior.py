@@ -29,7 +29,7 @@ class MotionPrior:
 
     Attributes
     ----------
-    poses : shape (n_poses, 28)
+    poses : shape (n_poses, 30)
         The joint coordinates of every frame.
     clips : int, shape (n_poses,)
         Which motion each belongs to, in ascending order.
@@ -78,7 +78,7 @@ def load_motion_prior(path: Path | str) -> MotionPrior:
 
 
 def motion_prior_of(sequences: Sequence[Array], trained_on: str = "") -> MotionPrior:
-    """Return the prior of sequences of poses, each of shape (n_frames, 34).
+    """Return the prior of sequences of poses, each of shape (n_frames, 36).
 
     Raises
     ------
@@ -97,8 +97,8 @@ class LocalPca:
 
     Attributes
     ----------
-    mean : shape (28,)
-    basis : shape (28, n_components)
+    mean : shape (30,)
+    basis : shape (30, n_components)
         Orthonormal.
     """
 
@@ -106,7 +106,7 @@ class LocalPca:
     basis: Array
 
     def equations(self, pose: Array, weight: float) -> PoseEquations:
-        """Ask a pose (34,) to come back to the plane, eq. 3.12 and 3.13 of [LOU12]."""
+        """Ask a pose (36,) to come back to the plane, eq. 3.12 and 3.13 of [LOU12]."""
         across = np.eye(len(self.mean)) - self.basis @ self.basis.T
         off = across @ (pose[N_ROOT:] - self.mean)
         matrix, vector = np.zeros((N_COORDINATES, N_COORDINATES)), np.zeros(N_COORDINATES)
@@ -117,7 +117,7 @@ class LocalPca:
 def local_pca(prior: MotionPrior, pose: Array) -> LocalPca:
     """Return the plane of the poses that followed the most similar recorded ones.
 
-    The `FOLLOWING` poses after each of the `NEIGHBOURS` nearest to `pose` (34,), the pose of
+    The `FOLLOWING` poses after each of the `NEIGHBOURS` nearest to `pose` (36,), the pose of
     the frame before, are analysed by principal components; as many are kept as hold `ENERGY`
     of the variance [LOU12]_.
 

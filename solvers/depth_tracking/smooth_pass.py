@@ -26,7 +26,7 @@ _PIECE, _BORDER = 600, 60
 def smoothed_poses(
     actor: Actor, poses: Array, smoothing: float, progress: Progress
 ) -> tuple[Array, list[FitQuality]]:
-    """Return smoothed poses (n_frames, 34), and the figures of each frame."""
+    """Return smoothed poses (n_frames, 36), and the figures of each frame."""
     found, figures = poses.copy(), []
     n_frames = len(poses)
     if smoothing > 0.0 and n_frames >= 3:

@@ -54,7 +54,9 @@ TAKES = {
     "jumping jack": Take("cmu_jumping_jack/13_29.amc", 400, 15.0),
     "dance": Take("05_13.amc", 200, 0.0),
     "kick": Take("hdm05/HDM_bd_kickLFront1Reps_001_120.amc", 0, 40.0),
-    "jog in a circle": Take("hdm05/HDM_bd_jogLeftCircle4StepsRstart_001_120.amc", 0, 0.0, distance=4.2),
+    "jog in a circle": Take(
+        "hdm05/HDM_bd_jogLeftCircle4StepsRstart_001_120.amc", 0, 0.0, distance=4.2
+    ),
     "squat": Take("hdm05/HDM_bd_squat1Reps_001_120.amc", 0, 20.0),
     "elbow to knee": Take("hdm05/HDM_bd_elbowToKnee1RepsLelbowStart_001_120.amc", 0, 0.0),
     "sneak, side": Take("hdm05/HDM_bd_sneak2StepsLStart_001_120.amc", 0, 80.0),

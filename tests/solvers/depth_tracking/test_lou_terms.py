@@ -65,7 +65,7 @@ def test_a_step_of_each_term_brings_the_body_back(term):
 
     equations = term(hypothesis, observed(NATURAL), *extra, 1.0)
     change = step(
-        in_coordinates([segment_equations(equations)], hypothesis.twists), np.full(34, 0.5)
+        in_coordinates([segment_equations(equations)], hypothesis.twists), np.full(36, 0.5)
     )
 
     assert change[:2] @ [0.03, -0.02] < 0.0
@@ -116,7 +116,7 @@ def test_colour_tells_how_far_a_limb_slid_along_itself():
     change = []
     for memory in (None, Memory(then.frames, before)):
         asked = segment_equations(surface_term(then, after, memory, 1.0))
-        change.append(step(in_coordinates([asked], then.twists), np.full(34, 0.5))[1])
+        change.append(step(in_coordinates([asked], then.twists), np.full(36, 0.5))[1])
     assert abs(change[1] + 0.03) < abs(change[0] + 0.03)
 
 
@@ -132,20 +132,20 @@ def test_the_published_tracker_follows_a_slow_actor():
 
 def test_the_local_plane_holds_what_followed():
     """Poses on a line in pose space: one component, and poses off it are asked back."""
-    line = np.linspace(0.0, 1.0, 200)[:, np.newaxis] * np.eye(34)[10] + 0.1 * np.eye(34)[20]
+    line = np.linspace(0.0, 1.0, 200)[:, np.newaxis] * np.eye(36)[10] + 0.1 * np.eye(36)[20]
     prior = motion_prior_of([line])
 
     plane = local_pca(prior, line[100])
-    asked = plane.equations(line[100] + 0.5 * np.eye(34)[15], 2.0)
+    asked = plane.equations(line[100] + 0.5 * np.eye(36)[15], 2.0)
 
-    assert plane.basis.shape == (28, 1)
+    assert plane.basis.shape == (30, 1)
     assert plane.mean[10 - N_ROOT] > line[100, 10]
-    assert_allclose(asked.vector, -1.0 * np.eye(34)[15], atol=1e-9)
+    assert_allclose(asked.vector, -1.0 * np.eye(36)[15], atol=1e-9)
     assert_allclose(asked.cost, 0.25)
 
 
 def test_planes_do_not_run_from_one_motion_into_the_next():
-    low, high = np.zeros((60, 34)), np.ones((60, 34))
+    low, high = np.zeros((60, 36)), np.ones((60, 36))
     low[:, 10] = np.linspace(0.0, 0.1, 60)
     plane = local_pca(motion_prior_of([low, high]), low[-1])
     assert (plane.mean < 0.2).all()
@@ -153,10 +153,10 @@ def test_planes_do_not_run_from_one_motion_into_the_next():
 
 def test_equations_equal_the_dense_ones(rng):
     """Eq. 3.12: || (U U' - I)(q + dq - mean) ||^2 with the root left out."""
-    basis = np.linalg.qr(rng.normal(size=(28, 4)))[0]
-    plane, pose = LocalPca(rng.normal(size=28), basis), rng.normal(size=34)
-    jacobian = np.zeros((28, 34))
-    jacobian[:, N_ROOT:] = basis @ basis.T - np.eye(28)
+    basis = np.linalg.qr(rng.normal(size=(30, 4)))[0]
+    plane, pose = LocalPca(rng.normal(size=30), basis), rng.normal(size=36)
+    jacobian = np.zeros((30, 36))
+    jacobian[:, N_ROOT:] = basis @ basis.T - np.eye(30)
     off = jacobian @ pose - jacobian[:, N_ROOT:] @ plane.mean
 
     found = plane.equations(pose, 3.0)
