@@ -19,7 +19,7 @@ from .capture_passes import Actor, Pass, RecoverySettings, track_with_restarts
 from .choose_poses import choose_poses
 from .coordinates import N_COORDINATES
 from .find_body import find_body
-from .motion_prior import MotionPrior
+from .motion_prior import MotionPrior, load_motion_prior
 from .pixel_forest import PixelForest, load_pixel_forest
 from .smooth_pass import smoothed_poses
 from .track_pose import TrackedMotion, tracked_motion
@@ -112,7 +112,8 @@ def capture(
     forest : PixelForest, optional
         Without it, the one that is shipped.
     motion_prior : MotionPrior, optional
-        Recorded motions that this one is like.
+        Recorded motions that this one is like; they tell where limbs out of sight are.
+        Without it, those that are shipped.
     floor : Floor, optional
         Becomes z = 0; without it the camera is taken to be level.
     settings : CaptureSettings
@@ -132,6 +133,7 @@ def capture(
        single depth camera. ACM Transactions on Graphics 31(6).
     """
     forest = load_pixel_forest() if forest is None else forest
+    motion_prior = load_motion_prior() if motion_prior is None else motion_prior
     share = 0.0
     if body is None:
         share = 0.4

@@ -19,6 +19,7 @@ Array = NDArray[np.float64]
 
 KIND = "motion prior"
 VERSION = 1
+SHIPPED = Path(__file__).parent / "models" / "motions.npz"
 NEIGHBOURS, FOLLOWING, ENERGY = 50, 3, 0.95
 """K, w and the share of the variance kept, of [LOU12] section 3.5."""
 
@@ -49,15 +50,15 @@ class MotionPrior:
     def save(self, path: Path | str) -> None:
         """Write an archive that `load_motion_prior` reads."""
         arrays = {
-            "poses": self.poses.astype(np.float32), "clips": self.clips.astype(np.int32),
+            "poses": self.poses.astype(np.float16), "clips": self.clips.astype(np.int32),
             "trained_on": np.array(self.trained_on),
             "coordinates": np.array(COORDINATES[N_ROOT:]),
         }  # fmt: skip
         write_archive(path, KIND, VERSION, arrays)
 
 
-def load_motion_prior(path: Path | str) -> MotionPrior:
-    """Read what `MotionPrior.save` wrote.
+def load_motion_prior(path: Path | str = SHIPPED) -> MotionPrior:
+    """Read what `MotionPrior.save` wrote; without a path, the prior that is shipped.
 
     Raises
     ------

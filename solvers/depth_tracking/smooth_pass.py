@@ -9,6 +9,7 @@ from .coordinates import N_COORDINATES
 from .fit_quality import FitQuality, fit_quality, unseen
 from .hypothesis import imagine
 from .likelihood import likelihood_rows
+from .motion_prior import local_pca
 from .normal_equations import PoseEquations, added, in_coordinates, segment_equations
 from .observation import Observation, observe
 from .pose_priors import joint_limits
@@ -52,6 +53,9 @@ def _smoothed(actor: Actor, poses: Array, frames: range, smoothing: float) -> Ar
     for frame in frames:
         observation = observe(actor.depth, frame, tracker.picture_width)
         asked = _asked(actor, poses[frame], observation).equations
+        if actor.motion_prior is not None and frame:
+            likely = local_pca(actor.motion_prior, poses[frame - 1])
+            asked = added([asked, likely.equations(poses[frame], tracker.similar_weight)])
         equations.append((asked.matrix, asked.vector))
     return smooth_take(poses[frames.start : frames.stop], equations, stiffness)
 
