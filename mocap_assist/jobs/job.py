@@ -14,7 +14,7 @@ from typing import Any, Generic, TypeVar
 
 from ...solvers.errors import MocapAssistError, SolveCancelled
 from ...solvers.progress import Progress, unwatched
-from .protocol import LOG, REQUEST, RESULT, last_progress, last_words
+from .protocol import LOG, REQUEST, RESULT, last_progress, last_words, read_shown
 
 Result = TypeVar("Result")
 EXTENSION = __name__.rsplit(".", 3)[0]
@@ -86,7 +86,7 @@ class Job(Generic[Result]):
     """
 
     def __init__(self, solve: Callable[..., Result], program: Sequence[str] = ()) -> None:
-        self._cancelled = False
+        self._cancelled, self._n_shown = False, 0
         # On Windows a file that is still open cannot be removed; that is no reason to fail.
         self._folder = TemporaryDirectory(prefix="mocap_assist_", ignore_cleanup_errors=True)
         self._path = Path(self._folder.name)
@@ -104,6 +104,11 @@ class Job(Generic[Result]):
     def progress(self) -> tuple[float, str]:
         """Return the last fraction, 0 to 1, and message of the solver."""
         return last_progress(self._path)
+
+    def shown(self) -> list[Any]:
+        """Return what a `Showing` solve has shown since this was asked last."""
+        things, self._n_shown = read_shown(self._path, self._n_shown)
+        return things
 
     def done(self) -> bool:
         """Whether the process has ended, in whatever way."""

@@ -19,6 +19,7 @@ from .capture_passes import Actor, Pass, RecoverySettings, track_with_restarts
 from .choose_poses import choose_poses
 from .coordinates import N_COORDINATES
 from .find_body import find_body
+from .found_pose import OnPose, unobserved
 from .motion_prior import MotionPrior
 from .pixel_forest import PixelForest, load_pixel_forest
 from .smooth_pass import smoothed_poses
@@ -93,6 +94,7 @@ def capture(
     floor: Floor | None = None,
     settings: CaptureSettings = USUAL_CAPTURE,
     tracker: TrackerSettings = USUAL,
+    on_pose: OnPose = unobserved,
     progress: Progress = unwatched,
 ) -> Capture:
     """Capture the motion of the actor whom a depth recording shows.
@@ -117,6 +119,8 @@ def capture(
         Becomes z = 0; without it the camera is taken to be level.
     settings : CaptureSettings
     tracker : TrackerSettings
+    on_pose : OnPose
+        Is shown each pose that is found, as soon as it is.
     progress : Progress
 
     Raises
@@ -137,9 +141,9 @@ def capture(
         share = 0.4
         body = find_body(
             depth, forest, refine=settings.refine, tracker=tracker,
-            progress=within(progress, 0.0, share),
+            on_pose=on_pose, progress=within(progress, 0.0, share),
         )  # fmt: skip
-    actor = Actor(depth, body, forest, tracker, settings, motion_prior)
+    actor = Actor(depth, body, forest, tracker, settings, motion_prior, on_pose)
     passes = _passes(actor, settings, within(progress, share, 0.9))
     poses = _chosen(body, passes)
     poses, figures = smoothed_poses(

@@ -7,6 +7,7 @@ from ..progress import Progress
 from .capture_passes import Actor
 from .coordinates import N_COORDINATES
 from .fit_quality import FitQuality, fit_quality, unseen
+from .found_pose import FoundPose
 from .hypothesis import imagine
 from .likelihood import likelihood_rows
 from .normal_equations import PoseEquations, added, in_coordinates, segment_equations
@@ -38,6 +39,7 @@ def smoothed_poses(
             progress(0.5 * last / n_frames, "Smoothing")
     for frame in range(n_frames):
         figures.append(_judged(actor, found[frame], frame))
+        actor.on_pose(FoundPose(actor.body, frame, found[frame], figures[-1]))
         progress(0.5 + 0.5 * (frame + 1) / n_frames, "Judging")
     return found, figures
 

@@ -8,6 +8,7 @@ import numpy as np
 from ..denoising import Planted, PlantSettings
 from ..depth_tracking.body_model import BodyModel
 from ..depth_tracking.capture import Capture, CaptureSettings, capture
+from ..depth_tracking.found_pose import OnPose, unobserved
 from ..depth_tracking.motion_prior import MotionPrior
 from ..motion import Motion
 from ..motion.depth_actor import Actor, find_actor
@@ -54,6 +55,7 @@ def capture_recording(
     settings: CaptureSettings = CAPTURING,
     foreground: ForegroundSettings = TELLING,
     planting: PlantSettings | None = PLANTING,
+    on_pose: OnPose = unobserved,
     progress: Progress = unwatched,
 ) -> CapturedMotion:
     """Tell the actor from the room, capture the motion, and plant the feet.
@@ -71,6 +73,8 @@ def capture_recording(
     foreground : ForegroundSettings
     planting : PlantSettings or None
         None leaves the feet as they are; so does a picture that ends above them.
+    on_pose : OnPose
+        Is shown each pose that is found, as soon as it is.
     progress : Progress
 
     Raises
@@ -83,7 +87,7 @@ def capture_recording(
     actor = find_actor(recording, foreground, empty=empty, progress=within(progress, 0.0, 0.1))
     found = capture(
         actor.recording, body, motion_prior=motion_prior, floor=actor.floor,
-        settings=settings, progress=within(progress, 0.1, 0.95),
+        settings=settings, on_pose=on_pose, progress=within(progress, 0.1, 0.95),
     )  # fmt: skip
     stands = planting if actor.feet_seen else None
     footing = try_to_plant(found.motion, stands, progress=within(progress, 0.95, 1.0))
