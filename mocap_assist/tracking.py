@@ -1,9 +1,9 @@
 """What the button Track reads from the scene, and the armature that it adds."""
 
 import json
+from collections.abc import Sequence
 from dataclasses import dataclass
-from functools import partial
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import bpy
 import numpy as np
@@ -15,12 +15,14 @@ from ..solvers.motion.depth_floor import LEVEL, Floor
 from ..solvers.motion.depth_foreground import ForegroundSettings
 from ..solvers.settings import Settings, setting
 from ..solvers.version import version
-from .jobs.tracking import Tracked, track_recording
+from .jobs.protocol import Showing
+from .jobs.tracking import Tracked, track_recording, tracked_so_far
 from .scene import compat, history
 from .scene.armature_build import build_armature
 from .scene.compat import Source
 from .scene.curves import write_first
 from .scene.depth_preview import KEY, Shown, problem_of, recording_of
+from .scene.live_body import LiveBody
 from .scene.new_action import write_motion
 from .scene.reliability_curves import write_reliability
 from .scene.scene_objects import all_or_nothing
@@ -44,6 +46,20 @@ class TrackChoices(Settings):
     )
 
 
+@dataclass(frozen=True, kw_only=True)
+class WatchChoices(Settings):
+    """What is done while somebody looks on."""
+
+    watch: bool = setting(
+        True,
+        "Show the body over the points while it is tracked, in the colours of trust, and go"
+        " along in time",
+    )
+    keep_on_esc: bool = setting(
+        False, "Esc makes an armature of the frames that were tracked until then"
+    )
+
+
 class TrackBundle(NamedTuple):
     """All that the button offers."""
 
@@ -51,6 +67,7 @@ class TrackBundle(NamedTuple):
     tracking: CaptureSettings
     actor: ForegroundSettings
     planting: PlantSettings
+    watching: WatchChoices = WatchChoices()
 
 
 def selected_preview(context: bpy.types.Context) -> bpy.types.Object | None:
@@ -70,11 +87,28 @@ def why_not_track(context: bpy.types.Context) -> str:
 
 def read_tracking(
     scene: bpy.types.Scene, preview: bpy.types.Object, settings: TrackBundle
-) -> "partial[Tracked]":
+) -> Showing[Tracked]:
     """Open the recording that is shown; return what is to be solved, which may be pickled."""
     planting = settings.planting if settings.choices.plant_feet else None
     recording = recording_of(preview.data)
-    return partial(track_recording, recording, settings.tracking, settings.actor, planting)
+    return Showing(track_recording, recording, settings.tracking, settings.actor, planting)
+
+
+def watch_tracking(scene: bpy.types.Scene, settings: TrackBundle) -> LiveBody | None:
+    """Return what shows the body while it is tracked, if that is wanted."""
+    return LiveBody(scene) if settings.watching.watch else None
+
+
+def keep_tracked(
+    scene: bpy.types.Scene,
+    preview: bpy.types.Object,
+    settings: TrackBundle,
+    shown: Sequence[Any],
+) -> Tracked | None:
+    """Return what was tracked when Esc was pressed, if that is wanted."""
+    if not settings.watching.keep_on_esc:
+        return None
+    return tracked_so_far(shown, recording_of(preview.data), settings.tracking)
 
 
 def write_tracked(
@@ -90,7 +124,8 @@ def write_tracked(
     """
     check_unchanged(preview, asked, recording_of(preview.data))
     shown, context, metres = Shown.read(preview.data), bpy.context, unit_of(scene)
-    frames = shown.start + shown.step * np.arange(result.motion.n_frames)
+    pictures = result.first + np.arange(result.motion.n_frames)
+    frames = shown.start + shown.step * pictures
     with all_or_nothing(context):
         name = f"{preview.name} tracked"
         armature, bones = build_armature(context, name, result.motion.skeleton, metres, MODE)

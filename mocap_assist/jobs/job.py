@@ -86,7 +86,8 @@ class Job(Generic[Result]):
     """
 
     def __init__(self, solve: Callable[..., Result], program: Sequence[str] = ()) -> None:
-        self._cancelled, self._n_shown = False, 0
+        self.cancelled = False
+        self._n_shown = 0
         # On Windows a file that is still open cannot be removed; that is no reason to fail.
         self._folder = TemporaryDirectory(prefix="mocap_assist_", ignore_cleanup_errors=True)
         self._path = Path(self._folder.name)
@@ -110,13 +111,18 @@ class Job(Generic[Result]):
         things, self._n_shown = read_shown(self._path, self._n_shown)
         return things
 
+    def all_shown(self) -> list[Any]:
+        """Wait for the end, and return all that a `Showing` solve has shown."""
+        self._process.wait()
+        return read_shown(self._path, 0)[0]
+
     def done(self) -> bool:
         """Whether the process has ended, in whatever way."""
         return self._process.poll() is not None
 
     def cancel(self) -> None:
         """End the process at once; `result` then raises SolveCancelled."""
-        self._cancelled = True
+        self.cancelled = True
         self._process.kill()
 
     def tidy_up(self) -> None:
@@ -141,11 +147,11 @@ class Job(Generic[Result]):
         status = self._process.wait()
         said, answer = last_words(self._path), self._path / RESULT
         outcome: Any = None
-        if answer.exists() and not self._cancelled:
+        if answer.exists() and not self.cancelled:
             with answer.open("rb") as file:
                 outcome = pickle.load(file)
         self.tidy_up()
-        if self._cancelled:
+        if self.cancelled:
             raise SolveCancelled("Cancelled.")
         if outcome is None:
             raise ProcessDied(_cause(status), said)

@@ -20,6 +20,8 @@ from .try_to_plant import try_to_plant
 CAPTURING = CaptureSettings()
 TELLING = ForegroundSettings()
 PLANTING = PlantSettings()
+FOUND = 0.1
+"""Share of the work after which the actor is told from the room."""
 MANY = 0.2
 """Share of joints out of sight from which the report tells it."""
 
@@ -55,7 +57,6 @@ def capture_recording(
     settings: CaptureSettings = CAPTURING,
     foreground: ForegroundSettings = TELLING,
     planting: PlantSettings | None = PLANTING,
-    on_pose: OnPose = unobserved,
     progress: Progress = unwatched,
 ) -> CapturedMotion:
     """Tell the actor from the room, capture the motion, and plant the feet.
@@ -73,8 +74,6 @@ def capture_recording(
     foreground : ForegroundSettings
     planting : PlantSettings or None
         None leaves the feet as they are; so does a picture that ends above them.
-    on_pose : OnPose
-        Is shown each pose that is found, as soon as it is.
     progress : Progress
 
     Raises
@@ -84,10 +83,41 @@ def capture_recording(
     SolveCancelled
         Raised by `progress`.
     """
-    actor = find_actor(recording, foreground, empty=empty, progress=within(progress, 0.0, 0.1))
+    actor = find_actor(
+        recording, foreground, empty=empty, progress=within(progress, 0.0, FOUND)
+    )
+    return capture_actor(
+        actor, body, motion_prior=motion_prior, settings=settings, planting=planting,
+        progress=within(progress, FOUND, 1.0),
+    )  # fmt: skip
+
+
+def capture_actor(
+    actor: Actor,
+    body: BodyModel | None = None,
+    *,
+    motion_prior: MotionPrior | None = None,
+    settings: CaptureSettings = CAPTURING,
+    planting: PlantSettings | None = PLANTING,
+    on_pose: OnPose = unobserved,
+    progress: Progress = unwatched,
+) -> CapturedMotion:
+    """Capture the motion of an actor who was told from the room, and plant the feet.
+
+    Parameters
+    ----------
+    actor : Actor
+    body : BodyModel, optional
+    motion_prior : MotionPrior, optional
+    settings : CaptureSettings
+    planting : PlantSettings or None
+    on_pose : OnPose
+        Is shown each pose that is found, as soon as it is.
+    progress : Progress
+    """
     found = capture(
         actor.recording, body, motion_prior=motion_prior, floor=actor.floor,
-        settings=settings, on_pose=on_pose, progress=within(progress, 0.1, 0.95),
+        settings=settings, on_pose=on_pose, progress=within(progress, 0.0, 0.95),
     )  # fmt: skip
     stands = planting if actor.feet_seen else None
     footing = try_to_plant(found.motion, stands, progress=within(progress, 0.95, 1.0))
