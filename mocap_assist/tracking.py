@@ -1,8 +1,9 @@
 """What the button Track reads from the scene, and the armature that it adds."""
 
 import json
-from collections.abc import Sequence
+from collections.abc import Callable
 from dataclasses import dataclass
+from functools import partial
 from typing import Any, NamedTuple
 
 import bpy
@@ -54,9 +55,12 @@ class WatchChoices(Settings):
         True,
         "Show the body over the points while it is tracked, in the colours of trust, and go"
         " along in time",
+        label="Watch it Solve",
     )
     keep_on_esc: bool = setting(
-        False, "Esc makes an armature of the frames that were tracked until then"
+        False,
+        "Esc makes an armature of the frames that were tracked until then",
+        label="Keep on Esc",
     )
 
 
@@ -100,15 +104,13 @@ def watch_tracking(scene: bpy.types.Scene, settings: TrackBundle) -> LiveBody | 
 
 
 def keep_tracked(
-    scene: bpy.types.Scene,
-    preview: bpy.types.Object,
-    settings: TrackBundle,
-    shown: Sequence[Any],
-) -> Tracked | None:
-    """Return what was tracked when Esc was pressed, if that is wanted."""
+    scene: bpy.types.Scene, preview: bpy.types.Object, settings: TrackBundle
+) -> Callable[[list[Any]], Tracked] | None:
+    """Return what makes the best of what was tracked until Esc, if that is wanted."""
     if not settings.watching.keep_on_esc:
         return None
-    return tracked_so_far(shown, recording_of(preview.data), settings.tracking)
+    recording = recording_of(preview.data)
+    return partial(tracked_so_far, recording=recording, settings=settings.tracking)
 
 
 def write_tracked(
@@ -193,7 +195,9 @@ def _entry(settings: TrackBundle, result: Tracked, shown: Shown) -> dict[str, ob
     return {
         "version": version(),
         "operation": "track_depth",
-        "settings": history.plain(*settings),
+        "settings": history.plain(
+            settings.choices, settings.tracking, settings.actor, settings.planting
+        ),
         "recording": shown.path,
         "mean_residual_cm": 100 * float(np.nanmean(result.residual)),
         "coverage": result.coverage,

@@ -15,11 +15,8 @@ class WatchedOperator(SolverOperator):
 
     open_view: ClassVar[Callable[..., View | None]]
     """From the scene and the settings; None if nobody wants to look on."""
-    rescue: ClassVar[Callable[..., Any]]
-    """From scene, subject, settings and all that was shown: the result as far as it goes.
-
-    None if that is not wanted.
-    """
+    rescue: ClassVar[Callable[..., Callable[[list[Any]], Any] | None]]
+    """From scene, subject and settings: what makes a result of all that was shown, or None."""
 
     def invoke(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
         outcome = super().invoke(context, event)
@@ -35,10 +32,11 @@ class WatchedOperator(SolverOperator):
         return super().modal(context, event)
 
     def _answer(self, job: Job[Any]) -> Any:
+        rescue = None
         if job.cancelled:
-            asked = (*self._subject.find(), self.settings())
-            kept = type(self).rescue(*asked, job.all_shown())
-            if kept is not None:
-                job.tidy_up()
-                return kept
-        return super()._answer(job)
+            rescue = type(self).rescue(*self._subject.find(), self.settings())
+        if rescue is None:
+            return super()._answer(job)
+        shown = job.all_shown()
+        job.tidy_up()
+        return rescue(shown)

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from ...solvers.depth_tracking.capsule_surface import BodySurface
 
 Array = NDArray[np.float64]
-DIMMEST = 0.3
+DIMMEST = 0.45
 """Of a surface that is seen edge on, as a share of one that is faced."""
 
 

@@ -16,7 +16,7 @@ from .body_drawing import BodyDrawing, Solid, solid
 from .depth_preview import Shown
 from .heat import shade
 
-OPAQUE = 0.8
+OPAQUE = 0.9
 AT_MOST = 0.3
 """Share of the time that going to frames may take, however heavy the scene is."""
 
