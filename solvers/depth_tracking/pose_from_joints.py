@@ -18,6 +18,9 @@ _YAW = COORDINATES.index("yaw")
 _REST_WEIGHT = 1e-3
 _LIMIT_WEIGHT = 1.0
 _LONGEST_STEP = 0.5
+_CORNERS = 0.2 * np.array([*np.eye(3), -np.ones(3)])
+"""Points of a segment, metres, that tell how it is turned."""
+_CORNER_WEIGHT = 100.0
 
 
 def pose_from_joints(
@@ -40,6 +43,29 @@ def pose_from_joints(
         body, _CARRIERS[known], local[known], joints[known],
         np.ones(len(known)), start=start, iterations=iterations,
     )  # fmt: skip
+
+
+def pose_from_frames(
+    body: BodyModel, frames: Array, *, start: Array | None = None, iterations: int = 40
+) -> Array:
+    """Return the pose (34,) of the body whose segments are nearest to where these are.
+
+    Parameters
+    ----------
+    body : BodyModel
+    frames : shape (15, 4, 4)
+        camera_from_segment of the `SEGMENTS`; turns that a joint cannot make are not followed.
+    start : shape (34,), optional
+    iterations : int
+    """
+    segments = np.repeat(np.arange(len(SEGMENTS)), len(_CORNERS))
+    local = np.tile(_CORNERS, (len(SEGMENTS), 1))
+    carriers = frames[segments]
+    targets = np.einsum("nij,nj->ni", carriers[:, :3, :3], local) + carriers[:, :3, 3]
+    weights = np.full(len(segments), _CORNER_WEIGHT)
+    return pose_from_points(
+        body, segments, local, targets, weights, start=start, iterations=iterations
+    )
 
 
 def pose_from_points(
