@@ -49,7 +49,7 @@ class MotionPrior:
 
     def save(self, path: Path | str) -> None:
         """Write an archive that `load_motion_prior` reads."""
-        arrays = {
+        arrays: dict[str, NDArray[Any]] = {
             "poses": self.poses.astype(np.float16), "clips": self.clips.astype(np.int32),
             "trained_on": np.array(self.trained_on),
             "coordinates": np.array(COORDINATES[N_ROOT:]),

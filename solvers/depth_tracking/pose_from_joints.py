@@ -48,14 +48,14 @@ def pose_from_joints(
 def pose_from_frames(
     body: BodyModel, frames: Array, *, start: Array | None = None, iterations: int = 40
 ) -> Array:
-    """Return the pose (34,) of the body whose segments are nearest to where these are.
+    """Return the pose (36,) of the body whose segments are nearest to where these are.
 
     Parameters
     ----------
     body : BodyModel
-    frames : shape (15, 4, 4)
+    frames : shape (17, 4, 4)
         camera_from_segment of the `SEGMENTS`; turns that a joint cannot make are not followed.
-    start : shape (34,), optional
+    start : shape (36,), optional
     iterations : int
     """
     segments = np.repeat(np.arange(len(SEGMENTS)), len(_CORNERS))

@@ -51,12 +51,12 @@ def smoothed_poses(
 def smoothed_piece(
     actor: Actor, poses: Array, first: int, smoothing: float, held: Collection[int] = ()
 ) -> Array:
-    """Return smoothed poses (n_frames, 34) of a piece of a take.
+    """Return smoothed poses (n_frames, 36) of a piece of a take.
 
     Parameters
     ----------
     actor : Actor
-    poses : shape (n_frames, 34)
+    poses : shape (n_frames, 36)
     first : int
         Frame of the recording that is the first of these.
     smoothing : float
