@@ -114,8 +114,8 @@ def capture(
     forest : PixelForest, optional
         Without it, the one that is shipped.
     motion_prior : MotionPrior, optional
-        Recorded motions that this one is like; they tell where limbs out of sight are.
-        Without it, those that are shipped.
+        Recorded motions that this one is like, to which the tracker draws poses. Those that
+        are shipped tell, without it, where limbs out of sight are.
     floor : Floor, optional
         Becomes z = 0; without it the camera is taken to be level.
     settings : CaptureSettings
@@ -137,7 +137,6 @@ def capture(
        single depth camera. ACM Transactions on Graphics 31(6).
     """
     forest = load_pixel_forest() if forest is None else forest
-    motion_prior = load_motion_prior() if motion_prior is None else motion_prior
     share = 0.0
     if body is None:
         share = 0.4
@@ -145,7 +144,8 @@ def capture(
             depth, forest, refine=settings.refine, tracker=tracker,
             on_pose=on_pose, progress=within(progress, 0.0, share),
         )  # fmt: skip
-    actor = Actor(depth, body, forest, tracker, settings, motion_prior, on_pose)
+    filling = load_motion_prior() if motion_prior is None else motion_prior
+    actor = Actor(depth, body, forest, tracker, settings, motion_prior, on_pose, filling)
     passes = _passes(actor, settings, within(progress, share, 0.9))
     frames, which = best_of_passes(body, passes)
     poses = np.stack([one.poses for one in passes])[which, frames]

@@ -75,12 +75,18 @@ def smoothed_piece(
             equations.append((_HOLD * np.eye(N_COORDINATES), np.zeros(N_COORDINATES)))
             continue
         observation = observe(actor.depth, first + place, tracker.picture_width)
-        asked = _asked(actor, pose, observation).equations
-        if actor.motion_prior is not None:
-            likely = local_pca(actor.motion_prior, pose)
-            asked = added([asked, likely.equations(pose, tracker.similar_weight)])
+        asked = _wanted(actor, pose, observation)
         equations.append((asked.matrix, asked.vector))
     return smooth_take(poses, equations, stiffness)
+
+
+def _wanted(actor: Actor, pose: Array, observation: Observation) -> PoseEquations:
+    """Return what picture and recorded motions ask of a pose."""
+    asked = _asked(actor, pose, observation).equations
+    if actor.filling is None or actor.tracker.fill_weight == 0.0:
+        return asked
+    likely = local_pca(actor.filling, pose)
+    return added([asked, likely.equations(pose, actor.tracker.fill_weight)])
 
 
 def _asked(actor: Actor, pose: Array, observation: Observation) -> Registered:

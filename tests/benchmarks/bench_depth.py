@@ -33,6 +33,7 @@ from .depth_sequences import (
 from .depth_takes import HANDS, KINECT_TAKES, STABLE, draw_overlays, kinect_take
 from .lou_sequences import colored, others_motions
 from .part_detector import detector
+from .part_failures import failures
 from .peers.icp_trackers import articulated_icp, ray_constrained_icp
 from .report import DOCS, PICTURES, Report
 from .tables import Scores
@@ -73,7 +74,7 @@ def main() -> None:
     parts = {
         "trackers": trackers, "captures": captures, "terms": terms, "bodies": bodies,
         "noise": noise, "resolution": resolution, "kinect": kinect,
-        "detector": detector,
+        "detector": detector, "failures": failures,
     }  # fmt: skip
     for name, part in parts.items():
         if chosen.only and name not in chosen.only.split(","):
