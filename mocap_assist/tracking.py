@@ -1,9 +1,10 @@
 """What the button Track reads from the scene, and the armature that it adds."""
 
 import json
+from collections.abc import Callable
 from dataclasses import dataclass
 from functools import partial
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import bpy
 import numpy as np
@@ -15,12 +16,14 @@ from ..solvers.motion.depth_floor import LEVEL, Floor
 from ..solvers.motion.depth_foreground import ForegroundSettings
 from ..solvers.settings import Settings, setting
 from ..solvers.version import version
-from .jobs.tracking import Tracked, track_recording
+from .jobs.protocol import Showing
+from .jobs.tracking import Tracked, track_recording, tracked_so_far
 from .scene import compat, history
 from .scene.armature_build import build_armature
 from .scene.compat import Source
 from .scene.curves import write_first
 from .scene.depth_preview import KEY, Shown, problem_of, recording_of
+from .scene.live_body import LiveBody
 from .scene.new_action import write_motion
 from .scene.reliability_curves import write_reliability
 from .scene.scene_objects import all_or_nothing
@@ -44,6 +47,23 @@ class TrackChoices(Settings):
     )
 
 
+@dataclass(frozen=True, kw_only=True)
+class WatchChoices(Settings):
+    """What is done while somebody looks on."""
+
+    watch: bool = setting(
+        True,
+        "Show the body over the points while it is tracked, in the colours of trust, and go"
+        " along in time",
+        label="Watch it Solve",
+    )
+    keep_on_esc: bool = setting(
+        False,
+        "Esc makes an armature of the frames that were tracked until then",
+        label="Keep on Esc",
+    )
+
+
 class TrackBundle(NamedTuple):
     """All that the button offers."""
 
@@ -51,6 +71,7 @@ class TrackBundle(NamedTuple):
     tracking: CaptureSettings
     actor: ForegroundSettings
     planting: PlantSettings
+    watching: WatchChoices = WatchChoices()
 
 
 def selected_preview(context: bpy.types.Context) -> bpy.types.Object | None:
@@ -70,11 +91,26 @@ def why_not_track(context: bpy.types.Context) -> str:
 
 def read_tracking(
     scene: bpy.types.Scene, preview: bpy.types.Object, settings: TrackBundle
-) -> "partial[Tracked]":
+) -> Showing[Tracked]:
     """Open the recording that is shown; return what is to be solved, which may be pickled."""
     planting = settings.planting if settings.choices.plant_feet else None
     recording = recording_of(preview.data)
-    return partial(track_recording, recording, settings.tracking, settings.actor, planting)
+    return Showing(track_recording, recording, settings.tracking, settings.actor, planting)
+
+
+def watch_tracking(scene: bpy.types.Scene, settings: TrackBundle) -> LiveBody | None:
+    """Return what shows the body while it is tracked, if that is wanted."""
+    return LiveBody(scene) if settings.watching.watch else None
+
+
+def keep_tracked(
+    scene: bpy.types.Scene, preview: bpy.types.Object, settings: TrackBundle
+) -> Callable[[list[Any]], Tracked] | None:
+    """Return what makes the best of what was tracked until Esc, if that is wanted."""
+    if not settings.watching.keep_on_esc:
+        return None
+    recording = recording_of(preview.data)
+    return partial(tracked_so_far, recording=recording, settings=settings.tracking)
 
 
 def write_tracked(
@@ -90,7 +126,8 @@ def write_tracked(
     """
     check_unchanged(preview, asked, recording_of(preview.data))
     shown, context, metres = Shown.read(preview.data), bpy.context, unit_of(scene)
-    frames = shown.start + shown.step * np.arange(result.motion.n_frames)
+    pictures = result.first + np.arange(result.motion.n_frames)
+    frames = shown.start + shown.step * pictures
     with all_or_nothing(context):
         name = f"{preview.name} tracked"
         armature, bones = build_armature(context, name, result.motion.skeleton, metres, MODE)
@@ -158,7 +195,9 @@ def _entry(settings: TrackBundle, result: Tracked, shown: Shown) -> dict[str, ob
     return {
         "version": version(),
         "operation": "track_depth",
-        "settings": history.plain(*settings),
+        "settings": history.plain(
+            settings.choices, settings.tracking, settings.actor, settings.planting
+        ),
         "recording": shown.path,
         "mean_residual_cm": 100 * float(np.nanmean(result.residual)),
         "coverage": result.coverage,

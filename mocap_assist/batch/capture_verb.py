@@ -9,6 +9,7 @@ import bpy
 from ...solvers.command_line import arguments_from, settings_from_arguments
 from ...solvers.command_line.screen import Screen
 from ...solvers.errors import InvalidFileError, MocapAssistError
+from ...solvers.settings import Settings
 from ..import_choices import ImportChoices
 from ..importing import import_files
 from ..jobs.job import run
@@ -25,7 +26,13 @@ def add_capture_options(parser: argparse.ArgumentParser) -> None:
         "files", nargs="+", type=Path, metavar="FILE",
         help="recordings of depth: files, or folders of pictures",
     )  # fmt: skip
-    arguments_from(parser, ImportChoices, *get_type_hints(TrackBundle).values())
+    arguments_from(parser, ImportChoices, *offered().values())
+
+
+def offered() -> dict[str, type[Settings]]:
+    """Return the settings of the button, but for those of looking on."""
+    classes = get_type_hints(TrackBundle)
+    return {name: classes[name] for name in classes if name != "watching"}
 
 
 def perform_capture(arguments: argparse.Namespace, screen: Screen) -> None:
@@ -38,8 +45,7 @@ def perform_capture(arguments: argparse.Namespace, screen: Screen) -> None:
     """
     target = target_file(arguments)
     settings = TrackBundle(**{
-        name: settings_from_arguments(arguments, each)
-        for name, each in get_type_hints(TrackBundle).items()
+        name: settings_from_arguments(arguments, each) for name, each in offered().items()
     })
     choices = settings_from_arguments(arguments, ImportChoices)
     made, said, failed = [], [], []

@@ -10,7 +10,7 @@ from .drawing import draw_job, draw_sentence, exists
 
 TRACK = "mocap_assist.track_depth"
 CUT = ("nearest", "farthest")
-SHOWN = ("backward", "refine", "smoothing", "plant_feet")
+SHOWN = ("backward", "refine", "smoothing", "plant_feet", "watch", "keep_on_esc")
 
 
 class TrackPanel:

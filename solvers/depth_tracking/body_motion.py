@@ -5,7 +5,13 @@ from numpy.typing import NDArray
 
 from ..motion import Motion, Skeleton
 from ..motion.depth_floor import Floor
-from ..motion.rotations import inverse, multiply, quaternion_from_matrix, unroll
+from ..motion.rotations import (
+    inverse,
+    matrix_from_quaternion,
+    multiply,
+    quaternion_from_matrix,
+    unroll,
+)
 from .body_kinematics import N_SEGMENTS, segment_frames, turns
 from .body_model import BodyModel
 from .body_tables import END_SEGMENTS, JOINTS, PARENTS, SEGMENTS
@@ -55,6 +61,37 @@ def body_motion(
     local[:, 1:N_SEGMENTS] = multiply(inverse(rotations[:, above]), rotations[:, 1:])
     places = frames[:, 0, :3, 3] @ scene[:3, :3].T + scene[:3, 3]
     return Motion(body_skeleton(body), unroll(local), places, frame_rate)
+
+
+def motion_frames(body: BodyModel, motion: Motion, floor: Floor | None = None) -> Array:
+    """Undo `body_motion`: return where the segments of a body are in a motion of it.
+
+    Parameters
+    ----------
+    body : BodyModel
+    motion : Motion
+        On the skeleton of the body; poses that no coordinates can reach are fine.
+    floor : Floor, optional
+        The one that is z = 0.
+
+    Returns
+    -------
+    array, shape (n_frames, 15, 4, 4)
+        camera_from_segment of each of the `SEGMENTS`; joints are as far apart as in the body.
+    """
+    camera = np.linalg.inv(scene_from_camera(floor))
+    world = motion.rotations[:, :N_SEGMENTS].copy()
+    for segment, parent in enumerate(PARENTS[1:], start=1):
+        world[:, segment] = multiply(world[:, parent], world[:, segment])
+    rest = SCENE_FROM_CAMERA @ np.stack(_t_pose_turns())
+    frames = np.zeros((motion.n_frames, N_SEGMENTS, 4, 4))
+    frames[..., 3, 3] = 1.0
+    frames[..., :3, :3] = camera[:3, :3] @ matrix_from_quaternion(world) @ rest
+    frames[:, 0, :3, 3] = motion.root_positions @ camera[:3, :3].T + camera[:3, 3]
+    for segment, parent in enumerate(PARENTS[1:], start=1):
+        way = frames[:, parent, :3, :3] @ body.offsets[segment]
+        frames[:, segment, :3, 3] = frames[:, parent, :3, 3] + way
+    return frames
 
 
 def scene_from_camera(floor: Floor | None) -> Array:

@@ -17,8 +17,8 @@ from .body_model import BodyModel
 from .body_motion import body_motion
 from .capture_passes import Actor, Pass, RecoverySettings, track_with_restarts
 from .choose_poses import choose_poses
-from .coordinates import N_COORDINATES
 from .find_body import find_body
+from .found_pose import OnPose, unobserved
 from .motion_prior import MotionPrior
 from .pixel_forest import PixelForest, load_pixel_forest
 from .smooth_pass import smoothed_poses
@@ -26,6 +26,7 @@ from .track_pose import TrackedMotion, tracked_motion
 from .tracker_settings import USUAL, TrackerSettings
 
 Array = NDArray[np.float64]
+Integers = NDArray[np.intp]
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -93,6 +94,7 @@ def capture(
     floor: Floor | None = None,
     settings: CaptureSettings = USUAL_CAPTURE,
     tracker: TrackerSettings = USUAL,
+    on_pose: OnPose = unobserved,
     progress: Progress = unwatched,
 ) -> Capture:
     """Capture the motion of the actor whom a depth recording shows.
@@ -117,6 +119,8 @@ def capture(
         Becomes z = 0; without it the camera is taken to be level.
     settings : CaptureSettings
     tracker : TrackerSettings
+    on_pose : OnPose
+        Is shown each pose that is found, as soon as it is.
     progress : Progress
 
     Raises
@@ -137,16 +141,17 @@ def capture(
         share = 0.4
         body = find_body(
             depth, forest, refine=settings.refine, tracker=tracker,
-            progress=within(progress, 0.0, share),
+            on_pose=on_pose, progress=within(progress, 0.0, share),
         )  # fmt: skip
-    actor = Actor(depth, body, forest, tracker, settings, motion_prior)
+    actor = Actor(depth, body, forest, tracker, settings, motion_prior, on_pose)
     passes = _passes(actor, settings, within(progress, share, 0.9))
-    poses = _chosen(body, passes)
+    frames, which = best_of_passes(body, passes)
+    poses = np.stack([one.poses for one in passes])[which, frames]
     poses, figures = smoothed_poses(
         actor, poses, settings.smoothing, within(progress, 0.9, 1.0)
     )
-    return _captured(actor, tracked_motion(body, poses, figures, depth.frame_rate),
-                     passes[0].restarts, floor, settings)  # fmt: skip
+    tracked = tracked_motion(body, poses, figures, depth.frame_rate)
+    return put_together(body, tracked, passes[0].restarts, floor, settings)
 
 
 def _passes(actor: Actor, settings: CaptureSettings, progress: Progress) -> list[Pass]:
@@ -167,8 +172,11 @@ def _passes(actor: Actor, settings: CaptureSettings, progress: Progress) -> list
     return [forward, backward]
 
 
-def _chosen(body: BodyModel, passes: Sequence[Pass]) -> Array:
-    """Return one pose for every frame; frames before the first one take its pose."""
+def best_of_passes(body: BodyModel, passes: Sequence[Pass]) -> tuple[Integers, Integers]:
+    """Return which frame of which pass to take for every frame, two of shape (n_frames,).
+
+    It is the frame itself, or the nearest one in which somebody was found.
+    """
     poses = np.stack([one.poses for one in passes], axis=1)
     scores = np.stack([one.scores for one in passes], axis=1)
     known = np.isfinite(poses).all(axis=-1)
@@ -176,26 +184,24 @@ def _chosen(body: BodyModel, passes: Sequence[Pass]) -> Array:
     some = np.flatnonzero(known.any(axis=1))
     joints = joint_positions(body, segment_frames(body, np.nan_to_num(poses[some])))
     chosen = choose_poses(scores[some], joints, _SHARPNESS, _REACH)
-    found = np.full((len(poses), N_COORDINATES), np.nan)
-    found[some] = poses[some, chosen]
     nearest = np.abs(some[:, np.newaxis] - np.arange(len(poses))).argmin(axis=0)
-    everywhere: Array = found[some[nearest]]
-    return everywhere
+    return some[nearest], chosen[nearest]
 
 
-def _captured(
-    actor: Actor,
+def put_together(
+    body: BodyModel,
     tracked: TrackedMotion,
     restarts: tuple[int, ...],
     floor: Floor | None,
     settings: CaptureSettings,
 ) -> Capture:
+    """Return the capture that a body's poses make."""
     confidence = tracked.joints.confidence
     doubtful = np.zeros(tracked.joints.positions.shape[:2], dtype=bool)
     if confidence is not None:
         doubtful = confidence < settings.doubtful
     return Capture(
-        body_motion(actor.body, tracked.poses, actor.depth.frame_rate, floor),
-        tracked.joints, tracked.residual, tracked.coverage, restarts, actor.body,
-        tracked.poses, doubtful,
+        body_motion(body, tracked.poses, tracked.joints.frame_rate, floor),
+        tracked.joints, tracked.residual, tracked.coverage, restarts, body, tracked.poses,
+        doubtful,
     )  # fmt: skip

@@ -14,7 +14,8 @@ from ..settings import Settings, setting
 from .body_model import BodyModel
 from .coordinates import COORDINATES, N_COORDINATES
 from .detect_pose import DetectorSettings, detect_pose
-from .fit_quality import FitQuality
+from .fit_quality import FitQuality, unseen
+from .found_pose import FoundPose, OnPose, unobserved
 from .motion_prior import MotionPrior
 from .observation import observe
 from .pixel_forest import PixelForest
@@ -85,6 +86,8 @@ class Actor:
     tracker : TrackerSettings
     recovery : RecoverySettings
     motion_prior : MotionPrior or None
+    on_pose : OnPose
+        Looks on.
     """
 
     depth: DepthRecording
@@ -93,6 +96,7 @@ class Actor:
     tracker: TrackerSettings
     recovery: RecoverySettings
     motion_prior: MotionPrior | None = None
+    on_pose: OnPose = unobserved
 
     def detected(self, frame: int) -> tuple[Array, FitQuality] | None:
         """Return the pose that the detector finds, refined by the tracker, or None."""
@@ -141,7 +145,7 @@ def track_with_restarts(
     restarts, memory = [], None
     for done, frame in enumerate(frames):
         observation = observe(actor.depth, frame, actor.tracker.picture_width)
-        score = np.nan
+        score, quality = np.nan, unseen()
         if course and not observation.empty:
             prior = next_pose_prior(course[-2:], actor.tracker, actor.motion_prior)
             pose, quality, memory = follow(
@@ -156,11 +160,13 @@ def track_with_restarts(
                 turned = _near_turn(found[0], course[-1] if course else found[0])
                 if course:
                     restarts.append(frame)
-                pose, score, course, memory = turned, found[1].score, [], None
+                pose, quality, course, memory = turned, found[1], [], None
+                score = quality.score
                 watch.recovered()
         if course or np.isfinite(score):
             course.append(pose)
             poses[frame], scores[frame] = pose, score
+            actor.on_pose(FoundPose(actor.body, frame, pose, quality))
         watch.note(score)
         progress((done + 1) / len(frames), "Tracking")
     return Pass(poses, scores, tuple(restarts))
