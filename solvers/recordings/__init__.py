@@ -31,6 +31,7 @@ from .kinect_csv import read_kinect_csv
 from .msr_action3d import read_msr_action3d
 from .ntu_skeleton import read_ntu_skeleton
 from .read_recording import (
+    depth_in,
     format_of,
     is_depth,
     read_motion_or_tracks,
@@ -47,6 +48,7 @@ __all__ = [
     "DepthSettings",
     "Held",
     "depth_format_of",
+    "depth_in",
     "format_of",
     "is_depth",
     "read_acclaim",
