@@ -16,7 +16,7 @@ from .body_kinematics import joint_positions, segment_frames
 from .body_model import BodyModel
 from .body_motion import body_motion
 from .capture_passes import Actor, Pass, RecoverySettings, track_with_restarts
-from .choose_poses import choose_poses
+from .choose_poses import choose_poses, nearest_known
 from .coordinates import N_COORDINATES
 from .find_body import find_body
 from .motion_prior import MotionPrior
@@ -178,8 +178,7 @@ def _chosen(body: BodyModel, passes: Sequence[Pass]) -> Array:
     chosen = choose_poses(scores[some], joints, _SHARPNESS, _REACH)
     found = np.full((len(poses), N_COORDINATES), np.nan)
     found[some] = poses[some, chosen]
-    nearest = np.abs(some[:, np.newaxis] - np.arange(len(poses))).argmin(axis=0)
-    everywhere: Array = found[some[nearest]]
+    everywhere: Array = found[nearest_known(some, len(poses))]
     return everywhere
 
 

@@ -21,6 +21,7 @@ from .bvh_writing import write_bvh
 from .c3d import read_c3d
 from .c3d_writing import write_c3d
 from .depth import depth_format_of, read_depth
+from .depth_folder import is_depth_folder
 from .depth_settings import DepthSettings, Held
 from .freemocap import read_freemocap
 from .irds import read_irds
@@ -51,6 +52,7 @@ __all__ = [
     "depth_in",
     "format_of",
     "is_depth",
+    "is_depth_folder",
     "read_acclaim",
     "read_acclaim_limits",
     "read_azure_csv",

@@ -83,7 +83,7 @@ def _camera(scene: dict[str, np.ndarray]) -> None:
     lens.sensor_fit, lens.sensor_width = "HORIZONTAL", 32.0
     lens.lens = 32.0 * fx / width
     lens.shift_x = (width / 2.0 - 0.5 - cx) / width
-    lens.shift_y = (cy + 0.5 - height / 2.0) / width
+    lens.shift_y = (cy + 0.5 - height / 2.0) * fx / fy / width
     lens.clip_start, lens.clip_end = 0.01, FAR
     camera = bpy.data.objects.new("camera", lens)
     bpy.context.collection.objects.link(camera)
@@ -91,7 +91,8 @@ def _camera(scene: dict[str, np.ndarray]) -> None:
     bpy.context.scene.camera = camera
     render.engine, render.film_transparent = "CYCLES", True
     render.resolution_x, render.resolution_y = int(width), int(height)
-    render.resolution_percentage, render.pixel_aspect_y = 100, fx / fy
+    render.resolution_percentage = 100
+    render.pixel_aspect_x, render.pixel_aspect_y = max(1.0, fy / fx), max(1.0, fx / fy)
     render.image_settings.file_format = "OPEN_EXR"
     render.image_settings.color_mode, render.image_settings.color_depth = "RGBA", "32"
     cycles = bpy.context.scene.cycles
