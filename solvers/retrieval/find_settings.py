@@ -55,7 +55,7 @@ class FindSettings(Settings):
         minimum=0, maximum=10_000, advanced=True, label="Warped",
     )  # fmt: skip
     warping: float = setting(
-        2.0, "How much the course in time counts beside which postures there are",
+        3.0, "How much the course in time counts beside which postures there are",
         minimum=0.0, maximum=100.0, advanced=True,
     )  # fmt: skip
     n_alike: int = setting(
@@ -67,6 +67,11 @@ class FindSettings(Settings):
         8, "Best matches whose frames are aligned with the query's",
         minimum=0, maximum=10_000, advanced=True, label="Aligned",
     )  # fmt: skip
+
+    @property
+    def asks_for_all(self) -> bool:
+        """Whether all parts of the body are compared."""
+        return all(getattr(self, part.name.lower()) for part in BodyPart)
 
     def part_weights(
         self, coverage: NDArray[np.float64], activity: NDArray[np.float64]

@@ -27,13 +27,17 @@ class Default:
         library = build_clip_library([
             Clip(str(number), clip) for number, clip in enumerate(clips)
         ])  # fmt: skip
-        return DefaultLibrary(library, len(clips), self.settings)
+        names = {number: int(entry.name) for number, entry in library.numbered().items()}
+        places = np.zeros(max(names) + 1, dtype=np.intp)
+        places[list(names)] = list(names.values())
+        return DefaultLibrary(library, places, self.settings)
 
 
 @dataclass(frozen=True, eq=False)
 class DefaultLibrary:
     library: ClipLibrary
-    n_clips: int
+    places: NDArray[np.intp]
+    """Which clip each number of the library is."""
     settings: FindSettings
 
     def describe(self, tracks: Tracks) -> tuple[Spans, Array]:
@@ -48,12 +52,8 @@ class DefaultLibrary:
         return describe(features, whole, vocabulary), weights
 
     def distances(self, query: tuple[Spans, Array], allowed: Flags) -> Array:
-        entries = self.library.numbered()
         ignored = self.library.numbers_of(map(str, np.flatnonzero(~allowed)))
-        index = self.library.search_index
-        ranking = rank_clips(*query, index, self.settings, ignored)
-        result = np.full(self.n_clips, np.inf)
-        result[[int(entries[number].name) for number in ranking.clips.tolist()]] = (
-            ranking.distances
-        )
+        ranking = rank_clips(*query, self.library.search_index, self.settings, ignored)
+        result = np.full(len(allowed), np.inf)
+        result[self.places[ranking.clips]] = ranking.distances
         return result
