@@ -56,12 +56,19 @@ class Conditions(NamedTuple):
 
 @dataclass(frozen=True, eq=False)
 class Piece:
-    """What was simulated of a piece: see `Simulated`; `n_lost` counts how often it was lost."""
+    """What was simulated of a piece: see `Simulated`.
+
+    `n_lost` counts how often it was lost. `loads` is by how much the ground carries each of the
+    ends of `bottoms`, as a share of the weight, and `firm` how firmly the feet of the target
+    hold the ground, shape (n_frames, 2), 0 to 1.
+    """
 
     motion: Motion
     followed: Flags
     contacts: Flags
     support: Array
+    loads: Array
+    firm: Array
     n_lost: int
     smoothing: float
 
@@ -129,22 +136,32 @@ def _tried(
     rotations[:, 0] = multiply(inverse(facing), rotations[:, 0])
     target = calmed_target(places, rotations, motion.frame_rate, smoothing)
     speeds = sole_speeds(body, _with_moving_joints(body, motion, target.at_frames()))
-    grips = np.clip((SWINGS - speeds / body.size) / (SWINGS - STANDS), SLIPPERY, 1.0)
+    firm = np.clip((SWINGS - speeds / body.size) / (SWINGS - STANDS), 0.0, 1.0)
     n_steps = int(np.ceil(motion.dt / LONGEST_STEP))
     course = follow(
         engine,
         build_world(engine, body, ground, friction, motion.dt / n_steps),
         controller(body, conditions.response, conditions.support, friction),
         target,
-        grips,
+        np.maximum(firm, SLIPPERY),
         n_steps,
+        2 * sum(capsule.touches for capsule in body.capsules),
         tell=lambda frame: progress(frame / motion.n_frames, "Simulating"),
     )
     course.places[:, :3] = rotate(facing, course.places[:, :3]) + origin
     course.places[:, 3:7] = multiply(facing, course.places[:, 3:7])
     result = _with_moving_joints(body, motion, course.places)
     contacts = touching(body, result, ground)
-    return Piece(result, course.followed, contacts, course.support, course.n_lost, smoothing)
+    return Piece(
+        result,
+        course.followed,
+        contacts,
+        course.support,
+        course.loads,
+        firm,
+        course.n_lost,
+        smoothing,
+    )
 
 
 def _of_moving_joints(body: PhysicsBody, motion: Motion) -> tuple[Array, Array]:
