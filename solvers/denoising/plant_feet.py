@@ -11,7 +11,6 @@ from ..motion import Motion, WorldPoses, forward_kinematics
 from ..motion.contacts import detect_contacts
 from ..motion.humanoid import HumanoidMap, find_humanoid_map
 from ..motion.limb_ik import ReachSettings, reach
-from ..motion.root_shift import LegGoal, root_shift
 from ..motion.rotations import inverse, multiply
 from ..progress import Progress, unwatched, within
 from ..settings import Settings, setting
@@ -19,6 +18,7 @@ from .cuts import find_cuts, is_short, pieces
 from .feet import SIDES, Leg, find_legs
 from .knee_relief import knee_relief
 from .planted_path import Plant, planted_path
+from .root_shift import root_shift
 
 Array = NDArray[np.float64]
 Flags = NDArray[np.bool_]
@@ -229,8 +229,9 @@ def _hips_shift(
     if not settings.move_root or motion.n_frames == 1:
         return np.zeros_like(motion.root_positions)
     return root_shift(
+        motion.skeleton,
         poses,
-        [LegGoal(plant.leg.chain, plant.contact, plant.ankle) for plant in plants],
+        plants,
         motion.frame_rate,
         softness=settings.softness,
         blend=settings.blend,

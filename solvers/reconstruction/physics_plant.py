@@ -8,7 +8,6 @@ from numpy.typing import NDArray
 
 from ..motion import Motion, ReachSettings, WorldPoses, forward_kinematics, reach
 from ..motion.canonical import UP
-from ..motion.root_shift import LegGoal, root_shift
 from ..motion.rotations import (
     inverse,
     multiply,
@@ -18,6 +17,7 @@ from ..motion.rotations import (
 )
 from ..motion.smooth_correction import smooth_correction
 from .physics_body import PhysicsBody
+from .physics_hips import LegGoal, hips_shift
 from .physics_piece import Piece
 from .physics_stance import bearing, standing
 from .physics_surface import SIDES, bottoms, of_foot, touching
@@ -75,8 +75,7 @@ def planted_piece(body: PhysicsBody, piece: Piece, in_take: Array, ground: float
             feet.append(_foot(body, motion, poses, chain, side, held[:, column], ground))
     if not feet:
         return piece
-    goals = [foot.goal for foot in feet]
-    shift = root_shift(poses, goals, rate, softness=SOFTNESS, blend=BLEND)
+    shift = hips_shift(poses, [foot.goal for foot in feet], rate, body.size)
     result = motion.with_poses(root_positions=motion.root_positions + shift)
     for foot in feet:
         result = _followed(result, poses, foot)
@@ -114,8 +113,7 @@ def _foot(
     both = 0.5 * (share[1:] + share[:-1])
     steps = np.einsum("fp,fpi->fi", both, np.diff(points, axis=0))
     shift = smooth_correction(-steps * rate, held, rate, BLEND) * (1.0, 1.0, 0.0)
-    contact = np.append(held, 0.0) + np.append(0.0, held) > 0.0
-    return Foot(LegGoal(chain, contact, ankle + shift), turn)
+    return Foot(LegGoal(chain, ankle + shift), turn)
 
 
 def _turn(rotations: Array, held: Array, rate: float) -> Array:

@@ -1,13 +1,13 @@
 """Move the hips a little where a leg would be too short for its footplant."""
 
 from collections.abc import Sequence
-from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
-from .kinematics import WorldPoses
-from .smooth_correction import smooth_correction
+from ..motion import Skeleton, WorldPoses
+from ..motion.smooth_correction import smooth_correction
+from .planted_path import Plant
 
 Array = NDArray[np.float64]
 
@@ -17,26 +17,16 @@ SLOWER = 2.0
 """The body is heavier than a foot: its shift fades over this many times the blend."""
 
 
-class LegGoal(NamedTuple):
-    """Where a leg should end."""
-
-    chain: tuple[int, int, int]
-    """Hip, knee and ankle."""
-    contact: NDArray[np.bool_]
-    """Frames in which it must get there, shape (n_frames,)."""
-    ankle: Array
-    """Where the ankle should be, shape (n_frames, 3), metres."""
-
-
 def root_shift(
+    skeleton: Skeleton,
     poses: WorldPoses,
-    legs: Sequence[LegGoal],
+    plants: Sequence[Plant],
     frame_rate: float,
     *,
     softness: float,
     blend: float,
 ) -> Array:
-    """Return a smooth shift of the root, (n_frames, 3), that lets the legs reach their goals.
+    """Return a smooth shift of the root, (n_frames, 3), that lets the legs reach their plants.
 
     Each round asks, in the frames in contact where a leg is still too short, for what is
     missing along the leg, and joins all that was asked for so far with the smoothest curve
@@ -44,9 +34,9 @@ def root_shift(
 
     Parameters
     ----------
+    skeleton : Skeleton
     poses : WorldPoses
-        Before anything is moved.
-    legs : sequence of LegGoal
+    plants : sequence of Plant
     frame_rate : float, hertz
     softness : float
         Part of a leg's length that it does not use, unless its pose already does.
@@ -58,8 +48,8 @@ def root_shift(
     still = np.zeros((n_frames - 1, 3)), np.zeros(n_frames - 1)
     for _ in range(N_ROUNDS):
         missing = np.zeros((n_frames, 3))
-        for leg in legs:
-            lacking = _missing(poses, leg, shift, softness)
+        for plant in plants:
+            lacking = _missing(skeleton, poses, plant, shift, softness)
             missing = np.where(np.abs(lacking) > np.abs(missing), lacking, missing)
         if np.linalg.norm(missing, axis=1).max() < CLOSE_ENOUGH:
             break
@@ -69,12 +59,14 @@ def root_shift(
     return shift
 
 
-def _missing(poses: WorldPoses, leg: LegGoal, shift: Array, softness: float) -> Array:
+def _missing(
+    skeleton: Skeleton, poses: WorldPoses, plant: Plant, shift: Array, softness: float
+) -> Array:
     """Return how far, and in which direction, the root must come nearer to the foot."""
-    hip, knee, ankle = (poses.positions[:, joint] for joint in leg.chain)
+    hip, knee, ankle = (poses.positions[:, joint] for joint in plant.leg.chain)
     longest = np.linalg.norm(knee - hip, axis=1) + np.linalg.norm(ankle - knee, axis=1)
     usable = np.maximum((1.0 - softness) * longest, np.linalg.norm(ankle - hip, axis=1))
-    way = leg.ankle - hip - shift
+    way = plant.ankle - hip - shift
     distance = np.linalg.norm(way, axis=1)
-    lacking = np.where(leg.contact, np.maximum(distance - usable, 0.0), 0.0)
+    lacking = np.where(plant.contact, np.maximum(distance - usable, 0.0), 0.0)
     return np.asarray(way * (lacking / np.maximum(distance, 1e-9))[:, None])
