@@ -16,6 +16,7 @@ from .physics_body import PhysicsBody
 from .physics_control import controller
 from .physics_run import follow
 from .physics_surface import clearance, raising, sole_speeds, touching
+from .physics_swing import with_clear_feet
 from .physics_target import calmed_target
 from .physics_world import build_world
 
@@ -131,12 +132,18 @@ def _tried(
     ground, friction = conditions.ground, conditions.friction
     places, rotations = _of_moving_joints(body, motion)
     places[:, 2] += raising(clearance(body, motion, ground), motion.frame_rate, body.size)
+    target = calmed_target(places, rotations, motion.frame_rate, smoothing)
+    calm = _with_moving_joints(body, motion, target.at_frames())
+    speeds = sole_speeds(body, calm)
+    firm = np.clip((SWINGS - speeds / body.size) / (SWINGS - STANDS), 0.0, 1.0)
+    up = _with_moving_joints(
+        body, motion, np.hstack([places, rotations.reshape(len(places), -1)])
+    )
+    places, rotations = _of_moving_joints(body, with_clear_feet(body, up, firm, ground))
     origin, facing = places[0] * (1.0, 1.0, 0.0), twist_about(rotations[0, 0], UP)
     places = rotate(inverse(facing), places - origin)
     rotations[:, 0] = multiply(inverse(facing), rotations[:, 0])
     target = calmed_target(places, rotations, motion.frame_rate, smoothing)
-    speeds = sole_speeds(body, _with_moving_joints(body, motion, target.at_frames()))
-    firm = np.clip((SWINGS - speeds / body.size) / (SWINGS - STANDS), 0.0, 1.0)
     n_steps = int(np.ceil(motion.dt / LONGEST_STEP))
     course = follow(
         engine,

@@ -20,10 +20,9 @@ from .physics_body import PhysicsBody
 from .physics_hips import LegGoal, hips_shift
 from .physics_piece import Piece
 from .physics_stance import bearing, standing
-from .physics_surface import SIDES, bottoms, of_foot, touching
+from .physics_surface import SIDES, bottoms, leg_chain, of_foot, touching
 
 Array = NDArray[np.float64]
-LEG = ("UpperLeg", "LowerLeg", "Foot")
 FEWEST = 4
 """Frames in which a foot can stand."""
 
@@ -70,7 +69,7 @@ def planted_piece(body: PhysicsBody, piece: Piece, in_take: Array, ground: float
     poses = forward_kinematics(motion)
     feet = []
     for column, side in enumerate(SIDES):
-        chain = _chain(body, side)
+        chain = leg_chain(body, side)
         if chain and held[:, column].any():
             feet.append(_foot(body, motion, poses, chain, side, held[:, column], ground))
     if not feet:
@@ -80,18 +79,6 @@ def planted_piece(body: PhysicsBody, piece: Piece, in_take: Array, ground: float
     for foot in feet:
         result = _followed(result, poses, foot)
     return replace(piece, motion=result, contacts=touching(body, result, ground))
-
-
-def _chain(body: PhysicsBody, side: str) -> tuple[int, int, int] | None:
-    """Return hip, knee and ankle of a leg; None where they do not follow one another."""
-    joints = {role: joint for joint, role in body.roles.items()}
-    found = [joints.get(side + part) for part in LEG]
-    if None in found:
-        return None
-    hip, knee, ankle = (joint for joint in found if joint is not None)
-    skeleton = body.skeleton
-    follows = hip in skeleton.ancestors(knee) and knee in skeleton.ancestors(ankle)
-    return (hip, knee, ankle) if follows else None
 
 
 def _foot(

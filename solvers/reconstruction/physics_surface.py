@@ -10,6 +10,7 @@ from .physics_body import PhysicsBody
 
 Array = NDArray[np.float64]
 SIDES = ("left", "right")
+LEG = ("UpperLeg", "LowerLeg", "Foot")
 NEAR = 0.005
 """Metres, for legs of 0.9 m: a sole as near to the ground touches it."""
 
@@ -106,6 +107,18 @@ def of_foot(body: PhysicsBody, joints: NDArray[np.intp], side: str) -> NDArray[n
     """Tell which of these joints are of the left or of the right foot."""
     roles = {f"{side}Foot", f"{side}Toes"}
     return np.array([body.roles.get(int(joint)) in roles for joint in joints], dtype=np.bool_)
+
+
+def leg_chain(body: PhysicsBody, side: str) -> tuple[int, int, int] | None:
+    """Return hip, knee and ankle of a leg; None where they do not follow one another."""
+    joints = {role: joint for joint, role in body.roles.items()}
+    found = [joints.get(side + part) for part in LEG]
+    if None in found:
+        return None
+    hip, knee, ankle = (joint for joint in found if joint is not None)
+    skeleton = body.skeleton
+    follows = hip in skeleton.ancestors(knee) and knee in skeleton.ancestors(ankle)
+    return (hip, knee, ankle) if follows else None
 
 
 def slide(body: PhysicsBody, motion: Motion, contacts: NDArray[np.bool_]) -> float:
