@@ -14,9 +14,9 @@ from ..motion.rotations import inverse, multiply, rotate, twist_about
 from ..progress import Progress, within
 from .physics_body import PhysicsBody
 from .physics_control import controller
+from .physics_footing import with_feet_on_ground
 from .physics_run import follow
 from .physics_surface import clearance, raising, sole_speeds, touching
-from .physics_swing import with_clear_feet
 from .physics_target import calmed_target
 from .physics_world import build_world
 
@@ -91,6 +91,7 @@ def simulated_piece(
     engine: ModuleType,
     body: PhysicsBody,
     motion: Motion,
+    in_take: Flags,
     conditions: Conditions,
     progress: Progress,
 ) -> Piece:
@@ -105,7 +106,7 @@ def simulated_piece(
         smoothing = min(conditions.smoothing * 2**doublings, CALMEST)
         stop = (1.0 + start) / 2
         tried = _tried(
-            engine, body, motion, conditions, smoothing, within(progress, start, stop)
+            engine, body, motion, in_take, conditions, smoothing, within(progress, start, stop)
         )
         if best is None or tried.trouble < best.trouble:
             best = tried
@@ -120,6 +121,7 @@ def _tried(
     engine: ModuleType,
     body: PhysicsBody,
     motion: Motion,
+    in_take: Flags,
     conditions: Conditions,
     smoothing: float,
     progress: Progress,
@@ -139,7 +141,9 @@ def _tried(
     up = _with_moving_joints(
         body, motion, np.hstack([places, rotations.reshape(len(places), -1)])
     )
-    places, rotations = _of_moving_joints(body, with_clear_feet(body, up, firm, ground))
+    places, rotations = _of_moving_joints(
+        body, with_feet_on_ground(body, up, firm, in_take, ground)
+    )
     origin, facing = places[0] * (1.0, 1.0, 0.0), twist_about(rotations[0, 0], UP)
     places = rotate(inverse(facing), places - origin)
     rotations[:, 0] = multiply(inverse(facing), rotations[:, 0])

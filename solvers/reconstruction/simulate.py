@@ -149,7 +149,9 @@ def simulate(
     pieces = []
     for start, stop in find_pieces(body, whole):
         step = within(progress, start / motion.n_frames, stop / motion.n_frames)
-        piece = simulated_piece(engine, body, whole.slice(start, stop), conditions, step)
+        piece = simulated_piece(
+            engine, body, whole.slice(start, stop), stands[start:stop], conditions, step
+        )
         if settings.plant:
             piece = planted_piece(body, piece, stands[start:stop] * piece.firm, ground)
         pieces.append(piece)
