@@ -11,13 +11,13 @@ from ..motion import WorldPoses
 from ..motion.smooth_correction import FADES
 
 Array = NDArray[np.float64]
-STAYING = 3.0
+STAYING = 10.0
 """How much worse it is to move the hips than to move a knee."""
 
 FADING = 0.04
 """Seconds over which the hips' shift fades."""
 
-STRAIGHTEST = 0.002
+STRAIGHTEST = 0.01
 """Metres, for a leg of 0.9 m, by which a knee is at least out of its leg's line."""
 
 REACH = 6
