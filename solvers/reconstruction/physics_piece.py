@@ -14,6 +14,7 @@ from ..motion.rotations import inverse, multiply, rotate, twist_about
 from ..progress import Progress, within
 from .physics_body import PhysicsBody
 from .physics_control import controller
+from .physics_footing import with_feet_on_ground
 from .physics_run import follow
 from .physics_surface import clearance, raising, sole_speeds, touching
 from .physics_target import calmed_target
@@ -56,12 +57,19 @@ class Conditions(NamedTuple):
 
 @dataclass(frozen=True, eq=False)
 class Piece:
-    """What was simulated of a piece: see `Simulated`; `n_lost` counts how often it was lost."""
+    """What was simulated of a piece: see `Simulated`.
+
+    `n_lost` counts how often it was lost. `loads` is by how much the ground carries each of the
+    ends of `bottoms`, as a share of the weight, and `firm` how firmly the feet of the target
+    hold the ground, shape (n_frames, 2), 0 to 1.
+    """
 
     motion: Motion
     followed: Flags
     contacts: Flags
     support: Array
+    loads: Array
+    firm: Array
     n_lost: int
     smoothing: float
 
@@ -83,6 +91,7 @@ def simulated_piece(
     engine: ModuleType,
     body: PhysicsBody,
     motion: Motion,
+    in_take: Flags,
     conditions: Conditions,
     progress: Progress,
 ) -> Piece:
@@ -97,7 +106,7 @@ def simulated_piece(
         smoothing = min(conditions.smoothing * 2**doublings, CALMEST)
         stop = (1.0 + start) / 2
         tried = _tried(
-            engine, body, motion, conditions, smoothing, within(progress, start, stop)
+            engine, body, motion, in_take, conditions, smoothing, within(progress, start, stop)
         )
         if best is None or tried.trouble < best.trouble:
             best = tried
@@ -112,6 +121,7 @@ def _tried(
     engine: ModuleType,
     body: PhysicsBody,
     motion: Motion,
+    in_take: Flags,
     conditions: Conditions,
     smoothing: float,
     progress: Progress,
@@ -124,27 +134,45 @@ def _tried(
     ground, friction = conditions.ground, conditions.friction
     places, rotations = _of_moving_joints(body, motion)
     places[:, 2] += raising(clearance(body, motion, ground), motion.frame_rate, body.size)
+    target = calmed_target(places, rotations, motion.frame_rate, smoothing)
+    calm = _with_moving_joints(body, motion, target.at_frames())
+    speeds = sole_speeds(body, calm)
+    firm = np.clip((SWINGS - speeds / body.size) / (SWINGS - STANDS), 0.0, 1.0)
+    up = _with_moving_joints(
+        body, motion, np.hstack([places, rotations.reshape(len(places), -1)])
+    )
+    places, rotations = _of_moving_joints(
+        body, with_feet_on_ground(body, up, firm, in_take, ground)
+    )
     origin, facing = places[0] * (1.0, 1.0, 0.0), twist_about(rotations[0, 0], UP)
     places = rotate(inverse(facing), places - origin)
     rotations[:, 0] = multiply(inverse(facing), rotations[:, 0])
     target = calmed_target(places, rotations, motion.frame_rate, smoothing)
-    speeds = sole_speeds(body, _with_moving_joints(body, motion, target.at_frames()))
-    grips = np.clip((SWINGS - speeds / body.size) / (SWINGS - STANDS), SLIPPERY, 1.0)
     n_steps = int(np.ceil(motion.dt / LONGEST_STEP))
     course = follow(
         engine,
         build_world(engine, body, ground, friction, motion.dt / n_steps),
         controller(body, conditions.response, conditions.support, friction),
         target,
-        grips,
+        np.maximum(firm, SLIPPERY),
         n_steps,
+        2 * sum(capsule.touches for capsule in body.capsules),
         tell=lambda frame: progress(frame / motion.n_frames, "Simulating"),
     )
     course.places[:, :3] = rotate(facing, course.places[:, :3]) + origin
     course.places[:, 3:7] = multiply(facing, course.places[:, 3:7])
     result = _with_moving_joints(body, motion, course.places)
     contacts = touching(body, result, ground)
-    return Piece(result, course.followed, contacts, course.support, course.n_lost, smoothing)
+    return Piece(
+        result,
+        course.followed,
+        contacts,
+        course.support,
+        course.loads,
+        firm,
+        course.n_lost,
+        smoothing,
+    )
 
 
 def _of_moving_joints(body: PhysicsBody, motion: Motion) -> tuple[Array, Array]:
