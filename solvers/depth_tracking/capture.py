@@ -187,7 +187,7 @@ def best_of_passes(body: BodyModel, passes: Sequence[Pass]) -> tuple[Integers, I
     joints = joint_positions(body, segment_frames(body, np.nan_to_num(poses[some])))
     chosen = choose_poses(scores[some], joints, _SHARPNESS, _REACH)
     nearest = nearest_known(some, len(poses))
-    return some[nearest], chosen[nearest]
+    return nearest, chosen[np.searchsorted(some, nearest)]
 
 
 def put_together(
