@@ -10,7 +10,6 @@ from .physics_body import PhysicsBody
 from .physics_surface import SIDES, bottoms, leg_chain, of_foot
 
 Array = NDArray[np.float64]
-Flags = NDArray[np.bool_]
 CLEAR = 0.01
 """Metres over the ground, for legs of 0.9 m, at which a foot swings at least."""
 
@@ -25,7 +24,7 @@ CALM = 0.03
 
 
 def with_feet_on_ground(
-    body: PhysicsBody, motion: Motion, firm: Array, in_take: Flags, ground: float
+    body: PhysicsBody, motion: Motion, firm: Array, stands: Array, ground: float
 ) -> Motion:
     """Return the motion with legs drawn up or stretched so that the feet meet the ground.
 
@@ -39,8 +38,8 @@ def with_feet_on_ground(
     motion : Motion
     firm : shape (n_frames, 2), 0 to 1
         1 for a foot so slow that it may stand, 0 for one that swings.
-    in_take : bool, shape (n_frames, 2)
-        Where the feet of the take stand.
+    stands : shape (n_frames, 2), 0 to 1
+        1 for a foot that does stand.
     ground : float, metres
     """
     points, joints = bottoms(body, motion)
@@ -49,16 +48,15 @@ def with_feet_on_ground(
         own, chain = of_foot(body, joints, side), leg_chain(body, side)
         if chain and own.any():
             heights = (points[:, own, 2].min(axis=1) - ground) / body.size
-            rise = _rise(heights, firm[:, column], in_take[:, column])
+            rise = _rise(heights, firm[:, column], stands[:, column])
             rise = gaussian_filter1d(rise, CALM * motion.frame_rate, mode="nearest")
             goal = positions[:, chain[-1]] + body.size * rise[:, None] * UP
             result = reach(result, chain, goal)
     return result
 
 
-def _rise(heights: Array, firm: Array, in_take: Flags) -> Array:
+def _rise(heights: Array, firm: Array, stands: Array) -> Array:
     """Return by how much to raise a foot, shape (n_frames,), for legs of 0.9 m."""
     near = np.clip(2.0 - 2.0 * np.abs(heights) / FARTHEST, 0.0, 1.0)
-    stands = firm * in_take * near
-    swings = 1.0 - firm
-    return np.asarray(swings * np.maximum(CLEAR - heights, 0.0) - stands * (heights + PRESSED))
+    lifted = (1.0 - firm) * np.maximum(CLEAR - heights, 0.0)
+    return np.asarray(lifted - stands * near * (heights + PRESSED))

@@ -1,6 +1,6 @@
 """Simulate a piece of a take in which nobody jumps from place to place."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from itertools import pairwise
 from types import ModuleType
 from typing import NamedTuple
@@ -15,7 +15,9 @@ from ..progress import Progress, within
 from .physics_body import PhysicsBody
 from .physics_control import controller
 from .physics_footing import with_feet_on_ground
+from .physics_plant import planted
 from .physics_run import follow
+from .physics_stance import from_frame_to_frame, in_contact, standing
 from .physics_surface import clearance, raising, sole_speeds, touching
 from .physics_target import calmed_target
 from .physics_world import build_world
@@ -53,6 +55,7 @@ class Conditions(NamedTuple):
     smoothing: float
     friction: float
     support: float
+    plant: bool
 
 
 @dataclass(frozen=True, eq=False)
@@ -60,8 +63,8 @@ class Piece:
     """What was simulated of a piece: see `Simulated`.
 
     `n_lost` counts how often it was lost. `loads` is by how much the ground carries each of the
-    ends of `bottoms`, as a share of the weight, and `firm` how firmly the feet of the target
-    hold the ground, shape (n_frames, 2), 0 to 1.
+    ends of `bottoms`, as a share of the weight, and `stands` how firmly the feet of the
+    target stand, shape (n_frames, 2), 0 to 1.
     """
 
     motion: Motion
@@ -69,7 +72,7 @@ class Piece:
     contacts: Flags
     support: Array
     loads: Array
-    firm: Array
+    stands: Array
     n_lost: int
     smoothing: float
 
@@ -91,7 +94,6 @@ def simulated_piece(
     engine: ModuleType,
     body: PhysicsBody,
     motion: Motion,
-    in_take: Flags,
     conditions: Conditions,
     progress: Progress,
 ) -> Piece:
@@ -106,7 +108,7 @@ def simulated_piece(
         smoothing = min(conditions.smoothing * 2**doublings, CALMEST)
         stop = (1.0 + start) / 2
         tried = _tried(
-            engine, body, motion, in_take, conditions, smoothing, within(progress, start, stop)
+            engine, body, motion, conditions, smoothing, within(progress, start, stop)
         )
         if best is None or tried.trouble < best.trouble:
             best = tried
@@ -114,14 +116,21 @@ def simulated_piece(
             break
         start = stop
     assert best is not None
-    return best
+    return _planted(body, best, conditions.ground) if conditions.plant else best
+
+
+def _planted(body: PhysicsBody, piece: Piece, ground: float) -> Piece:
+    """Return the piece with feet that stay where they stand, as far as the body follows."""
+    firm = standing(body, piece.motion, piece.loads, piece.stands, ground)
+    firm *= piece.followed[:, None]
+    motion = planted(body, piece.motion, from_frame_to_frame(firm), ground)
+    return replace(piece, motion=motion, contacts=touching(body, motion, ground))
 
 
 def _tried(
     engine: ModuleType,
     body: PhysicsBody,
     motion: Motion,
-    in_take: Flags,
     conditions: Conditions,
     smoothing: float,
     progress: Progress,
@@ -141,9 +150,9 @@ def _tried(
     up = _with_moving_joints(
         body, motion, np.hstack([places, rotations.reshape(len(places), -1)])
     )
-    places, rotations = _of_moving_joints(
-        body, with_feet_on_ground(body, up, firm, in_take, ground)
-    )
+    stands = np.where(in_contact(body, calm), firm, 0.0)
+    on_ground = with_feet_on_ground(body, up, firm, stands, ground)
+    places, rotations = _of_moving_joints(body, on_ground)
     origin, facing = places[0] * (1.0, 1.0, 0.0), twist_about(rotations[0, 0], UP)
     places = rotate(inverse(facing), places - origin)
     rotations[:, 0] = multiply(inverse(facing), rotations[:, 0])
@@ -169,7 +178,7 @@ def _tried(
         contacts,
         course.support,
         course.loads,
-        firm,
+        stands,
         course.n_lost,
         smoothing,
     )

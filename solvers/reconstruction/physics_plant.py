@@ -1,6 +1,5 @@
-"""Keep the feet of a simulated body from creeping and slipping where they stand."""
+"""Keep feet from creeping and slipping where they stand."""
 
-from dataclasses import replace
 from typing import NamedTuple
 
 import numpy as np
@@ -18,9 +17,8 @@ from ..motion.rotations import (
 from ..motion.smooth_correction import smooth_correction
 from .physics_body import PhysicsBody
 from .physics_hips import LegGoal, hips_shift
-from .physics_piece import Piece
-from .physics_stance import bearing, standing
-from .physics_surface import SIDES, bottoms, leg_chain, of_foot, touching
+from .physics_stance import bearing
+from .physics_surface import SIDES, bottoms, leg_chain, of_foot
 
 Array = NDArray[np.float64]
 FEWEST = 4
@@ -44,41 +42,37 @@ class Foot(NamedTuple):
     """World rotation about the vertical to add to the foot's own, shape (n_frames, 4)."""
 
 
-def planted_piece(body: PhysicsBody, piece: Piece, in_take: Array, ground: float) -> Piece:
-    """Return a simulated piece with feet that do not move over the ground where they stand.
+def planted(body: PhysicsBody, motion: Motion, held: Array, ground: float) -> Motion:
+    """Return the motion with feet that do not move over the ground where they are held.
 
-    The part of the sole that carries the foot, heel, ball or toes, stays where it is, as far as
-    the foot does not mean to move (`standing`); the shift and the turn that this takes fade
-    while the foot is in the air. Feet are shifted and turned level with the ground only, so
-    that none sinks or rises; hips and knees turn after them, and the hips give way a little
-    where a leg is too short.
+    The part of the sole that carries the foot, heel, ball or toes, stays where it is; the shift
+    and the turn that this takes fade while the foot is free. Feet are shifted and turned level
+    with the ground only, so that none sinks or rises; hips and knees turn after them, and the
+    hips give way a little where a knee would suffer.
 
     Parameters
     ----------
     body : PhysicsBody
-    piece : Piece
-    in_take : shape (n_frames, 2), 0 to 1
-        How firmly the feet of the take stand.
+    motion : Motion
+    held : shape (n_frames - 1, 2), 0 to 1
+        How firmly each foot is held from each frame to the next.
     ground : float, metres
     """
-    motion, rate = piece.motion, piece.motion.frame_rate
     if motion.n_frames < FEWEST:
-        return piece
-    firm = standing(body, motion, piece.loads, in_take, ground)
-    held = np.minimum(firm[1:], firm[:-1]) * (piece.followed[1:] & piece.followed[:-1])[:, None]
-    poses = forward_kinematics(motion)
-    feet = []
+        return motion
+    poses, feet = forward_kinematics(motion), []
     for column, side in enumerate(SIDES):
         chain = leg_chain(body, side)
         if chain and held[:, column].any():
             feet.append(_foot(body, motion, poses, chain, side, held[:, column], ground))
     if not feet:
-        return piece
-    shift = hips_shift(poses, [foot.goal for foot in feet], rate, body.size)
+        return motion
+    goals = [foot.goal for foot in feet]
+    shift = hips_shift(poses, goals, motion.frame_rate, body.size)
     result = motion.with_poses(root_positions=motion.root_positions + shift)
     for foot in feet:
         result = _followed(result, poses, foot)
-    return replace(piece, motion=result, contacts=touching(body, result, ground))
+    return result
 
 
 def _foot(

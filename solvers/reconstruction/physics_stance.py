@@ -4,7 +4,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.ndimage import gaussian_filter1d
 
-from ..motion import Motion
+from ..motion import HumanoidMap, Motion, detect_contacts
 from .physics_body import PhysicsBody
 from .physics_surface import SIDES, bottoms, of_foot, sole_speeds
 
@@ -21,24 +21,34 @@ SLIDING, SLIPPING = 0.3, 0.5
 the former, and let slip if it is faster than the latter."""
 
 LOW, HIGH = 0.02, 0.03
-"""Metres over the ground, for legs of 0.9 m: a foot that stands in the take is held where the
+"""Metres over the ground, for legs of 0.9 m: a foot that stands in the target is held where the
 simulated one is lower than the former, and not above the latter."""
 
 ROLLING = 0.002
 """Metres, for legs of 0.9 m: a part of the sole this much higher bears 1/e of the load."""
 
 
+def in_contact(body: PhysicsBody, motion: Motion) -> Flags:
+    """Tell when the feet of a motion stand, shape (n_frames, 2); a body without never does."""
+    humanoid = HumanoidMap({
+        role: body.skeleton.names[joint] for joint, role in body.roles.items()
+    })
+    if not humanoid.has(*(f"{side}Foot" for side in SIDES)):
+        return np.zeros((motion.n_frames, len(SIDES)), dtype=np.bool_)
+    return detect_contacts(motion, humanoid)
+
+
 def standing(
     body: PhysicsBody,
     motion: Motion,
     loads: Array,
-    in_take: Array,
+    in_target: Array,
     ground: float,
 ) -> Array:
     """Return how firmly each simulated foot should be held where it is, 0 to 1.
 
     It stands where it carries weight and hardly moves: that is what the simulation itself says,
-    and needs no guess of heights. It also stands where it does in the take, though the other
+    and needs no guess of heights. It also stands where it does in the target, though the other
     foot may bear all the weight here, if it is near the ground.
 
     Parameters
@@ -48,8 +58,8 @@ def standing(
         As it was simulated.
     loads : shape (n_frames, n_ends)
         By which the ground carries each end of `bottoms`, as a share of the weight.
-    in_take : shape (n_frames, 2), 0 to 1
-        How firmly the feet of the take stand.
+    in_target : shape (n_frames, 2), 0 to 1
+        How firmly the feet of what is followed stand.
     ground : float, metres
 
     Returns
@@ -68,8 +78,13 @@ def standing(
             carries = np.clip((load - LEAST) / (FULL - LEAST), 0.0, 1.0)
             height = (points[:, own, 2].min(axis=1) - ground) / body.size
             near = np.clip((HIGH - height) / (HIGH - LOW), 0.0, 1.0)
-            firm[:, column] = np.maximum(carries * slow[:, column], in_take[:, column] * near)
+            firm[:, column] = np.maximum(carries * slow[:, column], in_target[:, column] * near)
     return firm
+
+
+def from_frame_to_frame(firm: Array) -> Array:
+    """Return how firmly feet are held between frames, shape (n_frames - 1, 2)."""
+    return np.minimum(firm[1:], firm[:-1])
 
 
 def bearing(heights: Array, frame_rate: float, size: float) -> Array:

@@ -6,14 +6,13 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.ndimage import distance_transform_edt
 
-from ..motion import HumanoidMap, Motion, detect_contacts, find_humanoid_map
+from ..motion import HumanoidMap, Motion, find_humanoid_map
 from ..progress import Progress, unwatched, within
 from .physics_body import PhysicsBody, check_size, physics_body
 from .physics_engine import load_engine
-from .physics_feet import find_ground, has_feet, stands_for_long, with_soles
+from .physics_feet import find_ground, stands_for_long, with_soles
 from .physics_figures import about_ground, mean_distance, stands_on, told
 from .physics_piece import Conditions, Piece, find_pieces, simulated_piece
-from .physics_plant import planted_piece
 from .physics_settings import Ground, SimulateSettings
 from .physics_stance import carried
 from .physics_surface import penetration, slide
@@ -143,17 +142,17 @@ def simulate(
     ground = _height(settings, whole, humanoid, under_feet, bare.size)
     body = with_soles(bare, whole, humanoid, ground)
     conditions = Conditions(
-        ground, settings.response, settings.smoothing, settings.friction, settings.support
+        ground,
+        settings.response,
+        settings.smoothing,
+        settings.friction,
+        settings.support,
+        settings.plant,
     )
-    stands = _stands(body, whole, humanoid)
     pieces = []
     for start, stop in find_pieces(body, whole):
         step = within(progress, start / motion.n_frames, stop / motion.n_frames)
-        piece = simulated_piece(
-            engine, body, whole.slice(start, stop), stands[start:stop], conditions, step
-        )
-        if settings.plant:
-            piece = planted_piece(body, piece, stands[start:stop] * piece.firm, ground)
+        piece = simulated_piece(engine, body, whole.slice(start, stop), conditions, step)
         pieces.append(piece)
     progress(1.0, "Simulated")
     return _put_together(motion, whole, body, pieces, settings, ground, under_feet)
@@ -177,13 +176,6 @@ def _height(
         return under_feet
     leaps = under_feet > given and not stands_for_long(take, humanoid)
     return given if leaps or stands_on(given, under_feet, size) else under_feet
-
-
-def _stands(body: PhysicsBody, take: Motion, humanoid: HumanoidMap) -> Flags:
-    """Tell when the feet of the take stand, shape (n_frames, 2)."""
-    if not has_feet(humanoid) or not body.roles:
-        return np.zeros((take.n_frames, 2), dtype=np.bool_)
-    return detect_contacts(take, humanoid)
 
 
 def with_strength(motion: Motion, simulated: Simulated, strength: float) -> Motion:
