@@ -1,143 +1,175 @@
-"""How far upper arms and thighs are twisted, from positions of joints alone.
+"""How far off upper arms and thighs are turned, from positions of joints alone.
 
-Clips of optical systems whose rotations are known: actor dg of HDM05, whom no library that
-ships knows, and actors of CMU, each with the library made anew without him. Their joints are
-given as they were, or with the errors that a Kinect v2 made in takes of UI-PRMD (mean offsets taken
-out, in the actor's heading). Makers' hinges are turned about limbs by a constant (30 degrees in
-CMU's and HDM05's arms), which is measured where limbs bend and taken out of the truth.
+Actor dg of HDM05, whom no library that ships knows; and actors of CMU, each with the library
+made anew without him. Settings were chosen on others: bd and bk of HDM05, and the actors of CMU
+that `clips.DEV_SUBJECTS` names.
 """
 
-from collections.abc import Iterator
-from dataclasses import dataclass, replace
+from collections.abc import Callable
 from functools import cache
 
 import numpy as np
 from numpy.typing import NDArray
 
-from solvers.motion import (
-    JointRecording,
-    Motion,
-    find_humanoid_map,
-    forward_kinematics,
+from solvers.motion import Motion, forward_kinematics
+from solvers.motion.rotations import angle_between, rotate
+from solvers.reconstruction import (
+    PostureLibrary,
+    Reconstruction,
+    build_posture_library,
+    load_posture_library,
+    reconstruct,
 )
-from solvers.motion.canonical import t_pose_alignment
-from solvers.motion.posture_heading import normalise, turned
-from solvers.motion.posture_joints import POSTURE_JOINTS, motion_postures
-from solvers.motion.rotations import (
-    multiply,
-    quaternion_from_rotation_vector,
-    rotate,
-)
-from solvers.reconstruction.trunk_twist import TWISTED, TwistedLimb
-from solvers.workflows.reconstruct_motion import postures_recording
+from solvers.reconstruction.follow_joints import follow_joints
+from solvers.reconstruction.posture_library import joined_postures
+from solvers.reconstruction.trunk_twist import TWISTED, LimbTwists
 
-from .kinect_folds import pairs, seen_of, truth_of
+from . import clips
+from .posture_sources import cmu_library, exercise
+from .tables import number, table
+from .twist_cases import KINECT, LOST, TRUE, Case, cases
 
 Array = NDArray[np.float64]
+Group = tuple[list[Motion], PostureLibrary]
+"""Clips of one rig, and the library that they are rebuilt with."""
 
 STRAIGHT = np.radians(15.0)
 """Bends below this are those of straight limbs."""
-BENT = np.radians(30.0)
-"""Bends from which on a maker's hinge is measured."""
+LONGEST = 300
+"""Frames of a clip that are looked at."""
+ACTOR, OTHER_ACTORS = "dg", ("bd", "bk")
+SUBJECTS = ("05", "06", "13", "29", "35", "49")
+UPPER = ("ShoulderLeft", "ShoulderRight", "HipLeft", "HipRight")
+ARMS, LEGS = slice(0, 2), slice(2, 4)
+SEEN = (TRUE, KINECT, LOST)
+COLUMNS = (
+    "straight arms", "bent arms", "straight legs", "bent legs", "all", "elbow or knee aside",
+)  # fmt: skip
 
 
-@dataclass(frozen=True, eq=False)
-class Case:
-    """A clip whose rotations are known, and its joints as they were seen."""
-
-    name: str
-    motion: Motion
-    recording: JointRecording
-    bends: Array
-    """Radians, (n_frames, 4)."""
-    truth: Array
-    """World rotations of `TWISTED` from a T-pose whose elbows bend forward, (n_frames, 4, 4).
-    """
-    lower: Array
-    """The same of forearms and shins."""
+def untwisted(result: Reconstruction) -> LimbTwists:
+    """No twist against the trunk at all."""
+    return LimbTwists(np.zeros((result.tracks.n_frames, len(TWISTED)), complex), alone=True)
 
 
-def true_rotations(motions: list[Motion]) -> list[tuple[Array, Array, Array]]:
-    """Return bends, and world rotations of upper and lower limbs, of clips of one rig."""
-    plain = [_plain(motion) for motion in motions]
-    off = np.zeros(len(TWISTED), complex)
-    for bends, upper, _, normals in plain:
-        for place, limb in enumerate(TWISTED):
-            bent = bends[:, place] > BENT
-            axis, hinge = (
-                rotate(upper[bent, place], each) for each in (limb.along, limb.hinge)
-            )
-            normal = normals[bent, place]
-            sin = np.einsum("fi,fi->f", np.cross(hinge, normal), axis)
-            cos = np.einsum("fi,fi->f", hinge, normal)
-            off[place] += ((cos + 1j * sin) / np.hypot(cos, sin)).sum()
-    turns = np.stack([
-        quaternion_from_rotation_vector(np.angle(each) * np.array(limb.along))
-        for limb, each in zip(TWISTED, off, strict=True)
-    ])
+def neighbours(result: Reconstruction) -> LimbTwists:
+    """As [SHJT13]: the neighbours' mean alone."""
+    assert result.twists is not None
+    return LimbTwists(result.twists.vectors, alone=True)
+
+
+METHODS: dict[str, Callable[[Reconstruction], LimbTwists | None]] = {
+    "no twist": untwisted,
+    "bends alone": lambda result: None,
+    "neighbours' mean, as [SHJT13]": neighbours,
+    "bends and neighbours (ours)": lambda result: result.twists,
+}
+
+
+def twist(n_repetitions: int) -> list[str]:
+    """Return one table for each set of clips."""
+    few = max(n_repetitions // 2, 1)
+    actor = _hdm05(ACTOR, few)
+    shipped = load_posture_library()
+    subjects = [(_cmu(each, few), cmu_library(without=each)) for each in SUBJECTS]
     return [
-        (bends, multiply(upper, turns), multiply(lower, turns))
-        for bends, upper, lower, _ in plain
+        _table("HDM05, actor dg, with the library that ships", [(actor, shipped)]),
+        _table(
+            "HDM05, actor dg, with that and the same movements by actors bd and bk",
+            [(actor, joined_postures(_same_movements(), shipped))],
+        ),
+        _table("CMU, six actors, each left out of CMU's library", subjects),
     ]
 
 
-def _plain(motion: Motion) -> tuple[Array, Array, Array, Array]:
-    humanoid = find_humanoid_map(motion.skeleton)
-    joints = humanoid.indices(motion.skeleton)
-    alignment = t_pose_alignment(motion.skeleton, humanoid)
-    world = multiply(forward_kinematics(motion).rotations, alignment)
-    postures = motion_postures(motion)
-    ways = [_directions(postures, limb) for limb in TWISTED]
-    normals = np.stack([np.cross(*each) for each in ways], axis=1)
-    cos = np.stack([np.einsum("fi,fi->f", *each) for each in ways], axis=1)
-    bends = np.arctan2(np.linalg.norm(normals, axis=-1), cos)
-    upper, lower = (
-        world[:, [joints[POSTURE_JOINTS[limb[part]]] for limb in TWISTED]] for part in (0, 1)
-    )
-    return bends, upper, lower, normals
-
-
-def _directions(postures: Array, limb: TwistedLimb) -> tuple[Array, Array]:
-    first = postures[:, limb.lower] - postures[:, limb.upper]
-    second = postures[:, limb.end] - postures[:, limb.lower]
-    return tuple(
-        each / np.linalg.norm(each, axis=-1, keepdims=True) for each in (first, second)
-    )
+def _hdm05(actor: str, n_clips: int) -> list[Motion]:
+    found = []
+    for name in clips.hdm05_classes():
+        own = [one for take, one in clips.hdm05(name).items() if take.startswith(actor)]
+        found += own[:n_clips]
+    return [_short(motion) for motion in found]
 
 
 @cache
-def kinect_errors() -> tuple[Array, ...]:
-    """Errors of whole takes, in the actor's heading, beside their means, (n_frames, 20, 3)."""
-    found = []
-    for pair in pairs()[::7]:
-        heading = normalise(truth_of(pair), pair.truth.frame_rate).headings
-        off = turned(seen_of(pair) - truth_of(pair), -heading)
-        off -= np.nanmean(off, axis=0) if np.isfinite(off).any() else 0.0
-        if pair.matched and np.isfinite(np.delete(off, (7, 11), axis=1)).all():
-            off[:, (7, 11)] = off[:, (6, 10)]
-            found.append(off)
-    return tuple(found)
+def _same_movements() -> PostureLibrary:
+    motions = [motion for actor in OTHER_ACTORS for motion in _hdm05(actor, 100)]
+    return build_posture_library(motions)
 
 
-def as_a_kinect_sees(motion: Motion, random: np.random.Generator) -> Array:
-    """Add the errors of a take that was drawn, to and fro, to the joints of postures."""
-    postures = motion_postures(motion)
-    heading = normalise(postures, motion.frame_rate).headings
-    errors = kinect_errors()
-    off = errors[random.integers(len(errors))]
-    there_and_back = np.concatenate([off, off[::-1]])
-    places = (random.integers(len(off)) + np.arange(len(postures))) % len(there_and_back)
-    return postures + turned(there_and_back[places], heading)
+def _cmu(subject: str, n_clips: int) -> list[Motion]:
+    if subject == "13":
+        found = [clips.every(exercise(name), clips.STEP) for name in ("13_29", "13_30")]
+    else:
+        every = {**clips.walks(), **clips.hops()}
+        found = [motion for name, motion in every.items() if name.startswith(subject)]
+    return [_short(motion) for motion in found[:n_clips]]
 
 
-def cases(clips: dict[str, Motion], noisy: bool) -> Iterator[Case]:
-    """Yield clips of one rig."""
-    random = np.random.default_rng(4)
-    told = true_rotations(list(clips.values()))
-    for (name, motion), (bends, upper, lower) in zip(clips.items(), told, strict=True):
-        recording = postures_recording(motion)
-        if noisy:
-            known = np.isfinite(motion_postures(motion)).all(axis=-1).any(axis=0)
-            seen = as_a_kinect_sees(motion, random)[:, known]
-            recording = replace(recording, tracks=recording.tracks.with_positions(seen))
-        yield Case(name, motion, recording, bends, upper, lower)
+def _short(motion: Motion) -> Motion:
+    return motion.slice(0, min(motion.n_frames, LONGEST))
+
+
+def _table(title: str, groups: list[Group]) -> str:
+    rows = {}
+    for seen in SEEN:
+        found: dict[str, list[tuple[Array, Array, Case]]] = {name: [] for name in METHODS}
+        for motions, library in groups:
+            for case in cases(motions, seen):
+                result = reconstruct(case.recording, library)
+                for name, told in METHODS.items():
+                    found[name].append((*_errors(case, result, told(result)), case))
+        for name, errors in found.items():
+            rows[f"{seen}: {name}"] = _cells(errors)
+    n_clips = sum(len(motions) for motions, _ in groups)
+    head = f"**{title}**, {n_clips} clips, degrees\n\n"
+    return head + table(["joints, twist by", *COLUMNS], rows) + "\n"
+
+
+def _errors(
+    case: Case, result: Reconstruction, twists: LimbTwists | None
+) -> tuple[Array, Array]:
+    """Return by how much limbs are turned off, and bends lie aside of their hinge, in degrees.
+
+    Both of shape (n_frames, 4).
+    """
+    motion = follow_joints(
+        result.tracks, case.recording.parents, result.reliability.combined, twists=twists
+    )
+    world = forward_kinematics(motion)
+    uppers = [motion.skeleton.index(name) for name in UPPER]
+    off = angle_between(world.rotations[:, uppers], case.truth.rotations)
+    aside = np.empty_like(off)
+    for place, (name, limb) in enumerate(zip(UPPER, TWISTED, strict=True)):
+        lower = motion.skeleton.index(_below(name))
+        end = motion.skeleton.index(_below(_below(name)))
+        way = world.positions[:, end] - world.positions[:, lower]
+        hinge = rotate(world.rotations[:, uppers[place]], limb.hinge)
+        share = np.einsum("fi,fi->f", way, hinge) / np.linalg.norm(way, axis=-1)
+        aside[:, place] = np.arcsin(np.clip(np.abs(share), 0.0, 1.0))
+    return np.degrees(off), np.degrees(aside)
+
+
+def _below(name: str) -> str:
+    """Return the joint below one of a Kinect's limbs."""
+    for above, below in (
+        ("Shoulder", "Elbow"), ("Elbow", "Wrist"), ("Hip", "Knee"), ("Knee", "Ankle"),
+    ):  # fmt: skip
+        if name.startswith(above):
+            return name.replace(above, below)
+    raise KeyError(name)
+
+
+def _cells(found: list[tuple[Array, Array, Case]]) -> list[str]:
+    off, aside = (np.concatenate([each[part] for each in found]) for part in (0, 1))
+    straight = np.concatenate([case.truth.bends for *_, case in found]) < STRAIGHT
+    scored = np.concatenate([case.scored for *_, case in found])
+    cells = []
+    for limbs in (ARMS, LEGS):
+        for part in (straight, ~straight):
+            where = (part & scored)[:, limbs]
+            cells.append(_mean(off[:, limbs][where]))
+    return [*cells, _mean(off[scored]), _mean(aside[scored & ~straight])]
+
+
+def _mean(values: Array) -> str:
+    return number(float(values.mean())) if values.size else "-"

@@ -33,18 +33,21 @@ UI_PRMD = PostureLibrarySettings(spacing=0.012, n_postures=2000)
 
 
 @cache
-def cmu_library(folder: Path = MOCAP) -> PostureLibrary:
-    """Return postures of the CMU captures."""
+def cmu_library(folder: Path = MOCAP, without: str = "none") -> PostureLibrary:
+    """Return postures of the CMU captures, but for those of one subject."""
     motions = [
         _without_t_pose(read_bvh(path, scale=CMU_METRES))
         for part in FOLDERS
         for path in sorted((folder / part).glob("*.bvh"))
+        if not path.stem.startswith(without)
     ]
-    motions += [
-        read_acclaim(folder / "cmu_jumping_jack" / f"{name}.amc", folder / "05.asf")
-        for name in EXERCISES
-    ]
+    motions += [exercise(name, folder) for name in EXERCISES if not name.startswith(without)]
     return build_posture_library(motions, settings=CMU, trained_on=CMU_WORDS)
+
+
+def exercise(name: str, folder: Path = MOCAP) -> Motion:
+    """Read one of `EXERCISES`, whose skeleton is another actor's with the same bones."""
+    return read_acclaim(folder / "cmu_jumping_jack" / f"{name}.amc", folder / "05.asf")
 
 
 def exercise_library(pairs: Iterable[Pair]) -> PostureLibrary:
