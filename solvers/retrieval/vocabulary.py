@@ -25,9 +25,6 @@ N_NEAREST = 3
 """Words that share a frame between them."""
 TINY = 1e-6
 """Metres by which frames that are the same are set apart: clusters cannot be."""
-EVENED = 0.5
-"""Power of how much a part of the body usually moves by which it counts less: legs and the way
-of the whole body would outdo arms."""
 MOST_FRAMES = 12000
 """Of which words are learned: more make it slower, and no better."""
 SHAPES = {
@@ -112,8 +109,8 @@ def learn_vocabulary(clips: list[ClipPostures], seed: int = 0) -> Vocabulary:
     ])  # fmt: skip
     centre = told.mean(axis=0)
     beside = told - centre
-    sizes, axes = np.linalg.eigh(np.einsum("fpd,fpe->pde", beside, beside) / len(told))
-    axes = _evened(axes[..., ::-1][..., :N_AXES], sizes[..., ::-1][..., :N_AXES])
+    _, axes = np.linalg.eigh(np.einsum("fpd,fpe->pde", beside, beside) / len(told))
+    axes = axes[..., ::-1][..., :N_AXES]
     features = np.einsum("fpd,pdk->fpk", beside, axes)
     n_words = max(min(N_WORDS, len(told) // FRAMES_PER_WORD), 1)
     words = np.stack([_words(features[:, part], n_words, rng) for part in range(N_PARTS)])
@@ -123,12 +120,6 @@ def learn_vocabulary(clips: list[ClipPostures], seed: int = 0) -> Vocabulary:
     ])  # fmt: skip
     spread = np.maximum(np.median(nearest, axis=-1), 1e-6)
     return Vocabulary(centre, axes, words, spread, usual, n_frames)
-
-
-def _evened(axes: Array, variances: Array) -> Array:
-    """Scale the axes of parts that move much down, and those of parts that move little up."""
-    spread = np.sqrt(np.maximum(variances.sum(axis=-1), TINY))
-    return np.asarray(axes * (spread.mean() / spread)[:, None, None] ** EVENED)
 
 
 def _words(features: Array, n_words: int, rng: np.random.Generator) -> Array:

@@ -160,20 +160,20 @@ def test_parts_that_move_count_more_and_hanging_arms_little():
     activity = words.activity(words.features(clip_postures(act("kick", 2.5), 20.0)))
     assert activity.argmax() == list(BodyPart).index(BodyPart.LEFT_LEG)
 
-    weights = FindSettings().part_weights(np.ones(5), activity)
+    weights = FindSettings().part_weights(np.ones(5), np.ones(5), activity)
     assert weights.argmax() == activity.argmax()
     assert weights.min() > 0.2
     assert_allclose(weights.mean(), 1.0)
-    assert_allclose(FindSettings(busy=0.0).part_weights(np.ones(5), activity), 1.0)
+    assert_allclose(FindSettings(busy=0.0).part_weights(np.ones(5), np.ones(5), activity), 1.0)
 
 
 @pytest.mark.parametrize("activity", [np.zeros(5), np.array([0.0, 1e-9, 0.0, 1e-6, 0.0])])
 def test_all_parts_of_a_pose_count_alike(activity):
-    weights = FindSettings().part_weights(np.ones(5), activity)
+    weights = FindSettings().part_weights(np.ones(5), np.ones(5), activity)
     assert_allclose(weights, 1.0, atol=1e-3)
 
 
 def test_a_part_that_is_not_asked_for_does_not_count_however_it_moves():
     settings = FindSettings(left_leg=False)
-    weights = settings.part_weights(np.ones(5), np.array([1.0, 1.0, 1.0, 9.0, 1.0]))
+    weights = settings.part_weights(np.ones(5), np.ones(5), np.array([1.0, 1.0, 1.0, 9.0, 1.0]))
     assert_allclose(weights, [1.25, 1.25, 1.25, 0.0, 1.25])
