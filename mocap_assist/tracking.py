@@ -27,6 +27,7 @@ from .scene.live_body import LiveBody
 from .scene.new_action import write_motion
 from .scene.reliability_curves import write_reliability
 from .scene.scene_objects import all_or_nothing
+from .scene.tracked_body import TrackedBody
 from .scene.units import unit_of
 from .subject import check_unchanged
 
@@ -135,6 +136,8 @@ def write_tracked(
         armature.matrix_world = _place(preview, result.floor) @ Matrix.Scale(metres, 4)
         write_reliability(armature, *source, frames, result.confidence)
         _write_residual(armature, source, frames, result.residual)
+        kept = TrackedBody(result.body, shown, result.floor, settings.actor)
+        kept.write(armature, dict(zip(result.motion.skeleton.names, bones, strict=True)))
     action = source[0]
     action[CAPTURED] = json.dumps(_entry(settings, result, shown), ensure_ascii=False)
     _list_doubts(scene, action, frames, result)

@@ -27,7 +27,9 @@ class LiveBody:
     def __init__(self, scene: bpy.types.Scene) -> None:
         self._scene = scene.session_uid
         self._frame = (scene.frame_current, scene.frame_subframe)
-        self._onlooker, self._drawing = Onlooker(), BodyDrawing()
+        self._onlooker = Onlooker()
+        self.drawn: Solid | None = None
+        self._drawing = BodyDrawing(lambda _: self.drawn)
         self._body: Any = None
         self._not_before = 0.0
 
@@ -40,7 +42,7 @@ class LiveBody:
         if not poses or began < self._not_before:
             return
         follow(scene, preview, poses[-1].frame)
-        self._drawing.drawn = self.solid_of(poses[-1], preview)
+        self.drawn = self.solid_of(poses[-1], preview)
         self._not_before = monotonic() + (monotonic() - began) * (1.0 / AT_MOST - 1.0)
 
     def solid_of(self, found: FoundPose, preview: bpy.types.Object) -> Solid:

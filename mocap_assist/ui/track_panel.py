@@ -5,6 +5,7 @@ from typing import ClassVar
 import bpy
 
 from ...solvers.motion.depth_foreground import ForegroundWay
+from ..scene.tracked_body import is_tracked
 from ..tracking import why_not_track
 from .drawing import draw_job, draw_sentence, exists
 
@@ -38,5 +39,8 @@ class TrackPanel:
         for name in SHOWN:
             column.prop(track, name)
         layout.operator(TRACK, icon="OUTLINER_OB_ARMATURE")
-        if reason := why_not_track(context):
+        if is_tracked(context.view_layer.objects.active):
+            manager = context.window_manager
+            layout.prop(manager, "mocap_assist_body", toggle=True, icon="MOD_SKIN")
+        elif reason := why_not_track(context):
             draw_sentence(layout, context, reason, icon="INFO")
