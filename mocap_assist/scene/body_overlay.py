@@ -48,7 +48,7 @@ def body_now(armature: bpy.types.Object | None, frame: float) -> Solid | None:
 def _wanted(context: bpy.types.Context) -> Solid | None:
     manager = context.window_manager
     job = manager.mocap_assist_job
-    if not manager.mocap_assist_body or (job.running and job.owner == "track"):
+    if not manager.mocap_assist_body or (job.running and job.owner in {"track", "retrack"}):
         return None
     active = context.view_layer.objects.active
     return body_now(active, context.scene.frame_current_final)

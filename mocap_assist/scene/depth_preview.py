@@ -80,6 +80,10 @@ class Shown:
         """Return which picture is shown at a frame of the scene; before and after, the ends."""
         return int(np.clip(round((frame - self.start) / self.step), 0, n_frames - 1))
 
+    def frame(self, picture: int) -> float:
+        """Return the frame of the scene at which a picture is shown."""
+        return self.start + self.step * picture
+
 
 def build_preview(
     context: bpy.types.Context,
