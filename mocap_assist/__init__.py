@@ -9,7 +9,7 @@ def register() -> None:
     from . import batch, scene_properties, ui, watch
     from .library import background, ghost_drawing, keeping, previews, properties
     from .live import listening
-    from .scene import contacts, depth_preview
+    from .scene import body_overlay, contacts, depth_preview
 
     scene_properties.register()
     properties.register()
@@ -19,6 +19,7 @@ def register() -> None:
     previews.register()
     contacts.register()
     depth_preview.register()
+    body_overlay.register()
     watch.register()
     listening.register()
     batch.register()
@@ -30,12 +31,13 @@ def unregister() -> None:
     from . import batch, scene_properties, ui, watch
     from .library import background, ghost_drawing, keeping, previews, properties
     from .live import listening
-    from .scene import contacts, depth_preview
+    from .scene import body_overlay, contacts, depth_preview
 
     ui.unregister()
     batch.unregister()
     listening.unregister()
     watch.unregister()
+    body_overlay.unregister()
     depth_preview.unregister()
     contacts.unregister()
     previews.unregister()

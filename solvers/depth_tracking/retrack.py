@@ -40,6 +40,8 @@ class Retracked:
     ----------
     motion : Motion
         All frames; outside of `first` to `last` it is what it was.
+    frame : int
+        The one that was corrected.
     first, last : int
         Frames between which something has changed; both count.
     met : tuple of bool
@@ -50,6 +52,7 @@ class Retracked:
     """
 
     motion: Motion
+    frame: int
     first: int
     last: int
     met: tuple[bool, bool]
@@ -133,7 +136,7 @@ def retrack(
     n_blend = round(settings.blend * depth.frame_rate)
     blended = _blended(motion, new, first, frame, n_blend)
     met = back.met, forth.met
-    return Retracked(blended, first, last, met, tracked.joints, tracked.residual)
+    return Retracked(blended, frame, first, last, met, tracked.joints, tracked.residual)
 
 
 def _check(depth: DepthRecording, motion: Motion, frame: int) -> None:
