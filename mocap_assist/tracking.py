@@ -16,26 +16,24 @@ from ..solvers.motion.depth_floor import LEVEL, Floor
 from ..solvers.motion.depth_foreground import ForegroundSettings
 from ..solvers.settings import Settings, setting
 from ..solvers.version import version
+from .doubts import list_doubts
 from .jobs.protocol import Showing
 from .jobs.tracking import Tracked, track_recording, tracked_so_far
-from .scene import compat, history
+from .scene import history
 from .scene.armature_build import build_armature
-from .scene.compat import Source
-from .scene.curves import write_first
 from .scene.depth_preview import KEY, Shown, problem_of, recording_of
-from .scene.live_body import LiveBody
+from .scene.live_body import LiveBody, stage_of_preview
 from .scene.new_action import write_motion
 from .scene.reliability_curves import write_reliability
 from .scene.scene_objects import all_or_nothing
+from .scene.tracked_body import TrackedBody
+from .scene.tracked_curves import write_residual
 from .scene.units import unit_of
 from .subject import check_unchanged
 
 MODE = "QUATERNION"
-RESIDUAL = "mocap_residual"
-"""Custom property of the armature: metres between body and points, keyed."""
 CAPTURED = "mocap_assist_captured"
 """Custom property of the action: how it was made, as JSON. To Clean it is raw."""
-MOST_SPOTS = 100
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -100,7 +98,7 @@ def read_tracking(
 
 def watch_tracking(scene: bpy.types.Scene, settings: TrackBundle) -> LiveBody | None:
     """Return what shows the body while it is tracked, if that is wanted."""
-    return LiveBody(scene) if settings.watching.watch else None
+    return LiveBody(scene, stage_of_preview) if settings.watching.watch else None
 
 
 def keep_tracked(
@@ -134,10 +132,12 @@ def write_tracked(
         source = write_motion(armature, bones, result.motion, frames, metres)
         armature.matrix_world = _place(preview, result.floor) @ Matrix.Scale(metres, 4)
         write_reliability(armature, *source, frames, result.confidence)
-        _write_residual(armature, source, frames, result.residual)
+        write_residual(armature, source, frames, result.residual)
+        kept = TrackedBody(result.body, shown, result.floor, settings.actor)
+        kept.write(armature, dict(zip(result.motion.skeleton.names, bones, strict=True)))
     action = source[0]
     action[CAPTURED] = json.dumps(_entry(settings, result, shown), ensure_ascii=False)
-    _list_doubts(scene, action, frames, result)
+    list_doubts(scene, action, frames, result.doubts, _said(result))
     return f"{armature.name}: {_said(result)}"
 
 
@@ -147,37 +147,6 @@ def _place(preview: bpy.types.Object, floor: Floor | None) -> Matrix:
     camera = np.eye(4)
     camera[:3, :3], camera[:3, 3] = turn, shift
     return preview.matrix_world @ Matrix(np.linalg.inv(camera).tolist())
-
-
-def _write_residual(
-    armature: bpy.types.Object, source: Source, frames: np.ndarray, residual: np.ndarray
-) -> None:
-    known = np.isfinite(residual)
-    if not known.any():
-        return
-    armature[RESIDUAL] = float(residual[known][0])
-    bag = compat.channelbag(*source, ensure=True)
-    curve = compat.new_curve(bag, f'["{RESIDUAL}"]', 0, "Track")
-    write_first(curve, frames[known], residual[known])
-
-
-def _list_doubts(
-    scene: bpy.types.Scene, action: bpy.types.Action, frames: np.ndarray, result: Tracked
-) -> None:
-    """Show the doubtful ranges in the list of Check, worst first."""
-    shown = scene.mocap_assist
-    shown.spots.clear()
-    shown.active_spot = 0
-    shown.checked, shown.report = action.name, _said(result)
-    for doubt in result.doubts[:MOST_SPOTS]:
-        item = shown.spots.add()
-        item.name, item.kind = doubt.joint, "doubtful"
-        item.start, item.stop = np.round(frames[[doubt.first, doubt.last]], 2)
-        item.severity = float(doubt.last - doubt.first + 1)
-        item.sentence = (
-            f"{doubt.joint} is out of sight or badly explained from frame {item.start:g} to"
-            f" {item.stop:g}, and was guessed."
-        )
 
 
 def _said(result: Tracked) -> str:

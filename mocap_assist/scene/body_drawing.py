@@ -1,5 +1,6 @@
 """Draw the surface of a body over the 3D Views; nothing of the scene is touched."""
 
+from collections.abc import Callable
 from typing import Any, NamedTuple
 
 import bpy
@@ -86,10 +87,10 @@ def draw_solid(drawn: Solid, view: Any) -> None:
 
 
 class BodyDrawing:
-    """Draws a solid in all 3D Views until it is closed."""
+    """Draws a solid in all 3D Views until it is closed; `wanted` says which, if any."""
 
-    def __init__(self) -> None:
-        self.drawn: Solid | None = None
+    def __init__(self, wanted: Callable[[bpy.types.Context], Solid | None]) -> None:
+        self._wanted = wanted
         self._handle: Any = bpy.types.SpaceView3D.draw_handler_add(
             self._draw, (), "WINDOW", "POST_VIEW"
         )
@@ -102,5 +103,8 @@ class BodyDrawing:
 
     def _draw(self) -> None:
         context = bpy.context
-        if self.drawn is not None and context.space_data.overlay.show_overlays:
-            draw_solid(self.drawn, context.region_data)
+        if not context.space_data.overlay.show_overlays:
+            return
+        drawn = self._wanted(context)
+        if drawn is not None:
+            draw_solid(drawn, context.region_data)

@@ -20,6 +20,8 @@ from .learn_motion_prior import learn_motion_prior
 from .motion_prior import MotionPrior, load_motion_prior
 from .pixel_forest import PixelForest, load_pixel_forest
 from .refine_body import RefineBodySettings, refine_body
+from .retrack import Retracked, retrack
+from .retracked_course import RetrackSettings
 from .skinned_body import SkinnedBody, load_skinned_body
 from .track_pose import TrackedMotion, track_pose
 from .tracker_settings import LOU12, WZC12, TrackerSettings
@@ -38,6 +40,8 @@ __all__ = [
     "PixelForest",
     "PixelForestSettings",
     "RefineBodySettings",
+    "RetrackSettings",
+    "Retracked",
     "SkinnedBody",
     "TrackedMotion",
     "TrackerSettings",
@@ -50,6 +54,7 @@ __all__ = [
     "load_pixel_forest",
     "load_skinned_body",
     "refine_body",
+    "retrack",
     "track_pose",
     "train_pixel_forest",
     "usual_body",

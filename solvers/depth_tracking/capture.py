@@ -16,7 +16,7 @@ from .body_kinematics import joint_positions, segment_frames
 from .body_model import BodyModel
 from .body_motion import body_motion
 from .capture_passes import Actor, Pass, RecoverySettings, track_with_restarts
-from .choose_poses import choose_poses
+from .choose_poses import choose_poses, nearest_known
 from .find_body import find_body
 from .found_pose import OnPose, unobserved
 from .motion_prior import MotionPrior, load_motion_prior
@@ -186,8 +186,8 @@ def best_of_passes(body: BodyModel, passes: Sequence[Pass]) -> tuple[Integers, I
     some = np.flatnonzero(known.any(axis=1))
     joints = joint_positions(body, segment_frames(body, np.nan_to_num(poses[some])))
     chosen = choose_poses(scores[some], joints, _SHARPNESS, _REACH)
-    nearest = np.abs(some[:, np.newaxis] - np.arange(len(poses))).argmin(axis=0)
-    return some[nearest], chosen[nearest]
+    nearest = nearest_known(some, len(poses))
+    return nearest, chosen[np.searchsorted(some, nearest)]
 
 
 def put_together(

@@ -18,9 +18,9 @@ _YAW = COORDINATES.index("yaw")
 _REST_WEIGHT = 1e-3
 _LIMIT_WEIGHT = 1.0
 _LONGEST_STEP = 0.5
-_CORNERS = 0.2 * np.array([*np.eye(3), -np.ones(3)])
-"""Points of a segment, metres, that tell how it is turned."""
-_CORNER_WEIGHT = 100.0
+_SURE = 100.0
+_CORNERS = 0.05 * np.array([*np.eye(3), *-np.eye(3)])
+"""Points of a segment, metres, that tell how it is turned; farther ones would tell more."""
 
 
 def pose_from_joints(
@@ -38,7 +38,7 @@ def pose_from_joints(
     iterations : int
     """
     known = np.flatnonzero(np.isfinite(joints).all(axis=1))
-    local = np.concatenate([np.zeros((len(SEGMENTS), 3)), body.offsets[len(SEGMENTS) :]])
+    local = _joints_on_segments(body)
     return pose_from_points(
         body, _CARRIERS[known], local[known], joints[known],
         np.ones(len(known)), start=start, iterations=iterations,
@@ -50,6 +50,8 @@ def pose_from_frames(
 ) -> Array:
     """Return the pose (36,) of the body whose segments are nearest to where these are.
 
+    Where its coordinates cannot turn them so, joints are rather in their places.
+
     Parameters
     ----------
     body : BodyModel
@@ -58,11 +60,13 @@ def pose_from_frames(
     start : shape (36,), optional
     iterations : int
     """
+    corners = np.tile(_CORNERS, (len(SEGMENTS), 1))
+    local = np.concatenate([_joints_on_segments(body), corners])
     segments = np.repeat(np.arange(len(SEGMENTS)), len(_CORNERS))
-    local = np.tile(_CORNERS, (len(SEGMENTS), 1))
+    segments = np.concatenate([_CARRIERS, segments])
     carriers = frames[segments]
     targets = np.einsum("nij,nj->ni", carriers[:, :3, :3], local) + carriers[:, :3, 3]
-    weights = np.full(len(segments), _CORNER_WEIGHT)
+    weights = np.full(len(segments), _SURE)
     return pose_from_points(
         body, segments, local, targets, weights, start=start, iterations=iterations
     )
@@ -102,6 +106,11 @@ def pose_from_points(
         _descend(body, pose, (segments, local, targets, weights), iterations) for pose in starts
     ]
     return min(found, key=lambda one: one[1])[0]
+
+
+def _joints_on_segments(body: BodyModel) -> Array:
+    """Return the `JOINTS` (21, 3) in the frames of the segments that carry them."""
+    return np.concatenate([np.zeros((len(SEGMENTS), 3)), body.offsets[len(SEGMENTS) :]])
 
 
 def _starts(targets: Array) -> list[Array]:

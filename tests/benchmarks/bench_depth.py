@@ -15,7 +15,6 @@ from threadpoolctl import threadpool_limits
 
 from solvers.depth_tracking.body_model import BodyModel
 from solvers.depth_tracking.body_tables import JOINTS
-from solvers.depth_tracking.capture import CaptureSettings, capture
 from solvers.depth_tracking.refine_body import refine_body
 from solvers.depth_tracking.track_pose import track_pose
 from solvers.depth_tracking.tracker_settings import LOU12, USUAL, WZC12, TrackerSettings
@@ -30,17 +29,18 @@ from .depth_sequences import (
     noisier,
     sequence,
 )
-from .depth_takes import HANDS, KINECT_TAKES, STABLE, draw_overlays, kinect_take
 from .lou_sequences import colored, others_motions
+from .part_depth_capture import FPS, captures, more, ways
+from .part_depth_kinect import kinect
+from .part_depth_renderers import renderers
 from .part_detector import detector
 from .part_failures import failures
 from .peers.icp_trackers import articulated_icp, ray_constrained_icp
-from .report import DOCS, PICTURES, Report
+from .report import DOCS, Report
 from .tables import Scores
 
 Track = Callable[[Sequence, BodyModel], np.ndarray]
 UNIT = "each sequence counts as one clip"
-FPS = "frames/s"
 HARD = ("walk_side", "walk_diagonal")
 """Sequences with occlusions, on which parts are left out."""
 WITHOUT = {
@@ -72,9 +72,10 @@ def main() -> None:
         raise SystemExit(f"There are no recordings in {TRUTH}.")
     report = Report(chosen.docs, DOCS / "benchmarks_depth.md")
     parts = {
-        "trackers": trackers, "captures": captures, "terms": terms, "bodies": bodies,
-        "noise": noise, "resolution": resolution, "kinect": kinect,
-        "detector": detector, "failures": failures,
+        "trackers": trackers, "captures": captures, "more": more, "ways": ways,
+        "terms": terms, "bodies": bodies, "noise": noise, "resolution": resolution,
+        "kinect": kinect, "renderers": renderers, "detector": detector,
+        "failures": failures,
     }  # fmt: skip
     for name, part in parts.items():
         if chosen.only and name not in chosen.only.split(","):
@@ -142,53 +143,6 @@ def trackers() -> list[str]:
                     near = found.offset_taken[:, JOINTS.index(joint)] < 0.1
                     by_joint.add(joint, "% < 10 cm", name, 100.0 * near.mean())
     return [scores.markdown(), _single(by_sequence), by_joint.markdown()]
-
-
-def captures() -> list[str]:
-    """Capture with nothing given: neither body nor first pose."""
-    scores = Scores("Automatic capture", "one take each; no body and no pose is given", "")
-    for name in SCORED:
-        one = sequence(name)
-        for label, given, settings in (
-            ("nothing given", None, CaptureSettings()),
-            ("forward only, not smoothed", one.body, FORWARD),
-        ):
-            started = process_time()
-            found = capture(one.depth, given, settings=settings)
-            speed = one.depth.n_frames / (process_time() - started)
-            off = errors(found.joints.positions, one.joints)
-            figures = off.figures() | {
-                "restarts": float(len(found.restarts)),
-                "flagged %": 100.0 * found.doubtful.mean(),
-                "cm where not flagged": 100.0 * off.offset_taken[~found.doubtful].mean(),
-                "% off in length": length_error(found.body, one.body),
-                FPS: speed,
-            }
-            for column, figure in figures.items():
-                scores.add(label, column, name, figure)
-    return [scores.markdown()]
-
-
-FORWARD = CaptureSettings(backward=False, smoothing=0.0)
-
-
-def kinect() -> list[str]:
-    """Capture real Kinect takes, and compare with the SDK's skeleton, which is no truth."""
-    scores = Scores("UTD-MHAD, a real Kinect, one take per row", UNIT, "")
-    for name in KINECT_TAKES:
-        take = kinect_take(name)
-        found = capture(take.depth)
-        apart = take.distances(found.joints.positions)
-        for column, figure in {
-            "cm from SDK, stable joints": 100.0 * apart[list(STABLE)].mean(),
-            "cm from SDK, hands": 100.0 * apart[list(HANDS)].mean(),
-            "cm in depth": 100.0 * float(np.nanmean(found.residual)),
-            "coverage": float(found.coverage.mean()),
-            "restarts": float(len(found.restarts)),
-        }.items():
-            scores.add(name, column, name, figure)
-        draw_overlays(take, found, PICTURES / f"depth_{name}.png")
-    return [_single(scores)]
 
 
 DAMPED_WZC12 = replace(

@@ -45,7 +45,7 @@ def press(load, window, points):
 
 
 def drawn(button):
-    return button._watch.view._drawing.drawn
+    return button._watch.view.drawn
 
 
 def test_the_body_lies_on_the_points_while_it_is_tracked_and_time_goes_along(

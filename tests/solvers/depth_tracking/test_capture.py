@@ -3,6 +3,8 @@
 import numpy as np
 import pytest
 from drawn_bodies import CAMERA, NATURAL, posed, recorded, waving
+from hypothesis import given
+from hypothesis import strategies as st
 from numpy.testing import assert_allclose, assert_array_equal
 
 from solvers.depth_tracking.body_kinematics import joint_positions, segment_frames
@@ -10,7 +12,7 @@ from solvers.depth_tracking.body_model import usual_body
 from solvers.depth_tracking.body_motion import SCENE_FROM_CAMERA, body_motion, body_skeleton
 from solvers.depth_tracking.body_tables import JOINTS
 from solvers.depth_tracking.capture import Capture, CaptureSettings, capture
-from solvers.depth_tracking.choose_poses import choose_poses
+from solvers.depth_tracking.choose_poses import choose_poses, nearest_known
 from solvers.depth_tracking.coordinates import COORDINATES
 from solvers.depth_tracking.smooth_take import smooth_take
 from solvers.errors import InvalidMotionError, SolveCancelled
@@ -178,6 +180,17 @@ def test_a_short_mistake_is_not_chosen_though_it_scores_a_little_better():
     scores[4:, 1] = 0.95
     joints[4:, 1] = 0.3
     assert_array_equal(choose_poses(scores, joints, 300.0, 0.04)[5:], np.ones(5))
+
+
+@given(
+    known=st.lists(st.integers(0, 30), min_size=1, unique=True).map(sorted),
+    n_frames=st.integers(1, 40),
+)
+def test_the_nearest_known_frame_is_that_of_a_search_through_all(known, n_frames):
+    found = nearest_known(np.array(known), n_frames)
+
+    slowly = [min(known, key=lambda one: (abs(one - frame), one)) for frame in range(n_frames)]
+    assert_array_equal(found, slowly)
 
 
 def test_a_missing_candidate_is_never_chosen():
