@@ -19,7 +19,7 @@ from .capture_passes import Actor, Pass, RecoverySettings, track_with_restarts
 from .choose_poses import choose_poses, nearest_known
 from .find_body import find_body
 from .found_pose import OnPose, unobserved
-from .motion_prior import MotionPrior, load_motion_prior
+from .motion_prior import MotionPrior
 from .pixel_forest import PixelForest, load_pixel_forest
 from .smooth_pass import smoothed_poses
 from .track_pose import TrackedMotion, tracked_motion
@@ -114,8 +114,7 @@ def capture(
     forest : PixelForest, optional
         Without it, the one that is shipped.
     motion_prior : MotionPrior, optional
-        Recorded motions that this one is like, to which the tracker draws poses. Those that
-        are shipped tell, without it, where limbs out of sight are.
+        Recorded motions that this one is like, to which the tracker draws poses.
     floor : Floor, optional
         Becomes z = 0; without it the camera is taken to be level.
     settings : CaptureSettings
@@ -144,8 +143,7 @@ def capture(
             depth, forest, refine=settings.refine, tracker=tracker,
             on_pose=on_pose, progress=within(progress, 0.0, share),
         )  # fmt: skip
-    filling = load_motion_prior() if motion_prior is None else motion_prior
-    actor = Actor(depth, body, forest, tracker, settings, motion_prior, on_pose, filling)
+    actor = Actor(depth, body, forest, tracker, settings, motion_prior, on_pose)
     passes = _passes(actor, settings, within(progress, share, 0.9))
     frames, which = best_of_passes(body, passes)
     poses = np.stack([one.poses for one in passes])[which, frames]

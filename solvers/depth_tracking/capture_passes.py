@@ -91,11 +91,8 @@ class Actor:
     tracker : TrackerSettings
     recovery : RecoverySettings
     motion_prior : MotionPrior or None
-        The tracker draws poses to it.
     on_pose : OnPose
         Looks on.
-    filling : MotionPrior or None
-        Tells where limbs out of sight are, when the take is smoothed.
     """
 
     depth: DepthRecording
@@ -105,7 +102,6 @@ class Actor:
     recovery: RecoverySettings
     motion_prior: MotionPrior | None = None
     on_pose: OnPose = unobserved
-    filling: MotionPrior | None = None
 
     def detected(self, frame: int) -> tuple[Array, FitQuality] | None:
         """Return the pose that the detector finds, refined by the tracker, or None."""

@@ -12,7 +12,6 @@ from .fit_quality import FitQuality, fit_quality, unseen
 from .found_pose import FoundPose
 from .hypothesis import imagine
 from .likelihood import likelihood_rows
-from .motion_prior import local_pca
 from .normal_equations import PoseEquations, added, in_coordinates, segment_equations
 from .observation import Observation, observe
 from .pose_priors import joint_limits, natural_stance
@@ -75,18 +74,9 @@ def smoothed_piece(
             equations.append((_HOLD * np.eye(N_COORDINATES), np.zeros(N_COORDINATES)))
             continue
         observation = observe(actor.depth, first + place, tracker.picture_width)
-        asked = _wanted(actor, pose, observation)
+        asked = _asked(actor, pose, observation).equations
         equations.append((asked.matrix, asked.vector))
     return smooth_take(poses, equations, stiffness)
-
-
-def _wanted(actor: Actor, pose: Array, observation: Observation) -> PoseEquations:
-    """Return what picture and recorded motions ask of a pose."""
-    asked = _asked(actor, pose, observation).equations
-    if actor.filling is None or actor.tracker.fill_weight == 0.0:
-        return asked
-    likely = local_pca(actor.filling, pose)
-    return added([asked, likely.equations(pose, actor.tracker.fill_weight)])
 
 
 def _asked(actor: Actor, pose: Array, observation: Observation) -> Registered:

@@ -50,10 +50,6 @@ class TrackerSettings(Settings):
     similar_weight: float = _weight(
         30.0, "How much poses must be like those of the motion prior, if there is one", "1/rad2"
     )
-    fill_weight: float = _weight(
-        300.0, "How much limbs out of sight follow recorded motions when a take is smoothed",
-        "1/rad2",
-    )  # fmt: skip
     shift_weight: float = _weight(
         400.0, "How smoothly the hips move; more is steadier and follows slower"
     )
