@@ -29,8 +29,10 @@ from .depth_sequences import (
     noisier,
     sequence,
 )
+from .depth_takes import SUBJECTS
 from .part_depth_capture import FPS, captures, more, ways
 from .part_depth_kinect import kinect
+from .part_depth_memory import LENGTHS, memory
 from .part_depth_renderers import renderers
 from .part_detector import detector
 from .peers.icp_trackers import articulated_icp, ray_constrained_icp
@@ -67,6 +69,10 @@ def main() -> None:
     parser = argparse.ArgumentParser(description=(__doc__ or "").splitlines()[0])
     parser.add_argument("--docs", action="store_true", help="write docs/benchmarks_depth.md")
     parser.add_argument("--only", help="parts, with commas between")
+    parser.add_argument(
+        "--subjects", type=int, nargs="+", default=SUBJECTS, help="of the Kinect"
+    )
+    parser.add_argument("--frames", type=int, nargs="+", default=LENGTHS, help="of long takes")
     chosen = parser.parse_args()
     if not TRUTH.exists():
         raise SystemExit(f"There are no recordings in {TRUTH}.")
@@ -74,7 +80,8 @@ def main() -> None:
     parts = {
         "trackers": trackers, "captures": captures, "more": more, "ways": ways,
         "terms": terms, "bodies": bodies, "noise": noise, "resolution": resolution,
-        "kinect": kinect, "renderers": renderers, "detector": detector,
+        "kinect": partial(kinect, chosen.subjects), "renderers": renderers,
+        "memory": partial(memory, chosen.frames), "detector": detector,
     }  # fmt: skip
     for name, part in parts.items():
         if chosen.only and name not in chosen.only.split(","):
