@@ -6,6 +6,7 @@ That skeleton is a reference and no truth. Nothing is given to `capture` but the
 of pictures go to build/depth_kinect, for each subject; smaller ones of the first into docs.
 """
 
+from collections.abc import Sequence
 from pathlib import Path
 
 import numpy as np
@@ -25,7 +26,7 @@ BUILD = Path(__file__).resolve().parents[2] / "build" / "depth_kinect"
 NEAR = 0.1
 
 
-def kinect(subjects: tuple[int, ...] = SUBJECTS) -> list[str]:
+def kinect(subjects: Sequence[int] = SUBJECTS) -> list[str]:
     """Capture each action of each subject; return the table."""
     scores = Scores("UTD-MHAD, a real Kinect", f"{len(subjects)} subjects as clips", "")
     for subject in subjects:

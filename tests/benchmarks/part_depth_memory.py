@@ -9,6 +9,7 @@ settings from the file's pictures to planted feet. Twenty minutes are 36,000 fra
 import json
 import subprocess
 import sys
+from collections.abc import Sequence
 from pathlib import Path
 from resource import RUSAGE_SELF, getrusage
 from time import process_time
@@ -27,17 +28,17 @@ MEGABYTE = 1024.0
 """Linux tells the peak in kilobytes."""
 
 
-def memory() -> list[str]:
+def memory(lengths: Sequence[int] = LENGTHS) -> list[str]:
     """Return the table."""
     rows, peaks = {}, []
-    for n_frames in LENGTHS:
+    for n_frames in lengths:
         told = _in_its_own_process(n_frames)
         peaks.append(told["peak"])
         rows[f"{n_frames} frames, {n_frames / 1800:.3g} min"] = [
             number(told["peak"]), number(told["n_frames"] / told["seconds"]),
             number(told["residual"]),
         ]  # fmt: skip
-    grown = 1024.0 * (peaks[-1] - peaks[0]) / (LENGTHS[-1] - LENGTHS[0])
+    grown = 1024.0 * (peaks[-1] - peaks[0]) / (lengths[-1] - lengths[0])
     header = ["recording", "peak MB", "frames/s", "cm in depth"]
     return [
         "**Long recordings** (80 x 60, forward, body not refined)\n\n"

@@ -54,6 +54,7 @@ def test_a_folder_of_takes_is_imported(takes, blank, load, tmp_path):
     assert blank.data.objects["second"].type == blank.data.objects["walk"].type == "MESH"
 
 
+@pytest.mark.timeout(300)
 def test_a_folder_of_takes_is_captured(takes, blank, load, tmp_path, capsys):
     run = load("mocap_assist.batch.command").run
     out = tmp_path / "out"
