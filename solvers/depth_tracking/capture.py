@@ -19,7 +19,7 @@ from .capture_passes import Actor, Pass, RecoverySettings, track_with_restarts
 from .choose_poses import choose_poses, nearest_known
 from .find_body import find_body
 from .found_pose import OnPose, unobserved
-from .motion_prior import MotionPrior
+from .motion_prior import MotionPrior, load_motion_prior
 from .pixel_forest import PixelForest, load_pixel_forest
 from .smooth_pass import smoothed_poses
 from .track_pose import TrackedMotion, tracked_motion
@@ -41,6 +41,10 @@ class CaptureSettings(RecoverySettings):
         minimum=0.0, maximum=1000.0,
     )  # fmt: skip
     refine: bool = setting(True, "Fit lengths and thickness of the body to the recording")
+    recorded: bool = setting(
+        False, "Draw poses to recorded walks, exercises and dances: limbs out of sight follow"
+        " those in sight; switch off for jumps and other quick motions",
+    )  # fmt: skip
     doubtful: float = setting(
         0.3, "Confidence below which a joint is flagged; more flags more",
         minimum=0.0, maximum=1.0,
@@ -114,7 +118,8 @@ def capture(
     forest : PixelForest, optional
         Without it, the one that is shipped.
     motion_prior : MotionPrior, optional
-        Recorded motions that this one is like, to which the tracker draws poses.
+        Recorded motions that this one is like, to which the tracker draws poses; without
+        it, those that are shipped if `settings.recorded`.
     floor : Floor, optional
         Becomes z = 0; without it the camera is taken to be level.
     settings : CaptureSettings
@@ -136,6 +141,8 @@ def capture(
        single depth camera. ACM Transactions on Graphics 31(6).
     """
     forest = load_pixel_forest() if forest is None else forest
+    if motion_prior is None and settings.recorded:
+        motion_prior = load_motion_prior()
     share = 0.0
     if body is None:
         share = 0.4
