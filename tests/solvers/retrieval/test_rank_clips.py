@@ -24,6 +24,7 @@ from solvers.retrieval.clip_postures import ClipPostures, clip_postures
 from solvers.retrieval.index_block import IndexBlock
 from solvers.retrieval.posting_lists import posting_lists
 from solvers.retrieval.search_index import SearchIndex
+from solvers.retrieval.spans import STANCE, with_stance
 from solvers.retrieval.usual_postures import usual_postures
 from solvers.retrieval.vocabulary import learn_vocabulary
 
@@ -83,7 +84,7 @@ def test_a_small_library_keeps_what_a_large_one_works_out_anew(monkeypatch):
     index = SearchIndex([(block(range(6)), np.ones(6, bool))])
     spans = np.array([5, 1, 2])
     kept = index.between(spans)
-    steps = index.steps(spans)
+    steps = with_stance(index.steps(spans), STANCE)
     # Nothing is from itself but what single numbers leave of it.
     assert_allclose(kept, likes.between_courses(steps.reshape(3, 16, 40)), atol=2e-3)
     monkeypatch.setattr(search_index, "MOST_COMPARED", 5)
