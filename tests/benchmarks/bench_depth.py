@@ -37,6 +37,7 @@ from .part_depth_kinect import kinect
 from .part_depth_memory import LENGTHS, memory
 from .part_depth_renderers import renderers
 from .part_detector import detector
+from .part_failures import failures
 from .peers.icp_trackers import articulated_icp, ray_constrained_icp
 from .plot_bars import draw_bars
 from .report import DOCS, PICTURES, Report
@@ -90,6 +91,7 @@ def main() -> None:
         "terms": terms, "bodies": bodies, "noise": noise, "resolution": resolution,
         "kinect": partial(kinect, chosen.subjects), "renderers": renderers,
         "memory": partial(memory, chosen.frames), "detector": detector,
+        "failures": failures,
     }  # fmt: skip
     for name, part in parts.items():
         if chosen.only and name not in chosen.only.split(","):

@@ -14,6 +14,7 @@ from solvers.depth_tracking.body_tables import JOINTS
 from solvers.depth_tracking.capture import Capture, CaptureSettings, capture
 from solvers.depth_tracking.choose_poses import choose_poses, nearest_known
 from solvers.depth_tracking.coordinates import COORDINATES
+from solvers.depth_tracking.motion_prior import load_motion_prior
 from solvers.depth_tracking.smooth_take import smooth_take
 from solvers.errors import InvalidMotionError, SolveCancelled
 from solvers.motion import find_humanoid_map, forward_kinematics
@@ -82,6 +83,18 @@ def test_frames_without_anybody_are_bridged_and_flagged():
     assert np.isfinite(found.poses).all()
     off = np.linalg.norm(found.joints.positions - joints_of(truth), axis=-1)
     assert off[9:12].mean() < 0.06
+
+
+def test_recorded_motions_are_asked_when_wanted():
+    """They draw an arm that nothing shows to what arms do; one of them can be given."""
+    truth = waving(4)
+    found = [
+        capture(recorded(truth), BODY, motion_prior=given,
+                settings=CaptureSettings(backward=False, recorded=wanted)).poses
+        for given, wanted in ((None, False), (None, True), (load_motion_prior(), False))
+    ]  # fmt: skip
+    assert np.abs(found[0] - found[1]).max() > 1e-4
+    assert_allclose(found[1], found[2], atol=1e-12)
 
 
 def test_nobody_is_refused():
