@@ -7,7 +7,7 @@ Blender is imported only on `register`: a solve in a process of its own passes t
 def register() -> None:
     """Make properties, commands and panels known to Blender."""
     from . import batch, scene_properties, ui, watch
-    from .library import background, ghost_drawing, previews, properties
+    from .library import background, ghost_drawing, keeping, previews, properties
     from .live import listening
     from .scene import body_overlay, contacts, depth_preview
 
@@ -15,6 +15,7 @@ def register() -> None:
     properties.register()
     ghost_drawing.register()
     background.register()
+    keeping.register()
     previews.register()
     contacts.register()
     depth_preview.register()
@@ -28,7 +29,7 @@ def register() -> None:
 def unregister() -> None:
     """Take them away again."""
     from . import batch, scene_properties, ui, watch
-    from .library import background, ghost_drawing, previews, properties
+    from .library import background, ghost_drawing, keeping, previews, properties
     from .live import listening
     from .scene import body_overlay, contacts, depth_preview
 
@@ -40,6 +41,7 @@ def unregister() -> None:
     depth_preview.unregister()
     contacts.unregister()
     previews.unregister()
+    keeping.unregister()
     background.unregister()
     ghost_drawing.unregister()
     properties.unregister()

@@ -6,7 +6,7 @@ import bpy
 
 from ..solvers.errors import InvalidFileError
 from ..solvers.motion.camera import Camera
-from ..solvers.recordings import depth_format_of
+from ..solvers.recordings import depth_format_of, depth_in, is_depth_folder, recordings_in
 from .import_choices import ImportChoices
 from .scene.exr_folder import as_archive, exr_files, size_of
 from .scene.scene_rate import scene_rate
@@ -24,6 +24,18 @@ PICTURES = (".png", ".exr", ".jpg", ".jpeg")
 def is_take(folder: Path) -> bool:
     """Whether a folder is a recording of depth."""
     return folder.is_dir() and bool(exr_files(folder) or depth_format_of(folder))
+
+
+def depth_recordings_in(folder: Path) -> list[Path]:
+    """Return the recordings of depth in a folder and below; the folder itself if it is one."""
+    return depth_in(folder, lambda each: bool(exr_files(each)) or is_depth_folder(each))
+
+
+def all_recordings_in(folder: Path) -> list[Path]:
+    """Return the recordings in a folder and below, of motion and of depth, by name."""
+    takes = depth_recordings_in(folder)
+    others = [path for path in recordings_in(folder) if not {*path.parents} & {*takes}]
+    return sorted({*takes, *others})
 
 
 def take_of(path: Path) -> Path:

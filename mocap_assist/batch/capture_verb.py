@@ -7,9 +7,11 @@ from typing import get_type_hints
 import bpy
 
 from ...solvers.command_line import arguments_from, settings_from_arguments
+from ...solvers.command_line.files import found_in
 from ...solvers.command_line.screen import Screen
 from ...solvers.errors import InvalidFileError, MocapAssistError
 from ...solvers.settings import Settings
+from ..depth_folders import depth_recordings_in, is_take
 from ..import_choices import ImportChoices
 from ..importing import import_files
 from ..jobs.job import run
@@ -24,7 +26,7 @@ def add_capture_options(parser: argparse.ArgumentParser) -> None:
     """Add the options of `capture`: those of the button, and of the files."""
     parser.add_argument(
         "files", nargs="+", type=Path, metavar="FILE",
-        help="recordings of depth: files, or folders of pictures",
+        help="recordings of depth: files, folders of pictures, or folders of such takes",
     )  # fmt: skip
     arguments_from(parser, ImportChoices, *offered().values())
 
@@ -49,7 +51,10 @@ def perform_capture(arguments: argparse.Namespace, screen: Screen) -> None:
     })
     choices = settings_from_arguments(arguments, ImportChoices)
     made, said, failed = [], [], []
-    for path in arguments.files:
+    takes = [path for path in arguments.files if is_take(path)]
+    others = [path for path in arguments.files if path not in takes]
+    inside = found_in(others, look=depth_recordings_in)
+    for path in [*takes, *(path for path, _ in inside)]:
         screen.title = path.name
         try:
             said.append(_tracked(path, choices, settings, screen))

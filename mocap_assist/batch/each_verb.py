@@ -24,9 +24,12 @@ from ...solvers.command_line.report import (
 from ...solvers.command_line.screen import Screen
 from ...solvers.command_line.verb import Outcome, Task
 from ...solvers.errors import InvalidFileError, InvalidSettingError
+from ..depth_folders import all_recordings_in, depth_recordings_in
 
 HELP = "Do another verb to each of many files: each FILE... --output-folder DIR -- VERB ..."
 BLEND = ".blend"
+BRINGS_IN = {"import": all_recordings_in, "capture": depth_recordings_in}
+"""Verbs that make objects of recordings, and how they look for them in a folder."""
 PACKAGE = __package__.removesuffix(".mocap_assist.batch")
 MODULE_CHILD = """
 import os, sys
@@ -51,7 +54,8 @@ def add_each_options(parser: argparse.ArgumentParser) -> None:
     """Add the options of `each`."""
     parser.add_argument(
         "files", nargs="+", type=Path, metavar="FILE",
-        help=".blend files, or folders of them; for import, recordings or folders of them",
+        help=".blend files, or folders of them; for import and capture, recordings or folders"
+        " of them",
     )  # fmt: skip
     parser.add_argument(
         "--output-folder", type=Path, required=True, metavar="DIR",
@@ -72,7 +76,7 @@ def perform_each(arguments: argparse.Namespace, screen: Screen) -> None:
     """Start a Blender for each file, report, and raise InvalidFileError if any failed."""
     if not arguments.words:
         raise InvalidSettingError("Say what to do to each file after --, as in: -- denoise.")
-    opened = [bpy.data.filepath] if arguments.words[0] == "import" else []
+    opened = [bpy.data.filepath] if arguments.words[0] in BRINGS_IN else []
     arguments.depends_on = _named_files([*opened, *arguments.words])
     if arguments.jobs < 1:
         raise InvalidSettingError(f"jobs is {arguments.jobs}; it must be at least 1.")
@@ -104,14 +108,19 @@ def _named_files(words: Sequence[str]) -> list[Path]:
 def _tasks(arguments: argparse.Namespace) -> list[Task]:
     """Return which .blend file is made of which file."""
     folder: Path = arguments.output_folder.resolve()
-    imports = arguments.words[0] == "import"
-    pairs = found_in(arguments.files, folder) if imports else _blends(arguments.files, folder)
+    look = BRINGS_IN.get(arguments.words[0])
+    if look is None:
+        pairs = _blends(arguments.files, folder)
+    else:
+        pairs = found_in(arguments.files, folder, look)
     places = told_apart([place for _, place in pairs], [BLEND] * len(pairs))
     tasks = []
     for (source, _), place in zip(pairs, places, strict=True):
-        if not imports and source.suffix.lower() != BLEND:
-            raise InvalidSettingError(f"{source} is no .blend file; only import reads others.")
-        if not source.is_file():
+        if look is None and source.suffix.lower() != BLEND:
+            raise InvalidSettingError(
+                f"{source} is no .blend file; only import and capture read others."
+            )
+        if not source.exists():
             raise InvalidFileError(f"There is no file {source}.")
         target = arguments.output_folder / place
         if target.resolve() == source.resolve():
@@ -182,7 +191,7 @@ def _attempt(task: Task) -> Finished:
 def _command(task: Task, figures: Path) -> list[str]:
     arguments, source = task.arguments, str(task.source.resolve())
     verb, *options = arguments.words
-    imports = verb == "import"
+    imports = verb in BRINGS_IN
     opened = bpy.data.filepath if imports else source
     words = [verb, *([source] if imports else []), *options, "--json", str(figures)]
     words += ["--output", str(task.target.resolve())]
@@ -198,6 +207,7 @@ def _figures(path: Path) -> dict[str, Any]:
     """Return the figures of the first armature, and how many there are; or of a recording."""
     lines = [json.loads(line) for line in path.read_text(encoding="utf-8").splitlines()]
     first: dict[str, Any] = lines[0] if lines else {}
-    if "objects" in first:  # What `import` says of the one recording that each is.
-        return {"object": first["objects"][0], **first["figures"][0]}
+    if "objects" in first:  # What is said of the one recording that each is.
+        told = first["figures"][0] if "figures" in first else {"said": first["said"]}
+        return {"object": first["objects"][0], **told}
     return {**first, "armatures": len(lines)}

@@ -9,7 +9,7 @@ from ...solvers.command_line import arguments_from, settings_from_arguments
 from ...solvers.command_line.files import found_in
 from ...solvers.command_line.screen import Screen
 from ...solvers.errors import InvalidFileError
-from ..depth_folders import is_take
+from ..depth_folders import all_recordings_in, is_take
 from ..import_choices import ImportChoices
 from ..importing import import_files
 from .pictures import draw_played
@@ -37,7 +37,7 @@ def perform_import(arguments: argparse.Namespace, screen: Screen) -> None:
     target = target_file(arguments)
     takes = [path for path in arguments.files if is_take(path)]
     others = [path for path in arguments.files if path not in takes]
-    paths = [*takes, *(path for path, _ in found_in(others))]
+    paths = [*takes, *(path for path, _ in found_in(others, look=all_recordings_in))]
     screen.title = "Import"
     imported = import_files(
         bpy.context,

@@ -9,13 +9,14 @@ from ..denoising import PlantSettings
 from ..depth_tracking.body_model import BodyModel, load_body_model
 from ..depth_tracking.body_tables import LENGTHS
 from ..depth_tracking.capture import CaptureSettings
+from ..errors import InvalidSettingError
 from ..motion import JointRecording, Sensor
 from ..motion.depth_foreground import ForegroundSettings
 from ..progress import Progress, overheard, within
-from ..recordings import read_depth, write_joint_csv
+from ..recordings import depth_in, read_depth, write_joint_csv
 from ..recordings.depth_settings import DepthSettings
 from ..workflows import CapturedMotion, capture_recording
-from .files import JOINTS, write
+from .files import JOINTS, found_in, write
 from .options import arguments_from, settings_from_arguments
 from .verb import Outcome, Task
 
@@ -50,7 +51,19 @@ def add_capture_options(parser: argparse.ArgumentParser) -> None:
 
 
 def read_body(arguments: argparse.Namespace, progress: Progress) -> BodyModel | None:
-    """Read the body that serves all files of a run, if one is given."""
+    """Read the body that serves all files of a run, if one is given.
+
+    Raises
+    ------
+    InvalidSettingError
+        The bodies of several takes would be written to one file.
+    """
+    many = arguments.output_folder is not None and len(found_in(arguments.files, look=depth_in))
+    if arguments.keep_body is not None and many > 1:
+        raise InvalidSettingError(
+            f"{arguments.keep_body} has room for one body; capture one take to keep its body,"
+            " and the others with --body."
+        )
     return None if arguments.body is None else load_body_model(arguments.body)
 
 

@@ -1,7 +1,7 @@
 """Recordings in and out, as the command line names them."""
 
 import argparse
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
 
 from ..errors import InvalidFileError
@@ -43,7 +43,11 @@ def read(path: Path, arguments: argparse.Namespace, progress: Progress) -> Motio
     return read_motion_or_tracks(path, scale=arguments.scale, progress=progress)
 
 
-def found_in(paths: Sequence[Path], not_in: Path | None = None) -> list[tuple[Path, Path]]:
+def found_in(
+    paths: Sequence[Path],
+    not_in: Path | None = None,
+    look: Callable[[Path], list[Path]] = recordings_in,
+) -> list[tuple[Path, Path]]:
     """Return every file, and in place of a folder the recordings in it and below.
 
     Parameters
@@ -51,6 +55,8 @@ def found_in(paths: Sequence[Path], not_in: Path | None = None) -> list[tuple[Pa
     paths : sequence of Path
     not_in : Path, optional
         A folder that is passed over: the one to write to.
+    look : callable
+        Returns the recordings in a folder; the folder itself, if it is one.
 
     Returns
     -------
@@ -69,12 +75,13 @@ def found_in(paths: Sequence[Path], not_in: Path | None = None) -> list[tuple[Pa
             found.append((path, Path(path.name)))
             continue
         inside = [
-            file for file in recordings_in(path)
+            file for file in look(path)
             if not_in is None or not_in.resolve() not in file.resolve().parents
         ]  # fmt: skip
         if not inside:
             raise InvalidFileError(f"There is no recording in the folder {path}.")
-        above = path.resolve().parent if len(paths) > 1 else path.resolve()
+        alone = len(paths) == 1 and inside != [path]
+        above = path.resolve() if alone else path.resolve().parent
         found += [(file, file.resolve().relative_to(above)) for file in inside]
     return found
 

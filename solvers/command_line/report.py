@@ -10,7 +10,7 @@ from typing import Any, NamedTuple
 from ..errors import MocapAssistError
 from ..files import written_whole
 from ..pictures import StickFigureSettings, draw_stick_figures
-from ..recordings import read_motion_or_tracks
+from ..recordings import is_depth, read_motion_or_tracks
 from .verb import Task
 
 PAGE, FIGURES, PICTURES = "report.html", "report.json", Path("report")
@@ -62,11 +62,11 @@ def draw_task(task: Task) -> None:
     assert task.target is not None
     picture = picture_file(task)
     try:
-        given = read_motion_or_tracks(task.source, scale=task.arguments.scale)
         made = read_motion_or_tracks(task.target)
-        both = {"given": given, "result": made}
-        if given.n_frames != made.n_frames:
-            del both["given"]
+        both = {"result": made}
+        if not is_depth(task.source):
+            given = read_motion_or_tracks(task.source, scale=task.arguments.scale)
+            both = {"given": given, **both} if given.n_frames == made.n_frames else both
         picture.parent.mkdir(parents=True, exist_ok=True)
         draw_stick_figures(both, StickFigureSettings(n_figures=9, height=150)).save(picture)
     except (MocapAssistError, OSError):

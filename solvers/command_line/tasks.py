@@ -81,7 +81,7 @@ def _pairs(verb: Verb, arguments: argparse.Namespace) -> list[tuple[Path, Path]]
     else:
         if folder.exists() and not folder.is_dir():
             raise InvalidSettingError(f"{folder} is a file; name a folder to write to.")
-        found = found_in(files, not_in=folder)
+        found = found_in(files, folder, verb.look)
         endings = [_ending(verb, path, arguments) for path, _ in found]
         places = told_apart([place for _, place in found], endings)
         pairs = [(path, folder / place) for (path, _), place in zip(found, places, strict=True)]

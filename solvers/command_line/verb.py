@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import Any, NamedTuple
 
 from ..progress import Progress
+from ..recordings import recordings_in
 
 
 @dataclass(frozen=True)
@@ -70,5 +71,7 @@ class Verb:
     """Whether it makes skeletons' motions, whatever it reads."""
     writes_joints: bool = False
     """Whether it can also write tracked joints."""
+    look: Callable[[Path], list[Path]] = recordings_in
+    """Returns the recordings that it reads, of a folder."""
     prepare: Callable[[argparse.Namespace, Progress], Any] = nothing_to_prepare
     """Its result serves all tasks, and must be fit to be sent to another process."""

@@ -11,6 +11,7 @@ from ..denoising import (
     measure_quality,
 )
 from ..progress import Progress, overheard, within
+from ..recordings import depth_in
 from .capture_verb import add_capture_options, perform_capture, read_body
 from .convert import convert
 from .denoise_verb import add_denoise_options, learn_once, perform_denoise
@@ -117,6 +118,7 @@ VERBS = {
         perform_capture,
         writes_motions=True,
         writes_joints=True,
+        look=depth_in,
         prepare=read_body,
     ),
     "reconstruct": Verb(

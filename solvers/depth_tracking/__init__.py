@@ -7,7 +7,7 @@
 >>> camera = Camera(142.8, 142.8, 79.5, 59.5, 160, 120)
 >>> wall = np.full((120, 160), 3.0, dtype=np.float32)
 >>> depth = DepthRecording(camera, 2, 30.0, lambda frame: wall)
->>> before_the_camera = 2.8 * np.eye(34)[2]
+>>> before_the_camera = 2.8 * np.eye(36)[2]
 >>> track_pose(depth, usual_body(), before_the_camera).joints.n_frames
 2
 """

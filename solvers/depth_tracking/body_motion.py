@@ -53,12 +53,12 @@ def body_skeleton(body: BodyModel) -> Skeleton:
 def body_motion(
     body: BodyModel, poses: Array, frame_rate: float, floor: Floor | None = None
 ) -> Motion:
-    """Return the motion of a body in poses (n_frames, 34).
+    """Return the motion of a body in poses (n_frames, 36).
 
     Parameters
     ----------
     body : BodyModel
-    poses : shape (n_frames, 34)
+    poses : shape (n_frames, 36)
     frame_rate : float, hertz
     floor : Floor, optional
         It becomes the plane z = 0, and its normal Z. Without it the camera is taken to be

@@ -29,7 +29,7 @@ class BodySurface(NamedTuple):
     triangles: NDArray[np.intp]
 
     def placed(self, frames: Array) -> tuple[Array, Array]:
-        """Return vertices and normals (19, n_vertices, 3) where the segments (15, 4, 4) are."""
+        """Return vertices and normals (19, n_vertices, 3) where the segments (17, 4, 4) are."""
         turns = frames[CAPSULE_SEGMENTS, :3, :3].swapaxes(1, 2)
         origins = frames[CAPSULE_SEGMENTS, np.newaxis, :3, 3]
         return self.vertices @ turns + origins, self.normals @ turns

@@ -16,10 +16,10 @@ from .body_kinematics import joint_positions, segment_frames
 from .body_model import BodyModel
 from .body_motion import body_motion
 from .capture_passes import Actor, Pass, RecoverySettings, track_with_restarts
-from .choose_poses import choose_poses
+from .choose_poses import choose_poses, nearest_known
 from .find_body import find_body
 from .found_pose import OnPose, unobserved
-from .motion_prior import MotionPrior
+from .motion_prior import MotionPrior, load_motion_prior
 from .pixel_forest import PixelForest, load_pixel_forest
 from .smooth_pass import smoothed_poses
 from .track_pose import TrackedMotion, tracked_motion
@@ -69,7 +69,7 @@ class Capture:
     restarts : tuple of int
         Frames in which the detector had to help the tracker, after the first.
     body : BodyModel
-    poses : shape (n_frames, 34)
+    poses : shape (n_frames, 36)
     doubtful : bool, shape (n_frames, n_joints)
         Joints out of sight or badly explained; where they are was filled in from the frames
         before and after.
@@ -114,7 +114,8 @@ def capture(
     forest : PixelForest, optional
         Without it, the one that is shipped.
     motion_prior : MotionPrior, optional
-        Recorded motions that this one is like.
+        Recorded motions that this one is like; they tell where limbs out of sight are.
+        Without it, those that are shipped.
     floor : Floor, optional
         Becomes z = 0; without it the camera is taken to be level.
     settings : CaptureSettings
@@ -136,6 +137,7 @@ def capture(
        single depth camera. ACM Transactions on Graphics 31(6).
     """
     forest = load_pixel_forest() if forest is None else forest
+    motion_prior = load_motion_prior() if motion_prior is None else motion_prior
     share = 0.0
     if body is None:
         share = 0.4
@@ -184,8 +186,8 @@ def best_of_passes(body: BodyModel, passes: Sequence[Pass]) -> tuple[Integers, I
     some = np.flatnonzero(known.any(axis=1))
     joints = joint_positions(body, segment_frames(body, np.nan_to_num(poses[some])))
     chosen = choose_poses(scores[some], joints, _SHARPNESS, _REACH)
-    nearest = np.abs(some[:, np.newaxis] - np.arange(len(poses))).argmin(axis=0)
-    return some[nearest], chosen[nearest]
+    nearest = nearest_known(some, len(poses))
+    return nearest, chosen[np.searchsorted(some, nearest)]
 
 
 def put_together(

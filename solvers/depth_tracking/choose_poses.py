@@ -42,3 +42,13 @@ def choose_poses(scores: Array, joints: Array, sharpness: float, reach: float) -
     for frame in range(n_frames - 1, 0, -1):
         chosen[frame - 1] = back[frame, chosen[frame]]
     return chosen
+
+
+def nearest_known(known: Integers, n_frames: int) -> Integers:
+    """Return the nearest of some ascending frames for every frame, the earlier of two."""
+    frames = np.arange(n_frames)
+    after = np.searchsorted(known, frames).clip(0, len(known) - 1)
+    before = (after - 1).clip(0)
+    earlier = frames - known[before] <= known[after] - frames
+    nearest: Integers = known[np.where(earlier, before, after)]
+    return nearest

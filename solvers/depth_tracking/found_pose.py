@@ -18,7 +18,7 @@ class FoundPose(NamedTuple):
     body: BodyModel
     frame: int
     pose: Array
-    """Shape (34,), camera frame."""
+    """Shape (36,), camera frame."""
     quality: FitQuality
 
 

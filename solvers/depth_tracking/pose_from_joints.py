@@ -26,14 +26,14 @@ _CORNERS = 0.05 * np.array([*np.eye(3), *-np.eye(3)])
 def pose_from_joints(
     body: BodyModel, joints: Array, *, start: Array | None = None, iterations: int = 40
 ) -> Array:
-    """Return the pose (34,) of the body whose joints are nearest to these.
+    """Return the pose (36,) of the body whose joints are nearest to these.
 
     Parameters
     ----------
     body : BodyModel
     joints : shape (21, 3), metres
         The `JOINTS` in the camera's frame; NaN: unknown.
-    start : shape (34,), optional
+    start : shape (36,), optional
         A pose near it, such as that of the frame before; without, four headings are tried.
     iterations : int
     """
@@ -48,16 +48,16 @@ def pose_from_joints(
 def pose_from_frames(
     body: BodyModel, frames: Array, *, start: Array | None = None, iterations: int = 40
 ) -> Array:
-    """Return the pose (34,) of the body whose segments are nearest to where these are.
+    """Return the pose (36,) of the body whose segments are nearest to where these are.
 
     Where its coordinates cannot turn them so, joints are rather in their places.
 
     Parameters
     ----------
     body : BodyModel
-    frames : shape (15, 4, 4)
+    frames : shape (17, 4, 4)
         camera_from_segment of the `SEGMENTS`; turns that a joint cannot make are not followed.
-    start : shape (34,), optional
+    start : shape (36,), optional
     iterations : int
     """
     corners = np.tile(_CORNERS, (len(SEGMENTS), 1))
@@ -82,7 +82,7 @@ def pose_from_points(
     start: Array | None = None,
     iterations: int = 40,
 ) -> Array:
-    """Return the pose (34,) that brings points on segments nearest to targets.
+    """Return the pose (36,) that brings points on segments nearest to targets.
 
     Joint limits hold softly, and what no point tells stays near the pose of zeros.
     Without a start, four headings are tried.
@@ -98,7 +98,7 @@ def pose_from_points(
         Where they should be, camera frame.
     weights : shape (n,)
         Of the squares; 1 for a point that is sure.
-    start : shape (34,), optional
+    start : shape (36,), optional
     iterations : int
     """
     starts = [start] if start is not None else _starts(targets)

@@ -170,7 +170,7 @@ class _OldPoses:
         self._body, self._frames, self._last = body, frames, start
 
     def __call__(self, frame: int) -> Array:
-        """Return the pose (34,) of a frame."""
+        """Return the pose (36,) of a frame."""
         self._last = pose_from_frames(self._body, self._frames[frame], start=self._last)
         return self._last
 

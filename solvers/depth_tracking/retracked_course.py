@@ -54,7 +54,7 @@ class Course:
 
     Attributes
     ----------
-    poses : shape (n_frames, 34)
+    poses : shape (n_frames, 36)
         Without the corrected frame's.
     met : bool
         Whether the last ones are those of before.
@@ -81,12 +81,12 @@ def course_from(
     Parameters
     ----------
     actor : Actor
-    start : shape (34,)
+    start : shape (36,)
         The pose before the first of the frames.
     frames : sequence of int
         Ascending or descending.
     old_pose : callable
-        Gives the pose (34,) of before, frame after frame.
+        Gives the pose (36,) of before, frame after frame.
     settings : RetrackSettings
     progress : Progress
     """

@@ -12,9 +12,10 @@ from .fit_quality import FitQuality, fit_quality, unseen
 from .found_pose import FoundPose
 from .hypothesis import imagine
 from .likelihood import likelihood_rows
+from .motion_prior import local_pca
 from .normal_equations import PoseEquations, added, in_coordinates, segment_equations
 from .observation import Observation, observe
-from .pose_priors import joint_limits
+from .pose_priors import joint_limits, natural_stance
 from .register_pose import Registered
 from .smooth_take import smooth_take
 
@@ -30,7 +31,7 @@ _PIECE, _BORDER = 600, 60
 def smoothed_poses(
     actor: Actor, poses: Array, smoothing: float, progress: Progress
 ) -> tuple[Array, list[FitQuality]]:
-    """Return smoothed poses (n_frames, 34), and the figures of each frame."""
+    """Return smoothed poses (n_frames, 36), and the figures of each frame."""
     found, figures = poses.copy(), []
     n_frames = len(poses)
     if smoothing > 0.0 and n_frames >= 3:
@@ -50,12 +51,12 @@ def smoothed_poses(
 def smoothed_piece(
     actor: Actor, poses: Array, first: int, smoothing: float, held: Collection[int] = ()
 ) -> Array:
-    """Return smoothed poses (n_frames, 34) of a piece of a take.
+    """Return smoothed poses (n_frames, 36) of a piece of a take.
 
     Parameters
     ----------
     actor : Actor
-    poses : shape (n_frames, 34)
+    poses : shape (n_frames, 36)
     first : int
         Frame of the recording that is the first of these.
     smoothing : float
@@ -75,6 +76,9 @@ def smoothed_piece(
             continue
         observation = observe(actor.depth, first + place, tracker.picture_width)
         asked = _asked(actor, pose, observation).equations
+        if actor.motion_prior is not None:
+            likely = local_pca(actor.motion_prior, pose)
+            asked = added([asked, likely.equations(pose, tracker.similar_weight)])
         equations.append((asked.matrix, asked.vector))
     return smooth_take(poses, equations, stiffness)
 
@@ -82,7 +86,10 @@ def smoothed_piece(
 def _asked(actor: Actor, pose: Array, observation: Observation) -> Registered:
     """Return what a picture asks of a pose, without what the frames before say."""
     hypothesis = imagine(actor.body, pose, observation.camera)
-    limits = joint_limits(pose, actor.tracker.limit_weight)
+    limits = added([
+        joint_limits(pose, actor.tracker.limit_weight),
+        natural_stance(pose, 0.0, actor.tracker.ankle_weight),
+    ])
     if observation.empty:
         return Registered(hypothesis, limits, 1)
     rows = likelihood_rows(hypothesis, observation, actor.tracker)

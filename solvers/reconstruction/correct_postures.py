@@ -19,6 +19,7 @@ from .residual_inputs import calm_postures
 from .residual_prior import Foretold, ResidualPrior
 from .result import Reconstruction
 from .steady_paths import followed, smoothed
+from .trunk_twist import LimbTwists
 
 Array = NDArray[np.float64]
 
@@ -80,6 +81,7 @@ def correct_postures(
     prior: ResidualPrior,
     *,
     reliability: Reliability | None = None,
+    twists: LimbTwists | None = None,
     settings: CorrectionSettings = CorrectionSettings(),
     progress: Progress = unwatched,
 ) -> Reconstruction:
@@ -96,6 +98,8 @@ def correct_postures(
     prior : ResidualPrior
     reliability : Reliability, optional
         Measured by `measure_reliability` where it is not given.
+    twists : LimbTwists, optional
+        How like postures have limbs twisted; by default bends alone tell it.
     settings : CorrectionSettings
     progress : Progress
 
@@ -132,12 +136,12 @@ def correct_postures(
     joints[:, ~tracks.visible.any(axis=0)] = np.nan
     confidence = confidence[:, anchors(tracks.names)]
     rebuilt = tracks.with_positions(joints)
-    motion = follow_joints(rebuilt, recording.parents, trust.combined)
+    motion = follow_joints(rebuilt, recording.parents, trust.combined, twists=twists)
     progress(1.0, "Corrected")
     method = f"steadied ({settings.method.value})"
     if asked:
         method += f" with a residual prior of {prior.source}"
-    return Reconstruction(rebuilt, motion, trust, confidence, method)
+    return Reconstruction(rebuilt, motion, trust, confidence, method, twists)
 
 
 def foretell_places(

@@ -21,6 +21,7 @@ from .bvh_writing import write_bvh
 from .c3d import read_c3d
 from .c3d_writing import write_c3d
 from .depth import depth_format_of, read_depth
+from .depth_folder import is_depth_folder
 from .depth_settings import DepthSettings, Held
 from .freemocap import read_freemocap
 from .irds import read_irds
@@ -31,6 +32,7 @@ from .kinect_csv import read_kinect_csv
 from .msr_action3d import read_msr_action3d
 from .ntu_skeleton import read_ntu_skeleton
 from .read_recording import (
+    depth_in,
     format_of,
     is_depth,
     read_motion_or_tracks,
@@ -47,8 +49,10 @@ __all__ = [
     "DepthSettings",
     "Held",
     "depth_format_of",
+    "depth_in",
     "format_of",
     "is_depth",
+    "is_depth_folder",
     "read_acclaim",
     "read_acclaim_limits",
     "read_azure_csv",

@@ -34,6 +34,21 @@ def layout_of(path: Path) -> Layout | None:
     return next((layout for layout in found if layout is not None), None)
 
 
+def is_depth_folder(path: Path) -> bool:
+    """Tell whether a folder is one recording of depth, and holds no pictures of another kind.
+
+    Of one that says that it is, but is damaged, whoever reads it will tell.
+    """
+    try:
+        layout = layout_of(path)
+    except InvalidFileError:
+        return True
+    if layout is None:
+        return False
+    header = png_header(layout.root / layout.depth[0])
+    return bool(layout.metres) or header is None or (header.bits == BITS and header.grey)
+
+
 def read_depth_folder(
     path: Path | str,
     settings: DepthSettings = USUAL,

@@ -16,6 +16,7 @@ from .azure_json import is_azure_json, read_azure_json
 from .bvh import read_bvh
 from .c3d import read_c3d
 from .depth import depth_format_of, read_depth
+from .depth_folder import is_depth_folder
 from .depth_settings import DepthSettings
 from .freemocap import is_npy, read_freemocap
 from .irds import is_irds, read_irds
@@ -207,6 +208,31 @@ def recordings_in(folder: Path) -> list[Path]:
             known = format_of(path)
             if known is not None and known.read is not _refuse_skeleton:
                 found.append(path)
+    return found
+
+
+def depth_in(folder: Path, is_take: Callable[[Path], bool] = is_depth_folder) -> list[Path]:
+    """Return the recordings of depth in a folder and below, by name; or the folder itself.
+
+    A folder of pictures is one recording, and is not looked into. Hidden files and folders are
+    passed over, and links to folders.
+
+    Parameters
+    ----------
+    folder : Path
+    is_take : callable
+        Tells whether a folder is one recording.
+    """
+    if is_take(folder):
+        return [folder]
+    found = []
+    for path in sorted(folder.iterdir()):
+        if path.name.startswith("."):
+            continue
+        if path.is_dir():
+            found += [] if path.is_symlink() else depth_in(path, is_take)
+        elif path.is_file() and is_depth(path):
+            found.append(path)
     return found
 
 

@@ -86,7 +86,9 @@ def _histograms(features: Array, vocabulary: Vocabulary) -> Array:
     time = (np.arange(len(features)) + 0.5) / len(features)
     halves = [np.clip(2.0 - 2.0 * np.abs(2.0 * time - side), 0.0, 1.0) for side in (0.5, 1.5)]
     weights = np.stack([np.ones_like(time), *halves])
-    counts = np.einsum("cf,fpw->pcw", weights, vocabulary.codes(features))
+    codes = vocabulary.codes(features)
+    counts = (weights @ codes.reshape(len(codes), -1)).reshape(N_CUBES, *codes.shape[1:])
+    counts = counts.swapaxes(0, 1)
     shares = counts / np.maximum(counts.sum(axis=-1, keepdims=True), 1e-12)
     return np.asarray(np.sqrt(shares))
 

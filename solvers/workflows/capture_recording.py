@@ -3,8 +3,6 @@
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-import numpy as np
-
 from ..denoising import Planted, PlantSettings
 from ..depth_tracking.body_model import BodyModel
 from ..depth_tracking.capture import Capture, CaptureSettings, capture
@@ -15,6 +13,7 @@ from ..motion.depth_actor import Actor, find_actor
 from ..motion.depth_foreground import ForegroundSettings
 from ..motion.depth_recording import DepthRecording
 from ..progress import Progress, unwatched, within
+from .capture_remarks import capture_remarks
 from .try_to_plant import try_to_plant
 
 CAPTURING = CaptureSettings()
@@ -22,8 +21,6 @@ TELLING = ForegroundSettings()
 PLANTING = PlantSettings()
 FOUND = 0.1
 """Share of the work after which the actor is told from the room."""
-MANY = 0.2
-"""Share of joints out of sight from which the report tells it."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -121,21 +118,6 @@ def capture_actor(
     )  # fmt: skip
     stands = planting if actor.feet_seen else None
     footing = try_to_plant(found.motion, stands, progress=within(progress, 0.95, 1.0))
-    remarks = (*actor.remarks, *_remarks(actor, found), *footing.remarks)
+    said = capture_remarks(actor.recording.camera, actor, found, fitted=body is None)
+    remarks = (*said, *footing.remarks)
     return CapturedMotion(footing.motion, found, actor, footing.planted, remarks)
-
-
-def _remarks(actor: Actor, found: Capture) -> list[str]:
-    said = []
-    if actor.floor is None:
-        said.append("No floor is seen: the camera is taken to have been level.")
-    out_of_sight = float(found.doubtful.mean())
-    if out_of_sight > MANY:
-        said.append(
-            f"{100 * out_of_sight:.0f} % of the joints were out of sight or badly explained,"
-            " and are guessed from the frames before and after."
-        )
-    seen = np.isfinite(found.residual)
-    if not seen.all():
-        said.append(f"In {int((~seen).sum())} of {len(seen)} frames nobody is seen.")
-    return said

@@ -1,100 +1,90 @@
-"""Takes of a real Kinect (UTD-MHAD), and pictures of a body drawn over them."""
+"""Takes of a real Kinect (UTD-MHAD), and how far a body found in them is off the depth.
+
+`read_depth` turns the mirrored pictures right; so are the joints of the Kinect's SDK here.
+"""
 
 from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
-from PIL import Image, ImageDraw
 from scipy.io import loadmat
+from scipy.spatial import cKDTree
 
-from solvers.depth_tracking.body_motion import JOINT_PARENTS
 from solvers.depth_tracking.body_tables import JOINTS
-from solvers.depth_tracking.capture import Capture
-from solvers.depth_tracking.hypothesis import imagine
-from solvers.motion.camera import Camera
 from solvers.motion.depth_recording import DepthRecording
+from solvers.recordings import read_depth
 
 TAKES = Path(__file__).resolve().parents[3] / "shared" / "data" / "depth" / "utd_mhad"
-KINECT_TAKES = tuple(f"{take}_t1" for take in ("a1_s1", "a6_s3", "a7_s3", "a24_s5", "a26_s7"))
-"""Swipe, crossed arms, basketball, standing up, lunge."""
+SUBJECTS = (1, 3, 5, 7)
+ACTIONS = (
+    "swipe left", "swipe right", "wave", "clap", "throw", "cross arms", "basketball shot",
+    "draw x", "draw circle", "draw circle back", "draw triangle", "bowling", "boxing",
+    "baseball swing", "tennis swing", "arm curl", "tennis serve", "push", "knock", "catch",
+    "pick up and throw", "jog", "walk", "sit to stand", "stand to sit", "lunge", "squat",
+)  # fmt: skip
 LATE = 2
 """depth[t] fits skeleton[t - 2] (data/README.md)."""
-SDK_JOINTS = (
-    "head", "neck", "spine", "hips",
-    "rightUpperArm", "rightLowerArm", "rightHand", None,
-    "leftUpperArm", "leftLowerArm", "leftHand", None,
-    "rightUpperLeg", "rightLowerLeg", "rightFoot", None,
-    "leftUpperLeg", "leftLowerLeg", "leftFoot", None,
-)  # fmt: skip
-"""Ours for each of theirs: the pictures are mirrored, so that their left is our right."""
-STABLE = tuple(
-    place for place, name in enumerate(SDK_JOINTS)
-    if name in {"head", "neck", "spine", "hips", "leftUpperArm", "rightUpperArm",
-                "leftUpperLeg", "rightUpperLeg", "leftLowerLeg", "rightLowerLeg"}
-)  # fmt: skip
-HANDS = (SDK_JOINTS.index("leftHand"), SDK_JOINTS.index("rightHand"))
-SHOWN = 6
+SDK = {
+    "head": 0, "neck": 1, "spine": 2, "hips": 3,
+    "leftUpperArm": 4, "leftLowerArm": 5, "leftHand": 6,
+    "rightUpperArm": 8, "rightLowerArm": 9, "rightHand": 10,
+    "leftUpperLeg": 12, "leftLowerLeg": 13, "leftFoot": 14,
+    "rightUpperLeg": 16, "rightLowerLeg": 17, "rightFoot": 18,
+}  # fmt: skip
+"""Our joints, and their places in the SDK's skeleton."""
+OURS = [JOINTS.index(joint) for joint in SDK]
+STABLE = [
+    place for place, joint in enumerate(SDK) if not joint.endswith(("Hand", "LowerArm", "Foot"))
+]
+"""Of `SDK`: trunk, shoulders, hips and knees."""
+HANDS = [list(SDK).index(joint) for joint in ("leftHand", "rightHand")]
+AWAY = 0.1
+"""Metres between a hand and the nearest point of the depth from which on it is in the air."""
 
 
 @dataclass(frozen=True, eq=False)
 class KinectTake:
-    """A depth recording and the joints that the Kinect SDK told."""
+    """A depth recording, and the joints that the Kinect's SDK told."""
 
-    name: str
+    action: int
+    subject: int
     depth: DepthRecording
     joints: np.ndarray
-    """Shape (n_frames, 20, 3), metres, camera frame (y down)."""
+    """Shape (n_frames, 16, 3), metres, camera frame (y down); NaN before the SDK began."""
+
+    @property
+    def name(self) -> str:
+        """What the files are called."""
+        return f"a{self.action}_s{self.subject}_t1"
 
     def distances(self, found: np.ndarray) -> np.ndarray:
-        """Return how far each SDK joint is from ours after its median offset, metres, (20,)."""
-        n_frames = min(self.depth.n_frames - LATE, len(self.joints))
-        distances = np.full(len(SDK_JOINTS), np.nan)
-        for place, name in enumerate(SDK_JOINTS):
-            if name is None:
-                continue
-            ours = found[LATE : LATE + n_frames, JOINTS.index(name)]
-            off = ours - self.joints[:n_frames, place]
-            off -= np.median(off, axis=0)
-            distances[place] = np.linalg.norm(off, axis=1).mean()
-        return distances
+        """Return how far our joints (n_frames, 21, 3) are from the SDK's, (n_frames, 16).
+
+        Metres, after the median offset of each joint, for joints are defined differently.
+        """
+        off = found[:, OURS] - self.joints
+        return np.linalg.norm(off - np.nanmedian(off, axis=0), axis=-1)
+
+    def hands_in_air(self, hands: np.ndarray) -> float:
+        """Return the share of hands (n_frames, 2, 3) that are far from all that was seen."""
+        told = []
+        for frame in range(self.depth.n_frames):
+            depth = self.depth.frame(frame)
+            points = self.depth.camera.back_project(depth)[depth > 0.0]
+            here = hands[frame][np.isfinite(hands[frame]).all(axis=-1)]
+            if len(points) and len(here):
+                told += (cKDTree(points).query(here)[0] > AWAY).tolist()
+        return float(np.mean(told))
 
 
-def kinect_take(name: str) -> KinectTake:
-    """Read one take."""
-    depth = np.moveaxis(loadmat(TAKES / f"{name}_depth.mat")["d_depth"], 2, 0)
-    joints = np.moveaxis(loadmat(TAKES / f"{name}_skeleton.mat")["d_skel"], 2, 0)
-    camera = Camera(285.63, 285.63, 160.0, 120.0, 320, 240)
-    recording = DepthRecording(
-        camera, len(depth), 30.0, lambda i: depth[i].astype(np.float32) / np.float32(1000.0)
-    )
-    return KinectTake(name, recording, joints * [1.0, -1.0, 1.0])
-
-
-def draw_overlays(take: KinectTake, found: Capture, path: Path) -> None:
-    """Draw some frames: depth grey, our body orange, bones green (red: flagged), SDK blue."""
-    frames = np.linspace(LATE, take.depth.n_frames - LATE - 1, SHOWN).round().astype(int)
-    strip = Image.new("RGB", (SHOWN * 240, 480))
-    for place, frame in enumerate(frames):
-        strip.paste(_panel(take, found, int(frame)), (240 * place, 0))
-    path.parent.mkdir(parents=True, exist_ok=True)
-    strip.save(path, optimize=True)
-
-
-def _panel(take: KinectTake, found: Capture, frame: int) -> Image.Image:
-    depth, camera = take.depth.frame(frame), take.depth.camera
-    drawn = imagine(found.body, found.poses[frame], camera).picture.depth_picture()
-    seen = depth[depth > 0.0]
-    grey = np.where(depth > 0.0, 250.0 - 180.0 * (depth - seen.min()) / np.ptp(seen), 0.0)
-    picture = np.repeat(grey[..., np.newaxis], 3, axis=2)
-    picture[drawn > 0.0] = 0.6 * picture[drawn > 0.0] + [90.0, 40.0, 0.0]
-    image = Image.fromarray(picture.clip(0.0, 255.0).astype(np.uint8)).resize((640, 480))
-    pen = ImageDraw.Draw(image)
-    places = 2.0 * camera.project(found.joints.positions[frame])
-    for joint, parent in enumerate(JOINT_PARENTS):
-        if parent >= 0:
-            color = (230, 30, 30) if found.doubtful[frame, joint] else (40, 220, 60)
-            pen.line([*places[parent], *places[joint]], fill=color, width=3)
-    for x, y in 2.0 * camera.project(take.joints[min(frame - LATE, len(take.joints) - 1)]):
-        pen.ellipse([x - 3, y - 3, x + 3, y + 3], fill=(80, 160, 255))
-    middle = int(places[0, 0])
-    return image.crop((middle - 120, 0, middle + 120, 480))
+def kinect_take(action: int, subject: int) -> KinectTake | None:
+    """Read one take, or None where there is none."""
+    stem = f"a{action}_s{subject}_t1"
+    if not (TAKES / f"{stem}_depth.mat").exists():
+        return None
+    depth = read_depth(TAKES / f"{stem}_depth.mat")
+    told = np.moveaxis(loadmat(TAKES / f"{stem}_skeleton.mat")["d_skel"], 2, 0)
+    joints = np.full((depth.n_frames, len(SDK), 3), np.nan)
+    n_frames = min(depth.n_frames - LATE, len(told))
+    joints[LATE : LATE + n_frames] = told[:n_frames, list(SDK.values())] * [-1.0, -1.0, 1.0]
+    return KinectTake(action, subject, depth, joints)

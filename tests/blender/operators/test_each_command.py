@@ -91,7 +91,7 @@ def test_a_shoot_is_imported_then_cleaned_then_taken_up_again(blank, command, ta
         (["each", "{takes}", "--output-folder", "{out}"], "Say what to do to each"),
         (["each", "{takes}", "--output-folder", "{out}", "--", "denoise"], "no .blend file in"),
         (["each", "{takes}/one.bvh", "--output-folder", "{out}", "--", "denoise"],
-         "only import reads others"),
+         "only import and capture read others"),
         (["each", "{takes}", "--output-folder", "{out}", "--jobs", "0", "--", "import"],
          "jobs is 0"),
         (["each", "{takes}", "--output-folder", "{out}", "--", "quality"], "saves no .blend"),

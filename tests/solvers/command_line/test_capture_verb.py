@@ -1,9 +1,11 @@
 """`capture`: from pictures of depth to a file of motion."""
 
 import json
+import shutil
 
 import numpy as np
 import pytest
+from depth_folders import open3d, save_png
 from drawn_bodies import CAMERA, NATURAL
 
 from solvers.depth_tracking.body_kinematics import segment_frames
@@ -57,3 +59,71 @@ def test_what_is_no_depth_and_who_is_not_there_are_said_in_a_sentence(call, take
         status, _, err = call("capture", source or empty, tmp_path / "out.bvh", *QUICK)
         assert status == 2 and err.count("\n") == 1 and words in err
         assert not (tmp_path / "out.bvh").exists()
+
+
+@pytest.fixture
+def takes(take, tmp_path):
+    """A folder as it grows on a set: recordings of two kinds, and much else."""
+    folder = tmp_path / "takes"
+    (folder / "monday").mkdir(parents=True)
+    shutil.copy(take, folder / "monday" / "standing.npz")
+    with np.load(take) as archive:
+        depth = archive["depth"]
+    lens = CAMERA.fx, CAMERA.fy, CAMERA.cx, CAMERA.cy
+    open3d(folder / "tuesday" / "pictures", depth, lens)
+    (folder / "walk.bvh").write_text("HIERARCHY\n")
+    np.savez(folder / "patterns.npz", values=np.ones(3))
+    save_png(folder / "stills" / "1.png", np.zeros((4, 4, 3), np.uint8))
+    shutil.copytree(folder / "tuesday", folder / ".trash")
+    return folder
+
+
+def test_a_folder_of_takes_is_captured_take_by_take(call, takes, tmp_path):
+    out = takes / "captured"
+    words = ("capture", takes, "--output-folder", out, *QUICK)
+
+    status, said, err = call(*words, "--jobs", 2, "--report")
+
+    assert (status, err) == (0, "")
+    assert said.count("4 frames: the body lies") == 2
+    made = {path.relative_to(out).as_posix() for path in out.rglob("*.bvh")}
+    assert made == {"monday/standing.bvh", "tuesday/pictures.bvh"}
+    assert (
+        len(list(out.rglob("*.png"))) == 2 and "pictures" in (out / "report.html").read_text()
+    )
+
+    again = call(*words)[1]
+    assert again.count("Already made.") == 2
+
+
+def test_one_bad_take_does_not_stop_the_others(call, takes, tmp_path):
+    whole = (takes / "monday" / "standing.npz").read_bytes()
+    (takes / "monday" / "cut short.npz").write_bytes(whole[: len(whole) // 2])
+    for picture in (takes / "tuesday" / "pictures" / "depth").iterdir():
+        picture.write_bytes(picture.read_bytes()[:40])
+
+    status, said, err = call("capture", takes, "--output-folder", tmp_path / "out", *QUICK)
+
+    assert status == 2 and said.count("4 frames: the body lies") == 1
+    told = err.strip().split("\n")
+    assert len(told) == 2 and all(line.endswith(".") for line in told)
+    assert "cut short.npz" in told[0] and "4 of 4 pictures of depth are missing or" in told[1]
+
+
+def test_a_folder_that_is_a_take_itself(call, takes, tmp_path):
+    take = takes / "tuesday" / "pictures"
+
+    assert call("capture", take, "--output-folder", tmp_path / "out", *QUICK)[0] == 0
+    assert (tmp_path / "out" / "pictures.bvh").is_file()
+
+    status, _, err = call("capture", takes / "stills", "--output-folder", tmp_path, *QUICK)
+    assert status == 2 and "There is no recording in the folder" in err
+
+
+def test_one_file_has_no_room_for_two_bodies(call, takes, tmp_path):
+    words = ("--keep-body", tmp_path / "body.npz")
+
+    status, _, err = call("capture", takes, "--output-folder", tmp_path / "out", *words)
+
+    assert status == 2 and err.count("\n") == 1 and "has room for one body" in err
+    assert not (tmp_path / "body.npz").exists()

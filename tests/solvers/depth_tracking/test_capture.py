@@ -3,6 +3,8 @@
 import numpy as np
 import pytest
 from drawn_bodies import CAMERA, NATURAL, posed, recorded, waving
+from hypothesis import given
+from hypothesis import strategies as st
 from numpy.testing import assert_allclose, assert_array_equal
 
 from solvers.depth_tracking.body_kinematics import joint_positions, segment_frames
@@ -10,7 +12,7 @@ from solvers.depth_tracking.body_model import usual_body
 from solvers.depth_tracking.body_motion import SCENE_FROM_CAMERA, body_motion, body_skeleton
 from solvers.depth_tracking.body_tables import JOINTS
 from solvers.depth_tracking.capture import Capture, CaptureSettings, capture
-from solvers.depth_tracking.choose_poses import choose_poses
+from solvers.depth_tracking.choose_poses import choose_poses, nearest_known
 from solvers.depth_tracking.coordinates import COORDINATES
 from solvers.depth_tracking.smooth_take import smooth_take
 from solvers.errors import InvalidMotionError, SolveCancelled
@@ -111,7 +113,7 @@ def test_the_skeleton_rests_in_a_t_pose():
     assert_allclose(rest["leftHand"][1:], rest["leftUpperArm"][1:], atol=1e-9)
     assert rest["leftHand"][0] > 0.5 > -0.5 > rest["rightHand"][0]
     assert rest["leftToes"][1] < rest["leftFoot"][1]
-    assert 0.0 <= rest["leftToes"][2] < 0.06
+    assert -1e-12 <= rest["leftToes"][2] < 0.06
     assert find_humanoid_map(skeleton).score > 0.9
 
 
@@ -134,33 +136,33 @@ def test_a_tilted_camera_is_levelled_by_the_floor():
 
 def test_a_take_without_pictures_becomes_a_straight_line(rng):
     """Two known frames, nothing between: second differences vanish on a line."""
-    start, stop = rng.normal(size=(2, 34))
-    poses = rng.normal(size=(9, 34))
+    start, stop = rng.normal(size=(2, 36))
+    poses = rng.normal(size=(9, 36))
     poses[0], poses[-1] = start, stop
-    nothing = (np.zeros((34, 34)), np.zeros(34))
-    sure = (1e6 * np.eye(34), np.zeros(34))
+    nothing = (np.zeros((36, 36)), np.zeros(36))
+    sure = (1e6 * np.eye(36), np.zeros(36))
 
-    smooth = smooth_take(poses, [sure, *[nothing] * 7, sure], np.full(34, 1e3))
+    smooth = smooth_take(poses, [sure, *[nothing] * 7, sure], np.full(36, 1e3))
 
     shares = np.linspace(0.0, 1.0, 9)[:, np.newaxis]
     assert_allclose(smooth, (1.0 - shares) * start + shares * stop, atol=1e-4)
 
 
 def test_smoothing_solves_the_dense_system(rng):
-    poses = rng.normal(size=(6, 34))
+    poses = rng.normal(size=(6, 36))
     equations = []
     for _ in range(6):
-        root = rng.normal(size=(34, 34))
-        equations.append((root @ root.T, rng.normal(size=34)))
-    stiffness = rng.uniform(1.0, 5.0, size=34)
+        root = rng.normal(size=(36, 36))
+        equations.append((root @ root.T, rng.normal(size=36)))
+    stiffness = rng.uniform(1.0, 5.0, size=36)
 
     smooth = smooth_take(poses, equations, stiffness)
 
     second = np.kron(np.diff(np.eye(6), 2, axis=0), np.diag(np.sqrt(stiffness)))
-    dense = second.T @ second + 1e-6 * np.eye(6 * 34)
+    dense = second.T @ second + 1e-6 * np.eye(6 * 36)
     wanted = 1e-6 * poses.ravel()
     for frame, (matrix, vector) in enumerate(equations):
-        place = slice(34 * frame, 34 * (frame + 1))
+        place = slice(36 * frame, 36 * (frame + 1))
         dense[place, place] += matrix
         wanted[place] += matrix @ poses[frame] + vector
     assert_allclose(smooth.ravel(), np.linalg.solve(dense, wanted), atol=1e-8)
@@ -178,6 +180,17 @@ def test_a_short_mistake_is_not_chosen_though_it_scores_a_little_better():
     scores[4:, 1] = 0.95
     joints[4:, 1] = 0.3
     assert_array_equal(choose_poses(scores, joints, 300.0, 0.04)[5:], np.ones(5))
+
+
+@given(
+    known=st.lists(st.integers(0, 30), min_size=1, unique=True).map(sorted),
+    n_frames=st.integers(1, 40),
+)
+def test_the_nearest_known_frame_is_that_of_a_search_through_all(known, n_frames):
+    found = nearest_known(np.array(known), n_frames)
+
+    slowly = [min(known, key=lambda one: (abs(one - frame), one)) for frame in range(n_frames)]
+    assert_array_equal(found, slowly)
 
 
 def test_a_missing_candidate_is_never_chosen():

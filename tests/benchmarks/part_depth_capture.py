@@ -1,0 +1,159 @@
+"""Capture with nothing given; and detector and tracker, alone and together."""
+
+from collections.abc import Callable
+from time import process_time
+
+import numpy as np
+
+from solvers.depth_tracking.body_kinematics import joint_positions, segment_frames
+from solvers.depth_tracking.body_model import BodyModel
+from solvers.depth_tracking.capture import Capture, CaptureSettings, capture
+from solvers.depth_tracking.capture_passes import Actor, RecoverySettings
+from solvers.depth_tracking.detect_pose import detect_pose
+from solvers.depth_tracking.pixel_forest import load_pixel_forest
+from solvers.depth_tracking.track_pose import track_pose
+from solvers.depth_tracking.tracker_settings import USUAL
+from solvers.errors import InvalidMotionError
+
+from .depth_more import TAKES, more_sequence
+from .depth_sequences import SCORED, Sequence, errors, length_error, sequence
+from .tables import Scores
+
+FPS = "frames/s"
+FORWARD = CaptureSettings(backward=False, smoothing=0.0)
+EVERY = 5
+"""Every so manieth frame is given to the detector where it works alone."""
+Found = tuple[np.ndarray, np.ndarray, int]
+"""Joints (n, 21, 3), their frames (n,), and restarts."""
+
+
+def captures() -> list[str]:
+    """Capture with nothing given, neither body nor first pose; and forward, body known."""
+    title = "Automatic capture"
+    scores = Scores(title, "each sequence counts as one clip; no pose is given", "")
+    by_sequence = Scores(f"{title}, by sequence", "one each; nothing is given", "")
+    for name in SCORED:
+        one = sequence(name)
+        for label, given, settings in (
+            ("nothing given", None, CaptureSettings()),
+            ("forward only, not smoothed, body known", one.body, FORWARD),
+        ):
+            told = _captured(one, given, settings)
+            for column, figure in told.items():
+                scores.add(label, column, name, figure)
+                if given is None:
+                    by_sequence.add(name, column, name, figure)
+    return [scores.markdown(), by_sequence.markdown().replace(" ± 0.00", "")]
+
+
+def more() -> list[str]:
+    """Capture and track the sequences of `depth_more`."""
+    whole = Scores("More sequences, capture", "one each; nothing is given", "")
+    alone = Scores(
+        "More sequences, tracker from the true first pose", "one each; lengths known", ""
+    )
+    for name in TAKES:
+        one = more_sequence(name)
+        for column, figure in _captured(one, None, CaptureSettings()).items():
+            for row in (name, "all"):
+                whole.add(row, column, name, figure)
+        for column, figure in _measured(_tracker_alone, one).items():
+            for row in (name, "all"):
+                alone.add(row, column, name, figure)
+    return [one.markdown().replace(" ± 0.00", "") for one in (whole, alone)]
+
+
+def ways() -> list[str]:
+    """Compare the detector alone, the tracker alone, and both; lengths are known."""
+    methods: dict[str, Callable[[Sequence], Found]] = {
+        "detector alone, each frame by itself": _detector_alone,
+        "detector, refined by the tracker": _detector_refined,
+        "tracker alone, from the true first pose": _tracker_alone,
+        "tracker alone, from the detected first pose": _tracker_from_detector,
+        "both, forward": lambda one: _both(one, FORWARD),
+        "both, forward and backward, smoothed": lambda one: _both(one, CaptureSettings()),
+    }
+    tables = []
+    for title, sequences in (
+        ("depth/truth", [sequence(name) for name in SCORED]),
+        ("more sequences", [more_sequence(name) for name in TAKES]),
+    ):
+        scores = Scores(
+            f"Detector and tracker, alone and together, {title}",
+            f"{len(sequences)} sequences as clips; lengths known", "",
+        )  # fmt: skip
+        for one in sequences:
+            for label, way in methods.items():
+                for column, figure in _measured(way, one).items():
+                    scores.add(label, column, one.name, figure)
+        tables.append(scores.markdown())
+    return tables
+
+
+def _captured(
+    one: Sequence, body: BodyModel | None, settings: CaptureSettings
+) -> dict[str, float]:
+    """Return the figures of a captured sequence."""
+    started = process_time()
+    found = capture(one.depth, body, settings=settings)
+    speed = one.depth.n_frames / (process_time() - started)
+    off = errors(found.joints.positions, one.joints)
+    return off.figures() | {
+        "restarts": float(len(found.restarts)),
+        "flagged %": 100.0 * found.doubtful.mean(),
+        "cm where not flagged": _where_sure(found, off.offset_taken),
+        "% off in length": length_error(found.body, one.body),
+        FPS: speed,
+    }
+
+
+def _where_sure(found: Capture, off: np.ndarray) -> float:
+    sure = off[~found.doubtful]
+    return 100.0 * float(sure.mean()) if len(sure) else float("nan")
+
+
+def _measured(way: Callable[[Sequence], Found], one: Sequence) -> dict[str, float]:
+    started = process_time()
+    joints, frames, restarts = way(one)
+    speed = len(frames) / (process_time() - started)
+    figures = errors(joints, one.joints[frames]).figures()
+    return figures | {"restarts": float(restarts), FPS: speed}
+
+
+def _detector_alone(one: Sequence) -> Found:
+    forest, frames = load_pixel_forest(), np.arange(0, one.depth.n_frames, EVERY)
+    joints = []
+    for frame in frames.tolist():
+        depth = one.depth.frame(frame)
+        joints.append(detect_pose(depth, one.depth.camera, one.body, forest).joints)
+    return np.array(joints), frames, 0
+
+
+def _detector_refined(one: Sequence) -> Found:
+    actor = Actor(one.depth, one.body, load_pixel_forest(), USUAL, RecoverySettings())
+    frames = np.arange(0, one.depth.n_frames, EVERY)
+    poses = np.array([_refined(actor, frame) for frame in frames.tolist()])
+    return joint_positions(one.body, segment_frames(one.body, poses)), frames, 0
+
+
+def _refined(actor: Actor, frame: int) -> np.ndarray:
+    found = actor.detected(frame)
+    if found is None:
+        raise InvalidMotionError(f"Nobody was detected in frame {frame}.")
+    return found[0]
+
+
+def _tracker_alone(one: Sequence) -> Found:
+    tracked = track_pose(one.depth, one.body, one.first_pose(one.body))
+    return tracked.joints.positions, np.arange(one.depth.n_frames), 0
+
+
+def _tracker_from_detector(one: Sequence) -> Found:
+    actor = Actor(one.depth, one.body, load_pixel_forest(), USUAL, RecoverySettings())
+    tracked = track_pose(one.depth, one.body, _refined(actor, 0))
+    return tracked.joints.positions, np.arange(one.depth.n_frames), 0
+
+
+def _both(one: Sequence, settings: CaptureSettings) -> Found:
+    found = capture(one.depth, one.body, settings=settings)
+    return found.joints.positions, np.arange(one.depth.n_frames), len(found.restarts)

@@ -1,0 +1,181 @@
+"""From raw depth to motion where the recording is not as one would wish."""
+
+import re
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from drawn_bodies import CAMERA, drawn, recorded, waving
+
+from solvers.depth_tracking.body_kinematics import joint_positions, segment_frames
+from solvers.depth_tracking.body_model import BodyModel, usual_body
+from solvers.depth_tracking.body_tables import JOINTS
+from solvers.depth_tracking.capture import CaptureSettings
+from solvers.errors import InvalidMotionError
+from solvers.motion.camera import Camera
+from solvers.motion.depth_recording import DepthRecording
+from solvers.recordings import read_depth
+from solvers.workflows import capture_recording
+from solvers.workflows.capture_remarks import thickness
+
+BODY = usual_body()
+QUICK = CaptureSettings(backward=False, refine=False, check_every=1000)
+LEVEL = "No floor is seen: the camera is taken to have been level."
+N_FRAMES = 12
+LEGS = [
+    JOINTS.index(f"{side}{bone}") for side in ("left", "right") for bone in ("Foot", "Toes")
+]
+ARMS = [
+    JOINTS.index(f"{side}{bone}") for side in ("left", "right") for bone in ("Hand", "UpperArm")
+]
+
+
+def off(found, poses) -> np.ndarray:
+    truth = joint_positions(BODY, segment_frames(BODY, poses))
+    return np.linalg.norm(found.captured.joints.positions - truth, axis=-1)
+
+
+def changed(recording: DepthRecording, change) -> DepthRecording:
+    return replace(recording, read_depth=lambda one: change(one, recording.frame(one)))
+
+
+def caught(recording: DepthRecording, body: BodyModel | None = BODY):
+    return capture_recording(recording, body, settings=QUICK, planting=None)
+
+
+def test_nothing_is_said_of_a_recording_as_it_should_be():
+    poses = waving(N_FRAMES)
+
+    found = caught(recorded(poses), None)
+
+    assert found.remarks == (LEVEL,)
+    assert off(found, poses).mean() < 0.04
+
+
+def test_of_two_people_the_larger_is_followed_and_the_other_told_of():
+    poses = waving(N_FRAMES)
+    poses[:, 0] -= 0.6
+    other = poses[0].copy()
+    other[:3] += (1.3, 0.0, 0.9)
+    behind = drawn(other, BODY.scaled(0.8)).astype(np.float32)
+
+    found = caught(changed(recorded(poses), lambda _, seen: np.where(seen > 0.0, seen, behind)))
+
+    assert "Up to 2 people are seen, from 0.0 s on; the one of" in found.remarks[0]
+    assert off(found, poses).mean() < 0.04
+
+
+def test_who_leaves_the_picture_is_guessed_flagged_and_told_of():
+    poses = waving(30)
+    poses[:, 0] += np.linspace(0.0, 3.2, 30)
+
+    found = caught(recorded(poses))
+
+    gone = np.array([not seen.any() for seen in map(drawn, poses)])
+    assert 3 < gone.sum() < 20
+    assert found.captured.doubtful[gone].all() and found.captured.doubtful[:8].mean() < 0.1
+    assert re.match(r"Nobody is seen in 1\d of 30 frames, from 0\.\d s on\.", found.remarks[0])
+    assert off(found, poses)[:8].mean() < 0.04
+    assert np.isfinite(found.motion.root_positions).all()
+
+
+def test_of_an_upper_body_the_arms_are_told_and_the_legs_are_not_trusted():
+    poses = waving(N_FRAMES)
+    shown = replace(CAMERA, height=72)
+    recording = replace(
+        recorded(poses), camera=shown, read_depth=lambda one: drawn(poses[one])[:72]
+    )
+
+    found = caught(recording)
+
+    assert "The picture ends above the feet: legs are guessed or left out." in found.remarks
+    assert found.captured.doubtful[:, LEGS].all()
+    assert off(found, poses)[:, ARMS].mean() < 0.05
+    assert not found.captured.doubtful[:, ARMS].any()
+
+
+def test_real_upper_bodies_close_by(recordings):
+    for path in sorted((recordings / "depth" / "skeltrack").iterdir())[:3]:
+        found = caught(read_depth(path), None)
+
+        assert any("ends above the feet" in remark for remark in found.remarks)
+        assert found.captured.doubtful[0, LEGS].all()
+        assert found.captured.residual[0] < 0.05
+
+
+def test_holes_are_no_obstacle():
+    """Each frame loses every sixth of its pixels, and two patches of eight by eight."""
+    poses = waving(N_FRAMES)
+
+    def torn(frame, seen):
+        draw = np.random.default_rng(frame)
+        seen = seen * (draw.random(seen.shape) > 0.16)
+        for row, column in draw.integers([20, 60], [90, 100], (2, 2)):
+            seen[row : row + 8, column : column + 8] = 0.0
+        return seen
+
+    found = caught(changed(recorded(poses), torn))
+
+    assert found.remarks == (LEVEL,)
+    assert off(found, poses).mean() < 0.04
+
+
+def test_missing_frames_are_bridged_and_told_of():
+    poses, lost = waving(18), (4, 5, 9, 10, 11, 15)
+
+    found = caught(changed(recorded(poses), lambda one, seen: seen * (one not in lost)))
+
+    assert any("frames nobody is seen" in said or "Nobody is" in said for said in found.remarks)
+    assert found.captured.doubtful[list(lost)].all()
+    assert off(found, poses).mean() < 0.04
+
+
+@pytest.mark.parametrize(
+    ("across", "down", "words"),
+    [
+        (0.5, 0.5, "check the focal length"), (2.0, 2.0, "check that the focal length"),
+        (1.3, 1.0, "check fx and fy"), (1.0, 0.75, "check fx and fy"),
+    ],
+)  # fmt: skip
+def test_wrong_focal_lengths_are_told_of(across, down, words):
+    wrong = replace(CAMERA, fx=across * CAMERA.fx, fy=down * CAMERA.fy)
+
+    found = caught(replace(recorded(waving(3)), camera=wrong), None)
+
+    assert any(words in remark for remark in found.remarks)
+
+
+def test_a_body_as_thick_as_a_barrel_may_be_a_wrong_focal_length():
+    """At half the focal length all is twice as wide and high, but no deeper."""
+    barrel = BodyModel(BODY.lengths, 1.7 * BODY.radii)
+    recording = recorded(waving(4), barrel)
+
+    found = capture_recording(
+        recording, settings=CaptureSettings(backward=False), planting=None
+    )
+
+    assert thickness(found.captured) > 1.3
+    assert any("times as thick as usual: check the focal" in said for said in found.remarks)
+
+
+def test_a_scale_that_is_wrong_leaves_nobody_or_a_giant():
+    in_millimetres = changed(recorded(waving(3)), lambda _, seen: 1000.0 * seen)
+
+    try:
+        said = " ".join(caught(in_millimetres).remarks)
+    except InvalidMotionError as error:
+        said = str(error)
+    assert "scale" in said or "depth is in metres" in said
+
+
+def test_what_is_no_actor_agrees_badly():
+    """A board as large as a person, a metre and a half by one."""
+    board = np.zeros((120, 160), np.float32)
+    board[20:110, 50:110] = 2.5
+    recording = DepthRecording(
+        Camera(142.8, 142.8, 79.5, 59.5, 160, 120), 3, 30.0, lambda _: board
+    )
+
+    found = caught(recording, None)
+
+    assert any("Body and pictures agree badly" in said for said in found.remarks)
