@@ -143,6 +143,7 @@ def keep_on_esc(points):
 def steps():
     yield from prepare()
     points = bpy.context.object
+    points.select_set(False)  # active alone, so that its points keep their colour
     yield from press("track_depth", "1-tracking.png")
     armature = bpy.context.object
     assert armature.type == "ARMATURE", armature

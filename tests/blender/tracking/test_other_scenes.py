@@ -1,10 +1,9 @@
-"""Scenes of other units and rates, and files that are loaded in the middle."""
+"""Scenes of other units and rates."""
 
 import json
 
 import numpy as np
 import pytest
-from modal_events import wait
 
 QUICK = {"backward": False, "refine": False, "plant_feet": False}
 
@@ -47,18 +46,10 @@ def test_body_and_correction_in_centimetres_between_whole_frames(
     slot = armature.animation_data.action_slot
     path = 'pose.bones["hips"].rotation_quaternion'
     times = [
-        [key.co[0] for key in compat.channelbag(action, slot).fcurves.find(path).keyframe_points]
+        [
+            key.co[0]
+            for key in compat.channelbag(action, slot).fcurves.find(path).keyframe_points
+        ]
         for action in (before, armature.animation_data.action)
     ]
     assert times[0] == pytest.approx(times[1], abs=1e-3)
-
-
-def test_loading_another_file_ends_the_watching_too(points_and_button, window, blank, load):
-    button = points_and_button
-    wait(button, window, until=lambda: button._watch.view.drawn is not None)
-    drawing = button._watch.view._drawing
-
-    load("mocap_assist.watch")._abandon_all()
-
-    assert drawing._handle is None and not button._watch.is_on
-    assert not window.timers and not window.job.running
