@@ -64,7 +64,16 @@ def more() -> list[str]:
 
 
 def ways() -> list[str]:
-    """Compare the detector alone, the tracker alone, and both; lengths are known."""
+    """Compare the detector alone, the tracker alone, and both, on depth/truth."""
+    return [_ways("depth/truth", [sequence(name) for name in SCORED])]
+
+
+def more_ways() -> list[str]:
+    """Compare them on the sequences of `depth_more`."""
+    return [_ways("more sequences", [more_sequence(name) for name in TAKES])]
+
+
+def _ways(title: str, sequences: list[Sequence]) -> str:
     methods: dict[str, Callable[[Sequence], Found]] = {
         "detector alone, each frame by itself": _detector_alone,
         "detector, refined by the tracker": _detector_refined,
@@ -73,21 +82,15 @@ def ways() -> list[str]:
         "both, forward": lambda one: _both(one, FORWARD),
         "both, forward and backward, smoothed": lambda one: _both(one, CaptureSettings()),
     }
-    tables = []
-    for title, sequences in (
-        ("depth/truth", [sequence(name) for name in SCORED]),
-        ("more sequences", [more_sequence(name) for name in TAKES]),
-    ):
-        scores = Scores(
-            f"Detector and tracker, alone and together, {title}",
-            f"{len(sequences)} sequences as clips; lengths known", "",
-        )  # fmt: skip
-        for one in sequences:
-            for label, way in methods.items():
-                for column, figure in _measured(way, one).items():
-                    scores.add(label, column, one.name, figure)
-        tables.append(scores.markdown())
-    return tables
+    scores = Scores(
+        f"Detector and tracker, alone and together, {title}",
+        f"{len(sequences)} sequences as clips; lengths known", "",
+    )  # fmt: skip
+    for one in sequences:
+        for label, way in methods.items():
+            for column, figure in _measured(way, one).items():
+                scores.add(label, column, one.name, figure)
+    return scores.markdown()
 
 
 def _captured(
