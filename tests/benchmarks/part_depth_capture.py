@@ -52,14 +52,17 @@ def more() -> list[str]:
     alone = Scores(
         "More sequences, tracker from the true first pose", "one each; lengths known", ""
     )
+    told = []
     for name in TAKES:
         one = more_sequence(name)
-        for column, figure in _captured(one, None, CaptureSettings()).items():
-            for row in (name, "all"):
-                whole.add(row, column, name, figure)
-        for column, figure in _measured(_tracker_alone, one).items():
-            for row in (name, "all"):
-                alone.add(row, column, name, figure)
+        told += [
+            (whole, name, each) for each in _captured(one, None, CaptureSettings()).items()
+        ]
+        told += [(alone, name, each) for each in _measured(_tracker_alone, one).items()]
+    for scores, name, (column, figure) in told:
+        scores.add(name, column, name, figure)
+    for scores, name, (column, figure) in told:
+        scores.add("all", column, name, figure)
     return [one.markdown().replace(" ± 0.00", "") for one in (whole, alone)]
 
 
