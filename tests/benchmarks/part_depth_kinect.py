@@ -49,7 +49,7 @@ def kinect(subjects: Sequence[int] = SUBJECTS) -> list[str]:
             part = rows[sheet * per_sheet : (sheet + 1) * per_sheet]
             save_sheet(part, 1, 0.6, BUILD / f"s{subject}_{sheet}.jpg")
             if subject == subjects[0]:
-                save_sheet(part, 3, 0.3, PICTURES / f"depth_kinect_{sheet}.jpg")
+                save_sheet(part, 3, 0.42, PICTURES / f"depth_kinect_{sheet}.jpg")
     for column, name, figure in everything:
         scores.add("all", column, name, figure)
     text = scores.markdown()
