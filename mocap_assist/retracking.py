@@ -30,6 +30,7 @@ Array = NDArray[np.float64]
 
 OPERATION = "retrack"
 SUFFIX = ".retracked"
+DIGITS = 2
 SIDES = ("before", "after")
 EXTREME, KEYFRAME = 1, 0
 """Blender's types of keys: what the animator posed, and the rest."""
@@ -66,7 +67,7 @@ def read_retracking(
     if not 0 <= frame < len(take.frames):
         raise InvalidMotionError(
             f"Frame {scene.frame_current_final:g} is not in the recording. Go to one from"
-            f" {take.frames[0]:g} to {take.frames[-1]:g}, and pose {armature.name} there."
+            f" {take.frames[0]:.2f} to {take.frames[-1]:.2f}, and pose {armature.name} there."
         )
     correction = Correction(frame, take.pose(armature), _fixed(source, take, frame))
     return Showing(retrack_recording, played, correction, settings.retracking)
@@ -171,7 +172,8 @@ def _doubts(scene: bpy.types.Scene, trusted: dict[str, Array]) -> tuple[Doubt, .
 
 
 def _said(take: TrackedTake, result: Retracked) -> str:
-    first, frame, last = take.frames[[result.first, result.frame, result.last]]
+    rows = [result.first, result.frame, result.last]
+    first, frame, last = np.round(take.frames[rows], DIGITS)
     said = f"frames {first:g} to {last:g} were tracked again from frame {frame:g}."
     sides = [side for side, met in zip(SIDES, result.met, strict=True) if met]
     if sides:

@@ -96,7 +96,9 @@ def read_tracking(
     return Showing(track_recording, recording, settings.tracking, settings.actor, planting)
 
 
-def watch_tracking(scene: bpy.types.Scene, settings: TrackBundle) -> LiveBody | None:
+def watch_tracking(
+    scene: bpy.types.Scene, preview: bpy.types.Object, settings: TrackBundle
+) -> LiveBody | None:
     """Return what shows the body while it is tracked, if that is wanted."""
     return LiveBody(scene, stage_of_preview) if settings.watching.watch else None
 
@@ -131,6 +133,7 @@ def write_tracked(
         armature, bones = build_armature(context, name, result.motion.skeleton, metres, MODE)
         source = write_motion(armature, bones, result.motion, frames, metres)
         armature.matrix_world = _place(preview, result.floor) @ Matrix.Scale(metres, 4)
+        armature.show_in_front = True
         write_reliability(armature, *source, frames, result.confidence)
         write_residual(armature, source, frames, result.residual)
         kept = TrackedBody(result.body, shown, result.floor, settings.actor)

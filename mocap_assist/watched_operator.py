@@ -14,15 +14,15 @@ class WatchedOperator(SolverOperator):
     """Mix in as SolverOperator, where `read_scene` returns a `Showing` solve."""
 
     open_view: ClassVar[Callable[..., View | None]]
-    """From the scene and the settings; None if nobody wants to look on."""
+    """From scene, subject and settings; None if nobody wants to look on."""
     rescue: ClassVar[Callable[..., Callable[[list[Any]], Any] | None]]
     """From scene, subject and settings: what makes a result of all that was shown, or None."""
 
     def invoke(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
         outcome = super().invoke(context, event)
         if outcome == {"RUNNING_MODAL"}:
-            scene, _ = self._subject.find()
-            self._watch.view = type(self).open_view(scene, self.settings())
+            asked = (*self._subject.find(), self.settings())
+            self._watch.view = type(self).open_view(*asked)
         return outcome
 
     def modal(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:

@@ -66,15 +66,21 @@ def shaded(drawn: Solid, eye_from_world: Array) -> NDArray[np.float32]:
     return colors
 
 
-def draw_solid(drawn: Solid, view: Any) -> None:
-    """Draw it in a 3D View, behind what is nearer to the eye of `view`, its region's data."""
+def batch_of(drawn: Solid, view: Any) -> Any:
+    """Return the triangles as the graphics card takes them, seen from a region's `view`."""
     from gpu_extras.batch import batch_for_shader
 
     shader = gpu.shader.from_builtin("SMOOTH_COLOR")
     colors = shaded(drawn, np.array(view.view_matrix))
-    batch = batch_for_shader(
+    return batch_for_shader(
         shader, "TRIS", {"pos": drawn.points, "color": colors}, indices=drawn.triangles
     )
+
+
+def draw_solid(drawn: Solid, view: Any) -> None:
+    """Draw it in a 3D View, behind what is nearer to the eye of its region's `view`."""
+    shader = gpu.shader.from_builtin("SMOOTH_COLOR")
+    batch = batch_of(drawn, view)
     gpu.state.blend_set("ALPHA")
     gpu.state.depth_test_set("LESS_EQUAL")
     gpu.state.depth_mask_set(True)

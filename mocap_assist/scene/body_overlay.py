@@ -16,7 +16,8 @@ from .tracked_body import TrackedBody, bones_of, is_tracked, posed_frames
 
 PLAIN = np.array([0.62, 0.72, 0.85, 1.0])
 """Colour of a joint whose trust is not told."""
-OPAQUE = 0.9
+OPAQUE = 0.65
+"""So that bones and points within are seen, to be posed."""
 N_BODIES = 8
 
 _drawing: list[BodyDrawing] = []

@@ -32,7 +32,7 @@ from .depth_sequences import (
 )
 from .depth_takes import SUBJECTS
 from .lou_sequences import colored, others_motions
-from .part_depth_capture import FPS, captures, more, ways
+from .part_depth_capture import FPS, captures, more, more_ways, ways
 from .part_depth_kinect import kinect
 from .part_depth_memory import LENGTHS, memory
 from .part_depth_recorded import recorded
@@ -89,6 +89,7 @@ def main() -> None:
     report = Report(chosen.docs, DOCS / "benchmarks_depth.md")
     parts = {
         "trackers": trackers, "captures": captures, "more": more, "ways": ways,
+        "more-ways": more_ways,
         "terms": terms, "bodies": bodies, "noise": noise, "resolution": resolution,
         "kinect": partial(kinect, chosen.subjects), "renderers": renderers,
         "memory": partial(memory, chosen.frames), "detector": detector,

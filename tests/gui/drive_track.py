@@ -82,7 +82,6 @@ def steps():
     yield from watch_it(job)
     armature = bpy.context.object
     assert armature is not None and armature.type == "ARMATURE", armature
-    armature.show_in_front = True
     for number, frame in enumerate((1, 15, 30), start=5):
         bpy.context.scene.frame_set(frame)
         yield from settle()

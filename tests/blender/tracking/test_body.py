@@ -102,3 +102,11 @@ def test_trust_is_shown_of_what_track_has_made(tracked, load):
     shown = heat.heat_at(tracked, 3)
     assert shown is not None and len(shown.ends) == len(tracked.pose.bones)
     assert len(np.unique(shown.colors.reshape(-1, 4), axis=0)) > 3
+
+
+def test_the_panel_offers_what_fits_the_selection(points, tracked, blank, draw):
+    assert {"mocap_assist.retrack", "mocap_assist_body", "reach"} <= set(draw("MOCAP_PT_track"))
+    assert "mocap_assist.track_depth" not in draw("MOCAP_PT_track")
+    blank.context.view_layer.objects.active = points
+    assert {"mocap_assist.track_depth", "watch", "keep_on_esc"} <= set(draw("MOCAP_PT_track"))
+    assert "mocap_assist.retrack" not in draw("MOCAP_PT_track")

@@ -5,6 +5,7 @@ import json
 import numpy as np
 import pytest
 from mathutils import Quaternion
+from modal_events import event, nothing_is_left, wait
 
 QUICK = {"backward": False, "refine": False, "plant_feet": False}
 ARM = "rightUpperArm"
@@ -135,3 +136,57 @@ def test_why_it_is_grey_or_refuses(tracked, points, blank):
     assert not blank.ops.mocap_assist.retrack.poll()
     with pytest.raises(RuntimeError, match="Select an armature that Track has made"):
         blank.ops.mocap_assist.retrack()
+
+
+@pytest.fixture
+def press(load, window, tracked):
+    """Press Track from Here; return the button, which waits."""
+    acts = load("operators.retrack").MOCAP_OT_retrack
+    settings = load("solvers.depth_tracking").RetrackSettings()
+
+    class Button(load("mocap_assist.watched_operator").WatchedOperator):
+        bl_idname, settings_group = acts.bl_idname, acts.settings_group
+        selected, read_scene, write_scene = acts.selected, acts.read_scene, acts.write_scene
+        open_view, rescue = acts.open_view, acts.rescue
+
+        def prepare(self, context):
+            pass
+
+        def settings(self):
+            return load("mocap_assist.retracking").RetrackBundle(settings)
+
+        def report(self, kind, message):
+            window.reports.append((kind, message))
+
+    def press():
+        button = Button()
+        assert button.invoke(window.context, None) == {"RUNNING_MODAL"}
+        return button
+
+    return press
+
+
+def test_it_can_be_watched_and_esc_leaves_the_hand_pose_as_it_was(
+    tracked, press, window, blank, load
+):
+    action = tracked.animation_data.action
+    blank.context.scene.frame_set(8)
+    bone = tracked.pose.bones[ARM]
+    bone.rotation_quaternion = AWAY @ bone.rotation_quaternion
+    posed = bone.matrix_basis.copy()
+
+    button = press()
+    wait(button, window, until=lambda: button._watch.view.drawn is not None)
+    drawn = button._watch.view.drawn.points
+    body = load("mocap_assist.scene.body_overlay").body_now(tracked, 8).points
+    assert np.linalg.norm(drawn.mean(axis=0) - body.mean(axis=0)) < 0.1
+    assert button.modal(window.context, event("ESC", "PRESS")) == {"CANCELLED"}
+
+    assert blank.context.scene.frame_current == 8
+    np.testing.assert_allclose(bone.matrix_basis, posed, atol=1e-5)
+    assert tracked.animation_data.action is action and nothing_is_left(window)
+
+    assert wait(press(), window) == {"FINISHED"}
+    ((_, cancelled), (_, said)) = window.reports
+    assert cancelled == "Cancelled." and "tracked again from frame 8" in said
+    np.testing.assert_allclose(bone.matrix_basis, posed, atol=1e-4)

@@ -128,6 +128,17 @@ def test_nothing_is_drawn_where_nobody_wants_to_look(press, window, blank):
     }
 
 
+def test_loading_another_file_ends_the_watching_too(press, window, load):
+    button = press()
+    wait(button, window, until=lambda: drawn(button) is not None)
+    drawing = button._watch.view._drawing
+
+    load("mocap_assist.watch")._abandon_all()
+
+    assert drawing._handle is None and not button._watch.is_on
+    assert not window.timers and not window.job.running
+
+
 def test_half_a_pose_is_left_for_the_next_look(load, tmp_path):
     protocol = load("mocap_assist.jobs.protocol")
     path = tmp_path / protocol.SHOWN

@@ -1,5 +1,7 @@
 """Without a first pose or a body: the whole way from pictures to motion."""
 
+import tracemalloc
+
 import numpy as np
 import pytest
 from drawn_bodies import CAMERA, NATURAL, posed, recorded, waving
@@ -204,6 +206,17 @@ def test_the_nearest_known_frame_is_that_of_a_search_through_all(known, n_frames
 
     slowly = [min(known, key=lambda one: (abs(one - frame), one)) for frame in range(n_frames)]
     assert_array_equal(found, slowly)
+
+
+def test_an_hour_of_frames_has_no_table_of_all_pairs():
+    known = np.arange(0, 108_000, 2)
+    tracemalloc.start()
+    found = nearest_known(known, 108_000)
+    peak = tracemalloc.get_traced_memory()[1]
+    tracemalloc.stop()
+
+    assert_array_equal(found[:-1], np.arange(107_999) // 2 * 2)
+    assert peak < 20e6
 
 
 def test_a_missing_candidate_is_never_chosen():
