@@ -131,7 +131,7 @@ def armature_from_motion(armature: bpy.types.Object, body: BodyModel) -> Array:
 
 
 def posed_frames(armature: bpy.types.Object, body: BodyModel) -> Array:
-    """Return where the segments (15, 4, 4) are in the armature's space, as it is posed now."""
+    """Return where the segments (17, 4, 4) are in the armature's space, as it is posed now."""
     bones = bones_of(armature)
     rest = armature_from_motion(armature, body) @ rest_frames(body)
     names = [bones[name] for name in SEGMENTS]

@@ -13,7 +13,7 @@ from .drawing import draw_job, draw_sentence, exists
 TRACK, RETRACK = "mocap_assist.track_depth", "mocap_assist.retrack"
 HOW = "Pose the armature in a frame that is wrong, then track from there."
 CUT = ("nearest", "farthest")
-SHOWN = ("backward", "refine", "smoothing", "plant_feet", "watch", "keep_on_esc")
+SHOWN = ("backward", "refine", "smoothing", "recorded", "plant_feet", "watch", "keep_on_esc")
 
 
 class TrackPanel:

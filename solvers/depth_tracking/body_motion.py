@@ -77,7 +77,7 @@ def body_motion(
 
 
 def rest_frames(body: BodyModel) -> Array:
-    """Return where the segments (15, 4, 4) are in the rest pose of `body_skeleton`."""
+    """Return where the segments (17, 4, 4) are in the rest pose of `body_skeleton`."""
     frames = np.zeros((N_SEGMENTS, 4, 4))
     frames[:, :3, :3] = _REST
     frames[:, :3, 3] = body_skeleton(body).rest_positions[:N_SEGMENTS]

@@ -41,6 +41,10 @@ class CaptureSettings(RecoverySettings):
         minimum=0.0, maximum=1000.0,
     )  # fmt: skip
     refine: bool = setting(True, "Fit lengths and thickness of the body to the recording")
+    recorded: bool = setting(
+        False, "Draw poses to recorded walks, exercises and dances: limbs out of sight follow"
+        " those in sight; switch off for jumps and other quick motions",
+    )  # fmt: skip
     doubtful: float = setting(
         0.3, "Confidence below which a joint is flagged; more flags more",
         minimum=0.0, maximum=1.0,
@@ -114,8 +118,8 @@ def capture(
     forest : PixelForest, optional
         Without it, the one that is shipped.
     motion_prior : MotionPrior, optional
-        Recorded motions that this one is like; they tell where limbs out of sight are.
-        Without it, those that are shipped.
+        Recorded motions that this one is like, to which the tracker draws poses; without
+        it, those that are shipped if `settings.recorded`.
     floor : Floor, optional
         Becomes z = 0; without it the camera is taken to be level.
     settings : CaptureSettings
@@ -137,7 +141,8 @@ def capture(
        single depth camera. ACM Transactions on Graphics 31(6).
     """
     forest = load_pixel_forest() if forest is None else forest
-    motion_prior = load_motion_prior() if motion_prior is None else motion_prior
+    if motion_prior is None and settings.recorded:
+        motion_prior = load_motion_prior()
     share = 0.0
     if body is None:
         share = 0.4

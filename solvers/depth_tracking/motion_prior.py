@@ -129,14 +129,22 @@ def local_pca(prior: MotionPrior, pose: Array) -> LocalPca:
     """
     n_neighbours = min(NEIGHBOURS, len(prior.poses))
     _, nearest = prior.tree.query(pose[N_ROOT:], k=n_neighbours)
-    nearest = np.atleast_1d(nearest)
-    following = (nearest[:, np.newaxis] + np.arange(1, FOLLOWING + 1)).ravel()
-    clips = np.repeat(prior.clips[nearest], FOLLOWING)
-    inside = following < len(prior.poses)
-    inside[inside] = prior.clips[following[inside]] == clips[inside]
-    chosen = prior.poses[following[inside]] if inside.any() else prior.poses[nearest]
+    chosen = followers(prior, np.atleast_1d(nearest), FOLLOWING)
     mean = chosen.mean(axis=0)
     values, vectors = np.linalg.eigh(np.cov(chosen.T, bias=True))
     shares = np.cumsum(values[::-1]) / max(values.sum(), 1e-300)
     n_components = int(np.searchsorted(shares, ENERGY)) + 1
     return LocalPca(mean, vectors[:, ::-1][:, :n_components])
+
+
+def followers(prior: MotionPrior, places: NDArray[np.intp], ahead: int) -> Array:
+    """Return the `ahead` poses (n, 30) after each of these in its clip.
+
+    The poses themselves, if none follows or none is asked for.
+    """
+    following = (places[:, np.newaxis] + np.arange(1, ahead + 1)).ravel()
+    clips = np.repeat(prior.clips[places], ahead)
+    inside = following < len(prior.poses)
+    inside[inside] = prior.clips[following[inside]] == clips[inside]
+    found: Array = prior.poses[following[inside]] if inside.any() else prior.poses[places]
+    return found

@@ -12,7 +12,6 @@ from .fit_quality import FitQuality, fit_quality, unseen
 from .found_pose import FoundPose
 from .hypothesis import imagine
 from .likelihood import likelihood_rows
-from .motion_prior import local_pca
 from .normal_equations import PoseEquations, added, in_coordinates, segment_equations
 from .observation import Observation, observe
 from .pose_priors import joint_limits, natural_stance
@@ -76,9 +75,6 @@ def smoothed_piece(
             continue
         observation = observe(actor.depth, first + place, tracker.picture_width)
         asked = _asked(actor, pose, observation).equations
-        if actor.motion_prior is not None:
-            likely = local_pca(actor.motion_prior, pose)
-            asked = added([asked, likely.equations(pose, tracker.similar_weight)])
         equations.append((asked.matrix, asked.vector))
     return smooth_take(poses, equations, stiffness)
 

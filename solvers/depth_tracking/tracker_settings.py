@@ -48,7 +48,7 @@ class TrackerSettings(Settings):
     surface_weight: float = _weight(0.0, "Weight of the surface term of [LOU12]")
     edge_weight: float = _weight(0.0, "Weight of the edge term of [LOU12]")
     similar_weight: float = _weight(
-        5.0, "How much poses must be like those of the motion prior, if there is one", "1/rad2"
+        30.0, "How much poses must be like those of the motion prior, if there is one", "1/rad2"
     )
     shift_weight: float = _weight(
         400.0, "How smoothly the hips move; more is steadier and follows slower"

@@ -5,7 +5,6 @@ from enum import Enum
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.special import gammainc
 
 from ..motion import JointRecording
 from ..motion.posture_joints import N_JOINTS, POSTURE_JOINTS, joints_of_names, posture_positions
@@ -13,10 +12,11 @@ from ..motion.straight_gaps import bridged
 from ..progress import Progress, unwatched, within
 from ..settings import Settings, setting
 from .follow_joints import follow_joints
+from .foretold import Foretold
 from .other_joints import all_joints, anchors
 from .reliability import Reliability, measure_reliability
 from .residual_inputs import calm_postures
-from .residual_prior import Foretold, ResidualPrior
+from .residual_prior import ResidualPrior
 from .result import Reconstruction
 from .steady_paths import followed, smoothed
 from .trunk_twist import LimbTwists
@@ -128,7 +128,8 @@ def correct_postures(
     progress(0.9, "Correcting")
     asked = settings.change > 0.0 or settings.shift
     heard = told.coverage if asked else 0.0
-    confidence = heard * chance_within(variances, SURE_WITHIN) + (1.0 - heard) * weights
+    chance = prior.confidence(variances, SURE_WITHIN, constant=settings.shift)
+    confidence = heard * chance + (1.0 - heard) * weights
     tracks = recording.tracks
     joints = all_joints(
         tracks.names, tracks.positions, trust.combined, posture_positions(recording), corrected
@@ -201,18 +202,6 @@ def _frame_by_frame(
             wanted = wanted + temporal * steady
         result[frame] = seen[frame] + wanted / np.maximum(total, 1e-12)[:, None]
     return result / CENTIMETRES
-
-
-def chance_within(variances: Array, distance: float) -> Array:
-    """Return the chance of a point being within a distance of its mean (Maxwell's law).
-
-    Parameters
-    ----------
-    variances : any shape, square metres for each of three axes; infinite: chance 0
-    distance : float, metres
-    """
-    scaled = distance**2 / (2.0 * np.maximum(variances, 1e-12))
-    return np.asarray(gammainc(1.5, scaled))
 
 
 def posture_reliability(recording: JointRecording, combined: Array) -> Array:

@@ -20,9 +20,10 @@ STEADY = 0.1
 """Seconds over which the twist is steadied where bends tell it."""
 USUAL = 0.02
 """Weight of no twist against the trunk; a bend has 1."""
-ALIKE = 0.1
-"""Weight of the twist that like postures agree upon."""
-OWN = 0.1
+ALIKE, SEEN_TOO = 0.2, 0.1
+"""Weight of the twist that like postures agree upon where the limb is lost, and what part of it
+is left where the limb is seen: bends before and after tell more of a straight one."""
+OWN = 0.03
 """Seconds of bends by which half of how the actor differs from like postures is known."""
 
 SURE, FAINT = 10.0, 1e-6
@@ -44,6 +45,20 @@ class Limb(NamedTuple):
     bends_towards: tuple[float, float, float]
     role: str = ""
     """Of the upper joint."""
+
+
+class Expected(NamedTuple):
+    """Twists of like postures, as complex numbers that are as long as they agree.
+
+    Attributes
+    ----------
+    twists : complex, shape (n_frames,)
+    weights : shape (n_frames,)
+        What they count for against a bend.
+    """
+
+    twists: Complex
+    weights: Array
 
 
 class Hinges(NamedTuple):
@@ -110,7 +125,8 @@ def hinge_turns(
         like = _angles(hinge, known.ways, axis) * np.linalg.norm(known.ways, axis=-1)
     if known.alone:
         return _turned_about(turns, axis, np.angle(like))
-    return twisted(turns, axis, hinge, normal, bend_share(bend) * sure, frame_rate, like)
+    expected = Expected(like, ALIKE * (1.0 - (1.0 - SEEN_TOO) * sure))
+    return twisted(turns, axis, hinge, normal, bend_share(bend) * sure, frame_rate, expected)
 
 
 def bend_share(bends: Array) -> Array:
@@ -185,19 +201,22 @@ def twisted(
     normal: Array,
     weights: Array,
     frame_rate: float,
-    like: Complex | None = None,
+    expected: Expected | None = None,
 ) -> Array:
     """Twist frames about their `axis` so far that `usual` comes to `normal`, where it counts.
 
-    Arrays of shape (n_frames, 3) are in the world; `weights` has shape (n_frames,), and so has
-    `like`: the twist of like postures, as complex numbers that are as long as it is known.
+    Arrays of shape (n_frames, 3) are in the world; `weights` has shape (n_frames,). What is not
+    known of the twist that is `expected` is none at all.
     """
     seen = _angles(usual, normal, axis)
     weights = np.where(seen != 0.0, weights * (0.5 + 0.5 * seen.real), 0.0)
     stiffness = (STEADY * frame_rate) ** 2
-    known = 0.0 if like is None else ALIKE * _of_actor(like, seen, weights, frame_rate)
-    told = weights * seen + known + USUAL
-    sure = weights + np.abs(known) + USUAL
+    told, sure = weights * seen + USUAL, weights + USUAL
+    if expected is not None:
+        like = _of_actor(expected.twists, seen, weights, frame_rate)
+        known = np.abs(like)
+        told += expected.weights * like - USUAL * known
+        sure += (expected.weights - USUAL) * known
     parts = smoothest(np.stack([told.real, told.imag], -1), sure, stiffness)
     path = np.asarray(parts[:, 0] + 1j * parts[:, 1])
     return _turned_about(turns, axis, _without_turns(path, stiffness))

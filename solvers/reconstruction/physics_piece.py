@@ -19,7 +19,7 @@ from .physics_plant import planted
 from .physics_run import follow
 from .physics_stance import from_frame_to_frame, in_contact, standing
 from .physics_surface import clearance, raising, sole_speeds, touching
-from .physics_target import calmed_target
+from .physics_target import away_from, blended, calmed_target
 from .physics_world import build_world
 
 Array = NDArray[np.float64]
@@ -38,6 +38,12 @@ friction, and by little of it if faster."""
 SLIPPERY = 0.05
 """Share of the friction under a foot that swings."""
 
+
+EASE = 0.3
+"""Seconds in which the result eases to what it was where something failed."""
+
+SUNK = 0.001
+"""Metres, for legs of 0.9 m, by which no foot is planted if the body then sinks deeper."""
 
 TRIES = 4
 CALMEST = 0.16
@@ -124,6 +130,11 @@ def _planted(body: PhysicsBody, piece: Piece, ground: float) -> Piece:
     firm = standing(body, piece.motion, piece.loads, piece.stands, ground)
     firm *= piece.followed[:, None]
     motion = planted(body, piece.motion, from_frame_to_frame(firm), ground)
+    before, after = (
+        np.minimum(clearance(body, each, ground), 0.0) for each in (piece.motion, motion)
+    )
+    share = away_from(after < before - SUNK * body.size, EASE * motion.frame_rate)
+    motion = blended(piece.motion, motion, body.joints, share)
     return replace(piece, motion=motion, contacts=touching(body, motion, ground))
 
 

@@ -4,7 +4,6 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.ndimage import distance_transform_edt
 
 from ..motion import HumanoidMap, Motion, find_humanoid_map
 from ..progress import Progress, unwatched, within
@@ -12,18 +11,15 @@ from .physics_body import PhysicsBody, check_size, physics_body
 from .physics_engine import load_engine
 from .physics_feet import find_ground, stands_for_long, with_soles
 from .physics_figures import about_ground, mean_distance, stands_on, told
-from .physics_piece import Conditions, Piece, find_pieces, simulated_piece
+from .physics_piece import EASE, Conditions, Piece, find_pieces, simulated_piece
 from .physics_settings import Ground, SimulateSettings
 from .physics_stance import carried
 from .physics_surface import penetration, slide
-from .physics_target import blended, filled
+from .physics_target import away_from, blended, filled
 
 Array = NDArray[np.float64]
 Flags = NDArray[np.bool_]
 USUAL = SimulateSettings()
-EASE = 0.3
-"""Seconds in which the result eases to the input where the body could not follow it."""
-
 TOO_OFTEN = 1.0
 """Seconds of a take for each time that its body may be lost before all is given up."""
 
@@ -234,12 +230,4 @@ def _put_together(
 
 def _ease(pieces: list[Piece], frame_rate: float) -> Array:
     """Return a share that rises from 0 where the body was lost to 1, shape (n_frames,)."""
-    shares = []
-    for piece in pieces:
-        # A lost frame beyond each end, too far to matter: there is always one to measure to.
-        far = int(EASE * frame_rate) + 2
-        frames = np.pad(piece.followed, far, constant_values=True)
-        frames[[0, -1]] = False
-        away = distance_transform_edt(frames)[far:-far]
-        shares.append(np.minimum(1.0, away / (EASE * frame_rate)))
-    return np.concatenate(shares)
+    return np.concatenate([away_from(~piece.followed, EASE * frame_rate) for piece in pieces])

@@ -1,6 +1,6 @@
 """What is alike, and how closely it is looked at."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from enum import Enum
 
 import numpy as np
@@ -9,9 +9,11 @@ from numpy.typing import NDArray
 from ..errors import InvalidMotionError
 from ..settings import Settings, setting
 from .body_parts import BodyPart
+from .spans import STANCE
 
 BELIEF = 4.0
 """Power of the share of a part that is known by which it counts."""
+STANCE_OF_SENSOR = 0.4
 STILL = 0.05
 """Activity of the busiest part below which the query is a pose: all count alike, or nearly."""
 AT_REST = 0.2
@@ -49,6 +51,11 @@ class FindSettings(Settings):
         " arm that only hangs counts like any other",
         minimum=0.0, maximum=4.0, advanced=True, label="Busy Parts",
     )  # fmt: skip
+    stance: float = setting(
+        STANCE, "How much the mean posture counts beside how a clip departs from it; in what a"
+        " sensor saw 0.4 at most, since sensors put joints elsewhere",
+        minimum=0.0, maximum=1.0, advanced=True,
+    )  # fmt: skip
     n_warped: int = setting(
         128, "Best clips whose course in time is compared as well; more is slower",
         minimum=0, maximum=10_000, advanced=True, label="Warped",
@@ -66,6 +73,10 @@ class FindSettings(Settings):
         8, "Best matches whose frames are aligned with the query's",
         minimum=0, maximum=10_000, advanced=True, label="Aligned",
     )  # fmt: skip
+
+    def for_sensor(self) -> "FindSettings":
+        """Return settings for a query that a sensor saw."""
+        return replace(self, stance=min(self.stance, STANCE_OF_SENSOR))
 
     @property
     def asks_for_all(self) -> bool:

@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from ..motion import JointRecording
+from ..motion import JointRecording, Tracks
 from ..progress import Progress, unwatched, within
 from .align_clip import aligned
 from .clip import ClipEntry, Match
@@ -47,8 +47,9 @@ def find_similar(
     Parameters
     ----------
     query : Motion, Tracks or JointRecording
-        Gaps are filled in as is probable; a part of the body of which little is known hardly
-        counts.
+        In what a sensor saw (points with confidences are) the mean posture counts less: it
+        puts joints where others do not. Gaps are filled in as is probable; a part of the body
+        of which little is known hardly counts.
     library : ClipLibrary
     settings : FindSettings
     ignore : names of clips, optional
@@ -77,6 +78,9 @@ def find_similar(
     vocabulary, entries = library.vocabulary, library.numbered()
     if vocabulary is None or not entries:
         return ()
+    tracks = query.tracks if isinstance(query, JointRecording) else query
+    if tracks is not query or (isinstance(tracks, Tracks) and tracks.confidence is not None):
+        settings = settings.for_sensor()
     asked = describe_query(postures, vocabulary, settings)
     left_out = library.numbers_of(ignore)
     if settings.method is FindMethod.PUBLISHED:
@@ -89,7 +93,6 @@ def find_similar(
         )
     told = settings.n_matches or len(ranking.clips)
     matches = _matches(ranking, told, entries)
-    tracks = query.tracks if isinstance(query, JointRecording) else query
     alignment = _Alignment(asked, vocabulary, tracks.n_frames, tracks.frame_rate)
     aligning = within(progress, 0.3, 1.0)
     for place in range(min(settings.n_aligned, len(matches))):

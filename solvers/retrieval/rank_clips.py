@@ -2,7 +2,6 @@
 
 from collections.abc import Collection
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -12,7 +11,7 @@ from .find_settings import FindSettings
 from .likes import between_courses, judged_by_likes
 from .search_index import SearchIndex
 from .span_warping import frame_distances, warping_costs
-from .spans import FULL, N_CUBES, Spans
+from .spans import FULL, N_CUBES, Spans, with_stance
 from .vocabulary import N_AXES
 
 Single = NDArray[np.float32]
@@ -55,8 +54,9 @@ def rank_clips(
     asked = weighted_words(query.histograms[:1], weights)[0]
     apart, spans = index.best_spans(1.0 - index.common(asked), ignore)
     near = _least(apart, settings.n_warped)
-    course = weighted_steps(query.summaries[:1], weights)
-    courses = weighted_steps(index.steps(spans[near]), weights)
+    asking = query.summaries[:1].astype(np.float32)
+    course = weighted_steps(with_stance(asking, settings.stance), weights)
+    courses = weighted_steps(with_stance(index.steps(spans[near]), settings.stance), weights)
     costs = warping_costs(frame_distances(course, courses))[0]
     share = np.float32(2.0 / (1.0 + settings.warping))
     likely = share * (apart[near] + np.float32(settings.warping) * costs)
@@ -89,13 +89,9 @@ def weighted_words(histograms: NDArray[np.uint8], weights: NDArray[np.float64]) 
     return parted.reshape(len(histograms), -1)
 
 
-def weighted_steps(
-    summaries: NDArray[np.floating[Any]], weights: NDArray[np.float64]
-) -> Single:
+def weighted_steps(summaries: Single, weights: NDArray[np.float64]) -> Single:
     """Return summaries, (n, 16, 5, 8), as vectors with the parts weighted, (n, 16, 40)."""
-    scaled = np.asarray(summaries, dtype=np.float32)
-    if (weights != 1.0).any():
-        scaled = scaled * np.sqrt(weights).astype(np.float32)[:, None]
+    scaled = summaries * np.sqrt(weights).astype(np.float32)[:, None]
     return scaled.reshape(*scaled.shape[:2], N_PARTS * N_AXES)
 
 

@@ -8,6 +8,7 @@ from numpy.typing import NDArray
 
 from .index_block import IndexBlock
 from .likes import between_courses
+from .spans import STANCE, with_stance
 
 Single = NDArray[np.float32]
 Numbers = NDArray[np.int64]
@@ -85,5 +86,5 @@ class SearchIndex:
 
     @cached_property
     def _between_all(self) -> Single:
-        steps = self.steps(np.arange(len(self.clips)))
+        steps = with_stance(self.steps(np.arange(len(self.clips))), STANCE)
         return between_courses(steps.reshape(*steps.shape[:2], -1))

@@ -24,6 +24,8 @@ N_STEPS = 16
 """Moments by which a span is compared in detail."""
 MOST_FRAMES = 1200
 """Of a span that are looked at, evenly spread."""
+STANCE = 0.8
+"""How much the mean posture of a clip counts beside how the clip departs from it."""
 FULL = 255.0
 """What the whole length of a histogram is stored as."""
 
@@ -63,6 +65,16 @@ def describe(features: Array, frames: NDArray[np.int32], vocabulary: Vocabulary)
         np.round(FULL * np.stack(histograms)).astype(np.uint8),
         np.stack(summaries).astype(np.float16),
     )
+
+
+def with_stance(summaries: NDArray[np.float32], stance: float) -> NDArray[np.float32]:
+    """Return what parts do at moments of spans, (n, 16, ...), their mean being so much of it.
+
+    What the arms do while a leg kicks, how somebody stands, and where a sensor takes joints to
+    be are in the mean over a span; the movement itself is not.
+    """
+    mean = summaries.mean(axis=1, keepdims=True)
+    return np.asarray(summaries - np.float32(1.0 - stance) * mean)
 
 
 def span_frames(n_frames: int, frame_rate: float) -> NDArray[np.int32]:

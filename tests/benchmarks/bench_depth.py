@@ -32,11 +32,12 @@ from .depth_sequences import (
 )
 from .depth_takes import SUBJECTS
 from .lou_sequences import colored, others_motions
-from .part_depth_capture import FPS, captures, more, ways
+from .part_depth_capture import FPS, captures, more, more_ways, ways
 from .part_depth_kinect import kinect
 from .part_depth_memory import LENGTHS, memory
 from .part_depth_renderers import renderers
 from .part_detector import detector
+from .part_failures import failures
 from .peers.icp_trackers import articulated_icp, ray_constrained_icp
 from .plot_bars import draw_bars
 from .report import DOCS, PICTURES, Report
@@ -87,9 +88,11 @@ def main() -> None:
     report = Report(chosen.docs, DOCS / "benchmarks_depth.md")
     parts = {
         "trackers": trackers, "captures": captures, "more": more, "ways": ways,
+        "more-ways": more_ways,
         "terms": terms, "bodies": bodies, "noise": noise, "resolution": resolution,
         "kinect": partial(kinect, chosen.subjects), "renderers": renderers,
         "memory": partial(memory, chosen.frames), "detector": detector,
+        "failures": failures,
     }  # fmt: skip
     for name, part in parts.items():
         if chosen.only and name not in chosen.only.split(","):

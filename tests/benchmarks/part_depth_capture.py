@@ -7,6 +7,7 @@ import numpy as np
 
 from solvers.depth_tracking.body_kinematics import joint_positions, segment_frames
 from solvers.depth_tracking.body_model import BodyModel
+from solvers.depth_tracking.body_tables import JOINTS
 from solvers.depth_tracking.capture import Capture, CaptureSettings, capture
 from solvers.depth_tracking.capture_passes import Actor, RecoverySettings
 from solvers.depth_tracking.detect_pose import detect_pose
@@ -16,13 +17,19 @@ from solvers.depth_tracking.tracker_settings import USUAL
 from solvers.errors import InvalidMotionError
 
 from .depth_more import TAKES, more_sequence
-from .depth_sequences import SCORED, Sequence, errors, length_error, sequence
+from .depth_sequences import ENOUGH, SCORED, Sequence, errors, length_error, sequence
 from .tables import Scores
 
 FPS = "frames/s"
 FORWARD = CaptureSettings(backward=False, smoothing=0.0)
 EVERY = 5
 """Every so manieth frame is given to the detector where it works alone."""
+BY_JOINT = {
+    "detector alone, each frame by itself": "detector",
+    "tracker alone, from the true first pose": "tracker",
+    "both, forward and backward, smoothed": "both",
+}
+"""Ways of which each joint is told, and what they are called there."""
 Found = tuple[np.ndarray, np.ndarray, int]
 """Joints (n, 21, 3), their frames (n,), and restarts."""
 
@@ -52,19 +59,31 @@ def more() -> list[str]:
     alone = Scores(
         "More sequences, tracker from the true first pose", "one each; lengths known", ""
     )
+    told = []
     for name in TAKES:
         one = more_sequence(name)
-        for column, figure in _captured(one, None, CaptureSettings()).items():
-            for row in (name, "all"):
-                whole.add(row, column, name, figure)
-        for column, figure in _measured(_tracker_alone, one).items():
-            for row in (name, "all"):
-                alone.add(row, column, name, figure)
+        told += [
+            (whole, name, each) for each in _captured(one, None, CaptureSettings()).items()
+        ]
+        told += [(alone, name, each) for each in _measured(_tracker_alone, one).items()]
+    for scores, name, (column, figure) in told:
+        scores.add(name, column, name, figure)
+    for scores, name, (column, figure) in told:
+        scores.add("all", column, name, figure)
     return [one.markdown().replace(" ± 0.00", "") for one in (whole, alone)]
 
 
 def ways() -> list[str]:
-    """Compare the detector alone, the tracker alone, and both; lengths are known."""
+    """Compare the detector alone, the tracker alone, and both, on depth/truth."""
+    return _ways("depth/truth", [sequence(name) for name in SCORED])
+
+
+def more_ways() -> list[str]:
+    """Compare them on the sequences of `depth_more`."""
+    return _ways("more sequences", [more_sequence(name) for name in TAKES])
+
+
+def _ways(title: str, sequences: list[Sequence]) -> list[str]:
     methods: dict[str, Callable[[Sequence], Found]] = {
         "detector alone, each frame by itself": _detector_alone,
         "detector, refined by the tracker": _detector_refined,
@@ -73,21 +92,14 @@ def ways() -> list[str]:
         "both, forward": lambda one: _both(one, FORWARD),
         "both, forward and backward, smoothed": lambda one: _both(one, CaptureSettings()),
     }
-    tables = []
-    for title, sequences in (
-        ("depth/truth", [sequence(name) for name in SCORED]),
-        ("more sequences", [more_sequence(name) for name in TAKES]),
-    ):
-        scores = Scores(
-            f"Detector and tracker, alone and together, {title}",
-            f"{len(sequences)} sequences as clips; lengths known", "",
-        )  # fmt: skip
-        for one in sequences:
-            for label, way in methods.items():
-                for column, figure in _measured(way, one).items():
-                    scores.add(label, column, one.name, figure)
-        tables.append(scores.markdown())
-    return tables
+    unit = f"{len(sequences)} sequences as clips; lengths known"
+    scores = Scores(f"Detector and tracker, alone and together, {title}", unit, "")
+    by_joint = Scores(f"Per cent of each joint within 10 cm, {title}", unit, "")
+    for one in sequences:
+        for label, way in methods.items():
+            for column, figure in _measured(way, one, by_joint, label).items():
+                scores.add(label, column, one.name, figure)
+    return [scores.markdown(), by_joint.markdown()]
 
 
 def _captured(
@@ -112,12 +124,21 @@ def _where_sure(found: Capture, off: np.ndarray) -> float:
     return 100.0 * float(sure.mean()) if len(sure) else float("nan")
 
 
-def _measured(way: Callable[[Sequence], Found], one: Sequence) -> dict[str, float]:
+def _measured(
+    way: Callable[[Sequence], Found],
+    one: Sequence,
+    by_joint: Scores | None = None,
+    label: str = "",
+) -> dict[str, float]:
+    """Return the figures of a way to find the joints; note those of each joint."""
     started = process_time()
     joints, frames, restarts = way(one)
     speed = len(frames) / (process_time() - started)
-    figures = errors(joints, one.joints[frames]).figures()
-    return figures | {"restarts": float(restarts), FPS: speed}
+    off = errors(joints, one.joints[frames])
+    if by_joint is not None and label in BY_JOINT:
+        for joint, near in zip(JOINTS, (off.offset_taken < ENOUGH).mean(axis=0), strict=True):
+            by_joint.add(joint, BY_JOINT[label], one.name, 100.0 * near)
+    return off.figures() | {"restarts": float(restarts), FPS: speed}
 
 
 def _detector_alone(one: Sequence) -> Found:

@@ -2,6 +2,7 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -33,6 +34,13 @@ class Default:
         return DefaultLibrary(library, places, self.settings)
 
 
+class Asked(NamedTuple):
+    """A query, and the settings it is asked with: those for a sensor, if one saw it."""
+
+    described: DescribedQuery
+    settings: FindSettings
+
+
 @dataclass(frozen=True, eq=False)
 class DefaultLibrary:
     library: ClipLibrary
@@ -40,16 +48,17 @@ class DefaultLibrary:
     """Which clip each number of the library is."""
     settings: FindSettings
 
-    def describe(self, tracks: Tracks) -> DescribedQuery:
+    def describe(self, tracks: Tracks) -> Asked:
         vocabulary = self.library.vocabulary
         assert vocabulary is not None
-        return describe_query(clip_postures(tracks, RATE), vocabulary, self.settings)
+        postures = clip_postures(tracks, RATE)
+        settings = self.settings if tracks.confidence is None else self.settings.for_sensor()
+        return Asked(describe_query(postures, vocabulary, settings), settings)
 
-    def distances(self, query: DescribedQuery, allowed: Flags) -> Array:
+    def distances(self, query: Asked, allowed: Flags) -> Array:
         ignored = self.library.numbers_of(map(str, np.flatnonzero(~allowed)))
-        ranking = rank_clips(
-            query.spans, query.weights, self.library.search_index, self.settings, ignored
-        )
+        described, index = query.described, self.library.search_index
+        ranking = rank_clips(described.spans, described.weights, index, query.settings, ignored)
         result = np.full(len(allowed), np.inf)
         result[self.places[ranking.clips]] = ranking.distances
         return result

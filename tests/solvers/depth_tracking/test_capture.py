@@ -1,5 +1,7 @@
 """Without a first pose or a body: the whole way from pictures to motion."""
 
+import tracemalloc
+
 import numpy as np
 import pytest
 from drawn_bodies import CAMERA, NATURAL, posed, recorded, waving
@@ -14,6 +16,7 @@ from solvers.depth_tracking.body_tables import JOINTS
 from solvers.depth_tracking.capture import Capture, CaptureSettings, capture
 from solvers.depth_tracking.choose_poses import choose_poses, nearest_known
 from solvers.depth_tracking.coordinates import COORDINATES
+from solvers.depth_tracking.motion_prior import load_motion_prior
 from solvers.depth_tracking.smooth_take import smooth_take
 from solvers.errors import InvalidMotionError, SolveCancelled
 from solvers.motion import find_humanoid_map, forward_kinematics
@@ -82,6 +85,18 @@ def test_frames_without_anybody_are_bridged_and_flagged():
     assert np.isfinite(found.poses).all()
     off = np.linalg.norm(found.joints.positions - joints_of(truth), axis=-1)
     assert off[9:12].mean() < 0.06
+
+
+def test_recorded_motions_are_asked_when_wanted():
+    """They draw an arm that nothing shows to what arms do; one of them can be given."""
+    truth = waving(4)
+    found = [
+        capture(recorded(truth), BODY, motion_prior=given,
+                settings=CaptureSettings(backward=False, recorded=wanted)).poses
+        for given, wanted in ((None, False), (None, True), (load_motion_prior(), False))
+    ]  # fmt: skip
+    assert np.abs(found[0] - found[1]).max() > 1e-4
+    assert_allclose(found[1], found[2], atol=1e-12)
 
 
 def test_nobody_is_refused():
@@ -191,6 +206,17 @@ def test_the_nearest_known_frame_is_that_of_a_search_through_all(known, n_frames
 
     slowly = [min(known, key=lambda one: (abs(one - frame), one)) for frame in range(n_frames)]
     assert_array_equal(found, slowly)
+
+
+def test_an_hour_of_frames_has_no_table_of_all_pairs():
+    known = np.arange(0, 108_000, 2)
+    tracemalloc.start()
+    found = nearest_known(known, 108_000)
+    peak = tracemalloc.get_traced_memory()[1]
+    tracemalloc.stop()
+
+    assert_array_equal(found[:-1], np.arange(107_999) // 2 * 2)
+    assert peak < 20e6
 
 
 def test_a_missing_candidate_is_never_chosen():

@@ -24,6 +24,7 @@ from solvers.retrieval.clip_postures import ClipPostures, clip_postures
 from solvers.retrieval.index_block import IndexBlock
 from solvers.retrieval.posting_lists import posting_lists
 from solvers.retrieval.search_index import SearchIndex
+from solvers.retrieval.spans import STANCE, with_stance
 from solvers.retrieval.usual_postures import usual_postures
 from solvers.retrieval.vocabulary import learn_vocabulary
 
@@ -83,7 +84,7 @@ def test_a_small_library_keeps_what_a_large_one_works_out_anew(monkeypatch):
     index = SearchIndex([(block(range(6)), np.ones(6, bool))])
     spans = np.array([5, 1, 2])
     kept = index.between(spans)
-    steps = index.steps(spans)
+    steps = with_stance(index.steps(spans), STANCE)
     # Nothing is from itself but what single numbers leave of it.
     assert_allclose(kept, likes.between_courses(steps.reshape(3, 16, 40)), atol=2e-3)
     monkeypatch.setattr(search_index, "MOST_COMPARED", 5)
@@ -94,14 +95,21 @@ def test_each_clip_is_judged_by_those_nearest_to_it():
     apart = RNG.random(9).astype(np.float32) + 0.5
     between = RNG.random((9, 9)).astype(np.float32)
     between += between.T
-    expected = []
-    for one in range(9):
-        others = sorted(
-            (between[one, other], apart[other]) for other in range(9) if other != one
+    others = [
+        sorted(
+            (other for other in range(9) if other != one), key=lambda other: between[one, other]
         )
-        told = np.mean([distance for _, distance in others[:3]])
-        mixed = (apart[one] + BELIEVED * told) / (1.0 + BELIEVED)
-        expected.append(min(mixed, BLAMED * apart[one]))
+        for one in range(9)
+    ]
+    nearest = [some[:3] for some in others]
+    told = apart.astype(float)
+    for _ in range(likes.ROUNDS):
+        before = told.copy()
+        for one in range(9):
+            voices = [1.0 + likes.MUTUAL * (one in nearest[other]) for other in nearest[one]]
+            heard = np.average(before[nearest[one]], weights=voices)
+            told[one] = (before[one] + BELIEVED * heard) / (1.0 + BELIEVED)
+    expected = np.minimum(told, BLAMED * apart)
     assert_allclose(likes.judged_by_likes(apart, between, 3), expected, rtol=1e-5)
 
 

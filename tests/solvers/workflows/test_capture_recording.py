@@ -1,6 +1,7 @@
 """From raw depth to motion where the recording is not as one would wish."""
 
 import re
+import tracemalloc
 from dataclasses import replace
 
 import numpy as np
@@ -179,3 +180,22 @@ def test_what_is_no_actor_agrees_badly():
     found = caught(recording, None)
 
     assert any("Body and pictures agree badly" in said for said in found.remarks)
+
+
+def peak_of(n_frames: int, read) -> int:
+    tracemalloc.start()
+    try:
+        caught(DepthRecording(CAMERA, n_frames, 30.0, read))
+        return tracemalloc.get_traced_memory()[1]
+    finally:
+        tracemalloc.stop()
+
+
+def test_no_picture_is_kept():
+    """Each further frame takes much less than its picture: a take of any length fits."""
+    still = drawn(waving(1)[0]).astype(np.float32)
+    peak_of(2, lambda _: still)  # What is loaded once and for all.
+
+    few, many = (peak_of(n_frames, lambda _: still) for n_frames in (6, 36))
+
+    assert (many - few) / 30 < 0.6 * still.nbytes
