@@ -1,6 +1,7 @@
 """Learn the residual prior that is shipped, from UI-PRMD (published as ODC-PDDL).
 
     python .ci/train_residuals.py
+    python .ci/train_residuals.py --confidence   # only how far the shipped one is believed
 
 Vakanski, Jun, Paul, Baker (2018). A data set of human body movements for physical
 rehabilitation exercises. Data 3(1). doi:10.3390/data3010002
@@ -19,7 +20,9 @@ from solvers.reconstruction import (  # noqa: E402
     ResidualPrior,
     ResidualPriorSettings,
     learn_residual_prior,
+    load_residual_prior,
 )
+from solvers.reconstruction.learn_confidence import calibrated  # noqa: E402
 from solvers.reconstruction.reconstruct import SHIPPED  # noqa: E402
 from tests.benchmarks.kinect_pairs import read_pairs  # noqa: E402
 
@@ -28,17 +31,27 @@ WORDS = "UI-PRMD: ten exercises by five actors, Kinect v2 against markers"
 
 
 def main() -> None:
-    """Learn from all takes and save where it is shipped, in single precision."""
-    pairs = [pair for pair in read_pairs() if pair.matched]
-    prior = learn_residual_prior(
-        [(pair.kinect, pair.truth) for pair in pairs],
-        actors=[pair.subject for pair in pairs],
-        settings=SETTINGS,
-        progress=lambda share, words: print(f"{share:4.0%} {words}", flush=True),
-    )
+    """Learn from all takes and save where it is shipped, in single precision.
+
+    Its confidence is learned by leaving out each actor in turn.
+    """
+    taken = [pair for pair in read_pairs() if pair.matched]
+    pairs = [(pair.kinect, pair.truth) for pair in taken]
+    actors = [pair.subject for pair in taken]
+    if "--confidence" in sys.argv:
+        prior = load_residual_prior(SHIPPED)
+    else:
+        prior = learn_residual_prior(pairs, actors=actors, settings=SETTINGS, progress=told)
+    prior = calibrated(prior, pairs, actors, settings=SETTINGS, progress=told)
     SHIPPED.parent.mkdir(exist_ok=True)
     small(prior).save(SHIPPED)
     print(f"{len(prior.joints)} joints, {SHIPPED.stat().st_size} bytes: {SHIPPED}")
+    print(f"level, slope and spread: {prior.calibration.tolist()}")
+
+
+def told(share: float, words: str = "") -> None:
+    """Print how far it is."""
+    print(f"{share:4.0%} {words}", flush=True)
 
 
 def small(prior: ResidualPrior) -> ResidualPrior:

@@ -7,17 +7,19 @@ Blender is imported only on `register`: a solve in a process of its own passes t
 def register() -> None:
     """Make properties, commands and panels known to Blender."""
     from . import batch, scene_properties, ui, watch
-    from .library import background, ghost_drawing, previews, properties
+    from .library import background, ghost_drawing, keeping, previews, properties
     from .live import listening
-    from .scene import contacts, depth_preview
+    from .scene import body_overlay, contacts, depth_preview
 
     scene_properties.register()
     properties.register()
     ghost_drawing.register()
     background.register()
+    keeping.register()
     previews.register()
     contacts.register()
     depth_preview.register()
+    body_overlay.register()
     watch.register()
     listening.register()
     batch.register()
@@ -27,17 +29,19 @@ def register() -> None:
 def unregister() -> None:
     """Take them away again."""
     from . import batch, scene_properties, ui, watch
-    from .library import background, ghost_drawing, previews, properties
+    from .library import background, ghost_drawing, keeping, previews, properties
     from .live import listening
-    from .scene import contacts, depth_preview
+    from .scene import body_overlay, contacts, depth_preview
 
     ui.unregister()
     batch.unregister()
     listening.unregister()
     watch.unregister()
+    body_overlay.unregister()
     depth_preview.unregister()
     contacts.unregister()
     previews.unregister()
+    keeping.unregister()
     background.unregister()
     ghost_drawing.unregister()
     properties.unregister()

@@ -59,7 +59,8 @@ def readable(context: bpy.types.Context, path: Path, choices: ImportChoices) -> 
     if not files:
         return path
     width, height = size_of(files[0])
-    camera = choices.depth.camera(width, height) or _scene_camera(context, width, height)
+    told = _scene_camera(context, width, height)
+    camera = choices.depth.camera(width, height, told)
     if camera is None:
         raise InvalidFileError(
             f"{path} does not tell through which camera it was rendered: give the focal length"

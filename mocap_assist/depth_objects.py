@@ -4,6 +4,7 @@ from pathlib import Path
 
 import bpy
 
+from ..solvers.motion.camera_doubts import camera_doubts
 from ..solvers.motion.depth_floor import LEVEL, find_floor
 from ..solvers.motion.depth_recording import DepthRecording
 from ..solvers.progress import Progress, unwatched
@@ -34,4 +35,6 @@ def make_preview(
     camera = recording.camera
     what = f"depth of {camera.width} x {camera.height} pixels"
     what += ", on the floor" if floor else ", without a floor"
+    if doubts := camera_doubts(camera):
+        what += f". {' '.join(doubts).removesuffix('.')}"
     return Made(made, None, float(samples.frames(recording.n_frames)[-1]), what)

@@ -96,6 +96,30 @@ class ImportChoices(Settings):
         minimum=0.0,
         maximum=100_000.0,
     )
+    focal_length_y: float = setting(
+        0.0,
+        "Of a depth camera up the picture, in pixels, where it is another one than across; more"
+        " makes the actor shorter. 0 takes the file's word, or the one across",
+        minimum=0.0,
+        maximum=100_000.0,
+        label="Focal Length Y",
+    )
+    center_x: float = setting(
+        0.0,
+        "Column of pixels that the axis of a depth camera meets. 0 takes the file's word, or"
+        " the middle",
+        minimum=0.0,
+        maximum=100_000.0,
+        label="Center X",
+    )
+    center_y: float = setting(
+        0.0,
+        "Row of pixels that the axis of a depth camera meets. 0 takes the file's word, or the"
+        " middle",
+        minimum=0.0,
+        maximum=100_000.0,
+        label="Center Y",
+    )
     held: Held = setting(
         Held.KNOWN,
         "How the depth camera was held: turned left has the actor's head at the left of the"
@@ -113,6 +137,9 @@ class ImportChoices(Settings):
         return DepthSettings(
             scale=self.unit.metres or 0.0,
             fx=self.focal_length,
+            fy=self.focal_length_y,
+            cx=self.center_x,
+            cy=self.center_y,
             held=self.held,
             mirrored=self.mirrored,
         )

@@ -12,6 +12,7 @@ from .clean_choices import CleanSettings
 from .library.choices import FindBundle, LibraryBundle, LoadBundle, UseBundle
 from .reconstruct_choices import ReconstructBundle
 from .retarget_choices import RetargetBundle, UnbakeBundle
+from .retracking import RetrackBundle
 from .settings_properties import settings_from
 from .simulating import SimulateBundle
 from .solving import SolveBundle
@@ -49,6 +50,11 @@ class MOCAP_PG_simulate(bpy.types.PropertyGroup):
 @settings_from(TrackBundle)
 class MOCAP_PG_track(bpy.types.PropertyGroup):
     """Settings of the button Track."""
+
+
+@settings_from(RetrackBundle)
+class MOCAP_PG_retrack(bpy.types.PropertyGroup):
+    """Settings of the button Track from Here."""
 
 
 @settings_from(UnbakeBundle)
@@ -132,6 +138,7 @@ class MOCAP_PG_scene(bpy.types.PropertyGroup):
     reconstruct: bpy.props.PointerProperty(type=MOCAP_PG_reconstruct)
     simulate: bpy.props.PointerProperty(type=MOCAP_PG_simulate)
     track: bpy.props.PointerProperty(type=MOCAP_PG_track)
+    retrack: bpy.props.PointerProperty(type=MOCAP_PG_retrack)
     retarget: bpy.props.PointerProperty(type=MOCAP_PG_retarget)
     unbake: bpy.props.PointerProperty(type=MOCAP_PG_unbake)
     library: bpy.props.PointerProperty(type=MOCAP_PG_library)
@@ -166,6 +173,7 @@ CLASSES = (
     MOCAP_PG_retarget,
     MOCAP_PG_simulate,
     MOCAP_PG_track,
+    MOCAP_PG_retrack,
     MOCAP_PG_unbake,
     MOCAP_PG_reconstruct,
     MOCAP_PG_library,

@@ -9,7 +9,7 @@ from typing import Any, ClassVar
 import bpy
 
 from ..solvers.errors import MocapAssistError, SolveCancelled
-from .jobs.job import Quick, run
+from .jobs.job import Job, Quick, run
 from .redo import fingerprint
 from .selection import selected_subject
 from .subject import Subject
@@ -101,7 +101,7 @@ class SolverOperator:
         watch.end(context)
         logger.info("%s took %.1f s", self.bl_idname, monotonic() - self._started)
         try:
-            return self._finish(watch.job.result(), self._asked)
+            return self._finish(self._answer(watch.job), self._asked)
         except MocapAssistError as error:
             return self._give_up(error)
 
@@ -109,6 +109,10 @@ class SolverOperator:
         """Blender ends the operator: another file is loaded, or the window closes."""
         if self._watch.is_on:
             self._watch.abandon(context)
+
+    def _answer(self, job: Job[Any]) -> Any:
+        """Return what the job that has ended has solved."""
+        return job.result()
 
     def _read(self) -> "partial[Any]":
         return type(self).read_scene(*self._subject.find(), self.settings())

@@ -1,9 +1,10 @@
 """What the button Track reads from the scene, and the armature that it adds."""
 
 import json
+from collections.abc import Callable
 from dataclasses import dataclass
 from functools import partial
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import bpy
 import numpy as np
@@ -15,24 +16,24 @@ from ..solvers.motion.depth_floor import LEVEL, Floor
 from ..solvers.motion.depth_foreground import ForegroundSettings
 from ..solvers.settings import Settings, setting
 from ..solvers.version import version
-from .jobs.tracking import Tracked, track_recording
-from .scene import compat, history
+from .doubts import list_doubts
+from .jobs.protocol import Showing
+from .jobs.tracking import Tracked, track_recording, tracked_so_far
+from .scene import history
 from .scene.armature_build import build_armature
-from .scene.compat import Source
-from .scene.curves import write_first
 from .scene.depth_preview import KEY, Shown, problem_of, recording_of
+from .scene.live_body import LiveBody, stage_of_preview
 from .scene.new_action import write_motion
 from .scene.reliability_curves import write_reliability
 from .scene.scene_objects import all_or_nothing
+from .scene.tracked_body import TrackedBody
+from .scene.tracked_curves import write_residual
 from .scene.units import unit_of
 from .subject import check_unchanged
 
 MODE = "QUATERNION"
-RESIDUAL = "mocap_residual"
-"""Custom property of the armature: metres between body and points, keyed."""
 CAPTURED = "mocap_assist_captured"
 """Custom property of the action: how it was made, as JSON. To Clean it is raw."""
-MOST_SPOTS = 100
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -44,6 +45,23 @@ class TrackChoices(Settings):
     )
 
 
+@dataclass(frozen=True, kw_only=True)
+class WatchChoices(Settings):
+    """What is done while somebody looks on."""
+
+    watch: bool = setting(
+        True,
+        "Show the body over the points while it is tracked, in the colours of trust, and go"
+        " along in time",
+        label="Watch it Solve",
+    )
+    keep_on_esc: bool = setting(
+        False,
+        "Esc makes an armature of the frames that were tracked until then",
+        label="Keep on Esc",
+    )
+
+
 class TrackBundle(NamedTuple):
     """All that the button offers."""
 
@@ -51,6 +69,7 @@ class TrackBundle(NamedTuple):
     tracking: CaptureSettings
     actor: ForegroundSettings
     planting: PlantSettings
+    watching: WatchChoices = WatchChoices()
 
 
 def selected_preview(context: bpy.types.Context) -> bpy.types.Object | None:
@@ -70,11 +89,28 @@ def why_not_track(context: bpy.types.Context) -> str:
 
 def read_tracking(
     scene: bpy.types.Scene, preview: bpy.types.Object, settings: TrackBundle
-) -> "partial[Tracked]":
+) -> Showing[Tracked]:
     """Open the recording that is shown; return what is to be solved, which may be pickled."""
     planting = settings.planting if settings.choices.plant_feet else None
     recording = recording_of(preview.data)
-    return partial(track_recording, recording, settings.tracking, settings.actor, planting)
+    return Showing(track_recording, recording, settings.tracking, settings.actor, planting)
+
+
+def watch_tracking(
+    scene: bpy.types.Scene, preview: bpy.types.Object, settings: TrackBundle
+) -> LiveBody | None:
+    """Return what shows the body while it is tracked, if that is wanted."""
+    return LiveBody(scene, stage_of_preview) if settings.watching.watch else None
+
+
+def keep_tracked(
+    scene: bpy.types.Scene, preview: bpy.types.Object, settings: TrackBundle
+) -> Callable[[list[Any]], Tracked] | None:
+    """Return what makes the best of what was tracked until Esc, if that is wanted."""
+    if not settings.watching.keep_on_esc:
+        return None
+    recording = recording_of(preview.data)
+    return partial(tracked_so_far, recording=recording, settings=settings.tracking)
 
 
 def write_tracked(
@@ -90,17 +126,21 @@ def write_tracked(
     """
     check_unchanged(preview, asked, recording_of(preview.data))
     shown, context, metres = Shown.read(preview.data), bpy.context, unit_of(scene)
-    frames = shown.start + shown.step * np.arange(result.motion.n_frames)
+    pictures = result.first + np.arange(result.motion.n_frames)
+    frames = shown.start + shown.step * pictures
     with all_or_nothing(context):
         name = f"{preview.name} tracked"
         armature, bones = build_armature(context, name, result.motion.skeleton, metres, MODE)
         source = write_motion(armature, bones, result.motion, frames, metres)
         armature.matrix_world = _place(preview, result.floor) @ Matrix.Scale(metres, 4)
+        armature.show_in_front = True
         write_reliability(armature, *source, frames, result.confidence)
-        _write_residual(armature, source, frames, result.residual)
+        write_residual(armature, source, frames, result.residual)
+        kept = TrackedBody(result.body, shown, result.floor, settings.actor)
+        kept.write(armature, dict(zip(result.motion.skeleton.names, bones, strict=True)))
     action = source[0]
     action[CAPTURED] = json.dumps(_entry(settings, result, shown), ensure_ascii=False)
-    _list_doubts(scene, action, frames, result)
+    list_doubts(scene, action, frames, result.doubts, _said(result))
     return f"{armature.name}: {_said(result)}"
 
 
@@ -110,37 +150,6 @@ def _place(preview: bpy.types.Object, floor: Floor | None) -> Matrix:
     camera = np.eye(4)
     camera[:3, :3], camera[:3, 3] = turn, shift
     return preview.matrix_world @ Matrix(np.linalg.inv(camera).tolist())
-
-
-def _write_residual(
-    armature: bpy.types.Object, source: Source, frames: np.ndarray, residual: np.ndarray
-) -> None:
-    known = np.isfinite(residual)
-    if not known.any():
-        return
-    armature[RESIDUAL] = float(residual[known][0])
-    bag = compat.channelbag(*source, ensure=True)
-    curve = compat.new_curve(bag, f'["{RESIDUAL}"]', 0, "Track")
-    write_first(curve, frames[known], residual[known])
-
-
-def _list_doubts(
-    scene: bpy.types.Scene, action: bpy.types.Action, frames: np.ndarray, result: Tracked
-) -> None:
-    """Show the doubtful ranges in the list of Check, worst first."""
-    shown = scene.mocap_assist
-    shown.spots.clear()
-    shown.active_spot = 0
-    shown.checked, shown.report = action.name, _said(result)
-    for doubt in result.doubts[:MOST_SPOTS]:
-        item = shown.spots.add()
-        item.name, item.kind = doubt.joint, "doubtful"
-        item.start, item.stop = np.round(frames[[doubt.first, doubt.last]], 2)
-        item.severity = float(doubt.last - doubt.first + 1)
-        item.sentence = (
-            f"{doubt.joint} is out of sight or badly explained from frame {item.start:g} to"
-            f" {item.stop:g}, and was guessed."
-        )
 
 
 def _said(result: Tracked) -> str:
@@ -158,7 +167,9 @@ def _entry(settings: TrackBundle, result: Tracked, shown: Shown) -> dict[str, ob
     return {
         "version": version(),
         "operation": "track_depth",
-        "settings": history.plain(*settings),
+        "settings": history.plain(
+            settings.choices, settings.tracking, settings.actor, settings.planting
+        ),
         "recording": shown.path,
         "mean_residual_cm": 100 * float(np.nanmean(result.residual)),
         "coverage": result.coverage,

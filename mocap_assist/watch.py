@@ -1,7 +1,7 @@
 """The one solve that runs beside Blender's work: shown while it runs, ended with its file."""
 
-from collections.abc import Callable
-from typing import Any
+from collections.abc import Callable, Iterable
+from typing import Any, Protocol
 
 import bpy
 from bpy.app import handlers
@@ -16,6 +16,18 @@ BUSY = (
 _on: list["Watch"] = []
 
 
+class View(Protocol):
+    """Shows what a solve shows meanwhile, in whatever way."""
+
+    def look(
+        self, scene: bpy.types.Scene, thing: bpy.types.Object, shown: Iterable[Any]
+    ) -> None:
+        """Show what is new."""
+
+    def close(self) -> None:
+        """Leave everything as it was."""
+
+
 class Watch:
     """A job, and what the status bar and the sidebar say about it until it ends."""
 
@@ -24,6 +36,7 @@ class Watch:
     ) -> None:
         """Start to solve; `owner` names the panel that tells how far it is."""
         self.job: Job[Any] = Job(solve)
+        self.view: View | None = None
         manager = context.window_manager
         manager.mocap_assist_job.owner = owner
         self._timer = manager.event_timer_add(BETWEEN_LOOKS, window=context.window)
@@ -49,6 +62,8 @@ class Watch:
     def end(self, context: bpy.types.Context) -> None:
         """Show nothing more."""
         _on.remove(self)
+        if self.view is not None:
+            self.view.close()
         context.window_manager.event_timer_remove(self._timer)
         context.window_manager.mocap_assist_job.running = False
         context.workspace.status_text_set(None)

@@ -23,6 +23,7 @@ from .plant_feet import MOCAP_OT_plant_feet
 from .reconstruct import MOCAP_OT_reconstruct
 from .reduce_keys import MOCAP_OT_reduce_keys
 from .retarget import MOCAP_OT_retarget
+from .retrack import MOCAP_OT_retrack
 from .revert_to_raw import MOCAP_OT_revert_to_raw
 from .simulate import MOCAP_OT_simulate
 from .solve_skeleton import MOCAP_OT_solve_skeleton
@@ -35,6 +36,7 @@ OPERATORS = (
     MOCAP_OT_import_recording,
     MOCAP_OT_import_job,
     MOCAP_OT_track_depth,
+    MOCAP_OT_retrack,
     MOCAP_OT_denoise,
     MOCAP_OT_reconstruct,
     MOCAP_OT_measure_quality,

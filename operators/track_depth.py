@@ -3,18 +3,20 @@
 import bpy
 
 from ..mocap_assist.settings_properties import settings_from
-from ..mocap_assist.solver_operator import SolverOperator
 from ..mocap_assist.tracking import (
     TrackBundle,
+    keep_tracked,
     read_tracking,
     selected_preview,
+    watch_tracking,
     why_not_track,
     write_tracked,
 )
+from ..mocap_assist.watched_operator import WatchedOperator
 
 
 @settings_from(TrackBundle)
-class MOCAP_OT_track_depth(SolverOperator, bpy.types.Operator):
+class MOCAP_OT_track_depth(WatchedOperator, bpy.types.Operator):
     bl_idname = "mocap_assist.track_depth"
     bl_label = "Track"
     bl_description = (
@@ -24,6 +26,7 @@ class MOCAP_OT_track_depth(SolverOperator, bpy.types.Operator):
     settings_group = "track"
     selected, why_not = selected_preview, why_not_track
     read_scene, write_scene = read_tracking, write_tracked
+    open_view, rescue = watch_tracking, keep_tracked
 
     def draw(self, context: bpy.types.Context) -> None:
         """Nothing can be changed without tracking anew."""

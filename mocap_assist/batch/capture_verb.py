@@ -10,6 +10,7 @@ from ...solvers.command_line import arguments_from, settings_from_arguments
 from ...solvers.command_line.files import found_in
 from ...solvers.command_line.screen import Screen
 from ...solvers.errors import InvalidFileError, MocapAssistError
+from ...solvers.settings import Settings
 from ..depth_folders import depth_recordings_in, is_take
 from ..import_choices import ImportChoices
 from ..importing import import_files
@@ -27,7 +28,13 @@ def add_capture_options(parser: argparse.ArgumentParser) -> None:
         "files", nargs="+", type=Path, metavar="FILE",
         help="recordings of depth: files, folders of pictures, or folders of such takes",
     )  # fmt: skip
-    arguments_from(parser, ImportChoices, *get_type_hints(TrackBundle).values())
+    arguments_from(parser, ImportChoices, *offered().values())
+
+
+def offered() -> dict[str, type[Settings]]:
+    """Return the settings of the button, but for those of looking on."""
+    classes = get_type_hints(TrackBundle)
+    return {name: classes[name] for name in classes if name != "watching"}
 
 
 def perform_capture(arguments: argparse.Namespace, screen: Screen) -> None:
@@ -40,8 +47,7 @@ def perform_capture(arguments: argparse.Namespace, screen: Screen) -> None:
     """
     target = target_file(arguments)
     settings = TrackBundle(**{
-        name: settings_from_arguments(arguments, each)
-        for name, each in get_type_hints(TrackBundle).items()
+        name: settings_from_arguments(arguments, each) for name, each in offered().items()
     })
     choices = settings_from_arguments(arguments, ImportChoices)
     made, said, failed = [], [], []

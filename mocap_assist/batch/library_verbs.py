@@ -21,7 +21,7 @@ from ..library import searches
 from ..library.background import said_of
 from ..library.choices import FindBundle, LibraryChoices
 from ..library.finding import list_found, read_finding
-from ..library.places import asset_folders, blender, library_path
+from ..library.places import asset_folders, background_blender, library_path
 from .saving import STDOUT
 
 INDEX_HELP = "Put the clips of recordings, .blend files and asset libraries into a library."
@@ -39,6 +39,10 @@ def add_index_options(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--asset-libraries", action="store_true",
         help="also the actions that are assets in the asset libraries of the preferences",
+    )  # fmt: skip
+    parser.add_argument(
+        "--rig", default="", metavar="FILE",
+        help=".blend file with the rig of actions that lie in a file without one",
     )  # fmt: skip
     parser.add_argument("--tag", action="append", default=[], help="a tag for these clips")
     parser.add_argument(
@@ -62,7 +66,8 @@ def perform_index(arguments: argparse.Namespace, screen: Screen) -> None:
         raise InvalidFileError("Nothing was named to index: name files or folders.")
     path = library_path(LibraryChoices(library_file=arguments.library))
     screen.title = "Index"
-    problem = IndexProblem(str(path), tuple(places), tuple(arguments.tag), blender())
+    blender = background_blender(arguments.rig)
+    problem = IndexProblem(str(path), tuple(places), tuple(arguments.tag), blender)
     indexed = index_places(problem, progress=screen.progress)
     screen.clear()
     figures = {

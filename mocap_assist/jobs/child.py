@@ -8,6 +8,7 @@ import sys
 import threading
 import traceback
 from collections.abc import Callable
+from functools import partial
 from pathlib import Path
 from time import monotonic
 from types import ModuleType
@@ -23,7 +24,9 @@ def main(folder: Path, extension: str) -> None:
     solve = pickle.loads((folder / protocol.REQUEST).read_bytes())
     outcome: Any
     try:
-        outcome = (solve(progress=reporter(folder, protocol)),)
+        outcome = (
+            solve(progress=reporter(folder, protocol), **onlooker(solve, folder, protocol)),
+        )
     except Exception as error:  # handed over whole, to be raised in Blender
         error.add_note(traceback.format_exc())
         outcome = error
@@ -54,6 +57,13 @@ def reporter(folder: Path, protocol: ModuleType) -> Callable[..., None]:
         print(protocol.progress_line(fraction, message), flush=True)
 
     return report
+
+
+def onlooker(solve: Any, folder: Path, protocol: ModuleType) -> dict[str, Callable[..., None]]:
+    """Return what shows meanwhile, for solves that have something to show."""
+    if not isinstance(solve, protocol.Showing):
+        return {}
+    return {"show": partial(protocol.append_shown, (folder / protocol.SHOWN).open("wb"))}
 
 
 def end_with_blender(folder: Path) -> None:

@@ -13,7 +13,7 @@ from ...solvers.progress import Progress, unwatched, within
 from ...solvers.retargeting import RetargetSettings
 from ...solvers.retrieval import Origin
 from .controls import BoneKeys, TargetRig
-from .in_blender import read_blends
+from .in_blender import BackgroundBlender, read_blends
 from .reading import Wanted, as_wanted, read_file
 from .retargeting import Clip, RetargetProblem, Start, retarget_clips
 
@@ -34,8 +34,7 @@ class FetchProblem:
     start: Start | None
     target: TargetRig
     settings: RetargetSettings
-    blender: str
-    """Path of the program; empty where Blender is a module of Python."""
+    blender: BackgroundBlender
 
 
 @dataclass(frozen=True, eq=False)
@@ -109,7 +108,7 @@ def fetch_clip(problem: FetchProblem, *, progress: Progress = unwatched) -> Fetc
     return Fetched(keys, motion.n_frames)
 
 
-def read_origin(origin: Origin, blender: str) -> Motion:
+def read_origin(origin: Origin, blender: BackgroundBlender) -> Motion:
     """Read the motion of a clip again; see `fetch_clip`."""
     if not Path(origin.path).is_file():
         raise InvalidFileError(

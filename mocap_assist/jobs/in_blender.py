@@ -15,6 +15,16 @@ BLEND_CHILD = Path(__file__).with_name("blend_child.py")
 READER = "mocap_assist.library.blend_clips"
 
 
+@dataclass(frozen=True)
+class BackgroundBlender:
+    """Who reads .blend files."""
+
+    program: str
+    """Path; empty where Blender is a module of Python."""
+    rig: str = ""
+    """A .blend file with the armatures of actions that are alone in theirs; none without."""
+
+
 @dataclass(frozen=True, eq=False)
 class BlendClip:
     """An armature's action in a .blend file."""
@@ -35,7 +45,7 @@ class BlendRead:
 
 
 def read_blends(
-    blender: str,
+    blender: BackgroundBlender,
     paths: Sequence[str],
     *,
     assets_only: bool = False,
@@ -46,7 +56,7 @@ def read_blends(
 
     Parameters
     ----------
-    blender : path of the program; empty where Blender is a module of Python
+    blender : BackgroundBlender
     paths : of the files
     assets_only : leave out actions that are not marked as assets
     items : read only these actions; all without
@@ -56,22 +66,27 @@ def read_blends(
     ProcessDied
         Blender has crashed over one of the files.
     """
-    asked = partial(_asked, tuple(paths), assets_only, tuple(items))
-    return run(asked, progress, _program(blender))
+    asked = partial(_asked, tuple(paths), assets_only, tuple(items), blender.rig)
+    return run(asked, progress, _program(blender.program))
 
 
 def _asked(
-    paths: tuple[str, ...], assets_only: bool, items: tuple[str, ...], *, progress: Progress
+    paths: tuple[str, ...],
+    assets_only: bool,
+    items: tuple[str, ...],
+    rig: str,
+    *,
+    progress: Progress,
 ) -> list[BlendRead]:
     """Read, where there is a Blender: only there can the reader be imported."""
     reader: Any = importlib.import_module(f"{EXTENSION}.{READER}")
-    read: list[BlendRead] = reader.read_files(paths, assets_only, items, progress=progress)
+    read: list[BlendRead] = reader.read_files(paths, assets_only, items, rig, progress=progress)
     return read
 
 
-def _program(blender: str) -> tuple[str, ...]:
-    if not blender:
+def _program(path: str) -> tuple[str, ...]:
+    if not path:
         return (*alone(BLEND_CHILD), "--")
     # It finds the extension's wheels by PYTHONPATH, which Blender otherwise ignores.
     own = ("--python-use-system-env", "--background", "--factory-startup")
-    return (blender, *own, "--python-exit-code", "1", "--python", str(BLEND_CHILD), "--")
+    return (path, *own, "--python-exit-code", "1", "--python", str(BLEND_CHILD), "--")

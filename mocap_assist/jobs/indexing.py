@@ -15,7 +15,7 @@ from ...solvers.retrieval import (
     open_clip_library,
 )
 from ...solvers.workflows import index_files
-from .in_blender import BlendClip, BlendRead, read_blends
+from .in_blender import BackgroundBlender, BlendClip, BlendRead, read_blends
 from .job import ProcessDied
 
 BLEND = ".blend"
@@ -40,8 +40,7 @@ class IndexProblem:
     places: tuple[Place, ...]
     tags: tuple[str, ...]
     """Given to all clips."""
-    blender: str
-    """Path of the program; empty where Blender is a module of Python."""
+    blender: BackgroundBlender
 
 
 @dataclass(frozen=True)
@@ -124,7 +123,9 @@ class _Indexing:
         self._library, self._tags, self._refused = library, tags, refused
         self.added = self.kept = self.removed = 0
 
-    def index_blends(self, blends: list[_Blend], blender: str, progress: Progress) -> None:
+    def index_blends(
+        self, blends: list[_Blend], blender: BackgroundBlender, progress: Progress
+    ) -> None:
         """Read the .blend files that are new or have changed, and replace their clips."""
         changed = [blend for blend in blends if not self._known(blend)]
         done = 0
@@ -152,7 +153,7 @@ class _Indexing:
         ]
 
     def _read(
-        self, batch: list[_Blend], blender: str, progress: Progress
+        self, batch: list[_Blend], blender: BackgroundBlender, progress: Progress
     ) -> Iterator[tuple[_Blend, BlendRead]]:
         """Read files together; where Blender crashes, each by itself."""
         for assets_only in (False, True):

@@ -14,7 +14,7 @@ from typing import Any, Generic, TypeVar
 
 from ...solvers.errors import MocapAssistError, SolveCancelled
 from ...solvers.progress import Progress, unwatched
-from .protocol import LOG, REQUEST, RESULT, last_progress, last_words
+from .protocol import LOG, REQUEST, RESULT, last_progress, last_words, read_shown
 
 Result = TypeVar("Result")
 EXTENSION = __name__.rsplit(".", 3)[0]
@@ -86,7 +86,8 @@ class Job(Generic[Result]):
     """
 
     def __init__(self, solve: Callable[..., Result], program: Sequence[str] = ()) -> None:
-        self._cancelled = False
+        self.cancelled = False
+        self._n_shown = 0
         # On Windows a file that is still open cannot be removed; that is no reason to fail.
         self._folder = TemporaryDirectory(prefix="mocap_assist_", ignore_cleanup_errors=True)
         self._path = Path(self._folder.name)
@@ -105,13 +106,23 @@ class Job(Generic[Result]):
         """Return the last fraction, 0 to 1, and message of the solver."""
         return last_progress(self._path)
 
+    def shown(self) -> list[Any]:
+        """Return what a `Showing` solve has shown since this was asked last."""
+        things, self._n_shown = read_shown(self._path, self._n_shown)
+        return things
+
+    def all_shown(self) -> list[Any]:
+        """Wait for the end, and return all that a `Showing` solve has shown."""
+        self._process.wait()
+        return read_shown(self._path, 0)[0]
+
     def done(self) -> bool:
         """Whether the process has ended, in whatever way."""
         return self._process.poll() is not None
 
     def cancel(self) -> None:
         """End the process at once; `result` then raises SolveCancelled."""
-        self._cancelled = True
+        self.cancelled = True
         self._process.kill()
 
     def tidy_up(self) -> None:
@@ -136,11 +147,11 @@ class Job(Generic[Result]):
         status = self._process.wait()
         said, answer = last_words(self._path), self._path / RESULT
         outcome: Any = None
-        if answer.exists() and not self._cancelled:
+        if answer.exists() and not self.cancelled:
             with answer.open("rb") as file:
                 outcome = pickle.load(file)
         self.tidy_up()
-        if self._cancelled:
+        if self.cancelled:
             raise SolveCancelled("Cancelled.")
         if outcome is None:
             raise ProcessDied(_cause(status), said)

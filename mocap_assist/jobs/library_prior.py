@@ -17,6 +17,7 @@ from ...solvers.workflows import (
     postures_from_library,
 )
 from .fetching import read_origin
+from .in_blender import BackgroundBlender
 
 Own = tuple[tuple[str, str], ...]
 """Files, and actions in them."""
@@ -31,8 +32,7 @@ class LibraryPrior:
     """Size and time of the file: what is learned of it holds until it changes."""
     own: Own
     """Where the take itself is from, which teaches nothing."""
-    blender: str
-    """Path of the program; empty where Blender is a module of Python."""
+    blender: BackgroundBlender
 
     def bases(self, body: Motion | Tracks, progress: Progress) -> LibraryBases:
         """Learn filter bases from the clips that are like the body's motion."""
@@ -61,7 +61,7 @@ def own_clips(library: ClipLibrary, own: Own) -> set[str]:
     }
 
 
-def _fetch(entry: ClipEntry, blender: str) -> Motion:
+def _fetch(entry: ClipEntry, blender: BackgroundBlender) -> Motion:
     if entry.origin is None:
         raise InvalidFileError(f"Nobody knows where {entry.name} came from.")
     return read_origin(entry.origin, blender)

@@ -1,11 +1,50 @@
 """What a job and its child process leave for each other in their folder."""
 
+import pickle
 import re
+from functools import partial
 from pathlib import Path
+from typing import Any, BinaryIO, TypeVar
 
-REQUEST, RESULT, LOG = "request", "result", "log"
+REQUEST, RESULT, LOG, SHOWN = "request", "result", "log", "shown"
 TAIL = 4096  # bytes of the log that are read
+SIZE = 8  # bytes that tell how long a pickle is
 PROGRESS = re.compile(r"^@([01]\.\d+) (.*)$")
+
+
+Result = TypeVar("Result")
+
+
+class Showing(partial[Result]):
+    """A solve that is also called with `show=`, which takes what can be looked at meanwhile."""
+
+
+def append_shown(file: BinaryIO, thing: Any) -> None:
+    """Write something picklable where `read_shown` finds it."""
+    told = pickle.dumps(thing, protocol=pickle.HIGHEST_PROTOCOL)
+    file.write(len(told).to_bytes(SIZE, "little") + told)
+    file.flush()
+
+
+def read_shown(folder: Path, start: int) -> tuple[list[Any], int]:
+    """Return what was shown since the file was that long, and how long it is now.
+
+    What is only half written is left for the next time.
+    """
+    try:
+        with (folder / SHOWN).open("rb") as file:
+            file.seek(start)
+            told = file.read()
+    except FileNotFoundError:
+        return [], start
+    things, place = [], 0
+    while place + SIZE <= len(told):
+        stop = place + SIZE + int.from_bytes(told[place : place + SIZE], "little")
+        if stop > len(told):
+            break
+        things.append(pickle.loads(told[place + SIZE : stop]))
+        place = stop
+    return things, start + place
 
 
 def progress_line(fraction: float, message: str) -> str:

@@ -1,18 +1,26 @@
 """What the button Track has solved for it."""
 
-from typing import NamedTuple
+from collections.abc import Iterable
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from ...solvers.denoising import PlantSettings
-from ...solvers.depth_tracking.capture import CaptureSettings
+from ...solvers.depth_tracking.body_model import BodyModel
+from ...solvers.depth_tracking.capture import Capture, CaptureSettings
+from ...solvers.depth_tracking.unfinished_capture import unfinished_capture
 from ...solvers.motion import Motion
+from ...solvers.motion.depth_actor import find_actor
 from ...solvers.motion.depth_floor import Floor
 from ...solvers.motion.depth_foreground import ForegroundSettings
 from ...solvers.motion.depth_recording import DepthRecording
-from ...solvers.progress import Progress, unwatched
-from ...solvers.workflows import capture_recording
+from ...solvers.progress import Progress, unwatched, within
+from ...solvers.workflows import capture_actor
+from .glimpses import Glimpses, Onlooker, Place, Show, unseen
+
+FOUND = 0.1
+"""Share of the work after which the actor is told from the room."""
 
 
 class Doubt(NamedTuple):
@@ -26,7 +34,10 @@ class Doubt(NamedTuple):
 class Tracked(NamedTuple):
     """What comes back: the actor's motion, and how far it can be trusted."""
 
+    first: int
+    """Picture of the recording with which the motion begins."""
     motion: Motion
+    body: BodyModel
     floor: Floor | None
     confidence: dict[str, NDArray[np.float64]]
     """Of each joint, shape (n_frames,), 0 to 1."""
@@ -45,24 +56,59 @@ def track_recording(
     actor: ForegroundSettings,
     planting: PlantSettings | None,
     *,
+    show: Show = unseen,
     progress: Progress = unwatched,
 ) -> Tracked:
-    """Capture a recording."""
-    found = capture_recording(
-        recording, settings=tracking, foreground=actor, planting=planting, progress=progress
+    """Capture a recording; show where it is, and each pose, as `Onlooker` understands it."""
+    alone = find_actor(recording, actor, progress=within(progress, 0.0, FOUND))
+    show(Place(alone.floor))
+    done = capture_actor(
+        alone,
+        settings=tracking,
+        planting=planting,
+        on_pose=Glimpses(show),
+        progress=within(progress, FOUND, 1.0),
     )
-    captured, joints = found.captured, found.captured.joints
+    return _told(0, done.motion, done.captured, alone.floor, done.remarks)
+
+
+def tracked_so_far(
+    shown: Iterable[Any], recording: DepthRecording, settings: CaptureSettings
+) -> Tracked:
+    """Return what `track_recording` had shown when it was ended; no feet are planted.
+
+    Raises InvalidMotionError where no pose was found yet.
+    """
+    onlooker = Onlooker()
+    found = list(onlooker.poses(shown))
+    rate, floor = recording.frame_rate, onlooker.floor
+    first, captured = unfinished_capture(found, rate, floor=floor, settings=settings)
+    n_frames = captured.motion.n_frames
+    remark = f"Ended early: {n_frames} of {recording.n_frames} frames were tracked."
+    return _told(first, captured.motion, captured, floor, (remark,))
+
+
+def _told(
+    first: int,
+    motion: Motion,
+    captured: Capture,
+    floor: Floor | None,
+    remarks: tuple[str, ...],
+) -> Tracked:
+    joints = captured.joints
     told = joints.confidence
     confidence = {} if told is None else dict(zip(joints.names, told.T, strict=True))
     return Tracked(
-        found.motion,
-        found.actor.floor,
+        first,
+        motion,
+        captured.body,
+        floor,
         confidence,
         captured.residual,
         float(captured.coverage.mean()),
         captured.restarts,
         doubts_of(joints.names, captured.doubtful),
-        found.remarks,
+        remarks,
     )
 
 

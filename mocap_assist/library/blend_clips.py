@@ -18,19 +18,26 @@ from ..scene.rigify import is_rigify
 from ..scene.target_read import find_roles
 from .catalogs import NONE, catalog_file, read_catalogs
 
+NAME_ONE = "name a file with its rig, or index the file that has both."
+
 
 def read_files(
     paths: Sequence[str],
     assets_only: bool,
     items: Sequence[str],
+    rig: str = "",
     *,
     progress: Progress = unwatched,
 ) -> list[BlendRead]:
-    """Open each file, with its scripts and drivers off, and read its actions."""
+    """Open each file, with its scripts and drivers off, and read its actions.
+
+    Those whose bones no armature there has are read with one of the armatures of the file
+    `rig`.
+    """
     found = []
     for place, path in enumerate(paths):
         progress(place / len(paths), f"Reading {Path(path).name}")
-        found.append(_read_file(path, assets_only, items))
+        found.append(_read_file(path, assets_only, items, rig))
     return found
 
 
@@ -76,34 +83,63 @@ def read_source(scene: bpy.types.Scene, armature: bpy.types.Object, source: Sour
     return take.parts[0].motion
 
 
-def _read_file(path: str, assets_only: bool, items: Sequence[str]) -> BlendRead:
+def _read_file(path: str, assets_only: bool, items: Sequence[str], rig: str) -> BlendRead:
     try:
         bpy.ops.wm.open_mainfile(filepath=path, load_ui=False, use_scripts=False)
     except RuntimeError as error:  # damaged, or no .blend file at all
         said = str(error).strip().removeprefix("Error:").strip().splitlines()
         return BlendRead((), (f"{path} cannot be read: {said[0] if said else 'no reason'}",))
-    catalogs = read_catalogs(catalog_file(Path(path).parent))
-    clips, refused = [], []
-    for action in actions_of(assets_only):
-        sources = sources_of(action)
-        if not sources and _moves_bones(action):
+    actions = actions_of(assets_only)
+    lack_rig = rig and any(map(_lacks_rig, actions))
+    refused = _bring_armatures(rig) if lack_rig else []
+    clips = []
+    for action in actions:
+        if _lacks_rig(action):
+            where = f"the file, nor in {rig}," if rig else "the file"
             refused.append(
-                f"{path}: no armature in the file has the bones of the action {action.name};"
-                " link its rig into the file, or index the file that has both."
+                f"{path}: no armature in {where} has the bones of the action {action.name};"
+                f" {NAME_ONE}"
             )
-        for item, (armature, source) in sources.items():
-            if items and item not in items:
-                continue
-            try:
-                motion = read_source(bpy.context.scene, armature, source)
-            except MocapAssistError as error:
-                refused.append(f"{path}, {item}: {error}")
-            else:
-                clips.append(BlendClip(item, motion, _tags(action, catalogs)))
+            continue
+        found = _read_action(path, action, items)
+        clips += found.clips
+        refused += found.refused
     return BlendRead(tuple(clips), tuple(refused))
 
 
-def _moves_bones(action: bpy.types.Action) -> bool:
+def _read_action(path: str, action: bpy.types.Action, items: Sequence[str]) -> BlendRead:
+    clips, refused = [], []
+    tags = _tags(action, path)
+    for item, (armature, source) in sources_of(action).items():
+        if items and item not in items:
+            continue
+        try:
+            motion = read_source(bpy.context.scene, armature, source)
+        except MocapAssistError as error:
+            refused.append(f"{path}, {item}: {error}")
+        else:
+            clips.append(BlendClip(item, motion, tags))
+    return BlendRead(tuple(clips), tuple(refused))
+
+
+def _bring_armatures(path: str) -> list[str]:
+    """Copy the armatures of another file into the open one; return what was wrong with it."""
+    try:
+        with bpy.data.libraries.load(path, link=False) as (there, taken):
+            taken.objects = there.objects
+    except OSError as error:
+        return [f"{path} cannot be read for its rig: {error}"]
+    for each in taken.objects:
+        if each is not None and each.type == "ARMATURE":
+            bpy.context.scene.collection.objects.link(each)
+    bpy.context.view_layer.update()
+    return []
+
+
+def _lacks_rig(action: bpy.types.Action) -> bool:
+    """Whether it moves bones that no armature of the open file has."""
+    if sources_of(action):
+        return False
     bags = [compat.channelbag(action, slot) for slot in action.slots]
     return any(
         curve.data_path.startswith("pose.bones[")
@@ -113,12 +149,13 @@ def _moves_bones(action: bpy.types.Action) -> bool:
     )
 
 
-def _tags(action: bpy.types.Action, catalogs: dict[str, str]) -> tuple[str, ...]:
+def _tags(action: bpy.types.Action, path: str) -> tuple[str, ...]:
     """Return the tags of an asset, and the path of its catalog."""
     if action.asset_data is None:
         return ()
     tags = [tag.name for tag in action.asset_data.tags]
     number = action.asset_data.catalog_id.lower()
-    if number != NONE and number in catalogs:
-        tags.append(catalogs[number])
+    if number != NONE:
+        catalogs = read_catalogs(catalog_file(Path(path).parent))
+        tags += [catalogs[number]] if number in catalogs else []
     return tuple(dict.fromkeys(tags))

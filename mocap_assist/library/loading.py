@@ -24,7 +24,7 @@ from ..subject import check_unchanged
 from . import searches
 from .choices import LoadBundle, LoadChoices, Part
 from .nla import add_strip
-from .places import blender
+from .places import background_blender
 from .searches import Search
 
 CLIP = "mocap_assist_clip"
@@ -128,7 +128,7 @@ def problem_of(
         start=_start(armature, search, found) if choices.at_query else None,
         target=rig,
         settings=settings,
-        blender=blender(),
+        blender=background_blender(scene.mocap_assist.library.rig_file),
     )
     return problem, dict(switches)
 

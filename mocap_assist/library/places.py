@@ -6,6 +6,7 @@ import bpy
 
 from ...solvers.errors import InvalidFileError
 from ..examples import SEPARATOR
+from ..jobs.in_blender import BackgroundBlender
 from ..jobs.indexing import IndexProblem, Place
 from .choices import LibraryChoices
 
@@ -50,9 +51,18 @@ def index_problem(choices: LibraryChoices) -> IndexProblem:
         )
     tags = tuple(tag.strip() for tag in choices.tags.split(",") if tag.strip())
     library = library_path(choices)
-    return IndexProblem(str(library), places, tags, blender())
+    return IndexProblem(str(library), places, tags, background_blender(choices.rig_file))
 
 
-def blender() -> str:
-    """Return the path of this Blender; nothing where it is a module of Python."""
-    return str(bpy.app.binary_path)
+def background_blender(rig_file: str) -> BackgroundBlender:
+    """Return this Blender as who reads .blend files.
+
+    Raises
+    ------
+    InvalidFileError
+        The file of the rig is missing.
+    """
+    rig = str(Path(bpy.path.abspath(rig_file))) if rig_file else ""
+    if rig and not Path(rig).is_file():
+        raise InvalidFileError(f"There is no file {rig} to take the rig of actions from.")
+    return BackgroundBlender(str(bpy.app.binary_path), rig)

@@ -9,12 +9,13 @@ from ...solvers.errors import InvalidFileError
 from ..jobs.library_prior import LibraryPrior, Own
 from ..scene.origin import origin_of
 from ..selection import played_source
-from .places import blender, library_path
+from .places import background_blender, library_path
 
 
 def library_prior(scene: bpy.types.Scene, subject: bpy.types.Object) -> LibraryPrior:
     """Return the library, but for what is played; raise InvalidFileError without one."""
-    path = library_path(scene.mocap_assist.library.settings().choices)
+    choices = scene.mocap_assist.library.settings().choices
+    path = library_path(choices)
     if not path.is_file():
         raise InvalidFileError(
             "There is no clip library to learn from. Make one on the panel Library: add"
@@ -22,7 +23,8 @@ def library_prior(scene: bpy.types.Scene, subject: bpy.types.Object) -> LibraryP
         )
     found = path.stat()
     state = (found.st_size, found.st_mtime_ns)
-    return LibraryPrior(str(path), state, own_origins(subject), blender())
+    blender = background_blender(choices.rig_file)
+    return LibraryPrior(str(path), state, own_origins(subject), blender)
 
 
 def own_origins(subject: bpy.types.Object) -> Own:

@@ -26,7 +26,7 @@ from .take import ArmatureTake
 Array = NDArray[np.float64]
 KeyTypes = Mapping[str, NDArray[np.uint8]]
 SUFFIX = ".clean"
-NUMBERED = re.compile(r"\.(clean|physics|reconstructed)(\.\d{3,})?$")
+NUMBERED = re.compile(r"\.(clean|physics|reconstructed|retracked)(\.\d{3,})?$")
 """As Blender names a second result."""
 
 

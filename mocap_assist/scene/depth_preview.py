@@ -6,6 +6,7 @@ from dataclasses import asdict, dataclass
 from enum import Enum
 from functools import lru_cache
 from pathlib import Path
+from typing import Any
 
 import bpy
 import numpy as np
@@ -48,17 +49,24 @@ class Shown:
 
     def write(self, mesh: bpy.types.Mesh) -> None:
         """Keep this with a mesh."""
+        mesh[KEY] = json.dumps(self.told(), ensure_ascii=False)
+
+    def told(self) -> dict[str, Any]:
+        """Return this as JSON can keep it."""
         settings = {
             name: value.name if isinstance(value, Enum) else value
             for name, value in asdict(self.settings).items()
         }
-        told = {**asdict(self), "settings": settings}
-        mesh[KEY] = json.dumps(told, ensure_ascii=False)
+        return {**asdict(self), "settings": settings}
 
     @classmethod
     def read(cls, mesh: bpy.types.Mesh) -> "Shown":
         """Return what a mesh shows; raises ValueError, TypeError or KeyError if nothing."""
-        told = json.loads(mesh[KEY])
+        return cls.of(json.loads(mesh[KEY]))
+
+    @classmethod
+    def of(cls, told: dict[str, Any]) -> "Shown":
+        """Undo `told`."""
         settings = {**told["settings"], "held": Held[told["settings"]["held"]]}
         return cls(
             str(told["path"]),
@@ -71,6 +79,10 @@ class Shown:
     def picture(self, frame: float, n_frames: int) -> int:
         """Return which picture is shown at a frame of the scene; before and after, the ends."""
         return int(np.clip(round((frame - self.start) / self.step), 0, n_frames - 1))
+
+    def frame(self, picture: int) -> float:
+        """Return the frame of the scene at which a picture is shown."""
+        return self.start + self.step * picture
 
 
 def build_preview(
@@ -132,6 +144,11 @@ def recording_of(mesh: bpy.types.Mesh) -> DepthRecording:
         shown = Shown.read(mesh)
     except (ValueError, TypeError, KeyError):
         raise MocapAssistError(f"{mesh.name} shows no recording of depth.") from None
+    return open_recording(shown)
+
+
+def open_recording(shown: Shown) -> DepthRecording:
+    """Open a recording, or return it if it is open; raises MocapAssistError."""
     return _open(shown.path, shown.settings)
 
 

@@ -7,6 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from . import history
+from .compat import Source
 from .reliability_curves import Term, kept_terms, reliability_at
 
 Array = NDArray[np.float32]
@@ -37,9 +38,18 @@ def shade(reliability: float) -> Array:
     return np.array(columns, np.float32)
 
 
+def trusted_source(armature: bpy.types.Object) -> Source | None:
+    """Return what an armature plays, whose trust is told: a result, or its own action."""
+    played = history.played_result(armature)
+    animation = armature.animation_data
+    if played is None and animation is not None and animation.action and animation.action_slot:
+        return animation.action, animation.action_slot
+    return played
+
+
 def terms_told(armature: bpy.types.Object) -> frozenset[Term]:
     """Return what the result that an armature plays says of how far joints were trusted."""
-    source = history.played_result(armature)
+    source = trusted_source(armature)
     return frozenset() if source is None else kept_terms(source)
 
 
@@ -50,7 +60,7 @@ def heat_at(
 
     A bone goes from the colour of its own joint to that of the joint at its tail.
     """
-    source = history.played_result(armature)
+    source = trusted_source(armature)
     bones = list(armature.pose.bones)
     if source is None or not bones:
         return None

@@ -15,7 +15,7 @@ from .compat import Source
 HISTORY = "mocap_assist_history"
 SOURCE = "mocap_assist_source"
 GIVEN_BY = "mocap_assist_given_by"
-REMADE = ("reconstruct", "simulate", "solve_skeleton", "retarget", "vary")
+REMADE = ("reconstruct", "simulate", "solve_skeleton", "retarget", "vary", "retrack")
 """Operations that make another motion, which may be cleaned in its turn."""
 
 

@@ -74,7 +74,9 @@ def _draw_library(layout: bpy.types.UILayout, context: bpy.types.Context) -> Non
         body.use_property_decorate = False
         draw_sources(body, library)
         body.prop(library, "tags", text="Tags")
+        body.prop(library, "rig_file", text="Rig")
         body.prop(library, "library_file", text="File")
+        body.prop(library, "keep_current")
         body.operator(INDEX, icon="FILE_REFRESH")
     if state.running:
         text = f"{state.message} {state.fraction:.0%}"

@@ -5,12 +5,15 @@ from typing import ClassVar
 import bpy
 
 from ...solvers.motion.depth_foreground import ForegroundWay
+from ..retracking import why_not_retrack
+from ..scene.tracked_body import is_tracked
 from ..tracking import why_not_track
 from .drawing import draw_job, draw_sentence, exists
 
-TRACK = "mocap_assist.track_depth"
+TRACK, RETRACK = "mocap_assist.track_depth", "mocap_assist.retrack"
+HOW = "Pose the armature in a frame that is wrong, then track from there."
 CUT = ("nearest", "farthest")
-SHOWN = ("backward", "refine", "smoothing", "plant_feet")
+SHOWN = ("backward", "refine", "smoothing", "recorded", "plant_feet", "watch", "keep_on_esc")
 
 
 class TrackPanel:
@@ -25,18 +28,41 @@ class TrackPanel:
 
     def draw(self, context: bpy.types.Context) -> None:
         layout = self.layout
-        running = draw_job(layout, context, "track")
+        running = draw_job(layout, context, "track", "retrack")
+        active = context.view_layer.objects.active
+        draw = _draw_correction if is_tracked(active) else _draw_tracking
         column = layout.column()
         column.enabled = not running
-        column.use_property_split = True
-        column.use_property_decorate = False
-        track = context.scene.mocap_assist.track
-        column.prop(track, "way")
-        if track.way == ForegroundWay.CUT.name:
-            for name in CUT:
-                column.prop(track, name)
-        for name in SHOWN:
+        draw(column, context)
+
+
+def _draw_tracking(layout: bpy.types.UILayout, context: bpy.types.Context) -> None:
+    """Draw what makes an armature of points."""
+    track = context.scene.mocap_assist.track
+    column = _settings(layout)
+    column.prop(track, "way")
+    if track.way == ForegroundWay.CUT.name:
+        for name in CUT:
             column.prop(track, name)
-        layout.operator(TRACK, icon="OUTLINER_OB_ARMATURE")
-        if reason := why_not_track(context):
-            draw_sentence(layout, context, reason, icon="INFO")
+    for name in SHOWN:
+        column.prop(track, name)
+    layout.operator(TRACK, icon="OUTLINER_OB_ARMATURE")
+    if reason := why_not_track(context):
+        draw_sentence(layout, context, reason, icon="INFO")
+
+
+def _draw_correction(layout: bpy.types.UILayout, context: bpy.types.Context) -> None:
+    """Draw what shows and mends what was tracked."""
+    layout.prop(context.window_manager, "mocap_assist_body", toggle=True, icon="MOD_SKIN")
+    column = _settings(layout)
+    column.prop(context.scene.mocap_assist.retrack, "reach")
+    column.prop(context.scene.mocap_assist.track, "watch")
+    layout.operator(RETRACK, icon="TRACKING")
+    draw_sentence(layout, context, why_not_retrack(context) or HOW, icon="INFO")
+
+
+def _settings(layout: bpy.types.UILayout) -> bpy.types.UILayout:
+    column = layout.column()
+    column.use_property_split = True
+    column.use_property_decorate = False
+    return column

@@ -7,7 +7,7 @@
 >>> camera = Camera(142.8, 142.8, 79.5, 59.5, 160, 120)
 >>> wall = np.full((120, 160), 3.0, dtype=np.float32)
 >>> depth = DepthRecording(camera, 2, 30.0, lambda frame: wall)
->>> before_the_camera = 2.8 * np.eye(34)[2]
+>>> before_the_camera = 2.8 * np.eye(36)[2]
 >>> track_pose(depth, usual_body(), before_the_camera).joints.n_frames
 2
 """
@@ -20,6 +20,8 @@ from .learn_motion_prior import learn_motion_prior
 from .motion_prior import MotionPrior, load_motion_prior
 from .pixel_forest import PixelForest, load_pixel_forest
 from .refine_body import RefineBodySettings, refine_body
+from .retrack import Retracked, retrack
+from .retracked_course import RetrackSettings
 from .skinned_body import SkinnedBody, load_skinned_body
 from .track_pose import TrackedMotion, track_pose
 from .tracker_settings import LOU12, WZC12, TrackerSettings
@@ -38,6 +40,8 @@ __all__ = [
     "PixelForest",
     "PixelForestSettings",
     "RefineBodySettings",
+    "RetrackSettings",
+    "Retracked",
     "SkinnedBody",
     "TrackedMotion",
     "TrackerSettings",
@@ -50,6 +54,7 @@ __all__ = [
     "load_pixel_forest",
     "load_skinned_body",
     "refine_body",
+    "retrack",
     "track_pose",
     "train_pixel_forest",
     "usual_body",

@@ -22,7 +22,7 @@ def _axis_tables() -> tuple[NDArray[np.intp], Array, Array, Array]:
     """List every pair of a segment and a coordinate that turns it about its own joint.
 
     Returns the segment of each such axis (n_axes,), its rotation vector (n_axes, 3), which
-    segments it moves (n_segments, n_axes), and its coordinate as (n_axes, 34) of 0 and 1.
+    segments it moves (n_segments, n_axes), and its coordinate as (n_axes, 36) of 0 and 1.
     """
     segments, coordinates = np.nonzero(np.any(TURNS != 0.0, axis=1))
     moves = np.zeros((N_SEGMENTS, len(segments)))
@@ -48,12 +48,12 @@ def segment_frames(body: BodyModel, poses: Array) -> Array:
     Parameters
     ----------
     body : BodyModel
-    poses : shape (..., 34)
+    poses : shape (..., 36)
         Coordinates in the order of `COORDINATES`; metres and radians.
 
     Returns
     -------
-    array, shape (..., 15, 4, 4)
+    array, shape (..., 17, 4, 4)
         camera_from_segment of each of the `SEGMENTS`; its translation is the joint.
     """
     poses = np.asarray(poses, dtype=np.float64)
@@ -73,7 +73,7 @@ def segment_frames(body: BodyModel, poses: Array) -> Array:
 
 
 def joint_positions(body: BodyModel, frames: Array) -> Array:
-    """Return the `JOINTS` (..., 21, 3), metres, of segments (..., 15, 4, 4) in their places."""
+    """Return the `JOINTS` (..., 21, 3), metres, of segments (..., 17, 4, 4) in their places."""
     carrier = frames[..., list(END_SEGMENTS), :, :]
     ends = carrier[..., :3, 3] + np.einsum(
         "...sij,sj->...si", carrier[..., :3, :3], body.offsets[N_SEGMENTS:]
@@ -86,13 +86,13 @@ def segment_twists(pose: Array, frames: Array) -> Array:
 
     Parameters
     ----------
-    pose : shape (34,)
-    frames : shape (15, 4, 4)
+    pose : shape (36,)
+    frames : shape (17, 4, 4)
         The segments in this pose.
 
     Returns
     -------
-    array, shape (15, 6, 34)
+    array, shape (17, 6, 36)
         Spatial twists: a coordinate that grows by a small e turns a segment by e times the
         first three components, about an axis through the camera, and then shifts it by e times
         the last three; a point p on it moves by e (twist[:3] x p + twist[3:]). Zero where a

@@ -1,4 +1,4 @@
-"""A body of 15 rigid segments in capsules: how long and how thick its parts are."""
+"""A body of 17 rigid segments in capsules: how long and how thick its parts are."""
 
 from dataclasses import dataclass, replace
 from functools import cached_property
@@ -31,7 +31,8 @@ class BodyModel:
     """The full-body geometry of [WZC12]_, section 2: segments, each a cylinder or two.
 
     Cylinders have round ends (capsules), those of the trunk and the head are elliptic; hands
-    and feet do not turn by themselves. In the pose of zeros the body stands upright before the
+    do not turn by themselves. Feet bend at the ankles, which the paper's do not
+    (`TrackerSettings.ankle_weight`). In the pose of zeros the body stands upright before the
     camera and looks at it, arms hanging, and the frames of all segments are the camera's: x to
     the body's left, y down, z to its back.
 

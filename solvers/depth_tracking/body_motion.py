@@ -5,7 +5,13 @@ from numpy.typing import NDArray
 
 from ..motion import Motion, Skeleton
 from ..motion.depth_floor import Floor
-from ..motion.rotations import inverse, multiply, quaternion_from_matrix, unroll
+from ..motion.rotations import (
+    inverse,
+    matrix_from_quaternion,
+    multiply,
+    quaternion_from_matrix,
+    unroll,
+)
 from .body_kinematics import N_SEGMENTS, segment_frames, turns
 from .body_model import BodyModel
 from .body_tables import END_SEGMENTS, JOINTS, PARENTS, SEGMENTS
@@ -17,9 +23,24 @@ SCENE_FROM_CAMERA = np.array([[1.0, 0.0, 0.0], [0.0, 0.0, 1.0], [0.0, -1.0, 0.0]
 JOINT_PARENTS = (*PARENTS, *END_SEGMENTS)
 
 
+def _t_pose_turns() -> Array:
+    """Return how each segment is turned in the T-pose, camera frame: arms out to the sides."""
+    turned = []
+    for segment in SEGMENTS:
+        arm = segment.endswith(("UpperArm", "LowerArm"))
+        out = -1.0 if segment.startswith("left") else 1.0
+        turned.append(turns(np.array([0.0, 0.0, out * arm * np.pi / 2.0])))
+    return np.stack(turned)
+
+
+_T_POSE = _t_pose_turns()
+_REST = SCENE_FROM_CAMERA @ _T_POSE
+"""How each segment is turned in the rest pose, (15, 3, 3)."""
+
+
 def body_skeleton(body: BodyModel) -> Skeleton:
     """Return the skeleton of a body in the T-pose, its soles on the floor, facing -Y."""
-    turned = _t_pose_turns()
+    turned = _T_POSE
     offsets = np.empty((len(JOINTS), 3))
     for joint, parent in enumerate(JOINT_PARENTS):
         carried = np.eye(3) if parent < 0 else turned[parent]
@@ -32,12 +53,12 @@ def body_skeleton(body: BodyModel) -> Skeleton:
 def body_motion(
     body: BodyModel, poses: Array, frame_rate: float, floor: Floor | None = None
 ) -> Motion:
-    """Return the motion of a body in poses (n_frames, 34).
+    """Return the motion of a body in poses (n_frames, 36).
 
     Parameters
     ----------
     body : BodyModel
-    poses : shape (n_frames, 34)
+    poses : shape (n_frames, 36)
     frame_rate : float, hertz
     floor : Floor, optional
         It becomes the plane z = 0, and its normal Z. Without it the camera is taken to be
@@ -45,9 +66,7 @@ def body_motion(
     """
     frames = segment_frames(body, poses)
     scene = scene_from_camera(floor)
-    turned = np.stack(_t_pose_turns())
-    world = scene[:3, :3] @ frames[..., :3, :3] @ turned.swapaxes(1, 2)
-    world = world @ SCENE_FROM_CAMERA.T
+    world = scene[:3, :3] @ frames[..., :3, :3] @ _REST.swapaxes(1, 2)
     rotations = quaternion_from_matrix(world)
     local = np.tile([1.0, 0.0, 0.0, 0.0], (len(poses), len(JOINTS), 1))
     local[:, 0] = rotations[:, 0]
@@ -55,6 +74,45 @@ def body_motion(
     local[:, 1:N_SEGMENTS] = multiply(inverse(rotations[:, above]), rotations[:, 1:])
     places = frames[:, 0, :3, 3] @ scene[:3, :3].T + scene[:3, 3]
     return Motion(body_skeleton(body), unroll(local), places, frame_rate)
+
+
+def rest_frames(body: BodyModel) -> Array:
+    """Return where the segments (17, 4, 4) are in the rest pose of `body_skeleton`."""
+    frames = np.zeros((N_SEGMENTS, 4, 4))
+    frames[:, :3, :3] = _REST
+    frames[:, :3, 3] = body_skeleton(body).rest_positions[:N_SEGMENTS]
+    frames[:, 3, 3] = 1.0
+    return frames
+
+
+def motion_frames(body: BodyModel, motion: Motion, floor: Floor | None = None) -> Array:
+    """Undo `body_motion`: return where the segments of a body are in a motion of it.
+
+    Parameters
+    ----------
+    body : BodyModel
+    motion : Motion
+        On the skeleton of the body; poses that no coordinates can reach are fine.
+    floor : Floor, optional
+        The one that is z = 0.
+
+    Returns
+    -------
+    array, shape (n_frames, 15, 4, 4)
+        camera_from_segment of each of the `SEGMENTS`; joints are as far apart as in the body.
+    """
+    camera = np.linalg.inv(scene_from_camera(floor))
+    world = motion.rotations[:, :N_SEGMENTS].copy()
+    for segment, parent in enumerate(PARENTS[1:], start=1):
+        world[:, segment] = multiply(world[:, parent], world[:, segment])
+    frames = np.zeros((motion.n_frames, N_SEGMENTS, 4, 4))
+    frames[..., 3, 3] = 1.0
+    frames[..., :3, :3] = camera[:3, :3] @ matrix_from_quaternion(world) @ _REST
+    frames[:, 0, :3, 3] = motion.root_positions @ camera[:3, :3].T + camera[:3, 3]
+    for segment, parent in enumerate(PARENTS[1:], start=1):
+        way = frames[:, parent, :3, :3] @ body.offsets[segment]
+        frames[:, segment, :3, 3] = frames[:, parent, :3, 3] + way
+    return frames
 
 
 def scene_from_camera(floor: Floor | None) -> Array:
@@ -71,13 +129,3 @@ def scene_from_camera(floor: Floor | None) -> Array:
         scene[:3, :3] = level @ SCENE_FROM_CAMERA
     scene[2, 3] = float(floor.heights(np.zeros(3)))
     return scene
-
-
-def _t_pose_turns() -> list[Array]:
-    """Return how each segment is turned in the T-pose, camera frame: arms out to the sides."""
-    turned = []
-    for segment in SEGMENTS:
-        arm = segment.endswith(("UpperArm", "LowerArm"))
-        out = -1.0 if segment.startswith("left") else 1.0
-        turned.append(turns(np.array([0.0, 0.0, out * arm * np.pi / 2.0])))
-    return turned

@@ -64,7 +64,7 @@ def shape_jacobian(body: BodyModel, frames: Array, rows: SurfaceRows) -> Array:
     Parameters
     ----------
     body : BodyModel
-    frames : shape (15, 4, 4)
+    frames : shape (17, 4, 4)
         Its segments in the pose of the rows.
     rows : SurfaceRows
 
@@ -92,7 +92,7 @@ def shape_jacobian(body: BodyModel, frames: Array, rows: SurfaceRows) -> Array:
 
 
 def _origin_slopes(frames: Array) -> Array:
-    """Return how joints move when lengths grow, shape (15, 3, n_lengths), camera frame."""
+    """Return how joints move when lengths grow, shape (17, 3, n_lengths), camera frame."""
     slopes = np.zeros((N_SEGMENTS, 3, len(LENGTHS)))
     for segment, parent in enumerate(PARENTS[1:], start=1):
         slopes[segment] = slopes[parent] + frames[parent, :3, :3] @ OFFSETS[segment]

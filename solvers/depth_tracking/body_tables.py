@@ -11,11 +11,12 @@ Vector = tuple[float, float, float]
 SIDES = ("left", "right")
 _LIMB_PARENTS = {
     "Shoulder": "chest", "UpperArm": "Shoulder", "LowerArm": "UpperArm",
-    "UpperLeg": "hips", "LowerLeg": "UpperLeg",
+    "UpperLeg": "hips", "LowerLeg": "UpperLeg", "Foot": "LowerLeg",
 }  # fmt: skip
 _LIMBS = tuple(f"{side}{limb}" for side in SIDES for limb in _LIMB_PARENTS)
 SEGMENTS = ("hips", "spine", "chest", "neck", "head", *_LIMBS)
-"""The 15 rigid segments, named by the humanoid role of the joint they turn about."""
+"""The rigid segments, named by the humanoid role of the joint they turn about: the 15 of
+[WZC12], whose feet are of one piece with the shanks, and two feet."""
 
 
 def _parent(segment: str) -> int:
@@ -29,13 +30,11 @@ def _parent(segment: str) -> int:
 PARENTS = tuple(_parent(segment) for segment in SEGMENTS)
 """Index of the segment above each one, -1 for the hips; parents precede children."""
 
-ENDS = ("leftHand", "leftFoot", "leftToes", "rightHand", "rightFoot", "rightToes")
+ENDS = ("leftHand", "leftToes", "rightHand", "rightToes")
 """Joints at the ends of segments, which do not turn by themselves."""
 JOINTS = (*SEGMENTS, *ENDS)
 END_SEGMENTS = tuple(
-    SEGMENTS.index(f"{side}{limb}")
-    for side in SIDES
-    for limb in ("LowerArm", "LowerLeg", "LowerLeg")
+    SEGMENTS.index(f"{side}{limb}") for side in SIDES for limb in ("LowerArm", "Foot")
 )
 """Index of the segment that carries each of `ENDS`."""
 
@@ -103,8 +102,7 @@ def _limb_capsules(side: str) -> list[CapsuleRow]:
         row("UpperLeg", "UpperLeg", {"UpperLeg": (0.0, 0.05, 0.0)}, {"UpperLeg": ahead},
             0.078),
         row("LowerLeg", "LowerLeg", {}, {"LowerLeg": (0.0, 0.97, 0.0)}, 0.052),
-        row("Foot", "LowerLeg", {"LowerLeg": ahead, "Foot": (0.0, 0.20, 0.10)},
-            {"LowerLeg": ahead, "Foot": (0.0, 0.23, -0.80)}, 0.038),
+        row("Foot", "Foot", {"Foot": (0.0, 0.20, 0.10)}, {"Foot": (0.0, 0.23, -0.80)}, 0.038),
     ]  # fmt: skip
 
 
@@ -131,8 +129,7 @@ def _offset_rows() -> list[dict[str, Vector]]:
             f"{side}UpperLeg": {"hipWidth": (out, 0.0, 0.0)},
             f"{side}LowerLeg": {f"{side}UpperLeg": (0.0, 1.0, 0.0)},
             f"{side}Foot": {f"{side}LowerLeg": (0.0, 1.0, 0.0)},
-            f"{side}Toes": {f"{side}LowerLeg": (0.0, 1.0, 0.0),
-                            f"{side}Foot": (0.0, 0.25, -0.85)},
+            f"{side}Toes": {f"{side}Foot": (0.0, 0.25, -0.85)},
         }  # fmt: skip
     return [rows[joint] for joint in JOINTS]
 

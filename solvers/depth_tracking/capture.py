@@ -17,15 +17,16 @@ from .body_model import BodyModel
 from .body_motion import body_motion
 from .capture_passes import Actor, Pass, RecoverySettings, track_with_restarts
 from .choose_poses import choose_poses, nearest_known
-from .coordinates import N_COORDINATES
 from .find_body import find_body
-from .motion_prior import MotionPrior
+from .found_pose import OnPose, unobserved
+from .motion_prior import MotionPrior, load_motion_prior
 from .pixel_forest import PixelForest, load_pixel_forest
 from .smooth_pass import smoothed_poses
 from .track_pose import TrackedMotion, tracked_motion
 from .tracker_settings import USUAL, TrackerSettings
 
 Array = NDArray[np.float64]
+Integers = NDArray[np.intp]
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -40,6 +41,10 @@ class CaptureSettings(RecoverySettings):
         minimum=0.0, maximum=1000.0,
     )  # fmt: skip
     refine: bool = setting(True, "Fit lengths and thickness of the body to the recording")
+    recorded: bool = setting(
+        False, "Draw poses to recorded walks, exercises and dances: limbs out of sight follow"
+        " those in sight; switch off for jumps and other quick motions",
+    )  # fmt: skip
     doubtful: float = setting(
         0.3, "Confidence below which a joint is flagged; more flags more",
         minimum=0.0, maximum=1.0,
@@ -68,7 +73,7 @@ class Capture:
     restarts : tuple of int
         Frames in which the detector had to help the tracker, after the first.
     body : BodyModel
-    poses : shape (n_frames, 34)
+    poses : shape (n_frames, 36)
     doubtful : bool, shape (n_frames, n_joints)
         Joints out of sight or badly explained; where they are was filled in from the frames
         before and after.
@@ -93,6 +98,7 @@ def capture(
     floor: Floor | None = None,
     settings: CaptureSettings = USUAL_CAPTURE,
     tracker: TrackerSettings = USUAL,
+    on_pose: OnPose = unobserved,
     progress: Progress = unwatched,
 ) -> Capture:
     """Capture the motion of the actor whom a depth recording shows.
@@ -112,11 +118,14 @@ def capture(
     forest : PixelForest, optional
         Without it, the one that is shipped.
     motion_prior : MotionPrior, optional
-        Recorded motions that this one is like.
+        Recorded motions that this one is like, to which the tracker draws poses; without
+        it, those that are shipped if `settings.recorded`.
     floor : Floor, optional
         Becomes z = 0; without it the camera is taken to be level.
     settings : CaptureSettings
     tracker : TrackerSettings
+    on_pose : OnPose
+        Is shown each pose that is found, as soon as it is.
     progress : Progress
 
     Raises
@@ -132,21 +141,24 @@ def capture(
        single depth camera. ACM Transactions on Graphics 31(6).
     """
     forest = load_pixel_forest() if forest is None else forest
+    if motion_prior is None and settings.recorded:
+        motion_prior = load_motion_prior()
     share = 0.0
     if body is None:
         share = 0.4
         body = find_body(
             depth, forest, refine=settings.refine, tracker=tracker,
-            progress=within(progress, 0.0, share),
+            on_pose=on_pose, progress=within(progress, 0.0, share),
         )  # fmt: skip
-    actor = Actor(depth, body, forest, tracker, settings, motion_prior)
+    actor = Actor(depth, body, forest, tracker, settings, motion_prior, on_pose)
     passes = _passes(actor, settings, within(progress, share, 0.9))
-    poses = _chosen(body, passes)
+    frames, which = best_of_passes(body, passes)
+    poses = np.stack([one.poses for one in passes])[which, frames]
     poses, figures = smoothed_poses(
         actor, poses, settings.smoothing, within(progress, 0.9, 1.0)
     )
-    return _captured(actor, tracked_motion(body, poses, figures, depth.frame_rate),
-                     passes[0].restarts, floor, settings)  # fmt: skip
+    tracked = tracked_motion(body, poses, figures, depth.frame_rate)
+    return put_together(body, tracked, passes[0].restarts, floor, settings)
 
 
 def _passes(actor: Actor, settings: CaptureSettings, progress: Progress) -> list[Pass]:
@@ -167,8 +179,11 @@ def _passes(actor: Actor, settings: CaptureSettings, progress: Progress) -> list
     return [forward, backward]
 
 
-def _chosen(body: BodyModel, passes: Sequence[Pass]) -> Array:
-    """Return one pose for every frame; frames before the first one take its pose."""
+def best_of_passes(body: BodyModel, passes: Sequence[Pass]) -> tuple[Integers, Integers]:
+    """Return which frame of which pass to take for every frame, two of shape (n_frames,).
+
+    It is the frame itself, or the nearest one in which somebody was found.
+    """
     poses = np.stack([one.poses for one in passes], axis=1)
     scores = np.stack([one.scores for one in passes], axis=1)
     known = np.isfinite(poses).all(axis=-1)
@@ -176,25 +191,24 @@ def _chosen(body: BodyModel, passes: Sequence[Pass]) -> Array:
     some = np.flatnonzero(known.any(axis=1))
     joints = joint_positions(body, segment_frames(body, np.nan_to_num(poses[some])))
     chosen = choose_poses(scores[some], joints, _SHARPNESS, _REACH)
-    found = np.full((len(poses), N_COORDINATES), np.nan)
-    found[some] = poses[some, chosen]
-    everywhere: Array = found[nearest_known(some, len(poses))]
-    return everywhere
+    nearest = nearest_known(some, len(poses))
+    return nearest, chosen[np.searchsorted(some, nearest)]
 
 
-def _captured(
-    actor: Actor,
+def put_together(
+    body: BodyModel,
     tracked: TrackedMotion,
     restarts: tuple[int, ...],
     floor: Floor | None,
     settings: CaptureSettings,
 ) -> Capture:
+    """Return the capture that a body's poses make."""
     confidence = tracked.joints.confidence
     doubtful = np.zeros(tracked.joints.positions.shape[:2], dtype=bool)
     if confidence is not None:
         doubtful = confidence < settings.doubtful
     return Capture(
-        body_motion(actor.body, tracked.poses, actor.depth.frame_rate, floor),
-        tracked.joints, tracked.residual, tracked.coverage, restarts, actor.body,
-        tracked.poses, doubtful,
+        body_motion(body, tracked.poses, tracked.joints.frame_rate, floor),
+        tracked.joints, tracked.residual, tracked.coverage, restarts, body, tracked.poses,
+        doubtful,
     )  # fmt: skip

@@ -14,7 +14,9 @@ from ..settings import Settings, setting
 from .body_model import BodyModel
 from .coordinates import COORDINATES, N_COORDINATES
 from .detect_pose import DetectorSettings, detect_pose
-from .fit_quality import FitQuality
+from .failure_test import FailureTest, has_failed
+from .fit_quality import FitQuality, unseen
+from .found_pose import FoundPose, OnPose, unobserved
 from .motion_prior import MotionPrior
 from .observation import observe
 from .pixel_forest import PixelForest
@@ -34,9 +36,13 @@ _FREE_WEIGHT = 1.0
 class RecoverySettings(Settings):
     """When the tracker is held to have failed, and what is done."""
 
-    failing_score: float = setting(
-        0.5, "Share of pixels that fit below which the tracker has failed; more asks the"
-        " detector more often", minimum=0.0, maximum=1.0,
+    failure_test: FailureTest = setting(
+        FailureTest.LEARNED, "How a pose is held to be wrong: by a learned chance and by what"
+        " usually fits, or by the thresholds of [WZC12] (2.5 cm, 90 % overlap)",
+    )  # fmt: skip
+    failing_chance: float = setting(
+        0.5, "Learned chance of a wrong pose from which on the tracker has failed; less asks"
+        " the detector more often", minimum=0.0, maximum=1.0,
     )  # fmt: skip
     failing_drop: float = setting(
         0.9, "Share of what usually fits below which it has failed", minimum=0.0, maximum=1.0
@@ -61,7 +67,7 @@ class Pass:
 
     Attributes
     ----------
-    poses : shape (n_frames, 34)
+    poses : shape (n_frames, 36)
     scores : shape (n_frames,)
         Share of pixels that fit; NaN where nobody was seen.
     restarts : tuple of int
@@ -85,6 +91,8 @@ class Actor:
     tracker : TrackerSettings
     recovery : RecoverySettings
     motion_prior : MotionPrior or None
+    on_pose : OnPose
+        Looks on.
     """
 
     depth: DepthRecording
@@ -93,6 +101,7 @@ class Actor:
     tracker: TrackerSettings
     recovery: RecoverySettings
     motion_prior: MotionPrior | None = None
+    on_pose: OnPose = unobserved
 
     def detected(self, frame: int) -> tuple[Array, FitQuality] | None:
         """Return the pose that the detector finds, refined by the tracker, or None."""
@@ -119,17 +128,17 @@ def track_with_restarts(
 ) -> Pass:
     """Track the frames of a take in this order.
 
-    The tracker has failed where too few pixels fit, by themselves or compared with the frames
-    before ([WZC12]_ section 5 has thresholds of depth and overlap, which depend on the sensor
-    and the body); then, and every now and again, the detector is asked, and its pose is taken
-    if it fits clearly better.
+    The tracker has failed where a test says so that was learned, or fewer pixels fit than in
+    the frames before (or by the thresholds of [WZC12]_ section 5, which depend on the sensor
+    and the body: `FailureTest`); then, and every now and again, the detector is asked, and its
+    pose is taken if it fits clearly better.
 
     Parameters
     ----------
     actor : Actor
     order : iterable of int
         Frames, ascending or descending.
-    start : shape (34,), optional
+    start : shape (36,), optional
         Near the pose in the first of them; without it the detector starts.
     progress : Progress
     """
@@ -141,7 +150,7 @@ def track_with_restarts(
     restarts, memory = [], None
     for done, frame in enumerate(frames):
         observation = observe(actor.depth, frame, actor.tracker.picture_width)
-        score = np.nan
+        score, quality = np.nan, unseen()
         if course and not observation.empty:
             prior = next_pose_prior(course[-2:], actor.tracker, actor.motion_prior)
             pose, quality, memory = follow(
@@ -150,17 +159,19 @@ def track_with_restarts(
             score = quality.score
         elif course:
             pose = course[-1]
-        if not observation.empty and watch.wants_detection(score):
+        if not observation.empty and watch.wants_detection(quality):
             found = actor.detected(frame)
             if found is not None and not found[1].score <= score + actor.recovery.gain:
                 turned = _near_turn(found[0], course[-1] if course else found[0])
                 if course:
                     restarts.append(frame)
-                pose, score, course, memory = turned, found[1].score, [], None
+                pose, quality, course, memory = turned, found[1], [], None
+                score = quality.score
                 watch.recovered()
         if course or np.isfinite(score):
             course.append(pose)
             poses[frame], scores[frame] = pose, score
+            actor.on_pose(FoundPose(actor.body, frame, pose, quality))
         watch.note(score)
         progress((done + 1) / len(frames), "Tracking")
     return Pass(poses, scores, tuple(restarts))
@@ -174,14 +185,15 @@ class _Watch:
         self._usual: deque[float] = deque(maxlen=_MEMORY)
         self._since = settings.check_every
 
-    def wants_detection(self, score: float) -> bool:
+    def wants_detection(self, quality: FitQuality) -> bool:
         """Tell whether it is time to ask the detector."""
         self._since += 1
-        usual = float(np.median(self._usual)) if self._usual else 0.0
-        failing = not score >= max(
-            self._settings.failing_score, self._settings.failing_drop * usual
-        )
-        due = self._settings.patience if failing else self._settings.check_every
+        settings = self._settings
+        failing = has_failed(quality, settings.failure_test, settings.failing_chance)
+        if settings.failure_test is FailureTest.LEARNED and self._usual:
+            usual = float(np.median(self._usual))
+            failing = failing or quality.score < settings.failing_drop * usual
+        due = settings.patience if failing else settings.check_every
         if self._since < due:
             return False
         self._since = 0

@@ -1,4 +1,4 @@
-"""The 34 joint coordinates of [WZC12]: what each turns, and how far bodies turn."""
+"""The joint coordinates, the 34 of [WZC12] and two ankles: what each turns, and how far."""
 
 from typing import NamedTuple
 
@@ -56,6 +56,7 @@ def _limbs(side: str) -> list[CoordinateRow]:
         row("FemurY", "UpperLeg", y, -0.9, 0.9),
         row("FemurZ", "UpperLeg", z, -0.5, 1.2),
         row("Tibia", "LowerLeg", (1.0, 0.0, 0.0), -0.05, 2.6),
+        row("Ankle", "Foot", (1.0, 0.0, 0.0), -0.6, 0.9),
     ]
 
 
@@ -69,7 +70,7 @@ COORDINATES = (*ROOT, *(row.name for row in _ROWS))
 N_COORDINATES = len(COORDINATES)
 
 TURNS = np.zeros((len(SEGMENTS), 3, N_COORDINATES))
-"""(n_segments, 3, 34): rotation vector of a segment in its parent = TURNS @ coordinates."""
+"""(n_segments, 3, 36): rotation vector of a segment in its parent = TURNS @ coordinates."""
 for _place, _row in enumerate(_ROWS):
     for _segment, _axis in _row.segments.items():
         TURNS[SEGMENTS.index(_segment), :, N_ROOT + _place] = _axis

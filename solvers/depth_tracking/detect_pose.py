@@ -56,7 +56,7 @@ class DetectedPose:
 
     Attributes
     ----------
-    pose : shape (34,)
+    pose : shape (36,)
         Coordinates of the body model, camera frame.
     joints : shape (21, 3), metres
         The `JOINTS` of the body model.

@@ -9,6 +9,7 @@ from ..progress import Progress, unwatched, within
 from .body_model import BodyModel, usual_body
 from .capture_passes import Actor, RecoverySettings, track_with_restarts
 from .detect_pose import detect_pose
+from .found_pose import OnPose, shifted, unobserved
 from .pixel_forest import PixelForest
 from .refine_body import refine_body
 from .tracker_settings import USUAL, TrackerSettings
@@ -28,6 +29,7 @@ def find_body(
     *,
     refine: bool = True,
     tracker: TrackerSettings = USUAL,
+    on_pose: OnPose = unobserved,
     progress: Progress = unwatched,
 ) -> BodyModel:
     """Return the usual adult of the stature that fits best, refined by tracking.
@@ -42,6 +44,8 @@ def find_body(
     refine : bool
         Without, only the stature is found.
     tracker : TrackerSettings
+    on_pose : OnPose
+        Is shown each pose that is found, as soon as it is.
     progress : Progress
 
     Raises
@@ -56,7 +60,8 @@ def find_body(
     first = int(np.clip(frames[0] - CLIP // 2, 0, max(0, depth.n_frames - CLIP)))
     clip = _part(depth, first, min(CLIP, depth.n_frames - first))
     for turn in range(2):
-        actor = Actor(clip, body, forest, tracker, RecoverySettings())
+        actor = Actor(clip, body, forest, tracker, RecoverySettings(),
+                      on_pose=shifted(on_pose, first))  # fmt: skip
         done = within(progress, 0.3 + 0.35 * turn, 0.65 + 0.35 * turn)
         tracked = track_with_restarts(actor, range(clip.n_frames), None, done)
         good = np.flatnonzero(np.isfinite(tracked.scores))

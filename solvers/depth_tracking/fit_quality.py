@@ -35,13 +35,19 @@ class FitQuality(NamedTuple):
     """Share of the pixels of body or actor that show both [WZC12] section 5."""
     score: float
     """Share of the pixels of body or actor that fit, each by how near its depths are."""
+    off_actor: float
+    """Share of the body's pixels that show no actor."""
+    too_near: float
+    """Share of the body's pixels that show the actor far behind: space that was seen free."""
+    unexplained: float
+    """Share of the actor's pixels that show no body."""
     confidence: Array
     """Of each of `JOINTS`, 0 to 1, shape (21,)."""
 
 
 def unseen() -> FitQuality:
     """Return the figures of a frame without an actor."""
-    return FitQuality(np.nan, 0.0, 0.0, np.zeros(len(JOINT_SEGMENTS)))
+    return FitQuality(np.nan, 0.0, 0.0, 1.0, 0.0, 1.0, np.zeros(len(JOINT_SEGMENTS)))
 
 
 def fit_quality(
@@ -65,13 +71,18 @@ def fit_quality(
     overlap = int(both.sum())
     if not overlap:
         return unseen()
-    apart = np.abs(observed[both] - picture.depths[both])
+    behind = observed[both] - picture.depths[both]
+    apart = np.abs(behind)
     either = len(picture.pixels) + len(observation.pixels) - overlap
     score = float(np.maximum(0.0, 1.0 - apart / FITTING).sum()) / either
     agreeing = _agreement(found, observation, limit)[JOINT_SEGMENTS]
     room = np.sqrt(_joint_variances(body, found))
     confidence = agreeing / (1.0 + (room / _UNSURE) ** 2)
-    return FitQuality(float(apart.mean()), overlap / either, score, confidence)
+    n_drawn, n_seen = len(picture.pixels), len(observation.pixels)
+    return FitQuality(
+        float(apart.mean()), overlap / either, score, 1.0 - overlap / n_drawn,
+        float((behind > limit).sum()) / n_drawn, 1.0 - overlap / n_seen, confidence,
+    )  # fmt: skip
 
 
 def _agreement(found: Registered, observation: Observation, limit: float) -> Array:

@@ -24,8 +24,8 @@ class Hypothesis:
     Attributes
     ----------
     body : BodyModel
-    pose : shape (34,)
-    frames : shape (15, 4, 4)
+    pose : shape (36,)
+    frames : shape (17, 4, 4)
         Segments in this pose.
     picture : BodyPicture
     """
@@ -57,7 +57,7 @@ class Hypothesis:
 
     @cached_property
     def twists(self) -> Array:
-        """How each coordinate moves each segment, shape (15, 6, 34)."""
+        """How each coordinate moves each segment, shape (17, 6, 36)."""
         return segment_twists(self.pose, self.frames)
 
     @cached_property
@@ -70,7 +70,7 @@ class Hypothesis:
 
 
 def imagine(body: BodyModel, pose: Array, camera: Camera) -> Hypothesis:
-    """Return what `camera` would see of `body` in `pose` (34,)."""
+    """Return what `camera` would see of `body` in `pose` (36,)."""
     frames = segment_frames(body, pose)
     return Hypothesis(body, pose, frames, cast_rays(body, frames, camera))
 

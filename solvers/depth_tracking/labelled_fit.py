@@ -43,7 +43,7 @@ TRUNK = ("hips", "spine", "chest", "neck", "head", "Shoulder", "UpperArm")
 
 
 def first_pose(body: BodyModel, parts: FoundParts) -> Array:
-    """Return the pose (34,) at rest, moved and turned as the trunk's parts tell [1]_.
+    """Return the pose (36,) at rest, moved and turned as the trunk's parts tell [1]_.
 
     References
     ----------
@@ -69,7 +69,7 @@ def first_pose(body: BodyModel, parts: FoundParts) -> Array:
 def fit_parts(
     body: BodyModel, parts: FoundParts, start: Array, *, iterations: int = 14
 ) -> Array:
-    """Return the pose (34,) whose parts lie where they were found.
+    """Return the pose (36,) whose parts lie where they were found.
 
     First the middles of parts are met, as in Wei, Zhang, Chai 2012 (4.2); then, since middles
     of parts half hidden are wrong, the surface of each part goes through its own pixels too.
@@ -98,7 +98,7 @@ def fit_pixels(
     rounds: int = 2,
     iterations: int = 4,
 ) -> Array:
-    """Return the pose (34,) whose surface goes through the pixels, each on its likeliest part.
+    """Return the pose (36,) whose surface goes through the pixels, each on its likeliest part.
 
     In turn, each pixel is given to the part that is likely by the forest and near by the pose,
     and the body is fitted to what its parts were given. So what the forest took for the wrong
@@ -110,7 +110,7 @@ def fit_pixels(
     points : shape (n, 3), metres
     shares : shape (n, N_PARTS)
         How likely each point is of each part.
-    start : shape (34,)
+    start : shape (36,)
     rounds : int
         How often pixels are given to parts.
     iterations : int

@@ -59,7 +59,7 @@ def learn_motion_prior(
 
 
 def poses_of_motion(motion: Motion, progress: Progress = unwatched) -> Array:
-    """Return the poses (n_frames, 34) of a body model that moves like this motion, at 30 Hz.
+    """Return the poses (n_frames, 36) of a body model that moves like this motion, at 30 Hz.
 
     Frames that were not wholly observed are left out.
     """

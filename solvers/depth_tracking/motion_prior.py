@@ -19,6 +19,7 @@ Array = NDArray[np.float64]
 
 KIND = "motion prior"
 VERSION = 1
+SHIPPED = Path(__file__).parent / "models" / "motions.npz"
 NEIGHBOURS, FOLLOWING, ENERGY = 50, 3, 0.95
 """K, w and the share of the variance kept, of [LOU12] section 3.5."""
 
@@ -29,7 +30,7 @@ class MotionPrior:
 
     Attributes
     ----------
-    poses : shape (n_poses, 28)
+    poses : shape (n_poses, 30)
         The joint coordinates of every frame.
     clips : int, shape (n_poses,)
         Which motion each belongs to, in ascending order.
@@ -48,16 +49,16 @@ class MotionPrior:
 
     def save(self, path: Path | str) -> None:
         """Write an archive that `load_motion_prior` reads."""
-        arrays = {
-            "poses": self.poses.astype(np.float32), "clips": self.clips.astype(np.int32),
+        arrays: dict[str, NDArray[Any]] = {
+            "poses": self.poses.astype(np.float16), "clips": self.clips.astype(np.int32),
             "trained_on": np.array(self.trained_on),
             "coordinates": np.array(COORDINATES[N_ROOT:]),
         }  # fmt: skip
         write_archive(path, KIND, VERSION, arrays)
 
 
-def load_motion_prior(path: Path | str) -> MotionPrior:
-    """Read what `MotionPrior.save` wrote.
+def load_motion_prior(path: Path | str = SHIPPED) -> MotionPrior:
+    """Read what `MotionPrior.save` wrote; without a path, the prior that is shipped.
 
     Raises
     ------
@@ -78,7 +79,7 @@ def load_motion_prior(path: Path | str) -> MotionPrior:
 
 
 def motion_prior_of(sequences: Sequence[Array], trained_on: str = "") -> MotionPrior:
-    """Return the prior of sequences of poses, each of shape (n_frames, 34).
+    """Return the prior of sequences of poses, each of shape (n_frames, 36).
 
     Raises
     ------
@@ -97,8 +98,8 @@ class LocalPca:
 
     Attributes
     ----------
-    mean : shape (28,)
-    basis : shape (28, n_components)
+    mean : shape (30,)
+    basis : shape (30, n_components)
         Orthonormal.
     """
 
@@ -106,7 +107,7 @@ class LocalPca:
     basis: Array
 
     def equations(self, pose: Array, weight: float) -> PoseEquations:
-        """Ask a pose (34,) to come back to the plane, eq. 3.12 and 3.13 of [LOU12]."""
+        """Ask a pose (36,) to come back to the plane, eq. 3.12 and 3.13 of [LOU12]."""
         across = np.eye(len(self.mean)) - self.basis @ self.basis.T
         off = across @ (pose[N_ROOT:] - self.mean)
         matrix, vector = np.zeros((N_COORDINATES, N_COORDINATES)), np.zeros(N_COORDINATES)
@@ -117,7 +118,7 @@ class LocalPca:
 def local_pca(prior: MotionPrior, pose: Array) -> LocalPca:
     """Return the plane of the poses that followed the most similar recorded ones.
 
-    The `FOLLOWING` poses after each of the `NEIGHBOURS` nearest to `pose` (34,), the pose of
+    The `FOLLOWING` poses after each of the `NEIGHBOURS` nearest to `pose` (36,), the pose of
     the frame before, are analysed by principal components; as many are kept as hold `ENERGY`
     of the variance [LOU12]_.
 
@@ -128,14 +129,22 @@ def local_pca(prior: MotionPrior, pose: Array) -> LocalPca:
     """
     n_neighbours = min(NEIGHBOURS, len(prior.poses))
     _, nearest = prior.tree.query(pose[N_ROOT:], k=n_neighbours)
-    nearest = np.atleast_1d(nearest)
-    following = (nearest[:, np.newaxis] + np.arange(1, FOLLOWING + 1)).ravel()
-    clips = np.repeat(prior.clips[nearest], FOLLOWING)
-    inside = following < len(prior.poses)
-    inside[inside] = prior.clips[following[inside]] == clips[inside]
-    chosen = prior.poses[following[inside]] if inside.any() else prior.poses[nearest]
+    chosen = followers(prior, np.atleast_1d(nearest), FOLLOWING)
     mean = chosen.mean(axis=0)
     values, vectors = np.linalg.eigh(np.cov(chosen.T, bias=True))
     shares = np.cumsum(values[::-1]) / max(values.sum(), 1e-300)
     n_components = int(np.searchsorted(shares, ENERGY)) + 1
     return LocalPca(mean, vectors[:, ::-1][:, :n_components])
+
+
+def followers(prior: MotionPrior, places: NDArray[np.intp], ahead: int) -> Array:
+    """Return the `ahead` poses (n, 30) after each of these in its clip.
+
+    The poses themselves, if none follows or none is asked for.
+    """
+    following = (places[:, np.newaxis] + np.arange(1, ahead + 1)).ravel()
+    clips = np.repeat(prior.clips[places], ahead)
+    inside = following < len(prior.poses)
+    inside[inside] = prior.clips[following[inside]] == clips[inside]
+    found: Array = prior.poses[following[inside]] if inside.any() else prior.poses[places]
+    return found

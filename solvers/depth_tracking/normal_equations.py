@@ -23,8 +23,8 @@ class SegmentEquations:
 
     Attributes
     ----------
-    matrices : shape (15, 6, 6)
-    vectors : shape (15, 6)
+    matrices : shape (17, 6, 6)
+    vectors : shape (17, 6)
     cost : float
         Half the weighted sum of squares before the step.
     """
@@ -39,9 +39,9 @@ class PoseEquations:
     """What a prior asks of the coordinates: minimise d'Ad/2 - b'd for their change d."""
 
     matrix: Array
-    """Shape (34, 34)."""
+    """Shape (36, 36)."""
     vector: Array
-    """Shape (34,)."""
+    """Shape (36,)."""
     cost: float
 
 
@@ -130,7 +130,7 @@ def in_coordinates(equations: Iterable[SegmentEquations], twists: Array) -> Pose
     Parameters
     ----------
     equations : iterable of SegmentEquations
-    twists : shape (15, 6, 34)
+    twists : shape (17, 6, 36)
         How the coordinates move the segments.
     """
     found = list(equations)
@@ -154,6 +154,6 @@ def added(equations: Iterable[PoseEquations]) -> PoseEquations:
 
 
 def step(equations: PoseEquations, damping: Array) -> Array:
-    """Return the change of the coordinates, with `damping` (34,) added to the diagonal."""
+    """Return the change of the coordinates, with `damping` (36,) added to the diagonal."""
     change: Array = np.linalg.solve(equations.matrix + np.diag(damping), equations.vector)
     return change

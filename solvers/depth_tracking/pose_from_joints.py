@@ -18,28 +18,58 @@ _YAW = COORDINATES.index("yaw")
 _REST_WEIGHT = 1e-3
 _LIMIT_WEIGHT = 1.0
 _LONGEST_STEP = 0.5
+_SURE = 100.0
+_CORNERS = 0.05 * np.array([*np.eye(3), *-np.eye(3)])
+"""Points of a segment, metres, that tell how it is turned; farther ones would tell more."""
 
 
 def pose_from_joints(
     body: BodyModel, joints: Array, *, start: Array | None = None, iterations: int = 40
 ) -> Array:
-    """Return the pose (34,) of the body whose joints are nearest to these.
+    """Return the pose (36,) of the body whose joints are nearest to these.
 
     Parameters
     ----------
     body : BodyModel
     joints : shape (21, 3), metres
         The `JOINTS` in the camera's frame; NaN: unknown.
-    start : shape (34,), optional
+    start : shape (36,), optional
         A pose near it, such as that of the frame before; without, four headings are tried.
     iterations : int
     """
     known = np.flatnonzero(np.isfinite(joints).all(axis=1))
-    local = np.concatenate([np.zeros((len(SEGMENTS), 3)), body.offsets[len(SEGMENTS) :]])
+    local = _joints_on_segments(body)
     return pose_from_points(
         body, _CARRIERS[known], local[known], joints[known],
         np.ones(len(known)), start=start, iterations=iterations,
     )  # fmt: skip
+
+
+def pose_from_frames(
+    body: BodyModel, frames: Array, *, start: Array | None = None, iterations: int = 40
+) -> Array:
+    """Return the pose (36,) of the body whose segments are nearest to where these are.
+
+    Where its coordinates cannot turn them so, joints are rather in their places.
+
+    Parameters
+    ----------
+    body : BodyModel
+    frames : shape (17, 4, 4)
+        camera_from_segment of the `SEGMENTS`; turns that a joint cannot make are not followed.
+    start : shape (36,), optional
+    iterations : int
+    """
+    corners = np.tile(_CORNERS, (len(SEGMENTS), 1))
+    local = np.concatenate([_joints_on_segments(body), corners])
+    segments = np.repeat(np.arange(len(SEGMENTS)), len(_CORNERS))
+    segments = np.concatenate([_CARRIERS, segments])
+    carriers = frames[segments]
+    targets = np.einsum("nij,nj->ni", carriers[:, :3, :3], local) + carriers[:, :3, 3]
+    weights = np.full(len(segments), _SURE)
+    return pose_from_points(
+        body, segments, local, targets, weights, start=start, iterations=iterations
+    )
 
 
 def pose_from_points(
@@ -52,7 +82,7 @@ def pose_from_points(
     start: Array | None = None,
     iterations: int = 40,
 ) -> Array:
-    """Return the pose (34,) that brings points on segments nearest to targets.
+    """Return the pose (36,) that brings points on segments nearest to targets.
 
     Joint limits hold softly, and what no point tells stays near the pose of zeros.
     Without a start, four headings are tried.
@@ -68,7 +98,7 @@ def pose_from_points(
         Where they should be, camera frame.
     weights : shape (n,)
         Of the squares; 1 for a point that is sure.
-    start : shape (34,), optional
+    start : shape (36,), optional
     iterations : int
     """
     starts = [start] if start is not None else _starts(targets)
@@ -76,6 +106,11 @@ def pose_from_points(
         _descend(body, pose, (segments, local, targets, weights), iterations) for pose in starts
     ]
     return min(found, key=lambda one: one[1])[0]
+
+
+def _joints_on_segments(body: BodyModel) -> Array:
+    """Return the `JOINTS` (21, 3) in the frames of the segments that carry them."""
+    return np.concatenate([np.zeros((len(SEGMENTS), 3)), body.offsets[len(SEGMENTS) :]])
 
 
 def _starts(targets: Array) -> list[Array]:

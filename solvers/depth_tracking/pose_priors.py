@@ -11,6 +11,7 @@ from .normal_equations import PoseEquations
 Array = NDArray[np.float64]
 
 _LIMB = re.compile("Humerus|Radius|Femur|Tibia")
+_ANKLE = "Ankle"
 
 
 def stay_near(pose: Array, expected: Array, weights: Array) -> PoseEquations:
@@ -21,8 +22,8 @@ def stay_near(pose: Array, expected: Array, weights: Array) -> PoseEquations:
 
     Parameters
     ----------
-    pose, expected : shape (34,)
-    weights : shape (34,)
+    pose, expected : shape (36,)
+    weights : shape (36,)
         Of the squares.
     """
     change = expected - pose
@@ -34,7 +35,7 @@ def foretell(poses: list[Array], trust: float) -> Array:
 
     Parameters
     ----------
-    poses : list of shape (34,)
+    poses : list of shape (36,)
         The frames before, the last one last.
     trust : float
         Share of the last movement that goes on: 1 constant velocity, 0 standing still.
@@ -54,11 +55,17 @@ def joint_limits(pose: Array, weight: float) -> PoseEquations:
 
 _LIMB_SHARE = 0.1
 _EASE = np.array([
-    0.0 if name in ROOT else _LIMB_SHARE if _LIMB.search(name) else 1.0 for name in COORDINATES
+    0.0 if name in ROOT or name.endswith(_ANKLE)
+    else _LIMB_SHARE if _LIMB.search(name) else 1.0
+    for name in COORDINATES
 ])  # fmt: skip
+_IS_ANKLE = np.char.endswith(COORDINATES, _ANKLE).astype(float)
 
 
-def natural_stance(pose: Array, weight: float) -> PoseEquations:
-    """Ask the joints to be as in upright standing: the trunk, head and clavicles above all."""
-    weights = weight * _EASE
+def natural_stance(pose: Array, weight: float, ankle_weight: float) -> PoseEquations:
+    """Ask the joints to be as in upright standing: the trunk, head and clavicles above all.
+
+    Feet are held square to the shanks by a weight of their own.
+    """
+    weights = weight * _EASE + ankle_weight * _IS_ANKLE
     return PoseEquations(np.diag(weights), -weights * pose, 0.5 * float(weights @ pose**2))

@@ -25,7 +25,7 @@ BLIND_ROUNDS = 3
 def trial_poses(
     body: BodyModel, parts: FoundParts, points: Array, shares: NDArray[np.float32]
 ) -> Iterator[Array]:
-    """Yield poses (34,) that may be it.
+    """Yield poses (36,) that may be it.
 
     Parts of the left and of the right look alike, above all from the side, and are told apart
     worst. So the body is fitted to the parts as told, with left and right of legs and of arms

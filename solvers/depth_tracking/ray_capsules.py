@@ -67,7 +67,7 @@ def cast_rays(body: BodyModel, frames: Array, camera: Camera) -> BodyPicture:
     Parameters
     ----------
     body : BodyModel
-    frames : shape (15, 4, 4)
+    frames : shape (17, 4, 4)
         camera_from_segment of each segment.
     camera : Camera
 

@@ -78,7 +78,7 @@ def refine_body(
     depth : DepthRecording
     body : BodyModel
         To start from, such as `usual_body` of about the right stature.
-    poses : shape (n_frames, 34)
+    poses : shape (n_frames, 36)
         Of every frame, as tracked with this body.
     frames : int array, optional
         Which frames to look at; without them, evenly spread ones.
@@ -182,7 +182,7 @@ def _rows(
 
 
 def pose_jacobian(hypothesis: Hypothesis, rows: SurfaceRows) -> Array:
-    """Return how each row's point moves along its direction with each coordinate, (n, 34)."""
+    """Return how each row's point moves along its direction with each coordinate, (n, 36)."""
     lines = screws(rows.points, rows.directions)
     segments = CAPSULE_SEGMENTS[rows.capsules]
     moved = np.empty((len(lines), N_COORDINATES))

@@ -45,7 +45,7 @@ class Registered:
 
     @property
     def pose(self) -> Array:
-        """The coordinates, shape (34,)."""
+        """The coordinates, shape (36,)."""
         return self.hypothesis.pose
 
 
@@ -67,7 +67,7 @@ def register_pose(
     Parameters
     ----------
     body : BodyModel
-    pose : shape (34,)
+    pose : shape (36,)
     observation : Observation
         It must show something of the actor.
     prior : callable
@@ -109,7 +109,7 @@ class _Scene:
             in_coordinates([segment_equations(rows)], hypothesis.twists),
             self.prior(pose),
             joint_limits(pose, self.settings.limit_weight),
-            natural_stance(pose, self.settings.natural_weight),
+            natural_stance(pose, self.settings.natural_weight, self.settings.ankle_weight),
         ]
         return Registered(hypothesis, added(asked), 1)
 

@@ -1,5 +1,7 @@
 """Smooth the tracked poses of a take by what each of its pictures says."""
 
+from collections.abc import Collection
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -7,11 +9,12 @@ from ..progress import Progress
 from .capture_passes import Actor
 from .coordinates import N_COORDINATES
 from .fit_quality import FitQuality, fit_quality, unseen
+from .found_pose import FoundPose
 from .hypothesis import imagine
 from .likelihood import likelihood_rows
 from .normal_equations import PoseEquations, added, in_coordinates, segment_equations
 from .observation import Observation, observe
-from .pose_priors import joint_limits
+from .pose_priors import joint_limits, natural_stance
 from .register_pose import Registered
 from .smooth_take import smooth_take
 
@@ -19,6 +22,7 @@ Array = NDArray[np.float64]
 
 USUAL_RATE = 30.0
 """Frames per second for which smoothness is given."""
+_HOLD = 1e8
 _PIECE, _BORDER = 600, 60
 """Frames smoothed at once, and how many of the next piece go along: bounded memory."""
 
@@ -26,40 +30,62 @@ _PIECE, _BORDER = 600, 60
 def smoothed_poses(
     actor: Actor, poses: Array, smoothing: float, progress: Progress
 ) -> tuple[Array, list[FitQuality]]:
-    """Return smoothed poses (n_frames, 34), and the figures of each frame."""
+    """Return smoothed poses (n_frames, 36), and the figures of each frame."""
     found, figures = poses.copy(), []
     n_frames = len(poses)
     if smoothing > 0.0 and n_frames >= 3:
         for first in range(0, n_frames, _PIECE):
             start, stop = max(0, first - _BORDER), min(n_frames, first + _PIECE + _BORDER)
-            smooth = _smoothed(actor, poses, range(start, stop), smoothing)
+            smooth = smoothed_piece(actor, poses[start:stop], start, smoothing)
             last = min(first + _PIECE, n_frames)
             found[first:last] = smooth[first - start : last - start]
             progress(0.5 * last / n_frames, "Smoothing")
     for frame in range(n_frames):
-        figures.append(_judged(actor, found[frame], frame))
+        figures.append(judged(actor, found[frame], frame))
+        actor.on_pose(FoundPose(actor.body, frame, found[frame], figures[-1]))
         progress(0.5 + 0.5 * (frame + 1) / n_frames, "Judging")
     return found, figures
 
 
-def _smoothed(actor: Actor, poses: Array, frames: range, smoothing: float) -> Array:
+def smoothed_piece(
+    actor: Actor, poses: Array, first: int, smoothing: float, held: Collection[int] = ()
+) -> Array:
+    """Return smoothed poses (n_frames, 36) of a piece of a take.
+
+    Parameters
+    ----------
+    actor : Actor
+    poses : shape (n_frames, 36)
+    first : int
+        Frame of the recording that is the first of these.
+    smoothing : float
+        More is smoother.
+    held : collection of int
+        Of these poses, those that stay.
+    """
     tracker = actor.tracker
     # Second differences shrink with the square of the frame rate.
     pace = (actor.depth.frame_rate / USUAL_RATE) ** 4
     stiffness = np.full(N_COORDINATES, smoothing * pace * tracker.turn_weight)
     stiffness[:3] = smoothing * pace * tracker.shift_weight
     equations = []
-    for frame in frames:
-        observation = observe(actor.depth, frame, tracker.picture_width)
-        asked = _asked(actor, poses[frame], observation).equations
+    for place, pose in enumerate(poses):
+        if place in held:
+            equations.append((_HOLD * np.eye(N_COORDINATES), np.zeros(N_COORDINATES)))
+            continue
+        observation = observe(actor.depth, first + place, tracker.picture_width)
+        asked = _asked(actor, pose, observation).equations
         equations.append((asked.matrix, asked.vector))
-    return smooth_take(poses[frames.start : frames.stop], equations, stiffness)
+    return smooth_take(poses, equations, stiffness)
 
 
 def _asked(actor: Actor, pose: Array, observation: Observation) -> Registered:
     """Return what a picture asks of a pose, without what the frames before say."""
     hypothesis = imagine(actor.body, pose, observation.camera)
-    limits = joint_limits(pose, actor.tracker.limit_weight)
+    limits = added([
+        joint_limits(pose, actor.tracker.limit_weight),
+        natural_stance(pose, 0.0, actor.tracker.ankle_weight),
+    ])
     if observation.empty:
         return Registered(hypothesis, limits, 1)
     rows = likelihood_rows(hypothesis, observation, actor.tracker)
@@ -67,7 +93,8 @@ def _asked(actor: Actor, pose: Array, observation: Observation) -> Registered:
     return Registered(hypothesis, added([seen, limits]), 1)
 
 
-def _judged(actor: Actor, pose: Array, frame: int) -> FitQuality:
+def judged(actor: Actor, pose: Array, frame: int) -> FitQuality:
+    """Return how well a pose explains a frame."""
     observation = observe(actor.depth, frame, actor.tracker.picture_width)
     if observation.empty:
         return unseen()

@@ -26,11 +26,11 @@ def smooth_take(
 
     Parameters
     ----------
-    poses : shape (n_frames, 34)
+    poses : shape (n_frames, 36)
         Where the frames were linearised.
-    equations : sequence of (34, 34) and (34,) arrays, one pair per frame
+    equations : sequence of (36, 36) and (36,) arrays, one pair per frame
         Likelihood there: matrix and vector of its normal equations; zeros for an empty frame.
-    stiffness : shape (34,)
+    stiffness : shape (36,)
         Weight of squared second differences.
     """
     n_frames = len(poses)

@@ -26,7 +26,7 @@ class Memory:
 
     Attributes
     ----------
-    frames : shape (15, 4, 4)
+    frames : shape (17, 4, 4)
         camera_from_segment of each segment.
     observation : Observation
         With colours.

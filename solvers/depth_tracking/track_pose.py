@@ -31,7 +31,7 @@ class TrackedMotion:
 
     Attributes
     ----------
-    poses : shape (n_frames, 34)
+    poses : shape (n_frames, 36)
         Coordinates in the order of `COORDINATES`; metres and radians, camera frame.
     joints : Tracks
         The `JOINTS`, named by humanoid roles, in the camera's frame (x right, y down,
@@ -67,7 +67,7 @@ def track_pose(
     ----------
     depth : DepthRecording
     body : BodyModel
-    initial_pose : shape (34,)
+    initial_pose : shape (36,)
         Near the pose in frame 0.
     motion_prior : MotionPrior, optional
         Recorded motions; each pose is drawn to what followed the most similar moments.
@@ -106,10 +106,10 @@ class NextPose:
 
     Attributes
     ----------
-    expected : shape (34,)
-    weights : shape (34,)
+    expected : shape (36,)
+    weights : shape (36,)
         How much the pose must be as expected.
-    last : shape (34,)
+    last : shape (36,)
         The frame before.
     similar : LocalPca or None
         What followed similar moments.
@@ -133,7 +133,7 @@ class NextPose:
 def next_pose_prior(
     poses: list[Array], settings: TrackerSettings, motion_prior: MotionPrior | None = None
 ) -> NextPose:
-    """Return what the poses (34,) of the frames before say about the next one."""
+    """Return what the poses (36,) of the frames before say about the next one."""
     weights = np.full(N_COORDINATES, settings.turn_weight)
     weights[:3] = settings.shift_weight
     similar = None if motion_prior is None else local_pca(motion_prior, poses[-1])
@@ -148,7 +148,7 @@ def follow(
     settings: TrackerSettings,
     memory: Memory | None = None,
 ) -> tuple[Array, FitQuality, Memory | None]:
-    """Find the pose (34,) of one frame, near the one expected.
+    """Find the pose (36,) of one frame, near the one expected.
 
     Returns it, its figures, and what the next frame should remember of this one.
     """

@@ -2,6 +2,8 @@
 
 from dataclasses import dataclass
 
+import numpy as np
+
 from ..settings import Settings, setting
 
 
@@ -46,7 +48,7 @@ class TrackerSettings(Settings):
     surface_weight: float = _weight(0.0, "Weight of the surface term of [LOU12]")
     edge_weight: float = _weight(0.0, "Weight of the edge term of [LOU12]")
     similar_weight: float = _weight(
-        5.0, "How much poses must be like those of the motion prior, if there is one", "1/rad2"
+        30.0, "How much poses must be like those of the motion prior, if there is one", "1/rad2"
     )
     shift_weight: float = _weight(
         400.0, "How smoothly the hips move; more is steadier and follows slower"
@@ -67,6 +69,10 @@ class TrackerSettings(Settings):
         2.0, "How much joints are drawn to upright standing; more is calmer where little shows",
         "1/rad2",
     )  # fmt: skip
+    ankle_weight: float = _weight(
+        30.0, "How much feet are held square to the shanks; 1e6 leaves them no ankles, as the"
+        " 34 coordinates of [WZC12]", "1/rad2",
+    )  # fmt: skip
     limit_weight: float = _weight(2000.0, "How hard the joint limits are", "1/rad2")
     damping: float = setting(
         1.0, "Least resistance to each step; more is safer and slower",
@@ -81,14 +87,20 @@ class TrackerSettings(Settings):
     )
 
 
+NO_ANKLES = 1e6
+"""`ankle_weight` that makes feet one with the shanks."""
+
+PER_DEGREE = (180.0 / np.pi) ** 2
+"""Squared degrees in a squared radian."""
+
 WZC12 = TrackerSettings(
     iterations=5, coarse_iterations=0, limit=0.08,
     closest_weight=0.0, off_actor_weight=0.0, too_near_weight=0.0,
     depth_weight=4.0, extra_weight=4.0 / 0.29**2, silhouette_weight=4.0 / 100.0**2,
     shift_weight=1.0 / 14.3**2, turn_weight=1.0 / 14.3**2,
     trust=1.0, start_ahead=False,
-    limit_weight=0.0, natural_weight=0.0, damping=1e-6, longest_step=10.0,
-    accept_only_better=False,
+    limit_weight=0.0, natural_weight=0.0, ankle_weight=NO_ANKLES, damping=1e-6,
+    longest_step=10.0, accept_only_better=False,
 )  # fmt: skip
 """Terms and standard deviations of [WZC12] appendix A, in metres and radians; each pixel of
 ours counts as four of their 320 columns."""
@@ -97,13 +109,17 @@ LOU12 = TrackerSettings(
     picture_width=320, iterations=10, coarse_iterations=0,
     closest_weight=0.0, off_actor_weight=0.0, too_near_weight=0.0,
     depth_weight=0.0, extra_weight=0.0, silhouette_weight=0.0,
-    surface_weight=4.0, edge_weight=40.0, similar_weight=0.001,
-    shift_weight=1e-5, turn_weight=1e-5, trust=0.0,
-    limit_weight=0.0, natural_weight=0.0, damping=1e-6, longest_step=10.0,
-    accept_only_better=False,
+    surface_weight=4.0, edge_weight=40.0, similar_weight=0.001 * PER_DEGREE,
+    shift_weight=1e-5, turn_weight=1e-5 * PER_DEGREE, trust=0.0,
+    limit_weight=0.0, natural_weight=0.0, ankle_weight=NO_ANKLES, damping=1e-6,
+    longest_step=10.0, accept_only_better=False,
 )  # fmt: skip
 """Terms and weights of [LOU12] sections 3.4 to 3.6: surface 1, edges 10, motion prior 0.001,
-smoothness 0.00001 (a pixel of 320 columns sees about a quarter of what weights are for)."""
+smoothness 0.00001 (a pixel of 320 columns sees about a quarter of what weights are for).
+
+The paper tells no units. Angles are taken to be in degrees, as in the recorded motions that it
+learns from: with weights per square radian neither prior nor smoothness weighs anything, and
+the actor is lost within a second."""
 
 USUAL = TrackerSettings()
 """What measured best."""

@@ -53,7 +53,8 @@ def body_lengths(positions: Array, reliability: Array | None = None) -> Array:
         found = np.where(sure | ~enough, found, np.nan)
     seen = np.isfinite(found).any(axis=0)
     lengths = np.full(N_JOINTS, np.nan)
-    lengths[seen] = np.nanmedian(found[:, seen], axis=0)
+    median = np.median if np.isfinite(found).all() else np.nanmedian  # the first is faster
+    lengths[seen] = median(found[:, seen], axis=0)
     known = seen & (USUAL_LENGTHS > 0.0)
     share = lengths[known].sum() / USUAL_LENGTHS[known].sum() if known.any() else 1.0
     lengths = np.where(seen, lengths, share * USUAL_LENGTHS)

@@ -8,6 +8,7 @@ from numpy.typing import NDArray
 
 from ..errors import InvalidMotionError
 from ..progress import Progress, unwatched, within
+from .camera_doubts import camera_doubts
 from .depth_bodies import Bodies, find_bodies
 from .depth_floor import LEVEL, Floor, find_floor
 from .depth_foreground import (
@@ -117,7 +118,11 @@ def find_actor(
     alone = cut_out_actor(
         recording, settings, background=background, floor=floor, course=people.course
     )
-    remarks = (*_remarks(people, seen, recording), *survey.remarks())
+    remarks = (
+        *camera_doubts(recording.camera),
+        *_remarks(people, seen, recording),
+        *survey.remarks(),
+    )
     return Actor(alone, floor, way, seen, not survey.cut_off(), remarks)
 
 

@@ -22,6 +22,9 @@ PASSED = 0.7
 NUMBERS_AT_ONCE = 4_000_000
 """Of which more would need much memory: two hours of a skeleton are thirty times as many."""
 
+ROWS_AT_ONCE = 32
+"""New frames that one product filters."""
+
 STENCIL = 4
 """Frames that take part in one interpolated value."""
 
@@ -116,22 +119,37 @@ def _low_passed(
 
     With `step`, return that many-th frames only.
     """
-    from scipy.signal import upfirdn  # takes a second to import: only when needed
-
     kernel = _kernel(slowdown)
     half = len(kernel) // 2
-    before = half + -2 * half % step
     width = [(half, half)] + [(0, 0)] * (values.ndim - 1)
     padded = np.pad(values, width, mode="reflect", reflect_type="odd")
-    late = np.concatenate([np.zeros((before - half, *values.shape[1:])), padded])
-    passed = upfirdn(kernel, late, down=step, axis=0)
-    first, n_wanted = (before + half) // step, -(-len(values) // step)
-    return np.asarray(passed[first : first + n_wanted])
+    flat = padded.reshape(len(padded), -1)
+    passed = np.empty((-(-len(values) // step), flat.shape[1]))
+    rows = _kernel_rows(slowdown, step)
+    for first in range(0, len(passed), ROWS_AT_ONCE):
+        n_rows = min(ROWS_AT_ONCE, len(passed) - first)
+        n_seen = (n_rows - 1) * step + len(kernel)
+        seen = flat[first * step : first * step + n_seen]
+        np.matmul(rows[:n_rows, :n_seen], seen, out=passed[first : first + n_rows])
+    return passed.reshape(len(passed), *values.shape[1:])
+
+
+@lru_cache(maxsize=16)
+def _kernel_rows(slowdown: float, step: int) -> NDArray[np.float64]:
+    """Return the kernel once in each row, `step` further on than in the one above.
+
+    A product with it is several times as fast as a convolution, though half of it is zeros.
+    """
+    kernel = _kernel(slowdown)
+    rows = np.zeros((ROWS_AT_ONCE, (ROWS_AT_ONCE - 1) * step + len(kernel)))
+    for number, row in enumerate(rows):
+        row[number * step : number * step + len(kernel)] = kernel
+    return rows
 
 
 @lru_cache(maxsize=16)
 def _kernel(slowdown: float) -> NDArray[np.float64]:
-    from scipy.signal import firwin, kaiserord
+    from scipy.signal import firwin, kaiserord  # takes a second: only when needed
 
     n_taps, beta = kaiserord(STOPBAND, (1.0 - PASSED) * slowdown)
     cutoff = (1.0 + PASSED) / 2 * slowdown

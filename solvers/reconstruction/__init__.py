@@ -14,6 +14,7 @@ from .learn_residual_prior import (
     learn_residual_prior,
 )
 from .physics_engine import NoPhysicsError
+from .physics_settings import Ground, SimulateSettings
 from .posture_library import (
     PostureLibrary,
     PostureLibrarySettings,
@@ -28,7 +29,7 @@ from .reliability_markers import measure_marker_reliability
 from .reliability_settings import ReliabilityMethod, ReliabilitySettings
 from .residual_prior import ResidualPrior, load_residual_prior
 from .result import Reconstruction
-from .simulate import Ground, Simulated, SimulateSettings, simulate, with_strength
+from .simulate import Simulated, simulate, with_strength
 
 __all__ = [
     "CorrectionMethod",

@@ -5,7 +5,6 @@ from enum import Enum
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.special import gammainc
 
 from ..motion import JointRecording
 from ..motion.posture_joints import N_JOINTS, POSTURE_JOINTS, joints_of_names, posture_positions
@@ -13,12 +12,14 @@ from ..motion.straight_gaps import bridged
 from ..progress import Progress, unwatched, within
 from ..settings import Settings, setting
 from .follow_joints import follow_joints
+from .foretold import Foretold
 from .other_joints import all_joints, anchors
 from .reliability import Reliability, measure_reliability
 from .residual_inputs import calm_postures
-from .residual_prior import Foretold, ResidualPrior
+from .residual_prior import ResidualPrior
 from .result import Reconstruction
 from .steady_paths import followed, smoothed
+from .trunk_twist import LimbTwists
 
 Array = NDArray[np.float64]
 
@@ -80,6 +81,7 @@ def correct_postures(
     prior: ResidualPrior,
     *,
     reliability: Reliability | None = None,
+    twists: LimbTwists | None = None,
     settings: CorrectionSettings = CorrectionSettings(),
     progress: Progress = unwatched,
 ) -> Reconstruction:
@@ -96,6 +98,8 @@ def correct_postures(
     prior : ResidualPrior
     reliability : Reliability, optional
         Measured by `measure_reliability` where it is not given.
+    twists : LimbTwists, optional
+        How like postures have limbs twisted; by default bends alone tell it.
     settings : CorrectionSettings
     progress : Progress
 
@@ -124,7 +128,8 @@ def correct_postures(
     progress(0.9, "Correcting")
     asked = settings.change > 0.0 or settings.shift
     heard = told.coverage if asked else 0.0
-    confidence = heard * chance_within(variances, SURE_WITHIN) + (1.0 - heard) * weights
+    chance = prior.confidence(variances, SURE_WITHIN, constant=settings.shift)
+    confidence = heard * chance + (1.0 - heard) * weights
     tracks = recording.tracks
     joints = all_joints(
         tracks.names, tracks.positions, trust.combined, posture_positions(recording), corrected
@@ -132,12 +137,12 @@ def correct_postures(
     joints[:, ~tracks.visible.any(axis=0)] = np.nan
     confidence = confidence[:, anchors(tracks.names)]
     rebuilt = tracks.with_positions(joints)
-    motion = follow_joints(rebuilt, recording.parents, trust.combined)
+    motion = follow_joints(rebuilt, recording.parents, trust.combined, twists=twists)
     progress(1.0, "Corrected")
     method = f"steadied ({settings.method.value})"
     if asked:
         method += f" with a residual prior of {prior.source}"
-    return Reconstruction(rebuilt, motion, trust, confidence, method)
+    return Reconstruction(rebuilt, motion, trust, confidence, method, twists)
 
 
 def foretell_places(
@@ -197,18 +202,6 @@ def _frame_by_frame(
             wanted = wanted + temporal * steady
         result[frame] = seen[frame] + wanted / np.maximum(total, 1e-12)[:, None]
     return result / CENTIMETRES
-
-
-def chance_within(variances: Array, distance: float) -> Array:
-    """Return the chance of a point being within a distance of its mean (Maxwell's law).
-
-    Parameters
-    ----------
-    variances : any shape, square metres for each of three axes; infinite: chance 0
-    distance : float, metres
-    """
-    scaled = distance**2 / (2.0 * np.maximum(variances, 1e-12))
-    return np.asarray(gammainc(1.5, scaled))
 
 
 def posture_reliability(recording: JointRecording, combined: Array) -> Array:

@@ -16,11 +16,13 @@ from ..motion import (
     skeleton_from_points,
 )
 from ..motion.body_size import FEWEST, RELIABLE
+from ..motion.posture_joints import posture_positions
 from ..motion.rigid_fit import best_turns
 from ..motion.rotations import IDENTITY, multiply, rotate, rotation_between, slerp
 from .girdles import with_girdles
-from .limb_twist import HINGES, Limb, hinge_turns, steady_way, thumb_turns
+from .limb_twist import HINGES, UNKNOWN, Hinges, Limb, hinge_turns, steady_way, thumb_turns
 from .reach_ankles import pelvis_shift, reach_ankles
+from .trunk_twist import LimbTwists, known_hinges
 
 Array = NDArray[np.float64]
 SHORT = 1e-3
@@ -66,6 +68,8 @@ class _Body:
         self.world = np.empty((*places.shape[:2], 4))
         self.at = np.array(places)
         """Where the joints come to be."""
+        self.hinges: dict[str, Hinges] = {}
+        """Where like postures have the hinges of limbs, by the roles of their upper joints."""
 
     def _limbs(self) -> dict[int, Limb]:
         found = {}
@@ -73,7 +77,7 @@ class _Body:
             first, second, end = (self.roles.get(role, -1) for role in (upper, *below))
             parents = [self.skeleton.parents[joint] for joint in (second, end)]
             if parents == [first, second] and first > 0:
-                found[first] = Limb(first, second, end, HINGES[upper[-3:]])
+                found[first] = Limb(first, second, end, HINGES[upper[-3:]], upper)
         return found
 
     def legs(self) -> dict[int, Limb]:
@@ -104,7 +108,10 @@ class _Body:
         turns = self.world[:, joint]
         if joint in self.limbs:
             limb, body = self.limbs[joint], self.skeleton
-            return hinge_turns(turns, limb, body, self.places, self.trust, self.frame_rate)
+            known = self.hinges.get(limb.role, UNKNOWN)
+            return hinge_turns(
+                turns, limb, body, self.places, self.trust, self.frame_rate, known
+            )
         if joint in self.hands and len(self.skeleton.children[joint]) > 1:
             hand, thumb = self.skeleton.children[joint][:2]
             along, aside = (self.skeleton.offsets[each] for each in (hand, thumb))
@@ -209,6 +216,7 @@ def follow_joints(
     reliability: Array | None = None,
     *,
     skeleton: Skeleton | None = None,
+    twists: LimbTwists | None = None,
 ) -> Motion:
     """Let a skeleton of constant bone lengths go where joints were tracked or rebuilt.
 
@@ -218,8 +226,8 @@ def follow_joints(
     between them shares the twist. All else points at the place of its child, so that an error
     is not handed down. How far an upper arm or a thigh is twisted is told by the plane in which
     elbow or knee bends, where it bends; where it is straight, by the bends before and after,
-    and by the trunk (`hinge_turns`). A thumb tells the same of its hand, whose palm and tip are
-    steadied. Everywhere else a joint turns the short way out of its parent's turn.
+    like postures and the trunk (`hinge_turns`). A thumb tells the same of its hand, whose palm
+    and tip are steadied. Everywhere else a joint turns the short way out of its parent's turn.
 
     Parameters
     ----------
@@ -232,6 +240,9 @@ def follow_joints(
     skeleton : Skeleton, optional
         Of these points, in a T-pose that faces -Y; by default that of `skeleton_from_points`,
         with shoulders and spine that move on the trunk (`with_girdles`).
+    twists : LimbTwists, optional
+        How like postures have limbs twisted; weighed against the planes of bends, or all that
+        tells the twist where they are to be `alone`.
 
     Returns
     -------
@@ -252,6 +263,8 @@ def follow_joints(
     made = skeleton or with_girdles(skeleton_from_points(_reliable(tracks, trust), parents))
     points = _points_of(made, tracks.names)
     body = _Body(made, tracks.positions[:, points], trust[:, points], tracks.frame_rate)
+    if twists is not None:
+        body.hinges = known_hinges(posture_positions(tracks), twists)
     body.turn_all()
     if body.legs():
         body.give_way()

@@ -23,6 +23,7 @@ from .posture_space import PostureSpaces, local_pca
 from .posture_synthesis import solve_in_turn, solve_postures
 from .probable_posture import probable_postures
 from .smooth_course import Course, causal_course, fading_course, noise_of
+from .trunk_twist import N_TWISTED, Complex, LimbTwists, mean_twists
 
 Array = NDArray[np.float64]
 
@@ -43,10 +44,11 @@ ANATOMY_ROUNDS = 2
 
 
 class Followed(NamedTuple):
-    """Postures, shape (n_frames, 20, 3), and how sure each joint is, 0 to 1."""
+    """Postures, shape (n_frames, 20, 3), how sure each joint is, and how limbs are twisted."""
 
     postures: Array
     confidence: Array
+    twists: LimbTwists
 
 
 @dataclass(frozen=True, eq=False)
@@ -93,7 +95,7 @@ def follow_postures(
     asked, given = take.postures, _led_up(take, settings)
     for number in range(rounds):
         part = within(progress, number / rounds, (number + 1) / rounds)
-        made = _synthesise(
+        made, twists = _synthesise(
             replace(take, postures=asked, trust=given), body, index, settings, part
         )
         more = _shift(take.postures - shift - made.values, trust, frame_rate, settings)
@@ -108,18 +110,22 @@ def follow_postures(
     unsure = np.hypot(settings.noise, share * np.hypot(made.spread, MODEL))
     sure = 1.0 / (1.0 + (unsure / SURE) ** 2)
     postures = keep_lengths(course.values + errors.offset, lengths, trust, sure)
-    return Followed(postures + shift, sure)
+    return Followed(postures + shift, sure, LimbTwists(twists))
 
 
 def _as_published(
     take: _Seen, library: PostureLibrary, settings: PostureSettings, progress: Progress
 ) -> Followed:
     """Search each frame's posture after that of the frame before, and do nothing else."""
-    body = on_body(library.directions, library.changes, take.lengths)
+    body = replace(
+        on_body(library.directions, library.changes, take.lengths), twists=library.known_twists
+    )
     plain = replace(settings, causal=True, pace=0.0, smoothing=0.0)
-    made = _synthesise(take, body, index_postures(body, library.groups), plain, progress)
+    index = index_postures(body, library.groups)
+    made, twists = _synthesise(take, body, index, plain, progress)
     unsure = np.hypot(made.spread, MODEL)
-    return Followed(made.values, 1.0 / (1.0 + (unsure / SURE) ** 2))
+    sure = 1.0 / (1.0 + (unsure / SURE) ** 2)
+    return Followed(made.values, sure, LimbTwists(twists, alone=True))
 
 
 def _body_of(take: _Seen, library: PostureLibrary, settings: PostureSettings) -> BodyPostures:
@@ -141,7 +147,7 @@ def _body_of(take: _Seen, library: PostureLibrary, settings: PostureSettings) ->
             lengths,
         )
         body = on_body(directions, changes, lengths, turns)
-    return body
+    return replace(body, twists=library.known_twists)
 
 
 def _speeds(take: _Seen, settings: PostureSettings) -> Array:
@@ -187,14 +193,18 @@ def _synthesise(
     index: PostureIndex,
     settings: PostureSettings,
     progress: Progress,
-) -> Course:
-    """Choose a posture for each frame; spread is the deviation of each joint by its space."""
+) -> tuple[Course, Complex]:
+    """Choose a posture for each frame, and the twist of its limbs.
+
+    The spread of the course is the deviation of each joint by its space.
+    """
     speeds = _speeds(take, settings)
     query = Query(take.postures, speeds, take.trust, settings.pace)
     places, _ = nearest_postures(
         index, query, settings.n_neighbours, progress=within(progress, 0.0, 0.4)
     )
     values, spread = np.empty_like(take.postures), np.empty_like(take.trust)
+    twists = np.zeros((len(values), N_TWISTED), np.complex128)
     last = None
     for start in range(0, len(values), BLOCK):
         part = slice(start, min(start + BLOCK, len(values)))
@@ -202,12 +212,16 @@ def _synthesise(
         asked = Demands(take.postures[part], take.trust[part], spaces.neighbours, take.lengths)
         probable, spread[part] = probable_postures(spaces, asked)
         values[part] = _chosen(spaces, asked, probable, settings, last)
+        if body.twists is not None:
+            twists[part] = mean_twists(
+                body.twists[places[part]], values[part], spaces.neighbours, take.trust[part]
+            )
         last = values[max(part.stop - 2, 0) : part.stop]
         progress(0.4 + 0.6 * part.stop / len(values), "Synthesising postures")
     if settings.smoothing and not settings.causal:
         width = settings.smoothing * take.frame_rate
         values = gaussian_filter1d(values, width, axis=0, mode="nearest")
-    return Course(values, spread)
+    return Course(values, spread), twists
 
 
 def _chosen(

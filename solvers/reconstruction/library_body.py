@@ -32,11 +32,14 @@ class BodyPostures:
         Relative to the hips.
     speeds : float32, shape (n_postures, 20, 3), metres per second
     lengths : shape (20,), metres
+    twists : complex64, shape (n_postures, 4), optional
+        Of upper arms and thighs (`LimbTwists.vectors`).
     """
 
     positions: Single
     speeds: Single
     lengths: Array
+    twists: NDArray[np.complex64] | None = None
 
 
 def on_body(

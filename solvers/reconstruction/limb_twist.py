@@ -10,6 +10,7 @@ from ..motion import Skeleton
 from ..motion.rotations import inverse, multiply, quaternion_from_rotation_vector, rotate
 
 Array = NDArray[np.float64]
+Complex = NDArray[np.complex128]
 
 HINGES = {"Arm": (0.0, -1.0, 0.0), "Leg": (0.0, 1.0, 0.0)}
 """Where an elbow or a knee brings what is below it, in a T-pose that faces -Y."""
@@ -19,6 +20,11 @@ STEADY = 0.1
 """Seconds over which the twist is steadied where bends tell it."""
 USUAL = 0.02
 """Weight of no twist against the trunk; a bend has 1."""
+ALIKE, SEEN_TOO = 0.2, 0.1
+"""Weight of the twist that like postures agree upon where the limb is lost, and what part of it
+is left where the limb is seen: bends before and after tell more of a straight one."""
+OWN = 0.03
+"""Seconds of bends by which half of how the actor differs from like postures is known."""
 
 SURE, FAINT = 10.0, 1e-6
 """Weights, against that of steadiness, of an angle that all bends about it agree on, and of
@@ -37,6 +43,40 @@ class Limb(NamedTuple):
     lower: int
     end: int
     bends_towards: tuple[float, float, float]
+    role: str = ""
+    """Of the upper joint."""
+
+
+class Expected(NamedTuple):
+    """Twists of like postures, as complex numbers that are as long as they agree.
+
+    Attributes
+    ----------
+    twists : complex, shape (n_frames,)
+    weights : shape (n_frames,)
+        What they count for against a bend.
+    """
+
+    twists: Complex
+    weights: Array
+
+
+class Hinges(NamedTuple):
+    """Where like postures have the axis of an elbow or a knee.
+
+    Attributes
+    ----------
+    ways : shape (n_frames, 3), optional
+        In the world, as long as they agree; none where no postures were asked.
+    alone : bool
+        Whether nothing else is to tell the twist, frame by frame.
+    """
+
+    ways: Array | None = None
+    alone: bool = False
+
+
+UNKNOWN = Hinges()
 
 
 def hinge_turns(
@@ -46,13 +86,15 @@ def hinge_turns(
     places: Array,
     trust: Array,
     frame_rate: float,
+    known: Hinges = UNKNOWN,
 ) -> Array:
     """Twist an upper arm or thigh about itself until its hinge bends as it was seen to bend.
 
     The twist of each frame is a point on a circle. What bends tell of it is weighed by how far
     they bend and are trusted, and by how near they are to what a joint can do; the path is the
-    one that fits them best while it is steady and near to no twist at all (least squares in
-    the plane of the circle; where that path passes near the circle's middle it is led over).
+    one that fits them best while it is steady and near to the twist of like postures, or else
+    to no twist at all (least squares in the plane of the circle; where that path passes near
+    the circle's middle it is led over).
 
     Parameters
     ----------
@@ -64,6 +106,7 @@ def hinge_turns(
     places : shape (n_frames, n_joints, 3), metres
     trust : shape (n_frames, n_joints), 0 to 1
     frame_rate : float, hertz
+    known : Hinges
 
     Returns
     -------
@@ -76,9 +119,19 @@ def hinge_turns(
     below = unit(places[:, limb.end] - places[:, limb.lower])
     normal = np.cross(axis, below)
     bend = np.arctan2(np.linalg.norm(normal, axis=-1), np.einsum("fi,fi->f", axis, below))
-    share = np.clip((bend - DOUBTED_BEND) / (TRUSTED_BEND - DOUBTED_BEND), 0.0, 1.0)
     sure = np.min(trust[:, [limb.upper, limb.lower, limb.end]], axis=1)
-    return twisted(turns, axis, hinge, normal, share * sure, frame_rate)
+    like = np.zeros(len(turns), np.complex128)
+    if known.ways is not None:
+        like = _angles(hinge, known.ways, axis) * np.linalg.norm(known.ways, axis=-1)
+    if known.alone:
+        return _turned_about(turns, axis, np.angle(like))
+    expected = Expected(like, ALIKE * (1.0 - (1.0 - SEEN_TOO) * sure))
+    return twisted(turns, axis, hinge, normal, bend_share(bend) * sure, frame_rate, expected)
+
+
+def bend_share(bends: Array) -> Array:
+    """Return how far the plane of a bend, in radians, is told: 0 to 1."""
+    return np.asarray(np.clip((bends - DOUBTED_BEND) / (TRUSTED_BEND - DOUBTED_BEND), 0, 1))
 
 
 def thumb_turns(
@@ -142,33 +195,53 @@ def _likely(seen: Array, local: Array, straight_on: Array) -> Array:
 
 
 def twisted(
-    turns: Array, axis: Array, usual: Array, normal: Array, weights: Array, frame_rate: float
+    turns: Array,
+    axis: Array,
+    usual: Array,
+    normal: Array,
+    weights: Array,
+    frame_rate: float,
+    expected: Expected | None = None,
 ) -> Array:
     """Twist frames about their `axis` so far that `usual` comes to `normal`, where it counts.
 
-    Arrays of shape (n_frames, 3) are in the world; `weights` has shape (n_frames,).
+    Arrays of shape (n_frames, 3) are in the world; `weights` has shape (n_frames,). What is not
+    known of the twist that is `expected` is none at all.
     """
-    size = np.linalg.norm(normal, axis=-1)
+    seen = _angles(usual, normal, axis)
+    weights = np.where(seen != 0.0, weights * (0.5 + 0.5 * seen.real), 0.0)
+    stiffness = (STEADY * frame_rate) ** 2
+    told, sure = weights * seen + USUAL, weights + USUAL
+    if expected is not None:
+        like = _of_actor(expected.twists, seen, weights, frame_rate)
+        known = np.abs(like)
+        told += expected.weights * like - USUAL * known
+        sure += (expected.weights - USUAL) * known
+    parts = smoothest(np.stack([told.real, told.imag], -1), sure, stiffness)
+    path = np.asarray(parts[:, 0] + 1j * parts[:, 1])
+    return _turned_about(turns, axis, _without_turns(path, stiffness))
+
+
+def _of_actor(like: Complex, seen: Complex, weights: Array, frame_rate: float) -> Complex:
+    """Turn the twist of like postures by how the actor mostly differs where limbs bend."""
+    off = OWN * frame_rate + np.sum(weights * seen * np.conj(like))
+    return np.asarray(like * off / max(abs(off), FAINT))
+
+
+def _angles(usual: Array, normal: Array, axis: Array) -> Complex:
+    """Return how far `normal` is turned from `usual`, as numbers of length 1; 0: unknown."""
     cos = np.einsum("fi,fi->f", usual, normal)
     sin = np.einsum("fi,fi->f", np.cross(usual, normal), axis)
-    told = np.isfinite(cos) & np.isfinite(sin) & (size > 0.0)
-    seen = np.where(told, (cos + 1j * sin) / np.where(told, size, 1.0), 0.0)
-    weights = np.where(told, weights * (0.5 + 0.5 * seen.real), 0.0)
-    stiffness = (STEADY * frame_rate) ** 2
-    twist = _without_turns(_steady(seen, weights, stiffness), stiffness)
-    return multiply(quaternion_from_rotation_vector(twist[:, None] * axis), turns)
+    size = np.hypot(cos, sin)
+    told = np.isfinite(size) & (size > 0.0)
+    return np.asarray(np.where(told, cos + 1j * sin, 0.0) / np.where(told, size, 1.0))
 
 
-def _steady(
-    seen: NDArray[np.complex128], weights: Array, stiffness: float
-) -> NDArray[np.complex128]:
-    """Return the path z that minimises w |z - seen|^2 + u |z - 1|^2 + s |z' - z|^2, summed."""
-    told = weights * seen + USUAL
-    parts = smoothest(np.stack([told.real, told.imag], -1), weights + USUAL, stiffness)
-    return np.asarray(parts[:, 0] + 1j * parts[:, 1])
+def _turned_about(turns: Array, axis: Array, angles: Array) -> Array:
+    return multiply(quaternion_from_rotation_vector(angles[:, None] * axis), turns)
 
 
-def _without_turns(path: NDArray[np.complex128], stiffness: float) -> Array:
+def _without_turns(path: Complex, stiffness: float) -> Array:
     """Return the angles of a path in the plane, radians, shape (n_frames,).
 
     Where the path passes near 0 an angle may change by half a turn in a frame. There it tells

@@ -1,6 +1,6 @@
 """Simulate a piece of a take in which nobody jumps from place to place."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from itertools import pairwise
 from types import ModuleType
 from typing import NamedTuple
@@ -14,9 +14,12 @@ from ..motion.rotations import inverse, multiply, rotate, twist_about
 from ..progress import Progress, within
 from .physics_body import PhysicsBody
 from .physics_control import controller
+from .physics_footing import with_feet_on_ground
+from .physics_plant import planted
 from .physics_run import follow
+from .physics_stance import from_frame_to_frame, in_contact, standing
 from .physics_surface import clearance, raising, sole_speeds, touching
-from .physics_target import calmed_target
+from .physics_target import away_from, blended, calmed_target
 from .physics_world import build_world
 
 Array = NDArray[np.float64]
@@ -36,6 +39,12 @@ SLIPPERY = 0.05
 """Share of the friction under a foot that swings."""
 
 
+EASE = 0.3
+"""Seconds in which the result eases to what it was where something failed."""
+
+SUNK = 0.001
+"""Metres, for legs of 0.9 m, by which no foot is planted if the body then sinks deeper."""
+
 TRIES = 4
 CALMEST = 0.16
 """Seconds of smoothing, beyond which there is little left of a motion."""
@@ -52,16 +61,24 @@ class Conditions(NamedTuple):
     smoothing: float
     friction: float
     support: float
+    plant: bool
 
 
 @dataclass(frozen=True, eq=False)
 class Piece:
-    """What was simulated of a piece: see `Simulated`; `n_lost` counts how often it was lost."""
+    """What was simulated of a piece: see `Simulated`.
+
+    `n_lost` counts how often it was lost. `loads` is by how much the ground carries each of the
+    ends of `bottoms`, as a share of the weight, and `stands` how firmly the feet of the
+    target stand, shape (n_frames, 2), 0 to 1.
+    """
 
     motion: Motion
     followed: Flags
     contacts: Flags
     support: Array
+    loads: Array
+    stands: Array
     n_lost: int
     smoothing: float
 
@@ -105,7 +122,20 @@ def simulated_piece(
             break
         start = stop
     assert best is not None
-    return best
+    return _planted(body, best, conditions.ground) if conditions.plant else best
+
+
+def _planted(body: PhysicsBody, piece: Piece, ground: float) -> Piece:
+    """Return the piece with feet that stay where they stand, as far as the body follows."""
+    firm = standing(body, piece.motion, piece.loads, piece.stands, ground)
+    firm *= piece.followed[:, None]
+    motion = planted(body, piece.motion, from_frame_to_frame(firm), ground)
+    before, after = (
+        np.minimum(clearance(body, each, ground), 0.0) for each in (piece.motion, motion)
+    )
+    share = away_from(after < before - SUNK * body.size, EASE * motion.frame_rate)
+    motion = blended(piece.motion, motion, body.joints, share)
+    return replace(piece, motion=motion, contacts=touching(body, motion, ground))
 
 
 def _tried(
@@ -124,27 +154,45 @@ def _tried(
     ground, friction = conditions.ground, conditions.friction
     places, rotations = _of_moving_joints(body, motion)
     places[:, 2] += raising(clearance(body, motion, ground), motion.frame_rate, body.size)
+    target = calmed_target(places, rotations, motion.frame_rate, smoothing)
+    calm = _with_moving_joints(body, motion, target.at_frames())
+    speeds = sole_speeds(body, calm)
+    firm = np.clip((SWINGS - speeds / body.size) / (SWINGS - STANDS), 0.0, 1.0)
+    up = _with_moving_joints(
+        body, motion, np.hstack([places, rotations.reshape(len(places), -1)])
+    )
+    stands = np.where(in_contact(body, calm), firm, 0.0)
+    on_ground = with_feet_on_ground(body, up, firm, stands, ground)
+    places, rotations = _of_moving_joints(body, on_ground)
     origin, facing = places[0] * (1.0, 1.0, 0.0), twist_about(rotations[0, 0], UP)
     places = rotate(inverse(facing), places - origin)
     rotations[:, 0] = multiply(inverse(facing), rotations[:, 0])
     target = calmed_target(places, rotations, motion.frame_rate, smoothing)
-    speeds = sole_speeds(body, _with_moving_joints(body, motion, target.at_frames()))
-    grips = np.clip((SWINGS - speeds / body.size) / (SWINGS - STANDS), SLIPPERY, 1.0)
     n_steps = int(np.ceil(motion.dt / LONGEST_STEP))
     course = follow(
         engine,
         build_world(engine, body, ground, friction, motion.dt / n_steps),
         controller(body, conditions.response, conditions.support, friction),
         target,
-        grips,
+        np.maximum(firm, SLIPPERY),
         n_steps,
+        2 * sum(capsule.touches for capsule in body.capsules),
         tell=lambda frame: progress(frame / motion.n_frames, "Simulating"),
     )
     course.places[:, :3] = rotate(facing, course.places[:, :3]) + origin
     course.places[:, 3:7] = multiply(facing, course.places[:, 3:7])
     result = _with_moving_joints(body, motion, course.places)
     contacts = touching(body, result, ground)
-    return Piece(result, course.followed, contacts, course.support, course.n_lost, smoothing)
+    return Piece(
+        result,
+        course.followed,
+        contacts,
+        course.support,
+        course.loads,
+        stands,
+        course.n_lost,
+        smoothing,
+    )
 
 
 def _of_moving_joints(body: PhysicsBody, motion: Motion) -> tuple[Array, Array]:

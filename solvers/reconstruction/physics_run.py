@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .physics_control import Controller, drive
+from .physics_loads import add_loads
 from .physics_target import States, Target
 from .physics_world import World
 
@@ -39,6 +40,8 @@ class Course:
         In the coordinates of `States.places`.
     support : shape (n_frames,)
         Force from outside, as a share of the weight.
+    loads : shape (n_frames, n_ends)
+        What the ground pushes up with at each of the ends of `bottoms`, likewise.
     followed : bool, shape (n_frames,)
         Where the body was near its target.
     n_lost : int
@@ -47,6 +50,7 @@ class Course:
 
     places: Array
     support: Array
+    loads: Array
     followed: NDArray[np.bool_]
     n_lost: int
 
@@ -58,6 +62,7 @@ def follow(
     target: Target,
     grips: Array,
     n_steps: int,
+    n_ends: int,
     *,
     tell: Callable[[int], None],
 ) -> Course:
@@ -68,6 +73,7 @@ def follow(
     n_frames = target.n_frames
     places = np.empty((n_frames, world.model.nq))
     support, apart, lost = np.zeros(n_frames), np.zeros(n_frames), []
+    loads = np.zeros((n_frames, n_ends))
     far = 0
     for frame in range(n_frames):
         tell(frame)
@@ -82,9 +88,10 @@ def follow(
             lost += [frame] if frame else []
         places[frame] = world.data.qpos
         if frame < n_frames - 1:
-            support[frame] = np.mean(_steps(engine, world, control, states))
+            support[frame] = np.mean(_steps(engine, world, control, states, loads[frame]))
+    loads[-1] = loads[max(n_frames - 2, 0)]
     followed = _followed(apart, lost, STRAYING * control.size)
-    return Course(places, support, followed, len(lost))
+    return Course(places, support, loads, followed, len(lost))
 
 
 def _followed(apart: Array, lost: list[int], near: float) -> NDArray[np.bool_]:
@@ -101,7 +108,7 @@ def _followed(apart: Array, lost: list[int], near: float) -> NDArray[np.bool_]:
 
 
 def _steps(
-    engine: ModuleType, world: World, control: Controller, states: States
+    engine: ModuleType, world: World, control: Controller, states: States, loads: Array
 ) -> list[float]:
     """Go from one frame to the next; return how much help each step used.
 
@@ -115,6 +122,7 @@ def _steps(
             return [*used, 0.0]
         used.append(drive(engine, world, control, States(*moment)))
         engine.mj_step2(world.model, world.data)
+        add_loads(world, loads, 1.0 / (control.weight * len(states.places)))
     return used
 
 

@@ -10,6 +10,7 @@ from .physics_body import PhysicsBody
 
 Array = NDArray[np.float64]
 SIDES = ("left", "right")
+LEG = ("UpperLeg", "LowerLeg", "Foot")
 NEAR = 0.005
 """Metres, for legs of 0.9 m: a sole as near to the ground touches it."""
 
@@ -83,7 +84,7 @@ def touching(body: PhysicsBody, motion: Motion, ground: float) -> NDArray[np.boo
     """Return whether the left and the right foot touch the ground, shape (n_frames, 2)."""
     points, joints = bottoms(body, motion)
     near = points[..., 2] < ground + NEAR * body.size
-    return np.stack([near[:, _of_foot(body, joints, side)].any(axis=1) for side in SIDES], -1)
+    return np.stack([near[:, of_foot(body, joints, side)].any(axis=1) for side in SIDES], -1)
 
 
 def sole_speeds(body: PhysicsBody, motion: Motion) -> Array:
@@ -94,18 +95,30 @@ def sole_speeds(body: PhysicsBody, motion: Motion) -> Array:
     points, joints = bottoms(body, motion)
     speeds = np.zeros((motion.n_frames, 2))
     for column, side in enumerate(SIDES):
-        of_foot = _of_foot(body, joints, side)
-        if of_foot.any() and motion.n_frames > 1:
-            steps = np.linalg.norm(np.diff(points[:, of_foot, :2], axis=0), axis=-1)
+        own = of_foot(body, joints, side)
+        if own.any() and motion.n_frames > 1:
+            steps = np.linalg.norm(np.diff(points[:, own, :2], axis=0), axis=-1)
             speeds[1:, column] = steps.min(axis=1) * motion.frame_rate
             speeds[0, column] = speeds[1, column]
     return speeds
 
 
-def _of_foot(body: PhysicsBody, joints: NDArray[np.intp], side: str) -> NDArray[np.bool_]:
+def of_foot(body: PhysicsBody, joints: NDArray[np.intp], side: str) -> NDArray[np.bool_]:
     """Tell which of these joints are of the left or of the right foot."""
     roles = {f"{side}Foot", f"{side}Toes"}
     return np.array([body.roles.get(int(joint)) in roles for joint in joints], dtype=np.bool_)
+
+
+def leg_chain(body: PhysicsBody, side: str) -> tuple[int, int, int] | None:
+    """Return hip, knee and ankle of a leg; None where they do not follow one another."""
+    joints = {role: joint for joint, role in body.roles.items()}
+    found = [joints.get(side + part) for part in LEG]
+    if None in found:
+        return None
+    hip, knee, ankle = (joint for joint in found if joint is not None)
+    skeleton = body.skeleton
+    follows = hip in skeleton.ancestors(knee) and knee in skeleton.ancestors(ankle)
+    return (hip, knee, ankle) if follows else None
 
 
 def slide(body: PhysicsBody, motion: Motion, contacts: NDArray[np.bool_]) -> float:

@@ -6,7 +6,7 @@ from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.ndimage import gaussian_filter1d
+from scipy.ndimage import distance_transform_edt, gaussian_filter1d
 
 from ..errors import InvalidMotionError
 from ..motion import Motion
@@ -130,6 +130,16 @@ def blended(motion: Motion, other: Motion, joints: Sequence[int], share: Array) 
     weight = share[:, None]
     roots = (1 - weight) * motion.root_positions + weight * other.root_positions
     return motion.with_poses(rotations, roots)
+
+
+def away_from(frames: NDArray[np.bool_], n_frames: float) -> Array:
+    """Return a share that is 0 at these frames and rises to 1 at `n_frames` from them."""
+    # One frame beyond each end, too far to matter: there is always one to measure to.
+    far = int(n_frames) + 2
+    clear = np.pad(~frames, far, constant_values=True)
+    clear[[0, -1]] = False
+    away = distance_transform_edt(clear)[far:-far]
+    return np.asarray(np.minimum(1.0, away / n_frames))
 
 
 def filled(motion: Motion) -> Motion:

@@ -1,6 +1,6 @@
 """A body of capsules on level ground, as a model of the engine MuJoCo."""
 
-from collections.abc import Collection
+from collections.abc import Collection, Mapping
 from types import ModuleType
 from typing import Any, NamedTuple
 
@@ -37,6 +37,8 @@ class World(NamedTuple):
     """Whether each geometry is of the left foot, of the right foot, shape (n_geometries, 2)."""
     weak: NDArray[np.bool_]
     """Whether each geometry is of an arm or of the head, shape (n_geometries,)."""
+    first_ends: NDArray[np.intp]
+    """Number of each geometry's first end among those of `bottoms`, shape (n_geometries,)."""
     ground: float
 
 
@@ -45,6 +47,7 @@ def build_world(
 ) -> World:
     """Build the model: ball joints, capsules that meet the ground but not each other."""
     rub, softness = max(friction, 1e-5), max(SOFTNESS, 2 * timestep)
+    names = {id(capsule): f"capsule{n}" for n, capsule in enumerate(body.capsules)}
     lines = [
         "<mujoco><compiler angle='radian' autolimits='false' boundmass='1e-9'"
         " boundinertia='1e-12'/>",
@@ -55,18 +58,22 @@ def build_world(
         f" solref='{softness!r} 1' solimp='{HARDNESS}'/><joint type='ball'/></default>",
         f"<worldbody><geom type='plane' size='0 0 1' priority='0' pos='0 0 {float(ground)!r}'"
         " contype='0' conaffinity='1'/>",
-        _nested(body, body.joints[0]),
+        _nested(body, body.joints[0], names),
         "</worldbody></mujoco>",
     ]
     model = engine.MjModel.from_xml_string("".join(lines))
     bodies = np.array([model.body(f"joint{joint}").id for joint in body.joints])
     feet = [_of_parts(model, body, bodies, {f"{side}Foot", f"{side}Toes"}) for side in SIDES]
     weak = _of_parts(model, body, bodies, WEAK)
+    first_ends = np.zeros(model.ngeom, dtype=np.intp)
+    touching = [n for n, capsule in enumerate(body.capsules) if capsule.touches]
+    for place, number in enumerate(touching):
+        first_ends[model.geom(f"capsule{number}").id] = 2 * place
     data, ghost = engine.MjData(model), engine.MjData(model)
-    return World(model, data, ghost, bodies, np.stack(feet, axis=-1), weak, ground)
+    return World(model, data, ghost, bodies, np.stack(feet, axis=-1), weak, first_ends, ground)
 
 
-def _nested(body: PhysicsBody, joint: int) -> str:
+def _nested(body: PhysicsBody, joint: int, names: Mapping[int, str]) -> str:
     """Return the element of a joint's body with all that hang on it."""
     is_base = joint == body.joints[0]
     frame = body.frames[joint]
@@ -76,8 +83,8 @@ def _nested(body: PhysicsBody, joint: int) -> str:
         f"<body name='joint{joint}' pos='{_words(frame.place)}'"
         f" quat='{_words(frame.rotation)}'>",
         "<freejoint/>" if is_base else _ball(body, joint),
-        *(_geometry(capsule) for capsule in capsules),
-        *(_nested(body, other) for other in below),
+        *(_geometry(capsule, names[id(capsule)]) for capsule in capsules),
+        *(_nested(body, other, names) for other in below),
         "</body>",
     ])
 
@@ -87,10 +94,12 @@ def _ball(body: PhysicsBody, joint: int) -> str:
     return f"<joint armature='{ROTOR * strength!r}'/>"
 
 
-def _geometry(capsule: Capsule) -> str:
+def _geometry(capsule: Capsule, name: str) -> str:
     meets = f"contype='{int(capsule.touches)}' conaffinity='0'"
     start, stop = capsule.ends
-    common = f"size='{float(capsule.radius)!r}' mass='{float(capsule.mass)!r}' {meets}"
+    common = (
+        f"name='{name}' size='{float(capsule.radius)!r}' mass='{float(capsule.mass)!r}' {meets}"
+    )
     if np.array_equal(start, stop):
         return f"<geom type='sphere' pos='{_words(start)}' {common}/>"
     return f"<geom type='capsule' fromto='{_words(start)} {_words(stop)}' {common}/>"

@@ -1,6 +1,6 @@
 """Postures of clean clips, thinned out to an even density: what natural bodies do."""
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -16,8 +16,10 @@ from ..motion.posture_heading import mirrored, normalise
 from ..motion.posture_joints import N_JOINTS, motion_postures
 from ..progress import Progress, unwatched, within
 from ..settings import Settings, setting
+from .clip_twists import ClipTwists, agreed_twists, clip_twists
 from .posture_groups import group_postures
 from .thin_out import thin_out
+from .trunk_twist import N_TWISTED, mirrored_twists
 
 Array = NDArray[np.float64]
 
@@ -26,7 +28,8 @@ VERSION = 1
 SHIPPED = Path(__file__).parent / "models" / "postures.npz"
 DIRECTION_STEP = 1.0 / 500.0
 CHANGE_STEP = 1.0 / 8.0
-"""Steps in which directions, and their changes per second, are stored."""
+TWIST_STEP = 1.0 / 127.0
+"""Steps in which directions, their changes per second, and twists are stored."""
 PACE = 0.1
 """Seconds of movement that count as much as the same way between two postures."""
 
@@ -67,6 +70,9 @@ class PostureLibrary:
         Postures of the clips before they were thinned out.
     trained_on : str
         Which clips they are of, in words.
+    twists : complex64, shape (n_postures, 4), optional
+        How upper arms and thighs are twisted against the trunk (`LimbTwists.vectors`). None in
+        files of Mocap Assist before it kept them.
     """
 
     directions: NDArray[np.float32]
@@ -74,11 +80,19 @@ class PostureLibrary:
     groups: NDArray[np.int32]
     n_seen: int
     trained_on: str = ""
+    twists: NDArray[np.complex64] | None = None
 
     @property
     def n_postures(self) -> int:
         """Number of postures."""
         return len(self.directions)
+
+    @property
+    def known_twists(self) -> NDArray[np.complex64]:
+        """Twists, shape (n_postures, 4); 0 where nothing is known of them."""
+        if self.twists is None:
+            return np.zeros((self.n_postures, N_TWISTED), np.complex64)
+        return self.twists
 
     def save(self, path: Path | str) -> None:
         """Write an archive that `load_posture_library` reads."""
@@ -91,11 +105,16 @@ class PostureLibrary:
             "n_seen": np.array(self.n_seen),
             "trained_on": np.array(self.trained_on),
         }
+        if self.twists is not None:
+            parts = np.stack([self.twists.real, self.twists.imag], axis=-1)
+            arrays["twists"] = np.round(parts / TWIST_STEP).astype(np.int8)
         write_archive(path, KIND, VERSION, arrays)
 
 
 def load_posture_library(path: Path | str = SHIPPED) -> PostureLibrary:
     """Read what `PostureLibrary.save` wrote; without a path, the library that is shipped.
+
+    Files of before twists were kept are read too; limbs are then twisted by bends alone.
 
     Raises
     ------
@@ -111,20 +130,28 @@ def load_posture_library(path: Path | str = SHIPPED) -> PostureLibrary:
     )
     sizes = np.linalg.norm(directions[:, 1:], axis=-1, keepdims=True)
     directions[:, 1:] /= sizes
+    twists = None
+    if "twists" in arrays:
+        parts = arrays["twists"] * np.float32(TWIST_STEP)
+        twists = (parts[..., 0] + 1j * parts[..., 1]).astype(np.complex64)
     return PostureLibrary(
-        directions, changes, arrays["groups"], int(arrays["n_seen"]), str(arrays["trained_on"])
-    )
+        directions, changes, arrays["groups"], int(arrays["n_seen"]),
+        str(arrays["trained_on"]), twists,
+    )  # fmt: skip
 
 
-def joined_postures(first: PostureLibrary, second: PostureLibrary) -> PostureLibrary:
-    """Return a library of the postures of two."""
+def joined_postures(
+    first: PostureLibrary, second: PostureLibrary, words: str = "{}, and {}"
+) -> PostureLibrary:
+    """Return a library of the postures of two; `words` says what both were trained on."""
     directions = np.concatenate([first.directions, second.directions])
     return PostureLibrary(
         directions,
         np.concatenate([first.changes, second.changes]),
         group_postures(directions),
         first.n_seen + second.n_seen,
-        f"{first.trained_on}, and {second.trained_on}",
+        words.format(first.trained_on, second.trained_on),
+        np.concatenate([first.known_twists, second.known_twists]),
     )
 
 
@@ -133,13 +160,15 @@ def _fault(arrays: dict[str, NDArray[Any]]) -> str:
     kinds = {"directions": "i", "changes": "i", "groups": "i", "n_seen": "i", "trained_on": "U"}
     if missing := [name for name in kinds if name not in arrays]:
         return f"{', '.join(missing)} missing"
+    kinds |= {"twists": "i"} if "twists" in arrays else {}
     if any(arrays[name].dtype.kind != kind for name, kind in kinds.items()):
         return "their numbers are of other kinds"
-    shape = arrays["directions"].shape
-    if shape != (len(arrays["directions"]), N_JOINTS - 1, 3) or not shape[0]:
+    n, shape = len(arrays["directions"]), arrays["directions"].shape
+    if shape != (n, N_JOINTS - 1, 3) or not n:
         return "their shapes do not fit"
-    others = {"changes": shape, "groups": shape[:1], "n_seen": (), "trained_on": ()}
-    if any(arrays[name].shape != expected for name, expected in others.items()):
+    others = {"changes": shape, "groups": (n,), "n_seen": (), "trained_on": ()}
+    others["twists"] = (n, N_TWISTED, 2)
+    if any(arrays[name].shape != others[name] for name in kinds if name != "directions"):
         return "their shapes do not fit"
     sizes = np.linalg.norm(arrays["directions"] * DIRECTION_STEP, axis=-1)
     return "" if (np.abs(sizes - 1.0) < 0.05).all() else "directions are not of length 1"
@@ -191,9 +220,12 @@ def build_posture_library(
     for place, motion in enumerate(motions):
         progress(0.5 * place / len(motions), "Reading postures")
         found.append(_postures(motion, settings))
-    directions, changes = (np.concatenate(parts) for parts in zip(*found, strict=True))
-    told = np.isfinite(directions).all(axis=(1, 2)) & np.isfinite(changes).all(axis=(1, 2))
-    directions, changes = directions[told], changes[told]
+    directions, changes = (np.concatenate([each[part] for each in found]) for part in (0, 1))
+    told = [each[2] for each in found]
+    own = agreed_twists([motion.skeleton for motion in motions], told)
+    twists = np.concatenate([_both(each, mirrored_twists, settings) for each in own])
+    whole = np.isfinite(directions).all(axis=(1, 2)) & np.isfinite(changes).all(axis=(1, 2))
+    directions, changes, twists = directions[whole], changes[whole], twists[whole]
     if not len(directions):
         raise InvalidMotionError("No posture of the clips is complete; fill their gaps first.")
     kept = thin_out(
@@ -205,23 +237,33 @@ def build_posture_library(
     single = directions[kept].astype(np.float32)
     return PostureLibrary(
         single, changes[kept].astype(np.float32), group_postures(single), len(directions),
-        trained_on,
+        trained_on, twists[kept].astype(np.complex64),
     )  # fmt: skip
 
 
-def _postures(motion: Motion, settings: PostureLibrarySettings) -> tuple[Array, Array]:
-    """Directions and changes of a clip, and of its mirror image."""
+def _postures(
+    motion: Motion, settings: PostureLibrarySettings
+) -> tuple[Array, Array, ClipTwists]:
+    """Directions and changes of a clip and of its mirror image, and its own twists."""
     fine = max(settings.frame_rate, min(motion.frame_rate, 2.0 / PACE))
     if abs(motion.frame_rate - fine) > 1e-6:
         motion = resample(motion, fine)
-    postures = normalise(motion_postures(motion), fine).postures
-    directions = bone_directions(postures)
+    positions = motion_postures(motion)
+    directions = bone_directions(normalise(positions, fine).postures)
     changes = bone_changes(directions, fine)
     step = max(round(fine / settings.frame_rate), 1)
-    directions, changes = directions[::step], changes[::step]
-    if not settings.mirror:
-        return directions, changes
+    twists = clip_twists(motion, positions)
     return (
-        np.concatenate([directions, mirrored(directions)]),
-        np.concatenate([changes, mirrored(changes)]),
+        _both(directions[::step], mirrored, settings),
+        _both(changes[::step], mirrored, settings),
+        ClipTwists(twists.rotated[::step], twists.bent[::step], twists.shares[::step]),
     )
+
+
+def _both(
+    values: NDArray[Any],
+    mirror: Callable[[NDArray[Any]], NDArray[Any]],
+    settings: PostureLibrarySettings,
+) -> NDArray[Any]:
+    """Return values of postures, and of their mirror images if these are learned too."""
+    return np.concatenate([values, mirror(values)]) if settings.mirror else values

@@ -156,7 +156,9 @@ def reconstruct(
         progress=within(progress, 0.1, 0.7),
     )
     if settings.method is not ReconstructMethod.BOTH:
-        motion = follow_joints(rebuilt.tracks, recording.parents, trust.combined)
+        motion = follow_joints(
+            rebuilt.tracks, recording.parents, trust.combined, twists=rebuilt.twists
+        )
         return replace(rebuilt, motion=motion)
     lost = _lost(recording.tracks, trust.combined, rebuilt.tracks, not settings.causal)
     sure = np.maximum(trust.combined, lost * rebuilt.confidence)
@@ -172,13 +174,14 @@ def reconstruct(
         replace(recording, tracks=_blended(recording.tracks, places, lost)),
         prior or shipped_residual_prior(),
         reliability=replace(trust, combined=sure),
+        twists=rebuilt.twists,
         settings=_correction(settings, known),
         progress=within(progress, 0.7, 1.0),
     )
     confidence = np.minimum(corrected.confidence, np.maximum(1.0 - lost, rebuilt.confidence))
     return Reconstruction(
         corrected.tracks, corrected.motion, trust, confidence,
-        f"{rebuilt.method}; {corrected.method}",
+        f"{rebuilt.method}; {corrected.method}", rebuilt.twists,
     )  # fmt: skip
 
 

@@ -89,7 +89,7 @@ def reconstruct_postures(
     progress(1.0, "Reconstructed")
     return Reconstruction(
         rebuilt, motion, reliability, found.confidence[:, anchors(tracks.names)],
-        _words(settings, library),
+        _words(settings, library), found.twists,
     )  # fmt: skip
 
 

@@ -1,6 +1,6 @@
 """Gaussian processes that know how a sensor errs: from what it saw to where the joint was."""
 
-from dataclasses import dataclass, fields
+from dataclasses import dataclass, field, fields
 from functools import cached_property
 from pathlib import Path
 from typing import Any
@@ -12,6 +12,8 @@ from ..errors import InvalidFileError
 from ..files import read_archive, write_archive
 from ..motion.posture_heading import mirrored
 from ..motion.posture_joints import MIRROR_IMAGES, N_JOINTS, POSTURE_JOINTS
+from .confidence import AS_TOLD, Calibration, chance_within
+from .foretold import Foretold, between
 from .movement_process import MovementProcess, movement_of
 from .residual_inputs import LARGEST, CalmPostures, filled, neighbourhood
 from .residual_kernel import Kernel, nearness
@@ -31,25 +33,6 @@ FORETOLD = 15.0
 FAR_LOCAL, FAR_WHOLE = (0.15, 0.1), (0.35, 0.15)
 """Metres of features from the nearest inducing point up to which postures count as known, and
 how fast they become unknown beyond. Actors who were left out lie within nearly always."""
-
-
-@dataclass(frozen=True, eq=False)
-class Foretold:
-    """What a prior says of postures.
-
-    Attributes
-    ----------
-    offsets : shape (n_frames, 20, 3), metres
-        True minus seen place, in the frame of the heading; 0 for joints that were not learned.
-    variances : shape (n_frames, 20), square metres for each axis
-        Of what the shared functions do not know; infinite for joints that were not learned.
-    coverage : shape (n_frames, 20), 0 to 1
-        How near the posture is to those that were learned.
-    """
-
-    offsets: Array
-    variances: Array
-    coverage: Array
 
 
 @dataclass(frozen=True, eq=False)
@@ -80,6 +63,9 @@ class ResidualPrior:
         What it was learned from.
     movement : MovementProcess, optional
         What postures tell together with where they come from and go to.
+    calibration : shape (2, 3)
+        How the variances of new actors follow (`Calibration`), with the constant offset and
+        beside it. Files of before have none: variances are taken as they are told.
     """
 
     joints: NDArray[np.str_]
@@ -94,6 +80,7 @@ class ResidualPrior:
     mirrored: NDArray[np.bool_]
     source: NDArray[np.str_]
     movement: MovementProcess | None = None
+    calibration: Array = field(default_factory=lambda: np.array([AS_TOLD, AS_TOLD]))
 
     def save(self, path: Path | str) -> None:
         """Write the prior to a file; `load_residual_prior` reads it."""
@@ -115,7 +102,7 @@ class ResidualPrior:
         """Return the hyper-parameters of one of the joints."""
         return Kernel.from_logs(np.log(self.kernels[place]))
 
-    def predict(self, calm: CalmPostures, ahead: bool = True) -> "Foretold":
+    def predict(self, calm: CalmPostures, ahead: bool = True) -> Foretold:
         """Foretell true minus seen place of every joint.
 
         With `ahead` a few frames of each second are foretold, what lies between is
@@ -132,9 +119,9 @@ class ResidualPrior:
             told = self._moving(
                 told, *self.movement.foretell(features, calm.frame_rate, frames)
             )
-        return told if len(frames) == len(features) else _between(told, frames)
+        return told if len(frames) == len(features) else between(told, frames)
 
-    def _moving(self, still: "Foretold", offsets: Array, nearness: Array) -> "Foretold":
+    def _moving(self, still: Foretold, offsets: Array, nearness: Array) -> Foretold:
         """Bring together what postures tell, and what movements tell of the same frames."""
         assert self.movement is not None
         known = np.zeros(N_JOINTS, dtype=np.bool_)
@@ -148,7 +135,7 @@ class ResidualPrior:
             near * still.coverage,
         )
 
-    def _still(self, features: Array) -> "Foretold":
+    def _still(self, features: Array) -> Foretold:
         """Foretell from each posture alone."""
         told = self._foretell(features)
         if not self.mirrored:
@@ -164,7 +151,7 @@ class ResidualPrior:
             own * told.coverage + (1.0 - own) * image.coverage[:, other],
         )
 
-    def _foretell(self, features: Array) -> "Foretold":
+    def _foretell(self, features: Array) -> Foretold:
         """Foretell of those joints alone that were learned."""
         shape = features.shape
         offsets, variances = np.zeros(shape), np.full(shape[:2], np.inf)
@@ -205,22 +192,13 @@ class ResidualPrior:
             )
         return result
 
+    def confidence(self, variances: Array, distance: float, constant: bool = True) -> Array:
+        """Return the chance that joints of somebody new lie within a distance of their mean.
 
-def _between(told: Foretold, frames: NDArray[np.intp]) -> Foretold:
-    """Return what is told of all frames, along straight lines between those that are told."""
-    every = np.arange(frames[-1] + 1)
-    after = np.searchsorted(frames, every)
-    before = np.maximum(after - 1, 0)
-    share = (frames[after] - every) / np.maximum(frames[after] - frames[before], 1)
-
-    def led(values: Array) -> Array:
-        part = share.reshape(-1, *[1] * (values.ndim - 1))
-        return np.asarray(part * values[before] + (1.0 - part) * values[after])
-
-    known = np.isfinite(told.variances)
-    variances = led(np.where(known, told.variances, 0.0))
-    variances[:, ~known.all(axis=0)] = np.inf
-    return Foretold(led(told.offsets), variances, led(told.coverage))
+        `constant` says whether the variances have those of the constant offset.
+        """
+        level, slope, spread = self.calibration[0 if constant else 1]
+        return chance_within(variances, distance, Calibration(level, slope, spread))
 
 
 def whole_posture(features: Array, usual: Array, components: Array) -> Array:
@@ -230,6 +208,7 @@ def whole_posture(features: Array, usual: Array, components: Array) -> Array:
 
 
 OWN = tuple(one.name for one in fields(ResidualPrior) if one.name != "movement")
+OPTIONAL = ("calibration",)
 
 
 def load_residual_prior(path: Path | str) -> ResidualPrior:
@@ -246,7 +225,7 @@ def load_residual_prior(path: Path | str) -> ResidualPrior:
         for name in list(arrays)
         if name.startswith(MOVEMENT)
     }
-    missing = [name for name in OWN if name not in arrays]
+    missing = [name for name in OWN if name not in arrays and name not in OPTIONAL]
     fault = f"{', '.join(map(repr, missing))} missing" if missing else _fault(arrays)
     movement = None
     if not fault and moving:
@@ -281,6 +260,7 @@ def _fault(arrays: dict[str, NDArray[Any]]) -> str:
         "mirrored": (),
         "source": (),
     }
+    expected |= {"calibration": (2, 3)} if "calibration" in arrays else {}
     if any(arrays[name].shape != shape for name, shape in expected.items()) or not (
         n and n_local and n_whole
     ):
@@ -292,4 +272,6 @@ def _fault(arrays: dict[str, NDArray[Any]]) -> str:
             return "not all numbers are finite"
     if not (arrays["kernels"] > 0.0).all() or not 0.0 <= float(arrays["calm"]) < 10.0:
         return "their hyper-parameters are not positive"
+    if "calibration" in arrays and (arrays["calibration"][:, 1:] < 0.0).any():
+        return "their calibration is negative"
     return ""

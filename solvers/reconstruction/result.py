@@ -7,6 +7,7 @@ from numpy.typing import NDArray
 
 from ..motion import Motion, Tracks
 from .reliability import Reliability
+from .trunk_twist import LimbTwists
 
 
 @dataclass(frozen=True, eq=False)
@@ -25,6 +26,8 @@ class Reconstruction:
         How sure each joint of the result is.
     method : str
         What was done, in words: methods used, neighbours, training.
+    twists : LimbTwists, optional
+        How like postures have upper arms and thighs twisted, where a library was asked.
     """
 
     tracks: Tracks
@@ -32,3 +35,4 @@ class Reconstruction:
     reliability: Reliability
     confidence: NDArray[np.float64]
     method: str = ""
+    twists: LimbTwists | None = None

@@ -1,80 +1,30 @@
 """Let a body with mass and muscles make a captured motion: physics as a filter."""
 
 from dataclasses import dataclass
-from enum import Enum
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.ndimage import distance_transform_edt
 
 from ..motion import HumanoidMap, Motion, find_humanoid_map
 from ..progress import Progress, unwatched, within
-from ..settings import Settings, setting
 from .physics_body import PhysicsBody, check_size, physics_body
 from .physics_engine import load_engine
 from .physics_feet import find_ground, stands_for_long, with_soles
 from .physics_figures import about_ground, mean_distance, stands_on, told
-from .physics_piece import Conditions, Piece, find_pieces, simulated_piece
+from .physics_piece import EASE, Conditions, Piece, find_pieces, simulated_piece
+from .physics_settings import Ground, SimulateSettings
+from .physics_stance import carried
 from .physics_surface import penetration, slide
-from .physics_target import blended, filled
+from .physics_target import away_from, blended, filled
 
 Array = NDArray[np.float64]
 Flags = NDArray[np.bool_]
-EASE = 0.3
-"""Seconds in which the result eases to the input where the body could not follow it."""
-
+USUAL = SimulateSettings()
 TOO_OFTEN = 1.0
 """Seconds of a take for each time that its body may be lost before all is given up."""
 
 TOO_MANY = 0.3
 """Share of the frames that may not be followed, likewise."""
-
-
-class Ground(Enum):
-    """Where the ground is."""
-
-    LIKELY = "likely"
-    """At the given height where the take stands near it, or else under the feet."""
-    HEIGHT = "height"
-    FEET = "auto"
-
-
-@dataclass(frozen=True, kw_only=True)
-class SimulateSettings(Settings):
-    """How a motion is simulated."""
-
-    strength: float = setting(
-        1.0, "How much of the simulation the result takes over; 0 leaves the take as it is",
-        minimum=0.0, maximum=1.0,
-    )  # fmt: skip
-    ground: Ground = setting(
-        Ground.LIKELY,
-        "Where the ground is: at a given height, or under the feet of the take;"
-        " or, likely, at the height if the take stands near it, else under the feet",
-    )
-    ground_height: float = setting(
-        0.0, "Height of the ground, unless it is under the feet",
-        unit="m", minimum=-1e4, maximum=1e4,
-    )  # fmt: skip
-    response: float = setting(
-        5.0, "How quickly joints are pulled to the captured pose; higher follows it closer,"
-        " lower is softer and lags behind",
-        unit="Hz", minimum=0.5, maximum=15.0,
-    )  # fmt: skip
-    smoothing: float = setting(
-        0.02, "Standard deviation of the Gaussian that calms the take first; higher is calmer"
-        " but blurs quick moves",
-        unit="s", minimum=0.0, maximum=0.5,
-    )  # fmt: skip
-    friction: float = setting(
-        1.0, "Friction between feet and ground; higher holds feet that are pulled aside",
-        minimum=0.0, maximum=5.0,
-    )  # fmt: skip
-    support: float = setting(
-        0.4, "Force from outside that may keep the body from falling, as a share of its weight;"
-        " lower leaves more to its own legs",
-        minimum=0.0, maximum=3.0, advanced=True,
-    )  # fmt: skip
 
 
 @dataclass(frozen=True, eq=False)
@@ -89,6 +39,8 @@ class Simulated:
         Where the body could follow; elsewhere the motion is the input's.
     contacts : bool, shape (n_frames, 2), left and right
         Where the simulated feet touch the ground.
+    carried : float array, shape (n_frames, 2), left and right
+        Share of the weight that each foot carries.
     support : float array, shape (n_frames,)
         Force from outside that kept the body up, as a share of its weight.
     ground : float, metres
@@ -108,6 +60,7 @@ class Simulated:
     motion: Motion
     followed: Flags
     contacts: Flags
+    carried: Array
     support: Array
     ground: float
     penetration_before: float
@@ -123,7 +76,7 @@ def simulate(
     motion: Motion,
     *,
     humanoid_map: HumanoidMap | None = None,
-    settings: SimulateSettings = SimulateSettings(),
+    settings: SimulateSettings = USUAL,
     progress: Progress = unwatched,
 ) -> Simulated:
     """Return the motion that a body with mass and muscles makes when it tries to follow.
@@ -185,18 +138,18 @@ def simulate(
     ground = _height(settings, whole, humanoid, under_feet, bare.size)
     body = with_soles(bare, whole, humanoid, ground)
     conditions = Conditions(
-        ground, settings.response, settings.smoothing, settings.friction, settings.support
+        ground,
+        settings.response,
+        settings.smoothing,
+        settings.friction,
+        settings.support,
+        settings.plant,
     )
-    pieces = [
-        simulated_piece(
-            engine,
-            body,
-            whole.slice(start, stop),
-            conditions,
-            within(progress, start / motion.n_frames, stop / motion.n_frames),
-        )
-        for start, stop in find_pieces(body, whole)
-    ]
+    pieces = []
+    for start, stop in find_pieces(body, whole):
+        step = within(progress, start / motion.n_frames, stop / motion.n_frames)
+        piece = simulated_piece(engine, body, whole.slice(start, stop), conditions, step)
+        pieces.append(piece)
     progress(1.0, "Simulated")
     return _put_together(motion, whole, body, pieces, settings, ground, under_feet)
 
@@ -261,6 +214,7 @@ def _put_together(
         motion=result.with_poses(),
         followed=followed,
         contacts=contacts,
+        carried=carried(body, whole, np.concatenate([piece.loads for piece in pieces])),
         support=np.concatenate([piece.support for piece in pieces]),
         ground=ground,
         penetration_before=penetration(body, whole, ground),
@@ -276,12 +230,4 @@ def _put_together(
 
 def _ease(pieces: list[Piece], frame_rate: float) -> Array:
     """Return a share that rises from 0 where the body was lost to 1, shape (n_frames,)."""
-    shares = []
-    for piece in pieces:
-        # A lost frame beyond each end, too far to matter: there is always one to measure to.
-        far = int(EASE * frame_rate) + 2
-        frames = np.pad(piece.followed, far, constant_values=True)
-        frames[[0, -1]] = False
-        away = distance_transform_edt(frames)[far:-far]
-        shares.append(np.minimum(1.0, away / (EASE * frame_rate)))
-    return np.concatenate(shares)
+    return np.concatenate([away_from(~piece.followed, EASE * frame_rate) for piece in pieces])

@@ -129,7 +129,7 @@ def _asked_for(
 ) -> tuple[float, Camera]:
     """Return metres in a unit and the camera, or say what has to be given."""
     metres = settings.scale or layout.metres
-    camera = settings.camera(header.width, header.height) or _camera(layout, header)
+    camera = settings.camera(header.width, header.height, _camera(layout, header))
     if metres and camera:
         return metres, camera
     unit = " its scale (metres in one unit: 0.001 for millimetres)"

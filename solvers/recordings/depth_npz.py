@@ -79,7 +79,7 @@ def read_depth_npz(
     stack = DepthStack(depth.content, depth.kind.str, (height, width), settings.scale or usual)
     progress(1.0, "Reading")
     return DepthRecording(
-        settings.camera(width, height) or _camera(path, height, width),
+        _camera(path, height, width, settings),
         n_frames,
         settings.frame_rate or _rate(path),
         stack,
@@ -126,15 +126,22 @@ def _content(path: Path, member: zipfile.ZipInfo, skipped: int, size: int) -> St
     return PartOfBytes(packed, skipped, size)
 
 
-def _camera(path: Path, height: int, width: int) -> Camera:
+def _camera(path: Path, height: int, width: int, settings: DepthSettings) -> Camera:
+    given = settings.camera(width, height)
+    if given is not None and not _has(path, INTRINSICS):
+        return given
     fx, fy, cx, cy = (_number(path, name) for name in INTRINSICS)
-    return Camera(fx, fy, cx, cy, width, height)
+    told = Camera(fx, fy, cx, cy, width, height)
+    return settings.camera(width, height, told) or told
+
+
+def _has(path: Path, names: tuple[str, ...]) -> bool:
+    with zipfile.ZipFile(path) as archive:
+        return {f"{name}.npy" for name in names} <= set(archive.namelist())
 
 
 def _rate(path: Path) -> float:
-    with zipfile.ZipFile(path) as archive:
-        known = "frame_rate.npy" in archive.namelist()
-    return _number(path, "frame_rate") if known else USUAL_RATE
+    return _number(path, "frame_rate") if _has(path, ("frame_rate",)) else USUAL_RATE
 
 
 def _number(path: Path, name: str) -> float:

@@ -50,8 +50,9 @@ def read_depth_raw(
     """
     path = Path(path)
     width, height = settings.width or KINECT_V1.width, settings.height or KINECT_V1.height
-    camera = settings.camera(width, height) or KINECT_V1
-    if (camera.width, camera.height) != (width, height):
+    known = KINECT_V1 if (width, height) == (KINECT_V1.width, KINECT_V1.height) else None
+    camera = settings.camera(width, height, known)
+    if camera is None:
         raise InvalidFileError(
             f"{path}: nobody knows through which camera pictures of {width} x {height} pixels"
             " were taken. Give its focal lengths fx and fy in pixels."

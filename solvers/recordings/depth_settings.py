@@ -36,12 +36,12 @@ class DepthSettings(Settings):
         maximum=1e5,
     )  # fmt: skip
     cx: float = setting(
-        0.0, "Column that the camera's axis meets; 0 takes the middle", unit="pixels",
-        minimum=0.0, maximum=1e5,
+        0.0, "Column that the camera's axis meets; 0 takes the file's word, or the middle",
+        unit="pixels", minimum=0.0, maximum=1e5,
     )  # fmt: skip
     cy: float = setting(
-        0.0, "Row that the camera's axis meets; 0 takes the middle", unit="pixels",
-        minimum=0.0, maximum=1e5,
+        0.0, "Row that the camera's axis meets; 0 takes the file's word, or the middle",
+        unit="pixels", minimum=0.0, maximum=1e5,
     )  # fmt: skip
     width: int = setting(
         0, "Columns of a picture in raw frames; 0 takes a Kinect's", unit="pixels", minimum=0,
@@ -66,18 +66,21 @@ class DepthSettings(Settings):
         " medium, 2 high", minimum=0, maximum=2, advanced=True,
     )  # fmt: skip
 
-    def camera(self, width: int, height: int) -> Camera | None:
-        """Return the camera that was given for pictures of this size, or None."""
-        if not self.fx:
+    def camera(self, width: int, height: int, told: Camera | None = None) -> Camera | None:
+        """Return the camera of pictures of this size; None where nobody tells its focal length.
+
+        What is given counts more than what a file has `told`.
+        """
+        middle = (width - 1) / 2.0, (height - 1) / 2.0
+        if told is not None:
+            usual = told.fx, self.fx or told.fy, told.cx, told.cy
+        elif self.fx:
+            usual = self.fx, self.fx, *middle
+        else:
             return None
-        return Camera(
-            self.fx,
-            self.fy or self.fx,
-            self.cx or (width - 1) / 2.0,
-            self.cy or (height - 1) / 2.0,
-            width,
-            height,
-        )
+        given = self.fx, self.fy, self.cx, self.cy
+        fx, fy, cx, cy = (one or other for one, other in zip(given, usual, strict=True))
+        return Camera(fx, fy, cx, cy, width, height)
 
 
 USUAL = DepthSettings()

@@ -10,9 +10,13 @@ from ..motion import JointRecording, Motion, Tracks, resample
 from ..motion.body_size import USUAL_LENGTHS, body_lengths, resize
 from ..motion.posture_heading import normalise
 from ..motion.posture_joints import motion_postures, posture_positions
+from ..motion.straight_gaps import bridged
 
 Array = NDArray[np.float64]
 Recording = Motion | Tracks | JointRecording
+
+BRIDGED = 0.3
+"""Seconds of a gap that a straight line bridges."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -45,7 +49,7 @@ def clip_postures(recording: Recording, frame_rate: float | None = None) -> Clip
 
     Bones keep their directions and get the lengths of a standard body (eq. 3.2 and 3.3), so
     that rigs, actors and sensors can be compared. A joint that hangs on one that was not
-    tracked lies where it was seen, in the scale of the whole body.
+    tracked lies where it was seen, in the scale of the whole body. Short gaps are bridged.
 
     Parameters
     ----------
@@ -67,7 +71,7 @@ def clip_postures(recording: Recording, frame_rate: float | None = None) -> Clip
             tracks if rate == tracks.frame_rate else resample(tracks, rate)
         )
     else:
-        positions = posture_positions(resample(tracks, rate))
+        positions = posture_positions(resample(_short_gaps_bridged(tracks), rate))
     if not np.isfinite(positions).any():
         raise InvalidMotionError("No joint was tracked in any frame.")
     body = normalise(positions, rate)
@@ -81,6 +85,18 @@ def clip_postures(recording: Recording, frame_rate: float | None = None) -> Clip
         ]),
         rate,
     )  # fmt: skip
+
+
+def _short_gaps_bridged(tracks: Tracks) -> Tracks:
+    """Draw straight lines over short gaps, before a lower frame rate makes them longer."""
+    seen = tracks.visible
+    if seen.all():
+        return tracks
+    frames = np.arange(len(seen), dtype=np.float64)[:, None]
+    before = np.maximum.accumulate(np.where(seen, frames, -np.inf))
+    after = np.minimum.accumulate(np.where(seen, frames, np.inf)[::-1])[::-1]
+    known = after - before <= BRIDGED * tracks.frame_rate + 1.0
+    return tracks.with_positions(np.where(known[..., None], bridged(tracks.positions), np.nan))
 
 
 def _per_second(values: Array, frame_rate: float) -> Array:

@@ -1,6 +1,6 @@
 """What is alike, and how closely it is looked at."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from enum import Enum
 
 import numpy as np
@@ -9,10 +9,11 @@ from numpy.typing import NDArray
 from ..errors import InvalidMotionError
 from ..settings import Settings, setting
 from .body_parts import BodyPart
+from .spans import STANCE
 
-BELIEF = 0.25
-"""Power of the tracked share of a part by which it counts: what is filled in of it is mostly
-right, since the other parts tell."""
+BELIEF = 4.0
+"""Power of the share of a part that is known by which it counts."""
+STANCE_OF_SENSOR = 0.4
 STILL = 0.05
 """Activity of the busiest part below which the query is a pose: all count alike, or nearly."""
 AT_REST = 0.2
@@ -50,12 +51,17 @@ class FindSettings(Settings):
         " arm that only hangs counts like any other",
         minimum=0.0, maximum=4.0, advanced=True, label="Busy Parts",
     )  # fmt: skip
+    stance: float = setting(
+        STANCE, "How much the mean posture counts beside how a clip departs from it; in what a"
+        " sensor saw 0.4 at most, since sensors put joints elsewhere",
+        minimum=0.0, maximum=1.0, advanced=True,
+    )  # fmt: skip
     n_warped: int = setting(
         128, "Best clips whose course in time is compared as well; more is slower",
         minimum=0, maximum=10_000, advanced=True, label="Warped",
     )  # fmt: skip
     warping: float = setting(
-        2.0, "How much the course in time counts beside which postures there are",
+        3.0, "How much the course in time counts beside which postures there are",
         minimum=0.0, maximum=100.0, advanced=True,
     )  # fmt: skip
     n_alike: int = setting(
@@ -68,8 +74,20 @@ class FindSettings(Settings):
         minimum=0, maximum=10_000, advanced=True, label="Aligned",
     )  # fmt: skip
 
+    def for_sensor(self) -> "FindSettings":
+        """Return settings for a query that a sensor saw."""
+        return replace(self, stance=min(self.stance, STANCE_OF_SENSOR))
+
+    @property
+    def asks_for_all(self) -> bool:
+        """Whether all parts of the body are compared."""
+        return all(getattr(self, part.name.lower()) for part in BodyPart)
+
     def part_weights(
-        self, coverage: NDArray[np.float64], activity: NDArray[np.float64]
+        self,
+        coverage: NDArray[np.float64],
+        reliability: NDArray[np.float64],
+        activity: NDArray[np.float64],
     ) -> NDArray[np.float64]:
         """Return how much each part counts, shape (5,), on average 1.
 
@@ -77,6 +95,8 @@ class FindSettings(Settings):
         ----------
         coverage : shape (5,)
             How much of each part was tracked.
+        reliability : shape (5,)
+            How much of what each part does is known, from itself or from others; not 0.
         activity : shape (5,)
             How much each part moves, as a share of the usual.
 
@@ -91,10 +111,10 @@ class FindSettings(Settings):
         wanted = np.array([part in chosen for part in BodyPart])
         most = np.maximum(activity[wanted].max(), STILL)
         moved = np.minimum(activity / most, 1.0) + AT_REST
-        weights = np.where(wanted, coverage**BELIEF * moved**self.busy, 0.0)
-        if not weights.any():
+        if not coverage[wanted].any():
             names = ", ".join(part.value for part in chosen)
             raise InvalidMotionError(f"The query shows nothing of what is asked for: {names}.")
+        weights = np.where(wanted, reliability**BELIEF * moved**self.busy, 0.0)
         return np.asarray(weights * len(weights) / weights.sum())
 
 

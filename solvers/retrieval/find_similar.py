@@ -7,17 +7,17 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from ..motion import JointRecording
+from ..motion import JointRecording, Tracks
 from ..progress import Progress, unwatched, within
 from .align_clip import aligned
-from .body_parts import part_coverage
 from .clip import ClipEntry, Match
 from .clip_library import ClipLibrary
 from .clip_postures import ClipPostures, Recording, clip_postures
+from .describe_query import DescribedQuery, describe_query
 from .find_settings import USUAL, FindMethod, FindSettings
 from .rank_clips import Ranking, rank_clips
 from .rank_pyramids import rank_pyramids
-from .spans import RATE, describe
+from .spans import RATE
 from .vocabulary import Vocabulary
 
 Array = NDArray[np.float64]
@@ -47,8 +47,9 @@ def find_similar(
     Parameters
     ----------
     query : Motion, Tracks or JointRecording
-        Gaps are filled in as is probable; a part of the body that was hardly tracked is left
-        out of the comparison.
+        In what a sensor saw (points with confidences are) the mean posture counts less: it
+        puts joints where others do not. Gaps are filled in as is probable; a part of the body
+        of which little is known hardly counts.
     library : ClipLibrary
     settings : FindSettings
     ignore : names of clips, optional
@@ -74,25 +75,25 @@ def find_similar(
     """
     progress(0.0, "Searching")
     postures = clip_postures(query, RATE)
-    seen = np.isfinite(postures.positions).all(axis=-1)
     vocabulary, entries = library.vocabulary, library.numbered()
     if vocabulary is None or not entries:
         return ()
-    features = vocabulary.features(postures)
-    weights = settings.part_weights(part_coverage(seen), vocabulary.activity(features))
+    tracks = query.tracks if isinstance(query, JointRecording) else query
+    if tracks is not query or (isinstance(tracks, Tracks) and tracks.confidence is not None):
+        settings = settings.for_sensor()
+    asked = describe_query(postures, vocabulary, settings)
     left_out = library.numbers_of(ignore)
     if settings.method is FindMethod.PUBLISHED:
         ranking = rank_pyramids(
             postures, library, left_out, progress=within(progress, 0.0, 0.3)
         )
     else:
-        whole = np.array([[0, len(features)]], dtype=np.int32)
-        described = describe(features, whole, vocabulary)
-        ranking = rank_clips(described, weights, library.search_index, settings, left_out)
+        ranking = rank_clips(
+            asked.spans, asked.weights, library.search_index, settings, left_out
+        )
     told = settings.n_matches or len(ranking.clips)
     matches = _matches(ranking, told, entries)
-    tracks = query.tracks if isinstance(query, JointRecording) else query
-    alignment = _Alignment(features, weights, vocabulary, tracks.n_frames, tracks.frame_rate)
+    alignment = _Alignment(asked, vocabulary, tracks.n_frames, tracks.frame_rate)
     aligning = within(progress, 0.3, 1.0)
     for place in range(min(settings.n_aligned, len(matches))):
         aligning(place / settings.n_aligned, "Aligning")
@@ -130,14 +131,14 @@ class _Alignment:
 
     def __init__(
         self,
-        features: Array,
-        weights: Array,
+        asked: DescribedQuery,
         vocabulary: Vocabulary,
         n_frames: int,
         frame_rate: float,
     ) -> None:
-        self._weights = np.sqrt(weights)[:, None]
-        self._features = (features * self._weights).reshape(len(features), -1)
+        self._weights = np.sqrt(asked.weights)[:, None]
+        features = asked.features * self._weights
+        self._features = features.reshape(len(features), -1)
         self._vocabulary = vocabulary
         self._n_frames, self._frame_rate = n_frames, frame_rate
 

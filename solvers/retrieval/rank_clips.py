@@ -2,16 +2,16 @@
 
 from collections.abc import Collection
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from .body_parts import N_PARTS
 from .find_settings import FindSettings
+from .likes import between_courses, judged_by_likes
 from .search_index import SearchIndex
 from .span_warping import frame_distances, warping_costs
-from .spans import FULL, N_CUBES, Spans
+from .spans import FULL, N_CUBES, Spans, with_stance
 from .vocabulary import N_AXES
 
 Single = NDArray[np.float32]
@@ -19,14 +19,6 @@ Numbers = NDArray[np.int64]
 
 CLIPS_PER_LIKE = 20
 """Clips for each other clip that is asked as well: the eight nearest of nine are not alike."""
-BELIEF_IN_LIKES = 4.0
-"""How much those that are like a clip count, beside it."""
-MOST_BLAME = 1.5
-"""Times its own distance that a clip is moved away at most: the query itself stays near."""
-STEPS_APART = 0.5
-"""How much a metre between two clips at a moment counts, beside the words in common."""
-EVERY = 4
-"""Of the moments of clips, that many-th is compared with those of other clips."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -62,21 +54,24 @@ def rank_clips(
     asked = weighted_words(query.histograms[:1], weights)[0]
     apart, spans = index.best_spans(1.0 - index.common(asked), ignore)
     near = _least(apart, settings.n_warped)
-    words, summaries = index.stored(spans[near])
-    course = weighted_steps(query.summaries[:1], weights)
-    courses = weighted_steps(summaries, weights)
-    costs = warping_costs(frame_distances(course, courses))[0] if len(near) else apart[near]
+    asking = query.summaries[:1].astype(np.float32)
+    course = weighted_steps(with_stance(asking, settings.stance), weights)
+    courses = weighted_steps(with_stance(index.steps(spans[near]), settings.stance), weights)
+    costs = warping_costs(frame_distances(course, courses))[0]
     share = np.float32(2.0 / (1.0 + settings.warping))
     likely = share * (apart[near] + np.float32(settings.warping) * costs)
     n_alike = min(settings.n_alike, len(spans) // CLIPS_PER_LIKE)
     if 0 < n_alike < len(near):
-        among = _between(words, courses, weights)
-        likely = _with_likes(likely, among, n_alike)
+        among = index.between(spans[near]) if settings.asks_for_all else None
+        among = between_courses(courses) if among is None else among
+        likely = judged_by_likes(likely, among, n_alike)
     order = np.argsort(likely, kind="stable")
     found, distances = near[order], likely[order]
     if not 0 < settings.n_matches <= len(found):
         worst = np.float32(settings.warping) * costs.max(initial=0.0)
-        others = np.setdiff1d(np.arange(len(spans)), near, assume_unique=True)
+        is_other = np.ones(len(spans), dtype=np.bool_)
+        is_other[near] = False
+        others = np.flatnonzero(is_other)
         others = others[np.argsort(apart[others], kind="stable")]
         found = np.concatenate([found, others])
         distances = np.concatenate([distances, share * (apart[others] + worst)])
@@ -94,13 +89,9 @@ def weighted_words(histograms: NDArray[np.uint8], weights: NDArray[np.float64]) 
     return parted.reshape(len(histograms), -1)
 
 
-def weighted_steps(
-    summaries: NDArray[np.floating[Any]], weights: NDArray[np.float64]
-) -> Single:
+def weighted_steps(summaries: Single, weights: NDArray[np.float64]) -> Single:
     """Return summaries, (n, 16, 5, 8), as vectors with the parts weighted, (n, 16, 40)."""
-    scaled = np.asarray(summaries, dtype=np.float32)
-    if (weights != 1.0).any():
-        scaled = scaled * np.sqrt(weights).astype(np.float32)[:, None]
+    scaled = summaries * np.sqrt(weights).astype(np.float32)[:, None]
     return scaled.reshape(*scaled.shape[:2], N_PARTS * N_AXES)
 
 
@@ -110,26 +101,3 @@ def _least(values: Single, most: int) -> Numbers:
         return np.argsort(values, kind="stable")
     places = np.sort(np.argpartition(values, most)[:most])
     return places[np.argsort(values[places], kind="stable")]
-
-
-def _between(words: NDArray[np.uint8], courses: Single, weights: NDArray[np.float64]) -> Single:
-    """Return how far clips are from each other, (n, n): words of all their time, and steps."""
-    whole = words.reshape(len(words), N_PARTS, N_CUBES, -1)[:, :, 0]
-    common = weighted_words(whole, weights) @ whole.reshape(len(words), -1).astype(np.float32).T
-    steps = courses[:, ::EVERY]
-    flat = steps.reshape(len(words), -1)
-    squares = np.einsum("ij,ij->i", flat, flat)
-    apart = squares[:, None] + squares - 2.0 * flat @ flat.T
-    np.sqrt(np.maximum(apart, 0.0, out=apart), out=apart)
-    apart *= np.float32(STEPS_APART / np.sqrt(steps.shape[1]))
-    return np.asarray(apart - np.float32(N_CUBES) * common)
-
-
-def _with_likes(apart: Single, between: Single, n_alike: int) -> Single:
-    """Return distances from the query that go by those of each clip's nearest as well."""
-    np.fill_diagonal(between, np.inf)
-    farthest = np.partition(between, n_alike - 1, axis=1)[:, n_alike - 1, None]
-    nearest = (between <= farthest).astype(np.float32)
-    believed = np.float32(BELIEF_IN_LIKES)
-    told = (apart + believed * (nearest @ apart) / nearest.sum(axis=1)) / (1 + believed)
-    return np.minimum(told, np.float32(MOST_BLAME) * apart)

@@ -24,6 +24,8 @@ N_STEPS = 16
 """Moments by which a span is compared in detail."""
 MOST_FRAMES = 1200
 """Of a span that are looked at, evenly spread."""
+STANCE = 0.8
+"""How much the mean posture of a clip counts beside how the clip departs from it."""
 FULL = 255.0
 """What the whole length of a histogram is stored as."""
 
@@ -65,6 +67,16 @@ def describe(features: Array, frames: NDArray[np.int32], vocabulary: Vocabulary)
     )
 
 
+def with_stance(summaries: NDArray[np.float32], stance: float) -> NDArray[np.float32]:
+    """Return what parts do at moments of spans, (n, 16, ...), their mean being so much of it.
+
+    What the arms do while a leg kicks, how somebody stands, and where a sensor takes joints to
+    be are in the mean over a span; the movement itself is not.
+    """
+    mean = summaries.mean(axis=1, keepdims=True)
+    return np.asarray(summaries - np.float32(1.0 - stance) * mean)
+
+
 def span_frames(n_frames: int, frame_rate: float) -> NDArray[np.int32]:
     """Return the spans that a clip of so many frames is found by, shape (n_spans, 2)."""
     spans = [(0, n_frames)]
@@ -86,7 +98,9 @@ def _histograms(features: Array, vocabulary: Vocabulary) -> Array:
     time = (np.arange(len(features)) + 0.5) / len(features)
     halves = [np.clip(2.0 - 2.0 * np.abs(2.0 * time - side), 0.0, 1.0) for side in (0.5, 1.5)]
     weights = np.stack([np.ones_like(time), *halves])
-    counts = np.einsum("cf,fpw->pcw", weights, vocabulary.codes(features))
+    codes = vocabulary.codes(features)
+    counts = (weights @ codes.reshape(len(codes), -1)).reshape(N_CUBES, *codes.shape[1:])
+    counts = counts.swapaxes(0, 1)
     shares = counts / np.maximum(counts.sum(axis=-1, keepdims=True), 1e-12)
     return np.asarray(np.sqrt(shares))
 

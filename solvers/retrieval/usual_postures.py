@@ -6,8 +6,9 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
+from ..motion.body_size import USUAL_LENGTHS, segment_lengths
 from ..motion.posture_heading import turned
-from ..motion.posture_joints import N_JOINTS
+from ..motion.posture_joints import N_JOINTS, PARENTS
 from .clip_postures import ClipPostures
 
 Array = NDArray[np.float64]
@@ -15,8 +16,10 @@ Array = NDArray[np.float64]
 N_COORDINATES = 3 * N_JOINTS
 NOISE = 0.03
 """Metres by which a joint may be beside what the covariance says of it."""
-BRIDGED = 0.3
-"""Seconds of a gap that a straight line bridges."""
+STRETCHED = 1.4
+"""Times by which a way past lost joints is made longer or shorter at most."""
+SHORTEST = 0.01
+"""Metres of such a way."""
 OFTEN = 0.9
 """Share of the frames in which a joint is seen that tells the heading of a clip."""
 FEWEST = 3
@@ -45,9 +48,9 @@ class UsualPostures:
     def completed(self, postures: ClipPostures) -> ClipPostures:
         """Return postures without gaps.
 
-        Short gaps are bridged; elsewhere joints are where those that are seen let expect them.
-        Before, a body that lacks joints is turned to where it is most usual: its hips and
-        shoulders told badly which way it faces.
+        Joints are where those that are seen let expect them. Before, a body that lacks joints
+        is turned to where it is most usual: its hips and shoulders told badly which way it
+        faces.
         """
         if np.isfinite(postures.positions).all():
             return postures
@@ -55,11 +58,21 @@ class UsualPostures:
         return replace(turned_right, positions=self.filled(turned_right))
 
     def filled(self, postures: ClipPostures) -> Array:
-        """Return positions without gaps, shape (n_frames, 20, 3); the heading stays."""
-        flat = postures.positions.reshape(postures.n_frames, -1).copy()
-        if np.isfinite(flat).all():
+        """Return positions without gaps, shape (n_frames, 20, 3); the heading stays.
+
+        What hangs on a joint that is lost lies where it was seen, in an actor of other
+        proportions: once that joint is roughly known, the way past it gets its usual length,
+        and it is told anew.
+        """
+        seen = np.isfinite(postures.positions)
+        if seen.all():
             return postures.positions
-        _bridge(flat, round(BRIDGED * postures.frame_rate))
+        rough = self._expected(postures.positions)
+        return self._expected(_in_proportion(rough, seen.all(axis=-1)))
+
+    def _expected(self, positions: Array) -> Array:
+        """Put joints that are not seen where those that are let expect them."""
+        flat = positions.reshape(len(positions), -1).copy()
         patterns, of = np.unique(np.isfinite(flat), axis=0, return_inverse=True)
         for number, seen in enumerate(patterns):
             rows = np.flatnonzero(of.reshape(-1) == number)
@@ -68,7 +81,7 @@ class UsualPostures:
             gain = np.linalg.solve(among, self.covariance[np.ix_(seen, lost)])
             beside = flat[np.ix_(rows, seen)] - self.mean[seen]
             flat[np.ix_(rows, lost)] = self.mean[lost] + beside @ gain
-        return np.asarray(flat.reshape(postures.positions.shape))
+        return np.asarray(flat.reshape(positions.shape))
 
     def _turned_right(self, postures: ClipPostures) -> ClipPostures:
         """Turn a clip by the one angle that makes what was seen of it most probable."""
@@ -90,6 +103,31 @@ class UsualPostures:
             _turned_course(postures.course, angle),
             postures.frame_rate,
         )
+
+
+def _in_proportion(positions: Array, seen: NDArray[np.bool_]) -> Array:
+    """Give the ways past lost joints their usual lengths; lost joints become NaN.
+
+    Parameters
+    ----------
+    positions : shape (n_frames, 20, 3), metres
+        Those of lost joints are rough.
+    seen : shape (n_frames, 20)
+    """
+    lengths = segment_lengths(positions)
+    # Of the last seen joint on the way to each: where it was and now is, and the way since.
+    was, now = positions.copy(), positions.copy()
+    way, usual = np.zeros(seen.shape), np.zeros(seen.shape)
+    for joint in range(1, N_JOINTS):
+        above = PARENTS[joint]
+        since = way[:, above] + lengths[:, joint], usual[:, above] + USUAL_LENGTHS[joint]
+        scale = np.clip(since[1] / np.maximum(since[0], SHORTEST), 1.0 / STRETCHED, STRETCHED)
+        place = now[:, above] + scale[:, None] * (positions[:, joint] - was[:, above])
+        here = seen[:, joint]
+        was[:, joint] = np.where(here[:, None], positions[:, joint], was[:, above])
+        now[:, joint] = np.where(here[:, None], place, now[:, above])
+        way[:, joint], usual[:, joint] = np.where(here, 0.0, since)
+    return np.where(seen[..., None], now, np.nan)
 
 
 def _lowest(places: Array, values: Array) -> float:
@@ -117,17 +155,3 @@ def usual_postures(clips: Sequence[ClipPostures]) -> UsualPostures:
     together = seen.astype(np.float64).T @ seen
     sizes, axes = np.linalg.eigh(beside.T @ beside / np.maximum(together, 1.0))
     return UsualPostures(mean, np.asarray((axes * np.maximum(sizes, 0.0)) @ axes.T))
-
-
-def _bridge(columns: Array, longest: int) -> None:
-    """Draw straight lines over gaps of up to `longest` frames, in place."""
-    frames = np.arange(len(columns))
-    for column in columns.T:
-        seen = np.flatnonzero(np.isfinite(column))
-        if 0 < len(seen) < len(column):
-            after = np.searchsorted(seen, frames)
-            inside = (after > 0) & (after < len(seen))
-            width = np.full(len(column), longest + 2)
-            width[inside] = seen[after[inside]] - seen[after[inside] - 1]
-            short = ~np.isfinite(column) & (width <= longest + 1)
-            column[short] = np.interp(frames[short], seen, column[seen])

@@ -80,11 +80,8 @@ class Vocabulary:
 
         The three nearest words share one frame between them, the nearer the more.
         """
-        apart: Array = (
-            (features**2).sum(axis=-1)[..., None]
-            - 2.0 * np.einsum("fpk,pwk->fpw", features, self.words)
-            + (self.words**2).sum(axis=-1)
-        )
+        by_part = features.swapaxes(0, 1) @ self.words.swapaxes(1, 2)
+        apart: Array = (self.words**2).sum(axis=-1) - 2.0 * by_part.swapaxes(0, 1)
         few = min(N_NEAREST, self.words.shape[1])
         nearest = np.argpartition(apart, few - 1, axis=-1)[..., :few]
         near = np.take_along_axis(apart, nearest, axis=-1)

@@ -1,6 +1,6 @@
 """What joins families: whole ways from a recording to a result."""
 
-from .capture_recording import CapturedMotion, capture_recording
+from .capture_recording import CapturedMotion, capture_actor, capture_recording
 from .clean_from_library import LibraryBases, bases_from_library, clean_from_library
 from .index_files import IndexReport, index_files
 from .motion_from_markers import MarkerMotion, MarkerMotionSettings, motion_from_markers
@@ -27,6 +27,7 @@ __all__ = [
     "ReconstructedMotion",
     "Variants",
     "bases_from_library",
+    "capture_actor",
     "capture_recording",
     "clean_from_library",
     "index_files",

@@ -6,6 +6,7 @@ from dataclasses import dataclass
 from ..denoising import Planted, PlantSettings
 from ..depth_tracking.body_model import BodyModel
 from ..depth_tracking.capture import Capture, CaptureSettings, capture
+from ..depth_tracking.found_pose import OnPose, unobserved
 from ..depth_tracking.motion_prior import MotionPrior
 from ..motion import Motion
 from ..motion.depth_actor import Actor, find_actor
@@ -18,6 +19,8 @@ from .try_to_plant import try_to_plant
 CAPTURING = CaptureSettings()
 TELLING = ForegroundSettings()
 PLANTING = PlantSettings()
+FOUND = 0.1
+"""Share of the work after which the actor is told from the room."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -77,13 +80,44 @@ def capture_recording(
     SolveCancelled
         Raised by `progress`.
     """
-    actor = find_actor(recording, foreground, empty=empty, progress=within(progress, 0.0, 0.1))
+    actor = find_actor(
+        recording, foreground, empty=empty, progress=within(progress, 0.0, FOUND)
+    )
+    return capture_actor(
+        actor, body, motion_prior=motion_prior, settings=settings, planting=planting,
+        progress=within(progress, FOUND, 1.0),
+    )  # fmt: skip
+
+
+def capture_actor(
+    actor: Actor,
+    body: BodyModel | None = None,
+    *,
+    motion_prior: MotionPrior | None = None,
+    settings: CaptureSettings = CAPTURING,
+    planting: PlantSettings | None = PLANTING,
+    on_pose: OnPose = unobserved,
+    progress: Progress = unwatched,
+) -> CapturedMotion:
+    """Capture the motion of an actor who was told from the room, and plant the feet.
+
+    Parameters
+    ----------
+    actor : Actor
+    body : BodyModel, optional
+    motion_prior : MotionPrior, optional
+    settings : CaptureSettings
+    planting : PlantSettings or None
+    on_pose : OnPose
+        Is shown each pose that is found, as soon as it is.
+    progress : Progress
+    """
     found = capture(
         actor.recording, body, motion_prior=motion_prior, floor=actor.floor,
-        settings=settings, progress=within(progress, 0.1, 0.95),
+        settings=settings, on_pose=on_pose, progress=within(progress, 0.0, 0.95),
     )  # fmt: skip
     stands = planting if actor.feet_seen else None
     footing = try_to_plant(found.motion, stands, progress=within(progress, 0.95, 1.0))
-    said = capture_remarks(recording.camera, actor, found, fitted=body is None)
+    said = capture_remarks(actor.recording.camera, actor, found, fitted=body is None)
     remarks = (*said, *footing.remarks)
     return CapturedMotion(footing.motion, found, actor, footing.planted, remarks)

@@ -137,6 +137,7 @@ def reconstruct_motion(
             rebuilt.tracks,
             recording.parents,
             rebuilt.reliability.combined,
+            twists=rebuilt.twists,
             skeleton=motion.skeleton,
         )
     else:

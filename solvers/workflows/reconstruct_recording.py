@@ -87,6 +87,7 @@ def reconstruct_recording(
             rebuilt.tracks,
             known.parents,
             rebuilt.reliability.combined,
+            twists=rebuilt.twists,
             skeleton=skeleton,
         )
     footing = try_to_plant(

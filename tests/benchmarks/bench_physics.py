@@ -4,13 +4,14 @@
     python -m tests.benchmarks.bench_physics --full --docs     # twice as many, docs/physics.md
 
 Slide: speed of both feet over the ground, of the slowest point of the sole, while the input
-stands (contacts detected on the input). Deepest: how far the body's surface is under the ground
-at worst, and in the worst 1 % of the frames. Lengths: largest change of a bone's length. Jerk:
-mean third derivative of the joints' places. Distance: of the joints from the input, mean and
-95th percentile. Speed: seconds of take for one second of one processor. Help: force from
-outside as a share of the weight. Impossible: what of the change of momentum neither gravity nor
-a push within friction by ground that is touched could give, mean, as a share of the weight. The
-ground is under the feet of each take.
+stands (contacts detected on the input). Carrying: the same while the simulated foot carries
+more than a tenth of the weight, whatever the input's contacts are. Deepest: how far the body's
+surface is under the ground at worst, and in the worst 1 % of the frames. Lengths: largest
+change of a bone's length. Jerk: mean third derivative of the joints' places. Distance: of the
+joints from the input, mean and 95th percentile. Speed: seconds of take for one second of one
+processor. Help: force from outside as a share of the weight. Impossible: what of the change of
+momentum neither gravity nor a push within friction by ground that is touched could give, mean,
+as a share of the weight. The ground is under the feet of each take.
 """
 
 import argparse
@@ -44,13 +45,15 @@ from .report import DOCS, Report
 from .tables import table
 
 DATA = Path(__file__).resolve().parents[3] / "shared" / "data"
+CARRIES = 0.1
+"""Share of the weight."""
 STRENGTHS = (0.25, 0.5, 1.0)
 LONGEST = 600
 """Frames of a take."""
 
 COLUMNS = (
-    "slide cm/s", "deepest mm", "worst 1 % mm", "lengths mm", "jerk m/s³", "distance mm",
-    "95 % mm", "impossible %", "followed %", "help %", "speed x",
+    "slide cm/s", "carrying cm/s", "deepest mm", "worst 1 % mm", "lengths mm", "jerk m/s³",
+    "distance mm", "95 % mm", "impossible %", "followed %", "help %", "speed x",
 )  # fmt: skip
 SETS = {
     "CMU walks and runs, 120 Hz": ("mocap/cmu_walk", ("10", "26", "27", "32", "35_")),
@@ -127,12 +130,20 @@ def means(title: str, motions: list[Motion]) -> str:
             rows.setdefault(f"strength {strength:g}", []).append(
                 row(motion, result, simulated, speed)
             )
+        rows.setdefault("without Plant", []).append(without_plant(motion))
     cells = {}
     for name, found in rows.items():
         figures = np.array([each.figures for each in found]).mean(axis=0)
         cells[name] = ["" if np.isnan(figure) else f"{figure:.3g}" for figure in figures]
     print(f"Done: {title}", file=sys.stderr, flush=True)
     return f"**{title}**, {len(motions)} clips, means\n\n{table(['', *COLUMNS], cells)}\n"
+
+
+def without_plant(motion: Motion) -> Row:
+    """Measure what friction alone holds."""
+    settings = SimulateSettings(ground=Ground.FEET, plant=False)
+    simulated = simulate(motion, settings=settings)
+    return row(motion, simulated.motion, simulated)
 
 
 def row(motion: Motion, result: Motion, simulated: Simulated, speed: float = np.nan) -> Row:
@@ -147,6 +158,7 @@ def row(motion: Motion, result: Motion, simulated: Simulated, speed: float = np.
     is_input = result is motion
     return Row((
         100 * slide(body, result, detect_contacts(motion, humanoid)) / seconds,
+        100 * slide(body, result, simulated.carried > CARRIES) / seconds,
         1000 * depths.max(),
         1000 * np.percentile(depths, 99),
         1000 * length_change(result, after),

@@ -13,7 +13,7 @@ from time import perf_counter
 
 from threadpoolctl import threadpool_limits
 
-from . import part_kinect, part_losses, part_real, part_subsets, part_terms
+from . import part_kinect, part_losses, part_real, part_subsets, part_terms, part_twist
 from .bench_reliability import tell_reliability
 from .report import DOCS, Report
 
@@ -26,6 +26,7 @@ PARTS: dict[str, Part] = {
     "subsets": part_subsets.subsets,
     "terms": part_terms.terms,
     "confidence": part_terms.confidence,
+    "twist": part_twist.twist,
     "real": part_real.recordings,
 }
 RELIABILITY = "reliability"

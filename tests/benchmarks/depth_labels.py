@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from solvers.depth_tracking.body_tables import JOINTS
 from solvers.depth_tracking.depth_differences import FAR, MILLIMETRES
 from solvers.depth_tracking.render_mesh import NOTHING, render_mesh
-from solvers.depth_tracking.skinned_body import load_skinned_body
+from solvers.depth_tracking.skinned_body import SkinnedBody, load_skinned_body
 from solvers.depth_tracking.train_forest import draw_pictures
 from solvers.depth_tracking.training_pictures import (
     CAMERA,
@@ -51,25 +51,38 @@ class LabelledFrame(NamedTuple):
 
 def truth_frames(take: str, every: int = 1, step: int = 2) -> Iterator[LabelledFrame]:
     """Yield every so manieth frame of a take, every `step`-th column and row of it."""
-    clip, first, body_name = TRUTH[take]
-    body = load_skinned_body(DATA / "body" / f"{body_name}.npz")
-    poses = body.rotations_of(read_bvh(DATA / "mocap" / clip, scale=CMU_METRES))
+    body, laid = truth_bodies(take, every)
     with np.load(DATA / "depth" / "truth" / f"{take}.npz") as archive:
         truth = {name: np.array(archive[name]) for name in archive.files}
     n_rows, n_columns = truth["depth"].shape[1:]
     focal = [float(truth[name]) for name in ("fx", "fy", "cx", "cy")]
     camera = Camera(*focal, n_columns, n_rows).every(step)
-    for frame in range(0, len(truth["depth"]), every):
+    for frame, vertices in laid:
         depth = (truth["depth"][frame, ::step, ::step] / MILLIMETRES).astype(np.float32)
         joints = truth["joints"][frame].astype(float)
-        vertices, places = body.pose(poses[first + 4 * frame], np.zeros(3))
-        turn, shift = _laid_over(places, joints)
-        seen = render_mesh(vertices @ turn + shift, body.triangles, body.vertex_parts, camera)
+        seen = render_mesh(vertices, body.triangles, body.vertex_parts, camera)
         same = (seen.depth > 0.0) & (np.abs(seen.depth - depth) < SAME_DEPTH)
         labels = np.where(same, seen.labels, np.uint8(NOTHING))
         yield LabelledFrame(
             take, frame, camera, depth, labels, _ours(truth["joint_names"].tolist(), joints)
         )
+
+
+def truth_bodies(take: str, every: int = 1) -> tuple[SkinnedBody, Iterator[tuple[int, Array]]]:
+    """Return the body of a take, and frames with its vertices there, camera frame, metres."""
+    clip, first, body_name = TRUTH[take]
+    body = load_skinned_body(DATA / "body" / f"{body_name}.npz")
+    poses = body.rotations_of(read_bvh(DATA / "mocap" / clip, scale=CMU_METRES))
+    with np.load(DATA / "depth" / "truth" / f"{take}.npz") as archive:
+        truth = archive["joints"].astype(float)
+
+    def laid() -> Iterator[tuple[int, Array]]:
+        for frame in range(0, len(truth), every):
+            vertices, places = body.pose(poses[first + 4 * frame], np.zeros(3))
+            turn, shift = _laid_over(places, truth[frame])
+            yield frame, vertices @ turn + shift
+
+    return body, laid()
 
 
 def unseen_frames(n_blocks: int = 30, loose: float = 0.0) -> Iterator[LabelledFrame]:

@@ -45,18 +45,24 @@ WORDS = (
 
 def taught_motions(folder: Path = DATA) -> list[Motion]:
     """Return the clips to learn poses from, at `FRAME_RATE`."""
+    motions = [*cmu_motions(folder), *exercises(folder)]
+    return [resample(motion, FRAME_RATE) for motion in motions]
+
+
+def cmu_motions(folder: Path = DATA, but: tuple[str, ...] = ()) -> list[Motion]:
+    """Return the clips of CMU to learn from, without those of some actors besides."""
     mocap = folder / "mocap"
     paths = [
         *sorted((mocap / "cmu_walk").glob("*.bvh")),
         *sorted((mocap / "cmu_hop").glob("*")),
     ]
     motions = [
-        _without_t_pose(read_bvh(path, scale=CMU_METRES)) for path in paths if _is_taught(path)
+        _without_t_pose(read_bvh(path, scale=CMU_METRES))
+        for path in paths
+        if _is_taught(path) and not path.stem.startswith(but)
     ]
     acclaim = [*sorted((mocap / "cmu_jumping_jack").glob("*.amc")), mocap / "05_13.amc"]
-    motions += [read_acclaim(path, mocap / "05.asf") for path in acclaim]
-    motions += _exercises(folder / "kinect" / "ui_prmd")
-    return [resample(motion, FRAME_RATE) for motion in motions]
+    return motions + [read_acclaim(path, mocap / "05.asf") for path in acclaim]
 
 
 def unseen_motions(folder: Path = DATA) -> list[Motion]:
@@ -77,10 +83,11 @@ def _is_taught(path: Path) -> bool:
     return path.stem not in KEPT_OUT and not path.stem.startswith(KEPT_OUT_WALKERS)
 
 
-def _exercises(folder: Path) -> Iterator[Motion]:
-    for pair in read_pairs(folder):
+def exercises(folder: Path = DATA, which: tuple[str, ...] = TAUGHT) -> Iterator[Motion]:
+    """Yield those exercises of UI-PRMD whose names end so."""
+    for pair in read_pairs(folder / "kinect" / "ui_prmd"):
         positions = pair.truth.positions
-        if pair.name[-3:] in TAUGHT and np.isfinite(positions).any(axis=(0, 2)).all():
+        if pair.name.endswith(which) and np.isfinite(positions).any(axis=(0, 2)).all():
             whole = pair.truth.with_positions(bridged(positions))
             yield motion_from_points(whole, joint_parents(whole.names))
 

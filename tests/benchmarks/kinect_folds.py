@@ -20,6 +20,7 @@ from solvers.reconstruction import (
     load_posture_library,
     load_residual_prior,
 )
+from solvers.reconstruction.learn_confidence import told_and_found, with_calibration
 
 from .kinect_pairs import Pair, read_pairs
 from .posture_sources import cmu_library, exercise_library, joined
@@ -50,18 +51,44 @@ def takes_of(subject: str, n_repetitions: int, after: int = 0) -> list[Pair]:
     return [pair for same in found.values() for pair in same[after : after + n_repetitions]]
 
 
-def others(subject: str) -> list[Pair]:
+def others(*subjects: str) -> list[Pair]:
     """Takes of everyone else that one can learn from."""
-    return [pair for pair in pairs() if pair.subject != subject and pair.matched]
+    return [pair for pair in pairs() if pair.subject not in subjects and pair.matched]
 
 
 @cache
 def residual_prior(subject: str, method: ResidualMethod) -> ResidualPrior:
     """What all takes of the others teach of the sensor's errors."""
-    path = KEPT / f"{method.value}_{subject}.npz"
+    return _taught(method, (subject,))
+
+
+@cache
+def confident_prior(subject: str) -> ResidualPrior:
+    """Return the same with a confidence that was learned by leaving each of the others out."""
+    path = KEPT / f"confident_{subject}.npz"
+    if not path.exists():
+        prior = residual_prior(subject, ResidualMethod.HIERARCHICAL)
+        with_calibration(
+            prior, [_tried(subject, one) for one in SUBJECTS if one != subject]
+        ).save(path)
+    return load_residual_prior(path)
+
+
+def _tried(subject: str, other: str) -> Array:
+    """What those who are neither of two teach, tried on the other one."""
+    without = tuple(sorted((subject, other)))
+    own = [pair for pair in pairs() if pair.subject == other and pair.matched]
+    return told_and_found(
+        _taught(ResidualMethod.HIERARCHICAL, without),
+        [(pair.kinect, pair.truth) for pair in own],
+    )
+
+
+def _taught(method: ResidualMethod, without: tuple[str, ...]) -> ResidualPrior:
+    path = KEPT / f"{method.value}_{'_'.join(without)}.npz"
     if not path.exists():
         path.parent.mkdir(parents=True, exist_ok=True)
-        teachers = others(subject)
+        teachers = others(*without)
         learn_residual_prior(
             [(pair.kinect, pair.truth) for pair in teachers],
             actors=[pair.subject for pair in teachers],

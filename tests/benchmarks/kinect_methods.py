@@ -27,7 +27,14 @@ from solvers.reconstruction import (
 from solvers.reconstruction.correct_postures import smoothed
 from solvers.reconstruction.residual_inputs import calm_postures
 
-from .kinect_folds import others, posture_library, residual_prior, seen_of, truth_of
+from .kinect_folds import (
+    confident_prior,
+    others,
+    posture_library,
+    residual_prior,
+    seen_of,
+    truth_of,
+)
 from .kinect_pairs import Pair
 from .peers import posture_regression
 from .peers.kalman import constant_velocity
@@ -165,12 +172,18 @@ def by_reconstruct(
     method: ReconstructMethod,
     others_too: bool = True,
     causal: bool = False,
+    confident: bool = False,
 ) -> Reconstruction:
-    """Ours, with the offsets of the sensor that the prior knows."""
+    """Ours, with the offsets of the sensor that the prior knows.
+
+    `confident`: and with what leaving out each of the others tells of its confidence.
+    """
     return reconstruct(
         pair.kinect,
         posture_library(subject, others_too),
-        residual_prior(subject, ResidualMethod.HIERARCHICAL),
+        confident_prior(subject)
+        if confident
+        else residual_prior(subject, ResidualMethod.HIERARCHICAL),
         settings=ReconstructSettings(method=method, shift=True, causal=causal),
     )
 

@@ -2,6 +2,7 @@ r"""How a clip library grows: 300 to 100,000 clips, built in one file and search
 
     python -m tests.benchmarks.part_growth                          # up to 10,000: ten minutes
     python -m tests.benchmarks.part_growth --sizes 300 1000 100000  # an hour
+    python -m tests.benchmarks.part_growth --told growth.log --docs # what such a run printed
 
 The clips are those of HDM05 and the CMU walks, varied: faster or slower (0.7 to 1.4), bones
 turned by some degrees, shaken, mirrored. They are varied as postures of the standard body, in
@@ -14,13 +15,14 @@ one thread: other work on the machine does not count.
 
 import argparse
 import json
+import re
 import subprocess
 import sys
 from collections.abc import Sequence
-from dataclasses import asdict, dataclass
+from dataclasses import dataclass
 from pathlib import Path
 from tempfile import TemporaryDirectory
-from time import process_time
+from time import perf_counter, process_time
 
 import numpy as np
 from numpy.typing import NDArray
@@ -47,6 +49,8 @@ from solvers.retrieval.clip_postures import ClipPostures, clip_postures
 from solvers.retrieval.spans import RATE, describe
 
 from . import clips
+from .report import DOCS, PICTURES, Report
+from .retrieval_pictures import draw_growth
 from .tables import table
 
 Array = NDArray[np.float64]
@@ -59,6 +63,13 @@ SLOWEST, FASTEST = 0.7, 1.4
 TURNED, SHAKEN, ASKED = np.radians(6.0), 0.005, 0.01
 """Standard deviations, radians by which bones are turned for good, and metres by which joints
 are shaken in the library and beyond that in what asks."""
+SHOWN = {
+    "hours": "hours", "add_s": "to add all, s", "file_mb": "file, MB", "open_ms": "to open, ms",
+    "ask_ms": "describe, ms", "find_ms": "search, ms", "search_mb": "memory, MB",
+    "first": "found first", "in_ten": "in the first ten", "kin": "of its kind in ten",
+}  # fmt: skip
+DRAWN = ("search_mb", "open_ms", "find_ms", "ask_ms")
+PICTURE = PICTURES / "retrieval_growth.png"
 
 
 @dataclass(frozen=True)
@@ -227,12 +238,29 @@ def _peak() -> float:
     return float(status.split("VmHWM:")[1].split()[0]) / 1e3
 
 
-def markdown(rows: Sequence[Row]) -> str:
-    """Return the table."""
-    header = list(asdict(rows[0]))
-    cells = {f"{row.n_clips:,}": [f"{each:.3g}" for each in list(asdict(row).values())[1:]]
-             for row in rows}  # fmt: skip
-    return table(header, cells)
+def rows_of(path: Path) -> list[Row]:
+    """Read the rows that a run printed, which may have been cut short."""
+    lines = [line for line in path.read_text(encoding="utf-8").splitlines() if "Row(" in line]
+    told = [dict(re.findall(r"(\w+)=([^,)]+)", line)) for line in lines]
+    return [
+        Row(int(one.pop("n_clips")), **{name: float(value) for name, value in one.items()})
+        for one in told
+    ]
+
+
+def tables(rows: Sequence[Row]) -> list[str]:
+    """Return the table, and the line that shows the picture."""
+    cells = {
+        f"{row.n_clips:,}": [
+            f"{getattr(row, name):,.{max(2 - int(np.log10(max(getattr(row, name), 1))), 0)}f}"
+            for name in SHOWN
+        ]
+        for row in rows
+    }
+    return [
+        f"**Growth of a library**\n\n{table(['clips', *SHOWN.values()], cells)}\n",
+        f"![growth](pictures/{PICTURE.name})\n",
+    ]
 
 
 def main() -> None:
@@ -241,11 +269,19 @@ def main() -> None:
     parser.add_argument("--sizes", type=int, nargs="+", default=SIZES)
     parser.add_argument("--queries", type=int, default=N_QUERIES)
     parser.add_argument("--search", type=Path, help=argparse.SUPPRESS)
+    parser.add_argument("--told", type=Path, help="rows that an earlier run printed")
+    parser.add_argument("--docs", action="store_true", help="into docs/benchmarks_retrieval.md")
     chosen = parser.parse_args()
     if chosen.search is not None:
         print(json.dumps(search(chosen.search, chosen.queries)))
-    else:
-        print(markdown(run(sorted(chosen.sizes), chosen.queries)))
+        return
+    began = perf_counter()
+    rows = rows_of(chosen.told) if chosen.told else run(sorted(chosen.sizes), chosen.queries)
+    if chosen.docs:
+        drawn = {SHOWN[name]: [getattr(row, name) for row in rows] for name in DRAWN}
+        draw_growth([row.n_clips for row in rows], drawn, "Growth of a library", PICTURE)
+    report = Report(chosen.docs, DOCS / "benchmarks_retrieval.md")
+    report.part("growth", tables(rows), perf_counter() - began)
 
 
 if __name__ == "__main__":

@@ -2,6 +2,7 @@
 
 from collections.abc import Callable
 from dataclasses import replace
+from functools import partial
 from itertools import pairwise
 
 import numpy as np
@@ -140,11 +141,13 @@ def confidence(n_repetitions: int) -> list[str]:
     """Return what was told of joints, and how many of them lay within 5 cm."""
     rows: dict[str, list[str]] = {}
     columns: list[str] = []
-    for name, method in (
-        ("residuals", ReconstructMethod.RESIDUALS),
-        ("ours (both)", ReconstructMethod.BOTH),
+    for name, method, confident in (
+        ("as the prior tells", ReconstructMethod.RESIDUALS, False),
+        ("residuals", ReconstructMethod.RESIDUALS, True),
+        ("ours (both)", ReconstructMethod.BOTH, True),
     ):
-        told, right = _told(lambda *a, m=method: by_reconstruct(*a, method=m), n_repetitions)
+        solve = partial(by_reconstruct, method=method, confident=confident)
+        told, right = _told(solve, n_repetitions)
         columns += [f"{word}, {name}" for word in ("of all", "told", "true")]
         bins = [*pairwise(BINS), (0.0, 1.0 + 1e-9)]
         for low, high in bins:
@@ -154,11 +157,18 @@ def confidence(n_repetitions: int) -> list[str]:
             if here.any():
                 figures[1:] = [f"{told[here].mean():.3f}", f"{right[here].mean():.3f}"]
             rows.setdefault(label, []).extend(figures)
+        rows.setdefault("log-loss", []).extend(["-", f"{_log_loss(told, right):.3f}", "-"])
     head = (
         "**Confidence**, subject left out: chance that a joint lies within 5 cm of the true one"
-        " as told, and share that does; last row: all\n\n"
+        " as told, and share that does; in the row before the last all, and the mean of"
+        " -log(chance of what came true)\n\n"
     )
     return [head + table(["told", *columns], rows) + "\n"]
+
+
+def _log_loss(told: Array, right: Array) -> float:
+    chance = np.clip(np.where(right, told, 1.0 - told), 1e-3, 1.0)
+    return float(-np.log(chance).mean())
 
 
 def _told(solve: Callable[..., Reconstruction], n_repetitions: int) -> tuple[Array, Array]:

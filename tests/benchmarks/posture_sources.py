@@ -5,6 +5,7 @@ funding from NSF EIA-0196217. UI-PRMD (Vakanski et al. 2018) is published as ODC
 """
 
 from collections.abc import Iterable
+from dataclasses import replace
 from functools import cache
 from pathlib import Path
 
@@ -13,7 +14,7 @@ import numpy as np
 from solvers.motion import Motion, joint_parents, motion_from_points
 from solvers.motion.straight_gaps import bridged
 from solvers.reconstruction import PostureLibrary, PostureLibrarySettings, build_posture_library
-from solvers.reconstruction.posture_groups import group_postures
+from solvers.reconstruction.posture_library import joined_postures
 from solvers.recordings import read_acclaim, read_bvh
 
 from .kinect_pairs import Pair
@@ -32,41 +33,42 @@ UI_PRMD = PostureLibrarySettings(spacing=0.012, n_postures=2000)
 
 
 @cache
-def cmu_library(folder: Path = MOCAP) -> PostureLibrary:
-    """Return postures of the CMU captures."""
+def cmu_library(folder: Path = MOCAP, without: str = "none") -> PostureLibrary:
+    """Return postures of the CMU captures, but for those of one subject."""
     motions = [
         _without_t_pose(read_bvh(path, scale=CMU_METRES))
         for part in FOLDERS
         for path in sorted((folder / part).glob("*.bvh"))
+        if not path.stem.startswith(without)
     ]
-    motions += [
-        read_acclaim(folder / "cmu_jumping_jack" / f"{name}.amc", folder / "05.asf")
-        for name in EXERCISES
-    ]
+    motions += [exercise(name, folder) for name in EXERCISES if not name.startswith(without)]
     return build_posture_library(motions, settings=CMU, trained_on=CMU_WORDS)
 
 
+def exercise(name: str, folder: Path = MOCAP) -> Motion:
+    """Read one of `EXERCISES`, whose skeleton is another actor's with the same bones."""
+    return read_acclaim(folder / "cmu_jumping_jack" / f"{name}.amc", folder / "05.asf")
+
+
 def exercise_library(pairs: Iterable[Pair]) -> PostureLibrary:
-    """Return true postures of some repetitions among these takes of UI-PRMD."""
+    """Return true postures of some repetitions among these takes of UI-PRMD.
+
+    Without twists: nobody measured them, and elbows and knees are where their markers are, on
+    the skin, so that the planes of small bends lie aslant.
+    """
     motions = []
     for pair in pairs:
         seen = np.isfinite(pair.truth.positions).any(axis=(0, 2)).all()
         if pair.name[-3:] in TAUGHT and seen:
             whole = pair.truth.with_positions(bridged(pair.truth.positions))
             motions.append(motion_from_points(whole, joint_parents(whole.names)))
-    return build_posture_library(motions, settings=UI_PRMD, trained_on=UI_PRMD_WORDS)
+    library = build_posture_library(motions, settings=UI_PRMD, trained_on=UI_PRMD_WORDS)
+    return replace(library, twists=None)
 
 
 def joined(one: PostureLibrary, other: PostureLibrary) -> PostureLibrary:
     """Put two libraries together."""
-    directions = np.concatenate([one.directions, other.directions])
-    return PostureLibrary(
-        directions,
-        np.concatenate([one.changes, other.changes]),
-        group_postures(directions),
-        one.n_seen + other.n_seen,
-        f"{one.trained_on}; {other.trained_on}",
-    )
+    return joined_postures(one, other, "{}; {}")
 
 
 def _without_t_pose(motion: Motion) -> Motion:

@@ -2,16 +2,17 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from solvers.motion import Tracks
 from solvers.retrieval import Clip, ClipLibrary, FindSettings, build_clip_library
-from solvers.retrieval.body_parts import part_coverage
 from solvers.retrieval.clip_postures import clip_postures
+from solvers.retrieval.describe_query import DescribedQuery, describe_query
 from solvers.retrieval.rank_clips import rank_clips
-from solvers.retrieval.spans import RATE, Spans, describe
+from solvers.retrieval.spans import RATE
 
 Array = NDArray[np.float64]
 Flags = NDArray[np.bool_]
@@ -27,33 +28,37 @@ class Default:
         library = build_clip_library([
             Clip(str(number), clip) for number, clip in enumerate(clips)
         ])  # fmt: skip
-        return DefaultLibrary(library, len(clips), self.settings)
+        names = {number: int(entry.name) for number, entry in library.numbered().items()}
+        places = np.zeros(max(names) + 1, dtype=np.intp)
+        places[list(names)] = list(names.values())
+        return DefaultLibrary(library, places, self.settings)
+
+
+class Asked(NamedTuple):
+    """A query, and the settings it is asked with: those for a sensor, if one saw it."""
+
+    described: DescribedQuery
+    settings: FindSettings
 
 
 @dataclass(frozen=True, eq=False)
 class DefaultLibrary:
     library: ClipLibrary
-    n_clips: int
+    places: NDArray[np.intp]
+    """Which clip each number of the library is."""
     settings: FindSettings
 
-    def describe(self, tracks: Tracks) -> tuple[Spans, Array]:
-        postures = clip_postures(tracks, RATE)
+    def describe(self, tracks: Tracks) -> Asked:
         vocabulary = self.library.vocabulary
         assert vocabulary is not None
-        features = vocabulary.features(postures)
-        whole = np.array([[0, len(features)]], dtype=np.int32)
-        seen = np.isfinite(postures.positions).all(axis=-1)
-        activity = vocabulary.activity(features)
-        weights = self.settings.part_weights(part_coverage(seen), activity)
-        return describe(features, whole, vocabulary), weights
+        postures = clip_postures(tracks, RATE)
+        settings = self.settings if tracks.confidence is None else self.settings.for_sensor()
+        return Asked(describe_query(postures, vocabulary, settings), settings)
 
-    def distances(self, query: tuple[Spans, Array], allowed: Flags) -> Array:
-        entries = self.library.numbered()
+    def distances(self, query: Asked, allowed: Flags) -> Array:
         ignored = self.library.numbers_of(map(str, np.flatnonzero(~allowed)))
-        index = self.library.search_index
-        ranking = rank_clips(*query, index, self.settings, ignored)
-        result = np.full(self.n_clips, np.inf)
-        result[[int(entries[number].name) for number in ranking.clips.tolist()]] = (
-            ranking.distances
-        )
+        described, index = query.described, self.library.search_index
+        ranking = rank_clips(described.spans, described.weights, index, query.settings, ignored)
+        result = np.full(len(allowed), np.inf)
+        result[self.places[ranking.clips]] = ranking.distances
         return result

@@ -56,13 +56,14 @@ and walkers stay on the spot, and the library's get somewhere."""
 
 @cache
 def kinect_queries() -> tuple[LabelledClip, ...]:
-    """All takes of the sets; the actor of a clip is its set."""
+    """All takes of the sets; the actor of a clip is its set. Confidences tell of a sensor."""
     found = []
     for each in SETS:
         for path in sorted(clips.DATA.glob(each.files)):
             tracks = moving(_of_utd(path) if path.suffix == ".mat" else sensor_tracks(path))
             if each.mirror:
                 tracks = replace(tracks, positions=mirrored(tracks.positions))
+            tracks = replace(tracks, confidence=np.ones(tracks.positions.shape[:2]))
             found.append(LabelledClip(path.stem, each.label, each.name, tracks))
     return tuple(found)
 

@@ -38,6 +38,37 @@ def draw_curves(answers: Mapping[str, Sequence[Answer]], title: str, path: Path)
     canvas.picture().save(path)
 
 
+def draw_growth(
+    sizes: Sequence[int], columns: Mapping[str, Sequence[float]], title: str, path: Path
+) -> None:
+    """Draw figures against the size of a library, both in powers of ten."""
+    canvas = Canvas(LEFT + SIZE + LEGEND, TOP + SIZE + 60.0)
+    canvas.text(LEFT, 20.0, title)
+    across = np.log10(np.asarray(sizes, dtype=float))
+    up = {name: np.log10(np.asarray(values)) for name, values in columns.items()}
+    low, high = np.floor(min(map(np.min, up.values()))), np.ceil(max(map(np.max, up.values())))
+    left, right = np.floor(across[0]), np.ceil(across[-1])
+    for mark in np.arange(low, high + 1.0):
+        y = TOP + SIZE * (high - mark) / (high - low)
+        canvas.line([(LEFT, y), (LEFT + SIZE, y)], GRID)
+        canvas.text(LEFT - 8.0, y, f"{10**mark:,.6g}", FAINT, "rm")
+    for mark in np.arange(left, right + 1.0):
+        x = LEFT + SIZE * (mark - left) / (right - left)
+        canvas.line([(x, TOP), (x, TOP + SIZE)], GRID)
+        canvas.text(x, TOP + SIZE + 14.0, f"{10**mark:,.0f}", FAINT, "mm")
+    canvas.text(LEFT + SIZE / 2.0, TOP + SIZE + 36.0, "clips", FAINT, "mm")
+    for place, (name, color) in enumerate(colors(list(columns)).items()):
+        x = LEFT + SIZE * (across - left) / (right - left)
+        canvas.line(
+            np.column_stack([x, TOP + SIZE * (high - up[name]) / (high - low)]), color, 2.5
+        )
+        y = TOP + ROW * (place + 0.5)
+        canvas.line([(LEFT + SIZE + 20.0, y), (LEFT + SIZE + 44.0, y)], color, 2.5)
+        canvas.text(LEFT + SIZE + 52.0, y, name)
+    path.parent.mkdir(parents=True, exist_ok=True)
+    canvas.picture().save(path)
+
+
 def draw_confusion(answers: Sequence[Answer], title: str, path: Path) -> None:
     """Draw what classes were found first, for queries of each class: a row each."""
     asked = sorted({each.label for each in answers})

@@ -37,6 +37,9 @@ IN_ONE_BLENDER = {
     "importing/test_joint_recordings.py": (5, 2), "importing/test_failing_readers.py": (5, 2),
     "operators/test_each_command.py": (4, 5), "operators/test_clean_guides.py": (5, 2),
     "reconstruction/test_own_models.py": (4, 5), "reconstruction/test_then_clean.py": (5, 2),
+    "library/test_actions_alone.py": (5, 2), "library/test_keeping.py": (4, 5),
+    "tracking/test_retrack.py": (4, 5), "tracking/test_watch.py": (5, 2),
+    "reconstruction/test_waiting_reconstruct.py": (4, 5),
 }  # fmt: skip
 """Long tests, each file of which runs in one of the two Blenders; the others run in both."""
 

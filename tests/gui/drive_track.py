@@ -45,6 +45,23 @@ def unfold_track_alone():
     bpy.utils.register_class(panel)
 
 
+def watch_it(job):
+    """See the body over the points while it is looked for, tracked, and at last."""
+    shots = {"Trying": "2-looking.png", "Tracking": "3-tracking.png", "Judging": "4-last.png"}
+    frames = set()
+    for _ in range(UNTIL_DONE):
+        yield 0.1
+        frames.add(bpy.context.scene.frame_current)
+        word = job.message.partition(" ")[0]
+        if word in shots and (word != "Tracking" or job.fraction > 0.6):
+            yield 1.0
+            bgui.shot(shots.pop(word))
+        if not job.running:
+            break
+    assert len(frames) > 8, f"the scene went along to {sorted(frames)} alone"
+    assert bpy.context.scene.frame_current == 1
+
+
 def steps():
     # Points of depth, the panel, progress while it solves, and the body over the points.
     for each in list(bpy.data.objects):
@@ -62,16 +79,10 @@ def steps():
         bpy.ops.mocap_assist.track_depth("INVOKE_DEFAULT")
     job = bpy.context.window_manager.mocap_assist_job
     assert job.running and job.owner == "track"
-    for tenth in range(UNTIL_DONE):
-        yield 0.1
-        if tenth == 80:
-            bgui.shot("2-solving.png")
-        if not job.running:
-            break
+    yield from watch_it(job)
     armature = bpy.context.object
     assert armature is not None and armature.type == "ARMATURE", armature
-    armature.show_in_front = True
-    for number, frame in enumerate((1, 15, 30), start=3):
+    for number, frame in enumerate((1, 15, 30), start=5):
         bpy.context.scene.frame_set(frame)
         yield from settle()
         bgui.shot(f"{number}-frame-{frame}.png")

@@ -105,9 +105,9 @@ def _registered(
         equations = added([
             in_coordinates([rows], hypothesis.twists),
             joint_limits(pose, LIMIT_WEIGHT),
-            stay_near(pose, expected, np.full(34, TURN_WEIGHT)),
+            stay_near(pose, expected, np.full(36, TURN_WEIGHT)),
         ])
-        change = step(equations, np.full(34, DAMPING))
+        change = step(equations, np.full(36, DAMPING))
         pose = pose + change * min(1.0, 0.35 / np.abs(change).max())
         if np.abs(change).max() < 1e-3:
             break

@@ -210,3 +210,18 @@ def test_what_was_edited_by_hand_shows_nothing_and_says_so(archive, bring, blank
 
     assert not len(points_of(made))
     assert "shows no recording of depth" in made.data["mocap_assist_depth_problem"]
+
+
+def test_all_four_numbers_of_the_camera_can_be_given(archive, depth, bring):
+    made = bring(archive, focal_length=80.0, focal_length_y=70.0, center_x=30.0, center_y=20.0)
+
+    rows, columns = np.mgrid[:60, :80]
+    z = depth[0] * 0.001
+    points = np.stack([(columns - 30.0) / 80.0 * z, z, -(rows - 20.0) / 70.0 * z], axis=-1)
+    np.testing.assert_allclose(points_of(made), points[depth[0] > 0], atol=NEAR)
+
+
+def test_a_camera_that_cannot_be_right_is_doubted(archive, blank, load):
+    choices = load("mocap_assist.import_choices").ImportChoices(focal_length=900.0)
+    told = load("mocap_assist.importing").import_files(blank.context, [archive], choices)
+    assert "The camera would see an angle of 5 degrees: check its focal length" in told.sentence

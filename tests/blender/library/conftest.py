@@ -109,10 +109,11 @@ def index(load, tmp_path):
     """Index places into a library: `index(folder, ...)`; return what became of it."""
     indexing = load("mocap_assist.jobs.indexing")
 
-    def do(*places, tags=(), assets_only=False, library=tmp_path / "clips.library"):
+    def do(*places, tags=(), assets_only=False, library=tmp_path / "clips.library", rig=""):
         found = tuple(indexing.Place(str(place), assets_only) for place in places)
+        blender = indexing.BackgroundBlender("", str(rig))
         return indexing.index_places(
-            indexing.IndexProblem(str(library), found, tuple(tags), "")
+            indexing.IndexProblem(str(library), found, tuple(tags), blender)
         )
 
     return do

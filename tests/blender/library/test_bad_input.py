@@ -15,7 +15,8 @@ enable({package!r}, default_set=True)
 from importlib import import_module
 indexing = import_module({package!r} + ".mocap_assist.jobs.indexing")
 places = tuple(indexing.Place(path) for path in sys.argv[2:])
-done = indexing.index_places(indexing.IndexProblem(sys.argv[1], places, (), ""))
+blender = indexing.BackgroundBlender("")
+done = indexing.index_places(indexing.IndexProblem(sys.argv[1], places, (), blender))
 print("READ", done.n_added, flush=True)
 os._exit(0)
 """

@@ -15,36 +15,6 @@ def folders():
 
 
 @pytest.fixture
-def make_button(load, window):
-    """Make the acts of a button, apart from what only Blender can call."""
-    operator = load("mocap_assist.solver_operator").SolverOperator
-
-    def make(name, settings):
-        acts = load("operators." + name)
-        kind = next(each for each in vars(acts).values() if hasattr(each, "read_scene"))
-
-        class Button(operator):
-            bl_idname, settings_group = kind.bl_idname, kind.settings_group
-            why_not, read_scene = kind.why_not, kind.read_scene
-            write_scene = kind.write_scene
-            poll_message_set = window.reports.append
-
-            def prepare(self, context):
-                pass
-
-            def settings(self):
-                return settings
-
-            def report(self, kind, message):
-                window.reports.append((kind, message))
-
-        return Button()
-
-    make.operator = operator
-    return make
-
-
-@pytest.fixture
 def press_clean(make_button, window, load):
     """Press Clean, without feet; return the button, which waits."""
     choices = load("mocap_assist.clean_choices")

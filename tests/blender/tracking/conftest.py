@@ -3,15 +3,18 @@
 import numpy as np
 import pytest
 
-N_FRAMES = 6
+
+@pytest.fixture
+def n_frames():
+    return 6
 
 
 @pytest.fixture
-def truth(recordings):
+def truth(recordings, n_frames):
     """The first frames of a walk towards the camera: pictures, joints, camera."""
     with np.load(recordings / "depth" / "truth" / "walk_front.npz") as archive:
         return {
-            name: archive[name][:N_FRAMES] if archive[name].ndim > 2 else archive[name]
+            name: archive[name][:n_frames] if archive[name].ndim > 2 else archive[name]
             for name in archive.files
         }
 

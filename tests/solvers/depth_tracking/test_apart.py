@@ -42,7 +42,7 @@ def test_crossed_legs_are_pushed_apart_until_they_touch():
         rows = apart_term(hypothesis, 1e4)
         overlaps.append(rows.residuals.max(initial=0.0))
         equations = in_coordinates([segment_equations(rows)], hypothesis.twists)
-        pose = pose + step(equations, np.full(34, 10.0))
+        pose = pose + step(equations, np.full(36, 10.0))
     assert overlaps[0] > 0.02
     assert overlaps[-1] < 0.1 * overlaps[0]
     assert SOFTNESS < 1.0
@@ -58,8 +58,9 @@ def test_both_limbs_are_pushed_equally():
 
 
 def test_a_natural_stance_is_asked_of_the_trunk_more_than_of_limbs():
-    asked = natural_stance(np.ones(34), 2.0)
+    asked = natural_stance(np.ones(36), 2.0, 5.0)
     assert_allclose(asked.vector[:6], 0.0)
     trunk, limb = (COORDINATES.index(name) for name in ("lowerBackZ", "leftFemurX"))
     assert asked.vector[trunk] < asked.vector[limb] < 0.0
+    assert asked.vector[COORDINATES.index("rightAnkle")] == -5.0
     assert_allclose(asked.cost, 0.5 * np.trace(asked.matrix))

@@ -16,7 +16,7 @@ from solvers.depth_tracking.coordinates import COORDINATES, TURNS
 
 
 def posed(**coordinates):
-    pose = np.zeros(34)
+    pose = np.zeros(36)
     for name, value in coordinates.items():
         pose[COORDINATES.index(name)] = value
     return pose
@@ -28,8 +28,8 @@ def at(pose, name, body=None):
 
 
 def test_the_pose_of_zeros_stands_upright():
-    body, zeros = usual_body(), np.zeros(34)
-    assert_allclose(segment_frames(body, zeros)[:, :3, :3], np.tile(np.eye(3), (15, 1, 1)))
+    body, zeros = usual_body(), np.zeros(36)
+    assert_allclose(segment_frames(body, zeros)[:, :3, :3], np.tile(np.eye(3), (17, 1, 1)))
     assert at(zeros, "leftHand")[0] > 0.1 > -0.1 > at(zeros, "rightHand")[0]
     assert at(zeros, "head")[1] < at(zeros, "leftHand")[1] < at(zeros, "leftFoot")[1]
     assert at(zeros, "leftToes")[2] < at(zeros, "leftFoot")[2]
@@ -52,13 +52,13 @@ def test_the_pose_of_zeros_stands_upright():
     ],
 )
 def test_coordinates_turn_the_way_their_limits_assume(coordinate, joint, axis, sign):
-    moved = at(posed(**{coordinate: 0.3}), joint) - at(np.zeros(34), joint)
+    moved = at(posed(**{coordinate: 0.3}), joint) - at(np.zeros(36), joint)
 
     assert np.sign(np.round(moved[axis], 9)) == sign
 
 
 def test_equals_the_chain_by_hand(rng):
-    body, pose = usual_body(), rng.normal(scale=0.7, size=34)
+    body, pose = usual_body(), rng.normal(scale=0.7, size=36)
     frames = segment_frames(body, pose)
     rotations = [Rotation.from_euler("YZX", pose[3:6])]
     origins = [pose[:3]]
@@ -72,7 +72,7 @@ def test_equals_the_chain_by_hand(rng):
 
 
 def test_many_poses_at_once_equal_each_alone(rng):
-    body, poses = usual_body(), rng.normal(size=(2, 3, 34))
+    body, poses = usual_body(), rng.normal(size=(2, 3, 36))
     alone = [[segment_frames(body, pose) for pose in row] for row in poses]
 
     together = segment_frames(body, poses)
@@ -85,16 +85,16 @@ def test_many_poses_at_once_equal_each_alone(rng):
 def test_the_derivative_equals_central_differences(rng, scale):
     """A point fixed to each segment moves as the twists say, for every coordinate."""
     body, step = usual_body(), 1e-6
-    pose = rng.normal(scale=scale, size=34) if scale else np.zeros(34)
+    pose = rng.normal(scale=scale, size=36) if scale else np.zeros(36)
     pose[:3] = (0.3, -0.2, 3.0)
-    local = rng.normal(scale=0.2, size=(15, 3))
+    local = rng.normal(scale=0.2, size=(17, 3))
 
     def points(q):
         frames = segment_frames(body, q)
         return np.einsum("sij,sj->si", frames[:, :3, :3], local) + frames[:, :3, 3]
 
     differences = np.stack(
-        [(points(pose + step * e) - points(pose - step * e)) / (2 * step) for e in np.eye(34)],
+        [(points(pose + step * e) - points(pose - step * e)) / (2 * step) for e in np.eye(36)],
         axis=-1,
     )
     twists = segment_twists(pose, segment_frames(body, pose))
@@ -104,7 +104,7 @@ def test_the_derivative_equals_central_differences(rng, scale):
 
 
 def test_a_full_turn_brings_everything_back(rng):
-    body, pose = usual_body(), rng.normal(scale=0.4, size=34)
+    body, pose = usual_body(), rng.normal(scale=0.4, size=36)
     turned = pose.copy()
     turned[COORDINATES.index("yaw")] += 2 * np.pi
 

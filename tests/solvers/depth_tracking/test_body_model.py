@@ -17,11 +17,14 @@ def joint(body, pose, name):
 
 
 def test_the_parts_are_those_of_the_paper():
-    """[WZC12] section 2: 15 segments and 34 coordinates, head 3, neck 2, lower back 3, ..."""
-    assert (len(SEGMENTS), len(COORDINATES)) == (15, 34)
+    """[WZC12] section 2: 15 segments and 34 coordinates, head 3, neck 2, lower back 3, ...
+
+    Ours has two feet that bend besides.
+    """
+    assert (len(SEGMENTS), len(COORDINATES)) == (15 + 2, 34 + 2)
     for start, n in {"lowerBack": 3, "lowerNeck": 2, "head": 3, "leftClavicle": 2,
                      "rightHumerus": 3, "leftRadius": 1, "rightFemur": 3,
-                     "leftTibia": 1}.items():  # fmt: skip
+                     "leftTibia": 1, "rightAnkle": 1}.items():  # fmt: skip
         assert sum(name.startswith(start) for name in COORDINATES) == n
     assert set(JOINTS) <= set(HUMANOID_ROLES)
     assert all(parent < child for child, parent in enumerate(PARENTS))
@@ -29,9 +32,9 @@ def test_the_parts_are_those_of_the_paper():
 
 def test_a_usual_body_is_as_tall_as_asked_for():
     body = usual_body(1.75)
-    frames = segment_frames(body, np.zeros(34))
+    frames = segment_frames(body, np.zeros(36))
     crown = crown_height(body, frames)
-    sole = joint(body, np.zeros(34), "leftFoot")[1] + 0.25 * body.length("leftFoot") + 0.038
+    sole = joint(body, np.zeros(36), "leftFoot")[1] + 0.25 * body.length("leftFoot") + 0.038
 
     assert_allclose(sole - crown, 1.75, atol=0.03)
     assert_allclose(usual_body(1.4).lengths / usual_body(1.75).lengths, 1.4 / 1.75)
@@ -44,7 +47,7 @@ def crown_height(body, frames):
 
 
 def test_joints_are_as_far_apart_as_the_lengths_say(rng):
-    body, pose = usual_body(), rng.normal(scale=0.5, size=34)
+    body, pose = usual_body(), rng.normal(scale=0.5, size=36)
     for upper, lower, length in (
         ("leftUpperArm", "leftLowerArm", "leftUpperArm"),
         ("rightLowerArm", "rightHand", "rightLowerArm"),
@@ -58,7 +61,7 @@ def test_joints_are_as_far_apart_as_the_lengths_say(rng):
 
 
 def test_exchanging_left_and_right_mirrors_the_joints(rng):
-    body, pose = usual_body(), rng.normal(scale=0.4, size=34)
+    body, pose = usual_body(), rng.normal(scale=0.4, size=36)
     order, signs = mirrored_coordinates()
     sides = {"left": "right", "right": "left"}
     names = [

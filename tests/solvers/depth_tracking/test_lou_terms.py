@@ -6,7 +6,7 @@ from drawn_bodies import CAMERA, NATURAL, drawn, observed, recorded, waving
 from numpy.testing import assert_allclose, assert_array_equal
 
 from solvers.depth_tracking.body_model import usual_body
-from solvers.depth_tracking.coordinates import N_ROOT
+from solvers.depth_tracking.coordinates import COORDINATES, N_ROOT
 from solvers.depth_tracking.depth_edges import canny, edge_pixels
 from solvers.depth_tracking.edge_term import edge_term
 from solvers.depth_tracking.hypothesis import imagine
@@ -65,7 +65,7 @@ def test_a_step_of_each_term_brings_the_body_back(term):
 
     equations = term(hypothesis, observed(NATURAL), *extra, 1.0)
     change = step(
-        in_coordinates([segment_equations(equations)], hypothesis.twists), np.full(34, 0.5)
+        in_coordinates([segment_equations(equations)], hypothesis.twists), np.full(36, 0.5)
     )
 
     assert change[:2] @ [0.03, -0.02] < 0.0
@@ -116,7 +116,7 @@ def test_colour_tells_how_far_a_limb_slid_along_itself():
     change = []
     for memory in (None, Memory(then.frames, before)):
         asked = segment_equations(surface_term(then, after, memory, 1.0))
-        change.append(step(in_coordinates([asked], then.twists), np.full(34, 0.5))[1])
+        change.append(step(in_coordinates([asked], then.twists), np.full(36, 0.5))[1])
     assert abs(change[1] + 0.03) < abs(change[0] + 0.03)
 
 
@@ -132,20 +132,20 @@ def test_the_published_tracker_follows_a_slow_actor():
 
 def test_the_local_plane_holds_what_followed():
     """Poses on a line in pose space: one component, and poses off it are asked back."""
-    line = np.linspace(0.0, 1.0, 200)[:, np.newaxis] * np.eye(34)[10] + 0.1 * np.eye(34)[20]
+    line = np.linspace(0.0, 1.0, 200)[:, np.newaxis] * np.eye(36)[10] + 0.1 * np.eye(36)[20]
     prior = motion_prior_of([line])
 
     plane = local_pca(prior, line[100])
-    asked = plane.equations(line[100] + 0.5 * np.eye(34)[15], 2.0)
+    asked = plane.equations(line[100] + 0.5 * np.eye(36)[15], 2.0)
 
-    assert plane.basis.shape == (28, 1)
+    assert plane.basis.shape == (30, 1)
     assert plane.mean[10 - N_ROOT] > line[100, 10]
-    assert_allclose(asked.vector, -1.0 * np.eye(34)[15], atol=1e-9)
+    assert_allclose(asked.vector, -1.0 * np.eye(36)[15], atol=1e-9)
     assert_allclose(asked.cost, 0.25)
 
 
 def test_planes_do_not_run_from_one_motion_into_the_next():
-    low, high = np.zeros((60, 34)), np.ones((60, 34))
+    low, high = np.zeros((60, 36)), np.ones((60, 36))
     low[:, 10] = np.linspace(0.0, 0.1, 60)
     plane = local_pca(motion_prior_of([low, high]), low[-1])
     assert (plane.mean < 0.2).all()
@@ -153,10 +153,10 @@ def test_planes_do_not_run_from_one_motion_into_the_next():
 
 def test_equations_equal_the_dense_ones(rng):
     """Eq. 3.12: || (U U' - I)(q + dq - mean) ||^2 with the root left out."""
-    basis = np.linalg.qr(rng.normal(size=(28, 4)))[0]
-    plane, pose = LocalPca(rng.normal(size=28), basis), rng.normal(size=34)
-    jacobian = np.zeros((28, 34))
-    jacobian[:, N_ROOT:] = basis @ basis.T - np.eye(28)
+    basis = np.linalg.qr(rng.normal(size=(30, 4)))[0]
+    plane, pose = LocalPca(rng.normal(size=30), basis), rng.normal(size=36)
+    jacobian = np.zeros((30, 36))
+    jacobian[:, N_ROOT:] = basis @ basis.T - np.eye(30)
     off = jacobian @ pose - jacobian[:, N_ROOT:] @ plane.mean
 
     found = plane.equations(pose, 3.0)
@@ -172,7 +172,7 @@ def test_saving_and_loading_a_prior(tmp_path):
 
     loaded = load_motion_prior(tmp_path / "prior.npz")
 
-    assert_allclose(loaded.poses, prior.poses, atol=1e-6)
+    assert_allclose(loaded.poses, prior.poses, atol=1e-3)
     assert_array_equal(loaded.clips, [0] * 5 + [1] * 3)
     assert loaded.trained_on == "two waves"
     np.savez(tmp_path / "bad.npz", kind="motion prior", version=1, poses=np.zeros((2, 3)))
@@ -180,3 +180,16 @@ def test_saving_and_loading_a_prior(tmp_path):
         load_motion_prior(tmp_path / "bad.npz")
     with pytest.raises(InvalidMotionError, match="no pose to learn"):
         motion_prior_of([])
+
+
+def test_the_shipped_prior_knows_walking_and_its_licence():
+    shipped = load_motion_prior()
+
+    assert "CMU" in shipped.trained_on and "UI-PRMD" in shipped.trained_on
+    assert len(shipped.poses) > 3000 and np.isfinite(shipped.poses).all()
+    hips = [N_ROOT_OF["leftFemurX"], N_ROOT_OF["rightFemurX"]]
+    walk = shipped.poses[shipped.clips == 0][:, hips]
+    assert np.corrcoef(walk.T)[0, 1] < -0.5
+
+
+N_ROOT_OF = {name: place for place, name in enumerate(COORDINATES[N_ROOT:])}

@@ -13,7 +13,7 @@ CAMERA = Camera(140.0, 150.0, 39.5, 31.0, 80, 60)
 
 
 def standing(**root):
-    pose = np.zeros(34)
+    pose = np.zeros(36)
     pose[2], pose[3] = root.get("away", 3.0), root.get("yaw", 0.0)
     return pose
 
@@ -55,7 +55,7 @@ def distances(body, frames, points):
 
 
 def test_equals_marching_along_every_ray(rng):
-    body, pose = usual_body(), rng.normal(scale=0.5, size=34)
+    body, pose = usual_body(), rng.normal(scale=0.5, size=36)
     pose[:3] = (0.1, 0.1, 2.9)
     frames = segment_frames(body, pose)
 

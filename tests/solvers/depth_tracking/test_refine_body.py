@@ -93,8 +93,8 @@ def test_a_body_that_fits_stays():
 
 def test_refuses_what_it_cannot_use():
     recording = recorded(waving(2))
-    with pytest.raises(InvalidMotionError, match=r"not \(2, 34\)"):
-        refine_body(recording, BODY, np.zeros((3, 34)))
+    with pytest.raises(InvalidMotionError, match=r"not \(2, 36\)"):
+        refine_body(recording, BODY, np.zeros((3, 36)))
     nobody = DepthRecording(CAMERA, 2, 30.0, lambda _: np.zeros((120, 160), dtype=np.float32))
     with pytest.raises(InvalidMotionError, match="No frame shows an actor"):
-        refine_body(nobody, BODY, np.zeros((2, 34)))
+        refine_body(nobody, BODY, np.zeros((2, 36)))

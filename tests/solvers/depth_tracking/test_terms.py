@@ -27,7 +27,7 @@ BODY = usual_body()
 
 
 def moved(hypothesis, directions):
-    """How fast visible points move along directions (n, 3) with each coordinate, (n, 34)."""
+    """How fast visible points move along directions (n, 3) with each coordinate, (n, 36)."""
     twists = hypothesis.twists[hypothesis.segments]
     speeds = np.cross(twists[:, :3], hypothesis.points[:, :, None], axis=1) + twists[:, 3:]
     return np.einsum("ni,nik->nk", directions, speeds)
@@ -75,7 +75,7 @@ def test_depth_of_a_pixel_changes_as_its_gradient_says():
     facing = -np.einsum("ni,ni->n", hypothesis.normals, hypothesis.rays) > 0.4
     for coordinate in (0, 2, 3, 5, 8, 11, 14, 16, 18, 20, 21, 23, 29, 33):
         pictures = [
-            imagine(BODY, NATURAL + sign * size * np.eye(34)[coordinate], CAMERA).picture
+            imagine(BODY, NATURAL + sign * size * np.eye(36)[coordinate], CAMERA).picture
             for sign in (1.0, -1.0)
         ]
         high, low = (picture.depth_picture().ravel()[pixels] for picture in pictures)
@@ -165,7 +165,7 @@ def test_every_depth_term_moves_the_body_nearer():
         closest_surface_term(hypothesis, observation.points, 1.0, 0.2),
     ):
         change = step(
-            in_coordinates([segment_equations(term)], hypothesis.twists), np.full(34, 0.1)
+            in_coordinates([segment_equations(term)], hypothesis.twists), np.full(36, 0.1)
         )
         nearer = imagine(BODY, there + change, CAMERA).points[:, 2].mean()
         assert abs(nearer - observation.points[:, 2].mean()) < 0.03

@@ -28,14 +28,14 @@ def mean_error(poses, truth):
 
 
 def no_prior(pose):
-    return stay_near(pose, pose, np.zeros(34))
+    return stay_near(pose, pose, np.zeros(36))
 
 
 def test_converges_from_a_wide_basin(rng):
     """From 3 cm and 6 degrees per joint away, nearly always to less than 1 cm."""
     errors, before = [], []
     for _ in range(12):
-        start = NATURAL + rng.normal(scale=0.1, size=34)
+        start = NATURAL + rng.normal(scale=0.1, size=36)
         start[:3] = NATURAL[:3] + rng.normal(scale=0.02, size=3)
         found = register_pose(
             BODY, start, observed(NATURAL), no_prior, TrackerSettings(iterations=25)
@@ -48,7 +48,7 @@ def test_converges_from_a_wide_basin(rng):
 
 
 def test_costs_only_fall_where_only_better_is_accepted(rng):
-    start = NATURAL + rng.normal(scale=0.1, size=34)
+    start = NATURAL + rng.normal(scale=0.1, size=36)
     costs = [
         register_pose(
             BODY, start, observed(NATURAL), no_prior,
@@ -143,23 +143,23 @@ def test_tells_progress_and_can_be_cancelled():
         track_pose(recorded(waving(3)), BODY, NATURAL, progress=stop)
 
 
-@pytest.mark.parametrize("pose", [np.zeros(33), np.full(34, np.nan)])
+@pytest.mark.parametrize("pose", [np.zeros(33), np.full(36, np.nan)])
 def test_no_pose_is_refused(pose):
-    with pytest.raises(InvalidMotionError, match="34 coordinates"):
+    with pytest.raises(InvalidMotionError, match="36 coordinates"):
         track_pose(recorded(waving(1)), BODY, pose)
 
 
 def test_limits_ask_back_only_what_is_beyond():
-    inside = np.clip(np.zeros(34), LEAST, MOST) + 0.01 * np.isfinite(LEAST)
+    inside = np.clip(np.zeros(36), LEAST, MOST) + 0.01 * np.isfinite(LEAST)
     assert joint_limits(inside, 1.0).cost == 0.0
     beyond = inside.copy()
     beyond[10] = MOST[10] + 0.2
     asked = joint_limits(beyond, 3.0)
-    assert_allclose(asked.vector, -0.6 * np.eye(34)[10], atol=1e-12)
+    assert_allclose(asked.vector, -0.6 * np.eye(36)[10], atol=1e-12)
 
 
 def test_foretells_constant_velocity():
-    poses = [np.full(34, 1.0), np.full(34, 1.5)]
+    poses = [np.full(36, 1.0), np.full(36, 1.5)]
     assert_allclose(foretell(poses, 1.0), 2.0)
     assert_allclose(foretell(poses, 0.0), 1.5)
     assert_allclose(foretell(poses[:1], 1.0), 1.0)

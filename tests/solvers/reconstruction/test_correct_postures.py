@@ -18,7 +18,8 @@ from solvers.reconstruction import (
     correct_postures,
     learn_residual_prior,
 )
-from solvers.reconstruction.correct_postures import _frame_by_frame, chance_within
+from solvers.reconstruction.confidence import chance_within
+from solvers.reconstruction.correct_postures import _frame_by_frame
 from solvers.reconstruction.steady_paths import followed, smoothed
 
 

@@ -108,6 +108,14 @@ def test_the_shipped_library_is_small_and_says_what_it_knows():
     assert SHIPPED.stat().st_size < 600_000
 
 
+def test_the_shipped_library_knows_twists_of_clips_that_have_rotations():
+    twists = np.abs(load_posture_library().known_twists)
+
+    knowing = (twists > 0.0).all(axis=1)
+    assert knowing.sum() == 2500  # CMU's; UI-PRMD tells places of markers
+    assert twists[knowing].min() > 0.5
+
+
 @pytest.mark.parametrize("fault", ["missing", "zero", "shape"])
 def test_damaged_libraries_are_refused(library, tmp_path, fault):
     directions = np.round(library.directions[:, 1:] * 500).astype(np.int16)

@@ -130,6 +130,17 @@ def test_a_sensor_may_ask(library):
     assert kinds(find_similar(recording, library)) == ["squat"] * 3
 
 
+def test_joints_that_a_sensor_puts_elsewhere_cost_less_than_those_of_a_motion(library):
+    query = act("kick")
+    aside = query.positions + np.random.default_rng(3).normal(scale=0.06, size=(20, 3))
+    seen = replace(query, positions=aside, confidence=np.ones((query.n_frames, 20)))
+    sensor, motion = (
+        find_similar(one, library) for one in (seen, replace(seen, confidence=None))
+    )
+    assert kinds(sensor) == ["kick"] * 3
+    assert sensor[0].score > motion[0].score + 0.02
+
+
 def test_the_inputs_are_as_they_were_and_the_answer_is_the_same(library):
     query = act("wave")
     before = query.positions.copy()

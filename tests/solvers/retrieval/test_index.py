@@ -15,7 +15,7 @@ from solvers.retrieval.body_parts import BodyPart, part_coverage, part_features
 from solvers.retrieval.clip_postures import clip_postures
 from solvers.retrieval.index_block import block_arrays, block_from_arrays, block_of, merged
 from solvers.retrieval.posting_lists import posting_lists
-from solvers.retrieval.spans import FULL, describe_spans, span_frames
+from solvers.retrieval.spans import FULL, describe_spans, span_frames, with_stance
 from solvers.retrieval.vocabulary import (
     learn_vocabulary,
     vocabulary_arrays,
@@ -88,7 +88,7 @@ def test_lost_joints_are_expected_where_they_are(words):
     hidden.positions[10:40, knee] = np.nan
     filled = words.usual.filled(hidden)
     assert np.abs(filled - CLIPS[1].positions).max() < 0.06
-    assert_array_equal(filled[:, :knee], CLIPS[1].positions[:, :knee])
+    assert_allclose(filled[:, :knee], CLIPS[1].positions[:, :knee], atol=1e-12)
 
 
 def test_short_clips_are_one_span_and_long_ones_also_their_parts():
@@ -120,6 +120,15 @@ def test_histograms_are_of_length_one(words):
     assert spans.summaries.shape == (1, 16, 5, 8)
     features = words.features(CLIPS[3])
     assert_allclose(spans.summaries[0, [0, -1]], features[[0, -1]], atol=2e-3)
+
+
+def test_the_mean_posture_is_told_apart_from_the_movement():
+    moves = np.random.default_rng(2).normal(size=(3, 16, 5, 8)).astype(np.float32)
+    moves -= moves.mean(axis=1, keepdims=True)
+    stands = 5.0 * np.ones((3, 1, 5, 8), dtype=np.float32)
+    assert_allclose(with_stance(moves + stands, 0.0), moves, atol=1e-5)
+    assert_allclose(with_stance(moves + stands, 0.4), moves + 2.0, atol=1e-5)
+    assert_array_equal(with_stance(moves, 1.0), moves)
 
 
 def test_the_halves_of_a_clip_are_told_apart(words):

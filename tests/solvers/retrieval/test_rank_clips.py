@@ -6,20 +6,30 @@ from acted import ACTS, act
 from hypothesis import given
 from hypothesis import strategies as st
 from numpy.testing import assert_allclose, assert_array_equal
+from plain_warping import plain_cost
+from scipy.spatial.distance import cdist
 
 from solvers.motion.posture_heading import turned
 from solvers.motion.posture_joints import POSTURE_JOINTS
-from solvers.retrieval import Clip, FindSettings, build_clip_library, find_similar, rank_clips
+from solvers.retrieval import (
+    Clip,
+    FindSettings,
+    build_clip_library,
+    find_similar,
+    likes,
+    search_index,
+)
 from solvers.retrieval.body_parts import BodyPart
 from solvers.retrieval.clip_postures import ClipPostures, clip_postures
 from solvers.retrieval.index_block import IndexBlock
 from solvers.retrieval.posting_lists import posting_lists
 from solvers.retrieval.search_index import SearchIndex
+from solvers.retrieval.spans import STANCE, with_stance
 from solvers.retrieval.usual_postures import usual_postures
 from solvers.retrieval.vocabulary import learn_vocabulary
 
 RNG = np.random.default_rng(5)
-BELIEVED, BLAMED = rank_clips.BELIEF_IN_LIKES, rank_clips.MOST_BLAME
+BELIEVED, BLAMED = likes.BELIEF_IN_LIKES, likes.MOST_BLAME
 
 
 def block(clips, seed=0):
@@ -55,25 +65,52 @@ def test_the_best_span_of_each_clip_is_found(seed):
 def test_spans_are_fetched_from_the_blocks_that_hold_them():
     first, second = block([1, 2, 3]), block([4, 5], seed=1)
     index = SearchIndex([(first, np.ones(3, bool)), (second, np.ones(2, bool))])
-    histograms, summaries = index.stored(np.array([4, 0, 3, 2]))
-    assert_array_equal(histograms[[0, 2]], second.histograms[[1, 0]])
-    assert_array_equal(histograms[[1, 3]], first.histograms[[0, 2]])
-    assert_array_equal(summaries[1], first.summaries[0].astype(np.float32))
+    steps = index.steps(np.array([4, 0, 3, 2]))
+    assert_array_equal(steps[[0, 2]], second.summaries[[1, 0]].astype(np.float32))
+    assert_array_equal(steps[[1, 3]], first.summaries[[0, 2]].astype(np.float32))
+
+
+@pytest.mark.parametrize("at_once", [1, 300, likes.CELLS_AT_ONCE])
+def test_clips_are_from_each_other_as_far_as_the_plain_programme_says(at_once, monkeypatch):
+    monkeypatch.setattr(likes, "CELLS_AT_ONCE", at_once)
+    courses = RNG.normal(size=(5, 16, 3)).astype(np.float32)
+    between = likes.between_courses(courses)
+    for one, other in np.ndindex(5, 5):
+        expected = plain_cost(cdist(courses[one, ::2], courses[other, ::2]))
+        assert_allclose(between[one, other], expected, rtol=1e-4, atol=1e-3)
+
+
+def test_a_small_library_keeps_what_a_large_one_works_out_anew(monkeypatch):
+    index = SearchIndex([(block(range(6)), np.ones(6, bool))])
+    spans = np.array([5, 1, 2])
+    kept = index.between(spans)
+    steps = with_stance(index.steps(spans), STANCE)
+    # Nothing is from itself but what single numbers leave of it.
+    assert_allclose(kept, likes.between_courses(steps.reshape(3, 16, 40)), atol=2e-3)
+    monkeypatch.setattr(search_index, "MOST_COMPARED", 5)
+    assert index.between(spans) is None
 
 
 def test_each_clip_is_judged_by_those_nearest_to_it():
     apart = RNG.random(9).astype(np.float32) + 0.5
     between = RNG.random((9, 9)).astype(np.float32)
     between += between.T
-    expected = []
-    for one in range(9):
-        others = sorted(
-            (between[one, other], apart[other]) for other in range(9) if other != one
+    others = [
+        sorted(
+            (other for other in range(9) if other != one), key=lambda other: between[one, other]
         )
-        told = np.mean([distance for _, distance in others[:3]])
-        mixed = (apart[one] + BELIEVED * told) / (1.0 + BELIEVED)
-        expected.append(min(mixed, BLAMED * apart[one]))
-    assert_allclose(rank_clips._with_likes(apart, between, 3), expected, rtol=1e-5)
+        for one in range(9)
+    ]
+    nearest = [some[:3] for some in others]
+    told = apart.astype(float)
+    for _ in range(likes.ROUNDS):
+        before = told.copy()
+        for one in range(9):
+            voices = [1.0 + likes.MUTUAL * (one in nearest[other]) for other in nearest[one]]
+            heard = np.average(before[nearest[one]], weights=voices)
+            told[one] = (before[one] + BELIEVED * heard) / (1.0 + BELIEVED)
+    expected = np.minimum(told, BLAMED * apart)
+    assert_allclose(likes.judged_by_likes(apart, between, 3), expected, rtol=1e-5)
 
 
 def test_what_is_nearly_the_query_stays_first_among_strangers():
@@ -82,7 +119,7 @@ def test_what_is_nearly_the_query_stays_first_among_strangers():
         [[0, 2, 2.1, 2.2], [2, 0, 0.1, 0.1], [2.1, 0.1, 0, 0.1], [2.2, 0.1, 0.1, 0]],
         dtype=np.float32,
     )
-    assert rank_clips._with_likes(apart, between, 2).argmin() == 0
+    assert likes.judged_by_likes(apart, between, 2).argmin() == 0
 
 
 @pytest.mark.parametrize(
@@ -131,20 +168,20 @@ def test_parts_that_move_count_more_and_hanging_arms_little():
     activity = words.activity(words.features(clip_postures(act("kick", 2.5), 20.0)))
     assert activity.argmax() == list(BodyPart).index(BodyPart.LEFT_LEG)
 
-    weights = FindSettings().part_weights(np.ones(5), activity)
+    weights = FindSettings().part_weights(np.ones(5), np.ones(5), activity)
     assert weights.argmax() == activity.argmax()
     assert weights.min() > 0.2
     assert_allclose(weights.mean(), 1.0)
-    assert_allclose(FindSettings(busy=0.0).part_weights(np.ones(5), activity), 1.0)
+    assert_allclose(FindSettings(busy=0.0).part_weights(np.ones(5), np.ones(5), activity), 1.0)
 
 
 @pytest.mark.parametrize("activity", [np.zeros(5), np.array([0.0, 1e-9, 0.0, 1e-6, 0.0])])
 def test_all_parts_of_a_pose_count_alike(activity):
-    weights = FindSettings().part_weights(np.ones(5), activity)
+    weights = FindSettings().part_weights(np.ones(5), np.ones(5), activity)
     assert_allclose(weights, 1.0, atol=1e-3)
 
 
 def test_a_part_that_is_not_asked_for_does_not_count_however_it_moves():
     settings = FindSettings(left_leg=False)
-    weights = settings.part_weights(np.ones(5), np.array([1.0, 1.0, 1.0, 9.0, 1.0]))
+    weights = settings.part_weights(np.ones(5), np.ones(5), np.array([1.0, 1.0, 1.0, 9.0, 1.0]))
     assert_allclose(weights, [1.25, 1.25, 1.25, 0.0, 1.25])

@@ -56,7 +56,8 @@ def test_nothing_is_said_of_a_recording_as_it_should_be():
 def test_of_two_people_the_larger_is_followed_and_the_other_told_of():
     poses = waving(N_FRAMES)
     poses[:, 0] -= 0.6
-    other = poses[0] + [1.3, 0.0, 0.9, *[0.0] * 31]
+    other = poses[0].copy()
+    other[:3] += (1.3, 0.0, 0.9)
     behind = drawn(other, BODY.scaled(0.8)).astype(np.float32)
 
     found = caught(changed(recorded(poses), lambda _, seen: np.where(seen > 0.0, seen, behind)))

@@ -1,0 +1,78 @@
+"""The switch of the body over the points, on the window manager: the scene stays as it is."""
+
+from functools import lru_cache
+
+import bpy
+import numpy as np
+
+from ...solvers.depth_tracking.body_tables import CAPSULE_SEGMENTS, SEGMENTS
+from ...solvers.depth_tracking.capsule_surface import capsule_surface
+from ...solvers.errors import MocapAssistError
+from .body_drawing import BodyDrawing, Solid, solid
+from .heat import shade, trusted_source
+from .overlay_drawing import refresh
+from .reliability_curves import reliability_at
+from .tracked_body import TrackedBody, bones_of, is_tracked, posed_frames
+
+PLAIN = np.array([0.62, 0.72, 0.85, 1.0])
+"""Colour of a joint whose trust is not told."""
+OPAQUE = 0.65
+"""So that bones and points within are seen, to be posed."""
+N_BODIES = 8
+
+_drawing: list[BodyDrawing] = []
+_surface = lru_cache(maxsize=N_BODIES)(capsule_surface)
+
+
+def body_now(armature: bpy.types.Object | None, frame: float) -> Solid | None:
+    """Return the capsules of a tracked body as its armature is posed, in colours of trust.
+
+    None for other armatures, and where its bones are no longer those of the body.
+    """
+    if not is_tracked(armature):
+        return None
+    try:
+        body = TrackedBody.read(armature).body
+        frames, bones = posed_frames(armature, body), bones_of(armature)
+    except MocapAssistError:
+        return None
+    names = [bones[name] for name in SEGMENTS]
+    source = trusted_source(armature)
+    told = {} if source is None else reliability_at(source, names, frame)
+    colors = np.array([shade(told[name]) if name in told else PLAIN for name in names])
+    colors[:, 3] = OPAQUE
+    surface = _surface(body)
+    matrix = np.array(armature.matrix_world)
+    return solid(surface, *surface.placed(frames), matrix, colors[CAPSULE_SEGMENTS])
+
+
+def _wanted(context: bpy.types.Context) -> Solid | None:
+    manager = context.window_manager
+    job = manager.mocap_assist_job
+    if not manager.mocap_assist_body or (job.running and job.owner in {"track", "retrack"}):
+        return None
+    active = context.view_layer.objects.active
+    return body_now(active, context.scene.frame_current_final)
+
+
+def _switched(self: bpy.types.WindowManager, context: bpy.types.Context) -> None:
+    refresh()
+
+
+def register() -> None:
+    """Add the switch; nothing is drawn until it is on."""
+    bpy.types.WindowManager.mocap_assist_body = bpy.props.BoolProperty(
+        name="Body over the Points",
+        description=(
+            "Draw the body that was tracked as the armature is posed, so that it follows all"
+            " edits: blue joints were trusted, red ones were not"
+        ),
+        update=_switched,
+    )
+    _drawing.append(BodyDrawing(_wanted))
+
+
+def unregister() -> None:
+    """Take the switch and the drawing away."""
+    _drawing.pop().close()
+    del bpy.types.WindowManager.mocap_assist_body

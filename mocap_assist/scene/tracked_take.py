@@ -1,0 +1,141 @@
+"""What a tracked armature plays as a motion of the body, and the way back into an action."""
+
+from dataclasses import dataclass, replace
+
+import bpy
+import numpy as np
+from mathutils import Matrix
+from numpy.typing import NDArray
+
+from ...solvers.depth_tracking.body_motion import body_skeleton
+from ...solvers.depth_tracking.body_tables import JOINTS, SEGMENTS
+from ...solvers.errors import InvalidMotionError
+from ...solvers.motion import Motion
+from .bone_channels import animated_curves, read_bone
+from .compat import Source
+from .frames import Grid
+from .rig import Placement, Rig, placement_of, read_rig
+from .take import ArmatureTake, BoneChannels, Part, part_of
+from .tracked_body import TrackedBody, armature_from_motion, bones_of
+
+Array = NDArray[np.float64]
+
+STILL = (1.0, 0.0, 0.0, 0.0)
+OFF_GRID = 0.05
+"""Of a step, how far the ends of an action may be from a picture's moment."""
+
+
+@dataclass(frozen=True, eq=False)
+class TrackedTake:
+    """An action over the moments of pictures, in the space in which the body was tracked."""
+
+    tracked: TrackedBody
+    bones: dict[str, str]
+    """The bone of each joint of the body."""
+    first: int
+    """Picture of the first frame."""
+    frames: Array
+    """Scene frames, shape (n_frames,)."""
+    rig: Rig
+    channels: tuple[BoneChannels, ...]
+    space: Placement
+    """Takes the armature's space to the motion's; one row."""
+    rate: float
+
+    @property
+    def motion(self) -> Motion:
+        """The motion of the body; hands and feet, which do not turn, are at rest."""
+        return self._of_body(self._part(self.channels, len(self.frames)))
+
+    def pose(self, armature: bpy.types.Object) -> Motion:
+        """Return the pose that the armature has now, keyed or not, as one frame."""
+        bones = [armature.pose.bones[name] for name in self.rig.bones]
+        channels = tuple(
+            BoneChannels(
+                np.array([bone.matrix_basis.to_quaternion()], dtype=np.float64),
+                np.array([bone.matrix_basis.translation], dtype=np.float64),
+                False,
+                False,
+            )
+            for bone in bones
+        )
+        return self._of_body(self._part(channels, 1))
+
+    def with_motion(self, motion: Motion, first: int, last: int) -> ArmatureTake:
+        """Return frames of a motion of the body as `write_take` writes them."""
+        rows = slice(first, last + 1)
+        part = self._part(self.channels, len(self.frames))
+        joints = self._joints(part)
+        rotations = np.array(part.motion.rotations[rows])
+        rotations[:, joints] = motion.rotations[rows, : len(SEGMENTS)]
+        cut = replace(
+            part.motion, rotations=rotations, root_positions=motion.root_positions[rows]
+        )
+        carrier = self._carrier(last + 1 - first)
+        frames = self.frames[rows]
+        grid = Grid(frames, self.tracked.shown.step, (True, True))
+        parts = (Part(cut, part.bones, carrier),)
+        return ArmatureTake(self.rig, grid, parts, None, self.channels, self.space)
+
+    def _part(self, channels: tuple[BoneChannels, ...], n_frames: int) -> Part:
+        root = self.rig.bones.index(self.bones["hips"])
+        bones, carrier = self.rig.subtree(root), self._carrier(n_frames)
+        return part_of(self.rig, bones, channels, carrier, self.space, self.rate)
+
+    def _carrier(self, n_frames: int) -> Placement:
+        turns, places = (
+            np.tile(each, (n_frames, 1)) for each in (self.space.rotations, self.space.origins)
+        )
+        return Placement(turns, places, self.space.scale)
+
+    def _joints(self, part: Part) -> list[int]:
+        """Return the place of each of the `SEGMENTS` among the joints of a part."""
+        owners = [self.rig.bones[bone] if bone >= 0 else "" for bone in part.bones]
+        return [owners.index(self.bones[name]) for name in SEGMENTS]
+
+    def _of_body(self, part: Part) -> Motion:
+        motion = part.motion
+        rotations = np.tile(STILL, (motion.n_frames, len(JOINTS), 1))
+        rotations[:, : len(SEGMENTS)] = motion.rotations[:, self._joints(part)]
+        skeleton = body_skeleton(self.tracked.body)
+        return Motion(skeleton, rotations, motion.root_positions, self.rate)
+
+
+def read_tracked_take(
+    armature: bpy.types.Object, source: Source, n_pictures: int, rate: float
+) -> TrackedTake:
+    """Read an action of a tracked armature at the moments of the recording's pictures.
+
+    Raises
+    ------
+    InvalidMotionError
+        The armature keeps no body, its bones are other ones now, or the action is elsewhere.
+    """
+    tracked = TrackedBody.read(armature)
+    bones, rig = bones_of(armature), read_rig(armature)
+    if rig.parents[rig.bones.index(bones["hips"])] >= 0:
+        raise InvalidMotionError(
+            f"{bones['hips']} hangs on another bone now. Clear its parent, then track again."
+        )
+    frames, first = _moments(source, tracked, n_pictures)
+    curves = animated_curves(*source)
+    channels = tuple(
+        read_bone(armature.pose.bones[bone], curves, frames, gaps=False) for bone in rig.bones
+    )
+    motion_from_armature = np.linalg.inv(armature_from_motion(armature, tracked.body))
+    turn, origin, scale = placement_of(Matrix(motion_from_armature.tolist()), armature.name)
+    space = Placement(turn[np.newaxis], origin[np.newaxis], scale)
+    return TrackedTake(tracked, bones, first, frames, rig, channels, space, rate)
+
+
+def _moments(source: Source, tracked: TrackedBody, n_pictures: int) -> tuple[Array, int]:
+    """Return the frames of the pictures that the action covers, and the first picture."""
+    shown = tracked.shown
+    start, stop = ((frame - shown.start) / shown.step for frame in source[0].curve_frame_range)
+    first = max(int(np.ceil(start - OFF_GRID)), 0)
+    last = min(int(np.floor(stop + OFF_GRID)), n_pictures - 1)
+    if last < first:
+        raise InvalidMotionError(
+            f"{source[0].name} has no keys in the time of the recording. Move it back there."
+        )
+    return shown.start + shown.step * np.arange(first, last + 1), first

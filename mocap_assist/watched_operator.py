@@ -1,0 +1,42 @@
+"""A button whose solve can be watched, and of which something may be kept on Esc."""
+
+from collections.abc import Callable
+from typing import Any, ClassVar
+
+import bpy
+
+from .jobs.job import Job
+from .solver_operator import SolverOperator
+from .watch import View
+
+
+class WatchedOperator(SolverOperator):
+    """Mix in as SolverOperator, where `read_scene` returns a `Showing` solve."""
+
+    open_view: ClassVar[Callable[..., View | None]]
+    """From scene, subject and settings; None if nobody wants to look on."""
+    rescue: ClassVar[Callable[..., Callable[[list[Any]], Any] | None]]
+    """From scene, subject and settings: what makes a result of all that was shown, or None."""
+
+    def invoke(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
+        outcome = super().invoke(context, event)
+        if outcome == {"RUNNING_MODAL"}:
+            asked = (*self._subject.find(), self.settings())
+            self._watch.view = type(self).open_view(*asked)
+        return outcome
+
+    def modal(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
+        watch = self._watch
+        if watch.is_on and event.type == "TIMER" and watch.view is not None:
+            watch.view.look(*self._subject.find(), watch.job.shown())
+        return super().modal(context, event)
+
+    def _answer(self, job: Job[Any]) -> Any:
+        rescue = None
+        if job.cancelled:
+            rescue = type(self).rescue(*self._subject.find(), self.settings())
+        if rescue is None:
+            return super()._answer(job)
+        shown = job.all_shown()
+        job.tidy_up()
+        return rescue(shown)

@@ -1,0 +1,33 @@
+"""Button: track again from a frame that was corrected by hand."""
+
+import bpy
+
+from ..mocap_assist.retracking import (
+    RetrackBundle,
+    keep_nothing,
+    read_retracking,
+    watch_retracking,
+    why_not_retrack,
+    write_retracked,
+)
+from ..mocap_assist.selection import selected_armature
+from ..mocap_assist.settings_properties import settings_from
+from ..mocap_assist.watched_operator import WatchedOperator
+
+
+@settings_from(RetrackBundle)
+class MOCAP_OT_retrack(WatchedOperator, bpy.types.Operator):
+    bl_idname = "mocap_assist.retrack"
+    bl_label = "Track from Here"
+    bl_description = (
+        "Take the pose of the armature in this frame for right, and follow the points from it"
+        " forwards and backwards until they meet what was tracked before. The result is a new"
+        " action"
+    )
+    settings_group = "retrack"
+    selected, why_not = selected_armature, why_not_retrack
+    read_scene, write_scene = read_retracking, write_retracked
+    open_view, rescue = watch_retracking, keep_nothing
+
+    def draw(self, context: bpy.types.Context) -> None:
+        """Nothing can be changed without tracking again."""

@@ -1,0 +1,63 @@
+"""The chance that a joint lies near where a residual prior puts it, for somebody new."""
+
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.special import gammainc, roots_hermitenorm
+
+Array = NDArray[np.float64]
+
+TINY = 1e-12
+"""Square metres. Variances below this tell nothing more."""
+NODES, _WEIGHTS = roots_hermitenorm(7)
+SHARES = _WEIGHTS / _WEIGHTS.sum()
+
+
+class Calibration(NamedTuple):
+    """How the variances of new actors follow from those that a prior foretells.
+
+    The logarithm of a new actor's variance of a joint is normal about
+    `level + slope (told - level)`.
+
+    Attributes
+    ----------
+    level : float
+        Mean logarithm of told variances, square metres; it is kept.
+    slope : float
+        What part of told differences is found again: 1 all, 0 none.
+    spread : float
+        Standard deviation of the logarithm, between actors and joints.
+    """
+
+    level: float = 0.0
+    slope: float = 1.0
+    spread: float = 0.0
+
+
+AS_TOLD = Calibration()
+
+
+def chance_within(
+    variances: Array, distance: float, calibration: Calibration = AS_TOLD
+) -> Array:
+    """Return the chance of a point being within a distance of its mean (Maxwell's law).
+
+    The variance of a new actor is not known either; chances are averaged over what it may be,
+    by Gauss-Hermite quadrature.
+
+    Parameters
+    ----------
+    variances : any shape, square metres for each of three axes; infinite: chance 0
+    distance : float, metres
+    calibration : Calibration
+    """
+    level, slope, spread = calibration
+    known = np.isfinite(variances)
+    told = np.log(np.maximum(np.where(known, variances, 1.0), TINY))
+    nearness = 0.5 * distance**2 * np.exp(-level - slope * (told - level))
+    chance = sum(
+        share * gammainc(1.5, nearness * np.exp(-spread * node))
+        for node, share in zip(NODES, SHARES, strict=True)
+    )
+    return np.where(known, chance, 0.0)

@@ -1,0 +1,191 @@
+"""How far upper arms and thighs are twisted about themselves against the trunk.
+
+Told without any rig: by the axis that elbow or knee turns about, against where it would be if
+the limb had come the short way from the T-pose of the trunk. So it is the same number for all
+makers and sizes, and needs no more than joints to be laid on another body.
+"""
+
+from dataclasses import dataclass
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..motion.posture_joints import POSTURE_JOINTS
+from .library_body import bone_frames
+from .limb_twist import Hinges
+
+Array = NDArray[np.float64]
+Complex = NDArray[np.complex128]
+
+SMALL = 1e-9
+LEAST = 1e-3
+"""What a joint counts for at least, lest no neighbour is nearer than another."""
+NEAR = 0.05
+"""Metres from the nearest posture, as a mean over joints, at which half of its twist counts."""
+
+
+class TwistedLimb(NamedTuple):
+    """A limb whose twist is told; places in `POSTURE_JOINTS`, directions of a T-pose."""
+
+    upper: int
+    lower: int
+    end: int
+    along: tuple[float, float, float]
+    bends_towards: tuple[float, float, float]
+
+    @property
+    def hinge(self) -> Array:
+        """Axis of elbow or knee in a T-pose that faces -Y."""
+        return np.asarray(np.cross(self.along, self.bends_towards), dtype=np.float64)
+
+
+def _limb(side: str, sign: float, upper: str, lower: str, end: str) -> TwistedLimb:
+    places = [POSTURE_JOINTS.index(f"{side}{part}") for part in (upper, lower, end)]
+    if end == "Hand":
+        return TwistedLimb(places[0], places[1], places[2], (sign, 0.0, 0.0), (0.0, -1.0, 0.0))
+    return TwistedLimb(places[0], places[1], places[2], (0.0, 0.0, -1.0), (0.0, 1.0, 0.0))
+
+
+TWISTED = tuple(
+    _limb(side, sign, *parts)
+    for parts in (("UpperArm", "LowerArm", "Hand"), ("UpperLeg", "LowerLeg", "Foot"))
+    for side, sign in (("left", 1.0), ("right", -1.0))
+)
+"""Left and right arm, left and right leg."""
+N_TWISTED = len(TWISTED)
+OTHER_SIDE = (1, 0, 3, 2)
+
+
+@dataclass(frozen=True, eq=False)
+class LimbTwists:
+    """How limbs are twisted, as like postures have it.
+
+    Attributes
+    ----------
+    vectors : complex, shape (n_frames, 4)
+        Points in the unit circle, one for each of `TWISTED`: the angle is the twist, the length
+        how far all agree; 0: nothing is known.
+    alone : bool
+        Whether these alone tell the twist [SHJT13, section VII-B], whatever elbows and knees
+        show.
+    """
+
+    vectors: Complex
+    alone: bool = False
+
+
+def plain_hinges(postures: Array) -> tuple[Array, Array]:
+    """Return directions of limbs, and where hinges point in limbs that are not twisted.
+
+    Parameters
+    ----------
+    postures : shape (n_frames, 20, 3), metres
+        In any place and heading; NaN: not known.
+
+    Returns
+    -------
+    directions, hinges : shape (n_frames, 4, 3)
+        Unit vectors; NaN where the limb or the trunk is not known.
+    """
+    frames = bone_frames(postures)
+    directions = np.empty((len(postures), N_TWISTED, 3))
+    hinges = np.empty_like(directions)
+    for place, limb in enumerate(TWISTED):
+        way = unit(postures[:, limb.lower] - postures[:, limb.upper])
+        frame = frames[limb.upper]
+        local = np.einsum("fji,fj->fi", frame, way)
+        along, hinge = np.array(limb.along), limb.hinge
+        # The short turn from `along` to `local` takes what is square to `along` there.
+        share = (local @ hinge) / np.maximum(1.0 + local @ along, SMALL)
+        turned = hinge - share[:, None] * (along + local)
+        directions[:, place] = way
+        hinges[:, place] = unit(np.einsum("fij,fj->fi", frame, turned))
+    return directions, hinges
+
+
+def angles_about(directions: Array, plain: Array, hinges: Array) -> Complex:
+    """Return by how much hinges are turned from the plain ones, as numbers of length 1.
+
+    All of shape (..., 3), `hinges` of any length; NaN where one is NaN or has no angle.
+    """
+    cos = np.einsum("...i,...i->...", plain, hinges)
+    sin = np.einsum("...i,...i->...", np.cross(plain, hinges), directions)
+    size = np.hypot(cos, sin)
+    told = size > SMALL
+    return np.asarray(np.where(told, cos + 1j * sin, np.nan) / np.where(told, size, 1.0))
+
+
+def bend_normals(postures: Array) -> tuple[Array, Array]:
+    """Return the axes about which elbows and knees are bent, and by how much.
+
+    Returns
+    -------
+    normals : shape (n_frames, 4, 3)
+    bends : shape (n_frames, 4), radians
+    """
+    ways = [
+        [unit(postures[:, one] - postures[:, above]) for above, one in pairs]
+        for pairs in (((x.upper, x.lower), (x.lower, x.end)) for x in TWISTED)
+    ]
+    first, second = (np.stack(each, axis=1) for each in zip(*ways, strict=True))
+    normals = np.cross(first, second)
+    sizes = np.linalg.norm(normals, axis=-1)
+    return normals, np.arctan2(sizes, np.einsum("fli,fli->fl", first, second))
+
+
+def known_hinges(postures: Array, twists: LimbTwists) -> dict[str, Hinges]:
+    """Return where twisted limbs have their hinges, by the roles of their upper joints.
+
+    Parameters
+    ----------
+    postures : shape (n_frames, 20, 3), metres
+        In the world.
+    twists : LimbTwists
+    """
+    directions, plain = plain_hinges(postures)
+    aside = np.cross(directions, plain)
+    cos, sin = twists.vectors.real[..., None], twists.vectors.imag[..., None]
+    ways = np.nan_to_num(cos * plain + sin * aside)
+    return {
+        POSTURE_JOINTS[limb.upper]: Hinges(ways[:, place], twists.alone)
+        for place, limb in enumerate(TWISTED)
+    }
+
+
+def mirrored_twists(twists: Complex) -> Complex:
+    """Return twists of limbs, (..., 4), as a mirror shows them."""
+    return np.asarray(np.conj(twists[..., list(OTHER_SIDE)]))
+
+
+def mean_twists(twists: Complex, postures: Array, neighbours: Array, trust: Array) -> Complex:
+    """Return the mean of neighbours' twists, weighted by their nearness [SHJT13, VII-B].
+
+    The weight is the inverse of eq. 9. The farther the nearest is, the shorter the mean.
+
+    Parameters
+    ----------
+    twists : shape (n_frames, n_neighbours, 4)
+    postures : shape (n_frames, 20, 3), metres
+        As they were synthesised.
+    neighbours : shape (n_frames, n_neighbours, 60), metres
+    trust : shape (n_frames, 20)
+
+    Returns
+    -------
+    shape (n_frames, 4)
+    """
+    off = neighbours - postures.reshape(len(postures), 1, -1)
+    counted = np.repeat(np.maximum(trust, LEAST), 3, axis=1)
+    ways = np.einsum("fni,fni,fi->fn", off, off, counted, optimize=False)
+    weights = 1.0 / np.maximum(ways, SMALL)
+    weights /= weights.sum(axis=1, keepdims=True)
+    nearest = 3.0 * ways.min(axis=1) / counted.sum(axis=1)
+    near = 1.0 / (1.0 + nearest / NEAR**2)
+    return np.asarray(near[:, None] * np.einsum("fn,fnl->fl", weights, twists))
+
+
+def unit(vectors: Array) -> Array:
+    """Return vectors of length 1; NaN for those of none."""
+    sizes = np.linalg.norm(vectors, axis=-1, keepdims=True)
+    return np.asarray(np.where(sizes > SMALL, vectors / np.maximum(sizes, SMALL), np.nan))

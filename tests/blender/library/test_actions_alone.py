@@ -1,0 +1,89 @@
+"""Actions that lie in a .blend file without their rig; another file has it."""
+
+import numpy as np
+import pytest
+
+
+@pytest.fixture
+def alone(blank, blend_file):
+    """A file with the actions walk_0 and wave_0, and no armature."""
+    path = blend_file.parent / "actions" / "alone.blend"
+    path.parent.mkdir()
+    blank.ops.wm.open_mainfile(filepath=str(blend_file))
+    for name in ("walk_0", "wave_0"):
+        blank.data.actions[name].use_fake_user = True
+    blank.data.actions.remove(blank.data.actions["squat_0"])
+    blank.data.batch_remove([*blank.data.objects, *blank.data.armatures])
+    blank.ops.wm.save_as_mainfile(filepath=str(path), copy=True)
+    blank.ops.wm.read_homefile(use_empty=True, use_factory_startup=True)
+    return path
+
+
+def test_without_the_rig_they_are_told_of(index, entries, alone):
+    done = index(alone)
+
+    assert len(done.refused) == 2 and entries() == {}
+    assert all("no armature in the file has the bones" in said for said in done.refused)
+    assert all("name a file with its rig" in said for said in done.refused)
+
+
+def test_with_it_they_are_clips_like_any_other(
+    index, entries, alone, blend_file, load, tmp_path
+):
+    index(blend_file)
+    done = index(alone, rig=blend_file)
+
+    assert done.refused == () and done.n_added == 2
+    with load("solvers.retrieval").load_clip_library(tmp_path / "clips.library") as library:
+        numbers = {entry.name: number for number, entry in library.numbered().items()}
+        for name in ("walk_0", "wave_0"):
+            found = library.postures(numbers[f"alone/{name}"]).positions
+            expected = library.postures(numbers[f"shot/{name}"]).positions
+            np.testing.assert_allclose(found, expected, atol=1e-6)
+
+
+def test_a_rig_of_other_bones_is_told_of(
+    index, entries, alone, blank, make_armature, animate, tmp_path
+):
+    armature = make_armature(name="Plain")
+    animate(armature)
+    for bone in armature.data.bones:
+        bone.name = f"other {bone.name}"
+    other = tmp_path / "plain.blend"
+    blank.ops.wm.save_as_mainfile(filepath=str(other), copy=True)
+
+    done = index(alone, rig=other)
+
+    assert entries() == {} and len(done.refused) == 2
+    assert all(f"nor in {other}, has the bones" in said for said in done.refused)
+
+
+def test_a_file_that_holds_no_rig_keeps_nothing_out(
+    index, entries, alone, blend_file, tmp_path
+):
+    broken = tmp_path / "broken.blend"
+    broken.write_bytes(b"no blend file at all")
+
+    done = index(blend_file, alone, rig=broken)
+
+    assert len(entries()) == 3 and len(done.refused) == 3
+    assert done.refused[0].startswith(f"{broken} cannot be read for its rig")
+
+
+def test_a_match_is_appended_with_it(alone, find, index, blend_file, newcomer, blank):
+    index(alone, rig=blend_file)
+    armature = newcomer("wave")
+    library = blank.context.scene.mocap_assist.library
+    find()
+    listed = blank.context.window_manager.mocap_assist_matches
+    listed.active = [row.name for row in listed.rows].index("alone/walk_0")
+
+    with pytest.raises(RuntimeError, match="name a file with its rig"):
+        blank.ops.mocap_assist.load_match()
+    library.rig_file = str(alone.parent / "gone.blend")
+    with pytest.raises(RuntimeError, match=r"There is no file .*gone.blend"):
+        blank.ops.mocap_assist.load_match()
+
+    library.rig_file = str(blend_file)
+    assert blank.ops.mocap_assist.load_match() == {"FINISHED"}
+    assert "walk_0" in armature.animation_data.action.name

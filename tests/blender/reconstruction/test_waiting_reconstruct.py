@@ -1,0 +1,45 @@
+"""Esc while Reconstruct runs; here Blender pretends to have a window."""
+
+import pytest
+from modal_events import event, nothing_is_left, wait
+
+
+@pytest.fixture
+def press_reconstruct(make_button, window, load):
+    """Press Reconstruct; return the button, which waits."""
+    choices = load("mocap_assist.reconstruct_choices")
+
+    def press():
+        settings = choices.ReconstructBundle(
+            choices.ReconstructChoices(),
+            load("solvers.reconstruction").ReconstructSettings(),
+            load("solvers.denoising").PlantSettings(),
+        )
+        button = make_button("reconstruct", settings)
+        assert button.invoke(window.context, None) == {"RUNNING_MODAL"}
+        return button
+
+    return press
+
+
+@pytest.mark.parametrize("solved", [0.0, 0.2], ids=["at once", "on the way"])
+def test_escape_ends_it_and_writes_nothing(walk, press_reconstruct, window, blank, solved):
+    actions = blank.data.actions.keys()
+    button = press_reconstruct()
+    wait(button, window, until=lambda: button._watch.job.progress()[0] >= solved)
+
+    assert window.job.owner == "reconstruct"
+    assert button.modal(window.context, event("ESC", "PRESS")) == {"CANCELLED"}
+
+    assert blank.data.actions.keys() == actions
+    assert walk.animation_data.action.name == actions[0]
+    assert nothing_is_left(window) and window.reports == [({"INFO"}, "Cancelled.")]
+
+
+def test_left_alone_it_writes_a_new_action(walk, press_reconstruct, window, blank):
+    recorded = walk.animation_data.action
+
+    assert wait(press_reconstruct(), window) == {"FINISHED"}
+
+    assert walk.animation_data.action.name == f"{recorded.name}.reconstructed"
+    assert recorded.name in blank.data.actions and nothing_is_left(window)

@@ -1,0 +1,112 @@
+"""The body that was tracked stays with its armature, and follows whatever is done to that."""
+
+import numpy as np
+import pytest
+from mathutils import Matrix, Quaternion
+
+QUICK = {"backward": False, "refine": False, "plant_feet": False}
+
+
+@pytest.fixture
+def tracked(points, blank):
+    assert blank.ops.mocap_assist.track_depth(**QUICK) == {"FINISHED"}
+    blank.context.scene.frame_set(3)
+    return blank.context.object
+
+
+@pytest.fixture
+def body(load):
+    overlay = load("mocap_assist.scene.body_overlay")
+    return lambda armature, frame=3: overlay.body_now(armature, frame)
+
+
+def place(load, armature, points, frame):
+    """Return the points that the camera saw, in the scene."""
+    preview = load("mocap_assist.scene.depth_preview")
+    recording = preview.recording_of(points.data)
+    depth = recording.frame(frame)
+    seen = recording.camera.back_project(depth)[depth > 0.0]
+    matrix = np.array(points.matrix_world)
+    return seen[::20] @ matrix[:3, :3].T + matrix[:3, 3]
+
+
+def distances(seen, drawn):
+    """Return how far points are from the nearest vertex that is drawn."""
+    return np.sqrt(((seen[:, None] - drawn.points[None]) ** 2).sum(axis=-1).min(axis=1))
+
+
+def test_capsules_lie_on_the_points_and_tell_trust_in_colours(
+    tracked, points, body, load, blank
+):
+    drawn = body(tracked)
+    off = distances(place(load, tracked, points, 2), drawn)
+    assert np.median(off) < 0.045 and np.quantile(off, 0.95) < 0.1
+    assert len(np.unique(drawn.colors, axis=0)) > 3
+    assert np.allclose(np.linalg.norm(drawn.normals, axis=-1), 1.0, atol=1e-4)
+    assert body(points) is None and body(None) is None
+
+
+def test_the_body_follows_a_hand_that_poses_the_armature(tracked, body, blank):
+    before = body(tracked).points.copy()
+    bone = tracked.pose.bones["leftUpperArm"]
+    bone.rotation_quaternion = Quaternion((0.0, 0.0, 1.0), 1.0) @ bone.rotation_quaternion
+    blank.context.view_layer.update()
+    moved = np.linalg.norm(body(tracked).points - before, axis=-1)
+    assert moved.max() > 0.2
+    assert (moved < 1e-5).mean() > 0.6
+
+
+def test_it_survives_renaming_applied_transforms_and_saving(tracked, body, blank, tmp_path):
+    before = body(tracked).points.copy()
+    tracked.data.bones["leftUpperArm"].name = "upper_arm.L"
+    turn = Matrix.Translation((0.3, 0.2, 0.1)) @ Matrix.Rotation(0.7, 4, "Z")
+    turn = turn @ Matrix.Scale(1.5, 4)
+    expected = before @ np.array(turn)[:3, :3].T + np.array(turn)[:3, 3]
+    tracked.matrix_world = turn @ tracked.matrix_world
+    blank.context.view_layer.update()
+    np.testing.assert_allclose(body(tracked).points, expected, atol=1e-3)
+
+    path = str(tmp_path / "tracked.blend")
+    blank.ops.wm.save_as_mainfile(filepath=path)
+    blank.ops.wm.open_mainfile(filepath=path)
+    again = blank.data.objects["walk tracked"]
+    np.testing.assert_allclose(body(again).points, expected, atol=1e-3)
+
+
+def test_rest_poses_that_were_turned_and_scaled_are_understood(tracked, load, blank):
+    kept = load("mocap_assist.scene.tracked_body")
+    model = kept.TrackedBody.read(tracked).body
+    turn = Matrix.Rotation(0.7, 4, "Z") @ Matrix.Scale(2.0, 4)
+    tracked.data.transform(turn)
+
+    matrix = kept.armature_from_motion(tracked, model)
+
+    np.testing.assert_allclose(matrix, turn, atol=1e-3)
+    blank.ops.object.mode_set(mode="EDIT")
+    tracked.data.edit_bones["leftLowerArm"].head.z += 0.2
+    blank.ops.object.mode_set(mode="OBJECT")
+    with pytest.raises(load("solvers.errors").InvalidMotionError, match="rest pose"):
+        kept.armature_from_motion(tracked, model)
+
+
+def test_what_was_damaged_is_not_drawn(tracked, body, load):
+    kept = load("mocap_assist.scene.tracked_body")
+    tracked.data[kept.KEY] = "{}"
+    assert body(tracked) is None
+    with pytest.raises(load("solvers.errors").InvalidMotionError, match="keeps no body"):
+        kept.TrackedBody.read(tracked)
+
+
+def test_trust_is_shown_of_what_track_has_made(tracked, load):
+    heat = load("mocap_assist.scene.heat")
+    shown = heat.heat_at(tracked, 3)
+    assert shown is not None and len(shown.ends) == len(tracked.pose.bones)
+    assert len(np.unique(shown.colors.reshape(-1, 4), axis=0)) > 3
+
+
+def test_the_panel_offers_what_fits_the_selection(points, tracked, blank, draw):
+    assert {"mocap_assist.retrack", "mocap_assist_body", "reach"} <= set(draw("MOCAP_PT_track"))
+    assert "mocap_assist.track_depth" not in draw("MOCAP_PT_track")
+    blank.context.view_layer.objects.active = points
+    assert {"mocap_assist.track_depth", "watch", "keep_on_esc"} <= set(draw("MOCAP_PT_track"))
+    assert "mocap_assist.retrack" not in draw("MOCAP_PT_track")

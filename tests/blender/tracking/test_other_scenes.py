@@ -1,0 +1,55 @@
+"""Scenes of other units and rates."""
+
+import json
+
+import numpy as np
+import pytest
+
+QUICK = {"backward": False, "refine": False, "plant_feet": False}
+
+
+@pytest.fixture
+def n_frames():
+    return 10
+
+
+@pytest.fixture
+def centimetres(truth, blank, tmp_path):
+    """The points of a walk in a scene of centimetres and 24 frames per second."""
+    path = tmp_path / "walk.npz"
+    np.savez_compressed(path, **truth)
+    scene = blank.context.scene
+    scene.unit_settings.system, scene.unit_settings.scale_length = "METRIC", 0.01
+    scene.render.fps = 24
+    assert blank.ops.mocap_assist.import_recording(filepath=str(path)) == {"FINISHED"}
+    return blank.context.object
+
+
+def test_body_and_correction_in_centimetres_between_whole_frames(
+    centimetres, truth, blank, load
+):
+    assert blank.ops.mocap_assist.track_depth(**QUICK) == {"FINISHED"}
+    armature = blank.context.object
+    blank.context.scene.frame_set(5)  # picture 5 is at frame 1 + 5 * 0.8
+    drawn = load("mocap_assist.scene.body_overlay").body_now(armature, 5)
+    place = np.array(centimetres.matrix_world)
+    seen = truth["joints"][5] @ place[:3, :3].T + place[:3, 3]
+    assert np.ptp(drawn.points[:, 2]) == pytest.approx(np.ptp(seen[:, 2]), rel=0.2)
+    assert np.linalg.norm(drawn.points.mean(axis=0) - seen.mean(axis=0)) < 20.0
+
+    before = armature.animation_data.action
+    assert blank.ops.mocap_assist.retrack(reach=0.07) == {"FINISHED"}
+    entry = json.loads(armature.animation_data.action["mocap_assist_history"])[-1]
+    assert entry["picture"] == 5
+    assert (entry["first_picture"], entry["last_picture"]) == (3, 7)
+    compat = load("mocap_assist.scene.compat")
+    slot = armature.animation_data.action_slot
+    path = 'pose.bones["hips"].rotation_quaternion'
+    times = [
+        [
+            key.co[0]
+            for key in compat.channelbag(action, slot).fcurves.find(path).keyframe_points
+        ]
+        for action in (before, armature.animation_data.action)
+    ]
+    assert times[0] == pytest.approx(times[1], abs=1e-3)

@@ -1,0 +1,192 @@
+"""Track from Here: one frame is posed by hand, and the frames around it follow."""
+
+import json
+
+import numpy as np
+import pytest
+from mathutils import Quaternion
+from modal_events import event, nothing_is_left, wait
+
+QUICK = {"backward": False, "refine": False, "plant_feet": False}
+ARM = "rightUpperArm"
+AWAY = Quaternion((0.0, 1.0, 0.0), 1.2)
+
+
+@pytest.fixture
+def n_frames():
+    return 16
+
+
+@pytest.fixture
+def tracked(points, blank):
+    assert blank.ops.mocap_assist.track_depth(**QUICK) == {"FINISHED"}
+    return blank.context.object
+
+
+def hands(blank, armature, frames=range(1, 17)):
+    places = []
+    for frame in frames:
+        blank.context.scene.frame_set(frame)
+        places.append(armature.matrix_world @ armature.pose.bones["rightHand"].head)
+    return np.array(places)
+
+
+def turned_away(blank, armature, frames):
+    """Key the arm wrongly in these frames."""
+    bone = armature.pose.bones[ARM]
+    for frame in frames:
+        blank.context.scene.frame_set(frame)
+        bone.rotation_quaternion = AWAY @ bone.rotation_quaternion
+        bone.keyframe_insert("rotation_quaternion", frame=frame)
+
+
+def keys(action, load, slot):
+    bag = load("mocap_assist.scene.compat").channelbag(action, slot)
+    return {
+        (curve.data_path, curve.array_index): [tuple(key.co) for key in curve.keyframe_points]
+        for curve in bag.fcurves
+    }
+
+
+def test_a_pose_that_was_not_even_keyed_mends_the_frames_around_it(tracked, blank, load):
+    right = hands(blank, tracked)
+    wrong_frames = range(4, 13)
+    turned_away(blank, tracked, wrong_frames)
+    wrong = hands(blank, tracked)
+    raw, slot = tracked.animation_data.action, tracked.animation_data.action_slot
+    before = keys(raw, load, slot)
+    blank.context.scene.frame_set(8)
+    bone = tracked.pose.bones[ARM]
+    bone.rotation_quaternion = AWAY.inverted() @ bone.rotation_quaternion
+    blank.context.view_layer.update()
+
+    assert blank.ops.mocap_assist.retrack() == {"FINISHED"}
+
+    action = tracked.animation_data.action
+    assert action is not raw and action.name == raw.name + ".retracked"
+    assert keys(raw, load, slot) == before
+    mended = hands(blank, tracked)
+    off = np.linalg.norm(mended - right, axis=-1)
+    assert np.linalg.norm(wrong - right, axis=-1)[[4, 6, 9]].min() > 0.2
+    assert off[7] < 0.01
+    assert off[3:12].mean() < 0.05
+    entry = json.loads(action["mocap_assist_history"])[-1]
+    assert entry["operation"] == "retrack" and entry["picture"] == 7
+    assert entry["first_picture"] <= 3 and entry["last_picture"] >= 11
+
+
+def test_frames_beyond_its_reach_keep_their_keys(tracked, blank, load):
+    raw, slot = tracked.animation_data.action, tracked.animation_data.action_slot
+    before = keys(raw, load, slot)
+    blank.context.scene.frame_set(8)
+
+    assert blank.ops.mocap_assist.retrack(reach=0.1) == {"FINISHED"}
+
+    action = tracked.animation_data.action
+    after = keys(action, load, tracked.animation_data.action_slot)
+    path = f'pose.bones["{ARM}"].rotation_quaternion'
+    for index in range(4):
+        assert after[path, index][:4] == before[path, index][:4]
+        assert after[path, index][-4:] == before[path, index][-4:]
+    assert len(after[path, 0]) == len(before[path, 0])
+    entry = json.loads(action["mocap_assist_history"])[-1]
+    assert (entry["first_picture"], entry["last_picture"]) == (4, 10)
+
+
+def test_it_works_after_moving_scaling_and_renaming_and_again_on_its_result(
+    tracked, blank, load
+):
+    from mathutils import Matrix
+
+    tracked.matrix_world = Matrix.Translation((1.0, 2.0, 0.0)) @ Matrix.Scale(2.0, 4)
+    tracked.data.bones["leftLowerLeg"].name = "shin.L"
+    right = hands(blank, tracked)
+    blank.context.scene.frame_set(5)
+    assert blank.ops.mocap_assist.retrack(reach=0.1) == {"FINISHED"}
+    blank.context.scene.frame_set(10)
+    assert blank.ops.mocap_assist.retrack(reach=1.0) == {"FINISHED"}
+
+    action = tracked.animation_data.action
+    first, second = json.loads(action["mocap_assist_history"])
+    assert (first["picture"], second["picture"]) == (4, 9)
+    assert second["first_picture"] == 5  # the frame that was corrected first is fixed
+    assert np.linalg.norm(hands(blank, tracked) - right, axis=-1).max() < 2.0 * 0.06
+    revert = blank.ops.mocap_assist.revert_to_raw
+    assert revert() == {"FINISHED"}
+    assert "retracked" not in tracked.animation_data.action.name
+
+
+def test_trust_and_residual_go_along_and_doubts_are_listed(tracked, blank, load):
+    blank.context.scene.frame_set(8)
+    assert blank.ops.mocap_assist.retrack(reach=0.2) == {"FINISHED"}
+    action, slot = tracked.animation_data.action, tracked.animation_data.action_slot
+    bag = load("mocap_assist.scene.compat").channelbag(action, slot)
+    residual = bag.fcurves.find('["mocap_residual"]')
+    assert len(residual.keyframe_points) == 16
+    assert all(0.0 < key.co[1] < 0.06 for key in residual.keyframe_points)
+    assert bag.fcurves.find(f'pose.bones["{ARM}"]["mocap_reliability"]') is not None
+    assert blank.context.scene.mocap_assist.checked == action.name
+
+
+def test_why_it_is_grey_or_refuses(tracked, points, blank):
+    blank.context.scene.frame_set(90)
+    with pytest.raises(RuntimeError, match="Frame 90 is not in the recording"):
+        blank.ops.mocap_assist.retrack()
+    blank.context.view_layer.objects.active = points
+    assert not blank.ops.mocap_assist.retrack.poll()
+    with pytest.raises(RuntimeError, match="Select an armature that Track has made"):
+        blank.ops.mocap_assist.retrack()
+
+
+@pytest.fixture
+def press(load, window, tracked):
+    """Press Track from Here; return the button, which waits."""
+    acts = load("operators.retrack").MOCAP_OT_retrack
+    settings = load("solvers.depth_tracking").RetrackSettings()
+
+    class Button(load("mocap_assist.watched_operator").WatchedOperator):
+        bl_idname, settings_group = acts.bl_idname, acts.settings_group
+        selected, read_scene, write_scene = acts.selected, acts.read_scene, acts.write_scene
+        open_view, rescue = acts.open_view, acts.rescue
+
+        def prepare(self, context):
+            pass
+
+        def settings(self):
+            return load("mocap_assist.retracking").RetrackBundle(settings)
+
+        def report(self, kind, message):
+            window.reports.append((kind, message))
+
+    def press():
+        button = Button()
+        assert button.invoke(window.context, None) == {"RUNNING_MODAL"}
+        return button
+
+    return press
+
+
+def test_it_can_be_watched_and_esc_leaves_the_hand_pose_as_it_was(
+    tracked, press, window, blank, load
+):
+    action = tracked.animation_data.action
+    blank.context.scene.frame_set(8)
+    bone = tracked.pose.bones[ARM]
+    bone.rotation_quaternion = AWAY @ bone.rotation_quaternion
+    posed = bone.matrix_basis.copy()
+
+    button = press()
+    wait(button, window, until=lambda: button._watch.view.drawn is not None)
+    drawn = button._watch.view.drawn.points
+    body = load("mocap_assist.scene.body_overlay").body_now(tracked, 8).points
+    assert np.linalg.norm(drawn.mean(axis=0) - body.mean(axis=0)) < 0.1
+    assert button.modal(window.context, event("ESC", "PRESS")) == {"CANCELLED"}
+
+    assert blank.context.scene.frame_current == 8
+    np.testing.assert_allclose(bone.matrix_basis, posed, atol=1e-5)
+    assert tracked.animation_data.action is action and nothing_is_left(window)
+
+    assert wait(press(), window) == {"FINISHED"}
+    ((_, cancelled), (_, said)) = window.reports
+    assert cancelled == "Cancelled." and "tracked again from frame 8" in said
+    np.testing.assert_allclose(bone.matrix_basis, posed, atol=1e-4)

@@ -1,0 +1,156 @@
+"""Track in a window: the body is seen meanwhile, and Esc keeps what was asked to be kept."""
+
+import json
+
+import numpy as np
+import pytest
+from modal_events import event, nothing_is_left, wait
+
+
+@pytest.fixture
+def press(load, window, points):
+    """Press Track with these choices of looking on; return the button, which waits."""
+    tracking, kind = load("mocap_assist.tracking"), load("operators.track_depth")
+    watched = load("mocap_assist.watched_operator").WatchedOperator
+    acts = kind.MOCAP_OT_track_depth
+
+    class Button(watched):
+        bl_idname, settings_group = acts.bl_idname, acts.settings_group
+        selected, read_scene, write_scene = acts.selected, acts.read_scene, acts.write_scene
+        open_view, rescue = acts.open_view, acts.rescue
+
+        def prepare(self, context):
+            pass
+
+        def settings(self):
+            return self.chosen
+
+        def report(self, kind, message):
+            window.reports.append((kind, message))
+
+    def press(**choices):
+        capture = load("solvers.depth_tracking.capture")
+        button = Button()
+        button.chosen = tracking.TrackBundle(
+            tracking.TrackChoices(plant_feet=False),
+            capture.CaptureSettings(backward=False, refine=False),
+            load("solvers.motion.depth_foreground").ForegroundSettings(),
+            load("solvers.denoising").PlantSettings(),
+            tracking.WatchChoices(**choices),
+        )
+        assert button.invoke(window.context, None) == {"RUNNING_MODAL"}
+        return button
+
+    return press
+
+
+def drawn(button):
+    return button._watch.view.drawn
+
+
+def test_the_body_lies_on_the_points_while_it_is_tracked_and_time_goes_along(
+    press, window, blank, truth
+):
+    blank.context.scene.frame_set(40, subframe=0.25)
+    button = press()
+    wait(button, window, until=lambda: drawn(button) is not None)
+    handle = button._watch.view._drawing._handle
+    assert handle is not None
+
+    frame = blank.context.scene.frame_current_final
+    assert 1.0 <= frame <= 6.0
+    seen = truth["joints"][int(frame) - 1]
+    middle = np.array(blank.context.object.matrix_world)[:3] @ [*seen.mean(axis=0), 1.0]
+    assert np.linalg.norm(drawn(button).points.mean(axis=0) - middle) < 0.2
+    assert np.ptp(drawn(button).points[:, 2]) > 1.2
+    assert drawn(button).triangles.max() == len(drawn(button).points) - 1
+
+    assert wait(button, window) == {"FINISHED"}
+    assert blank.context.scene.frame_current_final == 40.25
+    assert button._watch.view._drawing._handle is None and nothing_is_left(window)
+
+
+def test_esc_leaves_nothing_as_a_rule(press, window, blank):
+    blank.context.scene.frame_set(9)
+    button = press()
+    wait(button, window, until=lambda: drawn(button) is not None)
+
+    assert button.modal(window.context, event("ESC", "PRESS")) == {"CANCELLED"}
+
+    assert window.reports == [({"INFO"}, "Cancelled.")]
+    assert not blank.data.armatures and not blank.data.actions and nothing_is_left(window)
+    assert blank.context.scene.frame_current == 9
+
+
+def test_esc_keeps_what_is_tracked_if_that_was_asked_for(press, window, blank, truth, load):
+    button = press(keep_on_esc=True)
+
+    def three_poses():
+        told, _ = load("mocap_assist.jobs.protocol").read_shown(button._watch.job._path, 0)
+        return sum(isinstance(each, tuple) and len(each) == 3 for each in told) >= 3
+
+    wait(button, window, until=three_poses)
+
+    assert button.modal(window.context, event("ESC", "PRESS")) == {"FINISHED"}
+
+    ((_, said),) = window.reports
+    assert "Ended early: " in said and "of 6 frames were tracked" in said
+    armature = blank.context.object
+    action = armature.animation_data.action
+    n_frames = int(said.split("Ended early: ")[1].split()[0])
+    assert 3 <= n_frames <= 6 and action.curve_frame_range[0] == 1.0
+    assert action.curve_frame_range[1] == pytest.approx(n_frames, abs=1e-3)
+    assert json.loads(action["mocap_assist_captured"])["operation"] == "track_depth"
+    blank.context.scene.frame_set(2)
+    head = armature.matrix_world @ armature.pose.bones["head"].head
+    names = [str(each) for each in truth["joint_names"]]
+    place = np.array(blank.data.objects["walk"].matrix_world)[:3]
+    seen = place @ [*truth["joints"][1][names.index("Head")], 1.0]
+    assert np.linalg.norm(np.array(head) - seen) < 0.15
+    assert nothing_is_left(window)
+
+
+def test_esc_before_the_first_pose_keeps_nothing_and_says_so(press, window, blank):
+    button = press(keep_on_esc=True)
+
+    assert button.modal(window.context, event("ESC", "PRESS")) == {"CANCELLED"}
+
+    assert window.reports == [({"ERROR"}, "No pose was found yet: there is nothing to keep.")]
+    assert not blank.data.armatures and nothing_is_left(window)
+
+
+def test_nothing_is_drawn_where_nobody_wants_to_look(press, window, blank):
+    blank.context.scene.frame_set(9)
+    button = press(watch=False)
+    assert button._watch.view is None
+    assert wait(button, window, until=lambda: blank.context.scene.frame_current != 9) == {
+        "FINISHED"
+    }
+
+
+def test_loading_another_file_ends_the_watching_too(press, window, load):
+    button = press()
+    wait(button, window, until=lambda: drawn(button) is not None)
+    drawing = button._watch.view._drawing
+
+    load("mocap_assist.watch")._abandon_all()
+
+    assert drawing._handle is None and not button._watch.is_on
+    assert not window.timers and not window.job.running
+
+
+def test_half_a_pose_is_left_for_the_next_look(load, tmp_path):
+    protocol = load("mocap_assist.jobs.protocol")
+    path = tmp_path / protocol.SHOWN
+    with path.open("wb") as file:
+        for thing in ("one", {"two": 2}):
+            protocol.append_shown(file, thing)
+    whole = path.read_bytes()
+    path.write_bytes(whole[:-3])
+
+    assert protocol.read_shown(tmp_path / "none", 0) == ([], 0)
+    first, place = protocol.read_shown(tmp_path, 0)
+    assert first == ["one"]
+    assert protocol.read_shown(tmp_path, place) == ([], place)
+    path.write_bytes(whole)
+    assert protocol.read_shown(tmp_path, place) == ([{"two": 2}], len(whole))

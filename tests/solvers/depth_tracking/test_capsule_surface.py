@@ -1,0 +1,44 @@
+"""The surface that is drawn is the one that is tracked."""
+
+import numpy as np
+from drawn_bodies import posed
+from numpy.testing import assert_allclose
+
+from solvers.depth_tracking.body_kinematics import segment_frames
+from solvers.depth_tracking.body_model import usual_body
+from solvers.depth_tracking.body_tables import CAPSULES
+from solvers.depth_tracking.capsule_surface import capsule_surface
+from solvers.depth_tracking.hypothesis import capsule_normals, capsule_offsets
+
+BODY = usual_body()
+
+
+def placed():
+    pose = posed(leftHumerusZ=0.8, rightFemurX=0.4)
+    frames = segment_frames(BODY, pose)
+    surface = capsule_surface(BODY)
+    return surface, frames, *surface.placed(frames)
+
+
+def test_each_vertex_is_on_its_capsule_and_its_normal_is_the_trackers():
+    _, frames, vertices, normals = placed()
+    capsules = np.repeat(np.arange(len(CAPSULES)), vertices.shape[1])
+
+    sizes, _ = capsule_offsets(BODY, frames, vertices.reshape(-1, 3), capsules)
+    expected = capsule_normals(BODY, frames, vertices.reshape(-1, 3), capsules)
+
+    assert_allclose(sizes, 1.0, atol=1e-9)
+    assert_allclose(normals.reshape(-1, 3), expected, atol=1e-9)
+
+
+def test_triangles_close_each_capsule_and_look_outward():
+    """By the divergence theorem the volume is that of a closed surface, and positive."""
+    surface, _, vertices, _ = placed()
+
+    a, b, c = (vertices[:, surface.triangles[:, corner]] for corner in range(3))
+    found = np.einsum("cti,cti->c", a, np.cross(b, c)) / 6.0
+
+    across, deep = BODY.radii.T
+    way = (BODY.capsule_ends[:, 1] - BODY.capsule_ends[:, 0]) / BODY.radii[:, [0, 1, 1]]
+    stretched = np.pi * np.linalg.norm(way, axis=-1) + 4.0 / 3.0 * np.pi
+    assert_allclose(found, across * deep * deep * stretched, rtol=0.12)

@@ -1,0 +1,89 @@
+"""Whoever looks on sees every pose, and the last ones are the result."""
+
+import numpy as np
+import pytest
+from drawn_bodies import CAMERA, recorded, waving
+from numpy.testing import assert_allclose, assert_array_equal
+
+from solvers.depth_tracking import find_body
+from solvers.depth_tracking.body_model import usual_body
+from solvers.depth_tracking.capture import CaptureSettings, capture
+from solvers.depth_tracking.found_pose import shifted
+from solvers.depth_tracking.unfinished_capture import unfinished_capture
+from solvers.errors import InvalidMotionError
+from solvers.motion.depth_recording import DepthRecording
+
+
+def test_every_pass_is_shown_and_the_last_poses_are_the_result():
+    seen = []
+    found = capture(recorded(waving(6)), usual_body(), on_pose=seen.append)
+
+    frames = [one.frame for one in seen]
+    assert frames == [*range(6), *range(5, -1, -1), *range(6)]
+    last = {one.frame: one.pose for one in seen}
+    assert_array_equal(np.array([last[frame] for frame in range(6)]), found.poses)
+    assert all(one.body is found.body for one in seen)
+    assert all(one.quality.confidence.shape == (21,) for one in seen)
+
+
+def test_while_the_body_is_looked_for_poses_are_shown_where_they_are_in_the_take(monkeypatch):
+    """The actor comes nearer, and is seen from frame 4 on."""
+    monkeypatch.setattr(find_body, "CLIP", 4)
+    truth = waving(8)
+    truth[:, 2] = np.linspace(3.2, 2.8, 8)
+    drawn = recorded(truth)
+
+    def read(frame):
+        return np.zeros((120, 160), np.float32) if frame < 4 else drawn.frame(frame)
+
+    seen = []
+    settings = CaptureSettings(backward=False, smoothing=0.0)
+    found = capture(DepthRecording(CAMERA, 8, 30.0, read), settings=settings,
+                    on_pose=seen.append)  # fmt: skip
+
+    looked_for = [one for one in seen if one.body is not found.body]
+    frames = [one.frame for one in looked_for]
+    assert set(frames) <= {4, 5, 6, 7} and len(frames) >= 4
+    assert_allclose([one.pose[2] for one in looked_for], truth[frames, 2], atol=0.04)
+
+
+def test_shifted():
+    seen = []
+    one = capture(
+        recorded(waving(2)), usual_body(),
+        settings=CaptureSettings(backward=False), on_pose=shifted(seen.append, 7),
+    )  # fmt: skip
+    assert [each.frame for each in seen] == [7, 8, 7, 8] and len(one.poses) == 2
+
+
+def test_what_was_found_before_esc_is_kept():
+    """Of 10 frames there and back the last 7 were found twice."""
+    truth = waving(10)
+    seen = []
+    whole = capture(recorded(truth), usual_body(), on_pose=seen.append,
+                    settings=CaptureSettings(smoothing=0.0))  # fmt: skip
+
+    first, some = unfinished_capture(seen[:6], 30.0)
+    assert first == 0 and some.motion.n_frames == 6
+    assert_array_equal(some.poses, [one.pose for one in seen[:6]])
+    _, kept = unfinished_capture(seen[:17], 30.0)
+    assert kept.motion.n_frames == 10
+    assert_array_equal(kept.poses[:3], [one.pose for one in seen[:3]])
+    _, all_of_it = unfinished_capture(seen[:20], 30.0)
+    assert_array_equal(all_of_it.poses, whole.poses)
+    assert_allclose(all_of_it.motion.rotations, whole.motion.rotations, atol=1e-12)
+
+
+def test_a_body_that_was_given_up_is_left_out_and_nothing_is_refused():
+    seen = []
+    capture(recorded(waving(4)), usual_body(), on_pose=seen.append,
+            settings=CaptureSettings(backward=False, smoothing=0.0))  # fmt: skip
+    other = usual_body(1.6)
+    before = [one._replace(body=other, frame=one.frame + 20) for one in seen]
+
+    first, kept = unfinished_capture([*before, *(one._replace(frame=7) for one in seen[:1])],
+                                     30.0)  # fmt: skip
+
+    assert first == 7 and kept.motion.n_frames == 1 and kept.body is seen[0].body
+    with pytest.raises(InvalidMotionError, match="nothing to keep"):
+        unfinished_capture([], 30.0)

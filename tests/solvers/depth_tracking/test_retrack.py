@@ -1,0 +1,164 @@
+"""An animator corrects one frame: the frames around it follow, the others stay."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from drawn_bodies import recorded, waving
+from numpy.testing import assert_allclose, assert_array_equal
+
+from solvers.depth_tracking.body_kinematics import joint_positions, segment_frames
+from solvers.depth_tracking.body_model import usual_body
+from solvers.depth_tracking.body_motion import body_motion, motion_frames
+from solvers.depth_tracking.body_tables import JOINTS
+from solvers.depth_tracking.coordinates import COORDINATES
+from solvers.depth_tracking.pose_from_joints import pose_from_frames
+from solvers.depth_tracking.retrack import RetrackSettings, retrack
+from solvers.errors import InvalidMotionError, SolveCancelled
+from solvers.motion.depth_floor import Floor
+from solvers.motion.rotations import (
+    angle_between,
+    multiply,
+    quaternion_from_rotation_vector,
+)
+
+BODY = usual_body()
+FLOOR = Floor(np.array([0.1, -0.99, -0.1]) / np.linalg.norm([0.1, -0.99, -0.1]), 0.9)
+N_FRAMES, CORRECTED, WRONG = 40, 20, slice(10, 30)
+ARM = [JOINTS.index(name) for name in ("rightLowerArm", "rightHand")]
+
+
+def spoilt(poses):
+    """The right forearm points up, where it was never seen, for some frames."""
+    wrong = poses.copy()
+    wrong[WRONG, COORDINATES.index("rightHumerusZ")] += 1.6
+    wrong[CORRECTED] = poses[CORRECTED]
+    return wrong
+
+
+def joints_of(motion, floor=FLOOR):
+    frames = motion_frames(BODY, motion, floor)
+    return joint_positions(BODY, frames)
+
+
+@pytest.fixture(scope="module")
+def take():
+    truth = waving(N_FRAMES)
+    return recorded(truth), truth, body_motion(BODY, spoilt(truth), 30.0, FLOOR)
+
+
+@pytest.fixture(scope="module")
+def found(take):
+    depth, _, motion = take
+    return retrack(depth, BODY, motion, CORRECTED, floor=FLOOR)
+
+
+def test_motion_and_frames_are_two_words_for_the_same():
+    poses = waving(9)
+    motion = body_motion(BODY, poses, 30.0, FLOOR)
+    assert_allclose(motion_frames(BODY, motion, FLOOR), segment_frames(BODY, poses), atol=1e-9)
+
+
+def test_a_pose_is_found_from_its_frames_without_a_start():
+    for pose in waving(40)[::13]:
+        frames = segment_frames(BODY, pose)
+        again = segment_frames(BODY, pose_from_frames(BODY, frames))
+        assert_allclose(again[:, :3, 3], frames[:, :3, 3], atol=2e-3)
+        assert_allclose(again[:, :3, :3], frames[:, :3, :3], atol=0.02)
+
+
+def test_what_was_wrong_is_right_and_the_rest_stays(take, found):
+    _, truth, motion = take
+    right = joint_positions(BODY, segment_frames(BODY, truth))
+
+    before = np.linalg.norm(joints_of(motion) - right, axis=-1)[WRONG][:, ARM]
+    after = np.linalg.norm(joints_of(found.motion) - right, axis=-1)
+
+    assert before.mean() > 0.3
+    assert after[WRONG][:, ARM].mean() < 0.02
+    assert after.max() < 0.08
+    assert found.met == (True, True)
+    assert 0 <= found.first <= 4 and 35 <= found.last <= 39
+    outside = [*range(found.first), CORRECTED, *range(found.last + 1, N_FRAMES)]
+    assert_array_equal(found.motion.rotations[outside], motion.rotations[outside])
+    assert_array_equal(found.motion.root_positions[outside], motion.root_positions[outside])
+    assert len(found.residual) == found.last - found.first + 1 == found.joints.n_frames
+
+
+def test_there_is_no_jump_where_courses_meet(take, found):
+    _, truth, _ = take
+    right = joint_positions(BODY, segment_frames(BODY, truth))
+    step = np.linalg.norm(np.diff(joints_of(found.motion), axis=0), axis=-1).max()
+    assert step < np.linalg.norm(np.diff(right, axis=0), axis=-1).max() + 0.02
+
+
+def test_what_no_coordinates_can_reach_is_kept_and_fades(take):
+    """The animator twists the forearm, about which pictures and coordinates say nothing."""
+    depth, truth, _ = take
+    motion = body_motion(BODY, truth, 30.0, FLOOR)
+    rotations = motion.rotations.copy()
+    elbow, twist = JOINTS.index("leftLowerArm"), np.array([0.8, 0.0, 0.0])
+    turn = quaternion_from_rotation_vector(twist)
+    rotations[CORRECTED, elbow] = multiply(rotations[CORRECTED, elbow], turn)
+    twisted = replace(motion, rotations=rotations)
+
+    found = retrack(depth, BODY, twisted, CORRECTED, floor=FLOOR).motion
+
+    assert_array_equal(found.rotations[CORRECTED], rotations[CORRECTED])
+    angles = angle_between(found.rotations[:, elbow], motion.rotations[:, elbow])
+    assert angles[CORRECTED] == pytest.approx(0.8)
+    assert 0.6 < angles[CORRECTED + 1] < 0.8 and 0.6 < angles[CORRECTED - 1] < 0.8
+    assert 0.1 < angles[CORRECTED + 5] < 0.6 and angles[CORRECTED + 9] < 0.05
+    joints = joints_of(motion)
+    assert np.linalg.norm(joints_of(found) - joints, axis=-1).max() < 0.03
+
+
+def test_reach_and_fixed_frames_end_it(take):
+    depth, _, motion = take
+    short = retrack(depth, BODY, motion, CORRECTED, floor=FLOOR, fixed=[3, 23],
+                    settings=RetrackSettings(reach=0.1))  # fmt: skip
+    assert (short.first, short.last) == (17, 22)
+    assert short.met == (False, False)
+    alone = retrack(depth, BODY, motion, CORRECTED, floor=FLOOR,
+                    settings=RetrackSettings(reach=0.0))  # fmt: skip
+    assert (alone.first, alone.last) == (CORRECTED, CORRECTED)
+    assert_array_equal(alone.motion.rotations, motion.rotations)
+
+
+def test_the_first_frame_can_be_corrected(take):
+    depth, truth, _ = take
+    wrong = truth.copy()
+    wrong[1:12, COORDINATES.index("rightHumerusZ")] += 1.6
+    found = retrack(depth, BODY, body_motion(BODY, wrong, 30.0), 0)
+
+    right = joint_positions(BODY, segment_frames(BODY, truth))
+    after = np.linalg.norm(joints_of(found.motion, None) - right, axis=-1)
+    assert found.first == 0 and after[:, ARM].max() < 0.08
+
+
+def test_poses_are_shown_and_it_can_be_cancelled(take):
+    depth, _, motion = take
+    seen, fractions = [], []
+    found = retrack(depth, BODY, motion, CORRECTED, floor=FLOOR, on_pose=seen.append,
+                    progress=lambda fraction, _="": fractions.append(fraction))  # fmt: skip
+    last = len(found.residual)
+    assert [one.frame for one in seen[-last:]] == list(range(found.first, found.last + 1))
+    assert fractions == sorted(fractions) and fractions[-1] == pytest.approx(1.0)
+
+    def stop(fraction, message=""):
+        raise SolveCancelled
+
+    with pytest.raises(SolveCancelled):
+        retrack(depth, BODY, motion, CORRECTED, progress=stop)
+
+
+def test_what_does_not_fit_is_refused(take):
+    depth, truth, motion = take
+    with pytest.raises(InvalidMotionError, match="no frame 40"):
+        retrack(depth, BODY, motion, 40)
+    with pytest.raises(InvalidMotionError, match="has 39 frames"):
+        retrack(depth, BODY, body_motion(BODY, truth[:39], 30.0), 3)
+    gaps = motion.rotations.copy()
+    gaps[5] = np.nan
+    with pytest.raises(InvalidMotionError, match="gaps"):
+        retrack(depth, BODY, replace(motion, rotations=gaps), 3)

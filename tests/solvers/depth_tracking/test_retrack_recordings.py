@@ -1,0 +1,79 @@
+"""One corrected frame mends a stretch of a recording whose joints are known."""
+
+import numpy as np
+import pytest
+
+from solvers.depth_tracking.body_kinematics import joint_positions
+from solvers.depth_tracking.body_model import usual_body
+from solvers.depth_tracking.body_motion import body_motion, motion_frames
+from solvers.depth_tracking.body_tables import JOINTS
+from solvers.depth_tracking.coordinates import COORDINATES
+from solvers.depth_tracking.pose_from_joints import body_of_joints, pose_from_joints
+from solvers.depth_tracking.retrack import retrack
+from solvers.motion.camera import Camera
+from solvers.motion.depth_recording import DepthRecording
+
+CMU = {
+    "hips": "Hips", "chest": "Spine1", "neck": "Neck1", "head": "Head",
+    **{
+        f"{side}{ours}": f"{side.capitalize()}{theirs}"
+        for side in ("left", "right")
+        for ours, theirs in (("UpperArm", "Arm"), ("LowerArm", "ForeArm"), ("Hand", "Hand"),
+                             ("UpperLeg", "UpLeg"), ("LowerLeg", "Leg"), ("Foot", "Foot"))
+    },
+}  # fmt: skip
+N_FRAMES, CORRECTED, WRONG = 40, 20, slice(8, 33)
+
+
+def known(recordings, take, first):
+    """Return the recording, the body, and its poses by the known joints."""
+    with np.load(recordings / "depth" / "truth" / f"{take}.npz") as truth:
+        depth = truth["depth"][first : first + N_FRAMES]
+        names = truth["joint_names"].tolist()
+        joints = np.full((N_FRAMES, len(JOINTS), 3), np.nan)
+        for ours, theirs in CMU.items():
+            place = names.index(theirs)
+            joints[:, JOINTS.index(ours)] = truth["joints"][first : first + N_FRAMES, place]
+        focal = [float(truth[name]) for name in ("fx", "fy", "cx", "cy")]
+    recording = DepthRecording(
+        Camera(*focal, 320, 240), N_FRAMES, 30.0, lambda frame: depth[frame] / np.float32(1e3)
+    )
+    body = body_of_joints(usual_body(), joints)
+    poses, pose = [], None
+    for frame in joints:
+        pose = pose_from_joints(body, frame, start=pose)
+        poses.append(pose)
+    return recording, body, np.array(poses)
+
+
+@pytest.mark.parametrize(
+    ("take", "first", "most"), [("walk_diagonal", 20, 0.13), ("hop", 60, 0.04)]
+)
+def test_arms_that_were_lost_are_found_again(recordings, take, first, most):
+    """Both arms hang stiffly forward for 25 frames, but for the one that is corrected.
+
+    In the diagonal walk one arm is hidden behind the body for most of them.
+    """
+    recording, body, poses = known(recordings, take, first)
+    wrong = poses.copy()
+    for side in ("left", "right"):
+        for name, value in (("HumerusX", 1.2), ("HumerusZ", 0.1), ("Radius", 0.1)):
+            wrong[WRONG, COORDINATES.index(f"{side}{name}")] = value
+    wrong[CORRECTED] = poses[CORRECTED]
+    motion = body_motion(body, wrong, 30.0)
+
+    found = retrack(recording, body, motion, CORRECTED)
+
+    truth = elbows_and_hands(body, body_motion(body, poses, 30.0))
+    before, after = (
+        np.linalg.norm(elbows_and_hands(body, one) - truth, axis=-1)[WRONG].mean()
+        for one in (motion, found.motion)
+    )
+    assert before > 0.3
+    assert after < most
+
+
+def elbows_and_hands(body, motion):
+    places = [JOINTS.index(f"{side}{name}") for side in ("left", "right")
+              for name in ("LowerArm", "Hand")]  # fmt: skip
+    return joint_positions(body, motion_frames(body, motion))[:, places]

@@ -1,0 +1,126 @@
+"""The twist of like postures, weighed against what elbows and knees show."""
+
+import numpy as np
+import pytest
+from numpy.testing import assert_allclose
+
+from solvers.motion import JOINTS, Motion, Sensor, Tracks, forward_kinematics, joint_parents
+from solvers.motion.posture_joints import motion_postures
+from solvers.motion.rotations import rotate
+from solvers.reconstruction import ReconstructMethod, ReconstructSettings, reconstruct
+from solvers.reconstruction.follow_joints import follow_joints
+from solvers.reconstruction.posture_library import build_posture_library
+from solvers.reconstruction.trunk_twist import LimbTwists
+from solvers.samples import GaitSettings, walking_gait
+from solvers.workflows.reconstruct_motion import postures_recording
+
+NAMES = JOINTS[Sensor.KINECT_V1]
+PARENTS = joint_parents(NAMES)
+PLACES = {
+    "HipCenter": (0, 0, 1.0), "Spine": (0, 0, 1.25), "ShoulderCenter": (0, 0, 1.5),
+    "Head": (0, 0, 1.7), "ShoulderLeft": (0.2, 0, 1.5), "ElbowLeft": (0.2, 0, 1.2),
+    "ShoulderRight": (-0.2, 0, 1.5), "ElbowRight": (-0.2, 0, 1.2),
+    "WristRight": (-0.2, 0, 0.95), "HandRight": (-0.2, 0, 0.85),
+    "HipLeft": (0.1, 0, 0.92), "KneeLeft": (0.1, 0, 0.5), "AnkleLeft": (0.1, 0, 0.1),
+    "FootLeft": (0.1, -0.15, 0), "HipRight": (-0.1, 0, 0.92), "KneeRight": (-0.1, 0, 0.5),
+    "AnkleRight": (-0.1, 0, 0.1), "FootRight": (-0.1, -0.15, 0),
+}  # fmt: skip
+"""Upright, with hanging arms."""
+AT = np.radians(50.0)
+"""By so much the left upper arm is twisted in like postures."""
+
+
+def hanging(bends: np.ndarray) -> Tracks:
+    """The left elbow bends forward, by so many radians."""
+    still = np.zeros((len(bends), 20, 3))
+    for name, place in PLACES.items():
+        still[:, NAMES.index(name)] = place
+    way = np.stack([0.0 * bends, -np.sin(bends), -np.cos(bends)], axis=-1)
+    elbow = still[:, NAMES.index("ElbowLeft")]
+    still[:, NAMES.index("WristLeft")] = elbow + 0.25 * way
+    still[:, NAMES.index("HandLeft")] = elbow + 0.35 * way
+    return Tracks(NAMES, still, 30.0)
+
+
+def alike(n_frames: int, length: float = 1.0, alone: bool = False) -> LimbTwists:
+    vectors = np.zeros((n_frames, 4), complex)
+    vectors[:, 0] = length * np.exp(1j * AT)
+    return LimbTwists(vectors, alone)
+
+
+def twist(motion: Motion) -> np.ndarray:
+    """Degrees by which the elbow's axis is turned about the hanging arm, from facing front."""
+    world = forward_kinematics(motion).rotations[:, motion.skeleton.index("ShoulderLeft")]
+    hinge = rotate(world, np.array([0.0, 0.0, -1.0]))
+    # The axis of an arm that hangs without twist points to the right; down is the limb's way.
+    return np.degrees(np.arctan2(hinge[:, 1], -hinge[:, 0]))
+
+
+def test_a_straight_arm_is_twisted_as_in_like_postures():
+    tracks = hanging(np.zeros(30))
+
+    plain, motion = (follow_joints(tracks, PARENTS, twists=x) for x in (None, alike(30)))
+
+    assert_allclose(twist(plain), 0.0, atol=1.0)
+    assert_allclose(twist(motion), np.degrees(AT), atol=10.0)
+
+
+def test_less_so_where_these_are_not_of_one_mind():
+    tracks = hanging(np.zeros(30))
+
+    motion = follow_joints(tracks, PARENTS, twists=alike(30, length=0.1))
+
+    mean = 0.1 * np.exp(1j * AT) + 0.9  # what they leave open is no twist
+    assert_allclose(twist(motion), np.degrees(np.angle(mean)), atol=0.5)
+
+
+def test_where_the_elbow_bends_its_plane_tells_the_twist():
+    tracks = hanging(np.full(30, np.radians(80.0)))
+
+    motion = follow_joints(tracks, PARENTS, twists=alike(30))
+
+    assert_allclose(twist(motion), 0.0, atol=3.0)
+
+
+def test_how_the_actor_differs_where_he_bends_holds_where_he_is_straight():
+    bends = np.where(np.arange(300) < 100, np.radians(80.0), 0.0)
+
+    motion = follow_joints(hanging(bends), PARENTS, twists=alike(300))
+
+    assert_allclose(twist(motion), 0.0, atol=10.0)
+
+
+def test_as_published_nothing_else_counts():
+    tracks = hanging(np.full(30, np.radians(80.0)))
+
+    motion = follow_joints(tracks, PARENTS, twists=alike(30, length=0.3, alone=True))
+
+    assert_allclose(twist(motion), np.degrees(AT), atol=0.5)
+
+
+@pytest.fixture(scope="module")
+def gait() -> Motion:
+    return walking_gait(GaitSettings(duration=2.0, frame_rate=30.0))
+
+
+def test_a_reconstruction_tells_the_twist_of_its_library(gait):
+    library = build_posture_library([gait])
+    recording = postures_recording(gait)
+
+    both, published, residuals = (
+        reconstruct(recording, library, settings=ReconstructSettings(method=method))
+        for method in (
+            ReconstructMethod.BOTH,
+            ReconstructMethod.PUBLISHED_POSTURES,
+            ReconstructMethod.RESIDUALS,
+        )
+    )
+
+    assert residuals.twists is None
+    for one, alone in ((both, False), (published, True)):
+        assert one.twists is not None
+        assert one.twists.alone is alone
+        assert one.twists.vectors.shape == (gait.n_frames, 4)
+        assert np.abs(one.twists.vectors).min() > 0.5
+    assert both.motion.observed.all()
+    assert len(motion_postures(both.motion)) == gait.n_frames

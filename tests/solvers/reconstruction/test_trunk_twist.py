@@ -1,0 +1,253 @@
+"""How limbs are twisted against the trunk: one number, whoever made the clip."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from numpy.testing import assert_allclose
+from scipy.spatial.transform import Rotation
+
+from solvers.errors import InvalidFileError
+from solvers.files import read_archive, write_archive
+from solvers.motion import Motion, Skeleton, find_humanoid_map
+from solvers.motion.canonical import canonical_rotations, from_canonical
+from solvers.motion.posture_heading import mirrored, turned
+from solvers.motion.posture_joints import POSTURE_JOINTS, motion_postures
+from solvers.motion.rotations import multiply, quaternion_from_rotation_vector
+from solvers.reconstruction.clip_twists import agreed_twists, clip_twists
+from solvers.reconstruction.posture_library import (
+    KIND,
+    VERSION,
+    build_posture_library,
+    joined_postures,
+    load_posture_library,
+)
+from solvers.reconstruction.trunk_twist import (
+    TWISTED,
+    LimbTwists,
+    angles_about,
+    bend_normals,
+    known_hinges,
+    mean_twists,
+    mirrored_twists,
+    plain_hinges,
+)
+from solvers.samples import GaitSettings, walking_gait
+
+LEFT_ARM = 0
+
+
+@pytest.fixture(scope="module")
+def gait() -> Motion:
+    return walking_gait(GaitSettings(duration=3.0, frame_rate=30.0))
+
+
+def standing(rng, n_frames=40) -> np.ndarray:
+    """Bodies whose trunks lean anyhow, and whose limbs point anywhere but far back."""
+    postures = np.zeros((n_frames, 20, 3))
+    usual = {
+        "chest": (0, 0, 0.5), "spine": (0, 0, 0.25), "head": (0, 0, 0.7),
+        "leftUpperArm": (0.2, 0, 0.5), "rightUpperArm": (-0.2, 0, 0.5),
+        "leftUpperLeg": (0.1, 0, -0.05), "rightUpperLeg": (-0.1, 0, -0.05),
+    }  # fmt: skip
+    for name, place in usual.items():
+        postures[:, POSTURE_JOINTS.index(name)] = place
+    for limb in TWISTED:
+        upper, lower = (
+            Rotation.from_rotvec(rng.normal(scale=0.8, size=(n_frames, 3))).apply(limb.along)
+            for _ in range(2)
+        )
+        postures[:, limb.lower] = postures[:, limb.upper] + 0.3 * upper
+        postures[:, limb.end] = postures[:, limb.lower] + 0.3 * lower
+    lean = Rotation.from_rotvec(rng.normal(scale=0.4, size=(n_frames, 3)))
+    return np.stack([lean.apply(postures[:, joint]) for joint in range(20)], axis=1)
+
+
+def test_plain_hinges_are_turned_the_short_way_out_of_the_trunk():
+    """Second way: the least rotation by its axis and angle, in the trunk's axes."""
+    postures = standing(np.random.default_rng(1))
+
+    directions, hinges = plain_hinges(postures)
+
+    places = {name: postures[:, place] for place, name in enumerate(POSTURE_JOINTS)}
+    for row, limb in enumerate(TWISTED):
+        part = POSTURE_JOINTS[limb.upper].removeprefix("left").removeprefix("right")
+        across = places[f"left{part}"] - places[f"right{part}"]
+        for frame, up in enumerate(places["chest"] - places["hips"]):
+            z = up / np.linalg.norm(up)
+            y = np.cross(z, across[frame])
+            y /= np.linalg.norm(y)
+            trunk = np.stack([np.cross(y, z), y, z], axis=-1)
+            goal = trunk.T @ directions[frame, row]
+            axis = np.cross(limb.along, goal)
+            angle = np.arctan2(np.linalg.norm(axis), np.dot(limb.along, goal))
+            turn = Rotation.from_rotvec(angle * axis / np.linalg.norm(axis))
+            assert_allclose(hinges[frame, row], trunk @ turn.apply(limb.hinge), atol=1e-9)
+
+
+def test_heading_and_place_change_nothing():
+    postures = standing(np.random.default_rng(2))
+    normals, _ = bend_normals(postures)
+    moved = turned(postures, np.full(len(postures), 2.0)) + np.array([3.0, 1.0, 0.5])
+
+    there = angles_about(*plain_hinges(moved), bend_normals(moved)[0])
+
+    assert_allclose(there, angles_about(*plain_hinges(postures), normals), atol=1e-9)
+
+
+def test_a_mirror_exchanges_sides_and_turns_twists_round():
+    postures = standing(np.random.default_rng(3))
+    image = mirrored(postures)
+
+    seen = angles_about(*plain_hinges(image), bend_normals(image)[0])
+
+    own = angles_about(*plain_hinges(postures), bend_normals(postures)[0])
+    assert_allclose(seen, mirrored_twists(own), atol=1e-9)
+
+
+def test_hinges_are_put_where_twists_have_them():
+    rng = np.random.default_rng(4)
+    postures = standing(rng)
+    twists = 0.7 * np.exp(1j * rng.uniform(-2.0, 2.0, (len(postures), 4)))
+
+    known = known_hinges(postures, LimbTwists(twists))
+
+    ways = np.stack([known[POSTURE_JOINTS[limb.upper]].ways for limb in TWISTED], axis=1)
+    assert_allclose(np.linalg.norm(ways, axis=-1), 0.7)
+    assert_allclose(angles_about(*plain_hinges(postures), ways), twists / 0.7, atol=1e-9)
+
+
+def twisting(gait: Motion, angles: np.ndarray, maker: float = 0.0) -> Motion:
+    """The left upper arm of a walk twisted about itself, the elbow's bend with it.
+
+    Then, in all frames, the bone turned by what its maker means by no twist.
+    """
+    joints = find_humanoid_map(gait.skeleton).indices(gait.skeleton)
+    upper, lower = joints["leftUpperArm"], joints["leftLowerArm"]
+    along = gait.skeleton.offsets[lower] / np.linalg.norm(gait.skeleton.offsets[lower])
+    rotations = gait.rotations.copy()
+
+    def about(angle: np.ndarray) -> np.ndarray:
+        return quaternion_from_rotation_vector(np.multiply.outer(angle, along))
+
+    rotations[:, upper] = multiply(rotations[:, upper], about(angles + maker))
+    rotations[:, lower] = multiply(about(np.full(len(rotations), -maker)), rotations[:, lower])
+    return gait.with_poses(rotations, gait.root_positions)
+
+
+def twists_of(motion: Motion) -> np.ndarray:
+    return agreed_twists([motion.skeleton], [clip_twists(motion, motion_postures(motion))])[0]
+
+
+def test_the_twist_of_a_bone_is_what_its_clip_says(gait):
+    angles = np.linspace(-0.8, 0.8, gait.n_frames)
+
+    before, after = twists_of(gait), twists_of(twisting(gait, angles))
+
+    turned_by = np.angle(after[:, LEFT_ARM] * np.conj(before[:, LEFT_ARM]))
+    assert_allclose(turned_by, angles, atol=0.02)
+    assert_allclose(after[:, 1:], before[:, 1:], atol=1e-9)
+
+
+@pytest.mark.parametrize("maker", [-0.5, 0.6])
+def test_makers_who_turn_the_bone_otherwise_agree(gait, maker):
+    """30 degrees in the arms of CMU and HDM05: elbows bend about another axis of the bone."""
+    angles = np.linspace(-0.5, 0.5, gait.n_frames)
+
+    plain, theirs = (twists_of(twisting(gait, angles, each)) for each in (0.0, maker))
+
+    assert np.abs(np.angle(theirs * np.conj(plain))).max() < 0.15
+    assert np.abs(theirs).min() > 0.5
+
+
+def test_so_do_makers_of_other_rest_poses(gait):
+    """The same walk of a rig that rests with its arms lowered."""
+    skeleton = gait.skeleton
+    humanoid = find_humanoid_map(skeleton)
+    arm = humanoid.indices(skeleton)["leftUpperArm"]
+    lowered = skeleton.offsets.copy()
+    below = skeleton.subtree(arm)[1:]
+    lowered[below] = Rotation.from_rotvec((0.0, 0.9, 0.0)).apply(lowered[below])
+    rig = Skeleton(skeleton.names, skeleton.parents, lowered)
+    rotations = from_canonical(canonical_rotations(gait, humanoid), rig, humanoid)
+    moved = Motion(rig, rotations, gait.root_positions, gait.frame_rate)
+    assert np.abs(moved.rotations - gait.rotations).max() > 0.3
+
+    assert_allclose(twists_of(moved), twists_of(gait), atol=1e-6)
+
+
+def test_rotations_that_contradict_bends_are_hardly_believed(gait):
+    """Points have no twist: an upper arm that is turned at random says nothing."""
+    rng = np.random.default_rng(5)
+    clip = clip_twists(gait, motion_postures(gait))
+    wild = clip._replace(rotated=np.exp(1j * rng.uniform(-np.pi, np.pi, clip.rotated.shape)))
+    straight = wild._replace(shares=np.where(np.arange(len(wild.shares))[:, None] < 60, 1.0, 0))
+
+    told = agreed_twists([gait.skeleton], [straight])[0]
+
+    assert np.abs(told[:60]).min() > 0.99
+    assert np.abs(told[60:]).max() < 0.35
+
+
+def test_the_mean_is_weighted_by_nearness():
+    """Neighbours at 1 and 2 cm of one joint: weights 4 to 1."""
+    neighbours = np.zeros((1, 2, 60))
+    neighbours[0, :, 9] = (0.01, 0.02)
+    twists = np.tile(np.array([1.0, 1j])[None, :, None], (1, 1, 4))
+
+    mean = mean_twists(twists, np.zeros((1, 20, 3)), neighbours, np.ones((1, 20)))
+
+    assert_allclose(mean / np.abs(mean), np.full((1, 4), (0.8 + 0.2j) / np.hypot(0.8, 0.2)))
+    far = mean_twists(twists, np.full((1, 20, 3), 0.5), neighbours, np.ones((1, 20)))
+    assert np.abs(far).max() < 0.02 < 0.8 < np.abs(mean).min()
+
+
+def test_joints_that_are_not_trusted_choose_no_neighbour():
+    neighbours = np.zeros((1, 2, 60))
+    neighbours[0, 0, 9] = 0.3
+    neighbours[0, 1, 12] = 0.1
+    trust = np.ones((1, 20))
+    trust[0, 3] = 0.0
+    twists = np.tile(np.array([1.0, 1j])[None, :, None], (1, 1, 4))
+
+    mean = mean_twists(twists, np.zeros((1, 20, 3)), neighbours, trust)
+
+    assert np.abs(np.angle(mean)).max() < 0.05
+
+
+def test_a_library_keeps_twists_and_their_mirror_images(gait, tmp_path):
+    angles = np.full(gait.n_frames, 0.6)
+    library = build_posture_library([twisting(gait, angles)])
+    plain = build_posture_library([gait])
+    assert (
+        np.angle(library.known_twists[:, 0]).mean()
+        > 0.1 + np.angle(plain.known_twists[:, 0]).mean()
+    )
+    sides = np.sort(np.angle(library.known_twists[:, :2]), axis=0)
+    assert_allclose(sides[:, 0], -sides[::-1, 1], atol=0.05)
+
+    library.save(tmp_path / "kept.npz")
+    read = load_posture_library(tmp_path / "kept.npz")
+
+    assert_allclose(read.known_twists, library.known_twists, atol=0.006)
+    both = joined_postures(library, replace(library, twists=None))
+    assert_allclose(both.known_twists[: library.n_postures], library.known_twists)
+    assert not both.known_twists[library.n_postures :].any()
+
+
+def test_files_of_before_are_read_and_damaged_ones_refused(gait, tmp_path):
+    path = tmp_path / "postures.npz"
+    library = build_posture_library([gait])
+    library.save(path)
+    arrays = read_archive(path, KIND, VERSION)
+
+    write_archive(path, KIND, VERSION, {**arrays, "twists": arrays["twists"][:-1]})
+    with pytest.raises(InvalidFileError, match="shapes do not fit"):
+        load_posture_library(path)
+    del arrays["twists"]
+    write_archive(path, KIND, VERSION, arrays)
+    old = load_posture_library(path)
+
+    assert old.twists is None
+    assert not old.known_twists.any()
+    assert_allclose(old.directions, library.directions, atol=2e-3)
