@@ -42,7 +42,7 @@ def main() -> None:
         prior = load_residual_prior(SHIPPED)
     else:
         prior = learn_residual_prior(pairs, actors=actors, settings=SETTINGS, progress=told)
-    prior = calibrated(prior, pairs, actors, settings=SETTINGS, progress=told)
+    prior = calibrated(prior, pairs, actors, progress=told)
     SHIPPED.parent.mkdir(exist_ok=True)
     small(prior).save(SHIPPED)
     print(f"{len(prior.joints)} joints, {SHIPPED.stat().st_size} bytes: {SHIPPED}")

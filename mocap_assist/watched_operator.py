@@ -1,10 +1,12 @@
 """A button whose solve can be watched, and of which something may be kept on Esc."""
 
 from collections.abc import Callable
+from contextlib import suppress
 from typing import Any, ClassVar
 
 import bpy
 
+from ..solvers.errors import MocapAssistError, SolveCancelled
 from .jobs.job import Job
 from .solver_operator import SolverOperator
 from .watch import View
@@ -28,15 +30,21 @@ class WatchedOperator(SolverOperator):
     def modal(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
         watch = self._watch
         if watch.is_on and event.type == "TIMER" and watch.view is not None:
-            watch.view.look(*self._subject.find(), watch.job.shown())
+            self._look(watch.view, watch.job)
         return super().modal(context, event)
 
+    def _look(self, view: View, job: Job[Any]) -> None:
+        """Show what is new; nothing where the animator has removed what is looked at."""
+        with suppress(MocapAssistError):
+            view.look(*self._subject.find(), job.shown())
+
     def _answer(self, job: Job[Any]) -> Any:
-        rescue = None
-        if job.cancelled:
-            rescue = type(self).rescue(*self._subject.find(), self.settings())
-        if rescue is None:
+        if not job.cancelled:
             return super()._answer(job)
-        shown = job.all_shown()
-        job.tidy_up()
-        return rescue(shown)
+        try:
+            rescue = type(self).rescue(*self._subject.find(), self.settings())
+            if rescue is None:
+                raise SolveCancelled("Cancelled.")
+            return rescue(job.all_shown())
+        finally:
+            job.tidy_up()

@@ -140,11 +140,15 @@ def recording_of(mesh: bpy.types.Mesh) -> DepthRecording:
 
     Raises MocapAssistError where it cannot be read, or the mesh shows none.
     """
+    return open_recording(shown_by(mesh))
+
+
+def shown_by(mesh: bpy.types.Mesh) -> Shown:
+    """Return what a mesh shows; raises MocapAssistError if nothing."""
     try:
-        shown = Shown.read(mesh)
+        return Shown.read(mesh)
     except (ValueError, TypeError, KeyError):
         raise MocapAssistError(f"{mesh.name} shows no recording of depth.") from None
-    return open_recording(shown)
 
 
 def open_recording(shown: Shown) -> DepthRecording:

@@ -14,7 +14,7 @@ from ...solvers.depth_tracking.capsule_surface import capsule_surface
 from ...solvers.depth_tracking.found_pose import FoundPose
 from ..jobs.glimpses import Onlooker
 from .body_drawing import BodyDrawing, Solid, solid
-from .depth_preview import Shown
+from .depth_preview import Shown, shown_by
 from .heat import shade
 
 Array = NDArray[np.float64]
@@ -37,8 +37,8 @@ StageOf = Callable[[bpy.types.Object], Stage]
 
 
 def stage_of_preview(preview: bpy.types.Object) -> Stage:
-    """Return where the points of a recording are."""
-    return Stage(np.array(preview.matrix_world), Shown.read(preview.data))
+    """Return where the points of a recording are; raises MocapAssistError if nowhere."""
+    return Stage(np.array(preview.matrix_world), shown_by(preview.data))
 
 
 class LiveBody:

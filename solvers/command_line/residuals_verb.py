@@ -10,6 +10,7 @@ from ..motion import JointRecording, Motion, Tracks, resample
 from ..motion.posture_joints import POSTURE_JOINTS, motion_postures
 from ..progress import Progress, within
 from ..reconstruction import ResidualPriorSettings, learn_residual_prior
+from ..reconstruction.learn_confidence import calibrated
 from ..recordings import read_tracked, recordings_in
 from .options import arguments_from, settings_from_arguments
 from .verb import Outcome, Task
@@ -28,6 +29,11 @@ def add_residuals_options(parser: argparse.ArgumentParser) -> None:
         " without them every take counts as another actor",
     )  # fmt: skip
     parser.add_argument(
+        "--confidence", action="store_true",
+        help="Also learn how far the result is to be believed of people whom it never saw, by"
+        " leaving each of at least three actors out; takes about as many times as long",
+    )  # fmt: skip
+    parser.add_argument(
         "--output", type=Path, required=True, metavar="FILE",
         help="The .npz file to write; reconstruct --residuals reads it",
     )  # fmt: skip
@@ -43,12 +49,17 @@ def perform_residuals(task: Task, prepared: None, progress: Progress) -> Outcome
     arguments = task.arguments
     pairs = list(_pairs(task.sources, arguments, within(progress, 0.0, 0.4)))
     names = [path.stem for path in task.sources]
+    actors = [str(path) for path in task.sources]
+    if arguments.actors is not None:
+        actors = _actors(names, arguments.actors)
+    settings = settings_from_arguments(arguments, ResidualPriorSettings)
     prior = learn_residual_prior(
-        pairs,
-        actors=None if arguments.actors is None else _actors(names, arguments.actors),
-        settings=settings_from_arguments(arguments, ResidualPriorSettings),
-        progress=within(progress, 0.4, 1.0),
+        pairs, actors=actors, settings=settings, progress=within(progress, 0.4, 0.6)
     )
+    if arguments.confidence:
+        prior = calibrated(
+            prior, pairs, actors, settings=settings, progress=within(progress, 0.6, 1.0)
+        )
     assert task.target is not None
     prior.save(task.target)
     text = f"Learned how {len(prior.joints)} joints err from {prior.source} into {task.target}."

@@ -59,14 +59,16 @@ def find_body(
         return body
     first = int(np.clip(frames[0] - CLIP // 2, 0, max(0, depth.n_frames - CLIP)))
     clip = _part(depth, first, min(CLIP, depth.n_frames - first))
+    start = None
     for turn in range(2):
-        actor = Actor(clip, body, forest, tracker, RecoverySettings(),
+        actor = Actor(clip, body, forest, tracker, RecoverySettings(check_every=CLIP),
                       on_pose=shifted(on_pose, first))  # fmt: skip
         done = within(progress, 0.3 + 0.35 * turn, 0.65 + 0.35 * turn)
-        tracked = track_with_restarts(actor, range(clip.n_frames), None, done)
+        tracked = track_with_restarts(actor, range(clip.n_frames), start, done)
         good = np.flatnonzero(np.isfinite(tracked.scores))
         if not len(good):
             return body
+        start = tracked.poses[good[0]]
         good = good[tracked.scores[good] >= np.median(tracked.scores[good])]
         chosen = good[np.linspace(0, len(good) - 1, min(24, len(good))).round().astype(int)]
         body = refine_body(clip, body, tracked.poses, frames=chosen, tracker=tracker)
@@ -85,11 +87,11 @@ def _telling_frames(depth: DepthRecording) -> list[int]:
 def _best_stature(
     depth: DepthRecording, forest: PixelForest, frames: list[int], progress: Progress
 ) -> BodyModel:
+    """Return the usual body that fits best; after one frame the worse half is left out."""
     scores = dict.fromkeys(STATURES, 0.0)
     problem = "No frame shows anybody; check what is taken for background."
-    found = False
-    for place, stature in enumerate(STATURES):
-        for frame in frames:
+    for place, frame in enumerate(frames):
+        for stature in scores:
             try:
                 pose = detect_pose(
                     depth.frame(frame), depth.camera, usual_body(stature), forest
@@ -98,9 +100,11 @@ def _best_stature(
                 problem = str(error)
                 continue
             scores[stature] += pose.score
-            found = True
-        progress((place + 1) / len(STATURES), "Trying statures")
-    if not found:
+        if len(scores) == len(STATURES) and any(scores.values()):
+            best = sorted(scores, key=lambda stature: scores[stature])[len(STATURES) // 2 :]
+            scores = {stature: scores[stature] for stature in best}
+        progress((place + 1) / len(frames), "Trying statures")
+    if not any(scores.values()):
         raise InvalidMotionError(problem)
     return usual_body(max(scores, key=lambda stature: scores[stature]))
 

@@ -18,12 +18,14 @@ class Calibration(NamedTuple):
     """How the variances of new actors follow from those that a prior foretells.
 
     The logarithm of a new actor's variance of a joint is normal about
-    `level + slope (told - level)`.
+    `found + slope (told - level)`.
 
     Attributes
     ----------
     level : float
-        Mean logarithm of told variances, square metres; it is kept.
+        Mean logarithm of told variances, square metres.
+    found : float
+        Mean logarithm of those that are found.
     slope : float
         What part of told differences is found again: 1 all, 0 none.
     spread : float
@@ -31,6 +33,7 @@ class Calibration(NamedTuple):
     """
 
     level: float = 0.0
+    found: float = 0.0
     slope: float = 1.0
     spread: float = 0.0
 
@@ -52,10 +55,10 @@ def chance_within(
     distance : float, metres
     calibration : Calibration
     """
-    level, slope, spread = calibration
+    level, found, slope, spread = calibration
     known = np.isfinite(variances)
     told = np.log(np.maximum(np.where(known, variances, 1.0), TINY))
-    nearness = 0.5 * distance**2 * np.exp(-level - slope * (told - level))
+    nearness = 0.5 * distance**2 * np.exp(-found - slope * (told - level))
     chance = sum(
         share * gammainc(1.5, nearness * np.exp(-spread * node))
         for node, share in zip(NODES, SHARES, strict=True)

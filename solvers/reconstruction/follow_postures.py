@@ -23,7 +23,7 @@ from .posture_space import PostureSpaces, local_pca
 from .posture_synthesis import solve_in_turn, solve_postures
 from .probable_posture import probable_postures
 from .smooth_course import Course, causal_course, fading_course, noise_of
-from .trunk_twist import N_TWISTED, Complex, LimbTwists, mean_twists
+from .trunk_twist import N_TWISTED, LimbTwists, mean_twists
 
 Array = NDArray[np.float64]
 
@@ -48,7 +48,8 @@ class Followed(NamedTuple):
 
     postures: Array
     confidence: Array
-    twists: LimbTwists
+    twists: LimbTwists | None
+    """None where the library tells none."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -110,7 +111,7 @@ def follow_postures(
     unsure = np.hypot(settings.noise, share * np.hypot(made.spread, MODEL))
     sure = 1.0 / (1.0 + (unsure / SURE) ** 2)
     postures = keep_lengths(course.values + errors.offset, lengths, trust, sure)
-    return Followed(postures + shift, sure, LimbTwists(twists))
+    return Followed(postures + shift, sure, twists)
 
 
 def _as_published(
@@ -118,14 +119,14 @@ def _as_published(
 ) -> Followed:
     """Search each frame's posture after that of the frame before, and do nothing else."""
     body = replace(
-        on_body(library.directions, library.changes, take.lengths), twists=library.known_twists
+        on_body(library.directions, library.changes, take.lengths), twists=library.twists
     )
     plain = replace(settings, causal=True, pace=0.0, smoothing=0.0)
     index = index_postures(body, library.groups)
     made, twists = _synthesise(take, body, index, plain, progress)
     unsure = np.hypot(made.spread, MODEL)
     sure = 1.0 / (1.0 + (unsure / SURE) ** 2)
-    return Followed(made.values, sure, LimbTwists(twists, alone=True))
+    return Followed(made.values, sure, twists and replace(twists, alone=True))
 
 
 def _body_of(take: _Seen, library: PostureLibrary, settings: PostureSettings) -> BodyPostures:
@@ -147,7 +148,7 @@ def _body_of(take: _Seen, library: PostureLibrary, settings: PostureSettings) ->
             lengths,
         )
         body = on_body(directions, changes, lengths, turns)
-    return replace(body, twists=library.known_twists)
+    return replace(body, twists=library.twists)
 
 
 def _speeds(take: _Seen, settings: PostureSettings) -> Array:
@@ -193,7 +194,7 @@ def _synthesise(
     index: PostureIndex,
     settings: PostureSettings,
     progress: Progress,
-) -> tuple[Course, Complex]:
+) -> tuple[Course, LimbTwists | None]:
     """Choose a posture for each frame, and the twist of its limbs.
 
     The spread of the course is the deviation of each joint by its space.
@@ -221,7 +222,7 @@ def _synthesise(
     if settings.smoothing and not settings.causal:
         width = settings.smoothing * take.frame_rate
         values = gaussian_filter1d(values, width, axis=0, mode="nearest")
-    return Course(values, spread), twists
+    return Course(values, spread), None if body.twists is None else LimbTwists(twists)
 
 
 def _chosen(

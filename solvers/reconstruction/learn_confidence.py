@@ -81,8 +81,9 @@ def calibrated(
 
 def with_calibration(prior: ResidualPrior, found: Sequence[Array]) -> ResidualPrior:
     """Return the prior with what `told_and_found` says of actors who were left out."""
-    both = np.concatenate(found, axis=1)
-    return replace(prior, calibration=np.array([fitted(points) for points in both]))
+    whole, beside = np.concatenate(found, axis=1)
+    lines = fitted(whole, keep_level=True), fitted(beside, keep_level=False)
+    return replace(prior, calibration=np.array(lines))
 
 
 def told_and_found(prior: ResidualPrior, pairs: Sequence[Pair]) -> Array:
@@ -138,16 +139,17 @@ def _levels(told: Array, squares: Array) -> Array:
     return rows
 
 
-def fitted(points: Array) -> Calibration:
-    """Fit a line through the mean of what was told, and the spread about it.
-
-    The mean itself is kept: with a handful of actors, one that is left out moves the mean of
-    the others to the other side, and so would tell most of those who err most.
+def fitted(points: Array, *, keep_level: bool) -> Calibration:
+    """Fit a line to what was told and found of actors who were left out, and the spread.
 
     Parameters
     ----------
     points : shape (n_points, 2)
-        Told and found, of joints of actors who were left out.
+    keep_level : bool
+        Whether the mean stays as told. With the constant offset it was told honestly
+        (`honest`), and actors differ so much in it that with a handful of them one who is left
+        out moves the mean of the others to the other side: most would be told of those who err
+        most. Beside the offset nobody told it before.
     """
     known = points[np.isfinite(points).all(axis=1)]
     if len(known) < FEWEST_ACTORS:
@@ -156,5 +158,6 @@ def fitted(points: Array) -> Calibration:
     told, found = known[:, 0] - level, known[:, 1] - mean
     size = float(told @ told)
     slope = float(np.clip(told @ found / size, 0.0, 1.0)) if size > 0.0 else 1.0
-    rest = known[:, 1] - level - slope * told
-    return Calibration(float(level), slope, float(np.sqrt((rest**2).mean())))
+    mean = level if keep_level else mean
+    rest = known[:, 1] - mean - slope * told
+    return Calibration(float(level), float(mean), slope, float(np.sqrt((rest**2).mean())))

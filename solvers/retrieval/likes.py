@@ -25,7 +25,7 @@ ROUNDS = 2
 """Times that clips tell each other."""
 EVERY = 2
 """Of the moments of clips, that many-th is compared with those of other clips."""
-CELLS_AT_ONCE = 4_000_000
+CELLS_AT_ONCE = 1_000_000
 """Of tables of moments by moments, all clips together."""
 
 

@@ -7,7 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..motion.body_size import USUAL_LENGTHS, segment_lengths
-from ..motion.posture_heading import turned
+from ..motion.posture_heading import ACROSS, turned
 from ..motion.posture_joints import N_JOINTS, PARENTS
 from .clip_postures import ClipPostures
 
@@ -27,6 +27,8 @@ FEWEST = 3
 LOOKS = 24
 """Frames that are looked at for it."""
 ANGLES = np.radians(np.arange(-75.0, 76.0, 5.0))
+CIRCLE = np.radians(np.arange(-180.0, 180.0, 5.0))
+"""Angles that are tried for a heading that is roughly known, and for one that is not."""
 TURNED = np.radians(20.0)
 """Standard deviation of the angle by which a body without some joints is turned wrongly."""
 UNUSUAL = 0.03
@@ -94,15 +96,24 @@ class UsualPostures:
         columns = np.repeat(often, 3)
         among = self.covariance[np.ix_(columns, columns)] + UNUSUAL**2 * np.eye(columns.sum())
         way = np.linalg.inv(np.linalg.cholesky(among)).T
-        tried = [turned(some, np.full(len(some), angle)) for angle in ANGLES]
-        beside = np.reshape(tried, (len(ANGLES), len(some), -1)) - self.mean[columns]
+        angles, unlikely = ANGLES, 0.5 * (ANGLES / TURNED) ** 2
+        if not _tells_heading(postures):
+            angles, unlikely = CIRCLE, np.zeros(len(CIRCLE))
+        tried = [turned(some, np.full(len(some), angle)) for angle in angles]
+        beside = np.reshape(tried, (len(angles), len(some), -1)) - self.mean[columns]
         costs = 0.5 * ((beside @ way) ** 2).sum(axis=-1).mean(axis=-1)
-        angle = _lowest(ANGLES, costs + 0.5 * (ANGLES / TURNED) ** 2)
+        angle = _lowest(angles, costs + unlikely)
         return ClipPostures(
             turned(postures.positions, np.full(postures.n_frames, angle)),
             _turned_course(postures.course, angle),
             postures.frame_rate,
         )
+
+
+def _tells_heading(postures: ClipPostures) -> bool:
+    """Tell whether hips or shoulders showed, at any time, which way the body faces."""
+    seen = np.isfinite(postures.positions).all(axis=-1)
+    return any((seen[:, list(joints)].sum(axis=1) >= 2).any() for joints in ACROSS)
 
 
 def _in_proportion(positions: Array, seen: NDArray[np.bool_]) -> Array:

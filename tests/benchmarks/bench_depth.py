@@ -35,9 +35,11 @@ from .lou_sequences import colored, others_motions
 from .part_depth_capture import FPS, captures, more, more_ways, ways
 from .part_depth_kinect import kinect
 from .part_depth_memory import LENGTHS, memory
+from .part_depth_recorded import recorded
 from .part_depth_renderers import renderers
 from .part_detector import detector
 from .part_failures import failures
+from .part_retracking import retracking
 from .peers.icp_trackers import articulated_icp, ray_constrained_icp
 from .plot_bars import draw_bars
 from .report import DOCS, PICTURES, Report
@@ -92,7 +94,7 @@ def main() -> None:
         "terms": terms, "bodies": bodies, "noise": noise, "resolution": resolution,
         "kinect": partial(kinect, chosen.subjects), "renderers": renderers,
         "memory": partial(memory, chosen.frames), "detector": detector,
-        "failures": failures,
+        "failures": failures, "recorded": recorded, "retracking": retracking,
     }  # fmt: skip
     for name, part in parts.items():
         if chosen.only and name not in chosen.only.split(","):

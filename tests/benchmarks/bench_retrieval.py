@@ -5,18 +5,21 @@ make bench-retrieval ARGUMENTS="--method DTW"       # those with this in their n
 make bench-retrieval ARGUMENTS=--docs               # into docs/benchmarks_retrieval.md
 make bench-retrieval ARGUMENTS=--choose             # settings of pyramids, training classes
 make bench-retrieval ARGUMENTS=--pursuit            # sparse codes, beside scikit-learn's
+make bench-retrieval ARGUMENTS=--times              # one search, step by step
 
 What methods answer is kept under build/retrieval, and told of all methods that are there.
 """
 
 import argparse
 import sys
+from collections.abc import Callable
 from time import perf_counter
 
 from threadpoolctl import threadpool_limits
 
 from . import part_retrieval as part
 from .part_retrieval_choice import choose
+from .part_retrieval_times import time_searches
 from .part_sparse_codes import compare_pursuits
 from .report import DOCS, Report
 from .retrieval_methods import METHODS
@@ -31,21 +34,21 @@ def main() -> None:
     parser.add_argument("--jobs", type=int, default=2, help="methods at a time")
     parser.add_argument("--choose", action="store_true", help="settings of pyramids")
     parser.add_argument("--pursuit", action="store_true", help="time of sparse codes")
+    parser.add_argument("--times", action="store_true", help="one search, step by step")
     parser.add_argument(
         "--docs", action="store_true", help="rewrite docs/benchmarks_retrieval.md"
     )
     chosen = parser.parse_args()
     report = Report(chosen.docs, DOCS / "benchmarks_retrieval.md")
     started = perf_counter()
-    if chosen.choose:
+    apart: dict[str, Callable[[], str]] = {
+        "choice": lambda: choose()[1], "pursuit": compare_pursuits, "times": time_searches,
+    }  # fmt: skip
+    asked = {"choice": chosen.choose, "pursuit": chosen.pursuit, "times": chosen.times}
+    for name in [name for name, wanted in asked.items() if wanted]:
         with threadpool_limits(1):
-            tables = [choose()[1]]
-        report.part("choice", tables, perf_counter() - started)
-        return
-    if chosen.pursuit:
-        with threadpool_limits(1):
-            tables = [compare_pursuits()]
-        report.part("pursuit", tables, perf_counter() - started)
+            tables = [apart[name]()]
+        report.part(name, tables, perf_counter() - started)
         return
     names = [name for name in METHODS if chosen.method.lower() in name.lower()]
     part.find_all(names, chosen.jobs, _say)

@@ -173,6 +173,7 @@ def by_reconstruct(
     others_too: bool = True,
     causal: bool = False,
     confident: bool = False,
+    shift: bool = True,
 ) -> Reconstruction:
     """Ours, with the offsets of the sensor that the prior knows.
 
@@ -184,7 +185,7 @@ def by_reconstruct(
         confident_prior(subject)
         if confident
         else residual_prior(subject, ResidualMethod.HIERARCHICAL),
-        settings=ReconstructSettings(method=method, shift=True, causal=causal),
+        settings=ReconstructSettings(method=method, shift=shift, causal=causal),
     )
 
 

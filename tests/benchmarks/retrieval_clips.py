@@ -28,6 +28,9 @@ TRAINING = frozenset({
 """Every third class of HDM05 by the alphabet, and CMU's walks and runs."""
 RUNS = frozenset(f"35_{number}" for number in range(17, 27))
 """Among CMU's walks: they go at 3.1 to 3.5 m/s, the others at 0.4 to 1.9."""
+MISFILED = frozenset({"kickLFront1Reps bk 007", "kickLFront1Reps bk 008"})
+"""Kicks to the side (the foot is 0.8 m to the left and 0.3 m ahead) that HDM05 has among those
+to the front."""
 KINECT_FOLDER = clips.DATA / "kinect"
 EXERCISES = tuple(f"m{number:02}" for number in range(2, 11))
 """Of UI-PRMD, classes to choose settings on besides: with five classes alone the best

@@ -119,6 +119,18 @@ def test_esc_before_the_first_pose_keeps_nothing_and_says_so(press, window, blan
     assert not blank.data.armatures and nothing_is_left(window)
 
 
+def test_points_that_are_deleted_meanwhile_are_named_at_the_end(press, window, blank, points):
+    button = press()
+    wait(button, window, until=lambda: drawn(button) is not None)
+    blank.data.objects.remove(points)
+
+    assert wait(button, window) == {"CANCELLED"}
+
+    ((kind, said),) = window.reports
+    assert kind == {"ERROR"} and "was deleted during the solve" in said
+    assert nothing_is_left(window)
+
+
 def test_nothing_is_drawn_where_nobody_wants_to_look(press, window, blank):
     blank.context.scene.frame_set(9)
     button = press(watch=False)
@@ -128,15 +140,15 @@ def test_nothing_is_drawn_where_nobody_wants_to_look(press, window, blank):
     }
 
 
-def test_loading_another_file_ends_the_watching_too(press, window, load):
+def test_blender_may_end_it_as_when_another_file_is_loaded(press, window):
     button = press()
     wait(button, window, until=lambda: drawn(button) is not None)
     drawing = button._watch.view._drawing
 
-    load("mocap_assist.watch")._abandon_all()
+    button.cancel(window.context)
 
     assert drawing._handle is None and not button._watch.is_on
-    assert not window.timers and not window.job.running
+    assert nothing_is_left(window)
 
 
 def test_half_a_pose_is_left_for_the_next_look(load, tmp_path):

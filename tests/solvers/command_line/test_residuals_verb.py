@@ -60,3 +60,15 @@ def test_an_unknown_actor_is_named(call, stage):
     status, _, err = learn(call, stage, "--actors", "anna")
     assert status == 2
     assert "bob_1 begins with none of the actors' names: anna" in err
+
+
+def test_confidence_is_learned_from_three_actors_or_more(call, stage):
+    status, _, err = learn(call, stage, "--actors", "anna", "bob", "--confidence")
+    assert status == 2
+    assert "needs 3; there are 2" in err
+
+    status, _, err = learn(call, stage, "--actors", "anna_1", "anna_2", "bob", "--confidence")
+
+    assert (status, err) == (0, "")
+    calibration = load_residual_prior(stage / "sensor.npz").calibration
+    assert (calibration[:, 3] > 0.0).all()

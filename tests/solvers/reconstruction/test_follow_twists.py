@@ -1,5 +1,7 @@
 """The twist of like postures, weighed against what elbows and knees show."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from numpy.testing import assert_allclose
@@ -124,3 +126,21 @@ def test_a_reconstruction_tells_the_twist_of_its_library(gait):
         assert np.abs(one.twists.vectors).min() > 0.5
     assert both.motion.observed.all()
     assert len(motion_postures(both.motion)) == gait.n_frames
+
+
+@pytest.mark.parametrize(
+    "method", [ReconstructMethod.BOTH, ReconstructMethod.PUBLISHED_POSTURES]
+)
+def test_with_a_library_of_before_bends_alone_tell_the_twist(gait, method):
+    library = build_posture_library([gait])
+    recording, settings = postures_recording(gait), ReconstructSettings(method=method)
+
+    old, new = (
+        reconstruct(recording, each, settings=settings)
+        for each in (replace(library, twists=None), library)
+    )
+
+    assert old.twists is None
+    plain = follow_joints(old.tracks, recording.parents, old.reliability.combined)
+    assert_allclose(old.motion.rotations, plain.rotations)
+    assert np.abs(new.motion.rotations - plain.rotations).max() > 1e-3

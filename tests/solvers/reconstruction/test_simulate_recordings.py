@@ -54,6 +54,33 @@ def test_feet_of_good_takes_slide_less_by_another_familys_measure(good_takes):
     assert after < 0.8 * before
 
 
+def test_feet_of_good_takes_rest_while_they_carry(good_takes):
+    """Against friction alone, by contacts that the take has no say in."""
+    for motion, kept in good_takes.values():
+        settings = SimulateSettings(ground=Ground.FEET, plant=False)
+        free = simulate(motion, settings=settings)
+        loaded = kept.carried > 0.1
+        creeps, rests = (
+            sum(foot.distance for foot in measure_quality(each.motion, contacts=loaded).feet)
+            for each in (free, kept)
+        )
+
+        assert loaded.any() and np.array_equal(free.carried, kept.carried)
+        assert rests < 0.8 * creeps
+        assert jerk(kept.motion) < 1.1 * jerk(free.motion)
+
+
+def test_no_knee_sinks_for_a_planted_foot(recordings):
+    """Squatting low, the foot that carries nothing wanders, and its knee is near the ground."""
+    path = recordings / "mocap" / "hdm05" / "HDM_bd_squat1Reps_006_120.amc"
+    if not path.exists():
+        pytest.skip("This take is not there.")
+
+    result = simulate(read_recording(path), settings=UNDER_FEET)
+
+    assert result.penetration_after < 0.003
+
+
 @pytest.mark.parametrize("folder", ["irds", "msr_action3d"])
 def test_a_depth_cameras_take_stands_still_on_the_ground(recordings, folder):
     path = sorted((recordings / "kinect" / folder).glob("*"))[0]

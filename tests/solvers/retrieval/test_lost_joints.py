@@ -52,6 +52,14 @@ def test_an_actor_of_other_proportions_is_the_same_though_a_joint_is_lost(name, 
     assert not np.isfinite(seen.positions[:, spine]).any()
 
 
+@pytest.mark.parametrize("heading", [0.0, 2.0, -2.8])
+def test_a_body_without_hips_and_shoulders_is_turned_whichever_way_it_faces(heading):
+    names = ("chest", "head", "leftUpperArm", "leftUpperLeg", "rightUpperLeg")
+    query = lost(act("kick", heading=heading), *names)
+    found = USUAL.completed(clip_postures(query, 20.0)).positions
+    assert_allclose(found, clip_postures(act("kick"), 20.0).positions, atol=0.15)
+
+
 def test_short_gaps_cost_little_however_many_they_are():
     whole = act("kick", frame_rate=120.0)
     gone = np.random.default_rng(0).uniform(size=whole.positions.shape[:2]) < 0.3
