@@ -59,16 +59,16 @@ def find_body(
         return body
     first = int(np.clip(frames[0] - CLIP // 2, 0, max(0, depth.n_frames - CLIP)))
     clip = _part(depth, first, min(CLIP, depth.n_frames - first))
-    start = None
+    start, seen_from = None, 0
     for turn in range(2):
         actor = Actor(clip, body, forest, tracker, RecoverySettings(check_every=CLIP),
                       on_pose=shifted(on_pose, first))  # fmt: skip
         done = within(progress, 0.3 + 0.35 * turn, 0.65 + 0.35 * turn)
-        tracked = track_with_restarts(actor, range(clip.n_frames), start, done)
+        tracked = track_with_restarts(actor, range(seen_from, clip.n_frames), start, done)
         good = np.flatnonzero(np.isfinite(tracked.scores))
         if not len(good):
             return body
-        start = tracked.poses[good[0]]
+        start, seen_from = tracked.poses[good[0]], int(good[0])
         good = good[tracked.scores[good] >= np.median(tracked.scores[good])]
         chosen = good[np.linspace(0, len(good) - 1, min(24, len(good))).round().astype(int)]
         body = refine_body(clip, body, tracked.poses, frames=chosen, tracker=tracker)

@@ -31,6 +31,8 @@ from .depth_sequences import (
     sequence,
 )
 from .depth_takes import SUBJECTS
+from .depth_tuning import TAKES as TUNED_ON
+from .depth_tuning import tuning_sequence
 from .lou_sequences import colored, others_motions
 from .part_depth_capture import FPS, captures, more, more_ways, ways
 from .part_depth_kinect import kinect
@@ -95,6 +97,7 @@ def main() -> None:
         "kinect": partial(kinect, chosen.subjects), "renderers": renderers,
         "memory": partial(memory, chosen.frames), "detector": detector,
         "failures": failures, "recorded": recorded, "retracking": retracking,
+        "tuning": tuning,
     }  # fmt: skip
     for name, part in parts.items():
         if chosen.only and name not in chosen.only.split(","):
@@ -173,15 +176,26 @@ DAMPED_WZC12 = replace(
 def terms() -> list[str]:
     """Leave each term or safeguard out, from the true first pose."""
     sequences = [sequence(name) for name in HARD] + [more_sequence(name) for name in HARDER]
-    scores = Scores("Without each part", f"{len(sequences)} sequences as clips", "")
+    scores = _without(sequences, "Without each part")
+    draw_bars(scores, {"cm": 0.0, "% < 10 cm": LEAST}, PICTURES / "depth_terms.png")
+    return [scores.markdown(), "![What each part is worth](pictures/depth_terms.png)\n"]
+
+
+def tuning() -> list[str]:
+    """Leave each term or safeguard out, on the sequences by which defaults are chosen."""
+    sequences = [tuning_sequence(name) for name in TUNED_ON]
+    return [_without(sequences, "Without each part, sequences for tuning").markdown()]
+
+
+def _without(sequences: list[Sequence], title: str) -> Scores:
+    scores = Scores(title, f"{len(sequences)} sequences as clips", "")
     for label, changes in WITHOUT.items():
         settings = replace(USUAL, **changes)
         for one in sequences:
             found, speed = measured(partial(ours, settings), one, one.body)
             for column, figure in (found.figures() | {FPS: speed}).items():
                 scores.add(label, column, one.name, figure)
-    draw_bars(scores, {"cm": 0.0, "% < 10 cm": LEAST}, PICTURES / "depth_terms.png")
-    return [scores.markdown(), "![What each part is worth](pictures/depth_terms.png)\n"]
+    return scores
 
 
 def bodies() -> list[str]:
