@@ -46,7 +46,7 @@ def main() -> None:
     SHIPPED.parent.mkdir(exist_ok=True)
     small(prior).save(SHIPPED)
     print(f"{len(prior.joints)} joints, {SHIPPED.stat().st_size} bytes: {SHIPPED}")
-    print(f"level, slope and spread: {prior.calibration.tolist()}")
+    print(f"shift, slope and spread: {prior.calibration.tolist()}")
 
 
 def told(share: float, words: str = "") -> None:

@@ -1,5 +1,8 @@
 """What every test may ask for."""
 
+import sys
+from pathlib import Path
+
 import numpy as np
 import pytest
 from hypothesis import settings
@@ -12,6 +15,23 @@ pytest_plugins = ("common_fixtures",)
 # The same examples every time, and no clock: a busy machine must not fail a test.
 settings.register_profile("steady", deadline=None, derandomize=True, database=None)
 settings.load_profile("steady")
+
+ON_ONE_PYTHON = (
+    "command_line/test_capture_verb.py", "command_line/test_reconstruct_verb.py",
+    "depth_tracking/test_calibrate_body.py", "depth_tracking/test_capture.py",
+    "depth_tracking/test_retrack_recordings.py", "variation/test_bad_examples.py",
+    "workflows/test_capture_recording.py",
+)  # fmt: skip
+"""Long tests of whole takes below tests/solvers, which run on Python 3.11 alone."""
+
+
+def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item]) -> None:
+    long = {Path(__file__).parent / "solvers" / name for name in ON_ONE_PYTHON}
+    assert all(path.exists() for path in long)
+    if sys.version_info >= (3, 12):
+        left_out = [item for item in items if item.path in long]
+        items[:] = [item for item in items if item.path not in long]
+        config.hook.pytest_deselected(items=left_out)
 
 
 @pytest.fixture

@@ -56,7 +56,7 @@ class RecoverySettings(Settings):
         minimum=1, maximum=1000,
     )  # fmt: skip
     check_every: int = setting(
-        30, "Frames after which the detector is asked in any case; more is faster",
+        15, "Frames after which the detector is asked in any case; more is faster",
         minimum=1, maximum=100_000,
     )  # fmt: skip
 

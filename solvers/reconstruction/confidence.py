@@ -18,22 +18,19 @@ class Calibration(NamedTuple):
     """How the variances of new actors follow from those that a prior foretells.
 
     The logarithm of a new actor's variance of a joint is normal about
-    `found + slope (told - level)`.
+    `level + shift + slope (told - level)`, where `level` is the mean of what is told of a take.
 
     Attributes
     ----------
-    level : float
-        Mean logarithm of told variances, square metres.
-    found : float
-        Mean logarithm of those that are found.
+    shift : float
+        By how much variances are larger on the whole, as a logarithm.
     slope : float
         What part of told differences is found again: 1 all, 0 none.
     spread : float
         Standard deviation of the logarithm, between actors and joints.
     """
 
-    level: float = 0.0
-    found: float = 0.0
+    shift: float = 0.0
     slope: float = 1.0
     spread: float = 0.0
 
@@ -52,13 +49,15 @@ def chance_within(
     Parameters
     ----------
     variances : any shape, square metres for each of three axes; infinite: chance 0
+        Of one take.
     distance : float, metres
     calibration : Calibration
     """
-    level, found, slope, spread = calibration
+    shift, slope, spread = calibration
     known = np.isfinite(variances)
     told = np.log(np.maximum(np.where(known, variances, 1.0), TINY))
-    nearness = 0.5 * distance**2 * np.exp(-found - slope * (told - level))
+    level = float(told[known].mean()) if known.any() else 0.0
+    nearness = 0.5 * distance**2 * np.exp(-level - shift - slope * (told - level))
     chance = sum(
         share * gammainc(1.5, nearness * np.exp(-spread * node))
         for node, share in zip(NODES, SHARES, strict=True)

@@ -158,6 +158,6 @@ def fitted(points: Array, *, keep_level: bool) -> Calibration:
     told, found = known[:, 0] - level, known[:, 1] - mean
     size = float(told @ told)
     slope = float(np.clip(told @ found / size, 0.0, 1.0)) if size > 0.0 else 1.0
-    mean = level if keep_level else mean
-    rest = known[:, 1] - mean - slope * told
-    return Calibration(float(level), float(mean), slope, float(np.sqrt((rest**2).mean())))
+    shift = 0.0 if keep_level else float(mean - level)
+    rest = known[:, 1] - level - shift - slope * told
+    return Calibration(shift, slope, float(np.sqrt((rest**2).mean())))

@@ -63,7 +63,7 @@ class ResidualPrior:
         What it was learned from.
     movement : MovementProcess, optional
         What postures tell together with where they come from and go to.
-    calibration : shape (2, 4)
+    calibration : shape (2, 3)
         How the variances of new actors follow (`Calibration`), with the constant offset and
         beside it. Files of before have none: variances are taken as they are told.
     """
@@ -260,7 +260,7 @@ def _fault(arrays: dict[str, NDArray[Any]]) -> str:
         "mirrored": (),
         "source": (),
     }
-    expected |= {"calibration": (2, 4)} if "calibration" in arrays else {}
+    expected |= {"calibration": (2, 3)} if "calibration" in arrays else {}
     if any(arrays[name].shape != shape for name, shape in expected.items()) or not (
         n and n_local and n_whole
     ):
@@ -272,6 +272,6 @@ def _fault(arrays: dict[str, NDArray[Any]]) -> str:
             return "not all numbers are finite"
     if not (arrays["kernels"] > 0.0).all() or not 0.0 <= float(arrays["calm"]) < 10.0:
         return "their hyper-parameters are not positive"
-    if "calibration" in arrays and (arrays["calibration"][:, 2:] < 0.0).any():
+    if "calibration" in arrays and (arrays["calibration"][:, 1:] < 0.0).any():
         return "their calibration is negative"
     return ""

@@ -91,8 +91,10 @@ def simulate(
     target. Here joints turn by torques of their own, reckoned by inverse dynamics, and only the
     hips are helped from outside, by `support` times the weight at most; the rest must come from
     the ground. There, the body lags behind its target; here the target is calmed over time in
-    both directions first, and its acceleration is known, so that it does not. A foot whose
-    target swings low slips over the ground instead of tripping.
+    both directions first, and its acceleration is known, so that it does not. Feet of the
+    target that stand are put onto the ground, and those that swing are drawn up over it; one
+    that touches it all the same slips instead of tripping. With `plant`, what friction lets
+    creep is kept at rest afterwards, where the simulation says that a foot carries weight.
 
     Parameters
     ----------

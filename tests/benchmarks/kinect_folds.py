@@ -67,10 +67,9 @@ def confident_prior(subject: str) -> ResidualPrior:
     """Return the same with a confidence that was learned by leaving each of the others out."""
     path = KEPT / f"confident_{subject}.npz"
     if not path.exists():
+        found = [_tried(subject, one) for one in SUBJECTS if one != subject]
         prior = residual_prior(subject, ResidualMethod.HIERARCHICAL)
-        with_calibration(
-            prior, [_tried(subject, one) for one in SUBJECTS if one != subject]
-        ).save(path)
+        with_calibration(prior, found).save(path)
     return load_residual_prior(path)
 
 

@@ -71,4 +71,4 @@ def test_confidence_is_learned_from_three_actors_or_more(call, stage):
 
     assert (status, err) == (0, "")
     calibration = load_residual_prior(stage / "sensor.npz").calibration
-    assert (calibration[:, 3] > 0.0).all()
+    assert (calibration[:, 2] > 0.0).all()

@@ -44,14 +44,14 @@ def test_differences_between_joints_shrink_towards_their_level():
     level = np.log(0.03**2)
     variances = np.exp(level + np.array([-1.0, 0.0, 1.0]))
 
-    told = chance_within(variances, 0.05, Calibration(level, level, 0.5, 0.0))
+    told = chance_within(variances, 0.05, Calibration(0.0, 0.5, 0.0))
 
     assert_allclose(told, chance_within(np.exp(level + np.array([-0.5, 0.0, 0.5])), 0.05))
 
 
 @pytest.mark.parametrize("slope", [0.0, 0.5, 1.0])
 def test_of_what_is_not_known_no_calibration_is_sure(slope):
-    assert chance_within(np.array(np.inf), 0.05, Calibration(-7.0, -7.0, slope, 1.0)) == 0.0
+    assert chance_within(np.array(np.inf), 0.05, Calibration(0.0, slope, 1.0)) == 0.0
 
 
 def test_slope_and_spread_are_those_of_actors_who_were_left_out(rng):
@@ -60,9 +60,9 @@ def test_slope_and_spread_are_those_of_actors_who_were_left_out(rng):
     gaps = np.full((5, 2), np.nan)
 
     points = np.concatenate([np.stack([told, found], axis=-1), gaps])
-    level, mean, slope, spread = fitted(points, keep_level=True)
+    shift, slope, spread = fitted(points, keep_level=True)
 
-    assert level == mean == pytest.approx(-7.0, abs=0.05)
+    assert shift == 0.0
     assert slope == pytest.approx(0.6, abs=0.04)
     assert spread == pytest.approx(0.8, abs=0.03)
 
@@ -72,7 +72,7 @@ def test_those_who_all_err_more_widen_the_spread_and_leave_the_level():
 
     kept = fitted(np.stack([told, told + 0.7], axis=-1), keep_level=True)
 
-    assert kept == pytest.approx((-7.0, -7.0, 1.0, 0.7))
+    assert kept == pytest.approx((0.0, 1.0, 0.7))
 
 
 def test_beside_the_constant_offset_the_level_is_learned():
@@ -80,7 +80,7 @@ def test_beside_the_constant_offset_the_level_is_learned():
 
     learned = fitted(np.stack([told, told - 1.8], axis=-1), keep_level=False)
 
-    assert learned == pytest.approx((-7.0, -8.8, 1.0, 0.0), abs=1e-9)
+    assert learned == pytest.approx((-1.8, 1.0, 0.0), abs=1e-9)
 
 
 def test_confidence_is_right_of_new_actors_whose_sensors_err_by_any_amount(rng):
@@ -113,7 +113,7 @@ def test_a_calibration_is_learned_by_leaving_actors_out_and_kept_in_the_file(
     again = load_residual_prior(tmp_path / "prior.npz")
 
     assert_allclose(again.calibration, told.calibration)
-    assert (told.calibration[:, 3] > 0.0).all()
+    assert (told.calibration[:, 2] > 0.0).all()
     take = recording(seen_by_a_bad_sensor(truth(1.3)))
     before, after = (correct_postures(take, each) for each in (prior, again))
     assert_allclose(after.tracks.positions, before.tracks.positions)
@@ -132,7 +132,7 @@ def test_files_of_before_tell_variances_as_they_are(prior, tmp_path):
 
 
 def test_a_calibration_that_cannot_be_is_refused(prior, tmp_path):
-    replace(prior, calibration=-np.ones((2, 4))).save(tmp_path / "prior.npz")
+    replace(prior, calibration=-np.ones((2, 3))).save(tmp_path / "prior.npz")
 
     with pytest.raises(InvalidFileError, match="calibration is negative"):
         load_residual_prior(tmp_path / "prior.npz")
