@@ -78,9 +78,16 @@ def takes(take, tmp_path):
     return folder
 
 
-def test_a_folder_of_takes_is_captured_take_by_take(call, takes, tmp_path):
+@pytest.fixture
+def known(tmp_path):
+    """The options by which a body need not be looked for."""
+    usual_body().save(tmp_path / "known.npz")
+    return ("--body", tmp_path / "known.npz", *QUICK)
+
+
+def test_a_folder_of_takes_is_captured_take_by_take(call, takes, known):
     out = takes / "captured"
-    words = ("capture", takes, "--output-folder", out, *QUICK)
+    words = ("capture", takes, "--output-folder", out, *known)
 
     status, said, err = call(*words, "--jobs", 2, "--report")
 
@@ -96,13 +103,13 @@ def test_a_folder_of_takes_is_captured_take_by_take(call, takes, tmp_path):
     assert again.count("Already made.") == 2
 
 
-def test_one_bad_take_does_not_stop_the_others(call, takes, tmp_path):
+def test_one_bad_take_does_not_stop_the_others(call, takes, known, tmp_path):
     whole = (takes / "monday" / "standing.npz").read_bytes()
     (takes / "monday" / "cut short.npz").write_bytes(whole[: len(whole) // 2])
     for picture in (takes / "tuesday" / "pictures" / "depth").iterdir():
         picture.write_bytes(picture.read_bytes()[:40])
 
-    status, said, err = call("capture", takes, "--output-folder", tmp_path / "out", *QUICK)
+    status, said, err = call("capture", takes, "--output-folder", tmp_path / "out", *known)
 
     assert status == 2 and said.count("4 frames: the body lies") == 1
     told = err.strip().split("\n")
@@ -110,10 +117,10 @@ def test_one_bad_take_does_not_stop_the_others(call, takes, tmp_path):
     assert "cut short.npz" in told[0] and "4 of 4 pictures of depth are missing or" in told[1]
 
 
-def test_a_folder_that_is_a_take_itself(call, takes, tmp_path):
+def test_a_folder_that_is_a_take_itself(call, takes, known, tmp_path):
     take = takes / "tuesday" / "pictures"
 
-    assert call("capture", take, "--output-folder", tmp_path / "out", *QUICK)[0] == 0
+    assert call("capture", take, "--output-folder", tmp_path / "out", *known)[0] == 0
     assert (tmp_path / "out" / "pictures.bvh").is_file()
 
     status, _, err = call("capture", takes / "stills", "--output-folder", tmp_path, *QUICK)
