@@ -4,37 +4,50 @@ import numpy as np
 
 from .camera import Camera
 
-NARROW, WIDE = np.radians(15.0), np.radians(150.0)
-"""Angles of view, across the longer side, between which those of depth cameras lie."""
-OFF_MIDDLE = 0.2
-"""Of the picture's width or height, how far from the middle an axis hardly ever is."""
-UNEQUAL = 1.25
-"""Ratio of focal lengths from which pixels would be far from square."""
+SQUARE = 0.06
+"""Share by which the focal lengths of a real camera may differ: pixels are square."""
+MIDDLE = 0.2
+"""Share of the picture's size by which the optical axis may miss its middle."""
+USUAL_VIEW = (38.0, 130.0)
+"""Degrees along the longer side: Kinects see 57 and 70, Azure Kinects 65 to 120."""
+
+
+def field_of_view(camera: Camera) -> float:
+    """Return how much of the scene the longer side of the picture shows, degrees."""
+    sides = (camera.width, camera.cx, camera.fx), (camera.height, camera.cy, camera.fy)
+    n_pixels, centre, focal = max(sides, key=lambda side: side[0])
+    before, after = (
+        np.arctan((centre + 0.5) / focal),
+        np.arctan((n_pixels - 0.5 - centre) / focal),
+    )
+    return float(np.degrees(before + after))
 
 
 def camera_doubts(camera: Camera) -> tuple[str, ...]:
-    """Return what is odd about a camera, in sentences; nothing for a usual one.
+    """Return a sentence for each thing in which a camera differs from those that there are.
 
     Numbers for pictures of another size, such as those of the full picture for one of half the
-    size, put the axis into a corner. What is not so wrong shows in the size of the actor.
+    size, show in the axis and in the field of view. What is not so wrong shows in the size of
+    the actor.
     """
     doubts = []
-    angle = 2.0 * np.arctan(max(camera.width / camera.fx, camera.height / camera.fy) / 2.0)
-    if not NARROW <= angle <= WIDE:
+    if abs(np.log(camera.fx / camera.fy)) > SQUARE:
         doubts.append(
-            f"The camera would see an angle of {np.degrees(angle):.0f} degrees: check its focal"
-            " length, in pixels."
+            f"The focal lengths {camera.fx:g} and {camera.fy:g} differ, though pixels usually"
+            " are square: check fx and fy."
         )
-    across = (camera.cx + 0.5) / camera.width - 0.5
-    down = (camera.cy + 0.5) / camera.height - 0.5
-    if max(abs(across), abs(down)) > OFF_MIDDLE:
+    aside = abs(camera.cx - (camera.width - 1) / 2.0) / camera.width
+    above = abs(camera.cy - (camera.height - 1) / 2.0) / camera.height
+    if max(aside, above) > MIDDLE:
         doubts.append(
-            f"The camera's axis would meet pixel {camera.cx:.0f}, {camera.cy:.0f} of"
-            f" {camera.width} x {camera.height}: are its numbers for pictures of another size?"
+            f"The optical axis at {camera.cx:g}, {camera.cy:g} is far from the middle of"
+            f" pictures of {camera.width} x {camera.height} pixels: check cx and cy."
         )
-    if not 1.0 / UNEQUAL <= camera.fx / camera.fy <= UNEQUAL:
+    seen = field_of_view(camera)
+    if not USUAL_VIEW[0] <= seen <= USUAL_VIEW[1]:
         doubts.append(
-            f"The camera's focal lengths are {camera.fx:.0f} across and {camera.fy:.0f} up:"
-            " check both."
+            f"The pictures would show {seen:.0f} degrees of the scene, which few depth cameras"
+            f" do: check that the focal length {camera.fx:g} is that of pictures of"
+            f" {camera.width} x {camera.height} pixels."
         )
     return tuple(doubts)

@@ -118,6 +118,6 @@ def capture_actor(
     )  # fmt: skip
     stands = planting if actor.feet_seen else None
     footing = try_to_plant(found.motion, stands, progress=within(progress, 0.95, 1.0))
-    said = capture_remarks(actor.recording.camera, actor, found, fitted=body is None)
+    said = capture_remarks(actor, found, fitted=body is None)
     remarks = (*said, *footing.remarks)
     return CapturedMotion(footing.motion, found, actor, footing.planted, remarks)

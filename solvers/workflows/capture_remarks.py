@@ -4,8 +4,6 @@ import numpy as np
 
 from ..depth_tracking.body_model import usual_body
 from ..depth_tracking.capture import Capture
-from ..motion.camera import Camera
-from ..motion.camera_check import odd_camera
 from ..motion.depth_actor import Actor
 
 MANY = 0.2
@@ -18,21 +16,18 @@ THICK = 1.3
 how long and wide it seems, but not how deep."""
 
 
-def capture_remarks(
-    camera: Camera, actor: Actor, found: Capture, *, fitted: bool
-) -> tuple[str, ...]:
-    """Return sentences on the camera, the actor, and how they were found.
+def capture_remarks(actor: Actor, found: Capture, *, fitted: bool) -> tuple[str, ...]:
+    """Return sentences on the actor, and how they were found.
 
     Parameters
     ----------
-    camera : Camera
-        Of the recording.
     actor : Actor
+        Whose remarks come first.
     found : Capture
     fitted : bool
         Whether the body was found in the recording, rather than given.
     """
-    said = [*odd_camera(camera), *actor.remarks]
+    said = [*actor.remarks]
     if actor.floor is None:
         said.append("No floor is seen: the camera is taken to have been level.")
     out_of_sight = float(found.doubtful.mean())

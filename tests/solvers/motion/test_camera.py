@@ -5,7 +5,6 @@ import pytest
 
 from solvers.errors import InvalidMotionError
 from solvers.motion.camera import Camera
-from solvers.motion.camera_check import field_of_view, odd_camera
 from solvers.motion.depth_recording import DepthRecording
 
 KINECT = Camera(285.63, 285.63, 159.5, 119.5, 320, 240)
@@ -65,41 +64,3 @@ def test_a_frame_of_another_size_is_refused():
     recording = DepthRecording(KINECT, 1, 30.0, lambda _: np.zeros((10, 10), np.float32))
     with pytest.raises(InvalidMotionError, match="as the camera"):
         recording.frame(0)
-
-
-def test_a_picture_as_wide_as_it_is_far_shows_a_right_angle():
-    square = Camera(50.0, 50.0, 49.5, 49.5, 100, 100)
-    assert field_of_view(square) == pytest.approx(90.0)
-    assert field_of_view(Camera(50.0, 50.0, -0.5, 49.5, 100, 100)) == pytest.approx(63.4349488)
-    assert field_of_view(KINECT) == pytest.approx(58.5, abs=0.1)
-
-
-@pytest.mark.parametrize(
-    "camera",
-    [
-        KINECT, Camera(571.26, 571.26, 319.5, 239.5, 640, 480),
-        Camera(365.5, 365.5, 254.9, 205.4, 512, 424),  # Kinect v2
-        Camera(251.9, 252.0, 255.5, 255.5, 512, 512),  # Azure Kinect, wide, binned
-        Camera(525.0, 525.0, 319.5, 239.5, 640, 480),  # TUM RGB-D
-        Camera(213.0, 213.0, 96.0, 128.0, 192, 256),  # iPhone, held upright
-        Camera(2666.7, 2666.7, 959.5, 539.5, 1920, 1080),  # Blender, 50 mm on 36 mm
-    ],
-)  # fmt: skip
-def test_cameras_that_there_are_are_not_odd(camera):
-    assert odd_camera(camera) == []
-
-
-@pytest.mark.parametrize(
-    ("camera", "words"),
-    [
-        (Camera(571.26, 571.26, 159.5, 119.5, 320, 240), "show 31 degrees"),
-        (Camera(70.0, 70.0, 159.5, 119.5, 320, 240), "show 133 degrees"),
-        (Camera(285.63, 365.0, 159.5, 119.5, 320, 240), "285.63 and 365 differ"),
-        (Camera(285.63, 285.63, 319.5, 239.5, 320, 240), "far from the middle"),
-    ],
-)
-def test_numbers_of_another_picture_are_told_in_a_sentence(camera, words):
-    said = odd_camera(camera)
-
-    assert any(words in sentence for sentence in said)
-    assert all("check" in sentence and sentence.endswith(".") for sentence in said)
