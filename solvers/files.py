@@ -1,9 +1,10 @@
 """Write files whole or not at all, and keep learned things in archives that cannot run code."""
 
+import re
 import struct
 import zipfile
 import zlib
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from contextlib import contextmanager
 from pathlib import Path
 from secrets import token_hex
@@ -23,6 +24,10 @@ DAMAGE = (
 )  # fmt: skip
 
 
+PART_BYTES = 6
+"""Random bytes in the name of a temporary file, so that two writers do not meet."""
+
+
 @contextmanager
 def written_whole(path: Path | str) -> Iterator[Path]:
     """Yield a temporary path beside `path`; move it onto `path` if all goes well.
@@ -35,7 +40,7 @@ def written_whole(path: Path | str) -> Iterator[Path]:
         The folder is missing or may not be written to, or the disk is full.
     """
     path = Path(path)
-    part = path.with_name(f".{path.stem[:40]}.{token_hex(6)}{path.suffix}")
+    part = path.with_name(f"{_part_stem(path)}{token_hex(PART_BYTES)}{path.suffix}")
     try:
         try:  # Not tempfile's: a Ctrl-C that falls into it leaves its file behind, or is lost.
             yield part
@@ -44,6 +49,28 @@ def written_whole(path: Path | str) -> Iterator[Path]:
             part.unlink(missing_ok=True)
     except OSError as error:
         raise InvalidFileError(f"{path} cannot be written: {error.strerror}.") from None
+
+
+def remove_leftovers(paths: Iterable[Path]) -> None:
+    """Remove the temporary files of `written_whole` for these paths.
+
+    Only a process that was killed, or a computer that lost its power, leaves any. Nobody else
+    may be writing these paths.
+    """
+    in_folders: dict[Path, list[Path]] = {}
+    for path in paths:
+        in_folders.setdefault(path.parent, []).append(path)
+    for folder, here in in_folders.items():
+        starts = {(_part_stem(path), path.suffix) for path in here}
+        for file in folder.glob(".*") if folder.is_dir() else ():
+            stem, n_digits = file.stem, 2 * PART_BYTES
+            is_part = re.fullmatch(r"[0-9a-f]+", stem[-n_digits:]) is not None
+            if is_part and (stem[:-n_digits], file.suffix) in starts:
+                file.unlink(missing_ok=True)
+
+
+def _part_stem(path: Path) -> str:
+    return f".{path.stem[:40]}."
 
 
 def write_archive(

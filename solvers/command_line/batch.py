@@ -11,10 +11,10 @@ from pathlib import Path
 from typing import Any, NamedTuple
 
 from ..errors import MocapAssistError
-from ..files import written_whole
+from ..files import remove_leftovers, written_whole
 from ..progress import Progress, unwatched
 from ..version import version
-from .report import draw_task, forget_picture
+from .report import FIGURES, PAGE, draw_task, forget_picture
 from .screen import Screen
 from .verb import Outcome, Task, Verb
 
@@ -136,6 +136,11 @@ class Made:
             notes = None  # None yet, or unreadable: everything is made anew.
         if isinstance(notes, dict):
             self.notes = {name: note for name, note in notes.items() if isinstance(note, dict)}
+
+    def clear_up(self, tasks: Sequence[Task]) -> None:
+        """Remove half-written files that a killed batch has left among these outputs."""
+        targets = [task.target for task in tasks if task.target is not None]
+        remove_leftovers([self.path, self.folder / PAGE, self.folder / FIGURES, *targets])
 
     def has(self, task: Task) -> bool:
         """Whether the output is there and would come out the same again."""

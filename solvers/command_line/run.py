@@ -137,6 +137,8 @@ def _worked(
 ) -> Iterator[Finished]:
     """Yield what is there already, then each task as it is finished, and note it."""
     arguments = tasks[0].arguments
+    if made is not None:
+        made.clear_up(tasks)
     there = [] if made is None or arguments.again else [t for t in tasks if made.has(t)]
     for task in there:
         if arguments.report and not has_picture(task):

@@ -1,0 +1,44 @@
+"""What a killed writer left behind is cleared up, and nothing else."""
+
+import sys
+from subprocess import run
+
+from solvers.files import remove_leftovers, written_whole
+
+KILLED = """
+import os, signal, sys
+from solvers.files import written_whole
+with written_whole(sys.argv[1]) as part:
+    part.write_text("half")
+    os.kill(os.getpid(), signal.SIGKILL)
+"""
+
+
+def test_what_a_killed_writer_left_goes_and_what_is_there_stays(tmp_path):
+    target = (
+        tmp_path / "walk [1] of a very long name that is cut, because some are too long.bvh"
+    )
+    target.write_text("whole")
+    mine = {".walk [1].bvh", ".walk.0123456789ab.bvh", ".hidden", "walk.0123456789ab.bvh"}
+    for name in mine:
+        (tmp_path / name).write_text("an animator's own")
+
+    status = run([sys.executable, "-c", KILLED, target], check=False).returncode
+    left = {path.name for path in tmp_path.iterdir()} - mine - {target.name}
+    remove_leftovers([target, tmp_path / "nowhere" / "other.bvh"])
+
+    assert status != 0
+    assert len(left) == 1
+    assert {path.name for path in tmp_path.iterdir()} == mine | {target.name}
+    assert target.read_text() == "whole"
+
+
+def test_a_writer_that_fails_leaves_nothing(tmp_path):
+    try:
+        with written_whole(tmp_path / "a.txt") as part:
+            part.write_text("half")
+            raise ZeroDivisionError
+    except ZeroDivisionError:
+        pass
+
+    assert not list(tmp_path.iterdir())
