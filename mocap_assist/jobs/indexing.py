@@ -4,7 +4,7 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
-from ...solvers.errors import InvalidMotionError
+from ...solvers.errors import InvalidFileError, InvalidMotionError
 from ...solvers.progress import Progress, unwatched, within
 from ...solvers.retrieval import (
     Clip,
@@ -80,7 +80,12 @@ def index_places(problem: IndexProblem, *, progress: Progress = unwatched) -> In
         The library cannot be read or written.
     """
     path = Path(problem.library)
-    path.parent.mkdir(parents=True, exist_ok=True)
+    try:
+        path.parent.mkdir(parents=True, exist_ok=True)
+    except OSError as error:
+        raise InvalidFileError(
+            f"The library {path} cannot be kept there: {error.strerror}."
+        ) from None
     there = [place for place in problem.places if Path(place.path).exists()]
     missing = [place.path for place in problem.places if place not in there]
     blends = list(_blends(there))

@@ -1,5 +1,6 @@
 """Sources that change are indexed again without being asked: a thread looks after them."""
 
+import os
 from collections.abc import Iterator
 from concurrent.futures import Future, ThreadPoolExecutor
 from pathlib import Path
@@ -12,8 +13,10 @@ from .background import why_indexing
 from .places import index_problem
 
 BETWEEN_LOOKS = 15.0  # seconds
-State = frozenset[tuple[str, int, int]]
-"""Path, size and time of each file."""
+Files = frozenset[tuple[str, int, int]]
+"""Path, size and time of each."""
+State = tuple[IndexProblem, Files]
+"""What is to be indexed, and what was there."""
 
 
 class Keeper:
@@ -49,19 +52,29 @@ class Keeper:
 
 
 def state_of(problem: IndexProblem) -> State:
-    """Return what lies in the places that are indexed, but for the library itself."""
+    """Return what lies in the places that are indexed, but for the library itself.
+
+    What cannot be looked at is as if it were not there: Index will say so.
+    """
     own = str(Path(problem.library).resolve())
-    return frozenset(
-        (str(path), found.st_size, found.st_mtime_ns)
-        for place in problem.places
-        for path in _files(Path(place.path))
-        if not str(path.resolve()).startswith(own) and (found := path.stat())
-    )
+    files = (path for place in problem.places for path in _files(Path(place.path).resolve()))
+    others = (path for path in files if not str(path).startswith(own))
+    return problem, frozenset(seen for path in others if (seen := _seen(path)))
 
 
 def _files(place: Path) -> Iterator[Path]:
-    found = place.rglob("*") if place.is_dir() else [place]
-    return (path for path in found if path.is_file())
+    if not place.is_dir():
+        yield place
+    for folder, _, names in os.walk(place):  # Unlike rglob it bears folders that vanish.
+        yield from (Path(folder, name) for name in names)
+
+
+def _seen(path: Path) -> tuple[str, int, int] | None:
+    try:
+        found = path.stat()
+    except OSError:  # It went while we looked, or may not be looked at.
+        return None
+    return str(path), found.st_size, found.st_mtime_ns
 
 
 _keeper: list[Keeper] = []
@@ -87,7 +100,10 @@ def keep(scene: bpy.types.Scene) -> None:
     if not _keeper:
         _keeper.append(Keeper())
     if _keeper[0].wants(problem):
-        bpy.ops.mocap_assist.index_library("INVOKE_DEFAULT")
+        try:
+            bpy.ops.mocap_assist.index_library("INVOKE_DEFAULT")
+        except RuntimeError as refusal:  # A timer that raises is never called again.
+            bpy.context.window_manager.mocap_assist_indexing.said = str(refusal).strip()
 
 
 def register() -> None:

@@ -121,7 +121,7 @@ def _content(path: Path, member: zipfile.ZipInfo, skipped: int, size: int) -> St
     if member.compress_type == zipfile.ZIP_STORED:
         return PlainBytes(path, start + skipped, size)
     if member.compress_type != zipfile.ZIP_DEFLATED:
-        raise NotImplementedError
+        raise zipfile.BadZipFile(f"compressed by method {member.compress_type}")
     packed = PackedBytes(path, start, member.compress_size, member.file_size, WITHOUT_HEADER)
     return PartOfBytes(packed, skipped, size)
 

@@ -55,13 +55,14 @@ def judged_by_likes(apart: Single, between: Single, n_alike: int) -> Single:
     apart : shape (n,)
         From the query.
     between : shape (n, n)
-        Its diagonal is overwritten.
+        What its diagonal holds is of no account.
     n_alike : int
         How many of the nearest are asked.
     """
-    np.fill_diagonal(between, np.inf)
-    farthest = np.partition(between, n_alike - 1, axis=1)[:, n_alike - 1, None]
-    nearest = (between <= farthest).astype(np.float32)
+    others = between.copy()
+    np.fill_diagonal(others, np.inf)
+    farthest = np.partition(others, n_alike - 1, axis=1)[:, n_alike - 1, None]
+    nearest = (others <= farthest).astype(np.float32)
     nearest += np.float32(MUTUAL) * nearest * nearest.T
     believed = np.float32(BELIEF_IN_LIKES)
     nearest *= believed / nearest.sum(axis=1, keepdims=True)

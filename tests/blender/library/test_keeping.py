@@ -62,3 +62,25 @@ def test_not_unless_asked_for(look, library, clip_files):
     library.keep_current, library.sources = True, ""
     assert look(4) == 0
     assert not (clip_files / "my.clips").exists()
+
+
+def test_it_goes_on_where_files_cannot_be_looked_at(look, clip_files):
+    (clip_files / "lost.bvh").symlink_to(clip_files / "nowhere.bvh")
+
+    assert look(6) == 1
+
+
+def test_another_library_is_filled_too(look, library, clip_files, entries):
+    look(6)
+    library.library_file = str(clip_files / "other.clips")
+
+    assert look(6) == 1
+    assert len(entries(clip_files / "other.clips")) == 6
+
+
+def test_a_refusal_is_shown_and_does_not_end_the_looking(look, library, blank, clip_files):
+    (clip_files / "in_the_way").write_text("a file where a folder should be")
+    library.library_file = str(clip_files / "in_the_way" / "my.clips")
+
+    assert look(3) == 1
+    assert "my.clips" in blank.context.window_manager.mocap_assist_indexing.said
