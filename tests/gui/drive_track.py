@@ -1,4 +1,7 @@
-"""Track an actor in a Blender with a window: bring in depth, press Track, look at the result.
+"""Track an actor and correct it in a Blender with a window.
+
+Points of depth, the panel, the body over the points while it solves and afterwards, undo, a
+frame posed by hand, Track from Here, and Esc that keeps what is tracked.
 
     make extension-plain
     BG_DEBS="python3-scipy python3-pil" BG_FILES="walk.npz" \
@@ -9,15 +12,25 @@ Runs inside that Blender; `bgui` comes with the tool. The recording, such as the
 of one of `../shared/data/depth/truth`, is copied beside this script.
 """
 
+import importlib
 from pathlib import Path
+from time import perf_counter
 
 import bgui
 import bpy
+from mathutils import Quaternion
 
 FOLDER = Path(__file__).parent
 WALK = FOLDER / "walk.npz"
 UNTIL_DONE = 6000  # tenths of a second
 SIDE = (0.70, 0.66, 0.18, 0.20)
+OTHERS = ("reconstruct", "clean", "compare", "feet", "physics", "retarget", "library", "vary",
+          "perform")  # fmt: skip
+ARM, WRONG, CORRECTED = "rightUpperArm", range(8, 24), 15
+AWAY = Quaternion((0.0, 1.0, 0.0), 1.1)
+WATCHED = {"Trying": "1-looking.png", "Tracking": "1-tracking.png", "Judging": "1-last.png"}
+MOST = 0.03
+"""Seconds that a redraw may take."""
 
 
 def settle():
@@ -27,69 +40,146 @@ def settle():
         yield 0.5
 
 
-def look_at(center, distance, rotation):
-    view = bgui.area().spaces.active.region_3d
-    view.view_location = center
-    view.view_rotation = rotation
-    view.view_distance = distance
-    view.view_perspective = "PERSP"
-
-
-def unfold_track_alone():
-    """Take the other panels away, and unfold this one, before the tab is first drawn."""
-    for name in ("reconstruct", "clean", "compare", "feet", "physics", "retarget"):
+def prepare():
+    """An empty scene with points of depth, and the panel Track alone."""
+    for each in list(bpy.data.objects):
+        bpy.data.objects.remove(each)
+    bpy.context.scene.render.fps = 30
+    for name in OTHERS:
         bpy.utils.unregister_class(getattr(bpy.types, f"MOCAP_PT_{name}"))
     panel = bpy.types.MOCAP_PT_track
     bpy.utils.unregister_class(panel)
     panel.bl_options = set()
     bpy.utils.register_class(panel)
+    yield from bgui.open_sidebar("Mocap")
+    assert bpy.ops.mocap_assist.import_recording(filepath=str(WALK)) == {"FINISHED"}
+    view = bgui.area().spaces.active.region_3d
+    view.view_location, view.view_rotation = (0.0, 3.0, 0.0), SIDE
+    view.view_distance, view.view_perspective = 3.6, "PERSP"
 
 
-def watch_it(job):
-    """See the body over the points while it is looked for, tracked, and at last."""
-    shots = {"Trying": "2-looking.png", "Tracking": "3-tracking.png", "Judging": "4-last.png"}
-    frames = set()
+def press(name, shots, stop=lambda job: False):
+    """Press a button of the panel and wait until it has ended, or is to be stopped.
+
+    Pictures are taken when a word is told for the first time, late while it is tracking.
+    """
+    with bgui.override("WINDOW"):
+        bpy.ops.ed.undo_push(message="Before")
+        getattr(bpy.ops.mocap_assist, name)("INVOKE_DEFAULT")
+    job = bpy.context.window_manager.mocap_assist_job
+    assert job.running
+    shots, frames = dict(shots), set()
     for _ in range(UNTIL_DONE):
         yield 0.1
         frames.add(bpy.context.scene.frame_current)
         word = job.message.partition(" ")[0]
-        if word in shots and (word != "Tracking" or job.fraction > 0.6):
+        if word in shots and (word != "Tracking" or job.fraction > 0.5):
             yield 1.0
             bgui.shot(shots.pop(word))
-        if not job.running:
+        if not job.running or stop(job):
             break
-    assert len(frames) > 8, f"the scene went along to {sorted(frames)} alone"
-    assert bpy.context.scene.frame_current == 1
+    assert len(frames) > 3, f"the scene went along to {sorted(frames)} alone"
 
 
-def steps():
-    # Points of depth, the panel, progress while it solves, and the body over the points.
-    for each in list(bpy.data.objects):
-        bpy.data.objects.remove(each)
-    bpy.context.scene.render.fps = 30
-    unfold_track_alone()
-    yield from bgui.open_sidebar("Mocap")
-    assert bpy.ops.mocap_assist.import_recording(filepath=str(WALK)) == {"FINISHED"}
-    name = bpy.context.object.name
-    look_at((0.0, 3.0, 0.0), 4.5, SIDE)
-    yield from settle()
-    bgui.shot("1-points.png")
-    with bgui.override("WINDOW"):
-        bpy.ops.ed.undo_push(message="Imported")
-        bpy.ops.mocap_assist.track_depth("INVOKE_DEFAULT")
-    job = bpy.context.window_manager.mocap_assist_job
-    assert job.running and job.owner == "track"
-    yield from watch_it(job)
-    armature = bpy.context.object
-    assert armature is not None and armature.type == "ARMATURE", armature
-    for number, frame in enumerate((1, 15, 30), start=5):
-        bpy.context.scene.frame_set(frame)
-        yield from settle()
-        bgui.shot(f"{number}-frame-{frame}.png")
+def undo_and_redo(points):
+    """One undo takes the body away."""
     with bgui.override("WINDOW"):
         bpy.ops.ed.undo()
     yield from settle()
-    assert [each.name for each in bpy.data.objects] == [name]
+    assert [each.name for each in bpy.data.objects] == [points]
+    with bgui.override("WINDOW"):
+        bpy.ops.ed.redo()
+    yield from settle()
 
 
-bgui.run(steps, timeout=900)
+def key_wrongly(armature):
+    """Turn an arm away in some frames, as if it had been lost."""
+    bone = armature.pose.bones[ARM]
+    for frame in WRONG:
+        bpy.context.scene.frame_set(frame)
+        bone.rotation_quaternion = AWAY @ bone.rotation_quaternion
+        bone.keyframe_insert("rotation_quaternion", frame=frame)
+
+
+def look(number, name, frames):
+    for frame in frames:
+        bpy.context.scene.frame_set(frame)
+        yield from settle()
+        bgui.shot(f"{number}-{name}-{frame}.png")
+
+
+def time_of_a_redraw(armature):
+    """Return what the body costs, apart from what the graphics card does with it."""
+    package = "bl_ext.user_default.mocap_assist.mocap_assist.scene"
+    overlay = importlib.import_module(f"{package}.body_overlay")
+    drawing = importlib.import_module(f"{package}.body_drawing")
+    view = bgui.area().spaces.active.region_3d
+    began = perf_counter()
+    for _ in range(20):
+        drawing.batch_of(overlay.body_now(armature, 15), view)
+    return (perf_counter() - began) / 20
+
+
+def correct(armature):
+    """Pose the arm as it was, in one frame, and track from there."""
+    scene, bone = bpy.context.scene, armature.pose.bones[ARM]
+    with bgui.override("WINDOW"):
+        bpy.ops.object.mode_set(mode="POSE")
+    scene.frame_set(CORRECTED)
+    bone.rotation_quaternion = AWAY.inverted() @ bone.rotation_quaternion
+    yield from settle()
+    bgui.shot("4-posed-by-hand.png")
+    before = armature.animation_data.action
+    yield from press("retrack", {"Tracking": "5-tracking-again.png"})
+    assert scene.frame_current == CORRECTED
+    after = armature.animation_data.action
+    assert after is not before and after.name.endswith(".retracked"), after.name
+    yield from look(6, "mended", (11, 15, 19))
+    with bgui.override("WINDOW"):
+        bpy.ops.object.mode_set(mode="OBJECT")
+
+
+def keep_on_esc(points):
+    """Esc in the middle makes an armature of what was tracked until then."""
+    manager = bpy.context.window_manager
+    bpy.context.scene.mocap_assist.track.keep_on_esc = True
+    bpy.context.view_layer.objects.active = points
+    n_before = len(bpy.data.armatures)
+    yield from settle()
+    yield from press("track_depth", {}, lambda job: job.fraction > 0.6)
+    bgui.shot("7-before-esc.png")
+    yield from bgui.key("Escape")
+    for _ in range(50):
+        yield 0.2
+        if not manager.mocap_assist_job.running:
+            break
+    assert len(bpy.data.armatures) == n_before + 1, "Esc kept nothing"
+    yield from settle()
+    bgui.shot("8-kept.png")
+
+
+def steps():
+    yield from prepare()
+    points = bpy.context.object
+    points.select_set(False)  # active alone, so that its points keep their colour
+    name = points.name
+    yield from settle()
+    bgui.shot("0-points.png")
+    yield from press("track_depth", WATCHED)
+    assert bpy.context.scene.frame_current == 1
+    assert bpy.context.object.type == "ARMATURE", bpy.context.object
+    yield from undo_and_redo(name)
+    armature = next(each for each in bpy.data.objects if each.type == "ARMATURE")
+    points = bpy.data.objects[name]
+    bpy.context.window_manager.mocap_assist_body = True
+    yield from look(2, "body", (1, 15))
+    cost = time_of_a_redraw(armature)
+    print(f"bgui: the body costs {1000 * cost:.1f} ms per redraw")
+    assert cost < MOST
+    key_wrongly(armature)
+    yield from look(3, "wrong", (11, 15))
+    yield from correct(armature)
+    yield from keep_on_esc(points)
+
+
+bgui.run(steps, timeout=1500)
