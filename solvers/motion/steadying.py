@@ -2,8 +2,7 @@
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.ndimage import gaussian_filter1d
-from scipy.signal import lfilter
+from scipy.ndimage import convolve1d, gaussian_filter1d
 
 Array = NDArray[np.float64]
 
@@ -24,12 +23,12 @@ def steadied(values: Array, frames: float, *, ahead: bool = True) -> Array:
         Whether frames count that come later. Without them the later half of the Gaussian is
         left out, and what is returned lags behind by 0.8 `frames`.
     """
+    values = np.array(values, dtype=np.float64)
     if frames <= 0.0:
-        return np.array(values, dtype=np.float64)
+        return values
     if ahead:
         return np.asarray(gaussian_filter1d(values, frames, axis=0, mode="nearest"))
     reach = round(REACH * frames)
     weights = np.exp(-0.5 * (np.arange(reach + 1) / frames) ** 2)
-    start = np.repeat(values[:1], reach, axis=0)
-    filtered = lfilter(weights / weights.sum(), [1.0], np.concatenate([start, values]), axis=0)
-    return np.asarray(filtered[reach:])
+    before = {"mode": "nearest", "origin": -((reach + 1) // 2)}
+    return np.asarray(convolve1d(values, weights / weights.sum(), axis=0, **before))

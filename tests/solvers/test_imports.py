@@ -1,0 +1,17 @@
+"""A button starts a process that imports the solvers: what takes long to import must wait."""
+
+import subprocess
+import sys
+
+import pytest
+
+SLOW = ("scipy.signal", "scipy.stats", "mujoco", "PIL", "matplotlib", "sklearn")
+
+
+@pytest.mark.parametrize("name", ["workflows", "command_line"])
+def test_nothing_slow_is_imported_before_it_is_needed(name):
+    code = f"import sys, solvers.{name}; print(*sys.modules)"
+    run = subprocess.run(
+        [sys.executable, "-c", code], capture_output=True, text=True, check=True
+    )
+    assert set(run.stdout.split()).isdisjoint(SLOW)
