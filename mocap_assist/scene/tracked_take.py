@@ -44,7 +44,7 @@ class TrackedTake:
 
     @property
     def motion(self) -> Motion:
-        """The motion of the body; hands and feet, which do not turn, are at rest."""
+        """The motion of the body; hands and toes, which do not turn, are at rest."""
         return self._of_body(self._part(self.channels, len(self.frames)))
 
     def pose(self, armature: bpy.types.Object) -> Motion:

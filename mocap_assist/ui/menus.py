@@ -6,6 +6,7 @@ from .drawing import exists
 
 BUTTONS = (
     "mocap_assist.track_depth",
+    "mocap_assist.retrack",
     "mocap_assist.reconstruct",
     "mocap_assist.denoise",
     "mocap_assist.measure_quality",

@@ -98,7 +98,7 @@ def motion_frames(body: BodyModel, motion: Motion, floor: Floor | None = None) -
 
     Returns
     -------
-    array, shape (n_frames, 15, 4, 4)
+    array, shape (n_frames, 17, 4, 4)
         camera_from_segment of each of the `SEGMENTS`; joints are as far apart as in the body.
     """
     camera = np.linalg.inv(scene_from_camera(floor))
