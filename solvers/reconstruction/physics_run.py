@@ -118,12 +118,18 @@ def _steps(
     for step, moment in enumerate(zip(*states, strict=True)):
         if step:
             engine.mj_step1(world.model, world.data)
-        if not np.abs(world.data.qvel).max() < FASTEST:
+        if not _goes(world):
             return [*used, 0.0]
         used.append(drive(engine, world, control, States(*moment)))
         engine.mj_step2(world.model, world.data)
-        add_loads(world, loads, 1.0 / (control.weight * len(states.places)))
+        if _goes(world):
+            add_loads(world, loads, 1.0 / (control.weight * len(states.places)))
     return used
+
+
+def _goes(world: World) -> bool:
+    """Tell whether the engine has not given up."""
+    return bool(np.abs(world.data.qvel).max() < FASTEST)
 
 
 def _apart(engine: ModuleType, world: World, wanted: Array) -> float:
@@ -131,8 +137,7 @@ def _apart(engine: ModuleType, world: World, wanted: Array) -> float:
     engine gave up.
     """
     data = world.data
-    exploded = not (np.isfinite(data.qpos).all() and np.abs(data.qvel).max() < FASTEST)
-    if exploded or np.any(data.warning.number):
+    if not (_goes(world) and np.isfinite(data.qpos).all()) or np.any(data.warning.number):
         return np.inf
     world.ghost.qpos[:] = wanted
     engine.mj_kinematics(world.model, world.ghost)
