@@ -46,8 +46,9 @@ SUNK = 0.001
 """Metres, for legs of 0.9 m, by which no foot is planted if the body then sinks deeper."""
 
 TRIES = 4
-CALMEST = 0.16
-"""Seconds of smoothing, beyond which there is little left of a motion."""
+LEAST_CALM, CALMEST = 0.005, 0.16
+"""Seconds of smoothing: what is at least doubled to try again, and where that ends, for beyond
+there is little left of a motion."""
 
 HANGING = 0.75
 """Share of the help from outside which a body that goes by itself does not use on average."""
@@ -110,19 +111,26 @@ def simulated_piece(
     much, up to three times; what went best is returned.
     """
     best, start = None, 0.0
-    for doublings in range(TRIES):
-        smoothing = min(conditions.smoothing * 2**doublings, CALMEST)
+    for smoothing in _smoothings(conditions.smoothing):
         stop = (1.0 + start) / 2
         tried = _tried(
             engine, body, motion, conditions, smoothing, within(progress, start, stop)
         )
         if best is None or tried.trouble < best.trouble:
             best = tried
-        if best.trouble < (0, HANGING * conditions.support) or smoothing == CALMEST:
+        if best.trouble <= (0, HANGING * conditions.support):
             break
         start = stop
     assert best is not None
     return _planted(body, best, conditions.ground) if conditions.plant else best
+
+
+def _smoothings(asked: float) -> list[float]:
+    """Return by how many seconds each try is calmed: first as asked, then twice as much."""
+    calmest = max(asked, CALMEST)
+    least = max(asked, LEAST_CALM)
+    more = [min(least * 2**doublings, calmest) for doublings in range(1, TRIES)]
+    return list(dict.fromkeys([asked, *more]))
 
 
 def _planted(body: PhysicsBody, piece: Piece, ground: float) -> Piece:

@@ -10,7 +10,12 @@ from numpy.testing import assert_allclose
 
 from solvers.errors import InvalidMotionError
 from solvers.motion import Motion, Skeleton, forward_kinematics
-from solvers.reconstruction import Ground, SimulateSettings, physics_run, simulate
+from solvers.reconstruction import (
+    Ground,
+    SimulateSettings,
+    physics_run,
+    simulate,
+)
 from solvers.reconstruction.physics_control import drive
 from solvers.samples import GaitSettings, walking_gait
 
