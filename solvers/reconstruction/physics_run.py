@@ -89,7 +89,7 @@ def follow(
         places[frame] = world.data.qpos
         if frame < n_frames - 1:
             support[frame] = np.mean(_steps(engine, world, control, states, loads[frame]))
-    loads[-1] = loads[max(n_frames - 2, 0)]
+    support[-1], loads[-1] = support[max(n_frames - 2, 0)], loads[max(n_frames - 2, 0)]
     followed = _followed(apart, lost, STRAYING * control.size)
     return Course(places, support, loads, followed, len(lost))
 

@@ -75,3 +75,14 @@ def tries(monkeypatch) -> list[float]:
 
     monkeypatch.setattr(physics_piece, "_tried", noted)
     return found
+
+
+@pytest.mark.parametrize("n_frames", [5, 2])
+def test_help_is_told_of_all_frames_of_a_body_that_hangs(n_frames):
+    """One that hovers over the ground has nothing to stand on."""
+    sky = WALK.slice(0, n_frames)
+    sky = sky.with_poses(root_positions=sky.root_positions + np.array([0, 0, 0.9]))
+
+    result = simulate(sky, settings=SimulateSettings(ground=Ground.HEIGHT))
+
+    assert_allclose(result.support, 0.4)
