@@ -235,6 +235,12 @@ def test_a_library_keeps_twists_and_their_mirror_images(gait, tmp_path):
     assert not both.known_twists[library.n_postures :].any()
 
 
+def test_two_libraries_that_tell_no_twist_join_to_one_that_tells_none(gait):
+    old = replace(build_posture_library([gait]), twists=None)
+
+    assert joined_postures(old, old).twists is None
+
+
 def test_files_of_before_are_read_and_damaged_ones_refused(gait, tmp_path):
     path = tmp_path / "postures.npz"
     library = build_posture_library([gait])
