@@ -98,5 +98,5 @@ def agreed_twists(skeletons: Sequence[Skeleton], clips: Sequence[ClipTwists]) ->
 
 
 def _rig(skeleton: Skeleton) -> object:
-    """Return what is the same for all clips of one rig."""
-    return skeleton.names, np.round(skeleton.offsets, 4).tobytes()
+    """Return what is the same for all clips of one rig; the sign of 0 is not."""
+    return skeleton.names, (np.round(skeleton.offsets, 4) + 0.0).tobytes()

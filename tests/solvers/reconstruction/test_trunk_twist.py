@@ -160,6 +160,21 @@ def test_makers_who_turn_the_bone_otherwise_agree(gait, maker):
     assert np.abs(theirs).min() > 0.5
 
 
+def test_a_rig_is_known_again_though_its_offsets_were_rounded(gait):
+    """A walk that tells how the maker turns arms, and one of this rig that tells nothing."""
+    skeleton = gait.skeleton
+    rounded = replace(skeleton, offsets=skeleton.offsets - 1e-6)
+    clip = clip_twists(gait, motion_postures(gait))
+    straight = clip._replace(shares=np.zeros_like(clip.shares))
+
+    same, again = (
+        agreed_twists([skeleton, each], [clip, straight])[1] for each in (skeleton, rounded)
+    )
+
+    assert np.abs(same[:, LEFT_ARM]).max() > 0.5
+    assert_allclose(again, same)
+
+
 def test_so_do_makers_of_other_rest_poses(gait):
     """The same walk of a rig that rests with its arms lowered."""
     skeleton = gait.skeleton
