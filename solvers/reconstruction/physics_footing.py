@@ -42,10 +42,10 @@ def with_feet_on_ground(
         1 for a foot that does stand.
     ground : float, metres
     """
-    points, joints = bottoms(body, motion)
+    points = bottoms(body, motion)
     positions, result = forward_kinematics(motion).positions, motion
     for column, side in enumerate(SIDES):
-        own, chain = of_foot(body, joints, side), leg_chain(body, side)
+        own, chain = of_foot(body, side), leg_chain(body, side)
         if chain and own.any():
             heights = (points[:, own, 2].min(axis=1) - ground) / body.size
             rise = _rise(heights, firm[:, column], stands[:, column])

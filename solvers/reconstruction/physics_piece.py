@@ -18,7 +18,7 @@ from .physics_footing import with_feet_on_ground
 from .physics_plant import planted
 from .physics_run import follow
 from .physics_stance import from_frame_to_frame, in_contact, standing
-from .physics_surface import clearance, raising, sole_speeds, touching
+from .physics_surface import clearance, end_joints, raising, sole_speeds, touching
 from .physics_target import away_from, blended, calmed_target
 from .physics_world import build_world
 
@@ -69,8 +69,8 @@ class Conditions(NamedTuple):
 class Piece:
     """What was simulated of a piece: see `Simulated`.
 
-    `n_lost` counts how often it was lost. `loads` is by how much the ground carries each of the
-    ends of `bottoms`, as a share of the weight, and `stands` how firmly the feet of the
+    `n_lost` counts how often it was lost. `loads` is by how much the ground carries each end of
+    `PhysicsBody.grounded`, as a share of the weight, and `stands` how firmly the feet of the
     target stand, shape (n_frames, 2), 0 to 1.
     """
 
@@ -184,7 +184,7 @@ def _tried(
         target,
         np.maximum(firm, SLIPPERY),
         n_steps,
-        2 * sum(capsule.touches for capsule in body.capsules),
+        len(end_joints(body)),
         tell=lambda frame: progress(frame / motion.n_frames, "Simulating"),
     )
     course.places[:, :3] = rotate(facing, course.places[:, :3]) + origin

@@ -41,7 +41,7 @@ class Course:
     support : shape (n_frames,)
         Force from outside, as a share of the weight.
     loads : shape (n_frames, n_ends)
-        What the ground pushes up with at each of the ends of `bottoms`, likewise.
+        What the ground pushes up with at each end of `PhysicsBody.grounded`, likewise.
     followed : bool, shape (n_frames,)
         Where the body was near its target.
     n_lost : int

@@ -216,7 +216,7 @@ def _put_together(
         motion=result.with_poses(),
         followed=followed,
         contacts=contacts,
-        carried=carried(body, whole, np.concatenate([piece.loads for piece in pieces])),
+        carried=carried(body, np.concatenate([piece.loads for piece in pieces])),
         support=np.concatenate([piece.support for piece in pieces]),
         ground=ground,
         penetration_before=penetration(body, whole, ground),
