@@ -10,15 +10,9 @@ from ..motion import Motion, Skeleton, find_humanoid_map, forward_kinematics
 from ..motion.canonical import t_pose_alignment
 from ..motion.posture_joints import POSTURE_JOINTS
 from ..motion.rotations import multiply, rotate
+from .limb_angles import Complex, angles_about
 from .limb_twist import bend_share
-from .trunk_twist import (
-    N_TWISTED,
-    TWISTED,
-    Complex,
-    angles_about,
-    bend_normals,
-    plain_hinges,
-)
+from .trunk_twist import N_TWISTED, TWISTED, bend_normals, plain_hinges
 
 Array = NDArray[np.float64]
 

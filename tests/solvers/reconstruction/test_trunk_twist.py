@@ -15,6 +15,7 @@ from solvers.motion.posture_heading import mirrored, turned
 from solvers.motion.posture_joints import POSTURE_JOINTS, motion_postures
 from solvers.motion.rotations import multiply, quaternion_from_rotation_vector
 from solvers.reconstruction.clip_twists import agreed_twists, clip_twists
+from solvers.reconstruction.limb_angles import angles_about
 from solvers.reconstruction.posture_library import (
     KIND,
     VERSION,
@@ -25,7 +26,6 @@ from solvers.reconstruction.posture_library import (
 from solvers.reconstruction.trunk_twist import (
     TWISTED,
     LimbTwists,
-    angles_about,
     bend_normals,
     known_hinges,
     mean_twists,
