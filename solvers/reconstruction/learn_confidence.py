@@ -27,6 +27,8 @@ LEARNING = ResidualPriorSettings()
 FEWEST_FRAMES = 20
 """Frames in which a joint of an actor must be known to tell anything."""
 FEWEST_ACTORS = 3
+FEWEST_POINTS = 3
+"""Joints of actors, told and found, through which a line is laid."""
 CLOSEST = 1e-4
 """Metres. Medians of errors below this tell nothing more."""
 
@@ -152,7 +154,7 @@ def fitted(points: Array, *, keep_level: bool) -> Calibration:
         most. Beside the offset nobody told it before.
     """
     known = points[np.isfinite(points).all(axis=1)]
-    if len(known) < FEWEST_ACTORS:
+    if len(known) < FEWEST_POINTS:
         return AS_TOLD
     level, mean = known.mean(axis=0)
     told, found = known[:, 0] - level, known[:, 1] - mean

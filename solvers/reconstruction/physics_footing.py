@@ -17,7 +17,8 @@ PRESSED = 0.003
 """Metres under the ground, likewise, at which a foot stands, so that it carries its share."""
 
 FARTHEST = 0.1
-"""Metres over or under the ground, likewise: a foot farther off stands on something else."""
+"""Metres over or under the ground, likewise: a standing foot farther off stands on something
+else. One that swings is drawn up from any depth."""
 
 CALM = 0.03
 """Seconds of the Gaussian that eases what feet are raised and lowered by."""

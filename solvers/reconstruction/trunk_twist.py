@@ -21,7 +21,8 @@ Array = NDArray[np.float64]
 LEAST = 1e-3
 """What a joint counts for at least, lest no neighbour is nearer than another."""
 NEAR = 0.05
-"""Metres from the nearest posture, as a mean over joints, at which half of its twist counts."""
+"""Metres from the nearest posture, as a root mean square over joints, at which half of its
+twist counts."""
 
 
 class TwistedLimb(NamedTuple):
@@ -146,7 +147,8 @@ def mirrored_twists(twists: Complex) -> Complex:
 def mean_twists(twists: Complex, postures: Array, neighbours: Array, trust: Array) -> Complex:
     """Return the mean of neighbours' twists, weighted by their nearness [SHJT13, VII-B].
 
-    The weight is the inverse of eq. 9. The farther the nearest is, the shorter the mean.
+    The weight is the inverse of eq. 9, squared. The farther the nearest is, the shorter the
+    mean.
 
     Parameters
     ----------
@@ -162,9 +164,9 @@ def mean_twists(twists: Complex, postures: Array, neighbours: Array, trust: Arra
     """
     off = neighbours - postures.reshape(len(postures), 1, -1)
     counted = np.repeat(np.maximum(trust, LEAST), 3, axis=1)
-    ways = np.einsum("fni,fni,fi->fn", off, off, counted, optimize=False)
-    weights = 1.0 / np.maximum(ways, SMALL)
+    squares = np.einsum("fni,fni,fi->fn", off, off, counted, optimize=False)
+    weights = 1.0 / np.maximum(squares, SMALL)
     weights /= weights.sum(axis=1, keepdims=True)
-    nearest = 3.0 * ways.min(axis=1) / counted.sum(axis=1)
-    near = 1.0 / (1.0 + nearest / NEAR**2)
+    least_square = 3.0 * squares.min(axis=1) / counted.sum(axis=1)
+    near = 1.0 / (1.0 + least_square / NEAR**2)
     return np.asarray(near[:, None] * np.einsum("fn,fnl->fl", weights, twists))
