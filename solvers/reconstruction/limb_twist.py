@@ -69,8 +69,8 @@ class Hinges(NamedTuple):
     ways : shape (n_frames, 3), optional
         In the world, as long as they agree; none where no postures were asked.
     alone : bool
-        Whether nothing else is to tell the twist, frame by frame; the last is held where they
-        tell none.
+        Whether nothing else is to tell the twist, frame by frame. Where they tell none, there
+        is none.
     """
 
     ways: Array | None = None
@@ -123,15 +123,9 @@ def hinge_turns(
     if known.ways is not None:
         like = _known_angles(axis, hinge, known.ways) * np.linalg.norm(known.ways, axis=-1)
     if known.alone:
-        return _turned_about(turns, axis, np.angle(_held(like)))
+        return _turned_about(turns, axis, np.angle(like))
     expected = Expected(like, ALIKE * (1.0 - (1.0 - SEEN_TOO) * sure))
     return twisted(turns, axis, hinge, normal, bend_share(bend) * sure, frame_rate, expected)
-
-
-def _held(told: Complex) -> Complex:
-    """Return numbers, each that is 0 replaced by the last before it that is not."""
-    last = np.where(told != 0.0, np.arange(len(told)), 0)
-    return np.asarray(told[np.maximum.accumulate(last)])
 
 
 def bend_share(bends: Array) -> Array:

@@ -68,7 +68,8 @@ class LimbTwists:
         how far all agree; 0: nothing is known.
     alone : bool
         Whether these alone tell the twist [SHJT13, section VII-B], whatever elbows and knees
-        show.
+        show. Where nothing is known, limbs are then not twisted at all; to hold the twist that
+        was known last measured worse.
     """
 
     vectors: Complex
