@@ -5,7 +5,7 @@ from collections.abc import Iterator, Sequence
 from pathlib import Path
 from typing import Any
 
-from ..errors import InvalidFileError, InvalidMotionError
+from ..errors import InvalidFileError, InvalidMotionError, InvalidSettingError
 from ..motion import JointRecording, Motion, Tracks, resample
 from ..motion.posture_joints import POSTURE_JOINTS, motion_postures
 from ..progress import Progress, within
@@ -31,7 +31,7 @@ def add_residuals_options(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--confidence", action="store_true",
         help="Also learn how far the result is to be believed of people whom it never saw, by"
-        " leaving each of at least three actors out; takes about as many times as long",
+        " leaving each of at least three --actors out; takes about as many times as long",
     )  # fmt: skip
     parser.add_argument(
         "--output", type=Path, required=True, metavar="FILE",
@@ -47,6 +47,11 @@ def add_residuals_options(parser: argparse.ArgumentParser) -> None:
 def perform_residuals(task: Task, prepared: None, progress: Progress) -> Outcome:
     """Learn from all takes that have a partner, and write what was learned."""
     arguments = task.arguments
+    if arguments.confidence and arguments.actors is None:
+        raise InvalidSettingError(
+            "--confidence needs --actors: it leaves people out, and must know whose takes are"
+            " whose."
+        )
     pairs = list(_pairs(task.sources, arguments, within(progress, 0.0, 0.4)))
     names = [path.stem for path in task.sources]
     actors = [str(path) for path in task.sources]

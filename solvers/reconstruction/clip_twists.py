@@ -10,15 +10,9 @@ from ..motion import Motion, Skeleton, find_humanoid_map, forward_kinematics
 from ..motion.canonical import t_pose_alignment
 from ..motion.posture_joints import POSTURE_JOINTS
 from ..motion.rotations import multiply, rotate
+from .limb_angles import Complex, angles_about
 from .limb_twist import bend_share
-from .trunk_twist import (
-    N_TWISTED,
-    TWISTED,
-    Complex,
-    angles_about,
-    bend_normals,
-    plain_hinges,
-)
+from .trunk_twist import N_TWISTED, TWISTED, bend_normals, plain_hinges
 
 Array = NDArray[np.float64]
 
@@ -98,5 +92,5 @@ def agreed_twists(skeletons: Sequence[Skeleton], clips: Sequence[ClipTwists]) ->
 
 
 def _rig(skeleton: Skeleton) -> object:
-    """Return what is the same for all clips of one rig."""
-    return skeleton.names, np.round(skeleton.offsets, 4).tobytes()
+    """Return what is the same for all clips of one rig; the sign of 0 is not."""
+    return skeleton.names, (np.round(skeleton.offsets, 4) + 0.0).tobytes()

@@ -58,8 +58,8 @@ def chance_within(
     told = np.log(np.maximum(np.where(known, variances, 1.0), TINY))
     level = float(told[known].mean()) if known.any() else 0.0
     nearness = 0.5 * distance**2 * np.exp(-level - shift - slope * (told - level))
+    nodes = zip(NODES, SHARES, strict=True) if spread else [(0.0, 1.0)]
     chance = sum(
-        share * gammainc(1.5, nearness * np.exp(-spread * node))
-        for node, share in zip(NODES, SHARES, strict=True)
+        share * gammainc(1.5, nearness * np.exp(-spread * node)) for node, share in nodes
     )
     return np.where(known, chance, 0.0)

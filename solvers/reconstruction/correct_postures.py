@@ -7,14 +7,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..motion import JointRecording
-from ..motion.posture_joints import N_JOINTS, POSTURE_JOINTS, joints_of_names, posture_positions
+from ..motion.posture_joints import posture_positions
 from ..motion.straight_gaps import bridged
 from ..progress import Progress, unwatched, within
 from ..settings import Settings, setting
 from .follow_joints import follow_joints
 from .foretold import Foretold
 from .other_joints import all_joints, anchors
-from .reliability import Reliability, measure_reliability
+from .reliability import Reliability, measure_reliability, posture_reliability
 from .residual_inputs import calm_postures
 from .residual_prior import ResidualPrior
 from .result import Reconstruction
@@ -202,11 +202,3 @@ def _frame_by_frame(
             wanted = wanted + temporal * steady
         result[frame] = seen[frame] + wanted / np.maximum(total, 1e-12)[:, None]
     return result / CENTIMETRES
-
-
-def posture_reliability(recording: JointRecording, combined: Array) -> Array:
-    """Return the reliability of the joints of postures, (n_frames, 20); 0 where not seen."""
-    result = np.zeros((recording.n_frames, N_JOINTS))
-    for role, place in joints_of_names(recording.names).items():
-        result[:, POSTURE_JOINTS.index(role)] = combined[:, place]
-    return result

@@ -11,13 +11,13 @@ from ..motion import JointRecording, Tracks
 from ..motion.posture_joints import N_JOINTS, posture_positions
 from ..progress import Progress, unwatched, within
 from .confidence import AS_TOLD, Calibration
-from .correct_postures import CorrectionSettings, foretell_places, posture_reliability
+from .correct_postures import CorrectionSettings, foretell_places
 from .learn_residual_prior import (
     MEDIAN_OF_SQUARES,
     ResidualPriorSettings,
     learn_residual_prior,
 )
-from .reliability import measure_reliability
+from .reliability import measure_reliability, posture_reliability
 from .residual_prior import ResidualPrior
 
 Array = NDArray[np.float64]
@@ -27,6 +27,8 @@ LEARNING = ResidualPriorSettings()
 FEWEST_FRAMES = 20
 """Frames in which a joint of an actor must be known to tell anything."""
 FEWEST_ACTORS = 3
+FEWEST_POINTS = 3
+"""Joints of actors, told and found, through which a line is laid."""
 CLOSEST = 1e-4
 """Metres. Medians of errors below this tell nothing more."""
 
@@ -102,29 +104,31 @@ def told_and_found(prior: ResidualPrior, pairs: Sequence[Pair]) -> Array:
         Logarithms of variances, told and found (from the median, as errors have heavy tails);
         first with the constant offset, then beside it.
     """
-    result = []
-    for shift in (True, False):
-        told, off = [], []
-        for recording, truth in pairs:
-            each = _take(prior, recording, posture_positions(truth), shift)
-            told.append(each[0])
-            off.append(each[1])
-        result.append(_levels(np.concatenate(told), np.concatenate(off)))
-    return np.array(result)
+    takes = [_take(prior, recording, posture_positions(truth)) for recording, truth in pairs]
+    return np.array([
+        _levels(*(np.concatenate(each) for each in zip(*of_takes, strict=True)))
+        for of_takes in zip(*takes, strict=True)
+    ])
 
 
 def _take(
-    prior: ResidualPrior, recording: JointRecording, truth: Array, shift: bool
-) -> tuple[Array, Array]:
-    """Return told variances and squared errors of a take, (n_frames, 20); NaN: not known."""
+    prior: ResidualPrior, recording: JointRecording, truth: Array
+) -> list[tuple[Array, Array]]:
+    """Return told variances and squared errors of a take, (n_frames, 20), twice.
+
+    First with the constant offset, then beside it. NaN: not known.
+    """
     weights = posture_reliability(recording, measure_reliability(recording).combined)
-    settings = CorrectionSettings(shift=shift)
-    places, _, variances = foretell_places(recording, prior, weights, settings)
-    off = truth - places
-    if not shift:
-        known = np.isfinite(off).any(axis=(0, 2))
-        off[:, known] -= np.nanmean(off[:, known], axis=0)
-    return variances, (off**2).sum(axis=-1)
+    found = []
+    for shift in (True, False):
+        settings = CorrectionSettings(shift=shift)
+        places, _, variances = foretell_places(recording, prior, weights, settings)
+        off = truth - places
+        if not shift:
+            known = np.isfinite(off).any(axis=(0, 2))
+            off[:, known] -= np.nanmean(off[:, known], axis=0)
+        found.append((variances, (off**2).sum(axis=-1)))
+    return found
 
 
 def _levels(told: Array, squares: Array) -> Array:
@@ -152,7 +156,7 @@ def fitted(points: Array, *, keep_level: bool) -> Calibration:
         most. Beside the offset nobody told it before.
     """
     known = points[np.isfinite(points).all(axis=1)]
-    if len(known) < FEWEST_ACTORS:
+    if len(known) < FEWEST_POINTS:
         return AS_TOLD
     level, mean = known.mean(axis=0)
     told, found = known[:, 0] - level, known[:, 1] - mean

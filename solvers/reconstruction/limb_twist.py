@@ -8,9 +8,9 @@ from scipy.linalg import solveh_banded
 
 from ..motion import Skeleton
 from ..motion.rotations import inverse, multiply, quaternion_from_rotation_vector, rotate
+from .limb_angles import Complex, angles_about, bent, unit
 
 Array = NDArray[np.float64]
-Complex = NDArray[np.complex128]
 
 HINGES = {"Arm": (0.0, -1.0, 0.0), "Leg": (0.0, 1.0, 0.0)}
 """Where an elbow or a knee brings what is below it, in a T-pose that faces -Y."""
@@ -69,7 +69,8 @@ class Hinges(NamedTuple):
     ways : shape (n_frames, 3), optional
         In the world, as long as they agree; none where no postures were asked.
     alone : bool
-        Whether nothing else is to tell the twist, frame by frame.
+        Whether nothing else is to tell the twist, frame by frame. Where they tell none, there
+        is none.
     """
 
     ways: Array | None = None
@@ -116,13 +117,11 @@ def hinge_turns(
     along = unit(skeleton.offsets[limb.lower])
     axis = rotate(turns, along)
     hinge = rotate(turns, unit(np.cross(along, limb.bends_towards)))
-    below = unit(places[:, limb.end] - places[:, limb.lower])
-    normal = np.cross(axis, below)
-    bend = np.arctan2(np.linalg.norm(normal, axis=-1), np.einsum("fi,fi->f", axis, below))
+    normal, bend = bent(axis, unit(places[:, limb.end] - places[:, limb.lower]))
     sure = np.min(trust[:, [limb.upper, limb.lower, limb.end]], axis=1)
     like = np.zeros(len(turns), np.complex128)
     if known.ways is not None:
-        like = _angles(hinge, known.ways, axis) * np.linalg.norm(known.ways, axis=-1)
+        like = _known_angles(axis, hinge, known.ways) * np.linalg.norm(known.ways, axis=-1)
     if known.alone:
         return _turned_about(turns, axis, np.angle(like))
     expected = Expected(like, ALIKE * (1.0 - (1.0 - SEEN_TOO) * sure))
@@ -208,7 +207,7 @@ def twisted(
     Arrays of shape (n_frames, 3) are in the world; `weights` has shape (n_frames,). What is not
     known of the twist that is `expected` is none at all.
     """
-    seen = _angles(usual, normal, axis)
+    seen = _known_angles(axis, usual, normal)
     weights = np.where(seen != 0.0, weights * (0.5 + 0.5 * seen.real), 0.0)
     stiffness = (STEADY * frame_rate) ** 2
     told, sure = weights * seen + USUAL, weights + USUAL
@@ -228,13 +227,9 @@ def _of_actor(like: Complex, seen: Complex, weights: Array, frame_rate: float) -
     return np.asarray(like * off / max(abs(off), FAINT))
 
 
-def _angles(usual: Array, normal: Array, axis: Array) -> Complex:
-    """Return how far `normal` is turned from `usual`, as numbers of length 1; 0: unknown."""
-    cos = np.einsum("fi,fi->f", usual, normal)
-    sin = np.einsum("fi,fi->f", np.cross(usual, normal), axis)
-    size = np.hypot(cos, sin)
-    told = np.isfinite(size) & (size > 0.0)
-    return np.asarray(np.where(told, cos + 1j * sin, 0.0) / np.where(told, size, 1.0))
+def _known_angles(directions: Array, plain: Array, hinges: Array) -> Complex:
+    """Return `angles_about`; 0: unknown."""
+    return np.nan_to_num(angles_about(directions, plain, hinges))
 
 
 def _turned_about(turns: Array, axis: Array, angles: Array) -> Array:
@@ -256,7 +251,7 @@ def smoothest(told: Array, weights: Array, stiffness: float) -> Array:
     """Solve (W + s D'D) z = told for paths z, shape (n_frames, n)."""
     n_frames = len(told)
     if n_frames == 1:
-        return told
+        return np.asarray(told / weights[:, None])
     ends = np.full(n_frames, 2.0)
     ends[0] -= 1.0
     ends[-1] -= 1.0
@@ -264,9 +259,3 @@ def smoothest(told: Array, weights: Array, stiffness: float) -> Array:
     bands[0, 1:] = -stiffness
     bands[1] = weights + stiffness * ends
     return np.asarray(solveh_banded(bands, told))
-
-
-def unit(vectors: Array) -> Array:
-    """Return vectors of length 1; one of no length stays."""
-    lengths = np.linalg.norm(vectors, axis=-1, keepdims=True)
-    return np.asarray(vectors / np.where(lengths > 0.0, lengths, 1.0))

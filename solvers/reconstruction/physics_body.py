@@ -101,6 +101,11 @@ class PhysicsBody:
     mass: float
     strengths: Array
 
+    @property
+    def grounded(self) -> tuple[Capsule, ...]:
+        """Capsules that meet the ground; their ends, two of each, are counted in this order."""
+        return tuple(capsule for capsule in self.capsules if capsule.touches)
+
 
 def physics_body(motion: Motion, humanoid: HumanoidMap) -> PhysicsBody:
     """Build the body that is simulated, of a motion without gaps.

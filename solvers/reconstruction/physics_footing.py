@@ -17,7 +17,8 @@ PRESSED = 0.003
 """Metres under the ground, likewise, at which a foot stands, so that it carries its share."""
 
 FARTHEST = 0.1
-"""Metres over or under the ground, likewise: a foot farther off stands on something else."""
+"""Metres over or under the ground, likewise: a standing foot farther off stands on something
+else. One that swings is drawn up from any depth."""
 
 CALM = 0.03
 """Seconds of the Gaussian that eases what feet are raised and lowered by."""
@@ -42,10 +43,10 @@ def with_feet_on_ground(
         1 for a foot that does stand.
     ground : float, metres
     """
-    points, joints = bottoms(body, motion)
+    points = bottoms(body, motion)
     positions, result = forward_kinematics(motion).positions, motion
     for column, side in enumerate(SIDES):
-        own, chain = of_foot(body, joints, side), leg_chain(body, side)
+        own, chain = of_foot(body, side), leg_chain(body, side)
         if chain and own.any():
             heights = (points[:, own, 2].min(axis=1) - ground) / body.size
             rise = _rise(heights, firm[:, column], stands[:, column])

@@ -9,8 +9,8 @@ Array = NDArray[np.float64]
 
 
 def add_loads(world: World, loads: Array, factor: float) -> None:
-    """Add to `loads`, shape (n_ends,), the forces by which the ground pushes up at each of the
-    ends of `bottoms` in this moment, times a factor.
+    """Add to `loads`, shape (n_ends,), the forces by which the ground pushes up at each end of
+    `PhysicsBody.grounded` in this moment, times a factor.
     """
     data = world.data
     active = data.contact.efc_address >= 0

@@ -18,7 +18,7 @@ from .physics_footing import with_feet_on_ground
 from .physics_plant import planted
 from .physics_run import follow
 from .physics_stance import from_frame_to_frame, in_contact, standing
-from .physics_surface import clearance, raising, sole_speeds, touching
+from .physics_surface import clearance, end_joints, raising, sole_speeds, touching
 from .physics_target import away_from, blended, calmed_target
 from .physics_world import build_world
 
@@ -46,8 +46,9 @@ SUNK = 0.001
 """Metres, for legs of 0.9 m, by which no foot is planted if the body then sinks deeper."""
 
 TRIES = 4
-CALMEST = 0.16
-"""Seconds of smoothing, beyond which there is little left of a motion."""
+LEAST_CALM, CALMEST = 0.005, 0.16
+"""Seconds of smoothing: what is at least doubled to try again, and where that ends, for beyond
+there is little left of a motion."""
 
 HANGING = 0.75
 """Share of the help from outside which a body that goes by itself does not use on average."""
@@ -68,8 +69,8 @@ class Conditions(NamedTuple):
 class Piece:
     """What was simulated of a piece: see `Simulated`.
 
-    `n_lost` counts how often it was lost. `loads` is by how much the ground carries each of the
-    ends of `bottoms`, as a share of the weight, and `stands` how firmly the feet of the
+    `n_lost` counts how often it was lost. `loads` is by how much the ground carries each end of
+    `PhysicsBody.grounded`, as a share of the weight, and `stands` how firmly the feet of the
     target stand, shape (n_frames, 2), 0 to 1.
     """
 
@@ -110,19 +111,26 @@ def simulated_piece(
     much, up to three times; what went best is returned.
     """
     best, start = None, 0.0
-    for doublings in range(TRIES):
-        smoothing = min(conditions.smoothing * 2**doublings, CALMEST)
+    for smoothing in _smoothings(conditions.smoothing):
         stop = (1.0 + start) / 2
         tried = _tried(
             engine, body, motion, conditions, smoothing, within(progress, start, stop)
         )
         if best is None or tried.trouble < best.trouble:
             best = tried
-        if best.trouble < (0, HANGING * conditions.support) or smoothing == CALMEST:
+        if best.trouble <= (0, HANGING * conditions.support):
             break
         start = stop
     assert best is not None
     return _planted(body, best, conditions.ground) if conditions.plant else best
+
+
+def _smoothings(asked: float) -> list[float]:
+    """Return by how many seconds each try is calmed: first as asked, then twice as much."""
+    calmest = max(asked, CALMEST)
+    least = max(asked, LEAST_CALM)
+    more = [min(least * 2**doublings, calmest) for doublings in range(1, TRIES)]
+    return list(dict.fromkeys([asked, *more]))
 
 
 def _planted(body: PhysicsBody, piece: Piece, ground: float) -> Piece:
@@ -176,7 +184,7 @@ def _tried(
         target,
         np.maximum(firm, SLIPPERY),
         n_steps,
-        2 * sum(capsule.touches for capsule in body.capsules),
+        len(end_joints(body)),
         tell=lambda frame: progress(frame / motion.n_frames, "Simulating"),
     )
     course.places[:, :3] = rotate(facing, course.places[:, :3]) + origin

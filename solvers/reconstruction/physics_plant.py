@@ -60,11 +60,13 @@ def planted(body: PhysicsBody, motion: Motion, held: Array, ground: float) -> Mo
     """
     if motion.n_frames < FEWEST:
         return motion
-    poses, feet = forward_kinematics(motion), []
+    poses, points, feet = forward_kinematics(motion), bottoms(body, motion), []
     for column, side in enumerate(SIDES):
         chain = leg_chain(body, side)
         if chain and held[:, column].any():
-            feet.append(_foot(body, motion, poses, chain, side, held[:, column], ground))
+            sole, rate = points[:, of_foot(body, side)], motion.frame_rate
+            share = bearing(sole[..., 2] - ground, rate, body.size)
+            feet.append(_foot(sole, share, poses, chain, held[:, column], rate))
     if not feet:
         return motion
     goals = [foot.goal for foot in feet]
@@ -76,21 +78,20 @@ def planted(body: PhysicsBody, motion: Motion, held: Array, ground: float) -> Mo
 
 
 def _foot(
-    body: PhysicsBody,
-    motion: Motion,
+    sole: Array,
+    share: Array,
     poses: WorldPoses,
     chain: tuple[int, int, int],
-    side: str,
     held: Array,
-    ground: float,
+    rate: float,
 ) -> Foot:
-    """Plan the course of a foot that is `held` from frame to frame, shape (n_frames - 1,)."""
-    points, joints = bottoms(body, motion)
-    points, rate = points[:, of_foot(body, joints, side)], motion.frame_rate
-    share = bearing(points[..., 2] - ground, rate, body.size)
+    """Plan the course of a foot that is `held` from frame to frame, shape (n_frames - 1,).
+
+    `sole` are points, shape (n_frames, n_points, 3), each of which bears a `share` of the load.
+    """
     ankle = poses.positions[:, chain[-1]]
     turn = _turn(poses.rotations[:, chain[-1]], held, rate)
-    points = ankle[:, None] + rotate(turn[:, None], points - ankle[:, None])
+    points = ankle[:, None] + rotate(turn[:, None], sole - ankle[:, None])
     both = 0.5 * (share[1:] + share[:-1])
     steps = np.einsum("fp,fpi->fi", both, np.diff(points, axis=0))
     shift = smooth_correction(-steps * rate, held, rate, BLEND) * (1.0, 1.0, 0.0)

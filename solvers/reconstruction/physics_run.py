@@ -41,7 +41,7 @@ class Course:
     support : shape (n_frames,)
         Force from outside, as a share of the weight.
     loads : shape (n_frames, n_ends)
-        What the ground pushes up with at each of the ends of `bottoms`, likewise.
+        What the ground pushes up with at each end of `PhysicsBody.grounded`, likewise.
     followed : bool, shape (n_frames,)
         Where the body was near its target.
     n_lost : int
@@ -89,7 +89,7 @@ def follow(
         places[frame] = world.data.qpos
         if frame < n_frames - 1:
             support[frame] = np.mean(_steps(engine, world, control, states, loads[frame]))
-    loads[-1] = loads[max(n_frames - 2, 0)]
+    support[-1], loads[-1] = support[max(n_frames - 2, 0)], loads[max(n_frames - 2, 0)]
     followed = _followed(apart, lost, STRAYING * control.size)
     return Course(places, support, loads, followed, len(lost))
 
@@ -118,12 +118,18 @@ def _steps(
     for step, moment in enumerate(zip(*states, strict=True)):
         if step:
             engine.mj_step1(world.model, world.data)
-        if not np.abs(world.data.qvel).max() < FASTEST:
+        if not _goes(world):
             return [*used, 0.0]
         used.append(drive(engine, world, control, States(*moment)))
         engine.mj_step2(world.model, world.data)
-        add_loads(world, loads, 1.0 / (control.weight * len(states.places)))
+        if _goes(world):
+            add_loads(world, loads, 1.0 / (control.weight * len(states.places)))
     return used
+
+
+def _goes(world: World) -> bool:
+    """Tell whether the engine has not given up."""
+    return bool(np.abs(world.data.qvel).max() < FASTEST)
 
 
 def _apart(engine: ModuleType, world: World, wanted: Array) -> float:
@@ -131,8 +137,7 @@ def _apart(engine: ModuleType, world: World, wanted: Array) -> float:
     engine gave up.
     """
     data = world.data
-    exploded = not (np.isfinite(data.qpos).all() and np.abs(data.qvel).max() < FASTEST)
-    if exploded or np.any(data.warning.number):
+    if not (_goes(world) and np.isfinite(data.qpos).all()) or np.any(data.warning.number):
         return np.inf
     world.ghost.qpos[:] = wanted
     engine.mj_kinematics(world.model, world.ghost)

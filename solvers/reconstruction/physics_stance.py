@@ -57,7 +57,8 @@ def standing(
     motion : Motion
         As it was simulated.
     loads : shape (n_frames, n_ends)
-        By which the ground carries each end of `bottoms`, as a share of the weight.
+        By which the ground carries each end of `PhysicsBody.grounded`, as a share of the
+        weight.
     in_target : shape (n_frames, 2), 0 to 1
         How firmly the feet of what is followed stand.
     ground : float, metres
@@ -67,12 +68,12 @@ def standing(
     Array
         Shape (n_frames, 2), left and right.
     """
-    points, joints = bottoms(body, motion)
+    points = bottoms(body, motion)
     speeds = _calmed(sole_speeds(body, motion), motion.frame_rate) / body.size
     slow = np.clip((SLIPPING - speeds) / (SLIPPING - SLIDING), 0.0, 1.0)
     firm = np.zeros((motion.n_frames, 2))
     for column, side in enumerate(SIDES):
-        own = of_foot(body, joints, side)
+        own = of_foot(body, side)
         if own.any():
             load = _calmed(loads[:, own].sum(axis=1), motion.frame_rate)
             carries = np.clip((load - LEAST) / (FULL - LEAST), 0.0, 1.0)
@@ -105,12 +106,9 @@ def bearing(heights: Array, frame_rate: float, size: float) -> Array:
     return np.asarray(shares / shares.sum(axis=1, keepdims=True))
 
 
-def carried(body: PhysicsBody, motion: Motion, loads: Array) -> Array:
+def carried(body: PhysicsBody, loads: Array) -> Array:
     """Return the share of the weight that each foot carries, shape (n_frames, 2)."""
-    _, joints = bottoms(body, motion.slice(0, 1))
-    return np.stack(
-        [loads[:, of_foot(body, joints, side)].sum(axis=1) for side in SIDES], axis=-1
-    )
+    return np.stack([loads[:, of_foot(body, side)].sum(axis=1) for side in SIDES], axis=-1)
 
 
 def _calmed(values: Array, frame_rate: float) -> Array:

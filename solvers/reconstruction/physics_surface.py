@@ -25,27 +25,26 @@ HIGHEST = 0.25
 """Metres, for legs of 0.9 m, of hovering that is taken for an error."""
 
 
-def bottoms(body: PhysicsBody, motion: Motion) -> tuple[Array, NDArray[np.intp]]:
-    """Return the lowest points of both ends of all capsules that touch the ground.
+def end_joints(body: PhysicsBody) -> NDArray[np.intp]:
+    """Return the joint that each end of `PhysicsBody.grounded` is fixed to, (n_ends,)."""
+    return np.repeat(np.array([each.joint for each in body.grounded], dtype=np.intp), 2)
 
-    Returns
-    -------
-    points : shape (n_frames, 2 n_capsules, 3), metres
-    joints : int, shape (2 n_capsules,)
+
+def bottoms(body: PhysicsBody, motion: Motion) -> Array:
+    """Return the lowest points of the ends of `PhysicsBody.grounded`.
+
+    Shape (n_frames, n_ends, 3), metres.
     """
-    poses = forward_kinematics(motion)
-    touching = [capsule for capsule in body.capsules if capsule.touches for _ in capsule.ends]
-    joints = np.array([capsule.joint for capsule in touching], dtype=np.intp)
-    ends = np.concatenate([capsule.ends for capsule in touching[::2]])
+    poses, joints = forward_kinematics(motion), end_joints(body)
+    ends = np.concatenate([each.ends for each in body.grounded])
     points = poses.positions[:, joints] + rotate(poses.rotations[:, joints], ends)
-    points[..., 2] -= [capsule.radius for capsule in touching]
-    return points, joints
+    points[..., 2] -= np.repeat([each.radius for each in body.grounded], 2)
+    return np.asarray(points)
 
 
 def clearance(body: PhysicsBody, motion: Motion, ground: float) -> Array:
     """Return how high the lowest point of the body is over the ground, (n_frames,), metres."""
-    points, _ = bottoms(body, motion)
-    return np.asarray(points[..., 2].min(axis=1) - ground)
+    return np.asarray(bottoms(body, motion)[..., 2].min(axis=1) - ground)
 
 
 def penetration(body: PhysicsBody, motion: Motion, ground: float) -> float:
@@ -82,9 +81,8 @@ def raising(heights: Array, frame_rate: float, size: float) -> Array:
 
 def touching(body: PhysicsBody, motion: Motion, ground: float) -> NDArray[np.bool_]:
     """Return whether the left and the right foot touch the ground, shape (n_frames, 2)."""
-    points, joints = bottoms(body, motion)
-    near = points[..., 2] < ground + NEAR * body.size
-    return np.stack([near[:, of_foot(body, joints, side)].any(axis=1) for side in SIDES], -1)
+    near = bottoms(body, motion)[..., 2] < ground + NEAR * body.size
+    return np.stack([near[:, of_foot(body, side)].any(axis=1) for side in SIDES], axis=-1)
 
 
 def sole_speeds(body: PhysicsBody, motion: Motion) -> Array:
@@ -92,10 +90,10 @@ def sole_speeds(body: PhysicsBody, motion: Motion) -> Array:
 
     Of a foot that rolls, only what all its points share counts: the speed of the slowest.
     """
-    points, joints = bottoms(body, motion)
+    points = bottoms(body, motion)
     speeds = np.zeros((motion.n_frames, 2))
     for column, side in enumerate(SIDES):
-        own = of_foot(body, joints, side)
+        own = of_foot(body, side)
         if own.any() and motion.n_frames > 1:
             steps = np.linalg.norm(np.diff(points[:, own, :2], axis=0), axis=-1)
             speeds[1:, column] = steps.min(axis=1) * motion.frame_rate
@@ -103,9 +101,10 @@ def sole_speeds(body: PhysicsBody, motion: Motion) -> Array:
     return speeds
 
 
-def of_foot(body: PhysicsBody, joints: NDArray[np.intp], side: str) -> NDArray[np.bool_]:
-    """Tell which of these joints are of the left or of the right foot."""
+def of_foot(body: PhysicsBody, side: str) -> NDArray[np.bool_]:
+    """Tell which ends of `PhysicsBody.grounded` are of the left or right foot, (n_ends,)."""
     roles = {f"{side}Foot", f"{side}Toes"}
+    joints = end_joints(body)
     return np.array([body.roles.get(int(joint)) in roles for joint in joints], dtype=np.bool_)
 
 

@@ -132,14 +132,16 @@ def blended(motion: Motion, other: Motion, joints: Sequence[int], share: Array) 
     return motion.with_poses(rotations, roots)
 
 
-def away_from(frames: NDArray[np.bool_], n_frames: float) -> Array:
-    """Return a share that is 0 at these frames and rises to 1 at `n_frames` from them."""
+def away_from(frames: NDArray[np.bool_], ease: float) -> Array:
+    """Return a share that is 0 at these frames and rises to 1 at `ease` frames from them, which
+    need not be a whole number.
+    """
     # One frame beyond each end, too far to matter: there is always one to measure to.
-    far = int(n_frames) + 2
+    far = int(ease) + 2
     clear = np.pad(~frames, far, constant_values=True)
     clear[[0, -1]] = False
     away = distance_transform_edt(clear)[far:-far]
-    return np.asarray(np.minimum(1.0, away / n_frames))
+    return np.asarray(np.minimum(1.0, away / ease))
 
 
 def filled(motion: Motion) -> Motion:

@@ -38,7 +38,8 @@ class World(NamedTuple):
     weak: NDArray[np.bool_]
     """Whether each geometry is of an arm or of the head, shape (n_geometries,)."""
     first_ends: NDArray[np.intp]
-    """Number of each geometry's first end among those of `bottoms`, shape (n_geometries,)."""
+    """Number of each geometry's first end among those of `PhysicsBody.grounded`, shape
+    (n_geometries,)."""
     ground: float
 
 
@@ -66,9 +67,8 @@ def build_world(
     feet = [_of_parts(model, body, bodies, {f"{side}Foot", f"{side}Toes"}) for side in SIDES]
     weak = _of_parts(model, body, bodies, WEAK)
     first_ends = np.zeros(model.ngeom, dtype=np.intp)
-    touching = [n for n, capsule in enumerate(body.capsules) if capsule.touches]
-    for place, number in enumerate(touching):
-        first_ends[model.geom(f"capsule{number}").id] = 2 * place
+    for place, capsule in enumerate(body.grounded):
+        first_ends[model.geom(names[id(capsule)]).id] = 2 * place
     data, ghost = engine.MjData(model), engine.MjData(model)
     return World(model, data, ghost, bodies, np.stack(feet, axis=-1), weak, first_ends, ground)
 

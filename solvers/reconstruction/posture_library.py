@@ -145,13 +145,14 @@ def joined_postures(
 ) -> PostureLibrary:
     """Return a library of the postures of two; `words` says what both were trained on."""
     directions = np.concatenate([first.directions, second.directions])
+    told = first.twists is not None or second.twists is not None
     return PostureLibrary(
         directions,
         np.concatenate([first.changes, second.changes]),
         group_postures(directions),
         first.n_seen + second.n_seen,
         words.format(first.trained_on, second.trained_on),
-        np.concatenate([first.known_twists, second.known_twists]),
+        np.concatenate([first.known_twists, second.known_twists]) if told else None,
     )
 
 

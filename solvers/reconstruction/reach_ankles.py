@@ -7,7 +7,8 @@ from numpy.typing import NDArray
 
 from ..motion import Motion, forward_kinematics
 from ..motion.limb_ik import ReachSettings, reach
-from .limb_twist import Limb, smoothest, unit
+from .limb_angles import unit
+from .limb_twist import Limb, smoothest
 
 Array = NDArray[np.float64]
 

@@ -16,10 +16,9 @@ from ..settings import Settings, setting
 from .bridge_gaps import bridged_losses
 from .correct_postures import CorrectionMethod, CorrectionSettings, correct_postures
 from .exchanges import undo_exchanges
-from .follow_joints import follow_joints
 from .posture_library import PostureLibrary
 from .posture_settings import PostureMethod, PostureSettings
-from .reconstruct_postures import reconstruct_postures
+from .reconstruct_postures import rebuilt_joints, reconstruct_postures
 from .reliability import measure_reliability
 from .reliability_settings import ReliabilityMethod, ReliabilitySettings
 from .residual_prior import ResidualPrior, load_residual_prior
@@ -148,18 +147,17 @@ def reconstruct(
             settings=_correction(settings, known),
             progress=within(progress, 0.1, 1.0),
         )
-    rebuilt = reconstruct_postures(
-        recording,
-        postures,
-        settings=_synthesis(settings),
-        reliability=trust,
-        progress=within(progress, 0.1, 0.7),
-    )
     if settings.method is not ReconstructMethod.BOTH:
-        motion = follow_joints(
-            rebuilt.tracks, recording.parents, trust.combined, twists=rebuilt.twists
+        return reconstruct_postures(
+            recording,
+            postures,
+            settings=_synthesis(settings),
+            reliability=trust,
+            progress=within(progress, 0.1, 1.0),
         )
-        return replace(rebuilt, motion=motion)
+    rebuilt = rebuilt_joints(
+        recording, postures, trust.combined, _synthesis(settings), within(progress, 0.1, 0.7)
+    )
     lost = _lost(recording.tracks, trust.combined, rebuilt.tracks, not settings.causal)
     sure = np.maximum(trust.combined, lost * rebuilt.confidence)
     places = rebuilt.tracks

@@ -1,26 +1,39 @@
 """Rebuild the postures of a recording from those of clean clips."""
 
+from typing import NamedTuple
+
 import numpy as np
 from numpy.typing import NDArray
 
 from ..errors import InvalidMotionError
-from ..motion import JointRecording, motion_from_points
+from ..motion import JointRecording, Tracks
 from ..motion.body_size import body_lengths
 from ..motion.joint_recording import INFERRED
 from ..motion.posture_heading import normalise
-from ..motion.posture_joints import N_JOINTS, POSTURE_JOINTS, joints_of_names, posture_positions
+from ..motion.posture_joints import joints_of_names, posture_positions
 from ..progress import Progress, unwatched, within
+from .follow_joints import follow_joints
 from .follow_postures import follow_postures
 from .other_joints import all_joints, anchors
 from .posture_library import PostureLibrary, load_posture_library
 from .posture_settings import USUAL, PostureMethod, PostureSettings
-from .reliability import Reliability, measure_reliability
+from .reliability import Reliability, measure_reliability, posture_reliability
 from .result import Reconstruction
+from .trunk_twist import LimbTwists
 
 Array = NDArray[np.float64]
 
 FEWEST = 3
 """Joints of postures that must be seen together in some frame."""
+
+
+class RebuiltJoints(NamedTuple):
+    """Joints, and what is known of them: see `Reconstruction`."""
+
+    tracks: Tracks
+    confidence: Array
+    method: str
+    twists: LimbTwists | None
 
 
 def reconstruct_postures(
@@ -69,28 +82,46 @@ def reconstruct_postures(
     .. [1] Shum, Ho, Jiang, Takagi (2013). Real-time posture reconstruction for Microsoft
        Kinect. IEEE Transactions on Cybernetics 43(5), sections V and VI.
     """
-    library = load_posture_library() if postures is None else postures
     if reliability is None:
         reliability = measure_reliability(recording, progress=within(progress, 0.0, 0.1))
-    positions = posture_positions(recording)
-    trust = _posture_trust(recording, positions, reliability.combined)
-    _check_seen(recording, positions, trust)
-    rate = recording.frame_rate
-    seen = normalise(positions, rate, trust, ahead=not settings.causal)
-    lengths = body_lengths(seen.postures, trust)
-    found = follow_postures(
-        seen, trust, rate, lengths, library, settings, within(progress, 0.1, 0.9)
+    rebuilt = rebuilt_joints(
+        recording, postures, reliability.combined, settings, within(progress, 0.1, 0.9)
     )
-    tracks = recording.tracks
-    after = seen.put_back(found.postures)
-    joints = all_joints(tracks.names, tracks.positions, reliability.combined, positions, after)
-    rebuilt = tracks.with_positions(joints)
-    motion = motion_from_points(rebuilt, recording.parents)
+    motion = follow_joints(
+        rebuilt.tracks, recording.parents, reliability.combined, twists=rebuilt.twists
+    )
     progress(1.0, "Reconstructed")
     return Reconstruction(
-        rebuilt, motion, reliability, found.confidence[:, anchors(tracks.names)],
-        _words(settings, library), found.twists,
-    )  # fmt: skip
+        rebuilt.tracks, motion, reliability, rebuilt.confidence, rebuilt.method, rebuilt.twists
+    )
+
+
+def rebuilt_joints(
+    recording: JointRecording,
+    postures: PostureLibrary | None,
+    combined: Array,
+    settings: PostureSettings,
+    progress: Progress,
+) -> RebuiltJoints:
+    """Rebuild what a depth camera lost: `reconstruct_postures` without a motion.
+
+    `combined` is the reliability of the joints, shape (n_frames, n_joints).
+    """
+    library = load_posture_library() if postures is None else postures
+    positions = posture_positions(recording)
+    seen = np.isfinite(positions).all(axis=-1)
+    trust = np.where(seen, posture_reliability(recording, combined), 0.0)
+    _check_seen(recording, positions, trust)
+    rate = recording.frame_rate
+    body = normalise(positions, rate, trust, ahead=not settings.causal)
+    lengths = body_lengths(body.postures, trust)
+    found = follow_postures(body, trust, rate, lengths, library, settings, progress)
+    tracks = recording.tracks
+    after = body.put_back(found.postures)
+    joints = all_joints(tracks.names, tracks.positions, combined, positions, after)
+    confidence = found.confidence[:, anchors(tracks.names)]
+    words = _words(settings, library)
+    return RebuiltJoints(tracks.with_positions(joints), confidence, words, found.twists)
 
 
 def _check_seen(recording: JointRecording, positions: Array, trust: Array) -> None:
@@ -123,14 +154,6 @@ def _check_seen(recording: JointRecording, positions: Array, trust: Array) -> No
 def _most(seen: NDArray[np.bool_]) -> int:
     """Return how many joints are seen in the frame that has most, of (n_frames, n_joints)."""
     return int(seen.sum(axis=1).max(initial=0))
-
-
-def _posture_trust(recording: JointRecording, positions: Array, combined: Array) -> Array:
-    """Return how far each joint of postures is trusted; 0 where it was not seen."""
-    trust = np.zeros((recording.n_frames, N_JOINTS))
-    for role, place in joints_of_names(recording.names).items():
-        trust[:, POSTURE_JOINTS.index(role)] = combined[:, place]
-    return np.where(np.isfinite(positions).all(axis=-1), trust, 0.0)
 
 
 def _words(settings: PostureSettings, library: PostureLibrary) -> str:

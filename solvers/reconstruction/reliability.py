@@ -6,6 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..motion import JointRecording
+from ..motion.posture_joints import N_JOINTS, POSTURE_JOINTS, joints_of_names
 from ..progress import Progress, unwatched
 from .reliability_error import CAUSAL, CENTRED, signs_of_error
 from .reliability_reference import reference_lengths, reference_postures, segments
@@ -93,3 +94,13 @@ def measure_reliability(
     combined = np.where(visible, combined, 0.0)
     progress(1.0, "Measuring reliability")
     return Reliability(combined, behaviour, kinematics, tracking)
+
+
+def posture_reliability(
+    recording: JointRecording, combined: NDArray[np.float64]
+) -> NDArray[np.float64]:
+    """Return the reliability of the joints of postures, (n_frames, 20); 0 where not seen."""
+    result = np.zeros((recording.n_frames, N_JOINTS))
+    for role, place in joints_of_names(recording.names).items():
+        result[:, POSTURE_JOINTS.index(role)] = combined[:, place]
+    return result

@@ -31,6 +31,10 @@ TOO_MANY = 0.3
 class Simulated:
     """A motion as a body with mass can make it.
 
+    `contacts`, `carried` and `support` are the simulated body's also in frames that it did not
+    follow, and where all was given up, though the motion there is the input's. Of a single
+    frame, in which nothing moves, `carried` and `support` are 0.
+
     Attributes
     ----------
     motion : Motion
@@ -216,7 +220,7 @@ def _put_together(
         motion=result.with_poses(),
         followed=followed,
         contacts=contacts,
-        carried=carried(body, whole, np.concatenate([piece.loads for piece in pieces])),
+        carried=carried(body, np.concatenate([piece.loads for piece in pieces])),
         support=np.concatenate([piece.support for piece in pieces]),
         ground=ground,
         penetration_before=penetration(body, whole, ground),

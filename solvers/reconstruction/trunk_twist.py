@@ -13,16 +13,16 @@ from numpy.typing import NDArray
 
 from ..motion.posture_joints import POSTURE_JOINTS
 from .library_body import bone_frames
-from .limb_twist import Hinges
+from .limb_angles import SMALL, Complex, bent, unit
+from .limb_twist import HINGES, Hinges
 
 Array = NDArray[np.float64]
-Complex = NDArray[np.complex128]
 
-SMALL = 1e-9
 LEAST = 1e-3
 """What a joint counts for at least, lest no neighbour is nearer than another."""
 NEAR = 0.05
-"""Metres from the nearest posture, as a mean over joints, at which half of its twist counts."""
+"""Metres from the nearest posture, as a root mean square over joints, at which half of its
+twist counts."""
 
 
 class TwistedLimb(NamedTuple):
@@ -42,9 +42,9 @@ class TwistedLimb(NamedTuple):
 
 def _limb(side: str, sign: float, upper: str, lower: str, end: str) -> TwistedLimb:
     places = [POSTURE_JOINTS.index(f"{side}{part}") for part in (upper, lower, end)]
-    if end == "Hand":
-        return TwistedLimb(places[0], places[1], places[2], (sign, 0.0, 0.0), (0.0, -1.0, 0.0))
-    return TwistedLimb(places[0], places[1], places[2], (0.0, 0.0, -1.0), (0.0, 1.0, 0.0))
+    kind = upper[-3:]
+    along = (sign, 0.0, 0.0) if kind == "Arm" else (0.0, 0.0, -1.0)
+    return TwistedLimb(places[0], places[1], places[2], along, HINGES[kind])
 
 
 TWISTED = tuple(
@@ -68,7 +68,8 @@ class LimbTwists:
         how far all agree; 0: nothing is known.
     alone : bool
         Whether these alone tell the twist [SHJT13, section VII-B], whatever elbows and knees
-        show.
+        show. Where nothing is known, limbs are then not twisted at all; to hold the twist that
+        was known last measured worse.
     """
 
     vectors: Complex
@@ -92,7 +93,7 @@ def plain_hinges(postures: Array) -> tuple[Array, Array]:
     directions = np.empty((len(postures), N_TWISTED, 3))
     hinges = np.empty_like(directions)
     for place, limb in enumerate(TWISTED):
-        way = unit(postures[:, limb.lower] - postures[:, limb.upper])
+        way = unit(postures[:, limb.lower] - postures[:, limb.upper], np.nan)
         frame = frames[limb.upper]
         local = np.einsum("fji,fj->fi", frame, way)
         along, hinge = np.array(limb.along), limb.hinge
@@ -100,20 +101,8 @@ def plain_hinges(postures: Array) -> tuple[Array, Array]:
         share = (local @ hinge) / np.maximum(1.0 + local @ along, SMALL)
         turned = hinge - share[:, None] * (along + local)
         directions[:, place] = way
-        hinges[:, place] = unit(np.einsum("fij,fj->fi", frame, turned))
+        hinges[:, place] = unit(np.einsum("fij,fj->fi", frame, turned), np.nan)
     return directions, hinges
-
-
-def angles_about(directions: Array, plain: Array, hinges: Array) -> Complex:
-    """Return by how much hinges are turned from the plain ones, as numbers of length 1.
-
-    All of shape (..., 3), `hinges` of any length; NaN where one is NaN or has no angle.
-    """
-    cos = np.einsum("...i,...i->...", plain, hinges)
-    sin = np.einsum("...i,...i->...", np.cross(plain, hinges), directions)
-    size = np.hypot(cos, sin)
-    told = size > SMALL
-    return np.asarray(np.where(told, cos + 1j * sin, np.nan) / np.where(told, size, 1.0))
 
 
 def bend_normals(postures: Array) -> tuple[Array, Array]:
@@ -125,13 +114,11 @@ def bend_normals(postures: Array) -> tuple[Array, Array]:
     bends : shape (n_frames, 4), radians
     """
     ways = [
-        [unit(postures[:, one] - postures[:, above]) for above, one in pairs]
+        [unit(postures[:, one] - postures[:, above], np.nan) for above, one in pairs]
         for pairs in (((x.upper, x.lower), (x.lower, x.end)) for x in TWISTED)
     ]
     first, second = (np.stack(each, axis=1) for each in zip(*ways, strict=True))
-    normals = np.cross(first, second)
-    sizes = np.linalg.norm(normals, axis=-1)
-    return normals, np.arctan2(sizes, np.einsum("fli,fli->fl", first, second))
+    return bent(first, second)
 
 
 def known_hinges(postures: Array, twists: LimbTwists) -> dict[str, Hinges]:
@@ -161,7 +148,8 @@ def mirrored_twists(twists: Complex) -> Complex:
 def mean_twists(twists: Complex, postures: Array, neighbours: Array, trust: Array) -> Complex:
     """Return the mean of neighbours' twists, weighted by their nearness [SHJT13, VII-B].
 
-    The weight is the inverse of eq. 9. The farther the nearest is, the shorter the mean.
+    The weight is the inverse of eq. 9, squared. The farther the nearest is, the shorter the
+    mean.
 
     Parameters
     ----------
@@ -177,15 +165,9 @@ def mean_twists(twists: Complex, postures: Array, neighbours: Array, trust: Arra
     """
     off = neighbours - postures.reshape(len(postures), 1, -1)
     counted = np.repeat(np.maximum(trust, LEAST), 3, axis=1)
-    ways = np.einsum("fni,fni,fi->fn", off, off, counted, optimize=False)
-    weights = 1.0 / np.maximum(ways, SMALL)
+    squares = np.einsum("fni,fni,fi->fn", off, off, counted, optimize=False)
+    weights = 1.0 / np.maximum(squares, SMALL)
     weights /= weights.sum(axis=1, keepdims=True)
-    nearest = 3.0 * ways.min(axis=1) / counted.sum(axis=1)
-    near = 1.0 / (1.0 + nearest / NEAR**2)
+    least_square = 3.0 * squares.min(axis=1) / counted.sum(axis=1)
+    near = 1.0 / (1.0 + least_square / NEAR**2)
     return np.asarray(near[:, None] * np.einsum("fn,fnl->fl", weights, twists))
-
-
-def unit(vectors: Array) -> Array:
-    """Return vectors of length 1; NaN for those of none."""
-    sizes = np.linalg.norm(vectors, axis=-1, keepdims=True)
-    return np.asarray(np.where(sizes > SMALL, vectors / np.maximum(sizes, SMALL), np.nan))

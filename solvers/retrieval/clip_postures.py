@@ -9,7 +9,7 @@ from ..errors import InvalidMotionError
 from ..motion import JointRecording, Motion, Tracks, resample
 from ..motion.body_size import USUAL_LENGTHS, body_lengths, resize
 from ..motion.posture_heading import normalise
-from ..motion.posture_joints import motion_postures, posture_positions
+from ..motion.posture_joints import POSTURE_JOINTS, motion_postures, posture_positions
 from ..motion.straight_gaps import bridged
 
 Array = NDArray[np.float64]
@@ -67,9 +67,9 @@ def clip_postures(recording: Recording, frame_rate: float | None = None) -> Clip
     tracks = recording.tracks if isinstance(recording, JointRecording) else recording
     rate = frame_rate or tracks.frame_rate
     if isinstance(tracks, Motion):
-        positions = motion_postures(
-            tracks if rate == tracks.frame_rate else resample(tracks, rate)
-        )
+        motion = tracks if rate == tracks.frame_rate else resample(tracks, rate)
+        joints = Tracks(POSTURE_JOINTS, motion_postures(motion), rate)
+        positions = _short_gaps_bridged(joints).positions
     else:
         positions = posture_positions(resample(_short_gaps_bridged(tracks), rate))
     if not np.isfinite(positions).any():
@@ -88,7 +88,7 @@ def clip_postures(recording: Recording, frame_rate: float | None = None) -> Clip
 
 
 def _short_gaps_bridged(tracks: Tracks) -> Tracks:
-    """Draw straight lines over short gaps, before a lower frame rate makes them longer."""
+    """Draw straight lines over short gaps; points before a lower rate makes them longer."""
     seen = tracks.visible
     if seen.all():
         return tracks

@@ -29,7 +29,14 @@ class FindMethod(Enum):
 
 @dataclass(frozen=True, kw_only=True)
 class FindSettings(Settings):
-    """Settings of `find_similar`."""
+    """Settings of `find_similar`.
+
+    `stance`, `busy` and what was tracked of the query count where it is compared with clips.
+    How like clips are to each other (`n_alike`) does not depend on the query, and is told with
+    the usual stance and all parts alike, once for all queries, as long as all parts are asked
+    for and the library has no more than `search_index.MOST_COMPARED` spans. Otherwise it is
+    told as the query is.
+    """
 
     method: FindMethod = setting(
         FindMethod.WORDS, "Words of each part of the body and warping measured best; published"
@@ -58,7 +65,7 @@ class FindSettings(Settings):
     )  # fmt: skip
     n_warped: int = setting(
         128, "Best clips whose course in time is compared as well; more is slower",
-        minimum=0, maximum=10_000, advanced=True, label="Warped",
+        minimum=0, maximum=2_000, advanced=True, label="Warped",
     )  # fmt: skip
     warping: float = setting(
         3.0, "How much the course in time counts beside which postures there are",

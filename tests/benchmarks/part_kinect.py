@@ -15,7 +15,8 @@ from solvers.reconstruction import (
     reconstruct,
     reconstruct_postures,
 )
-from solvers.reconstruction.correct_postures import foretell_places, posture_reliability
+from solvers.reconstruction.correct_postures import foretell_places
+from solvers.reconstruction.reliability import posture_reliability
 
 from .kinect_errors import apart_free, compared, jerk
 from .kinect_folds import SUBJECTS, posture_library, residual_prior, takes_of, truth_of

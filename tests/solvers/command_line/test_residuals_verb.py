@@ -62,6 +62,15 @@ def test_an_unknown_actor_is_named(call, stage):
     assert "bob_1 begins with none of the actors' names: anna" in err
 
 
+def test_confidence_asks_who_was_recorded(call, stage):
+    """Three takes are not three people: each would be tried on somebody known."""
+    status, _, err = learn(call, stage, "--confidence")
+
+    assert status == 2
+    assert "--confidence needs --actors" in err
+    assert not (stage / "sensor.npz").exists()
+
+
 def test_confidence_is_learned_from_three_actors_or_more(call, stage):
     status, _, err = learn(call, stage, "--actors", "anna", "bob", "--confidence")
     assert status == 2

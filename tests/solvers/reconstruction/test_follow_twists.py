@@ -100,6 +100,25 @@ def test_as_published_nothing_else_counts():
     assert_allclose(twist(motion), np.degrees(AT), atol=0.5)
 
 
+def test_as_published_there_is_no_twist_where_none_is_known():
+    known, unknown = alike(30, alone=True), np.arange(30) >= 20
+    known.vectors[unknown] = 0.0
+
+    motion = follow_joints(hanging(np.full(30, np.radians(80.0))), PARENTS, twists=known)
+
+    assert_allclose(twist(motion), np.where(unknown, 0.0, np.degrees(AT)), atol=0.5)
+
+
+def test_a_single_frame_is_twisted_as_one_of_many():
+    tracks = hanging(np.full(2, np.radians(20.0)))
+
+    one, two = (
+        follow_joints(tracks.slice(0, n), PARENTS, twists=alike(n)).rotations for n in (1, 2)
+    )
+
+    assert_allclose(one[0], two[0], atol=0.01)
+
+
 @pytest.fixture(scope="module")
 def gait() -> Motion:
     return walking_gait(GaitSettings(duration=2.0, frame_rate=30.0))

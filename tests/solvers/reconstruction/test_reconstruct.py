@@ -63,6 +63,7 @@ def test_the_published_methods_are_what_their_parts_make(walk):
     chosen = ReconstructSettings(method=ReconstructMethod.PUBLISHED_POSTURES)
     whole = reconstruct(walk, settings=chosen)
     np.testing.assert_array_equal(whole.tracks.positions, alone.tracks.positions)
+    np.testing.assert_array_equal(whole.motion.rotations, alone.motion.rotations)
     assert "stochastic search" in whole.method
 
     three_terms = CorrectionSettings(method=CorrectionMethod.PUBLISHED, shift=True)

@@ -10,7 +10,13 @@ from numpy.testing import assert_allclose
 
 from solvers.errors import InvalidMotionError
 from solvers.motion import Motion, Skeleton, forward_kinematics
-from solvers.reconstruction import Ground, SimulateSettings, simulate
+from solvers.reconstruction import (
+    Ground,
+    SimulateSettings,
+    physics_run,
+    simulate,
+)
+from solvers.reconstruction.physics_control import drive
 from solvers.samples import GaitSettings, walking_gait
 
 WALK = walking_gait(GaitSettings(duration=1.0, frame_rate=30.0))
@@ -95,6 +101,29 @@ def test_few_frames_are_enough(n_frames):
 
     assert result.motion.n_frames == n_frames and result.followed.all()
     assert result.distance < 0.01
+
+
+@pytest.mark.parametrize("plant", [True, False])
+def test_an_engine_that_explodes_in_every_try_ends_in_the_take(monkeypatch, plant):
+    """Where muscles pull beyond all bounds in one step, forces of the ground are no numbers."""
+    calls = []
+
+    def exploding(engine, world, *others):
+        used = drive(engine, world, *others)
+        calls.append(used)
+        if len(calls) % 100 == 50:
+            world.data.qfrc_applied[:] = 1e300
+        return used
+
+    monkeypatch.setattr(physics_run, "drive", exploding)
+
+    result = simulate(WALK, settings=SimulateSettings(plant=plant))
+
+    assert np.isfinite(result.carried).all() and np.isfinite(result.support).all()
+    lost = ~result.followed
+    assert lost.any()
+    assert np.array_equal(result.motion.rotations[lost], WALK.rotations[lost])
+    assert np.isfinite(result.motion.rotations).all()
 
 
 @pytest.mark.parametrize("n_joints", [1, 2, 5])

@@ -66,10 +66,9 @@ def test_a_foot_that_carries_the_body_rests_on_a_point_that_does_not_move(
 
 
 def test_it_is_kept_level_so_nothing_sinks_or_rises(body, by_friction, kept):
-    before, after = (bottoms(body, each.motion)[0][..., 2] for each in (by_friction, kept))
+    before, after = (bottoms(body, each.motion)[..., 2] for each in (by_friction, kept))
 
-    _, joints = bottoms(body, kept.motion)
-    own = of_foot(body, joints, "left") | of_foot(body, joints, "right")
+    own = of_foot(body, "left") | of_foot(body, "right")
     assert_allclose(after[:, own], before[:, own], atol=1.5 * MILLIMETRE)
     assert kept.penetration_after < by_friction.penetration_after + MILLIMETRE
     assert np.abs(kept.motion.root_positions - by_friction.motion.root_positions).max() < 0.01
@@ -194,10 +193,10 @@ def test_feet_of_the_target_meet_the_ground(walk, body):
 
     result = with_feet_on_ground(body, low, stands, stands, 0.0)
 
-    points, joints = bottoms(body, result)
+    points = bottoms(body, result)
     inner = slice(15, -15)
     for column, side in enumerate(SIDES):
-        lowest = points[:, of_foot(body, joints, side), 2].min(axis=1)[inner] / body.size
+        lowest = points[:, of_foot(body, side), 2].min(axis=1)[inner] / body.size
         always = moving_minimum(stands[inner, column]) == 1.0
         never = moving_minimum(1.0 - stands[inner, column]) == 1.0
         assert always.any() and never.any()
@@ -244,17 +243,17 @@ def test_a_turned_take_is_planted_turned(shaking, kept):
 
 def steps(body, motion):
     """Way of the slowest point of each sole to the next frame, (n_frames - 1, 2), metres."""
-    points, joints = bottoms(body, motion)
+    points = bottoms(body, motion)
     ways = np.linalg.norm(np.diff(points[..., :2], axis=0), axis=-1)
-    return np.stack([ways[:, of_foot(body, joints, side)].min(axis=1) for side in SIDES], -1)
+    return np.stack([ways[:, of_foot(body, side)].min(axis=1) for side in SIDES], -1)
 
 
 def loaded_steps(body, motion):
     """Way of what bears each sole, (n_frames - 1, 2), metres."""
-    points, joints = bottoms(body, motion)
+    points = bottoms(body, motion)
     found = []
     for side in SIDES:
-        own = points[:, of_foot(body, joints, side)]
+        own = points[:, of_foot(body, side)]
         share = bearing(own[..., 2], motion.frame_rate, body.size)
         share = 0.5 * (share[1:] + share[:-1])
         way = (share[..., None] * np.diff(own[..., :2], axis=0)).sum(axis=1)

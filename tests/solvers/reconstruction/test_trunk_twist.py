@@ -15,6 +15,7 @@ from solvers.motion.posture_heading import mirrored, turned
 from solvers.motion.posture_joints import POSTURE_JOINTS, motion_postures
 from solvers.motion.rotations import multiply, quaternion_from_rotation_vector
 from solvers.reconstruction.clip_twists import agreed_twists, clip_twists
+from solvers.reconstruction.limb_angles import angles_about
 from solvers.reconstruction.posture_library import (
     KIND,
     VERSION,
@@ -25,7 +26,6 @@ from solvers.reconstruction.posture_library import (
 from solvers.reconstruction.trunk_twist import (
     TWISTED,
     LimbTwists,
-    angles_about,
     bend_normals,
     known_hinges,
     mean_twists,
@@ -160,6 +160,21 @@ def test_makers_who_turn_the_bone_otherwise_agree(gait, maker):
     assert np.abs(theirs).min() > 0.5
 
 
+def test_a_rig_is_known_again_though_its_offsets_were_rounded(gait):
+    """A walk that tells how the maker turns arms, and one of this rig that tells nothing."""
+    skeleton = gait.skeleton
+    rounded = replace(skeleton, offsets=skeleton.offsets - 1e-6)
+    clip = clip_twists(gait, motion_postures(gait))
+    straight = clip._replace(shares=np.zeros_like(clip.shares))
+
+    same, again = (
+        agreed_twists([skeleton, each], [clip, straight])[1] for each in (skeleton, rounded)
+    )
+
+    assert np.abs(same[:, LEFT_ARM]).max() > 0.5
+    assert_allclose(again, same)
+
+
 def test_so_do_makers_of_other_rest_poses(gait):
     """The same walk of a rig that rests with its arms lowered."""
     skeleton = gait.skeleton
@@ -233,6 +248,12 @@ def test_a_library_keeps_twists_and_their_mirror_images(gait, tmp_path):
     both = joined_postures(library, replace(library, twists=None))
     assert_allclose(both.known_twists[: library.n_postures], library.known_twists)
     assert not both.known_twists[library.n_postures :].any()
+
+
+def test_two_libraries_that_tell_no_twist_join_to_one_that_tells_none(gait):
+    old = replace(build_posture_library([gait]), twists=None)
+
+    assert joined_postures(old, old).twists is None
 
 
 def test_files_of_before_are_read_and_damaged_ones_refused(gait, tmp_path):

@@ -8,9 +8,9 @@ from acted import act
 from numpy.testing import assert_allclose
 
 from solvers.errors import InvalidMotionError
-from solvers.motion import Tracks
+from solvers.motion import Tracks, find_humanoid_map
 from solvers.motion.body_size import USUAL_LENGTHS, segment_lengths
-from solvers.motion.posture_joints import POSTURE_JOINTS
+from solvers.motion.posture_joints import POSTURE_JOINTS, motion_postures
 from solvers.recordings import read_recording
 from solvers.retrieval.clip_postures import clip_postures
 from solvers.samples import GaitSettings, walking_gait
@@ -53,6 +53,26 @@ def test_another_rate_shows_the_same_moments():
     coarse = clip_postures(act("kick", frame_rate=20.0))
     assert fine.n_frames == coarse.n_frames == 40
     assert_allclose(fine.positions, coarse.positions, atol=0.01)
+
+
+def test_short_gaps_of_motions_and_of_points_are_bridged_alike():
+    """Four frames of a forearm at 60 Hz, and three fifths of a second of the other."""
+    walk = walking_gait(GaitSettings(duration=2.0, frame_rate=60.0))
+    joints = find_humanoid_map(walk.skeleton).indices(walk.skeleton)
+    rotations = walk.rotations.copy()
+    rotations[30:34, joints["leftLowerArm"]] = np.nan
+    rotations[50:86, joints["rightLowerArm"]] = np.nan
+    motion = walk.with_poses(rotations)
+    points = Tracks(POSTURE_JOINTS, motion_postures(motion), 60.0)
+    left, right = (POSTURE_JOINTS.index(f"{side}Hand") for side in ("left", "right"))
+    assert np.isnan(points.positions[30:34, left]).all()
+
+    of_motion, of_points = (clip_postures(each, 20.0).positions for each in (motion, points))
+
+    for seen in (of_motion, of_points):
+        assert np.isfinite(seen[:, left]).all()
+        assert np.isnan(seen[18:28, right]).all()
+    assert_allclose(of_motion, of_points, atol=0.01)
 
 
 def test_a_joint_past_a_lost_one_lies_where_it_was_seen():
