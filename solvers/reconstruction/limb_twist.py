@@ -26,9 +26,9 @@ is left where the limb is seen: bends before and after tell more of a straight o
 OWN = 0.03
 """Seconds of bends by which half of how the actor differs from like postures is known."""
 
-SURE, FAINT = 10.0, 1e-6
-"""Weights, against that of steadiness, of an angle that all bends about it agree on, and of
-one of which nothing is told."""
+SURE, FAINT = 90.0, 1e-6
+"""Weights of an angle that all bends about it agree on, and of one of which nothing is told;
+that of a change by as much within `STEADY` is 1."""
 NEAR, FAR = 0.02, 0.05
 """Metres. A palm that is seen nearer to its wrist tells no direction; beyond the second it
 does."""
@@ -242,7 +242,7 @@ def _without_turns(path: Complex, stiffness: float) -> Array:
     Where the path passes near 0 an angle may change by half a turn in a frame. There it tells
     little, and is led over steadily.
     """
-    weights = SURE * stiffness * np.abs(path) ** 4 + FAINT
+    weights = SURE * np.abs(path) ** 4 + FAINT
     told = weights * np.unwrap(np.angle(path))
     return smoothest(told[:, None], weights, stiffness)[:, 0]
 

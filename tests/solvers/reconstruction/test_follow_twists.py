@@ -11,6 +11,7 @@ from solvers.motion.posture_joints import motion_postures
 from solvers.motion.rotations import rotate
 from solvers.reconstruction import ReconstructMethod, ReconstructSettings, reconstruct
 from solvers.reconstruction.follow_joints import follow_joints
+from solvers.reconstruction.limb_twist import twisted
 from solvers.reconstruction.posture_library import build_posture_library
 from solvers.reconstruction.trunk_twist import LimbTwists
 from solvers.samples import GaitSettings, walking_gait
@@ -107,6 +108,24 @@ def test_as_published_there_is_no_twist_where_none_is_known():
     motion = follow_joints(hanging(np.full(30, np.radians(80.0))), PARENTS, twists=known)
 
     assert_allclose(twist(motion), np.where(unknown, 0.0, np.degrees(AT)), atol=0.5)
+
+
+@pytest.mark.parametrize("dip", [0.5, 1.9])
+def test_a_turn_that_nothing_tells_is_as_fast_at_all_frame_rates(dip):
+    """From -85 to 85 degrees, while for so many seconds no bend shows it."""
+    speeds = []
+    for rate in (30.0, 120.0, 240.0):
+        times = np.arange(round(6.0 * rate) + 1) / rate - 3.0
+        angles = np.radians(85.0) * np.where(times < 0.0, -1.0, 1.0)
+        still = np.tile([1.0, 0.0, 0.0, 0.0], (len(times), 1))
+        along, plain = (np.tile(each, (len(times), 1)) for each in np.eye(3)[[2, 0]])
+        normals = np.stack([np.cos(angles), np.sin(angles), 0.0 * angles], axis=-1)
+        told = np.where(np.abs(times) < dip / 2, 0.0, 1.0)
+        turned = twisted(still, along, plain, normals, told, rate)
+        course = np.unwrap(2.0 * np.arctan2(turned[:, 3], turned[:, 0]))
+        speeds.append(np.abs(np.diff(course)).max() * rate)
+
+    assert_allclose(speeds[1:], speeds[0], rtol=0.05)
 
 
 def test_a_single_frame_is_twisted_as_one_of_many():
