@@ -11,8 +11,9 @@ import numpy as np
 from mathutils import Matrix
 
 from ..solvers.denoising import PlantSettings
+from ..solvers.depth_tracking.body_motion import scene_from_camera
 from ..solvers.depth_tracking.capture import CaptureSettings
-from ..solvers.motion.depth_floor import LEVEL, Floor
+from ..solvers.motion.depth_floor import Floor
 from ..solvers.motion.depth_foreground import ForegroundSettings
 from ..solvers.settings import Settings, setting
 from ..solvers.version import version
@@ -146,10 +147,8 @@ def write_tracked(
 
 def _place(preview: bpy.types.Object, floor: Floor | None) -> Matrix:
     """Return where the world of the motion is in the scene: as the points were put there."""
-    turn, shift = (floor or LEVEL).world_from_camera()
-    camera = np.eye(4)
-    camera[:3, :3], camera[:3, 3] = turn, shift
-    return preview.matrix_world @ Matrix(np.linalg.inv(camera).tolist())
+    motion_from_camera = scene_from_camera(floor)
+    return preview.matrix_world @ Matrix(np.linalg.inv(motion_from_camera).tolist())
 
 
 def _said(result: Tracked) -> str:
