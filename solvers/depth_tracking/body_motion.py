@@ -35,7 +35,7 @@ def _t_pose_turns() -> Array:
 
 _T_POSE = _t_pose_turns()
 _REST = SCENE_FROM_CAMERA @ _T_POSE
-"""How each segment is turned in the rest pose, (15, 3, 3)."""
+"""How each segment is turned in the rest pose, (17, 3, 3)."""
 
 
 def body_skeleton(body: BodyModel) -> Skeleton:
