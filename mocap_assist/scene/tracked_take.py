@@ -17,6 +17,7 @@ from .frames import Grid
 from .rig import Placement, Rig, placement_of, read_rig
 from .take import ArmatureTake, BoneChannels, Part, part_of
 from .tracked_body import TrackedBody, armature_from_motion, bones_of
+from .tracked_checks import check_posed
 
 Array = NDArray[np.float64]
 
@@ -48,7 +49,11 @@ class TrackedTake:
         return self._of_body(self._part(self.channels, len(self.frames)))
 
     def pose(self, armature: bpy.types.Object) -> Motion:
-        """Return the pose that the armature has now, keyed or not, as one frame."""
+        """Return the pose that the armature has now, keyed or not, as one frame.
+
+        Raises InvalidMotionError where that is not what is seen; see `check_posed`.
+        """
+        bpy.context.view_layer.update()
         bones = [armature.pose.bones[name] for name in self.rig.bones]
         channels = tuple(
             BoneChannels(
@@ -59,7 +64,9 @@ class TrackedTake:
             )
             for bone in bones
         )
-        return self._of_body(self._part(channels, 1))
+        pose = self._of_body(self._part(channels, 1))
+        check_posed(armature, self.tracked, pose)
+        return pose
 
     def with_motion(self, motion: Motion, first: int, last: int) -> ArmatureTake:
         """Return frames of a motion of the body as `write_take` writes them."""

@@ -1,0 +1,33 @@
+"""What would let a tracked armature be read otherwise than it is seen; each with a sentence."""
+
+import bpy
+import numpy as np
+
+from ...solvers.depth_tracking.body_motion import motion_frames, scene_from_camera
+from ...solvers.depth_tracking.body_tables import SEGMENTS
+from ...solvers.errors import InvalidMotionError
+from ...solvers.motion import Motion
+from .tracked_body import EVEN, TrackedBody, armature_from_motion, bones_of, posed_frames
+
+
+def check_posed(armature: bpy.types.Object, tracked: TrackedBody, pose: Motion) -> None:
+    """Raise InvalidMotionError where bones are seen elsewhere than a pose of them says.
+
+    Parameters
+    ----------
+    armature : an armature that Track has made
+    tracked : what is kept with it
+    pose : one frame, read from the turns of its bones and the place of its hips
+    """
+    to_armature = armature_from_motion(armature, tracked.body)
+    frames = motion_frames(tracked.body, pose)[0]
+    read = to_armature @ scene_from_camera(None) @ frames
+    off = np.abs(posed_frames(armature, tracked.body) - read).max(axis=(1, 2))
+    elsewhere = off > EVEN * np.cbrt(np.linalg.det(to_armature[:3, :3]))
+    if elsewhere.any():
+        bone = bones_of(armature)[SEGMENTS[int(np.argmax(elsewhere))]]
+        raise InvalidMotionError(
+            f"{bone} of {armature.name} lies elsewhere than the turns of its bones put it."
+            " Clear its location (Alt G) and scale (Alt S); of a constraint, apply the visual"
+            " transform (Ctrl A), then remove it."
+        )
