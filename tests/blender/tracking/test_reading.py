@@ -107,3 +107,16 @@ def test_bones_that_do_not_inherit_are_noticed(made, refused):
     bones["rightShoulder"].rotation_quaternion = TURN
     made.armature.data.bones[ARM].use_inherit_rotation = False
     refused(f"{ARM} of wall tracked .* turns of its bones")
+
+
+def test_a_copy_of_a_bone_does_not_take_its_place(made, edit, read, read_take, blank):
+    before = read().pose.rotations
+
+    def double(bones):
+        blank.ops.armature.select_all(action="SELECT")
+        blank.ops.armature.duplicate()
+        assert f"{ARM}.001" in bones
+
+    edit(double)
+    np.testing.assert_allclose(read().pose.rotations, before, atol=1e-6)
+    assert read_take(made).bones["hips"] == "hips"
