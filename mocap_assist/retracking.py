@@ -21,6 +21,7 @@ from .scene.depth_preview import open_recording
 from .scene.hand_pose import HandPose
 from .scene.live_body import LiveBody, Stage
 from .scene.tracked_body import TrackedBody, armature_from_motion, is_tracked
+from .scene.tracked_checks import check_in_time
 from .scene.tracked_curves import mend_trust, write_residual
 from .scene.tracked_take import TrackedTake, read_tracked_take
 from .selection import played_source, selected_armature
@@ -49,7 +50,7 @@ def why_not_retrack(context: bpy.types.Context) -> str:
         return "Select an armature that Track has made, and pose it in a frame that is wrong."
     try:
         check_writable(armature)
-        played_source(armature)
+        check_in_time(armature, played_source(armature))
     except MocapAssistError as error:
         return str(error)
     return ""
@@ -61,6 +62,7 @@ def read_retracking(
     """Read what an armature plays and how it is posed; return what is to be solved."""
     check_writable(armature)
     source = played_source(armature)
+    check_in_time(armature, source)
     take, played = _played(armature, source)
     place = (scene.frame_current_final - take.frames[0]) / take.tracked.shown.step
     frame = round(place)

@@ -7,7 +7,29 @@ from ...solvers.depth_tracking.body_motion import motion_frames, scene_from_came
 from ...solvers.depth_tracking.body_tables import SEGMENTS
 from ...solvers.errors import InvalidMotionError
 from ...solvers.motion import Motion
+from .compat import Source
+from .history import playing_strips
 from .tracked_body import EVEN, TrackedBody, armature_from_motion, bones_of, posed_frames
+
+IN_TIME = 0.05
+"""Frames that a strip may play an action too late or too early."""
+
+
+def check_in_time(armature: bpy.types.Object, source: Source) -> None:
+    """Raise InvalidMotionError where an NLA strip plays an action at other frames."""
+    action, animation = source[0], armature.animation_data
+    if animation.action == action:
+        return
+    strip = next(each for each in playing_strips(animation) if each.action == action)
+    own = strip.action_frame_start, strip.action_frame_end
+    late = strip.frame_start - own[0]
+    longer = (strip.scale - 1.0) * (own[1] - own[0])
+    bent = strip.use_reverse or strip.use_animated_time
+    if bent or max(abs(late), abs(late + longer)) > IN_TIME:
+        raise InvalidMotionError(
+            f"{action.name} plays at other frames on its NLA strip than its own,"
+            f" {own[0]:g} to {own[1]:g}. Put the strip back there, or assign the action itself."
+        )
 
 
 def check_posed(armature: bpy.types.Object, tracked: TrackedBody, pose: Motion) -> None:
