@@ -1,7 +1,7 @@
 """A button whose solve can be watched, and of which something may be kept on Esc."""
 
+import logging
 from collections.abc import Callable
-from contextlib import suppress
 from typing import Any, ClassVar
 
 import bpy
@@ -10,6 +10,8 @@ from ..solvers.errors import MocapAssistError, SolveCancelled
 from .jobs.job import Job
 from .solver_operator import SolverOperator
 from .watch import View
+
+logger = logging.getLogger(__name__)
 
 
 class WatchedOperator(SolverOperator):
@@ -35,8 +37,13 @@ class WatchedOperator(SolverOperator):
 
     def _look(self, view: View, job: Job[Any]) -> None:
         """Show what is new; nothing where the animator has removed what is looked at."""
-        with suppress(MocapAssistError):
+        try:
             view.look(*self._subject.find(), job.shown())
+        except MocapAssistError:
+            pass
+        except Exception:  # from what is shown, handlers, files: the solve must go on
+            logger.exception("Nothing more is shown of this solve")
+            self._watch.close_view()
 
     def _answer(self, job: Job[Any]) -> Any:
         if not job.cancelled:
