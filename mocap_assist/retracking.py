@@ -13,7 +13,7 @@ from ..solvers.errors import InvalidMotionError, MocapAssistError
 from .doubts import list_doubts
 from .jobs.protocol import Showing
 from .jobs.retracking import Correction, Played, retrack_recording
-from .jobs.tracking import Doubt, doubts_of
+from .jobs.tracking import Doubt, doubts_of, mean_cm
 from .scene import history
 from .scene.armature_write import Output, check_writable, put_to_use, write_take
 from .scene.compat import Source
@@ -190,5 +190,5 @@ def _entry(settings: RetrackBundle, take: TrackedTake, result: Retracked) -> dic
         "picture": take.first + result.frame,
         "first_picture": take.first + result.first,
         "last_picture": take.first + result.last,
-        "mean_residual_cm": 100 * float(np.nanmean(result.residual)),
+        "mean_residual_cm": mean_cm(result.residual),
     }

@@ -19,7 +19,7 @@ from ..solvers.settings import Settings, setting
 from ..solvers.version import version
 from .doubts import list_doubts
 from .jobs.protocol import Showing
-from .jobs.tracking import Tracked, track_recording, tracked_so_far
+from .jobs.tracking import Tracked, mean_cm, track_recording, tracked_so_far
 from .scene import history
 from .scene.armature_build import build_armature
 from .scene.depth_preview import KEY, Shown, problem_of, recording_of
@@ -152,10 +152,11 @@ def _place(preview: bpy.types.Object, floor: Floor | None) -> Matrix:
 
 
 def _said(result: Tracked) -> str:
-    off = 100 * float(np.nanmean(result.residual))
+    off = mean_cm(result.residual)
+    beside = "" if off is None else f", the body lies {off:.1f} cm beside the points of it"
     n_doubts = len(result.doubts)
     said = (
-        f"{result.motion.n_frames} frames, the body lies {off:.1f} cm beside the points of it."
+        f"{result.motion.n_frames} frames{beside}."
         f" The detector helped {len(result.restarts)} times after the start;"
         f" {n_doubts} ranges are doubtful."
     )
@@ -170,7 +171,7 @@ def _entry(settings: TrackBundle, result: Tracked, shown: Shown) -> dict[str, ob
             settings.choices, settings.tracking, settings.actor, settings.planting
         ),
         "recording": shown.path,
-        "mean_residual_cm": 100 * float(np.nanmean(result.residual)),
+        "mean_residual_cm": mean_cm(result.residual),
         "coverage": result.coverage,
         "restarts": list(result.restarts),
         "doubtful_ranges": len(result.doubts),
