@@ -26,6 +26,7 @@ from .scene.tracked_curves import mend_trust, write_residual
 from .scene.tracked_take import TrackedTake, read_tracked_take
 from .selection import played_source, selected_armature
 from .subject import check_unchanged
+from .tracking import WatchChoices
 
 Array = NDArray[np.float64]
 
@@ -41,6 +42,7 @@ class RetrackBundle(NamedTuple):
     """All that the button offers."""
 
     retracking: RetrackSettings
+    watching: WatchChoices = WatchChoices()
 
 
 def why_not_retrack(context: bpy.types.Context) -> str:
@@ -79,7 +81,7 @@ def watch_retracking(
     scene: bpy.types.Scene, armature: bpy.types.Object, settings: RetrackBundle
 ) -> "_View | None":
     """Return what shows the body while it is tracked again, if that is wanted."""
-    return _View(scene, armature) if scene.mocap_assist.track.watch else None
+    return _View(scene, armature) if settings.watching.watch else None
 
 
 class _View(LiveBody):
@@ -101,12 +103,6 @@ def _stage_of(armature: bpy.types.Object) -> Stage:
         tracked.floor
     )
     return Stage(np.array(armature.matrix_world) @ armature_from_camera, tracked.shown)
-
-
-def keep_nothing(
-    scene: bpy.types.Scene, armature: bpy.types.Object, settings: RetrackBundle
-) -> None:
-    """Return that nothing is kept on Esc."""
 
 
 def write_retracked(
@@ -186,7 +182,7 @@ def _said(take: TrackedTake, result: Retracked) -> str:
 def _entry(settings: RetrackBundle, take: TrackedTake, result: Retracked) -> dict[str, object]:
     return {
         "operation": OPERATION,
-        "settings": history.plain(*settings),
+        "settings": history.plain(settings.retracking),
         "picture": take.first + result.frame,
         "first_picture": take.first + result.first,
         "last_picture": take.first + result.last,

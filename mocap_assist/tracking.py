@@ -56,6 +56,12 @@ class WatchChoices(Settings):
         " along in time",
         label="Watch it Solve",
     )
+
+
+@dataclass(frozen=True, kw_only=True)
+class EscChoices(Settings):
+    """What is left of a solve that is ended early."""
+
     keep_on_esc: bool = setting(
         False,
         "Esc makes an armature of the frames that were tracked until then",
@@ -71,6 +77,7 @@ class TrackBundle(NamedTuple):
     actor: ForegroundSettings
     planting: PlantSettings
     watching: WatchChoices = WatchChoices()
+    escaping: EscChoices = EscChoices()
 
 
 def selected_preview(context: bpy.types.Context) -> bpy.types.Object | None:
@@ -108,7 +115,7 @@ def keep_tracked(
     scene: bpy.types.Scene, preview: bpy.types.Object, settings: TrackBundle
 ) -> Callable[[list[Any]], Tracked] | None:
     """Return what makes the best of what was tracked until Esc, if that is wanted."""
-    if not settings.watching.keep_on_esc:
+    if not settings.escaping.keep_on_esc:
         return None
     recording = recording_of(preview.data)
     return partial(tracked_so_far, recording=recording, settings=settings.tracking)

@@ -19,8 +19,13 @@ class WatchedOperator(SolverOperator):
 
     open_view: ClassVar[Callable[..., View | None]]
     """From scene, subject and settings; None if nobody wants to look on."""
-    rescue: ClassVar[Callable[..., Callable[[list[Any]], Any] | None]]
-    """From scene, subject and settings: what makes a result of all that was shown, or None."""
+    rescue: ClassVar[Callable[..., Callable[[list[Any]], Any] | None]] = staticmethod(
+        lambda scene, thing, settings: None
+    )
+    """From scene, subject and settings: what makes a result of all that was shown on Esc.
+
+    None, as here, where nothing is kept.
+    """
 
     def invoke(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
         outcome = super().invoke(context, event)

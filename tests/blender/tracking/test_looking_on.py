@@ -125,3 +125,22 @@ def test_files_that_cannot_be_read_now_are_as_if_nothing_was_said(load, tmp_path
         assert protocol.last_progress(tmp_path) == (0.0, "Starting")
     assert protocol.read_shown(tmp_path, 0)[0] == ["one"]
     assert protocol.last_progress(tmp_path) == (0.5, "Half way")
+
+
+def test_track_from_here_is_watched_if_its_caller_wants_that(write_tracked, load, blank):
+    made = write_tracked()
+    retracking, choices = load("mocap_assist.retracking"), load("mocap_assist.tracking")
+    settings = load("solvers.depth_tracking").RetrackSettings()
+    assert "watch" in blank.ops.mocap_assist.retrack.get_rna_type().properties
+    blank.context.scene.mocap_assist.track.watch = False
+    for wanted in (True, False):
+        bundle = retracking.RetrackBundle(settings, choices.WatchChoices(watch=wanted))
+        view = retracking.watch_retracking(blank.context.scene, made.armature, bundle)
+        assert (view is not None) == wanted
+        if view is not None:
+            view.close()
+
+
+def test_esc_keeps_nothing_of_what_is_tracked_again(load):
+    retrack = load("operators.retrack").MOCAP_OT_retrack
+    assert retrack.rescue(None, None, None) is None

@@ -28,7 +28,7 @@ def press(load, window, points):
         def report(self, kind, message):
             window.reports.append((kind, message))
 
-    def press(**choices):
+    def press(watch=True, keep_on_esc=False):
         capture = load("solvers.depth_tracking.capture")
         button = Button()
         button.chosen = tracking.TrackBundle(
@@ -36,7 +36,8 @@ def press(load, window, points):
             capture.CaptureSettings(backward=False, refine=False),
             load("solvers.motion.depth_foreground").ForegroundSettings(),
             load("solvers.denoising").PlantSettings(),
-            tracking.WatchChoices(**choices),
+            tracking.WatchChoices(watch=watch),
+            tracking.EscChoices(keep_on_esc=keep_on_esc),
         )
         assert button.invoke(window.context, None) == {"RUNNING_MODAL"}
         return button
