@@ -92,7 +92,7 @@ class _View(LiveBody):
         self._pose = HandPose(armature)
 
     def close(self) -> None:
-        """Leave everything as it was."""
+        """Go back to the frame of before, and to the pose of the armature there."""
         super().close()
         self._pose.restore()
 

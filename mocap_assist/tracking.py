@@ -53,7 +53,7 @@ class WatchChoices(Settings):
     watch: bool = setting(
         True,
         "Show the body over the points while it is tracked, in the colours of trust, and go"
-        " along in time",
+        " along in time; unkeyed changes to other animated objects are then lost",
         label="Watch it Solve",
     )
 

@@ -28,7 +28,7 @@ class View(Protocol):
         """Show what is new."""
 
     def close(self) -> None:
-        """Leave everything as it was."""
+        """Show nothing more."""
 
 
 class Watch:
