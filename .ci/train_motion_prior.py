@@ -34,7 +34,9 @@ def said(fraction: float, message: str) -> None:
 
 def main() -> None:
     """Learn, and save where it is shipped."""
-    parser = argparse.ArgumentParser(description=__doc__)
+    parser = argparse.ArgumentParser(
+        description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
+    )
     parser.add_argument("--out", type=Path, default=SHIPPED)
     given = parser.parse_args()
     motions = [*cmu_motions(but=(HOPPER,)), *exercises(which=ONCE)]

@@ -1,11 +1,12 @@
 """Build the posture library that is shipped, from captures that anyone may use.
 
-    python .ci/train_postures.py
+    python .ci/train_postures.py [--out FILE]
 
 CMU (mocap.cs.cmu.edu, created with funding from NSF EIA-0196217), and the true postures of
 UI-PRMD (Vakanski, Jun, Paul, Baker 2018, published as ODC-PDDL).
 """
 
+import argparse
 import sys
 from pathlib import Path
 
@@ -22,12 +23,17 @@ from tests.benchmarks.posture_sources import (  # noqa: E402
 
 
 def main() -> None:
-    """Read the clips, thin out their postures and save them where they are shipped."""
+    """Read the clips, thin out their postures and save them where they are shipped, or else."""
+    parser = argparse.ArgumentParser(
+        description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
+    )
+    parser.add_argument("--out", type=Path, default=SHIPPED)
+    given = parser.parse_args()
     library = joined(cmu_library(), exercise_library(read_pairs()))
-    SHIPPED.parent.mkdir(exist_ok=True)
-    library.save(SHIPPED)
-    size = SHIPPED.stat().st_size
-    print(f"{library.n_postures} of {library.n_seen} postures, {size} bytes: {SHIPPED}")
+    given.out.parent.mkdir(exist_ok=True)
+    library.save(given.out)
+    size = given.out.stat().st_size
+    print(f"{library.n_postures} of {library.n_seen} postures, {size} bytes: {given.out}")
 
 
 if __name__ == "__main__":

@@ -1,12 +1,13 @@
 """Learn the residual prior that is shipped, from UI-PRMD (published as ODC-PDDL).
 
-    python .ci/train_residuals.py
+    python .ci/train_residuals.py [--out FILE]
     python .ci/train_residuals.py --confidence   # only how far the shipped one is believed
 
 Vakanski, Jun, Paul, Baker (2018). A data set of human body movements for physical
 rehabilitation exercises. Data 3(1). doi:10.3390/data3010002
 """
 
+import argparse
 import sys
 from dataclasses import replace
 from pathlib import Path
@@ -31,21 +32,27 @@ WORDS = "UI-PRMD: ten exercises by five actors, Kinect v2 against markers"
 
 
 def main() -> None:
-    """Learn from all takes and save where it is shipped, in single precision.
+    """Learn from all takes and save, by default where it is shipped, in single precision.
 
     Its confidence is learned by leaving out each actor in turn.
     """
+    parser = argparse.ArgumentParser(
+        description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
+    )
+    parser.add_argument("--out", type=Path, default=SHIPPED)
+    parser.add_argument("--confidence", action="store_true")
+    given = parser.parse_args()
     taken = [pair for pair in read_pairs() if pair.matched]
     pairs = [(pair.kinect, pair.truth) for pair in taken]
     actors = [pair.subject for pair in taken]
-    if "--confidence" in sys.argv:
+    if given.confidence:
         prior = load_residual_prior(SHIPPED)
     else:
         prior = learn_residual_prior(pairs, actors=actors, settings=SETTINGS, progress=told)
     prior = calibrated(prior, pairs, actors, progress=told)
-    SHIPPED.parent.mkdir(exist_ok=True)
-    small(prior).save(SHIPPED)
-    print(f"{len(prior.joints)} joints, {SHIPPED.stat().st_size} bytes: {SHIPPED}")
+    given.out.parent.mkdir(exist_ok=True)
+    small(prior).save(given.out)
+    print(f"{len(prior.joints)} joints, {given.out.stat().st_size} bytes: {given.out}")
     print(f"shift, slope and spread: {prior.calibration.tolist()}")
 
 

@@ -19,6 +19,7 @@ sys.path.insert(0, str(ROOT))
 DOCUMENTS = [ROOT / "README.md", *sorted((ROOT / "docs").glob("*.md"))]
 PICTURES = ROOT / "docs" / "pictures"
 ENDLESS = 1e6
+label_of = import_module("solvers.settings").label_of
 BLOCK = re.compile(r"(<!-- settings ([\w.]+)\.(\w+) -->\n).*?(<!-- end -->)", re.DOTALL)
 
 
@@ -38,7 +39,7 @@ def settings_table(module: str, name: str) -> str:
         allowed = _allowed(item.default, described)
         help_text = described.help.replace("|", "\\|")
         rows.append(
-            f"| {_spoken(item.name)}{folded} | {_shown(item.default)}{_unit(described)}"
+            f"| {label_of(item)}{folded} | {_shown(item.default)}{_unit(described)}"
             f" | {allowed} | {help_text}. |"
         )
     return "\n".join(rows) + "\n"
@@ -65,10 +66,6 @@ def _shown(value: Any) -> str:
 
 def _unit(described: Any) -> str:
     return f" {described.unit}" if described.unit else ""
-
-
-def _spoken(name: str) -> str:
-    return name.replace("_", " ").capitalize()
 
 
 def draw_pictures() -> None:

@@ -98,24 +98,24 @@ class ImportChoices(Settings):
     )
     focal_length_y: float = setting(
         0.0,
-        "Of a depth camera up the picture, in pixels, where it is another one than across; more"
-        " makes the actor shorter. 0 takes the file's word, or the one across",
+        "Vertical focal length of a depth camera, in pixels, if it differs from the horizontal"
+        " one; more makes the actor shorter. 0 takes the file's word, or the horizontal one",
         minimum=0.0,
         maximum=100_000.0,
         label="Focal Length Y",
     )
     center_x: float = setting(
         0.0,
-        "Column of pixels that the axis of a depth camera meets. 0 takes the file's word, or"
-        " the middle",
+        "Column of pixels at which the axis of a depth camera meets the picture. 0 takes the"
+        " file's word, or the middle",
         minimum=0.0,
         maximum=100_000.0,
         label="Center X",
     )
     center_y: float = setting(
         0.0,
-        "Row of pixels that the axis of a depth camera meets. 0 takes the file's word, or the"
-        " middle",
+        "Row of pixels at which the axis of a depth camera meets the picture. 0 takes the"
+        " file's word, or the middle",
         minimum=0.0,
         maximum=100_000.0,
         label="Center Y",

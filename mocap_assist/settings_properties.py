@@ -10,7 +10,7 @@ from typing import Any, NamedTuple, TypeVar, get_type_hints
 import bpy
 import numpy as np
 
-from ..solvers.settings import Described, Settings
+from ..solvers.settings import Described, Settings, in_title_case, label_of
 
 Class = TypeVar("Class", bound=type)
 Bundle = TypeVar("Bundle", bound=NamedTuple)
@@ -54,7 +54,7 @@ def _property(item: "Field[Any]", options: set[str]) -> Any:
     described: Described = item.metadata["described"]
     kind = type(item.default)
     shown = {
-        "name": described.label or item.name.replace("_", " ").capitalize(),
+        "name": label_of(item),
         "description": described.help,
         "default": item.default,
         "options": {"ANIMATABLE"} | options,
@@ -104,4 +104,4 @@ def _value(value: Any, item: "Field[Any]") -> Any:
 
 
 def _words(choice: Enum) -> str:
-    return str(choice.value)[:1].upper() + str(choice.value)[1:]
+    return in_title_case(str(choice.value))

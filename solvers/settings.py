@@ -11,6 +11,9 @@ from typing import Any
 
 from .errors import InvalidSettingError
 
+SMALL_WORDS = {"a", "an", "and", "as", "at", "by", "for", "from", "in", "of", "on", "or", "the",
+               "to", "with"}  # fmt: skip
+
 
 @dataclass(frozen=True)
 class Described:
@@ -32,6 +35,21 @@ def setting(default: Any, help: str, **limits: Any) -> Any:
     `limits` are the further attributes of `Described`. The help says what *more* does.
     """
     return field(default=default, metadata={"described": Described(help, **limits)})
+
+
+def label_of(item: Any) -> str:
+    """Return what the user interface calls a field of a `Settings` class."""
+    described: Described = item.metadata["described"]
+    return described.label or in_title_case(item.name.replace("_", " "))
+
+
+def in_title_case(words: str) -> str:
+    """Return words as Blender writes its labels: "Learn from", "Frame Range"."""
+    first, *others = words.split(" ")
+    return " ".join([
+        first[:1].upper() + first[1:],
+        *(word if word in SMALL_WORDS else word[:1].upper() + word[1:] for word in others),
+    ])
 
 
 @dataclass(frozen=True, kw_only=True)

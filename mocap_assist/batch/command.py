@@ -44,6 +44,9 @@ def run(words: Sequence[str]) -> int:
     except MocapAssistError as error:
         screen.say(str(error))
         return FAILED
+    except OSError as error:
+        screen.say(f"{error.filename or 'The output'}: {error.strerror}.")
+        return FAILED
     except SystemExit as stop:  # a slip in the command line, or --help
         return int(stop.code or 0)
     return 0

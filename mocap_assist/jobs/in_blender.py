@@ -7,6 +7,7 @@ from functools import partial
 from pathlib import Path
 from typing import Any
 
+from ...solvers.errors import InvalidFileError
 from ...solvers.motion import Motion
 from ...solvers.progress import Progress, unwatched
 from .job import EXTENSION, alone, run
@@ -23,6 +24,13 @@ class BackgroundBlender:
     """Path; empty where Blender is a module of Python."""
     rig: str = ""
     """A .blend file with the armatures of actions that are alone in theirs; none without."""
+
+    def look_for_rig(self) -> None:
+        """Raise InvalidFileError if the file of the rig is missing."""
+        if self.rig and not Path(self.rig).is_file():
+            raise InvalidFileError(
+                f"There is no file {self.rig} to take the rig of actions from."
+            )
 
 
 @dataclass(frozen=True, eq=False)
@@ -63,9 +71,12 @@ def read_blends(
 
     Raises
     ------
+    InvalidFileError
+        The file of the rig is missing.
     ProcessDied
         Blender has crashed over one of the files.
     """
+    blender.look_for_rig()
     asked = partial(_asked, tuple(paths), assets_only, tuple(items), blender.rig)
     return run(asked, progress, _program(blender.program))
 

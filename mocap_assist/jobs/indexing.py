@@ -77,8 +77,9 @@ def index_places(problem: IndexProblem, *, progress: Progress = unwatched) -> In
     Raises
     ------
     InvalidFileError
-        The library cannot be read or written.
+        The library cannot be read or written, or the file of the rig is missing.
     """
+    problem.blender.look_for_rig()
     path = Path(problem.library)
     try:
         path.parent.mkdir(parents=True, exist_ok=True)

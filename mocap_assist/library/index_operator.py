@@ -5,8 +5,10 @@ from functools import partial
 from typing import Any, ClassVar
 
 import bpy
+from bpy.props import BoolProperty
 
 from ...solvers.errors import MocapAssistError, SolveCancelled
+from ..import_operator import GIVEN
 from ..jobs.indexing import Indexed, index_places
 from ..jobs.job import run
 from ..solver_operator import in_background
@@ -24,8 +26,10 @@ class WaitingIndex:
     """Mix in before bpy.types.Operator.
 
     The window stays free meanwhile: nothing of the scene is read or written. Only Esc is taken,
-    and ends it.
+    and ends it; but what nobody has pressed takes no key, and ends with *Keep Current*.
     """
+
+    by_itself: BoolProperty(options=GIVEN)
 
     setting_names: ClassVar[tuple[str, ...]]
     """Supplied by the decorator `settings_from`, as is the method `settings`."""
@@ -69,8 +73,7 @@ class WaitingIndex:
         if not indexing.is_on:
             self._stop_looking(context)
             return {"CANCELLED"}
-        escaped = event.type == "ESC" and event.value == "PRESS"
-        if escaped:
+        if self._ended_by(context, event):
             indexing.job.cancel()
         elif event.type != "TIMER":
             return {"PASS_THROUGH"}
@@ -85,6 +88,11 @@ class WaitingIndex:
             return self._give_up(error)
         indexing.end(context, said_of(indexed))
         return self._tell(indexed)
+
+    def _ended_by(self, context: bpy.types.Context, event: bpy.types.Event) -> bool:
+        if self.by_itself:
+            return not context.scene.mocap_assist.library.keep_current
+        return bool(event.type == "ESC" and event.value == "PRESS")
 
     def cancel(self, context: bpy.types.Context) -> None:
         """Blender ends the operator: another file is loaded, or the window closes."""

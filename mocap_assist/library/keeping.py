@@ -9,6 +9,7 @@ import bpy
 
 from ...solvers.errors import MocapAssistError
 from ..jobs.indexing import IndexProblem
+from ..watch import why_busy
 from .background import why_indexing
 from .places import index_problem
 
@@ -56,23 +57,32 @@ def state_of(problem: IndexProblem) -> State:
 
     What cannot be looked at is as if it were not there: Index will say so.
     """
-    own = str(Path(problem.library).resolve())
-    files = (path for place in problem.places for path in _files(Path(place.path).resolve()))
-    others = (path for path in files if not str(path).startswith(own))
+    own = Path(os.path.realpath(problem.library))
+    files = (path for place in problem.places for path in _files(place.path))
+    # SQLite keeps files of its own beside the library, whose names begin with the library's.
+    others = (
+        path
+        for path in files
+        if path.parent != own.parent or not path.name.startswith(own.name)
+    )
     return problem, frozenset(seen for path in others if (seen := _seen(path)))
 
 
-def _files(place: Path) -> Iterator[Path]:
-    if not place.is_dir():
-        yield place
-    for folder, _, names in os.walk(place):  # Unlike rglob it bears folders that vanish.
+def _files(place: str) -> Iterator[Path]:
+    """Yield what lies there; unlike rglob and is_dir, these bear what cannot be looked at."""
+    whole = os.path.realpath(place)
+    n_folders = 0
+    for folder, _, names in os.walk(whole):
+        n_folders += 1
         yield from (Path(folder, name) for name in names)
+    if n_folders == 0:
+        yield Path(whole)
 
 
 def _seen(path: Path) -> tuple[str, int, int] | None:
     try:
         found = path.stat()
-    except OSError:  # It went while we looked, or may not be looked at.
+    except (OSError, ValueError):  # It went while we looked, or may not be looked at.
         return None
     return str(path), found.st_size, found.st_mtime_ns
 
@@ -90,18 +100,18 @@ def _keep() -> float:
 
 def keep(scene: bpy.types.Scene) -> None:
     """Press Index, if the scene asks for that and something has changed."""
-    choices = scene.mocap_assist.library.settings().choices
-    if not choices.keep_current or why_indexing():
+    library = scene.mocap_assist.library
+    if not library.keep_current or why_indexing() or why_busy():
         return
     try:
-        problem = index_problem(choices)
+        problem = index_problem(library.settings().choices)
     except MocapAssistError:  # nothing is listed: whoever presses Index is told
         return
     if not _keeper:
         _keeper.append(Keeper())
     if _keeper[0].wants(problem):
         try:
-            bpy.ops.mocap_assist.index_library("INVOKE_DEFAULT")
+            bpy.ops.mocap_assist.index_library("INVOKE_DEFAULT", by_itself=True)
         except RuntimeError as refusal:  # A timer that raises is never called again.
             bpy.context.window_manager.mocap_assist_indexing.said = str(refusal).strip()
 
@@ -113,6 +123,7 @@ def register() -> None:
 
 def unregister() -> None:
     """Look no more."""
-    bpy.app.timers.unregister(_keep)
+    if bpy.app.timers.is_registered(_keep):
+        bpy.app.timers.unregister(_keep)
     while _keeper:
         _keeper.pop().stop()

@@ -55,14 +55,6 @@ def index_problem(choices: LibraryChoices) -> IndexProblem:
 
 
 def background_blender(rig_file: str) -> BackgroundBlender:
-    """Return this Blender as who reads .blend files.
-
-    Raises
-    ------
-    InvalidFileError
-        The file of the rig is missing.
-    """
+    """Return this Blender as who reads .blend files, with the rig of a file, there or not."""
     rig = str(Path(bpy.path.abspath(rig_file))) if rig_file else ""
-    if rig and not Path(rig).is_file():
-        raise InvalidFileError(f"There is no file {rig} to take the rig of actions from.")
     return BackgroundBlender(str(bpy.app.binary_path), rig)

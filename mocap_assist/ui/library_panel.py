@@ -154,8 +154,8 @@ def _draw_chosen(
     row.operator(LEARN, text="Reconstruct", icon="ARMATURE_DATA").group = "reconstruct"
     column.label(text="Vary the best:")
     row = column.row(align=True)
-    row.prop(context.scene.mocap_assist.use, "n_best")
     row.operator(USE, icon="MOD_ARRAY")
+    row.prop(context.scene.mocap_assist.use, "n_best", text="")
     column.operator(MARK, icon="ASSET_MANAGER")
 
 

@@ -42,8 +42,9 @@ class CaptureSettings(RecoverySettings):
     )  # fmt: skip
     refine: bool = setting(True, "Fit lengths and thickness of the body to the recording")
     recorded: bool = setting(
-        False, "Draw poses to recorded walks, exercises and dances: limbs out of sight follow"
-        " those in sight; switch off for jumps and other quick motions",
+        False, "Pull poses towards those of recorded walks, exercises and dances: limbs out of"
+        " sight follow those in sight; switch off for jumps and other quick motions",
+        label="Like Recorded Motions",
     )  # fmt: skip
     doubtful: float = setting(
         0.3, "Confidence below which a joint is flagged; more flags more",

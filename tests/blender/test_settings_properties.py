@@ -77,7 +77,7 @@ def test_units_are_shown_where_blender_knows_them(dish):
 
     assert subtypes == ["NONE", "ANGLE", "FACTOR", "TIME_ABSOLUTE"]
     assert shown["salt"].description == "More is saltier (g)"
-    assert shown["taste"].enum_items["SWEET"].name == "Sweet and sour"
+    assert shown["taste"].enum_items["SWEET"].name == "Sweet and Sour"
 
 
 def test_every_button_offers_every_setting_with_a_tooltip(load):

@@ -22,7 +22,7 @@ OTHERS = (
     "import", "reconstruct", "clean", "check", "compare", "feet", "physics", "markers",
     "retarget", "perform",
 )  # fmt: skip
-UNTIL_DONE = 600  # tenths of a second
+UNTIL_DONE = 900  # tenths of a second
 
 
 def settle(times=4):
@@ -104,6 +104,18 @@ def index():
     bgui.shot("3-indexed.png")
 
 
+def keep_current():
+    """What is added while the switch is on is read without anybody pressing Index."""
+    bpy.context.scene.mocap_assist.library.keep_current = True
+    said = state().said
+    first = sorted(CLIPS.glob("*.bvh"))[0]
+    (CLIPS / "added.bvh").write_bytes(first.read_bytes())
+    yield from wait_for(lambda: state().said != said)
+    assert "1 read" in state().said, state().said
+    yield from settle()
+    bgui.shot("3-kept-current.png")
+
+
 def find():
     yield from press("mocap_assist.find_similar")
     job = bpy.context.window_manager.mocap_assist_job
@@ -145,6 +157,7 @@ def steps():
     bgui.area().spaces.active.show_region_ui = True
     yield from bgui.open_sidebar("Mocap", 420)
     yield from index()
+    yield from keep_current()
     yield from find()
     yield from use(armature)
 

@@ -84,3 +84,32 @@ def test_a_refusal_is_shown_and_does_not_end_the_looking(look, library, blank, c
 
     assert look(3) == 1
     assert "my.clips" in blank.context.window_manager.mocap_assist_indexing.said
+
+
+def test_a_source_beside_the_library_that_begins_like_it_counts(look, library, clip_files):
+    library.sources = str(clip_files / "my.clips-takes")
+    (clip_files / "my.clips-takes").mkdir()
+    (clip_files / "walk_0.bvh").rename(clip_files / "my.clips-takes" / "walk.bvh")
+
+    assert look(6) == 1
+    assert look(6) == 0
+
+
+def test_a_place_that_cannot_be_looked_at_does_not_hide_the_others(look, library, clip_files):
+    library.sources = f"{clip_files / ('long' * 100)}; {clip_files}"
+
+    assert look(3) == 1
+
+
+def test_it_waits_for_another_solve(load, look, monkeypatch):
+    keeping = load("mocap_assist.library.keeping")
+    monkeypatch.setattr(keeping, "why_busy", lambda: "Track runs.")
+    assert look(4) == 0
+    monkeypatch.undo()
+
+
+def test_the_extension_can_be_switched_off_after_the_looking_has_ended(load):
+    keeping = load("mocap_assist.library.keeping")
+    keeping.unregister()
+    keeping.unregister()
+    keeping.register()

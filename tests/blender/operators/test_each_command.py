@@ -150,3 +150,13 @@ def test_what_a_reader_warns_of_is_told(blank, command, tmp_path):
     assert figures["warnings"] == (
         "Resampled to 30 Hz. Never seen: C. Nothing tells which joint hangs on which"
     )
+
+
+def test_a_folder_that_cannot_be_made_is_told_in_a_sentence(command, takes, tmp_path):
+    (tmp_path / "in_the_way").write_text("a file where a folder should be")
+    out = tmp_path / "in_the_way" / "out"
+
+    status, _, err = command("each", takes, "--output-folder", out, "--", "import")
+
+    assert (status, err.count("\n")) == (2, 1)
+    assert "in_the_way" in err and "Traceback" not in err

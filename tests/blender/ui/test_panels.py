@@ -145,8 +145,9 @@ def test_a_result_shows_its_figures_its_source_and_its_contacts(blank, draw, act
 def test_the_menu_holds_the_buttons(draw):
     shown = draw("MOCAP_MT_clean")
 
-    assert shown[1:4] == [
-        "mocap_assist.reconstruct", "mocap_assist.denoise", "mocap_assist.measure_quality",
+    assert shown[1:5] == [
+        "mocap_assist.retrack", "mocap_assist.reconstruct", "mocap_assist.denoise",
+        "mocap_assist.measure_quality",
     ]  # fmt: skip
 
 

@@ -1,0 +1,32 @@
+"""Commands that the documents show are understood, word by word."""
+
+import re
+import shlex
+from html import unescape
+from pathlib import Path
+
+import pytest
+
+ROOT = Path(__file__).resolve().parents[3]
+PAGES = [
+    ROOT / "README.md",
+    ROOT / "mocap_assist/ui/manual.html",
+    *(ROOT / "docs").rglob("*.md"),
+]
+SHOWN = re.compile(r"^[ >]*(?:<pre>)?(blender .*--command mocap_assist .*?)(?:</pre>)?$", re.M)
+
+
+def commands():
+    for page in PAGES:
+        for line in SHOWN.findall(unescape(page.read_text(encoding="utf-8"))):
+            yield pytest.param(line, id=f"{page.name}-{line[:60]}")
+
+
+@pytest.mark.parametrize("line", list(commands()))
+def test_it_is_understood(load, line):
+    module = load("mocap_assist.batch.command")
+    words = shlex.split(line, comments=True)
+    own, after = module._parted(words[words.index("mocap_assist") + 1 :])
+
+    module._parser().parse_args(own)
+    module._understood(after)
