@@ -74,6 +74,11 @@ def check_posed(armature: bpy.types.Object, tracked: TrackedBody, pose: Motion) 
     tracked : what is kept with it
     pose : one frame, read from the turns of its bones and the place of its hips
     """
+    if armature.data.pose_position == "REST":
+        raise InvalidMotionError(
+            f"{armature.name} shows its rest pose. Switch its data to Pose Position, and pose"
+            " it there."
+        )
     to_armature = armature_from_motion(armature, tracked.body)
     frames = motion_frames(tracked.body, pose)[0]
     read = to_armature @ scene_from_camera(None) @ frames

@@ -120,3 +120,8 @@ def test_a_copy_of_a_bone_does_not_take_its_place(made, edit, read, read_take, b
     edit(double)
     np.testing.assert_allclose(read().pose.rotations, before, atol=1e-6)
     assert read_take(made).bones["hips"] == "hips"
+
+
+def test_an_armature_that_shows_its_rest_pose_is_named(made, refused):
+    made.armature.data.pose_position = "REST"
+    refused("wall tracked shows its rest pose")
