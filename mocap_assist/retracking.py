@@ -13,7 +13,7 @@ from ..solvers.errors import InvalidMotionError, MocapAssistError
 from .doubts import list_doubts
 from .jobs.protocol import Showing
 from .jobs.retracking import Correction, Played, retrack_recording
-from .jobs.tracking import Doubt, doubts_of
+from .jobs.tracking import Doubt, doubts_of, mean_cm
 from .scene import history
 from .scene.armature_write import Output, check_writable, put_to_use, write_take
 from .scene.compat import Source
@@ -21,10 +21,12 @@ from .scene.depth_preview import open_recording
 from .scene.hand_pose import HandPose
 from .scene.live_body import LiveBody, Stage
 from .scene.tracked_body import TrackedBody, armature_from_motion, is_tracked
+from .scene.tracked_checks import check_in_time
 from .scene.tracked_curves import mend_trust, write_residual
 from .scene.tracked_take import TrackedTake, read_tracked_take
 from .selection import played_source, selected_armature
 from .subject import check_unchanged
+from .tracking import WatchChoices
 
 Array = NDArray[np.float64]
 
@@ -40,6 +42,7 @@ class RetrackBundle(NamedTuple):
     """All that the button offers."""
 
     retracking: RetrackSettings
+    watching: WatchChoices = WatchChoices()
 
 
 def why_not_retrack(context: bpy.types.Context) -> str:
@@ -49,7 +52,7 @@ def why_not_retrack(context: bpy.types.Context) -> str:
         return "Select an armature that Track has made, and pose it in a frame that is wrong."
     try:
         check_writable(armature)
-        played_source(armature)
+        check_in_time(armature, played_source(armature))
     except MocapAssistError as error:
         return str(error)
     return ""
@@ -61,6 +64,7 @@ def read_retracking(
     """Read what an armature plays and how it is posed; return what is to be solved."""
     check_writable(armature)
     source = played_source(armature)
+    check_in_time(armature, source)
     take, played = _played(armature, source)
     place = (scene.frame_current_final - take.frames[0]) / take.tracked.shown.step
     frame = round(place)
@@ -77,7 +81,7 @@ def watch_retracking(
     scene: bpy.types.Scene, armature: bpy.types.Object, settings: RetrackBundle
 ) -> "_View | None":
     """Return what shows the body while it is tracked again, if that is wanted."""
-    return _View(scene, armature) if scene.mocap_assist.track.watch else None
+    return _View(scene, armature) if settings.watching.watch else None
 
 
 class _View(LiveBody):
@@ -88,7 +92,7 @@ class _View(LiveBody):
         self._pose = HandPose(armature)
 
     def close(self) -> None:
-        """Leave everything as it was."""
+        """Go back to the frame of before, and to the pose of the armature there."""
         super().close()
         self._pose.restore()
 
@@ -99,12 +103,6 @@ def _stage_of(armature: bpy.types.Object) -> Stage:
         tracked.floor
     )
     return Stage(np.array(armature.matrix_world) @ armature_from_camera, tracked.shown)
-
-
-def keep_nothing(
-    scene: bpy.types.Scene, armature: bpy.types.Object, settings: RetrackBundle
-) -> None:
-    """Return that nothing is kept on Esc."""
 
 
 def write_retracked(
@@ -184,9 +182,9 @@ def _said(take: TrackedTake, result: Retracked) -> str:
 def _entry(settings: RetrackBundle, take: TrackedTake, result: Retracked) -> dict[str, object]:
     return {
         "operation": OPERATION,
-        "settings": history.plain(*settings),
+        "settings": history.plain(settings.retracking),
         "picture": take.first + result.frame,
         "first_picture": take.first + result.first,
         "last_picture": take.first + result.last,
-        "mean_residual_cm": 100 * float(np.nanmean(result.residual)),
+        "mean_residual_cm": mean_cm(result.residual),
     }

@@ -11,14 +11,15 @@ import numpy as np
 from mathutils import Matrix
 
 from ..solvers.denoising import PlantSettings
+from ..solvers.depth_tracking.body_motion import scene_from_camera
 from ..solvers.depth_tracking.capture import CaptureSettings
-from ..solvers.motion.depth_floor import LEVEL, Floor
+from ..solvers.motion.depth_floor import Floor
 from ..solvers.motion.depth_foreground import ForegroundSettings
 from ..solvers.settings import Settings, setting
 from ..solvers.version import version
 from .doubts import list_doubts
 from .jobs.protocol import Showing
-from .jobs.tracking import Tracked, track_recording, tracked_so_far
+from .jobs.tracking import Tracked, mean_cm, track_recording, tracked_so_far
 from .scene import history
 from .scene.armature_build import build_armature
 from .scene.depth_preview import KEY, Shown, problem_of, recording_of
@@ -52,9 +53,15 @@ class WatchChoices(Settings):
     watch: bool = setting(
         True,
         "Show the body over the points while it is tracked, in the colours of trust, and go"
-        " along in time",
+        " along in time; unkeyed changes to other animated objects are then lost",
         label="Watch it Solve",
     )
+
+
+@dataclass(frozen=True, kw_only=True)
+class EscChoices(Settings):
+    """What is left of a solve that is ended early."""
+
     keep_on_esc: bool = setting(
         False,
         "Esc makes an armature of the frames that were tracked until then",
@@ -70,6 +77,7 @@ class TrackBundle(NamedTuple):
     actor: ForegroundSettings
     planting: PlantSettings
     watching: WatchChoices = WatchChoices()
+    escaping: EscChoices = EscChoices()
 
 
 def selected_preview(context: bpy.types.Context) -> bpy.types.Object | None:
@@ -107,7 +115,7 @@ def keep_tracked(
     scene: bpy.types.Scene, preview: bpy.types.Object, settings: TrackBundle
 ) -> Callable[[list[Any]], Tracked] | None:
     """Return what makes the best of what was tracked until Esc, if that is wanted."""
-    if not settings.watching.keep_on_esc:
+    if not settings.escaping.keep_on_esc:
         return None
     recording = recording_of(preview.data)
     return partial(tracked_so_far, recording=recording, settings=settings.tracking)
@@ -146,17 +154,16 @@ def write_tracked(
 
 def _place(preview: bpy.types.Object, floor: Floor | None) -> Matrix:
     """Return where the world of the motion is in the scene: as the points were put there."""
-    turn, shift = (floor or LEVEL).world_from_camera()
-    camera = np.eye(4)
-    camera[:3, :3], camera[:3, 3] = turn, shift
-    return preview.matrix_world @ Matrix(np.linalg.inv(camera).tolist())
+    motion_from_camera = scene_from_camera(floor)
+    return preview.matrix_world @ Matrix(np.linalg.inv(motion_from_camera).tolist())
 
 
 def _said(result: Tracked) -> str:
-    off = 100 * float(np.nanmean(result.residual))
+    off = mean_cm(result.residual)
+    beside = "" if off is None else f", the body lies {off:.1f} cm beside the points of it"
     n_doubts = len(result.doubts)
     said = (
-        f"{result.motion.n_frames} frames, the body lies {off:.1f} cm beside the points of it."
+        f"{result.motion.n_frames} frames{beside}."
         f" The detector helped {len(result.restarts)} times after the start;"
         f" {n_doubts} ranges are doubtful."
     )
@@ -171,7 +178,7 @@ def _entry(settings: TrackBundle, result: Tracked, shown: Shown) -> dict[str, ob
             settings.choices, settings.tracking, settings.actor, settings.planting
         ),
         "recording": shown.path,
-        "mean_residual_cm": 100 * float(np.nanmean(result.residual)),
+        "mean_residual_cm": mean_cm(result.residual),
         "coverage": result.coverage,
         "restarts": list(result.restarts),
         "doubtful_ranges": len(result.doubts),

@@ -1,5 +1,6 @@
 """The one solve that runs beside Blender's work: shown while it runs, ended with its file."""
 
+import logging
 from collections.abc import Callable, Iterable
 from typing import Any, Protocol
 
@@ -7,6 +8,8 @@ import bpy
 from bpy.app import handlers
 
 from .jobs.job import Job
+
+logger = logging.getLogger(__name__)
 
 BETWEEN_LOOKS = 0.1  # seconds
 BUSY = (
@@ -25,7 +28,7 @@ class View(Protocol):
         """Show what is new."""
 
     def close(self) -> None:
-        """Leave everything as it was."""
+        """Show nothing more."""
 
 
 class Watch:
@@ -62,12 +65,20 @@ class Watch:
     def end(self, context: bpy.types.Context) -> None:
         """Show nothing more."""
         _on.remove(self)
-        if self.view is not None:
-            self.view.close()
         context.window_manager.event_timer_remove(self._timer)
         context.window_manager.mocap_assist_job.running = False
         context.workspace.status_text_set(None)
         _redraw(context)
+        self.close_view()
+
+    def close_view(self) -> None:
+        """Look on no longer, whatever goes wrong with that: the result is worth more."""
+        view, self.view = self.view, None
+        try:
+            if view is not None:
+                view.close()
+        except Exception:
+            logger.exception("What was shown of a solve could not be put away")
 
     def abandon(self, context: bpy.types.Context) -> None:
         """End the job too, whatever it has found."""

@@ -1,7 +1,7 @@
 """A button whose solve can be watched, and of which something may be kept on Esc."""
 
+import logging
 from collections.abc import Callable
-from contextlib import suppress
 from typing import Any, ClassVar
 
 import bpy
@@ -11,14 +11,21 @@ from .jobs.job import Job
 from .solver_operator import SolverOperator
 from .watch import View
 
+logger = logging.getLogger(__name__)
+
 
 class WatchedOperator(SolverOperator):
     """Mix in as SolverOperator, where `read_scene` returns a `Showing` solve."""
 
     open_view: ClassVar[Callable[..., View | None]]
     """From scene, subject and settings; None if nobody wants to look on."""
-    rescue: ClassVar[Callable[..., Callable[[list[Any]], Any] | None]]
-    """From scene, subject and settings: what makes a result of all that was shown, or None."""
+    rescue: ClassVar[Callable[..., Callable[[list[Any]], Any] | None]] = staticmethod(
+        lambda scene, thing, settings: None
+    )
+    """From scene, subject and settings: what makes a result of all that was shown on Esc.
+
+    None, as here, where nothing is kept.
+    """
 
     def invoke(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
         outcome = super().invoke(context, event)
@@ -35,8 +42,13 @@ class WatchedOperator(SolverOperator):
 
     def _look(self, view: View, job: Job[Any]) -> None:
         """Show what is new; nothing where the animator has removed what is looked at."""
-        with suppress(MocapAssistError):
+        try:
             view.look(*self._subject.find(), job.shown())
+        except MocapAssistError:
+            pass
+        except Exception:  # from what is shown, handlers, files: the solve must go on
+            logger.exception("Nothing more is shown of this solve")
+            self._watch.close_view()
 
     def _answer(self, job: Job[Any]) -> Any:
         if not job.cancelled:

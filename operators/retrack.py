@@ -4,7 +4,6 @@ import bpy
 
 from ..mocap_assist.retracking import (
     RetrackBundle,
-    keep_nothing,
     read_retracking,
     watch_retracking,
     why_not_retrack,
@@ -27,7 +26,7 @@ class MOCAP_OT_retrack(WatchedOperator, bpy.types.Operator):
     settings_group = "retrack"
     selected, why_not = selected_armature, why_not_retrack
     read_scene, write_scene = read_retracking, write_retracked
-    open_view, rescue = watch_retracking, keep_nothing
+    open_view = watch_retracking
 
     def draw(self, context: bpy.types.Context) -> None:
         """Nothing can be changed without tracking again."""

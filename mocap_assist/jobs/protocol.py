@@ -29,13 +29,13 @@ def append_shown(file: BinaryIO, thing: Any) -> None:
 def read_shown(folder: Path, start: int) -> tuple[list[Any], int]:
     """Return what was shown since the file was that long, and how long it is now.
 
-    What is only half written is left for the next time.
+    What is only half written, or cannot be read now, is left for the next time.
     """
     try:
         with (folder / SHOWN).open("rb") as file:
             file.seek(start)
             told = file.read()
-    except FileNotFoundError:
+    except OSError:
         return [], start
     things, place = [], 0
     while place + SIZE <= len(told):
@@ -71,5 +71,5 @@ def _tail(folder: Path) -> list[str]:
         with (folder / LOG).open("rb") as log:
             log.seek(max(log.seek(0, 2) - TAIL, 0))
             return log.read().decode("utf-8", "replace").splitlines()
-    except FileNotFoundError:
+    except OSError:
         return []

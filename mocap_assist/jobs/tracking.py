@@ -112,6 +112,12 @@ def _told(
     )
 
 
+def mean_cm(residual: NDArray[np.float64]) -> float | None:
+    """Return the mean of a residual, centimetres; None where nobody was seen at all."""
+    known = residual[np.isfinite(residual)]
+    return 100.0 * float(known.mean()) if len(known) else None
+
+
 def doubts_of(names: tuple[str, ...], doubtful: NDArray[np.bool_]) -> tuple[Doubt, ...]:
     """Return the stretches of frames, the longest first, of flags (n_frames, n_joints)."""
     found = []

@@ -13,6 +13,8 @@ from ...solvers.depth_tracking.capsule_surface import BodySurface
 Array = NDArray[np.float64]
 DIMMEST = 0.45
 """Of a surface that is seen edge on, as a share of one that is faced."""
+FLAT = 1e-30
+"""Length of a normal below which it has no direction."""
 
 
 class Solid(NamedTuple):
@@ -37,6 +39,8 @@ def solid(
 ) -> Solid:
     """Return the capsules of a body in the scene.
 
+    Mirrored ones face outwards, too; normals of what is scaled to nothing are 0.
+
     Parameters
     ----------
     surface : BodySurface
@@ -47,9 +51,12 @@ def solid(
     colors : shape (n_capsules, 4)
     """
     n_capsules, n_vertices, _ = vertices.shape
-    turned = normals.reshape(-1, 3) @ np.linalg.inv(matrix[:3, :3])
-    turned /= np.linalg.norm(turned, axis=-1, keepdims=True)
-    triangles = surface.triangles + n_vertices * np.arange(n_capsules)[:, None, None]
+    x, y, z = matrix[:3, :3].T
+    cofactors = np.stack([np.cross(y, z), np.cross(z, x), np.cross(x, y)])
+    side = -1 if np.linalg.det(matrix[:3, :3]) < 0.0 else 1
+    turned = side * normals.reshape(-1, 3) @ cofactors
+    turned /= np.maximum(np.linalg.norm(turned, axis=-1, keepdims=True), FLAT)
+    triangles = surface.triangles[:, ::side] + n_vertices * np.arange(n_capsules)[:, None, None]
     return Solid(
         (vertices.reshape(-1, 3) @ matrix[:3, :3].T + matrix[:3, 3]).astype(np.float32),
         turned.astype(np.float32),

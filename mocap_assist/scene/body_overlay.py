@@ -52,6 +52,8 @@ def _wanted(context: bpy.types.Context) -> Solid | None:
     if not manager.mocap_assist_body or (job.running and job.owner in {"track", "retrack"}):
         return None
     active = context.view_layer.objects.active
+    if active is None or not active.visible_get(viewport=context.space_data):
+        return None
     return body_now(active, context.scene.frame_current_final)
 
 

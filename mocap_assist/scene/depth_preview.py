@@ -126,8 +126,9 @@ def build_preview(
 
 
 def previews() -> list[bpy.types.Mesh]:
-    """Return the meshes of this file that show recordings, and may be changed."""
-    return [mesh for mesh in bpy.data.meshes if KEY in mesh and mesh.library is None]
+    """Return the meshes of this file that show recordings, and may be changed now."""
+    meshes = [mesh for mesh in bpy.data.meshes if KEY in mesh and mesh.library is None]
+    return [mesh for mesh in meshes if not mesh.is_editmode]
 
 
 def problem_of(made: bpy.types.Object) -> str:

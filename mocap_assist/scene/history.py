@@ -99,12 +99,16 @@ def played_result(armature: bpy.types.Object) -> Source | None:
     animation = armature.animation_data
     if animation is None:
         return None
-    tracks = [track for track in reversed(animation.nla_tracks) if not track.mute]
-    strips = [strip for track in tracks for strip in track.strips if not strip.mute]
-    for player in (animation, *strips):
+    for player in (animation, *playing_strips(animation)):
         if player.action is not None and player.action_slot and raw_of(player.action):
             return player.action, player.action_slot
     return None
+
+
+def playing_strips(animation: bpy.types.AnimData) -> list[bpy.types.NlaStrip]:
+    """Return the NLA strips that are not muted, those of the uppermost track first."""
+    tracks = [track for track in reversed(animation.nla_tracks) if not track.mute]
+    return [strip for track in tracks for strip in track.strips if not strip.mute]
 
 
 def plain(*settings: Settings) -> dict[str, Any]:

@@ -42,7 +42,10 @@ def stage_of_preview(preview: bpy.types.Object) -> Stage:
 
 
 class LiveBody:
-    """Shows the newest pose until it is closed; then the scene is as it was."""
+    """Shows the newest pose until it is closed; then the scene is at the frame of before.
+
+    As with any change of the frame, what was changed without keys on animated things is lost.
+    """
 
     def __init__(self, scene: bpy.types.Scene, stage_of: StageOf) -> None:
         self._scene, self._stage_of = scene.session_uid, stage_of

@@ -86,8 +86,13 @@ def is_tracked(armature: bpy.types.Object | None) -> bool:
 
 
 def bones_of(armature: bpy.types.Object) -> dict[str, str]:
-    """Return the bone of each of the `SEGMENTS`; raises InvalidMotionError if one is gone."""
-    bones = {str(bone.get(ROLE, "")): bone.name for bone in armature.data.bones}
+    """Return the bone of each of the `SEGMENTS`; raises InvalidMotionError if one is gone.
+
+    Copies of a bone have its role, too, and stand after it.
+    """
+    bones: dict[str, str] = {}
+    for bone in armature.data.bones:
+        bones.setdefault(str(bone.get(ROLE, "")), bone.name)
     gone = [name for name in SEGMENTS if name not in bones]
     if gone:
         raise InvalidMotionError(

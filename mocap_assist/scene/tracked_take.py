@@ -1,5 +1,6 @@
 """What a tracked armature plays as a motion of the body, and the way back into an action."""
 
+from collections.abc import Iterable
 from dataclasses import dataclass, replace
 
 import bpy
@@ -11,12 +12,14 @@ from ...solvers.depth_tracking.body_motion import body_skeleton
 from ...solvers.depth_tracking.body_tables import JOINTS, SEGMENTS
 from ...solvers.errors import InvalidMotionError
 from ...solvers.motion import Motion
-from .bone_channels import animated_curves, read_bone
+from .bone_channels import animated_curves, read_bone, rotation_curves
 from .compat import Source
+from .curves import Channel
 from .frames import Grid
 from .rig import Placement, Rig, placement_of, read_rig
 from .take import ArmatureTake, BoneChannels, Part, part_of
 from .tracked_body import TrackedBody, armature_from_motion, bones_of
+from .tracked_checks import check_keyed, check_posed
 
 Array = NDArray[np.float64]
 
@@ -48,7 +51,11 @@ class TrackedTake:
         return self._of_body(self._part(self.channels, len(self.frames)))
 
     def pose(self, armature: bpy.types.Object) -> Motion:
-        """Return the pose that the armature has now, keyed or not, as one frame."""
+        """Return the pose that the armature has now, keyed or not, as one frame.
+
+        Raises InvalidMotionError where that is not what is seen; see `check_posed`.
+        """
+        bpy.context.view_layer.update()
         bones = [armature.pose.bones[name] for name in self.rig.bones]
         channels = tuple(
             BoneChannels(
@@ -59,7 +66,9 @@ class TrackedTake:
             )
             for bone in bones
         )
-        return self._of_body(self._part(channels, 1))
+        pose = self._of_body(self._part(channels, 1))
+        check_posed(armature, self.tracked, pose)
+        return pose
 
     def with_motion(self, motion: Motion, first: int, last: int) -> ArmatureTake:
         """Return frames of a motion of the body as `write_take` writes them."""
@@ -109,7 +118,8 @@ def read_tracked_take(
     Raises
     ------
     InvalidMotionError
-        The armature keeps no body, its bones are other ones now, or the action is elsewhere.
+        The armature keeps no body, its bones are other ones now, have no keys, or those of the
+        hips are elsewhere in time.
     """
     tracked = TrackedBody.read(armature)
     bones, rig = bones_of(armature), read_rig(armature)
@@ -117,8 +127,10 @@ def read_tracked_take(
         raise InvalidMotionError(
             f"{bones['hips']} hangs on another bone now. Clear its parent, then track again."
         )
-    frames, first = _moments(source, tracked, n_pictures)
     curves = animated_curves(*source)
+    check_keyed(armature, curves)
+    keyed = rotation_curves(armature.pose.bones[bones["hips"]], curves).values()
+    frames, first = _moments(keyed, tracked, n_pictures, source[0].name)
     channels = tuple(
         read_bone(armature.pose.bones[bone], curves, frames, gaps=False) for bone in rig.bones
     )
@@ -128,14 +140,17 @@ def read_tracked_take(
     return TrackedTake(tracked, bones, first, frames, rig, channels, space, rate)
 
 
-def _moments(source: Source, tracked: TrackedBody, n_pictures: int) -> tuple[Array, int]:
-    """Return the frames of the pictures that the action covers, and the first picture."""
+def _moments(
+    keyed: Iterable[Channel], tracked: TrackedBody, n_pictures: int, name: str
+) -> tuple[Array, int]:
+    """Return the frames of the pictures that these curves cover, and the first picture."""
     shown = tracked.shown
-    start, stop = ((frame - shown.start) / shown.step for frame in source[0].curve_frame_range)
+    ends = np.concatenate([channel.keys[[0, -1], 0] for channel in keyed])
+    start, stop = ((frame - shown.start) / shown.step for frame in (ends.min(), ends.max()))
     first = max(int(np.ceil(start - OFF_GRID)), 0)
     last = min(int(np.floor(stop + OFF_GRID)), n_pictures - 1)
     if last < first:
         raise InvalidMotionError(
-            f"{source[0].name} has no keys in the time of the recording. Move it back there."
+            f"{name} has no keys in the time of the recording. Move it back there."
         )
     return shown.start + shown.step * np.arange(first, last + 1), first

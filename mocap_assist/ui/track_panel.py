@@ -55,8 +55,8 @@ def _draw_correction(layout: bpy.types.UILayout, context: bpy.types.Context) -> 
     """Draw what shows and mends what was tracked."""
     layout.prop(context.window_manager, "mocap_assist_body", toggle=True, icon="MOD_SKIN")
     column = _settings(layout)
-    column.prop(context.scene.mocap_assist.retrack, "reach")
-    column.prop(context.scene.mocap_assist.track, "watch")
+    for name in ("reach", "watch"):
+        column.prop(context.scene.mocap_assist.retrack, name)
     layout.operator(RETRACK, icon="TRACKING")
     draw_sentence(layout, context, why_not_retrack(context) or HOW, icon="INFO")
 

@@ -64,6 +64,10 @@ class BodyModel:
             values.setflags(write=False)
             object.__setattr__(self, name, values)
 
+    def __reduce__(self) -> tuple[type["BodyModel"], tuple[Array, Array]]:
+        """Pickle lengths and radii alone, not what is derived of them."""
+        return BodyModel, (self.lengths, self.radii)
+
     @cached_property
     def offsets(self) -> Array:
         """Each of the `JOINTS` in the frame of the segment above, shape (21, 3), metres."""

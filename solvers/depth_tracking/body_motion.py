@@ -35,7 +35,7 @@ def _t_pose_turns() -> Array:
 
 _T_POSE = _t_pose_turns()
 _REST = SCENE_FROM_CAMERA @ _T_POSE
-"""How each segment is turned in the rest pose, (15, 3, 3)."""
+"""How each segment is turned in the rest pose, (17, 3, 3)."""
 
 
 def body_skeleton(body: BodyModel) -> Skeleton:
@@ -116,7 +116,11 @@ def motion_frames(body: BodyModel, motion: Motion, floor: Floor | None = None) -
 
 
 def scene_from_camera(floor: Floor | None) -> Array:
-    """Return the transform (4, 4) from the camera's frame to a scene with Z up."""
+    """Return the transform (4, 4) from the camera's frame to a scene with Z up.
+
+    A camera that is rolled does not look exactly along +Y then, as it does for
+    `Floor.world_from_camera`: who mixes the two goes through the camera's frame.
+    """
     scene = np.eye(4)
     scene[:3, :3] = SCENE_FROM_CAMERA
     if floor is None:

@@ -22,7 +22,7 @@ import pytest
 
 pytest_plugins = (
     "armature_fixtures", "common_fixtures", "panel_fixtures", "rig_fixtures", "rigify_fixtures",
-    "window_fixtures",
+    "tracked_fixtures", "window_fixtures",
 )  # fmt: skip
 
 PACKAGE = "bl_ext.user_default.mocap_assist"

@@ -225,3 +225,15 @@ def test_a_camera_that_cannot_be_right_is_doubted(archive, blank, load):
     choices = load("mocap_assist.import_choices").ImportChoices(focal_length=900.0)
     told = load("mocap_assist.importing").import_files(blank.context, [archive], choices)
     assert "The pictures would show 5 degrees of the scene" in told.sentence
+
+
+def test_points_in_edit_mode_wait_and_let_others_play(archive, bring, blank):
+    edited, other = bring(archive, frame_rate="ONE"), bring(archive, frame_rate="ONE")
+    other.select_set(False)
+    blank.context.view_layer.objects.active = edited
+    blank.ops.object.mode_set(mode="EDIT")
+    blank.context.scene.frame_set(6)
+    assert points_of(other)[-1, 1] == pytest.approx(2.5, abs=NEAR)
+    blank.ops.object.mode_set(mode="OBJECT")
+    blank.context.scene.frame_set(7)
+    assert points_of(edited)[-1, 1] == pytest.approx(2.4, abs=NEAR)

@@ -28,7 +28,7 @@ def press(load, window, points):
         def report(self, kind, message):
             window.reports.append((kind, message))
 
-    def press(**choices):
+    def press(watch=True, keep_on_esc=False):
         capture = load("solvers.depth_tracking.capture")
         button = Button()
         button.chosen = tracking.TrackBundle(
@@ -36,7 +36,8 @@ def press(load, window, points):
             capture.CaptureSettings(backward=False, refine=False),
             load("solvers.motion.depth_foreground").ForegroundSettings(),
             load("solvers.denoising").PlantSettings(),
-            tracking.WatchChoices(**choices),
+            tracking.WatchChoices(watch=watch),
+            tracking.EscChoices(keep_on_esc=keep_on_esc),
         )
         assert button.invoke(window.context, None) == {"RUNNING_MODAL"}
         return button
@@ -54,8 +55,8 @@ def test_the_body_lies_on_the_points_while_it_is_tracked_and_time_goes_along(
     blank.context.scene.frame_set(40, subframe=0.25)
     button = press()
     wait(button, window, until=lambda: drawn(button) is not None)
-    handle = button._watch.view._drawing._handle
-    assert handle is not None
+    drawing = button._watch.view._drawing
+    assert drawing._handle is not None
 
     frame = blank.context.scene.frame_current_final
     assert 1.0 <= frame <= 6.0
@@ -67,7 +68,7 @@ def test_the_body_lies_on_the_points_while_it_is_tracked_and_time_goes_along(
 
     assert wait(button, window) == {"FINISHED"}
     assert blank.context.scene.frame_current_final == 40.25
-    assert button._watch.view._drawing._handle is None and nothing_is_left(window)
+    assert drawing._handle is None and nothing_is_left(window)
 
 
 def test_esc_leaves_nothing_as_a_rule(press, window, blank):

@@ -1,0 +1,127 @@
+"""Track from Here reads what the animator sees, or says what stands in the way."""
+
+import numpy as np
+import pytest
+from mathutils import Quaternion
+
+ARM = "rightUpperArm"
+TURN = Quaternion((0.0, 1.0, 0.0), 0.5)
+
+
+@pytest.fixture
+def made(write_tracked, blank):
+    made = write_tracked()
+    blank.context.scene.frame_set(5)
+    return made
+
+
+@pytest.fixture
+def read(made, load, blank):
+    """Read the scene as the button does; return the frame and pose that would be kept."""
+    retracking = load("mocap_assist.retracking")
+    settings = retracking.RetrackBundle(load("solvers.depth_tracking").RetrackSettings())
+
+    def read():
+        blank.context.view_layer.update()
+        asked = retracking.read_retracking(blank.context.scene, made.armature, settings)
+        return asked.args[1]
+
+    return read
+
+
+@pytest.fixture
+def edit(made, blank):
+    """Call something with the bones in Edit Mode."""
+
+    def edit(change):
+        blank.ops.object.mode_set(mode="EDIT")
+        change(made.armature.data.edit_bones)
+        blank.ops.object.mode_set(mode="OBJECT")
+
+    return edit
+
+
+@pytest.fixture
+def refused(read, load):
+    """Expect a sentence."""
+
+    def refused(sentence):
+        with pytest.raises(load("solvers.errors").InvalidMotionError, match=sentence):
+            read()
+
+    return refused
+
+
+def test_turned_bones_and_moved_hips_are_read_as_they_are_seen(made, read, load, blank):
+    from mathutils import Matrix
+
+    made.armature.matrix_world = Matrix.Scale(2.0, 4) @ made.armature.matrix_world
+    bones = made.armature.pose.bones
+    bones["hips"].location.x += 0.3
+    bones[ARM].rotation_quaternion = TURN @ bones[ARM].rotation_quaternion
+    correction = read()
+    assert correction.frame == 4
+    space = load("mocap_assist.scene.tracked_body")
+    moved = load("solvers.depth_tracking.body_motion")
+    frames = moved.motion_frames(made.body, correction.pose)[0]
+    to_armature = space.armature_from_motion(made.armature, made.body)
+    expected = to_armature @ moved.scene_from_camera(None) @ frames
+    shown = space.posed_frames(made.armature, made.body)
+    np.testing.assert_allclose(shown, expected, atol=1e-4)
+
+
+def test_a_constraint_is_named_by_the_bone_that_it_moves(made, refused, blank):
+    target = blank.data.objects.new("target", None)
+    blank.context.collection.objects.link(target)
+    target.location = (0.6, 2.4, 1.4)
+    pulled = made.armature.pose.bones["rightLowerArm"].constraints.new("IK")
+    pulled.target, pulled.chain_count = target, 2
+    refused(f"{ARM} of wall tracked .* turns of its bones")
+
+
+@pytest.mark.parametrize("bone", ["rightShoulder", "leftUpperLeg"])
+def test_a_moved_joint_is_named(bone, made, refused):
+    made.armature.pose.bones[bone].location = (0.0, 0.2, 0.0)
+    refused(f"{bone} of wall tracked .* turns of its bones")
+
+
+def test_a_scaled_bone_is_noticed(made, refused):
+    made.armature.pose.bones["chest"].scale = (1.3, 1.3, 1.3)
+    refused("chest of wall tracked .* turns of its bones")
+
+
+def test_a_bone_between_is_noticed_where_it_is_turned(made, edit, refused, read):
+    def put_between(bones):
+        new = bones.new("twist")
+        new.head, new.tail = bones["rightShoulder"].head, bones["rightShoulder"].tail
+        new.parent, bones[ARM].parent = bones["rightShoulder"], new
+
+    edit(put_between)
+    read()
+    made.armature.pose.bones["twist"].rotation_quaternion = (0.9, 0.43, 0.0, 0.0)
+    refused(f"{ARM} of wall tracked .* turns of its bones")
+
+
+def test_bones_that_do_not_inherit_are_noticed(made, refused):
+    bones = made.armature.pose.bones
+    bones["rightShoulder"].rotation_quaternion = TURN
+    made.armature.data.bones[ARM].use_inherit_rotation = False
+    refused(f"{ARM} of wall tracked .* turns of its bones")
+
+
+def test_a_copy_of_a_bone_does_not_take_its_place(made, edit, read, read_take, blank):
+    before = read().pose.rotations
+
+    def double(bones):
+        blank.ops.armature.select_all(action="SELECT")
+        blank.ops.armature.duplicate()
+        assert f"{ARM}.001" in bones
+
+    edit(double)
+    np.testing.assert_allclose(read().pose.rotations, before, atol=1e-6)
+    assert read_take(made).bones["hips"] == "hips"
+
+
+def test_an_armature_that_shows_its_rest_pose_is_named(made, refused):
+    made.armature.data.pose_position = "REST"
+    refused("wall tracked shows its rest pose")

@@ -1,0 +1,124 @@
+"""What Track from Here reads of an action: where it plays, and which keys are of the take."""
+
+import numpy as np
+import pytest
+
+ARM = "rightUpperArm"
+
+
+@pytest.fixture
+def made(write_tracked, blank):
+    made = write_tracked(step=0.8)
+    blank.context.scene.frame_set(5)
+    return made
+
+
+@pytest.fixture
+def why_grey(load, blank):
+    why_not = load("mocap_assist.retracking").why_not_retrack
+    return lambda: why_not(blank.context)
+
+
+@pytest.fixture
+def strip(made, load):
+    """Let a result play on an NLA track, as Clean does it."""
+    write, history = (
+        load("mocap_assist.scene.armature_write"),
+        load("mocap_assist.scene.history"),
+    )
+    result = write.copy_of(made.source[0])
+    slot = write.same_slot(result, made.source[1])
+    history.record(result, made.source, {"operation": "clean"})
+    write.put_to_use(made.armature, result, slot, write.Output.NLA_TRACK)
+    ((strip,),) = (track.strips for track in made.armature.animation_data.nla_tracks)
+    return strip
+
+
+def test_a_result_on_an_nla_track_may_be_tracked_from(strip, why_grey):
+    assert why_grey() == ""
+
+
+@pytest.mark.parametrize("change", ["moved", "scaled", "reversed", "by a curve"])
+def test_a_strip_that_plays_at_other_frames_is_refused(change, strip, made, why_grey, load):
+    if change == "moved":
+        strip.frame_start, strip.frame_end = 6.0, 21.2
+    elif change == "scaled":
+        strip.scale = 1.5
+    elif change == "reversed":
+        strip.use_reverse = True
+    else:
+        strip.use_animated_time = True
+    sentence = "wall tracked.clean plays at other frames on its NLA strip"
+    assert why_grey().startswith(sentence)
+    retracking = load("mocap_assist.retracking")
+    settings = retracking.RetrackBundle(load("solvers.depth_tracking").RetrackSettings())
+    scene = made.armature.users_scene[0]
+    with pytest.raises(load("solvers.errors").InvalidMotionError, match=sentence):
+        retracking.read_retracking(scene, made.armature, settings)
+
+
+@pytest.fixture
+def curves(made, load):
+    """The F-Curves of a property of a bone."""
+    bag = load("mocap_assist.scene.compat").channelbag(*made.source)
+
+    def curves(bone, name):
+        path = f'pose.bones["{bone}"].{name}'
+        return [curve for curve in bag.fcurves if curve.data_path == path]
+
+    return curves
+
+
+@pytest.fixture
+def refused(made, read_take, load):
+    """Expect a sentence."""
+
+    def refused(sentence):
+        with pytest.raises(load("solvers.errors").InvalidMotionError, match=sentence):
+            read_take(made)
+
+    return refused
+
+
+def test_bones_whose_rotation_has_no_keys_are_named(made, refused):
+    for bone in (ARM, "hips"):
+        made.armature.pose.bones[bone].rotation_mode = "XYZ"
+    refused(f"hips, {ARM} of wall tracked")
+
+
+@pytest.mark.parametrize("lost", ["muted", "cleared"])
+def test_muted_and_empty_channels_are_no_keys(lost, curves, refused):
+    curve = curves(ARM, "rotation_quaternion")[2]
+    if lost == "muted":
+        curve.mute = True
+    else:
+        curve.keyframe_points.clear()
+    refused(f"{ARM} of wall tracked")
+
+
+def test_hips_without_location_keys_are_named(made, curves, refused, load):
+    bag = load("mocap_assist.scene.compat").channelbag(*made.source)
+    bag.fcurves.remove(curves("hips", "location")[1])
+    refused("hips of wall tracked")
+
+
+def test_keys_of_other_things_do_not_make_a_take_longer(made, read_take, blank):
+    made.armature["mood"] = 1.0
+    for frame in (-40, 300):
+        made.armature.keyframe_insert('["mood"]', frame=frame)
+    other = blank.data.objects.new("other", None)
+    animation = other.animation_data_create()
+    animation.action = made.source[0]
+    animation.action_slot = made.source[0].slots.new("OBJECT", "other")
+    other.keyframe_insert("location", frame=200)
+    take = read_take(made, n_pictures=400)
+    assert take.frames == pytest.approx(1.0 + 0.8 * np.arange(20)) and take.first == 0
+
+
+def test_a_take_whose_hips_were_moved_away_in_time_is_refused(curves, refused):
+    for name in ("rotation_quaternion", "location"):
+        for curve in curves("hips", name):
+            for key in curve.keyframe_points:
+                key.co.x += 500.0
+            curve.update()
+    refused("no keys in the time of the recording")
