@@ -173,10 +173,13 @@ def _said(take: TrackedTake, result: Retracked) -> str:
     rows = [result.first, result.frame, result.last]
     first, frame, last = np.round(take.frames[rows], DIGITS)
     said = f"frames {first:g} to {last:g} were tracked again from frame {frame:g}."
-    sides = [side for side, met in zip(SIDES, result.met, strict=True) if met]
-    if sides:
-        said += f" The courses met {' and '.join(sides)} it."
-    return said
+    open_ends = [side for side, met in zip(SIDES, result.met, strict=True) if not met]
+    if not open_ends:
+        return f"{said} On both sides it joins the old motion."
+    return (
+        f"{said} {' and '.join(open_ends).capitalize()} it the new motion does not come back to"
+        " the old one: there the take or the reach ends, or the old motion fits better."
+    )
 
 
 def _entry(settings: RetrackBundle, take: TrackedTake, result: Retracked) -> dict[str, object]:

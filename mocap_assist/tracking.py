@@ -160,13 +160,13 @@ def _place(preview: bpy.types.Object, floor: Floor | None) -> Matrix:
 
 def _said(result: Tracked) -> str:
     off = mean_cm(result.residual)
-    beside = "" if off is None else f", the body lies {off:.1f} cm beside the points of it"
-    n_doubts = len(result.doubts)
-    said = (
-        f"{result.motion.n_frames} frames{beside}."
-        f" The detector helped {len(result.restarts)} times after the start;"
-        f" {n_doubts} ranges are doubtful."
+    beside = "" if off is None else f"; the body is {off:.1f} cm off the points on average"
+    n_restarts, n_doubts = len(result.restarts), len(result.doubts)
+    helped = f" It was lost and found again {n_restarts}x." if n_restarts else ""
+    doubtful = {0: "Nothing is doubtful.", 1: "One range of frames is doubtful."}.get(
+        n_doubts, f"{n_doubts} ranges of frames are doubtful."
     )
+    said = f"{result.motion.n_frames} frames{beside}.{helped} {doubtful}"
     return " ".join([said, *result.remarks])
 
 
