@@ -1,7 +1,11 @@
 """A short recording of depth whose joints are known, as points in the scene."""
 
+from types import SimpleNamespace
+
 import numpy as np
 import pytest
+
+QUICK = {"backward": False, "refine": False, "plant_feet": False}
 
 
 @pytest.fixture
@@ -28,3 +32,26 @@ def points(truth, blank, tmp_path):
     said = blank.ops.mocap_assist.import_recording(filepath=str(path))
     assert said == {"FINISHED"}
     return blank.context.object
+
+
+@pytest.fixture(scope="session")
+def shelf(tmp_path_factory):
+    """Where scenes are kept that take long to make, for all tests that begin with the same."""
+    return tmp_path_factory.mktemp("shelf")
+
+
+@pytest.fixture
+def walk(truth, n_frames, blank, shelf):
+    """The scene with points and the armature that Track made of them, tracked but once."""
+    folder = shelf / str(n_frames)
+    path, scene = folder / "walk.npz", folder / "tracked.blend"
+    if not scene.exists():
+        folder.mkdir(exist_ok=True)
+        np.savez_compressed(path, **truth)
+        blank.context.scene.render.fps = 30
+        blank.ops.mocap_assist.import_recording(filepath=str(path))
+        assert blank.ops.mocap_assist.track_depth(**QUICK) == {"FINISHED"}
+        blank.ops.wm.save_as_mainfile(filepath=str(scene), copy=True)
+    blank.ops.wm.open_mainfile(filepath=str(scene))
+    objects = {each.type: each for each in blank.data.objects}
+    return SimpleNamespace(points=objects["MESH"], armature=objects["ARMATURE"])

@@ -4,14 +4,16 @@ import numpy as np
 import pytest
 from mathutils import Matrix, Quaternion
 
-QUICK = {"backward": False, "refine": False, "plant_feet": False}
+
+@pytest.fixture
+def points(walk):
+    return walk.points
 
 
 @pytest.fixture
-def tracked(points, blank):
-    assert blank.ops.mocap_assist.track_depth(**QUICK) == {"FINISHED"}
+def tracked(walk, blank):
     blank.context.scene.frame_set(3)
-    return blank.context.object
+    return walk.armature
 
 
 @pytest.fixture

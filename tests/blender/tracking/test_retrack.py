@@ -7,7 +7,6 @@ import pytest
 from mathutils import Quaternion
 from modal_events import event, nothing_is_left, wait
 
-QUICK = {"backward": False, "refine": False, "plant_feet": False}
 ARM = "rightUpperArm"
 AWAY = Quaternion((0.0, 1.0, 0.0), 1.2)
 
@@ -18,9 +17,13 @@ def n_frames():
 
 
 @pytest.fixture
-def tracked(points, blank):
-    assert blank.ops.mocap_assist.track_depth(**QUICK) == {"FINISHED"}
-    return blank.context.object
+def points(walk):
+    return walk.points
+
+
+@pytest.fixture
+def tracked(walk):
+    return walk.armature
 
 
 def hands(blank, armature, frames=range(1, 17)):
