@@ -18,7 +18,7 @@ NO_5.2 := SKIPPED on Blender 5.2: $(call NO_PYTHON,3.13).
 export OMP_NUM_THREADS := 1
 export OPENBLAS_NUM_THREADS := 1
 # A test that hangs, or a Blender that hangs at its end, must not hold up the rest.
-AT_MOST := timeout --kill-after=10 900
+AT_MOST := timeout --kill-after=10 1500
 SUBMAKE := $(MAKE) --no-print-directory --jobs=2
 
 .PHONY: help

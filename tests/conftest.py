@@ -17,17 +17,20 @@ settings.register_profile("steady", deadline=None, derandomize=True, database=No
 settings.load_profile("steady")
 
 ON_ONE_PYTHON = {
+    "command_line/test_batch.py": (3, 13),
     "command_line/test_capture_verb.py": (3, 11),
     "command_line/test_reconstruct_verb.py": (3, 11),
     "denoising": (3, 13),
     "depth_tracking": (3, 11),
     "markers": (3, 11),
+    "motion/test_depth_actor.py": (3, 13),
     "motion/test_depth_floor.py": (3, 11),
     "reconstruction": (3, 13),
     "retargeting": (3, 13),
     "retrieval": (3, 11),
     "variation": (3, 13),
     "workflows/test_capture_recording.py": (3, 11),
+    "workflows/test_clean_from_library.py": (3, 13),
     "workflows/test_describe_files.py": (3, 11),
     "workflows/test_foretell_lost.py": (3, 13),
     "workflows/test_index_files.py": (3, 11),
