@@ -23,7 +23,7 @@ from tests.benchmarks.posture_sources import (  # noqa: E402
 
 
 def main() -> None:
-    """Read the clips, thin out their postures and save them where they are shipped, or else."""
+    """Read the clips, thin out their postures and save them."""
     parser = argparse.ArgumentParser(
         description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
     )
