@@ -68,19 +68,19 @@ docs: .venv-4.5/ready  ## the tables of settings and the pictures in README.md a
 # elsewhere, and each script says which clips, bodies and licences. The forest takes half an hour.
 .PHONY: forest postures residuals motion-prior failures
 forest: .venv-4.5/ready  ## train the shipped forest that tells the parts of bodies in depth
-	$(PYTHON_4.5) .ci/train_forest.py $(ARGUMENTS)
+	PYTHONPATH=. $(PYTHON_4.5) .ci/train_forest.py $(ARGUMENTS)
 
 postures: .venv-4.5/ready  ## thin out the shipped library of postures
-	$(PYTHON_4.5) .ci/train_postures.py $(ARGUMENTS)
+	PYTHONPATH=. $(PYTHON_4.5) .ci/train_postures.py $(ARGUMENTS)
 
 residuals: .venv-4.5/ready  ## learn the shipped errors of a Kinect, and how sure they are
-	$(PYTHON_4.5) .ci/train_residuals.py $(ARGUMENTS)
+	PYTHONPATH=. $(PYTHON_4.5) .ci/train_residuals.py $(ARGUMENTS)
 
 motion-prior: .venv-4.5/ready  ## learn the shipped motion prior of the depth tracker
-	$(PYTHON_4.5) .ci/train_motion_prior.py $(ARGUMENTS)
+	PYTHONPATH=. $(PYTHON_4.5) .ci/train_motion_prior.py $(ARGUMENTS)
 
 failures: .venv-4.5/ready  ## learn when a tracked pose is wrong, and print the weights
-	$(PYTHON_4.5) .ci/learn_failures.py
+	PYTHONPATH=. $(PYTHON_4.5) .ci/learn_failures.py
 
 # Each prints tables; with ARGUMENTS=--docs it rewrites its own part of docs/benchmarks.md, and
 # ARGUMENTS=--help tells what else there is.

@@ -1,20 +1,14 @@
 """Learn when a tracked pose is wrong, and print the numbers of failure_test.py.
 
-    python .ci/learn_failures.py
+    make failures
 
 From trackers that follow the sequences of tests/benchmarks/depth_tuning.py, whose true joints
 are known.
 """
 
-import sys
-from pathlib import Path
-
-ROOT = Path(__file__).resolve().parents[1]
-sys.path.insert(0, str(ROOT))
-
-from solvers.depth_tracking.failure_test import FEATURES  # noqa: E402
-from tests.benchmarks.depth_tuning import TAKES, tuning_sequence  # noqa: E402
-from tests.benchmarks.failures import WRONG, judged, learned  # noqa: E402
+from solvers.depth_tracking.failure_test import FEATURES
+from tests.benchmarks.depth_tuning import TAKES, tuning_sequence
+from tests.benchmarks.failures import WRONG, judged, learned
 
 
 def main() -> None:

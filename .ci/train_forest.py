@@ -1,6 +1,6 @@
 """Train the pixel forest that is shipped, from captures and bodies that anyone may use.
 
-    python .ci/train_forest.py [--pictures N] [--trees N] [--jobs N] [--out FILE]
+    make forest ARGUMENTS="[--pictures N] [--trees N] [--jobs N] [--out FILE]"
 
 CMU (mocap.cs.cmu.edu, created with funding from NSF EIA-0196217), UI-PRMD (Vakanski, Jun, Paul,
 Baker 2018, published as ODC-PDDL) and bodies in the public domain (CC0). The trees are those of
@@ -8,22 +8,18 @@ Baker 2018, published as ODC-PDDL) and bodies in the public domain (CC0). The tr
 """
 
 import argparse
-import sys
 from concurrent.futures import ProcessPoolExecutor
 from dataclasses import replace
 from functools import partial
 from pathlib import Path
 
-ROOT = Path(__file__).resolve().parents[1]
-sys.path.insert(0, str(ROOT))
-
-from solvers.depth_tracking.grow_tree import Tree  # noqa: E402
-from solvers.depth_tracking.pixel_forest import SHIPPED, PixelForest  # noqa: E402
-from solvers.depth_tracking.train_forest import (  # noqa: E402
+from solvers.depth_tracking.grow_tree import Tree
+from solvers.depth_tracking.pixel_forest import SHIPPED, PixelForest
+from solvers.depth_tracking.train_forest import (
     PixelForestSettings,
     train_pixel_forest,
 )
-from tests.benchmarks.forest_sources import (  # noqa: E402
+from tests.benchmarks.forest_sources import (
     WORDS,
     all_bodies,
     taught_motions,

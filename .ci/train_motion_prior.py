@@ -1,21 +1,17 @@
 """Learn the motion prior that is shipped, from captures that anyone may use.
 
-    python .ci/train_motion_prior.py [--out FILE]
+    make motion-prior ARGUMENTS="[--out FILE]"
 
 CMU (mocap.cs.cmu.edu, created with funding from NSF EIA-0196217) and UI-PRMD (Vakanski, Jun,
 Paul, Baker 2018, published as ODC-PDDL).
 """
 
 import argparse
-import sys
 from pathlib import Path
 
-ROOT = Path(__file__).resolve().parents[1]
-sys.path.insert(0, str(ROOT))
-
-from solvers.depth_tracking.learn_motion_prior import learn_motion_prior  # noqa: E402
-from solvers.depth_tracking.motion_prior import SHIPPED  # noqa: E402
-from tests.benchmarks.forest_sources import cmu_motions, exercises  # noqa: E402
+from solvers.depth_tracking.learn_motion_prior import learn_motion_prior
+from solvers.depth_tracking.motion_prior import SHIPPED
+from tests.benchmarks.forest_sources import cmu_motions, exercises
 
 HOPPER = "49"
 """The actor of hops in depth/truth; the walkers there are kept out as well."""

@@ -1,21 +1,17 @@
 """Build the posture library that is shipped, from captures that anyone may use.
 
-    python .ci/train_postures.py [--out FILE]
+    make postures ARGUMENTS="[--out FILE]"
 
 CMU (mocap.cs.cmu.edu, created with funding from NSF EIA-0196217), and the true postures of
 UI-PRMD (Vakanski, Jun, Paul, Baker 2018, published as ODC-PDDL).
 """
 
 import argparse
-import sys
 from pathlib import Path
 
-ROOT = Path(__file__).resolve().parents[1]
-sys.path.insert(0, str(ROOT))
-
-from solvers.reconstruction.posture_library import SHIPPED  # noqa: E402
-from tests.benchmarks.kinect_pairs import read_pairs  # noqa: E402
-from tests.benchmarks.posture_sources import (  # noqa: E402
+from solvers.reconstruction.posture_library import SHIPPED
+from tests.benchmarks.kinect_pairs import read_pairs
+from tests.benchmarks.posture_sources import (
     cmu_library,
     exercise_library,
     joined,

@@ -1,31 +1,27 @@
 """Learn the residual prior that is shipped, from UI-PRMD (published as ODC-PDDL).
 
-    python .ci/train_residuals.py [--out FILE]
-    python .ci/train_residuals.py --confidence   # only how far the shipped one is believed
+    make residuals ARGUMENTS="[--out FILE]"
+    make residuals ARGUMENTS=--confidence   # only how far the shipped one is believed
 
 Vakanski, Jun, Paul, Baker (2018). A data set of human body movements for physical
 rehabilitation exercises. Data 3(1). doi:10.3390/data3010002
 """
 
 import argparse
-import sys
 from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 
-ROOT = Path(__file__).resolve().parents[1]
-sys.path.insert(0, str(ROOT))
-
-from solvers.reconstruction import (  # noqa: E402
+from solvers.reconstruction import (
     ResidualPrior,
     ResidualPriorSettings,
     learn_residual_prior,
     load_residual_prior,
 )
-from solvers.reconstruction.learn_confidence import calibrated  # noqa: E402
-from solvers.reconstruction.reconstruct import SHIPPED  # noqa: E402
-from tests.benchmarks.kinect_pairs import read_pairs  # noqa: E402
+from solvers.reconstruction.learn_confidence import calibrated
+from solvers.reconstruction.reconstruct import SHIPPED
+from tests.benchmarks.kinect_pairs import read_pairs
 
 SETTINGS = ResidualPriorSettings(local_points=30, whole_points=60)
 WORDS = "UI-PRMD: ten exercises by five actors, Kinect v2 against markers"
