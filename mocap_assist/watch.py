@@ -8,6 +8,7 @@ import bpy
 from bpy.app import handlers
 
 from .jobs.job import Job
+from .scene.view_drawing import redraw
 
 logger = logging.getLogger(__name__)
 
@@ -60,7 +61,7 @@ class Watch:
         state = context.window_manager.mocap_assist_job
         state.running, state.fraction, state.message = True, fraction, message
         context.workspace.status_text_set(f"{message} {fraction:.0%}   Esc: cancel")
-        _redraw(context)
+        redraw(context)
 
     def end(self, context: bpy.types.Context) -> None:
         """Show nothing more."""
@@ -68,8 +69,8 @@ class Watch:
         context.window_manager.event_timer_remove(self._timer)
         context.window_manager.mocap_assist_job.running = False
         context.workspace.status_text_set(None)
-        _redraw(context)
         self.close_view()
+        redraw(context)
 
     def close_view(self) -> None:
         """Look on no longer, whatever goes wrong with that: the result is worth more."""
@@ -85,12 +86,6 @@ class Watch:
         self.job.cancel()
         self.job.tidy_up()
         self.end(context)
-
-
-def _redraw(context: bpy.types.Context) -> None:
-    for window in context.window_manager.windows:
-        for area in window.screen.areas:
-            area.tag_redraw()
 
 
 def why_busy() -> str:

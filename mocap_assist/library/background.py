@@ -7,6 +7,7 @@ from bpy.app import handlers
 
 from ..jobs.indexing import Indexed
 from ..jobs.job import Job
+from ..scene.view_drawing import redraw
 
 RUNNING = "The library is being indexed. Let it end, or press Esc."
 
@@ -47,13 +48,6 @@ class Indexing:
         self.job.cancel()
         self.job.tidy_up()
         self.end(context, "")
-
-
-def redraw(context: bpy.types.Context) -> None:
-    """Draw everything again."""
-    for window in context.window_manager.windows:
-        for area in window.screen.areas:
-            area.tag_redraw()
 
 
 def why_indexing() -> str:

@@ -1,20 +1,18 @@
 """Draw the ghost of the chosen match over the 3D Views."""
 
-from typing import Any
-
 import bpy
-from bpy.types import SpaceView3D
 from mathutils import Matrix
 
 from ...solvers.errors import InvalidMotionError
 from ..scene.overlay_drawing import Color, draw_lines
+from ..scene.view_drawing import ViewDrawing, redraw
 from . import searches
 from .ghost import Array, ghost_lines
 
 COLOR: Color = (0.45, 0.95, 0.55, 0.95)
 WIDTH = 4.0
 
-_handle: list[Any] = []
+_drawing: list[ViewDrawing] = []
 
 
 def ghost_now(context: bpy.types.Context) -> Array | None:
@@ -28,25 +26,16 @@ def ghost_now(context: bpy.types.Context) -> Array | None:
     return lines
 
 
-def redraw(context: bpy.types.Context) -> None:
-    """Let every 3D View be drawn again."""
-    for window in context.window_manager.windows:
-        for area in window.screen.areas:
-            if area.type == "VIEW_3D":
-                area.tag_redraw()
-
-
-def _draw() -> None:
-    context = bpy.context
+def _draw(context: bpy.types.Context) -> None:
     if not context.window_manager.mocap_assist_ghost:
         return
     lines = ghost_now(context)
-    if lines is not None and context.space_data.overlay.show_overlays:
+    if lines is not None:
         draw_lines(lines, Matrix.Identity(4), COLOR, WIDTH)
 
 
 def _switched(self: bpy.types.WindowManager, context: bpy.types.Context) -> None:
-    redraw(context)
+    redraw(context, "VIEW_3D")
 
 
 def register() -> None:
@@ -59,10 +48,10 @@ def register() -> None:
         ),
         update=_switched,
     )
-    _handle.append(SpaceView3D.draw_handler_add(_draw, (), "WINDOW", "POST_VIEW"))
+    _drawing.append(ViewDrawing(_draw))
 
 
 def unregister() -> None:
     """Take the switch and the drawing away."""
-    SpaceView3D.draw_handler_remove(_handle.pop(), "WINDOW")
+    _drawing.pop().close()
     del bpy.types.WindowManager.mocap_assist_ghost

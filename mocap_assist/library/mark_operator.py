@@ -1,5 +1,7 @@
 """What the buttons that make assets of actions ask for, and what they do with the answer."""
 
+from collections.abc import Callable
+
 import bpy
 
 from ...solvers.errors import MocapAssistError
@@ -17,9 +19,8 @@ class MarkOperator:
         options={"SKIP_SAVE"},
     )
 
-    def mark(self, context: bpy.types.Context) -> str:
-        """Mark, and return what to say."""
-        raise NotImplementedError
+    mark: Callable[[bpy.types.Context], str]
+    """Marks, and returns what to say: a method of the operator."""
 
     def invoke(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
         """Ask for tags and catalog."""

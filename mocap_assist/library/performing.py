@@ -13,9 +13,9 @@ from ...solvers.motion import JointRecording
 from ..jobs.finding import Finding, FindProblem, find_clips
 from ..jobs.job import Job, run
 from ..scene.units import unit_of
+from ..scene.view_drawing import redraw
 from ..solver_operator import in_background
 from . import searches
-from .background import redraw
 from .finding import fill_list
 from .places import library_path
 

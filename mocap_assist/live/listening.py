@@ -12,6 +12,7 @@ from ...solvers.retrieval.gestures import Mode
 from ...solvers.workflows.live_session import LiveSession
 from ..scene.live_figure import LiveFigure
 from ..scene.overlay_drawing import Color
+from ..scene.view_drawing import redraw
 from .commands import obey_all, search_for
 
 logger = logging.getLogger(__name__)
@@ -87,24 +88,17 @@ class Listening:
         context.window_manager.event_timer_remove(self._timer)
         context.workspace.status_text_set(None)
         logger.info("Listened to %d frames, dropped %d", self.heard.frames, self.heard.dropped)
-        _redraw(context)
+        redraw(context, "VIEW_3D")
 
     def _show(self, context: bpy.types.Context) -> None:
         said = f"{self.said}   " if self.said else ""
         context.workspace.status_text_set(f"{said}{self.state()}   Esc: stop listening")
-        _redraw(context)
+        redraw(context, "VIEW_3D")
 
 
 def current() -> Listening | None:
     """Return what listens now."""
     return _on[-1] if _on else None
-
-
-def _redraw(context: bpy.types.Context) -> None:
-    for window in context.window_manager.windows:
-        for area in window.screen.areas:
-            if area.type == "VIEW_3D":
-                area.tag_redraw()
 
 
 @handlers.persistent

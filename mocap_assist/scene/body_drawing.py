@@ -1,9 +1,7 @@
 """Draw the surface of a body over the 3D Views; nothing of the scene is touched."""
 
-from collections.abc import Callable
 from typing import Any, NamedTuple
 
-import bpy
 import gpu
 import numpy as np
 from numpy.typing import NDArray
@@ -97,27 +95,3 @@ def draw_solid(drawn: Solid, view: Any) -> None:
     gpu.state.depth_mask_set(False)
     gpu.state.depth_test_set("NONE")
     gpu.state.blend_set("NONE")
-
-
-class BodyDrawing:
-    """Draws a solid in all 3D Views until it is closed; `wanted` says which, if any."""
-
-    def __init__(self, wanted: Callable[[bpy.types.Context], Solid | None]) -> None:
-        self._wanted = wanted
-        self._handle: Any = bpy.types.SpaceView3D.draw_handler_add(
-            self._draw, (), "WINDOW", "POST_VIEW"
-        )
-
-    def close(self) -> None:
-        """Draw nothing more."""
-        if self._handle is not None:
-            bpy.types.SpaceView3D.draw_handler_remove(self._handle, "WINDOW")
-        self._handle = None
-
-    def _draw(self) -> None:
-        context = bpy.context
-        if not context.space_data.overlay.show_overlays:
-            return
-        drawn = self._wanted(context)
-        if drawn is not None:
-            draw_solid(drawn, context.region_data)

@@ -8,11 +8,11 @@ import numpy as np
 from ...solvers.depth_tracking.body_tables import CAPSULE_SEGMENTS, SEGMENTS
 from ...solvers.depth_tracking.capsule_surface import capsule_surface
 from ...solvers.errors import MocapAssistError
-from .body_drawing import BodyDrawing, Solid, solid
+from .body_drawing import Solid, draw_solid, solid
 from .heat import shade, trusted_source
-from .overlay_drawing import refresh
 from .reliability_curves import reliability_at
 from .tracked_body import TrackedBody, bones_of, is_tracked, posed_frames
+from .view_drawing import ViewDrawing, redraw, seen_active
 
 PLAIN = np.array([0.62, 0.72, 0.85, 1.0])
 """Colour of a joint whose trust is not told."""
@@ -20,7 +20,7 @@ OPAQUE = 0.65
 """So that bones and points within are seen, to be posed."""
 N_BODIES = 8
 
-_drawing: list[BodyDrawing] = []
+_drawing: list[ViewDrawing] = []
 _surface = lru_cache(maxsize=N_BODIES)(capsule_surface)
 
 
@@ -46,19 +46,23 @@ def body_now(armature: bpy.types.Object | None, frame: float) -> Solid | None:
     return solid(surface, *surface.placed(frames), matrix, colors[CAPSULE_SEGMENTS])
 
 
-def _wanted(context: bpy.types.Context) -> Solid | None:
+def wanted(context: bpy.types.Context) -> Solid | None:
+    """Return what is to be drawn in this 3D View; not while a solve shows its own body."""
     manager = context.window_manager
     job = manager.mocap_assist_job
     if not manager.mocap_assist_body or (job.running and job.owner in {"track", "retrack"}):
         return None
-    active = context.view_layer.objects.active
-    if active is None or not active.visible_get(viewport=context.space_data):
-        return None
-    return body_now(active, context.scene.frame_current_final)
+    return body_now(seen_active(context), context.scene.frame_current_final)
+
+
+def _draw(context: bpy.types.Context) -> None:
+    drawn = wanted(context)
+    if drawn is not None:
+        draw_solid(drawn, context.region_data)
 
 
 def _switched(self: bpy.types.WindowManager, context: bpy.types.Context) -> None:
-    refresh()
+    redraw(context, "VIEW_3D")
 
 
 def register() -> None:
@@ -71,7 +75,7 @@ def register() -> None:
         ),
         update=_switched,
     )
-    _drawing.append(BodyDrawing(_wanted))
+    _drawing.append(ViewDrawing(_draw))
 
 
 def unregister() -> None:

@@ -13,9 +13,10 @@ from ...solvers.depth_tracking.body_tables import CAPSULE_SEGMENTS
 from ...solvers.depth_tracking.capsule_surface import capsule_surface
 from ...solvers.depth_tracking.found_pose import FoundPose
 from ..jobs.glimpses import Onlooker
-from .body_drawing import BodyDrawing, Solid, solid
+from .body_drawing import Solid, draw_solid, solid
 from .depth_preview import Shown, shown_by
 from .heat import shade
+from .view_drawing import ViewDrawing
 
 Array = NDArray[np.float64]
 
@@ -52,9 +53,13 @@ class LiveBody:
         self._frame = (scene.frame_current, scene.frame_subframe)
         self._onlooker = Onlooker()
         self.drawn: Solid | None = None
-        self._drawing = BodyDrawing(lambda _: self.drawn)
+        self._drawing = ViewDrawing(self._draw)
         self._body: Any = None
         self._not_before = 0.0
+
+    def _draw(self, context: bpy.types.Context) -> None:
+        if self.drawn is not None:
+            draw_solid(self.drawn, context.region_data)
 
     def look(
         self, scene: bpy.types.Scene, thing: bpy.types.Object, shown: Iterable[Any]

@@ -1,10 +1,7 @@
 """The actor before the camera, drawn over the 3D View; nothing of the scene is touched."""
 
-from typing import Any
-
 import bpy
 import numpy as np
-from bpy.types import SpaceView3D
 from mathutils import Matrix
 from numpy.typing import NDArray
 
@@ -12,6 +9,7 @@ from ...solvers.motion import joint_parents
 from ...solvers.recordings.live_frames import LiveFrame
 from .overlay_drawing import Color, draw_lines
 from .units import unit_of
+from .view_drawing import ViewDrawing
 
 FAINT = 0.25
 """Confidence below which a bone is not drawn."""
@@ -26,7 +24,7 @@ class LiveFigure:
         self._color, self._width = color, width
         self._frame: LiveFrame | None = None
         self._origin: NDArray[np.float64] | None = None
-        self._handle: Any = SpaceView3D.draw_handler_add(self._draw, (), "WINDOW", "POST_VIEW")
+        self._drawing = ViewDrawing(self._draw)
 
     def show(self, frame: LiveFrame) -> None:
         """Draw this frame from now on."""
@@ -48,12 +46,10 @@ class LiveFigure:
 
     def remove(self) -> None:
         """Draw nothing any more; again does nothing."""
-        if self._handle is not None:
-            SpaceView3D.draw_handler_remove(self._handle, "WINDOW")
-            self._handle = None
+        self._drawing.close()
 
-    def _draw(self) -> None:
+    def _draw(self, context: bpy.types.Context) -> None:
         lines = self.lines()
         if len(lines):
-            in_units = Matrix.Scale(1.0 / unit_of(bpy.context.scene), 4)
+            in_units = Matrix.Scale(1.0 / unit_of(context.scene), 4)
             draw_lines(lines, in_units, self._color, self._width)

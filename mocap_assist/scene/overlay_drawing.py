@@ -7,23 +7,23 @@ import bpy
 import gpu
 import numpy as np
 from bpy.app import handlers
-from bpy.types import SpaceView3D
 from mathutils import Matrix
 
 from . import marker_overlay, overlay
 from .markers import holder_of
+from .view_drawing import ViewDrawing, redraw, seen_active
 
 Color = tuple[float, float, float, float]
 
 PAUSE = 0.3
 """Seconds without an edit after which keys are read anew."""
 
-_handle: list[Any] = []
+_drawing: list[ViewDrawing] = []
 
 
-def start(draw_all: Callable[[], None]) -> None:
+def start(draw_all: Callable[[bpy.types.Context], None]) -> None:
     """Call `draw_all` whenever a 3D View is drawn."""
-    _handle.append(SpaceView3D.draw_handler_add(draw_all, (), "WINDOW", "POST_VIEW"))
+    _drawing.append(ViewDrawing(draw_all))
     handlers.depsgraph_update_post.append(_changed)
     for each in _REPLACING:
         each.append(_replaced)
@@ -36,7 +36,7 @@ def stop() -> None:
     handlers.depsgraph_update_post.remove(_changed)
     if bpy.app.timers.is_registered(refresh):
         bpy.app.timers.unregister(refresh)
-    SpaceView3D.draw_handler_remove(_handle.pop(), "WINDOW")
+    _drawing.pop().close()
     forget()
 
 
@@ -48,8 +48,8 @@ def forget() -> None:
 
 def draw(context: bpy.types.Context, colors: tuple[Color, Color], width: float) -> None:
     """Draw what raw and clean actions of the active armature or markers show at this frame."""
-    active = context.view_layer.objects.active
-    if active is None or not context.space_data.overlay.show_overlays:
+    active = seen_active(context)
+    if active is None:
         return
     if active.type == "ARMATURE":
         _draw_figures(active, context.scene.frame_current_final, colors, width)
@@ -101,10 +101,7 @@ def _changed(scene: bpy.types.Scene, depsgraph: bpy.types.Depsgraph) -> None:
 def refresh() -> None:
     """Read anew, and draw every 3D View again."""
     forget()
-    for window in bpy.context.window_manager.windows:
-        for area in window.screen.areas:
-            if area.type == "VIEW_3D":
-                area.tag_redraw()
+    redraw(bpy.context, "VIEW_3D")
 
 
 @handlers.persistent

@@ -5,11 +5,10 @@ from typing import Any
 import bpy
 import gpu
 import numpy as np
-from bpy.types import SpaceView3D
 
 from ..scene.heat import Heat, heat_at, terms_told
-from ..scene.overlay_drawing import refresh
 from ..scene.reliability_curves import Term
+from ..scene.view_drawing import ViewDrawing, redraw, seen_active
 from .drawing import draw_sentence
 from .preferences import preferred
 
@@ -34,7 +33,7 @@ MISSING = {
 }
 OLDER = "Made by an earlier version, which did not tell why. Press Reconstruct again."
 NOTHING_TOLD = "This action tells nothing of trust. Press Reconstruct, or choose its result."
-_handle: list[Any] = []
+_drawing: list[ViewDrawing] = []
 
 
 def draw_heat_switch(layout: bpy.types.UILayout, context: bpy.types.Context) -> None:
@@ -64,17 +63,13 @@ def _missing(told: frozenset[Term]) -> list[str]:
 
 
 def _switched(self: bpy.types.WindowManager, context: bpy.types.Context) -> None:
-    refresh()
+    redraw(context, "VIEW_3D")
 
 
-def _draw() -> None:
-    context = bpy.context
-    armature = context.view_layer.objects.active
-    if (
-        not context.window_manager.mocap_assist_heat
-        or not context.space_data.overlay.show_overlays
-    ):
+def _draw(context: bpy.types.Context) -> None:
+    if not context.window_manager.mocap_assist_heat:
         return
+    armature = seen_active(context)
     if armature is None or armature.type != "ARMATURE":
         return
     term = Term[context.window_manager.mocap_assist_heat_term]
@@ -121,11 +116,11 @@ def register() -> None:
         ],
         update=_switched,
     )
-    _handle.append(SpaceView3D.draw_handler_add(_draw, (), "WINDOW", "POST_VIEW"))
+    _drawing.append(ViewDrawing(_draw))
 
 
 def unregister() -> None:
     """Take the switch and the drawing away."""
-    SpaceView3D.draw_handler_remove(_handle.pop(), "WINDOW")
+    _drawing.pop().close()
     del bpy.types.WindowManager.mocap_assist_heat_term
     del bpy.types.WindowManager.mocap_assist_heat

@@ -10,8 +10,7 @@ def _switched(self: bpy.types.WindowManager, context: bpy.types.Context) -> None
     overlay_drawing.refresh()
 
 
-def _draw() -> None:
-    context = bpy.context
+def _draw(context: bpy.types.Context) -> None:
     if context.window_manager.mocap_assist_overlay:
         colors = (tuple(preferred("raw_color")), tuple(preferred("clean_color")))
         overlay_drawing.draw(context, colors, preferred("line_width"))

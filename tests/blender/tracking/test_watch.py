@@ -56,7 +56,7 @@ def test_the_body_lies_on_the_points_while_it_is_tracked_and_time_goes_along(
     button = press()
     wait(button, window, until=lambda: drawn(button) is not None)
     drawing = button._watch.view._drawing
-    assert drawing._handle is not None
+    assert drawing.is_on
 
     frame = blank.context.scene.frame_current_final
     assert 1.0 <= frame <= 6.0
@@ -68,7 +68,7 @@ def test_the_body_lies_on_the_points_while_it_is_tracked_and_time_goes_along(
 
     assert wait(button, window) == {"FINISHED"}
     assert blank.context.scene.frame_current_final == 40.25
-    assert drawing._handle is None and nothing_is_left(window)
+    assert not drawing.is_on and nothing_is_left(window)
 
 
 def test_esc_leaves_nothing_as_a_rule(press, window, blank):
@@ -148,7 +148,7 @@ def test_blender_may_end_it_as_when_another_file_is_loaded(press, window):
 
     button.cancel(window.context)
 
-    assert drawing._handle is None and not button._watch.is_on
+    assert not drawing.is_on and not button._watch.is_on
     assert nothing_is_left(window)
 
 

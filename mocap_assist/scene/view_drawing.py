@@ -1,0 +1,47 @@
+"""What is drawn over the 3D Views, and how they come to be drawn again."""
+
+from collections.abc import Callable
+from typing import Any
+
+import bpy
+from bpy.types import SpaceView3D
+
+
+class ViewDrawing:
+    """Calls `draw` whenever a 3D View that shows overlays is drawn, until it is closed."""
+
+    def __init__(self, draw: Callable[[bpy.types.Context], None]) -> None:
+        self._draw = draw
+        self._handle: Any = SpaceView3D.draw_handler_add(self._drawn, (), "WINDOW", "POST_VIEW")
+
+    @property
+    def is_on(self) -> bool:
+        """Whether it still draws."""
+        return self._handle is not None
+
+    def close(self) -> None:
+        """Draw nothing more; again does nothing."""
+        if self._handle is not None:
+            SpaceView3D.draw_handler_remove(self._handle, "WINDOW")
+            self._handle = None
+
+    def _drawn(self) -> None:
+        context = bpy.context
+        if context.space_data.overlay.show_overlays:
+            self._draw(context)
+
+
+def seen_active(context: bpy.types.Context) -> bpy.types.Object | None:
+    """Return the active object, unless it is hidden in the 3D View that is drawn."""
+    active = context.view_layer.objects.active
+    if active is None or not active.visible_get(viewport=context.space_data):
+        return None
+    return active
+
+
+def redraw(context: bpy.types.Context, kind: str = "") -> None:
+    """Have all areas drawn again, or those of a kind, such as VIEW_3D."""
+    for window in context.window_manager.windows:
+        for area in window.screen.areas:
+            if kind in {"", area.type}:
+                area.tag_redraw()
