@@ -73,8 +73,6 @@ def test_feet_of_good_takes_rest_while_they_carry(good_takes):
 def test_no_knee_sinks_for_a_planted_foot(recordings):
     """Squatting low, the foot that carries nothing wanders, and its knee is near the ground."""
     path = recordings / "mocap" / "hdm05" / "HDM_bd_squat1Reps_006_120.amc"
-    if not path.exists():
-        pytest.skip("This take is not there.")
 
     result = simulate(read_recording(path), settings=UNDER_FEET)
 

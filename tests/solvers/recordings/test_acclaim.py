@@ -1,5 +1,6 @@
 """Acclaim motion is where the model that it was exported from says that it was."""
 
+import ezc3d
 import numpy as np
 import pytest
 from numpy.testing import assert_allclose
@@ -101,7 +102,6 @@ def test_joints_agree_with_the_model_recorded_beside_the_markers(recordings):
 
     Its axes are turned by a quarter. The toes are left out: see `read_acclaim`.
     """
-    ezc3d = pytest.importorskip("ezc3d")
     file = ezc3d.c3d(str(recordings / "mocap" / "05_13.c3d"))
     labels = file["parameters"]["POINT"]["LABELS"]["value"]
     x, y, z = file["data"]["points"][:3, : len(labels)] / 1000

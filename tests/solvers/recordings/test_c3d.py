@@ -29,7 +29,6 @@ def test_what_is_written_is_read_back(tracks, tmp_path):
 
 @pytest.mark.parametrize("library", ["ezc3d", "c3d"])
 def test_other_programs_read_what_is_written(tracks, tmp_path, library):
-    pytest.importorskip(library)
     write_c3d(tracks, tmp_path / "take.c3d")
 
     found = READ_BY[library](tmp_path / "take.c3d")
@@ -89,8 +88,6 @@ def test_real_files_agree_with_the_libraries(recordings):
     ezc3d never returns from BKINtechnologies.c3d; and it takes the points of four files with
     `type1` in common (no POINT:UNITS or none right) from the wrong place.
     """
-    pytest.importorskip("ezc3d")
-    pytest.importorskip("c3d")
     n_compared = 0
     for path in sorted((recordings / "formats" / "c3d").iterdir()):
         if path.stat().st_size > LARGE:

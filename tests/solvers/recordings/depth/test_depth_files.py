@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 from depth_files import depth_npz, matlab, pictures
 from numpy.testing import assert_allclose, assert_array_equal
+from scipy import io
 
 from solvers.errors import InvalidFileError, InvalidSettingError
 from solvers.motion.camera import Camera
@@ -45,7 +46,6 @@ def test_rendered_archives_hold_the_millimetres_that_numpy_finds(recordings, tak
 
 @pytest.mark.parametrize("take", ["a1_s1_t1", "a22_s7_t1"])
 def test_utd_mhad_is_what_scipy_finds_turned_the_right_way_round(recordings, take):
-    io = pytest.importorskip("scipy.io")
     path = recordings / "depth" / "utd_mhad" / f"{take}_depth.mat"
     depth = io.loadmat(path)["d_depth"]
 
@@ -59,7 +59,6 @@ def test_utd_mhad_is_what_scipy_finds_turned_the_right_way_round(recordings, tak
 
 def test_in_utd_mhad_the_joints_of_the_sdk_lie_on_the_actor(recordings):
     """Its x points to the camera's left and its y up; depth[t] fits skeleton[t - 2]."""
-    io = pytest.importorskip("scipy.io")
     folder = recordings / "depth" / "utd_mhad"
     recording = read_depth(folder / "a3_s3_t1_depth.mat")
     joints = io.loadmat(folder / "a3_s3_t1_skeleton.mat")["d_skel"].transpose(2, 0, 1)
