@@ -7,13 +7,6 @@ import pytest
 
 
 @pytest.fixture
-def made(write_tracked, blank):
-    made = write_tracked()
-    blank.context.scene.frame_set(5)
-    return made
-
-
-@pytest.fixture
 def drawn(made, load, blank):
     def drawn():
         blank.context.view_layer.update()

@@ -9,13 +9,6 @@ TURN = Quaternion((0.0, 1.0, 0.0), 0.5)
 
 
 @pytest.fixture
-def made(write_tracked, blank):
-    made = write_tracked()
-    blank.context.scene.frame_set(5)
-    return made
-
-
-@pytest.fixture
 def read(made, load, blank):
     """Read the scene as the button does; return the frame and pose that would be kept."""
     retracking = load("mocap_assist.retracking")

@@ -142,31 +142,12 @@ def test_why_it_is_grey_or_refuses(tracked, points, blank):
 
 
 @pytest.fixture
-def press(load, window, tracked):
+def press(load, press_button, tracked):
     """Press Track from Here; return the button, which waits."""
-    acts = load("operators.retrack").MOCAP_OT_retrack
     settings = load("solvers.depth_tracking").RetrackSettings()
-
-    class Button(load("mocap_assist.watched_operator").WatchedOperator):
-        bl_idname, settings_group = acts.bl_idname, acts.settings_group
-        selected, read_scene, write_scene = acts.selected, acts.read_scene, acts.write_scene
-        open_view, rescue = acts.open_view, acts.rescue
-
-        def prepare(self, context):
-            pass
-
-        def settings(self):
-            return load("mocap_assist.retracking").RetrackBundle(settings)
-
-        def report(self, kind, message):
-            window.reports.append((kind, message))
-
-    def press():
-        button = Button()
-        assert button.invoke(window.context, None) == {"RUNNING_MODAL"}
-        return button
-
-    return press
+    return lambda: press_button(
+        "retrack", load("mocap_assist.retracking").RetrackBundle(settings)
+    )
 
 
 def test_it_can_be_watched_and_esc_leaves_the_hand_pose_as_it_was(

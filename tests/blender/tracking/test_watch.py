@@ -8,30 +8,12 @@ from modal_events import event, nothing_is_left, wait
 
 
 @pytest.fixture
-def press(load, window, points):
+def press(load, press_button, points):
     """Press Track with these choices of looking on; return the button, which waits."""
-    tracking, kind = load("mocap_assist.tracking"), load("operators.track_depth")
-    watched = load("mocap_assist.watched_operator").WatchedOperator
-    acts = kind.MOCAP_OT_track_depth
-
-    class Button(watched):
-        bl_idname, settings_group = acts.bl_idname, acts.settings_group
-        selected, read_scene, write_scene = acts.selected, acts.read_scene, acts.write_scene
-        open_view, rescue = acts.open_view, acts.rescue
-
-        def prepare(self, context):
-            pass
-
-        def settings(self):
-            return self.chosen
-
-        def report(self, kind, message):
-            window.reports.append((kind, message))
+    tracking, capture = load("mocap_assist.tracking"), load("solvers.depth_tracking.capture")
 
     def press(watch=True, keep_on_esc=False):
-        capture = load("solvers.depth_tracking.capture")
-        button = Button()
-        button.chosen = tracking.TrackBundle(
+        settings = tracking.TrackBundle(
             tracking.TrackChoices(plant_feet=False),
             capture.CaptureSettings(backward=False, refine=False),
             load("solvers.motion.depth_foreground").ForegroundSettings(),
@@ -39,8 +21,7 @@ def press(load, window, points):
             tracking.WatchChoices(watch=watch),
             tracking.EscChoices(keep_on_esc=keep_on_esc),
         )
-        assert button.invoke(window.context, None) == {"RUNNING_MODAL"}
-        return button
+        return press_button("track_depth", settings)
 
     return press
 

@@ -5,35 +5,16 @@ from modal_events import event, nothing_is_left, wait
 
 
 @pytest.fixture
-def button(load, window, walker, monkeypatch):
+def button(load, press_button, walker, monkeypatch):
     """Vary, pressed for two walks; one variant is written between two looks."""
-    sliced, acts = load("mocap_assist.sliced_operator"), load("operators.vary")
     choices = load("mocap_assist.variants.choices")
-    monkeypatch.setattr(sliced, "AT_ONCE", 0.0)
+    monkeypatch.setattr(load("mocap_assist.sliced_operator"), "AT_ONCE", 0.0)
     settings = choices.VaryBundle(
         choices.VaryChoices(actions="walk_1; walk_2", n_variants=4, plant_feet=False),
         choices.VarySettings(),
         choices.PlantSettings(),
     )
-    kind = acts.MOCAP_OT_vary
-
-    class Button(sliced.SlicedOperator):
-        bl_idname, settings_group = kind.bl_idname, kind.settings_group
-        why_not, read_scene, write_scene = kind.why_not, kind.read_scene, kind.write_scene
-        poll_message_set = window.reports.append
-
-        def prepare(self, context):
-            pass
-
-        def settings(self):
-            return settings
-
-        def report(self, kind, message):
-            window.reports.append((kind, message))
-
-    pressed = Button()
-    assert pressed.invoke(window.context, None) == {"RUNNING_MODAL"}
-    return pressed
+    return press_button("vary", settings)
 
 
 def n_variants(blank):

@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 from kinect_walks import true_positions
 from numpy.testing import assert_allclose
+from upright_places import PLACES
 
 from solvers import samples
 from solvers.errors import InvalidMotionError
@@ -101,15 +102,7 @@ def bending_arm(angles: np.ndarray, plane: float) -> Tracks:
     It bends forward (-Y), turned about the upper arm by `plane` towards the body.
     """
     still = np.zeros((len(angles), 20, 3))
-    for name, place in {
-        "HipCenter": (0, 0, 1.0), "Spine": (0, 0, 1.25), "ShoulderCenter": (0, 0, 1.5),
-        "Head": (0, 0, 1.7), "ShoulderLeft": (0.2, 0, 1.5), "ElbowLeft": (0.2, 0, 1.2),
-        "ShoulderRight": (-0.2, 0, 1.5), "ElbowRight": (-0.2, 0, 1.2),
-        "WristRight": (-0.2, 0, 0.95), "HandRight": (-0.2, 0, 0.85),
-        "HipLeft": (0.1, 0, 0.92), "KneeLeft": (0.1, 0, 0.5), "AnkleLeft": (0.1, 0, 0.1),
-        "FootLeft": (0.1, -0.15, 0), "HipRight": (-0.1, 0, 0.92), "KneeRight": (-0.1, 0, 0.5),
-        "AnkleRight": (-0.1, 0, 0.1), "FootRight": (-0.1, -0.15, 0),
-    }.items():  # fmt: skip
+    for name, place in PLACES.items():
         still[:, NAMES.index(name)] = place
     way = np.stack(
         [-np.sin(angles) * np.sin(plane), -np.sin(angles) * np.cos(plane), -np.cos(angles)],

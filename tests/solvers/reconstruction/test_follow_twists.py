@@ -5,6 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from numpy.testing import assert_allclose
+from upright_places import PLACES
 
 from solvers.motion import JOINTS, Motion, Sensor, Tracks, forward_kinematics, joint_parents
 from solvers.motion.posture_joints import motion_postures
@@ -19,16 +20,6 @@ from solvers.workflows.reconstruct_motion import postures_recording
 
 NAMES = JOINTS[Sensor.KINECT_V1]
 PARENTS = joint_parents(NAMES)
-PLACES = {
-    "HipCenter": (0, 0, 1.0), "Spine": (0, 0, 1.25), "ShoulderCenter": (0, 0, 1.5),
-    "Head": (0, 0, 1.7), "ShoulderLeft": (0.2, 0, 1.5), "ElbowLeft": (0.2, 0, 1.2),
-    "ShoulderRight": (-0.2, 0, 1.5), "ElbowRight": (-0.2, 0, 1.2),
-    "WristRight": (-0.2, 0, 0.95), "HandRight": (-0.2, 0, 0.85),
-    "HipLeft": (0.1, 0, 0.92), "KneeLeft": (0.1, 0, 0.5), "AnkleLeft": (0.1, 0, 0.1),
-    "FootLeft": (0.1, -0.15, 0), "HipRight": (-0.1, 0, 0.92), "KneeRight": (-0.1, 0, 0.5),
-    "AnkleRight": (-0.1, 0, 0.1), "FootRight": (-0.1, -0.15, 0),
-}  # fmt: skip
-"""Upright, with hanging arms."""
 AT = np.radians(50.0)
 """By so much the left upper arm is twisted in like postures."""
 
