@@ -1,11 +1,11 @@
 """Which bones of source and target play which part: found, edited, or from presets."""
 
-from pathlib import Path
 from typing import NamedTuple
 
 import bpy
 
 from ..solvers.motion import HUMANOID_ROLES, HumanoidMap, read_humanoid_map
+from .path_properties import absolute
 from .scene.target_read import find_roles
 
 FINGERS = ("Thumb", "Index", "Middle", "Ring", "Little")
@@ -41,9 +41,7 @@ def maps_for(
         known = listed_maps(listed)
     return BoneMaps(
         *(
-            read_humanoid_map(Path(bpy.path.abspath(file)))
-            if file
-            else map_ or find_roles(each)
+            read_humanoid_map(absolute(file)) if file else map_ or find_roles(each)
             for each, file, map_ in zip(armatures, files, known, strict=True)
         )
     )

@@ -9,6 +9,7 @@ from ..solvers.motion.depth_floor import LEVEL, find_floor
 from ..solvers.motion.depth_recording import DepthRecording
 from ..solvers.progress import Progress, unwatched
 from .import_choices import ImportChoices
+from .permissions import allow_recording
 from .recording_objects import Made
 from .scene.depth_preview import Shown, build_preview, cheap_step
 from .scene.scene_rate import timing
@@ -30,6 +31,7 @@ def make_preview(
     floor = find_floor(recording, progress=progress)
     every = cheap_step(recording)
     shown = Shown(str(path), choices.depth, samples.start, samples.step, every)
+    allow_recording(shown.path)
     scale = choices.global_scale / unit_of(context.scene)
     made = build_preview(context, path.stem, recording, shown, floor or LEVEL, scale)
     camera = recording.camera

@@ -10,12 +10,11 @@ from ..solvers.motion import Motion
 from ..solvers.recordings import recordings_in
 from .clean_choices import CleanChoices, Prior
 from .jobs.cleaning import Examples
+from .name_lists import listed
 from .scene import compat
 from .scene.armature_read import read_take
 from .scene.fitting import fits, plays
 from .scene.linked_clips import is_blend, linked_clips
-
-SEPARATOR = ";"
 
 
 def read_prior(
@@ -31,7 +30,9 @@ def read_prior(
     return read_examples(scene, armature, choices.examples)
 
 
-def read_examples(scene: bpy.types.Scene, armature: bpy.types.Object, listed: str) -> Examples:
+def read_examples(
+    scene: bpy.types.Scene, armature: bpy.types.Object, examples: str
+) -> Examples:
     """Read the actions named in a list; leave recordings to be read where it is solved.
 
     Of a .blend file in the list all actions are read that fit an armature there.
@@ -41,7 +42,7 @@ def read_examples(scene: bpy.types.Scene, armature: bpy.types.Object, listed: st
     InvalidMotionError
         Nothing was picked, or what was picked does not exist or fits no armature.
     """
-    names = [name.strip() for name in listed.split(SEPARATOR) if name.strip()]
+    names = listed(examples)
     if not names:
         raise InvalidMotionError(
             "Pick clean actions or recordings to learn from, or let the take guide itself."

@@ -9,10 +9,10 @@ from ..solvers.errors import MocapAssistError
 from .arrival import Imported
 from .import_job import ImportJob
 from .importing import chosen_paths, import_files
+from .path_properties import FILE, FOLDER, HIDDEN, path_property
 from .ui.drawing import draw_lines
 from .watch import why_busy
 
-GIVEN = {"HIDDEN", "SKIP_SAVE"}
 WIDTH = 400  # of the dialog, pixels at scale 1
 
 
@@ -22,10 +22,10 @@ class FilesOperator:
     setting_names: ClassVar[tuple[str, ...]]
     """Supplied by the decorator `settings_from`, as is the method `settings`."""
 
-    directory: StringProperty(subtype="DIR_PATH", options=GIVEN)
-    files: CollectionProperty(type=bpy.types.OperatorFileListElement, options=GIVEN)
-    filepath: StringProperty(subtype="FILE_PATH", options=GIVEN)
-    note: StringProperty(options=GIVEN)
+    directory: path_property(FOLDER, HIDDEN)
+    files: CollectionProperty(type=bpy.types.OperatorFileListElement, options=HIDDEN)
+    filepath: path_property(FILE, HIDDEN)
+    note: StringProperty(options=HIDDEN)
 
     @classmethod
     def poll(cls, context: bpy.types.Context) -> bool:

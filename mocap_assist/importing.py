@@ -9,6 +9,7 @@ from ..solvers.progress import Progress, unwatched, within
 from .arrival import READING, Arrival, Imported
 from .depth_folders import is_take, readable, take_of
 from .import_choices import ImportChoices
+from .path_properties import absolute, chosen_files
 from .recent_files import read_again
 from .scene.scene_rate import scene_rate
 
@@ -32,12 +33,11 @@ def chosen_paths(operator: bpy.types.Operator) -> list[Path]:
     pictures of depth may be given itself, by being the one that is looked at, or by files in
     it.
     """
-    folder = bpy.path.abspath(operator.directory)
-    paths = [Path(folder, each.name) for each in operator.files if each.name]
+    paths = chosen_files(operator)
     if not paths and operator.filepath:
-        paths = [Path(bpy.path.abspath(operator.filepath))]
-    if not paths and folder and is_take(Path(folder)):
-        paths = [Path(folder)]
+        paths = [absolute(operator.filepath)]
+    if not paths and operator.directory and is_take(absolute(operator.directory)):
+        paths = [absolute(operator.directory)]
     paths = list(dict.fromkeys(map(take_of, paths)))
     if any(path.suffix.lower() == ".amc" for path in paths):
         paths = [path for path in paths if path.suffix.lower() != ".asf"]

@@ -12,6 +12,7 @@ from ..solvers.errors import InvalidFileError
 from ..solvers.settings import Settings, setting
 from .examples import read_examples
 from .jobs.learning import learn
+from .path_properties import absolute
 
 ENDING = ".npz"
 
@@ -59,7 +60,7 @@ def target_of(settings: LearnSettings) -> Path:
     """Return the file to write, after looking whether it can be written."""
     if not settings.choices.learned_file:
         raise InvalidFileError("Choose the file that what is learned shall be written to.")
-    target = Path(bpy.path.abspath(settings.choices.learned_file)).with_suffix(ENDING)
+    target = absolute(settings.choices.learned_file).with_suffix(ENDING)
     if not target.is_absolute() or not target.parent.is_dir():
         raise InvalidFileError(f"There is no folder {target.parent} to write {target.name} in.")
     return target

@@ -1,7 +1,6 @@
 """What the button Reconstruct reads from the scene, and what it writes back."""
 
 from functools import partial
-from pathlib import Path
 from typing import Any, NamedTuple
 
 import bpy
@@ -17,6 +16,7 @@ from .examples import read_examples
 from .jobs.job import Quick
 from .jobs.reconstructing import RebuildFinish, RebuildProblem, Rebuilt, rebuild
 from .library.prior import library_prior
+from .path_properties import absolute
 from .reconstruct_choices import Postures, ReconstructBundle
 from .scene import history
 from .scene.armature_read import read_take
@@ -150,12 +150,12 @@ def _problem(
 def _source_of(action: bpy.types.Action) -> tuple[str, int] | None:
     """Return the file that an action was imported from, and its date; None if it is gone."""
     path = str(origin_of(action).get("file", ""))
-    return _dated(path) if Path(bpy.path.abspath(path)).is_file() else None
+    return _dated(path) if absolute(path).is_file() else None
 
 
 def _dated(file: str) -> tuple[str, int]:
     """Return a file and its date; 0 where it is missing, which its reader says better."""
-    path = Path(bpy.path.abspath(file))
+    path = absolute(file)
     return str(path), path.stat().st_mtime_ns if path.is_file() else 0
 
 

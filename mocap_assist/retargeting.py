@@ -11,9 +11,9 @@ from ..solvers.errors import InvalidMotionError
 from ..solvers.motion import HumanoidMap
 from ..solvers.retargeting import RootMotion
 from .bone_map import BoneMaps, is_finger, maps_for
-from .examples import SEPARATOR
 from .jobs.job import Quick
 from .jobs.retargeting import Clip, Retargeted, RetargetProblem, retarget_clips
+from .name_lists import listed
 from .retarget_choices import RetargetBundle, RetargetChoices, Takes
 from .scene import compat, history
 from .scene.action_write import write_action
@@ -111,7 +111,7 @@ def chosen_sources(source: bpy.types.Object, choices: RetargetChoices) -> tuple[
         if not (fitting := fitting_actions(source)):
             raise InvalidMotionError(f"No action has keys for the bones of {source.name}.")
         return fitting
-    names = [name.strip() for name in choices.actions.split(SEPARATOR) if name.strip()]
+    names = listed(choices.actions)
     if not names:
         raise InvalidMotionError("No action is listed. Add one to the list.")
     return tuple(source_called(name, source) for name in names)

@@ -11,6 +11,7 @@ import bpy
 import numpy as np
 
 from ..solvers.settings import Described, Settings, in_title_case, label_of
+from .path_properties import path_property
 
 Class = TypeVar("Class", bound=type)
 Bundle = TypeVar("Bundle", bound=NamedTuple)
@@ -68,8 +69,8 @@ def _property(item: "Field[Any]", options: set[str]) -> Any:
     if kind is bool:
         return bpy.props.BoolProperty(**shown)
     if kind is str:
-        subtype = "FILE_PATH" if item.name.endswith("_file") else "NONE"
-        return bpy.props.StringProperty(**shown, subtype=subtype)
+        is_path = item.name.endswith("_file")
+        return (path_property if is_path else bpy.props.StringProperty)(**shown)
     limits = {
         name: limit
         for name, limit in (("min", described.minimum), ("max", described.maximum))

@@ -1,6 +1,5 @@
 """What the button Track reads from the scene, and the armature that it adds."""
 
-import json
 from collections.abc import Callable
 from dataclasses import dataclass
 from functools import partial
@@ -27,6 +26,7 @@ from .scene.live_body import LiveBody, stage_of_preview
 from .scene.new_action import write_motion
 from .scene.reliability_curves import write_reliability
 from .scene.scene_objects import all_or_nothing
+from .scene.stored_json import store
 from .scene.tracked_body import TrackedBody
 from .scene.tracked_curves import write_residual
 from .scene.units import unit_of
@@ -147,7 +147,7 @@ def write_tracked(
         kept = TrackedBody(result.body, shown, result.floor, settings.actor)
         kept.write(armature, dict(zip(result.motion.skeleton.names, bones, strict=True)))
     action = source[0]
-    action[CAPTURED] = json.dumps(_entry(settings, result, shown), ensure_ascii=False)
+    store(action, CAPTURED, _entry(settings, result, shown))
     list_doubts(scene, action, frames, result.doubts, _said(result))
     return f"{armature.name}: {_said(result)}"
 

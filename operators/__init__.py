@@ -10,6 +10,7 @@ from .import_job import MOCAP_OT_import_job
 from .import_recording import MOCAP_OT_import_recording
 from .index_library import MOCAP_OT_index_library
 from .jump_to_spot import MOCAP_OT_jump_to_spot
+from .keep_current import MOCAP_OT_keep_current
 from .keep_variants import MOCAP_OT_keep_variants
 from .learn_from_matches import MOCAP_OT_learn_from_matches
 from .learn_patterns import MOCAP_OT_learn_patterns
@@ -25,6 +26,7 @@ from .reduce_keys import MOCAP_OT_reduce_keys
 from .retarget import MOCAP_OT_retarget
 from .retrack import MOCAP_OT_retrack
 from .revert_to_raw import MOCAP_OT_revert_to_raw
+from .show_depth import MOCAP_OT_show_depth
 from .simulate import MOCAP_OT_simulate
 from .solve_skeleton import MOCAP_OT_solve_skeleton
 from .stack_variants import MOCAP_OT_stack_variants
@@ -35,6 +37,7 @@ from .vary import MOCAP_OT_vary
 OPERATORS = (
     MOCAP_OT_import_recording,
     MOCAP_OT_import_job,
+    MOCAP_OT_show_depth,
     MOCAP_OT_track_depth,
     MOCAP_OT_retrack,
     MOCAP_OT_denoise,
@@ -50,6 +53,7 @@ OPERATORS = (
     MOCAP_OT_reduce_keys,
     MOCAP_OT_revert_to_raw,
     MOCAP_OT_index_library,
+    MOCAP_OT_keep_current,
     MOCAP_OT_find_similar,
     MOCAP_OT_load_match,
     MOCAP_OT_link_match,

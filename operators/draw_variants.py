@@ -1,10 +1,10 @@
 """Button: a picture of all variants."""
 
-from pathlib import Path
 from typing import ClassVar
 
 import bpy
 
+from ..mocap_assist.path_properties import absolute, path_property
 from ..mocap_assist.variants.crowd import why_not_stack
 from ..mocap_assist.variants.sheet import write_sheet
 from ..solvers.errors import MocapAssistError
@@ -20,9 +20,7 @@ class MOCAP_OT_draw_variants(bpy.types.Operator):
     )
     bl_options: ClassVar = {"REGISTER"}
 
-    filepath: bpy.props.StringProperty(
-        name="File", description="PNG file to write", subtype="FILE_PATH", options={"SKIP_SAVE"}
-    )
+    filepath: path_property(options={"SKIP_SAVE"}, name="File", description="PNG file to write")
     filter_glob: bpy.props.StringProperty(default=f"*{PNG}", options={"HIDDEN", "SKIP_SAVE"})
     check_existing: bpy.props.BoolProperty(default=True, options={"HIDDEN", "SKIP_SAVE"})
 
@@ -39,7 +37,7 @@ class MOCAP_OT_draw_variants(bpy.types.Operator):
         return {"RUNNING_MODAL"}
 
     def execute(self, context: bpy.types.Context) -> set[str]:
-        path = Path(bpy.path.abspath(self.filepath)).with_suffix(PNG)
+        path = absolute(self.filepath).with_suffix(PNG)
         try:
             self.report({"INFO"}, write_sheet(context.scene, path))
         except (MocapAssistError, OSError) as error:

@@ -6,8 +6,9 @@ import bpy
 from bpy.props import StringProperty
 
 from ..mocap_assist.import_choices import ImportSettings
-from ..mocap_assist.import_operator import GIVEN, WIDTH, FilesOperator
+from ..mocap_assist.import_operator import WIDTH, FilesOperator
 from ..mocap_assist.importing import FILTER, chosen_paths, preview
+from ..mocap_assist.path_properties import HIDDEN
 from ..mocap_assist.settings_properties import settings_from
 from ..mocap_assist.solver_operator import in_background
 
@@ -24,7 +25,7 @@ class MOCAP_OT_import_recording(FilesOperator, bpy.types.Operator):
     # Undo is a step of the operator that waits: the file browser would add an empty one.
     bl_options: ClassVar = {"REGISTER", "PRESET"}
 
-    filter_glob: StringProperty(default=FILTER, options=GIVEN)
+    filter_glob: StringProperty(default=FILTER, options=HIDDEN)
     _asked = False
 
     def execute(self, context: bpy.types.Context) -> set[str]:

@@ -18,7 +18,7 @@ from ..jobs.finding import Found
 from ..jobs.indexing import IndexProblem, Place, index_places
 from ..jobs.job import run
 from ..library import searches
-from ..library.background import said_of
+from ..library.background import message_of
 from ..library.choices import FindBundle, LibraryChoices
 from ..library.finding import list_found, read_finding
 from ..library.places import asset_folders, background_blender, library_path
@@ -79,7 +79,7 @@ def perform_index(arguments: argparse.Namespace, screen: Screen) -> None:
         "refused": list(indexed.refused),
     }
     sys.stdout.write(
-        f"{json.dumps(figures) if arguments.json == STDOUT else said_of(indexed)}\n"
+        f"{json.dumps(figures) if arguments.json == STDOUT else message_of(indexed)}\n"
     )
     sys.stdout.flush()
     if arguments.json not in {None, STDOUT}:

@@ -8,8 +8,8 @@ import bpy
 
 from ...solvers.command_line import arguments_from, settings_from_arguments
 from ...solvers.progress import Progress
-from ..examples import SEPARATOR
 from ..jobs.job import run
+from ..name_lists import joined
 from ..reconstruct_choices import Postures, ReconstructBundle
 from ..reconstructing import read_reconstructing, write_reconstructed
 from ..scene import history
@@ -46,7 +46,7 @@ def perform_reconstruct(
         choices = replace(
             settings.choices,
             postures=Postures.EXAMPLES,
-            examples=SEPARATOR.join(arguments.train),
+            examples=joined(arguments.train),
         )
         settings = settings._replace(choices=choices)
     elif arguments.library:

@@ -17,8 +17,8 @@ from ..check_choices import CheckSettings
 from ..checking import read_checking, show_checked
 from ..clean_choices import CleanSettings, Prior
 from ..cleaning import read_cleaning, write_cleaned
-from ..examples import SEPARATOR
 from ..jobs.job import run
+from ..name_lists import joined
 from ..scene import history
 from ..scene.armature_read import read_take
 from ..scene.marker_take import read_markers
@@ -90,7 +90,7 @@ def _clean(
     settings = _bundle(arguments, CleanSettings)
     if arguments.train:
         choices = replace(
-            settings.choices, prior=Prior.EXAMPLES, examples=SEPARATOR.join(arguments.train)
+            settings.choices, prior=Prior.EXAMPLES, examples=joined(arguments.train)
         )
         settings = settings._replace(choices=choices)
     elif arguments.library:

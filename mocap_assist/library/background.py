@@ -55,7 +55,7 @@ def why_indexing() -> str:
     return RUNNING if _on else ""
 
 
-def said_of(indexed: Indexed) -> str:
+def message_of(indexed: Indexed) -> str:
     """Return a sentence about what was done."""
     parts = [
         f"{count} {what}"

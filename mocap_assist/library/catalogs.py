@@ -6,6 +6,7 @@ The file has a line for each catalog: its UUID, its path, and a simple name.
 from pathlib import Path
 from uuid import uuid4
 
+from ...solvers.errors import InvalidFileError
 from ...solvers.files import written_whole
 
 FILE = "blender_assets.cats.txt"
@@ -43,14 +44,21 @@ def ensure_catalog(file: Path, catalog: str) -> str:
     Raises
     ------
     InvalidFileError
-        The file cannot be written.
+        The name breaks the file's lines, or the file cannot be read or written.
     """
     catalog = catalog.strip().strip("/")
+    if ":" in catalog or not catalog.isprintable():
+        raise InvalidFileError(
+            f"{catalog!r} cannot name a catalog: it has a colon or a control character."
+        )
     for number, path in read_catalogs(file).items():
         if path == catalog:
             return number
     number, simple = str(uuid4()), catalog.replace("/", "-")
-    before = file.read_text(encoding="utf-8") if file.is_file() else HEAD
+    try:
+        before = file.read_text(encoding="utf-8") if file.is_file() else HEAD
+    except (OSError, UnicodeDecodeError):
+        raise InvalidFileError(f"{file} cannot be read, and was left as it is.") from None
     if not before.endswith("\n"):
         before += "\n"
     with written_whole(file) as part:

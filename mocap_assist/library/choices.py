@@ -25,9 +25,6 @@ class LibraryChoices(Settings):
         False,
         "Index the actions that are assets in all asset libraries of the preferences, too",
     )
-    keep_current: bool = setting(
-        False, "Index again by itself, beside your work, when files among the sources change"
-    )
     rig_file: str = setting(
         "",
         ".blend file with the rig of actions that lie in a file without one",

@@ -34,8 +34,10 @@ def why_not_find(context: bpy.types.Context) -> str:
     """Return why nothing can be looked for, or nothing."""
     if reason := why_not_read(context):
         return reason
-    path = library_path(context.scene.mocap_assist.library.settings().choices)
-    return "" if path.is_file() else "There is no library yet. Add folders, and press Index."
+    choices = context.scene.mocap_assist.library.settings().choices
+    # A panel that is drawn does not look at a path that the .blend file names.
+    missing = not choices.library_file and not library_path(choices).is_file()
+    return "There is no library yet. Add folders, and press Index." if missing else ""
 
 
 def read_query(scene: bpy.types.Scene, subject: bpy.types.Object, choice: FrameRange) -> Query:

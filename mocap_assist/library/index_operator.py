@@ -5,14 +5,12 @@ from functools import partial
 from typing import Any, ClassVar
 
 import bpy
-from bpy.props import BoolProperty
 
 from ...solvers.errors import MocapAssistError, SolveCancelled
-from ..import_operator import GIVEN
 from ..jobs.indexing import Indexed, index_places
 from ..jobs.job import run
 from ..solver_operator import in_background
-from .background import Indexing, said_of, why_indexing
+from .background import Indexing, message_of, why_indexing
 from .places import index_problem
 
 logger = logging.getLogger(__name__)
@@ -26,10 +24,8 @@ class WaitingIndex:
     """Mix in before bpy.types.Operator.
 
     The window stays free meanwhile: nothing of the scene is read or written. Only Esc is taken,
-    and ends it; but what nobody has pressed takes no key, and ends with *Keep Current*.
+    and ends it.
     """
-
-    by_itself: BoolProperty(options=GIVEN)
 
     setting_names: ClassVar[tuple[str, ...]]
     """Supplied by the decorator `settings_from`, as is the method `settings`."""
@@ -73,7 +69,7 @@ class WaitingIndex:
         if not indexing.is_on:
             self._stop_looking(context)
             return {"CANCELLED"}
-        if self._ended_by(context, event):
+        if event.type == "ESC" and event.value == "PRESS":
             indexing.job.cancel()
         elif event.type != "TIMER":
             return {"PASS_THROUGH"}
@@ -86,13 +82,8 @@ class WaitingIndex:
         except MocapAssistError as error:
             indexing.end(context, "")
             return self._give_up(error)
-        indexing.end(context, said_of(indexed))
+        indexing.end(context, message_of(indexed))
         return self._tell(indexed)
-
-    def _ended_by(self, context: bpy.types.Context, event: bpy.types.Event) -> bool:
-        if self.by_itself:
-            return not context.scene.mocap_assist.library.keep_current
-        return bool(event.type == "ESC" and event.value == "PRESS")
 
     def cancel(self, context: bpy.types.Context) -> None:
         """Blender ends the operator: another file is loaded, or the window closes."""
@@ -113,7 +104,7 @@ class WaitingIndex:
         more = len(indexed.refused) - MOST_NAMED
         named = [*indexed.refused[:MOST_NAMED], *[f"And {more} more."] * (more > 0)]
         level = {"WARNING"} if indexed.refused else {"INFO"}
-        self.report(level, " ".join([said_of(indexed), *named]))
+        self.report(level, " ".join([message_of(indexed), *named]))
         return {"FINISHED"}
 
     def _give_up(self, error: MocapAssistError) -> set[str]:

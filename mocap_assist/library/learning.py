@@ -6,8 +6,8 @@ import bpy
 
 from ...solvers.errors import MocapAssistError
 from ..clean_choices import Prior
-from ..examples import SEPARATOR
 from ..jobs.finding import Found
+from ..name_lists import SEPARATOR, joined
 from ..reconstruct_choices import Postures
 from . import searches
 from .linking import fits_somebody, is_action, take_action
@@ -24,7 +24,7 @@ def learn_from_best(context: bpy.types.Context, group: str, n_best: int) -> str:
     best = search.finding.found[:n_best]
     usable = dict.fromkeys(entry for found in best if (entry := _example(context, found)))
     settings = getattr(context.scene.mocap_assist, group)
-    settings.examples = f"{SEPARATOR} ".join(usable)
+    settings.examples = joined(usable)
     if group == CLEAN:
         settings.prior = Prior.EXAMPLES.name
     else:

@@ -1,6 +1,5 @@
 """What becomes of a match: an action for the active armature, or a strip of its NLA."""
 
-import json
 from functools import partial
 
 import bpy
@@ -18,6 +17,7 @@ from ..scene.action_write import write_action
 from ..scene.armature_write import Output, check_writable
 from ..scene.rig import placement_of
 from ..scene.scene_rate import scene_rate
+from ..scene.stored_json import store
 from ..scene.target_read import find_roles, read_target, vertical_part
 from ..selection import selected_armature
 from ..subject import check_unchanged
@@ -90,7 +90,7 @@ def note_clip(action: bpy.types.Action, found: Found) -> None:
         "score": round(found.match.score, 4),
         "tags": list(found.entry.tags),
     }
-    action[CLIP] = json.dumps(noted, ensure_ascii=False)
+    store(action, CLIP, noted)
 
 
 def first_frame(search: Search, found: Found) -> float:

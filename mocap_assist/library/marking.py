@@ -1,6 +1,5 @@
 """An action as an asset: with tags, a catalog and a picture of what it does."""
 
-import json
 from collections.abc import Iterable
 from pathlib import Path
 
@@ -12,6 +11,7 @@ from ...solvers.motion.posture_heading import normalise
 from ...solvers.motion.posture_joints import motion_postures
 from ..jobs.thumbnails import thumbnail
 from ..scene.armature_read import read_take
+from ..scene.stored_json import stored
 from ..selection import played_source, selected_armature
 from .catalogs import catalog_file, ensure_catalog
 from .loading import CLIP
@@ -61,11 +61,8 @@ def mark(action: bpy.types.Action, tags: Iterable[str], number: str) -> None:
 
 def clip_tags(action: bpy.types.Action) -> list[str]:
     """Return the tags of the clip that an action was made of."""
-    try:
-        tags = json.loads(action.get(CLIP, "{}")).get("tags", [])
-    except (TypeError, ValueError, AttributeError):  # edited by hand
-        return []
-    return [str(tag) for tag in tags]
+    tags = stored(action, CLIP, dict).get("tags", [])
+    return [str(tag) for tag in tags] if isinstance(tags, list) else []
 
 
 def catalog_number(catalog: str) -> str:

@@ -5,9 +5,10 @@ from pathlib import Path
 import bpy
 
 from ...solvers.errors import InvalidFileError
-from ..examples import SEPARATOR
 from ..jobs.in_blender import BackgroundBlender
 from ..jobs.indexing import IndexProblem, Place
+from ..name_lists import listed
+from ..path_properties import absolute
 from .choices import LibraryChoices
 
 EXTENSION = __package__.rsplit(".", 2)[0]
@@ -17,7 +18,7 @@ SHARED = "clips.library"
 def library_path(choices: LibraryChoices) -> Path:
     """Return the library's file: the chosen one, or that which all files share."""
     if choices.library_file:
-        return Path(bpy.path.abspath(choices.library_file))
+        return absolute(choices.library_file)
     return Path(bpy.utils.extension_path_user(EXTENSION)) / SHARED
 
 
@@ -29,8 +30,7 @@ def asset_folders() -> tuple[str, ...]:
 
 def places_of(choices: LibraryChoices) -> tuple[Place, ...]:
     """Return what is to be indexed."""
-    named = [each.strip() for each in choices.sources.split(SEPARATOR) if each.strip()]
-    places = [Place(str(Path(bpy.path.abspath(each)))) for each in named]
+    places = [Place(str(absolute(each))) for each in listed(choices.sources)]
     if choices.asset_libraries:
         places += [Place(folder, assets_only=True) for folder in asset_folders()]
     return tuple(places)
@@ -56,5 +56,5 @@ def index_problem(choices: LibraryChoices) -> IndexProblem:
 
 def background_blender(rig_file: str) -> BackgroundBlender:
     """Return this Blender as who reads .blend files, with the rig of a file, there or not."""
-    rig = str(Path(bpy.path.abspath(rig_file))) if rig_file else ""
+    rig = str(absolute(rig_file)) if rig_file else ""
     return BackgroundBlender(str(bpy.app.binary_path), rig)

@@ -7,6 +7,7 @@ import bpy
 
 from ...solvers.errors import InvalidFileError
 from ..jobs.library_prior import LibraryPrior, Own
+from ..path_properties import absolute
 from ..scene.origin import origin_of
 from ..selection import played_source
 from .places import background_blender, library_path
@@ -34,5 +35,5 @@ def own_origins(subject: bpy.types.Object) -> Own:
     own = [(str(Path(str(origin["file"])).resolve()), "")] if origin.get("file") else []
     holder = action.library.filepath if action.library else bpy.data.filepath
     if holder:
-        own.append((str(Path(bpy.path.abspath(holder)).resolve()), action.name))
+        own.append((str(absolute(holder).resolve()), action.name))
     return tuple(own)

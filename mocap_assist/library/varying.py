@@ -7,9 +7,9 @@ import bpy
 import numpy as np
 
 from ...solvers.errors import InvalidMotionError
-from ..examples import SEPARATOR
 from ..jobs.fetching import FetchedClips, FetchProblems, fetch_clips
 from ..jobs.finding import Found
+from ..name_lists import SEPARATOR, joined
 from ..scene.action_write import write_action
 from ..scene.armature_write import check_writable
 from ..subject import check_unchanged
@@ -60,7 +60,7 @@ def write_best(
         action, _ = write_action(armature, name, frames, clip.keys, reading.switches)
         note_clip(action, found)
         names.append(action.name)
-    scene.mocap_assist.vary.actions = f"{SEPARATOR} ".join(names)
+    scene.mocap_assist.vary.actions = joined(names)
     clips = "1 clip" if len(names) == 1 else f"{len(names)} clips"
     said = f"Vary has {clips} of the library as examples."
     if lost := len(reading.found) - len(names):

@@ -1,11 +1,9 @@
 """A recording of depth as an object: points that follow the timeline, read when shown."""
 
-import json
 import logging
 from dataclasses import asdict, dataclass
 from enum import Enum
 from functools import lru_cache
-from pathlib import Path
 from typing import Any
 
 import bpy
@@ -18,9 +16,12 @@ from ...solvers.errors import MocapAssistError
 from ...solvers.motion.depth_floor import Floor
 from ...solvers.motion.depth_recording import DepthRecording
 from ...solvers.recordings import DepthSettings, Held, read_depth
+from ..path_properties import absolute
+from ..permissions import allow_recording, recording_allowed
 from .data_names import fitting_name
 from .depth_points import point_nodes
 from .scene_objects import add_object, in_object_mode
+from .stored_json import store, stored
 
 logger = logging.getLogger(__name__)
 
@@ -30,6 +31,7 @@ PROBLEM = "mocap_assist_depth_problem"
 """Custom property of a mesh: why it shows nothing."""
 SEEN = "seen"
 """Attribute of a point: whether the camera saw anything there."""
+NOT_ALLOWED = "This file shows a depth recording that was not opened here. Press Show Points."
 MOST_POINTS = 20_000
 N_SAMPLES = 5
 N_OPEN = 4
@@ -49,7 +51,7 @@ class Shown:
 
     def write(self, mesh: bpy.types.Mesh) -> None:
         """Keep this with a mesh."""
-        mesh[KEY] = json.dumps(self.told(), ensure_ascii=False)
+        store(mesh, KEY, self.told())
 
     def told(self) -> dict[str, Any]:
         """Return this as JSON can keep it."""
@@ -62,19 +64,16 @@ class Shown:
     @classmethod
     def read(cls, mesh: bpy.types.Mesh) -> "Shown":
         """Return what a mesh shows; raises ValueError, TypeError or KeyError if nothing."""
-        return cls.of(json.loads(mesh[KEY]))
+        return cls.of(stored(mesh, KEY, dict))
 
     @classmethod
     def of(cls, told: dict[str, Any]) -> "Shown":
-        """Undo `told`."""
+        """Undo `told`; raises ValueError, TypeError or KeyError where that is no preview."""
         settings = {**told["settings"], "held": Held[told["settings"]["held"]]}
-        return cls(
-            str(told["path"]),
-            DepthSettings(**settings),
-            float(told["start"]),
-            float(told["step"]),
-            max(int(told["every"]), 1),
-        )
+        start, step, every = float(told["start"]), float(told["step"]), int(told["every"])
+        if not (step > 0.0 and every > 0):
+            raise ValueError(f"step {step}, every {every}")
+        return cls(str(told["path"]), DepthSettings(**settings), start, step, every)
 
     def picture(self, frame: float, n_frames: int) -> int:
         """Return which picture is shown at a frame of the scene; before and after, the ends."""
@@ -159,12 +158,24 @@ def open_recording(shown: Shown) -> DepthRecording:
 
 @lru_cache(maxsize=N_OPEN)
 def _open(path: str, settings: DepthSettings) -> DepthRecording:
-    return read_depth(Path(bpy.path.abspath(path)), settings)
+    return read_depth(absolute(path), settings)
 
 
 @lru_cache(maxsize=N_OPEN)
 def _rays(recording: DepthRecording, every: int) -> NDArray[np.float32]:
     return recording.camera.every(every).rays().astype(np.float32)
+
+
+def show_asked(mesh: bpy.types.Mesh, frame: float) -> str:
+    """Show the points of a mesh now and from now on; return a sentence about it.
+
+    Raises MocapAssistError where the recording cannot be read, or the mesh shows none.
+    """
+    shown = shown_by(mesh)
+    open_recording(shown)
+    allow_recording(shown.path)
+    _show(mesh, frame)
+    return f"{mesh.name} shows {shown.path}."
 
 
 def cheap_step(recording: DepthRecording) -> int:
@@ -189,7 +200,7 @@ def _show(mesh: bpy.types.Mesh, frame: float) -> None:
     except MocapAssistError as error:
         _hide(mesh, str(error))
         return
-    if SEEN not in mesh.attributes:
+    if (seen := _seen_of(mesh)) is None:
         _hide(mesh, f"{mesh.name} was edited: import the recording again.")
         return
     if PROBLEM in mesh:
@@ -203,7 +214,7 @@ def _show(mesh: bpy.types.Mesh, frame: float) -> None:
     points = np.zeros((n_points, 3), np.float32)
     points[: len(row)] = rays[row, column] * depth[row, column, np.newaxis]
     mesh.attributes["position"].data.foreach_set("vector", points.ravel())
-    mesh.attributes[SEEN].data.foreach_set("value", np.arange(n_points) < len(row))
+    seen.data.foreach_set("value", np.arange(n_points) < len(row))
     mesh.update()
 
 
@@ -213,17 +224,36 @@ def _hide(mesh: bpy.types.Mesh, problem: str) -> None:
         return
     mesh[PROBLEM] = problem
     logger.warning("%s: %s", mesh.name, problem)
-    if SEEN in mesh.attributes:
-        nothing = np.zeros(len(mesh.vertices), dtype=bool)
-        mesh.attributes[SEEN].data.foreach_set("value", nothing)
+    if _seen_of(mesh) is not None:
+        _seen_of(mesh).data.foreach_set("value", np.zeros(len(mesh.vertices), dtype=bool))
         mesh.update()
+
+
+def _seen_of(mesh: bpy.types.Mesh) -> bpy.types.BoolAttribute | None:
+    """Return the attribute that says which points are shown; None where it was edited."""
+    found = mesh.attributes.get(SEEN)
+    fits = found is not None and (found.domain, found.data_type) == ("POINT", "BOOLEAN")
+    return found if fits else None
 
 
 @handlers.persistent
 def _follow(scene: bpy.types.Scene, *_: object) -> None:
-    """The scene goes to another frame, or a file was loaded: show what was there."""
+    """The scene goes to another frame, or a file was loaded: show what was there.
+
+    A recording that only the .blend file names stays closed until the animator asks for it.
+    """
     for mesh in previews():
-        _show(mesh, scene.frame_current_final)
+        if _is_allowed(mesh):
+            _show(mesh, scene.frame_current_final)
+        else:
+            _hide(mesh, NOT_ALLOWED)
+
+
+def _is_allowed(mesh: bpy.types.Mesh) -> bool:
+    try:
+        return recording_allowed(shown_by(mesh).path)
+    except MocapAssistError:
+        return True  # It names no recording, which is shown as its problem.
 
 
 @handlers.persistent

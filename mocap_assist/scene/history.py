@@ -1,6 +1,5 @@
 """What was done to an action, kept in the action itself, and the way back to the raw one."""
 
-import json
 from dataclasses import asdict
 from enum import Enum
 from typing import Any
@@ -11,6 +10,7 @@ from ...solvers.settings import Settings
 from ...solvers.version import version
 from . import compat
 from .compat import Source
+from .stored_json import store, stored
 
 HISTORY = "mocap_assist_history"
 SOURCE = "mocap_assist_source"
@@ -33,7 +33,7 @@ def record(
     """
     source, slot = made_from
     entry = {"version": version(), "source": source.name, "slot": slot.identifier} | entry
-    action[HISTORY] = json.dumps([*history(source), entry], ensure_ascii=False)
+    store(action, HISTORY, [*history(source), entry])
     if of_another_rig:
         action[GIVEN_BY] = source
         return
@@ -43,11 +43,7 @@ def record(
 
 def history(action: bpy.types.Action) -> list[dict[str, Any]]:
     """Return what was done, oldest first; nothing for an action of other origin."""
-    try:
-        entries = json.loads(action.get(HISTORY, "[]"))
-    except (TypeError, ValueError):  # edited by hand
-        return []
-    return entries if isinstance(entries, list) else []
+    return [entry for entry in stored(action, HISTORY, list) if isinstance(entry, dict)]
 
 
 def given_to(action: bpy.types.Action) -> str:
@@ -72,7 +68,7 @@ def raw_of(action: bpy.types.Action, slot: bpy.types.ActionSlot | None = None) -
         return None
     handle = None if slot is None else slot.handle  # which copies of an action share
     same = next((each for each in source.slots if each.handle == handle), None)
-    found = same or compat.slot_called(source, entries[0].get("slot", ""))
+    found = same or compat.slot_called(source, str(entries[0].get("slot", "")))
     return None if found is None else (source, found)
 
 

@@ -1,6 +1,5 @@
 """Where a recording came from, kept on what was made of it."""
 
-import json
 from pathlib import Path
 from typing import Any
 
@@ -8,13 +7,18 @@ import bpy
 
 from ...solvers.motion import JointRecording, Motion, Tracks
 from ...solvers.motion.depth_recording import DepthRecording
+from .stored_json import store, stored
 
 ORIGIN = "mocap_assist_recording"
+NOTED: dict[str, Any] = {
+    "file": str, "kind": str, "frame_rate": int | float, "n_frames": int, "sensor": str,
+}  # fmt: skip
+"""What a note holds, and of which type it must be to be believed."""
 
 
 def note_origin(made: bpy.types.ID, origin: dict[str, Any]) -> None:
     """Keep the file, the kind of recording, its rate and its sensor, as JSON."""
-    made[ORIGIN] = json.dumps(origin, ensure_ascii=False)
+    store(made, ORIGIN, origin)
 
 
 def origin_of_file(
@@ -34,8 +38,7 @@ def origin_of_file(
 
 def origin_of(made: bpy.types.ID) -> dict[str, Any]:
     """Return what was noted; nothing for what was not imported here."""
-    try:
-        origin = json.loads(made.get(ORIGIN, "{}"))
-    except (TypeError, ValueError):  # edited by hand
-        return {}
-    return origin if isinstance(origin, dict) else {}
+    noted = stored(made, ORIGIN, dict)
+    return {
+        name: noted[name] for name, kind in NOTED.items() if isinstance(noted.get(name), kind)
+    }

@@ -1,6 +1,5 @@
 """The body that was tracked: kept with its armature, and where its segments are."""
 
-import json
 from collections.abc import Mapping
 from dataclasses import asdict, dataclass
 from functools import lru_cache
@@ -16,6 +15,7 @@ from ...solvers.errors import InvalidMotionError, MocapAssistError
 from ...solvers.motion.depth_floor import Floor
 from ...solvers.motion.depth_foreground import ForegroundSettings, ForegroundWay
 from .depth_preview import Shown
+from .stored_json import parsed, store
 
 Array = NDArray[np.float64]
 
@@ -50,7 +50,7 @@ class TrackedBody:
             "floor": None if floor is None else [*floor.up.tolist(), floor.height],
             "actor": {**asdict(self.actor), "way": self.actor.way.name},
         }
-        armature.data[KEY] = json.dumps(told, ensure_ascii=False)
+        store(armature.data, KEY, told)
         for joint, bone in bones.items():
             armature.data.bones[bone][ROLE] = joint
 
@@ -67,7 +67,7 @@ class TrackedBody:
 
 @lru_cache(maxsize=N_KEPT)
 def _parsed(text: str) -> TrackedBody:
-    told = json.loads(text)
+    told = parsed(text, dict)
     floor, actor = told["floor"], told["actor"]
     return TrackedBody(
         BodyModel(

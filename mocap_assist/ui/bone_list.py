@@ -10,6 +10,7 @@ import bpy
 from ...solvers.errors import MocapAssistError
 from ...solvers.motion import read_humanoid_map, write_humanoid_map
 from ..bone_map import SIDES, BoneMaps, find_maps, list_maps, listed_maps
+from ..path_properties import absolute, path_property
 from ..retargeting import target_called
 from ..selection import selected_armature, why_not_retarget
 
@@ -98,7 +99,7 @@ class MOCAP_OT_find_bones(_BoneButton, bpy.types.Operator):
 class _PresetButton(_BoneButton):
     """A button for a file of one armature's bones."""
 
-    filepath: bpy.props.StringProperty(subtype="FILE_PATH", options={"SKIP_SAVE"})
+    filepath: path_property(options={"SKIP_SAVE"})
     filter_glob: bpy.props.StringProperty(default="*.json", options={"HIDDEN", "SKIP_SAVE"})
     side: bpy.props.EnumProperty(
         name="Armature",
@@ -125,7 +126,7 @@ class MOCAP_OT_save_bone_map(_PresetButton, bpy.types.Operator):
     def save(self, context: bpy.types.Context) -> None:
         """Write the file, whole or not at all."""
         maps = listed_maps(context.scene.mocap_assist.bone_map)
-        write_humanoid_map(getattr(maps, self.side), Path(self.filepath))
+        write_humanoid_map(getattr(maps, self.side), absolute(self.filepath))
 
 
 class MOCAP_OT_load_bone_map(_PresetButton, bpy.types.Operator):
@@ -141,7 +142,7 @@ class MOCAP_OT_load_bone_map(_PresetButton, bpy.types.Operator):
         found = context.scene.mocap_assist
         source = selected_armature(context)
         target = target_called(context.scene, found.retarget.target, source)
-        loaded = read_humanoid_map(Path(self.filepath))
+        loaded = read_humanoid_map(absolute(self.filepath))
         listed = found.bone_map
         same = (listed.source, listed.target) == (source.name, target.name)
         maps = listed_maps(listed) if same else find_maps(source, target)

@@ -1,12 +1,12 @@
 """The list of clean actions and recordings to learn from, and the ways to fill it."""
 
-from collections.abc import Iterable
 from pathlib import Path
 from typing import Any, ClassVar
 
 import bpy
 
-from ..examples import SEPARATOR
+from ..name_lists import SEPARATOR, joined, listed
+from ..path_properties import FOLDER, HIDDEN, absolute, chosen_files, path_property
 from ..scene import history
 from ..selection import selected_armature
 
@@ -18,16 +18,6 @@ CLEAN, RECONSTRUCT = "clean", "reconstruct"
 RECORDINGS = "*.bvh;*.amc;*.c3d;*.trc;*.blend"
 CHANGES_A_LIST = {"INTERNAL", "UNDO"}
 LONGEST_MENU = 30
-
-
-def listed(text: str) -> list[str]:
-    """Return the entries of a list as the settings keep it."""
-    return [entry.strip() for entry in text.split(SEPARATOR) if entry.strip()]
-
-
-def joined(entries: Iterable[str]) -> str:
-    """Return entries as the settings keep them, each once."""
-    return f"{SEPARATOR} ".join(dict.fromkeys(entries))
 
 
 def draw_examples(
@@ -147,11 +137,9 @@ class MOCAP_OT_add_example_files(bpy.types.Operator):
         " files that have their rig with them"
     )
 
-    directory: bpy.props.StringProperty(subtype="DIR_PATH", options={"HIDDEN", "SKIP_SAVE"})
-    files: bpy.props.CollectionProperty(
-        type=bpy.types.OperatorFileListElement, options={"HIDDEN", "SKIP_SAVE"}
-    )
-    filter_glob: bpy.props.StringProperty(default=RECORDINGS, options={"HIDDEN", "SKIP_SAVE"})
+    directory: path_property(FOLDER, HIDDEN)
+    files: bpy.props.CollectionProperty(type=bpy.types.OperatorFileListElement, options=HIDDEN)
+    filter_glob: bpy.props.StringProperty(default=RECORDINGS, options=HIDDEN)
     group: _group()
 
     def invoke(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
@@ -159,7 +147,7 @@ class MOCAP_OT_add_example_files(bpy.types.Operator):
         return {"RUNNING_MODAL"}
 
     def execute(self, context: bpy.types.Context) -> set[str]:
-        chosen = [str(Path(self.directory) / each.name) for each in self.files if each.name]
+        chosen = map(str, chosen_files(self))
         return _set_examples(context, self.group, [*_examples(context, self.group), *chosen])
 
 
@@ -169,7 +157,7 @@ class MOCAP_OT_add_example_folder(bpy.types.Operator):
     bl_label = "Folder on Disk..."
     bl_description = "Learn from all clean recordings in a folder, of any rig"
 
-    directory: bpy.props.StringProperty(subtype="DIR_PATH", options={"HIDDEN", "SKIP_SAVE"})
+    directory: path_property(FOLDER, HIDDEN)
     group: _group()
 
     def invoke(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
@@ -177,7 +165,7 @@ class MOCAP_OT_add_example_folder(bpy.types.Operator):
         return {"RUNNING_MODAL"}
 
     def execute(self, context: bpy.types.Context) -> set[str]:
-        folder = str(Path(self.directory))
+        folder = str(absolute(self.directory))
         return _set_examples(context, self.group, [*_examples(context, self.group), folder])
 
 

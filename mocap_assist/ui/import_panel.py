@@ -4,10 +4,12 @@ from pathlib import PurePath
 
 import bpy
 
-from ..scene.depth_preview import problem_of
+from ..scene.depth_preview import NOT_ALLOWED, problem_of
 from ..scene.origin import origin_of
-from .drawing import draw_job, exists
+from .drawing import draw_job, draw_sentence, exists
 from .import_menu import IMPORT
+
+SHOW = "mocap_assist.show_depth"
 
 
 class ImportPanel:
@@ -31,7 +33,9 @@ class ImportPanel:
             column.label(text=name, icon="FILE", translate=False)
             column.label(text=_figures(origin), icon="BLANK1", translate=False)
             if problem := problem_of(active):
-                column.label(text=problem, icon="ERROR", translate=False)
+                draw_sentence(column, context, problem, icon="ERROR")
+                if problem == NOT_ALLOWED:
+                    column.operator(SHOW)
 
 
 def _figures(origin: dict[str, object]) -> str:

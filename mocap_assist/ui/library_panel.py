@@ -8,12 +8,14 @@ from ...solvers.retrieval import FindSettings
 from ..clean_choices import Bones
 from ..library import searches
 from ..library.finding import why_not_find
+from ..library.kept_libraries import choices_are_kept
 from ..library.previews import icon_of
 from .clean_panel import folded
 from .drawing import draw_job, draw_sentence, exists, is_wide
 from .figures import frames_text
 from .source_list import draw_sources
 
+KEEP = "mocap_assist.keep_current"
 INDEX, FIND = "mocap_assist.index_library", "mocap_assist.find_similar"
 LOAD, LINK = "mocap_assist.load_match", "mocap_assist.link_match"
 LEARN, MARK = "mocap_assist.learn_from_matches", "mocap_assist.mark_asset"
@@ -76,8 +78,10 @@ def _draw_library(layout: bpy.types.UILayout, context: bpy.types.Context) -> Non
         body.prop(library, "tags", text="Tags")
         body.prop(library, "rig_file", text="Rig")
         body.prop(library, "library_file", text="File")
-        body.prop(library, "keep_current")
-        body.operator(INDEX, icon="FILE_REFRESH")
+        row = body.row(align=True)
+        row.operator(INDEX, icon="FILE_REFRESH")
+        kept = choices_are_kept(library.settings().choices)
+        row.operator(KEEP, icon="RECOVER_LAST", depress=kept)
     if state.running:
         text = f"{state.message} {state.fraction:.0%}"
         layout.progress(factor=state.fraction, type="BAR", text=text, translate=False)

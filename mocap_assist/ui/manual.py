@@ -8,6 +8,7 @@ MANUAL = Path(__file__).with_name("manual.html")
 """The one place that says where the manual is: no network is needed to read it."""
 CHAPTERS = {
     "bpy.ops.mocap_assist.import_*": "import",
+    "bpy.ops.mocap_assist.show_depth*": "import",
     "bpy.ops.mocap_assist.denoise*": "clean",
     "bpy.ops.mocap_assist.learn_patterns*": "clean",
     "bpy.ops.mocap_assist.*_example*": "clean",
@@ -36,6 +37,7 @@ CHAPTERS = {
     "bpy.types.mocap_pg_bone*": "retarget",
     "bpy.types.mocap_pg_unbake*": "unbake",
     "bpy.ops.mocap_assist.index_library*": "library",
+    "bpy.ops.mocap_assist.keep_current*": "library",
     "bpy.ops.mocap_assist.*_source*": "library",
     "bpy.ops.mocap_assist.find_similar*": "library",
     "bpy.ops.mocap_assist.*_match*": "library",
@@ -52,6 +54,7 @@ CHAPTERS = {
     "bpy.types.mocap_pg_crowd*": "vary",
     "bpy.ops.mocap_assist.listen*": "perform",
     "bpy.ops.mocap_assist.reset_preferences*": "preferences",
+    "bpy.ops.mocap_assist.stop_keeping*": "preferences",
     "bpy.types.mocap_pg_clean*": "clean",
     "bpy.types.mocap_pg_check*": "check",
     "bpy.types.windowmanager.mocap_assist_overlay*": "compare",

@@ -5,11 +5,14 @@ from typing import Any, ClassVar
 
 import bpy
 
+from ...solvers.errors import MocapAssistError
 from ...solvers.recordings.live_frames import PORT
+from ..library.kept_libraries import kept_libraries, stop_keeping
 from ..scene import overlay_drawing
 from ..scene.armature_write import Output
 
 EXTENSION = __package__.rsplit(".", 2)[0]  # Blender knows preferences by the root package
+STOP = "mocap_assist.stop_keeping"
 
 
 def preferences() -> bpy.types.AddonPreferences | None:
@@ -111,6 +114,35 @@ class MOCAP_AP_preferences(bpy.types.AddonPreferences):
             row.label(text=folder, icon="FILE_FOLDER", translate=False)
             row.operator("wm.path_open", text="", icon="FILEBROWSER").filepath = folder
         layout.operator("mocap_assist.reset_preferences", icon="LOOP_BACK")
+        _draw_kept(layout)
+
+
+def _draw_kept(layout: bpy.types.UILayout) -> None:
+    """Draw the libraries that are kept current, each with a button that ends it."""
+    kept = kept_libraries()
+    if kept:
+        layout.label(text="Libraries Kept Current")
+    for problem in kept:
+        row = layout.row()
+        row.label(text=problem.library, icon="ASSET_MANAGER", translate=False)
+        row.operator(STOP, text="", icon="X", emboss=False).library = problem.library
+
+
+class MOCAP_OT_stop_keeping(bpy.types.Operator):
+    bl_idname = STOP
+    bl_label = "Stop Keeping Current"
+    bl_description = "Index this library only when Index is pressed"
+    bl_options: ClassVar = {"INTERNAL"}  # preferences have no undo
+
+    library: bpy.props.StringProperty(name="Library", options={"SKIP_SAVE"})
+
+    def execute(self, context: bpy.types.Context) -> set[str]:
+        try:
+            stop_keeping(self.library)
+        except MocapAssistError as error:
+            self.report({"ERROR"}, str(error))
+            return {"CANCELLED"}
+        return {"FINISHED"}
 
 
 class MOCAP_OT_reset_preferences(bpy.types.Operator):
@@ -150,7 +182,7 @@ def _give_scene_default(scene: bpy.types.Scene, *_: object) -> None:
         clean.result_as = wanted
 
 
-CLASSES = (MOCAP_AP_preferences, MOCAP_OT_reset_preferences)
+CLASSES = (MOCAP_AP_preferences, MOCAP_OT_reset_preferences, MOCAP_OT_stop_keeping)
 
 
 def register() -> None:

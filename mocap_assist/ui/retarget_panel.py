@@ -6,7 +6,7 @@ import bpy
 
 from ...solvers.errors import MocapAssistError
 from ...solvers.retargeting import RetargetSettings, RootMotion
-from ..examples import SEPARATOR
+from ..name_lists import SEPARATOR, joined, listed
 from ..retarget_choices import Takes
 from ..retargeting import fitting_actions, target_called
 from ..scene.rigify import is_rigify
@@ -14,7 +14,6 @@ from ..selection import selected_armature, why_not_read, why_not_retarget
 from .bone_list import draw_bones
 from .clean_panel import folded
 from .drawing import draw_job, draw_sentence, exists
-from .example_list import joined, listed
 
 RETARGET, UNBAKE, TICK = (
     f"mocap_assist.{name}" for name in ("retarget", "reduce_keys", "tick_action")

@@ -5,8 +5,11 @@ from typing import ClassVar
 
 import bpy
 
+from ..library.kept_libraries import change_sources
 from ..library.places import asset_folders
-from .example_list import CHANGES_A_LIST, joined, listed
+from ..name_lists import listed
+from ..path_properties import FOLDER, HIDDEN, absolute, chosen_files, path_property
+from .example_list import CHANGES_A_LIST
 
 ADD_FOLDER, ADD_FILES = "mocap_assist.add_source_folder", "mocap_assist.add_source_files"
 REMOVE = "mocap_assist.remove_source"
@@ -34,7 +37,7 @@ def draw_sources(layout: bpy.types.UILayout, library: bpy.types.PropertyGroup) -
 
 def _add(context: bpy.types.Context, chosen: list[str]) -> set[str]:
     library = context.scene.mocap_assist.library
-    library.sources = joined([*listed(library.sources), *chosen])
+    change_sources(library, [*listed(library.sources), *chosen])
     return {"FINISHED"}
 
 
@@ -44,14 +47,14 @@ class MOCAP_OT_add_source_folder(bpy.types.Operator):
     bl_label = "Add Folder"
     bl_description = "Index all recordings and .blend files in a folder, and below it"
 
-    directory: bpy.props.StringProperty(subtype="DIR_PATH", options={"HIDDEN", "SKIP_SAVE"})
+    directory: path_property(FOLDER, HIDDEN)
 
     def invoke(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
         context.window_manager.fileselect_add(self)
         return {"RUNNING_MODAL"}
 
     def execute(self, context: bpy.types.Context) -> set[str]:
-        return _add(context, [str(Path(self.directory))])
+        return _add(context, [str(absolute(self.directory))])
 
 
 class MOCAP_OT_add_source_files(bpy.types.Operator):
@@ -60,19 +63,16 @@ class MOCAP_OT_add_source_files(bpy.types.Operator):
     bl_label = "Add Files"
     bl_description = "Index these recordings, or the actions of these .blend files"
 
-    directory: bpy.props.StringProperty(subtype="DIR_PATH", options={"HIDDEN", "SKIP_SAVE"})
-    files: bpy.props.CollectionProperty(
-        type=bpy.types.OperatorFileListElement, options={"HIDDEN", "SKIP_SAVE"}
-    )
-    filter_glob: bpy.props.StringProperty(default=FILES, options={"HIDDEN", "SKIP_SAVE"})
+    directory: path_property(FOLDER, HIDDEN)
+    files: bpy.props.CollectionProperty(type=bpy.types.OperatorFileListElement, options=HIDDEN)
+    filter_glob: bpy.props.StringProperty(default=FILES, options=HIDDEN)
 
     def invoke(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
         context.window_manager.fileselect_add(self)
         return {"RUNNING_MODAL"}
 
     def execute(self, context: bpy.types.Context) -> set[str]:
-        folder = Path(self.directory)
-        return _add(context, [str(folder / each.name) for each in self.files if each.name])
+        return _add(context, [str(path) for path in chosen_files(self)])
 
 
 class MOCAP_OT_remove_source(bpy.types.Operator):
@@ -88,7 +88,7 @@ class MOCAP_OT_remove_source(bpy.types.Operator):
     def execute(self, context: bpy.types.Context) -> set[str]:
         library = context.scene.mocap_assist.library
         entries = enumerate(listed(library.sources))
-        library.sources = joined(name for place, name in entries if place != self.index)
+        change_sources(library, [name for place, name in entries if place != self.index])
         return {"FINISHED"}
 
 

@@ -8,12 +8,12 @@ import bpy
 from ...solvers.denoising import PlantSettings
 from ...solvers.variation import VarySettings
 from ..library import searches
+from ..name_lists import listed
 from ..selection import selected_armature
 from ..variants.listing import chosen
 from ..variants.reading import candidates, why_not_vary
 from ..variants.tags import short_name
 from .drawing import draw_job, draw_sentence, exists
-from .example_list import listed
 from .retarget_panel import TICK
 
 VARY, KEEP, SHEET, STACK, MARK, ASSIGN = (

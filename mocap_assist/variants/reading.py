@@ -9,8 +9,8 @@ import bpy
 
 from ...solvers.errors import InvalidMotionError
 from ...solvers.retargeting import RootMotion
-from ..examples import SEPARATOR
 from ..jobs.varying import Controls, Varied, VaryProblem, vary
+from ..name_lists import listed
 from ..redo import fingerprint
 from ..retargeting import fitting_actions, source_called
 from ..scene.armature_read import read_take
@@ -62,7 +62,7 @@ def chosen_sources(armature: bpy.types.Object, choices: VaryChoices) -> tuple[So
 
     Where that is a variant, what it was made of is meant.
     """
-    names = [name.strip() for name in choices.actions.split(SEPARATOR) if name.strip()]
+    names = listed(choices.actions)
     if not names:
         played = played_source(armature)
         known = [name for name in examples_of(played[0]) if name in bpy.data.actions]

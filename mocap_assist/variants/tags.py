@@ -1,10 +1,10 @@
 """How a variant is known: by what its action says of itself."""
 
-import json
 import re
-from typing import Any
 
 import bpy
+
+from ..scene.stored_json import store, stored
 
 VARIANT = "mocap_assist_variant"
 """Custom property of actions that Vary made: of which, its number, and the seed."""
@@ -15,8 +15,7 @@ FEWEST_DIGITS = 2
 
 def tag(action: bpy.types.Action, examples: list[str], number: int, seed: int) -> None:
     """Let an action say what it is a variant of."""
-    said = {"examples": examples, "number": number, "seed": seed}
-    action[VARIANT] = json.dumps(said, ensure_ascii=False)
+    store(action, VARIANT, {"examples": examples, "number": number, "seed": seed})
 
 
 def is_variant(action: bpy.types.Action) -> bool:
@@ -26,7 +25,7 @@ def is_variant(action: bpy.types.Action) -> bool:
 
 def examples_of(action: bpy.types.Action) -> list[str]:
     """Return the names of the actions that it is a variant of; nothing for others."""
-    names = _said(action).get("examples", [])
+    names = stored(action, VARIANT, dict).get("examples", [])
     return [str(name) for name in names] if isinstance(names, list) else []
 
 
@@ -48,11 +47,3 @@ def names_for(example: bpy.types.Action, n_variants: int) -> list[str]:
     digits = max(len(str(first + n_variants - 1)), FEWEST_DIGITS)
     numbers = range(first, first + n_variants)
     return [f"{stem}{BETWEEN}{number:0{digits}}" for number in numbers]
-
-
-def _said(action: bpy.types.Action) -> dict[str, Any]:
-    try:
-        said = json.loads(action.get(VARIANT, "{}"))
-    except (TypeError, ValueError):  # edited by hand
-        return {}
-    return said if isinstance(said, dict) else {}

@@ -13,6 +13,7 @@ import shutil
 import subprocess
 import sys
 import tempfile
+import warnings
 from collections.abc import Callable
 from pathlib import Path
 from types import ModuleType
@@ -29,6 +30,10 @@ PACKAGE = "bl_ext.user_default.mocap_assist"
 CHECKOUT = Path(__file__).resolve().parents[2]
 RESOURCES = pytest.StashKey[Path]()
 EXIT_STATUS = pytest.StashKey[int]()
+
+WARNED: list[str] = []
+NOT_OURS = ("unclosed file:ResourceWarning:.*import_bvh",)
+"""Warnings that Blender's own scripts cause, as filters of Python's."""
 
 IN_ONE_BLENDER = {
     "importing/test_failing_readers.py": (5, 2),
@@ -89,6 +94,9 @@ os._exit(0)
 
 
 def pytest_configure(config: pytest.Config) -> None:
+    config.addinivalue_line("filterwarnings", "always")
+    for known in NOT_OURS:
+        config.addinivalue_line("filterwarnings", f"ignore:{known}")
     zipped = Path(os.environ.get("MOCAP_ASSIST_ZIP", "")).resolve()
     if not zipped.is_file():
         pytest.exit(
@@ -128,6 +136,24 @@ def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item
     config.hook.pytest_deselected(items=elsewhere)
 
 
+def pytest_warning_recorded(
+    warning_message: warnings.WarningMessage, nodeid: str, location: object
+) -> None:
+    """Note what no test may leave behind: at the end each of them is a failure.
+
+    A warning that were an error at once would be raised within Blender's own code, which may
+    swallow it or let it through to the next call, as chance will have it.
+    """
+    name = warning_message.category.__name__
+    WARNED.append(f"{nodeid}: {name}: {warning_message.message}")
+
+
+def pytest_terminal_summary(terminalreporter: pytest.TerminalReporter) -> None:
+    if WARNED:
+        terminalreporter.section(f"{len(WARNED)} warnings, each of which is a failure")
+        terminalreporter.write_lines(WARNED)
+
+
 def pytest_report_header(config: pytest.Config) -> str:
     import bpy
 
@@ -136,7 +162,7 @@ def pytest_report_header(config: pytest.Config) -> str:
 
 
 def pytest_sessionfinish(session: pytest.Session, exitstatus: int) -> None:
-    session.config.stash[EXIT_STATUS] = int(exitstatus)
+    session.config.stash[EXIT_STATUS] = int(exitstatus) or int(bool(WARNED))
 
 
 @pytest.hookimpl(trylast=True)

@@ -7,7 +7,6 @@ import numpy as np
 import pytest
 
 # Blender's importer leaves its file open.
-pytestmark = pytest.mark.filterwarnings("ignore::pytest.PytestUnraisableExceptionWarning")
 INCH = 0.0254 / 0.45  # CMU's unit, in metres
 
 

@@ -95,3 +95,24 @@ def test_every_button_offers_every_setting_with_a_tooltip(load):
                 tooltip = shown[item.name].description
                 assert tooltip.startswith(item.metadata["described"].help), item.name
                 assert not tooltip.endswith("."), item.name
+
+
+def test_every_path_may_begin_with_the_folder_of_the_file(extension):
+    """Otherwise Blender warns when one is set, at a moment of its own choosing."""
+    owners = [
+        each.bl_rna
+        for each in bpy.types.PropertyGroup.__subclasses__()
+        if each.__module__.startswith(extension.__name__) and each.is_registered
+    ]
+    buttons = bpy.ops.mocap_assist
+    owners += [getattr(buttons, name).get_rna_type() for name in dir(buttons)]
+    paths = [
+        (owner.identifier, each)
+        for owner in owners
+        for each in owner.properties
+        if each.type == "STRING" and each.subtype in {"FILE_PATH", "DIR_PATH"}
+    ]
+
+    assert len(paths) > 10
+    for name, each in paths:
+        assert each.is_path_supports_blend_relative, f"{name}.{each.identifier}"

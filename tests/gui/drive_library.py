@@ -106,7 +106,7 @@ def index():
 
 def keep_current():
     """What is added while the switch is on is read without anybody pressing Index."""
-    bpy.context.scene.mocap_assist.library.keep_current = True
+    yield from press("mocap_assist.keep_current")
     said = state().said
     first = sorted(CLIPS.glob("*.bvh"))[0]
     (CLIPS / "added.bvh").write_bytes(first.read_bytes())

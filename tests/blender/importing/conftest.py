@@ -2,7 +2,9 @@
 
 from types import SimpleNamespace
 
+import numpy as np
 import pytest
+from depth_files import depth_npz
 
 WALK = "07_01.bvh"
 
@@ -55,3 +57,20 @@ def press(load, window, walks):
         return operator
 
     return start
+
+
+@pytest.fixture
+def depth() -> np.ndarray:
+    """A wall three metres away that comes nearer by a decimetre each frame; a hole in it."""
+    pictures = np.full((8, 60, 80), 3000, np.uint16)
+    pictures -= np.arange(8, dtype=np.uint16)[:, None, None] * 100
+    pictures[:, 10:20, 10:20] = 0
+    return pictures
+
+
+@pytest.fixture
+def archive(tmp_path, depth):
+    path = tmp_path / "wall.npz"
+    content = depth_npz(depth, fx=90.0, fy=90.0, cx=39.5, cy=29.5, frame_rate=30.0)
+    path.write_bytes(content)
+    return path

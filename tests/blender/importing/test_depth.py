@@ -9,23 +9,6 @@ from depth_views import points_of
 NEAR = 1e-4  # metres: 32-bit numbers
 
 
-@pytest.fixture
-def depth() -> np.ndarray:
-    """A wall three metres away that comes nearer by a decimetre each frame; a hole in it."""
-    pictures = np.full((8, 60, 80), 3000, np.uint16)
-    pictures -= np.arange(8, dtype=np.uint16)[:, None, None] * 100
-    pictures[:, 10:20, 10:20] = 0
-    return pictures
-
-
-@pytest.fixture
-def archive(tmp_path, depth):
-    path = tmp_path / "wall.npz"
-    content = depth_npz(depth, fx=90.0, fy=90.0, cx=39.5, cy=29.5, frame_rate=30.0)
-    path.write_bytes(content)
-    return path
-
-
 def expected(depth: np.ndarray, focal: float = 90.0) -> np.ndarray:
     """Points in the world of a level camera at the origin that looks along +Y."""
     rows, columns = np.mgrid[:60, :80]

@@ -8,7 +8,6 @@ import pytest
 from numpy.testing import assert_allclose
 
 # Blender's importer leaves its file open.
-pytestmark = pytest.mark.filterwarnings("ignore::pytest.PytestUnraisableExceptionWarning")
 INCH = 0.0254 / 0.45  # CMU's unit, in metres
 NEAR = 1e-5  # metres; bones and keys are 32-bit numbers
 

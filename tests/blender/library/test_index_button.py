@@ -81,7 +81,6 @@ def waiting(load, blank, monkeypatch, tmp_path, clip_files):
 
     class Operator(module.WaitingIndex):
         setting_names = ()
-        by_itself = False
 
         def settings(self):
             return choices.LibraryBundle(
@@ -122,18 +121,6 @@ def test_escape_ends_it(waiting):
 
     assert waiting.reports == [({"INFO"}, "Cancelled.")]
     assert not (waiting.state.running or waiting.timers or list(waiting.jobs.iterdir()))
-
-
-def test_what_nobody_pressed_takes_no_key_and_ends_with_its_switch(waiting, blank):
-    waiting.operator.by_itself = True
-    library = blank.context.scene.mocap_assist.library
-    library.keep_current = True
-    escape = event("ESC", "PRESS")
-    assert waiting.operator.modal(waiting.context, escape) == {"PASS_THROUGH"}
-
-    library.keep_current = False
-    assert waiting.operator.modal(waiting.context, event("TIMER", "")) == {"CANCELLED"}
-    assert not (waiting.state.running or waiting.timers)
 
 
 def test_another_file_ends_it(waiting, blank):

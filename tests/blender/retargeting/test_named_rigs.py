@@ -3,7 +3,6 @@
 import numpy as np
 import pytest
 
-pytestmark = pytest.mark.filterwarnings("ignore::pytest.PytestUnraisableExceptionWarning")
 CENTIMETRE = 0.01
 ROLLING = 0.04
 """Ankles go along where a foot of another length rolls over its planted ball."""

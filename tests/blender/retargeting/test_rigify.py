@@ -3,10 +3,7 @@
 import numpy as np
 import pytest
 
-pytestmark = [
-    pytest.mark.filterwarnings("ignore::pytest.PytestUnraisableExceptionWarning"),
-    pytest.mark.timeout(200),
-]
+pytestmark = pytest.mark.timeout(200)
 CENTIMETRE = 0.01
 ROLLING = 0.04
 """Ankles go along where a foot of another length rolls over its planted ball."""

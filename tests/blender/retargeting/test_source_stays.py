@@ -3,10 +3,7 @@
 import numpy as np
 import pytest
 
-pytestmark = [
-    pytest.mark.filterwarnings("ignore::pytest.PytestUnraisableExceptionWarning"),
-    pytest.mark.timeout(200),
-]
+pytestmark = pytest.mark.timeout(200)
 SWITCH = "thigh_parent.L"
 CHANNELS = ("location", "rotation_quaternion", "rotation_euler", "scale")
 

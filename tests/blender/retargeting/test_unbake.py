@@ -5,7 +5,6 @@ import json
 import numpy as np
 import pytest
 
-pytestmark = pytest.mark.filterwarnings("ignore::pytest.PytestUnraisableExceptionWarning")
 ENDS = ("LeftHand", "RightHand", "LeftToeBase", "RightToeBase", "Head")
 HALF_A_CENTIMETRE = 0.005
 

@@ -1,0 +1,101 @@
+"""Libraries that this user wants to have indexed by itself, on this machine.
+
+A .blend file has no say in this: what it names is indexed when Index is pressed, and by itself
+only after *Keep Current* was pressed for exactly these sources.
+"""
+
+from pathlib import Path
+from typing import Any
+
+import bpy
+
+from .. import permissions
+from ..jobs.in_blender import BackgroundBlender
+from ..jobs.indexing import IndexProblem, Place
+from ..name_lists import joined
+from .choices import LibraryChoices
+from .places import index_problem, library_path, places_of
+
+
+def kept_libraries() -> list[IndexProblem]:
+    """Return what is to be kept current."""
+    stored = permissions.entries(permissions.LIBRARIES)
+    return [kept for each in stored if (kept := _problem(each)) is not None]
+
+
+def is_kept(problem: IndexProblem) -> bool:
+    """Whether a library is kept current from exactly these sources."""
+    return problem in kept_libraries()
+
+
+def keep(problem: IndexProblem) -> None:
+    """Keep a library current from these sources, in place of others."""
+    permissions.change(permissions.LIBRARIES, [*_without(problem.library), _stored(problem)])
+
+
+def stop_keeping(library: str) -> None:
+    """Index a library only when Index is pressed."""
+    permissions.change(permissions.LIBRARIES, _without(library))
+
+
+def toggle_kept(choices: LibraryChoices) -> str:
+    """Keep a library current from these sources, or no longer; return a sentence about it.
+
+    Raises
+    ------
+    InvalidFileError
+        No source is listed, or the permission cannot be stored.
+    """
+    problem = index_problem(choices)
+    name = Path(problem.library).name
+    if is_kept(problem):
+        stop_keeping(problem.library)
+        return f"{name} is indexed only when you press Index."
+    keep(problem)
+    return f"{name} is kept current, from {len(problem.places)} sources."
+
+
+def change_sources(library: Any, sources: list[str]) -> None:
+    """Let the sidebar list other sources; a library that is kept from them stays so.
+
+    Parameters
+    ----------
+    library : the sidebar's settings of the library
+    sources : paths of files and folders
+    """
+    was_kept = choices_are_kept(library.settings().choices)
+    library.sources = joined(sources)
+    choices = library.settings().choices
+    if was_kept and places_of(choices):
+        keep(index_problem(choices))
+    elif was_kept:
+        stop_keeping(str(library_path(choices)))
+
+
+def choices_are_kept(choices: LibraryChoices) -> bool:
+    """Whether the library of these choices is kept current from their sources."""
+    return bool(places_of(choices)) and is_kept(index_problem(choices))
+
+
+def _without(library: str) -> list[Any]:
+    return [_stored(each) for each in kept_libraries() if each.library != library]
+
+
+def _stored(problem: IndexProblem) -> dict[str, Any]:
+    return {
+        "library": problem.library,
+        "places": [[place.path, place.assets_only] for place in problem.places],
+        "tags": list(problem.tags),
+        "rig": problem.blender.rig,
+    }
+
+
+def _problem(stored: Any) -> IndexProblem | None:
+    """Undo `_stored`; None for what this version does not understand."""
+    try:
+        places = tuple(Place(str(path), bool(assets)) for path, assets in stored["places"])
+        tags = tuple(map(str, stored["tags"]))
+        blender = BackgroundBlender(str(bpy.app.binary_path), str(stored["rig"]))
+        return IndexProblem(str(stored["library"]), places, tags, blender)
+    except (TypeError, ValueError, KeyError):
+        return None

@@ -1,0 +1,15 @@
+"""Lists of names in one text property: `walk; run; C:/clips`."""
+
+from collections.abc import Iterable
+
+SEPARATOR = ";"
+
+
+def listed(text: str) -> list[str]:
+    """Return the names in a list."""
+    return [name.strip() for name in text.split(SEPARATOR) if name.strip()]
+
+
+def joined(names: Iterable[str]) -> str:
+    """Return names as one list, each once."""
+    return f"{SEPARATOR} ".join(dict.fromkeys(names))

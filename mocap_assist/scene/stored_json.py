@@ -1,0 +1,35 @@
+"""What Mocap Assist keeps in custom properties: JSON, which anybody may have edited."""
+
+import json
+from typing import Any, TypeVar
+
+import bpy
+
+Kind = TypeVar("Kind", dict[str, Any], list[Any])
+DAMAGE = (TypeError, ValueError, RecursionError)
+
+
+def store(holder: Any, key: str, value: dict[str, Any] | list[Any]) -> None:
+    """Keep a value in a custom property of a data-block or bone."""
+    holder[key] = json.dumps(value, ensure_ascii=False)
+
+
+def stored(holder: bpy.types.ID, key: str, kind: type[Kind]) -> Kind:
+    """Return what `store` kept; an empty list or dictionary where nothing of the kind is.
+
+    Infinities and NaN, which JSON does not know, count as damage.
+    """
+    return parsed(holder.get(key), kind)
+
+
+def parsed(text: object, kind: type[Kind]) -> Kind:
+    """Return what a text says, as `stored` does."""
+    try:
+        value = json.loads(text, parse_constant=_refuse)  # type: ignore[arg-type]
+    except DAMAGE:
+        return kind()
+    return value if isinstance(value, kind) else kind()
+
+
+def _refuse(constant: str) -> None:
+    raise ValueError(constant)

@@ -1,0 +1,27 @@
+"""Button: index a library by itself when its sources change, or no longer."""
+
+from typing import ClassVar
+
+import bpy
+
+from ..mocap_assist.library.kept_libraries import toggle_kept
+from ..solvers.errors import MocapAssistError
+
+
+class MOCAP_OT_keep_current(bpy.types.Operator):
+    bl_idname = "mocap_assist.keep_current"
+    bl_label = "Keep Current"
+    bl_description = (
+        "Index this library by itself when these sources change, in every file that you open on"
+        " this machine, until you press again"
+    )
+    bl_options: ClassVar = set[str]()  # nothing of the file is changed
+
+    def execute(self, context: bpy.types.Context) -> set[str]:
+        try:
+            message = toggle_kept(context.scene.mocap_assist.library.settings().choices)
+        except MocapAssistError as error:
+            self.report({"ERROR"}, str(error))
+            return {"CANCELLED"}
+        self.report({"INFO"}, message)
+        return {"FINISHED"}

@@ -1,0 +1,33 @@
+"""Button: show the depth recording of a file that comes from somebody else."""
+
+from typing import ClassVar
+
+import bpy
+
+from ..mocap_assist.scene.depth_preview import show_asked
+from ..mocap_assist.tracking import selected_preview
+from ..solvers.errors import MocapAssistError
+
+
+class MOCAP_OT_show_depth(bpy.types.Operator):
+    bl_idname = "mocap_assist.show_depth"
+    bl_label = "Show Points"
+    bl_description = "Open the depth recording that this object shows, now and from now on"
+    bl_options: ClassVar = set[str]()
+
+    @classmethod
+    def poll(cls, context: bpy.types.Context) -> bool:
+        if selected_preview(context) is None:
+            cls.poll_message_set("Select the points of a depth recording.")
+            return False
+        return True
+
+    def execute(self, context: bpy.types.Context) -> set[str]:
+        mesh = selected_preview(context).data
+        try:
+            message = show_asked(mesh, context.scene.frame_current_final)
+        except MocapAssistError as error:
+            self.report({"ERROR"}, str(error))
+            return {"CANCELLED"}
+        self.report({"INFO"}, message)
+        return {"FINISHED"}
