@@ -15,14 +15,18 @@ from .scene.markers import markers_of, point_names
 from .scene.scene_objects import choose
 from .scene.take import ArmatureTake
 from .selection import played_source, selected_subject
-from .subject import check_unchanged
+from .subject import Subject, check_unchanged
+from .turns import Sliced, Steps
 
 
+@Sliced
 def read_checking(
     scene: bpy.types.Scene, subject: bpy.types.Object, settings: CheckSettings
-) -> "partial[Checked]":
+) -> "Steps[partial[Checked]]":
     """Read what a subject plays; return what is to be solved, which may be pickled."""
-    take = _read(scene, subject)
+    here = Subject.of(scene, subject)
+    take = yield from _read.steps(scene, subject)
+    scene, subject = here.find()
     contacts, limits = None, None
     if isinstance(take, ArmatureTake):
         contacts = read_contacts(*played_source(subject), take.frames)
@@ -37,15 +41,19 @@ def read_checking(
     )
 
 
+@Sliced
 def show_checked(
     scene: bpy.types.Scene,
     subject: bpy.types.Object,
     settings: CheckSettings,
     checked: Checked,
     asked: str | None = None,
-) -> str:
+) -> Steps[str]:
     """List the spots in the scene; return a sentence about them."""
-    take, shown = _read(scene, subject), scene.mocap_assist
+    here = Subject.of(scene, subject)
+    take = yield from _read.steps(scene, subject)
+    scene, subject = here.find()
+    shown = scene.mocap_assist
     check_unchanged(subject, asked, take.recordings[0])
     frames = take.frames
     shown.spots.clear()
@@ -86,7 +94,10 @@ def _select_bone(armature: bpy.types.Object, name: str) -> None:
     armature.data.bones.active = armature.data.bones[name]
 
 
-def _read(scene: bpy.types.Scene, subject: bpy.types.Object) -> ArmatureTake | MarkerTake:
+@Sliced
+def _read(
+    scene: bpy.types.Scene, subject: bpy.types.Object
+) -> Steps[ArmatureTake | MarkerTake]:
     if subject.type != "ARMATURE":
-        return read_markers(subject, scene)
-    return read_take(subject, scene, source=played_source(subject))
+        return (yield from read_markers.steps(subject, scene))
+    return (yield from read_take.steps(subject, scene, source=played_source(subject)))

@@ -17,6 +17,8 @@ from .scene.contacts import animators_contacts, write_contacts
 from .scene.limits import read_limits
 from .scene.take import ArmatureTake
 from .selection import chosen_bones, played_source
+from .subject import Subject
+from .turns import Steps
 
 
 class ArmatureReading(NamedTuple):
@@ -33,14 +35,15 @@ class ArmatureReading(NamedTuple):
     @classmethod
     def of(
         cls, scene: bpy.types.Scene, armature: bpy.types.Object, choices: CleanChoices
-    ) -> "ArmatureReading":
+    ) -> "Steps[ArmatureReading]":
         """Read what was recorded."""
         check_writable(armature)
-        bones = chosen_bones(armature, choices.bones)
-        played = played_source(armature)
-        recorded = history.cleaned_from(played)
-        raw = read_take(armature, scene, choices.frame_range, recorded)
-        return cls(scene, armature, recorded, played, raw, bones)
+        here = Subject.of(scene, armature)
+        recorded = history.cleaned_from(played_source(armature))
+        raw = yield from read_take.steps(armature, scene, choices.frame_range, recorded)
+        scene, armature = here.find()
+        bones, played = chosen_bones(armature, choices.bones), played_source(armature)
+        return cls(scene, armature, history.cleaned_from(played), played, raw, bones)
 
     def limits(self, choices: CleanChoices) -> JointLimits | None:
         """Return how far the rig lets joints turn, if that was asked for."""
@@ -52,12 +55,14 @@ class ArmatureReading(NamedTuple):
         """Return when each foot stands, as the animator keyed it."""
         return animators_contacts(self.played, self.raw.frames)
 
-    def present(self) -> Recordings | None:
+    def present(self) -> Steps[Recordings | None]:
         """What an earlier result shows of the bones that stay, if it differs from the raw."""
         everything = len(self.chosen) == len(self.raw.rig.bones)
         if everything or self.played == self.recorded:
             return None
-        take = read_take(self.armature, self.scene, source=self.played, grid=self.raw.grid)
+        take = yield from read_take.steps(
+            self.armature, self.scene, source=self.played, grid=self.raw.grid
+        )
         same = [names_of(one) for one in take.recordings] == [
             names_of(one) for one in self.raw.recordings
         ]

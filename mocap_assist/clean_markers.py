@@ -13,6 +13,8 @@ from .scene.armature_write import check_writable, put_to_use
 from .scene.marker_take import MarkerTake, read_markers, write_markers
 from .scene.markers import markers_of
 from .selection import chosen_markers
+from .subject import Subject
+from .turns import Steps
 
 
 class MarkerReading(NamedTuple):
@@ -26,11 +28,13 @@ class MarkerReading(NamedTuple):
     @classmethod
     def of(
         cls, scene: bpy.types.Scene, holder: bpy.types.Object, choices: CleanChoices
-    ) -> "MarkerReading":
+    ) -> "Steps[MarkerReading]":
         """Read what was recorded."""
         for marker in markers_of(holder):
             check_writable(marker)
-        raw = read_markers(holder, scene, choices.frame_range, recorded=True)
+        here = Subject.of(scene, holder)
+        raw = yield from read_markers.steps(holder, scene, choices.frame_range, recorded=True)
+        scene, holder = here.find()
         return cls(scene, holder, raw, chosen_markers(raw, choices.bones))
 
     def limits(self, choices: CleanChoices) -> None:
@@ -39,11 +43,11 @@ class MarkerReading(NamedTuple):
     def contacts(self) -> None:
         """Nor are they feet."""
 
-    def present(self) -> Recordings | None:
+    def present(self) -> Steps[Recordings | None]:
         """What an earlier result shows of the markers that stay."""
         if len(self.chosen) == self.raw.tracks.n_points:
             return None
-        played = read_markers(self.holder, self.scene, grid=self.raw.grid)
+        played = yield from read_markers.steps(self.holder, self.scene, grid=self.raw.grid)
         same = played.tracks.names == self.raw.tracks.names
         return played.recordings if same else None
 

@@ -23,51 +23,56 @@ from .scene.curves import GENERATED, MEASURED
 from .scene.frames import Grid
 from .scene.marker_take import MarkerTake
 from .scene.take import ArmatureTake
-from .subject import check_unchanged
+from .subject import Subject, check_unchanged
+from .turns import Sliced, Steps
 
 UNSURE = 0.5  # confidence below which a key counts as generated
 EASE = 5  # frames over which a cleaned range joins the frames outside it
 
 
+@Sliced
 def read_cleaning(
     scene: bpy.types.Scene, subject: bpy.types.Object, settings: CleanSettings
-) -> "partial[Cleaned]":
+) -> "Steps[partial[Cleaned]]":
     """Read what an armature, or the markers below an object, play.
 
     Returns what is to be solved, which may be pickled.
     """
     choices = settings.choices
-    found = _read(scene, subject, choices)
-    problem = _problem(scene, subject, found.raw, settings)
+    examples, found = yield from _read(Subject.of(scene, subject), choices)
+    problem = _problem(found.raw, settings, examples)
     plants = choices.plant_feet and isinstance(found.raw, ArmatureTake)
+    limits, contacts = found.limits(choices), found.contacts()
     finish = Finish(
         strength=settings.denoising.strength,
         ease=ease_of(found.raw.grid),
         chosen=found.chosen,
-        present=found.present(),
-        limits=found.limits(choices),
+        present=(yield from found.present()),
+        limits=limits,
         planting=settings.planting if plants else None,
-        contacts=found.contacts(),
+        contacts=contacts,
     )
     solution = redo.recall(problem)
     return (partial if solution is None else Quick)(clean, problem, finish, solution)
 
 
+@Sliced
 def write_cleaned(
     scene: bpy.types.Scene,
     subject: bpy.types.Object,
     settings: CleanSettings,
     cleaned: Cleaned,
     asked: str | None = None,
-) -> str:
+) -> Steps[str]:
     """Write the result as a new action and put it to use; return a sentence about it.
 
     Raises InvalidMotionError if the subject plays something else than what was `asked`, a
     fingerprint of the problem.
     """
-    found = _read(scene, subject, settings.choices)
-    problem = _problem(scene, subject, found.raw, settings)
-    check_unchanged(subject, asked, problem)
+    here = Subject.of(scene, subject)
+    examples, found = yield from _read(here, settings.choices)
+    problem = _problem(found.raw, settings, examples)
+    check_unchanged(here.find()[1], asked, problem)
     redo.remember(problem, cleaned.solution)
     types = key_types(cleaned.solution.recordings, cleaned.solution.denoised)
     entry = entry_of("denoise", settings, cleaned)
@@ -90,17 +95,21 @@ def key_types(
 
 
 def _read(
-    scene: bpy.types.Scene, subject: bpy.types.Object, choices: CleanChoices
-) -> ArmatureReading | MarkerReading:
+    here: Subject, choices: CleanChoices
+) -> Steps[tuple[Examples, ArmatureReading | MarkerReading]]:
+    """Read what is to be learned from, and then what is to be cleaned."""
+    scene, subject = here.find()
+    if choices.prior is Prior.LIBRARY:
+        examples = Examples(library=library_prior(scene, subject))
+    else:
+        examples = yield from read_prior.steps(scene, subject, choices)
+    scene, subject = here.find()
     kind = ArmatureReading if subject.type == "ARMATURE" else MarkerReading
-    return kind.of(scene, subject, choices)
+    return examples, (yield from kind.of(scene, subject, choices))
 
 
 def _problem(
-    scene: bpy.types.Scene,
-    subject: bpy.types.Object,
-    raw: ArmatureTake | MarkerTake,
-    settings: CleanSettings,
+    raw: ArmatureTake | MarkerTake, settings: CleanSettings, examples: Examples
 ) -> Problem:
     choices = settings.choices
     learn_limits = choices.joint_limits is Limits.EXAMPLES and isinstance(raw, ArmatureTake)
@@ -111,18 +120,10 @@ def _problem(
     return Problem(
         recordings=raw.recordings,
         settings=replace(settings.denoising, strength=1.0),
-        examples=_examples(scene, subject, choices),
+        examples=examples,
         learn_limits=learn_limits,
         unswap=choices.unswap and choices.bones is Bones.ALL and isinstance(raw, MarkerTake),
     )
-
-
-def _examples(
-    scene: bpy.types.Scene, subject: bpy.types.Object, choices: CleanChoices
-) -> Examples:
-    if choices.prior is Prior.LIBRARY:
-        return Examples(library=library_prior(scene, subject))
-    return read_prior(scene, subject, choices)
 
 
 def ease_of(grid: Grid) -> NDArray[np.float64]:

@@ -15,11 +15,14 @@ from .scene import compat
 from .scene.armature_read import read_take
 from .scene.fitting import fits, plays
 from .scene.linked_clips import is_blend, linked_clips
+from .subject import Subject
+from .turns import Sliced, Steps, due
 
 
+@Sliced
 def read_prior(
     scene: bpy.types.Scene, armature: bpy.types.Object, choices: CleanChoices
-) -> Examples:
+) -> Steps[Examples]:
     """Return what is to be learned from, if anything; see `read_examples`."""
     if choices.prior is Prior.TAKE:
         return Examples()
@@ -27,12 +30,13 @@ def read_prior(
         if not choices.learned_file:
             raise InvalidMotionError("Choose the file of learned patterns, or another prior.")
         return Examples(bases_file=bpy.path.abspath(choices.learned_file))
-    return read_examples(scene, armature, choices.examples)
+    return (yield from read_examples.steps(scene, armature, choices.examples))
 
 
+@Sliced
 def read_examples(
     scene: bpy.types.Scene, armature: bpy.types.Object, examples: str
-) -> Examples:
+) -> Steps[Examples]:
     """Read the actions named in a list; leave recordings to be read where it is solved.
 
     Of a .blend file in the list all actions are read that fit an armature there.
@@ -54,10 +58,14 @@ def read_examples(
         raise InvalidMotionError(
             f"There is neither an action nor a file called {', '.join(missing)}."
         )
-    armatures = _who_may_fit(scene, armature)
-    motions = [_read_named(scene, armatures, bpy.data.actions[name]) for name in actions]
+    here, motions = Subject.of(scene, armature), list[Motion]()
+    for name in actions:
+        motion = yield from _read_named(*here.find(), name)
+        motions.append(motion)
     for path in filter(is_blend, map(Path, files)):
-        motions += _read_blend(scene, path)
+        if due():
+            yield 0.0
+        motions += _read_blend(here.find()[0], path)
     others = [Path(path) for path in files if not is_blend(Path(path))]
     recordings = tuple(str(file) for path in others for file in _recordings_of(path))
     return Examples(motions=tuple(motions), files=recordings)
@@ -78,24 +86,32 @@ def _who_may_fit(scene: bpy.types.Scene, asking: bpy.types.Object) -> list[bpy.t
     return [*[each for each in (asking,) if each.type == "ARMATURE"], *armatures]
 
 
-def _read_named(
-    scene: bpy.types.Scene, armatures: Sequence[bpy.types.Object], action: bpy.types.Action
-) -> Motion:
+def _read_named(scene: bpy.types.Scene, asking: bpy.types.Object, name: str) -> Steps[Motion]:
     """Read the body's motion from an action of this file."""
-    motion = _read_action(scene, armatures, action)
-    if motion is None:
+    action = bpy.data.actions.get(name)
+    found = action and _player(_who_may_fit(scene, asking), action)
+    if not found:
         raise InvalidMotionError(
-            f"No armature of this scene has the bones of the action {action.name}. Add the rig"
-            " that it was made for, or pick another example."
+            f"No armature of this scene has the bones of the action {name}. Add the rig that it"
+            " was made for, or pick another example."
         )
-    return motion
+    armature, slot = found
+    take = yield from read_take.steps(armature, scene, source=(action, slot))
+    return take.parts[0].motion
 
 
 def _read_blend(scene: bpy.types.Scene, path: Path) -> list[Motion]:
-    """Read the motions of all actions in another .blend file that fit an armature there."""
+    """Read the motions of all actions in another .blend file that fit an armature there.
+
+    All at once: the file's data-blocks are in this one meanwhile.
+    """
+    motions = []
     with linked_clips(path) as clips:
-        found = [_read_action(scene, clips.armatures, action) for action in clips.actions]
-    motions = [motion for motion in found if motion is not None]
+        for action in clips.actions:
+            if found := _player(clips.armatures, action):
+                armature, slot = found
+                take = read_take(armature, scene, source=(action, slot))
+                motions.append(take.parts[0].motion)
     if not motions:
         raise InvalidMotionError(
             f"{path} has no armature with an action for it."
@@ -104,13 +120,13 @@ def _read_blend(scene: bpy.types.Scene, path: Path) -> list[Motion]:
     return motions
 
 
-def _read_action(
-    scene: bpy.types.Scene, armatures: Sequence[bpy.types.Object], action: bpy.types.Action
-) -> Motion | None:
-    """Read the body's motion on the armature that plays the action, or the first that fits."""
+def _player(
+    armatures: Sequence[bpy.types.Object], action: bpy.types.Action
+) -> tuple[bpy.types.Object, bpy.types.ActionSlot] | None:
+    """Return the armature that plays an action, or the first that fits, and the slot for it."""
     players = [each for each in armatures if plays(each, action)]
     for other in [*players, *armatures]:
         for slot in action.slots:
             if slot.target_id_type in compat.TARGETS and fits(other, action, slot):
-                return read_take(other, scene, source=(action, slot)).parts[0].motion
+                return other, slot
     return None

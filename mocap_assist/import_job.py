@@ -11,7 +11,7 @@ from ..solvers.errors import InvalidFileError, MocapAssistError
 from .arrival import READING, Arrival
 from .depth_folders import readable
 from .import_choices import ImportChoices
-from .jobs.job import ProcessDied
+from .jobs.job import Job, ProcessDied
 from .jobs.reading import Known, Read, read_files
 from .recent_files import State, remember, state_of
 from .recording_objects import wanted_of
@@ -43,14 +43,16 @@ class ImportJob:
         self._shown = 0.0
         self._states: list[State] = []
         self._read: deque[tuple[Path, State, Read | MocapAssistError]] = deque()
-        self.watch = Watch(context, self._next_batch(), "import")
+        self.job: Job[list[Read | MocapAssistError]] = Job(self._next_batch())
+        self.watch = Watch(context, "import", self._stop)
+        self._show(context)
 
     def step(self, context: bpy.types.Context) -> bool:
         """Do a little; return whether all is done, and nothing is shown any more."""
         if self._read:
             self._bring_in(context, *self._read.popleft())
             self._n_in += 1
-        elif self.watch.job.done():
+        elif self.job.done():
             self._fetch()
         if not (self._read or self._batches or self._n_in < self._n_files):
             self.watch.end(context)
@@ -62,6 +64,10 @@ class ImportJob:
         """Stop at once and leave the scene as it was."""
         self.watch.abandon(context)
         self.arrival.take_back(context)
+
+    def _stop(self) -> None:
+        self.job.cancel()
+        self.job.tidy_up()
 
     def _next_batch(self) -> "partial[list[Read | MocapAssistError]]":
         self._states = [state_of(path) for path in self._batches[0]]
@@ -75,7 +81,7 @@ class ImportJob:
         """
         paths = self._batches.popleft()
         try:
-            found = self.watch.job.result()
+            found = self.job.result()
         except (ProcessDied, MemoryError) as error:
             if half := len(paths) // 2:
                 self._batches.extendleft([paths[half:], paths[:half]])
@@ -84,7 +90,7 @@ class ImportJob:
             self._read.extend(zip(paths, self._states, found, strict=True))
             self._n_read += len(paths)
         if self._batches:
-            self.watch.go_on(self._next_batch())
+            self.job = Job(self._next_batch())
 
     def _bring_in(
         self,
@@ -103,7 +109,7 @@ class ImportJob:
     def _show(self, context: bpy.types.Context) -> None:
         fraction, message = 0.0, ""
         if self._batches:
-            fraction, message = self.watch.job.progress()
+            fraction, message = self.job.progress()
             fraction *= len(self._batches[0])
         if self._read:
             message = f"Bringing in {self._read[0][0].name}"

@@ -13,6 +13,7 @@ from ..solvers.settings import Settings, setting
 from .examples import read_examples
 from .jobs.learning import learn
 from .path_properties import absolute
+from .turns import Sliced, Steps
 
 ENDING = ".npz"
 
@@ -34,12 +35,13 @@ class LearnSettings(NamedTuple):
     bases: FilterBasesSettings
 
 
+@Sliced
 def read_learning(
     scene: bpy.types.Scene, armature: bpy.types.Object, settings: LearnSettings
-) -> "partial[FilterBases]":
+) -> "Steps[partial[FilterBases]]":
     """Read the examples; return what is to be solved, which may be pickled."""
     target_of(settings)
-    examples = read_examples(scene, armature, settings.choices.examples)
+    examples = yield from read_examples.steps(scene, armature, settings.choices.examples)
     return partial(learn, examples, settings.bases)
 
 

@@ -13,7 +13,8 @@ from .scene.armature_read import read_take
 from .scene.armature_write import Output, check_writable, put_to_use, write_take
 from .scene.contacts import animators_contacts, write_contacts
 from .selection import played_source
-from .subject import check_unchanged
+from .subject import Subject, check_unchanged
+from .turns import Sliced, Steps
 
 N_QUICK = 5000
 """Frames that are solved in half a second: less than it takes to start another process."""
@@ -25,28 +26,33 @@ class FeetSettings(NamedTuple):
     planting: PlantSettings
 
 
+@Sliced
 def read_planting(
     scene: bpy.types.Scene, armature: bpy.types.Object, settings: FeetSettings
-) -> "partial[Replanted]":
+) -> "Steps[partial[Replanted]]":
     """Read what an armature plays; return what is to be solved, which may be pickled."""
     check_writable(armature)
-    played = played_source(armature)
-    take = read_take(armature, scene, source=played)
-    contacts = animators_contacts(played, take.frames)
+    here = Subject.of(scene, armature)
+    take = yield from read_take.steps(armature, scene, source=played_source(armature))
+    _, armature = here.find()
+    contacts = animators_contacts(played_source(armature), take.frames)
     kind = Quick if len(take.frames) <= N_QUICK else partial
     return kind(plant, take.parts[0].motion, contacts, settings.planting)
 
 
+@Sliced
 def write_planted(
     scene: bpy.types.Scene,
     armature: bpy.types.Object,
     settings: FeetSettings,
     result: Replanted,
     asked: str | None = None,
-) -> str:
+) -> Steps[str]:
     """Write the result as a new action and put it to use; return a sentence about it."""
+    here = Subject.of(scene, armature)
+    take = yield from read_take.steps(armature, scene, source=played_source(armature))
+    scene, armature = here.find()
     played, planted = played_source(armature), result.planted
-    take = read_take(armature, scene, source=played)
     body, *others = take.recordings
     check_unchanged(armature, asked, body)
     take = take.with_recordings((planted.motion, *others))

@@ -13,6 +13,7 @@ from . import redo
 from .clean_report import figures
 from .cleaning import ease_of
 from .examples import read_examples
+from .jobs.cleaning import Examples
 from .jobs.job import Quick
 from .jobs.reconstructing import RebuildFinish, RebuildProblem, Rebuilt, rebuild
 from .library.prior import library_prior
@@ -29,7 +30,8 @@ from .scene.reliability_curves import Term, write_reliability
 from .scene.sensor_words import read_states
 from .scene.take import ArmatureTake
 from .selection import played_source, selected_armature, why_not_clean
-from .subject import check_unchanged
+from .subject import Subject, check_unchanged
+from .turns import Sliced, Steps
 
 SUFFIX = ".reconstructed"
 
@@ -44,12 +46,16 @@ class _Reading(NamedTuple):
     @classmethod
     def of(
         cls, scene: bpy.types.Scene, armature: bpy.types.Object, settings: ReconstructBundle
-    ) -> "_Reading":
+    ) -> "Steps[_Reading]":
         check_writable(armature)
+        here = Subject.of(scene, armature)
         played = played_source(armature)
         recorded = history.raw_of(played[0]) or played
-        take = read_take(armature, scene, settings.choices.frame_range, recorded)
-        return cls(played, recorded, take)
+        take = yield from read_take.steps(
+            armature, scene, settings.choices.frame_range, recorded
+        )
+        played = played_source(here.find()[1])
+        return cls(played, history.raw_of(played[0]) or played, take)
 
     @property
     def body(self) -> Motion:
@@ -66,12 +72,12 @@ def why_not_reconstruct(context: bpy.types.Context) -> str:
     return why_not_clean(context)
 
 
+@Sliced
 def read_reconstructing(
     scene: bpy.types.Scene, armature: bpy.types.Object, settings: ReconstructBundle
-) -> "partial[Rebuilt]":
+) -> "Steps[partial[Rebuilt]]":
     """Read what was recorded; return what is to be solved, which may be pickled."""
-    found = _Reading.of(scene, armature, settings)
-    problem = _problem(scene, armature, found, settings)
+    found, problem = yield from _read(Subject.of(scene, armature), settings)
     finish = RebuildFinish(
         ease=ease_of(found.take.grid),
         planting=settings.planting if settings.choices.plant_feet else None,
@@ -81,20 +87,22 @@ def read_reconstructing(
     return (partial if solution is None else Quick)(rebuild, problem, finish, solution)
 
 
+@Sliced
 def write_reconstructed(
     scene: bpy.types.Scene,
     armature: bpy.types.Object,
     settings: ReconstructBundle,
     rebuilt: Rebuilt,
     asked: str | None = None,
-) -> str:
+) -> Steps[str]:
     """Write the result as a new action and put it to use; return a sentence about it.
 
     Raises InvalidMotionError if the armature plays something else than what was `asked`, a
     fingerprint of the problem.
     """
-    found = _Reading.of(scene, armature, settings)
-    problem = _problem(scene, armature, found, settings)
+    here = Subject.of(scene, armature)
+    found, problem = yield from _read(here, settings)
+    scene, armature = here.find()
     check_unchanged(armature, asked, problem)
     redo.remember(problem, rebuilt.solution)
     names = problem.body.skeleton.names
@@ -118,17 +126,25 @@ def write_reconstructed(
     return _said(action.name, rebuilt, n_modified)
 
 
+def _read(here: Subject, settings: ReconstructBundle) -> Steps[tuple[_Reading, RebuildProblem]]:
+    """Read what is to be learned from, and then what was recorded."""
+    examples, choices = None, settings.choices
+    if choices.postures is Postures.EXAMPLES:
+        examples = yield from read_examples.steps(*here.find(), choices.examples)
+    found = yield from _Reading.of(*here.find(), settings)
+    return found, _problem(*here.find(), found, settings, examples)
+
+
 def _problem(
     scene: bpy.types.Scene,
     armature: bpy.types.Object,
     found: _Reading,
     settings: ReconstructBundle,
+    examples: Examples | None,
 ) -> RebuildProblem:
     body = found.body
-    choices, examples, postures, library = settings.choices, None, None, None
-    if choices.postures is Postures.EXAMPLES:
-        examples = read_examples(scene, armature, choices.examples)
-    elif choices.postures is Postures.LIBRARY:
+    choices, postures, library = settings.choices, None, None
+    if choices.postures is Postures.LIBRARY:
         library = library_prior(scene, armature)
     elif choices.postures is Postures.LEARNED:
         if not choices.postures_file:

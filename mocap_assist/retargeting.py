@@ -22,11 +22,13 @@ from .scene.armature_write import check_writable
 from .scene.bone_channels import animated_paths, bone_path
 from .scene.compat import Source
 from .scene.evaluated_body import body_bones, with_body_shown
+from .scene.lasting import LastingSource
 from .scene.rigify import is_rigify
 from .scene.take import ArmatureTake
 from .scene.target_read import read_target, vertical_part
 from .selection import played_source
-from .subject import check_unchanged
+from .subject import Subject, check_unchanged
+from .turns import Sliced, Steps
 
 N_QUICK = 5000
 """Frames that are solved in half a second: less than it takes to start another process."""
@@ -43,27 +45,32 @@ class Reading(NamedTuple):
     problem: RetargetProblem
 
 
+@Sliced
 def read_retarget(
     scene: bpy.types.Scene, source: bpy.types.Object, settings: RetargetBundle
-) -> "partial[Retargeted]":
+) -> "Steps[partial[Retargeted]]":
     """Read source and target; return what is to be solved, which may be pickled."""
-    problem = _read(scene, source, settings).problem
+    found = yield from _read(Subject.of(scene, source), settings)
+    problem = found.problem
     n_frames = sum(clip.motion.n_frames for clip in problem.clips)
     return (Quick if n_frames <= N_QUICK else partial)(retarget_clips, problem)
 
 
+@Sliced
 def write_retargeted(
     scene: bpy.types.Scene,
     source: bpy.types.Object,
     settings: RetargetBundle,
     results: Retargeted,
     asked: str | None = None,
-) -> str:
+) -> Steps[str]:
     """Write an action for each clip, let the target play the last; return a sentence.
 
     A linked target plays nothing: its actions are for its override.
     """
-    found = _read(scene, source, settings)
+    here = Subject.of(scene, source)
+    found = yield from _read(here, settings)
+    scene, source = here.find()
     check_unchanged(source, asked, found.problem)
     for made_from, take, keys in zip(found.sources, found.takes, results, strict=True):
         name = f"{made_from[0].name}.{found.target.name}"
@@ -164,27 +171,52 @@ def _fitting_slot(
     return None
 
 
-def _read(
-    scene: bpy.types.Scene, source: bpy.types.Object, settings: RetargetBundle
-) -> Reading:
+def _read(here: Subject, settings: RetargetBundle) -> Steps[Reading]:
     choices = settings.choices
+    scene, source = here.find()
+    target_called(scene, choices.target, source)  # or it cannot be used, and all is in vain
+    lasting = [LastingSource.of(each) for each in chosen_sources(source, choices)]
+    takes = []
+    for each in lasting:
+        take = yield from _read_clip(here, each, choices)
+        takes.append(take)
+    scene, source = here.find()
     target = target_called(scene, choices.target, source)
-    sources = chosen_sources(source, choices)
-    files = (choices.source_map_file, choices.target_map_file)
-    maps = maps_for(scene, source, target, files)
-    takes = tuple(read_take(source, scene, source=each) for each in sources)
-    known = _known(maps.source, source)
-    if is_rigify(source.data.bones):
-        known = body_bones(known, source.data.bones)
-        takes = tuple(
-            with_body_shown(scene, source, take, known, each)
-            for take, each in zip(takes, sources, strict=True)
-        )
+    sources = tuple(each.find() for each in lasting)
+    maps, known = _roles(scene, source, target, choices)
     on_root = settings.retargeting.root_motion is RootMotion.ROOT_BONE
     roles = _wanted(maps)
     rig, switches = read_target(scene, target, roles, choices.limbs, on_root)
     problem = RetargetProblem(tuple(map(_clip, takes)), known, rig, settings.retargeting)
-    return Reading(target, sources, takes, switches, maps, problem)
+    return Reading(target, sources, tuple(takes), switches, maps, problem)
+
+
+def _read_clip(
+    here: Subject, action: LastingSource, choices: RetargetChoices
+) -> Steps[ArmatureTake]:
+    """Read an action; of a control rig what its body does."""
+    scene, source = here.find()
+    take = yield from read_take.steps(source, scene, source=action.find())
+    scene, source = here.find()
+    if not is_rigify(source.data.bones):
+        return take
+    target = target_called(scene, choices.target, source)
+    _, known = _roles(scene, source, target, choices)
+    return (yield from with_body_shown.steps(scene, source, take, known, action.find()))
+
+
+def _roles(
+    scene: bpy.types.Scene,
+    source: bpy.types.Object,
+    target: bpy.types.Object,
+    choices: RetargetChoices,
+) -> tuple[BoneMaps, HumanoidMap]:
+    """Return the bones of both armatures by role, and those that show the source's body."""
+    files = (choices.source_map_file, choices.target_map_file)
+    maps = maps_for(scene, source, target, files)
+    known = _known(maps.source, source)
+    shows = is_rigify(source.data.bones)
+    return maps, body_bones(known, source.data.bones) if shows else known
 
 
 def _clip(take: ArmatureTake) -> Clip:

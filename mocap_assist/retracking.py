@@ -25,8 +25,9 @@ from .scene.tracked_checks import check_in_time
 from .scene.tracked_curves import mend_trust, write_residual
 from .scene.tracked_take import TrackedTake, read_tracked_take
 from .selection import played_source, selected_armature
-from .subject import check_unchanged
+from .subject import Subject, check_unchanged
 from .tracking import WatchChoices
+from .turns import Sliced, Steps
 
 Array = NDArray[np.float64]
 
@@ -58,14 +59,17 @@ def why_not_retrack(context: bpy.types.Context) -> str:
     return ""
 
 
+@Sliced
 def read_retracking(
     scene: bpy.types.Scene, armature: bpy.types.Object, settings: RetrackBundle
-) -> Showing[Retracked]:
+) -> Steps[Showing[Retracked]]:
     """Read what an armature plays and how it is posed; return what is to be solved."""
     check_writable(armature)
+    here = Subject.of(scene, armature)
+    check_in_time(armature, played_source(armature))
+    take, played = yield from _played(armature)
+    scene, armature = here.find()
     source = played_source(armature)
-    check_in_time(armature, source)
-    take, played = _played(armature, source)
     place = (scene.frame_current_final - take.frames[0]) / take.tracked.shown.step
     frame = round(place)
     if not 0 <= frame < len(take.frames):
@@ -105,19 +109,22 @@ def _stage_of(armature: bpy.types.Object) -> Stage:
     return Stage(np.array(armature.matrix_world) @ armature_from_camera, tracked.shown)
 
 
+@Sliced
 def write_retracked(
     scene: bpy.types.Scene,
     armature: bpy.types.Object,
     settings: RetrackBundle,
     result: Retracked,
     asked: str | None = None,
-) -> str:
+) -> Steps[str]:
     """Write the result as a new action and put it to use; return a sentence about it.
 
     Raises InvalidMotionError if the armature plays something else than what was `asked`.
     """
+    here = Subject.of(scene, armature)
+    take, played = yield from _played(armature)
+    scene, armature = here.find()
     source = played_source(armature)
-    take, played = _played(armature, source)
     check_unchanged(armature, asked, played)
     rows = slice(result.first, result.last + 1)
     new = take.with_motion(result.motion, result.first, result.last)
@@ -134,11 +141,13 @@ def write_retracked(
     return f"{made[0].name}: {said}"
 
 
-def _played(armature: bpy.types.Object, source: Source) -> tuple[TrackedTake, Played]:
-    """Return what an action of an armature shows, and that with all that tracking needs."""
+def _played(armature: bpy.types.Object) -> Steps[tuple[TrackedTake, Played]]:
+    """Return what an armature plays, and that with all that tracking needs."""
     tracked = TrackedBody.read(armature)
     recording = open_recording(tracked.shown)
-    take = read_tracked_take(armature, source, recording.n_frames, recording.frame_rate)
+    take = yield from read_tracked_take.steps(
+        armature, played_source(armature), recording.n_frames, recording.frame_rate
+    )
     return take, Played(
         recording, tracked.actor, tracked.body, tracked.floor, take.first, take.motion
     )

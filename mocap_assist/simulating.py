@@ -13,7 +13,8 @@ from .scene import history
 from .scene.armature_read import read_take
 from .scene.armature_write import Output, check_writable, put_to_use, write_take
 from .selection import played_source
-from .subject import check_unchanged
+from .subject import Subject, check_unchanged
+from .turns import Sliced, Steps
 
 SUFFIX = ".physics"
 
@@ -24,31 +25,35 @@ class SimulateBundle(NamedTuple):
     simulating: SimulateSettings
 
 
+@Sliced
 def read_simulating(
     scene: bpy.types.Scene, armature: bpy.types.Object, settings: SimulateBundle
-) -> "partial[Resimulated]":
+) -> "Steps[partial[Resimulated]]":
     """Read what an armature plays; return what is to be solved, which may be pickled."""
     check_writable(armature)
-    read = read_take(armature, scene, source=played_source(armature))
+    read = yield from read_take.steps(armature, scene, source=played_source(armature))
     take = take_of(read.parts[0].motion, settings.simulating)
     known = redo.recall(take)
     kind = partial if known is None else Quick
     return kind(simulate_take, take, settings.simulating.strength, known)
 
 
+@Sliced
 def write_simulated(
     scene: bpy.types.Scene,
     armature: bpy.types.Object,
     settings: SimulateBundle,
     result: Resimulated,
     asked: str | None = None,
-) -> str:
+) -> Steps[str]:
     """Write the result as a new action and put it to use; return a sentence about it.
 
     Raises InvalidMotionError if the armature plays something else than what was `asked`.
     """
+    here = Subject.of(scene, armature)
+    read = yield from read_take.steps(armature, scene, source=played_source(armature))
+    scene, armature = here.find()
     played = played_source(armature)
-    read = read_take(armature, scene, source=played)
     body, *others = read.recordings
     take = take_of(body, settings.simulating)
     check_unchanged(armature, asked, take)

@@ -17,7 +17,8 @@ from .scene.origin import ORIGIN
 from .scene.scene_objects import all_or_nothing
 from .scene.units import unit_of
 from .selection import played_source, selected_subject
-from .subject import check_unchanged
+from .subject import Subject, check_unchanged
+from .turns import Sliced, Steps
 
 MODE = "QUATERNION"
 
@@ -41,28 +42,32 @@ def why_not_solve(context: bpy.types.Context) -> str:
     return ""
 
 
+@Sliced
 def read_solving(
     scene: bpy.types.Scene, holder: bpy.types.Object, settings: SolveBundle
-) -> "partial[MarkerMotion]":
+) -> "Steps[partial[MarkerMotion]]":
     """Read what the markers play; return what is to be solved, which may be pickled."""
-    tracks = read_markers(holder, scene).tracks
+    take = yield from read_markers.steps(holder, scene)
     return partial(
-        motion_from_markers, tracks, settings=settings.steps, solving=settings.solving
+        motion_from_markers, take.tracks, settings=settings.steps, solving=settings.solving
     )
 
 
+@Sliced
 def write_solved(
     scene: bpy.types.Scene,
     holder: bpy.types.Object,
     settings: SolveBundle,
     result: MarkerMotion,
     asked: str | None = None,
-) -> str:
+) -> Steps[str]:
     """Add an armature that moves as the markers do; return a sentence about it.
 
     Raises InvalidMotionError if the markers play something else than what was `asked`.
     """
-    take = read_markers(holder, scene)
+    here = Subject.of(scene, holder)
+    take = yield from read_markers.steps(holder, scene)
+    scene, holder = here.find()
     check_unchanged(holder, asked, take.tracks)
     context, metres = bpy.context, unit_of(scene)
     with all_or_nothing(context):

@@ -6,33 +6,23 @@ import bpy
 
 from ..solvers.errors import InvalidMotionError
 from .redo import fingerprint
+from .scene.lasting import Lasting
 
 
 class Subject(NamedTuple):
-    """A scene, and in it an armature or what holds the markers of a take.
+    """A scene, and in it an armature or what holds the markers of a take."""
 
-    By numbers, since undo replaces what Blender's own pointers mean.
-    """
-
-    scene: int
-    thing: int
-    name: str
-    """Of the thing, when the solve was started."""
+    scene: Lasting
+    thing: Lasting
 
     @classmethod
     def of(cls, scene: bpy.types.Scene, thing: bpy.types.Object) -> "Subject":
         """Remember both."""
-        return cls(scene.session_uid, thing.session_uid, thing.name)
+        return cls(Lasting.of(scene), Lasting.of(thing))
 
     def find(self) -> tuple[bpy.types.Scene, bpy.types.Object]:
         """Return both; raise InvalidMotionError where one was deleted meanwhile."""
-        scenes = [each for each in bpy.data.scenes if each.session_uid == self.scene]
-        things = [each for each in bpy.data.objects if each.session_uid == self.thing]
-        if not (scenes and things):
-            raise InvalidMotionError(
-                f"{self.name} or its scene was deleted during the solve; nothing was written."
-            )
-        return scenes[0], things[0]
+        return self.scene.find(), self.thing.find()
 
 
 def check_unchanged(thing: bpy.types.Object, asked: str | None, present: object) -> None:

@@ -16,28 +16,33 @@ from .scene.bone_channels import animated_curves
 from .scene.sparse_write import count_keys, write_sparse
 from .scene.take import ArmatureTake, Part
 from .selection import played_source
-from .subject import check_unchanged
+from .subject import Subject, check_unchanged
+from .turns import Sliced, Steps
 
 
+@Sliced
 def read_unbaking(
     scene: bpy.types.Scene, armature: bpy.types.Object, settings: UnbakeBundle
-) -> "partial[Unbaked]":
+) -> "Steps[partial[Unbaked]]":
     """Read what an armature plays; return what is to be solved, which may be pickled."""
     check_writable(armature)
-    take = read_take(armature, scene, source=played_source(armature))
+    take = yield from read_take.steps(armature, scene, source=played_source(armature))
     return partial(unbake, _problem(take, settings))
 
 
+@Sliced
 def write_unbaked(
     scene: bpy.types.Scene,
     armature: bpy.types.Object,
     settings: UnbakeBundle,
     result: Unbaked,
     asked: str | None = None,
-) -> str:
+) -> Steps[str]:
     """Write a copy of the action with few keys and put it to use; return a sentence."""
+    here = Subject.of(scene, armature)
+    take = yield from read_take.steps(armature, scene, source=played_source(armature))
+    scene, armature = here.find()
     played = played_source(armature)
-    take = read_take(armature, scene, source=played)
     check_unchanged(armature, asked, _problem(take, settings))
     action, slot = write_sparse(armature, played, take.grid, result.keys)
     before, after = (count_keys(animated_curves(*each)) for each in (played, (action, slot)))

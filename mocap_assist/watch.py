@@ -1,18 +1,13 @@
 """The one solve that runs beside Blender's work: shown while it runs, ended with its file."""
 
-import logging
-from collections.abc import Callable, Iterable
-from typing import Any, Protocol
+from collections.abc import Callable
 
 import bpy
 from bpy.app import handlers
 
-from .jobs.job import Job
 from .scene.view_drawing import redraw
 
-logger = logging.getLogger(__name__)
-
-BETWEEN_LOOKS = 0.1  # seconds
+BETWEEN_LOOKS = 0.05  # seconds
 BUSY = (
     "Another solve is running. Let it end, or press Esc in the window in which it was started."
 )
@@ -20,36 +15,27 @@ BUSY = (
 _on: list["Watch"] = []
 
 
-class View(Protocol):
-    """Shows what a solve shows meanwhile, in whatever way."""
-
-    def look(
-        self, scene: bpy.types.Scene, thing: bpy.types.Object, shown: Iterable[Any]
-    ) -> None:
-        """Show what is new."""
-
-    def close(self) -> None:
-        """Show nothing more."""
-
-
 class Watch:
-    """A job, and what the status bar and the sidebar say about it until it ends."""
+    """What the status bar and the sidebar say about a solve until it ends.
+
+    Parameters
+    ----------
+    context : bpy.types.Context
+        With a window, whose status bar says how far the work is.
+    owner : str
+        Names the panel that says so, too.
+    stop : callable
+        Ends the work, whatever it has found, before another file is loaded.
+    """
 
     def __init__(
-        self, context: bpy.types.Context, solve: Callable[..., Any], owner: str
+        self, context: bpy.types.Context, owner: str, stop: Callable[[], None]
     ) -> None:
-        """Start to solve; `owner` names the panel that tells how far it is."""
-        self.job: Job[Any] = Job(solve)
-        self.view: View | None = None
+        self._stop = stop
         manager = context.window_manager
         manager.mocap_assist_job.owner = owner
         self._timer = manager.event_timer_add(BETWEEN_LOOKS, window=context.window)
         _on.append(self)
-        self.show(context, 0.0, "Starting")
-
-    def go_on(self, solve: Callable[..., Any]) -> None:
-        """Let another job follow the one that has ended."""
-        self.job = Job(solve)
 
     @property
     def is_on(self) -> bool:
@@ -57,7 +43,7 @@ class Watch:
         return self in _on
 
     def show(self, context: bpy.types.Context, fraction: float, message: str) -> None:
-        """Say how far the job is."""
+        """Say how far the work is."""
         state = context.window_manager.mocap_assist_job
         state.running, state.fraction, state.message = True, fraction, message
         context.workspace.status_text_set(f"{message} {fraction:.0%}   Esc: cancel")
@@ -69,23 +55,14 @@ class Watch:
         context.window_manager.event_timer_remove(self._timer)
         context.window_manager.mocap_assist_job.running = False
         context.workspace.status_text_set(None)
-        self.close_view()
         redraw(context)
 
-    def close_view(self) -> None:
-        """Look on no longer, whatever goes wrong with that: the result is worth more."""
-        view, self.view = self.view, None
-        try:
-            if view is not None:
-                view.close()
-        except Exception:
-            logger.exception("What was shown of a solve could not be put away")
-
     def abandon(self, context: bpy.types.Context) -> None:
-        """End the job too, whatever it has found."""
-        self.job.cancel()
-        self.job.tidy_up()
-        self.end(context)
+        """End the work too, whatever it has found."""
+        try:
+            self._stop()
+        finally:
+            self.end(context)
 
 
 def why_busy() -> str:

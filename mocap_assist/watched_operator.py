@@ -1,17 +1,29 @@
 """A button whose solve can be watched, and of which something may be kept on Esc."""
 
 import logging
-from collections.abc import Callable
-from typing import Any, ClassVar
+from collections.abc import Callable, Generator, Iterable
+from functools import partial
+from typing import Any, ClassVar, Protocol
 
 import bpy
 
 from ..solvers.errors import MocapAssistError, SolveCancelled
 from .jobs.job import Job
 from .solver_operator import SolverOperator
-from .watch import View
 
 logger = logging.getLogger(__name__)
+
+
+class View(Protocol):
+    """Shows what a solve shows meanwhile, in whatever way."""
+
+    def look(
+        self, scene: bpy.types.Scene, thing: bpy.types.Object, shown: Iterable[Any]
+    ) -> None:
+        """Show what is new."""
+
+    def close(self) -> None:
+        """Show nothing more."""
 
 
 class WatchedOperator(SolverOperator):
@@ -26,37 +38,45 @@ class WatchedOperator(SolverOperator):
 
     None, as here, where nothing is kept.
     """
+    _view: View | None = None
 
-    def invoke(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
-        outcome = super().invoke(context, event)
-        if outcome == {"RUNNING_MODAL"}:
-            asked = (*self._subject.find(), self.settings())
-            self._watch.view = type(self).open_view(*asked)
-        return outcome
-
-    def modal(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
-        watch = self._watch
-        if watch.is_on and event.type == "TIMER" and watch.view is not None:
-            self._look(watch.view, watch.job)
-        return super().modal(context, event)
-
-    def _look(self, view: View, job: Job[Any]) -> None:
-        """Show what is new; nothing where the animator has removed what is looked at."""
+    def _solve(self, solve: "partial[Any]") -> Generator[tuple[float, str], None, Any]:
+        self._view = type(self).open_view(*self._read_arguments())
         try:
-            view.look(*self._subject.find(), job.shown())
+            return (yield from super()._solve(solve))
+        finally:
+            self._close_view()
+
+    def look(self, job: Job[Any]) -> None:
+        """Show what is new; nothing where the animator has removed what is looked at."""
+        if self._view is None:
+            return
+        try:
+            self._view.look(*self._subject.find(), job.shown())
         except MocapAssistError:
             pass
         except Exception:  # from what is shown, handlers, files: the solve must go on
             logger.exception("Nothing more is shown of this solve")
-            self._watch.close_view()
+            self._close_view()
 
-    def _answer(self, job: Job[Any]) -> Any:
+    def answer(self, job: Job[Any]) -> Any:
+        """Return what the job has solved or, after Esc, what is kept of it."""
+        self._close_view()
         if not job.cancelled:
-            return super()._answer(job)
+            return super().answer(job)
         try:
-            rescue = type(self).rescue(*self._subject.find(), self.settings())
+            rescue = type(self).rescue(*self._read_arguments())
             if rescue is None:
                 raise SolveCancelled("Cancelled.")
             return rescue(job.all_shown())
         finally:
             job.tidy_up()
+
+    def _close_view(self) -> None:
+        """Look on no longer, whatever goes wrong with that: the result is worth more."""
+        view, self._view = self._view, None
+        try:
+            if view is not None:
+                view.close()
+        except Exception:
+            logger.exception("What was shown of a solve could not be put away")

@@ -3,14 +3,14 @@
 import bpy
 
 from ..mocap_assist.settings_properties import settings_from
-from ..mocap_assist.sliced_operator import SlicedOperator
+from ..mocap_assist.solver_operator import SolverOperator
 from ..mocap_assist.variants.choices import VaryBundle
 from ..mocap_assist.variants.reading import read_varying, why_not_vary
-from ..mocap_assist.variants.writing import VariantsWriter
+from ..mocap_assist.variants.writing import write_variants
 
 
 @settings_from(VaryBundle)
-class MOCAP_OT_vary(SlicedOperator, bpy.types.Operator):
+class MOCAP_OT_vary(SolverOperator, bpy.types.Operator):
     bl_idname = "mocap_assist.vary"
     bl_label = "Vary"
     bl_description = (
@@ -18,4 +18,4 @@ class MOCAP_OT_vary(SlicedOperator, bpy.types.Operator):
         " time, natural, and with planted feet. The same seed makes the same ones"
     )
     settings_group = "vary"
-    why_not, read_scene, write_scene = why_not_vary, read_varying, VariantsWriter
+    why_not, read_scene, write_scene = why_not_vary, read_varying, write_variants

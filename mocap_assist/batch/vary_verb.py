@@ -13,7 +13,7 @@ from ..variants.choices import VaryBundle
 from ..variants.listing import chosen
 from ..variants.reading import read_varying
 from ..variants.sheet import write_sheet
-from ..variants.writing import VariantsWriter
+from ..variants.writing import write_variants
 
 HELP = "Make many new actions of a few of one behaviour, each different."
 
@@ -38,10 +38,8 @@ def perform_vary(
         name: settings_from_arguments(arguments, each) for name, each in classes.items()
     })
     varied = run(read_varying(scene, armature, settings), within(progress, 0.0, 0.8))
-    writer, said = VariantsWriter(scene, armature, settings, varied), ""
-    while not said:
-        said = writer.step(scene, armature)
-        within(progress, 0.8, 1.0)(writer.fraction, "Writing")
+    progress(0.8, "Writing")
+    said = write_variants(scene, armature, settings, varied)
     if arguments.sheet is not None:
         said += " " + write_sheet(scene, arguments.sheet)
     names = [action.name for action in chosen(scene)]

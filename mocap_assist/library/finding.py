@@ -15,7 +15,8 @@ from ..scene.frames import FrameRange, Grid
 from ..scene.marker_take import read_markers
 from ..scene.units import unit_of
 from ..selection import chosen_bones, played_source, why_not_read
-from ..subject import check_unchanged
+from ..subject import Subject, check_unchanged
+from ..turns import Sliced, Steps
 from . import searches
 from .choices import FindBundle
 from .chosen_parts import parts_of_bones
@@ -40,32 +41,39 @@ def why_not_find(context: bpy.types.Context) -> str:
     return "There is no library yet. Add folders, and press Index." if missing else ""
 
 
-def read_query(scene: bpy.types.Scene, subject: bpy.types.Object, choice: FrameRange) -> Query:
+@Sliced
+def read_query(
+    scene: bpy.types.Scene, subject: bpy.types.Object, choice: FrameRange
+) -> Steps[Query]:
     """Read what the armature, or the markers, play within a range of frames."""
     if subject.type == "ARMATURE":
-        take = read_take(subject, scene, choice, played_source(subject))
+        take = yield from read_take.steps(subject, scene, choice, played_source(subject))
         return Query(take.parts[0].motion, take.grid)
-    markers = read_markers(subject, scene, choice)
+    markers = yield from read_markers.steps(subject, scene, choice)
     return Query(markers.tracks, markers.grid)
 
 
+@Sliced
 def read_finding(
     scene: bpy.types.Scene, subject: bpy.types.Object, settings: FindBundle
-) -> "partial[Finding]":
+) -> "Steps[partial[Finding]]":
     """Read what is looked for; return what is to be solved, which may be pickled."""
-    problem, _ = _problem(scene, subject, settings)
+    problem, _ = yield from _problem(Subject.of(scene, subject), settings)
     return partial(find_clips, problem)
 
 
+@Sliced
 def list_found(
     scene: bpy.types.Scene,
     subject: bpy.types.Object,
     settings: FindBundle,
     finding: Finding,
     asked: str | None = None,
-) -> str:
+) -> Steps[str]:
     """List what was found; return a sentence about it."""
-    problem, query = _problem(scene, subject, settings)
+    here = Subject.of(scene, subject)
+    problem, query = yield from _problem(here, settings)
+    scene, subject = here.find()
     check_unchanged(subject, asked, problem)
     grid = (float(query.grid.frames[0]), query.grid.step)
     name = played_source(subject)[0].name
@@ -93,11 +101,9 @@ def fill_list(context: bpy.types.Context, search: searches.Search) -> None:
     listed.search, listed.query, listed.active = search.number, search.query, 0
 
 
-def _problem(
-    scene: bpy.types.Scene, subject: bpy.types.Object, settings: FindBundle
-) -> tuple[FindProblem, Query]:
-    choices = settings.choices
-    query = read_query(scene, subject, choices.frame_range)
+def _problem(here: Subject, settings: FindBundle) -> Steps[tuple[FindProblem, Query]]:
+    query = yield from read_query.steps(*here.find(), settings.choices.frame_range)
+    scene, subject = here.find()
     library = library_path(scene.mocap_assist.library.settings().choices)
     wanted = _parts(subject, query, settings)
     return FindProblem(query.recording, str(library), wanted, own_origins(subject)), query

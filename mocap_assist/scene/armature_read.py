@@ -7,11 +7,14 @@ from numpy.typing import NDArray
 from ...solvers.errors import InvalidMotionError
 from ...solvers.motion import Tracks
 from ...solvers.motion.rotations import multiply, rotate
+from ..turns import Sliced, Steps, due
 from .body import body_root
 from .bone_channels import animated_curves, bone_path, read_bone, read_space
 from .compat import Source
+from .curves import Channel
 from .frames import FrameRange, Grid, key_grid, range_bounds
 from .history import was_thinned
+from .lasting import Lasting, LastingSource
 from .origin import origin_of
 from .rig import Placement, Rig, read_rig
 from .take import ArmatureTake, BoneChannels, part_of
@@ -20,13 +23,14 @@ from .units import metres_per_unit
 Array = NDArray[np.float64]
 
 
+@Sliced
 def read_take(
     armature: bpy.types.Object,
     scene: bpy.types.Scene,
     choice: FrameRange = FrameRange.ACTION,
     source: Source | None = None,
     grid: Grid | None = None,
-) -> ArmatureTake:
+) -> Steps[ArmatureTake]:
     """Read an action, by default the armature's own, through its F-Curves in bulk.
 
     Parameters
@@ -52,31 +56,88 @@ def read_take(
     Raises
     ------
     InvalidMotionError
-        There is no action, slot, bone, key or uniform scale, as the sentence says.
+        There is no action, slot, bone, key or uniform scale, the keys are too far apart, or
+        something was deleted between two turns, as the sentence says.
     """
     action, slot = source or action_of(armature)
     thinned = was_thinned(action)
-    curves, recorded = animated_curves(action, slot), bool(origin_of(action)) and not thinned
+    recorded = bool(origin_of(action)) and not thinned
     rig = read_rig(armature)
+    keyed = _Keyed(armature, scene, (action, slot))
+    yield from keyed.read_keys()
     if grid is None:
-        known = {bone_path(bone, "") for bone in rig.bones}
-        keyed = [curve for (path, _), curve in curves.items() if _owner(path) in known]
-        grid = key_grid(keyed, range_bounds(choice, scene, keyed), recorded=recorded)
-    channels = tuple(
-        read_bone(
-            armature.pose.bones[bone],
-            curves,
-            grid.frames,
-            grid.step if recorded else None,
-            gaps=not thinned,
+        own = keyed.curves_of_bones(rig)
+        grid = key_grid(own, range_bounds(choice, keyed.scene, own), recorded=recorded)
+    channels = []
+    for number, bone in enumerate(rig.bones):
+        step = grid.step if recorded else None
+        pose_bone = keyed.pose_bone(bone)
+        channels.append(read_bone(pose_bone, keyed.curves, grid.frames, step, gaps=not thinned))
+        if due():
+            yield 0.2 + 0.5 * number / len(rig.bones)
+            keyed.find_again()
+    if not any(_is_captured(each) for each in channels):
+        raise InvalidMotionError(
+            f"All keys of {armature.name} are NaN: nothing was captured. Import the take again."
         )
-        for bone in rig.bones
-    )
-    space = read_space(armature, curves, grid.frames)
+    space = read_space(keyed.armature, keyed.curves, grid.frames)
     root = body_root(rig, [each.travels for each in channels])
-    space = space.in_unit(metres_per_unit(scene, rig, root, space.scale))
-    rate = scene.render.fps / scene.render.fps_base / grid.step
-    return _assembled(rig, root, grid, channels, space, rate)
+    space = space.in_unit(metres_per_unit(keyed.scene, rig, root, space.scale))
+    rate = keyed.scene.render.fps / keyed.scene.render.fps_base / grid.step
+    return (yield from _assembled(rig, root, grid, tuple(channels), space, rate))
+
+
+def _is_captured(bone: BoneChannels) -> bool:
+    """Whether any key of a bone has a value."""
+    return bool(
+        (bone.rotation_keyed and np.isfinite(bone.rotations).any())
+        or (bone.location_keyed and np.isfinite(bone.locations).any())
+    )
+
+
+class _Keyed:
+    """An armature, a scene and an action's curves, which may have to be found again."""
+
+    def __init__(
+        self, armature: bpy.types.Object, scene: bpy.types.Scene, source: Source
+    ) -> None:
+        self._lasting = Lasting.of(armature), Lasting.of(scene), LastingSource.of(source)
+        self.armature, self.scene = armature, scene
+        self.curves = animated_curves(*source)
+
+    def find_again(self) -> None:
+        """Replace pointers that may be stale; keys that were read stay."""
+        armature, scene, source = self._lasting
+        self.armature, self.scene = armature.find(), scene.find()
+        before = self.curves
+        self.curves = {
+            name: channel.with_keys_of(before.get(name))
+            for name, channel in animated_curves(*source.find()).items()
+        }
+
+    def read_keys(self) -> Steps[None]:
+        """Read the keys of all curves."""
+        names = list(self.curves)
+        for number, name in enumerate(names):
+            if name in self.curves:
+                self.curves[name].read_keys()
+            if due():
+                yield 0.2 * number / len(names)
+                self.find_again()
+
+    def curves_of_bones(self, rig: Rig) -> list[Channel]:
+        """Return the curves that animate the bones of a rig."""
+        known = {bone_path(bone, "") for bone in rig.bones}
+        return [curve for (path, _), curve in self.curves.items() if _owner(path) in known]
+
+    def pose_bone(self, name: str) -> bpy.types.PoseBone:
+        """Return a bone; raise InvalidMotionError where it was deleted between two turns."""
+        bone = self.armature.pose.bones.get(name)
+        if bone is None:
+            raise InvalidMotionError(
+                f"The bone {name} was deleted while it was read. Press the button again."
+            )
+        return bone
 
 
 def action_of(armature: bpy.types.Object) -> Source:
@@ -99,7 +160,7 @@ def _assembled(
     channels: tuple[BoneChannels, ...],
     space: Placement,
     rate: float,
-) -> ArmatureTake:
+) -> Steps[ArmatureTake]:
     rest = Placement(space.rotations[:1], space.origins[:1], space.scale)
     carrier, above = space, rig.chain_to(root)
     for bone in above:
@@ -107,7 +168,8 @@ def _assembled(
         turn = multiply(multiply(axes, channels[bone].rotations), axes * (1, -1, -1, -1))
         shift = rotate(axes, channels[bone].locations)
         carrier = carrier.moved(_filled(turn), np.nan_to_num(shift), rig.heads[bone])
-    parts = [part_of(rig, rig.subtree(root), channels, carrier, rest, rate)]
+    body = yield from part_of.steps(rig, rig.subtree(root), channels, carrier, rest, rate)
+    parts = [body]
     inside = {*above, *parts[0].bones}
     for bone, parent in enumerate(rig.parents):
         if bone in inside or not (parent < 0 or parent in above):
@@ -115,7 +177,8 @@ def _assembled(
         tree = rig.subtree(bone)
         inside |= set(tree)
         if any(channels[each].rotation_keyed or channels[each].travels for each in tree):
-            parts.append(part_of(rig, tree, channels, rest, rest, rate))
+            part = yield from part_of.steps(rig, tree, channels, rest, rest, rate)
+            parts.append(part)
     roots = {part.bones[0] for part in parts} | set(above)
     offsets = _read_offsets(rig, channels, rest, rate, roots)
     return ArmatureTake(rig, grid, tuple(parts), offsets, channels, rest)

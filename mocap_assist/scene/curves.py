@@ -7,6 +7,7 @@ import bpy
 import numpy as np
 from numpy.typing import NDArray
 
+from ...solvers.errors import InvalidMotionError
 from .curve_modifiers import Written, keep_outside
 
 Array = NDArray[np.float64]
@@ -45,7 +46,23 @@ class Channel:
         """Frame and value of the keys in order of time, shape (n_keys, 2)."""
         keys = np.empty(2 * len(self.curve.keyframe_points), np.float32)
         self.curve.keyframe_points.foreach_get("co", keys)
-        return keys.reshape(-1, 2).astype(np.float64)
+        keys = keys.reshape(-1, 2)
+        if not np.isfinite(keys[:, 0]).all():
+            raise InvalidMotionError(
+                f"{self.curve.data_path} has a key at no frame (NaN). Delete that curve, or the"
+                " key, and set it again."
+            )
+        return keys.astype(np.float64)
+
+    def read_keys(self) -> None:
+        """Read the keys now, if they were not read yet."""
+        _ = self.keys
+
+    def with_keys_of(self, before: "Channel | None") -> "Channel":
+        """Take over the keys that were read before from the same curve, if they were."""
+        if before is not None and "keys" in vars(before):
+            self.keys = before.keys
+        return self
 
     def keyed_at(self, frames: Array) -> bool:
         """Whether there is one key on each of the frames, and no other."""

@@ -18,9 +18,11 @@ from ...solvers.motion.rotations import (
     quaternion_from_matrix,
     rotate,
 )
+from ..turns import Sliced, Steps, due
 from . import compat
 from .animated_values import values_kept
 from .compat import Source
+from .lasting import Lasting, LastingSource
 from .rig import placement_of
 from .rigify import original_of
 from .take import ArmatureTake
@@ -49,13 +51,14 @@ def body_bones(roles: HumanoidMap, bones: Mapping[str, object]) -> HumanoidMap:
     )
 
 
+@Sliced
 def with_body_shown(
     scene: bpy.types.Scene,
     armature: bpy.types.Object,
     take: ArmatureTake,
     body: HumanoidMap,
     source: Source,
-) -> ArmatureTake:
+) -> Steps[ArmatureTake]:
     """Return the take whose body is that of the evaluated pose; the scene stays as it is.
 
     Parameters
@@ -73,7 +76,7 @@ def with_body_shown(
     ordered = [role for role in HUMANOID_ROLES if role in body.joints]
     names = tuple(body.joints[role] for role in ordered)
     index = [rig.bones.index(name) for name in names]
-    rotations, places = _shown(scene, armature, names, take, source)
+    rotations, places = yield from _shown(scene, armature, names, take, source)
     upright = multiply(rest.rotations[0], rig.rest_rotations[index])
     world = multiply(rotations, inverse(upright))
     parents = tuple(_parent(role, ordered) for role in ordered)
@@ -94,20 +97,39 @@ def _shown(
     names: tuple[str, ...],
     take: ArmatureTake,
     source: Source,
+) -> Steps[tuple[Array, Array]]:
+    """Return world rotations of bones, (n_frames, n_bones, 4), and positions of the first, m.
+
+    Before each turn of Blender's the armature plays its own action again.
+    """
+    lasting = Lasting.of(scene), Lasting.of(armature), LastingSource.of(source)
+    rotations: list[Array] = []
+    positions: list[Array] = []
+    while len(rotations) < len(take.frames):
+        if rotations:
+            yield len(rotations) / len(take.frames)
+        scene, armature, source = (each.find() for each in lasting)
+        with values_kept(armature, source), _played(scene, armature, source):
+            for frame in take.frames[len(rotations) :]:
+                turns, position = _pose_at(scene, armature, names, frame)
+                rotations.append(turns)
+                positions.append(take.rest.scale * position)
+                if due():
+                    break
+    return np.stack(rotations), np.stack(positions)
+
+
+def _pose_at(
+    scene: bpy.types.Scene, armature: bpy.types.Object, names: tuple[str, ...], frame: float
 ) -> tuple[Array, Array]:
-    """Return world rotations of bones, (n_frames, n_bones, 4), and places of the first, m."""
-    rotations, places = [], []
-    with values_kept(armature, source), _played(scene, armature, source):
-        for frame in take.frames:
-            scene.frame_set(int(np.floor(frame)), subframe=float(frame - np.floor(frame)))
-            shown = armature.evaluated_get(bpy.context.evaluated_depsgraph_get())
-            turn, _, scale = placement_of(shown.matrix_world, armature.name)
-            pose = np.array([shown.pose.bones[name].matrix for name in names])
-            linear = pose[:, :3, :3] / np.linalg.norm(pose[:, :3, :3], axis=1, keepdims=True)
-            rotations.append(multiply(turn, quaternion_from_matrix(linear)))
-            head = shown.matrix_world @ Matrix(pose[0]).translation
-            places.append(take.rest.scale / scale * np.array(head))
-    return np.stack(rotations), np.stack(places)
+    """Return world rotations of bones at a frame, and the first one's head at scale 1."""
+    scene.frame_set(int(np.floor(frame)), subframe=float(frame - np.floor(frame)))
+    shown = armature.evaluated_get(bpy.context.evaluated_depsgraph_get())
+    turn, _, scale = placement_of(shown.matrix_world, armature.name)
+    pose = np.array([shown.pose.bones[name].matrix for name in names])
+    linear = pose[:, :3, :3] / np.linalg.norm(pose[:, :3, :3], axis=1, keepdims=True)
+    head = np.array(shown.matrix_world @ Matrix(pose[0]).translation)
+    return multiply(turn, quaternion_from_matrix(linear)), head / scale
 
 
 @contextmanager

@@ -17,6 +17,9 @@ WIDEST_STEP = (
 )
 ON_GRID = 0.9  # share of keys that must lie on the grid, each
 OFF_GRID = 0.05  # of a step from it at most
+MAX_FRAMES_PER_KEY = 20
+MAX_FRAMES_OF_FEW_KEYS = 10_000
+"""A span with so many more frames than keys is no take, but one stray key far out."""
 ALIKE = 0.1  # share by which times between keys may differ and still be the same
 
 
@@ -85,22 +88,24 @@ def key_grid(
     InvalidMotionError
         There are no keys, or none within the bounds.
     """
-    times = [channel.keys[:, 0] for channel in channels]
-    longest = max(times, key=len, default=np.empty(0))
-    if not len(longest):
+    keyed = [channel for channel in channels if len(channel.keys)]
+    if not keyed:
         raise InvalidMotionError("The action has no keys on this armature's bones.")
-    every = np.concatenate(times)
-    start, stop = every.min(), every.max()
+    longest = max((channel.keys[:, 0] for channel in keyed), key=len)
+    start = min(channel.keys[:, 0].min() for channel in keyed)
+    stop = max(channel.keys[:, 0].max() for channel in keyed)
     step, phase = _grid_of(longest, np.inf if recorded else WIDEST_STEP)
     first, last = max(start, bounds[0]), min(stop, bounds[1])
-    n_steps = np.floor((last - phase + ON_FRAME) / step)
-    place = np.arange(np.ceil((first - phase - ON_FRAME) / step), n_steps + 1)
-    if not len(place):
+    lowest = np.ceil((first - phase - ON_FRAME) / step)
+    n_frames = np.floor((last - phase + ON_FRAME) / step) + 1 - lowest
+    if n_frames < 1:
         raise InvalidMotionError(
             f"The action has keys from frame {start:g} to {stop:g}, none of them within the"
             f" chosen range {bounds[0]:g} to {bounds[1]:g}."
         )
-    frames = phase + step * place
+    if n_frames > max(MAX_FRAMES_PER_KEY * len(longest), MAX_FRAMES_OF_FEW_KEYS):
+        raise InvalidMotionError(_stray_key(keyed, n_frames))
+    frames = phase + step * (lowest + np.arange(n_frames))
     joins = (bool(start < frames[0] - step / 2), bool(stop > frames[-1] + step / 2))
     return Grid(frames, step, joins)
 
@@ -116,6 +121,20 @@ def _grid_of(times: Array, widest: float) -> tuple[float, float]:
     if step <= widest and regular:
         return step, float(times[0])
     return 1.0, float(np.ceil(times[0] - ON_FRAME))
+
+
+def _stray_key(channels: Sequence[Channel], n_frames: float) -> str:
+    """Return a sentence about the key that lies farthest from its neighbors."""
+    times = np.unique(np.concatenate([channel.keys[:, 0] for channel in channels]))
+    widest = int(np.argmax(np.diff(times)))
+    after = len(times) - 1 - widest <= widest + 1
+    frame = times[widest + 1] if after else times[widest]
+    paths = [each.curve.data_path for each in channels if (each.keys[:, 0] == frame).any()]
+    return (
+        f"The action has far fewer keys than its {n_frames:,.0f} frames: {paths[0]} has one at"
+        f" frame {frame:,.10g}, {times[widest + 1] - times[widest]:,.0f} frames from the next."
+        " Delete it, or choose a frame range."
+    )
 
 
 def _spacing(times: Array) -> float:

@@ -2,6 +2,7 @@
 
 from collections.abc import Collection, Mapping
 from dataclasses import dataclass, replace
+from typing import NamedTuple
 
 import bpy
 import numpy as np
@@ -9,12 +10,14 @@ from numpy.typing import NDArray
 
 from ...solvers.errors import InvalidMotionError
 from ...solvers.motion import Tracks
+from ..turns import Sliced, Steps, due
 from . import history
 from .armature_write import copy_of, same_slot
 from .bone_channels import Curves, animated_curves, curves_of, gaps_of, sampled
 from .compat import Source
 from .curves import write_values
 from .frames import FrameRange, Grid, key_grid, range_bounds
+from .lasting import Lasting
 from .markers import PATH, markers_of, played_by, point_names
 from .rig import Placement, placement_of
 from .sensor_words import CONFIDENCE
@@ -51,6 +54,7 @@ class MarkerTake:
         return replace(self, tracks=recordings[0])
 
 
+@Sliced
 def read_markers(
     holder: bpy.types.Object,
     scene: bpy.types.Scene,
@@ -58,7 +62,7 @@ def read_markers(
     *,
     recorded: bool = False,
     grid: Grid | None = None,
-) -> MarkerTake:
+) -> Steps[MarkerTake]:
     """Read the location keys of all markers below an object.
 
     Parameters
@@ -75,26 +79,60 @@ def read_markers(
     Raises
     ------
     InvalidMotionError
-        There are no markers or keys, or a marker's space is scaled unevenly.
+        There are no markers or keys, a marker's space is scaled unevenly, or something was
+        deleted between two turns.
     """
-    markers = markers_of(holder)
-    if not markers:
-        raise InvalidMotionError(f"{holder.name} holds no empties whose location is keyed.")
-    sources = tuple(_source(marker, recorded) for marker in markers)
-    every = [animated_curves(*source) for source in sources]
+    lasting = Lasting.of(holder), Lasting.of(scene)
+    markers = _Markers.of(holder, recorded)
     if grid is None:
-        keyed = [curve for curves in every for curve in curves_of(curves, PATH, 3).values()]
+        keyed = [
+            curve for each in markers.curves for curve in curves_of(each, PATH, 3).values()
+        ]
         grid = key_grid(keyed, range_bounds(choice, scene, keyed), recorded=True)
     bpy.context.view_layer.update()
-    spaces = tuple(_space(marker, unit_of(scene)) for marker in markers)
-    places = [
-        space.points(_locations(marker, curves, grid))
-        for marker, curves, space in zip(markers, every, spaces, strict=True)
-    ]
+    spaces = tuple(_space(marker, unit_of(scene)) for marker in markers.objects)
+    places, confidence = [], []
+    for number, space in enumerate(spaces):
+        marker, curves = markers.objects[number], markers.curves[number]
+        places.append(space.points(_locations(marker, curves, grid)))
+        confidence.append(_confidence(curves, grid.frames))
+        if due():
+            yield number / len(spaces)
+            holder, scene = (each.find() for each in lasting)
+            markers = markers.found_again(holder, recorded)
     rate = scene.render.fps / scene.render.fps_base / grid.step
-    confidence = _confidence(every, grid.frames)
-    tracks = Tracks(point_names(markers), np.stack(places, axis=1), rate, confidence)
-    return MarkerTake(markers, sources, grid, tracks, spaces)
+    names = point_names(markers.objects)
+    tracks = Tracks(names, np.stack(places, axis=1), rate, _together(confidence))
+    return MarkerTake(markers.objects, markers.sources, grid, tracks, spaces)
+
+
+class _Markers(NamedTuple):
+    """The markers below an object, and what animates each."""
+
+    objects: tuple[bpy.types.Object, ...]
+    sources: tuple[Source, ...]
+    curves: tuple[Curves, ...]
+
+    @classmethod
+    def of(cls, holder: bpy.types.Object, recorded: bool) -> "_Markers":
+        markers = markers_of(holder)
+        if not markers:
+            raise InvalidMotionError(f"{holder.name} holds no empties whose location is keyed.")
+        sources = tuple(_source(marker, recorded) for marker in markers)
+        return cls(markers, sources, tuple(animated_curves(*source) for source in sources))
+
+    def found_again(self, holder: bpy.types.Object, recorded: bool) -> "_Markers":
+        """Return the same markers after Blender had a turn, with the keys that were read."""
+        found = _Markers.of(holder, recorded)
+        if len(found.objects) != len(self.objects):
+            raise InvalidMotionError(
+                f"Markers of {holder.name} were added or deleted while they were read. Press"
+                " the button again."
+            )
+        for before, curves in zip(self.curves, found.curves, strict=True):
+            for name, channel in curves.items():
+                channel.with_keys_of(before.get(name))
+        return found
 
 
 def write_markers(
@@ -153,12 +191,16 @@ def _locations(marker: bpy.types.Object, curves: Curves, grid: Grid) -> Array:
     return locations
 
 
-def _confidence(every: list[Curves], frames: Array) -> Array | None:
-    """Return what the sensor said of each point, (n_frames, n_points), if it said anything."""
-    path = f'["{CONFIDENCE}"]'
-    found = [curves.get((path, 0)) for curves in every]
-    if not any(found):
+def _confidence(curves: Curves, frames: Array) -> Array | None:
+    """Return what the sensor said of a point, (n_frames,), if it said anything."""
+    curve = curves.get((f'["{CONFIDENCE}"]', 0))
+    return None if curve is None else np.clip(curve.values(frames), 0.0, 1.0)
+
+
+def _together(confidence: list[Array | None]) -> Array | None:
+    """Return what the sensor said of all points, (n_frames, n_points), if it said anything."""
+    known = [each for each in confidence if each is not None]
+    if not known:
         return None
-    sure = np.ones(len(frames))
-    values = [sure if curve is None else curve.values(frames) for curve in found]
-    return np.clip(np.stack(values, axis=1), 0.0, 1.0)
+    sure = np.ones(len(known[0]))
+    return np.stack([sure if each is None else each for each in confidence], axis=1)

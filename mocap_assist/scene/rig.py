@@ -117,9 +117,10 @@ def placement_of(matrix: Matrix, name: str) -> tuple[Array, Array, float]:
     """
     whole = np.array(matrix, dtype=np.float64)
     linear = whole[:3, :3]
-    scale = float(np.cbrt(max(np.linalg.det(linear), 0.0)))
-    turn = linear / scale if scale > 0.0 else linear
-    if np.abs(turn @ turn.T - np.eye(3)).max() > EVEN:
+    volume = np.linalg.det(linear)
+    scale = float(np.cbrt(volume)) if volume > 0.0 else np.nan
+    turn = linear / scale
+    if not np.abs(turn @ turn.T - np.eye(3)).max() <= EVEN:
         sizes = ", ".join(f"{size:.3g}" for size in np.linalg.norm(linear, axis=0))
         raise InvalidMotionError(
             f"{name} is scaled unevenly or mirrored ({sizes} along X, Y, Z). Give it one"

@@ -27,14 +27,15 @@ def quaternions_from_channels(channels: Array, mode: str) -> Array:
     """Return rotations, shape (n_frames, 4), from channels, (n_frames, 3 or 4), radians.
 
     As Blender does, quaternions and axes of any length are taken for their direction, and
-    those without one for no turn at all.
+    those without one for no rotation at all. A channel that is no number makes the rotation
+    missing: NaN.
     """
     if mode == "QUATERNION":
         norms = np.linalg.norm(channels, axis=-1, keepdims=True)
-        return np.where(norms > NO_TURN, channels / np.maximum(norms, NO_TURN), IDENTITY)
+        return np.where(norms <= NO_TURN, IDENTITY, channels / np.maximum(norms, NO_TURN))
     if mode == "AXIS_ANGLE":
         norms = np.linalg.norm(channels[:, 1:], axis=-1, keepdims=True)
-        axes = np.where(norms > NO_TURN, channels[:, 1:] / np.maximum(norms, NO_TURN), 0.0)
+        axes = np.where(norms <= NO_TURN, 0.0, channels[:, 1:] / np.maximum(norms, NO_TURN))
         return quaternion_from_rotation_vector(channels[:, :1] * axes)
     order, columns = _moving_order(mode)
     return quaternion_from_euler(channels[:, columns], order)

@@ -7,6 +7,7 @@ from numpy.typing import NDArray
 
 from ...solvers.motion import Motion, Skeleton, Tracks
 from ...solvers.motion.rotations import inverse, multiply, rotate
+from ..turns import Sliced, Steps, due
 from .frames import Grid
 from .rig import Placement, Rig
 
@@ -30,9 +31,8 @@ class BoneChannels:
     @property
     def travels(self) -> bool:
         """Whether its location is keyed and does change."""
-        return self.location_keyed and bool(
-            (np.nanmax(self.locations, axis=0) > np.nanmin(self.locations, axis=0)).any()
-        )
+        known = self.locations[np.isfinite(self.locations).all(axis=1)]
+        return self.location_keyed and bool((known != known[:1]).any())
 
 
 @dataclass(frozen=True, eq=False)
@@ -104,6 +104,7 @@ class ArmatureTake:
         return found
 
 
+@Sliced
 def part_of(
     rig: Rig,
     bones: list[int],
@@ -111,7 +112,7 @@ def part_of(
     carrier: Placement,
     rest: Placement,
     frame_rate: float,
-) -> Part:
+) -> Steps[Part]:
     """Turn pose-bone channels into local rotations about world axes, L = A B A^-1.
 
     A is the rest orientation of the bone in the world. No forward kinematics is needed, since
@@ -119,10 +120,12 @@ def part_of(
     The root's rotation is then carried into the world.
     """
     world = multiply(rest.rotations[0], rig.rest_rotations)
-    rotations = [
-        multiply(multiply(world[bone], channels[bone].rotations), inverse(world[bone]))
-        for bone in bones
-    ]
+    rotations = []
+    for number, bone in enumerate(bones):
+        turn = multiply(multiply(world[bone], channels[bone].rotations), inverse(world[bone]))
+        rotations.append(turn)
+        if due():
+            yield 0.7 + 0.3 * number / len(bones)
     carried = multiply(carrier.rotations, inverse(rest.rotations[0]))
     rotations[0] = multiply(carried, rotations[0])
     root = bones[0]

@@ -12,10 +12,12 @@ from ...solvers.depth_tracking.body_motion import body_skeleton
 from ...solvers.depth_tracking.body_tables import JOINTS, SEGMENTS
 from ...solvers.errors import InvalidMotionError
 from ...solvers.motion import Motion
+from ..turns import Sliced, Steps, due
 from .bone_channels import animated_curves, read_bone, rotation_curves
 from .compat import Source
 from .curves import Channel
 from .frames import Grid
+from .lasting import Lasting, LastingSource
 from .rig import Placement, Rig, placement_of, read_rig
 from .take import ArmatureTake, BoneChannels, Part, part_of
 from .tracked_body import TrackedBody, armature_from_motion, bones_of
@@ -110,9 +112,10 @@ class TrackedTake:
         return Motion(skeleton, rotations, motion.root_positions, self.rate)
 
 
+@Sliced
 def read_tracked_take(
     armature: bpy.types.Object, source: Source, n_pictures: int, rate: float
-) -> TrackedTake:
+) -> Steps[TrackedTake]:
     """Read an action of a tracked armature at the moments of the recording's pictures.
 
     Raises
@@ -131,13 +134,18 @@ def read_tracked_take(
     check_keyed(armature, curves)
     keyed = rotation_curves(armature.pose.bones[bones["hips"]], curves).values()
     frames, first = _moments(keyed, tracked, n_pictures, source[0].name)
-    channels = tuple(
-        read_bone(armature.pose.bones[bone], curves, frames, gaps=False) for bone in rig.bones
-    )
+    lasting, channels = (Lasting.of(armature), LastingSource.of(source)), []
+    for number, bone in enumerate(rig.bones):
+        channels.append(read_bone(armature.pose.bones[bone], curves, frames, gaps=False))
+        if due():
+            yield number / len(rig.bones)
+            armature, source = (each.find() for each in lasting)
+            curves = animated_curves(*source)
+            bones_of(armature)  # or one of them was deleted meanwhile
     motion_from_armature = np.linalg.inv(armature_from_motion(armature, tracked.body))
     turn, origin, scale = placement_of(Matrix(motion_from_armature.tolist()), armature.name)
     space = Placement(turn[np.newaxis], origin[np.newaxis], scale)
-    return TrackedTake(tracked, bones, first, frames, rig, channels, space, rate)
+    return TrackedTake(tracked, bones, first, frames, rig, tuple(channels), space, rate)
 
 
 def _moments(

@@ -17,12 +17,15 @@ from ..scene.armature_read import read_take
 from ..scene.armature_write import check_writable
 from ..scene.compat import Source
 from ..scene.evaluated_body import body_bones, with_body_shown
+from ..scene.lasting import LastingSource
 from ..scene.movers import movers_of
 from ..scene.rigify import is_rigify
 from ..scene.scene_rate import scene_rate
 from ..scene.take import ArmatureTake
 from ..scene.target_read import find_roles, read_target, vertical_part
 from ..selection import played_source, selected_armature
+from ..subject import Subject
+from ..turns import Sliced, Steps
 from .choices import VaryBundle, VaryChoices
 from .tags import examples_of, is_variant
 
@@ -78,19 +81,30 @@ def candidates(armature: bpy.types.Object) -> list[bpy.types.Action]:
     return [action for action, _ in fitting_actions(armature, others)]
 
 
+@Sliced
 def read_varying(
     scene: bpy.types.Scene, armature: bpy.types.Object, settings: VaryBundle
-) -> "partial[Varied]":
+) -> "Steps[partial[Varied]]":
     """Read the actions; return what is to be solved, which may be pickled."""
     check_writable(armature)
     _shown.clear()
-    return partial(vary, read(scene, armature, settings).problem)
+    found = yield from read.steps(scene, armature, settings)
+    return partial(vary, found.problem)
 
 
-def read(scene: bpy.types.Scene, armature: bpy.types.Object, settings: VaryBundle) -> Reading:
+@Sliced
+def read(
+    scene: bpy.types.Scene, armature: bpy.types.Object, settings: VaryBundle
+) -> Steps[Reading]:
     """Read the chosen actions; of a control rig what its body does."""
-    sources = chosen_sources(armature, settings.choices)
-    takes = tuple(_read_once(scene, armature, each) for each in sources)
+    here = Subject.of(scene, armature)
+    lasting = [LastingSource.of(each) for each in chosen_sources(armature, settings.choices)]
+    takes = []
+    for each in lasting:
+        take = yield from _read_once(here, each)
+        takes.append(take)
+    scene, armature = here.find()
+    sources = tuple(each.find() for each in lasting)
     controls, switches = (
         read_controls(scene, armature, takes[0])
         if is_rigify(armature.data.bones)
@@ -106,30 +120,41 @@ def read(scene: bpy.types.Scene, armature: bpy.types.Object, settings: VaryBundl
     )
     rig, body = takes[0].rig, takes[0].parts[0]
     shown = [rig.bones[bone] for bone in body.bones] if controls is not None else []
-    return Reading(sources, takes, problem, switches, movers_of(armature, shown))
+    return Reading(sources, tuple(takes), problem, switches, movers_of(armature, shown))
 
 
-def _read_once(
-    scene: bpy.types.Scene, armature: bpy.types.Object, source: Source
-) -> ArmatureTake:
+def _read_once(here: Subject, source: LastingSource) -> Steps[ArmatureTake]:
     """Read an action; the body of a control rig only once for each press of the button."""
+    scene, armature = here.find()
+    take = yield from read_take.steps(armature, scene, source=source.find())
+    scene, armature = here.find()
     if not is_rigify(armature.data.bones):
-        return read_take(armature, scene, source=source)
-    known = fingerprint((armature.session_uid, read_take(armature, scene, source=source)))
+        return take
+    known = fingerprint((armature.session_uid, take))
     if known not in _shown:
-        _shown[known] = read_body(scene, armature, source)
+        _shown[known] = yield from _body_shown(scene, armature, take, source.find())
     return _shown[known]
 
 
+@Sliced
 def read_body(
     scene: bpy.types.Scene, armature: bpy.types.Object, source: Source
-) -> ArmatureTake:
+) -> Steps[ArmatureTake]:
     """Read an action; where constraints move the body, as Blender shows it, named by roles."""
-    take = read_take(armature, scene, source=source)
+    here, lasting = Subject.of(scene, armature), LastingSource.of(source)
+    take = yield from read_take.steps(armature, scene, source=source)
+    scene, armature = here.find()
     if not is_rigify(armature.data.bones):
         return take
+    return (yield from _body_shown(scene, armature, take, lasting.find()))
+
+
+def _body_shown(
+    scene: bpy.types.Scene, armature: bpy.types.Object, take: ArmatureTake, source: Source
+) -> Steps[ArmatureTake]:
+    """Return a take of controls as one of the body that they move, named by roles."""
     bones = body_bones(find_roles(armature), armature.data.bones)
-    shown = with_body_shown(scene, armature, take, bones, source)
+    shown = yield from with_body_shown.steps(scene, armature, take, bones, source)
     body, roles = shown.parts[0], {bone: role for role, bone in bones.joints.items()}
     skeleton = body.motion.skeleton
     names = tuple(roles[name] for name in skeleton.names)

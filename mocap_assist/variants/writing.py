@@ -1,5 +1,7 @@
 """What the button Vary writes into the scene, one variant at a time."""
 
+from typing import NamedTuple
+
 import bpy
 
 from ...solvers.errors import InvalidMotionError
@@ -9,18 +11,27 @@ from ..scene import compat, history
 from ..scene.action_write import write_action
 from ..scene.armature_write import check_writable
 from ..scene.compat import Source
-from ..subject import check_unchanged
+from ..subject import Subject, check_unchanged
+from ..turns import Sliced, Steps, due
 from . import listing
 from .choices import VaryBundle
 from .keys import Stage, hold_others, without_still
-from .reading import read
+from .reading import Reading, Switches, read
 from .tags import names_for, tag
 
 
-class VariantsWriter:
-    """New actions for variants; `step` writes one, so that nobody waits long.
+@Sliced
+def write_variants(
+    scene: bpy.types.Scene,
+    armature: bpy.types.Object,
+    settings: VaryBundle,
+    varied: Varied,
+    asked: str | None = None,
+) -> Steps[str]:
+    """Write a new action for each variant; return a sentence about them.
 
-    Actions are known by their numbers between steps: undo replaces what pointers mean.
+    Actions are known by their numbers from one turn to the next: undo replaces what pointers
+    mean. Where not all can be written, none stays.
 
     Parameters
     ----------
@@ -35,78 +46,94 @@ class VariantsWriter:
     InvalidMotionError
         The actions are not what was solved.
     """
-
-    def __init__(
-        self,
-        scene: bpy.types.Scene,
-        armature: bpy.types.Object,
-        settings: VaryBundle,
-        varied: Varied,
-        asked: str | None = None,
-    ) -> None:
-        found = read(scene, armature, settings)
-        check_unchanged(armature, asked, found.problem)
-        self._settings, self._varied = settings, varied
-        self._examples = [action.name for action, _ in found.sources]
-        self._slot = found.sources[0][1].identifier
-        self._stage = Stage.of(found.takes, found.sources[0], found.movers)
-        self._switches = found.switches
-        self._names = names_for(found.sources[0][0], len(varied.motions))
-        self._made: list[int] = []
-
-    @property
-    def fraction(self) -> float:
-        """How much is written."""
-        return len(self._made) / len(self._names)
-
-    def step(self, scene: bpy.types.Scene, armature: bpy.types.Object) -> str:
-        """Write the next variant; return a sentence once all are written."""
-        place = len(self._made)
-        motion, stage = self._varied.motions[place], self._stage
-        frames = stage.frames(motion.n_frames)
-        controls = self._varied.keys
-        keys = without_still(controls[place]) if controls else stage.keys(motion)
-        action, slot = write_action(armature, self._names[place], frames, keys, self._switches)
-        self._made.append(action.session_uid)
-        hold_others(action, slot, stage)
-        history.record(action, self._source(), self._entry(place), of_another_rig=True)
-        tag(action, self._examples, place + 1, self._settings.varying.seed)
-        give_picture(action, self._varied.pictures[place])
-        if len(self._made) < len(self._names):
-            return ""
+    here, made = Subject.of(scene, armature), list[int]()
+    found = yield from read.steps(scene, armature, settings)
+    scene, armature = here.find()
+    check_unchanged(armature, asked, found.problem)
+    writer = _Writer.of(found, settings, varied)
+    try:
+        while len(made) < len(writer.names):
+            made.append(writer.write(armature, len(made)))
+            if due():
+                yield len(made) / len(writer.names)
+                scene, armature = here.find()
         check_writable(armature)
-        listing.fill(scene, armature, _numbered(self._made))
-        return self._sentence()
-
-    def take_back(self) -> None:
-        """Remove what was written."""
-        for action in _numbered(self._made):
+    except BaseException:
+        for action in _numbered(made):
             bpy.data.actions.remove(action)
+        raise
+    listing.fill(scene, armature, _numbered(made))
+    return writer.message()
 
-    def _source(self) -> Source:
+
+class _Writer(NamedTuple):
+    """What all variants have in common."""
+
+    settings: VaryBundle
+    varied: Varied
+    examples: tuple[str, ...]
+    slot: str
+    """Identifier of the first example's."""
+    stage: Stage
+    switches: Switches
+    names: list[str]
+
+    @classmethod
+    def of(cls, found: Reading, settings: VaryBundle, varied: Varied) -> "_Writer":
+        first = found.sources[0]
+        return cls(
+            settings,
+            varied,
+            tuple(action.name for action, _ in found.sources),
+            first[1].identifier,
+            Stage.of(found.takes, first, found.movers),
+            found.switches,
+            names_for(first[0], len(varied.motions)),
+        )
+
+    def write(self, armature: bpy.types.Object, number: int) -> int:
+        """Write a variant; return the number of its action in this session."""
+        motion = self.varied.motions[number]
+        frames = self.stage.frames(motion.n_frames)
+        controls = self.varied.keys
+        keys = without_still(controls[number]) if controls else self.stage.keys(motion)
+        action, slot = write_action(armature, self.names[number], frames, keys, self.switches)
+        try:
+            hold_others(action, slot, self.stage)
+            entry = self._entry(number)
+            history.record(action, self._first_example(), entry, of_another_rig=True)
+        except BaseException:
+            bpy.data.actions.remove(action)
+            raise
+        tag(action, list(self.examples), number + 1, self.settings.varying.seed)
+        give_picture(action, self.varied.pictures[number])
+        return int(action.session_uid)
+
+    def _first_example(self) -> Source:
         """Return the first example, as it is now."""
-        action = bpy.data.actions.get(self._examples[0])
-        slot = action and compat.slot_called(action, self._slot)
+        action = bpy.data.actions.get(self.examples[0])
+        slot = action and compat.slot_called(action, self.slot)
         if not slot:
             raise InvalidMotionError(
-                f"{self._examples[0]} was deleted meanwhile. Press the button again."
+                f"{self.examples[0]} was deleted meanwhile. Press the button again."
             )
         return action, slot
 
-    def _entry(self, place: int) -> dict[str, object]:
+    def _entry(self, number: int) -> dict[str, object]:
         """Return what the action remembers of how it was made."""
         return {
             "operation": "vary",
-            "settings": history.plain(*self._settings),
-            "examples": self._examples,
-            "number": place + 1,
+            "settings": history.plain(*self.settings),
+            "examples": list(self.examples),
+            "number": number + 1,
         }
 
-    def _sentence(self) -> str:
-        n_variants, n_examples = len(self._names), len(self._examples)
-        made = self._names[0] if n_variants == 1 else f"{n_variants} variants"
-        of = self._examples[0] if n_examples == 1 else f"{n_examples} actions"
-        return " ".join([f"{made} of {of}.", *self._varied.remarks])
+    def message(self) -> str:
+        """Return a sentence about all of them."""
+        n_variants, n_examples = len(self.names), len(self.examples)
+        made = self.names[0] if n_variants == 1 else f"{n_variants} variants"
+        of = self.examples[0] if n_examples == 1 else f"{n_examples} actions"
+        return " ".join([f"{made} of {of}.", *self.varied.remarks])
 
 
 def _numbered(numbers: list[int]) -> list[bpy.types.Action]:

@@ -8,6 +8,7 @@ from numpy.typing import NDArray
 
 from ..errors import InvalidMotionError
 from .camera import Camera
+from .frame_rate import check_frame_rate
 
 DepthPicture = NDArray[np.float32]
 ColorPicture = NDArray[np.uint8]
@@ -39,8 +40,7 @@ class DepthRecording:
     def __post_init__(self) -> None:
         if self.n_frames < 1:
             raise InvalidMotionError("A depth recording needs at least one frame.")
-        if not (np.isfinite(self.frame_rate) and self.frame_rate > 0.0):
-            raise InvalidMotionError(f"A frame rate of {self.frame_rate} Hz is not positive.")
+        check_frame_rate(self.frame_rate)
 
     def frame(self, index: int) -> DepthPicture:
         """Return the depth of a frame, shape (height, width), metres; 0: no reading."""

@@ -6,6 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..errors import InvalidMotionError
+from .frame_rate import check_frame_rate
 from .skeleton import FARTHEST, Skeleton
 
 UNIT_TOLERANCE = 1e-3
@@ -49,8 +50,7 @@ class Motion:
                 f"A motion of {len(rotations)} frames needs root positions of shape"
                 f" ({len(rotations)}, 3), not {root_positions.shape}."
             )
-        if not (np.isfinite(self.frame_rate) and self.frame_rate > 0):
-            raise InvalidMotionError(f"A frame rate of {self.frame_rate} Hz is not positive.")
+        check_frame_rate(self.frame_rate)
         if np.isinf(root_positions).any():
             raise InvalidMotionError("The root has infinite positions; NaN marks missing ones.")
         if (farthest := np.nanmax(np.abs(root_positions), initial=0.0)) > FARTHEST:

@@ -7,7 +7,7 @@ from typing import TypeVar
 import numpy as np
 from numpy.typing import NDArray
 
-from ..errors import InvalidMotionError
+from .frame_rate import check_frame_rate
 from .motion import Motion
 from .rotations import normalize, unroll
 from .straight_gaps import bridged
@@ -55,10 +55,9 @@ def resample(recording: Recording, frame_rate: float) -> Recording:
     Raises
     ------
     InvalidMotionError
-        The frame rate is not positive.
+        No recording has this frame rate.
     """
-    if not (np.isfinite(frame_rate) and frame_rate > 0):
-        raise InvalidMotionError(f"A frame rate of {frame_rate} Hz is not positive.")
+    check_frame_rate(frame_rate)
     times = _moments(recording.n_frames, recording.frame_rate, frame_rate)
     slowdown = frame_rate / recording.frame_rate
     if isinstance(recording, Motion):

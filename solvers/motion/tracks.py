@@ -7,6 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..errors import InvalidMotionError
+from .frame_rate import check_frame_rate
 from .skeleton import FARTHEST
 
 
@@ -38,8 +39,7 @@ class Tracks:
         twice = sorted(name for name, times in Counter(self.names).items() if times > 1)
         if twice:
             raise InvalidMotionError(f"Point names must differ; twice: {', '.join(twice)}.")
-        if not (np.isfinite(self.frame_rate) and self.frame_rate > 0):
-            raise InvalidMotionError(f"A frame rate of {self.frame_rate} Hz is not positive.")
+        check_frame_rate(self.frame_rate)
         farthest = max(np.nanmax(positions, initial=0.0), -np.nanmin(positions, initial=0.0))
         if np.isinf(farthest):
             raise InvalidMotionError("There are infinite positions; NaN marks missing ones.")

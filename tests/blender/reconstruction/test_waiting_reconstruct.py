@@ -26,7 +26,7 @@ def press_reconstruct(make_button, window, load):
 def test_escape_ends_it_and_writes_nothing(walk, press_reconstruct, window, blank, solved):
     actions = blank.data.actions.keys()
     button = press_reconstruct()
-    wait(button, window, until=lambda: button._watch.job.progress()[0] >= solved)
+    wait(button, window, until=lambda: button._job.progress()[0] >= solved)
 
     assert window.job.owner == "reconstruct"
     assert button.modal(window.context, event("ESC", "PRESS")) == {"CANCELLED"}

@@ -55,7 +55,7 @@ class View:
 @pytest.fixture
 def press(load, window, blank, monkeypatch):
     """Press a button on which a view looks; return the button, which waits."""
-    monkeypatch.setattr(load("mocap_assist.watch"), "Job", ShortJob)
+    monkeypatch.setattr(load("mocap_assist.solver_operator"), "Job", ShortJob)
     blank.ops.object.armature_add()
     watched = load("mocap_assist.watched_operator").WatchedOperator
 

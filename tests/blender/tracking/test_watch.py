@@ -27,7 +27,7 @@ def press(load, press_button, points):
 
 
 def drawn(button):
-    return button._watch.view.drawn
+    return button._view.drawn
 
 
 def test_the_body_lies_on_the_points_while_it_is_tracked_and_time_goes_along(
@@ -36,7 +36,7 @@ def test_the_body_lies_on_the_points_while_it_is_tracked_and_time_goes_along(
     blank.context.scene.frame_set(40, subframe=0.25)
     button = press()
     wait(button, window, until=lambda: drawn(button) is not None)
-    drawing = button._watch.view._drawing
+    drawing = button._view._drawing
     assert drawing.is_on
 
     frame = blank.context.scene.frame_current_final
@@ -68,7 +68,7 @@ def test_esc_keeps_what_is_tracked_if_that_was_asked_for(press, window, blank, t
     button = press(keep_on_esc=True)
 
     def three_poses():
-        told, _ = load("mocap_assist.jobs.protocol").read_shown(button._watch.job._path, 0)
+        told, _ = load("mocap_assist.jobs.protocol").read_shown(button._job._path, 0)
         return sum(isinstance(each, tuple) and len(each) == 3 for each in told) >= 3
 
     wait(button, window, until=three_poses)
@@ -116,7 +116,7 @@ def test_points_that_are_deleted_meanwhile_are_named_at_the_end(press, window, b
 def test_nothing_is_drawn_where_nobody_wants_to_look(press, window, blank):
     blank.context.scene.frame_set(9)
     button = press(watch=False)
-    assert button._watch.view is None
+    assert button._view is None
     assert wait(button, window, until=lambda: blank.context.scene.frame_current != 9) == {
         "FINISHED"
     }
@@ -125,7 +125,7 @@ def test_nothing_is_drawn_where_nobody_wants_to_look(press, window, blank):
 def test_blender_may_end_it_as_when_another_file_is_loaded(press, window):
     button = press()
     wait(button, window, until=lambda: drawn(button) is not None)
-    drawing = button._watch.view._drawing
+    drawing = button._view._drawing
 
     button.cancel(window.context)
 

@@ -83,8 +83,9 @@ def test_travels_to_another_process(swinging_leg):
     ((0, 4, 4), (0, 3), 30.0, "at least one frame"),
     ((2, 3, 4), (2, 3), 30.0, r"shape \(n_frames, 4, 4\), not \(2, 3, 4\)"),
     ((2, 4, 4), (3, 3), 30.0, r"of shape \(2, 3\), not \(3, 3\)"),
-    ((2, 4, 4), (2, 3), 0.0, "frame rate of 0.0 Hz is not positive"),
-    ((2, 4, 4), (2, 3), np.nan, "frame rate of nan Hz is not positive"),
+    ((2, 4, 4), (2, 3), 0.0, "frame rate of 0 Hz is not that of a recording"),
+    ((2, 4, 4), (2, 3), np.nan, "frame rate of nan Hz is not that of a recording"),
+    ((2, 4, 4), (2, 3), 3.3e9, "between 0.01 and 10,000 Hz"),
 ])  # fmt: skip
 def test_refuses_what_is_no_motion(leg, rotations, places, rate, sentence):
     turns = np.zeros(rotations)
@@ -126,7 +127,7 @@ def test_confidence_follows_the_frames(tracks):
     ((), (4, 0, 3), 30.0, None, "at least one frame and one point"),
     (("a",), (4, 2, 3), 30.0, None, r"shape \(n_frames, 1, 3\), not \(4, 2, 3\)"),
     (("a", "a"), (4, 2, 3), 30.0, None, "twice: a"),
-    (("a",), (4, 1, 3), -1.0, None, "not positive"),
+    (("a",), (4, 1, 3), -1.0, None, "frame rate of -1 Hz"),
     (("a",), (4, 1, 3), 30.0, np.ones((3, 1)), r"shape \(4, 1\), not \(3, 1\)"),
     (("a",), (4, 1, 3), 30.0, np.full((4, 1), 1.5), "between 0 and 1"),
     (("a",), (4, 1, 3), 30.0, np.full((4, 1), np.nan), "between 0 and 1"),

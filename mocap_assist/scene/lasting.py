@@ -1,0 +1,58 @@
+"""Data-blocks that are found again after Blender has had a turn: pointers do not last."""
+
+from typing import Any, NamedTuple
+
+import bpy
+
+from ...solvers.errors import InvalidMotionError
+from .compat import Source
+
+COLLECTIONS = {"OBJECT": "objects", "SCENE": "scenes", "ACTION": "actions"}
+
+
+class Lasting(NamedTuple):
+    """A data-block by its number of this session, which undo and renaming keep."""
+
+    kind: str
+    number: int
+    name: str
+    """When it was seen last."""
+
+    @classmethod
+    def of(cls, block: bpy.types.ID) -> "Lasting":
+        """Remember a data-block."""
+        return cls(block.id_type, block.session_uid, block.name)
+
+    def find(self) -> Any:
+        """Return the data-block; raise InvalidMotionError where it was deleted meanwhile."""
+        blocks = getattr(bpy.data, COLLECTIONS[self.kind])
+        found = next((each for each in blocks if each.session_uid == self.number), None)
+        if found is None:
+            raise InvalidMotionError(
+                f"{self.name} was deleted while it was worked on; nothing was written."
+            )
+        return found
+
+
+class LastingSource(NamedTuple):
+    """An action and its slot."""
+
+    action: Lasting
+    slot: int
+
+    @classmethod
+    def of(cls, source: Source) -> "LastingSource":
+        """Remember both."""
+        action, slot = source
+        return cls(Lasting.of(action), slot.handle)
+
+    def find(self) -> Source:
+        """Return both; raise InvalidMotionError where one was deleted meanwhile."""
+        action = self.action.find()
+        slot = next((each for each in action.slots if each.handle == self.slot), None)
+        if slot is None:
+            raise InvalidMotionError(
+                f"A slot of {action.name} was deleted while it was worked on; nothing was"
+                " written."
+            )
+        return action, slot

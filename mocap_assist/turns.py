@@ -1,0 +1,86 @@
+"""Long work in Blender's own thread, done a little at a time so that the window stays alive."""
+
+from collections.abc import Callable, Generator
+from functools import update_wrapper
+from math import inf
+from time import monotonic
+from typing import Any, Generic, ParamSpec, TypeVar
+
+Parameters = ParamSpec("Parameters")
+Result = TypeVar("Result")
+Steps = Generator[float, None, Result]
+"""Yields the fraction that is done whenever `due` says so.
+
+Blender has a turn then: pointers to what it keeps are stale afterwards, and whatever is needed
+further is found again.
+"""
+
+_deadline = [inf]
+
+
+def due() -> bool:
+    """Whether the work should yield now; never where a script waits for it."""
+    return monotonic() >= _deadline[0]
+
+
+class Sliced(Generic[Parameters, Result]):
+    """Decorate a function that yields. Called, it does all at once and returns its result."""
+
+    def __init__(self, steps: Callable[Parameters, Steps[Result]]) -> None:
+        self.steps = steps
+        update_wrapper(self, steps)
+
+    def __call__(self, *given: Parameters.args, **named: Parameters.kwargs) -> Result:
+        return _finished(self.steps(*given, **named), inf)
+
+
+class Work(Generic[Result]):
+    """A call that is done in turns with Blender.
+
+    Parameters
+    ----------
+    function : a `Sliced` function, or any other, which is then done at once
+    given : its arguments
+    """
+
+    def __init__(self, function: Callable[..., Result], *given: Any) -> None:
+        self._steps: Steps[Result] = (
+            function.steps(*given)
+            if isinstance(function, Sliced)
+            else _at_once(function, given)
+        )
+        self.fraction = 0.0
+        self.result: Result
+
+    def go_on(self, seconds: float) -> bool:
+        """Work for about so many seconds; return whether all is done, and `result` is there."""
+        _deadline[0] = monotonic() + seconds
+        try:
+            self.fraction = next(self._steps)
+        except StopIteration as end:
+            self.result = end.value
+            return True
+        finally:
+            _deadline[0] = inf
+        return False
+
+    def stop(self) -> None:
+        """Give it up; the function cleans up after itself."""
+        self._steps.close()
+
+
+def _at_once(function: Callable[..., Result], given: tuple[Any, ...]) -> Steps[Result]:
+    yield from ()
+    return function(*given)
+
+
+def _finished(steps: Steps[Result], deadline: float) -> Result:
+    before, _deadline[0] = _deadline[0], deadline
+    try:
+        next(steps)
+    except StopIteration as end:
+        result: Result = end.value
+        return result
+    finally:
+        _deadline[0] = before
+    raise AssertionError("sliced work has yielded where nobody takes turns")

@@ -1,0 +1,208 @@
+"""Scenes that nobody means to make: one sentence, at once, and nothing is changed."""
+
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+from modal_events import event, nothing_is_left, wait
+
+BUTTONS = ("denoise", "measure_quality", "reduce_keys", "plant_feet", "simulate")
+
+
+@pytest.fixture
+def refused(blank):
+    """Press a button; return the one sentence with which it refuses."""
+
+    def press(button):
+        actions = len(blank.data.actions)
+        with pytest.raises(RuntimeError) as refusal:
+            getattr(blank.ops.mocap_assist, button)()
+        sentence = str(refusal.value).strip().removeprefix("Error: ")
+        assert "Traceback" not in sentence and "\n" not in sentence, sentence
+        assert len(blank.data.actions) == actions
+        return sentence
+
+    return press
+
+
+@pytest.fixture
+def walker(make_armature, animate):
+    """An armature with a take of two seconds."""
+    armature = make_armature()
+    animate(armature)
+    return armature
+
+
+def curves(armature):
+    return armature.animation_data.action.layers[0].strips[0].channelbags[0].fcurves
+
+
+@pytest.mark.parametrize("button", BUTTONS)
+@pytest.mark.parametrize("scale", [(-1, 1, 1), (-1, -1, -1), (1, 1, -1), (-2, 2, 2), (0, 0, 0)])
+def test_a_mirrored_armature_is_refused(walker, refused, blank, button, scale):
+    walker.scale = scale
+    blank.context.view_layer.update()
+
+    assert "is scaled unevenly or mirrored" in refused(button)
+
+
+@pytest.mark.parametrize("button", BUTTONS)
+def test_a_key_at_no_frame_is_refused(walker, refused, button):
+    curves(walker)[0].keyframe_points[-1].co.x = np.nan
+
+    assert "has a key at no frame (NaN)" in refused(button)
+
+
+@pytest.mark.parametrize("button", BUTTONS)
+@pytest.mark.parametrize("frame", [-1_000_000, 20_000, 1_048_574])
+def test_a_stray_key_far_out_is_refused_before_anything_is_sampled(
+    walker, refused, load, monkeypatch, button, frame
+):
+    channel = load("mocap_assist.scene.curves").Channel
+    monkeypatch.setattr(channel, "_evaluated", lambda *_: pytest.fail("It was sampled."))
+    curve = next(each for each in curves(walker) if "LeftArm" in each.data_path)
+    curve.keyframe_points.insert(frame, 0.3)
+
+    sentence = refused(button)
+
+    assert "LeftArm" in sentence and f"{frame:,}" in sentence
+    assert "choose a frame range" in sentence
+
+
+def test_a_frame_range_leaves_a_stray_key_out(walker, blank):
+    curves(walker)[0].keyframe_points.insert(500_000, 0.3)
+    blank.context.scene.use_preview_range = True
+    blank.context.scene.frame_preview_start, blank.context.scene.frame_preview_end = 1, 50
+
+    outcome = blank.ops.mocap_assist.denoise(frame_range="PREVIEW", plant_feet=False)
+
+    assert outcome == {"FINISHED"}
+    assert curves(walker)[0].keyframe_points[-1].co.x == 500_000
+
+
+def test_few_keys_of_an_animator_are_read_however_far_apart(make_armature, animate, blank):
+    armature = make_armature()
+    animate(armature, frames=range(1, 9000, 1500))
+
+    assert blank.ops.mocap_assist.measure_quality() == {"FINISHED"}
+
+
+@pytest.mark.parametrize("button", BUTTONS)
+def test_a_frame_rate_beyond_reason_is_refused(walker, refused, blank, button):
+    blank.context.scene.render.fps, blank.context.scene.render.fps_base = 32767, 1e-5
+
+    assert "Hz is not that of a recording" in refused(button)
+
+
+@pytest.mark.parametrize("button", BUTTONS)
+def test_a_take_of_nan_only_is_refused(walker, refused, button):
+    for curve in curves(walker):
+        keys = np.empty(2 * len(curve.keyframe_points), dtype=np.float32)
+        curve.keyframe_points.foreach_get("co", keys)
+        keys[1::2] = np.nan
+        curve.keyframe_points.foreach_set("co", keys)
+
+    assert "nothing was captured" in refused(button)
+
+
+@pytest.fixture
+def press_slowly(press_button, load, monkeypatch):
+    """Press Clean in a window; Blender has a turn after each bone that is read."""
+    monkeypatch.setattr(load("mocap_assist.solver_operator"), "AT_ONCE", 0.0)
+    choices = load("mocap_assist.clean_choices")
+    denoising = load("solvers.denoising")
+
+    def press(**chosen):
+        return press_button(
+            "denoise",
+            choices.CleanSettings(
+                choices.CleanChoices(plant_feet=False, **chosen),
+                denoising.DenoiseSettings(),
+                denoising.PlantSettings(),
+            ),
+        )
+
+    return press
+
+
+def is_reading(button):
+    return not hasattr(button, "_job")
+
+
+def test_esc_works_while_a_take_is_read(walker, press_slowly, window, blank):
+    button = press_slowly()
+    assert is_reading(button) and "Reading" in window.status[-1]
+    button.modal(window.context, event("TIMER"))
+
+    assert is_reading(button)
+    assert button.modal(window.context, event("ESC", "PRESS")) == {"CANCELLED"}
+    assert nothing_is_left(window) and len(blank.data.actions) == 1
+
+
+def test_a_take_that_is_read_in_turns_is_the_same(walker, press_slowly, window, blank, keys_of):
+    played = walker.animation_data.action
+    assert blank.ops.mocap_assist.denoise(plant_feet=False) == {"FINISHED"}
+    at_once = list(keys_of(walker.animation_data.action).values())
+    walker.animation_data.action = played
+
+    button = press_slowly()
+    turns = SimpleNamespace(reading=0)
+
+    def look():
+        turns.reading += is_reading(button)
+        return False
+
+    assert wait(button, window, look) == {"FINISHED"}
+
+    assert turns.reading > len(walker.data.bones)
+    assert list(keys_of(walker.animation_data.action).values()) == at_once
+
+
+def delete_armature(bpy, armature):
+    bpy.data.objects.remove(armature)
+
+
+def delete_action(bpy, armature):
+    bpy.data.actions.remove(armature.animation_data.action)
+
+
+def undo_like(bpy, armature):
+    """Replace all curves, as undo does, which makes pointers to them stale."""
+    before = armature.animation_data.action
+    bag = before.layers[0].strips[0].channelbags[0]
+    kept = [
+        (curve.data_path, curve.array_index, [tuple(key.co) for key in curve.keyframe_points])
+        for curve in bag.fcurves
+    ]
+    bag.fcurves.clear()
+    for path, index, keys in kept:
+        curve = bag.fcurves.new(path, index=index)
+        for key in keys:
+            curve.keyframe_points.insert(*key)
+
+
+@pytest.mark.parametrize("change", [delete_armature, delete_action])
+def test_what_is_deleted_while_it_is_read_is_named(walker, press_slowly, window, blank, change):
+    button = press_slowly()
+    button.modal(window.context, event("TIMER"))
+    assert is_reading(button)
+    change(blank, walker)
+
+    assert wait(button, window) == {"CANCELLED"}
+
+    assert "was deleted while it was worked on" in window.reports[-1][1]
+    assert nothing_is_left(window)
+
+
+def test_curves_that_are_replaced_while_they_are_read_are_found_again(
+    walker, press_slowly, window, blank
+):
+    button = press_slowly()
+    for _ in range(3):
+        button.modal(window.context, event("TIMER"))
+    assert is_reading(button)
+    undo_like(blank, walker)
+
+    assert wait(button, window) in ({"FINISHED"}, {"CANCELLED"})
+
+    assert nothing_is_left(window)
