@@ -1,5 +1,6 @@
 """Write files whole or not at all, and keep learned things in archives that cannot run code."""
 
+import os
 import re
 import struct
 import zipfile
@@ -14,13 +15,13 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from .errors import InvalidFileError
+from .errors import FileAccessError, InvalidFileError
 
 # What numpy and zipfile were seen to raise on files that are cut short or altered.
 DAMAGE = (
-    OSError, ValueError, EOFError, KeyError, AttributeError, TypeError, NotImplementedError,
-    OverflowError, RecursionError, SyntaxError, TokenError, zipfile.BadZipFile, zlib.error,
-    struct.error,
+    OSError, ValueError, EOFError, IndexError, KeyError, AttributeError, TypeError,
+    NotImplementedError, OverflowError, RecursionError, SyntaxError, TokenError,
+    zipfile.BadZipFile, zlib.error, struct.error,
 )  # fmt: skip
 
 
@@ -28,11 +29,17 @@ PART_BYTES = 6
 """Random bytes in the name of a temporary file, so that two writers do not meet."""
 
 
+def unreadable(path: Path | str, error: OSError) -> FileAccessError:
+    """Return the error of a file or folder that the system does not let us read."""
+    return FileAccessError(f"{path} cannot be read ({error.strerror}).")
+
+
 @contextmanager
 def written_whole(path: Path | str) -> Iterator[Path]:
     """Yield a temporary path beside `path`; move it onto `path` if all goes well.
 
-    On any exception the temporary file is removed and `path` is as it was.
+    On any exception the temporary file is removed and `path` is as it was. The content is on
+    the disk before the move: after a loss of power `path` holds the old content or the new.
 
     Raises
     ------
@@ -44,6 +51,8 @@ def written_whole(path: Path | str) -> Iterator[Path]:
     try:
         try:  # Not tempfile's: a Ctrl-C that falls into it leaves its file behind, or is lost.
             yield part
+            with part.open("rb+") as file:
+                os.fsync(file.fileno())
             part.replace(path)
         finally:
             part.unlink(missing_ok=True)

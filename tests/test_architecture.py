@@ -12,7 +12,7 @@ MAY_IMPORT = {
     "mocap_assist": {"solvers"},
     "operators": {"mocap_assist", "solvers"},
 }
-SHARED_ROOMS = {"motion", "errors", "files", "progress", "settings"}
+SHARED_ROOMS = {"motion", "errors", "faults", "files", "progress", "settings"}
 FAMILIES = [
     folder.name
     for folder in sorted((ROOT / "solvers").iterdir())

@@ -24,6 +24,7 @@ from ...solvers.command_line.report import (
 from ...solvers.command_line.screen import Screen
 from ...solvers.command_line.verb import Outcome, Task
 from ...solvers.errors import InvalidFileError, InvalidSettingError
+from ...solvers.faults import Failure, attempt
 from ..depth_folders import all_recordings_in, depth_recordings_in
 
 HELP = "Do another verb to each of many files: each FILE... --output-folder DIR -- VERB ..."
@@ -84,6 +85,7 @@ def perform_each(arguments: argparse.Namespace, screen: Screen) -> None:
     tasks = _tasks(arguments)
     made = Made(folder)
     entries = {task.sources: Entry(task, None) for task in tasks}
+    faults: tuple[str, ...] = ()
     try:
         for finished in _worked(tasks, arguments, made):
             figures = finished.outcome.figures if finished.outcome else None
@@ -93,10 +95,12 @@ def perform_each(arguments: argparse.Namespace, screen: Screen) -> None:
             sys.stdout.flush()
     finally:
         if arguments.report:
-            write_report(folder, " ".join(arguments.words), list(entries.values()))
+            faults = write_report(folder, " ".join(arguments.words), list(entries.values()))
     failed = [entry.failure for entry in entries.values() if entry.failure]
     if failed:
         raise InvalidFileError(f"{len(failed)} of {len(tasks)} files failed. {failed[0]}")
+    if faults:
+        raise InvalidFileError(faults[0])
 
 
 def _named_files(words: Sequence[str]) -> list[Path]:
@@ -174,6 +178,13 @@ def _worked(
 
 def _attempt(task: Task) -> Finished:
     """Let another Blender do the verb to one file."""
+    finished = attempt(task.source, _perform, task)
+    if isinstance(finished, Failure):
+        return Finished(task, None, finished.sentence)
+    return finished
+
+
+def _perform(task: Task) -> Finished:
     forget_picture(task)
     with TemporaryDirectory(prefix="mocap_assist_") as scratch:
         figures = Path(scratch) / "figures"

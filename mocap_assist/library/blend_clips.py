@@ -5,7 +5,7 @@ from pathlib import Path
 
 import bpy
 
-from ...solvers.errors import MocapAssistError
+from ...solvers.faults import Failure, attempt
 from ...solvers.motion import Motion
 from ...solvers.progress import Progress, unwatched
 from ..jobs.in_blender import BlendClip, BlendRead
@@ -37,7 +37,9 @@ def read_files(
     found = []
     for place, path in enumerate(paths):
         progress(place / len(paths), f"Reading {Path(path).name}")
-        found.append(_read_file(path, assets_only, items, rig))
+        read = attempt(path, _read_file, path, assets_only, items, rig)
+        failed = isinstance(read, Failure)
+        found.append(BlendRead((), (read.sentence,)) if failed else read)
     return found
 
 
@@ -113,10 +115,9 @@ def _read_action(path: str, action: bpy.types.Action, items: Sequence[str]) -> B
     for item, (armature, source) in sources_of(action).items():
         if items and item not in items:
             continue
-        try:
-            motion = read_source(bpy.context.scene, armature, source)
-        except MocapAssistError as error:
-            refused.append(f"{path}, {item}: {error}")
+        motion = attempt(f"{path}, {item}", read_source, bpy.context.scene, armature, source)
+        if isinstance(motion, Failure):
+            refused.append(motion.sentence)
         else:
             clips.append(BlendClip(item, motion, tags))
     return BlendRead(tuple(clips), tuple(refused))

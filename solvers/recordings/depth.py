@@ -5,6 +5,7 @@ from pathlib import Path
 from typing import NamedTuple, Protocol
 
 from ..errors import InvalidFileError, InvalidMotionError
+from ..files import unreadable
 from ..motion.depth_recording import DepthRecording
 from ..progress import Progress, unwatched
 from .depth_folder import layout_of, read_depth_folder
@@ -113,5 +114,5 @@ def depth_format_of(path: Path | str) -> DepthFormat | None:
     except FileNotFoundError:
         raise InvalidFileError(f"There is no file {path}.") from None
     except OSError as error:
-        raise InvalidFileError(f"{path} cannot be read ({error.strerror}).") from None
+        raise unreadable(path, error) from None
     return next((known for known in DEPTH_FILES if known.fits(path, head)), None)

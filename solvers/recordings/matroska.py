@@ -12,6 +12,7 @@ from pathlib import Path
 from typing import IO
 
 from ..errors import InvalidFileError
+from ..files import unreadable
 from ..progress import Progress
 from .ebml import LONGEST_HEAD, Head, block_head, children, head_of, laced, text, unsigned
 
@@ -99,7 +100,7 @@ def index_matroska(path: Path, wanted: Callable[[Track], bool], progress: Progre
         with path.open("rb") as file:
             _walk(file, path.stat().st_size, found, wanted, progress)
     except OSError as error:
-        raise InvalidFileError(f"{path} cannot be read ({error.strerror}).") from None
+        raise unreadable(path, error) from None
     except (ValueError, IndexError, struct.error):
         raise InvalidFileError(
             f"{path} is damaged: what stands there is no Matroska. Copy or record it again."

@@ -6,6 +6,7 @@ from pathlib import Path
 from typing import NamedTuple, Protocol
 
 from ..errors import InvalidFileError, InvalidMotionError
+from ..files import unreadable
 from ..motion import JointRecording, Motion, Tracks
 from ..motion.depth_recording import DepthRecording
 from ..progress import Progress, unwatched
@@ -192,7 +193,7 @@ def format_of(path: Path | str) -> Format | None:
     except FileNotFoundError:
         raise InvalidFileError(f"There is no file {path}.") from None
     except OSError as error:
-        raise InvalidFileError(f"{path} cannot be read ({error.strerror}).") from None
+        raise unreadable(path, error) from None
     return next((known for known in FORMATS if known.fits(head)), None)
 
 
