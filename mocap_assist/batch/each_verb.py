@@ -1,7 +1,6 @@
 """`each`: a verb done to each of many files, by Blenders of their own, and a report of all."""
 
 import argparse
-import json
 import subprocess
 import sys
 from collections.abc import Iterator, Sequence
@@ -25,6 +24,7 @@ from ...solvers.command_line.screen import Screen
 from ...solvers.command_line.verb import Outcome, Task
 from ...solvers.errors import InvalidFileError, InvalidSettingError
 from ...solvers.faults import Failure, attempt
+from ...solvers.json_text import parse_json
 from ..depth_folders import all_recordings_in, depth_recordings_in
 
 HELP = "Do another verb to each of many files: each FILE... --output-folder DIR -- VERB ..."
@@ -216,7 +216,7 @@ def _command(task: Task, figures: Path) -> list[str]:
 
 def _figures(path: Path) -> dict[str, Any]:
     """Return the figures of the first armature, and how many there are; or of a recording."""
-    lines = [json.loads(line) for line in path.read_text(encoding="utf-8").splitlines()]
+    lines = [parse_json(line) for line in path.read_text(encoding="utf-8").splitlines()]
     first: dict[str, Any] = lines[0] if lines else {}
     if "objects" in first:  # What is said of the one recording that each is.
         told = first["figures"][0] if "figures" in first else {"said": first["said"]}

@@ -1,6 +1,5 @@
 """An action as an asset: with tags, a catalog and a picture of what it does."""
 
-import json
 from collections.abc import Iterable
 from pathlib import Path
 
@@ -8,6 +7,7 @@ import bpy
 import numpy as np
 
 from ...solvers.errors import InvalidFileError, InvalidMotionError
+from ...solvers.json_text import parse_json
 from ...solvers.motion.posture_heading import normalise
 from ...solvers.motion.posture_joints import motion_postures
 from ..jobs.thumbnails import thumbnail
@@ -62,10 +62,9 @@ def mark(action: bpy.types.Action, tags: Iterable[str], number: str) -> None:
 def clip_tags(action: bpy.types.Action) -> list[str]:
     """Return the tags of the clip that an action was made of."""
     try:
-        tags = json.loads(action.get(CLIP, "{}")).get("tags", [])
+        return [str(tag) for tag in parse_json(action.get(CLIP, "{}")).get("tags", [])]
     except (TypeError, ValueError, AttributeError):  # edited by hand
         return []
-    return [str(tag) for tag in tags]
 
 
 def catalog_number(catalog: str) -> str:

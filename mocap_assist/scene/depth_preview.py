@@ -15,6 +15,7 @@ from mathutils import Matrix
 from numpy.typing import NDArray
 
 from ...solvers.errors import MocapAssistError
+from ...solvers.json_text import parse_json
 from ...solvers.motion.depth_floor import Floor
 from ...solvers.motion.depth_recording import DepthRecording
 from ...solvers.recordings import DepthSettings, Held, read_depth
@@ -62,7 +63,7 @@ class Shown:
     @classmethod
     def read(cls, mesh: bpy.types.Mesh) -> "Shown":
         """Return what a mesh shows; raises ValueError, TypeError or KeyError if nothing."""
-        return cls.of(json.loads(mesh[KEY]))
+        return cls.of(parse_json(mesh[KEY]))
 
     @classmethod
     def of(cls, told: dict[str, Any]) -> "Shown":

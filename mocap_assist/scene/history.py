@@ -7,6 +7,7 @@ from typing import Any
 
 import bpy
 
+from ...solvers.json_text import parse_json
 from ...solvers.settings import Settings
 from ...solvers.version import version
 from . import compat
@@ -44,10 +45,12 @@ def record(
 def history(action: bpy.types.Action) -> list[dict[str, Any]]:
     """Return what was done, oldest first; nothing for an action of other origin."""
     try:
-        entries = json.loads(action.get(HISTORY, "[]"))
+        entries = parse_json(action.get(HISTORY, "[]"))
     except (TypeError, ValueError):  # edited by hand
         return []
-    return entries if isinstance(entries, list) else []
+    if not isinstance(entries, list):
+        return []
+    return [entry for entry in entries if isinstance(entry, dict)]
 
 
 def given_to(action: bpy.types.Action) -> str:

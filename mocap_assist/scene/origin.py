@@ -6,6 +6,7 @@ from typing import Any
 
 import bpy
 
+from ...solvers.json_text import parse_json
 from ...solvers.motion import JointRecording, Motion, Tracks
 from ...solvers.motion.depth_recording import DepthRecording
 
@@ -35,7 +36,7 @@ def origin_of_file(
 def origin_of(made: bpy.types.ID) -> dict[str, Any]:
     """Return what was noted; nothing for what was not imported here."""
     try:
-        origin = json.loads(made.get(ORIGIN, "{}"))
+        origin = parse_json(made.get(ORIGIN, "{}"))
     except (TypeError, ValueError):  # edited by hand
         return {}
     return origin if isinstance(origin, dict) else {}

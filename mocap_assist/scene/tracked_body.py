@@ -13,6 +13,7 @@ from ...solvers.depth_tracking.body_model import BodyModel
 from ...solvers.depth_tracking.body_motion import rest_frames
 from ...solvers.depth_tracking.body_tables import CAPSULES, LENGTHS, SEGMENTS
 from ...solvers.errors import InvalidMotionError, MocapAssistError
+from ...solvers.json_text import parse_json
 from ...solvers.motion.depth_floor import Floor
 from ...solvers.motion.depth_foreground import ForegroundSettings, ForegroundWay
 from .depth_preview import Shown
@@ -67,7 +68,7 @@ class TrackedBody:
 
 @lru_cache(maxsize=N_KEPT)
 def _parsed(text: str) -> TrackedBody:
-    told = json.loads(text)
+    told = parse_json(text)
     floor, actor = told["floor"], told["actor"]
     return TrackedBody(
         BodyModel(

@@ -6,6 +6,8 @@ from typing import Any
 
 import bpy
 
+from ...solvers.json_text import parse_json
+
 VARIANT = "mocap_assist_variant"
 """Custom property of actions that Vary made: of which, its number, and the seed."""
 BETWEEN = ".variant "
@@ -52,7 +54,7 @@ def names_for(example: bpy.types.Action, n_variants: int) -> list[str]:
 
 def _said(action: bpy.types.Action) -> dict[str, Any]:
     try:
-        said = json.loads(action.get(VARIANT, "{}"))
+        said = parse_json(action.get(VARIANT, "{}"))
     except (TypeError, ValueError):  # edited by hand
         return {}
     return said if isinstance(said, dict) else {}

@@ -13,6 +13,7 @@ from typing import Any, NamedTuple
 
 from ..faults import Failure, attempt
 from ..files import remove_leftovers, written_whole
+from ..json_text import parse_json
 from ..progress import Progress, unwatched
 from ..version import version
 from .report import FIGURES, PAGE, draw_task, forget_picture
@@ -129,7 +130,7 @@ class Made:
         self.path = folder / RECORD
         self.notes: dict[str, Any] = {}
         try:
-            notes = json.loads(self.path.read_text(encoding="utf-8"))
+            notes = parse_json(self.path.read_bytes())
         except (OSError, ValueError):
             notes = None  # None yet, or unreadable: everything is made anew.
         if isinstance(notes, dict):

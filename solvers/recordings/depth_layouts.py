@@ -1,6 +1,5 @@
 """How folders of depth pictures are laid out by those who record them."""
 
-import json
 from collections.abc import Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -10,6 +9,7 @@ from numpy.typing import NDArray
 
 from ..errors import InvalidFileError
 from ..files import DAMAGE
+from ..json_text import parse_json
 from .depth_pictures import NONE
 from .depth_settings import Held
 from .depth_stack import MILLIMETRE
@@ -187,7 +187,7 @@ def _times(path: Path, words: Sequence[str]) -> NDArray[np.float64]:
 def _intrinsics(path: Path) -> tuple[Focal, tuple[int, int]]:
     """Read the camera of Open3D: its matrix stands column by column."""
     try:
-        told = json.loads(read_bytes(path))
+        told = parse_json(read_bytes(path))
         matrix = np.array(told["intrinsic_matrix"], dtype=np.float64).reshape(3, 3)
         size = int(told["width"]), int(told["height"])
         if not (np.isfinite(matrix).all() and min(size) > 0):

@@ -34,6 +34,8 @@ MOST_DESCRIBED = 16_000_000
 BLOCK_START = 4096
 """Bytes at the beginning of a block in which its lacing stands."""
 TOLD_EVERY = 4096
+LATEST = 2**62
+"""Nanoseconds from the start of the recording: 146 years, which an array can hold."""
 
 
 @dataclass
@@ -174,7 +176,10 @@ def _add_block(
     if track is None or not wanted(track):
         return
     for place, (begin, each) in enumerate(laced(start[length:], flags, size - length)):
-        track.times.append((cluster + time) * found.scale + place * track.duration)
+        since = (cluster + time) * found.scale + place * track.duration
+        if abs(since) > LATEST:
+            raise ValueError(since)
+        track.times.append(since)
         track.places.append(at + length + begin)
         track.sizes.append(each)
 

@@ -105,3 +105,15 @@ def test_the_take_stays_and_the_picture_is_named_when_drawing_raises(
         assert f"leg.bvh: {FAULT} (IndexError at solvers/command_line/report.py:" in err
     assert read_bvh(tmp_path / "out" / "leg.bvh").n_frames == 120
     assert "Already made." in again[1]
+
+
+@pytest.mark.parametrize("depth", [70, 900, 100_000])
+def test_everything_is_made_when_the_record_is_nested_deeply(call, legs, tmp_path, depth):
+    record = tmp_path / "out" / "mocap_assist.json"
+    record.parent.mkdir()
+    record.write_text('{"leg.bvh": ' + '{"a":' * depth + "1" + "}" * depth + "}")
+
+    status, out, err = call("convert", *legs, "--output-folder", tmp_path / "out")
+
+    assert (status, err, out.count("120 frames")) == (0, "", 3)
+    assert set(json.loads(record.read_text())) == {"leg.bvh", "odd.bvh", "twin.bvh"}
