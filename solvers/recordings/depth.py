@@ -15,6 +15,7 @@ from .depth_mkv import is_depth_mkv, read_depth_mkv
 from .depth_npz import is_depth_npz, read_depth_npz
 from .depth_raw import is_depth_raw, read_depth_raw
 from .depth_settings import USUAL, DepthSettings, Held
+from .folder_scan import refuse_closed
 
 HEAD = 4096
 
@@ -107,6 +108,7 @@ def depth_format_of(path: Path | str) -> DepthFormat | None:
     """
     path = Path(path)
     if path.is_dir():
+        refuse_closed(path)
         return FOLDER if layout_of(path) is not None else None
     try:
         with path.open("rb") as file:

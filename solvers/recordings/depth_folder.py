@@ -37,7 +37,8 @@ def layout_of(path: Path) -> Layout | None:
 def is_depth_folder(path: Path) -> bool:
     """Tell whether a folder is one recording of depth, and holds no pictures of another kind.
 
-    Of one that says that it is, but is damaged, whoever reads it will tell.
+    Of one that says that it is, but is damaged, whoever reads it will tell; pictures without
+    anything that says so are depth if the first whole one is.
     """
     try:
         layout = layout_of(path)
@@ -45,8 +46,13 @@ def is_depth_folder(path: Path) -> bool:
         return True
     if layout is None:
         return False
-    header = png_header(layout.root / layout.depth[0])
-    return bool(layout.metres) or header is None or (header.bits == BITS and header.grey)
+    if layout.metres:
+        return True
+    headers = (png_header(layout.root / name) for name in layout.depth)
+    header = next((header for header in headers if header is not None), None)
+    if header is None:
+        return "/" in layout.depth[0]  # A folder called depth.
+    return header.bits == BITS and header.grey
 
 
 def read_depth_folder(
