@@ -12,8 +12,9 @@ from typing import Any
 import bpy
 
 from ...solvers.command_line.batch import Finished, Made
-from ...solvers.command_line.files import found_in, told_apart
+from ...solvers.command_line.files import found_in, refuse_long_name, told_apart
 from ...solvers.command_line.report import (
+    PICTURE,
     Entry,
     forget_picture,
     has_picture,
@@ -25,6 +26,7 @@ from ...solvers.command_line.verb import Outcome, Task
 from ...solvers.errors import InvalidFileError, InvalidSettingError
 from ...solvers.faults import Failure, attempt
 from ...solvers.json_text import parse_json
+from ...solvers.recordings.folder_scan import files_below, is_folder, refuse_closed
 from ..depth_folders import all_recordings_in, depth_recordings_in
 
 HELP = "Do another verb to each of many files: each FILE... --output-folder DIR -- VERB ..."
@@ -120,7 +122,7 @@ def _tasks(arguments: argparse.Namespace) -> list[Task]:
     places = told_apart([place for _, place in pairs], [BLEND] * len(pairs))
     tasks = []
     for (source, _), place in zip(pairs, places, strict=True):
-        if look is None and source.suffix.lower() != BLEND:
+        if look is None and not is_folder(source) and source.suffix.lower() != BLEND:
             raise InvalidSettingError(
                 f"{source} is no .blend file; only import and capture read others."
             )
@@ -129,21 +131,34 @@ def _tasks(arguments: argparse.Namespace) -> list[Task]:
         target = arguments.output_folder / place
         if target.resolve() == source.resolve():
             raise InvalidSettingError(f"{source} would be written over; choose another folder.")
-        tasks.append(Task((source,), target, arguments))
-    for task in tasks:
-        task.target.parent.mkdir(parents=True, exist_ok=True)
+        tasks.append(Task((source,), target, arguments, _refusal(source, target)))
     return tasks
+
+
+def _refusal(source: Path, target: Path) -> str:
+    """Make the folder of a target; return why nothing can be made of a file, or nothing."""
+    made = attempt(source, _make_room, source, target)
+    return made.sentence if isinstance(made, Failure) else ""
+
+
+def _make_room(source: Path, target: Path) -> None:
+    if source.is_dir():
+        refuse_closed(source)
+    refuse_long_name(target, PICTURE)
+    target.parent.mkdir(parents=True, exist_ok=True)
 
 
 def _blends(paths: Sequence[Path], not_in: Path) -> list[tuple[Path, Path]]:
     found = []
     for path in paths:
-        if not path.is_dir():
+        if not is_folder(path):
             found.append((path, Path(path.name)))
             continue
         whole = path.resolve()
-        above = whole.parent if len(paths) > 1 else whole
-        inside = sorted(whole.rglob(f"*{BLEND}"))
+        inside = [
+            file for file in files_below(whole) if file.suffix == BLEND or is_folder(file)
+        ]
+        above = whole.parent if len(paths) > 1 or inside == [whole] else whole
         kept = [file for file in inside if not_in not in file.parents]
         found += [(file, file.relative_to(above)) for file in kept]
     if not found:
@@ -185,6 +200,8 @@ def _attempt(task: Task) -> Finished:
 
 
 def _perform(task: Task) -> Finished:
+    if task.refusal:
+        return Finished(task, None, task.refusal)
     forget_picture(task)
     with TemporaryDirectory(prefix="mocap_assist_") as scratch:
         figures = Path(scratch) / "figures"

@@ -6,6 +6,7 @@ from pathlib import Path
 
 from ...solvers.errors import InvalidFileError, InvalidMotionError
 from ...solvers.progress import Progress, unwatched, within
+from ...solvers.recordings.folder_scan import files_below
 from ...solvers.retrieval import (
     Clip,
     ClipEntry,
@@ -112,10 +113,8 @@ def _blends(places: Sequence[Place]) -> Iterator[_Blend]:
     seen = set()
     for place in places:
         top = Path(place.path).resolve()
-        inside = sorted(top.rglob(f"*{BLEND}")) if top.is_dir() else [top]
-        for path in inside:
-            hidden = any(part.startswith(".") for part in path.relative_to(top).parts)
-            if path.suffix != BLEND or hidden or path in seen or not path.is_file():
+        for path in files_below(top) if top.is_dir() else [top]:
+            if path.suffix != BLEND or path in seen or not path.is_file():
                 continue
             seen.add(path)
             below = path.relative_to(top.parent if path == top else top)

@@ -143,7 +143,7 @@ class Made:
 
     def has(self, task: Task) -> bool:
         """Whether the output is there and would come out the same again."""
-        if task.target is None or not task.target.exists():
+        if task.refusal or task.target is None or not task.target.exists():
             return False
         note = dict(self.notes.get(self._name(task), {}))
         note.pop("figures", None)

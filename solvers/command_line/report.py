@@ -14,6 +14,8 @@ from ..recordings import is_depth, read_motion_or_tracks
 from .verb import Task
 
 PAGE, FIGURES, PICTURES = "report.html", "report.json", Path("report")
+PICTURE = ".png"
+"""What follows the name of an output in the name of its picture."""
 TEMPLATE = Path(__file__).with_name("report.html")
 UNITS = {
     "_m_per_s3": " (m/s³)", "_cm_per_s": " (cm/s)", "_hz": " (Hz)", "_deg": " (°)",
@@ -139,7 +141,7 @@ def _picture(task: Task) -> Path:
     """Return where the picture of a task is, within the folder of the outputs."""
     assert task.target is not None
     place = task.target.relative_to(task.arguments.output_folder)
-    return PICTURES / place.with_name(place.name + ".png")
+    return PICTURES / place.with_name(place.name + PICTURE)
 
 
 def _listed(entry: Entry) -> dict[str, Any]:

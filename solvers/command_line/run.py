@@ -13,7 +13,7 @@ from ..faults import Failure, attempt
 from .batch import RECORD, Finished, Made, work_on
 from .options import SentenceParser
 from .report import PAGE, Entry, draw_task, has_picture, write_report
-from .screen import Screen
+from .screen import Screen, escape_odd_names
 from .tasks import tasks_of
 from .verb import Makes, Outcome, Task, Verb
 
@@ -48,6 +48,7 @@ def run(verbs: Mapping[str, Verb], words: Sequence[str], prog: str) -> int:
         sentence on stderr; a slip in the command line itself raises SystemExit with status 2.
     """
     arguments = _parser(verbs, prog).parse_args(words)
+    escape_odd_names(sys.stdout)
     screen = Screen()
     try:
         return _work(verbs[arguments.verb], arguments, screen)
@@ -149,7 +150,11 @@ def _worked(
         figures = {} if made is None else made.figures(task)
         figures = {**figures, "already_made": True}
         yield Finished(task, Outcome("Already made.", figures, failures))
-    tasks = [task for task in tasks if task not in there]
+    refused = [task for task in tasks if task.refusal]
+    for task in refused:
+        screen.say(task.refusal)
+        yield Finished(task, None, task.refusal)
+    tasks = [task for task in tasks if task not in [*there, *refused]]
     prepared = verb.prepare(arguments, screen.progress) if tasks else None
     for finished in work_on(verb, tasks, prepared, n_jobs, screen):
         screen.clear()

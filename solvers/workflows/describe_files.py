@@ -11,7 +11,7 @@ from multiprocessing import get_context
 from pathlib import Path
 from typing import NamedTuple
 
-from ..faults import Failure, attempt
+from ..faults import Failure, attempt, escaped
 from ..recordings import read_tracked
 from ..retrieval import Clip, DescribedClip, Origin, describe_clip
 
@@ -57,6 +57,9 @@ def describe_files(files: Iterable[Wanted], jobs: int) -> Iterator[Described]:
 def described(wanted: Wanted) -> Described:
     """Read and describe one file."""
     path = wanted.origin.path
+    if escaped(path) != path:
+        reason = "its name is no valid UTF-8, and a library keeps only names that are"
+        return Described(wanted, None, f"{escaped(path)}: {reason}. Rename it.")
     found = attempt(path, _describe, wanted)
     if not isinstance(found, Failure):
         return Described(wanted, found)
