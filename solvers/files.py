@@ -1,19 +1,18 @@
-"""Write files whole or not at all, and keep learned things in archives that cannot run code."""
+"""Write files whole or not at all, and open nothing but files."""
 
+import errno
 import os
 import re
+import stat
 import struct
 import zipfile
 import zlib
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Iterable, Iterator
 from contextlib import contextmanager
 from pathlib import Path
 from secrets import token_hex
 from tokenize import TokenError
-from typing import Any
-
-import numpy as np
-from numpy.typing import NDArray
+from typing import BinaryIO
 
 from .errors import FileAccessError, InvalidFileError
 
@@ -32,6 +31,22 @@ PART_BYTES = 6
 def unreadable(path: Path | str, error: OSError) -> FileAccessError:
     """Return the error of a file or folder that the system does not let us read."""
     return FileAccessError(f"{path} cannot be read ({error.strerror}).")
+
+
+def open_regular(path: Path | str) -> BinaryIO:
+    """Open a file to be read.
+
+    Raises OSError for what is none: a pipe would be waited for, a device may never end.
+    """
+    ways = os.O_RDONLY | getattr(os, "O_NONBLOCK", 0) | getattr(os, "O_BINARY", 0)
+    descriptor = os.open(path, ways)
+    try:
+        if not stat.S_ISREG(os.fstat(descriptor).st_mode):
+            raise OSError(errno.EINVAL, "it is no file", str(path))
+        return os.fdopen(descriptor, "rb")
+    except BaseException:
+        os.close(descriptor)
+        raise
 
 
 @contextmanager
@@ -80,39 +95,3 @@ def remove_leftovers(paths: Iterable[Path]) -> None:
 
 def _part_stem(path: Path) -> str:
     return f".{path.stem[:40]}."
-
-
-def write_archive(
-    path: Path | str, kind: str, version: int, arrays: Mapping[str, NDArray[Any]]
-) -> None:
-    """Save named arrays as one compressed npz that `read_archive` knows to be a `kind`."""
-    with written_whole(path) as part, part.open("wb") as file:
-        np.savez_compressed(file, kind=np.array(kind), version=np.array(version), **arrays)
-
-
-def read_archive(path: Path | str, kind: str, version: int) -> dict[str, NDArray[Any]]:
-    """Load what `write_archive` saved. Nothing in the file is ever executed.
-
-    Raises
-    ------
-    InvalidFileError
-        The file is missing, damaged, holds something else, or comes from another version.
-    """
-    try:
-        # Opened here, because numpy leaves a file open where it finds no archive in it.
-        with Path(path).open("rb") as file, np.load(file, allow_pickle=False) as archive:
-            arrays = {name: np.array(archive[name]) for name in archive.files}
-    except FileNotFoundError:
-        raise InvalidFileError(f"There is no file {path}.") from None
-    except DAMAGE as error:
-        raise InvalidFileError(f"{path} is not a readable archive ({error}).") from None
-    found = str(arrays.pop("kind", "something else"))
-    if found != kind:
-        raise InvalidFileError(f"{path} holds {found}, not {kind}.")
-    saved = arrays.pop("version", np.array(-1))
-    if saved.shape != () or int(saved) != version:
-        raise InvalidFileError(
-            f"{path} was saved as version {saved} of {kind}; this Mocap Assist reads version"
-            f" {version}. Learn it again from the clips."
-        )
-    return arrays

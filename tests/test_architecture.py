@@ -12,7 +12,10 @@ MAY_IMPORT = {
     "mocap_assist": {"solvers"},
     "operators": {"mocap_assist", "solvers"},
 }
-SHARED_ROOMS = {"motion", "errors", "faults", "files", "json_text", "progress", "settings"}
+SHARED_ROOMS = {
+    "archives", "errors", "faults", "files", "json_text", "motion", "npz_members", "progress",
+    "settings",
+}  # fmt: skip
 FAMILIES = [
     folder.name
     for folder in sorted((ROOT / "solvers").iterdir())

@@ -11,6 +11,7 @@ from solvers.depth_tracking.depth_edges import canny, edge_pixels
 from solvers.depth_tracking.edge_term import edge_term
 from solvers.depth_tracking.hypothesis import imagine
 from solvers.depth_tracking.motion_prior import (
+    LAYOUT,
     LocalPca,
     load_motion_prior,
     local_pca,
@@ -175,7 +176,8 @@ def test_saving_and_loading_a_prior(tmp_path):
     assert_allclose(loaded.poses, prior.poses, atol=1e-3)
     assert_array_equal(loaded.clips, [0] * 5 + [1] * 3)
     assert loaded.trained_on == "two waves"
-    np.savez(tmp_path / "bad.npz", kind="motion prior", version=1, poses=np.zeros((2, 3)))
+    arrays = LAYOUT.read(tmp_path / "prior.npz")
+    LAYOUT.write(tmp_path / "bad.npz", arrays | {"coordinates": np.array(["other parts"] * 30)})
     with pytest.raises(InvalidFileError, match="other parts"):
         load_motion_prior(tmp_path / "bad.npz")
     with pytest.raises(InvalidMotionError, match="no pose to learn"):
