@@ -129,7 +129,7 @@ def open3d_layout(root: Path) -> Layout | None:
 def plain_layout(root: Path) -> Layout | None:
     """Lay out a folder that holds PNG files and says nothing of them."""
     names = pictures_in(root, "")
-    return Layout(root, names) if names and is_png(root / names[0]) else None
+    return Layout(root, names) if names and is_png(root, names[0]) else None
 
 
 def pictures_in(root: Path, folder: str) -> tuple[str, ...]:
@@ -140,7 +140,7 @@ def pictures_in(root: Path, folder: str) -> tuple[str, ...]:
     found = [
         path.relative_to(root).as_posix()
         for path in below.iterdir()
-        if path.suffix.lower() in PICTURES and not path.name.startswith(".")
+        if path.suffix.lower() in PICTURES and not path.name.startswith(".") and path.is_file()
     ]
     return tuple(in_order(found))
 
