@@ -4,13 +4,15 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
-from ...solvers.errors import InvalidFileError, InvalidMotionError
+from ...solvers.errors import InvalidFileError
+from ...solvers.faults import Failure, attempt
 from ...solvers.progress import Progress, unwatched, within
 from ...solvers.recordings.folder_scan import files_below
 from ...solvers.retrieval import (
     Clip,
     ClipEntry,
     ClipLibrary,
+    DescribedClip,
     Origin,
     describe_clip,
     open_clip_library,
@@ -183,16 +185,20 @@ class _Indexing:
         self._refused += read.refused
         described = []
         for clip in read.clips:
-            try:
-                described.append(describe_clip(self._clip(blend, clip, others)))
-            except InvalidMotionError as error:
-                self._refused.append(str(error))
+            found = attempt(f"{blend.path}, {clip.item}", self._describe, blend, clip, others)
+            if isinstance(found, Failure):
+                self._refused.append(found.sentence)
+            else:
+                described.append(found)
         self._library.add_described(described)
         added = {clip.entry.name for clip in described}
         gone = [name for name in before if name not in added]
         self._library.remove(gone)
         self.added += len(added)
         self.removed += len(gone)
+
+    def _describe(self, blend: _Blend, clip: BlendClip, others: set[str]) -> DescribedClip:
+        return describe_clip(self._clip(blend, clip, others))
 
     def _clip(self, blend: _Blend, clip: BlendClip, others: set[str]) -> Clip:
         name = plain = f"{blend.name}/{clip.item}"

@@ -8,6 +8,7 @@ import bpy
 from ...solvers.faults import Failure, attempt
 from ...solvers.motion import Motion
 from ...solvers.progress import Progress, unwatched
+from ...solvers.workflows.describe_files import odd_name
 from ..jobs.in_blender import BlendClip, BlendRead
 from ..scene import compat, history
 from ..scene.armature_read import read_take
@@ -37,6 +38,9 @@ def read_files(
     found = []
     for place, path in enumerate(paths):
         progress(place / len(paths), f"Reading {Path(path).name}")
+        if sentence := odd_name(path):
+            found.append(BlendRead((), (sentence,)))
+            continue
         read = attempt(path, _read_file, path, assets_only, items, rig)
         failed = isinstance(read, Failure)
         found.append(BlendRead((), (read.sentence,)) if failed else read)

@@ -57,9 +57,8 @@ def describe_files(files: Iterable[Wanted], jobs: int) -> Iterator[Described]:
 def described(wanted: Wanted) -> Described:
     """Read and describe one file."""
     path = wanted.origin.path
-    if escaped(path) != path:
-        reason = "its name is no valid UTF-8, and a library keeps only names that are"
-        return Described(wanted, None, f"{escaped(path)}: {reason}. Rename it.")
+    if sentence := odd_name(path):
+        return Described(wanted, None, sentence)
     found = attempt(path, _describe, wanted)
     if not isinstance(found, Failure):
         return Described(wanted, found)
@@ -67,6 +66,14 @@ def described(wanted: Wanted) -> Described:
     named = Path(path).name in reason
     sentence = reason if named else f"{path}: {reason}"
     return Described(wanted, None, sentence, for_good=found.lasting)
+
+
+def odd_name(path: str) -> str:
+    """Return why a library cannot keep a file by its name, or nothing."""
+    if escaped(path) == path:
+        return ""
+    reason = "its name is no valid UTF-8, and a library keeps only names that are"
+    return f"{escaped(path)}: {reason}. Rename it."
 
 
 def _describe(wanted: Wanted) -> DescribedClip:
