@@ -8,7 +8,8 @@ from typing import Any, NamedTuple
 
 import bpy
 
-from ..solvers.errors import MocapAssistError, SolveCancelled
+from ..solvers.errors import MocapAssistError
+from ..solvers.faults import Failure, attempt
 from ..solvers.motion import JointRecording, Motion, Tracks
 from ..solvers.motion.depth_recording import DepthRecording
 from ..solvers.progress import Progress, unwatched
@@ -83,18 +84,15 @@ class Arrival:
 
         `moving` is what it becomes (`make_objects`), `warnings` what its reader said of it.
         """
-        try:
-            with all_or_nothing(context) as made:
-                top, sentence = self._make(context, path, recording, moving, progress)
-        except SolveCancelled:
-            raise
-        except MocapAssistError as error:
-            self.refuse(path, error)
-        else:
-            self._made.append(made)
-            self._tops.append(top.session_uid)
-            self._said.append(" ".join([sentence, *[f"{told}." for told in warnings[:TOLD]]]))
-            self._figures.append(_figures(recording, warnings))
+        built = attempt(path, self._build, context, path, recording, moving, progress)
+        if isinstance(built, Failure):
+            self.refuse(path, built.as_error())
+            return
+        made, top, sentence = built
+        self._made.append(made)
+        self._tops.append(top.session_uid)
+        self._said.append(" ".join([sentence, *[f"{told}." for told in warnings[:TOLD]]]))
+        self._figures.append(_figures(recording, warnings))
 
     def refuse(self, path: Path, error: MocapAssistError) -> None:
         """Note that a file failed."""
@@ -119,6 +117,17 @@ class Arrival:
             choose(context, list(tops), tops[-1])
         failed = self._failed if self._said or self._failed else ["No file was chosen."]
         return Imported(tops, tuple(self._said), tuple(failed), tuple(self._figures))
+
+    def _build(
+        self,
+        context: bpy.types.Context,
+        path: Path,
+        recording: Recording,
+        moving: Motion | Tracks | None,
+        progress: Progress,
+    ) -> tuple[Numbers, bpy.types.Object, str]:
+        with all_or_nothing(context) as made:
+            return made, *self._make(context, path, recording, moving, progress)
 
     def _make(
         self,

@@ -5,8 +5,10 @@ from pathlib import Path
 import bpy
 
 from ..solvers.errors import InvalidFileError
+from ..solvers.faults import attempt
 from ..solvers.motion.camera import Camera
 from ..solvers.recordings import depth_format_of, depth_in, is_depth_folder, recordings_in
+from ..solvers.recordings.folder_scan import is_folder
 from .import_choices import ImportChoices
 from .scene.exr_folder import as_archive, exr_files, size_of
 from .scene.scene_rate import scene_rate
@@ -22,8 +24,10 @@ PICTURES = (".png", ".exr", ".jpg", ".jpeg")
 
 
 def is_take(folder: Path) -> bool:
-    """Whether a folder is a recording of depth."""
-    return folder.is_dir() and bool(exr_files(folder) or depth_format_of(folder))
+    """Whether a folder is a recording of depth; not if it cannot be looked into."""
+    if not is_folder(folder):
+        return False
+    return attempt(folder, lambda: bool(exr_files(folder) or depth_format_of(folder))) is True
 
 
 def depth_recordings_in(folder: Path) -> list[Path]:

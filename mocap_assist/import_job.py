@@ -8,6 +8,7 @@ from pathlib import Path
 import bpy
 
 from ..solvers.errors import InvalidFileError, MocapAssistError
+from ..solvers.faults import Failure, attempt
 from .arrival import READING, Arrival
 from .depth_folders import readable
 from .import_choices import ImportChoices
@@ -36,7 +37,7 @@ class ImportJob:
         self, context: bpy.types.Context, paths: list[Path], choices: ImportChoices
     ) -> None:
         self.arrival = Arrival(context, choices)
-        paths = [readable(context, path, choices) for path in paths]
+        paths = self._readable(context, paths, choices)
         self._wanted = wanted_of(context, choices)
         self._batches = deque(batches(paths))
         self._n_files, self._n_read, self._n_in = len(paths), 0, 0
@@ -68,6 +69,19 @@ class ImportJob:
     def _stop(self) -> None:
         self.job.cancel()
         self.job.tidy_up()
+
+    def _readable(
+        self, context: bpy.types.Context, paths: list[Path], choices: ImportChoices
+    ) -> list[Path]:
+        """Return what another process can read, and refuse the rest; raise if it is all."""
+        found = [attempt(path, readable, context, path, choices) for path in paths]
+        failed = [each for each in found if isinstance(each, Failure)]
+        if len(failed) == len(paths):
+            raise failed[0].as_error()
+        for path, each in zip(paths, found, strict=True):
+            if isinstance(each, Failure):
+                self.arrival.refuse(path, each.as_error())
+        return [each for each in found if isinstance(each, Path)]
 
     def _next_batch(self) -> "partial[list[Read | MocapAssistError]]":
         self._states = [state_of(path) for path in self._batches[0]]

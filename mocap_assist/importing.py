@@ -5,6 +5,7 @@ from pathlib import Path
 import bpy
 
 from ..solvers.errors import MocapAssistError, SolveCancelled
+from ..solvers.faults import Failure, attempt
 from ..solvers.progress import Progress, unwatched, within
 from .arrival import READING, Arrival, Imported
 from .depth_folders import is_take, readable, take_of
@@ -80,8 +81,11 @@ def import_files(
     try:
         for index, path in enumerate(paths):
             share = within(progress, index / len(paths), (index + 1) / len(paths))
+            source = attempt(path, readable, context, path, choices)
+            if isinstance(source, Failure):
+                arrival.refuse(path, source.as_error())
+                continue
             try:
-                source = readable(context, path, choices)
                 known = read_again(
                     source,
                     within(share, 0.0, READING),

@@ -14,6 +14,7 @@ from typing import Any
 import bpy
 
 from ..solvers.files import written_whole
+from ..solvers.json_text import parse_json
 from .path_properties import absolute
 
 EXTENSION = __package__.rpartition(".")[0]
@@ -68,8 +69,8 @@ def _file() -> Path:
 @lru_cache(maxsize=1)
 def _read(path: Path, modified: int) -> dict[str, Any]:
     try:
-        stored = json.loads(path.read_text(encoding="utf-8"))
-    except (OSError, ValueError, RecursionError):
+        stored = parse_json(path.read_text(encoding="utf-8"))
+    except (OSError, ValueError):
         return {}
     return stored if isinstance(stored, dict) else {}
 

@@ -17,5 +17,9 @@ class InvalidFileError(MocapAssistError, ValueError):
     """A file is not what its reader expects, or is damaged."""
 
 
+class FileAccessError(InvalidFileError):
+    """A file or folder cannot be opened now; nothing is known of what it holds."""
+
+
 class SolveCancelled(MocapAssistError):
     """The animator pressed Escape."""

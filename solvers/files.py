@@ -1,26 +1,26 @@
-"""Write files whole or not at all, and keep learned things in archives that cannot run code."""
+"""Write files whole or not at all, and open nothing but files."""
 
+import errno
+import os
 import re
+import stat
 import struct
 import zipfile
 import zlib
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Iterable, Iterator
 from contextlib import contextmanager
 from pathlib import Path
 from secrets import token_hex
 from tokenize import TokenError
-from typing import Any
+from typing import BinaryIO
 
-import numpy as np
-from numpy.typing import NDArray
-
-from .errors import InvalidFileError
+from .errors import FileAccessError, InvalidFileError
 
 # What numpy and zipfile were seen to raise on files that are cut short or altered.
 DAMAGE = (
-    OSError, ValueError, EOFError, KeyError, AttributeError, TypeError, NotImplementedError,
-    OverflowError, RecursionError, SyntaxError, TokenError, zipfile.BadZipFile, zlib.error,
-    struct.error,
+    OSError, ValueError, EOFError, IndexError, KeyError, AttributeError, TypeError,
+    NotImplementedError, OverflowError, RecursionError, SyntaxError, TokenError,
+    zipfile.BadZipFile, zlib.error, struct.error,
 )  # fmt: skip
 
 
@@ -28,11 +28,33 @@ PART_BYTES = 6
 """Random bytes in the name of a temporary file, so that two writers do not meet."""
 
 
+def unreadable(path: Path | str, error: OSError) -> FileAccessError:
+    """Return the error of a file or folder that the system does not let us read."""
+    return FileAccessError(f"{path} cannot be read ({error.strerror}).")
+
+
+def open_regular(path: Path | str) -> BinaryIO:
+    """Open a file to be read.
+
+    Raises OSError for what is none: a pipe would be waited for, a device may never end.
+    """
+    ways = os.O_RDONLY | getattr(os, "O_NONBLOCK", 0) | getattr(os, "O_BINARY", 0)
+    descriptor = os.open(path, ways)
+    try:
+        if not stat.S_ISREG(os.fstat(descriptor).st_mode):
+            raise OSError(errno.EINVAL, "it is no file", str(path))
+        return os.fdopen(descriptor, "rb")
+    except BaseException:
+        os.close(descriptor)
+        raise
+
+
 @contextmanager
 def written_whole(path: Path | str) -> Iterator[Path]:
     """Yield a temporary path beside `path`; move it onto `path` if all goes well.
 
-    On any exception the temporary file is removed and `path` is as it was.
+    On any exception the temporary file is removed and `path` is as it was. The content is on
+    the disk before the move: after a loss of power `path` holds the old content or the new.
 
     Raises
     ------
@@ -44,6 +66,8 @@ def written_whole(path: Path | str) -> Iterator[Path]:
     try:
         try:  # Not tempfile's: a Ctrl-C that falls into it leaves its file behind, or is lost.
             yield part
+            with part.open("rb+") as file:
+                os.fsync(file.fileno())
             part.replace(path)
         finally:
             part.unlink(missing_ok=True)
@@ -71,39 +95,3 @@ def remove_leftovers(paths: Iterable[Path]) -> None:
 
 def _part_stem(path: Path) -> str:
     return f".{path.stem[:40]}."
-
-
-def write_archive(
-    path: Path | str, kind: str, version: int, arrays: Mapping[str, NDArray[Any]]
-) -> None:
-    """Save named arrays as one compressed npz that `read_archive` knows to be a `kind`."""
-    with written_whole(path) as part, part.open("wb") as file:
-        np.savez_compressed(file, kind=np.array(kind), version=np.array(version), **arrays)
-
-
-def read_archive(path: Path | str, kind: str, version: int) -> dict[str, NDArray[Any]]:
-    """Load what `write_archive` saved. Nothing in the file is ever executed.
-
-    Raises
-    ------
-    InvalidFileError
-        The file is missing, damaged, holds something else, or comes from another version.
-    """
-    try:
-        # Opened here, because numpy leaves a file open where it finds no archive in it.
-        with Path(path).open("rb") as file, np.load(file, allow_pickle=False) as archive:
-            arrays = {name: np.array(archive[name]) for name in archive.files}
-    except FileNotFoundError:
-        raise InvalidFileError(f"There is no file {path}.") from None
-    except DAMAGE as error:
-        raise InvalidFileError(f"{path} is not a readable archive ({error}).") from None
-    found = str(arrays.pop("kind", "something else"))
-    if found != kind:
-        raise InvalidFileError(f"{path} holds {found}, not {kind}.")
-    saved = arrays.pop("version", np.array(-1))
-    if saved.shape != () or int(saved) != version:
-        raise InvalidFileError(
-            f"{path} was saved as version {saved} of {kind}; this Mocap Assist reads version"
-            f" {version}. Learn it again from the clips."
-        )
-    return arrays

@@ -9,7 +9,8 @@ import bpy
 from ...solvers.command_line import arguments_from, settings_from_arguments
 from ...solvers.command_line.files import found_in
 from ...solvers.command_line.screen import Screen
-from ...solvers.errors import InvalidFileError, MocapAssistError
+from ...solvers.errors import InvalidFileError
+from ...solvers.faults import Failure, attempt
 from ...solvers.settings import Settings
 from ..depth_folders import depth_recordings_in, is_take
 from ..import_choices import ImportChoices
@@ -56,11 +57,12 @@ def perform_capture(arguments: argparse.Namespace, screen: Screen) -> None:
     inside = found_in(others, look=depth_recordings_in)
     for path in [*takes, *(path for path, _ in inside)]:
         screen.title = path.name
-        try:
-            said.append(_tracked(path, choices, settings, screen))
-            made.append(bpy.context.object)
-        except MocapAssistError as error:
-            failed.append(f"{path}: {error}")
+        sentence = attempt(path, _tracked, path, choices, settings, screen)
+        if isinstance(sentence, Failure):
+            failed.append(sentence.sentence)
+            continue
+        said.append(sentence)
+        made.append(bpy.context.object)
     screen.clear()
     if made:
         save(target)

@@ -8,7 +8,7 @@ from collections.abc import Sequence
 import bpy
 
 from ...solvers.command_line import SentenceParser
-from ...solvers.command_line.screen import Screen
+from ...solvers.command_line.screen import Screen, escape_odd_names
 from ...solvers.errors import InvalidFileError, InvalidSettingError, MocapAssistError
 from ...solvers.files import written_whole
 from ..scene import history
@@ -35,6 +35,7 @@ def run(words: Sequence[str]) -> int:
     Each failure is one sentence on stderr. Nothing is saved if anything failed, but for
     `import`, `capture` and `each`, which do what can be done.
     """
+    escape_odd_names(sys.stdout)
     screen = Screen()
     try:
         own, after = _parted(list(words))

@@ -1,7 +1,6 @@
 """`each`: a verb done to each of many files, by Blenders of their own, and a report of all."""
 
 import argparse
-import json
 import subprocess
 import sys
 from collections.abc import Iterator, Sequence
@@ -13,8 +12,9 @@ from typing import Any
 import bpy
 
 from ...solvers.command_line.batch import Finished, Made
-from ...solvers.command_line.files import found_in, told_apart
+from ...solvers.command_line.files import found_in, refuse_long_name, told_apart
 from ...solvers.command_line.report import (
+    PICTURE,
     Entry,
     forget_picture,
     has_picture,
@@ -24,6 +24,9 @@ from ...solvers.command_line.report import (
 from ...solvers.command_line.screen import Screen
 from ...solvers.command_line.verb import Outcome, Task
 from ...solvers.errors import InvalidFileError, InvalidSettingError
+from ...solvers.faults import Failure, attempt
+from ...solvers.json_text import parse_json
+from ...solvers.recordings.folder_scan import files_below, is_folder, refuse_closed
 from ..depth_folders import all_recordings_in, depth_recordings_in
 
 HELP = "Do another verb to each of many files: each FILE... --output-folder DIR -- VERB ..."
@@ -84,6 +87,7 @@ def perform_each(arguments: argparse.Namespace, screen: Screen) -> None:
     tasks = _tasks(arguments)
     made = Made(folder)
     entries = {task.sources: Entry(task, None) for task in tasks}
+    faults: tuple[str, ...] = ()
     try:
         for finished in _worked(tasks, arguments, made):
             figures = finished.outcome.figures if finished.outcome else None
@@ -93,10 +97,12 @@ def perform_each(arguments: argparse.Namespace, screen: Screen) -> None:
             sys.stdout.flush()
     finally:
         if arguments.report:
-            write_report(folder, " ".join(arguments.words), list(entries.values()))
+            faults = write_report(folder, " ".join(arguments.words), list(entries.values()))
     failed = [entry.failure for entry in entries.values() if entry.failure]
     if failed:
         raise InvalidFileError(f"{len(failed)} of {len(tasks)} files failed. {failed[0]}")
+    if faults:
+        raise InvalidFileError(faults[0])
 
 
 def _named_files(words: Sequence[str]) -> list[Path]:
@@ -116,7 +122,7 @@ def _tasks(arguments: argparse.Namespace) -> list[Task]:
     places = told_apart([place for _, place in pairs], [BLEND] * len(pairs))
     tasks = []
     for (source, _), place in zip(pairs, places, strict=True):
-        if look is None and source.suffix.lower() != BLEND:
+        if look is None and not is_folder(source) and source.suffix.lower() != BLEND:
             raise InvalidSettingError(
                 f"{source} is no .blend file; only import and capture read others."
             )
@@ -125,21 +131,34 @@ def _tasks(arguments: argparse.Namespace) -> list[Task]:
         target = arguments.output_folder / place
         if target.resolve() == source.resolve():
             raise InvalidSettingError(f"{source} would be written over; choose another folder.")
-        tasks.append(Task((source,), target, arguments))
-    for task in tasks:
-        task.target.parent.mkdir(parents=True, exist_ok=True)
+        tasks.append(Task((source,), target, arguments, _refusal(source, target)))
     return tasks
+
+
+def _refusal(source: Path, target: Path) -> str:
+    """Make the folder of a target; return why nothing can be made of a file, or nothing."""
+    made = attempt(source, _make_room, source, target)
+    return made.sentence if isinstance(made, Failure) else ""
+
+
+def _make_room(source: Path, target: Path) -> None:
+    if source.is_dir():
+        refuse_closed(source)
+    refuse_long_name(target, PICTURE)
+    target.parent.mkdir(parents=True, exist_ok=True)
 
 
 def _blends(paths: Sequence[Path], not_in: Path) -> list[tuple[Path, Path]]:
     found = []
     for path in paths:
-        if not path.is_dir():
+        if not is_folder(path):
             found.append((path, Path(path.name)))
             continue
         whole = path.resolve()
-        above = whole.parent if len(paths) > 1 else whole
-        inside = sorted(whole.rglob(f"*{BLEND}"))
+        inside = [
+            file for file in files_below(whole) if file.suffix == BLEND or is_folder(file)
+        ]
+        above = whole.parent if len(paths) > 1 or inside == [whole] else whole
         kept = [file for file in inside if not_in not in file.parents]
         found += [(file, file.relative_to(above)) for file in kept]
     if not found:
@@ -174,6 +193,15 @@ def _worked(
 
 def _attempt(task: Task) -> Finished:
     """Let another Blender do the verb to one file."""
+    finished = attempt(task.source, _perform, task)
+    if isinstance(finished, Failure):
+        return Finished(task, None, finished.sentence)
+    return finished
+
+
+def _perform(task: Task) -> Finished:
+    if task.refusal:
+        return Finished(task, None, task.refusal)
     forget_picture(task)
     with TemporaryDirectory(prefix="mocap_assist_") as scratch:
         figures = Path(scratch) / "figures"
@@ -205,7 +233,7 @@ def _command(task: Task, figures: Path) -> list[str]:
 
 def _figures(path: Path) -> dict[str, Any]:
     """Return the figures of the first armature, and how many there are; or of a recording."""
-    lines = [json.loads(line) for line in path.read_text(encoding="utf-8").splitlines()]
+    lines = [parse_json(line) for line in path.read_text(encoding="utf-8").splitlines()]
     first: dict[str, Any] = lines[0] if lines else {}
     if "objects" in first:  # What is said of the one recording that each is.
         told = first["figures"][0] if "figures" in first else {"said": first["said"]}

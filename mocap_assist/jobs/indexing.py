@@ -4,12 +4,15 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
-from ...solvers.errors import InvalidFileError, InvalidMotionError
+from ...solvers.errors import InvalidFileError
+from ...solvers.faults import Failure, attempt
 from ...solvers.progress import Progress, unwatched, within
+from ...solvers.recordings.folder_scan import files_below
 from ...solvers.retrieval import (
     Clip,
     ClipEntry,
     ClipLibrary,
+    DescribedClip,
     Origin,
     describe_clip,
     open_clip_library,
@@ -112,10 +115,8 @@ def _blends(places: Sequence[Place]) -> Iterator[_Blend]:
     seen = set()
     for place in places:
         top = Path(place.path).resolve()
-        inside = sorted(top.rglob(f"*{BLEND}")) if top.is_dir() else [top]
-        for path in inside:
-            hidden = any(part.startswith(".") for part in path.relative_to(top).parts)
-            if path.suffix != BLEND or hidden or path in seen or not path.is_file():
+        for path in files_below(top) if top.is_dir() else [top]:
+            if path.suffix != BLEND or path in seen or not path.is_file():
                 continue
             seen.add(path)
             below = path.relative_to(top.parent if path == top else top)
@@ -184,16 +185,20 @@ class _Indexing:
         self._refused += read.refused
         described = []
         for clip in read.clips:
-            try:
-                described.append(describe_clip(self._clip(blend, clip, others)))
-            except InvalidMotionError as error:
-                self._refused.append(str(error))
+            found = attempt(f"{blend.path}, {clip.item}", self._describe, blend, clip, others)
+            if isinstance(found, Failure):
+                self._refused.append(found.sentence)
+            else:
+                described.append(found)
         self._library.add_described(described)
         added = {clip.entry.name for clip in described}
         gone = [name for name in before if name not in added]
         self._library.remove(gone)
         self.added += len(added)
         self.removed += len(gone)
+
+    def _describe(self, blend: _Blend, clip: BlendClip, others: set[str]) -> DescribedClip:
+        return describe_clip(self._clip(blend, clip, others))
 
     def _clip(self, blend: _Blend, clip: BlendClip, others: set[str]) -> Clip:
         name = plain = f"{blend.name}/{clip.item}"

@@ -6,6 +6,8 @@ from functools import partial
 from pathlib import Path
 from typing import Any, BinaryIO, TypeVar
 
+from ...solvers.faults import escaped
+
 REQUEST, RESULT, LOG, SHOWN = "request", "result", "log", "shown"
 TAIL = 4096  # bytes of the log that are read
 SIZE = 8  # bytes that tell how long a pickle is
@@ -49,7 +51,7 @@ def read_shown(folder: Path, start: int) -> tuple[list[Any], int]:
 
 def progress_line(fraction: float, message: str) -> str:
     """Return the line of the log that tells how far a solver is."""
-    return f"@{min(max(fraction, 0.0), 1.0):.4f} {message}"
+    return escaped(f"@{min(max(fraction, 0.0), 1.0):.4f} {message}")
 
 
 def last_progress(folder: Path) -> tuple[float, str]:

@@ -1,12 +1,12 @@
 """What the button Import has done for it before anything comes into the scene."""
 
-import traceback
 from collections.abc import Callable, Sequence
 from dataclasses import replace
 from pathlib import Path
 from typing import NamedTuple, TypeVar
 
-from ...solvers.errors import InvalidFileError, MocapAssistError, SolveCancelled
+from ...solvers.errors import MocapAssistError, SolveCancelled
+from ...solvers.faults import Failure, attempt
 from ...solvers.motion import (
     JointRecording,
     Motion,
@@ -104,21 +104,10 @@ def read_file(
 
 
 def _tried(path: Path, read: Callable[[], Result]) -> Result:
-    try:
-        return read()
-    except MocapAssistError:
-        raise
-    except MemoryError:
-        raise InvalidFileError(
-            f"{path} needs more memory than there is. Import a part of the take."
-        ) from None
-    except Exception as error:  # of the reader, which must not keep other files out
-        refusal = InvalidFileError(
-            f"{path} cannot be read, since its reader fails ({type(error).__name__}: {error})."
-            " Please report that, with the file."
-        )
-        refusal.add_note(traceback.format_exc())
-        raise refusal from None
+    found = attempt(path, read)
+    if isinstance(found, Failure):
+        raise found.as_error()
+    return found
 
 
 class _Listener:

@@ -5,9 +5,10 @@ from pathlib import Path
 
 import bpy
 
-from ...solvers.errors import MocapAssistError
+from ...solvers.faults import Failure, attempt
 from ...solvers.motion import Motion
 from ...solvers.progress import Progress, unwatched
+from ...solvers.workflows.describe_files import odd_name
 from ..jobs.in_blender import BlendClip, BlendRead
 from ..scene import compat, history
 from ..scene.armature_read import read_take
@@ -37,7 +38,12 @@ def read_files(
     found = []
     for place, path in enumerate(paths):
         progress(place / len(paths), f"Reading {Path(path).name}")
-        found.append(_read_file(path, assets_only, items, rig))
+        if sentence := odd_name(path):
+            found.append(BlendRead((), (sentence,)))
+            continue
+        read = attempt(path, _read_file, path, assets_only, items, rig)
+        failed = isinstance(read, Failure)
+        found.append(BlendRead((), (read.sentence,)) if failed else read)
     return found
 
 
@@ -113,10 +119,9 @@ def _read_action(path: str, action: bpy.types.Action, items: Sequence[str]) -> B
     for item, (armature, source) in sources_of(action).items():
         if items and item not in items:
             continue
-        try:
-            motion = read_source(bpy.context.scene, armature, source)
-        except MocapAssistError as error:
-            refused.append(f"{path}, {item}: {error}")
+        motion = attempt(f"{path}, {item}", read_source, bpy.context.scene, armature, source)
+        if isinstance(motion, Failure):
+            refused.append(motion.sentence)
         else:
             clips.append(BlendClip(item, motion, tags))
     return BlendRead(tuple(clips), tuple(refused))

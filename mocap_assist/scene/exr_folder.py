@@ -5,6 +5,7 @@ an archive in the extension's own folder, which is read like any other recording
 """
 
 import hashlib
+import shutil
 import zipfile
 from collections.abc import Iterator
 from pathlib import Path
@@ -17,12 +18,16 @@ from ...solvers.errors import InvalidFileError
 from ...solvers.files import written_whole
 from ...solvers.motion.camera import Camera
 from ...solvers.progress import Progress, unwatched
+from ...solvers.recordings.depth_stack import check_size
 from ...solvers.recordings.picture_frames import in_order
 
 EXR = ".exr"
 EXTENSION = __package__.rpartition(".mocap_assist")[0]
 FARTHEST = 65_000.0
 """Units of the picture; Blender writes 10 000 000 000 where nothing is, or the most it can."""
+
+MAX_COPIES, MAX_COPY_BYTES = 16, 8_000_000_000
+"""Copies that are kept: those that were used last, and those that the open file shows."""
 
 Depth = NDArray[np.float32]
 
@@ -40,7 +45,8 @@ def as_archive(
 ) -> Path:
     """Return an archive of the depth in the first channel of the pictures of a folder.
 
-    One that was made before from the same pictures is used again.
+    One that was made before from the same pictures is used again. Before another one is made,
+    those go that were used longest ago, where there are too many (`MAX_COPIES`).
 
     Parameters
     ----------
@@ -63,7 +69,9 @@ def as_archive(
     place = Path(bpy.utils.extension_path_user(EXTENSION, path="depth", create=True))
     archive = place / digest / f"{folder.name}.npz"
     if archive.is_file():
+        archive.touch()
         return archive
+    remove_old_copies(place, MAX_COPIES - 1, MAX_COPY_BYTES)
     archive.parent.mkdir(parents=True, exist_ok=True)
     numbers = {name: getattr(camera, name) for name in ("fx", "fy", "cx", "cy")}
     numbers["frame_rate"] = frame_rate
@@ -80,6 +88,29 @@ def as_archive(
             with made.open(f"{name}.npy", "w") as file:
                 np.lib.format.write_array(file, np.array(float(number)))
     return archive
+
+
+def remove_old_copies(place: Path, n_copies: int, n_bytes: int) -> None:
+    """Remove the copies that were used longest ago, until so many, and so many bytes, are left.
+
+    Each is a folder of its own, named by its digest. Those that the open file shows stay.
+    """
+    shown = [
+        value
+        for data in (*bpy.data.meshes, *bpy.data.armatures)
+        for value in data.values()
+        if isinstance(value, str)
+    ]
+    copies = sorted(filter(Path.is_dir, place.iterdir()), key=_last_use, reverse=True)
+    sizes = np.cumsum([sum(file.stat().st_size for file in copy.iterdir()) for copy in copies])
+    for number, (copy, size) in enumerate(zip(copies, sizes, strict=True), start=1):
+        in_use = any(copy.name in value for value in shown)
+        if (number > n_copies or size > n_bytes) and not in_use:
+            shutil.rmtree(copy, ignore_errors=True)
+
+
+def _last_use(copy: Path) -> float:
+    return max((file.stat().st_mtime for file in copy.iterdir()), default=0.0)
 
 
 def size_of(path: Path) -> tuple[int, int]:
@@ -108,6 +139,8 @@ def _picture(path: Path) -> Depth:
     try:
         image.colorspace_settings.name = "Non-Color"
         width, height = image.size
+        if width and height:
+            check_size(path, height, width)
         if not (width and height and image.has_data | bool(len(image.pixels))):
             raise InvalidFileError(
                 f"{path} is no picture that Blender can read: it is damaged, or has several"

@@ -5,8 +5,9 @@ from typing import Any, TypeVar
 
 import bpy
 
+from ...solvers.json_text import parse_json
+
 Kind = TypeVar("Kind", dict[str, Any], list[Any])
-DAMAGE = (TypeError, ValueError, RecursionError)
 
 
 def store(holder: Any, key: str, value: dict[str, Any] | list[Any]) -> None:
@@ -25,8 +26,8 @@ def stored(holder: bpy.types.ID, key: str, kind: type[Kind]) -> Kind:
 def parsed(text: object, kind: type[Kind]) -> Kind:
     """Return what a text says, as `stored` does."""
     try:
-        value = json.loads(text, parse_constant=_refuse)  # type: ignore[arg-type]
-    except DAMAGE:
+        value = parse_json(str(text), parse_constant=_refuse)
+    except ValueError:
         return kind()
     return value if isinstance(value, kind) else kind()
 

@@ -6,12 +6,14 @@ import signal
 from collections.abc import Iterator, Sequence
 from concurrent.futures import Future, ProcessPoolExecutor, as_completed
 from concurrent.futures.process import BrokenProcessPool
+from dataclasses import replace
 from multiprocessing import get_context
 from pathlib import Path
 from typing import Any, NamedTuple
 
-from ..errors import MocapAssistError
+from ..faults import Failure, attempt
 from ..files import remove_leftovers, written_whole
+from ..json_text import parse_json
 from ..progress import Progress, unwatched
 from ..version import version
 from .report import FIGURES, PAGE, draw_task, forget_picture
@@ -94,24 +96,21 @@ def _submitted(
 
 
 def _attempt(verb: Verb, task: Task, prepared: Any, progress: Progress) -> Finished:
-    try:
-        outcome = verb.perform(task, prepared, progress)
-        if getattr(task.arguments, "output_folder", None) is not None:
-            forget_picture(task)
-            if task.arguments.report:
-                draw_task(task)
-        return Finished(task, outcome)
-    except MocapAssistError as error:
-        sentence = str(error)
-        named = task.subject.name in sentence
-        return Finished(task, None, sentence if named else f"{task.subject}: {sentence}")
-    except OSError as error:
-        return Finished(task, None, f"{error.filename or task.subject}: {error.strerror}.")
-    except MemoryError:
-        sentence = (
-            f"{task.subject} needs more memory than there is; work on a part of the take."
-        )
-        return Finished(task, None, sentence)
+    outcome = attempt(task.subject, _perform, verb, task, prepared, progress)
+    if isinstance(outcome, Failure):
+        return Finished(task, None, outcome.sentence)
+    return Finished(task, outcome)
+
+
+def _perform(verb: Verb, task: Task, prepared: Any, progress: Progress) -> Outcome:
+    """Do the work; figures that cannot be written as JSON are a fault of this task."""
+    outcome = verb.perform(task, prepared, progress)
+    json.dumps(outcome.figures, allow_nan=False)
+    if getattr(task.arguments, "output_folder", None) is not None:
+        forget_picture(task)
+        if task.arguments.report and (fault := draw_task(task)):
+            return replace(outcome, failures=(*outcome.failures, fault))
+    return outcome
 
 
 def _die_on_interrupt() -> None:
@@ -131,7 +130,7 @@ class Made:
         self.path = folder / RECORD
         self.notes: dict[str, Any] = {}
         try:
-            notes = json.loads(self.path.read_text(encoding="utf-8"))
+            notes = parse_json(self.path.read_bytes())
         except (OSError, ValueError):
             notes = None  # None yet, or unreadable: everything is made anew.
         if isinstance(notes, dict):
@@ -144,7 +143,7 @@ class Made:
 
     def has(self, task: Task) -> bool:
         """Whether the output is there and would come out the same again."""
-        if task.target is None or not task.target.exists():
+        if task.refusal or task.target is None or not task.target.exists():
             return False
         note = dict(self.notes.get(self._name(task), {}))
         note.pop("figures", None)

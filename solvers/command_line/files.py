@@ -1,10 +1,12 @@
 """Recordings in and out, as the command line names them."""
 
 import argparse
+import os
 from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
 
 from ..errors import InvalidFileError
+from ..faults import Failure, attempt
 from ..motion import Motion, Tracks
 from ..progress import Progress, within
 from ..recordings import (
@@ -15,6 +17,8 @@ from ..recordings import (
     write_c3d,
     write_trc,
 )
+from ..recordings.folder_scan import is_folder
+from ..recordings.names import shown
 
 MOTIONS = ".bvh"
 POINTS = {".c3d": write_c3d, ".trc": write_trc}
@@ -24,6 +28,8 @@ FOR_JOINTS = {JOINTS: "joints"}
 RECORDED = {**FOR_MOTIONS, **dict.fromkeys(POINTS, "points")}
 """Endings of recordings that can be written, and what each is for."""
 POINTS_BY_DEFAULT = ".trc"
+LONGEST_NAME = 255
+"""Bytes in the name of a file; on Windows, units of two bytes."""
 LEARNED = {".npz": "learned patterns"}
 
 
@@ -71,18 +77,18 @@ def found_in(
     """
     found = []
     for path in paths:
-        if not path.is_dir():
+        if not is_folder(path):
             found.append((path, Path(path.name)))
             continue
-        inside = [
-            file for file in look(path)
-            if not_in is None or not_in.resolve() not in file.resolve().parents
-        ]  # fmt: skip
+        whole = path.resolve()
+        inside = [(file, whole / file.relative_to(path)) for file in look(path)]
+        if not_in is not None:
+            inside = [each for each in inside if not_in.resolve() not in each[1].parents]
         if not inside:
             raise InvalidFileError(f"There is no recording in the folder {path}.")
-        alone = len(paths) == 1 and inside != [path]
-        above = path.resolve() if alone else path.resolve().parent
-        found += [(file, file.resolve().relative_to(above)) for file in inside]
+        alone = len(paths) == 1 and inside != [(path, whole)]
+        above = whole if alone else whole.parent
+        found += [(file, place.relative_to(above)) for file, place in inside]
     return found
 
 
@@ -117,6 +123,7 @@ def write(recording: Motion | Tracks, path: Path | None, progress: Progress) -> 
 
 def refuse_target(path: Path, endings: Mapping[str, str] = RECORDED) -> None:
     """Raise InvalidFileError where nothing could be written, before any work is done."""
+    refuse_long_name(path)
     if path.suffix.lower() not in endings:
         allowed = " or ".join(f"{ending} ({kind})" for ending, kind in endings.items())
         raise InvalidFileError(f"{path} cannot be written; end the name in {allowed}.")
@@ -124,6 +131,25 @@ def refuse_target(path: Path, endings: Mapping[str, str] = RECORDED) -> None:
         raise InvalidFileError(
             f"{path} cannot be written: "
             + ("it is a folder." if path.is_dir() else f"there is no folder {path.parent}.")
+        )
+
+
+def refuse_long_name(path: Path, ending: str = "") -> None:
+    """Raise InvalidFileError where a file of this name and ending could not be made.
+
+    Temporary names are shorter: `written_whole` keeps 40 letters of the name.
+    """
+    name = path.name + ending
+    windows = os.name == "nt"
+    length = (
+        len(name.encode("utf-16-le", "surrogatepass")) // 2
+        if windows
+        else len(os.fsencode(name))
+    )
+    if length > LONGEST_NAME:
+        raise InvalidFileError(
+            f"The output {shown(path.name)} needs a name of {length} bytes, and {LONGEST_NAME}"
+            " is the most. Shorten the name of the recording."
         )
 
 
@@ -143,8 +169,7 @@ def ending_for(source: Path) -> str:
     ending = source.suffix.lower()
     if ending in RECORDED:
         return ending
-    try:
-        known = format_of(source)
-    except InvalidFileError:  # Whoever reads it will say so.
-        known = None
-    return MOTIONS if known is None or known.has_skeleton else POINTS_BY_DEFAULT
+    known = attempt(source, format_of, source)
+    if known is None or isinstance(known, Failure):  # Whoever reads it will say why.
+        return MOTIONS
+    return MOTIONS if known.has_skeleton else POINTS_BY_DEFAULT

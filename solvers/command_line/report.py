@@ -7,13 +7,15 @@ from pathlib import Path, PurePosixPath
 from string import Template
 from typing import Any, NamedTuple
 
-from ..errors import MocapAssistError
+from ..faults import Failure, attempt, escaped
 from ..files import written_whole
 from ..pictures import StickFigureSettings, draw_stick_figures
 from ..recordings import is_depth, read_motion_or_tracks
 from .verb import Task
 
 PAGE, FIGURES, PICTURES = "report.html", "report.json", Path("report")
+PICTURE = ".png"
+"""What follows the name of an output in the name of its picture."""
 TEMPLATE = Path(__file__).with_name("report.html")
 UNITS = {
     "_m_per_s3": " (m/s³)", "_cm_per_s": " (cm/s)", "_hz": " (Hz)", "_deg": " (°)",
@@ -54,27 +56,39 @@ def forget_picture(task: Task) -> None:
     picture_file(task).unlink(missing_ok=True)
 
 
-def draw_task(task: Task) -> None:
+def draw_task(task: Task) -> str:
     """Draw what was read and what was written over each other, as stick figures.
 
     What cannot be drawn has no picture: a report must not fail where the work was done.
+
+    Returns
+    -------
+    str
+        The sentence of a fault of Mocap Assist; empty if there was none.
     """
+    drawn = attempt(task.subject, _draw, task)
+    if not isinstance(drawn, Failure):
+        return ""
+    forget_picture(task)
+    return drawn.sentence if drawn.is_fault else ""
+
+
+def _draw(task: Task) -> None:
     assert task.target is not None
     picture = picture_file(task)
-    try:
-        made = read_motion_or_tracks(task.target)
-        both = {"result": made}
-        if not is_depth(task.source):
-            given = read_motion_or_tracks(task.source, scale=task.arguments.scale)
-            both = {"given": given, **both} if given.n_frames == made.n_frames else both
-        picture.parent.mkdir(parents=True, exist_ok=True)
-        draw_stick_figures(both, StickFigureSettings(n_figures=9, height=150)).save(picture)
-    except (MocapAssistError, OSError):
-        picture.unlink(missing_ok=True)
+    made = read_motion_or_tracks(task.target)
+    both = {"result": made}
+    if not is_depth(task.source):
+        given = read_motion_or_tracks(task.source, scale=task.arguments.scale)
+        both = {"given": given, **both} if given.n_frames == made.n_frames else both
+    picture.parent.mkdir(parents=True, exist_ok=True)
+    draw_stick_figures(both, StickFigureSettings(n_figures=9, height=150)).save(picture)
 
 
-def write_report(folder: Path, verb: str, entries: Sequence[Entry]) -> None:
+def write_report(folder: Path, verb: str, entries: Sequence[Entry]) -> tuple[str, ...]:
     """Write both reports, each whole or not at all.
+
+    An entry whose figures cannot be shown is a failure in the report.
 
     Parameters
     ----------
@@ -83,7 +97,18 @@ def write_report(folder: Path, verb: str, entries: Sequence[Entry]) -> None:
     verb : str
     entries : sequence of Entry
         Of all files that were named, in that order.
+
+    Returns
+    -------
+    tuple of str
+        A sentence for each entry that could not be shown.
     """
+    checked = [attempt(entry.task.subject, _checked, entry) for entry in entries]
+    faults = tuple(each.sentence for each in checked if isinstance(each, Failure))
+    entries = [
+        Entry(entry.task, None, found.sentence) if isinstance(found, Failure) else entry
+        for entry, found in zip(entries, checked, strict=True)
+    ]
     failed = [entry for entry in entries if entry.failure]
     waiting = [entry for entry in entries if entry.figures is None and not entry.failure]
     done = len(entries) - len(failed) - len(waiting)
@@ -100,14 +125,23 @@ def write_report(folder: Path, verb: str, entries: Sequence[Entry]) -> None:
         sections="".join(_section(entry, at) for at, entry in enumerate(ordered)),
     )
     with written_whole(folder / PAGE) as part:
-        part.write_text(page, encoding="utf-8")
+        part.write_text(escaped(page), encoding="utf-8")
+    return faults
+
+
+def _checked(entry: Entry) -> None:
+    """Do all that the reports do with an entry, so that one that fails is known before."""
+    json.dumps(_listed(entry), allow_nan=False)
+    _badness(entry)
+    _overview([entry])
+    _section(entry, 0)
 
 
 def _picture(task: Task) -> Path:
     """Return where the picture of a task is, within the folder of the outputs."""
     assert task.target is not None
     place = task.target.relative_to(task.arguments.output_folder)
-    return PICTURES / place.with_name(place.name + ".png")
+    return PICTURES / place.with_name(place.name + PICTURE)
 
 
 def _listed(entry: Entry) -> dict[str, Any]:

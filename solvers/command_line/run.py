@@ -9,10 +9,11 @@ from pathlib import Path
 from typing import Any
 
 from ..errors import InvalidSettingError, MocapAssistError
+from ..faults import Failure, attempt
 from .batch import RECORD, Finished, Made, work_on
 from .options import SentenceParser
 from .report import PAGE, Entry, draw_task, has_picture, write_report
-from .screen import Screen
+from .screen import Screen, escape_odd_names
 from .tasks import tasks_of
 from .verb import Makes, Outcome, Task, Verb
 
@@ -47,6 +48,7 @@ def run(verbs: Mapping[str, Verb], words: Sequence[str], prog: str) -> int:
         sentence on stderr; a slip in the command line itself raises SystemExit with status 2.
     """
     arguments = _parser(verbs, prog).parse_args(words)
+    escape_odd_names(sys.stdout)
     screen = Screen()
     try:
         return _work(verbs[arguments.verb], arguments, screen)
@@ -128,7 +130,9 @@ def _work(verb: Verb, arguments: argparse.Namespace, screen: Screen) -> int:
             partly |= _report(finished, len(tasks) > 1, screen)
     finally:
         if folder is not None and reporting:
-            write_report(folder, arguments.verb, list(entries.values()))
+            for fault in write_report(folder, arguments.verb, list(entries.values())):
+                screen.say(fault)
+                partly = True
     return FAILED if partly or any(entry.failure for entry in entries.values()) else 0
 
 
@@ -141,11 +145,16 @@ def _worked(
         made.clear_up(tasks)
     there = [] if made is None or arguments.again else [t for t in tasks if made.has(t)]
     for task in there:
-        if arguments.report and not has_picture(task):
-            draw_task(task)
+        draw = arguments.report and not has_picture(task)
+        failures = tuple(filter(None, [draw_task(task)])) if draw else ()
         figures = {} if made is None else made.figures(task)
-        yield Finished(task, Outcome("Already made.", {**figures, "already_made": True}))
-    tasks = [task for task in tasks if task not in there]
+        figures = {**figures, "already_made": True}
+        yield Finished(task, Outcome("Already made.", figures, failures))
+    refused = [task for task in tasks if task.refusal]
+    for task in refused:
+        screen.say(task.refusal)
+        yield Finished(task, None, task.refusal)
+    tasks = [task for task in tasks if task not in [*there, *refused]]
     prepared = verb.prepare(arguments, screen.progress) if tasks else None
     for finished in work_on(verb, tasks, prepared, n_jobs, screen):
         screen.clear()
@@ -166,6 +175,7 @@ def _report(finished: Finished, one_of_many: bool, screen: Screen) -> bool:
     """
     task, outcome = finished.task, finished.outcome
     arguments = task.arguments
+    failures = outcome.failures if outcome is not None else ()
     if arguments.json:
         figures = {"error": finished.failure} if outcome is None else outcome.figures
         names: dict[str, Any] = {"input": str(task.source)}
@@ -173,12 +183,15 @@ def _report(finished: Finished, one_of_many: bool, screen: Screen) -> bool:
             names = {"inputs": [str(source) for source in task.sources]}
         if task.target is not None:
             names["output"] = str(task.target)
-        sys.stdout.write(json.dumps({**names, **figures}, allow_nan=False) + "\n")
+        line = attempt(task.subject, json.dumps, {**names, **figures}, allow_nan=False)
+        if isinstance(line, Failure):
+            failures = (*failures, line.sentence)
+            line = json.dumps({**names, "error": line.sentence})
+        sys.stdout.write(f"{line}\n")
     elif outcome is not None:
         title = f"{task.source}\n" if one_of_many else ""
         sys.stdout.write(f"{title}{outcome.text}\n")
     sys.stdout.flush()
-    failures = outcome.failures if outcome is not None else ()
     for sentence in failures:
         screen.say(sentence)
     return bool(failures)

@@ -1,9 +1,16 @@
 """What the command line says on stderr: progress for people, one sentence per failure."""
 
+import io
 import sys
 from typing import TextIO
 
 SMALLEST_STEP = 0.01
+
+
+def escape_odd_names(stream: TextIO) -> None:
+    """Let a stream write file names that it cannot encode, escaped as stderr does."""
+    if isinstance(stream, io.TextIOWrapper) and stream.errors == "strict":
+        stream.reconfigure(errors="backslashreplace")
 
 
 class Screen:

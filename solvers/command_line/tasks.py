@@ -5,6 +5,7 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 
 from ..errors import InvalidSettingError
+from ..faults import Failure, attempt
 from .files import (
     FOR_JOINTS,
     FOR_MOTIONS,
@@ -14,9 +15,11 @@ from .files import (
     RECORDED,
     ending_for,
     found_in,
+    refuse_long_name,
     refuse_target,
     told_apart,
 )
+from .report import PICTURE
 from .verb import Makes, Task, Verb
 
 
@@ -47,7 +50,7 @@ def tasks_of(verb: Verb, arguments: argparse.Namespace) -> list[Task]:
         _refuse_reading_and_writing(sources, [arguments.output])
         refuse_target(arguments.output, LEARNED)
         return [Task(sources, arguments.output, arguments)]
-    return [Task((path,), target, arguments) for path, target in _pairs(verb, arguments)]
+    return _file_tasks(verb, arguments)
 
 
 def _task_with_library(
@@ -67,7 +70,7 @@ def _task_with_library(
     return Task(tuple(files), None, arguments)
 
 
-def _pairs(verb: Verb, arguments: argparse.Namespace) -> list[tuple[Path, Path]]:
+def _file_tasks(verb: Verb, arguments: argparse.Namespace) -> list[Task]:
     """Return which file is written from which."""
     files: list[Path] = arguments.files
     folder: Path | None = arguments.output_folder
@@ -77,20 +80,34 @@ def _pairs(verb: Verb, arguments: argparse.Namespace) -> list[tuple[Path, Path]]
                 f"{len(files)} files are named: name one to read and one to write, or say"
                 " where to put many with --output-folder DIR."
             )
-        pairs = [(files[0], files[1])]
-    else:
-        if folder.exists() and not folder.is_dir():
-            raise InvalidSettingError(f"{folder} is a file; name a folder to write to.")
-        found = found_in(files, folder, verb.look)
-        endings = [_ending(verb, path, arguments) for path, _ in found]
-        places = told_apart([place for _, place in found], endings)
-        pairs = [(path, folder / place) for (path, _), place in zip(found, places, strict=True)]
-    _refuse_reading_and_writing(*zip(*pairs, strict=True))
-    for _, target in pairs:
-        if folder is not None:
-            target.parent.mkdir(parents=True, exist_ok=True)
+        source, target = files
+        _refuse_reading_and_writing([source], [target])
         refuse_target(target, _endings(verb))
-    return pairs
+        return [Task((source,), target, arguments)]
+    if folder.exists() and not folder.is_dir():
+        raise InvalidSettingError(f"{folder} is a file; name a folder to write to.")
+    found = found_in(files, folder, verb.look)
+    sources = [path for path, _ in found]
+    endings = [_ending(verb, path, arguments) for path in sources]
+    targets = [folder / place for place in told_apart([place for _, place in found], endings)]
+    _refuse_reading_and_writing(sources, targets)
+    folder.mkdir(parents=True, exist_ok=True)
+    return [
+        Task((source,), target, arguments, _refusal(source, target, _endings(verb)))
+        for source, target in zip(sources, targets, strict=True)
+    ]
+
+
+def _refusal(source: Path, target: Path, endings: Mapping[str, str]) -> str:
+    """Make the folder of a target; return why it cannot be written, or nothing."""
+    made = attempt(source, _make_room, target, endings)
+    return made.sentence if isinstance(made, Failure) else ""
+
+
+def _make_room(target: Path, endings: Mapping[str, str]) -> None:
+    refuse_long_name(target, PICTURE)
+    target.parent.mkdir(parents=True, exist_ok=True)
+    refuse_target(target, endings)
 
 
 def _endings(verb: Verb) -> Mapping[str, str]:

@@ -31,6 +31,8 @@ class Task(NamedTuple):
     target: Path | None
     """Where to write; None for verbs that write nothing."""
     arguments: argparse.Namespace
+    refusal: str = ""
+    """Why it cannot be done, where that is known before."""
 
     @property
     def source(self) -> Path:

@@ -8,9 +8,10 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.fft import dct
 
-from ..errors import InvalidFileError, InvalidMotionError
-from ..files import read_archive, write_archive
+from ..archives import ArchiveLayout
+from ..errors import InvalidMotionError
 from ..motion import Motion, Tracks
+from ..npz_members import flags, integers, numbers, words
 from ..progress import Progress, unwatched, within
 from ..settings import Settings, setting
 from .example_channels import ExampleChannels, Moments
@@ -19,8 +20,6 @@ from .prior import n_slow_waves
 
 Array = NDArray[np.float64]
 
-KIND = "filter bases"
-VERSION = 3
 KEPT_ENERGY = 0.99
 """Share of the movement that the stored patterns hold, as in [LC10]."""
 STILL = 0.05
@@ -28,6 +27,26 @@ STILL = 0.05
 AT_REST = 1e-6
 """The same where no channel moves: what is below is rounding."""
 N_REFERENCE = 12
+LAYOUT = ArchiveLayout(
+    "filter bases",
+    3,
+    {
+        "keys": words("parts"),
+        "references": numbers("parts", N_REFERENCE),
+        "mean": numbers("3*parts"),
+        "vectors": numbers("bases", "window", "3*parts"),
+        "values": numbers("bases"),
+        "moving": integers("moving", minimum=0),
+        "slow": numbers("slow", "moving", "slow", "moving"),
+        "fast": numbers("fast", "moving"),
+        "clip_means": numbers("pieces", "moving"),
+        "frame_rate": numbers(),
+        "n_clips": integers(minimum=1),
+        "of_points": flags(),
+    },
+    holds="damaged bases",
+    remedy="Learn them again.",
+)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -107,9 +126,7 @@ class FilterBases:
 
     def save(self, path: Path | str) -> None:
         """Write an archive that `load_filter_bases` reads."""
-        write_archive(
-            path, KIND, VERSION, {one.name: getattr(self, one.name) for one in fields(self)}
-        )
+        LAYOUT.write(path, {one.name: getattr(self, one.name) for one in fields(self)})
 
 
 def load_filter_bases(path: Path | str) -> FilterBases:
@@ -120,57 +137,20 @@ def load_filter_bases(path: Path | str) -> FilterBases:
     InvalidFileError
         The file is missing, damaged, or holds something else.
     """
-    arrays = read_archive(path, KIND, VERSION)
-    missing = [one.name for one in fields(FilterBases) if one.name not in arrays]
-    if missing:
-        fault = f"{', '.join(map(repr, missing))} missing"
-    else:
-        bases = FilterBases(**{one.name: arrays[one.name] for one in fields(FilterBases)})
-        fault = _fault(bases)
-    if fault:
-        raise InvalidFileError(f"{path} holds damaged bases ({fault}). Learn them again.")
+    bases = FilterBases(**LAYOUT.read(path))
+    if fault := _fault(bases):
+        raise LAYOUT.damaged(path, fault)
     return bases
 
 
 def _fault(bases: FilterBases) -> str:
     """Return what keeps bases from a file from being used, or nothing."""
-    shape = bases.vectors.shape
-    if (
-        len(shape) != 3
-        or not all(shape)
-        or not bases.keys.size
-        or bases.slow.ndim != 4
-        or bases.clip_means.ndim != 2
-    ):
-        return "their shapes do not fit"
     if not len(bases.clip_means) or not len(bases.slow):
         return "nothing was learned"
-    window, n_parts = shape[1], bases.keys.size
-    n_slow, n_moving = min(len(bases.slow), window), bases.moving.size
-    expected = {
-        "keys": (n_parts,),
-        "references": (n_parts, N_REFERENCE),
-        "mean": (3 * n_parts,),
-        "vectors": (bases.values.size, window, 3 * n_parts),
-        "values": (bases.values.size,),
-        "moving": (n_moving,),
-        "slow": (n_slow, n_moving, n_slow, n_moving),
-        "fast": (window - n_slow, n_moving),
-        "clip_means": (len(bases.clip_means), n_moving),
-        **dict.fromkeys(("frame_rate", "n_clips", "of_points"), ()),
-    }
-    arrays = {name: getattr(bases, name) for name in expected}
-    if any(array.shape != expected[name] for name, array in arrays.items()):
-        return "their shapes do not fit"
-    del arrays["keys"]
-    if not all(
-        array.dtype.kind in "fiub" and np.isfinite(array).all() for array in arrays.values()
-    ):
-        return "not all numbers are finite"
-    if (
-        bases.moving.dtype.kind != "i"
-        or not np.isin(bases.moving, np.arange(3 * n_parts)).all()
-    ):
+    n_slow = len(bases.slow)
+    if not bases.vectors.size or len(bases.fast) != bases.window - n_slow:
+        return "the shapes do not fit, first that of fast"
+    if not np.isin(bases.moving, np.arange(len(bases.mean))).all():
         return "they speak of channels that there are not"
     rate = float(bases.frame_rate)
     return "" if rate > 0.0 else f"a frame rate of {rate:g} Hz"

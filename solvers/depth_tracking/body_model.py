@@ -7,8 +7,9 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
+from ..archives import ArchiveLayout
 from ..errors import InvalidFileError, InvalidMotionError
-from ..files import read_archive, write_archive
+from ..npz_members import numbers, words
 from .body_tables import (
     CAPSULE_ENDS,
     CAPSULES,
@@ -22,8 +23,20 @@ from .body_tables import (
 
 Array = NDArray[np.float64]
 
-KIND = "body model"
-VERSION = 1
+LONGEST = 100.0
+"""Metres, of any part of a body."""
+LAYOUT = ArchiveLayout(
+    "body model",
+    1,
+    {
+        "lengths": numbers(len(LENGTHS), minimum=0.0, maximum=LONGEST),
+        "radii": numbers(len(CAPSULES), 2, minimum=0.0, maximum=LONGEST),
+        "length_names": words("lengths"),
+        "capsule_names": words("capsules"),
+    },
+    holds="a damaged body",
+    remedy="Calibrate it again.",
+)
 
 
 @dataclass(frozen=True, eq=False)
@@ -106,7 +119,7 @@ class BodyModel:
         """Write an archive that `load_body_model` reads."""
         arrays = {"lengths": self.lengths, "radii": self.radii}
         names = {"length_names": np.array(LENGTHS), "capsule_names": np.array(CAPSULES)}
-        write_archive(path, KIND, VERSION, arrays | names)
+        LAYOUT.write(path, arrays | names)
 
 
 def usual_body(stature: float = USUAL_STATURE) -> BodyModel:
@@ -124,15 +137,14 @@ def load_body_model(path: Path | str) -> BodyModel:
     InvalidFileError
         The file is missing, damaged, or holds something else.
     """
-    arrays = read_archive(path, KIND, VERSION)
+    arrays = LAYOUT.read(path)
     expected = {"length_names": LENGTHS, "capsule_names": CAPSULES}
-    for name, names in expected.items():
-        if tuple(np.atleast_1d(arrays.get(name, np.array("")))) != names:
-            raise InvalidFileError(f"{path} holds a body of other parts. Calibrate it again.")
+    if any(tuple(arrays[name].tolist()) != names for name, names in expected.items()):
+        raise InvalidFileError(f"{path} holds a body of other parts. Calibrate it again.")
     try:
         return BodyModel(arrays["lengths"], arrays["radii"])
-    except (KeyError, ValueError, TypeError):
-        raise InvalidFileError(f"{path} holds a damaged body. Calibrate it again.") from None
+    except InvalidMotionError as error:
+        raise LAYOUT.damaged(path, str(error).removesuffix(".")) from None
 
 
 def _other_side(names: tuple[str, ...]) -> list[int]:

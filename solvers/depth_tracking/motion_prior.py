@@ -10,15 +10,26 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.spatial import cKDTree
 
+from ..archives import ArchiveLayout
 from ..errors import InvalidFileError, InvalidMotionError
-from ..files import read_archive, write_archive
+from ..npz_members import Values, integers, words
 from .coordinates import COORDINATES, N_COORDINATES, N_ROOT
 from .normal_equations import PoseEquations
 
 Array = NDArray[np.float64]
 
-KIND = "motion prior"
-VERSION = 1
+LAYOUT = ArchiveLayout(
+    "motion prior",
+    1,
+    {
+        "poses": Values("f", ("poses", len(COORDINATES) - N_ROOT)),
+        "clips": integers("poses", minimum=0, maximum=2**31 - 1),
+        "trained_on": words(optional=True),
+        "coordinates": words("coordinates"),
+    },
+    holds="a damaged prior",
+    remedy="Learn it again.",
+)
 SHIPPED = Path(__file__).parent / "models" / "motions.npz"
 NEIGHBOURS, FOLLOWING, ENERGY = 50, 3, 0.95
 """K, w and the share of the variance kept, of [LOU12] section 3.5."""
@@ -54,7 +65,7 @@ class MotionPrior:
             "trained_on": np.array(self.trained_on),
             "coordinates": np.array(COORDINATES[N_ROOT:]),
         }  # fmt: skip
-        write_archive(path, KIND, VERSION, arrays)
+        LAYOUT.write(path, arrays)
 
 
 def load_motion_prior(path: Path | str = SHIPPED) -> MotionPrior:
@@ -65,17 +76,13 @@ def load_motion_prior(path: Path | str = SHIPPED) -> MotionPrior:
     InvalidFileError
         The file is missing, damaged, or holds something else.
     """
-    arrays = read_archive(path, KIND, VERSION)
-    names = tuple(np.atleast_1d(arrays.get("coordinates", np.array(""))))
-    poses, clips = arrays.get("poses"), arrays.get("clips")
-    if names != COORDINATES[N_ROOT:] or poses is None or clips is None:
+    arrays = LAYOUT.read(path)
+    if tuple(arrays["coordinates"].tolist()) != COORDINATES[N_ROOT:]:
         raise InvalidFileError(f"{path} holds a prior of other parts. Learn it again.")
-    fits = poses.ndim == 2 and poses.shape == (len(clips), len(names)) and len(poses)
-    if not (fits and poses.dtype.kind == "f" and clips.dtype.kind == "i"):
-        raise InvalidFileError(f"{path} holds a damaged prior. Learn it again.")
-    return MotionPrior(
-        poses.astype(np.float64), clips.astype(np.intp), str(arrays.get("trained_on", ""))
-    )
+    poses, clips = arrays["poses"], arrays["clips"].astype(np.intp)
+    if not len(poses) or (np.diff(clips) < 0).any():
+        raise LAYOUT.damaged(path, "its clips are not one after the other")
+    return MotionPrior(poses.astype(np.float64), clips, str(arrays.get("trained_on", "")))
 
 
 def motion_prior_of(sequences: Sequence[Array], trained_on: str = "") -> MotionPrior:

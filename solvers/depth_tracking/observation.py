@@ -1,5 +1,6 @@
 """What the camera saw of an actor in one frame, at one resolution."""
 
+from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Any
@@ -28,12 +29,19 @@ class Observation:
     ----------
     camera : Camera
     depth : shape (height, width), metres
-    color : shape (height, width, 3), 0 to 255, or None
+    read_color : callable, or None
+        Returns the colors of the pixels, as `color` has them. Only terms that compare colors
+        ask for them, so that nobody else waits for them, or fails where they are damaged.
     """
 
     camera: Camera
     depth: Array
-    color: Array | None = None
+    read_color: Callable[[], Array | None] | None = None
+
+    @cached_property
+    def color(self) -> Array | None:
+        """Colors of the pixels, shape (height, width, 3), 0 to 255; None where unknown."""
+        return None if self.read_color is None else self.read_color()
 
     @cached_property
     def flat(self) -> Array:
@@ -104,18 +112,21 @@ class Observation:
         """Return every `step`-th column and row."""
         if step == 1:
             return self
-        color = None if self.color is None else self.color[::step, ::step]
-        return Observation(self.camera.every(step), self.depth[::step, ::step], color)
+
+        def read_color() -> Array | None:
+            return None if self.color is None else self.color[::step, ::step]
+
+        return Observation(self.camera.every(step), self.depth[::step, ::step], read_color)
 
 
 def observe(depth: DepthRecording, frame: int, picture_width: int) -> Observation:
     """Return what a frame shows, thinned out to about this many columns."""
-    color = depth.color(frame)
-    whole = Observation(
-        depth.camera,
-        depth.frame(frame).astype(np.float64),
-        None if color is None else color.astype(np.float64),
-    )
+
+    def read_color() -> Array | None:
+        color = depth.color(frame)
+        return None if color is None else color.astype(np.float64)
+
+    whole = Observation(depth.camera, depth.frame(frame).astype(np.float64), read_color)
     return whole.every(max(1, round(depth.camera.width / picture_width)))
 
 

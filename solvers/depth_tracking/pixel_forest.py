@@ -9,15 +9,32 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from ..errors import InvalidFileError, InvalidMotionError
-from ..files import read_archive, write_archive
+from ..archives import ArchiveLayout
+from ..errors import InvalidMotionError
 from ..motion.camera import Camera
 from ..motion.depth_recording import DepthPicture
+from ..npz_members import Values, integers, words
 from .depth_differences import differences, pixel_views, with_margin
 from .grow_tree import CENTIMETRES, Tree
 from .parts import N_PARTS, PARTS
 
-KIND, VERSION = "pixel forest", 1
+FARTHEST = 2**15 - 1
+"""Centimetres or millimetres that a node may compare: those of 16-bit numbers."""
+LAYOUT = ArchiveLayout(
+    "pixel forest",
+    1,
+    {
+        "parts": words("parts"),
+        "n_nodes": integers("trees", minimum=1),
+        "splits": Values("u", ("bytes",), maximum=255),
+        "offsets": integers("splits", 4, minimum=-FARTHEST, maximum=FARTHEST),
+        "thresholds": integers("splits", minimum=-FARTHEST, maximum=FARTHEST),
+        "shares": integers("leaves", N_PARTS, minimum=0, maximum=255),
+        "trained_on": words(),
+    },
+    holds="a damaged forest",
+    remedy="Train it again.",
+)
 SHIPPED = Path(__file__).parent / "models" / "forest.npz"
 
 
@@ -49,7 +66,7 @@ class PixelForest:
         }
         for name in ("offsets", "thresholds", "shares"):
             arrays[name] = np.concatenate([getattr(tree, name) for tree in self.trees])
-        write_archive(path, KIND, VERSION, arrays)
+        LAYOUT.write(path, arrays)
 
     @cached_property
     def _nodes(self) -> "_Nodes":
@@ -134,9 +151,10 @@ def load_pixel_forest(path: Path | str = SHIPPED) -> PixelForest:
     InvalidFileError
         The file is missing, damaged, or holds something else.
     """
-    arrays = read_archive(path, KIND, VERSION)
+    arrays = LAYOUT.read(path)
+    arrays["splits"] = arrays["splits"].astype(np.uint8)
     if fault := _fault(arrays):
-        raise InvalidFileError(f"{path} holds a damaged forest ({fault}). Train it again.")
+        raise LAYOUT.damaged(path, fault)
     ends = np.cumsum(arrays["n_nodes"])
     splits = np.unpackbits(arrays["splits"], count=int(ends[-1])).astype(np.bool_)
     split_ends = np.cumsum(splits)[ends - 1]
@@ -154,36 +172,21 @@ def load_pixel_forest(path: Path | str = SHIPPED) -> PixelForest:
 
 def _fault(arrays: dict[str, NDArray[Any]]) -> str:
     """Return what keeps a forest from a file from being used, or nothing."""
-    kinds = {
-        "parts": ("U", 1), "n_nodes": ("i", 1), "splits": ("u", 1), "offsets": ("i", 2),
-        "thresholds": ("i", 1), "shares": ("u", 2), "trained_on": ("U", 0),
-    }  # fmt: skip
-    if missing := [name for name in kinds if name not in arrays]:
-        return f"{', '.join(missing)} missing"
-    found = {name: (arrays[name].dtype.kind, arrays[name].ndim) for name in kinds}
-    if found != kinds:
-        return "its numbers are of other kinds"
     if tuple(arrays["parts"].tolist()) != PARTS:
         return "it tells other parts"
-    return _tree_fault(arrays)
-
-
-def _tree_fault(arrays: dict[str, NDArray[Any]]) -> str:
     n_nodes = arrays["n_nodes"]
-    total = int(n_nodes.sum())
-    if not len(n_nodes) or (n_nodes < 1).any() or len(arrays["splits"]) != -(-total // 8):
+    total = sum(n_nodes.tolist())  # Of Python's integers: NumPy's would wrap around.
+    if not len(n_nodes) or len(arrays["splits"]) != -(-total // 8):
         return "its nodes do not fit"
     splits = np.unpackbits(arrays["splits"], count=total)
     n_splits = [int(part.sum()) for part in np.split(splits, np.cumsum(n_nodes)[:-1])]
     if (n_nodes != 2 * np.array(n_splits) + 1).any():
         return "its nodes do not fit"
-    shapes = {
-        "offsets": (sum(n_splits), 4),
-        "thresholds": (sum(n_splits),),
-        "shares": (total - sum(n_splits), N_PARTS),
-    }
-    if any(arrays[name].shape != shape for name, shape in shapes.items()):
-        return "its shapes do not fit"
+    sizes = {
+        "offsets": sum(n_splits), "thresholds": sum(n_splits), "shares": total - sum(n_splits),
+    }  # fmt: skip
+    if wrong := [name for name, size in sizes.items() if len(arrays[name]) != size]:
+        return f"the shapes do not fit, first that of {wrong[0]}"
     return "" if (arrays["shares"].sum(axis=1) > 0).all() else "a leaf tells nothing"
 
 

@@ -1,5 +1,6 @@
 """Skinned humans: a mesh that follows the joints of a skeleton, each vertex by its weights."""
 
+import zipfile
 from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
@@ -8,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..errors import InvalidFileError, InvalidMotionError
-from ..files import DAMAGE
+from ..files import open_regular
 from ..motion import (
     HumanoidMap,
     Motion,
@@ -19,9 +20,20 @@ from ..motion import (
     world_poses,
 )
 from ..motion.rotations import IDENTITY, matrix_from_quaternion
+from ..npz_members import READABLE, integers, numbers, read_members, words
 from .parts import HALVED, PARTS, parts_of_joints
 
 Array = NDArray[np.float64]
+
+MEMBERS = {
+    "vertices": numbers("vertices", 3),
+    "triangles": integers("triangles", 3),
+    "weights": numbers("vertices", "joints", minimum=0.0),
+    "joint_names": words("joints"),
+    "parents": integers("joints", minimum=-1),
+    "joint_heads": numbers("joints", 3),
+}
+"""Of an archive with a skinned body."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -139,20 +151,21 @@ def load_skinned_body(path: Path | str) -> SkinnedBody:
         The file is missing, damaged, or holds no skinned body.
     """
     try:
-        with Path(path).open("rb") as file, np.load(file, allow_pickle=False) as archive:
-            heads = np.array(archive["joint_heads"], dtype=np.float64)
-            parents = tuple(archive["parents"].tolist())
-            above = np.array([
-                heads[parent] if parent >= 0 else 0.0 * heads[0] for parent in parents
-            ])
-            return SkinnedBody(
-                Skeleton(tuple(archive["joint_names"].tolist()), parents, heads - above),
-                np.array(archive["vertices"], dtype=np.float64),
-                np.array(archive["triangles"], dtype=np.int64),
-                np.array(archive["weights"], dtype=np.float64),
-                Path(path).stem,
-            )
+        with open_regular(path) as file, zipfile.ZipFile(file) as archive:
+            arrays = read_members(archive, MEMBERS)
+        heads = arrays["joint_heads"].astype(np.float64)
+        parents = tuple(arrays["parents"].tolist())
+        above = np.array([
+            heads[parent] if parent >= 0 else 0.0 * heads[0] for parent in parents
+        ])
+        return SkinnedBody(
+            Skeleton(tuple(arrays["joint_names"].tolist()), parents, heads - above),
+            arrays["vertices"].astype(np.float64),
+            arrays["triangles"].astype(np.int64),
+            arrays["weights"].astype(np.float64),
+            Path(path).stem,
+        )
     except FileNotFoundError:
         raise InvalidFileError(f"There is no file {path}.") from None
-    except (*DAMAGE, IndexError) as error:
+    except READABLE as error:
         raise InvalidFileError(f"{path} holds no skinned body ({error}).") from None

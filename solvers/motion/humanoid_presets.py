@@ -6,6 +6,7 @@ from typing import Any
 
 from ..errors import InvalidFileError, InvalidMotionError
 from ..files import written_whole
+from ..json_text import parse_json
 from .humanoid import HumanoidMap
 from .skeleton import Skeleton
 
@@ -52,10 +53,10 @@ def read_humanoid_map(path: Path | str, skeleton: Skeleton | None = None) -> Hum
     """
     try:
         with Path(path).open(encoding="utf-8-sig") as file:
-            content = json.loads(file.read(LONGEST), object_pairs_hook=_each_once)
+            content = parse_json(file.read(LONGEST), object_pairs_hook=_each_once)
     except FileNotFoundError:
         raise InvalidFileError(f"There is no file {path}.") from None
-    except (OSError, ValueError, RecursionError) as error:
+    except (OSError, ValueError) as error:
         raise InvalidFileError(f"{path} is not a readable humanoid map ({error}).") from None
     joints = _joints(content, path)
     try:

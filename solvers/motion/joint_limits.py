@@ -6,12 +6,27 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from ..errors import InvalidFileError, InvalidMotionError
-from ..files import read_archive, write_archive
+from ..archives import ArchiveLayout
+from ..errors import InvalidMotionError
+from ..npz_members import flags, numbers, words
 
 Array = NDArray[np.float64]
 
-KIND, VERSION = "joint limits", 1
+LAYOUT = ArchiveLayout(
+    "joint limits",
+    1,
+    {
+        "names": words("limits"),
+        "by_role": flags("limits"),
+        "left": numbers("limits", 4),
+        "right": numbers("limits", 4),
+        "orders": words("limits"),
+        "lower": numbers("limits", 3, finite=False),
+        "upper": numbers("limits", 3, finite=False),
+    },
+    holds="damaged joint limits",
+    remedy="Learn them again.",
+)
 ROTATION_VECTOR = ""
 EULER_ORDERS = ("XYZ", "XZY", "YXZ", "YZX", "ZXY", "ZYX")
 
@@ -82,7 +97,7 @@ class JointLimits:
             "names": np.array(self.names, dtype=str),
             "orders": np.array(self.orders, dtype=str),
         }
-        write_archive(path, KIND, VERSION, {**arrays, **text})
+        LAYOUT.write(path, {**arrays, **text})
 
 
 def load_joint_limits(path: Path | str) -> JointLimits:
@@ -93,7 +108,7 @@ def load_joint_limits(path: Path | str) -> JointLimits:
     InvalidFileError
         The file is missing, damaged, or holds something else.
     """
-    saved = read_archive(path, KIND, VERSION)
+    saved = LAYOUT.read(path)
     try:
         return JointLimits(
             names=tuple(saved["names"].tolist()),
@@ -104,5 +119,5 @@ def load_joint_limits(path: Path | str) -> JointLimits:
             lower=saved["lower"],
             upper=saved["upper"],
         )
-    except (KeyError, TypeError, ValueError) as error:
-        raise InvalidFileError(f"{path} holds damaged joint limits ({error}).") from None
+    except InvalidMotionError as error:
+        raise LAYOUT.damaged(path, str(error).removesuffix(".")) from None

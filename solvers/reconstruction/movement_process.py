@@ -18,6 +18,7 @@ from scipy.ndimage import gaussian_filter1d, uniform_filter1d
 
 from ..motion.posture_heading import mirrored
 from ..motion.posture_joints import N_JOINTS
+from ..npz_members import flags, integers, numbers
 from .residual_kernel import squared_distances
 
 Array = NDArray[np.float64]
@@ -33,6 +34,18 @@ PACE = 0.2
 """Seconds of movement that count as much as the same way between two postures."""
 N_PARTS = 5
 BLOCK = 512
+
+
+MEMBERS = {
+    "joints": integers("moving", minimum=0, maximum=N_JOINTS - 1, optional=True),
+    "centre": numbers("3*moving", optional=True),
+    "axes": numbers("3*moving", "axes", optional=True),
+    "points": numbers("points", N_PARTS, "axes", optional=True),
+    "weights": numbers("points", "3*moving", optional=True),
+    "mean": numbers("3*moving", optional=True),
+    "mirrored": flags(optional=True),
+}
+"""What a file keeps of a movement process: all, or nothing of it."""
 
 
 class Strengths(NamedTuple):
@@ -197,26 +210,12 @@ def likeness(ways: Ways, strengths: Strengths) -> Single:
 
 
 def movement_of(arrays: dict[str, NDArray[Any]]) -> tuple[str, MovementProcess | None]:
-    """Return what keeps arrays from a file from being used, or nothing, and what they hold."""
-    names = [one.name for one in fields(MovementProcess)]
-    if set(arrays) != set(names):
+    """Return what keeps `MEMBERS` from a file from being used, or nothing, and the process."""
+    if set(arrays) != set(MEMBERS):
         return "parts of the movements are missing", None
-    n, n_points = arrays["joints"].size, len(np.atleast_1d(arrays["points"]))
-    n_components = arrays["axes"].shape[-1] if arrays["axes"].ndim == 2 else 0
-    expected = {
-        "joints": (n,), "centre": (3 * n,), "axes": (3 * n, n_components),
-        "points": (n_points, N_PARTS, n_components), "weights": (n_points, 3 * n),
-        "mean": (3 * n,), "mirrored": (),
-    }  # fmt: skip
-    if any(arrays[name].shape != shape for name, shape in expected.items()):
-        return "the shapes of the movements do not fit", None
-    if any(
-        one.dtype.kind not in "fiub" or not np.isfinite(one).all() for one in arrays.values()
-    ):
-        return "not all numbers of the movements are finite", None
     joints = arrays["joints"].astype(np.int64)
-    if not (n and n_components) or joints.min() < 0 or joints.max() >= N_JOINTS:
-        return "the movements speak of unknown joints", None
+    if not len(joints) or not arrays["axes"].size or not len(arrays["points"]):
+        return "the movements hold nothing", None
     centre, axes, mean = (
         arrays[name].astype(np.float64) for name in ("centre", "axes", "mean")
     )

@@ -8,12 +8,13 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from ..errors import InvalidFileError, InvalidMotionError
-from ..files import read_archive, write_archive
+from ..archives import ArchiveLayout
+from ..errors import InvalidMotionError
 from ..motion import Motion, resample
 from ..motion.bone_directions import bone_changes, bone_directions
 from ..motion.posture_heading import mirrored, normalise
 from ..motion.posture_joints import N_JOINTS, motion_postures
+from ..npz_members import integers, words
 from ..progress import Progress, unwatched, within
 from ..settings import Settings, setting
 from .clip_twists import ClipTwists, agreed_twists, clip_twists
@@ -23,13 +24,25 @@ from .trunk_twist import N_TWISTED, mirrored_twists
 
 Array = NDArray[np.float64]
 
-KIND = "posture library"
-VERSION = 1
 SHIPPED = Path(__file__).parent / "models" / "postures.npz"
 DIRECTION_STEP = 1.0 / 500.0
 CHANGE_STEP = 1.0 / 8.0
 TWIST_STEP = 1.0 / 127.0
 """Steps in which directions, their changes per second, and twists are stored."""
+LAYOUT = ArchiveLayout(
+    "posture library",
+    1,
+    {
+        "directions": integers("postures", N_JOINTS - 1, 3),
+        "changes": integers("postures", N_JOINTS - 1, 3, minimum=-128, maximum=127),
+        "groups": integers("postures", minimum=0),
+        "n_seen": integers(minimum=0),
+        "trained_on": words(),
+        "twists": integers("postures", N_TWISTED, 2, minimum=-128, maximum=127, optional=True),
+    },
+    holds="damaged postures",
+    remedy="Build them again.",
+)
 PACE = 0.1
 """Seconds of movement that count as much as the same way between two postures."""
 
@@ -108,7 +121,7 @@ class PostureLibrary:
         if self.twists is not None:
             parts = np.stack([self.twists.real, self.twists.imag], axis=-1)
             arrays["twists"] = np.round(parts / TWIST_STEP).astype(np.int8)
-        write_archive(path, KIND, VERSION, arrays)
+        LAYOUT.write(path, arrays)
 
 
 def load_posture_library(path: Path | str = SHIPPED) -> PostureLibrary:
@@ -121,9 +134,9 @@ def load_posture_library(path: Path | str = SHIPPED) -> PostureLibrary:
     InvalidFileError
         The file is missing, damaged, or holds something else.
     """
-    arrays = read_archive(path, KIND, VERSION)
+    arrays = LAYOUT.read(path)
     if fault := _fault(arrays):
-        raise InvalidFileError(f"{path} holds damaged postures ({fault}). Build them again.")
+        raise LAYOUT.damaged(path, fault)
     directions, changes = (
         np.pad(arrays[name] * np.float32(step), ((0, 0), (1, 0), (0, 0)))
         for name, step in (("directions", DIRECTION_STEP), ("changes", CHANGE_STEP))
@@ -158,19 +171,10 @@ def joined_postures(
 
 def _fault(arrays: dict[str, NDArray[Any]]) -> str:
     """Return what keeps postures from a file from being used, or nothing."""
-    kinds = {"directions": "i", "changes": "i", "groups": "i", "n_seen": "i", "trained_on": "U"}
-    if missing := [name for name in kinds if name not in arrays]:
-        return f"{', '.join(missing)} missing"
-    kinds |= {"twists": "i"} if "twists" in arrays else {}
-    if any(arrays[name].dtype.kind != kind for name, kind in kinds.items()):
-        return "their numbers are of other kinds"
-    n, shape = len(arrays["directions"]), arrays["directions"].shape
-    if shape != (n, N_JOINTS - 1, 3) or not n:
-        return "their shapes do not fit"
-    others = {"changes": shape, "groups": (n,), "n_seen": (), "trained_on": ()}
-    others["twists"] = (n, N_TWISTED, 2)
-    if any(arrays[name].shape != others[name] for name in kinds if name != "directions"):
-        return "their shapes do not fit"
+    if not len(arrays["directions"]):
+        return "there are none"
+    if (arrays["groups"] >= len(arrays["groups"])).any():
+        return "groups has numbers out of range"
     sizes = np.linalg.norm(arrays["directions"] * DIRECTION_STEP, axis=-1)
     return "" if (np.abs(sizes - 1.0) < 0.05).all() else "directions are not of length 1"
 

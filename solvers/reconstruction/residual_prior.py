@@ -8,23 +8,42 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from ..errors import InvalidFileError
-from ..files import read_archive, write_archive
+from ..archives import ArchiveLayout
 from ..motion.posture_heading import mirrored
 from ..motion.posture_joints import MIRROR_IMAGES, N_JOINTS, POSTURE_JOINTS
+from ..npz_members import flags, numbers, words
 from .confidence import AS_TOLD, Calibration, chance_within
 from .foretold import Foretold, between
-from .movement_process import MovementProcess, movement_of
+from .movement_process import MEMBERS, MovementProcess, movement_of
 from .residual_inputs import LARGEST, CalmPostures, filled, neighbourhood
 from .residual_kernel import Kernel, nearness
 from .residual_sparse import basis, shared_columns, triangle
 
 Array = NDArray[np.float64]
 
-KIND = "residual prior"
-VERSION = 2
 MOVEMENT = "movement_"
 """What the names of the movement process's arrays begin with in a file."""
+LAYOUT = ArchiveLayout(
+    "residual prior",
+    2,
+    {
+        "joints": words("joints"),
+        "usual": numbers(N_JOINTS, 3),
+        "components": numbers(3 * (N_JOINTS - 1), "components"),
+        "local_points": numbers("joints", "local", LARGEST),
+        "whole_points": numbers("whole", "components"),
+        "kernels": numbers("joints", 9),
+        "means": numbers("joints", "weights", 3),
+        "covariances": numbers("joints", "weights", "weights"),
+        "calm": numbers(minimum=0.0, maximum=10.0),
+        "mirrored": flags(),
+        "source": words(),
+        "calibration": numbers(2, 3, optional=True),
+        **{MOVEMENT + name: values for name, values in MEMBERS.items()},
+    },
+    holds="a damaged prior",
+    remedy="Learn it again.",
+)
 LED_BY = 0.6
 """Share of the movement process in what is foretold; the rest is of joints and postures."""
 FORETOLD = 15.0
@@ -87,7 +106,7 @@ class ResidualPrior:
         arrays = {name: np.asarray(getattr(self, name)) for name in OWN}
         if self.movement is not None:
             arrays |= {MOVEMENT + name: one for name, one in self.movement.arrays().items()}
-        write_archive(path, KIND, VERSION, arrays)
+        LAYOUT.write(path, arrays)
 
     @cached_property
     def _triangles(self) -> list[tuple[Array, Array]]:
@@ -208,7 +227,6 @@ def whole_posture(features: Array, usual: Array, components: Array) -> Array:
 
 
 OWN = tuple(one.name for one in fields(ResidualPrior) if one.name != "movement")
-OPTIONAL = ("calibration",)
 
 
 def load_residual_prior(path: Path | str) -> ResidualPrior:
@@ -219,58 +237,33 @@ def load_residual_prior(path: Path | str) -> ResidualPrior:
     InvalidFileError
         The file is missing, damaged, or holds something else.
     """
-    arrays = read_archive(path, KIND, VERSION)
+    arrays = LAYOUT.read(path)
     moving = {
         name.removeprefix(MOVEMENT): arrays.pop(name)
         for name in list(arrays)
         if name.startswith(MOVEMENT)
     }
-    missing = [name for name in OWN if name not in arrays and name not in OPTIONAL]
-    fault = f"{', '.join(map(repr, missing))} missing" if missing else _fault(arrays)
-    movement = None
+    fault, movement = _fault(arrays), None
     if not fault and moving:
         fault, movement = movement_of(moving)
     if fault:
-        raise InvalidFileError(f"{path} holds a damaged prior ({fault}). Learn it again.")
+        raise LAYOUT.damaged(path, fault)
     joints, source = arrays.pop("joints"), arrays.pop("source")
     alike = arrays.pop("mirrored").astype(np.bool_)
-    numbers = {name: arrays[name].astype(np.float64) for name in OWN if name in arrays}
-    return ResidualPrior(
-        joints=joints, mirrored=alike, source=source, movement=movement, **numbers
-    )
+    own = {name: one.astype(np.float64) for name, one in arrays.items()}
+    return ResidualPrior(joints=joints, mirrored=alike, source=source, movement=movement, **own)
 
 
 def _fault(arrays: dict[str, NDArray[Any]]) -> str:
     """Return what keeps these arrays from being used, or nothing."""
-    n = arrays["joints"].size
-    n_components = arrays["components"].shape[-1] if arrays["components"].ndim == 2 else 0
-    n_local = arrays["local_points"].shape[1] if arrays["local_points"].ndim == 3 else 0
-    n_whole = len(arrays["whole_points"]) if arrays["whole_points"].ndim == 2 else 0
-    n_weights = n_local + n_whole + 1
-    expected = {
-        "joints": (n,),
-        "usual": (N_JOINTS, 3),
-        "components": (3 * (N_JOINTS - 1), n_components),
-        "local_points": (n, n_local, LARGEST),
-        "whole_points": (n_whole, n_components),
-        "kernels": (n, 9),
-        "means": (n, n_weights, 3),
-        "covariances": (n, n_weights, n_weights),
-        "calm": (),
-        "mirrored": (),
-        "source": (),
-    }
-    expected |= {"calibration": (2, 3)} if "calibration" in arrays else {}
-    if any(arrays[name].shape != shape for name, shape in expected.items()) or not (
-        n and n_local and n_whole
-    ):
-        return "their shapes do not fit"
+    n_local, n_whole = arrays["local_points"].shape[1], len(arrays["whole_points"])
+    if not (len(arrays["joints"]) and n_local and n_whole):
+        return "nothing was learned"
+    if arrays["means"].shape[1] != n_local + n_whole + 1:
+        return "the shapes do not fit, first that of means"
     if not set(map(str, arrays["joints"])) <= set(POSTURE_JOINTS):
         return "they speak of unknown joints"
-    for name in expected.keys() - {"joints", "source"}:
-        if arrays[name].dtype.kind not in "fiub" or not np.isfinite(arrays[name]).all():
-            return "not all numbers are finite"
-    if not (arrays["kernels"] > 0.0).all() or not 0.0 <= float(arrays["calm"]) < 10.0:
+    if not (arrays["kernels"] > 0.0).all():
         return "their hyper-parameters are not positive"
     if "calibration" in arrays and (arrays["calibration"][:, 1:] < 0.0).any():
         return "their calibration is negative"

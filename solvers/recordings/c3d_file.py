@@ -19,7 +19,32 @@ from .text import map_bytes
 BLOCK = 512
 MAGIC = 0x50
 DEC, MIPS = 85, 86
+PROCESSORS = range(83, 88)
+"""Kinds of numbers: 84 Intel, 85 DEC, 86 SGI; some programs write one less or more."""
+PARAMETER_BLOCKS = range(2, 33)
+"""Where parameters begin: right behind the header, or behind some blocks of a maker's own."""
 CHARACTERS, BYTES, INTEGERS, FLOATS = -1, 1, 2, 4
+
+
+def is_c3d(head: bytes) -> bool:
+    """Tell from the first bytes of a file, also of one that is damaged or cut short.
+
+    The second byte alone does not tell: it is a letter P, as in PNG and PDF files.
+    """
+    if head[1:2] != bytes([MAGIC]):
+        return False
+    begins_well = head[0] in PARAMETER_BLOCKS and b"\0" in head[:BLOCK]
+    return begins_well or _has_parameters(head, BLOCK)
+
+
+def _has_parameters(content: bytes, start: int) -> bool:
+    """Whether parameters begin at a byte: with a group that has a name, as all do."""
+    head = content[start : start + 6]
+    if len(head) < 6 or head[3] not in PROCESSORS or head[5] < 128:
+        return False
+    length = min(head[4], 256 - head[4])  # A locked group has a negative one.
+    name = content[start + 6 : start + 6 + length]
+    return 0 < length == len(name) and name.isascii() and name.decode().isprintable()
 
 
 class C3dFile:
@@ -89,7 +114,7 @@ class C3dFile:
     def _parameter_start(self) -> int:
         """Return where the parameters begin; also where a broken first byte hides it."""
         for start in [BLOCK * (self.content[0] - 1), BLOCK]:
-            if 0 < start <= len(self.content) - 4 and self.content[start + 3] in range(83, 88):
+            if 0 < start <= len(self.content) - 4 and self.content[start + 3] in PROCESSORS:
                 return start
         raise InvalidFileError(f"{self.path} has no C3D parameters: it is damaged.")
 

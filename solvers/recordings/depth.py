@@ -5,6 +5,7 @@ from pathlib import Path
 from typing import NamedTuple, Protocol
 
 from ..errors import InvalidFileError, InvalidMotionError
+from ..files import unreadable
 from ..motion.depth_recording import DepthRecording
 from ..progress import Progress, unwatched
 from .depth_folder import layout_of, read_depth_folder
@@ -14,6 +15,7 @@ from .depth_mkv import is_depth_mkv, read_depth_mkv
 from .depth_npz import is_depth_npz, read_depth_npz
 from .depth_raw import is_depth_raw, read_depth_raw
 from .depth_settings import USUAL, DepthSettings, Held
+from .folder_scan import refuse_closed
 
 HEAD = 4096
 
@@ -106,6 +108,7 @@ def depth_format_of(path: Path | str) -> DepthFormat | None:
     """
     path = Path(path)
     if path.is_dir():
+        refuse_closed(path)
         return FOLDER if layout_of(path) is not None else None
     try:
         with path.open("rb") as file:
@@ -113,5 +116,5 @@ def depth_format_of(path: Path | str) -> DepthFormat | None:
     except FileNotFoundError:
         raise InvalidFileError(f"There is no file {path}.") from None
     except OSError as error:
-        raise InvalidFileError(f"{path} cannot be read ({error.strerror}).") from None
+        raise unreadable(path, error) from None
     return next((known for known in DEPTH_FILES if known.fits(path, head)), None)

@@ -6,6 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..errors import InvalidFileError
+from ..faults import attempt
 from ..motion.camera import Camera
 from ..motion.depth_recording import DepthRecording
 from ..progress import Progress, unwatched
@@ -15,6 +16,7 @@ from .depth_pictures import NONE, ColorPictures, DepthPictures
 from .depth_settings import USUAL, DepthSettings, Held
 from .depth_stack import check_size
 from .depth_stray import stray_layout
+from .listed_images import is_listed
 from .picture_frames import Frames, frames_by_number, frames_by_time
 from .png_header import PngHeader, png_header
 from .time_stamps import USUAL_RATE
@@ -37,7 +39,8 @@ def layout_of(path: Path) -> Layout | None:
 def is_depth_folder(path: Path) -> bool:
     """Tell whether a folder is one recording of depth, and holds no pictures of another kind.
 
-    Of one that says that it is, but is damaged, whoever reads it will tell.
+    Of one that says that it is, but is damaged, whoever reads it will tell; pictures without
+    anything that says so are depth if the first whole one is.
     """
     try:
         layout = layout_of(path)
@@ -45,8 +48,13 @@ def is_depth_folder(path: Path) -> bool:
         return True
     if layout is None:
         return False
-    header = png_header(layout.root / layout.depth[0])
-    return bool(layout.metres) or header is None or (header.bits == BITS and header.grey)
+    if layout.metres:
+        return True
+    headers = (attempt(path, png_header, layout.root, name) for name in layout.depth)
+    header = next((header for header in headers if isinstance(header, PngHeader)), None)
+    if header is None:
+        return "/" in layout.depth[0]  # A folder called depth.
+    return header.bits == BITS and header.grey
 
 
 def read_depth_folder(
@@ -93,7 +101,7 @@ def _good_pictures(layout: Layout, progress: Progress) -> tuple[NDArray[np.bool_
     """Tell which pictures are there and whole, and of which size all of them are."""
     headers = []
     for place, name in enumerate(layout.depth):
-        headers.append(png_header(layout.root / name))
+        headers.append(png_header(layout.root, name))
         progress(place / len(layout.depth), "Reading")
     known = [header for header in headers if header is not None]
     if not known or len(known) < FEWEST_GOOD * len(headers):
@@ -170,7 +178,7 @@ def _color(
     if layout.color is None or layout.color_of is None:
         return None
     of = np.where(shown == NONE, NONE, layout.color_of[shown])
-    there = np.array([(layout.root / name).is_file() for name in layout.color])
+    there = np.array([is_listed(layout.root, name) for name in layout.color])
     of = np.where((of != NONE) & there[of], of, NONE)
     return ColorPictures(layout.root, layout.color, of, shape) if (of != NONE).any() else None
 

@@ -1,6 +1,5 @@
 """How folders of depth pictures are laid out by those who record them."""
 
-import json
 from collections.abc import Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -10,6 +9,7 @@ from numpy.typing import NDArray
 
 from ..errors import InvalidFileError
 from ..files import DAMAGE
+from ..json_text import parse_json
 from .depth_pictures import NONE
 from .depth_settings import Held
 from .depth_stack import MILLIMETRE
@@ -129,7 +129,7 @@ def open3d_layout(root: Path) -> Layout | None:
 def plain_layout(root: Path) -> Layout | None:
     """Lay out a folder that holds PNG files and says nothing of them."""
     names = pictures_in(root, "")
-    return Layout(root, names) if names and is_png(root / names[0]) else None
+    return Layout(root, names) if names and is_png(root, names[0]) else None
 
 
 def pictures_in(root: Path, folder: str) -> tuple[str, ...]:
@@ -140,7 +140,7 @@ def pictures_in(root: Path, folder: str) -> tuple[str, ...]:
     found = [
         path.relative_to(root).as_posix()
         for path in below.iterdir()
-        if path.suffix.lower() in PICTURES and not path.name.startswith(".")
+        if path.suffix.lower() in PICTURES and not path.name.startswith(".") and path.is_file()
     ]
     return tuple(in_order(found))
 
@@ -187,7 +187,7 @@ def _times(path: Path, words: Sequence[str]) -> NDArray[np.float64]:
 def _intrinsics(path: Path) -> tuple[Focal, tuple[int, int]]:
     """Read the camera of Open3D: its matrix stands column by column."""
     try:
-        told = json.loads(read_bytes(path))
+        told = parse_json(read_bytes(path))
         matrix = np.array(told["intrinsic_matrix"], dtype=np.float64).reshape(3, 3)
         size = int(told["width"]), int(told["height"])
         if not (np.isfinite(matrix).all() and min(size) > 0):

@@ -2,20 +2,20 @@
 
 import struct
 import zipfile
-from math import prod
 from pathlib import Path
 from typing import Any, NamedTuple
 
 import numpy as np
 
 from ..errors import InvalidFileError
-from ..files import DAMAGE
+from ..files import open_regular
 from ..motion.camera import Camera
 from ..motion.depth_recording import DepthRecording
+from ..npz_members import READABLE, member_header
 from ..progress import Progress, unwatched
 from .depth_settings import USUAL, DepthSettings
 from .depth_stack import MILLIMETRE, ColorStack, DepthStack, check_size
-from .stored_arrays import array_header, read_archive
+from .stored_arrays import NUMBERS, read_archive
 from .stored_bytes import (
     CHUNK,
     DENSEST,
@@ -46,9 +46,9 @@ def is_depth_npz(path: Path, head: bytes) -> bool:
     if head[:4] != b"PK\x03\x04":
         return False
     try:
-        with zipfile.ZipFile(path) as archive:
+        with open_regular(path) as file, zipfile.ZipFile(file) as archive:
             return "depth.npy" in archive.namelist()
-    except DAMAGE:
+    except READABLE:
         return b"depth.npy" in head
 
 
@@ -90,26 +90,31 @@ def read_depth_npz(
 def _member(path: Path, name: str) -> _Member:
     """Find an array in the archive without reading its numbers."""
     try:
-        with zipfile.ZipFile(path) as archive:
+        with open_regular(path) as file, zipfile.ZipFile(file) as archive:
             member = archive.getinfo(f"{name}.npy")
             if member.file_size > DENSEST * member.compress_size + DENSEST:
                 raise ValueError(name)
-            with archive.open(member) as file:
-                shape, by_column, kind = array_header(file)
-                skipped = file.tell()
-                while member.file_size <= MOST_CHECKED and file.read(CHUNK):
-                    pass  # Its checksum is compared at the end.
-        size = prod(shape) * kind.itemsize
-        if by_column or kind.kind not in "fiu" or size > member.file_size - skipped:
-            raise ValueError(kind)
-        return _Member(_content(path, member, skipped, size), shape, kind)
+            header = member_header(archive, name)
+            if header.by_column or header.dtype.kind not in NUMBERS.kinds:
+                raise ValueError(header.dtype)
+            if member.file_size <= MOST_CHECKED:
+                _compare_checksum(archive, member)
+        content = _content(path, member, header.start, header.n_bytes)
+        return _Member(content, header.shape, header.dtype)
     except FileNotFoundError:
         raise InvalidFileError(f"There is no file {path}.") from None
-    except (*DAMAGE, RuntimeError):  # RuntimeError: the member is encrypted.
+    except READABLE:
         raise InvalidFileError(
             f"{path} has no readable array called {name}: it is damaged, cut short or of"
             " another kind. Export it again."
         ) from None
+
+
+def _compare_checksum(archive: zipfile.ZipFile, member: zipfile.ZipInfo) -> None:
+    """Raise BadZipFile if the checksum of a member, which stands at its end, is another."""
+    with archive.open(member) as file:
+        while file.read(CHUNK):
+            pass
 
 
 def _content(path: Path, member: zipfile.ZipInfo, skipped: int, size: int) -> StoredBytes:
@@ -120,8 +125,6 @@ def _content(path: Path, member: zipfile.ZipInfo, skipped: int, size: int) -> St
     start = member.header_offset + LOCAL_HEADER + name + extra
     if member.compress_type == zipfile.ZIP_STORED:
         return PlainBytes(path, start + skipped, size)
-    if member.compress_type != zipfile.ZIP_DEFLATED:
-        raise zipfile.BadZipFile(f"compressed by method {member.compress_type}")
     packed = PackedBytes(path, start, member.compress_size, member.file_size, WITHOUT_HEADER)
     return PartOfBytes(packed, skipped, size)
 
@@ -136,7 +139,7 @@ def _camera(path: Path, height: int, width: int, settings: DepthSettings) -> Cam
 
 
 def _has(path: Path, names: tuple[str, ...]) -> bool:
-    with zipfile.ZipFile(path) as archive:
+    with open_regular(path) as file, zipfile.ZipFile(file) as archive:
         return {f"{name}.npy" for name in names} <= set(archive.namelist())
 
 
@@ -152,9 +155,8 @@ def _number(path: Path, name: str) -> float:
 
 
 def _color(path: Path, shape: tuple[int, ...]) -> ColorStack | None:
-    with zipfile.ZipFile(path) as archive:
-        if "color.npy" not in archive.namelist():
-            return None
+    if not _has(path, ("color",)):
+        return None
     color = _member(path, "color")
     if color.shape != (*shape, 3) or color.kind != np.uint8:
         raise InvalidFileError(

@@ -8,6 +8,7 @@ from numpy.typing import NDArray
 
 from ..errors import InvalidFileError
 from ..motion.depth_recording import ColorPicture, DepthPicture
+from .listed_images import largest_color, listed_image
 
 NONE = -1
 """Stands for a frame without a picture."""
@@ -47,14 +48,11 @@ class DepthPictures:
         number = self.frames[index]
         if number == NONE:
             return np.zeros(self.shape, np.float32)
-        path = self.folder / self.names[number]
-        pixels = read_pixels(path)
-        if pixels.shape != self.shape:
-            raise InvalidFileError(f"{path} is no picture of depth any more. Copy it again.")
+        pixels = read_pixels(self.folder, self.names[number], self.shape)
         depth = (pixels * self.metres).astype(np.float32)
         if self.confidence is None or not self.least:
             return depth
-        sure = read_pixels(self.folder / self.confidence[number])
+        sure = read_pixels(self.folder, self.confidence[number], self.shape)
         return np.where(sure >= self.least, depth, np.float32(0.0))
 
 
@@ -73,30 +71,25 @@ class ColorPictures:
 
     def __call__(self, index: int) -> ColorPicture:
         """Return the colours (height, width, 3) of a frame, 0 to 255."""
-        from PIL import Image
-
         number = self.frames[index]
         if number == NONE:
             return np.zeros((*self.shape, 3), np.uint8)
-        path = self.folder / self.names[number]
-        try:
-            with Image.open(path) as image:
-                size = self.shape[::-1]
-                return np.asarray(image.convert("RGB").resize(size), np.uint8)
-        except (OSError, ValueError, SyntaxError, Image.DecompressionBombError):
-            raise _unreadable(path) from None
+        largest = largest_color(self.shape)
+        with listed_image(self.folder, self.names[number], largest) as image:
+            return np.asarray(image.convert("RGB").resize(self.shape[::-1]), np.uint8)
 
 
-def read_pixels(path: Path) -> NDArray[np.int32]:
-    """Return the numbers in a grey picture, shape (height, width)."""
-    from PIL import Image
+def read_pixels(folder: Path, name: str, shape: tuple[int, int]) -> NDArray[np.int32]:
+    """Return the numbers in a grey PNG file, which must have this shape, (height, width).
 
-    try:
-        with Image.open(path, formats=("PNG",)) as image:
-            return np.asarray(image).astype(np.int32)
-    except (OSError, ValueError, SyntaxError, Image.DecompressionBombError):
-        raise _unreadable(path) from None
-
-
-def _unreadable(path: Path) -> InvalidFileError:
-    return InvalidFileError(f"{path} is missing or damaged. Copy or export it again.")
+    Raises InvalidFileError where it has not, is missing or damaged, or not in the folder.
+    """
+    height, width = shape
+    with listed_image(folder, name, (width, height), ("PNG",)) as image:
+        pixels = np.asarray(image).astype(np.int32)
+    if pixels.shape != shape:
+        raise InvalidFileError(
+            f"{folder / name} is no grey picture of {width} x {height} pixels any more. Copy it"
+            " again."
+        )
+    return pixels

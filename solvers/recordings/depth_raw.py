@@ -5,6 +5,7 @@ from pathlib import Path
 import numpy as np
 
 from ..errors import InvalidFileError
+from ..files import unreadable
 from ..motion.camera import Camera
 from ..motion.depth_recording import DepthRecording
 from ..progress import Progress, unwatched
@@ -61,7 +62,7 @@ def read_depth_raw(
     try:
         size = path.stat().st_size
     except OSError as error:
-        raise InvalidFileError(f"{path} cannot be read ({error.strerror}).") from None
+        raise unreadable(path, error) from None
     n_frames, rest = divmod(size, camera.width * camera.height * PIXEL)
     if rest or not n_frames:
         raise InvalidFileError(

@@ -1,6 +1,5 @@
 """The cameras of an Azure Kinect or Femto, as their recordings describe them."""
 
-import json
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -10,6 +9,7 @@ from numpy.typing import NDArray
 
 from ..errors import InvalidFileError
 from ..files import DAMAGE
+from ..json_text import parse_json
 from ..motion.camera import Camera
 
 Array = NDArray[np.float64]
@@ -164,6 +164,6 @@ def _camera(
 
 def _told(calibration: bytes, place: str) -> dict[str, Any]:
     """Return what the calibration says of the camera at this place."""
-    cameras = json.loads(calibration.rstrip(b"\0"))["CalibrationInformation"]["Cameras"]
+    cameras = parse_json(calibration.rstrip(b"\0"))["CalibrationInformation"]["Cameras"]
     found: dict[str, Any] = {camera["Location"]: camera for camera in cameras}[place]
     return found

@@ -10,9 +10,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..errors import InvalidFileError
+from ..files import DAMAGE
 from ..motion.depth_recording import ColorPicture, DepthPicture
 from .depth_pictures import NONE
 from .k4a_calibration import K4aCamera, color_camera
+from .listed_images import bounded_image, largest_color
 from .matroska import Track
 from .stored_bytes import PlainBytes
 
@@ -66,8 +68,6 @@ class ColorBlocks:
         return colors
 
     def _picture(self, content: bytes) -> ColorPicture:
-        from PIL import Image
-
         camera = self.eye.camera
         if self.kind == BGRA:
             pixels = np.frombuffer(content, np.uint8)
@@ -75,9 +75,10 @@ class ColorBlocks:
                 raise InvalidFileError(f"{self.path} has a damaged picture of colour.")
             return pixels.reshape(camera.height, camera.width, 4)[..., 2::-1]
         try:
-            with Image.open(io.BytesIO(content), formats=("JPEG",)) as image:
+            largest = camera.width, camera.height
+            with bounded_image(self.path, io.BytesIO(content), largest, ("JPEG",)) as image:
                 return np.asarray(image.convert("RGB"), np.uint8)
-        except (OSError, ValueError, SyntaxError, Image.DecompressionBombError):
+        except DAMAGE:
             raise InvalidFileError(f"{self.path} has a damaged picture of colour.") from None
 
 
@@ -92,11 +93,16 @@ def color_blocks(
 ) -> ColorBlocks | None:
     """Return the reader of a track of colour, or None for kinds that are not read (NV12, YUY2).
 
+    Nor is color with more pixels than `largest_color` allows beside the depth.
+
     `of` is which picture of the track each frame has, -1 for none.
     """
     if kind not in {JPEG, BGRA}:
         return None
     width, height = struct.unpack_from("<ii", track.private, 4)
+    most = largest_color((lens.camera.height, lens.camera.width))
+    if not (0 < width <= most[0] and 0 < abs(height) <= most[1]):
+        return None
     eye = color_camera(path, calibration, width, abs(height))
     places = np.frombuffer(track.places, np.int64)
     sizes = np.frombuffer(track.sizes, np.int64)

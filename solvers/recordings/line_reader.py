@@ -5,6 +5,7 @@ from pathlib import Path
 from typing import NamedTuple
 
 from ..errors import InvalidFileError
+from ..files import unreadable
 from .text import BYTE_ORDER_MARK
 
 BLOCK = 1 << 22
@@ -126,7 +127,7 @@ def _blocks(path: Path) -> Iterator[tuple[list[bytes], float]]:
             if lines := b"".join(begun).splitlines():
                 yield lines, 1.0
     except OSError as error:
-        raise InvalidFileError(f"{path} cannot be read ({error.strerror}).") from None
+        raise unreadable(path, error) from None
 
 
 def _length(lines: list[bytes]) -> int:

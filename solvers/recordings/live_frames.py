@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..errors import InvalidMotionError
+from ..json_text import parse_json
 from ..motion import JointRecording, Sensor
 
 FORMAT = "mocap-assist-live"
@@ -85,8 +86,8 @@ def decode_frame(line: bytes) -> LiveFrame:
     if len(line) > LONGEST_LINE:
         raise InvalidMotionError(f"A frame of {len(line)} bytes is too long.")
     try:
-        said = json.loads(line, parse_constant=_refuse)
-    except (ValueError, RecursionError):
+        said = parse_json(line, parse_constant=_refuse)
+    except ValueError:
         raise InvalidMotionError("A frame is not readable as JSON.") from None
     if not isinstance(said, dict) or said.get("format") != FORMAT:
         raise InvalidMotionError(f"A frame does not say that its format is {FORMAT}.")

@@ -92,7 +92,8 @@ def _unpacked(path: Path, at: int, packed: int, order: str) -> StoredBytes:
 def _array(content: StoredBytes, order: str) -> MatlabArray | None:
     """Read what precedes the numbers of a matrix; None for one that is not of numbers."""
     _, flags, at = _element(content, 0, order, 8)
-    if not 6 <= flags[0 if order == "<" else 3] <= 13:  # double to uint32
+    (number,) = struct.unpack(f"{order}I", flags[:4])
+    if not 6 <= number & 0xFF <= 13:  # double to uint32
         return None
     _, lengths, at = _element(content, at, order, 4 * MOST_DIMENSIONS)
     shape = struct.unpack(f"{order}{len(lengths) // 4}i", lengths)

@@ -12,6 +12,7 @@ from pathlib import Path
 from typing import IO
 
 from ..errors import InvalidFileError
+from ..files import unreadable
 from ..progress import Progress
 from .ebml import LONGEST_HEAD, Head, block_head, children, head_of, laced, text, unsigned
 
@@ -33,6 +34,8 @@ MOST_DESCRIBED = 16_000_000
 BLOCK_START = 4096
 """Bytes at the beginning of a block in which its lacing stands."""
 TOLD_EVERY = 4096
+LATEST = 2**62
+"""Nanoseconds from the start of the recording: 146 years, which an array can hold."""
 
 
 @dataclass
@@ -99,7 +102,7 @@ def index_matroska(path: Path, wanted: Callable[[Track], bool], progress: Progre
         with path.open("rb") as file:
             _walk(file, path.stat().st_size, found, wanted, progress)
     except OSError as error:
-        raise InvalidFileError(f"{path} cannot be read ({error.strerror}).") from None
+        raise unreadable(path, error) from None
     except (ValueError, IndexError, struct.error):
         raise InvalidFileError(
             f"{path} is damaged: what stands there is no Matroska. Copy or record it again."
@@ -173,7 +176,10 @@ def _add_block(
     if track is None or not wanted(track):
         return
     for place, (begin, each) in enumerate(laced(start[length:], flags, size - length)):
-        track.times.append((cluster + time) * found.scale + place * track.duration)
+        since = (cluster + time) * found.scale + place * track.duration
+        if abs(since) > LATEST:
+            raise ValueError(since)
+        track.times.append(since)
         track.places.append(at + length + begin)
         track.sizes.append(each)
 

@@ -5,6 +5,9 @@ import struct
 from pathlib import Path
 from typing import NamedTuple
 
+from ..errors import InvalidFileError
+from .listed_images import open_listed
+
 SIGNATURE = b"\x89PNG\r\n\x1a\n"
 END = b"IEND\xaeB`\x82"
 GREY = 0
@@ -19,13 +22,16 @@ class PngHeader(NamedTuple):
     grey: bool
 
 
-def png_header(path: Path) -> PngHeader | None:
-    """Return what a PNG says of itself; None where it is missing, damaged or cut short."""
+def png_header(root: Path, name: str) -> PngHeader | None:
+    """Return what a PNG says of itself; None where it is missing, damaged or cut short.
+
+    Raises InvalidFileError if it lies outside of the folder `root`.
+    """
     try:
-        with path.open("rb") as file:
+        with open_listed(root, name) as file:
             head = file.read(26)
             file.seek(-len(END), os.SEEK_END)
-            whole = file.read() == END
+            whole = file.read(len(END)) == END
     except OSError:
         return None
     if not whole or len(head) < 26 or head[:8] != SIGNATURE or head[12:16] != b"IHDR":
@@ -34,10 +40,10 @@ def png_header(path: Path) -> PngHeader | None:
     return PngHeader(width, height, bits, kind == GREY)
 
 
-def is_png(path: Path) -> bool:
-    """Tell by the first bytes."""
+def is_png(root: Path, name: str) -> bool:
+    """Tell by the first bytes; not if it lies outside of the folder `root`."""
     try:
-        with path.open("rb") as file:
+        with open_listed(root, name) as file:
             return file.read(len(SIGNATURE)) == SIGNATURE
-    except OSError:
+    except (OSError, InvalidFileError):
         return False

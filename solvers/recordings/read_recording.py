@@ -6,6 +6,8 @@ from pathlib import Path
 from typing import NamedTuple, Protocol
 
 from ..errors import InvalidFileError, InvalidMotionError
+from ..faults import attempt
+from ..files import unreadable
 from ..motion import JointRecording, Motion, Tracks
 from ..motion.depth_recording import DepthRecording
 from ..progress import Progress, unwatched
@@ -15,9 +17,11 @@ from .azure_csv import is_azure_csv, read_azure_csv
 from .azure_json import is_azure_json, read_azure_json
 from .bvh import read_bvh
 from .c3d import read_c3d
+from .c3d_file import is_c3d
 from .depth import depth_format_of, read_depth
 from .depth_folder import is_depth_folder
 from .depth_settings import DepthSettings
+from .folder_scan import files_below, is_folder, refuse_closed
 from .freemocap import is_npy, read_freemocap
 from .irds import is_irds, read_irds
 from .joint_csv import is_joint_csv, read_joint_csv
@@ -65,10 +69,6 @@ def _is_acclaim_skeleton(head: bytes) -> bool:
     return re.match(rb"(?i):(version|name|units|root)\b", text) is not None
 
 
-def _is_c3d(head: bytes) -> bool:
-    return head[1:2] == b"\x50" and b"\0" in head[:512]
-
-
 def _is_trc(head: bytes) -> bool:
     """Some programs leave the first line out, or write it in small letters."""
     return re.match(rb"(?i)[\s\"]*(PathFileType|DataRate\W+CameraRate)\b", head) is not None
@@ -86,7 +86,7 @@ FORMATS = (
     Format("BVH", _is_bvh, read_bvh, has_skeleton=True),
     Format("Acclaim AMC", _is_acclaim, read_acclaim, has_skeleton=True),
     Format("Acclaim ASF", _is_acclaim_skeleton, _refuse_skeleton, has_skeleton=True),
-    Format("C3D", _is_c3d, read_c3d),
+    Format("C3D", is_c3d, read_c3d),
     Format("TRC", _is_trc, read_trc),
     Format("IRDS", is_irds, read_irds),
     Format("Kinect v2 CSV", is_kinect_csv, read_kinect_csv),
@@ -185,6 +185,7 @@ def format_of(path: Path | str) -> Format | None:
         The file is missing, or cannot be read.
     """
     if Path(path).is_dir():
+        refuse_closed(Path(path))
         return None
     try:
         with Path(path).open("rb") as file:
@@ -192,30 +193,30 @@ def format_of(path: Path | str) -> Format | None:
     except FileNotFoundError:
         raise InvalidFileError(f"There is no file {path}.") from None
     except OSError as error:
-        raise InvalidFileError(f"{path} cannot be read ({error.strerror}).") from None
+        raise unreadable(path, error) from None
     return next((known for known in FORMATS if known.fits(head)), None)
 
 
 def recordings_in(folder: Path) -> list[Path]:
     """Return the files in a folder and the folders in it that hold recordings, by name.
 
-    Hidden files and folders are passed over, and skeletons without motion.
+    Hidden files and folders are passed over, and skeletons without motion. Files and folders
+    that cannot be opened are among them: whoever reads them says why.
     """
-    found = []
-    for path in sorted(folder.rglob("*")):
-        hidden = any(part.startswith(".") for part in path.relative_to(folder).parts)
-        if path.is_file() and not hidden:
-            known = format_of(path)
-            if known is not None and known.read is not _refuse_skeleton:
-                found.append(path)
-    return found
+    return [path for path in files_below(folder) if attempt(path, _may_hold_motion, path)]
+
+
+def _may_hold_motion(path: Path) -> bool:
+    known = format_of(path)
+    return known is not None and known.read is not _refuse_skeleton
 
 
 def depth_in(folder: Path, is_take: Callable[[Path], bool] = is_depth_folder) -> list[Path]:
     """Return the recordings of depth in a folder and below, by name; or the folder itself.
 
     A folder of pictures is one recording, and is not looked into. Hidden files and folders are
-    passed over, and links to folders.
+    passed over, and links to folders. Files and folders that cannot be opened are among them:
+    whoever reads them says why.
 
     Parameters
     ----------
@@ -223,17 +224,8 @@ def depth_in(folder: Path, is_take: Callable[[Path], bool] = is_depth_folder) ->
     is_take : callable
         Tells whether a folder is one recording.
     """
-    if is_take(folder):
-        return [folder]
-    found = []
-    for path in sorted(folder.iterdir()):
-        if path.name.startswith("."):
-            continue
-        if path.is_dir():
-            found += [] if path.is_symlink() else depth_in(path, is_take)
-        elif path.is_file() and is_depth(path):
-            found.append(path)
-    return found
+    inside = files_below(folder, is_take)
+    return [path for path in inside if is_folder(path) or attempt(path, is_depth, path)]
 
 
 def read_motion_or_tracks(

@@ -7,6 +7,7 @@ from pathlib import Path
 from typing import Any, NamedTuple, Protocol
 
 from ..errors import InvalidFileError
+from ..files import unreadable
 
 CHUNK = 1 << 17
 """Bytes that are taken from the file, and that are unpacked, at a time."""
@@ -44,7 +45,7 @@ class PlainBytes:
                 file.seek(self.offset + start)
                 content = file.read(count)
         except OSError as error:
-            raise InvalidFileError(f"{self.path} cannot be read ({error.strerror}).") from None
+            raise unreadable(self.path, error) from None
         if len(content) < count:
             raise cut_short(self.path)
         return content
@@ -105,7 +106,7 @@ class PackedBytes:
             with self.path.open("rb") as file:
                 return self._unpack(file, mark, start, count)
         except OSError as error:
-            raise InvalidFileError(f"{self.path} cannot be read ({error.strerror}).") from None
+            raise unreadable(self.path, error) from None
         except zlib.error:
             raise damaged(self.path) from None
 

@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..errors import InvalidFileError
+from ..files import unreadable
 from ..progress import Progress, unwatched
 from .names import shown
 
@@ -34,7 +35,7 @@ def map_bytes(path: Path | str) -> bytes | mmap.mmap:
     except ValueError:  # An empty file cannot be mapped.
         return b""
     except OSError as error:
-        raise InvalidFileError(f"{path} cannot be read ({error.strerror}).") from None
+        raise unreadable(path, error) from None
 
 
 def read_bytes(path: Path | str) -> bytes:
@@ -45,7 +46,7 @@ def read_bytes(path: Path | str) -> bytes:
     try:
         return path.read_bytes().removeprefix(BYTE_ORDER_MARK)
     except OSError as error:
-        raise InvalidFileError(f"{path} cannot be read ({error.strerror}).") from None
+        raise unreadable(path, error) from None
 
 
 def parted_by_blanks(line: bytes) -> bytes:

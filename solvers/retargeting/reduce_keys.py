@@ -3,20 +3,44 @@
 from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
-from ..errors import InvalidFileError, InvalidMotionError, InvalidSettingError
-from ..files import read_archive, write_archive
+from ..archives import ArchiveLayout
+from ..errors import InvalidMotionError, InvalidSettingError
 from ..motion import Motion, Skeleton
 from ..motion.rotations import IDENTITY
+from ..npz_members import integers, numbers, words
 from ..progress import Progress, unwatched, within
 from ..settings import Settings, setting
 from .key_curves import KeyCurve
 from .rotation_channels import RotationChannels
 from .thinning import ROOT, Thinning
 
-KIND, VERSION = "keys of a motion", 1
+MAX_FRAMES = 10_000_000
+"""More than a day at 100 Hz."""
+LAYOUT = ArchiveLayout(
+    "keys of a motion",
+    1,
+    {
+        "names": words("joints"),
+        "parents": integers("joints", minimum=-1),
+        "offsets": numbers("joints", 3),
+        "counts": integers("curves", minimum=0),
+        "frames": integers("keys", minimum=0, maximum=MAX_FRAMES),
+        "rotations": numbers("values"),
+        "turning": numbers("values"),
+        "orders": words("joints"),
+        "axes": numbers("joints", 4),
+        "places": numbers("places", 3),
+        "moving": numbers("places", 3),
+        "length": numbers(3),
+    },
+    holds="no whole set of keys",
+    remedy="Unbake again.",
+)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -78,7 +102,7 @@ class SparseMotion:
             "moving": self.root.slopes,
             "length": np.array([self.n_frames, self.frame_rate, self.error]),
         }
-        write_archive(path, KIND, VERSION, arrays)
+        LAYOUT.write(path, arrays)
 
     def dense(self) -> Motion:
         """Return the motion with a pose at every frame, as F-Curves would give it."""
@@ -98,38 +122,51 @@ def load_sparse_motion(path: Path | str) -> SparseMotion:
     InvalidFileError
         The file is missing, damaged, or holds something else.
     """
-    arrays = read_archive(path, KIND, VERSION)
+    arrays = LAYOUT.read(path)
     try:
-        skeleton = Skeleton(
-            tuple(arrays["names"].tolist()), tuple(arrays["parents"]), arrays["offsets"]
-        )
-        channels = tuple(
-            RotationChannels(str(order), axes)
-            for order, axes in zip(arrays["orders"], arrays["axes"], strict=True)
-        )
-        frames = np.split(arrays["frames"], np.cumsum(arrays["counts"])[:-1])
-        widths = [3 if each.order else 4 for each in channels]
-        stops = np.cumsum(arrays["counts"][:-1] * widths)[:-1]
-        parts = zip(
-            frames[:-1],
-            np.split(arrays["rotations"], stops),
-            np.split(arrays["turning"], stops),
-            widths,
-            strict=True,
-        )
-        curves = tuple(
-            KeyCurve(keys, values.reshape(-1, width), slopes.reshape(-1, width))
-            for keys, values, slopes, width in parts
-        )
-        root = KeyCurve(frames[-1], arrays["places"], arrays["moving"])
-        n_frames, frame_rate, error = arrays["length"].tolist()
-        sparse = SparseMotion(
-            skeleton, curves, channels, root, int(n_frames), frame_rate, error
-        )
-        sparse.dense()
-    except (KeyError, ValueError, IndexError, TypeError) as fault:
-        raise InvalidFileError(f"{path} holds no whole set of keys ({fault}).") from None
-    return sparse
+        return _motion_of(arrays)
+    except InvalidMotionError as error:
+        raise LAYOUT.damaged(path, str(error).removesuffix(".")) from None
+
+
+def _motion_of(arrays: dict[str, NDArray[Any]]) -> SparseMotion:
+    """Put the arrays of a file together; raises InvalidMotionError if they do not fit."""
+    skeleton = Skeleton(
+        tuple(arrays["names"].tolist()), tuple(arrays["parents"].tolist()), arrays["offsets"]
+    )
+    channels = tuple(
+        RotationChannels(str(order), axes)
+        for order, axes in zip(arrays["orders"], arrays["axes"], strict=True)
+    )
+    counts, lengths = arrays["counts"].tolist(), arrays["length"].tolist()
+    widths = np.array([3 if each.order else 4 for each in channels], dtype=np.intp)
+    n_frames, frame_rate, error = int(lengths[0]), lengths[1], lengths[2]
+    if (
+        len(counts) != skeleton.n_joints + 1
+        or sum(counts) != len(arrays["frames"])
+        or counts[-1] != len(arrays["places"])
+        or arrays["counts"][:-1] @ widths != len(arrays["rotations"])
+    ):
+        raise InvalidMotionError("The keys do not fit the joints.")
+    if not 0 < n_frames <= MAX_FRAMES or frame_rate <= 0.0 or not counts[-1]:
+        raise InvalidMotionError("The length of the motion makes no sense.")
+    frames = np.split(arrays["frames"], np.cumsum(counts)[:-1])
+    if any((np.diff(keys) <= 0).any() for keys in frames):
+        raise InvalidMotionError("The frames of the keys do not rise.")
+    stops = np.cumsum(arrays["counts"][:-1] * widths)[:-1]
+    parts = zip(
+        frames[:-1],
+        np.split(arrays["rotations"], stops),
+        np.split(arrays["turning"], stops),
+        widths.tolist(),
+        strict=True,
+    )
+    curves = tuple(
+        KeyCurve(keys, values.reshape(-1, width), slopes.reshape(-1, width))
+        for keys, values, slopes, width in parts
+    )
+    root = KeyCurve(frames[-1], arrays["places"], arrays["moving"])
+    return SparseMotion(skeleton, curves, channels, root, n_frames, frame_rate, error)
 
 
 def reduce_keys(

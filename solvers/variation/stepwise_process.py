@@ -27,6 +27,8 @@ Array = NDArray[np.float64]
 
 N = 3
 """Outputs, latent processes and channels."""
+PACKED = 3 * N + N * N
+"""Numbers of the hyper-parameters of one triple."""
 ROUNDS = 40
 LOG_LENGTH, LOG_BIAS, LOG_NOISE = (-1.5, 4.0), (-4.0, 3.0), (-9.0, 0.0)
 """Bounds of logarithms: of lengths by the usual distance of examples, of biases and noises."""

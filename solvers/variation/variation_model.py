@@ -6,17 +6,38 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from ..errors import InvalidFileError
-from ..files import read_archive, write_archive
+from ..archives import ArchiveLayout
 from ..motion import Skeleton
+from ..npz_members import integers, numbers, words
 from .course import N_ROOT
 from .mixing_kernel import MixingKernel
 from .stepwise_model import StepwiseModel, learn_stepwise
-from .stepwise_process import Hyperparameters
+from .stepwise_process import PACKED, Hyperparameters
 
 Array = NDArray[np.float64]
 
-KIND, VERSION = "a variation model", 2
+SLOWEST, FASTEST = 1e-3, 1e6
+"""Hertz."""
+LAYOUT = ArchiveLayout(
+    "a variation model",
+    2,
+    {
+        "names": words("joints"),
+        "parents": integers("joints", minimum=-1),
+        "offsets": numbers("joints", 3),
+        "usual": numbers("joints", 4),
+        "root": numbers("examples", "moments", N_ROOT),
+        "joints": numbers("examples", "moments", "joints", 3),
+        "haste": numbers("examples", "moments"),
+        "footing": numbers("examples", "moments", 2, finite=False),
+        "carrier": numbers("moments", "joints", 4, or_empty=True),
+        "warning": words(),
+        "numbers": numbers(5),
+        "stepwise": numbers("stacks", "triples", PACKED, or_empty=True),
+    },
+    holds="a damaged variation model",
+    remedy="Learn it again.",
+)
 
 
 @dataclass(frozen=True, eq=False)
@@ -76,7 +97,7 @@ class VariationModel:
 
     def save(self, path: Path | str) -> None:
         """Write the model to a file that `load_variation_model` reads."""
-        write_archive(path, KIND, VERSION, {
+        LAYOUT.write(path, {
             "names": np.array(self.skeleton.names), "parents": np.array(self.skeleton.parents),
             "offsets": self.skeleton.offsets, "usual": self.usual, "root": self.root,
             "joints": self.joints, "haste": self.haste, "footing": self.footing,
@@ -97,34 +118,26 @@ def load_variation_model(path: Path | str) -> VariationModel:
     InvalidFileError
         There is no such file, it holds something else, or does not fit itself.
     """
-    arrays = read_archive(path, KIND, VERSION)
+    arrays = LAYOUT.read(path)
+    rate, scale, bias, centre, loops = arrays["numbers"].tolist()
+    n_examples, n_moments = arrays["haste"].shape
+    in_range = 0 <= centre < n_examples and scale > 0.0 and 0.0 <= bias <= 1.0
+    if not (n_moments and in_range and SLOWEST <= rate <= FASTEST):
+        raise LAYOUT.damaged(path, "its numbers are out of range")
+    names, parents = arrays["names"].tolist(), arrays["parents"].tolist()
     try:
-        names = tuple(str(name) for name in arrays["names"])
-        parents = tuple(int(parent) for parent in arrays["parents"])
-        rate, scale, bias, centre, loops = (float(x) for x in arrays["numbers"])
-        n, moments = arrays["haste"].shape
-        joints = arrays["joints"].reshape(n, moments, len(names), 3)
-        if not all(np.isfinite(arrays[key]).all() for key in ("joints", "root", "haste")):
-            raise ValueError("Some numbers are no numbers.")
-        if not (0 <= centre < n and rate > 0 and scale > 0 and 0 <= bias <= 1):
-            raise ValueError("Settings out of range.")
-        skeleton = Skeleton(names, parents, arrays["offsets"])
-        told = arrays["carrier"]
-        carrier = told.reshape(moments, len(names), 4) if told.size else None
-        root, found = arrays["root"].reshape(n, moments, N_ROOT), _unpacked(arrays["stepwise"])
-        stepwise = (
-            learn_stepwise(skeleton, joints, root, rate, len(found) > 1, found)
-            if found
-            else None
-        )
-        return VariationModel(
-            skeleton, rate, arrays["usual"].reshape(len(names), 4), root, joints,
-            arrays["haste"], arrays["footing"].reshape(n, moments, 2), carrier,
-            MixingKernel(scale, bias), int(centre), bool(loops), str(arrays["warning"]),
-            stepwise,
-        )  # fmt: skip
-    except (KeyError, ValueError, TypeError, IndexError) as error:
-        raise InvalidFileError(f"{path} is damaged: it does not fit itself.") from error
+        skeleton = Skeleton(tuple(names), tuple(parents), arrays["offsets"])
+        found = _unpacked(arrays["stepwise"])
+        learned = skeleton, arrays["joints"], arrays["root"], rate
+        stepwise = learn_stepwise(*learned, len(found) > 1, found) if found else None
+    except (ValueError, IndexError) as error:
+        raise LAYOUT.damaged(path, str(error).removesuffix(".")) from None
+    carrier = arrays["carrier"] if arrays["carrier"].size else None
+    return VariationModel(
+        skeleton, rate, arrays["usual"], arrays["root"], arrays["joints"], arrays["haste"],
+        arrays["footing"], carrier, MixingKernel(scale, bias), int(centre), bool(loops),
+        str(arrays["warning"]), stepwise,
+    )  # fmt: skip
 
 
 def _packed(stepwise: StepwiseModel | None) -> Array:
@@ -133,7 +146,5 @@ def _packed(stepwise: StepwiseModel | None) -> Array:
     return np.array([[one.packed() for one in stack] for stack in stacks])
 
 
-def _unpacked(numbers: Array) -> tuple[tuple[Hyperparameters, ...], ...]:
-    if not np.isfinite(numbers).all():
-        raise ValueError("Some numbers are no numbers.")
-    return tuple(tuple(Hyperparameters.unpacked(one) for one in stack) for stack in numbers)
+def _unpacked(packed: Array) -> tuple[tuple[Hyperparameters, ...], ...]:
+    return tuple(tuple(Hyperparameters.unpacked(one) for one in stack) for stack in packed)

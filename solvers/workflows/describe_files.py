@@ -11,7 +11,7 @@ from multiprocessing import get_context
 from pathlib import Path
 from typing import NamedTuple
 
-from ..errors import MocapAssistError, SolveCancelled
+from ..faults import Failure, attempt, escaped
 from ..recordings import read_tracked
 from ..retrieval import Clip, DescribedClip, Origin, describe_clip
 
@@ -57,22 +57,28 @@ def describe_files(files: Iterable[Wanted], jobs: int) -> Iterator[Described]:
 def described(wanted: Wanted) -> Described:
     """Read and describe one file."""
     path = wanted.origin.path
-    try:
-        clip = Clip(wanted.name, read_tracked(path), wanted.tags, wanted.origin)
-        return Described(wanted, describe_clip(clip))
-    except SolveCancelled:
-        raise
-    except MocapAssistError as error:
-        sentence = str(error).removeprefix(f"{wanted.name}: ")
-        named = Path(path).name in sentence
-        told = sentence if named else f"{path}: {sentence}"
-        return Described(wanted, None, told, for_good=True)
-    except OSError as error:
-        return Described(wanted, None, f"{error.filename or path}: {error.strerror}.")
-    except MemoryError:
-        return Described(
-            wanted, None, f"{path} needs more memory than there is; cut the take into parts."
-        )
+    if sentence := odd_name(path):
+        return Described(wanted, None, sentence)
+    found = attempt(path, _describe, wanted)
+    if not isinstance(found, Failure):
+        return Described(wanted, found)
+    reason = found.sentence.removeprefix(f"{path}: ").removeprefix(f"{wanted.name}: ")
+    named = Path(path).name in reason
+    sentence = reason if named else f"{path}: {reason}"
+    return Described(wanted, None, sentence, for_good=found.lasting)
+
+
+def odd_name(path: str) -> str:
+    """Return why a library cannot keep a file by its name, or nothing."""
+    if escaped(path) == path:
+        return ""
+    reason = "its name is no valid UTF-8, and a library keeps only names that are"
+    return f"{escaped(path)}: {reason}. Rename it."
+
+
+def _describe(wanted: Wanted) -> DescribedClip:
+    recording = read_tracked(wanted.origin.path)
+    return describe_clip(Clip(wanted.name, recording, wanted.tags, wanted.origin))
 
 
 def _until_one_dies(waiting: "deque[Wanted]", jobs: int) -> Iterator[Described]:

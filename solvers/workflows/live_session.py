@@ -68,9 +68,8 @@ class LiveSession:
     def hear(self, datagrams: Iterable[bytes]) -> News:
         """Take what came in; return what it says."""
         news = News(None, (), None, "")
-        for datagram in datagrams:
-            for frame in self._stream.read(datagram):
-                news = self._told(news, frame)
+        for frame in self._stream.read(*datagrams):
+            news = self._told(news, frame)
         return news
 
     def _told(self, news: News, frame: LiveFrame) -> News:

@@ -1,5 +1,6 @@
 """What a killed writer left behind is cleared up, and nothing else."""
 
+import os
 import sys
 from subprocess import run
 
@@ -42,3 +43,15 @@ def test_a_writer_that_fails_leaves_nothing(tmp_path):
         pass
 
     assert not list(tmp_path.iterdir())
+
+
+def test_a_file_is_on_the_disk_when_it_takes_its_name(tmp_path, monkeypatch):
+    target, done = tmp_path / "out.txt", []
+    monkeypatch.setattr(
+        "os.fsync", lambda descriptor: done.append(os.fstat(descriptor).st_size)
+    )
+
+    with written_whole(target) as part:
+        part.write_text("whole")
+
+    assert (done, target.read_text()) == ([5], "whole")

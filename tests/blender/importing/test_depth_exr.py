@@ -1,5 +1,8 @@
 """Folders of EXR pictures, such as Blender writes, are recordings of depth too."""
 
+import os
+from pathlib import Path
+
 import numpy as np
 import pytest
 from depth_views import points_of
@@ -118,3 +121,43 @@ def test_a_picture_that_is_none_is_named(folder, lens, blank, name, content, sen
         bring(blank, folder)
     assert [each.name for each in blank.data.objects] == ["lens"]
     assert not blank.data.images
+
+
+@pytest.fixture
+def copies(load, blank, monkeypatch):
+    """Where copies are kept, with none in it and room for two."""
+    exr_folder = load("mocap_assist.scene.exr_folder")
+    monkeypatch.setattr(exr_folder, "MAX_COPIES", 2)
+    place = blank.utils.extension_path_user(exr_folder.EXTENSION, path="depth", create=True)
+    exr_folder.remove_old_copies(Path(place), 0, 0)
+    return Path(place)
+
+
+def test_the_copies_that_were_used_longest_ago_go_when_another_is_made(
+    folder, lens, blank, copies, load
+):
+    exr_folder = load("mocap_assist.scene.exr_folder")
+    readable = load("mocap_assist.depth_folders").readable
+    choices = load("mocap_assist.import_choices").ImportChoices()
+    made = []
+    for number in range(3):
+        write(blank, folder / "depth9.exr", depth_at(20 + number))
+        made.append(readable(blank.context, folder, choices))
+        age = 100 - number if number else 0
+        os.utime(made[-1], (1e9 - age, 1e9 - age))
+
+    assert [each.exists() for each in made] == [True, False, True]
+    exr_folder.remove_old_copies(copies, 2, made[0].stat().st_size)
+    assert [each.exists() for each in made] == [True, False, False]
+
+
+def test_a_copy_that_the_open_file_shows_stays(folder, lens, blank, copies, load):
+    bring(blank, folder)
+    shown = load("mocap_assist.scene.depth_preview").Shown.read(blank.context.object.data)
+
+    load("mocap_assist.scene.exr_folder").remove_old_copies(copies, 0, 0)
+
+    assert Path(shown.path).is_file()
+    blank.ops.wm.read_homefile(use_empty=True, use_factory_startup=True)
+    load("mocap_assist.scene.exr_folder").remove_old_copies(copies, 0, 0)
+    assert not list(copies.iterdir())

@@ -104,8 +104,31 @@ def test_a_fault_of_a_reader_keeps_no_other_file_out(load, walks, monkeypatch, f
     assert isinstance(refusal, load("solvers.errors").InvalidFileError)
     assert str(walks / "cut.bvh") in str(refusal)
     if not isinstance(fault, MemoryError):
-        assert f"{type(fault).__name__}: {fault}" in str(refusal)
+        assert f"this is a fault of Mocap Assist ({type(fault).__name__} at" in str(refusal)
         assert "in fail" in refusal.__notes__[0]
+
+
+def test_a_fault_over_one_file_leaves_the_others_in_the_scene(load, walks, blank, monkeypatch):
+    arrival = load("mocap_assist.arrival")
+    real = arrival.make_objects
+
+    def fail(context, name, *words, **more):
+        made = real(context, name, *words, **more)
+        if name == "first":
+            raise IndexError
+        return made
+
+    monkeypatch.setattr(arrival, "make_objects", fail)
+    importing = load("mocap_assist.importing")
+    choices = load("mocap_assist.import_choices").ImportChoices()
+
+    imported = importing.import_files(
+        blank.context, [walks / "first.bvh", walks / "second.bvh"], choices
+    )
+
+    assert sorted(blank.data.objects.keys()) == ["second"]
+    (sentence,) = imported.failed
+    assert "first.bvh: this is a fault of Mocap Assist (IndexError at" in sentence
 
 
 def test_what_readers_say_is_told_in_a_window_and_by_a_script(press, window, walks, blank):

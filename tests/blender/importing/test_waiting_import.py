@@ -142,13 +142,32 @@ def test_what_goes_wrong_unforeseen_leaves_no_watch(
     def fail(*_, **__):
         raise ZeroDivisionError
 
-    monkeypatch.setattr(load("mocap_assist.arrival"), "make_objects", fail)
+    monkeypatch.setattr(load("mocap_assist.arrival").Arrival, "add", fail)
     operator = press("first.bvh")
     with pytest.raises(ZeroDivisionError):
         wait(operator, window)
 
     assert everything() == before
     assert nothing_is_left(window)
+
+
+def test_a_fault_over_the_only_file_is_a_sentence_and_leaves_nothing(
+    press, window, everything, load, monkeypatch
+):
+    before = everything()
+
+    def fail(*_, **__):
+        raise ZeroDivisionError
+
+    monkeypatch.setattr(load("mocap_assist.arrival"), "make_objects", fail)
+
+    assert wait(press("first.bvh"), window) == {"CANCELLED"}
+
+    assert everything() == before
+    assert nothing_is_left(window)
+    ((kind, said),) = window.reports
+    assert kind == {"ERROR"}
+    assert "first.bvh: this is a fault of Mocap Assist (ZeroDivisionError at" in said
 
 
 def test_one_at_a_time(press, window, blank):

@@ -3,6 +3,7 @@
 import json
 
 import pytest
+from odd_files import close
 
 
 @pytest.fixture
@@ -160,3 +161,44 @@ def test_a_folder_that_cannot_be_made_is_told_in_a_sentence(command, takes, tmp_
 
     assert (status, err.count("\n")) == (2, 1)
     assert "in_the_way" in err and "Traceback" not in err
+
+
+def test_the_other_files_are_done_when_the_work_on_one_raises(
+    load, command, takes, tmp_path, monkeypatch
+):
+    each_verb = load("mocap_assist.batch.each_verb")
+    real = each_verb.forget_picture
+
+    def forget(task):
+        if task.source.name == "one.bvh":
+            raise IndexError
+        real(task)
+
+    monkeypatch.setattr(each_verb, "forget_picture", forget)
+
+    status, out, err = command(
+        "each", takes, "--output-folder", tmp_path / "out", "--", "import"
+    )
+
+    assert (status, out.count("Done."), err.count("\n")) == (2, 1, 1)
+    assert "2 of 3 files failed." in err and "Traceback" not in out + err
+    assert "one.bvh: this is a fault of Mocap Assist (IndexError at " in out
+
+
+def test_a_closed_folder_and_a_name_too_long_are_named_before_any_blender_starts(
+    command, takes, tmp_path, monkeypatch
+):
+    for name in ("bad.bvh", "one.bvh"):
+        (takes / name).unlink()
+    (takes / f"{'a' * 249}.blend").write_bytes(b"BLENDER")
+    close(takes / "second", monkeypatch)
+
+    status, out, err = command(
+        "each", takes, "--output-folder", tmp_path / "out", "--", "denoise"
+    )
+
+    assert (status, err.count("\n"), out.count("\n")) == (2, 1, 2)
+    assert "2 of 2 files failed." in err
+    assert f"The output {'a' * 40}... needs a name of 259 bytes" in out
+    assert f"The folder {takes / 'second'} cannot be looked into" in out
+    assert not list((tmp_path / "out").glob("*.blend"))

@@ -167,7 +167,10 @@ def test_nothing_in_a_file_of_patterns_is_run(call, leg_file, tmp_path):
         def __reduce__(self):
             return (Path.touch, (flag,))
 
-    np.savez(bad, kind="filter bases", version=2, keys=np.array([Attack()], dtype=object))
+    assert call("learn", leg_file, "--output", bad)[0] == 0
+    with np.load(bad) as learned:
+        arrays = dict(learned) | {"keys": np.array([Attack()], dtype=object)}
+    np.savez(bad, **arrays)
 
     status, _, complaint = call("denoise", leg_file, tmp_path / "out.bvh", "--bases", bad)
 

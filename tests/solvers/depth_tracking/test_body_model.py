@@ -106,7 +106,13 @@ def test_damaged_or_foreign_files_are_refused(tmp_path):
     path.write_bytes(path.read_bytes()[:200])
     with pytest.raises(InvalidFileError, match="not a readable archive"):
         load_body_model(path)
-    np.savez(path, kind="body model", version=1, lengths=body.lengths, radii=body.radii)
+    sizes = {"kind": "body model", "version": 1, "lengths": body.lengths, "radii": body.radii}
+    np.savez(path, **sizes)
+    with pytest.raises(
+        InvalidFileError, match=r"damaged body \('length_names', 'capsule_names' missing"
+    ):
+        load_body_model(path)
+    np.savez(path, **sizes, length_names=np.array(["a"] * 20), capsule_names=np.array(["b"]))
     with pytest.raises(InvalidFileError, match="other parts"):
         load_body_model(path)
 

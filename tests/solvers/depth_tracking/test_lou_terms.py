@@ -1,16 +1,20 @@
 """Colours, edges and recorded motions pull where they should."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from drawn_bodies import CAMERA, NATURAL, drawn, observed, recorded, waving
 from numpy.testing import assert_allclose, assert_array_equal
 
 from solvers.depth_tracking.body_model import usual_body
+from solvers.depth_tracking.capture import CaptureSettings, capture
 from solvers.depth_tracking.coordinates import COORDINATES, N_ROOT
 from solvers.depth_tracking.depth_edges import canny, edge_pixels
 from solvers.depth_tracking.edge_term import edge_term
 from solvers.depth_tracking.hypothesis import imagine
 from solvers.depth_tracking.motion_prior import (
+    LAYOUT,
     LocalPca,
     load_motion_prior,
     local_pca,
@@ -20,7 +24,7 @@ from solvers.depth_tracking.normal_equations import in_coordinates, segment_equa
 from solvers.depth_tracking.observation import Observation
 from solvers.depth_tracking.surface_term import Memory, remembered_intensities, surface_term
 from solvers.depth_tracking.track_pose import track_pose
-from solvers.depth_tracking.tracker_settings import LOU12
+from solvers.depth_tracking.tracker_settings import LOU12, USUAL, WZC12
 from solvers.errors import InvalidFileError, InvalidMotionError
 
 BODY = usual_body()
@@ -88,7 +92,7 @@ def striped(pose):
     color = np.zeros((120 * 160, 3))
     color[hypothesis.picture.pixels] = 127.0 + 120.0 * np.sin(40.0 * local[:, 1:2])
     depth = hypothesis.picture.depth_picture()
-    return hypothesis, Observation(CAMERA, depth, color.reshape(120, 160, 3))
+    return hypothesis, Observation(CAMERA, depth, lambda: color.reshape(120, 160, 3))
 
 
 def test_colours_are_remembered_where_the_skin_moved():
@@ -175,7 +179,8 @@ def test_saving_and_loading_a_prior(tmp_path):
     assert_allclose(loaded.poses, prior.poses, atol=1e-3)
     assert_array_equal(loaded.clips, [0] * 5 + [1] * 3)
     assert loaded.trained_on == "two waves"
-    np.savez(tmp_path / "bad.npz", kind="motion prior", version=1, poses=np.zeros((2, 3)))
+    arrays = LAYOUT.read(tmp_path / "prior.npz")
+    LAYOUT.write(tmp_path / "bad.npz", arrays | {"coordinates": np.array(["other parts"] * 30)})
     with pytest.raises(InvalidFileError, match="other parts"):
         load_motion_prior(tmp_path / "bad.npz")
     with pytest.raises(InvalidMotionError, match="no pose to learn"):
@@ -193,3 +198,23 @@ def test_the_shipped_prior_knows_walking_and_its_licence():
 
 
 N_ROOT_OF = {name: place for place, name in enumerate(COORDINATES[N_ROOT:])}
+
+
+def test_colors_are_read_only_where_a_term_compares_them():
+    """One damaged image of color must not end a capture that looks at none."""
+    truth, asked = waving(4), []
+
+    def read_color(frame):
+        asked.append(frame)
+        raise InvalidFileError("rgb/4.png is missing or damaged.")
+
+    depth = replace(recorded(truth), read_color=read_color)
+
+    found = capture(depth, BODY, settings=CaptureSettings())
+    for settings in (USUAL, WZC12, replace(LOU12, surface_weight=0.0)):
+        track_pose(depth, BODY, truth[0], settings=settings)
+
+    assert (found.motion.n_frames, asked) == (4, [])
+    with pytest.raises(InvalidFileError, match=r"rgb/4\.png"):
+        track_pose(depth, BODY, truth[0], settings=LOU12)
+    assert asked == [0]  # It is remembered for frame 1.

@@ -19,9 +19,8 @@ from solvers.depth_tracking.grow_tree import (
 )
 from solvers.depth_tracking.parts import N_PARTS
 from solvers.depth_tracking.pixel_forest import (
-    KIND,
+    LAYOUT,
     SHIPPED,
-    VERSION,
     PixelForest,
     classify_pixels,
     load_pixel_forest,
@@ -35,7 +34,6 @@ from solvers.depth_tracking.train_forest import (
 )
 from solvers.depth_tracking.training_pictures import CAMERA, picture_source
 from solvers.errors import InvalidFileError, InvalidMotionError
-from solvers.files import read_archive, write_archive
 from solvers.motion.camera import Camera
 from solvers.samples import GaitSettings, walking_gait
 
@@ -226,12 +224,12 @@ def test_a_forest_comes_back_from_its_file(forest, unseen, tmp_path):
 def test_damaged_forests_are_refused(forest, tmp_path, name, value, fault):
     path = tmp_path / "forest.npz"
     forest.save(path)
-    arrays = read_archive(path, KIND, VERSION)
+    arrays = LAYOUT.read(path)
     if value is None:
         del arrays[name]
     else:
         arrays[name] = value
-    write_archive(path, KIND, VERSION, arrays)
+    LAYOUT.write(path, arrays)
     with pytest.raises(InvalidFileError, match=fault):
         load_pixel_forest(path)
 

@@ -8,11 +8,10 @@ from bad_sensor import KNEE, QUICK, pair, recording, seen_by_a_bad_sensor, truth
 from numpy.testing import assert_allclose
 
 from solvers.errors import InvalidFileError, InvalidMotionError
-from solvers.files import read_archive, write_archive
 from solvers.reconstruction import correct_postures, learn_residual_prior, load_residual_prior
 from solvers.reconstruction.confidence import AS_TOLD, Calibration, chance_within
 from solvers.reconstruction.learn_confidence import calibrated, fitted, with_calibration
-from solvers.reconstruction.residual_prior import KIND, VERSION
+from solvers.reconstruction.residual_prior import LAYOUT
 
 ACTORS = ("anna", "anna", "bob", "carla")
 
@@ -124,9 +123,9 @@ def test_a_calibration_is_learned_by_leaving_actors_out_and_kept_in_the_file(
 def test_files_of_before_tell_variances_as_they_are(prior, tmp_path):
     path = tmp_path / "prior.npz"
     prior.save(path)
-    arrays = read_archive(path, KIND, VERSION)
+    arrays = LAYOUT.read(path)
     del arrays["calibration"]
-    write_archive(path, KIND, VERSION, arrays)
+    LAYOUT.write(path, arrays)
 
     assert_allclose(load_residual_prior(path).calibration, [AS_TOLD, AS_TOLD])
 

@@ -179,9 +179,9 @@ def test_what_goes_on_ahead_is_not_looked_at_where_it_must_not_be(prior):
 @pytest.mark.parametrize(
     ("change", "said"),
     [
-        ({"mean": np.zeros(4)}, "shapes of the movements"),
-        ({"joints": np.arange(1, 21)}, "unknown joints"),
-        ({"weights": np.full((1, 1), np.nan)}, "shapes of the movements"),
+        ({"mean": np.zeros(4)}, "shapes do not fit, first that of movement_mean"),
+        ({"joints": np.arange(1, 21)}, "movement_joints has numbers out of range"),
+        ({"weights": np.full((1, 1), np.nan)}, "first that of movement_weights"),
     ],
 )
 def test_damaged_movements_are_refused(prior, tmp_path, change, said):

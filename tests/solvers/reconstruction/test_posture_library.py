@@ -4,7 +4,6 @@ import numpy as np
 import pytest
 
 from solvers.errors import InvalidFileError, InvalidMotionError
-from solvers.files import write_archive
 from solvers.motion.body_size import USUAL_LENGTHS, body_lengths
 from solvers.motion.bone_directions import (
     along_bones,
@@ -15,9 +14,8 @@ from solvers.motion.posture_heading import mirrored, normalise
 from solvers.motion.posture_joints import POSTURE_JOINTS, motion_postures
 from solvers.reconstruction.library_body import ANATOMY, anatomy_turns, on_body
 from solvers.reconstruction.posture_library import (
-    KIND,
+    LAYOUT,
     SHIPPED,
-    VERSION,
     PostureLibrarySettings,
     build_posture_library,
     load_posture_library,
@@ -128,7 +126,7 @@ def test_damaged_libraries_are_refused(library, tmp_path, fault):
     }
     if fault == "missing":
         del arrays["groups"]
-    write_archive(tmp_path / "bad.npz", KIND, VERSION, arrays)
+    LAYOUT.write(tmp_path / "bad.npz", arrays)
     with pytest.raises(InvalidFileError, match=r"damaged postures .* Build them again"):
         load_posture_library(tmp_path / "bad.npz")
 

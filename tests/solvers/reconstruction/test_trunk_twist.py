@@ -8,7 +8,6 @@ from numpy.testing import assert_allclose
 from scipy.spatial.transform import Rotation
 
 from solvers.errors import InvalidFileError
-from solvers.files import read_archive, write_archive
 from solvers.motion import Motion, Skeleton, find_humanoid_map
 from solvers.motion.canonical import canonical_rotations, from_canonical
 from solvers.motion.posture_heading import mirrored, turned
@@ -17,8 +16,7 @@ from solvers.motion.rotations import multiply, quaternion_from_rotation_vector
 from solvers.reconstruction.clip_twists import agreed_twists, clip_twists
 from solvers.reconstruction.limb_angles import angles_about
 from solvers.reconstruction.posture_library import (
-    KIND,
-    VERSION,
+    LAYOUT,
     build_posture_library,
     joined_postures,
     load_posture_library,
@@ -260,13 +258,13 @@ def test_files_of_before_are_read_and_damaged_ones_refused(gait, tmp_path):
     path = tmp_path / "postures.npz"
     library = build_posture_library([gait])
     library.save(path)
-    arrays = read_archive(path, KIND, VERSION)
+    arrays = LAYOUT.read(path)
 
-    write_archive(path, KIND, VERSION, {**arrays, "twists": arrays["twists"][:-1]})
+    LAYOUT.write(path, {**arrays, "twists": arrays["twists"][:-1]})
     with pytest.raises(InvalidFileError, match="shapes do not fit"):
         load_posture_library(path)
     del arrays["twists"]
-    write_archive(path, KIND, VERSION, arrays)
+    LAYOUT.write(path, arrays)
     old = load_posture_library(path)
 
     assert old.twists is None

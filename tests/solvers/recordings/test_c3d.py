@@ -11,7 +11,7 @@ from numpy.testing import assert_allclose, assert_array_equal
 from solvers.errors import InvalidFileError, InvalidMotionError
 from solvers.motion import Tracks
 from solvers.recordings import read_c3d, write_c3d
-from solvers.recordings.c3d_file import C3dFile
+from solvers.recordings.c3d_file import C3dFile, is_c3d
 
 INTEL, DEC, MIPS = 84, 85, 86
 LABELS = [b"Ann:HEAD", b"Ann:HAND", b"Ann:HAND"]
@@ -156,6 +156,32 @@ def test_damage_is_one_sentence(tracks, tmp_path, spoil, sentence):
 
     with pytest.raises(InvalidFileError, match=sentence):
         read_c3d(path)
+
+
+@pytest.mark.parametrize(
+    ("spoil", "known"),
+    [
+        (lambda whole: whole, True),
+        (lambda whole: whole[:600], True),
+        (lambda whole: whole[:512], True),
+        (lambda whole: b"\xc8" + whole[1:], True),
+        (lambda whole: whole[:515] + b"\0" + whole[516:], True),
+        (lambda whole: b"\xc8" + whole[1:515] + b"\0" + whole[516:], False),
+        (lambda whole: b"\x89PNG\r\n\x1a\n" + whole[8:515] + b"\0" + whole[516:], False),
+    ],
+    ids=["whole", "cut", "header alone", "first byte", "processor", "both", "PNG"],
+)
+def test_a_file_is_known_by_its_header_or_its_parameters(tracks, tmp_path, spoil, known):
+    path = tmp_path / "take.c3d"
+    write_c3d(tracks, path)
+
+    assert is_c3d(spoil(path.read_bytes())) == known
+
+
+def test_every_file_at_hand_is_known(recordings):
+    for path in (recordings / "formats" / "c3d").iterdir():
+        with path.open("rb") as file:
+            assert is_c3d(file.read(4096)), path
 
 
 @pytest.mark.parametrize("kind", [-1, 1, 2, 4])

@@ -10,9 +10,9 @@ from numpy.testing import assert_allclose
 
 from solvers.errors import InvalidFileError, InvalidSettingError
 from solvers.motion import Sensor
-from solvers.recordings.live_frames import LiveFrame, encode_frame
+from solvers.recordings.live_frames import LiveFrame, decode_frame, encode_frame
 from solvers.recordings.live_receiver import MOST_AT_ONCE, Receiver
-from solvers.recordings.live_stream import StreamReader, recording_of
+from solvers.recordings.live_stream import MOST_LINES, StreamReader, recording_of
 from solvers.samples import perform
 
 
@@ -77,7 +77,7 @@ def test_one_datagram_may_hold_many_lines_and_bad_ones():
     reader = StreamReader()
     lines = [encode_frame(frame(0.0)), b"nonsense\n", b"\r\n", encode_frame(frame(0.1))]
 
-    came = reader.read(b"".join(lines))
+    came = list(reader.read(b"".join(lines)))
 
     assert [each.time for each in came] == [0.0, 0.1]
     assert reader.heard.unreadable == 1
@@ -154,6 +154,49 @@ def test_the_receiver_listens_on_loopback_only_and_never_waits(send_to):
 
     assert first + second == [b"%d" % number for number in range(MOST_AT_ONCE + 10)]
     assert len(first) == MOST_AT_ONCE
+
+
+@pytest.mark.parametrize(
+    "junk",
+    [
+        [b"x\n" * 32_700] * 16,
+        [b"\n" * 65_000] * 16,
+        [b"[1,1]\n"] * 5000,
+        [b"[" + b"1," * 16_000 + b"1]\n"] * 40,
+        [b"x" * 65_000] * 16,
+    ],
+    ids=["short lines", "blank lines", "small datagrams", "long lines", "one line"],
+)
+def test_a_burst_of_junk_is_looked_at_up_to_a_bound_and_counted(junk, monkeypatch):
+    decoded = []
+
+    def decode(line):
+        decoded.append(len(line))
+        return decode_frame(line)
+
+    monkeypatch.setattr("solvers.recordings.live_stream.decode_frame", decode)
+    reader = StreamReader()
+
+    came = [each.time for each in reader.read(encode_frame(frame(0.0)), *junk)]
+
+    assert (came, reader.heard.frames) == ([0.0], 1)
+    assert len(decoded) <= MOST_LINES
+    n_lines = sum(len(datagram.splitlines()) for datagram in junk)
+    blank = sum(not line.strip() for each in junk for line in each.splitlines())
+    looked_at = min(n_lines, MOST_LINES - 1)
+    assert reader.heard.skipped == n_lines - looked_at
+    assert reader.heard.unreadable == (0 if blank else looked_at)
+    assert [each.time for each in reader.read(encode_frame(frame(0.1)))] == [0.1]
+
+
+def test_the_receiver_takes_no_more_bytes_at_once_than_it_may(send_to, monkeypatch):
+    monkeypatch.setattr("solvers.recordings.live_receiver.MOST_BYTES", 1000)
+    with Receiver(0) as receiver:
+        send_to(receiver.address[1], *[b"x" * 100] * 25)
+
+        counts = [len(receiver.poll()) for _ in range(4)]
+
+    assert counts == [10, 10, 5, 0]
 
 
 def test_a_port_that_is_taken_is_told():

@@ -172,5 +172,8 @@ def test_a_saved_model_gives_the_same_variants(learned, tmp_path):
 def test_a_damaged_file_is_refused(model, tmp_path):
     path = tmp_path / "walks.npz"
     replace(model, haste=model.haste * np.nan).save(path)
-    with pytest.raises(InvalidFileError, match="is damaged"):
+    with pytest.raises(
+        InvalidFileError,
+        match=r"damaged variation model .* first of haste",
+    ):
         load_variation_model(path)

@@ -55,7 +55,7 @@ def test_what_is_wrong_is_one_sentence_that_names_the_file(wanted, tmp_path, mon
     assert described(gone).sentence == f"There is no file {tmp_path / 'gone.bvh'}."
 
     for error, ending in (
-        (MemoryError(), "needs more memory than there is; cut the take into parts."),
+        (MemoryError(), "needs more memory than there is; work on a part of the take."),
         (OSError(5, "Input/output error"), ": Input/output error."),
     ):
 

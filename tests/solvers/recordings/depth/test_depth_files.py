@@ -11,7 +11,14 @@ from scipy import io
 
 from solvers.errors import InvalidFileError, InvalidSettingError
 from solvers.motion.camera import Camera
-from solvers.recordings import DepthSettings, Held, read_depth, read_recording, read_tracked
+from solvers.recordings import (
+    DepthSettings,
+    Held,
+    is_depth,
+    read_depth,
+    read_recording,
+    read_tracked,
+)
 from solvers.recordings.depth_raw import read_depth_raw
 
 SMALL = Camera(9.0, 8.0, 3.5, 2.5, 8, 6)
@@ -185,6 +192,18 @@ RAW = pictures(1, 480, 640).tobytes()
 def test_what_is_no_depth_says_so(write, content, sentence):
     with pytest.raises(InvalidFileError, match=sentence):
         read_depth(write(content))
+
+
+@pytest.mark.parametrize("order", ["<", ">"])
+@pytest.mark.parametrize("size", [0, 1, 3])
+def test_a_matlab_file_is_damaged_when_its_flags_are_too_short(write, order, size):
+    whole = matlab("d_depth", pictures().transpose(1, 2, 0), packed=False, order=order)
+    flags = struct.pack(f"{order}II", 6, 8)
+    path = write(whole.replace(flags, struct.pack(f"{order}II", 6, size), 1))
+
+    assert is_depth(path)
+    with pytest.raises(InvalidFileError, match=r"take\.depth is a damaged file of MATLAB"):
+        read_depth(path)
 
 
 def test_a_frame_behind_a_cut_is_refused_and_those_before_are_not(write, monkeypatch):

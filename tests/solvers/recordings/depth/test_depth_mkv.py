@@ -207,6 +207,13 @@ def test_it_can_be_sent_to_another_process(write):
     assert_array_equal(pickle.loads(pickle.dumps(recording)).frame(1), recording.frame(1))
 
 
+def at_time(time: int) -> bytes:
+    """A recording of one picture, in a cluster of that time."""
+    picture = pictures(1).astype(">u2").tobytes()
+    inside = head(8, 6, None) + cluster(time, [block(2, 0, picture)])
+    return ebml_header() + element(0x18538067, inside)
+
+
 WRONG_NAME = k4a(pictures(4), name="INFRARED").replace(b"222", b"999")
 
 
@@ -222,6 +229,8 @@ WRONG_NAME = k4a(pictures(4), name="INFRARED").replace(b"222", b"999")
         (ebml_header(), OWN, "a video without raw depth"),
         (ebml_header()[:6], OWN, "a video without raw depth"),
         (ebml_header() + b"\0\0\0\0", OWN, "what stands there is no Matroska"),
+        (at_time(2**60), OWN, "what stands there is no Matroska"),
+        (at_time(2**64 - 1), OWN, "what stands there is no Matroska"),
     ],
 )  # fmt: skip
 def test_what_cannot_be_read_says_why(write, content, settings, sentence):
@@ -230,8 +239,7 @@ def test_what_cannot_be_read_says_why(write, content, settings, sentence):
 
 
 def test_a_file_without_calibration_asks_for_the_camera(write):
-    inside = head(8, 6, None) + cluster(0, [block(2, 0, pictures(1).astype(">u2").tobytes())])
-    path = write(ebml_header() + element(0x18538067, inside))
+    path = write(at_time(0))
 
     with pytest.raises(InvalidFileError, match=r"no calibration of the camera in it\. Give"):
         read_depth(path)

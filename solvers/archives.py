@@ -1,0 +1,126 @@
+"""Archives of learned things: one layout for each kind, written and read here alone."""
+
+import zipfile
+from collections.abc import Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from .errors import InvalidFileError
+from .files import open_regular, written_whole
+from .npz_members import (
+    READABLE,
+    DamagedMemberError,
+    Values,
+    member_content,
+    member_header,
+    read_members,
+)
+
+LONGEST_WORD = 100
+"""Letters of the kind of an archive."""
+
+
+@dataclass(frozen=True)
+class ArchiveLayout:
+    """What an archive of one kind holds: the one place that says so.
+
+    Attributes
+    ----------
+    kind : str
+        What it holds, as its member `kind` says.
+    version : int
+        Of the layout, as its member `version` says.
+    members : mapping of str to Values
+    holds : str
+        What a damaged one holds, in a sentence: "damaged postures".
+    remedy : str
+        What to do then, as a sentence.
+    """
+
+    kind: str
+    version: int
+    members: Mapping[str, Values]
+    holds: str
+    remedy: str
+
+    def write(self, path: Path | str, arrays: Mapping[str, NDArray[Any]]) -> None:
+        """Save arrays as one compressed archive, whole or not at all.
+
+        Raises
+        ------
+        InvalidFileError
+            It cannot be written there, or another program's file would be written over.
+        """
+        if Path(path).exists() and not _is_own(path):
+            raise InvalidFileError(
+                f"{path} is not a file of Mocap Assist; choose another name."
+            )
+        own = {"kind": np.array(self.kind), "version": np.array(self.version)}
+        with written_whole(path) as part, part.open("wb") as file:
+            np.savez_compressed(file, **own, **arrays)
+
+    def read(self, path: Path | str) -> dict[str, NDArray[Any]]:
+        """Load the members of an archive that `write` saved.
+
+        Raises
+        ------
+        InvalidFileError
+            The file is missing, damaged, holds something else or comes from another version.
+        """
+        try:
+            with open_regular(path) as file, zipfile.ZipFile(file) as archive:
+                self._check_kind(path, archive)
+                return read_members(archive, self.members)
+        except FileNotFoundError:
+            raise InvalidFileError(f"There is no file {path}.") from None
+        except DamagedMemberError as error:
+            raise self.damaged(path, str(error)) from None
+        except InvalidFileError:
+            raise
+        except READABLE as error:
+            raise InvalidFileError(f"{path} is not a readable archive ({error}).") from None
+
+    def damaged(self, path: Path | str, fault: str) -> InvalidFileError:
+        """Return the error of an archive whose values cannot be used."""
+        return InvalidFileError(f"{path} holds {self.holds} ({fault}). {self.remedy}")
+
+    def _check_kind(self, path: Path | str, archive: zipfile.ZipFile) -> None:
+        kind, version = (_single(archive, name) for name in ("kind", "version"))
+        if kind != self.kind:
+            found = kind if isinstance(kind, str) else "something else"
+            raise InvalidFileError(f"{path} holds {found}, not {self.kind}.")
+        if type(version) is not int or version != self.version:
+            saved = "unknown" if version is None else version
+            raise InvalidFileError(
+                f"{path} was saved as version {saved} of {kind}; this Mocap Assist reads"
+                f" version {self.version}. Learn it again from the clips."
+            )
+
+
+def _single(archive: zipfile.ZipFile, name: str) -> str | int | None:
+    """Return the one word or whole number of a member; None where it holds anything else."""
+    if f"{name}.npy" not in archive.namelist():
+        return None
+    try:
+        header = member_header(archive, name)
+    except ValueError:  # It is of another kind; damage is no ValueError.
+        return None
+    if header.shape != () or header.n_bytes > 4 * LONGEST_WORD:
+        return None
+    value = member_content(archive, name).item()
+    if isinstance(value, str):
+        return value if value.isprintable() else None
+    return value if type(value) is int else None
+
+
+def _is_own(path: Path | str) -> bool:
+    """Whether a file is an archive that `ArchiveLayout.write` saved."""
+    try:
+        with open_regular(path) as file, zipfile.ZipFile(file) as archive:
+            return isinstance(_single(archive, "kind"), str)
+    except READABLE:
+        return False

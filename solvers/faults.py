@@ -1,0 +1,106 @@
+"""The last net under the work on one file: whatever fails becomes one sentence."""
+
+import traceback
+from collections.abc import Callable
+from dataclasses import dataclass
+from pathlib import Path
+from typing import ParamSpec, TypeVar
+
+from .errors import FileAccessError, InvalidFileError, MocapAssistError, SolveCancelled
+
+OWN_FOLDERS = {"solvers", "mocap_assist", "operators"}
+"""Folders of this project, relative to the folder of this extension."""
+
+Arguments = ParamSpec("Arguments")
+Result = TypeVar("Result")
+
+
+@dataclass(frozen=True)
+class Failure:
+    """Why the work on one file failed."""
+
+    sentence: str
+    """Names the file; valid Unicode even where the file's name is not."""
+    lasting: bool = False
+    """Whether the content of the file is the reason: it fails again until the file changes."""
+    details: str = ""
+    """The traceback of a fault of Mocap Assist."""
+
+    @property
+    def is_fault(self) -> bool:
+        """Whether a fault of Mocap Assist is the reason."""
+        return bool(self.details)
+
+    def as_error(self) -> InvalidFileError:
+        """Return an error with this sentence, and with the details as its note."""
+        error = InvalidFileError(self.sentence)
+        if self.details:
+            error.add_note(self.details)
+        return error
+
+
+def attempt(
+    subject: Path | str,
+    work: Callable[Arguments, Result],
+    /,
+    *args: Arguments.args,
+    **kwargs: Arguments.kwargs,
+) -> Result | Failure:
+    """Return what `work` returns, or why it failed, so that other files are worked on.
+
+    Parameters
+    ----------
+    subject : Path or str
+        The file, or the part of it, that the sentence of a failure names.
+    work : callable
+        Called with the remaining arguments.
+
+    Raises
+    ------
+    SolveCancelled
+        Raised by `work`.
+    """
+    try:
+        return work(*args, **kwargs)
+    except SolveCancelled:
+        raise
+    except Exception as error:
+        return _failure(subject, error)
+
+
+def escaped(text: str) -> str:
+    r"""Return text with each character that UTF-8 cannot encode written as `\udcff`.
+
+    Python keeps bytes of file names that are no valid UTF-8 as such characters.
+    """
+    return text.encode("utf-8", "backslashreplace").decode("utf-8")
+
+
+def _failure(subject: Path | str, error: Exception) -> Failure:
+    if isinstance(error, MocapAssistError):
+        sentence = str(error)
+        named = Path(subject).name in sentence
+        lasting = not isinstance(error, FileAccessError)
+        return Failure(escaped(sentence if named else f"{subject}: {sentence}"), lasting)
+    if isinstance(error, OSError):
+        reason = error.strerror or str(error)
+        return Failure(escaped(f"{error.filename or subject}: {reason}."))
+    if isinstance(error, MemoryError):
+        sentence = f"{subject} needs more memory than there is; work on a part of the take."
+        return Failure(escaped(sentence))
+    sentence = (
+        f"{subject}: this is a fault of Mocap Assist ({type(error).__name__} at"
+        f" {_position(error)}); please report it."
+    )
+    return Failure(escaped(sentence), details="".join(traceback.format_exception(error)))
+
+
+def _position(error: Exception) -> str:
+    """Return file and line of the innermost call in this project, or of the innermost call."""
+    root = Path(__file__).parents[1]
+    calls = traceback.extract_tb(error.__traceback__)[1:]  # The first is `attempt`.
+    for call in reversed(calls):
+        path = Path(call.filename)
+        if path.is_relative_to(root) and path.relative_to(root).parts[0] in OWN_FOLDERS:
+            return f"{path.relative_to(root).as_posix()}:{call.lineno}"
+    return f"{Path(calls[-1].filename).name}:{calls[-1].lineno}" if calls else "its call"

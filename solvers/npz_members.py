@@ -1,0 +1,232 @@
+"""Members of archives of arrays (npz): read within bounds, checked, and never unpickled.
+
+An archive says of itself how many arrays of which sizes it holds, and a small file may say, and
+unpack to, anything. So every reader names the members that it wants and what they must hold;
+headers are checked before any memory is taken, and other members are not unpacked.
+"""
+
+import io
+import os
+import warnings
+import zipfile
+from collections.abc import Mapping
+from dataclasses import dataclass
+from math import prod
+from typing import IO, Any, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from .files import DAMAGE
+
+MAX_BYTES = 1 << 32
+LONGEST_HEADER = 1024
+"""Bytes that describe an array; 118 are usual."""
+READABLE = (*DAMAGE, RuntimeError)
+"""What zipfile and numpy raise on damaged archives; RuntimeError where one is encrypted."""
+
+
+class Bound(NamedTuple):
+    """Bytes that wanted members may unpack to: so many, or so many times the file's size.
+
+    But never more than `MAX_BYTES`.
+    """
+
+    always: int
+    ratio: int
+
+
+LEARNED = Bound(64_000_000, 20)
+"""Of learned numbers, which hardly shrink: the shipped ones by a third."""
+RECORDED = Bound(1_000_000, 200)
+"""Of recordings, which small whole numbers and gaps may let shrink more."""
+
+
+class ArrayHeader(NamedTuple):
+    """What stands before the numbers of an array."""
+
+    shape: tuple[int, ...]
+    by_column: bool
+    dtype: np.dtype[Any]
+    start: int
+    """Bytes before the numbers."""
+
+    @property
+    def n_bytes(self) -> int:
+        """Bytes of the numbers."""
+        return prod(self.shape) * self.dtype.itemsize
+
+
+@dataclass(frozen=True)
+class Values:
+    """What a member must hold.
+
+    Attributes
+    ----------
+    kinds : str
+        NumPy's letters of the kinds of its elements.
+    shape : tuple of int or str, or None
+        A word is a size that all members share which name it; "3*parts" is three times that.
+        None: any shape.
+    minimum, maximum : float
+        Least and greatest number.
+    finite : bool
+        Whether numbers may be neither NaN nor infinite.
+    optional : bool
+        Whether the member may be missing.
+    or_empty : bool
+        Whether the member may also hold nothing, in the shape (0,).
+    """
+
+    kinds: str
+    shape: tuple[int | str, ...] | None
+    minimum: float = -np.inf
+    maximum: float = np.inf
+    finite: bool = True
+    optional: bool = False
+    or_empty: bool = False
+
+
+def numbers(*shape: int | str, **more: Any) -> Values:
+    """Return the description of numbers of any kind."""
+    return Values("fiub", shape, **more)
+
+
+def integers(*shape: int | str, **more: Any) -> Values:
+    """Return the description of whole numbers."""
+    return Values("iu", shape, **more)
+
+
+def flags(*shape: int | str, **more: Any) -> Values:
+    """Return the description of truth values; older files may hold 0 and 1."""
+    return Values("biu", shape, minimum=0, maximum=1, **more)
+
+
+def words(*shape: int | str, **more: Any) -> Values:
+    """Return the description of text."""
+    return Values("U", shape, **more)
+
+
+class DamagedMemberError(ValueError):
+    """A member is missing, or does not hold what it must."""
+
+
+def read_members(
+    archive: zipfile.ZipFile, members: Mapping[str, Values], bound: Bound = LEARNED
+) -> dict[str, NDArray[Any]]:
+    """Return these members of an archive, after all their headers were checked.
+
+    Raises
+    ------
+    DamagedMemberError
+        A member is missing, or does not hold what it must.
+    ValueError, OSError and others of `READABLE`
+        The archive is damaged, or announces more than it may hold.
+    """
+    there = set(archive.namelist())
+    missing = [
+        name
+        for name, values in members.items()
+        if f"{name}.npy" not in there and not values.optional
+    ]
+    if missing:
+        raise DamagedMemberError(f"{', '.join(map(repr, missing))} missing")
+    headers = {name: member_header(archive, name) for name in members if f"{name}.npy" in there}
+    _check_headers(headers, members)
+    _check_total(archive, sum(header.n_bytes for header in headers.values()), bound)
+    arrays = {name: member_content(archive, name) for name in headers}
+    for name, array in arrays.items():
+        _check_values(name, array, members[name])
+    return arrays
+
+
+def member_header(archive: zipfile.ZipFile, name: str) -> ArrayHeader:
+    """Return what precedes the numbers of a member; ValueError if they do not fill it."""
+    member = archive.getinfo(f"{name}.npy")
+    if member.compress_type not in {zipfile.ZIP_STORED, zipfile.ZIP_DEFLATED}:
+        raise zipfile.BadZipFile(f"compressed by method {member.compress_type}")
+    with archive.open(member) as file:
+        header = array_header(file)
+        if header.n_bytes != member.file_size - header.start:
+            raise ValueError(f"{name} has not the size that it announces")
+    return header
+
+
+def member_content(archive: zipfile.ZipFile, name: str) -> NDArray[Any]:
+    """Return the numbers of a member, whose size must be known to be bearable."""
+    with archive.open(f"{name}.npy") as file:
+        return array_content(file, array_header(file))
+
+
+def array_header(file: IO[bytes]) -> ArrayHeader:
+    """Read what precedes the numbers of an array, and stop where they begin."""
+    formats: Any = np.lib.format  # which has no types
+    magic = file.read(len(formats.MAGIC_PREFIX) + 2)
+    read, width = {
+        b"\1\0": (formats.read_array_header_1_0, 2),
+        b"\2\0": (formats.read_array_header_2_0, 4),
+    }[magic[-2:]]
+    size = file.read(width)
+    if int.from_bytes(size, "little") > LONGEST_HEADER:
+        raise ValueError(size)
+    head = io.BytesIO(magic + size + file.read(int.from_bytes(size, "little")))
+    formats.read_magic(head)
+    with warnings.catch_warnings():  # of headers that only an old Python or NumPy would read
+        warnings.simplefilter("ignore")
+        shape, by_column, dtype = read(head)
+    if dtype.hasobject:
+        raise ValueError("it holds Python objects, which are never loaded")
+    if min(shape, default=0) < 0:
+        raise ValueError(shape)
+    return ArrayHeader(shape, by_column, dtype, head.tell())
+
+
+def array_content(file: IO[bytes], header: ArrayHeader) -> NDArray[Any]:
+    """Read the numbers behind a header."""
+    content = file.read(header.n_bytes)
+    order: Any = "F" if header.by_column else "C"
+    native = header.dtype.newbyteorder("=")
+    array = np.frombuffer(content, header.dtype).reshape(header.shape, order=order)
+    return array.astype(native, order="K", copy=True)
+
+
+def _check_total(archive: zipfile.ZipFile, n_bytes: int, bound: Bound) -> None:
+    """Raise ValueError where wanted members would take more memory than they may."""
+    file = archive.fp
+    size = 0 if file is None else os.fstat(file.fileno()).st_size
+    if n_bytes > min(MAX_BYTES, max(bound.always, bound.ratio * size)):
+        raise ValueError(f"{n_bytes} bytes were announced by a file of {size}")
+
+
+def _check_headers(headers: Mapping[str, ArrayHeader], members: Mapping[str, Values]) -> None:
+    sizes: dict[str, int] = {}
+    for name, header in headers.items():
+        values = members[name]
+        if header.dtype.kind not in values.kinds:
+            raise DamagedMemberError(f"{name} has elements of other kinds")
+        if values.shape is None or (values.or_empty and header.shape == (0,)):
+            continue
+        if len(header.shape) != len(values.shape) or not all(
+            _fits(size, wanted, sizes)
+            for size, wanted in zip(header.shape, values.shape, strict=True)
+        ):
+            raise DamagedMemberError(f"the shapes do not fit, first that of {name}")
+
+
+def _fits(size: int, wanted: int | str, sizes: dict[str, int]) -> bool:
+    """Compare one size with what it must be; note those of words that are new."""
+    if isinstance(wanted, int):
+        return size == wanted
+    factor, _, word = wanted.rpartition("*")
+    number, rest = divmod(size, int(factor or 1))
+    return not rest and sizes.setdefault(word, number) == number
+
+
+def _check_values(name: str, array: NDArray[Any], values: Values) -> None:
+    if array.dtype.kind == "U":
+        return
+    if values.finite and not np.isfinite(array).all():
+        raise DamagedMemberError(f"not all numbers are finite, first of {name}")
+    too_small = values.minimum > -np.inf and (array < values.minimum).any()
+    if too_small or (values.maximum < np.inf and (array > values.maximum).any()):
+        raise DamagedMemberError(f"{name} has numbers out of range")

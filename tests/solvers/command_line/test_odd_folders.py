@@ -1,0 +1,147 @@
+"""Folders with odd names, closed folders and other files: all takes that can be made are."""
+
+import json
+import os
+import shutil
+
+import pytest
+from odd_files import OTHERS, close, pictures
+
+from solvers.recordings import read_bvh, write_bvh
+from solvers.samples import GaitSettings, walking_gait
+
+NO_UTF8 = b"caf\xe9.bvh"
+
+
+@pytest.fixture
+def folder(tmp_path):
+    """A folder with two walks, `walk.bvh` and `more/walk.bvh`."""
+    (tmp_path / "takes" / "more").mkdir(parents=True)
+    walk = walking_gait(GaitSettings(duration=1.0, frame_rate=30.0))
+    write_bvh(walk, tmp_path / "takes" / "walk.bvh")
+    shutil.copy(tmp_path / "takes" / "walk.bvh", tmp_path / "takes" / "more")
+    return tmp_path / "takes"
+
+
+def named(folder, name: bytes):
+    """Give a third walk a name of these bytes; skip where the system allows no such name."""
+    path = folder / os.fsdecode(name)
+    try:
+        shutil.copy(folder / "walk.bvh", path)
+    except OSError:
+        pytest.skip(f"no file can be called {name!r} here")
+    return path
+
+
+def test_a_name_that_is_no_utf8_is_converted_and_shown_escaped(call, folder, tmp_path):
+    named(folder, NO_UTF8)
+
+    words = ["convert", folder, "--output-folder", tmp_path / "out", "--report"]
+    status, out, err = call(*words)
+
+    assert (status, err, out.count("30 frames")) == (0, "", 3)
+    assert r"caf\udce9.bvh" in out
+    assert read_bvh(tmp_path / "out" / os.fsdecode(NO_UTF8)).n_frames == 30
+    assert r"caf\udce9.bvh" in (tmp_path / "out" / "report.html").read_text(encoding="utf-8")
+    assert json.loads((tmp_path / "out" / "report.json").read_text())["done"] == 3
+
+
+def test_a_library_refuses_a_name_that_is_no_utf8_and_keeps_the_others(call, folder, tmp_path):
+    path = named(folder, NO_UTF8)
+
+    for _ in range(2):
+        status, out, err = call("index", tmp_path / "all.clips", folder)
+
+        assert (status, err.count("\n")) == (2, 1)
+        assert r"caf\udce9.bvh: its name is no valid UTF-8" in err
+        assert "all.clips has 2 clips" in out
+    path.rename(folder / "cafe.bvh")
+    assert call("index", tmp_path / "all.clips", folder)[0] == 0
+
+
+@pytest.mark.parametrize("letter", ["a", "é", "走"])
+def test_the_longest_names_are_made_or_refused_before_the_take_is_made(
+    call, folder, tmp_path, letter
+):
+    length = len(letter.encode())
+    fits, long = letter * (247 // length), letter * (251 // length)
+    for stem in (fits, long):
+        named(folder, f"{stem}.bvh".encode())
+    out = tmp_path / "out"
+
+    status, said, err = call("convert", folder, "--output-folder", out, "--report")
+
+    assert (status, said.count("30 frames"), err.count("\n")) == (2, 3, 1)
+    assert f"{long}.bvh: The output {letter * 40}... needs a name of " in err
+    assert {path.stem for path in out.glob("*.bvh")} == {"walk", fits}
+    assert {path.name for path in out.glob("*/*.png")} == {"walk.bvh.png", f"{fits}.bvh.png"}
+
+
+def test_a_name_that_is_too_long_is_refused_when_it_is_named(call, folder, tmp_path):
+    target = tmp_path / f"{'a' * 252}.bvh"
+
+    status, _, err = call("convert", folder / "walk.bvh", target)
+
+    assert (status, err.count("\n")) == (2, 1)
+    assert f"The output {'a' * 40}... needs a name of 256 bytes, and 255 is the most." in err
+
+
+def test_a_target_that_cannot_be_written_stops_no_other(call, folder, tmp_path):
+    (tmp_path / "out" / "walk.bvh").mkdir(parents=True)
+
+    status, out, err = call("convert", folder, "--output-folder", tmp_path / "out")
+
+    assert (status, out.count("30 frames"), err.count("\n")) == (2, 1, 1)
+    assert "walk.bvh cannot be written: it is a folder." in err
+
+
+def test_a_closed_folder_is_one_sentence_and_the_rest_is_made(
+    call, folder, tmp_path, monkeypatch
+):
+    close(folder / "more", monkeypatch)
+
+    for words in (
+        ["convert", folder, "--output-folder", tmp_path / "out"],
+        ["index", tmp_path / "all.clips", folder],
+    ):
+        status, out, err = call(*words)
+
+        assert (status, err.count("\n")) == (2, 1)
+        assert f"The folder {folder / 'more'} cannot be looked into (Permission denied)." in err
+        assert "30 frames" in out or "1 added" in out
+
+
+def test_what_a_closed_folder_holds_is_indexed_when_it_is_opened(call, folder, tmp_path):
+    with pytest.MonkeyPatch.context() as closing:
+        close(folder / "more", closing)
+        call("index", tmp_path / "all.clips", folder)
+    (folder / "more").chmod(0o700)
+
+    status, out, err = call("index", tmp_path / "all.clips", folder)
+
+    assert (status, err) == (0, "")
+    assert "1 added, 1 as they were" in out
+
+
+def test_other_files_cost_nothing_and_a_second_run_passes_over_its_own(call, folder, tmp_path):
+    for name, content in {**OTHERS, **pictures()}.items():
+        (folder / name).write_bytes(content)
+    words = ["convert", folder, "--output-folder", folder / "out", "--report"]
+
+    for made in ("30 frames", "Already made."):
+        status, out, err = call(*words)
+        assert (status, err, out.count(made)) == (0, "", 2)
+    status, out, err = call("index", tmp_path / "all.clips", folder)
+
+    assert (status, err) == (0, "")
+    assert "4 added" in out
+
+
+def test_a_link_to_a_file_elsewhere_is_converted(call, folder, tmp_path):
+    (folder / "more" / "walk.bvh").rename(tmp_path / "elsewhere.bvh")
+    (folder / "more" / "link.bvh").symlink_to(tmp_path / "elsewhere.bvh")
+
+    status, _, err = call("convert", folder, "--output-folder", tmp_path / "out")
+
+    assert (status, err) == (0, "")
+    assert read_bvh(tmp_path / "out" / "more" / "link.bvh").n_frames == 30
