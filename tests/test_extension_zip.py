@@ -18,6 +18,7 @@ SHIPPED = {
     "LICENSE",
     "README.md",
     "CHANGELOG.md",
+    "SECURITY.md",
     "solvers",
     "mocap_assist",
     "operators",
