@@ -54,6 +54,12 @@ test-blender-5.2: optional-5.2 zip  ## the installed zip, in Blender 5.2
 	@[ ! -e .venv-5.2/ready ] || { set -x; \
 	    MOCAP_ASSIST_ZIP=$(ZIP) $(AT_MOST) $(PYTHON_5.2) -m pytest tests/blender; }
 
+# The fuzzer comes as a wheel for Linux; it finds files, and no verdict depends on time.
+SECONDS ?= 60
+.PHONY: fuzz
+fuzz: .venv-fuzz/ready  ## search for files that no reader bears; SECONDS=60 TARGETS="c3d bvh"
+	.venv-fuzz/bin/python tests/fuzz/fuzz_files.py --seconds $(SECONDS) $(TARGETS)
+
 # --- What there is to see ---
 
 .PHONY: demo docs bench-denoise bench-feet bench-bvh bench-scene bench-retarget bench-retarget-rig bench-import bench-reliability bench-physics bench-reconstruct bench-gestures bench-retrieval bench-variation bench-depth
@@ -155,12 +161,13 @@ libraries:
 
 .venv-4.5/ready: PYTHON := 3.11
 .venv-5.2/ready: PYTHON := 3.13
+.venv-fuzz/ready: PYTHON := 3.11
 .venv-%/ready: .ci/requirements-%.txt .ci/requirements.txt | libraries
 	@if [ -L $(@D) ]; then echo "$(@D) is a link, and left as it is."; else \
-	    echo "Setting up $(@D), once: about a minute and 1.5 GB."; \
+	    echo "Setting up $(@D), once: a minute and up to 1.5 GB."; \
 	    "$$(.ci/find_python $(PYTHON))" -m venv --clear $(@D); \
 	    $(@D)/bin/python -m pip install -qq --no-deps --no-compile --disable-pip-version-check -r $<; fi
 	@touch $@
 
 clean:  ## remove what make made, the environments too
-	rm -rf .venv-4.5 .venv-5.2 build dist wheels
+	rm -rf .venv-4.5 .venv-5.2 .venv-fuzz build dist wheels

@@ -102,6 +102,8 @@ class C3dFile:
         scale = self._scale()
         kind = "i2" if scale > 0.0 else "f4"
         start, n_frames, n_others = self._extent(n_points, 2 if scale > 0.0 else 4)
+        if not n_frames:
+            raise InvalidFileError(f"{self.path} ends before its first frame: it is cut short.")
         n_values = n_frames * (4 * n_points + n_others)
         words = np.frombuffer(self.content, self.order + kind, n_values, start)
         frames = words.reshape(n_frames, -1)[:, : 4 * n_points].reshape(n_frames, n_points, 4)

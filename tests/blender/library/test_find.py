@@ -100,6 +100,14 @@ def test_without_a_library_the_button_says_so(blank, newcomer, tmp_path):
     newcomer("walk")
     blank.context.scene.mocap_assist.library.library_file = str(tmp_path / "none.library")
 
+    with pytest.raises(RuntimeError, match=r"There is no clip library .*none\.library"):
+        blank.ops.mocap_assist.find_similar()
+
+
+def test_without_the_shared_library_the_button_is_gray(blank, newcomer, load, monkeypatch):
+    newcomer("walk")
+    monkeypatch.setattr(load("mocap_assist.library.places"), "SHARED", "never indexed.clips")
+
     with pytest.raises(RuntimeError, match="There is no library yet"):
         blank.ops.mocap_assist.find_similar()
 

@@ -109,7 +109,7 @@ def test_points_that_are_deleted_meanwhile_are_named_at_the_end(press, window, b
     assert wait(button, window) == {"CANCELLED"}
 
     ((kind, said),) = window.reports
-    assert kind == {"ERROR"} and "was deleted during the solve" in said
+    assert kind == {"ERROR"} and "was deleted while it was worked on" in said
     assert nothing_is_left(window)
 
 

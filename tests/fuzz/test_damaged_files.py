@@ -1,0 +1,34 @@
+"""Files that a fuzzer or a user found are read or refused in one sentence, for good.
+
+To add one: tests/data/damaged/TARGET/what_is_wrong_with_it.
+"""
+
+from pathlib import Path
+
+import pytest
+
+from tests.fuzz.targets import read_target, targets
+
+FOUND = Path(__file__).parents[1] / "data" / "damaged"
+FILES = sorted(path for path in FOUND.glob("*/*") if path.is_file())
+TARGETS = targets()
+
+
+@pytest.mark.parametrize("name", TARGETS)
+def test_an_undamaged_file_is_read(name, tmp_path):
+    target = TARGETS[name]
+    for other, content in target.beside:
+        (tmp_path / other).write_bytes(content)
+    (tmp_path / target.name).write_bytes(target.seed)
+
+    target.read(tmp_path / target.name)
+
+
+@pytest.mark.parametrize("path", FILES, ids=lambda path: f"{path.parent.name}/{path.name}")
+def test_a_file_that_was_found_is_read_or_refused(path, tmp_path):
+    read_target(TARGETS[path.parent.name], path.read_bytes(), tmp_path)
+
+
+def test_what_is_found_by_the_fuzzer_belongs_to_a_target():
+    assert FILES
+    assert {path.parent.name for path in FILES} <= set(TARGETS)
