@@ -32,7 +32,8 @@ OWN_CAMERA = DepthSettings(fx=9.0, fy=8.0)
 DEPTH = pictures(5)
 BONE_MAP = b'{"kind":"mocap_assist humanoid map","version":1,"joints":{"hips":"a"}}'
 BINARY_TOKENS = [
-    b"\0\0\0\0", b"\xff\xff\xff\xff", b"\x01\0\0\0", b"\x80", b"\x01\xff\xff\xff\xff\xff\xff\xff",
+    b"\0\0\0\0", b"\xff\xff\xff\xff", b"\x01\0\0\0", b"\x80",
+    b"\x01\xff\xff\xff\xff\xff\xff\xff",
     b"\x0e\0\0\0\xff\xff\xff\x7f", b"(1, 4096, 4096)", b"'<f8'", b"PK\x03\x04", b"\xa3\x81",
     b"SQLite format 3\0", b"\x50", b"POINT", b"RATE",
 ]  # fmt: skip
