@@ -189,8 +189,11 @@ def extension() -> ModuleType:
 
 @pytest.fixture
 def blank() -> ModuleType:
-    """`bpy`, with an empty scene; the extension stays switched on."""
+    """`bpy`, with an empty scene; the extension stays switched on, and has found nothing."""
     import bpy
 
     bpy.ops.wm.read_homefile(use_empty=True, use_factory_startup=True)
+    matches = bpy.context.window_manager.mocap_assist_matches  # No file replaces these.
+    matches.rows.clear()
+    matches.search = matches.active = 0
     return bpy

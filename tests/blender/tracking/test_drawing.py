@@ -57,7 +57,7 @@ def test_the_body_of_a_hidden_armature_is_not_drawn(how, made, load, blank, monk
     if how == "hidden":
         made.armature.hide_set(True)
     elif how == "no armatures":
-        area.spaces.active.show_object_viewport_armature = False
+        monkeypatch.setattr(area.spaces.active, "show_object_viewport_armature", False)
     else:
         made.armature.hide_viewport = True
     blank.context.view_layer.update()
