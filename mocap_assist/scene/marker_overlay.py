@@ -19,13 +19,15 @@ TRAIL = 0.2
 """Seconds that a trail shows before and after the present frame."""
 SIZE = 0.006
 """Metres from the middle of a marker's cross to its ends."""
-N_KEPT = 4
-"""Takes that are kept: of 41 markers and 10,000 frames, 5 MB each."""
+BLOCK = 1000
+"""Frames that are read at a time."""
+N_KEPT = 8
+"""Blocks that are kept: of 41 markers, 500 kB each."""
 
 
 @dataclass(frozen=True, eq=False)
 class Trails:
-    """Markers over the whole frames of a take; NaN where one was not recorded."""
+    """Markers over whole frames of a take; NaN where one was not recorded."""
 
     start: int
     """Scene frame of the first row."""
@@ -69,7 +71,7 @@ class Played(NamedTuple):
     sources: tuple[Source, ...]
 
 
-_kept: dict[tuple[tuple[int, int, int], ...], Trails] = {}
+_kept: dict[tuple[tuple[tuple[int, int, int], ...], range], Trails] = {}
 
 
 def raw_and_clean(holder: bpy.types.Object) -> tuple[Played, Played]:
@@ -114,36 +116,42 @@ def lines_at(played: Played, scene: bpy.types.Scene) -> Array:
         return np.zeros((0, 2, 3))
     spaces = [each.matrix_world @ each.matrix_basis.inverted_safe() for each in played.markers]
     reach = round(TRAIL * scene.render.fps / scene.render.fps_base)
-    trails = trails_of(played)
+    frame = scene.frame_current_final
     size = SIZE / unit_of(scene)
-    return trails.segments(scene.frame_current_final, reach, size, np.array(spaces))
+    return trails_at(played, frame, reach).segments(frame, reach, size, np.array(spaces))
 
 
-def trails_of(played: Played) -> Trails:
-    """Return the trails of markers; they are read once, then kept until `forget`."""
-    key = tuple(
+def trails_at(played: Played, frame: float, reach: int) -> Trails:
+    """Return the trails around a frame; a block of frames is read once, and kept till `forget`.
+
+    However long a take is, or how far out one of its keys: only what is near is read.
+    """
+    ends = np.array([action.curve_frame_range for action, _ in played.sources])
+    first, last = round(ends[:, 0].min()), round(ends[:, 1].max())
+    start = min(max(round(frame), first), last) // BLOCK * BLOCK
+    frames = range(max(start - reach, first), min(start + BLOCK + reach, last) + 1)
+    markers = tuple(
         (marker.session_uid, action.session_uid, slot.handle)
         for marker, (action, slot) in zip(*played, strict=True)
     )
+    key = (markers, frames)
     if key not in _kept:
         while len(_kept) >= N_KEPT:
             del _kept[next(iter(_kept))]
-        _kept[key] = read_trails(played)
+        _kept[key] = read_trails(played, frames)
     return _kept[key]
 
 
-def read_trails(played: Played) -> Trails:
-    """Read the location keys of markers at all whole frames of what they play."""
-    ends = np.array([action.curve_frame_range for action, _ in played.sources])
-    first, last = round(ends[:, 0].min()), round(ends[:, 1].max())
-    frames = np.arange(first, last + 1, dtype=np.float64)
+def read_trails(played: Played, within: range) -> Trails:
+    """Read the location keys of markers at these whole frames of what they play."""
+    frames = np.arange(within.start, within.stop, dtype=np.float64)
     places = []
     for marker, source in zip(*played, strict=True):
         curves = curves_of(animated_curves(*source), PATH, 3)
         place = sampled(curves, marker.location, frames)
         place[gaps_of(curves, frames)] = np.nan
         places.append(place)
-    return Trails(first, np.stack(places, axis=1).astype(np.float32))
+    return Trails(within.start, np.stack(places, axis=1).astype(np.float32))
 
 
 def forget() -> None:

@@ -110,8 +110,8 @@ def test_before_and_after_the_take_its_ends_are_shown(blank, overlay, holder):
 
 def test_keys_are_read_once_until_they_are_edited(blank, load, overlay, holder):
     raw, _ = overlay.raw_and_clean(holder)
-    old = overlay.trails_of(raw)
-    assert overlay.trails_of(raw) is old
+    old = overlay.trails_at(raw, 1.0, 12)
+    assert overlay.trails_at(raw, 1.0, 12) is old
     marker = raw.markers[0]
     marker.location = (9.0, 9.0, 9.0)
     marker.keyframe_insert("location", frame=20)
@@ -120,22 +120,37 @@ def test_keys_are_read_once_until_they_are_edited(blank, load, overlay, holder):
     assert blank.app.timers.is_registered(refresh)
     refresh()  # timers run only where there is a window
 
-    new = overlay.trails_of(overlay.raw_and_clean(holder)[0])
+    new = overlay.trails_at(overlay.raw_and_clean(holder)[0], 1.0, 12)
 
     assert_allclose(new.places[19, 0], 9.0)
 
 
 def test_another_file_makes_it_forget(blank, overlay, holder):
-    overlay.trails_of(overlay.raw_and_clean(holder)[0])
+    overlay.trails_at(overlay.raw_and_clean(holder)[0], 1.0, 12)
 
     blank.ops.wm.read_homefile(use_empty=True, use_factory_startup=True)
 
     assert not overlay._kept
 
 
-def test_only_so_much_is_kept(overlay, holder):
+def test_only_so_much_is_kept(overlay, holder, monkeypatch):
+    monkeypatch.setattr(overlay, "N_KEPT", 3)
     raw, _ = overlay.raw_and_clean(holder)
     for count in range(1, N_MARKERS + 1):
-        overlay.trails_of(overlay.Played(raw.markers[:count], raw.sources[:count]))
+        overlay.trails_at(overlay.Played(raw.markers[:count], raw.sources[:count]), 1.0, 12)
 
     assert len(overlay._kept) == overlay.N_KEPT
+
+
+def test_a_stray_key_far_out_is_drawn_without_what_lies_between(blank, overlay, holder):
+    raw, _ = overlay.raw_and_clean(holder)
+    marker, (action, _) = raw.markers[0], raw.sources[0]
+    curve = action.layers[0].strips[0].channelbags[0].fcurves[0]
+    assert marker.animation_data.action == action
+    curve.keyframe_points.insert(1_000_000, 0.0)
+    blank.context.scene.frame_set(1)
+
+    lines = overlay.lines_at(raw, blank.context.scene)
+
+    assert len(lines) > 3 * N_MARKERS
+    assert all(len(kept.places) < 2000 for kept in overlay._kept.values())
