@@ -7,12 +7,12 @@ from pathlib import Path
 
 import bpy
 
-from ..solvers.errors import InvalidFileError, MocapAssistError
+from ..solvers.errors import InvalidFileError, MocapAssistError, OutOfMemoryError
 from .arrival import READING, Arrival
 from .depth_folders import readable
 from .import_choices import ImportChoices
 from .jobs.job import ProcessDied
-from .jobs.reading import Known, Read, read_files
+from .jobs.reading import Known, Read, read_files, too_large
 from .recent_files import State, remember, state_of
 from .recording_objects import wanted_of
 from .watch import Watch
@@ -76,7 +76,7 @@ class ImportJob:
         paths = self._batches.popleft()
         try:
             found = self.watch.job.result()
-        except (ProcessDied, MemoryError) as error:
+        except (ProcessDied, OutOfMemoryError) as error:
             if half := len(paths) // 2:
                 self._batches.extendleft([paths[half:], paths[:half]])
             found = [] if half else [_refusal(paths[0], error)]
@@ -128,12 +128,10 @@ def batches(paths: Iterable[Path]) -> Iterator[list[Path]]:
         yield batch
 
 
-def _refusal(path: Path, error: ProcessDied | MemoryError) -> MocapAssistError:
+def _refusal(path: Path, error: ProcessDied | OutOfMemoryError) -> MocapAssistError:
     """Say which file it was that could not be read."""
-    if isinstance(error, MemoryError):
-        return InvalidFileError(
-            f"{path} needs more memory than there is. Import a part of the take."
-        )
+    if isinstance(error, OutOfMemoryError):
+        return too_large(path)
     return InvalidFileError(
         f"{path} made its reader end early, {error.cause}. Import a part of the take, or have"
         f" it exported anew.{error.last_words}"

@@ -109,9 +109,7 @@ def _tried(path: Path, read: Callable[[], Result]) -> Result:
     except MocapAssistError:
         raise
     except MemoryError:
-        raise InvalidFileError(
-            f"{path} needs more memory than there is. Import a part of the take."
-        ) from None
+        raise too_large(path) from None
     except Exception as error:  # of the reader, which must not keep other files out
         refusal = InvalidFileError(
             f"{path} cannot be read, since its reader fails ({type(error).__name__}: {error})."
@@ -119,6 +117,13 @@ def _tried(path: Path, read: Callable[[], Result]) -> Result:
         )
         refusal.add_note(traceback.format_exc())
         raise refusal from None
+
+
+def too_large(path: Path) -> InvalidFileError:
+    """Return the error of a file for which there is too little memory."""
+    return InvalidFileError(
+        f"{path} needs more memory than there is. Import a part of the take."
+    )
 
 
 class _Listener:
