@@ -1,17 +1,16 @@
 """Work on many files: one after the other or several at a time, and go on after a stop."""
 
 import json
-import os
-import signal
 from collections.abc import Iterator, Sequence
 from concurrent.futures import Future, ProcessPoolExecutor, as_completed
 from concurrent.futures.process import BrokenProcessPool
-from multiprocessing import get_context
 from pathlib import Path
 from typing import Any, NamedTuple
 
 from ..errors import MocapAssistError
 from ..files import remove_leftovers, written_whole
+from ..processes.threads import threads_from
+from ..processes.workers import worker_pool
 from ..progress import Progress, unwatched
 from ..version import version
 from .report import FIGURES, PAGE, draw_task, forget_picture
@@ -21,7 +20,6 @@ from .verb import Outcome, Task, Verb
 RECORD = "mocap_assist.json"
 NOT_OF_THE_RESULT = {"again", "files", "jobs", "json", "output_folder", "report", "work"}
 """Options that do not change what comes out."""
-ONE_THREAD = {"OMP_NUM_THREADS": "1", "OPENBLAS_NUM_THREADS": "1", "MKL_NUM_THREADS": "1"}
 
 
 class Finished(NamedTuple):
@@ -44,7 +42,6 @@ def work_on(
             screen.title = f"[{number}/{len(tasks)}] {task.source.name}"
             yield _attempt(verb, task, prepared, screen.progress)
         return
-    os.environ.update({name: os.environ.get(name, one) for name, one in ONE_THREAD.items()})
     lost: list[Task] = []
     for finished in _work_together(verb, tasks, prepared, n_jobs):
         if finished.died:
@@ -64,8 +61,8 @@ def work_on(
 def _work_together(
     verb: Verb, tasks: Sequence[Task], prepared: Any, n_jobs: int
 ) -> Iterator[Finished]:
-    n_workers = min(n_jobs, len(tasks))
-    with ProcessPoolExecutor(n_workers, get_context("spawn"), _die_on_interrupt) as pool:
+    n_workers, n_threads = min(n_jobs, len(tasks)), threads_from(tasks[0].arguments)
+    with worker_pool(n_workers, n_threads) as pool:
         waiting = {_submitted(pool, verb, task, prepared): task for task in tasks}
         try:
             for done in as_completed(waiting):
@@ -112,11 +109,6 @@ def _attempt(verb: Verb, task: Task, prepared: Any, progress: Progress) -> Finis
             f"{task.subject} needs more memory than there is; work on a part of the take."
         )
         return Finished(task, None, sentence)
-
-
-def _die_on_interrupt() -> None:
-    """Leave Ctrl-C to the parent, which tells it in one sentence; no traceback per worker."""
-    signal.signal(signal.SIGINT, signal.SIG_DFL)
 
 
 class Made:

@@ -46,6 +46,7 @@ def index_files(
     *,
     tags: Sequence[str] = (),
     jobs: int = 1,
+    n_threads: int = 1,
     remove_missing: bool = False,
     progress: Progress = unwatched,
 ) -> IndexReport:
@@ -65,6 +66,8 @@ def index_files(
         That the clips get beside those they have.
     jobs : int
         Files to read at a time, each in a process of its own.
+    n_threads : int
+        Of linear algebra in each of these processes.
     remove_missing : bool
         Whether clips are taken out whose files were in the folders and have gone.
     progress : Progress
@@ -82,7 +85,7 @@ def index_files(
     with open_clip_library(library_path) as library:
         indexing = _Indexing(library, tuple(dict.fromkeys(tags)))
         files = indexing.to_read(sources)
-        for place, done in enumerate(describe_files(files, min(jobs, len(files)))):
+        for place, done in enumerate(describe_files(files, min(jobs, len(files)), n_threads)):
             progress(place / len(files), Path(done.wanted.origin.path).name)
             indexing.take(done)
         indexing.write()
