@@ -13,7 +13,7 @@ from ..processes.threads import threads_from
 from ..processes.workers import worker_pool
 from ..progress import Progress, unwatched
 from ..version import version
-from .report import FIGURES, PAGE, draw_task, forget_picture
+from .report import FIGURES, PAGE, draw_task, forget_picture, picture_file
 from .screen import Screen
 from .verb import Outcome, Task, Verb
 
@@ -132,7 +132,9 @@ class Made:
     def clear_up(self, tasks: Sequence[Task]) -> None:
         """Remove half-written files that a killed batch has left among these outputs."""
         targets = [task.target for task in tasks if task.target is not None]
-        remove_leftovers([self.path, self.folder / PAGE, self.folder / FIGURES, *targets])
+        pictures = [picture_file(task) for task in tasks if task.target is not None]
+        own = [self.path, self.folder / PAGE, self.folder / FIGURES]
+        remove_leftovers([*own, *targets, *pictures])
 
     def has(self, task: Task) -> bool:
         """Whether the output is there and would come out the same again."""
