@@ -14,10 +14,10 @@ from ...solvers.settings import Settings
 from ..depth_folders import depth_recordings_in, is_take
 from ..import_choices import ImportChoices
 from ..importing import import_files
-from ..jobs.job import run
 from ..tracking import TrackBundle, read_tracking, selected_preview, write_tracked
 from .pictures import draw_played
 from .saving import save, target_file, tell
+from .solving import solve_apart
 
 HELP = "Track the actors of recordings of depth: armatures with actions in the .blend file."
 
@@ -49,7 +49,6 @@ def perform_capture(arguments: argparse.Namespace, screen: Screen) -> None:
     settings = TrackBundle(**{
         name: settings_from_arguments(arguments, each) for name, each in offered().items()
     })
-    choices = settings_from_arguments(arguments, ImportChoices)
     made, said, failed = [], [], []
     takes = [path for path in arguments.files if is_take(path)]
     others = [path for path in arguments.files if path not in takes]
@@ -57,7 +56,7 @@ def perform_capture(arguments: argparse.Namespace, screen: Screen) -> None:
     for path in [*takes, *(path for path, _ in inside)]:
         screen.title = path.name
         try:
-            said.append(_tracked(path, choices, settings, screen))
+            said.append(_tracked(path, arguments, settings, screen))
             made.append(bpy.context.object)
         except MocapAssistError as error:
             failed.append(f"{path}: {error}")
@@ -72,8 +71,11 @@ def perform_capture(arguments: argparse.Namespace, screen: Screen) -> None:
         raise InvalidFileError(" ".join(failed))
 
 
-def _tracked(path: Path, choices: ImportChoices, settings: TrackBundle, screen: Screen) -> str:
+def _tracked(
+    path: Path, arguments: argparse.Namespace, settings: TrackBundle, screen: Screen
+) -> str:
     """Bring in one recording and track it; the new armature becomes active."""
+    choices = settings_from_arguments(arguments, ImportChoices)
     imported = import_files(bpy.context, [path], choices, progress=screen.progress)
     if imported.failed:
         raise InvalidFileError(imported.failed[0])
@@ -81,5 +83,5 @@ def _tracked(path: Path, choices: ImportChoices, settings: TrackBundle, screen: 
     if preview is None:
         raise InvalidFileError("It holds no depth. Bring it in with import.")
     scene = bpy.context.scene
-    result = run(read_tracking(scene, preview, settings), screen.progress)
+    result = solve_apart(read_tracking(scene, preview, settings), arguments, screen.progress)
     return write_tracked(scene, preview, settings, result)

@@ -11,6 +11,7 @@ from ...solvers.command_line import SentenceParser
 from ...solvers.command_line.screen import Screen
 from ...solvers.errors import InvalidFileError, InvalidSettingError, MocapAssistError
 from ...solvers.files import written_whole
+from ...solvers.processes.threads import add_threads_option
 from ..scene import history
 from ..scene.markers import markers_of
 from .capture_verb import HELP as CAPTURE_HELP
@@ -105,6 +106,8 @@ def _parser() -> SentenceParser:
             " that are animated; where there are none, all markers]",
         )
         add_output_options(described, saves=verb.writes)
+        if verb.solves:
+            add_threads_option(described)
         verb.add_options(described)
         described.set_defaults(work=_work)
     described = choices.add_parser("import", help=IMPORT_HELP, description=IMPORT_HELP)
@@ -113,9 +116,11 @@ def _parser() -> SentenceParser:
     described.set_defaults(work=perform_import)
     described = choices.add_parser("capture", help=CAPTURE_HELP, description=CAPTURE_HELP)
     add_output_options(described, saves=True)
+    add_threads_option(described)
     add_capture_options(described)
     described.set_defaults(work=perform_capture)
     described = choices.add_parser("index", help=INDEX_HELP, description=INDEX_HELP)
+    add_threads_option(described)
     add_index_options(described)
     described.set_defaults(work=perform_index)
     described = choices.add_parser("each", help=EACH_HELP, description=EACH_HELP)
