@@ -4,6 +4,7 @@ import argparse
 import json
 import sys
 from collections.abc import Sequence
+from contextlib import AbstractContextManager, nullcontext
 
 import bpy
 
@@ -16,6 +17,7 @@ from ..scene import history
 from ..scene.markers import markers_of
 from .capture_verb import HELP as CAPTURE_HELP
 from .capture_verb import add_capture_options, perform_capture
+from .each_child import OPTION, working_on
 from .each_verb import HELP as EACH_HELP
 from .each_verb import add_each_options, perform_each
 from .import_verb import HELP as IMPORT_HELP
@@ -41,7 +43,8 @@ def run(words: Sequence[str]) -> int:
         own, after = _parted(list(words))
         arguments = _parser().parse_args(own)
         arguments.words = _understood(after)
-        arguments.work(arguments, screen)
+        with _as_child_of_each(arguments):
+            arguments.work(arguments, screen)
     except MocapAssistError as error:
         screen.say(str(error))
         return FAILED
@@ -51,6 +54,11 @@ def run(words: Sequence[str]) -> int:
     except SystemExit as stop:  # a slip in the command line, or --help
         return int(stop.code or 0)
     return 0
+
+
+def _as_child_of_each(arguments: argparse.Namespace) -> AbstractContextManager[None]:
+    """Return what such a Blender does about its work, or nothing."""
+    return working_on(arguments.output) if arguments.child_of_each else nullcontext()
 
 
 def _parted(words: list[str]) -> tuple[list[str], list[str]]:
@@ -96,6 +104,7 @@ def unregister() -> None:
 
 def _parser() -> SentenceParser:
     parser = SentenceParser(prog=PROG, description="Captured motion in .blend files.")
+    parser.add_argument(OPTION, action="store_true", help=argparse.SUPPRESS)
     choices = parser.add_subparsers(dest="verb", metavar="VERB", required=True)
     for name, verb in VERBS.items():
         described = choices.add_parser(name, help=verb.help, description=verb.help)

@@ -52,6 +52,7 @@ IN_ONE_BLENDER = {
     "operators/test_clean_guides.py": (5, 2),
     "operators/test_command.py": (5, 2),
     "operators/test_each_command.py": (4, 5),
+    "operators/test_each_killed.py": (5, 2),
     "operators/test_other_buttons.py": (4, 5),
     "operators/test_physics.py": (4, 5),
     "reconstruction/test_blend_examples.py": (4, 5),
