@@ -102,6 +102,8 @@ def test_slips_are_said_in_one_sentence(call, walks, library, tmp_path):
         (("index", library), "name the library and then recordings"),
         (("index", library, none), "There is no file or folder"),
         (("index", none / "a.clips", walks), "cannot be used"),
+        (("index", tmp_path / "a.bat", walks), "end its name in .clips."),
+        (("index", library, walks, "--tag", "a\nb"), r"The tag 'a\nb' has control characters."),
         (("denoise", query, tmp_path / "a.bvh", "--library", none), "There is no clip library"),
         (("reconstruct", query, tmp_path / "a.bvh", "--library", none), "no clip library"),
     ):
