@@ -54,6 +54,10 @@ test-blender-5.2: optional-5.2 zip  ## the installed zip, in Blender 5.2
 	@[ ! -e .venv-5.2/ready ] || { set -x; \
 	    MOCAP_ASSIST_ZIP=$(ZIP) $(AT_MOST) $(PYTHON_5.2) -m pytest tests/blender; }
 
+.PHONY: kills
+kills: .venv-4.5/ready zip  ## kill commands at random moments; ARGUMENTS="--kills 60 --each 12"
+	PYTHONPATH=.:tests/fixtures $(PYTHON_4.5) .ci/kill_commands.py --zip $(ZIP) $(ARGUMENTS)
+
 # --- What there is to see ---
 
 .PHONY: demo docs bench-denoise bench-feet bench-bvh bench-scene bench-retarget bench-retarget-rig bench-import bench-reliability bench-physics bench-reconstruct bench-gestures bench-retrieval bench-variation bench-depth

@@ -6,6 +6,7 @@ from contextlib import contextmanager
 from pathlib import Path
 from threading import Event
 from time import monotonic
+from typing import NamedTuple
 
 from ...solvers.errors import InvalidFileError
 from ...solvers.processes.locks import try_lock
@@ -20,7 +21,15 @@ PATIENCE = 30.0
 """Seconds to wait for a Blender that is ending; one that works on is reported then."""
 
 
-def run_child(command: Sequence[str], target: Path, errors: Path, stopped: Event) -> int | None:
+class Ended(NamedTuple):
+    """How a Blender has ended."""
+
+    status: int
+    errors: str
+    """What it has printed on stderr."""
+
+
+def run_child(command: Sequence[str], target: Path, stopped: Event) -> Ended | None:
     """Run a Blender that makes `target`, and wait for its end.
 
     Where another one still works on that file, such as one whose `each` was killed a moment
@@ -31,28 +40,26 @@ def run_child(command: Sequence[str], target: Path, errors: Path, stopped: Event
     command : sequence of str
     target : Path
         The .blend file that it saves.
-    errors : Path
-        The file that takes what it prints on stderr.
     stopped : Event
         Set when nobody wants the result any more: no Blender is started then.
 
     Returns
     -------
-    int or None
-        Exit status; None where it was not started.
+    Ended or None
+        None where it was not started.
     """
     while _is_worked_on(target):
         if stopped.wait(BETWEEN_LOOKS):
             return None
-    with errors.open("wb") as log:
-        child = subprocess.Popen(
-            command,
-            stdin=subprocess.PIPE,  # nothing is written: it closes when this process ends
-            stdout=subprocess.DEVNULL,
-            stderr=log,
-        )
-        with child:  # not communicate(), which closes stdin at once
-            return child.wait()
+    with subprocess.Popen(
+        command,
+        stdin=subprocess.PIPE,  # nothing is written: it closes when this process ends
+        stdout=subprocess.DEVNULL,
+        stderr=subprocess.PIPE,
+    ) as child:
+        assert child.stderr is not None
+        errors = child.stderr.read()  # not communicate(), which closes stdin at once
+        return Ended(child.wait(), errors.decode("utf-8", "replace"))
 
 
 @contextmanager

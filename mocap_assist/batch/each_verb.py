@@ -182,12 +182,14 @@ def _attempt(task: Task, *, stopped: Event) -> Finished:
     """Let another Blender do the verb to one file."""
     forget_picture(task)
     with ScratchFolder() as scratch:
-        figures, errors = scratch.path / "figures", scratch.path / "errors"
-        status = run_child(_command(task, figures), task.target, errors, stopped)
-        if status == 0:
+        figures = scratch.path / "figures"
+        ended = run_child(_command(task, figures), task.target, stopped)
+        if ended is None:
+            return Finished(task, None, f"{task.source}: Interrupted.")
+        if ended.status == 0:
             return Finished(task, Outcome("Done.", _figures(figures)))
-        said = [line for line in _lines(errors) if line.strip()]
-    sentence = said[-1] if status == 2 and said else "the Blender for it has died."
+    said = [line for line in ended.errors.splitlines() if line.strip()]
+    sentence = said[-1] if ended.status == 2 and said else "the Blender for it has died."
     named = task.source.name in sentence
     return Finished(task, None, sentence if named else f"{task.source}: {sentence}")
 
@@ -205,14 +207,6 @@ def _command(task: Task, figures: Path) -> list[str]:
         start = [bpy.app.binary_path, "--background", *([opened] if opened else [])]
         return [*start, "--command", "mocap_assist", *words]
     return [sys.executable, "-c", MODULE_CHILD, PACKAGE, opened, *words]
-
-
-def _lines(path: Path) -> list[str]:
-    """Return what a Blender has printed; nothing where none was started."""
-    try:
-        return path.read_text(encoding="utf-8", errors="replace").splitlines()
-    except FileNotFoundError:
-        return []
 
 
 def _figures(path: Path) -> dict[str, Any]:

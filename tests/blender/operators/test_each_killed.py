@@ -92,7 +92,7 @@ def test_no_second_blender_starts_when_one_still_makes_the_file(module, load, tm
 
     stopped = Stopped(release)
 
-    assert module.run_child(command, target, tmp_path / "errors", stopped) == 0
+    assert module.run_child(command, target, stopped) == (0, "")
     assert stopped.n_waits == 3
     assert target.exists()
 
@@ -104,7 +104,7 @@ def test_no_blender_starts_when_nobody_wants_the_result_any_more(module, load, t
 
     stopped = Stopped(lambda: True)
 
-    assert module.run_child([], target, tmp_path / "errors", stopped) is None
+    assert module.run_child([], target, stopped) is None
     lock.release()
 
 
@@ -133,10 +133,8 @@ def test_errors_of_a_blender_are_kept_and_its_input_stays_open_until_it_ends(mod
         "sys.stderr.write('a sentence\\n')\n"
         "sys.exit(3 if closed else 2)\n"
     )
-    errors = tmp_path / "errors"
+    command = [sys.executable, "-c", code]
 
-    status = module.run_child(
-        [sys.executable, "-c", code], tmp_path / "take.blend", errors, Event()
-    )
+    ended = module.run_child(command, tmp_path / "take.blend", Event())
 
-    assert (status, errors.read_text()) == (2, "a sentence\n")
+    assert ended == (2, "a sentence\n")
