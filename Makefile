@@ -60,6 +60,10 @@ SECONDS ?= 60
 fuzz: .venv-fuzz/ready  ## search for files that no reader bears; SECONDS=60 TARGETS="c3d bvh"
 	.venv-fuzz/bin/python tests/fuzz/fuzz_files.py --seconds $(SECONDS) $(TARGETS)
 
+.PHONY: kills
+kills: .venv-4.5/ready zip  ## kill commands at random moments; ARGUMENTS="--kills 60 --each 12"
+	PYTHONPATH=.:tests/fixtures $(PYTHON_4.5) .ci/kill_commands.py --zip $(ZIP) $(ARGUMENTS)
+
 # --- What there is to see ---
 
 .PHONY: demo docs bench-denoise bench-feet bench-bvh bench-scene bench-retarget bench-retarget-rig bench-import bench-reliability bench-physics bench-reconstruct bench-gestures bench-retrieval bench-variation bench-depth

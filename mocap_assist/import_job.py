@@ -7,7 +7,7 @@ from pathlib import Path
 
 import bpy
 
-from ..solvers.errors import InvalidFileError, MocapAssistError
+from ..solvers.errors import InvalidFileError, MocapAssistError, OutOfMemoryError
 from ..solvers.faults import Failure, attempt
 from .arrival import READING, Arrival
 from .depth_folders import readable
@@ -96,7 +96,7 @@ class ImportJob:
         paths = self._batches.popleft()
         try:
             found = self.job.result()
-        except (ProcessDied, MemoryError) as error:
+        except (ProcessDied, OutOfMemoryError) as error:
             if half := len(paths) // 2:
                 self._batches.extendleft([paths[half:], paths[:half]])
             found = [] if half else [_refusal(paths[0], error)]
@@ -148,9 +148,9 @@ def batches(paths: Iterable[Path]) -> Iterator[list[Path]]:
         yield batch
 
 
-def _refusal(path: Path, error: ProcessDied | MemoryError) -> MocapAssistError:
+def _refusal(path: Path, error: ProcessDied | OutOfMemoryError) -> MocapAssistError:
     """Say which file it was that could not be read."""
-    if isinstance(error, MemoryError):
+    if isinstance(error, OutOfMemoryError):
         return InvalidFileError(
             f"{path} needs more memory than there is. Import a part of the take."
         )

@@ -8,7 +8,7 @@ from typing import Any, ClassVar
 
 import bpy
 
-from ..solvers.errors import MocapAssistError, SolveCancelled
+from ..solvers.errors import MocapAssistError, OutOfMemoryError, SolveCancelled
 from .jobs.job import Job, Quick, run
 from .redo import fingerprint
 from .selection import selected_subject
@@ -73,7 +73,7 @@ class SolverOperator:
         try:
             result = run(type(self).read_scene(*self._read_arguments()))
             message = type(self).write_scene(*self._read_arguments(), result, None)
-        except MocapAssistError as error:
+        except (MocapAssistError, MemoryError) as error:
             return self._give_up(error)
         return self._finish(message)
 
@@ -88,7 +88,7 @@ class SolverOperator:
             progress = next(self._acts)
         except StopIteration as end:
             return self._finish(end.value)
-        except MocapAssistError as error:
+        except (MocapAssistError, MemoryError) as error:
             return self._give_up(error)
         self._watch = Watch(context, self.settings_group, self._acts.close)
         self._watch.show(context, *progress)
@@ -108,7 +108,7 @@ class SolverOperator:
         except StopIteration as end:
             watch.end(context)
             return self._finish(end.value)
-        except MocapAssistError as error:
+        except (MocapAssistError, MemoryError) as error:
             watch.end(context)
             return self._give_up(error)
         except BaseException:
@@ -175,7 +175,9 @@ class SolverOperator:
         self.report({"INFO"}, message)
         return {"FINISHED"}
 
-    def _give_up(self, error: MocapAssistError) -> set[str]:
+    def _give_up(self, error: MocapAssistError | MemoryError) -> set[str]:
+        if isinstance(error, MemoryError):
+            error = OutOfMemoryError()
         cancelled = isinstance(error, SolveCancelled)
         self.report({"INFO"} if cancelled else {"ERROR"}, str(error))
         return {"CANCELLED"}

@@ -3,21 +3,20 @@
 import os
 import sys
 
-THREADS = ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "VECLIB_MAXIMUM_THREADS")
+from .processes.threads import thread_environment, threads_of_words
 
 
 def main() -> int:
-    """Solve with one thread of linear algebra, unless the environment says otherwise.
+    """Solve with as many threads of linear algebra as the command line says, by default one.
 
-    On matrices of this size two threads were seen to take thirty times as long. NumPy looks at
-    the environment when it is imported, and so must not have been before.
+    NumPy reads their number when it is imported, and so must not have been before.
     """
-    for name in THREADS:
-        os.environ.setdefault(name, "1")
+    words = sys.argv[1:]
+    os.environ.update(thread_environment(threads_of_words(words)))
     from .command_line.run import run
     from .command_line.verbs import VERBS
 
-    return run(VERBS, sys.argv[1:], "python -m solvers")
+    return run(VERBS, words, "python -m solvers")
 
 
 if __name__ == "__main__":

@@ -23,3 +23,13 @@ class FileAccessError(InvalidFileError):
 
 class SolveCancelled(MocapAssistError):
     """The animator pressed Escape."""
+
+
+class OutOfMemoryError(MocapAssistError):
+    """A solve needs more memory than there is."""
+
+    def __init__(
+        self,
+        sentence: str = "This needs more memory than there is. Work on a part of the take.",
+    ) -> None:
+        super().__init__(sentence)

@@ -15,10 +15,10 @@ from ...solvers.settings import Settings
 from ..depth_folders import depth_recordings_in, is_take
 from ..import_choices import ImportChoices
 from ..importing import import_files
-from ..jobs.job import run
 from ..tracking import TrackBundle, read_tracking, selected_preview, write_tracked
 from .pictures import draw_played
 from .saving import save, target_file, tell
+from .solving import solve_apart
 
 HELP = "Track the actors of recordings of depth: armatures with actions in the .blend file."
 
@@ -50,14 +50,13 @@ def perform_capture(arguments: argparse.Namespace, screen: Screen) -> None:
     settings = TrackBundle(**{
         name: settings_from_arguments(arguments, each) for name, each in offered().items()
     })
-    choices = settings_from_arguments(arguments, ImportChoices)
     made, said, failed = [], [], []
     takes = [path for path in arguments.files if is_take(path)]
     others = [path for path in arguments.files if path not in takes]
     inside = found_in(others, look=depth_recordings_in)
     for path in [*takes, *(path for path, _ in inside)]:
         screen.title = path.name
-        sentence = attempt(path, _tracked, path, choices, settings, screen)
+        sentence = attempt(path, _tracked, path, arguments, settings, screen)
         if isinstance(sentence, Failure):
             failed.append(sentence.sentence)
             continue
@@ -74,8 +73,11 @@ def perform_capture(arguments: argparse.Namespace, screen: Screen) -> None:
         raise InvalidFileError(" ".join(failed))
 
 
-def _tracked(path: Path, choices: ImportChoices, settings: TrackBundle, screen: Screen) -> str:
+def _tracked(
+    path: Path, arguments: argparse.Namespace, settings: TrackBundle, screen: Screen
+) -> str:
     """Bring in one recording and track it; the new armature becomes active."""
+    choices = settings_from_arguments(arguments, ImportChoices)
     imported = import_files(bpy.context, [path], choices, progress=screen.progress)
     if imported.failed:
         raise InvalidFileError(imported.failed[0])
@@ -83,5 +85,5 @@ def _tracked(path: Path, choices: ImportChoices, settings: TrackBundle, screen: 
     if preview is None:
         raise InvalidFileError("It holds no depth. Bring it in with import.")
     scene = bpy.context.scene
-    result = run(read_tracking(scene, preview, settings), screen.progress)
+    result = solve_apart(read_tracking(scene, preview, settings), arguments, screen.progress)
     return write_tracked(scene, preview, settings, result)

@@ -4,6 +4,7 @@ import argparse
 import json
 import sys
 from collections.abc import Sequence
+from contextlib import AbstractContextManager, nullcontext
 
 import bpy
 
@@ -11,10 +12,12 @@ from ...solvers.command_line import SentenceParser
 from ...solvers.command_line.screen import Screen, escape_odd_names
 from ...solvers.errors import InvalidFileError, InvalidSettingError, MocapAssistError
 from ...solvers.files import written_whole
+from ...solvers.processes.threads import add_threads_option
 from ..scene import history
 from ..scene.markers import markers_of
 from .capture_verb import HELP as CAPTURE_HELP
 from .capture_verb import add_capture_options, perform_capture
+from .each_child import OPTION, working_on
 from .each_verb import HELP as EACH_HELP
 from .each_verb import add_each_options, perform_each
 from .import_verb import HELP as IMPORT_HELP
@@ -41,7 +44,8 @@ def run(words: Sequence[str]) -> int:
         own, after = _parted(list(words))
         arguments = _parser().parse_args(own)
         arguments.words = _understood(after)
-        arguments.work(arguments, screen)
+        with _as_child_of_each(arguments):
+            arguments.work(arguments, screen)
     except MocapAssistError as error:
         screen.say(str(error))
         return FAILED
@@ -51,6 +55,11 @@ def run(words: Sequence[str]) -> int:
     except SystemExit as stop:  # a slip in the command line, or --help
         return int(stop.code or 0)
     return 0
+
+
+def _as_child_of_each(arguments: argparse.Namespace) -> AbstractContextManager[None]:
+    """Return what such a Blender does about its work, or nothing."""
+    return working_on(arguments.output) if arguments.child_of_each else nullcontext()
 
 
 def _parted(words: list[str]) -> tuple[list[str], list[str]]:
@@ -96,6 +105,7 @@ def unregister() -> None:
 
 def _parser() -> SentenceParser:
     parser = SentenceParser(prog=PROG, description="Captured motion in .blend files.")
+    parser.add_argument(OPTION, action="store_true", help=argparse.SUPPRESS)
     choices = parser.add_subparsers(dest="verb", metavar="VERB", required=True)
     for name, verb in VERBS.items():
         described = choices.add_parser(name, help=verb.help, description=verb.help)
@@ -106,6 +116,8 @@ def _parser() -> SentenceParser:
             " that are animated; where there are none, all markers]",
         )
         add_output_options(described, saves=verb.writes)
+        if verb.solves:
+            add_threads_option(described)
         verb.add_options(described)
         described.set_defaults(work=_work)
     described = choices.add_parser("import", help=IMPORT_HELP, description=IMPORT_HELP)
@@ -114,9 +126,11 @@ def _parser() -> SentenceParser:
     described.set_defaults(work=perform_import)
     described = choices.add_parser("capture", help=CAPTURE_HELP, description=CAPTURE_HELP)
     add_output_options(described, saves=True)
+    add_threads_option(described)
     add_capture_options(described)
     described.set_defaults(work=perform_capture)
     described = choices.add_parser("index", help=INDEX_HELP, description=INDEX_HELP)
+    add_threads_option(described)
     add_index_options(described)
     described.set_defaults(work=perform_index)
     described = choices.add_parser("each", help=EACH_HELP, description=EACH_HELP)

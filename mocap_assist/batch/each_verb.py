@@ -1,12 +1,12 @@
 """`each`: a verb done to each of many files, by Blenders of their own, and a report of all."""
 
 import argparse
-import subprocess
 import sys
 from collections.abc import Iterator, Sequence
 from concurrent.futures import ThreadPoolExecutor, as_completed
+from functools import partial
 from pathlib import Path
-from tempfile import TemporaryDirectory
+from threading import Event
 from typing import Any
 
 import bpy
@@ -26,8 +26,10 @@ from ...solvers.command_line.verb import Outcome, Task
 from ...solvers.errors import InvalidFileError, InvalidSettingError
 from ...solvers.faults import Failure, attempt
 from ...solvers.json_text import parse_json
+from ...solvers.processes.scratch import ScratchFolder
 from ...solvers.recordings.folder_scan import files_below, is_folder, refuse_closed
 from ..depth_folders import all_recordings_in, depth_recordings_in
+from .each_child import OPTION, run_child
 
 HELP = "Do another verb to each of many files: each FILE... --output-folder DIR -- VERB ..."
 BLEND = ".blend"
@@ -170,6 +172,7 @@ def _worked(
     tasks: Sequence[Task], arguments: argparse.Namespace, made: Made
 ) -> Iterator[Finished]:
     """Yield what is there already, then each task as it is finished, and note it."""
+    made.clear_up(tasks)
     there = [
         task
         for task in tasks
@@ -179,8 +182,10 @@ def _worked(
     ]
     for task in there:
         yield Finished(task, Outcome("Already made.", made.figures(task)))
+    stopped = Event()
+    attempt = partial(_attempt, stopped=stopped)
     with ThreadPoolExecutor(arguments.jobs) as pool:
-        waiting = [pool.submit(_attempt, task) for task in tasks if task not in there]
+        waiting = [pool.submit(attempt, task) for task in tasks if task not in there]
         try:
             for done in as_completed(waiting):
                 finished = done.result()
@@ -188,30 +193,31 @@ def _worked(
                     made.add(finished.task, finished.outcome.figures)
                 yield finished
         finally:
+            stopped.set()
             pool.shutdown(cancel_futures=True)
 
 
-def _attempt(task: Task) -> Finished:
+def _attempt(task: Task, *, stopped: Event) -> Finished:
     """Let another Blender do the verb to one file."""
-    finished = attempt(task.source, _perform, task)
+    finished = attempt(task.source, _perform, task, stopped)
     if isinstance(finished, Failure):
         return Finished(task, None, finished.sentence)
     return finished
 
 
-def _perform(task: Task) -> Finished:
+def _perform(task: Task, stopped: Event) -> Finished:
     if task.refusal:
         return Finished(task, None, task.refusal)
     forget_picture(task)
-    with TemporaryDirectory(prefix="mocap_assist_") as scratch:
-        figures = Path(scratch) / "figures"
-        done = subprocess.run(
-            _command(task, figures), capture_output=True, text=True, check=False
-        )
-        if done.returncode == 0:
+    with ScratchFolder() as scratch:
+        figures = scratch.path / "figures"
+        ended = run_child(_command(task, figures), task.target, stopped)
+        if ended is None:
+            return Finished(task, None, f"{task.source}: Interrupted.")
+        if ended.status == 0:
             return Finished(task, Outcome("Done.", _figures(figures)))
-    said = [line for line in done.stderr.splitlines() if line.strip()]
-    sentence = said[-1] if done.returncode == 2 and said else "the Blender for it has died."
+    said = [line for line in ended.errors.splitlines() if line.strip()]
+    sentence = said[-1] if ended.status == 2 and said else "the Blender for it has died."
     named = task.source.name in sentence
     return Finished(task, None, sentence if named else f"{task.source}: {sentence}")
 
@@ -221,7 +227,7 @@ def _command(task: Task, figures: Path) -> list[str]:
     verb, *options = arguments.words
     imports = verb in BRINGS_IN
     opened = bpy.data.filepath if imports else source
-    words = [verb, *([source] if imports else []), *options, "--json", str(figures)]
+    words = [OPTION, verb, *([source] if imports else []), *options, "--json", str(figures)]
     words += ["--output", str(task.target.resolve())]
     if arguments.report:
         words += ["--picture", str(picture_file(task).resolve())]

@@ -4,6 +4,7 @@ import argparse
 import json
 import sys
 from collections.abc import Sequence
+from functools import partial
 from pathlib import Path
 from typing import Any, get_type_hints
 
@@ -16,13 +17,13 @@ from ...solvers.files import written_whole
 from ...solvers.progress import Progress
 from ..jobs.finding import Found
 from ..jobs.indexing import IndexProblem, Place, index_places
-from ..jobs.job import run
 from ..library import searches
 from ..library.background import message_of
 from ..library.choices import FindBundle, LibraryChoices
 from ..library.finding import list_found, read_finding
 from ..library.places import asset_folders, background_blender, library_path
 from .saving import STDOUT
+from .solving import solve_apart
 
 INDEX_HELP = "Put the clips of recordings, .blend files and asset libraries into a library."
 FIND_HELP = "List the clips of a library that are like what armatures or markers play."
@@ -68,7 +69,7 @@ def perform_index(arguments: argparse.Namespace, screen: Screen) -> None:
     screen.title = "Index"
     blender = background_blender(arguments.rig)
     problem = IndexProblem(str(path), tuple(places), tuple(arguments.tag), blender)
-    indexed = index_places(problem, progress=screen.progress)
+    indexed = solve_apart(partial(index_places, problem), arguments, screen.progress)
     screen.clear()
     figures = {
         "library": str(path),
@@ -114,7 +115,7 @@ def perform_find(
         name: settings_from_arguments(arguments, each) for name, each in classes.items()
     })
     scene.mocap_assist.library.library_file = arguments.library
-    finding = run(read_finding(scene, subject, settings), progress)
+    finding = solve_apart(read_finding(scene, subject, settings), arguments, progress)
     sentence = list_found(scene, subject, settings, finding)
     search = searches.listed(bpy.context)
     found = search.finding.found if search is not None else ()

@@ -8,12 +8,12 @@ import bpy
 
 from ...solvers.command_line import arguments_from, settings_from_arguments
 from ...solvers.progress import Progress
-from ..jobs.job import run
 from ..name_lists import joined
 from ..reconstruct_choices import Postures, ReconstructBundle
 from ..reconstructing import read_reconstructing, write_reconstructed
 from ..scene import history
 from ..selection import played_result
+from .solving import solve_apart
 
 
 def add_reconstruct_options(parser: argparse.ArgumentParser) -> None:
@@ -53,7 +53,7 @@ def perform_reconstruct(
         scene.mocap_assist.library.library_file = arguments.library
         choices = replace(settings.choices, postures=Postures.LIBRARY)
         settings = settings._replace(choices=choices)
-    rebuilt = run(read_reconstructing(scene, armature, settings), progress)
+    rebuilt = solve_apart(read_reconstructing(scene, armature, settings), arguments, progress)
     sentence = write_reconstructed(scene, armature, settings, rebuilt)
     action, _ = played_result(armature)
     return sentence, {"action": action.name} | history.history(action)[-1]

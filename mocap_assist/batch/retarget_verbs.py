@@ -8,11 +8,11 @@ import bpy
 from ...solvers.command_line import arguments_from, settings_from_arguments
 from ...solvers.progress import Progress
 from ...solvers.retargeting import RetargetSettings, UnbakeSettings
-from ..jobs.job import run
 from ..retarget_choices import RetargetBundle, RetargetChoices, UnbakeBundle, UnbakeChoices
 from ..retargeting import read_retarget, write_retargeted
 from ..scene import history
 from ..unbaking import read_unbaking, write_unbaked
+from .solving import solve_apart
 
 CENTIMETRE = 0.01
 Said = tuple[str, dict[str, Any]]
@@ -39,7 +39,7 @@ def perform_retarget(
         settings_from_arguments(arguments, RetargetChoices),
         settings_from_arguments(arguments, RetargetSettings),
     )
-    results = run(read_retarget(scene, armature, settings), progress)
+    results = solve_apart(read_retarget(scene, armature, settings), arguments, progress)
     sentence = write_retargeted(scene, armature, settings, results)
     action = scene.objects[settings.choices.target].animation_data.action
     figures = {"n_actions": len(results), "action": action.name}
@@ -68,7 +68,7 @@ def perform_unbake(
         UnbakeChoices(tolerance=CENTIMETRE * arguments.tolerance),
         settings_from_arguments(arguments, UnbakeSettings),
     )
-    result = run(read_unbaking(scene, armature, settings), progress)
+    result = solve_apart(read_unbaking(scene, armature, settings), arguments, progress)
     sentence = write_unbaked(scene, armature, settings, result)
     action = armature.animation_data.action
     return sentence, {"action": action.name} | history.history(action)[-1]

@@ -8,9 +8,9 @@ import bpy
 from ...solvers.command_line import arguments_from, settings_from_arguments
 from ...solvers.progress import Progress
 from ...solvers.reconstruction import SimulateSettings
-from ..jobs.job import run
 from ..scene import history
 from ..simulating import SimulateBundle, read_simulating, write_simulated
+from .solving import solve_apart
 
 
 def add_simulate_options(parser: argparse.ArgumentParser) -> None:
@@ -26,7 +26,7 @@ def perform_simulate(
 ) -> tuple[str, dict[str, Any]]:
     """Let a body with mass and muscles make what the armature plays."""
     settings = SimulateBundle(settings_from_arguments(arguments, SimulateSettings))
-    result = run(read_simulating(scene, armature, settings), progress)
+    result = solve_apart(read_simulating(scene, armature, settings), arguments, progress)
     sentence = write_simulated(scene, armature, settings, result)
     action = armature.animation_data.action
     return sentence, {"action": action.name} | history.history(action)[-1]

@@ -8,12 +8,12 @@ import bpy
 
 from ...solvers.command_line import arguments_from, settings_from_arguments
 from ...solvers.progress import Progress, within
-from ..jobs.job import run
 from ..variants.choices import VaryBundle
 from ..variants.listing import chosen
 from ..variants.reading import read_varying
 from ..variants.sheet import write_sheet
 from ..variants.writing import write_variants
+from .solving import solve_apart
 
 HELP = "Make many new actions of a few of one behaviour, each different."
 
@@ -37,7 +37,9 @@ def perform_vary(
     settings = VaryBundle(**{
         name: settings_from_arguments(arguments, each) for name, each in classes.items()
     })
-    varied = run(read_varying(scene, armature, settings), within(progress, 0.0, 0.8))
+    varied = solve_apart(
+        read_varying(scene, armature, settings), arguments, within(progress, 0.0, 0.8)
+    )
     progress(0.8, "Writing")
     said = write_variants(scene, armature, settings, varied)
     if arguments.sheet is not None:

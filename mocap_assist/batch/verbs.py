@@ -17,7 +17,6 @@ from ..check_choices import CheckSettings
 from ..checking import read_checking, show_checked
 from ..clean_choices import CleanSettings, Prior
 from ..cleaning import read_cleaning, write_cleaned
-from ..jobs.job import run
 from ..name_lists import joined
 from ..scene import history
 from ..scene.armature_read import read_take
@@ -33,6 +32,7 @@ from .retarget_verbs import (
     retarget_target,
 )
 from .simulate_verb import add_simulate_options, perform_simulate
+from .solving import solve_apart
 from .vary_verb import HELP as VARY_HELP
 from .vary_verb import add_vary_options, perform_vary
 
@@ -66,6 +66,8 @@ class Verb:
     """Name of an armature on which it is never performed."""
     on_markers: bool = True
     """Whether it is also for the markers below an empty."""
+    solves: bool = True
+    """Whether there is linear algebra in it, which may have more than one thread."""
 
 
 def _clean_options(parser: argparse.ArgumentParser) -> None:
@@ -96,7 +98,7 @@ def _clean(
     elif arguments.library:
         scene.mocap_assist.library.library_file = arguments.library
         settings = settings._replace(choices=replace(settings.choices, prior=Prior.LIBRARY))
-    cleaned = run(read_cleaning(scene, armature, settings), progress)
+    cleaned = solve_apart(read_cleaning(scene, armature, settings), arguments, progress)
     sentence = write_cleaned(scene, armature, settings, cleaned)
     action, _ = played_result(armature)
     return sentence, {"action": action.name} | history.history(action)[-1]
@@ -113,7 +115,7 @@ def _check(
     progress: Progress,
 ) -> Said:
     settings = _bundle(arguments, CheckSettings)
-    checked = run(read_checking(scene, armature, settings), progress)
+    checked = solve_apart(read_checking(scene, armature, settings), arguments, progress)
     sentence = show_checked(scene, armature, settings, checked)
     spots = [spot.sentence for spot in checked.spots]
     text = "\n".join([checked.quality.report(), "", sentence, *spots])
@@ -187,6 +189,7 @@ VERBS = {
         _convert,
         writes=False,
         check=_check_targets,
+        solves=False,
     ),
     "reconstruct": Verb(
         "Rebuild poses that a depth camera lost or mistook, and plant feet.",

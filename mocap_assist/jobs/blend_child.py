@@ -1,6 +1,5 @@
 """child.py for a background Blender, which can read .blend files."""
 
-import os
 import runpy
 import sys
 from pathlib import Path
@@ -8,7 +7,4 @@ from pathlib import Path
 if __name__ == "__main__":
     child = str(Path(__file__).with_name("child.py"))
     sys.argv = [child, *sys.argv[sys.argv.index("--") + 1 :]]
-    runpy.run_path(child, run_name="__main__")
-    sys.stdout.flush()
-    sys.stderr.flush()
-    os._exit(0)  # Blender may hang on its way out
+    runpy.run_path(child, run_name="__main__")  # ends this process

@@ -2,13 +2,11 @@
 
 import gc
 import importlib
-import os
 import pickle
-import shutil
 import sys
-import threading
 import traceback
 from collections.abc import Callable
+from contextlib import suppress
 from functools import partial
 from pathlib import Path
 from time import monotonic
@@ -18,21 +16,46 @@ from typing import Any
 BETWEEN_REPORTS = 0.1  # seconds
 
 
-def main(folder: Path, extension: str) -> None:
-    """Run the request in `folder` and leave the result there, whole or not at all."""
-    make_importable(extension, Path(__file__).parents[2])
-    gc.disable()  # Importing makes no rubbish; looking for it takes a tenth of the time.
+def main(folder: Path, extension: str) -> int:
+    """Run the request in `folder` and leave the result there, whole or not at all.
+
+    Returns
+    -------
+    int
+        An `Ending`, for the exit status.
+    """
     protocol = importlib.import_module(f"{extension}.mocap_assist.jobs.protocol")
+    try:
+        write_outcome(folder, protocol, outcome_of(folder, protocol))
+    except MemoryError:
+        return protocol.Ending.OUT_OF_MEMORY
+    except OSError as error:
+        if error.errno in protocol.DISK_FULL:
+            return protocol.Ending.DISK_FULL
+        traceback.print_exc()
+        return protocol.Ending.FAILED
+    except BaseException:  # SystemExit, too: Blender may hang at a regular end
+        traceback.print_exc()
+        return protocol.Ending.FAILED
+    return protocol.Ending.ANSWERED
+
+
+def outcome_of(folder: Path, protocol: ModuleType) -> Any:
+    """Return what the solver returns, in a tuple, or the exception that it raises."""
+    gc.disable()  # Importing makes no rubbish; looking for it takes a tenth of the time.
     solve = pickle.loads((folder / protocol.REQUEST).read_bytes())
     gc.enable()
-    outcome: Any
     try:
-        outcome = (
-            solve(progress=reporter(folder, protocol), **onlooker(solve, folder, protocol)),
-        )
+        return (solve(progress=reporter(protocol), **onlooker(solve, folder, protocol)),)
+    except MemoryError:
+        raise
     except Exception as error:  # handed over whole, to be raised in Blender
         error.add_note(traceback.format_exc())
-        outcome = error
+        return error
+
+
+def write_outcome(folder: Path, protocol: ModuleType, outcome: Any) -> None:
+    """Leave the result where job.py looks for it."""
     part = folder / "part"
     with part.open("wb") as file:  # large arrays go straight into it, without a copy
         pickle.dump(outcome, file, protocol=pickle.HIGHEST_PROTOCOL)
@@ -48,7 +71,7 @@ def make_importable(extension: str, folder: Path) -> None:
         sys.modules[package.__name__] = package
 
 
-def reporter(folder: Path, protocol: ModuleType) -> Callable[..., None]:
+def reporter(protocol: ModuleType) -> Callable[..., None]:
     """Return a Progress that prints now and then."""
     spoken = -1.0
 
@@ -57,7 +80,8 @@ def reporter(folder: Path, protocol: ModuleType) -> Callable[..., None]:
         if monotonic() - spoken < BETWEEN_REPORTS:
             return
         spoken = monotonic()
-        print(protocol.progress_line(fraction, message), flush=True)
+        with suppress(OSError):  # a full disk: the result matters, if there is room for it
+            print(protocol.progress_line(fraction, message), flush=True)
 
     return report
 
@@ -69,13 +93,15 @@ def onlooker(solve: Any, folder: Path, protocol: ModuleType) -> dict[str, Callab
     return {"show": partial(protocol.append_shown, (folder / protocol.SHOWN).open("wb"))}
 
 
-def end_with_blender(folder: Path) -> None:
-    """Wait until the pipe from Blender closes, which it does however Blender ends."""
-    sys.stdin.buffer.read()
-    shutil.rmtree(folder, ignore_errors=True)
-    os._exit(1)
+def solve_and_leave(folder: Path, extension: str) -> None:
+    """Solve, and end with the result, or as soon as Blender ends."""
+    make_importable(extension, Path(__file__).parents[2])
+    processes = f"{extension}.solvers.processes"
+    parent = importlib.import_module(f"{processes}.parent")
+    scratch = importlib.import_module(f"{processes}.scratch")
+    parent.end_with_stdin(partial(scratch.remove_orphaned, folder))
+    parent.leave(main(folder, extension))
 
 
 if __name__ == "__main__":
-    threading.Thread(target=end_with_blender, args=(Path(sys.argv[1]),), daemon=True).start()
-    main(Path(sys.argv[1]), sys.argv[2])
+    solve_and_leave(Path(sys.argv[1]), sys.argv[2])

@@ -4,7 +4,7 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
-from ...solvers.errors import InvalidFileError
+from ...solvers.errors import InvalidFileError, OutOfMemoryError
 from ...solvers.faults import Failure, attempt
 from ...solvers.progress import Progress, unwatched, within
 from ...solvers.recordings.folder_scan import files_below
@@ -17,6 +17,7 @@ from ...solvers.retrieval import (
     describe_clip,
     open_clip_library,
 )
+from ...solvers.retrieval.library_file import refuse_other_suffix
 from ...solvers.workflows import index_files
 from .in_blender import BackgroundBlender, BlendClip, BlendRead, read_blends
 from .job import ProcessDied
@@ -84,6 +85,8 @@ def index_places(problem: IndexProblem, *, progress: Progress = unwatched) -> In
     """
     problem.blender.look_for_rig()
     path = Path(problem.library)
+    if not path.exists():
+        refuse_other_suffix(path)
     try:
         path.parent.mkdir(parents=True, exist_ok=True)
     except OSError as error:
@@ -144,20 +147,20 @@ class _Indexing:
 
     def _known(self, blend: _Blend) -> bool:
         """Whether all clips of the file are as they were, and have all the tags."""
-        entries = self._entries(blend)
+        entries = self._entries(blend).values()
         states = {(each.origin.size, each.origin.modified) for each in entries if each.origin}
         tagged = all(set(self._tags) <= set(each.tags) for each in entries)
         known = tagged and states == {blend.state}
         self.kept += len(entries) if known else 0
         return known
 
-    def _entries(self, blend: _Blend) -> list[ClipEntry]:
-        """Return what the library has of a file."""
-        return [
-            entry
-            for entry in self._library.entries
+    def _entries(self, blend: _Blend) -> dict[int, ClipEntry]:
+        """Return what the library has of a file, by its numbers."""
+        return {
+            number: entry
+            for number, entry in self._library.numbered().items()
             if entry.origin is not None and entry.origin.path == str(blend.path)
-        ]
+        }
 
     def _read(
         self, batch: list[_Blend], blender: BackgroundBlender, progress: Progress
@@ -170,44 +173,41 @@ class _Indexing:
             names = [str(each.path) for each in paths]
             try:
                 found = read_blends(blender, names, assets_only=assets_only, progress=progress)
-            except ProcessDied as error:
+            except (ProcessDied, OutOfMemoryError) as error:
                 if len(paths) > 1:
                     for each in paths:
                         yield from self._read([each], blender, progress)
                     continue
-                found = [BlendRead((), (f"{names[0]} made Blender end, {error.cause}.",))]
+                found = [BlendRead((), (_refusal(names[0], error),))]
             yield from zip(paths, found, strict=True)
 
     def _replace(self, blend: _Blend, read: BlendRead) -> None:
         """Put what a file holds now in the place of what it held."""
-        before = [entry.name for entry in self._entries(blend)]
-        others = {entry.name for entry in self._library.entries} - set(before)
+        before = list(self._entries(blend))
         self._refused += read.refused
         described = []
         for clip in read.clips:
-            found = attempt(f"{blend.path}, {clip.item}", self._describe, blend, clip, others)
+            found = attempt(f"{blend.path}, {clip.item}", self._describe, blend, clip)
             if isinstance(found, Failure):
                 self._refused.append(found.sentence)
             else:
                 described.append(found)
-        self._library.add_described(described)
-        added = {clip.entry.name for clip in described}
-        gone = [name for name in before if name not in added]
-        self._library.remove(gone)
-        self.added += len(added)
-        self.removed += len(gone)
+        self.added += len(self._library.add_described(described))
+        self.removed += len(self._library.discard(before))  # but for those just replaced
 
-    def _describe(self, blend: _Blend, clip: BlendClip, others: set[str]) -> DescribedClip:
-        return describe_clip(self._clip(blend, clip, others))
+    def _describe(self, blend: _Blend, clip: BlendClip) -> DescribedClip:
+        return describe_clip(self._clip(blend, clip))
 
-    def _clip(self, blend: _Blend, clip: BlendClip, others: set[str]) -> Clip:
-        name = plain = f"{blend.name}/{clip.item}"
-        number = 1
-        while name in others:  # in another folder there is one that is called the same
-            number += 1
-            name = f"{plain} ({number})"
+    def _clip(self, blend: _Blend, clip: BlendClip) -> Clip:
         tags = tuple(dict.fromkeys([*self._tags, *clip.tags]))
-        return Clip(name, clip.motion, tags, Origin(str(blend.path), clip.item, *blend.state))
+        origin = Origin(str(blend.path), clip.item, *blend.state)
+        return Clip(f"{blend.name}/{clip.item}", clip.motion, tags, origin)
+
+
+def _refusal(name: str, error: ProcessDied | OutOfMemoryError) -> str:
+    if isinstance(error, OutOfMemoryError):
+        return f"{name} needs more memory than there is."
+    return f"{name} made Blender end, {error.cause}."
 
 
 def _batches(blends: list[_Blend]) -> Iterator[list[_Blend]]:

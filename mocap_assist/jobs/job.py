@@ -5,26 +5,25 @@ import pickle
 import signal
 import subprocess
 import sys
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import contextmanager
 from functools import partial
 from pathlib import Path
-from tempfile import TemporaryDirectory
 from time import sleep
 from typing import Any, Generic, TypeVar
 
-from ...solvers.errors import MocapAssistError, SolveCancelled
+from ...solvers.errors import MocapAssistError, OutOfMemoryError, SolveCancelled
+from ...solvers.processes.scratch import ScratchFolder
+from ...solvers.processes.threads import thread_environment
 from ...solvers.progress import Progress, unwatched
-from .protocol import LOG, REQUEST, RESULT, last_progress, last_words, read_shown
+from .protocol import LOG, REQUEST, RESULT, Ending, last_progress, last_words, read_shown
 
 Result = TypeVar("Result")
 EXTENSION = __name__.rsplit(".", 3)[0]
 CHILD = Path(__file__).with_name("child.py")
 BETWEEN_LOOKS = 0.05  # seconds
-ONE_THREAD = {
-    "OMP_NUM_THREADS": "1",
-    "OPENBLAS_NUM_THREADS": "1",
-    "VECLIB_MAXIMUM_THREADS": "1",
-}
+PATIENCE = 0.25
+"""Seconds that a process has to end in once its result is there."""
 OURS = {"PYTHONUTF8": "1", "PYTHONNOUSERSITE": "1"}
 # Neither what the user installed for a Python of his own, nor the script's folder is looked in.
 ALONE = ("-s", "-P")
@@ -59,14 +58,22 @@ def run(
     progress: Progress = unwatched,
     program: Sequence[str] = (),
 ) -> Result:
-    """Solve and wait for the result, in a process of its own unless the solve is quick.
-
-    In that process linear algebra has one thread, whatever Blender's has: on matrices of this
-    size two threads were seen to take thirty times as long, and give other last bits.
-    """
-    if isinstance(solve, Quick):
+    """Solve and wait for the result, in a process of its own unless the solve is quick."""
+    if not isinstance(solve, Quick):
+        return run_apart(solve, progress, program)
+    with _memory_in_words():
         return solve(progress=progress)
-    job = Job(solve, program)
+
+
+def run_apart(
+    solve: Callable[..., Result],
+    progress: Progress = unwatched,
+    program: Sequence[str] = (),
+    *,
+    n_threads: int = 1,
+) -> Result:
+    """Solve in a process of its own, and wait for the result."""
+    job = Job(solve, program, n_threads=n_threads)
     try:
         while not job.done():
             progress(*job.progress())
@@ -81,25 +88,58 @@ def run(
 class Job(Generic[Result]):
     """Start `solve(progress=…)`; ask `done` now and then; fetch `result` once.
 
-    `solve` must be picklable. A crash of its process, or a lack of memory, leaves this one
-    unharmed. `program` is the command that runs it, by default a bare Python with child.py.
+    A crash of its process, or a lack of memory, leaves this one unharmed.
+
+    Parameters
+    ----------
+    solve : callable
+        Must be picklable.
+    program : sequence of str
+        The command that runs it, by default a bare Python with child.py.
+    n_threads : int
+        Of linear algebra in that process, whatever Blender has: see `solvers.processes`.
+
+    Raises
+    ------
+    MocapAssistError
+        The process cannot be started: a disk is full, or there is too little memory.
     """
 
-    def __init__(self, solve: Callable[..., Result], program: Sequence[str] = ()) -> None:
+    def __init__(
+        self,
+        solve: Callable[..., Result],
+        program: Sequence[str] = (),
+        *,
+        n_threads: int = 1,
+    ) -> None:
         self.cancelled = False
         self._n_shown = 0
-        # On Windows a file that is still open cannot be removed; that is no reason to fail.
-        self._folder = TemporaryDirectory(prefix="mocap_assist_", ignore_cleanup_errors=True)
-        self._path = Path(self._folder.name)
-        (self._path / REQUEST).write_bytes(pickle.dumps(solve))
+        self._scratch = ScratchFolder()
+        self._path = self._scratch.path
+        try:
+            with _memory_in_words():
+                (self._path / REQUEST).write_bytes(pickle.dumps(solve))
+            self._process = self._started(program or alone(CHILD), n_threads)
+        except OSError as error:
+            self._scratch.remove()
+            raise MocapAssistError(
+                f"The solver process cannot be started: {error.strerror}"
+                f" ({error.filename or self._path})."
+            ) from None
+        except BaseException:
+            self._scratch.remove()
+            raise
+
+    def _started(self, program: Sequence[str], n_threads: int) -> "subprocess.Popen[bytes]":
+        environment = thread_environment(n_threads) | OURS | {"PYTHONPATH": _search_path()}
         with (self._path / LOG).open("wb") as log:
-            self._process = subprocess.Popen(
-                [*(program or alone(CHILD)), str(self._path), EXTENSION],
-                stdin=subprocess.PIPE,  # nothing is said: it closes when this process ends
+            return subprocess.Popen(
+                [*program, str(self._path), EXTENSION],
+                stdin=subprocess.PIPE,  # nothing is written: it closes when this process ends
                 stdout=log,
                 stderr=subprocess.STDOUT,
                 creationflags=NO_WINDOW,
-                env=os.environ | ONE_THREAD | OURS | {"PYTHONPATH": _search_path()},
+                env=os.environ | environment,
             )
 
     def progress(self) -> tuple[float, str]:
@@ -117,8 +157,8 @@ class Job(Generic[Result]):
         return read_shown(self._path, 0)[0]
 
     def done(self) -> bool:
-        """Whether the process has ended, in whatever way."""
-        return self._process.poll() is not None
+        """Whether the result is there, or the process has ended without one."""
+        return (self._path / RESULT).exists() or self._process.poll() is not None
 
     def cancel(self) -> None:
         """End the process at once; `result` then raises SolveCancelled."""
@@ -130,7 +170,7 @@ class Job(Generic[Result]):
         self._process.wait()
         if self._process.stdin is not None:
             self._process.stdin.close()
-        self._folder.cleanup()
+        self._scratch.remove()
 
     def result(self) -> Result:
         """Wait for the end, tidy up, and return what the solver returned.
@@ -141,24 +181,58 @@ class Job(Generic[Result]):
             `cancel` was called.
         ProcessDied
             It has left no answer.
+        OutOfMemoryError
+            It, or this process, has too little memory for the answer.
         MocapAssistError
             Or whatever the solver itself raised.
         """
-        status = self._process.wait()
-        said, answer = last_words(self._path), self._path / RESULT
-        outcome: Any = None
-        if answer.exists() and not self.cancelled:
-            with answer.open("rb") as file:
-                outcome = pickle.load(file)
-        self.tidy_up()
-        if self.cancelled:
-            raise SolveCancelled("Cancelled.")
-        if outcome is None:
-            raise ProcessDied(_cause(status), said)
+        status = self._end()
+        try:
+            outcome = self._outcome(status)
+        finally:
+            self.tidy_up()
         if isinstance(outcome, Exception):
             raise outcome
         result: Result = outcome[0]
         return result
+
+    def _end(self) -> int:
+        """Wait for the result and then for the end of the process; return its exit status.
+
+        A process that has left its result has nothing more to do: it is not waited for long.
+        """
+        while not self.done():
+            sleep(BETWEEN_LOOKS)
+        try:
+            return self._process.wait(PATIENCE)
+        except subprocess.TimeoutExpired:
+            self._process.kill()
+            return self._process.wait()
+
+    def _outcome(self, status: int) -> Any:
+        """Return what the process has left: an exception, or the result in a tuple."""
+        answer = self._path / RESULT
+        if self.cancelled:
+            return SolveCancelled("Cancelled.")
+        if answer.exists():
+            with _memory_in_words(), answer.open("rb") as file:
+                return pickle.load(file)
+        if status == Ending.OUT_OF_MEMORY:
+            return OutOfMemoryError()
+        if status == Ending.DISK_FULL:
+            return MocapAssistError(
+                f"The disk is full. Make room for temporary files in {self._path.parent}."
+            )
+        return ProcessDied(_cause(status), last_words(self._path))
+
+
+@contextmanager
+def _memory_in_words() -> Iterator[None]:
+    """Raise a MemoryError as one sentence."""
+    try:
+        yield
+    except MemoryError:
+        raise OutOfMemoryError from None
 
 
 def alone(script: Path) -> tuple[str, ...]:

@@ -1,7 +1,9 @@
 """What a job and its child process leave for each other in their folder."""
 
+import errno
 import pickle
 import re
+from enum import IntEnum
 from functools import partial
 from pathlib import Path
 from typing import Any, BinaryIO, TypeVar
@@ -11,10 +13,21 @@ from ...solvers.faults import escaped
 REQUEST, RESULT, LOG, SHOWN = "request", "result", "log", "shown"
 TAIL = 4096  # bytes of the log that are read
 SIZE = 8  # bytes that tell how long a pickle is
+DISK_FULL = {errno.ENOSPC, errno.EDQUOT}
 PROGRESS = re.compile(r"^@([01]\.\d+) (.*)$")
 
-
 Result = TypeVar("Result")
+
+
+class Ending(IntEnum):
+    """Exit status of a child process. Neither a full disk nor memory can take more words."""
+
+    ANSWERED = 0
+    """The result, or what the solver raised, is on disk."""
+    FAILED = 1
+    """The log ends with a traceback."""
+    OUT_OF_MEMORY = 3
+    DISK_FULL = 4
 
 
 class Showing(partial[Result]):

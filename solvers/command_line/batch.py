@@ -1,29 +1,27 @@
 """Work on many files: one after the other or several at a time, and go on after a stop."""
 
 import json
-import os
-import signal
 from collections.abc import Iterator, Sequence
 from concurrent.futures import Future, ProcessPoolExecutor, as_completed
 from concurrent.futures.process import BrokenProcessPool
 from dataclasses import replace
-from multiprocessing import get_context
 from pathlib import Path
 from typing import Any, NamedTuple
 
 from ..faults import Failure, attempt
 from ..files import remove_leftovers, written_whole
 from ..json_text import parse_json
+from ..processes.threads import threads_from
+from ..processes.workers import worker_pool
 from ..progress import Progress, unwatched
 from ..version import version
-from .report import FIGURES, PAGE, draw_task, forget_picture
+from .report import FIGURES, PAGE, draw_task, forget_picture, picture_file
 from .screen import Screen
 from .verb import Outcome, Task, Verb
 
 RECORD = "mocap_assist.json"
 NOT_OF_THE_RESULT = {"again", "files", "jobs", "json", "output_folder", "report", "work"}
 """Options that do not change what comes out."""
-ONE_THREAD = {"OMP_NUM_THREADS": "1", "OPENBLAS_NUM_THREADS": "1", "MKL_NUM_THREADS": "1"}
 
 
 class Finished(NamedTuple):
@@ -46,7 +44,6 @@ def work_on(
             screen.title = f"[{number}/{len(tasks)}] {task.source.name}"
             yield _attempt(verb, task, prepared, screen.progress)
         return
-    os.environ.update({name: os.environ.get(name, one) for name, one in ONE_THREAD.items()})
     lost: list[Task] = []
     for finished in _work_together(verb, tasks, prepared, n_jobs):
         if finished.died:
@@ -66,8 +63,8 @@ def work_on(
 def _work_together(
     verb: Verb, tasks: Sequence[Task], prepared: Any, n_jobs: int
 ) -> Iterator[Finished]:
-    n_workers = min(n_jobs, len(tasks))
-    with ProcessPoolExecutor(n_workers, get_context("spawn"), _die_on_interrupt) as pool:
+    n_workers, n_threads = min(n_jobs, len(tasks)), threads_from(tasks[0].arguments)
+    with worker_pool(n_workers, n_threads) as pool:
         waiting = {_submitted(pool, verb, task, prepared): task for task in tasks}
         try:
             for done in as_completed(waiting):
@@ -113,11 +110,6 @@ def _perform(verb: Verb, task: Task, prepared: Any, progress: Progress) -> Outco
     return outcome
 
 
-def _die_on_interrupt() -> None:
-    """Leave Ctrl-C to the parent, which tells it in one sentence; no traceback per worker."""
-    signal.signal(signal.SIGINT, signal.SIG_DFL)
-
-
 class Made:
     """What is in an output folder already, from what it was made, and what came of it.
 
@@ -139,7 +131,9 @@ class Made:
     def clear_up(self, tasks: Sequence[Task]) -> None:
         """Remove half-written files that a killed batch has left among these outputs."""
         targets = [task.target for task in tasks if task.target is not None]
-        remove_leftovers([self.path, self.folder / PAGE, self.folder / FIGURES, *targets])
+        pictures = [picture_file(task) for task in tasks if task.target is not None]
+        own = [self.path, self.folder / PAGE, self.folder / FIGURES]
+        remove_leftovers([*own, *targets, *pictures])
 
     def has(self, task: Task) -> bool:
         """Whether the output is there and would come out the same again."""

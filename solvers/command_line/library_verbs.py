@@ -6,6 +6,7 @@ from typing import Any
 
 from ..errors import InvalidMotionError, InvalidSettingError
 from ..motion import JointRecording
+from ..processes.threads import threads_from
 from ..progress import Progress, within
 from ..recordings import read_tracked
 from ..retrieval import ClipEntry, FindSettings, Match, find_similar, load_clip_library
@@ -38,6 +39,7 @@ def perform_index(task: Task, prepared: None, progress: Progress) -> Outcome:
         task.sources,
         tags=arguments.tag,
         jobs=arguments.jobs,
+        n_threads=threads_from(arguments),
         remove_missing=arguments.remove_missing,
         progress=progress,
     )

@@ -10,6 +10,7 @@ from typing import Any
 
 from ..errors import InvalidSettingError, MocapAssistError
 from ..faults import Failure, attempt
+from ..processes.threads import add_threads_option
 from .batch import RECORD, Finished, Made, work_on
 from .options import SentenceParser
 from .report import PAGE, Entry, draw_task, has_picture, write_report
@@ -101,6 +102,7 @@ def _add_common_options(parser: argparse.ArgumentParser, makes: Makes) -> None:
             "--jobs", type=int, default=1, metavar="N",
             help="How many files to work on at a time [default 1]",
         )  # fmt: skip
+    add_threads_option(parser)
     parser.add_argument(
         "--json", action="store_true",
         help="Print figures for programs: one line of JSON for each file",

@@ -1,11 +1,16 @@
 """What a library is made of, and what a search finds in it."""
 
 from dataclasses import dataclass
+from unicodedata import category
 
 import numpy as np
 from numpy.typing import NDArray
 
+from ..errors import InvalidMotionError
 from .clip_postures import Recording
+
+LINE_BREAKS_AND_CONTROLS = {"Cc", "Zl", "Zp"}
+"""Categories of Unicode that no name needs, and that a terminal or a text file obeys."""
 
 
 @dataclass(frozen=True)
@@ -24,12 +29,29 @@ class Origin:
 
 @dataclass(frozen=True, eq=False)
 class Clip:
-    """A recording with a name by which a library knows it."""
+    """A recording with a name by which a library knows it.
+
+    Raises
+    ------
+    InvalidMotionError
+        The name or a tag has control characters, or they or the origin are no valid UTF-8.
+    """
 
     name: str
     recording: Recording
     tags: tuple[str, ...] = ()
     origin: Origin | None = None
+
+    def __post_init__(self) -> None:
+        if fault := text_fault(self.name):
+            raise InvalidMotionError(f"The clip name {self.name!r} {fault}; rename it.")
+        if fault := tags_fault(self.tags):
+            raise InvalidMotionError(f"{self.name}: {fault}")
+        path = "" if self.origin is None else self.origin.path
+        if not is_utf_8(path):
+            raise InvalidMotionError(
+                f"{self.name}: its path {path!r} is no valid UTF-8; rename the folder."
+            )
 
 
 @dataclass(frozen=True)
@@ -69,3 +91,23 @@ class Match:
     frames: range
     score: float
     alignment: NDArray[np.intp] | None = None
+
+
+def text_fault(text: str) -> str:
+    """Return what keeps a text from being a clip's name or tag, or nothing."""
+    if not is_utf_8(text):
+        return "is no valid UTF-8"
+    if any(category(letter) in LINE_BREAKS_AND_CONTROLS for letter in text):
+        return "has control characters"
+    return ""
+
+
+def tags_fault(tags: tuple[str, ...]) -> str:
+    """Return a sentence about tags that have control characters or are no UTF-8, or nothing."""
+    wrong = [f"The tag {tag!r} {fault}." for tag in tags if (fault := text_fault(tag))]
+    return " ".join([*wrong, "Choose another word."]) if wrong else ""
+
+
+def is_utf_8(text: str) -> bool:
+    """Whether a text, such as a path, can be stored; file names of Linux may be any bytes."""
+    return all(category(letter) != "Cs" for letter in text)

@@ -19,9 +19,11 @@ from .clip import Clip, ClipEntry, Origin
 from .clip_postures import ClipPostures
 from .describe_clip import DescribedClip, describe_clip
 from .index_block import IndexBlock, block_of, merged
+from .library_storage import clip_rows as rows
+from .library_storage.errors import readable_errors
 from .refused_files import read_refused, write_refused
 from .search_index import SearchIndex
-from .spans import RATE, Spans, describe_spans
+from .spans import RATE, describe_all_spans
 from .vocabulary import MOST_FRAMES, Vocabulary, learn_vocabulary
 
 OUTGROWN = 4
@@ -103,16 +105,17 @@ class ClipLibrary:
 
     def postures(self, number: int) -> ClipPostures:
         """Return the postures of a clip at 20 Hz, as they were indexed."""
-        with files.told_in_words(self._path):
-            return files.read_postures(self._database, number)
+        with readable_errors(self._path):
+            return rows.read_postures(self._database, number)
 
     def add(self, clips: Iterable[Clip], *, progress: Progress = unwatched) -> None:
-        """Add clips, in place of those of the same name.
+        """Add clips, in place of those of the same origin or, without one, the same name.
 
         Raises
         ------
         InvalidMotionError
-            A clip shows no body, or two have one name; the library is as it was.
+            A clip shows no body, or two without an origin have one name; the library is as it
+            was.
         SolveCancelled
             Raised by `progress`; the library is as it was.
         """
@@ -124,33 +127,44 @@ class ClipLibrary:
         self.add_described(described, progress=within(progress, 0.5, 1.0))
 
     def add_described(
-        self, clips: Sequence[DescribedClip], *, progress: Progress = unwatched
-    ) -> None:
+        self,
+        clips: Sequence[DescribedClip],
+        *,
+        free_name: rows.FreeName = rows.numbered_name,
+        progress: Progress = unwatched,
+    ) -> tuple[str, ...]:
         """Add clips that `describe_clip` has described, here or in another process.
+
+        A clip with an origin replaces the one of that origin, and keeps its name; where the
+        name of a new one is taken, `free_name` chooses another while nobody else can write.
+
+        Returns
+        -------
+        tuple of str
+            The names that the clips have in the library.
 
         Raises
         ------
         InvalidMotionError
-            Two clips have one name; the library is as it was.
+            Two clips without an origin have one name; the library is as it was.
         SolveCancelled
             Raised by `progress`; the library is as it was.
         """
-        names = Counter(clip.entry.name for clip in clips)
+        names = Counter(clip.entry.name for clip in clips if clip.entry.origin is None)
         if doubled := [name for name, count in names.items() if count > 1]:
             raise InvalidMotionError(f"Two clips are called {min(doubled)}.")
         if not clips:
-            return
+            return ()
         postures = [clip.postures for clip in clips]
-        with files.told_in_words(self._path), files.transaction(self._database):
+        with readable_errors(self._path), files.transaction(self._database):
             self._refresh()
-            numbers = [
-                files.write_clip(self._database, clip.entry, clip.postures) for clip in clips
-            ]
+            written = rows.write_clips(self._database, clips, free_name)
             if self._outgrown(sum(clip.n_frames for clip in postures)):
                 self._index_all(progress)
             else:
-                self._index(numbers, postures, progress)
+                self._index(list(written), postures, progress)
             progress(1.0)
+        return tuple(written.values())
 
     def remove(self, names: Sequence[str]) -> None:
         """Take clips out.
@@ -160,21 +174,26 @@ class ClipLibrary:
         InvalidMotionError
             There is no clip of a name; the library is as it was.
         """
-        with files.told_in_words(self._path), files.transaction(self._database):
+        with readable_errors(self._path), files.transaction(self._database):
             for name in names:
                 if not self._database.execute(
                     "DELETE FROM clips WHERE name = ?", (name,)
                 ).rowcount:
                     raise InvalidMotionError(f"The library has no clip {name}.")
 
+    def discard(self, numbers: Iterable[int]) -> tuple[str, ...]:
+        """Take out the clips of these numbers that are still there; return their names."""
+        with readable_errors(self._path), files.transaction(self._database):
+            return tuple(rows.remove_clips(self._database, numbers))
+
     def refused(self, reader: str) -> dict[Origin, str]:
         """Return files that this version of a reader could not use, and why."""
-        with files.told_in_words(self._path):
+        with readable_errors(self._path):
             return read_refused(self._database, reader)
 
     def remember_refused(self, reader: str, refused: Sequence[tuple[Origin, str]]) -> None:
         """Note files that are of no use as they are, and why."""
-        with files.told_in_words(self._path), files.transaction(self._database):
+        with readable_errors(self._path), files.transaction(self._database):
             write_refused(self._database, reader, refused)
 
     def save(self, path: Path | str) -> None:
@@ -185,7 +204,7 @@ class ClipLibrary:
         InvalidFileError
             The folder is missing or may not be written to.
         """
-        with written_whole(path) as part, files.told_in_words(Path(path)):
+        with written_whole(path) as part, readable_errors(Path(path)):
             copy = sqlite3.connect(part)
             try:
                 self._database.backup(copy)
@@ -211,7 +230,7 @@ class ClipLibrary:
 
     def _refresh(self) -> None:
         """See what others have written, and what was written here."""
-        with files.told_in_words(self._path), files.one_state(self._database):
+        with readable_errors(self._path), files.one_state(self._database):
             version = self._database.execute("PRAGMA data_version").fetchone()[0]
             seen = (version, self._database.total_changes)
             if seen == self._seen:
@@ -221,7 +240,7 @@ class ClipLibrary:
                 self._blocks = {}
                 self._vocabulary = files.read_vocabulary(self._database)
                 self._words = words
-            self._entries = files.read_entries(self._database, self._entries)
+            self._entries = rows.read_entries(self._database, self._entries)
             numbers = files.block_numbers(self._database)
             known, n_words = self._blocks, 0
             if self._vocabulary is not None:
@@ -243,12 +262,12 @@ class ClipLibrary:
 
     def _index_all(self, progress: Progress) -> None:
         """Learn words anew and describe all clips by them."""
-        numbers = files.clip_numbers(self._database)
-        postures = [files.read_postures(self._database, number) for number in numbers]
+        numbers = rows.clip_numbers(self._database)
+        postures = [rows.read_postures(self._database, number) for number in numbers]
         vocabulary = learn_vocabulary(postures)
         files.write_vocabulary(self._database, vocabulary)
         self._database.execute("DELETE FROM blocks")
-        described = _described(postures, vocabulary, progress)
+        described = describe_all_spans(postures, vocabulary, progress)
         ends = np.cumsum([len(spans.frames) for spans in described]) // LARGEST_BLOCK
         for one in np.unique(ends):
             first, last = np.searchsorted(ends, one), np.searchsorted(ends, one, side="right")
@@ -260,7 +279,7 @@ class ClipLibrary:
     ) -> None:
         """Describe clips, and put them into one block with the smaller ones before."""
         assert self._vocabulary is not None
-        block = block_of(numbers, _described(postures, self._vocabulary, progress))
+        block = block_of(numbers, describe_all_spans(postures, self._vocabulary, progress))
         together = [block]
         for number, before in sorted(self._blocks.items(), reverse=True):
             n_spans = sum(one.n_spans for one in together)
@@ -269,15 +288,5 @@ class ClipLibrary:
             together.insert(0, before)
             self._database.execute("DELETE FROM blocks WHERE number = ?", (number,))
         if len(together) > 1:
-            block = merged(together, np.array(files.clip_numbers(self._database)))
+            block = merged(together, np.array(rows.clip_numbers(self._database)))
         files.write_block(self._database, block)
-
-
-def _described(
-    postures: list[ClipPostures], vocabulary: Vocabulary, progress: Progress
-) -> list[Spans]:
-    described = []
-    for place, clip in enumerate(postures):
-        progress(place / len(postures), "Indexing")
-        described.append(describe_spans(clip, vocabulary))
-    return described

@@ -4,23 +4,19 @@ SQLite locks the file while it is written, so that two Blenders can index at onc
 memory, and leaves it whole when a process dies. Nothing in it is ever executed.
 """
 
-import json
+import os
 import sqlite3
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator
 from contextlib import contextmanager
-from functools import lru_cache
 from pathlib import Path
-from typing import Any
 
-import numpy as np
-
-from ..errors import InvalidFileError, MocapAssistError
-from .clip import ClipEntry, Origin
-from .clip_postures import ClipPostures
+from ..errors import InvalidFileError
 from .index_block import IndexBlock, block_arrays, block_from_arrays
-from .spans import RATE
+from .library_storage.errors import decoding, readable_errors
 from .vocabulary import Vocabulary, vocabulary_arrays, vocabulary_from_arrays
 
+SUFFIXES = (".clips", ".library")
+"""Of files that may be begun as libraries; older versions called the shared one .library."""
 APPLICATION = 0x4D434C42
 """Marks our files among SQLite's ("MCLB")."""
 VERSION = 1
@@ -43,7 +39,6 @@ CREATE TABLE blocks (
 );
 """
 BLOCK_COLUMNS = ("clips", "frames", "histograms", "summaries", "starts", "spans", "weights")
-ENTRY_COLUMNS = "name, tags, path, item, size, modified, n_frames, frame_rate"
 
 
 def create_database() -> sqlite3.Connection:
@@ -54,23 +49,34 @@ def create_database() -> sqlite3.Connection:
 
 
 def begin_file(path: Path) -> None:
-    """Lay out an empty library in a file that is not there, or empty.
+    """Lay out an empty library in a file that is not there, or empty; others stay as they are.
 
     Where another process does so at the same time, one of them does it.
 
     Raises
     ------
     InvalidFileError
-        The folder is missing or may not be written to.
+        The name does not end as that of a library; the folder is missing or may not be
+        written to.
     """
-    with told_in_words(path):
+    refuse_other_suffix(path)
+    with readable_errors(path):
         database = sqlite3.connect(path, timeout=PATIENCE, isolation_level=None)
         try:
-            with transaction(database):
-                if not database.execute("SELECT count(*) FROM sqlite_master").fetchone()[0]:
-                    _lay_out(database)
+            if not database.execute("PRAGMA page_count").fetchone()[0]:
+                with transaction(database):
+                    if not database.execute("SELECT 1 FROM sqlite_master").fetchone():
+                        _lay_out(database)
         finally:
             database.close()
+
+
+def refuse_other_suffix(path: Path) -> None:
+    """Raise InvalidFileError where no library may be begun: its file ends in another way."""
+    if Path(os.path.realpath(path)).suffix.lower() not in SUFFIXES:
+        raise InvalidFileError(
+            f"No clip library can be made as {path}; end its name in {SUFFIXES[0]}."
+        )
 
 
 def open_database(path: Path) -> sqlite3.Connection:
@@ -83,7 +89,7 @@ def open_database(path: Path) -> sqlite3.Connection:
     """
     if not path.is_file():
         raise InvalidFileError(f"There is no clip library {path}.")
-    with told_in_words(path):
+    with readable_errors(path):
         database = sqlite3.connect(
             path, timeout=PATIENCE, isolation_level=None, check_same_thread=False
         )
@@ -97,33 +103,16 @@ def open_database(path: Path) -> sqlite3.Connection:
 
 
 @contextmanager
-def told_in_words(path: Path | None) -> Iterator[None]:
-    """Raise what goes wrong with a file as an InvalidFileError."""
-    name = "The clip library in memory" if path is None else f"The clip library {path}"
-    try:
-        yield
-    except sqlite3.OperationalError as error:
-        if "locked" in str(error):
-            raise InvalidFileError(
-                f"{name} is being written by another program; try again when it is done."
-            ) from None
-        raise InvalidFileError(f"{name} cannot be used: {error}.") from None
-    except (sqlite3.DatabaseError, ValueError, KeyError, TypeError) as error:
-        if isinstance(error, MocapAssistError):
-            raise
-        raise InvalidFileError(f"{name} is no clip library, or is damaged.") from None
-
-
-@contextmanager
 def transaction(database: sqlite3.Connection) -> Iterator[None]:
     """Change all that is changed within, or nothing; others wait."""
     database.execute("BEGIN IMMEDIATE")
     try:
         yield
+        database.execute("COMMIT")
     except BaseException:
-        database.execute("ROLLBACK")
+        if database.in_transaction:  # on a full disk SQLite has already rolled back
+            database.execute("ROLLBACK")
         raise
-    database.execute("COMMIT")
 
 
 @contextmanager
@@ -136,7 +125,8 @@ def one_state(database: sqlite3.Connection) -> Iterator[None]:
     try:
         yield
     finally:
-        database.execute("ROLLBACK")
+        if database.in_transaction:
+            database.execute("ROLLBACK")
 
 
 def _lay_out(database: sqlite3.Connection) -> None:
@@ -166,7 +156,8 @@ def vocabulary_number(database: sqlite3.Connection) -> int:
 def read_vocabulary(database: sqlite3.Connection) -> Vocabulary | None:
     """Return what the index is told in; None in a library that never had a clip."""
     rows = database.execute("SELECT name, value FROM vocabulary").fetchall()
-    return vocabulary_from_arrays(dict(rows)) if rows else None
+    with decoding():
+        return vocabulary_from_arrays(dict(rows)) if rows else None
 
 
 def write_vocabulary(database: sqlite3.Connection, vocabulary: Vocabulary) -> None:
@@ -187,7 +178,8 @@ def read_block(database: sqlite3.Connection, number: int, n_words: int) -> Index
     row = database.execute(
         f"SELECT {', '.join(BLOCK_COLUMNS)} FROM blocks WHERE number = ?", (number,)
     ).fetchone()
-    return block_from_arrays(dict(zip(BLOCK_COLUMNS, row, strict=True)), n_words)
+    with decoding():
+        return block_from_arrays(dict(zip(BLOCK_COLUMNS, row, strict=True)), n_words)
 
 
 def write_block(database: sqlite3.Connection, block: IndexBlock) -> None:
@@ -197,64 +189,4 @@ def write_block(database: sqlite3.Connection, block: IndexBlock) -> None:
     database.execute(
         f"INSERT INTO blocks ({', '.join(BLOCK_COLUMNS)}) VALUES ({marks})",
         [stored[name] for name in BLOCK_COLUMNS],
-    )
-
-
-def write_clip(database: sqlite3.Connection, entry: ClipEntry, postures: ClipPostures) -> int:
-    """Add a clip, in place of one of the same name, and return its number."""
-    origin = entry.origin or Origin("")
-    database.execute("DELETE FROM clips WHERE name = ?", (entry.name,))
-    done = database.execute(
-        f"INSERT INTO clips ({ENTRY_COLUMNS}, positions, course)"
-        " VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?, ?)",
-        (
-            entry.name, json.dumps(entry.tags), origin.path or None, origin.item, origin.size,
-            origin.modified, entry.n_frames, entry.frame_rate,
-            postures.positions.astype("<f2").tobytes(),
-            postures.course.astype("<f2").tobytes(),
-        ),
-    )  # fmt: skip
-    return int(done.lastrowid or 0)
-
-
-def clip_numbers(database: sqlite3.Connection) -> list[int]:
-    """Return the numbers of all clips, oldest first."""
-    return [number for (number,) in database.execute("SELECT number FROM clips ORDER BY 1")]
-
-
-def read_entries(
-    database: sqlite3.Connection, known: Mapping[int, ClipEntry]
-) -> dict[int, ClipEntry]:
-    """Return what is told of each clip, by its number; what is known is not read again.
-
-    Numbers grow, and what is told of one never changes.
-    """
-    there = sorted(number for (number,) in database.execute("SELECT number FROM clips"))
-    rows = database.execute(
-        f"SELECT number, {ENTRY_COLUMNS} FROM clips WHERE number > ?", (max(known, default=0),)
-    )
-    new = {number: _entry(row) for number, *row in rows}
-    return {number: known.get(number) or new[number] for number in there}
-
-
-@lru_cache(maxsize=1024)
-def _tags(stored: str) -> tuple[str, ...]:
-    return tuple(json.loads(stored))
-
-
-def _entry(row: Sequence[Any]) -> ClipEntry:
-    name, tags, path, item, size, modified, n_frames, frame_rate = row
-    origin = None if path is None else Origin(path, item, size, modified)
-    return ClipEntry(name, _tags(tags), origin, n_frames, frame_rate)
-
-
-def read_postures(database: sqlite3.Connection, number: int) -> ClipPostures:
-    """Return the postures of a clip, at 20 Hz."""
-    positions, course = database.execute(
-        "SELECT positions, course FROM clips WHERE number = ?", (number,)
-    ).fetchone()
-    return ClipPostures(
-        np.frombuffer(positions, "<f2").reshape(-1, 20, 3).astype(np.float64),
-        np.frombuffer(course, "<f2").reshape(-1, 4).astype(np.float64),
-        RATE,
     )

@@ -45,7 +45,8 @@ def open_clip_library(path: Path | str) -> ClipLibrary:
     Raises
     ------
     InvalidFileError
-        It is no library or damaged, of a newer version, or cannot be written.
+        It is no library or damaged, of a newer version, or cannot be written; or it would be
+        begun in a file whose name does not end in .clips or .library.
     """
     path = Path(path)
     if not path.exists() or (path.is_file() and not path.stat().st_size):

@@ -5,6 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from ..progress import Progress, unwatched
 from .body_parts import N_PARTS
 from .clip_postures import ClipPostures
 from .vocabulary import N_AXES, Vocabulary
@@ -54,6 +55,17 @@ def describe_spans(postures: ClipPostures, vocabulary: Vocabulary) -> Spans:
     features = vocabulary.features(postures)
     frames = span_frames(len(features), postures.frame_rate)
     return describe(features, frames, vocabulary)
+
+
+def describe_all_spans(
+    clips: list[ClipPostures], vocabulary: Vocabulary, progress: Progress = unwatched
+) -> list[Spans]:
+    """Describe the spans of several clips."""
+    described = []
+    for place, clip in enumerate(clips):
+        progress(place / len(clips), "Indexing")
+        described.append(describe_spans(clip, vocabulary))
+    return described
 
 
 def describe(features: Array, frames: NDArray[np.int32], vocabulary: Vocabulary) -> Spans:

@@ -8,6 +8,7 @@ from ..errors import InvalidFileError
 from ..recordings import recordings_in
 from ..recordings.acclaim import find_skeleton
 from ..retrieval import Origin
+from ..retrieval.clip import is_utf_8, text_fault
 
 
 @dataclass(frozen=True)
@@ -40,6 +41,14 @@ class ClipSource:
         found = [path.stat() for path in (self.path, *_skeletons(self.path))]
         size = sum(each.st_size for each in found)
         return Origin(str(self.path), "", size, max(each.st_mtime_ns for each in found))
+
+    def fault(self) -> str:
+        """Return a sentence on why its names cannot be those of a clip, or nothing."""
+        if not is_utf_8(str(self.path)):
+            return f"{str(self.path)!r} is no valid UTF-8; rename the file or its folder."
+        if fault := text_fault("/".join(self.place)):
+            return f"The name of {str(self.path)!r} {fault}; rename the file or its folder."
+        return ""
 
     def names(self) -> Iterable[str]:
         """Yield names for the clip, the plainest first, until one is free."""

@@ -1,23 +1,20 @@
 """Read files and describe them for a library, one after the other or several at a time."""
 
-import os
-import signal
 from collections import deque
 from collections.abc import Iterable, Iterator
-from concurrent.futures import Future, ProcessPoolExecutor
+from concurrent.futures import Future
 from concurrent.futures.process import BrokenProcessPool
 from contextlib import suppress
-from multiprocessing import get_context
 from pathlib import Path
 from typing import NamedTuple
 
 from ..faults import Failure, attempt, escaped
+from ..processes.workers import worker_pool
 from ..recordings import read_tracked
 from ..retrieval import Clip, DescribedClip, Origin, describe_clip
 
 AHEAD = 2
 """Files that are given to each process before their results are asked for."""
-ONE_THREAD = {"OMP_NUM_THREADS": "1", "OPENBLAS_NUM_THREADS": "1", "MKL_NUM_THREADS": "1"}
 
 
 class Wanted(NamedTuple):
@@ -39,7 +36,9 @@ class Described(NamedTuple):
     """Refused for what is in the file: it will be again, until it changes."""
 
 
-def describe_files(files: Iterable[Wanted], jobs: int) -> Iterator[Described]:
+def describe_files(
+    files: Iterable[Wanted], jobs: int, n_threads: int = 1
+) -> Iterator[Described]:
     """Yield what comes of each file, in the order in which they are given.
 
     A file that cannot be used is refused with one sentence and stops nobody; neither does one
@@ -48,10 +47,9 @@ def describe_files(files: Iterable[Wanted], jobs: int) -> Iterator[Described]:
     if jobs <= 1:
         yield from map(described, files)
         return
-    os.environ.update({name: os.environ.get(name, one) for name, one in ONE_THREAD.items()})
     waiting = deque(files)
     while waiting:
-        yield from _until_one_dies(waiting, jobs)
+        yield from _until_one_dies(waiting, jobs, n_threads)
 
 
 def described(wanted: Wanted) -> Described:
@@ -81,13 +79,13 @@ def _describe(wanted: Wanted) -> DescribedClip:
     return describe_clip(Clip(wanted.name, recording, wanted.tags, wanted.origin))
 
 
-def _until_one_dies(waiting: "deque[Wanted]", jobs: int) -> Iterator[Described]:
+def _until_one_dies(waiting: "deque[Wanted]", jobs: int, n_threads: int) -> Iterator[Described]:
     """Work on files, taking them off as they are done, until all are or a process dies.
 
     The one that was asked for when it happened is then tried alone, to know whether it was it.
     """
     running: deque[Future[Described]] = deque()
-    with _processes(jobs) as pool:
+    with worker_pool(jobs, n_threads) as pool:
         try:
             with suppress(BrokenProcessPool):
                 while waiting:
@@ -100,11 +98,11 @@ def _until_one_dies(waiting: "deque[Wanted]", jobs: int) -> Iterator[Described]:
                 return
         finally:
             pool.shutdown(cancel_futures=True)
-    yield _alone(waiting.popleft())
+    yield _alone(waiting.popleft(), n_threads)
 
 
-def _alone(wanted: Wanted) -> Described:
-    with _processes(1) as pool:
+def _alone(wanted: Wanted, n_threads: int) -> Described:
+    with worker_pool(1, n_threads) as pool:
         try:
             return pool.submit(described, wanted).result()
         except BrokenProcessPool:
@@ -114,12 +112,3 @@ def _alone(wanted: Wanted) -> Described:
                 f"{wanted.origin.path}: the process that read it has died, perhaps for want of"
                 " memory; cut the take into parts.",
             )
-
-
-def _processes(count: int) -> ProcessPoolExecutor:
-    return ProcessPoolExecutor(count, get_context("spawn"), _die_on_interrupt)
-
-
-def _die_on_interrupt() -> None:
-    """Leave Ctrl-C to the parent, which tells it in one sentence."""
-    signal.signal(signal.SIGINT, signal.SIG_DFL)

@@ -1,11 +1,13 @@
 """Make a library of recordings in files and folders, and keep it as they are."""
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Collection, Iterator, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
+from ..errors import InvalidMotionError
 from ..progress import Progress, unwatched
 from ..retrieval import ClipEntry, ClipLibrary, DescribedClip, Origin, open_clip_library
+from ..retrieval.clip import tags_fault
 from ..version import version
 from .clip_sources import ClipSource, clip_sources
 from .describe_files import Described, Wanted, describe_files
@@ -46,6 +48,7 @@ def index_files(
     *,
     tags: Sequence[str] = (),
     jobs: int = 1,
+    n_threads: int = 1,
     remove_missing: bool = False,
     progress: Progress = unwatched,
 ) -> IndexReport:
@@ -55,6 +58,7 @@ def index_files(
     refused and have not changed since are refused again without being read. A clip is called
     as its file lies in the folder that was named, without the ending; where that name is taken,
     with the ending, the folder's name or a number. It keeps its name when its file changes.
+    Several processes may index into one library at once.
 
     Parameters
     ----------
@@ -65,6 +69,8 @@ def index_files(
         That the clips get beside those they have.
     jobs : int
         Files to read at a time, each in a process of its own.
+    n_threads : int
+        Of linear algebra in each of these processes.
     remove_missing : bool
         Whether clips are taken out whose files were in the folders and have gone.
     progress : Progress
@@ -74,15 +80,19 @@ def index_files(
     ------
     InvalidFileError
         There is no such file or folder; the library is none, damaged, of a newer version,
-        cannot be written, or is being written by another program all the time.
+        cannot be written or made, or is being written by another program all the time.
+    InvalidMotionError
+        A tag has control characters or is no valid UTF-8.
     SolveCancelled
         Raised by `progress`.
     """
     sources = clip_sources(files_or_folders)
+    if fault := tags_fault(tuple(tags)):
+        raise InvalidMotionError(fault)
     with open_clip_library(library_path) as library:
         indexing = _Indexing(library, tuple(dict.fromkeys(tags)))
         files = indexing.to_read(sources)
-        for place, done in enumerate(describe_files(files, min(jobs, len(files)))):
+        for place, done in enumerate(describe_files(files, min(jobs, len(files)), n_threads)):
             progress(place / len(files), Path(done.wanted.origin.path).name)
             indexing.take(done)
         indexing.write()
@@ -97,9 +107,8 @@ class _Indexing:
 
     def __init__(self, library: ClipLibrary, tags: tuple[str, ...]) -> None:
         self._library, self._tags = library, tags
-        entries = library.entries
-        self._names = {entry.name for entry in entries}
-        self._known = dict(_of_files(entries))
+        self._known = dict(_of_files(library))
+        self._sources: dict[str, ClipSource] = {}
         self._batch: list[DescribedClip] = []
         self._added, self._changed = list[str](), list[str]()
         self._unchanged, self._removed = list[str](), list[str]()
@@ -108,25 +117,25 @@ class _Indexing:
         self._of_no_use: list[tuple[Origin, str]] = []
 
     def to_read(self, sources: Sequence[ClipSource]) -> list[Wanted]:
-        """Return what is not in the library as it is, and under which names it will be."""
+        """Return what is not in the library as it is, under the names that suit it best."""
         files = []
         for source in sources:
-            known = self._known.get(str(source.path))
             try:
                 origin = source.origin()
             except OSError as error:
                 self._refused.append((str(source.path), f"{source.path}: {error.strerror}."))
                 continue
-            if sentence := self._known_refused.get(origin):
+            if sentence := source.fault() or self._known_refused.get(origin, ""):
                 self._refused.append((str(source.path), sentence))
                 continue
-            tags = self._tags
-            if known is not None:
-                tags = tuple(dict.fromkeys(known.tags + tags))
+            name, tags = next(iter(source.names())), self._tags
+            if str(source.path) in self._known:
+                _, known = self._known[str(source.path)]
+                name, tags = known.name, tuple(dict.fromkeys(known.tags + tags))
                 if known.origin == origin and known.tags == tags:
-                    self._unchanged.append(known.name)
+                    self._unchanged.append(name)
                     continue
-            name = self._free_name(source) if known is None else known.name
+            self._sources[origin.path] = source
             files.append(Wanted(name, origin, tags))
         return files
 
@@ -138,27 +147,28 @@ class _Indexing:
             if done.for_good:
                 self._of_no_use.append((wanted.origin, done.sentence))
             if wanted.origin.path in self._known:
-                self._remove([wanted.name])
+                self._removed += self._library.discard([self._known[wanted.origin.path][0]])
             return
-        known = wanted.origin.path in self._known
-        (self._changed if known else self._added).append(wanted.name)
         self._batch.append(done.clip)
         n_frames = sum(clip.postures.n_frames for clip in self._batch)
         if len(self._batch) >= BATCH or n_frames >= BATCH_FRAMES:
             self.write()
 
     def write(self) -> None:
-        """Write what has been kept."""
-        self._library.add_described(self._batch)
+        """Write what has been kept; names are chosen while no other process can write."""
+        names = self._library.add_described(self._batch, free_name=self._free_name)
+        for clip, name in zip(self._batch, names, strict=True):
+            known = clip.entry.origin is not None and clip.entry.origin.path in self._known
+            (self._changed if known else self._added).append(name)
         if self._of_no_use:
             self._library.remember_refused(version(), self._of_no_use)
         self._batch, self._of_no_use = [], []
 
     def remove_missing(self, named: Sequence[Path]) -> None:
         """Take out clips whose files lay in these folders and are there no more."""
-        self._remove([
-            entry.name
-            for path, entry in self._known.items()
+        self._removed += self._library.discard([
+            number
+            for path, (number, _) in self._known.items()
             if not Path(path).exists() and any(Path(path).is_relative_to(one) for one in named)
         ])  # fmt: skip
 
@@ -169,20 +179,14 @@ class _Indexing:
             tuple(self._removed), tuple(self._refused), len(self._library.entries),
         )  # fmt: skip
 
-    def _remove(self, names: Sequence[str]) -> None:
-        there = {entry.name for entry in self._library.entries}
-        gone = [name for name in names if name in there]
-        self._library.remove(gone)
-        self._removed += gone
-
-    def _free_name(self, source: ClipSource) -> str:
-        name = next(name for name in source.names() if name not in self._names)
-        self._names.add(name)
-        return name
+    def _free_name(self, entry: ClipEntry, taken: Collection[str]) -> str:
+        assert entry.origin is not None
+        names = self._sources[entry.origin.path].names()
+        return next(name for name in names if name not in taken)
 
 
-def _of_files(entries: Sequence[ClipEntry]) -> Iterator[tuple[str, ClipEntry]]:
-    """Yield the clips that each are all of a file, by its path."""
-    for entry in entries:
+def _of_files(library: ClipLibrary) -> Iterator[tuple[str, tuple[int, ClipEntry]]]:
+    """Yield the clips that each are all of a file, by its path, and their numbers."""
+    for number, entry in library.numbered().items():
         if entry.origin is not None and not entry.origin.item:
-            yield entry.origin.path, entry
+            yield entry.origin.path, (number, entry)

@@ -11,6 +11,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from process_checks import is_running, wait_until_gone
 
 
 @pytest.fixture
@@ -161,17 +162,5 @@ def test_the_child_ends_when_blender_is_killed(job, extension, tmp_path):
         assert is_running(child) and folders()
         blender.kill()
 
-    for _ in range(200):
-        if not is_running(child) and not folders():
-            return
-        time.sleep(0.05)
-    os.kill(child, signal.SIGKILL)
-    pytest.fail("the child goes on without Blender")
-
-
-def is_running(process):
-    try:
-        status = Path(f"/proc/{process}/stat").read_text()
-    except FileNotFoundError:
-        return False
-    return status.rpartition(")")[2].split()[0] != "Z"
+    assert not wait_until_gone({child})
+    assert not folders()

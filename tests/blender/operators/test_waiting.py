@@ -1,6 +1,7 @@
 """A button that was pressed in a window waits for its solve; here Blender pretends to."""
 
 import tempfile
+from functools import partial
 from pathlib import Path
 from types import SimpleNamespace
 
@@ -48,6 +49,31 @@ def test_escape_ends_the_solve_and_writes_nothing(noisy, press_clean, window, bl
     assert window.timers == [] and window.status[-1] is None
     assert not window.job.running and folders() == set()
     assert window.reports == [({"INFO"}, "Cancelled.")]
+
+
+class TooLarge:
+    """A solve for which there is too little memory."""
+
+    def __reduce__(self):
+        return eval, ("lambda take, progress: b'.' * (1 << 62)",)
+
+    def __call__(self, *_, **__):
+        raise AssertionError("It was called in this process.")
+
+
+def test_lack_of_memory_is_one_sentence_in_a_window_and_in_a_script(
+    noisy, make_button, window, load
+):
+    button = make_button("denoise", None)
+    type(button).read_scene = staticmethod(lambda *_: partial(TooLarge(), None))
+    button.invoke(window.context, None)
+
+    assert wait(button, window) == {"CANCELLED"}
+    assert button.execute(window.context) == {"CANCELLED"}
+
+    sentence = "This needs more memory than there is. Work on a part of the take."
+    assert window.reports == [({"ERROR"}, sentence)] * 2
+    assert folders() == set()
 
 
 def test_the_result_goes_to_the_armature_that_was_read(

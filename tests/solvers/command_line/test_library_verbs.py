@@ -101,7 +101,9 @@ def test_slips_are_said_in_one_sentence(call, walks, library, tmp_path):
         (("find", query, library, *parts), "No part of the body is chosen"),
         (("index", library), "name the library and then recordings"),
         (("index", library, none), "There is no file or folder"),
-        (("index", none / "library", walks), "cannot be used"),
+        (("index", none / "a.clips", walks), "cannot be used"),
+        (("index", tmp_path / "a.bat", walks), "end its name in .clips."),
+        (("index", library, walks, "--tag", "a\nb"), r"The tag 'a\nb' has control characters."),
         (("denoise", query, tmp_path / "a.bvh", "--library", none), "There is no clip library"),
         (("reconstruct", query, tmp_path / "a.bvh", "--library", none), "no clip library"),
     ):
@@ -126,9 +128,9 @@ def test_a_take_learns_from_what_is_like_it_and_not_from_itself(
 
 
 def test_a_library_without_clips_is_refused(call, walks, tmp_path):
-    open_clip_library(tmp_path / "new").close()
+    open_clip_library(tmp_path / "new.clips").close()
     words = ("denoise", walks / "walk_100.bvh", tmp_path / "a.bvh", "--library")
-    assert "has no clips; index some first" in call(*words, tmp_path / "new")[2]
-    words = ("find", walks / "walk_100.bvh", tmp_path / "new")
+    assert "has no clips; index some first" in call(*words, tmp_path / "new.clips")[2]
+    words = ("find", walks / "walk_100.bvh", tmp_path / "new.clips")
     assert "put some in first" in call(*words)[2]
-    assert not load_clip_library(tmp_path / "new").entries
+    assert not load_clip_library(tmp_path / "new.clips").entries

@@ -138,7 +138,12 @@ def test_killed_in_the_middle_and_taken_up_again(swinging_leg, takes, tmp_path, 
     late.unlink()
     write_bvh(swinging_leg, late)
     n_made = len(json.loads((out / "mocap_assist.json").read_text()))
-    for half in ("takes/.leg.0123456789ab.bvh", ".mocap_assist.0123456789ab.json"):
+    (out / "report" / "takes").mkdir(parents=True)
+    for half in (
+        "takes/.leg.0123456789ab.bvh",
+        ".mocap_assist.0123456789ab.json",
+        "report/takes/.leg.bvh.0123456789ab.png",
+    ):
         (out / half).write_text("cut off by the ki")
 
     status, said, _ = call(*words, "--report")

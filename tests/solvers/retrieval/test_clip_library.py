@@ -121,7 +121,7 @@ def test_what_was_described_elsewhere_is_the_same():
 
 
 def test_an_empty_library_finds_nothing_and_can_be_filled(tmp_path):
-    for library in (build_clip_library([]), open_clip_library(tmp_path / "new")):
+    for library in (build_clip_library([]), open_clip_library(tmp_path / "new.clips")):
         assert library.entries == ()
         assert library.vocabulary is None
         assert find_similar(act("wave"), library) == ()

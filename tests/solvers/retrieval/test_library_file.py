@@ -104,7 +104,7 @@ def test_a_file_that_may_not_be_written_can_be_searched(path, monkeypatch):
 
 def test_where_it_cannot_be_made_is_said(tmp_path):
     (tmp_path / "file").write_text("")
-    for wrong in (tmp_path / "none" / "library", tmp_path / "file" / "library"):
+    for wrong in (tmp_path / "none" / "a.clips", tmp_path / "file" / "a.clips"):
         with pytest.raises(InvalidFileError, match="cannot be used"):
             open_clip_library(wrong)
         with pytest.raises(InvalidFileError):
@@ -144,10 +144,10 @@ def test_what_is_no_library_is_refused(tmp_path):
 
 def test_a_library_is_begun_in_an_empty_file(tmp_path):
     """As one is left behind by a process that was killed at its very beginning."""
-    (tmp_path / "empty").touch()
-    with open_clip_library(tmp_path / "empty") as library:
+    (tmp_path / "empty.clips").touch()
+    with open_clip_library(tmp_path / "empty.clips") as library:
         library.add([Clip("wave", act("wave"))])
-    with load_clip_library(tmp_path / "empty") as library:
+    with load_clip_library(tmp_path / "empty.clips") as library:
         assert len(library.entries) == 1
 
 

@@ -153,10 +153,10 @@ def test_a_library_of_other_movements_does_no_harm(recordings):
 def test_clips_are_read_again_from_their_files_and_the_lost_are_told(tmp_path):
     for name, motion in WALKS.items():
         write_bvh(motion, tmp_path / f"{name}.bvh")
-    index_files(tmp_path / "library", [tmp_path])
+    index_files(tmp_path / "library.clips", [tmp_path])
     (tmp_path / "walk 110.bvh").unlink()
 
-    with load_clip_library(tmp_path / "library") as library:
+    with load_clip_library(tmp_path / "library.clips") as library:
         learned = bases_from_library(walk(115), library)
         assert set(learned.clips) == set(WALKS) - {"walk 110"}
         assert "walk 110 was left out: There is no file" in learned.said

@@ -1,0 +1,151 @@
+"""The clips of a library as rows of its database, one for each."""
+
+import json
+import sqlite3
+from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
+from dataclasses import replace
+from functools import lru_cache
+from itertools import count
+from math import inf
+from typing import Any
+
+import numpy as np
+
+from ...errors import InvalidMotionError
+from ..clip import ClipEntry, Origin
+from ..clip_postures import ClipPostures
+from ..describe_clip import DescribedClip
+from ..spans import RATE
+from .errors import decoding
+
+FreeName = Callable[[ClipEntry, Collection[str]], str]
+"""Returns a name for a clip that is none of those that are taken."""
+ENTRY_COLUMNS = "name, tags, path, item, size, modified, n_frames, frame_rate"
+
+
+def numbered_name(entry: ClipEntry, taken: Collection[str]) -> str:
+    """Return the name of a clip with the first number that makes it free: "walk (2)"."""
+    names = (f"{entry.name} ({number})" for number in count(2))
+    return next(name for name in names if name not in taken)
+
+
+def write_clips(
+    database: sqlite3.Connection, clips: Sequence[DescribedClip], free_name: FreeName
+) -> dict[int, str]:
+    """Add clips within a transaction; return their numbers and names.
+
+    One that came from a file takes the place, and the name, of the one that came from there
+    before: its name is only a label, and a new one gets another where that is taken. One of
+    no file takes the place of the one of its name.
+    """
+    taken = {name for (name,) in database.execute("SELECT name FROM clips")}
+    written = {}
+    for clip in clips:
+        entry = clip.entry
+        names = _names_from(database, entry.origin)
+        if names:
+            entry = replace(entry, name=names[0])
+        elif entry.origin is not None and entry.name in taken:
+            entry = replace(entry, name=free_name(entry, taken))
+        _remove(database, [*names, entry.name])
+        written[_write_clip(database, entry, clip.postures)] = entry.name
+        taken.add(entry.name)
+    return written
+
+
+def remove_clips(database: sqlite3.Connection, numbers: Iterable[int]) -> list[str]:
+    """Remove the clips of these numbers that are still there, and return their names."""
+    names = []
+    for number in numbers:
+        row = database.execute("DELETE FROM clips WHERE number = ? RETURNING name", (number,))
+        names += [name for (name,) in row.fetchall()]
+    return names
+
+
+def _names_from(database: sqlite3.Connection, origin: Origin | None) -> list[str]:
+    if origin is None:
+        return []
+    rows = database.execute(
+        "SELECT name FROM clips WHERE path = ? AND item = ? ORDER BY number",
+        (origin.path, origin.item),
+    )
+    return [name for (name,) in rows]
+
+
+def _remove(database: sqlite3.Connection, names: Iterable[str]) -> None:
+    database.executemany("DELETE FROM clips WHERE name = ?", [(name,) for name in names])
+
+
+def _write_clip(database: sqlite3.Connection, entry: ClipEntry, postures: ClipPostures) -> int:
+    origin = entry.origin or Origin("")
+    done = database.execute(
+        f"INSERT INTO clips ({ENTRY_COLUMNS}, positions, course)"
+        " VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?, ?)",
+        (
+            entry.name, json.dumps(entry.tags), origin.path or None, origin.item, origin.size,
+            origin.modified, entry.n_frames, entry.frame_rate,
+            postures.positions.astype("<f2").tobytes(),
+            postures.course.astype("<f2").tobytes(),
+        ),
+    )  # fmt: skip
+    return int(done.lastrowid or 0)
+
+
+def clip_numbers(database: sqlite3.Connection) -> list[int]:
+    """Return the numbers of all clips, oldest first."""
+    return [number for (number,) in database.execute("SELECT number FROM clips ORDER BY 1")]
+
+
+def read_entries(
+    database: sqlite3.Connection, known: Mapping[int, ClipEntry]
+) -> dict[int, ClipEntry]:
+    """Return what is told of each clip, by its number; what is known is not read again.
+
+    Numbers grow, and what is told of one never changes.
+    """
+    there = sorted(number for (number,) in database.execute("SELECT number FROM clips"))
+    rows = database.execute(
+        f"SELECT number, {ENTRY_COLUMNS} FROM clips WHERE number > ?", (max(known, default=0),)
+    )
+    with decoding():
+        new = {number: _entry(row) for number, *row in rows}
+    return {number: known.get(number) or new[number] for number in there}
+
+
+@lru_cache(maxsize=1024)
+def _tags(stored: str) -> tuple[str, ...]:
+    tags = json.loads(stored)
+    if not isinstance(tags, list) or not all(isinstance(tag, str) for tag in tags):
+        raise ValueError("Tags are words.")
+    return tuple(tags)
+
+
+def _entry(row: Sequence[Any]) -> ClipEntry:
+    name, tags, path, item, size, modified, n_frames, frame_rate = row
+    if not isinstance(name, str) or not (n_frames > 0 and 0 < frame_rate < inf):
+        raise ValueError("A clip has a name and lasts for a while.")
+    origin = None if path is None else Origin(path, item, size, modified)
+    return ClipEntry(name, _tags(tags), origin, n_frames, frame_rate)
+
+
+def read_postures(database: sqlite3.Connection, number: int) -> ClipPostures:
+    """Return the postures of a clip, at 20 Hz.
+
+    Raises
+    ------
+    InvalidMotionError
+        It has just been removed, by another process.
+    """
+    row = database.execute(
+        "SELECT positions, course FROM clips WHERE number = ?", (number,)
+    ).fetchone()
+    if row is None:
+        raise InvalidMotionError(
+            "A clip has just been removed from the library by another program; try again."
+        )
+    with decoding():
+        positions, course = (np.frombuffer(stored, "<f2").astype(np.float64) for stored in row)
+        positions, course = positions.reshape(-1, 20, 3), course.reshape(-1, 4)
+        if len(positions) != len(course) or np.isinf(positions).any() or np.isinf(course).any():
+            raise ValueError("The frames do not fit each other, or something is infinite.")
+        return ClipPostures(positions, course, RATE)

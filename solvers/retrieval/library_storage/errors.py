@@ -1,0 +1,42 @@
+"""What SQLite reports, in sentences."""
+
+import sqlite3
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+
+from ...errors import InvalidFileError
+
+BUSY = {sqlite3.SQLITE_BUSY, sqlite3.SQLITE_LOCKED}
+PRIMARY = 0xFF
+"""The part of an error's code that says what it is; the rest says where."""
+
+
+@contextmanager
+def readable_errors(path: Path | None) -> Iterator[None]:
+    """Raise what SQLite, or `decoding`, reports of a file as an InvalidFileError."""
+    name = "The clip library in memory" if path is None else f"The clip library {path}"
+    try:
+        yield
+    except sqlite3.OperationalError as error:
+        code = getattr(error, "sqlite_errorcode", 0) & PRIMARY
+        if code in BUSY:
+            raise InvalidFileError(
+                f"{name} is being written by another program; try again when it is done."
+            ) from None
+        if code == sqlite3.SQLITE_FULL:
+            raise InvalidFileError(
+                f"{name} cannot be written: the disk is full. It is as it was before."
+            ) from None
+        raise InvalidFileError(f"{name} cannot be used: {error}.") from None
+    except (sqlite3.DatabaseError, UnicodeDecodeError):  # of its own words about damage
+        raise InvalidFileError(f"{name} is no clip library, or is damaged.") from None
+
+
+@contextmanager
+def decoding() -> Iterator[None]:
+    """Report stored values that cannot be understood as SQLite reports damage."""
+    try:
+        yield
+    except (ValueError, KeyError, TypeError, OverflowError, RecursionError) as error:
+        raise sqlite3.DatabaseError("a stored value is damaged") from error
