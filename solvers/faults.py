@@ -1,5 +1,6 @@
 """The last net under the work on one file: whatever fails becomes one sentence."""
 
+import re
 import traceback
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -71,9 +72,15 @@ def attempt(
 def escaped(text: str) -> str:
     r"""Return text with each character that UTF-8 cannot encode written as `\udcff`.
 
-    Python keeps bytes of file names that are no valid UTF-8 as such characters.
+    Python keeps bytes of file names that are no valid UTF-8 as such characters. Control
+    characters are written so, too: a name could otherwise pretend to be a line of its own.
     """
-    return text.encode("utf-8", "backslashreplace").decode("utf-8")
+    plain = text.encode("utf-8", "backslashreplace").decode("utf-8")
+    return re.sub(r"[\x00-\x1f\x7f-\x9f\u2028\u2029]", _code, plain)
+
+
+def _code(letter: re.Match[str]) -> str:
+    return letter[0].encode("unicode_escape").decode("ascii")
 
 
 def _failure(subject: Path | str, error: Exception) -> Failure:

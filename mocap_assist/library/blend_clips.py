@@ -8,7 +8,7 @@ import bpy
 from ...solvers.faults import Failure, attempt
 from ...solvers.motion import Motion
 from ...solvers.progress import Progress, unwatched
-from ...solvers.workflows.describe_files import odd_name
+from ...solvers.workflows.clip_sources import path_fault
 from ..jobs.in_blender import BlendClip, BlendRead
 from ..scene import compat, history
 from ..scene.armature_read import read_take
@@ -38,7 +38,7 @@ def read_files(
     found = []
     for place, path in enumerate(paths):
         progress(place / len(paths), f"Reading {Path(path).name}")
-        if sentence := odd_name(path):
+        if sentence := path_fault(path):
             found.append(BlendRead((), (sentence,)))
             continue
         read = attempt(path, _read_file, path, assets_only, items, rig)

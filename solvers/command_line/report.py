@@ -7,7 +7,7 @@ from pathlib import Path, PurePosixPath
 from string import Template
 from typing import Any, NamedTuple
 
-from ..faults import Failure, attempt, escaped
+from ..faults import Failure, attempt
 from ..files import written_whole
 from ..pictures import StickFigureSettings, draw_stick_figures
 from ..recordings import is_depth, read_motion_or_tracks
@@ -125,7 +125,7 @@ def write_report(folder: Path, verb: str, entries: Sequence[Entry]) -> tuple[str
         sections="".join(_section(entry, at) for at, entry in enumerate(ordered)),
     )
     with written_whole(folder / PAGE) as part:
-        part.write_text(escaped(page), encoding="utf-8")
+        part.write_text(page, encoding="utf-8", errors="backslashreplace")
     return faults
 
 

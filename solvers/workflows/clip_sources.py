@@ -44,8 +44,8 @@ class ClipSource:
 
     def fault(self) -> str:
         """Return a sentence on why its names cannot be those of a clip, or nothing."""
-        if not is_utf_8(str(self.path)):
-            return f"{str(self.path)!r} is no valid UTF-8; rename the file or its folder."
+        if fault := path_fault(self.path):
+            return fault
         if fault := text_fault("/".join(self.place)):
             return f"The name of {str(self.path)!r} {fault}; rename the file or its folder."
         return ""
@@ -63,6 +63,13 @@ class ClipSource:
         while True:
             yield "/".join([*folders, f"{file} ({number})"])
             number += 1
+
+
+def path_fault(path: Path | str) -> str:
+    """Return a sentence on why a library cannot keep a path, or nothing."""
+    if is_utf_8(str(path)):
+        return ""
+    return f"{str(path)!r} is no valid UTF-8; rename the file or its folder."
 
 
 def _skeletons(path: Path) -> list[Path]:

@@ -8,7 +8,7 @@ from contextlib import suppress
 from pathlib import Path
 from typing import NamedTuple
 
-from ..faults import Failure, attempt, escaped
+from ..faults import Failure, attempt
 from ..processes.workers import worker_pool
 from ..recordings import read_tracked
 from ..retrieval import Clip, DescribedClip, Origin, describe_clip
@@ -55,8 +55,6 @@ def describe_files(
 def described(wanted: Wanted) -> Described:
     """Read and describe one file."""
     path = wanted.origin.path
-    if sentence := odd_name(path):
-        return Described(wanted, None, sentence)
     found = attempt(path, _describe, wanted)
     if not isinstance(found, Failure):
         return Described(wanted, found)
@@ -64,14 +62,6 @@ def described(wanted: Wanted) -> Described:
     named = Path(path).name in reason
     sentence = reason if named else f"{path}: {reason}"
     return Described(wanted, None, sentence, for_good=found.lasting)
-
-
-def odd_name(path: str) -> str:
-    """Return why a library cannot keep a file by its name, or nothing."""
-    if escaped(path) == path:
-        return ""
-    reason = "its name is no valid UTF-8, and a library keeps only names that are"
-    return f"{escaped(path)}: {reason}. Rename it."
 
 
 def _describe(wanted: Wanted) -> DescribedClip:

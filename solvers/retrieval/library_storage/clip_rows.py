@@ -12,6 +12,7 @@ from typing import Any
 import numpy as np
 
 from ...errors import InvalidMotionError
+from ...json_text import parse_json
 from ..clip import ClipEntry, Origin
 from ..clip_postures import ClipPostures
 from ..describe_clip import DescribedClip
@@ -114,7 +115,7 @@ def read_entries(
 
 @lru_cache(maxsize=1024)
 def _tags(stored: str) -> tuple[str, ...]:
-    tags = json.loads(stored)
+    tags = parse_json(stored)
     if not isinstance(tags, list) or not all(isinstance(tag, str) for tag in tags):
         raise ValueError("Tags are words.")
     return tuple(tags)

@@ -50,7 +50,7 @@ def test_the_command_learns_from_files(dancer, blank, command, tmp_path):
         "settings"
     ]
     assert (status, settings["prior"], settings["examples"]) == (
-        0, "examples", ";".join(clips),
+        0, "examples", "; ".join(clips),
     )  # fmt: skip
 
 

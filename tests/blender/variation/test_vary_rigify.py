@@ -105,10 +105,9 @@ def test_a_face_and_what_is_no_bone_are_held_but_no_control_of_the_body(
 
 def test_the_body_is_looked_at_once_for_each_press(hero, vary_hero, load, monkeypatch):
     reading, looks = load("mocap_assist.variants.reading"), []
-    look = reading.with_body_shown
-    monkeypatch.setattr(
-        reading, "with_body_shown", lambda *given: looks.append(given) or look(*given)
-    )
+    shown = reading.with_body_shown
+    look = shown.steps
+    monkeypatch.setattr(shown, "steps", lambda *given: looks.append(given) or look(*given))
 
     vary_hero(n_variants=1)
     assert len(looks) == 3
