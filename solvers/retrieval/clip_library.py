@@ -103,10 +103,10 @@ class ClipLibrary:
         self._refresh()
         return self._entries
 
-    def postures(self, number: int) -> ClipPostures:
-        """Return the postures of a clip at 20 Hz, as they were indexed."""
+    def postures(self, number: int, n_frames: int = 0) -> ClipPostures:
+        """Return the postures of a clip at 20 Hz, as they were indexed; at least so many."""
         with readable_errors(self._path):
-            return rows.read_postures(self._database, number)
+            return rows.read_postures(self._database, number, n_frames)
 
     def add(self, clips: Iterable[Clip], *, progress: Progress = unwatched) -> None:
         """Add clips, in place of those of the same origin or, without one, the same name.

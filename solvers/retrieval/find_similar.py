@@ -145,8 +145,8 @@ class _Alignment:
     def match(self, ranking: Ranking, place: int, match: Match, library: ClipLibrary) -> Match:
         """Return a match whose frames are those that the query is aligned with."""
         number = int(ranking.clips[place])
-        clip, entry = library.postures(number), library.numbered()[number]
-        start, stop = ranking.frames[place]
+        start, stop = ranking.frames[place].tolist()
+        clip, entry = library.postures(number, stop), library.numbered()[number]
         around = round(AROUND * (stop - start))
         first = max(start - around, 0)
         near = slice(first, stop + around)

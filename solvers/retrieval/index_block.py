@@ -137,10 +137,16 @@ def block_from_arrays(stored: dict[str, bytes], n_words: int) -> IndexBlock:
         raise ValueError("The index does not fit itself.")
     if (np.diff(starts) < 0).any():
         raise ValueError("The index is not in order.")
+    frames = np.frombuffer(stored["frames"], "<i4").reshape(n_spans, 2)
+    summaries = np.frombuffer(stored["summaries"], "<f2").reshape(n_spans, *STEP_SHAPE)
+    if (frames[:, 0] < 0).any() or (frames[:, 0] >= frames[:, 1]).any():
+        raise ValueError("A span of the index has no frames.")
+    if not np.isfinite(summaries).all():
+        raise ValueError("A summary of the index is not finite.")
     return IndexBlock(
         clips,
-        np.frombuffer(stored["frames"], "<i4").reshape(n_spans, 2),
+        frames,
         np.frombuffer(stored["histograms"], np.uint8).reshape(n_spans, n_bins),
-        np.frombuffer(stored["summaries"], "<f2").reshape(n_spans, *STEP_SHAPE),
+        summaries,
         PostingLists(starts, spans, weights, n_spans),
     )

@@ -169,7 +169,7 @@ class _Indexing:
         self._removed += self._library.discard([
             number
             for path, (number, _) in self._known.items()
-            if not Path(path).exists() and any(Path(path).is_relative_to(one) for one in named)
+            if any(Path(path).is_relative_to(one) for one in named) and _has_gone(path)
         ])  # fmt: skip
 
     def report(self) -> IndexReport:
@@ -183,6 +183,17 @@ class _Indexing:
         assert entry.origin is not None
         names = self._sources[entry.origin.path].names()
         return next(name for name in names if name not in taken)
+
+
+def _has_gone(path: str) -> bool:
+    """Return whether there is no such file; one in a folder closed to reading may be there."""
+    try:
+        Path(path).stat()
+    except (FileNotFoundError, NotADirectoryError):
+        return True
+    except (OSError, ValueError):
+        return False
+    return False
 
 
 def _of_files(library: ClipLibrary) -> Iterator[tuple[str, tuple[int, ClipEntry]]]:

@@ -129,8 +129,10 @@ def _entry(row: Sequence[Any]) -> ClipEntry:
     return ClipEntry(name, _tags(tags), origin, n_frames, frame_rate)
 
 
-def read_postures(database: sqlite3.Connection, number: int) -> ClipPostures:
+def read_postures(database: sqlite3.Connection, number: int, n_frames: int = 0) -> ClipPostures:
     """Return the postures of a clip, at 20 Hz.
+
+    Fewer than `n_frames`, to which the index points, are damage.
 
     Raises
     ------
@@ -149,4 +151,6 @@ def read_postures(database: sqlite3.Connection, number: int) -> ClipPostures:
         positions, course = positions.reshape(-1, 20, 3), course.reshape(-1, 4)
         if len(positions) != len(course) or np.isinf(positions).any() or np.isinf(course).any():
             raise ValueError("The frames do not fit each other, or something is infinite.")
+        if len(positions) < n_frames:
+            raise ValueError("The index points beyond the end of the clip.")
         return ClipPostures(positions, course, RATE)

@@ -179,6 +179,9 @@ def test_blocks_survive_storage_and_merging(words):
         ("starts", lambda raw: raw[8:] + raw[:8]),
         ("histograms", lambda raw: raw[:-1]),
         ("frames", lambda raw: raw[:-2]),
+        ("frames", lambda raw: bytes(8) + raw[8:]),
+        ("frames", lambda raw: b"\xff" * 4 + raw[4:]),
+        ("summaries", lambda raw: b"\x00\x7c" + raw[2:]),
     ],
 )
 def test_an_index_that_does_not_fit_itself_is_refused(words, column, damage):

@@ -1,6 +1,7 @@
 """What a library refuses: odd names, files that are not its own, a full disk; and why."""
 
 import sqlite3
+import struct
 import sys
 from contextlib import closing
 
@@ -14,6 +15,7 @@ from solvers.retrieval import (
     build_clip_library,
     clip_library,
     describe_clip,
+    find_similar,
     library_file,
     load_clip_library,
     open_clip_library,
@@ -185,6 +187,20 @@ def test_stored_value_that_means_nothing_is_damage(tmp_path, change):
         load_clip_library(path) as library,
     ):
         library.postures(*library.numbered())
+
+
+def test_span_beyond_the_end_of_its_clip_is_damage(tmp_path):
+    path, query = tmp_path / "a.clips", clip("walk", "wave", "/a/walk.bvh")
+    build_clip_library([query]).save(path)
+    with closing(sqlite3.connect(path)) as database, database:
+        far = struct.pack("<2i", 10_000, 10_001)
+        database.execute("UPDATE blocks SET frames = ?", [far])
+
+    with (
+        load_clip_library(path) as library,
+        pytest.raises(InvalidFileError, match="is damaged"),
+    ):
+        find_similar(query.recording, library)
 
 
 def test_clip_that_another_program_has_just_removed_is_one_sentence():

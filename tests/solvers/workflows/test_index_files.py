@@ -162,6 +162,18 @@ def test_tags_are_added_and_kept(folder, library):
     assert found["b/slow"].tags == ("walk",)
 
 
+def test_clip_stays_when_its_file_is_hidden_but_not_gone(folder, library):
+    """A drive may be away for a while; for root, too, a link to itself is such a file."""
+    index_files(library, [folder])
+    fast = folder / "a" / "fast.bvh"
+    fast.unlink()
+    fast.symlink_to(fast)
+
+    report = index_files(library, [folder], remove_missing=True)
+
+    assert (report.removed, report.n_clips) == ((), 3)
+
+
 def test_what_has_gone_is_removed_if_that_is_asked_for(folder, library):
     index_files(library, [folder])
     (folder / "a" / "fast.bvh").unlink()
