@@ -106,7 +106,7 @@ def index():
 
 def keep_current():
     """What is added while the switch is on is read without anybody pressing Index."""
-    yield from press("mocap_assist.keep_current")
+    yield from press("mocap_assist.keep_current", column=0.75)
     said = state().said
     first = sorted(CLIPS.glob("*.bvh"))[0]
     (CLIPS / "added.bvh").write_bytes(first.read_bytes())
