@@ -162,7 +162,8 @@ def test_it_can_be_watched_and_esc_leaves_the_hand_pose_as_it_was(
     button = press()
     wait(button, window, until=lambda: button._view.drawn is not None)
     drawn = button._view.drawn.points
-    body = load("mocap_assist.scene.body_overlay").body_now(tracked, 8).points
+    shown = blank.context.scene.frame_current  # on a busy machine not the first one
+    body = load("mocap_assist.scene.body_overlay").body_now(tracked, shown).points
     assert np.linalg.norm(drawn.mean(axis=0) - body.mean(axis=0)) < 0.1
     assert button.modal(window.context, event("ESC", "PRESS")) == {"CANCELLED"}
 
