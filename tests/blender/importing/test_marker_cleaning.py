@@ -159,3 +159,9 @@ def test_an_empty_without_markers_is_no_take(blank):
 
     with pytest.raises(RuntimeError, match="captured markers"):
         blank.ops.mocap_assist.denoise()
+
+
+def test_markers_have_no_keys_of_bones_to_thin_out(holder, blank):
+    assert blank.ops.mocap_assist.denoise.poll()
+    with pytest.raises(RuntimeError, match="Select an armature that plays a captured action"):
+        blank.ops.mocap_assist.reduce_keys()
