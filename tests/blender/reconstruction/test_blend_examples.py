@@ -89,10 +89,10 @@ def test_they_are_read_in_turns_and_nothing_of_the_file_is_there_in_between(
     scene, before = blank.context.scene, all_there_is()
     at_once = load("mocap_assist.examples").read_examples(scene, walk, str(library))
 
-    for turn in in_turns(load, scene, walk, str(library)):
-        assert all_there_is() == before
+    between = [(turn, all_there_is()) for turn in in_turns(load, scene, walk, str(library))]
 
-    n_turns, examples = turn
+    assert all(each == before for _, each in between)
+    n_turns, examples = between[-1][0]
     assert n_turns >= 2  # one for each action
     assert len(examples.motions) == len(at_once.motions) == 2
     for one, other in zip(examples.motions, at_once.motions, strict=True):
