@@ -5,18 +5,22 @@ from pathlib import Path
 
 import bpy
 
-from ..solvers.errors import InvalidMotionError
+from ..solvers.errors import InvalidFileError, InvalidMotionError
 from ..solvers.motion import Motion
-from ..solvers.recordings import recordings_in
+from ..solvers.recordings import may_hold_motion
+from ..solvers.recordings.folder_scan import files_below
 from .clean_choices import CleanChoices, Prior
 from .jobs.cleaning import Examples
 from .name_lists import listed
 from .scene import compat
 from .scene.armature_read import read_take
 from .scene.fitting import fits, plays
-from .scene.linked_clips import is_blend, linked_clips
+from .scene.linked_clips import Linked, is_blend, linked_clips
 from .subject import Subject
 from .turns import Sliced, Steps, due
+
+LINKED_AT_ONCE = 8
+"""Actions of another file; how many of them are read before Blender has a turn, time says."""
 
 
 @Sliced
@@ -63,19 +67,26 @@ def read_examples(
         motion = yield from _read_named(*here.find(), name)
         motions.append(motion)
     for path in filter(is_blend, map(Path, files)):
-        if due():
-            yield 0.0
-        motions += _read_blend(here.find()[0], path)
-    others = [Path(path) for path in files if not is_blend(Path(path))]
-    recordings = tuple(str(file) for path in others for file in _recordings_of(path))
-    return Examples(motions=tuple(motions), files=recordings)
+        found = yield from _read_blend(here, path)
+        motions += found
+    recordings = list[str]()
+    for path in files:
+        if not is_blend(Path(path)):
+            inside = yield from _recordings_of(Path(path))
+            recordings += map(str, inside)
+    return Examples(motions=tuple(motions), files=tuple(recordings))
 
 
-def _recordings_of(path: Path) -> list[Path]:
+def _recordings_of(path: Path) -> Steps[list[Path]]:
     """Return a file, or all recordings in a folder and below."""
     if not path.is_dir():
         return [path]
-    if not (found := list(recordings_in(path))):
+    found = []
+    for each in files_below(path):
+        if due():
+            yield 0.0
+        found += [each] if may_hold_motion(each) else []
+    if not found:
         raise InvalidMotionError(f"There is no recording in the folder {path}.")
     return found
 
@@ -100,23 +111,45 @@ def _read_named(scene: bpy.types.Scene, asking: bpy.types.Object, name: str) -> 
     return take.parts[0].motion
 
 
-def _read_blend(scene: bpy.types.Scene, path: Path) -> list[Motion]:
+def _read_blend(here: Subject, path: Path) -> Steps[list[Motion]]:
     """Read the motions of all actions in another .blend file that fit an armature there.
 
-    All at once: the file's data-blocks are in this one meanwhile.
+    The file's data-blocks are in this one only while Blender waits: after each turn those that
+    are needed are linked again.
     """
-    motions = []
+    if due():
+        yield 0.0
     with linked_clips(path) as clips:
-        for action in clips.actions:
-            if found := _player(clips.armatures, action):
-                armature, slot = found
-                take = read_take(armature, scene, source=(action, slot))
-                motions.append(take.parts[0].motion)
+        waiting = [each.name for each in clips.actions]
+        rigs = [each.name for each in clips.armatures]
+        motions = _read_linked(here, clips, waiting)
+    while waiting:
+        yield 0.0
+        some = waiting[:LINKED_AT_ONCE]
+        with linked_clips(path, some, rigs) as clips:
+            motions += _read_linked(here, clips, waiting)
+        if not clips.actions:
+            raise InvalidFileError(f"{path} was changed while it was read. Press again.")
     if not motions:
         raise InvalidMotionError(
             f"{path} has no armature with an action for it."
             " Choose a file that has the rig, too."
         )
+    return motions
+
+
+def _read_linked(here: Subject, clips: Linked, waiting: list[str]) -> list[Motion]:
+    """Read actions until Blender is due a turn, but one at least; take them from `waiting`."""
+    scene, _ = here.find()
+    motions = []
+    for action in clips.actions:
+        waiting.remove(action.name)
+        if found := _player(clips.armatures, action):
+            armature, slot = found
+            take = read_take(armature, scene, source=(action, slot))
+            motions.append(take.parts[0].motion)
+        if due():
+            break
     return motions
 
 

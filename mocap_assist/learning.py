@@ -12,7 +12,7 @@ from ..solvers.errors import InvalidFileError
 from ..solvers.settings import Settings, setting
 from .examples import read_examples
 from .jobs.learning import learn
-from .path_properties import absolute
+from .path_properties import file_to_write
 from .turns import Sliced, Steps
 
 ENDING = ".npz"
@@ -62,7 +62,7 @@ def target_of(settings: LearnSettings) -> Path:
     """Return the file to write, after looking whether it can be written."""
     if not settings.choices.learned_file:
         raise InvalidFileError("Choose the file that what is learned shall be written to.")
-    target = absolute(settings.choices.learned_file).with_suffix(ENDING)
+    target = file_to_write(settings.choices.learned_file, ENDING)
     if not target.is_absolute() or not target.parent.is_dir():
         raise InvalidFileError(f"There is no folder {target.parent} to write {target.name} in.")
     return target

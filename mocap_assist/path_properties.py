@@ -5,6 +5,8 @@ from typing import Any
 
 import bpy
 
+from ..solvers.errors import InvalidFileError
+
 FILE, FOLDER = "FILE_PATH", "DIR_PATH"
 HIDDEN = {"HIDDEN", "SKIP_SAVE"}
 """Options of what a file browser or a caller sets: not shown, and not remembered."""
@@ -31,6 +33,14 @@ def path_property(
 def absolute(path: str) -> Path:
     """Return a path as the system knows it: `//` is the folder of the open .blend file."""
     return Path(bpy.path.abspath(path))
+
+
+def file_to_write(path: str, ending: str) -> Path:
+    """Return the file that is chosen, with its ending; raises InvalidFileError if none is."""
+    chosen = absolute(path)
+    if not chosen.name or path.endswith(("/", "\\")):
+        raise InvalidFileError(f"Choose the {ending} file to write: {path!r} names none.")
+    return chosen.with_suffix(ending)
 
 
 def chosen_files(operator: Any) -> list[Path]:

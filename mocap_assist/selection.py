@@ -46,15 +46,8 @@ def why_not_clean(context: bpy.types.Context) -> str:
     return ""
 
 
-def why_not_plant(context: bpy.types.Context) -> str:
-    """Return why no feet can be planted, or nothing."""
-    if selected_armature(context) is None:
-        return "Select an armature that plays a captured action."
-    return why_not_clean(context)
-
-
-def why_not_simulate(context: bpy.types.Context) -> str:
-    """Return why nothing can be simulated, or nothing."""
+def why_not_change(context: bpy.types.Context) -> str:
+    """Return why the motion of no armature can be changed, or nothing."""
     if selected_armature(context) is None:
         return "Select an armature that plays a captured action."
     return why_not_clean(context)

@@ -4,7 +4,7 @@ from collections.abc import Callable
 from dataclasses import Field, fields
 from enum import Enum
 from inspect import get_annotations
-from math import isfinite
+from math import isfinite, isnan
 from typing import Any, NamedTuple, TypeVar, get_type_hints
 
 import bpy
@@ -92,16 +92,21 @@ def _unit(described: Described) -> dict[str, str]:
 
 
 def _value(value: Any, item: "Field[Any]") -> Any:
-    """Undo what Blender does to a value: enums become words, floats lose half their digits."""
+    """Undo what Blender does to a value: enums become words, floats lose half their digits.
+
+    A file of another version may hold what is no value here: the nearest one is returned, or
+    the default.
+    """
     default, described = item.default, item.metadata["described"]
     if isinstance(default, Enum):
-        return type(default)[value]
-    if not isinstance(default, float):
+        return type(default).__members__.get(value, default)
+    if isinstance(default, bool | str):
         return value
-    if np.float32(default) == np.float32(value):
-        return default
-    exact = float(f"{value:.7g}")  # 0.1 comes back as 0.10000000149
-    return min(max(exact, described.minimum), described.maximum)
+    if isinstance(default, float):
+        if np.float32(default) == np.float32(value) or isnan(value):
+            return default
+        value = float(f"{value:.7g}")  # 0.1 comes back as 0.10000000149
+    return type(default)(min(max(value, described.minimum), described.maximum))
 
 
 def _words(choice: Enum) -> str:

@@ -4,7 +4,7 @@ from typing import ClassVar
 
 import bpy
 
-from ..mocap_assist.path_properties import absolute, path_property
+from ..mocap_assist.path_properties import file_to_write, path_property
 from ..mocap_assist.variants.crowd import why_not_stack
 from ..mocap_assist.variants.sheet import write_sheet
 from ..solvers.errors import MocapAssistError
@@ -37,8 +37,8 @@ class MOCAP_OT_draw_variants(bpy.types.Operator):
         return {"RUNNING_MODAL"}
 
     def execute(self, context: bpy.types.Context) -> set[str]:
-        path = absolute(self.filepath).with_suffix(PNG)
         try:
+            path = file_to_write(self.filepath, PNG)
             self.report({"INFO"}, write_sheet(context.scene, path))
         except (MocapAssistError, OSError) as error:
             self.report({"ERROR"}, str(error))

@@ -3,7 +3,7 @@
 import bpy
 
 from ..mocap_assist.planting import FeetSettings, read_planting, write_planted
-from ..mocap_assist.selection import why_not_plant
+from ..mocap_assist.selection import why_not_change
 from ..mocap_assist.settings_properties import settings_from
 from ..mocap_assist.solver_operator import SolverOperator
 
@@ -17,4 +17,4 @@ class MOCAP_OT_plant_feet(SolverOperator, bpy.types.Operator):
         " where they are detected. The result is a new action"
     )
     settings_group = "clean"
-    why_not, read_scene, write_scene = why_not_plant, read_planting, write_planted
+    why_not, read_scene, write_scene = why_not_change, read_planting, write_planted

@@ -3,7 +3,7 @@
 import bpy
 
 from ..mocap_assist.retarget_choices import UnbakeBundle
-from ..mocap_assist.selection import why_not_clean
+from ..mocap_assist.selection import why_not_change
 from ..mocap_assist.settings_properties import settings_from
 from ..mocap_assist.solver_operator import SolverOperator
 from ..mocap_assist.unbaking import read_unbaking, write_unbaked
@@ -18,4 +18,4 @@ class MOCAP_OT_reduce_keys(SolverOperator, bpy.types.Operator):
         " is off by more than the tolerance at any frame. The result is a new action"
     )
     settings_group = "unbake"
-    why_not, read_scene, write_scene = why_not_clean, read_unbaking, write_unbaked
+    why_not, read_scene, write_scene = why_not_change, read_unbaking, write_unbaked

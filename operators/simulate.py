@@ -2,7 +2,7 @@
 
 import bpy
 
-from ..mocap_assist.selection import why_not_simulate
+from ..mocap_assist.selection import why_not_change
 from ..mocap_assist.settings_properties import settings_from
 from ..mocap_assist.simulating import SimulateBundle, read_simulating, write_simulated
 from ..mocap_assist.solver_operator import SolverOperator
@@ -18,7 +18,7 @@ class MOCAP_OT_simulate(SolverOperator, bpy.types.Operator):
         " move. The result is a new action"
     )
     settings_group = "simulate"
-    why_not, read_scene, write_scene = why_not_simulate, read_simulating, write_simulated
+    why_not, read_scene, write_scene = why_not_change, read_simulating, write_simulated
 
     def draw(self, context: bpy.types.Context) -> None:
         """Offer in the redo panel what needs no new simulation."""

@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import Any
 
 from ...solvers.errors import InvalidFileError
+from ...solvers.faults import attempt
 from ...solvers.motion import Motion
 from ...solvers.progress import Progress, unwatched
 from .job import EXTENSION, alone, run
@@ -26,8 +27,8 @@ class BackgroundBlender:
     """A .blend file with the armatures of actions that are alone in theirs; none without."""
 
     def look_for_rig(self) -> None:
-        """Raise InvalidFileError if the file of the rig is missing."""
-        if self.rig and not Path(self.rig).is_file():
+        """Raise InvalidFileError if the file of the rig is missing, or cannot be seen."""
+        if self.rig and attempt(self.rig, Path(self.rig).is_file) is not True:
             raise InvalidFileError(
                 f"There is no file {self.rig} to take the rig of actions from."
             )

@@ -1,7 +1,8 @@
 """What the button Index has done for it: files and .blend files become clips of a library."""
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator
 from dataclasses import dataclass
+from functools import cached_property
 from pathlib import Path
 
 from ...solvers.errors import InvalidFileError, OutOfMemoryError
@@ -69,8 +70,9 @@ class _Blend:
     name: str
     assets_only: bool
 
-    @property
+    @cached_property
     def state(self) -> tuple[int, int]:
+        """Size and date when it was first looked at; raises OSError if it has just gone."""
         found = self.path.stat()
         return found.st_size, found.st_mtime_ns
 
@@ -85,25 +87,30 @@ def index_places(problem: IndexProblem, *, progress: Progress = unwatched) -> In
     """
     problem.blender.look_for_rig()
     path = Path(problem.library)
-    if not path.exists():
-        refuse_other_suffix(path)
     try:
+        if not path.exists():
+            refuse_other_suffix(path)
         path.parent.mkdir(parents=True, exist_ok=True)
     except OSError as error:
         raise InvalidFileError(
             f"The library {path} cannot be kept there: {error.strerror}."
         ) from None
-    there = [place for place in problem.places if Path(place.path).exists()]
-    missing = [place.path for place in problem.places if place not in there]
-    blends = list(_blends(there))
-    files = [place.path for place in there if not place.path.endswith(BLEND)]
+    refused, files, blends = list[str](), list[str](), dict[Path, _Blend]()
+    for place in problem.places:
+        found = attempt(place.path, _blends, place)
+        if isinstance(found, Failure):
+            refused.append(found.sentence)
+            continue
+        for each in found:
+            blends.setdefault(each.path, each)
+        files += [] if place.path.endswith(BLEND) else [place.path]
     share = len(files) / max(len(files) + len(blends), 1)
     report = index_files(path, files, tags=problem.tags, progress=within(progress, 0.0, share))
-    refused = [f"There is no file or folder {each}." for each in missing]
     refused += [why for _, why in report.refused]
     with open_clip_library(path) as library:
         indexing = _Indexing(library, problem.tags, refused)
-        indexing.index_blends(blends, problem.blender, within(progress, share, 1.0))
+        blender = problem.blender
+        indexing.index_blends([*blends.values()], blender, within(progress, share, 1.0))
         return Indexed(
             n_clips=len(library.entries),
             n_added=len(report.added) + len(report.changed) + indexing.added,
@@ -113,17 +120,25 @@ def index_places(problem: IndexProblem, *, progress: Progress = unwatched) -> In
         )
 
 
-def _blends(places: Sequence[Place]) -> Iterator[_Blend]:
-    """Yield the .blend files in these places, each once; not the backups beside them."""
-    seen = set()
-    for place in places:
-        top = Path(place.path).resolve()
-        for path in files_below(top) if top.is_dir() else [top]:
-            if path.suffix != BLEND or path in seen or not path.is_file():
-                continue
-            seen.add(path)
-            below = path.relative_to(top.parent if path == top else top)
-            yield _Blend(path, below.with_suffix("").as_posix(), place.assets_only)
+def _blends(place: Place) -> list[_Blend]:
+    """Return the .blend files in a place; not the backups beside them.
+
+    Raises InvalidFileError where there is nothing, and OSError where that cannot be seen.
+    """
+    try:
+        Path(place.path).stat()
+    except (FileNotFoundError, NotADirectoryError):
+        raise InvalidFileError(f"There is no file or folder {place.path}.") from None
+    top = Path(place.path).resolve()
+    return [
+        _Blend(
+            path,
+            path.relative_to(top.parent if path == top else top).with_suffix("").as_posix(),
+            place.assets_only,
+        )
+        for path in (files_below(top) if top.is_dir() else [top])
+        if path.suffix == BLEND and path.is_file()
+    ]
 
 
 class _Indexing:
@@ -137,7 +152,13 @@ class _Indexing:
         self, blends: list[_Blend], blender: BackgroundBlender, progress: Progress
     ) -> None:
         """Read the .blend files that are new or have changed, and replace their clips."""
-        changed = [blend for blend in blends if not self._known(blend)]
+        changed = []
+        for blend in blends:
+            known = attempt(blend.path, self._known, blend)
+            if isinstance(known, Failure):
+                self._refused.append(known.sentence)
+            elif not known:
+                changed.append(blend)
         done = 0
         for batch in _batches(changed):
             start, stop = done / len(changed), (done + len(batch)) / len(changed)

@@ -97,8 +97,10 @@ def _give_back(*_: object) -> None:
         curves = animated_curves(*played)
         for name in PROPERTIES:
             if (_path(name), 0) in curves and name not in armature:
-                frame = np.array([bpy.context.scene.frame_current_final])
-                _declare(armature, name, int(curves[_path(name), 0].values(frame)[0]))
+                value = curves[_path(name), 0].curve.evaluate(
+                    bpy.context.scene.frame_current_final
+                )
+                _declare(armature, name, int(value > 0.5))  # NaN is not
 
 
 def _declare(armature: bpy.types.Object, name: str, value: int) -> None:

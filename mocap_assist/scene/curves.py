@@ -17,6 +17,8 @@ MEASURED, GENERATED = 0, 5  # and for its key types KEYFRAME and GENERATED
 AUTO_CLAMPED = 4  # and for that type of handle
 ON_FRAME = 1e-3  # frames; keys are 32-bit numbers, whose grain at frame 10,000 is this
 
+LAST_FRAME = 1_048_574  # Blender's MAXFRAME
+
 # Everything that a key is, with its Blender array length and the value of a new key.
 KEY = {
     "co": (2, 0.0), "handle_left": (2, 0.0), "handle_right": (2, 0.0),
@@ -47,11 +49,8 @@ class Channel:
         keys = np.empty(2 * len(self.curve.keyframe_points), np.float32)
         self.curve.keyframe_points.foreach_get("co", keys)
         keys = keys.reshape(-1, 2)
-        if not np.isfinite(keys[:, 0]).all():
-            raise InvalidMotionError(
-                f"{self.curve.data_path} has a key at no frame (NaN). Delete that curve, or the"
-                " key, and set it again."
-            )
+        if fault := _fault(keys[:, 0]):
+            raise InvalidMotionError(f"{self.curve.data_path} has {fault}")
         return keys.astype(np.float64)
 
     def read_keys(self) -> None:
@@ -89,6 +88,26 @@ class Channel:
     def _evaluated(self, frames: Array) -> Array:
         values = map(self.curve.evaluate, frames.tolist())
         return np.fromiter(values, np.float64, len(frames))
+
+
+def _fault(times: NDArray[np.float32]) -> str:
+    """Return what is wrong with the frames of keys, or nothing."""
+    if np.isnan(times).any():
+        return (
+            "a key whose frame is not a number (NaN). Delete that curve, or the key, and set it"
+            " again."
+        )
+    if (beyond := times[np.abs(times) > LAST_FRAME]).size:
+        return (
+            f"a key at frame {beyond[0]:.3g}; Blender plays none beyond {LAST_FRAME:,}. Delete"
+            " that key."
+        )
+    if (np.diff(times) < 0.0).any():
+        return (
+            "keys that are not in the order of their frames. Move one of them in the Graph"
+            " Editor, which sorts them."
+        )
+    return ""
 
 
 def write_first(

@@ -4,6 +4,7 @@ import logging
 from dataclasses import asdict, dataclass
 from enum import Enum
 from functools import lru_cache
+from math import isfinite
 from typing import Any
 
 import bpy
@@ -13,6 +14,7 @@ from mathutils import Matrix
 from numpy.typing import NDArray
 
 from ...solvers.errors import MocapAssistError
+from ...solvers.faults import Failure, attempt
 from ...solvers.motion.depth_floor import Floor
 from ...solvers.motion.depth_recording import DepthRecording
 from ...solvers.recordings import DepthSettings, Held, read_depth
@@ -31,7 +33,10 @@ PROBLEM = "mocap_assist_depth_problem"
 """Custom property of a mesh: why it shows nothing."""
 SEEN = "seen"
 """Attribute of a point: whether the camera saw anything there."""
-NOT_ALLOWED = "This file shows a depth recording that was not opened here. Press Show Points."
+NOT_ALLOWED = (
+    "This file shows a depth recording that has not been opened on this machine yet."
+    " Press Show Points."
+)
 MOST_POINTS = 20_000
 N_SAMPLES = 5
 N_OPEN = 4
@@ -71,13 +76,13 @@ class Shown:
         """Undo `told`; raises ValueError, TypeError or KeyError where that is no preview."""
         settings = {**told["settings"], "held": Held[told["settings"]["held"]]}
         start, step, every = float(told["start"]), float(told["step"]), int(told["every"])
-        if not (step > 0.0 and every > 0):
-            raise ValueError(f"step {step}, every {every}")
+        if not (isfinite(start) and isfinite(step) and step > 0.0 and every > 0):
+            raise ValueError(f"start {start}, step {step}, every {every}")
         return cls(str(told["path"]), DepthSettings(**settings), start, step, every)
 
     def picture(self, frame: float, n_frames: int) -> int:
         """Return which picture is shown at a frame of the scene; before and after, the ends."""
-        return int(np.clip(round((frame - self.start) / self.step), 0, n_frames - 1))
+        return round(np.clip((frame - self.start) / self.step, 0, n_frames - 1))
 
     def frame(self, picture: int) -> float:
         """Return the frame of the scene at which a picture is shown."""
@@ -243,10 +248,12 @@ def _follow(scene: bpy.types.Scene, *_: object) -> None:
     A recording that only the .blend file names stays closed until the animator asks for it.
     """
     for mesh in previews():
-        if _is_allowed(mesh):
-            _show(mesh, scene.frame_current_final)
-        else:
+        if not _is_allowed(mesh):
             _hide(mesh, NOT_ALLOWED)
+            continue
+        shown = attempt(mesh.name, _show, mesh, scene.frame_current_final)
+        if isinstance(shown, Failure):
+            _hide(mesh, shown.sentence)
 
 
 def _is_allowed(mesh: bpy.types.Mesh) -> bool:

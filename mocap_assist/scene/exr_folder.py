@@ -18,7 +18,7 @@ from ...solvers.errors import InvalidFileError
 from ...solvers.files import written_whole
 from ...solvers.motion.camera import Camera
 from ...solvers.progress import Progress, unwatched
-from ...solvers.recordings.depth_stack import check_size
+from ...solvers.recordings.exr_header import check_exr
 from ...solvers.recordings.picture_frames import in_order
 
 EXR = ".exr"
@@ -36,7 +36,11 @@ def exr_files(folder: Path) -> list[Path]:
     """Return the EXR pictures in a folder, in their order."""
     if not folder.is_dir():
         return []
-    names = [path.name for path in folder.iterdir() if path.suffix.lower() == EXR]
+    names = [
+        path.name
+        for path in folder.iterdir()
+        if path.suffix.lower() == EXR and path.is_file()  # not a pipe, which never ends
+    ]
     return [folder / name for name in in_order(names)]
 
 
@@ -132,6 +136,7 @@ def _pictures(files: list[Path], shape: tuple[int, ...]) -> Iterator[Depth]:
 
 def _picture(path: Path) -> Depth:
     """Return the first channel, the top row first; 0 where nothing is seen."""
+    check_exr(path)  # Blender unpacks pictures of any size.
     try:
         image = bpy.data.images.load(str(path), check_existing=False)
     except RuntimeError:
@@ -139,8 +144,6 @@ def _picture(path: Path) -> Depth:
     try:
         image.colorspace_settings.name = "Non-Color"
         width, height = image.size
-        if width and height:
-            check_size(path, height, width)
         if not (width and height and image.has_data | bool(len(image.pixels))):
             raise InvalidFileError(
                 f"{path} is no picture that Blender can read: it is damaged, or has several"

@@ -1,6 +1,6 @@
 """Actions and armatures of another .blend file, linked for as long as they are looked at."""
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from pathlib import Path
 from typing import NamedTuple
@@ -26,8 +26,16 @@ def is_blend(path: Path) -> bool:
 
 
 @contextmanager
-def linked_clips(path: Path) -> Iterator[Linked]:
+def linked_clips(
+    path: Path, actions: Sequence[str] | None = None, objects: Sequence[str] | None = None
+) -> Iterator[Linked]:
     """Link what a file holds; afterwards all is as it was.
+
+    Parameters
+    ----------
+    path : Path
+    actions, objects : names
+        Of those to be linked; without them all are.
 
     Raises
     ------
@@ -39,7 +47,8 @@ def linked_clips(path: Path) -> Iterator[Linked]:
     present = {each.session_uid for each in scene.objects}
     try:
         with bpy.data.libraries.load(str(path), link=True) as (there, into):
-            into.actions, into.objects = list(there.actions), list(there.objects)
+            into.actions = _chosen(there.actions, actions)
+            into.objects = _chosen(there.objects, objects)
     except OSError:
         raise InvalidFileError(
             f"{path} cannot be read as a .blend file. Save it anew, or choose another."
@@ -56,3 +65,7 @@ def linked_clips(path: Path) -> Iterator[Linked]:
         for library in list(bpy.data.libraries):
             if library.session_uid not in libraries:
                 bpy.data.libraries.remove(library)
+
+
+def _chosen(there: Sequence[str], names: Sequence[str] | None) -> list[str]:
+    return [name for name in there if names is None or name in names]

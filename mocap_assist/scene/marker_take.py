@@ -19,7 +19,7 @@ from .curves import write_values
 from .frames import FrameRange, Grid, key_grid, range_bounds
 from .lasting import Lasting
 from .markers import PATH, markers_of, played_by, point_names
-from .rig import Placement, placement_of
+from .rig import Placement, check_finite, placement_of
 from .sensor_words import CONFIDENCE
 from .units import unit_of
 
@@ -89,6 +89,7 @@ def read_markers(
             curve for each in markers.curves for curve in curves_of(each, PATH, 3).values()
         ]
         grid = key_grid(keyed, range_bounds(choice, scene, keyed), recorded=True)
+    _check_captured(markers)
     bpy.context.view_layer.update()
     spaces = tuple(_space(marker, unit_of(scene)) for marker in markers.objects)
     places, confidence = [], []
@@ -175,8 +176,23 @@ def _source(marker: bpy.types.Object, recorded: bool) -> Source:
     return raw or played
 
 
+def _check_captured(markers: _Markers) -> None:
+    """Raise InvalidMotionError where a marker has keys, but none with a value."""
+    empty = []
+    for marker, curves in zip(markers.objects, markers.curves, strict=True):
+        keyed = [each.keys[:, 1] for each in curves_of(curves, PATH, 3).values()]
+        if any(map(len, keyed)) and not any(np.isfinite(each).any() for each in keyed):
+            empty.append(marker.name)
+    if empty:
+        raise InvalidMotionError(
+            f"All keys of {', '.join(empty)} are NaN: nothing was captured. Delete such"
+            " markers, or import the take again."
+        )
+
+
 def _space(marker: bpy.types.Object, metres: float) -> Placement:
     """Where the space lies in which the marker's location is measured."""
+    check_finite(marker.matrix_basis, marker.name)
     if not marker.matrix_basis.determinant():
         raise InvalidMotionError(f"{marker.name} has scale 0. Give it a scale above 0.")
     around = marker.matrix_world @ marker.matrix_basis.inverted()

@@ -12,6 +12,8 @@ from ...solvers.motion.rotations import inverse, multiply, quaternion_from_matri
 
 Array = NDArray[np.float64]
 EVEN = 1e-3
+FARTHEST = 1e12
+"""Units of the scene; Blender keeps 3.4e38 where infinity is set."""
 END = "mocap_assist_end"
 """Custom property of bones whose tail was never captured."""
 
@@ -113,17 +115,31 @@ def placement_of(matrix: Matrix, name: str) -> tuple[Array, Array, float]:
     Raises
     ------
     InvalidMotionError
-        The scale differs between axes, is zero or mirrors, so that there are no metres.
+        The scale differs between axes, is zero or mirrors, so that there are no metres; or
+        something is not a number.
     """
+    check_finite(matrix, name)
     whole = np.array(matrix, dtype=np.float64)
     linear = whole[:3, :3]
     volume = np.linalg.det(linear)
-    scale = float(np.cbrt(volume)) if volume > 0.0 else np.nan
-    turn = linear / scale
-    if not np.abs(turn @ turn.T - np.eye(3)).max() <= EVEN:
-        sizes = ", ".join(f"{size:.3g}" for size in np.linalg.norm(linear, axis=0))
+    if volume > 0.0:
+        scale = float(np.cbrt(volume))
+        turn = linear / scale
+        if np.abs(turn @ turn.T - np.eye(3)).max() <= EVEN:
+            return quaternion_from_matrix(turn), whole[:3, 3], scale
+    sizes = ", ".join(f"{size:.3g}" for size in np.linalg.norm(linear, axis=0))
+    fault = f"is scaled unevenly or sheared ({sizes} along X, Y, Z)"
+    if volume <= 0.0:
+        fault = "is mirrored by a negative scale" if volume else "has scale 0"
+    raise InvalidMotionError(
+        f"{name} {fault}. Give it one positive scale on all axes, or apply the scale."
+    )
+
+
+def check_finite(matrix: Matrix, name: str) -> None:
+    """Raise InvalidMotionError where a matrix has NaN, or what nobody can reckon with."""
+    if not (np.abs(np.array(matrix, dtype=np.float64)) <= FARTHEST).all():
         raise InvalidMotionError(
-            f"{name} is scaled unevenly or mirrored ({sizes} along X, Y, Z). Give it one"
-            " positive scale on all axes, or apply the scale."
+            f"The location, rotation or scale of {name} is not a number or far too large at the"
+            " current frame. Set it anew, or delete the key that sets it."
         )
-    return quaternion_from_matrix(turn), whole[:3, 3], scale

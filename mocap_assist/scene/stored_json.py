@@ -1,6 +1,7 @@
 """What Mocap Assist keeps in custom properties: JSON, which anybody may have edited."""
 
 import json
+from math import isfinite
 from typing import Any, TypeVar
 
 import bpy
@@ -18,7 +19,7 @@ def store(holder: Any, key: str, value: dict[str, Any] | list[Any]) -> None:
 def stored(holder: bpy.types.ID, key: str, kind: type[Kind]) -> Kind:
     """Return what `store` kept; an empty list or dictionary where nothing of the kind is.
 
-    Infinities and NaN, which JSON does not know, count as damage.
+    Infinities and NaN count as damage, and numbers so large that Python takes them for some.
     """
     return parsed(holder.get(key), kind)
 
@@ -26,11 +27,20 @@ def stored(holder: bpy.types.ID, key: str, kind: type[Kind]) -> Kind:
 def parsed(text: object, kind: type[Kind]) -> Kind:
     """Return what a text says, as `stored` does."""
     try:
-        value = parse_json(str(text), parse_constant=_refuse)
+        value = parse_json(
+            str(text), parse_constant=_finite, parse_float=_finite, parse_int=_whole
+        )
     except ValueError:
         return kind()
     return value if isinstance(value, kind) else kind()
 
 
-def _refuse(constant: str) -> None:
-    raise ValueError(constant)
+def _finite(text: str) -> float:
+    if not isfinite(number := float(text)):
+        raise ValueError(text)
+    return number
+
+
+def _whole(text: str) -> int:
+    _finite(text)  # or nobody could reckon with it
+    return int(text)

@@ -6,7 +6,7 @@ from typing import ClassVar
 import bpy
 
 from ...solvers.reconstruction import Ground, SimulateSettings
-from ..selection import why_not_simulate
+from ..selection import why_not_change
 from .drawing import draw_job, draw_sentence, exists
 
 SIMULATE = "mocap_assist.simulate"
@@ -35,5 +35,5 @@ class PhysicsPanel:
             row.active = item.name != "ground_height" or simulate.ground != Ground.FEET.name
             row.prop(simulate, item.name)
         layout.operator(SIMULATE, icon="PHYSICS")
-        if reason := why_not_simulate(context):
+        if reason := why_not_change(context):
             draw_sentence(layout, context, reason, icon="INFO")

@@ -203,12 +203,13 @@ def recordings_in(folder: Path) -> list[Path]:
     Hidden files and folders are passed over, and skeletons without motion. Files and folders
     that cannot be opened are among them: whoever reads them says why.
     """
-    return [path for path in files_below(folder) if attempt(path, _may_hold_motion, path)]
+    return [path for path in files_below(folder) if may_hold_motion(path)]
 
 
-def _may_hold_motion(path: Path) -> bool:
-    known = format_of(path)
-    return known is not None and known.read is not _refuse_skeleton
+def may_hold_motion(path: Path) -> bool:
+    """Whether a file or folder is a recording, by its first bytes, or cannot be opened."""
+    known = attempt(path, format_of, path)
+    return known is not None and getattr(known, "read", None) is not _refuse_skeleton
 
 
 def depth_in(folder: Path, is_take: Callable[[Path], bool] = is_depth_folder) -> list[Path]:

@@ -56,6 +56,7 @@ IN_ONE_BLENDER = {
     "library/test_use_matches.py": (4, 5),
     "library/test_uses.py": (5, 2),
     "operators/test_clean_guides.py": (5, 2),
+    "operators/test_clean_large.py": (5, 2),
     "operators/test_command.py": (5, 2),
     "operators/test_each_command.py": (4, 5),
     "operators/test_each_killed.py": (5, 2),

@@ -38,19 +38,63 @@ def curves(armature):
 
 
 @pytest.mark.parametrize("button", BUTTONS)
-@pytest.mark.parametrize("scale", [(-1, 1, 1), (-1, -1, -1), (1, 1, -1), (-2, 2, 2), (0, 0, 0)])
-def test_a_mirrored_armature_is_refused(walker, refused, blank, button, scale):
+@pytest.mark.parametrize(
+    ("scale", "reason"),
+    [
+        ((-1, 1, 1), "is mirrored by a negative scale"),
+        ((-1, -1, -1), "is mirrored by a negative scale"),
+        ((1, 1, -1), "is mirrored by a negative scale"),
+        ((-2, 2, 2), "is mirrored by a negative scale"),
+        ((0, 0, 0), "has scale 0"),
+        ((1, 2, 1), "is scaled unevenly or sheared (1, 2, 1 along X, Y, Z)"),
+    ],
+)
+def test_a_mirrored_armature_is_refused(walker, refused, blank, button, scale, reason):
     walker.scale = scale
     blank.context.view_layer.update()
 
-    assert "is scaled unevenly or mirrored" in refused(button)
+    assert f"Actor {reason}. Give it one positive scale" in refused(button)
+
+
+@pytest.mark.parametrize("button", BUTTONS)
+@pytest.mark.parametrize("value", [np.nan, np.inf])
+def test_an_armature_that_stands_nowhere_is_refused(walker, refused, blank, button, value):
+    walker.location.x = value
+    blank.context.view_layer.update()
+
+    assert (
+        "The location, rotation or scale of Actor is not a number or far too large"
+        in refused(button)
+    )
 
 
 @pytest.mark.parametrize("button", BUTTONS)
 def test_a_key_at_no_frame_is_refused(walker, refused, button):
     curves(walker)[0].keyframe_points[-1].co.x = np.nan
 
-    assert "has a key at no frame (NaN)" in refused(button)
+    assert "has a key whose frame is not a number (NaN)" in refused(button)
+
+
+@pytest.mark.parametrize("button", BUTTONS)
+@pytest.mark.parametrize("frame", [np.inf, -np.inf, 2e6])
+def test_a_key_beyond_all_frames_is_refused(walker, refused, button, frame):
+    curves(walker)[0].keyframe_points[-1 if frame > 0 else 0].co.x = frame
+
+    sentence = refused(button)
+
+    assert "Blender plays none beyond 1,048,574" in sentence
+    assert len(sentence) < 150
+
+
+@pytest.mark.parametrize("button", BUTTONS)
+def test_keys_out_of_order_are_refused(walker, refused, button):
+    """As `foreach_set` leaves them until the curve is updated."""
+    for curve in curves(walker):
+        keys = np.empty(2 * len(curve.keyframe_points), dtype=np.float32)
+        curve.keyframe_points.foreach_get("co", keys)
+        curve.keyframe_points.foreach_set("co", keys.reshape(-1, 2)[::-1].ravel())
+
+    assert "has keys that are not in the order of their frames" in refused(button)
 
 
 @pytest.mark.parametrize("button", BUTTONS)
@@ -195,14 +239,21 @@ def test_what_is_deleted_while_it_is_read_is_named(walker, press_slowly, window,
 
 
 def test_curves_that_are_replaced_while_they_are_read_are_found_again(
-    walker, press_slowly, window, blank
+    walker, press_slowly, window, blank, keys_of
 ):
+    played = walker.animation_data.action
+    assert blank.ops.mocap_assist.denoise(plant_feet=False) == {"FINISHED"}
+    undisturbed = list(keys_of(walker.animation_data.action).values())
+    walker.animation_data.action = played
     button = press_slowly()
     for _ in range(3):
         button.modal(window.context, event("TIMER"))
     assert is_reading(button)
     undo_like(blank, walker)
 
-    assert wait(button, window) in ({"FINISHED"}, {"CANCELLED"})
+    assert wait(button, window) == {"FINISHED"}
 
     assert nothing_is_left(window)
+    cleaned = walker.animation_data.action
+    assert cleaned != played
+    assert list(keys_of(cleaned).values()) == undisturbed

@@ -71,6 +71,33 @@ def test_what_is_out_of_range_is_held_at_the_limit(dish):
     assert (held.salt, held.angle, held.eggs) == (9.0, math.pi, 1)
 
 
+@pytest.fixture
+def store():
+    """Keep a value as a file of another version may, past all limits."""
+
+    def store(group, name, value):
+        properties = getattr(group, "bl_system_properties_get", lambda: group)()
+        properties[name] = value
+
+    return store
+
+
+def test_what_a_file_has_out_of_range_is_held_at_the_limit(dish, store):
+    group, _ = dish
+    store(group, "eggs", -5)
+    store(group, "salt", -math.inf)
+    store(group, "share", math.nan)
+    store(group, "wait", math.inf)
+    store(group, "taste", 77)
+
+    held = group.settings().recipe
+    assert (held.salt, held.share, held.eggs) == (0.0, 0.25, 1)
+    assert (held.wait, held.taste) == (math.inf, Taste.BITTER)
+
+    store(group, "eggs", 10**8)
+    assert group.settings().recipe.eggs == 12
+
+
 def test_units_are_shown_where_blender_knows_them(dish):
     shown = dish[0].bl_rna.properties
     subtypes = [shown[name].subtype for name in ("salt", "angle", "share", "wait")]

@@ -6,6 +6,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from depth_views import points_of
+from exr_files import exr_header
 
 WIDTH, HEIGHT = 32, 20
 NEAR = 1e-3  # metres
@@ -108,6 +109,11 @@ def test_without_a_camera_it_is_asked_for(folder, blank):
     [
         ("depth10.exr", b"no picture", r"depth10\.exr .*(cannot be read|is no picture)"),
         ("depth10.exr", b"", r"depth10\.exr .*(cannot be read|is no picture)"),
+        (
+            "depth10.exr",
+            exr_header(12_000, 12_000),
+            r"depth10\.exr has .* 12000 x 12000 pixels",
+        ),
         ("depth10.exr", None, r"depth10\.exr has 6 x 4 pixels, the first picture 32 x 20"),
     ],
 )
@@ -121,6 +127,13 @@ def test_a_picture_that_is_none_is_named(folder, lens, blank, name, content, sen
         bring(blank, folder)
     assert [each.name for each in blank.data.objects] == ["lens"]
     assert not blank.data.images
+
+
+def test_a_pipe_in_the_folder_is_passed_over(folder, lens, blank):
+    """Whoever opens one waits for another program, for ever."""
+    os.mkfifo(folder / "depth8.exr")
+
+    assert bring(blank, folder).name == "z pass"
 
 
 @pytest.fixture

@@ -37,7 +37,7 @@ def test_a_recording_that_was_never_opened_here_is_opened_only_when_asked(
     made = blank.data.objects["wall"]
     assert not opened and not len(points_of(made))
     shown = " ".join(draw("MOCAP_PT_import"))
-    assert "was not opened here" in shown and "Show Points" in shown
+    assert "has not been opened on this machine yet" in shown and "Show Points" in shown
     assert not blank.ops.mocap_assist.track_depth.poll()
 
     assert blank.ops.mocap_assist.show_depth() == {"FINISHED"}
@@ -53,6 +53,9 @@ def test_a_recording_that_was_never_opened_here_is_opened_only_when_asked(
         {"step": 0.0},
         {"step": float("nan")},
         {"start": float("inf")},
+        {"start": "nan"},
+        {"start": 10**400},
+        {"step": "inf"},
         {"every": 0},
         {"path": 3, "settings": []},
         {"settings": {"held": "SIDEWAYS"}},
@@ -66,6 +69,48 @@ def test_a_preview_that_was_tampered_with_shows_nothing(archive, bring, blank, c
     blank.context.scene.frame_set(3)
 
     assert "shows no recording" in mesh["mocap_assist_depth_problem"]
+
+
+@pytest.mark.parametrize("number", ["1e999", "-1e999", "1" + 400 * "0"])
+def test_a_number_beyond_all_numbers_shows_nothing(archive, bring, blank, number):
+    mesh = bring(archive).data
+    told = json.loads(mesh["mocap_assist_depth"]) | {"start": "HERE"}
+    mesh["mocap_assist_depth"] = json.dumps(told).replace('"HERE"', number)
+
+    blank.context.scene.frame_set(3)
+
+    assert "shows no recording" in mesh["mocap_assist_depth_problem"]
+
+
+def test_the_steepest_step_shows_an_end_of_the_recording(archive, bring, blank, capsys):
+    mesh = bring(archive).data
+    told = json.loads(mesh["mocap_assist_depth"])
+    mesh["mocap_assist_depth"] = json.dumps(told | {"step": 1e-320, "every": 10**300})
+
+    for frame in (-5, 1, 3):
+        blank.context.scene.frame_set(frame)
+
+    assert "mocap_assist_depth_problem" not in mesh
+    assert "Traceback" not in capsys.readouterr().err
+
+
+def test_the_other_previews_follow_when_one_raises(archive, bring, blank, load, monkeypatch):
+    meshes = [bring(archive).data for _ in range(2)]
+    preview = load("mocap_assist.scene.depth_preview")
+    shown, show = [], preview._show
+
+    def fail_once(mesh, frame):
+        shown.append(mesh)
+        if len(shown) == 1:
+            raise IndexError
+        show(mesh, frame)
+
+    monkeypatch.setattr(preview, "_show", fail_once)
+
+    blank.context.scene.frame_set(3)
+
+    assert shown == meshes
+    assert "fault of Mocap Assist" in meshes[0]["mocap_assist_depth_problem"]
 
 
 def test_points_whose_attribute_was_replaced_are_hidden(archive, bring, blank):

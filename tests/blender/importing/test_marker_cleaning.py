@@ -159,3 +159,32 @@ def test_an_empty_without_markers_is_no_take(blank):
 
     with pytest.raises(RuntimeError, match="captured markers"):
         blank.ops.mocap_assist.denoise()
+
+
+def test_markers_have_no_keys_of_bones_to_thin_out(holder, blank):
+    assert blank.ops.mocap_assist.denoise.poll()
+    with pytest.raises(RuntimeError, match="Select an armature that plays a captured action"):
+        blank.ops.mocap_assist.reduce_keys()
+
+
+@pytest.mark.parametrize("button", ["denoise", "measure_quality"])
+@pytest.mark.parametrize("only_one", [True, False])
+def test_markers_of_nan_only_are_named(holder, blank, button, only_one):
+    for marker in holder.children[: 1 if only_one else None]:
+        animation = marker.animation_data
+        bag = animation.action.layers[0].strips[0].channelbag(animation.action_slot)
+        for curve in bag.fcurves:
+            for key in curve.keyframe_points:
+                key.co.y = np.nan
+
+    with pytest.raises(RuntimeError, match="nothing was captured") as refusal:
+        getattr(blank.ops.mocap_assist, button)()
+    assert f"All keys of {holder.children[0].name}" in str(refusal.value)
+    assert (holder.children[1].name in str(refusal.value)) != only_one
+
+
+def test_a_marker_that_stands_nowhere_now_is_named(holder, blank):
+    holder.children[0].scale.x = np.nan
+
+    with pytest.raises(RuntimeError, match=r"scale of .* is not a number"):
+        blank.ops.mocap_assist.denoise()

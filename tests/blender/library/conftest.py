@@ -1,6 +1,7 @@
 """Clips, a library of them, and .blend files that hold some."""
 
 import shutil
+import time
 from pathlib import Path
 
 import numpy as np
@@ -154,3 +155,56 @@ def newcomer(bring, clip_motions, load, tmp_path, blank):
         return bring(path)
 
     return make
+
+
+@pytest.fixture
+def permissions(load, tmp_path, monkeypatch):
+    """Permissions of this test alone."""
+    module = load("mocap_assist.permissions")
+    monkeypatch.setattr(module, "_file", lambda: tmp_path / "permissions.json")
+    return module
+
+
+@pytest.fixture
+def library(blank, clip_files):
+    """Settings of a library in this scene, whose file lies among the sources."""
+    settings = blank.context.scene.mocap_assist.library
+    settings.sources, settings.library_file = str(clip_files), str(clip_files / "my.clips")
+    return settings
+
+
+@pytest.fixture
+def keep(blank):
+    """Press Keep Current."""
+
+    def press():
+        assert blank.ops.mocap_assist.keep_current() == {"FINISHED"}
+
+    return press
+
+
+@pytest.fixture
+def look(load, monkeypatch):
+    """Let so many looks pass, each until its end; return how often something was indexed."""
+    keeping = load("mocap_assist.library.keeping")
+    started = []
+    begin = keeping.Indexing.__init__
+    monkeypatch.setattr(
+        keeping.Indexing, "__init__",
+        lambda *given: started.append("Index") or begin(*given),
+    )  # fmt: skip
+
+    def look(times):
+        started.clear()
+        for _ in range(times):
+            keeping.look()
+            while keeping._running:
+                time.sleep(0.02)
+                keeping.look()
+            for keeper in keeping._keepers.values():
+                keeper._look.result(timeout=10)
+        return len(started)
+
+    yield look
+    keeping.unregister()
+    keeping.register()

@@ -2,6 +2,7 @@
 
 import os
 import shutil
+from pathlib import Path
 
 import pytest
 
@@ -80,3 +81,69 @@ def test_the_other_clips_are_indexed_when_one_cannot_be_described(
     assert done.n_clips == 2
     (sentence,) = done.refused
     assert sentence.startswith(f"{blend_file}, wave_0: {FAULT}")
+
+
+def test_the_others_are_indexed_when_a_file_goes_away_meanwhile(
+    load, index, blend_file, clip_files, monkeypatch
+):
+    indexing = load("mocap_assist.jobs.indexing")
+    gone = Path(shutil.copy(blend_file, blend_file.with_name("gone.blend")))
+    index_files = indexing.index_files
+
+    def remove_one(*given, **named):
+        gone.unlink()
+        return index_files(*given, **named)
+
+    monkeypatch.setattr(indexing, "index_files", remove_one)
+
+    done = index(blend_file.parent, clip_files)
+
+    assert done.n_clips == 9
+    assert done.refused == (f"{gone}: No such file or directory.",)
+
+
+def test_the_other_places_are_indexed_when_one_is_a_circle_of_links(
+    index, blend_file, clip_files
+):
+    circle = blend_file.parent.parent / "circle"
+    circle.symlink_to(circle)
+
+    done = index(circle, clip_files, circle / "inside.blend")
+
+    assert done.n_clips == 6
+    assert [each.partition(": ")[0] for each in done.refused] == [
+        str(circle), str(circle / "inside.blend"),
+    ]  # fmt: skip
+    assert "fault of Mocap Assist" not in " ".join(done.refused)
+
+
+@pytest.fixture
+def closed(tmp_path, monkeypatch):
+    """A folder that cannot be looked into; whoever tests as root could look into any."""
+    folder, stat = tmp_path / "closed", Path.stat
+    folder.mkdir()
+
+    def refuse(self, **named):
+        if folder in self.parents:
+            raise PermissionError(13, "Permission denied", str(self))
+        return stat(self, **named)
+
+    monkeypatch.setattr(Path, "stat", refuse)
+    return folder
+
+
+def test_the_other_places_are_indexed_when_one_is_closed(index, clip_files, closed):
+    done = index(closed / "takes", clip_files, closed / "shot.blend")
+
+    assert done.n_clips == 6
+    assert done.refused == tuple(
+        f"{closed / name}: Permission denied." for name in ("takes", "shot.blend")
+    )
+
+
+def test_a_library_or_rig_in_a_closed_folder_is_refused(load, index, clip_files, closed):
+    refused = load("solvers.errors").InvalidFileError
+    with pytest.raises(refused, match=r"my\.clips cannot be kept there: Permission denied\."):
+        index(clip_files, library=closed / "my.clips")
+    with pytest.raises(refused, match=r"There is no file .*rig\.blend"):
+        index(clip_files, rig=closed / "rig.blend")

@@ -73,6 +73,46 @@ def test_a_rig_is_read_where_it_stands_in_its_own_file(library, walk, load, blan
         assert np.allclose(places[:, 0], leaning[:, 0], atol=1e-4)
 
 
+def in_turns(load, *given):
+    """Read examples with a turn for Blender whenever one is possible; count them."""
+    work = load("mocap_assist.turns").Work(load("mocap_assist.examples").read_examples, *given)
+    n_turns = 0
+    while not work.go_on(0.0):
+        n_turns += 1
+        yield n_turns, None
+    yield n_turns, work.result
+
+
+def test_they_are_read_in_turns_and_nothing_of_the_file_is_there_in_between(
+    library, walk, load, blank, all_there_is
+):
+    scene, before = blank.context.scene, all_there_is()
+    at_once = load("mocap_assist.examples").read_examples(scene, walk, str(library))
+
+    between = [(turn, all_there_is()) for turn in in_turns(load, scene, walk, str(library))]
+
+    assert all(each == before for _, each in between)
+    n_turns, examples = between[-1][0]
+    assert n_turns >= 2  # one for each action
+    assert len(examples.motions) == len(at_once.motions) == 2
+    for one, other in zip(examples.motions, at_once.motions, strict=True):
+        np.testing.assert_array_equal(one.rotations, other.rotations)
+        np.testing.assert_array_equal(one.root_positions, other.root_positions)
+
+
+def test_a_folder_of_recordings_is_looked_through_in_turns(walk, load, blank, stroll, tmp_path):
+    folder = tmp_path / "takes"
+    folder.mkdir()
+    for number in range(5):
+        (folder / f"take_{number}.bvh").write_bytes(stroll.read_bytes())
+        (folder / f"note_{number}.txt").write_text("not a recording")
+
+    *_, (n_turns, examples) = in_turns(load, blank.context.scene, walk, str(folder))
+
+    assert n_turns == 10  # one for each file
+    assert examples.files == tuple(str(folder / f"take_{each}.bvh") for each in range(5))
+
+
 def test_it_may_be_linked_already(library, walk, reconstruct, blank, all_there_is):
     with blank.data.libraries.load(str(library), link=True) as (there, into):
         into.objects = list(there.objects)

@@ -253,7 +253,7 @@ def test_unevenly_scaled_armatures_are_refused_with_a_reason(make_armature, anim
 
     with pytest.raises(
         scene_io.errors.InvalidMotionError,
-        match=r"Actor is scaled unevenly or mirrored \(1, 1, 2",
+        match=r"Actor is scaled unevenly or sheared \(1, 1, 2",
     ):
         scene_io.reading.read_take(armature, armature.users_scene[0])
 

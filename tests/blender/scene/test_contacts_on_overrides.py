@@ -1,12 +1,17 @@
 """Foot contacts on a rig that is linked from a library and overridden."""
 
 import numpy as np
+import pytest
 
 
-def test_an_override_keeps_its_foot_contacts_when_its_file_is_loaded_again(
-    make_armature, animate, tmp_path, blank, load
-):
-    contacts = load("mocap_assist.scene.contacts")
+@pytest.fixture
+def contacts(load):
+    return load("mocap_assist.scene.contacts")
+
+
+@pytest.fixture
+def override(make_armature, animate, tmp_path, blank, contacts):
+    """An override whose left foot stands up to frame 30, and whose right foot stands then."""
     armature = make_armature()
     animate(armature)
     blank.data.libraries.write(str(tmp_path / "rig.blend"), {armature}, fake_user=True)
@@ -21,11 +26,36 @@ def test_an_override_keeps_its_foot_contacts_when_its_file_is_loaded_again(
     standing = np.repeat([[True, False], [False, True]], 30, axis=0)
     contacts.write_contacts(override, action, slot, np.arange(1.0, 61.0), standing)
     blank.context.scene.frame_set(45)
-    blank.ops.wm.save_as_mainfile(filepath=str(tmp_path / "shot.blend"))
+    return override
 
-    blank.ops.wm.open_mainfile(filepath=str(tmp_path / "shot.blend"))
 
-    (again,) = [each for each in blank.data.objects if each.override_library]
+def save_and_open(bpy, path):
+    bpy.ops.wm.save_as_mainfile(filepath=str(path))
+    bpy.ops.wm.open_mainfile(filepath=str(path))
+    (again,) = [each for each in bpy.data.objects if each.override_library]
+    return again
+
+
+def test_it_keeps_its_foot_contacts_when_its_file_is_loaded_again(
+    override, blank, tmp_path, contacts
+):
+    again = save_and_open(blank, tmp_path / "shot.blend")
+
     assert [again[name] for name in contacts.PROPERTIES] == [0, 1]
     blank.context.scene.frame_set(10)
     assert [again[name] for name in contacts.PROPERTIES] == [1, 0]
+
+
+@pytest.mark.parametrize("value", [np.nan, np.inf])
+def test_a_key_without_a_value_means_that_the_foot_does_not_stand(
+    override, blank, tmp_path, contacts, load, value
+):
+    curves = load("mocap_assist.scene.bone_channels").animated_curves
+    animation = override.animation_data
+    channel = curves(animation.action, animation.action_slot)['["mocap_contact_left"]', 0]
+    for key in channel.curve.keyframe_points:
+        key.co.y = value
+
+    again = save_and_open(blank, tmp_path / "shot.blend")
+
+    assert [again[name] for name in contacts.PROPERTIES] == [0, 1]

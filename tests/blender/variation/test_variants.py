@@ -132,6 +132,10 @@ def test_assets_with_tags_and_a_sheet(variants, blank, tmp_path):
     assert 100 < blank.data.images.load(str(sheet)).size[1] < 350  # one row
     with pytest.raises(RuntimeError, match="There is no folder"):
         blank.ops.mocap_assist.draw_variants(filepath=str(tmp_path / "no" / "sheet.png"))
+    for path in ("", "//", "/"):
+        with pytest.raises(RuntimeError, match=r"Choose the \.png file to write") as refusal:
+            blank.ops.mocap_assist.draw_variants(filepath=path)
+        assert "Traceback" not in str(refusal.value)
 
 
 def test_a_saved_file_keeps_the_list_and_the_pictures(variants, blank, tmp_path):
@@ -158,6 +162,17 @@ def test_the_panel_shows_them_and_what_is_missing(blank, draw, walker, vary):
     assert "Select the armature whose actions are to be varied." in " ".join(
         draw("MOCAP_PT_vary")
     )
+
+
+@pytest.mark.parametrize("number", [-5, 10**8])
+def test_the_panel_bears_a_number_that_another_version_has_stored(blank, draw, walker, number):
+    group = blank.context.scene.mocap_assist.vary
+    getattr(group, "bl_system_properties_get", lambda: group)()["n_variants"] = number
+    group.actions = "walk_1"
+
+    assert "mocap_assist.vary" in draw("MOCAP_PT_vary")
+    assert blank.ops.mocap_assist.vary.poll()
+    assert 1 <= group.settings().choices.n_variants <= 1000
 
 
 def test_the_panel_does_not_look_into_variants_however_many(vary, draw, load, monkeypatch):

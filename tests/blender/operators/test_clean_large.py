@@ -1,0 +1,99 @@
+"""Takes of very many bones or frames are read a little at a time, however slow the machine.
+
+Of 2,000 bones the solve, which has a process of its own, takes minutes: it is left out.
+"""
+
+import itertools
+
+import numpy as np
+import pytest
+
+LOOKS = 400
+"""Between two turns of the window: how often the work asks whether one is due."""
+
+
+def bones(n_bones):
+    """Hips, and all others as their children."""
+    others = {
+        f"Bone{number}": ("Hips", (0.001 * number, 0, 1.1), (0.001 * number, 0, 1.2), False)
+        for number in range(1, n_bones)
+    }
+    return {"Hips": (None, (0, 0, 1.0), (0, 0, 1.1), False)} | others
+
+
+@pytest.fixture
+def work_of(load, monkeypatch):
+    """Note how many bones and curves are read, or frames evaluated, in each turn."""
+    counted = {"bone": 0, "keys": 0, "frames": 0}
+
+    def count(owner, name, kind, size=lambda *_: 1):
+        works = getattr(owner, name)
+
+        def work(*given, **named):
+            counted[kind] += size(*given)
+            return works(*given, **named)
+
+        monkeypatch.setattr(owner, name, work)
+
+    channel = load("mocap_assist.scene.curves").Channel
+    count(load("mocap_assist.scene.armature_read"), "read_bone", "bone")
+    count(channel, "read_keys", "keys")
+    count(channel, "_evaluated", "frames", lambda _, frames: len(frames))
+
+    def turn():
+        done = dict(counted)
+        counted.update(dict.fromkeys(counted, 0))
+        return done
+
+    return turn
+
+
+@pytest.fixture
+def read_in_turns(load, monkeypatch, blank, work_of):
+    """Read as Clean does; return what is to be solved, and the work of each turn."""
+    turns = load("mocap_assist.turns")
+    clock = itertools.count()
+    monkeypatch.setattr(turns, "monotonic", lambda: next(clock))  # each look is a second
+
+    def read(armature):
+        choices, denoising = load("mocap_assist.clean_choices"), load("solvers.denoising")
+        settings = choices.CleanSettings(
+            choices.CleanChoices(plant_feet=False),
+            denoising.DenoiseSettings(),
+            denoising.PlantSettings(),
+        )
+        reading = load("mocap_assist.cleaning").read_cleaning
+        work, done = turns.Work(reading, blank.context.scene, armature, settings), []
+        while not work.go_on(LOOKS):
+            done.append(work_of())
+        return work.result.args[0], [*done, work_of()]
+
+    return read
+
+
+@pytest.mark.parametrize(("n_bones", "n_frames"), [(2000, 6), (2, 100_000)])
+def test_each_turn_has_its_share_of_the_work(
+    make_armature, animate, read_in_turns, n_bones, n_frames
+):
+    armature = make_armature(bones(n_bones))
+    animate(armature, frames=range(1, n_frames + 1))
+
+    problem, turns = read_in_turns(armature)
+
+    (body,) = problem.recordings
+    assert body.n_frames == n_frames and set(bones(n_bones)) <= set(body.skeleton.names)
+    assert np.isfinite(body.rotations).all()
+    assert len(turns) >= 6 * n_bones // LOOKS  # 4 curves of each bone, and twice itself
+    for kind, total in (("bone", n_bones), ("keys", 4 * n_bones + 3)):
+        assert sum(turn[kind] for turn in turns) == total
+        assert max(turn[kind] for turn in turns) <= LOOKS
+    assert not any(turn["frames"] for turn in turns)  # keys lie on all of them
+
+
+def test_clean_ends_on_a_long_take(make_armature, animate, blank):
+    armature = make_armature(bones(2))
+    raw = animate(armature, frames=range(1, 20_001))
+
+    assert blank.ops.mocap_assist.denoise(plant_feet=False) == {"FINISHED"}
+
+    assert armature.animation_data.action != raw
