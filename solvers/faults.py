@@ -72,7 +72,7 @@ def attempt(
 def escaped(text: str) -> str:
     r"""Return text with each character that UTF-8 cannot encode written as `\udcff`.
 
-    Python keeps bytes of file names that are no valid UTF-8 as such characters. Control
+    Python keeps bytes of file names that are not valid UTF-8 as such characters. Control
     characters are written so, too: a name could otherwise pretend to be a line of its own.
     """
     plain = text.encode("utf-8", "backslashreplace").decode("utf-8")
@@ -96,7 +96,7 @@ def _failure(subject: Path | str, error: Exception) -> Failure:
         sentence = f"{subject} needs more memory than there is; work on a part of the take."
         return Failure(escaped(sentence))
     sentence = (
-        f"{subject}: this is a fault of Mocap Assist ({type(error).__name__} at"
+        f"{subject}: this is a bug in Mocap Assist ({type(error).__name__} at"
         f" {_position(error)}); please report it."
     )
     return Failure(escaped(sentence), details="".join(traceback.format_exception(error)))

@@ -50,7 +50,7 @@ class Clip:
         path = "" if self.origin is None else self.origin.path
         if not is_utf_8(path):
             raise InvalidMotionError(
-                f"{self.name}: its path {path!r} is no valid UTF-8; rename the folder."
+                f"{self.name}: its path {path!r} is not valid UTF-8; rename the folder."
             )
 
 
@@ -96,7 +96,7 @@ class Match:
 def text_fault(text: str) -> str:
     """Return what keeps a text from being a clip's name or tag, or nothing."""
     if not is_utf_8(text):
-        return "is no valid UTF-8"
+        return "is not valid UTF-8"
     if any(category(letter) in LINE_BREAKS_AND_CONTROLS for letter in text):
         return "has control characters"
     return ""

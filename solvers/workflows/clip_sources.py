@@ -69,7 +69,7 @@ def path_fault(path: Path | str) -> str:
     """Return a sentence on why a library cannot keep a path, or nothing."""
     if is_utf_8(str(path)):
         return ""
-    return f"{str(path)!r} is no valid UTF-8; rename the file or its folder."
+    return f"{str(path)!r} is not valid UTF-8; rename the file or its folder."
 
 
 def _skeletons(path: Path) -> list[Path]:

@@ -82,7 +82,7 @@ def index_files(
         There is no such file or folder; the library is none, damaged, of a newer version,
         cannot be written or made, or is being written by another program all the time.
     InvalidMotionError
-        A tag has control characters or is no valid UTF-8.
+        A tag has control characters or is not valid UTF-8.
     SolveCancelled
         Raised by `progress`.
     """

@@ -182,7 +182,7 @@ def test_the_other_files_are_done_when_the_work_on_one_raises(
 
     assert (status, out.count("Done."), err.count("\n")) == (2, 1, 1)
     assert "2 of 3 files failed." in err and "Traceback" not in out + err
-    assert "one.bvh: this is a fault of Mocap Assist (IndexError at " in out
+    assert "one.bvh: this is a bug in Mocap Assist (IndexError at " in out
 
 
 def test_a_closed_folder_and_a_name_too_long_are_named_before_any_blender_starts(

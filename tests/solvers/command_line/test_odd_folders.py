@@ -53,7 +53,7 @@ def test_a_library_refuses_a_name_that_is_no_utf8_and_keeps_the_others(call, fol
         status, out, err = call("index", tmp_path / "all.clips", folder)
 
         assert (status, err.count("\n")) == (2, 1)
-        assert r"caf\udce9.bvh' is no valid UTF-8" in err
+        assert r"caf\udce9.bvh' is not valid UTF-8" in err
         assert "all.clips has 2 clips" in out
     path.rename(folder / "cafe.bvh")
     assert call("index", tmp_path / "all.clips", folder)[0] == 0
