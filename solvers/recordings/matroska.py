@@ -12,7 +12,7 @@ from pathlib import Path
 from typing import IO
 
 from ..errors import InvalidFileError
-from ..files import unreadable
+from ..files import open_regular, unreadable
 from ..progress import Progress
 from .ebml import LONGEST_HEAD, Head, block_head, children, head_of, laced, text, unsigned
 
@@ -99,7 +99,7 @@ def index_matroska(path: Path, wanted: Callable[[Track], bool], progress: Progre
     """
     found = Matroska()
     try:
-        with path.open("rb") as file:
+        with open_regular(path) as file:
             _walk(file, path.stat().st_size, found, wanted, progress)
     except OSError as error:
         raise unreadable(path, error) from None

@@ -10,6 +10,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from long_takes import write_long_bvh
 
 from solvers.denoising import learn_filter_bases, load_filter_bases
 from solvers.errors import InvalidFileError
@@ -214,11 +215,11 @@ def test_an_interrupt_leaves_whole_files_only(swinging_leg, tmp_path):
     files = [tmp_path / f"{number}.bvh" for number in range(3)]
     for file in files:
         write_bvh(swinging_leg, file)
-    unread = tmp_path / "3.bvh"
-    os.mkfifo(unread)
+    long = tmp_path / "3.bvh"
+    write_long_bvh(swinging_leg, long)
     out = tmp_path / "out"
     with subprocess.Popen(
-        [sys.executable, "-m", "solvers", "denoise", *files, unread, "--output-folder", out],
+        [sys.executable, "-m", "solvers", "denoise", *files, long, "--output-folder", out],
         cwd=ROOT, stderr=subprocess.PIPE, stdout=subprocess.DEVNULL, text=True,
     ) as running:  # fmt: skip
         finished = [out / file.name for file in files]  # not glob, which sees unfinished files
