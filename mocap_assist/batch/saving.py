@@ -9,7 +9,7 @@ from pathlib import Path
 import bpy
 
 from ...solvers.errors import InvalidFileError
-from ...solvers.files import written_whole
+from ...solvers.files import real_path, written_whole
 
 STDOUT = Path("-")
 
@@ -46,9 +46,9 @@ def target_file(arguments: argparse.Namespace) -> Path:
 
 def in_a_folder(path: Path) -> Path:
     """Return the whole path, whose folder must exist."""
-    if not path.resolve().parent.is_dir():
-        raise InvalidFileError(f"There is no folder {path.resolve().parent} to save in.")
-    return path.resolve()
+    if not real_path(path).parent.is_dir():
+        raise InvalidFileError(f"There is no folder {real_path(path).parent} to save in.")
+    return real_path(path)
 
 
 def save(target: Path) -> None:

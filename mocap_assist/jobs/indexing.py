@@ -6,8 +6,9 @@ from pathlib import Path
 
 from ...solvers.errors import InvalidFileError, OutOfMemoryError
 from ...solvers.faults import Failure, attempt
+from ...solvers.files import is_missing, real_path, reason_of
 from ...solvers.progress import Progress, unwatched, within
-from ...solvers.recordings.folder_scan import files_below
+from ...solvers.recordings.folder_scan import files_below, is_folder
 from ...solvers.retrieval import (
     Clip,
     ClipEntry,
@@ -85,15 +86,15 @@ def index_places(problem: IndexProblem, *, progress: Progress = unwatched) -> In
     """
     problem.blender.look_for_rig()
     path = Path(problem.library)
-    if not path.exists():
+    if is_missing(path):
         refuse_other_suffix(path)
     try:
         path.parent.mkdir(parents=True, exist_ok=True)
     except OSError as error:
         raise InvalidFileError(
-            f"The library {path} cannot be kept there: {error.strerror}."
+            f"The library {path} cannot be kept there: {reason_of(error)}."
         ) from None
-    there = [place for place in problem.places if Path(place.path).exists()]
+    there = [place for place in problem.places if not is_missing(place.path)]
     missing = [place.path for place in problem.places if place not in there]
     blends = list(_blends(there))
     files = [place.path for place in there if not place.path.endswith(BLEND)]
@@ -117,8 +118,8 @@ def _blends(places: Sequence[Place]) -> Iterator[_Blend]:
     """Yield the .blend files in these places, each once; not the backups beside them."""
     seen = set()
     for place in places:
-        top = Path(place.path).resolve()
-        for path in files_below(top) if top.is_dir() else [top]:
+        top = real_path(place.path)
+        for path in files_below(top) if is_folder(top) else [top]:
             if path.suffix != BLEND or path in seen or not path.is_file():
                 continue
             seen.add(path)

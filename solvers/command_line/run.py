@@ -10,6 +10,7 @@ from typing import Any
 
 from ..errors import InvalidSettingError, MocapAssistError
 from ..faults import Failure, attempt
+from ..files import reason_of
 from ..processes.threads import add_threads_option
 from .batch import RECORD, Finished, Made, work_on
 from .options import SentenceParser
@@ -60,7 +61,7 @@ def run(verbs: Mapping[str, Verb], words: Sequence[str], prog: str) -> int:
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
         return FAILED
     except OSError as error:
-        screen.say(f"{error.filename or 'The output'}: {error.strerror}.")
+        screen.say(f"{error.filename or 'The output'}: {reason_of(error)}.")
         return FAILED
     except KeyboardInterrupt:
         screen.say("Interrupted. Files that were finished are kept.")

@@ -145,3 +145,48 @@ def test_a_link_to_a_file_elsewhere_is_converted(call, folder, tmp_path):
 
     assert (status, err) == (0, "")
     assert read_bvh(tmp_path / "out" / "more" / "link.bvh").n_frames == 30
+
+
+def test_a_link_to_itself_stops_no_other(call, folder, tmp_path):
+    loop, out = tmp_path / "loop.bvh", tmp_path / "out"
+    loop.symlink_to(loop)
+    out.mkdir()
+    (out / "walk.bvh").symlink_to(out / "walk.bvh")
+
+    for words in (
+        ("convert", loop, folder / "walk.bvh", "--output-folder", out),
+        ("index", tmp_path / "a.clips", loop, folder / "walk.bvh"),
+        ("quality", loop, folder / "walk.bvh"),
+    ):
+        status, said, failed = call(*words)
+        assert (status, failed.count("\n")) == (2, 1), words
+        assert "loop.bvh" in failed
+        assert "walk.bvh" in said or "1 clip" in said
+    assert read_bvh(out / "walk.bvh").n_frames == 30
+
+
+def test_a_file_in_a_closed_folder_stops_no_other(call, folder, tmp_path, monkeypatch):
+    hidden = (folder / "more" / "walk.bvh").rename(folder / "more" / "hidden.bvh")
+    named = (hidden, folder / "walk.bvh")
+    for name in ("stat", "open"):  # As for somebody who may not look into it; root may.
+        monkeypatch.setattr(os, name, refusing(getattr(os, name), hidden))
+
+    for words in (
+        ("convert", *named, "--output-folder", tmp_path / "out"),
+        ("index", tmp_path / "a.clips", *named),
+    ):
+        status, said, failed = call(*words)
+        assert (status, failed.count("\n")) == (2, 1), failed
+        assert "ermission denied" in failed
+    assert "1 clip" in said
+
+
+def refusing(work, closed):
+    """Return what does the same, but for one file."""
+
+    def do(path, *arguments, **options):
+        if str(path) == str(closed):
+            raise PermissionError(13, "Permission denied", str(path))
+        return work(path, *arguments, **options)
+
+    return do
