@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import ParamSpec, TypeVar
 
 from .errors import FileAccessError, InvalidFileError, MocapAssistError, SolveCancelled
+from .files import reason_of
 
 OWN_FOLDERS = {"solvers", "mocap_assist", "operators"}
 """Folders of this project, relative to the folder of this extension."""
@@ -90,8 +91,7 @@ def _failure(subject: Path | str, error: Exception) -> Failure:
         lasting = not isinstance(error, FileAccessError)
         return Failure(escaped(sentence if named else f"{subject}: {sentence}"), lasting)
     if isinstance(error, OSError):
-        reason = error.strerror or str(error)
-        return Failure(escaped(f"{error.filename or subject}: {reason}."))
+        return Failure(escaped(f"{error.filename or subject}: {reason_of(error)}."))
     if isinstance(error, MemoryError):
         sentence = f"{subject} needs more memory than there is; work on a part of the take."
         return Failure(escaped(sentence))

@@ -30,7 +30,7 @@ def test_attempt_returns_what_the_work_returns():
         (InvalidFileError("It is damaged."), f"{SUBJECT}: It is damaged.", True),
         (FileAccessError("walk.bvh cannot be read."), "walk.bvh cannot be read.", False),
         (OSError(5, "Input/output error"), f"{SUBJECT}: Input/output error.", False),
-        (OSError(28, "No space left", "out.bvh"), "out.bvh: No space left.", False),
+        (OSError(28, "No space left", "out.bvh"), "out.bvh: the disk is full.", False),
         (OSError("odd"), f"{SUBJECT}: odd.", False),
         (MemoryError(), f"{SUBJECT} needs more memory than there is; work on a part of the"
          " take.", False),
