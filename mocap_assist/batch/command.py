@@ -9,7 +9,7 @@ from contextlib import AbstractContextManager, nullcontext
 import bpy
 
 from ...solvers.command_line import SentenceParser
-from ...solvers.command_line.screen import Screen, escape_odd_names
+from ...solvers.command_line.screen import Screen, escape_odd_names, printable
 from ...solvers.errors import InvalidFileError, InvalidSettingError, MocapAssistError
 from ...solvers.files import reason_of, written_whole
 from ...solvers.processes.threads import add_threads_option
@@ -152,7 +152,7 @@ def _work(arguments: argparse.Namespace, screen: Screen) -> None:
         text, figures = verb.perform(bpy.context.scene, subject, arguments, screen.progress)
         screen.clear()
         lines.append(json.dumps({"armature": subject.name} | figures) + "\n")
-        sys.stdout.write(lines[-1] if arguments.json == STDOUT else f"{text}\n")
+        sys.stdout.write(lines[-1] if arguments.json == STDOUT else f"{printable(text)}\n")
         sys.stdout.flush()
     if target is not None:
         save(target)

@@ -24,7 +24,7 @@ from ...solvers.command_line.report import (
 from ...solvers.command_line.screen import Screen
 from ...solvers.command_line.verb import Outcome, Task
 from ...solvers.errors import InvalidFileError, InvalidSettingError
-from ...solvers.faults import Failure, attempt
+from ...solvers.faults import Failure, attempt, escaped
 from ...solvers.files import is_missing, real_path
 from ...solvers.json_text import parse_json
 from ...solvers.processes.scratch import ScratchFolder
@@ -96,7 +96,7 @@ def perform_each(arguments: argparse.Namespace, screen: Screen) -> None:
             figures = finished.outcome.figures if finished.outcome else None
             entries[finished.task.sources] = Entry(finished.task, figures, finished.failure)
             text = finished.outcome.text if finished.outcome else finished.failure
-            sys.stdout.write(f"{finished.task.source}: {text}\n")
+            sys.stdout.write(escaped(f"{finished.task.source}: {text}") + "\n")
             sys.stdout.flush()
     finally:
         if arguments.report:

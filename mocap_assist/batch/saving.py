@@ -8,6 +8,7 @@ from pathlib import Path
 
 import bpy
 
+from ...solvers.command_line.screen import printable
 from ...solvers.errors import InvalidFileError
 from ...solvers.files import real_path, written_whole
 
@@ -65,7 +66,9 @@ def tell(
 ) -> None:
     """Print what was done, in words or as the one line of JSON that was asked for."""
     line = json.dumps(figures)
-    sys.stdout.write("\n".join([line] if arguments.json == STDOUT else said) + "\n")
+    sys.stdout.write(
+        "\n".join([line] if arguments.json == STDOUT else map(printable, said)) + "\n"
+    )
     sys.stdout.flush()
     if arguments.json not in {None, STDOUT}:
         with written_whole(arguments.json) as part:

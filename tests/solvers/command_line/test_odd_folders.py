@@ -181,6 +181,24 @@ def test_a_file_in_a_closed_folder_stops_no_other(call, folder, tmp_path, monkey
     assert "1 clip" in said
 
 
+def test_line_breaks_in_names_are_printed_escaped(call, folder, tmp_path):
+    odd = tmp_path / "odd\n\x1b[31mname"
+    named(folder, b"b\n\x1b[31mc.bvh")
+    folder.rename(odd)
+
+    for words in (
+        ("convert", odd, "--output-folder", tmp_path / "out"),
+        ("quality", odd),
+        ("index", tmp_path / "a\n\x1b[31m.clips", odd / "more", odd / "walk.bvh"),
+        ("quality", odd / "none.bvh"),
+        ("quality", tmp_path / "no\nfolder"),
+    ):
+        _, said, failed = call(*words)
+        assert "\x1b" not in said + failed, words
+        assert not [line for line in said.splitlines() if line.startswith(("[31m", "name"))]
+        assert failed.count("\n") <= 1 or words[0] == "index", failed
+
+
 def refusing(work, closed):
     """Return what does the same, but for one file."""
 
