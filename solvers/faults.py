@@ -26,11 +26,11 @@ class Failure:
     lasting: bool = False
     """Whether the content of the file is the reason: it fails again until the file changes."""
     details: str = ""
-    """The traceback of a fault of Mocap Assist."""
+    """The traceback of a bug in Mocap Assist."""
 
     @property
     def is_fault(self) -> bool:
-        """Whether a fault of Mocap Assist is the reason."""
+        """Whether a bug in Mocap Assist is the reason."""
         return bool(self.details)
 
     def as_error(self) -> InvalidFileError:

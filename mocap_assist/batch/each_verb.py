@@ -127,7 +127,7 @@ def _tasks(arguments: argparse.Namespace) -> list[Task]:
     for (source, _), place in zip(pairs, places, strict=True):
         if look is None and not is_folder(source) and source.suffix.lower() != BLEND:
             raise InvalidSettingError(
-                f"{source} is no .blend file; only import and capture read others."
+                f"{source} is not a .blend file; only import and capture read others."
             )
         target = arguments.output_folder / place
         if real_path(target) == real_path(source):

@@ -149,8 +149,8 @@ def refuse_long_name(path: Path, ending: str = "") -> None:
     )
     if length > LONGEST_NAME:
         raise InvalidFileError(
-            f"The output {shown(path.name)} needs a name of {length} bytes, and {LONGEST_NAME}"
-            " is the most. Shorten the name of the recording."
+            f"The output {shown(path.name)} needs a name of {length} bytes, but {LONGEST_NAME}"
+            " is the maximum. Shorten the name of the recording."
         )
 
 

@@ -13,7 +13,7 @@ from .skeleton import Skeleton
 KIND = "mocap_assist humanoid map"
 VERSION = 1
 LONGEST = 1_000_000
-"""Bytes; a file that is longer is no map."""
+"""Bytes; a file that is longer is not a map."""
 
 
 def write_humanoid_map(humanoid: HumanoidMap, path: Path | str) -> None:
@@ -84,7 +84,7 @@ def _each_once(pairs: list[tuple[str, Any]]) -> dict[str, Any]:
 
 def _joints(content: Any, path: Path | str) -> dict[str, str]:
     if not isinstance(content, dict) or content.get("kind") != KIND:
-        raise InvalidFileError(f'{path} is no humanoid map: it lacks "kind": "{KIND}".')
+        raise InvalidFileError(f'{path} is not a humanoid map: it lacks "kind": "{KIND}".')
     if content.get("version") != VERSION:
         raise InvalidFileError(
             f"{path} is of version {content.get('version')!r}; this Mocap Assist reads version"

@@ -150,7 +150,7 @@ def _rate(path: Path) -> float:
 def _number(path: Path, name: str) -> float:
     (array,) = read_archive(path, (name,))
     if array.size != 1:
-        raise InvalidFileError(f"{path}: {name} is no single number.")
+        raise InvalidFileError(f"{path}: {name} is not a single number.")
     return float(array.reshape(()))
 
 

@@ -89,7 +89,7 @@ def read_pixels(folder: Path, name: str, shape: tuple[int, int]) -> NDArray[np.i
         pixels = np.asarray(image).astype(np.int32)
     if pixels.shape != shape:
         raise InvalidFileError(
-            f"{folder / name} is no grey picture of {width} x {height} pixels any more. Copy it"
-            " again."
+            f"{folder / name} is not a gray image of {width} x {height} pixels any more. Copy"
+            " it again."
         )
     return pixels

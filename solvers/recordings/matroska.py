@@ -109,7 +109,7 @@ def index_matroska(path: Path, wanted: Callable[[Track], bool], progress: Progre
         raise unreadable(path, error) from None
     except (ValueError, IndexError, struct.error):
         raise InvalidFileError(
-            f"{path} is damaged: what stands there is no Matroska. Copy or record it again."
+            f"{path} is damaged: it is not in the Matroska format. Copy or record it again."
         ) from None
     return found
 

@@ -34,7 +34,7 @@ class Clip:
     Raises
     ------
     InvalidMotionError
-        The name or a tag has control characters, or they or the origin are no valid UTF-8.
+        The name or a tag has control characters, or they or the origin are not valid UTF-8.
     """
 
     name: str
@@ -103,7 +103,7 @@ def text_fault(text: str) -> str:
 
 
 def tags_fault(tags: tuple[str, ...]) -> str:
-    """Return a sentence about tags that have control characters or are no UTF-8, or nothing."""
+    """Return a sentence about tags that have control characters or are not UTF-8."""
     wrong = [f"The tag {tag!r} {fault}." for tag in tags if (fault := text_fault(tag))]
     return " ".join([*wrong, "Choose another word."]) if wrong else ""
 

@@ -83,7 +83,7 @@ def test_a_name_that_is_too_long_is_refused_when_it_is_named(call, folder, tmp_p
     status, _, err = call("convert", folder / "walk.bvh", target)
 
     assert (status, err.count("\n")) == (2, 1)
-    assert f"The output {'a' * 40}... needs a name of 256 bytes, and 255 is the most." in err
+    assert f"The output {'a' * 40}... needs a name of 256 bytes, but 255 is the maximum." in err
 
 
 def test_a_target_that_cannot_be_written_stops_no_other(call, folder, tmp_path):

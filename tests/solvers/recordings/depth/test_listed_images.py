@@ -148,7 +148,7 @@ def test_confidence_of_another_size_than_depth_is_refused(tmp_path, depth):
     folder = stray(tmp_path, depth, (0.0, 1.0, 0.0, 1.0, 0.0, 0.0, 0.0))
     save_png(folder / "confidence" / "000004.png", np.zeros((5, 8), np.uint8))
 
-    with pytest.raises(InvalidFileError, match=r"000004\.png is no grey picture of 8 x 6"):
+    with pytest.raises(InvalidFileError, match=r"000004\.png is not a gray image of 8 x 6"):
         read_depth(folder).frame(4)
 
 
