@@ -57,7 +57,7 @@ test-blender-5.2: optional-5.2 zip  ## the installed zip, in Blender 5.2
 # The fuzzer comes as a wheel for Linux; it finds files, and no verdict depends on time.
 SECONDS ?= 60
 .PHONY: fuzz
-fuzz: .venv-fuzz/ready  ## search for files that no reader bears; SECONDS=60 TARGETS="c3d bvh"
+fuzz: .venv-fuzz/ready  ## search for files that break a reader; SECONDS=60 TARGETS="c3d bvh"
 	.venv-fuzz/bin/python tests/fuzz/fuzz_files.py --seconds $(SECONDS) $(TARGETS)
 
 .PHONY: kills

@@ -1,5 +1,6 @@
 """Archives of learned things: one layout for each kind, written and read here alone."""
 
+import io
 import zipfile
 from collections.abc import Mapping
 from dataclasses import dataclass
@@ -60,8 +61,10 @@ class ArchiveLayout:
                 f"{path} is not a file of Mocap Assist; choose another name."
             )
         own = {"kind": np.array(self.kind), "version": np.array(self.version)}
-        with written_whole(path) as part, part.open("wb") as file:
-            np.savez_compressed(file, **own, **arrays)
+        content = io.BytesIO()  # On a full disk, an archive that lies there fails twice.
+        np.savez_compressed(content, **own, **arrays)
+        with written_whole(path) as part:
+            part.write_bytes(content.getbuffer())
 
     def read(self, path: Path | str) -> dict[str, NDArray[Any]]:
         """Load the members of an archive that `write` saved.

@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import ParamSpec, TypeVar
 
 from .errors import FileAccessError, InvalidFileError, MocapAssistError, SolveCancelled
+from .files import reason_of
 
 OWN_FOLDERS = {"solvers", "mocap_assist", "operators"}
 """Folders of this project, relative to the folder of this extension."""
@@ -25,11 +26,11 @@ class Failure:
     lasting: bool = False
     """Whether the content of the file is the reason: it fails again until the file changes."""
     details: str = ""
-    """The traceback of a fault of Mocap Assist."""
+    """The traceback of a bug in Mocap Assist."""
 
     @property
     def is_fault(self) -> bool:
-        """Whether a fault of Mocap Assist is the reason."""
+        """Whether a bug in Mocap Assist is the reason."""
         return bool(self.details)
 
     def as_error(self) -> InvalidFileError:
@@ -72,7 +73,7 @@ def attempt(
 def escaped(text: str) -> str:
     r"""Return text with each character that UTF-8 cannot encode written as `\udcff`.
 
-    Python keeps bytes of file names that are no valid UTF-8 as such characters. Control
+    Python keeps bytes of file names that are not valid UTF-8 as such characters. Control
     characters are written so, too: a name could otherwise pretend to be a line of its own.
     """
     plain = text.encode("utf-8", "backslashreplace").decode("utf-8")
@@ -90,13 +91,12 @@ def _failure(subject: Path | str, error: Exception) -> Failure:
         lasting = not isinstance(error, FileAccessError)
         return Failure(escaped(sentence if named else f"{subject}: {sentence}"), lasting)
     if isinstance(error, OSError):
-        reason = error.strerror or str(error)
-        return Failure(escaped(f"{error.filename or subject}: {reason}."))
+        return Failure(escaped(f"{error.filename or subject}: {reason_of(error)}."))
     if isinstance(error, MemoryError):
         sentence = f"{subject} needs more memory than there is; work on a part of the take."
         return Failure(escaped(sentence))
     sentence = (
-        f"{subject}: this is a fault of Mocap Assist ({type(error).__name__} at"
+        f"{subject}: this is a bug in Mocap Assist ({type(error).__name__} at"
         f" {_position(error)}); please report it."
     )
     return Failure(escaped(sentence), details="".join(traceback.format_exception(error)))

@@ -24,13 +24,37 @@ DAMAGE = (
 )  # fmt: skip
 
 
+DISK_FULL = {errno.ENOSPC, errno.EDQUOT}
 PART_BYTES = 6
 """Random bytes in the name of a temporary file, so that two writers do not meet."""
 
 
+def reason_of(error: OSError) -> str:
+    """Return what the system reports, in words that say what to do about a full disk."""
+    if error.errno in DISK_FULL:
+        return "the disk is full"
+    return error.strerror or str(error)
+
+
 def unreadable(path: Path | str, error: OSError) -> FileAccessError:
     """Return the error of a file or folder that the system does not let us read."""
-    return FileAccessError(f"{path} cannot be read ({error.strerror}).")
+    return FileAccessError(f"{path} cannot be read ({reason_of(error)}).")
+
+
+def real_path(path: Path | str) -> Path:
+    """Return a path that is absolute and without links; a link to itself stays."""
+    return Path(os.path.realpath(path))
+
+
+def is_missing(path: Path | str) -> bool:
+    """Whether there is no such file or folder; where the system does not say, there may be."""
+    try:
+        Path(path).stat()
+    except (FileNotFoundError, NotADirectoryError):
+        return True
+    except (OSError, ValueError):
+        return False
+    return False
 
 
 def open_regular(path: Path | str) -> BinaryIO:
@@ -42,7 +66,7 @@ def open_regular(path: Path | str) -> BinaryIO:
     descriptor = os.open(path, ways)
     try:
         if not stat.S_ISREG(os.fstat(descriptor).st_mode):
-            raise OSError(errno.EINVAL, "it is no file", str(path))
+            raise OSError(errno.EINVAL, "it is not a file", str(path))
         return os.fdopen(descriptor, "rb")
     except BaseException:
         os.close(descriptor)
@@ -72,7 +96,7 @@ def written_whole(path: Path | str) -> Iterator[Path]:
         finally:
             part.unlink(missing_ok=True)
     except OSError as error:
-        raise InvalidFileError(f"{path} cannot be written: {error.strerror}.") from None
+        raise InvalidFileError(f"{path} cannot be written: {reason_of(error)}.") from None
 
 
 def remove_leftovers(paths: Iterable[Path]) -> None:

@@ -71,6 +71,16 @@ def test_no_file_is_too_long_to_read():
             assert n_lines <= LONGEST_FILE, f"{module} has {n_lines} lines"
 
 
+def test_files_of_others_are_opened_in_one_place():
+    """`open_regular` does not wait for a pipe, and refuses devices."""
+    for family in FAMILIES:
+        for module in modules(f"solvers/{family}"):
+            if family == "processes":
+                continue
+            for text in ('.open("rb")', "Path(path).open(", ".read_bytes()", ".read_text("):
+                assert text not in module.read_text(encoding="utf-8"), module
+
+
 def test_json_of_others_is_parsed_in_one_place():
     """`parse_json` refuses what is nested too deeply."""
     for layer in MAY_IMPORT:

@@ -9,9 +9,9 @@ from contextlib import AbstractContextManager, nullcontext
 import bpy
 
 from ...solvers.command_line import SentenceParser
-from ...solvers.command_line.screen import Screen, escape_odd_names
+from ...solvers.command_line.screen import Screen, escape_odd_names, printable
 from ...solvers.errors import InvalidFileError, InvalidSettingError, MocapAssistError
-from ...solvers.files import written_whole
+from ...solvers.files import reason_of, written_whole
 from ...solvers.processes.threads import add_threads_option
 from ..scene import history
 from ..scene.markers import markers_of
@@ -50,7 +50,7 @@ def run(words: Sequence[str]) -> int:
         screen.say(str(error))
         return FAILED
     except OSError as error:
-        screen.say(f"{error.filename or 'The output'}: {error.strerror}.")
+        screen.say(f"{error.filename or 'The output'}: {reason_of(error)}.")
         return FAILED
     except SystemExit as stop:  # a slip in the command line, or --help
         return int(stop.code or 0)
@@ -152,7 +152,7 @@ def _work(arguments: argparse.Namespace, screen: Screen) -> None:
         text, figures = verb.perform(bpy.context.scene, subject, arguments, screen.progress)
         screen.clear()
         lines.append(json.dumps({"armature": subject.name} | figures) + "\n")
-        sys.stdout.write(lines[-1] if arguments.json == STDOUT else f"{text}\n")
+        sys.stdout.write(lines[-1] if arguments.json == STDOUT else f"{printable(text)}\n")
         sys.stdout.flush()
     if target is not None:
         save(target)

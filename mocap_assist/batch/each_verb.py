@@ -24,7 +24,8 @@ from ...solvers.command_line.report import (
 from ...solvers.command_line.screen import Screen
 from ...solvers.command_line.verb import Outcome, Task
 from ...solvers.errors import InvalidFileError, InvalidSettingError
-from ...solvers.faults import Failure, attempt
+from ...solvers.faults import Failure, attempt, escaped
+from ...solvers.files import is_missing, real_path
 from ...solvers.json_text import parse_json
 from ...solvers.processes.scratch import ScratchFolder
 from ...solvers.recordings.folder_scan import files_below, is_folder, refuse_closed
@@ -95,7 +96,7 @@ def perform_each(arguments: argparse.Namespace, screen: Screen) -> None:
             figures = finished.outcome.figures if finished.outcome else None
             entries[finished.task.sources] = Entry(finished.task, figures, finished.failure)
             text = finished.outcome.text if finished.outcome else finished.failure
-            sys.stdout.write(f"{finished.task.source}: {text}\n")
+            sys.stdout.write(escaped(f"{finished.task.source}: {text}") + "\n")
             sys.stdout.flush()
     finally:
         if arguments.report:
@@ -115,7 +116,7 @@ def _named_files(words: Sequence[str]) -> list[Path]:
 
 def _tasks(arguments: argparse.Namespace) -> list[Task]:
     """Return which .blend file is made of which file."""
-    folder: Path = arguments.output_folder.resolve()
+    folder: Path = real_path(arguments.output_folder)
     look = BRINGS_IN.get(arguments.words[0])
     if look is None:
         pairs = _blends(arguments.files, folder)
@@ -126,12 +127,10 @@ def _tasks(arguments: argparse.Namespace) -> list[Task]:
     for (source, _), place in zip(pairs, places, strict=True):
         if look is None and not is_folder(source) and source.suffix.lower() != BLEND:
             raise InvalidSettingError(
-                f"{source} is no .blend file; only import and capture read others."
+                f"{source} is not a .blend file; only import and capture read others."
             )
-        if not source.exists():
-            raise InvalidFileError(f"There is no file {source}.")
         target = arguments.output_folder / place
-        if target.resolve() == source.resolve():
+        if real_path(target) == real_path(source):
             raise InvalidSettingError(f"{source} would be written over; choose another folder.")
         tasks.append(Task((source,), target, arguments, _refusal(source, target)))
     return tasks
@@ -144,7 +143,9 @@ def _refusal(source: Path, target: Path) -> str:
 
 
 def _make_room(source: Path, target: Path) -> None:
-    if source.is_dir():
+    if is_missing(source):
+        raise InvalidFileError(f"There is no file {source}.")
+    if is_folder(source):
         refuse_closed(source)
     refuse_long_name(target, PICTURE)
     target.parent.mkdir(parents=True, exist_ok=True)
@@ -156,7 +157,7 @@ def _blends(paths: Sequence[Path], not_in: Path) -> list[tuple[Path, Path]]:
         if not is_folder(path):
             found.append((path, Path(path.name)))
             continue
-        whole = path.resolve()
+        whole = real_path(path)
         inside = [
             file for file in files_below(whole) if file.suffix == BLEND or is_folder(file)
         ]
@@ -223,14 +224,14 @@ def _perform(task: Task, stopped: Event) -> Finished:
 
 
 def _command(task: Task, figures: Path) -> list[str]:
-    arguments, source = task.arguments, str(task.source.resolve())
+    arguments, source = task.arguments, str(real_path(task.source))
     verb, *options = arguments.words
     imports = verb in BRINGS_IN
     opened = bpy.data.filepath if imports else source
     words = [OPTION, verb, *([source] if imports else []), *options, "--json", str(figures)]
-    words += ["--output", str(task.target.resolve())]
+    words += ["--output", str(real_path(task.target))]
     if arguments.report:
-        words += ["--picture", str(picture_file(task).resolve())]
+        words += ["--picture", str(real_path(picture_file(task)))]
     if bpy.app.binary_path:
         start = [bpy.app.binary_path, "--background", *([opened] if opened else [])]
         return [*start, "--command", "mocap_assist", *words]

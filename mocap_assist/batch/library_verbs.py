@@ -11,9 +11,9 @@ from typing import Any, get_type_hints
 import bpy
 
 from ...solvers.command_line import arguments_from, settings_from_arguments
-from ...solvers.command_line.screen import Screen
+from ...solvers.command_line.screen import Screen, printable
 from ...solvers.errors import InvalidFileError
-from ...solvers.files import written_whole
+from ...solvers.files import real_path, written_whole
 from ...solvers.progress import Progress
 from ..jobs.finding import Found
 from ..jobs.indexing import IndexProblem, Place, index_places
@@ -60,7 +60,7 @@ def perform_index(arguments: argparse.Namespace, screen: Screen) -> None:
     InvalidFileError
         Something could not be read, or nothing was named.
     """
-    places = [Place(str(path.resolve())) for path in arguments.places]
+    places = [Place(str(real_path(path))) for path in arguments.places]
     if arguments.asset_libraries:
         places += [Place(folder, assets_only=True) for folder in asset_folders()]
     if not places:
@@ -80,7 +80,8 @@ def perform_index(arguments: argparse.Namespace, screen: Screen) -> None:
         "refused": list(indexed.refused),
     }
     sys.stdout.write(
-        f"{json.dumps(figures) if arguments.json == STDOUT else message_of(indexed)}\n"
+        (json.dumps(figures) if arguments.json == STDOUT else printable(message_of(indexed)))
+        + "\n"
     )
     sys.stdout.flush()
     if arguments.json not in {None, STDOUT}:

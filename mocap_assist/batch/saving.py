@@ -8,8 +8,9 @@ from pathlib import Path
 
 import bpy
 
+from ...solvers.command_line.screen import printable
 from ...solvers.errors import InvalidFileError
-from ...solvers.files import written_whole
+from ...solvers.files import real_path, written_whole
 
 STDOUT = Path("-")
 
@@ -46,9 +47,9 @@ def target_file(arguments: argparse.Namespace) -> Path:
 
 def in_a_folder(path: Path) -> Path:
     """Return the whole path, whose folder must exist."""
-    if not path.resolve().parent.is_dir():
-        raise InvalidFileError(f"There is no folder {path.resolve().parent} to save in.")
-    return path.resolve()
+    if not real_path(path).parent.is_dir():
+        raise InvalidFileError(f"There is no folder {real_path(path).parent} to save in.")
+    return real_path(path)
 
 
 def save(target: Path) -> None:
@@ -65,7 +66,9 @@ def tell(
 ) -> None:
     """Print what was done, in words or as the one line of JSON that was asked for."""
     line = json.dumps(figures)
-    sys.stdout.write("\n".join([line] if arguments.json == STDOUT else said) + "\n")
+    sys.stdout.write(
+        "\n".join([line] if arguments.json == STDOUT else map(printable, said)) + "\n"
+    )
     sys.stdout.flush()
     if arguments.json not in {None, STDOUT}:
         with written_whole(arguments.json) as part:

@@ -7,6 +7,7 @@ from pathlib import Path
 
 from ...solvers.errors import InvalidFileError, OutOfMemoryError
 from ...solvers.faults import Failure, attempt
+from ...solvers.files import real_path, reason_of
 from ...solvers.progress import Progress, unwatched, within
 from ...solvers.recordings.folder_scan import files_below
 from ...solvers.retrieval import (
@@ -93,7 +94,7 @@ def index_places(problem: IndexProblem, *, progress: Progress = unwatched) -> In
         path.parent.mkdir(parents=True, exist_ok=True)
     except OSError as error:
         raise InvalidFileError(
-            f"The library {path} cannot be kept there: {error.strerror}."
+            f"The library {path} cannot be kept there: {reason_of(error)}."
         ) from None
     refused, files, blends = list[str](), list[str](), dict[Path, _Blend]()
     for place in problem.places:
@@ -129,7 +130,7 @@ def _blends(place: Place) -> list[_Blend]:
         Path(place.path).stat()
     except (FileNotFoundError, NotADirectoryError):
         raise InvalidFileError(f"There is no file or folder {place.path}.") from None
-    top = Path(place.path).resolve()
+    top = real_path(place.path)
     return [
         _Blend(
             path,

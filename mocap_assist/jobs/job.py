@@ -13,6 +13,7 @@ from time import sleep
 from typing import Any, Generic, TypeVar
 
 from ...solvers.errors import MocapAssistError, OutOfMemoryError, SolveCancelled
+from ...solvers.files import reason_of
 from ...solvers.processes.scratch import ScratchFolder
 from ...solvers.processes.threads import thread_environment
 from ...solvers.progress import Progress, unwatched
@@ -123,7 +124,7 @@ class Job(Generic[Result]):
         except OSError as error:
             self._scratch.remove()
             raise MocapAssistError(
-                f"The solver process cannot be started: {error.strerror}"
+                f"The solver process cannot be started: {reason_of(error)}"
                 f" ({error.filename or self._path})."
             ) from None
         except BaseException:

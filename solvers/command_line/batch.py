@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import Any, NamedTuple
 
 from ..faults import Failure, attempt
-from ..files import remove_leftovers, written_whole
+from ..files import is_missing, real_path, remove_leftovers, written_whole
 from ..json_text import parse_json
 from ..processes.threads import threads_from
 from ..processes.workers import worker_pool
@@ -137,7 +137,7 @@ class Made:
 
     def has(self, task: Task) -> bool:
         """Whether the output is there and would come out the same again."""
-        if task.refusal or task.target is None or not task.target.exists():
+        if task.refusal or task.target is None or is_missing(task.target):
             return False
         note = dict(self.notes.get(self._name(task), {}))
         note.pop("figures", None)
@@ -196,4 +196,4 @@ def _stamp(file: Path) -> list[Any]:
         found = file.stat()
     except OSError:  # Whoever reads it will say so.
         return [str(file)]
-    return [str(file.resolve()), found.st_size, found.st_mtime_ns]
+    return [str(real_path(file)), found.st_size, found.st_mtime_ns]

@@ -7,6 +7,7 @@ from pathlib import Path
 
 from ..errors import InvalidFileError
 from ..faults import Failure, attempt
+from ..files import real_path
 from ..motion import Motion, Tracks
 from ..progress import Progress, within
 from ..recordings import (
@@ -80,10 +81,10 @@ def found_in(
         if not is_folder(path):
             found.append((path, Path(path.name)))
             continue
-        whole = path.resolve()
+        whole = real_path(path)
         inside = [(file, whole / file.relative_to(path)) for file in look(path)]
         if not_in is not None:
-            inside = [each for each in inside if not_in.resolve() not in each[1].parents]
+            inside = [each for each in inside if real_path(not_in) not in each[1].parents]
         if not inside:
             raise InvalidFileError(f"There is no recording in the folder {path}.")
         alone = len(paths) == 1 and inside != [(path, whole)]
@@ -148,8 +149,8 @@ def refuse_long_name(path: Path, ending: str = "") -> None:
     )
     if length > LONGEST_NAME:
         raise InvalidFileError(
-            f"The output {shown(path.name)} needs a name of {length} bytes, and {LONGEST_NAME}"
-            " is the most. Shorten the name of the recording."
+            f"The output {shown(path.name)} needs a name of {length} bytes, but {LONGEST_NAME}"
+            " is the maximum. Shorten the name of the recording."
         )
 
 

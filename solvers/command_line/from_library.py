@@ -5,6 +5,7 @@ from pathlib import Path
 
 from ..denoising import FilterBasesSettings
 from ..errors import InvalidSettingError
+from ..files import real_path
 from ..motion import JointRecording, Motion, Tracks
 from ..progress import Progress
 from ..retrieval import ClipLibrary, load_clip_library
@@ -62,7 +63,7 @@ def postures_for(
 
 
 def _itself(library: ClipLibrary, source: Path) -> list[str]:
-    path = str(source.resolve())
+    path = str(real_path(source))
     return [
         entry.name
         for entry in library.entries

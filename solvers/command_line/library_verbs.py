@@ -5,6 +5,7 @@ from pathlib import Path
 from typing import Any
 
 from ..errors import InvalidMotionError, InvalidSettingError
+from ..faults import escaped
 from ..motion import JointRecording
 from ..processes.threads import threads_from
 from ..progress import Progress, within
@@ -69,7 +70,7 @@ def _told(report: IndexReport, library: Path) -> str:
         if names
     ]
     clips = "1 clip" if report.n_clips == 1 else f"{report.n_clips} clips"
-    return f"{', '.join(parts) or 'Nothing to do'}; {library} has {clips}."
+    return f"{', '.join(parts) or 'Nothing to do'}; {escaped(str(library))} has {clips}."
 
 
 def add_find_options(parser: argparse.ArgumentParser) -> None:

@@ -64,7 +64,7 @@ def draw_task(task: Task) -> str:
     Returns
     -------
     str
-        The sentence of a fault of Mocap Assist; empty if there was none.
+        The sentence of a bug in Mocap Assist; empty if there was none.
     """
     drawn = attempt(task.subject, _draw, task)
     if not isinstance(drawn, Failure):

@@ -9,12 +9,13 @@ from pathlib import Path
 from typing import Any
 
 from ..errors import InvalidSettingError, MocapAssistError
-from ..faults import Failure, attempt
+from ..faults import Failure, attempt, escaped
+from ..files import reason_of
 from ..processes.threads import add_threads_option
 from .batch import RECORD, Finished, Made, work_on
 from .options import SentenceParser
 from .report import PAGE, Entry, draw_task, has_picture, write_report
-from .screen import Screen, escape_odd_names
+from .screen import Screen, escape_odd_names, printable
 from .tasks import tasks_of
 from .verb import Makes, Outcome, Task, Verb
 
@@ -60,7 +61,7 @@ def run(verbs: Mapping[str, Verb], words: Sequence[str], prog: str) -> int:
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
         return FAILED
     except OSError as error:
-        screen.say(f"{error.filename or 'The output'}: {error.strerror}.")
+        screen.say(f"{error.filename or 'The output'}: {reason_of(error)}.")
         return FAILED
     except KeyboardInterrupt:
         screen.say("Interrupted. Files that were finished are kept.")
@@ -191,8 +192,8 @@ def _report(finished: Finished, one_of_many: bool, screen: Screen) -> bool:
             line = json.dumps({**names, "error": line.sentence})
         sys.stdout.write(f"{line}\n")
     elif outcome is not None:
-        title = f"{task.source}\n" if one_of_many else ""
-        sys.stdout.write(f"{title}{outcome.text}\n")
+        title = f"{escaped(str(task.source))}\n" if one_of_many else ""
+        sys.stdout.write(f"{title}{printable(outcome.text)}\n")
     sys.stdout.flush()
     for sentence in failures:
         screen.say(sentence)

@@ -4,6 +4,8 @@ import io
 import sys
 from typing import TextIO
 
+from ..faults import escaped
+
 SMALLEST_STEP = 0.01
 
 
@@ -11,6 +13,11 @@ def escape_odd_names(stream: TextIO) -> None:
     """Let a stream write file names that it cannot encode, escaped as stderr does."""
     if isinstance(stream, io.TextIOWrapper) and stream.errors == "strict":
         stream.reconfigure(errors="backslashreplace")
+
+
+def printable(text: str) -> str:
+    """Return text for people, in which names have no control characters: only lines end."""
+    return "\n".join(map(escaped, text.split("\n")))
 
 
 class Screen:
@@ -28,12 +35,13 @@ class Screen:
         if not self.watched or abs(fraction - self._fraction) < SMALLEST_STEP:
             return
         self._fraction = fraction
-        self._replace(f"{self.title} {100 * fraction:3.0f} % {message}"[:78])
+        line = f"{self.title} {100 * fraction:3.0f} % {message}"
+        self._replace(escaped(line)[:78])
 
     def say(self, sentence: str) -> None:
         """Print a sentence on a line of its own."""
         self.clear()
-        self.stream.write(f"{sentence}\n")
+        self.stream.write(f"{escaped(sentence)}\n")
         self.stream.flush()
 
     def note(self, sentence: str) -> None:

@@ -6,6 +6,7 @@ from pathlib import Path
 
 from ..errors import InvalidSettingError
 from ..faults import Failure, attempt
+from ..files import real_path
 from .files import (
     FOR_JOINTS,
     FOR_MOTIONS,
@@ -124,8 +125,8 @@ def _ending(verb: Verb, source: Path, arguments: argparse.Namespace) -> str:
 
 def _refuse_reading_and_writing(sources: Sequence[Path], targets: Sequence[Path]) -> None:
     """Refuse to write over what is read, or twice to one place."""
-    places = [target.resolve() for target in targets]
-    same = [source for source in sources if source.resolve() in places]
+    places = [real_path(target) for target in targets]
+    same = [source for source in sources if real_path(source) in places]
     if same:
         raise InvalidSettingError(
             f"{same[0]} would be written over. Recordings are never changed: choose another"

@@ -5,7 +5,7 @@ from pathlib import Path
 from typing import Any
 
 from ..errors import InvalidFileError, InvalidMotionError
-from ..files import written_whole
+from ..files import open_regular, written_whole
 from ..json_text import parse_json
 from .humanoid import HumanoidMap
 from .skeleton import Skeleton
@@ -13,7 +13,7 @@ from .skeleton import Skeleton
 KIND = "mocap_assist humanoid map"
 VERSION = 1
 LONGEST = 1_000_000
-"""Characters; a file that is longer is no map."""
+"""Bytes; a file that is longer is not a map."""
 
 
 def write_humanoid_map(humanoid: HumanoidMap, path: Path | str) -> None:
@@ -52,8 +52,9 @@ def read_humanoid_map(path: Path | str, skeleton: Skeleton | None = None) -> Hum
         a role or a joint twice, or a joint that the skeleton lacks.
     """
     try:
-        with Path(path).open(encoding="utf-8-sig") as file:
-            content = parse_json(file.read(LONGEST), object_pairs_hook=_each_once)
+        with open_regular(path) as file:
+            text = file.read(LONGEST).decode("utf-8-sig")
+        content = parse_json(text, object_pairs_hook=_each_once)
     except FileNotFoundError:
         raise InvalidFileError(f"There is no file {path}.") from None
     except (OSError, ValueError) as error:
@@ -83,7 +84,7 @@ def _each_once(pairs: list[tuple[str, Any]]) -> dict[str, Any]:
 
 def _joints(content: Any, path: Path | str) -> dict[str, str]:
     if not isinstance(content, dict) or content.get("kind") != KIND:
-        raise InvalidFileError(f'{path} is no humanoid map: it lacks "kind": "{KIND}".')
+        raise InvalidFileError(f'{path} is not a humanoid map: it lacks "kind": "{KIND}".')
     if content.get("version") != VERSION:
         raise InvalidFileError(
             f"{path} is of version {content.get('version')!r}; this Mocap Assist reads version"

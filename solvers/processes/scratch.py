@@ -18,6 +18,7 @@ from typing import Self
 from weakref import finalize
 
 from ..errors import InvalidFileError
+from ..files import real_path, reason_of
 from .locks import FileLock, try_lock
 
 PREFIX = "mocap_assist_"
@@ -44,7 +45,8 @@ class ScratchFolder:
         except OSError as error:
             where = f" in {Path(error.filename).parent}" if error.filename else ""
             raise InvalidFileError(
-                f"Temporary files cannot be written{where}: {error.strerror}. Make room there."
+                f"Temporary files cannot be written{where}: {reason_of(error)}."
+                " Make room there."
             ) from None
         self._remove: Callable[[], object] = finalize(self, _remove, self.path, lock)
 
@@ -83,7 +85,7 @@ def remove_orphaned(folder: Path) -> None:
 def lock_for_work_on(target: Path) -> Path:
     """Return the file that is locked while a process of this user makes `target`."""
     user = os.getuid() if hasattr(os, "getuid") else 0
-    name = sha256(f"{user} {target.resolve()}".encode("utf-8", "surrogateescape"))
+    name = sha256(f"{user} {real_path(target)}".encode("utf-8", "surrogateescape"))
     return Path(gettempdir()) / f"{PREFIX}{name.hexdigest()[: 2 * NAME_BYTES]}{LOCK}"
 
 

@@ -5,7 +5,7 @@ from pathlib import Path
 from typing import NamedTuple, Protocol
 
 from ..errors import InvalidFileError, InvalidMotionError
-from ..files import unreadable
+from ..files import open_regular, unreadable
 from ..motion.depth_recording import DepthRecording
 from ..progress import Progress, unwatched
 from .depth_folder import layout_of, read_depth_folder
@@ -111,7 +111,7 @@ def depth_format_of(path: Path | str) -> DepthFormat | None:
         refuse_closed(path)
         return FOLDER if layout_of(path) is not None else None
     try:
-        with path.open("rb") as file:
+        with open_regular(path) as file:
             head = file.read(HEAD)
     except FileNotFoundError:
         raise InvalidFileError(f"There is no file {path}.") from None

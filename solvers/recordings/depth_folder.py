@@ -178,9 +178,18 @@ def _color(
     if layout.color is None or layout.color_of is None:
         return None
     of = np.where(shown == NONE, NONE, layout.color_of[shown])
-    there = np.array([is_listed(layout.root, name) for name in layout.color])
-    of = np.where((of != NONE) & there[of], of, NONE)
-    return ColorPictures(layout.root, layout.color, of, shape) if (of != NONE).any() else None
+    used = np.unique(of[of != NONE])
+    if not any(_may_be_read(layout.root, layout.color[number]) for number in used):
+        return None
+    return ColorPictures(layout.root, layout.color, of, shape)
+
+
+def _may_be_read(root: Path, name: str) -> bool:
+    """Whether a color image is there, or is a fault to report when color is used."""
+    try:
+        return is_listed(root, name)
+    except InvalidFileError:
+        return True
 
 
 def _remarks(

@@ -125,7 +125,7 @@ def _is_video(track: Track) -> bool:
 
 def _depth_track(path: Path, found: Matroska) -> tuple[Track, tuple[int, int]]:
     uid = found.tags.get("K4A_DEPTH_TRACK", "")
-    raw = [track for track in found.tracks if _fourcc(track) == RAW]
+    raw = [track for track in found.tracks.values() if _fourcc(track) == RAW]
     named = [track for track in raw if track.name == DEPTH or str(track.uid) == uid]
     if not named or not named[0].places:
         raise InvalidFileError(
@@ -179,7 +179,7 @@ def _color(
     uid = found.tags.get("K4A_COLOR_TRACK", "")
     tracks = [
         track
-        for track in found.tracks
+        for track in found.tracks.values()
         if track.places and (track.name == COLOR or str(track.uid) == uid) and track != depth
     ]
     name = found.tags.get("K4A_CALIBRATION_FILE", CALIBRATION)

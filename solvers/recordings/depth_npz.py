@@ -118,7 +118,7 @@ def _compare_checksum(archive: zipfile.ZipFile, member: zipfile.ZipInfo) -> None
 
 
 def _content(path: Path, member: zipfile.ZipInfo, skipped: int, size: int) -> StoredBytes:
-    with path.open("rb") as file:
+    with open_regular(path) as file:
         file.seek(member.header_offset)
         head = file.read(LOCAL_HEADER)
     name, extra = struct.unpack("<HH", head[26:30])
@@ -150,7 +150,7 @@ def _rate(path: Path) -> float:
 def _number(path: Path, name: str) -> float:
     (array,) = read_archive(path, (name,))
     if array.size != 1:
-        raise InvalidFileError(f"{path}: {name} is no single number.")
+        raise InvalidFileError(f"{path}: {name} is not a single number.")
     return float(array.reshape(()))
 
 

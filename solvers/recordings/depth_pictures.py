@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 
 from ..errors import InvalidFileError
 from ..motion.depth_recording import ColorPicture, DepthPicture
-from .listed_images import largest_color, listed_image
+from .listed_images import is_listed, largest_color, listed_image
 
 NONE = -1
 """Stands for a frame without a picture."""
@@ -72,7 +72,7 @@ class ColorPictures:
     def __call__(self, index: int) -> ColorPicture:
         """Return the colours (height, width, 3) of a frame, 0 to 255."""
         number = self.frames[index]
-        if number == NONE:
+        if number == NONE or not is_listed(self.folder, self.names[number]):
             return np.zeros((*self.shape, 3), np.uint8)
         largest = largest_color(self.shape)
         with listed_image(self.folder, self.names[number], largest) as image:
@@ -89,7 +89,7 @@ def read_pixels(folder: Path, name: str, shape: tuple[int, int]) -> NDArray[np.i
         pixels = np.asarray(image).astype(np.int32)
     if pixels.shape != shape:
         raise InvalidFileError(
-            f"{folder / name} is no grey picture of {width} x {height} pixels any more. Copy it"
-            " again."
+            f"{folder / name} is not a gray image of {width} x {height} pixels any more. Copy"
+            " it again."
         )
     return pixels

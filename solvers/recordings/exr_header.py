@@ -7,6 +7,7 @@ from pathlib import Path
 from typing import BinaryIO
 
 from ..errors import InvalidFileError
+from ..files import open_regular
 from .depth_stack import MOST_PIXELS, check_size
 
 MAGIC = b"v/1\x01"
@@ -28,7 +29,7 @@ def check_exr(path: Path) -> None:
     Reference: https://openexr.com/en/latest/OpenEXRFileLayout.html
     """
     try:
-        with path.open("rb") as file:
+        with open_regular(path) as file:
             parts = list(_parts(file))
     except (OSError, ValueError, KeyError, struct.error):
         raise InvalidFileError(f"{path} cannot be read as OpenEXR. Render it again.") from None

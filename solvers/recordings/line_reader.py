@@ -5,7 +5,7 @@ from pathlib import Path
 from typing import NamedTuple
 
 from ..errors import InvalidFileError
-from ..files import unreadable
+from ..files import open_regular, unreadable
 from .text import BYTE_ORDER_MARK
 
 BLOCK = 1 << 22
@@ -107,7 +107,7 @@ def _blocks(path: Path) -> Iterator[tuple[list[bytes], float]]:
     if not path.is_file():
         raise InvalidFileError(f"There is no file {path}.")
     try:
-        with path.open("rb") as file:
+        with open_regular(path) as file:
             size = max(1, file.seek(0, 2))
             file.seek(0)
             mark = file.read(len(BYTE_ORDER_MARK))

@@ -19,6 +19,9 @@ PORT = 46464
 LONGEST_LINE = 32_768
 """Bytes; a frame of 32 joints takes about 2,000."""
 MOST_JOINTS = 64
+MAX_LISTS = 4 * MOST_JOINTS
+"""Lists and objects in a line; names are text, and each joint has one. More would only cost
+time, of the garbage collector above all."""
 LONGEST_NAME = 64
 FARTHEST = 100.0
 """Metres from the sensor, on each axis; it sees no farther."""
@@ -85,6 +88,8 @@ def decode_frame(line: bytes) -> LiveFrame:
     """
     if len(line) > LONGEST_LINE:
         raise InvalidMotionError(f"A frame of {len(line)} bytes is too long.")
+    if line.count(b"[") + line.count(b"{") > MAX_LISTS:
+        raise InvalidMotionError(f"A frame has more than {MAX_LISTS} lists.")
     try:
         said = parse_json(line, parse_constant=_refuse)
     except ValueError:

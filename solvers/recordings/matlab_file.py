@@ -12,7 +12,7 @@ from pathlib import Path
 from typing import NamedTuple
 
 from ..errors import InvalidFileError
-from ..files import DAMAGE
+from ..files import DAMAGE, open_regular
 from .stored_bytes import DENSEST, PackedBytes, PartOfBytes, PlainBytes, StoredBytes, cut_short
 
 HEADER = 128
@@ -48,7 +48,7 @@ def matlab_arrays(path: Path) -> list[MatlabArray]:
         The file is missing, damaged or cut short.
     """
     try:
-        with path.open("rb") as file:
+        with open_regular(path) as file:
             order = "<" if file.read(HEADER)[126:128] == b"IM" else ">"
         found = [_array(content, order) for content in _elements(path, order)]
     except FileNotFoundError:
@@ -78,7 +78,7 @@ def _elements(path: Path, order: str) -> Iterator[StoredBytes]:
 
 
 def _unpacked(path: Path, at: int, packed: int, order: str) -> StoredBytes:
-    with path.open("rb") as file:
+    with open_regular(path) as file:
         file.seek(at)
         head = zlib.decompressobj().decompress(file.read(min(packed, 1024)), 8)
     kind, size = struct.unpack(f"{order}II", head)

@@ -12,7 +12,7 @@ from pathlib import Path
 from typing import IO
 
 from ..errors import InvalidFileError
-from ..files import unreadable
+from ..files import open_regular, unreadable
 from ..progress import Progress
 from .ebml import LONGEST_HEAD, Head, block_head, children, head_of, laced, text, unsigned
 
@@ -36,6 +36,9 @@ BLOCK_START = 4096
 TOLD_EVERY = 4096
 LATEST = 2**62
 """Nanoseconds from the start of the recording: 146 years, which an array can hold."""
+
+MAX_TRACKS = 127
+"""As many as a block can name in one byte; cameras record up to five."""
 
 
 @dataclass
@@ -66,7 +69,8 @@ class Matroska:
 
     Attributes
     ----------
-    tracks : list of Track
+    tracks : dict of Track
+        By their numbers, the first of each; at most `MAX_TRACKS`.
     tags : dict
         Value of each tag.
     files : dict
@@ -75,7 +79,7 @@ class Matroska:
         Whether the file ends where its last element does.
     """
 
-    tracks: list[Track] = field(default_factory=list)
+    tracks: dict[int, Track] = field(default_factory=dict)
     tags: dict[str, str] = field(default_factory=dict)
     files: dict[str, bytes] = field(default_factory=dict)
     whole: bool = True
@@ -99,13 +103,13 @@ def index_matroska(path: Path, wanted: Callable[[Track], bool], progress: Progre
     """
     found = Matroska()
     try:
-        with path.open("rb") as file:
+        with open_regular(path) as file:
             _walk(file, path.stat().st_size, found, wanted, progress)
     except OSError as error:
         raise unreadable(path, error) from None
     except (ValueError, IndexError, struct.error):
         raise InvalidFileError(
-            f"{path} is damaged: what stands there is no Matroska. Copy or record it again."
+            f"{path} is damaged: it is not in the Matroska format. Copy or record it again."
         ) from None
     return found
 
@@ -151,7 +155,7 @@ def _next_head(file: IO[bytes], at: int, found: Matroska) -> Head | None:
     try:
         return head_of(_content(file, at, LONGEST_HEAD))
     except ValueError:
-        if not any(track.places for track in found.tracks):
+        if not any(track.places for track in found.tracks.values()):
             raise
         found.whole = False
         return None
@@ -172,7 +176,7 @@ def _add_block(
 ) -> None:
     start = _content(file, at, min(size, BLOCK_START))
     number, time, flags, length = block_head(start)
-    track = next((track for track in found.tracks if track.number == number), None)
+    track = found.tracks.get(number)
     if track is None or not wanted(track):
         return
     for place, (begin, each) in enumerate(laced(start[length:], flags, size - length)):
@@ -192,18 +196,17 @@ def _read_info(content: bytes, found: Matroska) -> None:
 
 def _read_tracks(content: bytes, found: Matroska) -> None:
     for number, inside in children(content):
-        if number == TRACK:
+        if number == TRACK and len(found.tracks) < MAX_TRACKS:
             told = dict(children(inside))
-            found.tracks.append(
-                Track(
-                    unsigned(told.get(NUMBER, b"")),
-                    unsigned(told.get(UID, b"")),
-                    text(told.get(NAME, b"")),
-                    text(told.get(CODEC, b"")),
-                    told.get(PRIVATE, b""),
-                    unsigned(told.get(DURATION, b"")),
-                )
+            track = Track(
+                unsigned(told.get(NUMBER, b"")),
+                unsigned(told.get(UID, b"")),
+                text(told.get(NAME, b"")),
+                text(told.get(CODEC, b"")),
+                told.get(PRIVATE, b""),
+                unsigned(told.get(DURATION, b"")),
             )
+            found.tracks.setdefault(track.number, track)
 
 
 def _read_tags(content: bytes, found: Matroska) -> None:

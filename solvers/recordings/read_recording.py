@@ -7,7 +7,7 @@ from typing import NamedTuple, Protocol
 
 from ..errors import InvalidFileError, InvalidMotionError
 from ..faults import attempt
-from ..files import unreadable
+from ..files import open_regular, unreadable
 from ..motion import JointRecording, Motion, Tracks
 from ..motion.depth_recording import DepthRecording
 from ..progress import Progress, unwatched
@@ -188,7 +188,7 @@ def format_of(path: Path | str) -> Format | None:
         refuse_closed(Path(path))
         return None
     try:
-        with Path(path).open("rb") as file:
+        with open_regular(path) as file:
             head = file.read(HEAD).removeprefix(BYTE_ORDER_MARK)
     except FileNotFoundError:
         raise InvalidFileError(f"There is no file {path}.") from None

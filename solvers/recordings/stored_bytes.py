@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import Any, NamedTuple, Protocol
 
 from ..errors import InvalidFileError
-from ..files import unreadable
+from ..files import open_regular, unreadable
 
 CHUNK = 1 << 17
 """Bytes that are taken from the file, and that are unpacked, at a time."""
@@ -41,7 +41,7 @@ class PlainBytes:
     def read(self, start: int, count: int) -> bytes:
         """Return these bytes; raises InvalidFileError if they are cut off."""
         try:
-            with self.path.open("rb") as file:
+            with open_regular(self.path) as file:
                 file.seek(self.offset + start)
                 content = file.read(count)
         except OSError as error:
@@ -103,7 +103,7 @@ class PackedBytes:
         if mark.unpacked <= self._last.unpacked <= start:
             mark = self._last
         try:
-            with self.path.open("rb") as file:
+            with open_regular(self.path) as file:
                 return self._unpack(file, mark, start, count)
         except OSError as error:
             raise unreadable(self.path, error) from None
@@ -115,7 +115,7 @@ class PackedBytes:
         if self.size > MOST_CHECKED:
             return
         state, taken = zlib.decompressobj(self.window), 0
-        with self.path.open("rb") as file:
+        with open_regular(self.path) as file:
             file.seek(self.offset)
             while not state.eof:
                 tail = state.unconsumed_tail

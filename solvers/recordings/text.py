@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..errors import InvalidFileError
-from ..files import unreadable
+from ..files import open_regular, unreadable
 from ..progress import Progress, unwatched
 from .names import shown
 
@@ -30,7 +30,7 @@ def map_bytes(path: Path | str) -> bytes | mmap.mmap:
     if not path.is_file():
         raise InvalidFileError(f"There is no file {path}.")
     try:
-        with path.open("rb") as file:
+        with open_regular(path) as file:
             return mmap.mmap(file.fileno(), 0, access=mmap.ACCESS_READ)
     except ValueError:  # An empty file cannot be mapped.
         return b""
@@ -44,7 +44,8 @@ def read_bytes(path: Path | str) -> bytes:
     if not path.is_file():
         raise InvalidFileError(f"There is no file {path}.")
     try:
-        return path.read_bytes().removeprefix(BYTE_ORDER_MARK)
+        with open_regular(path) as file:
+            return file.read().removeprefix(BYTE_ORDER_MARK)
     except OSError as error:
         raise unreadable(path, error) from None
 

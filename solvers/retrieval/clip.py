@@ -34,7 +34,7 @@ class Clip:
     Raises
     ------
     InvalidMotionError
-        The name or a tag has control characters, or they or the origin are no valid UTF-8.
+        The name or a tag has control characters, or they or the origin are not valid UTF-8.
     """
 
     name: str
@@ -50,7 +50,7 @@ class Clip:
         path = "" if self.origin is None else self.origin.path
         if not is_utf_8(path):
             raise InvalidMotionError(
-                f"{self.name}: its path {path!r} is no valid UTF-8; rename the folder."
+                f"{self.name}: its path {path!r} is not valid UTF-8; rename the folder."
             )
 
 
@@ -96,14 +96,14 @@ class Match:
 def text_fault(text: str) -> str:
     """Return what keeps a text from being a clip's name or tag, or nothing."""
     if not is_utf_8(text):
-        return "is no valid UTF-8"
+        return "is not valid UTF-8"
     if any(category(letter) in LINE_BREAKS_AND_CONTROLS for letter in text):
         return "has control characters"
     return ""
 
 
 def tags_fault(tags: tuple[str, ...]) -> str:
-    """Return a sentence about tags that have control characters or are no UTF-8, or nothing."""
+    """Return a sentence about tags that have control characters or are not UTF-8."""
     wrong = [f"The tag {tag!r} {fault}." for tag in tags if (fault := text_fault(tag))]
     return " ".join([*wrong, "Choose another word."]) if wrong else ""
 

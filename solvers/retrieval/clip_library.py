@@ -242,6 +242,8 @@ class ClipLibrary:
                 self._words = words
             self._entries = rows.read_entries(self._database, self._entries)
             numbers = files.block_numbers(self._database)
+            if self._entries and not numbers:
+                raise sqlite3.DatabaseError("the index is missing")
             known, n_words = self._blocks, 0
             if self._vocabulary is not None:
                 n_words = self._vocabulary.words.shape[1]

@@ -87,6 +87,12 @@ def clip_postures(recording: Recording, frame_rate: float | None = None) -> Clip
     )  # fmt: skip
 
 
+def half_precision(values: Array) -> NDArray[np.float16]:
+    """Return numbers as they are stored; those beyond its range, of no motion, are the last."""
+    largest = float(np.finfo(np.float16).max)
+    return np.clip(values, -largest, largest).astype("<f2")
+
+
 def _short_gaps_bridged(tracks: Tracks) -> Tracks:
     """Draw straight lines over short gaps; points before a lower rate makes them longer."""
     seen = tracks.visible

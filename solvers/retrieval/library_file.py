@@ -1,7 +1,7 @@
 """Clip libraries as SQLite databases: one file, changed in whole transactions.
 
-SQLite locks the file while it is written, so that two Blenders can index at once, maps it into
-memory, and leaves it whole when a process dies. Nothing in it is ever executed.
+SQLite locks the file while it is written, so that two Blenders can index at once, and leaves it
+whole when a process dies. Views and triggers, which SQLite would execute, are refused.
 """
 
 import os
@@ -13,6 +13,8 @@ from pathlib import Path
 from ..errors import InvalidFileError
 from .index_block import IndexBlock, block_arrays, block_from_arrays
 from .library_storage.errors import decoding, readable_errors
+from .library_storage.schema import MAX_NUMBER, check_schema, lay_out, refuse_siblings
+from .library_storage.values import number_in, row_numbers
 from .vocabulary import Vocabulary, vocabulary_arrays, vocabulary_from_arrays
 
 SUFFIXES = (".clips", ".library")
@@ -22,22 +24,6 @@ APPLICATION = 0x4D434C42
 VERSION = 1
 PATIENCE = 120.0
 """Seconds to wait for another process that is writing."""
-MAPPED = 1 << 40
-"""Bytes of a file that may be mapped into memory; SQLite takes what it can."""
-TABLES = """
-CREATE TABLE vocabulary (number INTEGER PRIMARY KEY, name TEXT, value BLOB);
-CREATE TABLE clips (
-    number INTEGER PRIMARY KEY AUTOINCREMENT, name TEXT UNIQUE NOT NULL, tags TEXT NOT NULL,
-    path TEXT, item TEXT, size INTEGER, modified INTEGER,
-    n_frames INTEGER NOT NULL, frame_rate REAL NOT NULL,
-    positions BLOB NOT NULL, course BLOB NOT NULL
-);
-CREATE INDEX origins ON clips (path, item);
-CREATE TABLE blocks (
-    number INTEGER PRIMARY KEY AUTOINCREMENT, clips BLOB, frames BLOB, histograms BLOB,
-    summaries BLOB, starts BLOB, spans BLOB, weights BLOB
-);
-"""
 BLOCK_COLUMNS = ("clips", "frames", "histograms", "summaries", "starts", "spans", "weights")
 
 
@@ -61,10 +47,10 @@ def begin_file(path: Path) -> None:
     """
     refuse_other_suffix(path)
     with readable_errors(path):
-        database = sqlite3.connect(path, timeout=PATIENCE, isolation_level=None)
+        database = _connect(path)
         try:
             if not database.execute("PRAGMA page_count").fetchone()[0]:
-                with transaction(database):
+                with _all_or_nothing(database):
                     if not database.execute("SELECT 1 FROM sqlite_master").fetchone():
                         _lay_out(database)
         finally:
@@ -85,26 +71,41 @@ def open_database(path: Path) -> sqlite3.Connection:
     Raises
     ------
     InvalidFileError
-        There is no such file, it is no library, or one of a newer version.
+        There is no such file, it is not a library, or one of a newer version.
     """
     if not path.is_file():
         raise InvalidFileError(f"There is no clip library {path}.")
     with readable_errors(path):
-        database = sqlite3.connect(
-            path, timeout=PATIENCE, isolation_level=None, check_same_thread=False
-        )
+        database = _connect(path)
         try:
             _check(database, path)
-            database.execute(f"PRAGMA mmap_size = {MAPPED}")
         except BaseException:
             database.close()
             raise
     return database
 
 
+def _connect(path: Path) -> sqlite3.Connection:
+    """Open a file of which nothing is known, as SQLite advises for one by a stranger."""
+    refuse_siblings(path)
+    database = sqlite3.connect(
+        path, timeout=PATIENCE, isolation_level=None, check_same_thread=False
+    )
+    database.execute("PRAGMA trusted_schema = OFF")
+    database.execute("PRAGMA cell_size_check = ON")
+    return database
+
+
 @contextmanager
 def transaction(database: sqlite3.Connection) -> Iterator[None]:
     """Change all that is changed within, or nothing; others wait."""
+    with _all_or_nothing(database):
+        check_schema(database)
+        yield
+
+
+@contextmanager
+def _all_or_nothing(database: sqlite3.Connection) -> Iterator[None]:
     database.execute("BEGIN IMMEDIATE")
     try:
         yield
@@ -123,6 +124,7 @@ def one_state(database: sqlite3.Connection) -> Iterator[None]:
         return
     database.execute("BEGIN")
     try:
+        check_schema(database)
         yield
     finally:
         if database.in_transaction:
@@ -130,8 +132,7 @@ def one_state(database: sqlite3.Connection) -> Iterator[None]:
 
 
 def _lay_out(database: sqlite3.Connection) -> None:
-    for statement in TABLES.split(";"):
-        database.execute(statement)
+    lay_out(database)
     database.execute(f"PRAGMA application_id = {APPLICATION}")
     database.execute(f"PRAGMA user_version = {VERSION}")
 
@@ -140,17 +141,21 @@ def _check(database: sqlite3.Connection, path: Path) -> None:
     application = database.execute("PRAGMA application_id").fetchone()[0]
     version = database.execute("PRAGMA user_version").fetchone()[0]
     if application != APPLICATION:
-        raise InvalidFileError(f"{path} is no clip library.")
+        raise InvalidFileError(f"{path} is not a clip library.")
     if version > VERSION:
         raise InvalidFileError(
             f"The clip library {path} was written by a newer version of Mocap Assist"
             f" (format {version}; this version reads up to {VERSION}). Update the add-on."
         )
+    with one_state(database):  # It checks the tables.
+        pass
 
 
 def vocabulary_number(database: sqlite3.Connection) -> int:
     """Return what grows with each new vocabulary."""
-    return database.execute("SELECT max(number) FROM vocabulary").fetchone()[0] or 0
+    number = database.execute("SELECT max(number) FROM vocabulary").fetchone()[0] or 0
+    with decoding():
+        return number_in(number, 0, MAX_NUMBER)
 
 
 def read_vocabulary(database: sqlite3.Connection) -> Vocabulary | None:
@@ -170,7 +175,8 @@ def write_vocabulary(database: sqlite3.Connection, vocabulary: Vocabulary) -> No
 
 def block_numbers(database: sqlite3.Connection) -> list[int]:
     """Return the numbers of all blocks of the index, oldest first."""
-    return [number for (number,) in database.execute("SELECT number FROM blocks ORDER BY 1")]
+    with decoding():
+        return row_numbers(database, "blocks")
 
 
 def read_block(database: sqlite3.Connection, number: int, n_words: int) -> IndexBlock:

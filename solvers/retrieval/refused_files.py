@@ -4,10 +4,10 @@ import sqlite3
 from collections.abc import Iterable
 
 from .clip import Origin
-
-TABLE = """CREATE TABLE IF NOT EXISTS refused (
-    path TEXT PRIMARY KEY, size INTEGER, modified INTEGER, reader TEXT, sentence TEXT
-)"""
+from .library_storage.clip_rows import stored_origin
+from .library_storage.errors import decoding
+from .library_storage.schema import REFUSED
+from .library_storage.values import printable_text
 
 
 def read_refused(database: sqlite3.Connection, reader: str) -> dict[Origin, str]:
@@ -22,16 +22,18 @@ def read_refused(database: sqlite3.Connection, reader: str) -> dict[Origin, str]
     rows = database.execute(
         "SELECT path, size, modified, sentence FROM refused WHERE reader = ?", (reader,)
     )
-    return {
-        Origin(path, "", size, modified): sentence for path, size, modified, sentence in rows
-    }
+    with decoding():
+        return {
+            stored_origin(path, "", size, modified): printable_text(sentence)
+            for path, size, modified, sentence in rows
+        }
 
 
 def write_refused(
     database: sqlite3.Connection, reader: str, refused: Iterable[tuple[Origin, str]]
 ) -> None:
     """Remember files as they are now, in place of what was known of them."""
-    database.execute(TABLE)
+    database.execute(REFUSED)
     database.executemany(
         "INSERT OR REPLACE INTO refused VALUES (?, ?, ?, ?, ?)",
         [

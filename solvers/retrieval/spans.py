@@ -7,7 +7,7 @@ from numpy.typing import NDArray
 
 from ..progress import Progress, unwatched
 from .body_parts import N_PARTS
-from .clip_postures import ClipPostures
+from .clip_postures import ClipPostures, half_precision
 from .vocabulary import N_AXES, Vocabulary
 
 Array = NDArray[np.float64]
@@ -75,7 +75,7 @@ def describe(features: Array, frames: NDArray[np.int32], vocabulary: Vocabulary)
     return Spans(
         frames,
         np.round(FULL * np.stack(histograms)).astype(np.uint8),
-        np.stack(summaries).astype(np.float16),
+        half_precision(np.stack(summaries)),
     )
 
 

@@ -166,3 +166,10 @@ def usual_postures(clips: Sequence[ClipPostures]) -> UsualPostures:
     together = seen.astype(np.float64).T @ seen
     sizes, axes = np.linalg.eigh(beside.T @ beside / np.maximum(together, 1.0))
     return UsualPostures(mean, np.asarray((axes * np.maximum(sizes, 0.0)) @ axes.T))
+
+
+def is_covariance(matrix: Array) -> bool:
+    """Whether a matrix may be that of `usual_postures`; others have no solution."""
+    return bool(
+        np.allclose(matrix, matrix.T) and np.linalg.eigvalsh(matrix)[0] > -0.5 * NOISE**2
+    )

@@ -6,6 +6,7 @@ the few nearest words (locality-constrained rather than greedy: the support of a
 changes with the least noise).
 """
 
+import warnings
 from dataclasses import dataclass
 
 import numpy as np
@@ -14,7 +15,7 @@ from scipy.cluster.vq import kmeans2
 
 from .body_parts import N_FEATURES, N_PARTS, part_features
 from .clip_postures import ClipPostures
-from .usual_postures import N_COORDINATES, UsualPostures, usual_postures
+from .usual_postures import N_COORDINATES, UsualPostures, is_covariance, usual_postures
 
 Array = NDArray[np.float64]
 
@@ -25,6 +26,10 @@ N_NEAREST = 3
 """Words that share a frame between them."""
 TINY = 1e-6
 """Metres by which frames that are the same are set apart: clusters cannot be."""
+LEAST_SPREAD = 1e-6
+"""Squared metres."""
+LARGEST = 1e12
+"""Of all numbers that are learned: squares of metres, and frames, stay far below."""
 MOST_FRAMES = 12000
 """Of which words are learned: more make it slower, and no better."""
 SHAPES = {
@@ -118,14 +123,16 @@ def learn_vocabulary(clips: list[ClipPostures], seed: int = 0) -> Vocabulary:
         ((features[:, part, None] - words[part]) ** 2).sum(axis=-1).min(axis=-1)
         for part in range(N_PARTS)
     ])  # fmt: skip
-    spread = np.maximum(np.median(nearest, axis=-1), 1e-6)
+    spread = np.maximum(np.median(nearest, axis=-1), LEAST_SPREAD)
     return Vocabulary(centre, axes, words, spread, usual, n_frames)
 
 
 def _words(features: Array, n_words: int, rng: np.random.Generator) -> Array:
     """Return the middles of clusters; of those that lost all they had, any frame."""
     apart = features + rng.normal(scale=TINY, size=features.shape)
-    words, of = kmeans2(apart, n_words, minit="++", seed=rng, missing="warn")
+    with warnings.catch_warnings():
+        warnings.filterwarnings("ignore", "One of the clusters is empty")
+        words, of = kmeans2(apart, n_words, minit="++", seed=rng, missing="warn")
     empty = np.setdiff1d(np.arange(n_words), of)
     words[empty] = features[rng.integers(len(features), size=len(empty))]
     return np.asarray(words)
@@ -147,16 +154,27 @@ def vocabulary_from_arrays(stored: dict[str, bytes]) -> Vocabulary:
     Raises
     ------
     KeyError, ValueError
-        A part is missing, of another size, or no number.
+        A part is missing, of another size, or of numbers that were never learned.
     """
     read = {
         name: np.frombuffer(stored[name], "<f8").reshape(shape)
         for name, shape in SHAPES.items()
     }
-    if not all(np.isfinite(values).all() for values in read.values()):
-        raise ValueError("Some numbers are no numbers.")
+    if not _is_learned(read):
+        raise ValueError("The vocabulary was not learned.")
     return Vocabulary(
         **{name: read[name] for name in LEARNED},
         usual=UsualPostures(read["mean"], read["covariance"]),
         n_frames=int(read["n_frames"]),
     )
+
+
+def _is_learned(read: dict[str, Array]) -> bool:
+    """Whether numbers are such as `learn_vocabulary` finds: a search divides by some."""
+    in_range = [
+        *((np.abs(values) <= LARGEST).all() for values in read.values()),
+        (np.abs(read["axes"]) < 1.0 + TINY).all(),
+        (read["spread"] >= LEAST_SPREAD).all(),
+        read["n_frames"] >= 1,
+    ]
+    return all(in_range) and read["words"].size > 0 and is_covariance(read["covariance"])

@@ -5,8 +5,10 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from ..errors import InvalidFileError
+from ..files import is_missing, real_path
 from ..recordings import recordings_in
 from ..recordings.acclaim import find_skeleton
+from ..recordings.folder_scan import is_folder
 from ..retrieval import Origin
 from ..retrieval.clip import is_utf_8, text_fault
 
@@ -69,7 +71,7 @@ def path_fault(path: Path | str) -> str:
     """Return a sentence on why a library cannot keep a path, or nothing."""
     if is_utf_8(str(path)):
         return ""
-    return f"{str(path)!r} is no valid UTF-8; rename the file or its folder."
+    return f"{str(path)!r} is not valid UTF-8; rename the file or its folder."
 
 
 def _skeletons(path: Path) -> list[Path]:
@@ -92,13 +94,13 @@ def clip_sources(files_or_folders: Sequence[Path | str]) -> list[ClipSource]:
     """
     found: dict[Path, ClipSource] = {}
     for named in map(Path, files_or_folders):
-        whole = named.resolve()
-        if not whole.exists():
+        whole = real_path(named)
+        if is_missing(whole):
             raise InvalidFileError(f"There is no file or folder {named}.")
-        inside = recordings_in(whole) if whole.is_dir() else [whole]
+        is_one = not is_folder(whole)
+        inside = [whole] if is_one else recordings_in(whole)
         for path in inside:
-            place: tuple[str, ...] = (whole.parent.name, path.name)
-            if whole.is_dir():
-                place = (whole.name, *path.relative_to(whole).parts)
+            below = path.relative_to(whole.parent if is_one else whole).parts
+            place = (whole.parent.name if is_one else whole.name, *below)
             found.setdefault(path, ClipSource(path, place))
     return list(found.values())

@@ -5,6 +5,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from ..errors import InvalidMotionError
+from ..files import is_missing, real_path, reason_of
 from ..progress import Progress, unwatched
 from ..retrieval import ClipEntry, ClipLibrary, DescribedClip, Origin, open_clip_library
 from ..retrieval.clip import tags_fault
@@ -82,7 +83,7 @@ def index_files(
         There is no such file or folder; the library is none, damaged, of a newer version,
         cannot be written or made, or is being written by another program all the time.
     InvalidMotionError
-        A tag has control characters or is no valid UTF-8.
+        A tag has control characters or is not valid UTF-8.
     SolveCancelled
         Raised by `progress`.
     """
@@ -97,7 +98,7 @@ def index_files(
             indexing.take(done)
         indexing.write()
         if remove_missing:
-            indexing.remove_missing([Path(each).resolve() for each in files_or_folders])
+            indexing.remove_missing([real_path(each) for each in files_or_folders])
         progress(1.0)
         return indexing.report()
 
@@ -123,7 +124,7 @@ class _Indexing:
             try:
                 origin = source.origin()
             except OSError as error:
-                self._refused.append((str(source.path), f"{source.path}: {error.strerror}."))
+                self._refused.append((str(source.path), f"{source.path}: {reason_of(error)}."))
                 continue
             if sentence := source.fault() or self._known_refused.get(origin, ""):
                 self._refused.append((str(source.path), sentence))
@@ -169,7 +170,7 @@ class _Indexing:
         self._removed += self._library.discard([
             number
             for path, (number, _) in self._known.items()
-            if any(Path(path).is_relative_to(one) for one in named) and _has_gone(path)
+            if any(Path(path).is_relative_to(one) for one in named) and is_missing(path)
         ])  # fmt: skip
 
     def report(self) -> IndexReport:
@@ -183,17 +184,6 @@ class _Indexing:
         assert entry.origin is not None
         names = self._sources[entry.origin.path].names()
         return next(name for name in names if name not in taken)
-
-
-def _has_gone(path: str) -> bool:
-    """Return whether there is no such file; one in a folder closed to reading may be there."""
-    try:
-        Path(path).stat()
-    except (FileNotFoundError, NotADirectoryError):
-        return True
-    except (OSError, ValueError):
-        return False
-    return False
 
 
 def _of_files(library: ClipLibrary) -> Iterator[tuple[str, tuple[int, ClipEntry]]]:

@@ -60,7 +60,7 @@ def read_origin(entry: ClipEntry) -> Recording:
     Raises
     ------
     InvalidFileError
-        The file has gone, or is no recording any more.
+        The file has gone, or is not a recording any more.
     """
     origin = entry.origin
     if origin is None or origin.item:

@@ -119,7 +119,7 @@ def test_full_disk_is_one_sentence_when_the_request_does_not_fit(
 
     monkeypatch.setattr("pathlib.Path.write_bytes", no_room)
 
-    with pytest.raises(load("solvers.errors").MocapAssistError, match="started: No space"):
+    with pytest.raises(load("solvers.errors").MocapAssistError, match="the disk is full"):
         module.Job(Expression("None"))
     assert not list(tmp_path.iterdir())
 

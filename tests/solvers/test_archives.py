@@ -227,7 +227,7 @@ def test_pipes_folders_and_missing_files_are_said_as_such(kind, tmp_path):
     os.mkfifo(tmp_path / "pipe")
 
     for path in (tmp_path / "pipe", tmp_path, tmp_path / "gone.npz"):
-        with pytest.raises(InvalidFileError, match=r"it is no file|There is no file"):
+        with pytest.raises(InvalidFileError, match=r"it is not a file|There is no file"):
             LEARNED[kind].load(path)
 
 

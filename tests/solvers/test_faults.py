@@ -30,7 +30,7 @@ def test_attempt_returns_what_the_work_returns():
         (InvalidFileError("It is damaged."), f"{SUBJECT}: It is damaged.", True),
         (FileAccessError("walk.bvh cannot be read."), "walk.bvh cannot be read.", False),
         (OSError(5, "Input/output error"), f"{SUBJECT}: Input/output error.", False),
-        (OSError(28, "No space left", "out.bvh"), "out.bvh: No space left.", False),
+        (OSError(28, "No space left", "out.bvh"), "out.bvh: the disk is full.", False),
         (OSError("odd"), f"{SUBJECT}: odd.", False),
         (MemoryError(), f"{SUBJECT} needs more memory than there is; work on a part of the"
          " take.", False),
@@ -50,7 +50,7 @@ def test_attempt_reports_a_fault_of_ours_when_the_work_raises_anything_else(erro
 
     name = type(error).__name__
     assert re.fullmatch(
-        rf"{re.escape(str(SUBJECT))}: this is a fault of Mocap Assist \({name} at \S+:\d+\);"
+        rf"{re.escape(str(SUBJECT))}: this is a bug in Mocap Assist \({name} at \S+:\d+\);"
         r" please report it\.",
         failure.sentence,
     )
@@ -76,5 +76,5 @@ def test_a_sentence_is_valid_unicode_when_the_name_of_the_file_is_not():
     failure = attempt(name, failing(ValueError()))
 
     assert isinstance(failure, Failure)
-    assert failure.sentence.encode().startswith(rb"caf\udce9.bvh: this is a fault")
+    assert failure.sentence.encode().startswith(rb"caf\udce9.bvh: this is a bug")
     assert escaped("ü") == "ü"

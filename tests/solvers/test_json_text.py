@@ -1,6 +1,9 @@
 """JSON is refused where nobody could bear what it holds."""
 
+import gc
 import json
+from contextlib import suppress
+from time import process_time
 
 import pytest
 
@@ -31,3 +34,32 @@ def test_parse_json_refuses_text_when_it_is_nested_too_deeply(kind):
 def test_parse_json_refuses_what_is_no_json(text):
     with pytest.raises(ValueError, match=r"."):
         parse_json(text)
+
+
+@pytest.mark.parametrize("text", ["[" * 99, '\\"' + "[" * 99, "\\", '"', "]" * 99])
+def test_parse_json_passes_over_brackets_in_strings(text):
+    assert parse_json(json.dumps([text])) == [text]
+
+    hidden = f"[{json.dumps(text)}, {nested(MAX_DEPTH)}]"
+    with pytest.raises(ValueError, match="nested too deeply"):
+        parse_json(hidden)
+
+
+@pytest.mark.parametrize(
+    "line",
+    ["[" + "[]," * 10_900 + "[]]", '"' + '\\"' * 16_000, '["' * 16_000, "[" * 32_000],
+    ids=["lists", "quotes", "strings", "open"],
+)
+def test_parse_json_is_fast_whatever_the_text(line):
+    def one_look() -> float:
+        started = process_time()
+        for _ in range(8):  # As many lines as Listen reads in one look.
+            with suppress(ValueError):
+                parse_json(line)
+        return process_time() - started
+
+    gc.disable()  # It goes through all objects of all tests.
+    try:
+        assert min(one_look() for _ in range(5)) < 0.015
+    finally:
+        gc.enable()

@@ -1,9 +1,13 @@
 """What a killed writer left behind is cleared up, and nothing else."""
 
+import errno
 import os
 import sys
 from subprocess import run
 
+import pytest
+
+from solvers.errors import InvalidFileError
 from solvers.files import remove_leftovers, written_whole
 
 KILLED = """
@@ -13,6 +17,15 @@ with written_whole(sys.argv[1]) as part:
     part.write_text("half")
     os.kill(os.getpid(), signal.SIGKILL)
 """
+
+
+@pytest.mark.parametrize("number", [errno.ENOSPC, errno.EDQUOT])
+def test_full_disk_is_reported_as_such(tmp_path, number):
+    with (
+        pytest.raises(InvalidFileError, match="written: the disk is full"),
+        written_whole(tmp_path / "a.bvh"),
+    ):
+        raise OSError(number, os.strerror(number))
 
 
 def test_what_a_killed_writer_left_goes_and_what_is_there_stays(tmp_path):

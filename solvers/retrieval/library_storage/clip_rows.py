@@ -6,21 +6,24 @@ from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
 from dataclasses import replace
 from functools import lru_cache
 from itertools import count
-from math import inf
 from typing import Any
 
 import numpy as np
 
 from ...errors import InvalidMotionError
 from ...json_text import parse_json
+from ...motion.frame_rate import check_frame_rate
 from ..clip import ClipEntry, Origin
-from ..clip_postures import ClipPostures
+from ..clip_postures import ClipPostures, half_precision
 from ..describe_clip import DescribedClip
 from ..spans import RATE
 from .errors import decoding
+from .values import MAX_BYTES, number_in, printable_text, row_numbers, text
 
 FreeName = Callable[[ClipEntry, Collection[str]], str]
 """Returns a name for a clip that is none of those that are taken."""
+MAX_FRAMES = 10**9
+"""Of a clip: a day at 10 kHz."""
 ENTRY_COLUMNS = "name, tags, path, item, size, modified, n_frames, frame_rate"
 
 
@@ -85,8 +88,8 @@ def _write_clip(database: sqlite3.Connection, entry: ClipEntry, postures: ClipPo
         (
             entry.name, json.dumps(entry.tags), origin.path or None, origin.item, origin.size,
             origin.modified, entry.n_frames, entry.frame_rate,
-            postures.positions.astype("<f2").tobytes(),
-            postures.course.astype("<f2").tobytes(),
+            half_precision(postures.positions).tobytes(),
+            half_precision(postures.course).tobytes(),
         ),
     )  # fmt: skip
     return int(done.lastrowid or 0)
@@ -94,7 +97,8 @@ def _write_clip(database: sqlite3.Connection, entry: ClipEntry, postures: ClipPo
 
 def clip_numbers(database: sqlite3.Connection) -> list[int]:
     """Return the numbers of all clips, oldest first."""
-    return [number for (number,) in database.execute("SELECT number FROM clips ORDER BY 1")]
+    with decoding():
+        return row_numbers(database, "clips")
 
 
 def read_entries(
@@ -104,7 +108,7 @@ def read_entries(
 
     Numbers grow, and what is told of one never changes.
     """
-    there = sorted(number for (number,) in database.execute("SELECT number FROM clips"))
+    there = clip_numbers(database)
     rows = database.execute(
         f"SELECT number, {ENTRY_COLUMNS} FROM clips WHERE number > ?", (max(known, default=0),)
     )
@@ -116,17 +120,31 @@ def read_entries(
 @lru_cache(maxsize=1024)
 def _tags(stored: str) -> tuple[str, ...]:
     tags = parse_json(stored)
-    if not isinstance(tags, list) or not all(isinstance(tag, str) for tag in tags):
-        raise ValueError("Tags are words.")
-    return tuple(tags)
+    if not isinstance(tags, list):
+        raise ValueError("Tags are a list.")
+    return tuple(printable_text(tag) for tag in tags)
 
 
 def _entry(row: Sequence[Any]) -> ClipEntry:
     name, tags, path, item, size, modified, n_frames, frame_rate = row
-    if not isinstance(name, str) or not (n_frames > 0 and 0 < frame_rate < inf):
-        raise ValueError("A clip has a name and lasts for a while.")
-    origin = None if path is None else Origin(path, item, size, modified)
-    return ClipEntry(name, _tags(tags), origin, n_frames, frame_rate)
+    check_frame_rate(frame_rate)
+    return ClipEntry(
+        printable_text(name),
+        _tags(text(tags)),
+        None if path is None else stored_origin(path, item, size, modified),
+        number_in(n_frames, 1, MAX_FRAMES),
+        float(frame_rate),
+    )
+
+
+def stored_origin(path: Any, item: Any, size: Any, modified: Any) -> Origin:
+    """Return an origin as a row has it; raise ValueError where it names no file."""
+    return Origin(
+        text(path),
+        text(item),
+        number_in(size, 0, MAX_BYTES),
+        number_in(modified, -MAX_BYTES, MAX_BYTES),
+    )
 
 
 def read_postures(database: sqlite3.Connection, number: int, n_frames: int = 0) -> ClipPostures:
@@ -149,8 +167,11 @@ def read_postures(database: sqlite3.Connection, number: int, n_frames: int = 0) 
     with decoding():
         positions, course = (np.frombuffer(stored, "<f2").astype(np.float64) for stored in row)
         positions, course = positions.reshape(-1, 20, 3), course.reshape(-1, 4)
-        if len(positions) != len(course) or np.isinf(positions).any() or np.isinf(course).any():
-            raise ValueError("The frames do not fit each other, or something is infinite.")
+        positions[np.isnan(positions)] = np.nan  # Some stored ones are signals of an error.
+        if len(positions) != len(course):
+            raise ValueError("The frames do not fit each other.")
+        if np.isinf(positions).any() or not np.isfinite(course).all():
+            raise ValueError("Something is infinite.")
         if len(positions) < n_frames:
             raise ValueError("The index points beyond the end of the clip.")
         return ClipPostures(positions, course, RATE)

@@ -30,7 +30,7 @@ def readable_errors(path: Path | None) -> Iterator[None]:
             ) from None
         raise InvalidFileError(f"{name} cannot be used: {error}.") from None
     except (sqlite3.DatabaseError, UnicodeDecodeError):  # of its own words about damage
-        raise InvalidFileError(f"{name} is no clip library, or is damaged.") from None
+        raise InvalidFileError(f"{name} is not a clip library, or is damaged.") from None
 
 
 @contextmanager

@@ -104,7 +104,7 @@ def test_a_fault_of_a_reader_keeps_no_other_file_out(load, walks, monkeypatch, f
     assert isinstance(refusal, load("solvers.errors").InvalidFileError)
     assert str(walks / "cut.bvh") in str(refusal)
     if not isinstance(fault, MemoryError):
-        assert f"this is a fault of Mocap Assist ({type(fault).__name__} at" in str(refusal)
+        assert f"this is a bug in Mocap Assist ({type(fault).__name__} at" in str(refusal)
         assert "in fail" in refusal.__notes__[0]
 
 
@@ -128,7 +128,7 @@ def test_a_fault_over_one_file_leaves_the_others_in_the_scene(load, walks, blank
 
     assert sorted(blank.data.objects.keys()) == ["second"]
     (sentence,) = imported.failed
-    assert "first.bvh: this is a fault of Mocap Assist (IndexError at" in sentence
+    assert "first.bvh: this is a bug in Mocap Assist (IndexError at" in sentence
 
 
 def test_what_readers_say_is_told_in_a_window_and_by_a_script(press, window, walks, blank):

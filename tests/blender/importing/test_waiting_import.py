@@ -175,7 +175,7 @@ def test_a_fault_over_the_only_file_is_a_sentence_and_leaves_nothing(
     assert nothing_is_left(window)
     ((kind, said),) = window.reports
     assert kind == {"ERROR"}
-    assert "first.bvh: this is a fault of Mocap Assist (ZeroDivisionError at" in said
+    assert "first.bvh: this is a bug in Mocap Assist (ZeroDivisionError at" in said
 
 
 def test_one_at_a_time(press, window, blank):

@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 
-FAULT = "this is a fault of Mocap Assist (IndexError at "
+FAULT = "this is a bug in Mocap Assist (IndexError at "
 
 
 @pytest.fixture
@@ -60,7 +60,7 @@ def test_a_file_with_a_name_that_is_no_utf8_is_refused_and_the_others_are_not(
 
     assert done.n_clips == 3
     (sentence,) = done.refused
-    assert r"caf\udce9.blend' is no valid UTF-8" in sentence
+    assert r"caf\udce9.blend' is not valid UTF-8" in sentence
 
 
 def test_the_other_clips_are_indexed_when_one_cannot_be_described(

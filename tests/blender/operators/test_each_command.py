@@ -98,7 +98,7 @@ def test_a_shoot_is_imported_then_cleaned_then_taken_up_again(blank, command, ta
         (["each", "{takes}", "--output-folder", "{out}", "--", "quality"], "saves no .blend"),
         (["each", "{takes}", "--output-folder", "{out}", "--", "import", "--frame-rat", "x"],
          "frame-rat"),
-        (["each", "{out}/gone.blend", "--output-folder", "{out}", "--", "denoise"],
+        (["each", "{takes}/gone.blend", "--output-folder", "{out}", "--", "denoise"],
          "There is no file"),
     ],
 )  # fmt: skip
@@ -110,6 +110,21 @@ def test_what_cannot_be_done_is_said_at_once(command, takes, tmp_path, words, se
     assert status == 2
     assert sentence in err
     assert err.count("\n") == 1
+
+
+def test_link_to_itself_and_missing_file_stop_no_other(command, takes, tmp_path):
+    loop, out = tmp_path / "loop.bvh", tmp_path / "out"
+    loop.symlink_to(loop)
+
+    status, said, failed = command(
+        "each", loop, tmp_path / "gone.bvh", takes / "one.bvh",
+        "--output-folder", out, "--", "import",
+    )  # fmt: skip
+
+    assert status == 2
+    assert "2 of 3 files failed" in failed
+    assert "There is no file" in said
+    assert (out / "one.blend").exists()
 
 
 def test_markers_are_cleaned_where_there_is_no_armature(blank, command, load, tmp_path, rng):
@@ -182,7 +197,7 @@ def test_the_other_files_are_done_when_the_work_on_one_raises(
 
     assert (status, out.count("Done."), err.count("\n")) == (2, 1, 1)
     assert "2 of 3 files failed." in err and "Traceback" not in out + err
-    assert "one.bvh: this is a fault of Mocap Assist (IndexError at " in out
+    assert "one.bvh: this is a bug in Mocap Assist (IndexError at " in out
 
 
 def test_a_closed_folder_and_a_name_too_long_are_named_before_any_blender_starts(

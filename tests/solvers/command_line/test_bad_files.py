@@ -10,6 +10,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from long_takes import write_long_bvh
 
 from solvers.denoising import learn_filter_bases, load_filter_bases
 from solvers.errors import InvalidFileError
@@ -155,25 +156,33 @@ def test_a_file_is_no_folder_to_write_to(call, bvh):
     assert "is a file; name a folder to write to." in complaint
 
 
-def test_a_full_disk_is_named_and_leaves_the_old_file(bvh, tmp_path):
+@pytest.mark.parametrize("verb", ["convert", "learn"])
+def test_a_full_disk_is_named_and_leaves_what_was_there(bvh, tmp_path, verb):
     resource = pytest.importorskip("resource")
-    target = tmp_path / "out.bvh"
-    target.write_text("before")
+    source, target = bvh(), tmp_path / "out.bvh"
+    words = ["convert", source, target]
+    if verb == "learn":
+        target = tmp_path / "out.npz"
+        words = ["learn", source, "--output", target]
+        learn_filter_bases([read_bvh(source)]).save(target)
+    else:
+        target.write_text("before")
+    before = target.read_bytes()
 
     def limit() -> None:
         signal.signal(signal.SIGXFSZ, signal.SIG_IGN)
         resource.setrlimit(resource.RLIMIT_FSIZE, (1000, 1000))
 
     done = subprocess.run(
-        [sys.executable, "-B", "-m", "solvers", "convert", bvh(), target],
+        [sys.executable, "-B", "-m", "solvers", *words],
         cwd=ROOT, preexec_fn=limit, timeout=120, capture_output=True, text=True,
     )  # fmt: skip
 
     assert done.returncode == 2
     assert done.stderr.count("\n") == 1
-    assert "out.bvh cannot be written: " in done.stderr
-    assert target.read_text() == "before"
-    assert sorted(path.name for path in tmp_path.iterdir()) == ["in.bvh", "out.bvh"]
+    assert f"{target.name} cannot be written: " in done.stderr
+    assert target.read_bytes() == before
+    assert {path.name for path in tmp_path.iterdir()} == {"in.bvh", target.name}
 
 
 @pytest.mark.parametrize(
@@ -214,11 +223,11 @@ def test_an_interrupt_leaves_whole_files_only(swinging_leg, tmp_path):
     files = [tmp_path / f"{number}.bvh" for number in range(3)]
     for file in files:
         write_bvh(swinging_leg, file)
-    unread = tmp_path / "3.bvh"
-    os.mkfifo(unread)
+    long = tmp_path / "3.bvh"
+    write_long_bvh(swinging_leg, long)
     out = tmp_path / "out"
     with subprocess.Popen(
-        [sys.executable, "-m", "solvers", "denoise", *files, unread, "--output-folder", out],
+        [sys.executable, "-m", "solvers", "denoise", *files, long, "--output-folder", out],
         cwd=ROOT, stderr=subprocess.PIPE, stdout=subprocess.DEVNULL, text=True,
     ) as running:  # fmt: skip
         finished = [out / file.name for file in files]  # not glob, which sees unfinished files

@@ -10,7 +10,7 @@ from solvers.command_line.verb import Makes, Outcome, Verb
 from solvers.progress import unwatched
 from solvers.recordings import read_bvh
 
-FAULT = "this is a fault of Mocap Assist"
+FAULT = "this is a bug in Mocap Assist"
 
 
 @pytest.fixture

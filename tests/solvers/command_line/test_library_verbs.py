@@ -94,8 +94,8 @@ def test_slips_are_said_in_one_sentence(call, walks, library, tmp_path):
     for words, sentence in (
         (("find", query), "Name the recording and then the library; the names are 1."),
         (("find", query, none), "There is no clip library"),
-        (("find", query, query), "is no clip library"),
-        (("find", query, tmp_path / "empty"), "is no clip library"),
+        (("find", query, query), "is not a clip library"),
+        (("find", query, tmp_path / "empty"), "is not a clip library"),
         (("find", none, library), "There is no file"),
         (("find", query, library, "--frames", "90:"), "has 90 frames, none of them from 90 on"),
         (("find", query, library, *parts), "No part of the body is chosen"),
@@ -104,7 +104,10 @@ def test_slips_are_said_in_one_sentence(call, walks, library, tmp_path):
         (("index", none / "a.clips", walks), "cannot be used"),
         (("index", tmp_path / "a.bat", walks), "end its name in .clips."),
         (("index", library, walks, "--tag", "a\nb"), r"The tag 'a\nb' has control characters."),
-        (("denoise", query, tmp_path / "a.bvh", "--library", none), "There is no clip library"),
+        (
+            ("denoise", query, tmp_path / "a.bvh", "--library", none),
+            "There is no clip library",
+        ),
         (("reconstruct", query, tmp_path / "a.bvh", "--library", none), "no clip library"),
     ):
         status, _, failed = call(*words)

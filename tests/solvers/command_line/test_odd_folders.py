@@ -53,7 +53,7 @@ def test_a_library_refuses_a_name_that_is_no_utf8_and_keeps_the_others(call, fol
         status, out, err = call("index", tmp_path / "all.clips", folder)
 
         assert (status, err.count("\n")) == (2, 1)
-        assert r"caf\udce9.bvh' is no valid UTF-8" in err
+        assert r"caf\udce9.bvh' is not valid UTF-8" in err
         assert "all.clips has 2 clips" in out
     path.rename(folder / "cafe.bvh")
     assert call("index", tmp_path / "all.clips", folder)[0] == 0
@@ -83,7 +83,7 @@ def test_a_name_that_is_too_long_is_refused_when_it_is_named(call, folder, tmp_p
     status, _, err = call("convert", folder / "walk.bvh", target)
 
     assert (status, err.count("\n")) == (2, 1)
-    assert f"The output {'a' * 40}... needs a name of 256 bytes, and 255 is the most." in err
+    assert f"The output {'a' * 40}... needs a name of 256 bytes, but 255 is the maximum." in err
 
 
 def test_a_target_that_cannot_be_written_stops_no_other(call, folder, tmp_path):
@@ -145,3 +145,66 @@ def test_a_link_to_a_file_elsewhere_is_converted(call, folder, tmp_path):
 
     assert (status, err) == (0, "")
     assert read_bvh(tmp_path / "out" / "more" / "link.bvh").n_frames == 30
+
+
+def test_a_link_to_itself_stops_no_other(call, folder, tmp_path):
+    loop, out = tmp_path / "loop.bvh", tmp_path / "out"
+    loop.symlink_to(loop)
+    out.mkdir()
+    (out / "walk.bvh").symlink_to(out / "walk.bvh")
+
+    for words in (
+        ("convert", loop, folder / "walk.bvh", "--output-folder", out),
+        ("index", tmp_path / "a.clips", loop, folder / "walk.bvh"),
+        ("quality", loop, folder / "walk.bvh"),
+    ):
+        status, said, failed = call(*words)
+        assert (status, failed.count("\n")) == (2, 1), words
+        assert "loop.bvh" in failed
+        assert "walk.bvh" in said or "1 clip" in said
+    assert read_bvh(out / "walk.bvh").n_frames == 30
+
+
+def test_a_file_in_a_closed_folder_stops_no_other(call, folder, tmp_path, monkeypatch):
+    hidden = (folder / "more" / "walk.bvh").rename(folder / "more" / "hidden.bvh")
+    named = (hidden, folder / "walk.bvh")
+    for name in ("stat", "open"):  # As for somebody who may not look into it; root may.
+        monkeypatch.setattr(os, name, refusing(getattr(os, name), hidden))
+
+    for words in (
+        ("convert", *named, "--output-folder", tmp_path / "out"),
+        ("index", tmp_path / "a.clips", *named),
+    ):
+        status, said, failed = call(*words)
+        assert (status, failed.count("\n")) == (2, 1), failed
+        assert "ermission denied" in failed
+    assert "1 clip" in said
+
+
+def test_line_breaks_in_names_are_printed_escaped(call, folder, tmp_path):
+    odd = tmp_path / "odd\n\x1b[31mname"
+    named(folder, b"b\n\x1b[31mc.bvh")
+    folder.rename(odd)
+
+    for words in (
+        ("convert", odd, "--output-folder", tmp_path / "out"),
+        ("quality", odd),
+        ("index", tmp_path / "a\n\x1b[31m.clips", odd / "more", odd / "walk.bvh"),
+        ("quality", odd / "none.bvh"),
+        ("quality", tmp_path / "no\nfolder"),
+    ):
+        _, said, failed = call(*words)
+        assert "\x1b" not in said + failed, words
+        assert not [line for line in said.splitlines() if line.startswith(("[31m", "name"))]
+        assert failed.count("\n") <= 1 or words[0] == "index", failed
+
+
+def refusing(work, closed):
+    """Return what does the same, but for one file."""
+
+    def do(path, *arguments, **options):
+        if str(path) == str(closed):
+            raise PermissionError(13, "Permission denied", str(path))
+        return work(path, *arguments, **options)
+
+    return do

@@ -13,6 +13,7 @@ from urllib.parse import unquote
 import numpy as np
 import pytest
 from joint_files import kinect_csv, moving
+from long_takes import write_long_bvh
 
 from solvers.recordings import read_bvh, read_recording, write_bvh
 
@@ -127,15 +128,14 @@ def noted_in(folder: Path, name: str) -> bool:
 
 
 def test_killed_in_the_middle_and_taken_up_again(swinging_leg, takes, tmp_path, call):
-    """The last file cannot be read until somebody writes it: there the batch is killed."""
+    """The last file takes long: there the batch is killed."""
     out, late = tmp_path / "out", tmp_path / "late.bvh"
-    os.mkfifo(late)
+    write_long_bvh(swinging_leg, late)
     words = ["denoise", takes, late, "--output-folder", out]
     with subprocess.Popen([sys.executable, "-m", "solvers", *words], cwd=ROOT) as running:
         while running.poll() is None and not noted_in(out, "kinect"):
             time.sleep(0.02)
         os.kill(running.pid, signal.SIGKILL)
-    late.unlink()
     write_bvh(swinging_leg, late)
     n_made = len(json.loads((out / "mocap_assist.json").read_text()))
     (out / "report" / "takes").mkdir(parents=True)

@@ -45,9 +45,9 @@ def test_names_in_any_script_return(tmp_path_factory, joints):
     ("content", "sentence"),
     [
         ("{", "not a readable humanoid map"),
-        ("[1, 2]", "is no humanoid map"),
+        ("[1, 2]", "is not a humanoid map"),
         ("[" * 100_000, "not a readable humanoid map"),
-        (json.dumps({"joints": {"hips": "Hips"}}), "is no humanoid map"),
+        (json.dumps({"joints": {"hips": "Hips"}}), "is not a humanoid map"),
         (json.dumps({**HEAD, "version": 2, "joints": {}}), "version 2"),
         (json.dumps({**HEAD, "joints": ["Hips"]}), "must name a joint"),
         (json.dumps({**HEAD, "joints": {"hips": 3}}), "must name a joint"),

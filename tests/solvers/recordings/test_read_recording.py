@@ -1,15 +1,18 @@
 """A file is what it holds, whatever it is called."""
 
+import os
 import shutil
+import sys
 from functools import partial
 
 import numpy as np
 import pytest
 
 from solvers.errors import InvalidFileError, InvalidSettingError, SolveCancelled
-from solvers.motion import Motion, Tracks
+from solvers.motion import Motion, Tracks, read_humanoid_map
 from solvers.recordings import (
     read_bvh,
+    read_depth,
     read_motion_or_tracks,
     read_recording,
     write_bvh,
@@ -139,3 +142,13 @@ def test_what_no_recording_can_be_is_told_with_the_name_of_the_file(tmp_path):
 
     with pytest.raises(InvalidFileError, match=r"far\.npy"):
         read_recording(far)
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="needs pipes")
+@pytest.mark.parametrize("read", [read_recording, read_bvh, read_depth, read_humanoid_map])
+def test_pipe_is_refused_and_not_waited_for(tmp_path, read):
+    os.mkfifo(tmp_path / "pipe.bvh")
+    os.mkfifo(tmp_path / "pipe.asf")
+
+    with pytest.raises(InvalidFileError, match=r"is not a file|There is no file"):
+        read(tmp_path / "pipe.bvh")

@@ -185,7 +185,7 @@ def test_a_table_that_is_missing_or_garbled_is_said(path, table):
 
     with closing(sqlite3.connect(path)) as database, database:
         database.execute(f"DROP TABLE {table}")
-    with pytest.raises(InvalidFileError, match="cannot be used"):
+    with pytest.raises(InvalidFileError, match="is not a clip library"):
         ranking(load_clip_library(path))
 
 

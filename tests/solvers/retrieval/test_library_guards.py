@@ -27,7 +27,7 @@ ODD = {
     "a\x85": r"'a\x85' has control characters",
     "a\u2028b": r"'a\u2028b' has control characters",
     "a\u2029b": r"'a\u2029b' has control characters",
-    "caf\udce9": r"'caf\udce9' is no valid UTF-8",
+    "caf\udce9": r"'caf\udce9' is not valid UTF-8",
 }
 
 
@@ -136,7 +136,7 @@ def test_database_of_somebody_else_stays_as_it_is_even_without_tables(tmp_path):
     library_file.begin_file(path)
 
     assert path.read_bytes() == before
-    with pytest.raises(InvalidFileError, match="is no clip library"):
+    with pytest.raises(InvalidFileError, match="is not a clip library"):
         open_clip_library(path)
 
 

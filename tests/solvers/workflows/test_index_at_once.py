@@ -106,7 +106,7 @@ def test_odd_names_of_files_are_refused_and_the_others_become_clips(folders, lib
         sentences = sorted(sentence for _, sentence in report.refused)
         assert report.n_clips == 1
         assert len(sentences) == 2 and all(each.isprintable() for each in sentences)
-        assert r"caf\udce9/t2.bvh' is no valid UTF-8; rename the file or" in sentences[0]
+        assert r"caf\udce9/t2.bvh' is not valid UTF-8; rename the file or" in sentences[0]
         assert r"line\nbreak.bvh' has control characters; rename the file or" in sentences[1]
 
 

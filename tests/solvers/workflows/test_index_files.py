@@ -264,7 +264,7 @@ def test_what_is_not_there_is_refused_before_anything_is_done(folder, library, t
         index_files(library, [folder, tmp_path / "none"])
     assert not library.exists()
     library.write_text("no library at all, though long enough to be something else")
-    with pytest.raises(InvalidFileError, match="no clip library"):
+    with pytest.raises(InvalidFileError, match="not a clip library"):
         index_files(library, [folder])
 
 

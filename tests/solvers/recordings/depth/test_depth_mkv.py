@@ -228,9 +228,9 @@ WRONG_NAME = k4a(pictures(4), name="INFRARED").replace(b"222", b"999")
         (WRONG_NAME, OWN, "a video without raw depth"),
         (ebml_header(), OWN, "a video without raw depth"),
         (ebml_header()[:6], OWN, "a video without raw depth"),
-        (ebml_header() + b"\0\0\0\0", OWN, "what stands there is no Matroska"),
-        (at_time(2**60), OWN, "what stands there is no Matroska"),
-        (at_time(2**64 - 1), OWN, "what stands there is no Matroska"),
+        (ebml_header() + b"\0\0\0\0", OWN, "it is not in the Matroska format"),
+        (at_time(2**60), OWN, "it is not in the Matroska format"),
+        (at_time(2**64 - 1), OWN, "it is not in the Matroska format"),
     ],
 )  # fmt: skip
 def test_what_cannot_be_read_says_why(write, content, settings, sentence):

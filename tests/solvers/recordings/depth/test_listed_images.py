@@ -37,7 +37,7 @@ def folder(tmp_path, depth):
 @pytest.mark.parametrize("kind", ["depth", "rgb"])
 @pytest.mark.parametrize("way", ["up", "absolute", "device", "link", "folder that is a link"])
 def test_an_image_outside_of_the_folder_is_refused_and_not_opened(
-    folder, tmp_path, kind, way, monkeypatch
+    folder, depth, tmp_path, kind, way, monkeypatch
 ):
     secret = tmp_path / ("secret.png" if kind == "depth" else "secret_rgb.png")
     name = {
@@ -55,8 +55,14 @@ def test_an_image_outside_of_the_folder_is_refused_and_not_opened(
     real = listing.open_regular
     monkeypatch.setattr(listing, "open_regular", lambda path: opened.append(path) or real(path))
 
+    if kind == "rgb":  # Depth needs no color.
+        recording = read_depth(folder, LENS)
+        for frame, picture in enumerate(depth):
+            assert recording.frame(frame)[picture > 0].all()
+        assert recording.color(0).max() > 0
+
     with pytest.raises(InvalidFileError, match=OUTSIDE):
-        read_depth(folder, LENS)
+        read_depth(folder, LENS).color(8)
 
     assert all(path.resolve().is_relative_to(folder) for path in opened)
 
@@ -142,7 +148,7 @@ def test_confidence_of_another_size_than_depth_is_refused(tmp_path, depth):
     folder = stray(tmp_path, depth, (0.0, 1.0, 0.0, 1.0, 0.0, 0.0, 0.0))
     save_png(folder / "confidence" / "000004.png", np.zeros((5, 8), np.uint8))
 
-    with pytest.raises(InvalidFileError, match=r"000004\.png is no grey picture of 8 x 6"):
+    with pytest.raises(InvalidFileError, match=r"000004\.png is not a gray image of 8 x 6"):
         read_depth(folder).frame(4)
 
 
