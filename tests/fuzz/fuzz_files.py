@@ -21,7 +21,6 @@ from time import monotonic
 ROOT = Path(__file__).parents[2]
 sys.path[:0] = [str(ROOT), str(ROOT / "tests" / "fixtures"), str(ROOT / "tests" / "fuzz")]
 BUILD = ROOT / "build" / "fuzz"
-MAX_BYTES = 60_000
 MEMORY_MB = 1500
 SECONDS_FOR_ONE = 20
 """Only an endless loop takes so long for a file of some kilobytes."""
@@ -75,6 +74,8 @@ def search(name: str, seconds: int) -> None:
 
     with atheris.instrument_imports(include=["solvers"]):
         import targets as module
+    from mutations import damaged
+
     target = module.targets()[name]
     seed_folder = TemporaryDirectory()
     for number, seed in enumerate(module.seeds(name, target)):
@@ -85,51 +86,16 @@ def search(name: str, seconds: int) -> None:
         module.read_target(target, content, Path(folder.name))
 
     def damage(content: bytes, max_size: int, seed: int) -> bytes:
-        rng = random.Random(seed)
-        if not target.is_archive:
-            return _damaged(content, target.tokens, rng, atheris.Mutate, max_size)
-        try:
-            members = module.members_of(content)
-        except Exception:
-            members = module.members_of(target.seed)
-        members = members or module.members_of(target.seed)
-        chosen = rng.choice(sorted(members))
-        if rng.random() < 0.05:
-            del members[chosen]
-        else:
-            room = max(MAX_BYTES, len(members[chosen]))
-            members[chosen] = _damaged(
-                members[chosen], target.tokens, rng, atheris.Mutate, room
-            )
-        return module.packed(members)[:max_size]
+        return damaged(target, content, max_size, random.Random(seed), atheris.Mutate)
 
     options = [
-        f"-max_total_time={seconds}", f"-max_len={max(MAX_BYTES, 2 * len(target.seed))}",
+        f"-max_total_time={seconds}", f"-max_len={max(module.MAX_BYTES, 2 * len(target.seed))}",
         f"-rss_limit_mb={MEMORY_MB}", f"-timeout={SECONDS_FOR_ONE}", "-print_final_stats=1",
         f"-artifact_prefix={BUILD / 'found' / name}/", str(BUILD / "corpus" / name),
         seed_folder.name,
     ]  # fmt: skip
     atheris.Setup([sys.argv[0], *options], read, custom_mutator=damage)
     atheris.Fuzz()
-
-
-def _damaged(content, tokens, rng, mutate, max_size) -> bytes:
-    """Damage a few places: as libFuzzer does, or with the tokens of the format."""
-    for _ in range(rng.randint(1, 3)):
-        at = rng.randint(0, len(content))
-        token = rng.choice(tokens)
-        kind = rng.random()
-        if kind < 0.5:
-            content = mutate(content, max_size) if content else token
-        elif kind < 0.65:
-            content = content[:at] + token + content[at:]
-        elif kind < 0.8:
-            content = content[:at] + token + content[at + len(token) :]
-        elif kind < 0.9:
-            content = content[: at + rng.randint(0, 200)] + content[at:]
-        else:
-            content = content[:at]
-    return content[:max_size]
 
 
 if __name__ == "__main__":

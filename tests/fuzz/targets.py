@@ -4,7 +4,8 @@ The files are made by tests/fixtures; of ../shared/data/formats smaller ones joi
 """
 
 import io
-import sqlite3
+import json
+import re
 import zipfile
 from collections.abc import Callable, Iterator
 from pathlib import Path
@@ -13,22 +14,37 @@ from typing import NamedTuple
 
 import numpy as np
 from depth_files import depth_npz, matlab, pictures
+from fuzz_seeds import (
+    QUERY,
+    clip_library,
+    depth_folders,
+    journal_of,
+    live_frame,
+    png,
+    raw_depth,
+    scene_json,
+)
 from learned_files import LEARNED, npz
 from mkv_files import k4a
 from whole_files import JOINT_FILES, JOINT_TOKENS, RECORDING, SKELETON, TOKENS, WHOLE
 
 from solvers.command_line.batch import Made
 from solvers.errors import MocapAssistError
+from solvers.json_text import parse_json
 from solvers.motion import read_humanoid_map
 from solvers.motion.depth_recording import DepthRecording
 from solvers.recordings import DepthSettings, read_depth, read_recording
-from solvers.recordings.live_frames import LiveFrame, decode_frame, encode_frame
-from solvers.retrieval import Clip, build_clip_library, load_clip_library
-from solvers.samples import GaitSettings, walking_gait
+from solvers.recordings.depth_folder import is_depth_folder
+from solvers.recordings.live_frames import decode_frame
+from solvers.recordings.png_header import png_header
+from solvers.retrieval import Clip, find_similar, load_clip_library
 
+DATA = Path(__file__).parents[1] / "data"
 FORMATS = Path(__file__).parents[3] / "shared" / "data" / "formats"
+MAX_BYTES = 60_000
 MAX_SEED_BYTES = 20_000
 OWN_CAMERA = DepthSettings(fx=9.0, fy=8.0)
+OWN_UNIT = DepthSettings(fx=9.0, fy=8.0, scale=0.001)
 DEPTH = pictures(5)
 BONE_MAP = b'{"kind":"mocap_assist humanoid map","version":1,"joints":{"hips":"a"}}'
 BINARY_TOKENS = [
@@ -51,6 +67,8 @@ class Target(NamedTuple):
     """Other files that the reader needs, by name."""
     is_archive: bool = False
     """Whether it is a zip, whose members are damaged before they are packed."""
+    is_database: bool = False
+    """Whether it is a library, of which also cells and tables are damaged."""
 
 
 def read_target(target: Target, content: bytes, folder: Path) -> None:
@@ -101,8 +119,25 @@ def targets() -> dict[str, Target]:
         name = kind.replace(" ", "_")
         content = npz(learned.arrays)
         found[name] = Target(content, learned.load, BINARY_TOKENS, is_archive=True)
-    found["clip_library"] = Target(_clip_library(), _search, BINARY_TOKENS, "a.clips")
-    found["live_frame"] = Target(_live_frame(), _read_frames, JOINT_TOKENS)
+    library = clip_library()
+    found["clip_library"] = Target(library, _search, BINARY_TOKENS, "a.clips", is_database=True)
+    found["clip_journal"] = Target(
+        journal_of(library),
+        lambda path: _search(path.with_name("a.clips")),
+        BINARY_TOKENS,
+        "a.clips-journal",
+        (("a.clips", library),),
+    )
+    found["depth_raw"] = Target(raw_depth(), _read_depth, BINARY_TOKENS)
+    found["png"] = Target(
+        png(DEPTH[0]), lambda path: png_header(path.parent, path.name), BINARY_TOKENS
+    )
+    for kind, content in depth_folders().items():
+        found[f"folder_{kind}"] = Target(
+            content, _read_folder, [*TOKENS, *BINARY_TOKENS], is_archive=True
+        )
+    found["json"] = Target(scene_json(), _read_json, JOINT_TOKENS)
+    found["live_frame"] = Target(live_frame(), _read_frames, JOINT_TOKENS)
     found["bone_map"] = Target(
         BONE_MAP,
         read_humanoid_map,
@@ -119,9 +154,10 @@ def targets() -> dict[str, Target]:
 
 
 def seeds(name: str, target: Target) -> Iterator[bytes]:
-    """Yield complete files to begin with: our own and, where they are, foreign small ones."""
+    """Yield complete files to begin with: our own, those that were found and, where they are,
+    small ones of others."""
     yield target.seed
-    for path in sorted(FORMATS.glob(f"{name}/*")) if FORMATS.is_dir() else ():
+    for path in [*sorted(DATA.glob(f"*/{name}/*")), *sorted(FORMATS.glob(f"{name}/*"))]:
         if path.is_file() and path.stat().st_size <= MAX_SEED_BYTES:
             yield path.read_bytes()
 
@@ -149,25 +185,47 @@ def _read_frames(path: Path) -> list[object]:
     return [decode_frame(line) for line in path.read_bytes().split(b"\n")[:20]]
 
 
-def _live_frame() -> bytes:
-    positions = np.array([[0.0, 0.0, 1.0], [0.0, 0.0, 1.7]])
-    frame = LiveFrame(0.1, 1, ("hips", "head"), positions, np.array([1.0, 0.9]))
-    return encode_frame(frame).rstrip(b"\n")
-
-
-def _clip_library() -> bytes:
-    walk = walking_gait(GaitSettings(duration=2.0, frame_rate=30.0))
-    with TemporaryDirectory() as folder:
-        path = Path(folder) / "a.clips"
-        build_clip_library([Clip("walk", walk, ("calm",))]).save(path)
-        database = sqlite3.connect(path)
-        database.execute("VACUUM")
-        database.close()
-        return path.read_bytes()
-
-
 def _search(path: Path) -> object:
     with load_clip_library(path) as library:
         entries = library.numbered()
         postures = [library.postures(number) for number in list(entries)[:3]]
-        return postures, library.blocks, library.vocabulary
+        found = find_similar(QUERY, library)
+        library.add([Clip("more", QUERY)])
+        library.remove(["more"])
+        return postures, found, library.refused("1")
+
+
+def _read_folder(path: Path) -> int:
+    """Read a folder of depth images, which come packed as a zip."""
+    with TemporaryDirectory(dir=path.parent) as folder:
+        for name, content in _members_or_none(path.read_bytes()).items():
+            inside = Path(folder) / name
+            inside.parent.mkdir(parents=True, exist_ok=True)
+            inside.write_bytes(content)
+        is_depth_folder(Path(folder))
+        recording = read_depth(folder, OWN_UNIT)
+        for frame in range(min(recording.n_frames, 3)):
+            recording.frame(frame)
+            recording.color(frame)
+        return recording.n_frames
+
+
+def _members_or_none(content: bytes) -> dict[str, bytes]:
+    """Return the files in a zip of a folder; only such names as ours are made."""
+    try:
+        members = members_of(content)
+    except Exception:
+        return {}
+    return {
+        name: inside
+        for name, inside in members.items()
+        if re.fullmatch(r"([a-z]+/)?[\w]+(\.[\w]+)*", name)
+    }
+
+
+def _read_json(path: Path) -> object:
+    """Read JSON as scenes, permissions and reports keep it; what was read can be written."""
+    try:
+        return json.dumps(parse_json(path.read_bytes()))
+    except ValueError:
+        return None

@@ -6,6 +6,7 @@ from contextlib import contextmanager
 from pathlib import Path
 
 from ...errors import InvalidFileError
+from ...faults import escaped
 
 BUSY = {sqlite3.SQLITE_BUSY, sqlite3.SQLITE_LOCKED}
 PRIMARY = 0xFF
@@ -18,7 +19,7 @@ def readable_errors(path: Path | None) -> Iterator[None]:
     name = "The clip library in memory" if path is None else f"The clip library {path}"
     try:
         yield
-    except sqlite3.OperationalError as error:
+    except (sqlite3.DatabaseError, UnicodeDecodeError) as error:
         code = getattr(error, "sqlite_errorcode", 0) & PRIMARY
         if code in BUSY:
             raise InvalidFileError(
@@ -28,8 +29,9 @@ def readable_errors(path: Path | None) -> Iterator[None]:
             raise InvalidFileError(
                 f"{name} cannot be written: the disk is full. It is as it was before."
             ) from None
-        raise InvalidFileError(f"{name} cannot be used: {error}.") from None
-    except (sqlite3.DatabaseError, UnicodeDecodeError):  # of its own words about damage
+        # Without a code it is Python that cannot decode a text, or `decoding` below.
+        if isinstance(error, sqlite3.OperationalError) and code:
+            raise InvalidFileError(f"{name} cannot be used: {escaped(str(error))}.") from None
         raise InvalidFileError(f"{name} is not a clip library, or is damaged.") from None
 
 

@@ -163,9 +163,9 @@ def test_value_of_another_kind_is_damage(path, table, column, value):
         use(path)
 
 
-def test_path_that_is_not_utf_8_is_refused(path):
+def test_path_that_is_not_utf_8_is_damage(path):
     change(path, "UPDATE clips SET path = 'caf' || CAST(x'ff' AS TEXT)")
-    with pytest.raises(InvalidFileError, match="The clip library"):
+    with pytest.raises(InvalidFileError, match="damaged"):
         use(path)
 
 
