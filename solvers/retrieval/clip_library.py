@@ -24,15 +24,11 @@ from .library_storage.errors import readable_errors
 from .refused_files import read_refused, write_refused
 from .search_index import SearchIndex
 from .spans import RATE, describe_all_spans
-from .vocabulary import MOST_FRAMES, Vocabulary, learn_vocabulary
+from .vocabulary import Vocabulary, learn_vocabulary
 
-OUTGROWN = 4
-"""A library of so many times the frames that its words were learned of learns new ones."""
 LARGEST_BLOCK = 50_000
 """Spans from which on blocks are not put together: SQLite stores no more than about four times
 as many in one row, and a merge would need much memory."""
-WELL_LEARNED = 8 * MOST_FRAMES
-"""Frames from which on words are good for whatever comes."""
 
 
 class ClipLibrary:
@@ -159,7 +155,7 @@ class ClipLibrary:
         with readable_errors(self._path), files.transaction(self._database):
             self._refresh()
             written = rows.write_clips(self._database, clips, free_name)
-            if self._outgrown(sum(clip.n_frames for clip in postures)):
+            if self._needs_new_words(sum(clip.n_frames for clip in postures)):
                 self._index_all(progress)
             else:
                 self._index(list(written), postures, progress)
@@ -254,13 +250,10 @@ class ClipLibrary:
             self._numbers = self._alive = self._index_of_all = None
             self._seen = seen
 
-    def _outgrown(self, n_frames: int) -> bool:
-        """Tell whether the words were learned of too little for a library of this size."""
-        if self._vocabulary is None:
-            return True
-        learned = self._vocabulary.n_frames
+    def _needs_new_words(self, n_frames: int) -> bool:
+        """Whether the vocabulary was learned from too little for a library of this size."""
         stored = sum(entry.seconds for entry in self._entries.values()) * RATE
-        return learned < WELL_LEARNED and stored + n_frames > OUTGROWN * learned
+        return self._vocabulary is None or self._vocabulary.is_outgrown(stored + n_frames)
 
     def _index_all(self, progress: Progress) -> None:
         """Learn words anew and describe all clips by them."""

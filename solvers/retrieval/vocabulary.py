@@ -32,6 +32,10 @@ LARGEST = 1e12
 """Of all numbers that are learned: squares of metres, and frames, stay far below."""
 MOST_FRAMES = 12000
 """Of which words are learned: more make it slower, and no better."""
+OUTGROWN = 4
+"""A library of so many times the frames that its words were learned from learns new ones."""
+WELL_LEARNED = 8 * MOST_FRAMES
+"""Frames from which on words are good for whatever comes."""
 SHAPES = {
     "centre": (N_PARTS, N_FEATURES),
     "axes": (N_PARTS, N_FEATURES, N_AXES),
@@ -67,6 +71,10 @@ class Vocabulary:
     spread: Array
     usual: UsualPostures
     n_frames: int
+
+    def is_outgrown(self, n_frames: float) -> bool:
+        """Whether it was learned from too little for a library of so many frames at 20 Hz."""
+        return self.n_frames < WELL_LEARNED and n_frames > OUTGROWN * self.n_frames
 
     def features(self, postures: ClipPostures) -> Array:
         """Return what each part does, shape (n_frames, 5, 8), metres."""
