@@ -95,46 +95,46 @@ failures: .venv-4.5/ready  ## learn when a tracked pose is wrong, and print the 
 # Each prints tables; with ARGUMENTS=--docs it rewrites its own part of docs/benchmarks.md, and
 # ARGUMENTS=--help tells what else there is.
 bench-denoise: .venv-4.5/ready  ## measure denoising and gap filling against peers
-	$(PYTHON_4.5) -m tests.benchmarks.bench_denoise $(ARGUMENTS)
+	$(PYTHON_4.5) -m tests.benchmarks.denoise.bench_denoise $(ARGUMENTS)
 
 bench-feet: .venv-4.5/ready  ## measure planting of feet against pinning them
-	$(PYTHON_4.5) -m tests.benchmarks.bench_feet $(ARGUMENTS)
+	$(PYTHON_4.5) -m tests.benchmarks.denoise.bench_feet $(ARGUMENTS)
 
 bench-bvh: .venv-4.5/ready  ## measure reading of BVH against Blender's importer
-	$(PYTHON_4.5) -m tests.benchmarks.bench_bvh_import $(ARGUMENTS)
+	$(PYTHON_4.5) -m tests.benchmarks.importing.bench_bvh_import $(ARGUMENTS)
 
 bench-scene: .venv-4.5/ready  ## measure reading and writing of actions of 120 bones
-	$(PYTHON_4.5) -m tests.benchmarks.bench_scene_io $(ARGUMENTS)
+	$(PYTHON_4.5) -m tests.benchmarks.importing.bench_scene_io $(ARGUMENTS)
 
 bench-import: .venv-4.5/ready  ## measure how long recordings of five minutes take to come in
-	$(PYTHON_4.5) -m tests.benchmarks.bench_import $(ARGUMENTS)
+	$(PYTHON_4.5) -m tests.benchmarks.importing.bench_import $(ARGUMENTS)
 
 bench-reliability: .venv-4.5/ready  ## measure how well wrong joints of a Kinect are told
-	$(PYTHON_4.5) -m tests.benchmarks.bench_reliability $(ARGUMENTS)
+	$(PYTHON_4.5) -m tests.benchmarks.reconstruction.bench_reliability $(ARGUMENTS)
 
 bench-reconstruct: .venv-4.5/ready  ## measure rebuilding of Kinect joints against peers
-	$(PYTHON_4.5) -m tests.benchmarks.bench_reconstruct $(ARGUMENTS)
+	$(PYTHON_4.5) -m tests.benchmarks.reconstruction.bench_reconstruct $(ARGUMENTS)
 
 bench-retrieval: .venv-4.5/ready  ## measure finding of similar clips against peers
-	$(PYTHON_4.5) -m tests.benchmarks.bench_retrieval $(ARGUMENTS)
+	$(PYTHON_4.5) -m tests.benchmarks.retrieval.bench_retrieval $(ARGUMENTS)
 
 bench-retarget: .venv-4.5/ready  ## measure retargeting and unbaking against Blender's Decimate
-	$(PYTHON_4.5) -m tests.benchmarks.bench_retarget $(ARGUMENTS)
+	$(PYTHON_4.5) -m tests.benchmarks.retarget.bench_retarget $(ARGUMENTS)
 
 bench-variation: .venv-4.5/ready  ## measure variants of a few clips against peers
-	$(PYTHON_4.5) -m tests.benchmarks.bench_variation $(ARGUMENTS)
+	$(PYTHON_4.5) -m tests.benchmarks.variation.bench_variation $(ARGUMENTS)
 
 bench-depth: .venv-4.5/ready  ## measure the depth tracker against known joints and peers
-	$(PYTHON_4.5) -m tests.benchmarks.bench_depth $(ARGUMENTS)
+	$(PYTHON_4.5) -m tests.benchmarks.depth.bench_depth $(ARGUMENTS)
 
 bench-physics: .venv-4.5/ready  ## measure Physics, before and after and at part of its strength
-	$(PYTHON_4.5) -m tests.benchmarks.bench_physics $(ARGUMENTS)
+	$(PYTHON_4.5) -m tests.benchmarks.physics.bench_physics $(ARGUMENTS)
 
 bench-gestures: .venv-4.5/ready  ## measure gestures told, missed and told for nothing
-	$(PYTHON_4.5) -m tests.benchmarks.bench_gestures $(ARGUMENTS)
+	$(PYTHON_4.5) -m tests.benchmarks.retrieval.bench_gestures $(ARGUMENTS)
 
 bench-retarget-rig: .venv-4.5/ready  ## measure Retarget in Blender against baking controls
-	$(PYTHON_4.5) -m tests.benchmarks.bench_retarget_rig $(ARGUMENTS)
+	$(PYTHON_4.5) -m tests.benchmarks.retarget.bench_retarget_rig $(ARGUMENTS)
 
 # --- The extension ---
 

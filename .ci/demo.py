@@ -141,7 +141,9 @@ def lose_arm(armature: Any) -> None:
 
 def body(bpy: Any, armature: Any) -> Any:
     """Return what the armature plays as a Motion."""
-    take = installed("mocap_assist.scene.armature_read").read_take(armature, bpy.context.scene)
+    take = installed("mocap_assist.actions.armature_read").read_take(
+        armature, bpy.context.scene
+    )
     return take.parts[0].motion
 
 
@@ -173,7 +175,7 @@ def figures(raw: Any, clean: Any, truth: Any) -> list[tuple[str, str, str]]:
 
 def angle_error(motion: Any, truth: Any, where: Any) -> float:
     """Mean angle between local rotations, degrees, of the joints that turn."""
-    rotations = installed("solvers.motion.rotations")
+    rotations = installed("solvers.rotations.representations")
     names = [name for name in truth.skeleton.names if not name.endswith("_end")]
     mine = [motion.skeleton.index(name) for name in names]
     theirs = [truth.skeleton.index(name) for name in names]
@@ -184,7 +186,7 @@ def angle_error(motion: Any, truth: Any, where: Any) -> float:
 def draw(raw: Any, clean: Any, rows: list[tuple[str, str, str]], path: Path) -> None:
     """Save stick figures, the curves that changed most, and the table, as one picture."""
     pictures = installed("solvers.pictures")
-    rotations = installed("solvers.motion.rotations")
+    rotations = installed("solvers.rotations.representations")
     angles = rotations.angle_between(raw.rotations, clean.rotations)
     gaps, change = (~raw.observed).mean(axis=0), np.nansum(angles, axis=0)
     most = sorted(range(raw.n_joints), key=lambda joint: (-gaps[joint], -change[joint]))

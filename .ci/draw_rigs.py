@@ -53,15 +53,16 @@ def load_extension(bpy: ModuleType) -> str:
 
 def draw(bpy: ModuleType, extension: str, source: Any, target: Any, path: Path) -> None:
     """Draw source and target side by side at the same moments."""
-    from mocap_ext.mocap_assist import retarget_choices, retargeting
+    from mocap_ext.mocap_assist.retarget import choices as retarget_choices
+    from mocap_ext.mocap_assist.retarget import retargeting
     from mocap_ext.solvers.motion import Motion, local_rotations
-    from mocap_ext.solvers.motion.rotations import quaternion_from_matrix
     from mocap_ext.solvers.pictures import (
         StickFigureSettings,
         draw_stick_figures,
         stack_pictures,
     )
     from mocap_ext.solvers.retargeting import RetargetSettings
+    from mocap_ext.solvers.rotations.representations import quaternion_from_matrix
 
     chosen = retarget_choices.RetargetBundle(
         retarget_choices.RetargetChoices(target=target.name), RetargetSettings()

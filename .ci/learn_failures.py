@@ -2,13 +2,13 @@
 
     make failures
 
-From trackers that follow the sequences of tests/benchmarks/depth_tuning.py, whose true joints
+From trackers that follow the sequences of tests/benchmarks/depth/depth_tuning.py; true joints
 are known.
 """
 
-from solvers.depth_tracking.failure_test import FEATURES
-from tests.benchmarks.depth_tuning import TAKES, tuning_sequence
-from tests.benchmarks.failures import WRONG, judged, learned
+from solvers.depth_tracking.tracking.failure_test import FEATURES
+from tests.benchmarks.depth.depth_tuning import TAKES, tuning_sequence
+from tests.benchmarks.depth.failures import WRONG, judged, learned
 
 
 def main() -> None:

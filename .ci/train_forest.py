@@ -13,17 +13,13 @@ from dataclasses import replace
 from functools import partial
 from pathlib import Path
 
-from solvers.depth_tracking.grow_tree import Tree
-from solvers.depth_tracking.pixel_forest import SHIPPED, PixelForest
-from solvers.depth_tracking.train_forest import (
+from solvers.depth_tracking.forest.grow_tree import Tree
+from solvers.depth_tracking.forest.pixel_forest import SHIPPED, PixelForest
+from solvers.depth_tracking.forest_training.train_forest import (
     PixelForestSettings,
     train_pixel_forest,
 )
-from tests.benchmarks.forest_sources import (
-    WORDS,
-    all_bodies,
-    taught_motions,
-)
+from tests.benchmarks.depth.forest_sources import WORDS, all_bodies, taught_motions
 
 SETTINGS = PixelForestSettings(
     n_trees=4, n_pictures=12_000, n_pixels=120, levels=18, n_candidates=100, least_pixels=50

@@ -9,9 +9,9 @@ UI-PRMD (Vakanski, Jun, Paul, Baker 2018, published as ODC-PDDL).
 import argparse
 from pathlib import Path
 
-from solvers.reconstruction.posture_library import SHIPPED
-from tests.benchmarks.kinect_pairs import read_pairs
-from tests.benchmarks.posture_sources import (
+from solvers.reconstruction.pose_library.posture_library import SHIPPED
+from tests.benchmarks.reconstruction.kinect_pairs import read_pairs
+from tests.benchmarks.reconstruction.posture_sources import (
     cmu_library,
     exercise_library,
     joined,

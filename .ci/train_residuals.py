@@ -19,9 +19,9 @@ from solvers.reconstruction import (
     learn_residual_prior,
     load_residual_prior,
 )
-from solvers.reconstruction.learn_confidence import calibrated
 from solvers.reconstruction.reconstruct import SHIPPED
-from tests.benchmarks.kinect_pairs import read_pairs
+from solvers.reconstruction.residual_correction.learn_confidence import calibrated
+from tests.benchmarks.reconstruction.kinect_pairs import read_pairs
 
 SETTINGS = ResidualPriorSettings(local_points=30, whole_points=60)
 WORDS = "UI-PRMD: ten exercises by five actors, Kinect v2 against markers"

@@ -6,10 +6,14 @@ Blender is imported only on `register`: a solve in a process of its own passes t
 
 def register() -> None:
     """Make properties, commands and panels known to Blender."""
-    from . import batch, scene_properties, ui, watch
-    from .library import background, ghost_drawing, keeping, previews, properties
+    from . import batch, scene_properties, ui
+    from .actions import contacts
+    from .depth import depth_preview
+    from .library import background, keeping
     from .live import listening
-    from .scene import body_overlay, contacts, depth_preview
+    from .runtime import watch
+    from .search import ghost_drawing, previews, properties
+    from .track import body_overlay
 
     scene_properties.register()
     properties.register()
@@ -28,10 +32,14 @@ def register() -> None:
 
 def unregister() -> None:
     """Take them away again."""
-    from . import batch, scene_properties, ui, watch
-    from .library import background, ghost_drawing, keeping, previews, properties
+    from . import batch, scene_properties, ui
+    from .actions import contacts
+    from .depth import depth_preview
+    from .library import background, keeping
     from .live import listening
-    from .scene import body_overlay, contacts, depth_preview
+    from .runtime import watch
+    from .search import ghost_drawing, previews, properties
+    from .track import body_overlay
 
     ui.unregister()
     batch.unregister()

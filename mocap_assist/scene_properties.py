@@ -7,16 +7,16 @@ running solve is.
 
 import bpy
 
-from .check_choices import CheckSettings
-from .clean_choices import CleanSettings
+from .blender.settings_properties import settings_from
+from .check.choices import CheckSettings
+from .clean.choices import CleanSettings
 from .library.choices import FindBundle, LibraryBundle, LoadBundle, UseBundle
-from .reconstruct_choices import ReconstructBundle
-from .retarget_choices import RetargetBundle, UnbakeBundle
-from .retracking import RetrackBundle
-from .settings_properties import settings_from
-from .simulating import SimulateBundle
-from .solving import SolveBundle
-from .tracking import TrackBundle
+from .markers.solving import SolveBundle
+from .physics.simulating import SimulateBundle
+from .reconstruct.choices import ReconstructBundle
+from .retarget.choices import RetargetBundle, UnbakeBundle
+from .track.retracking import RetrackBundle
+from .track.tracking import TrackBundle
 from .variants.choices import CrowdBundle, VaryBundle
 from .variants.properties import CLASSES as VARIANTS
 from .variants.properties import MOCAP_PG_variants

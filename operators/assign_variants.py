@@ -4,7 +4,7 @@ from typing import ClassVar
 
 import bpy
 
-from ..mocap_assist.settings_properties import settings_from
+from ..mocap_assist.blender.settings_properties import settings_from
 from ..mocap_assist.variants.choices import CrowdBundle
 from ..mocap_assist.variants.crowd import assign, crowd_of, why_not_assign
 from ..solvers.errors import MocapAssistError

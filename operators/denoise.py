@@ -2,11 +2,11 @@
 
 import bpy
 
-from ..mocap_assist.clean_choices import QUICK, CleanSettings
-from ..mocap_assist.cleaning import read_cleaning, write_cleaned
-from ..mocap_assist.selection import why_not_clean
-from ..mocap_assist.settings_properties import settings_from
-from ..mocap_assist.solver_operator import SolverOperator
+from ..mocap_assist.blender.settings_properties import settings_from
+from ..mocap_assist.clean.choices import QUICK, CleanSettings
+from ..mocap_assist.clean.cleaning import read_cleaning, write_cleaned
+from ..mocap_assist.runtime.selection import why_not_clean
+from ..mocap_assist.runtime.solver_operator import SolverOperator
 
 
 @settings_from(CleanSettings)

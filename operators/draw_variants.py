@@ -4,7 +4,7 @@ from typing import ClassVar
 
 import bpy
 
-from ..mocap_assist.path_properties import file_to_write, path_property
+from ..mocap_assist.blender.path_properties import file_to_write, path_property
 from ..mocap_assist.variants.crowd import why_not_stack
 from ..mocap_assist.variants.sheet import write_sheet
 from ..solvers.errors import MocapAssistError

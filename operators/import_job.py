@@ -4,9 +4,9 @@ from typing import ClassVar
 
 import bpy
 
-from ..mocap_assist.import_choices import ImportSettings
-from ..mocap_assist.import_operator import WaitingImport
-from ..mocap_assist.settings_properties import settings_from
+from ..mocap_assist.blender.settings_properties import settings_from
+from ..mocap_assist.importing.choices import ImportSettings
+from ..mocap_assist.importing.import_operator import WaitingImport
 
 
 @settings_from(ImportSettings)

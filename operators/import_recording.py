@@ -5,12 +5,12 @@ from typing import ClassVar
 import bpy
 from bpy.props import StringProperty
 
-from ..mocap_assist.import_choices import ImportSettings
-from ..mocap_assist.import_operator import WIDTH, FilesOperator
-from ..mocap_assist.importing import FILTER, chosen_paths, preview
-from ..mocap_assist.path_properties import HIDDEN
-from ..mocap_assist.settings_properties import settings_from
-from ..mocap_assist.solver_operator import in_background
+from ..mocap_assist.blender.path_properties import HIDDEN
+from ..mocap_assist.blender.settings_properties import settings_from
+from ..mocap_assist.importing.choices import ImportSettings
+from ..mocap_assist.importing.import_operator import WIDTH, FilesOperator
+from ..mocap_assist.importing.importing import FILTER, chosen_paths, preview
+from ..mocap_assist.runtime.solver_operator import in_background
 
 
 @settings_from(ImportSettings)

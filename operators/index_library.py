@@ -4,9 +4,9 @@ from typing import ClassVar
 
 import bpy
 
+from ..mocap_assist.blender.settings_properties import settings_from
 from ..mocap_assist.library.choices import LibraryBundle
 from ..mocap_assist.library.index_operator import WaitingIndex
-from ..mocap_assist.settings_properties import settings_from
 
 
 @settings_from(LibraryBundle)

@@ -2,7 +2,7 @@
 
 import bpy
 
-from ..mocap_assist.checking import jump_to
+from ..mocap_assist.check.checking import jump_to
 
 
 class MOCAP_OT_jump_to_spot(bpy.types.Operator):

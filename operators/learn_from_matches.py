@@ -4,8 +4,8 @@ from typing import ClassVar
 
 import bpy
 
-from ..mocap_assist.library.learning import CLEAN, RECONSTRUCT, learn_from_best
-from ..mocap_assist.library.searches import why_none
+from ..mocap_assist.search.learning import CLEAN, RECONSTRUCT, learn_from_best
+from ..mocap_assist.search.searches import why_none
 from ..solvers.errors import MocapAssistError
 
 

@@ -4,10 +4,10 @@ from typing import ClassVar
 
 import bpy
 
-from ..mocap_assist.learning import LearnSettings, read_learning, write_learned
-from ..mocap_assist.selection import why_not_learn
-from ..mocap_assist.settings_properties import settings_from
-from ..mocap_assist.solver_operator import SolverOperator
+from ..mocap_assist.blender.settings_properties import settings_from
+from ..mocap_assist.clean.learning import LearnSettings, read_learning, write_learned
+from ..mocap_assist.runtime.selection import why_not_learn
+from ..mocap_assist.runtime.solver_operator import SolverOperator
 
 
 @settings_from(LearnSettings)

@@ -4,7 +4,7 @@ from typing import ClassVar
 
 import bpy
 
-from ..mocap_assist.library.linking import take_chosen, why_not_link
+from ..mocap_assist.search.linking import take_chosen, why_not_link
 from ..solvers.errors import MocapAssistError
 
 

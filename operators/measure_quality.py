@@ -4,11 +4,11 @@ from typing import ClassVar
 
 import bpy
 
-from ..mocap_assist.check_choices import CheckSettings
-from ..mocap_assist.checking import read_checking, show_checked
-from ..mocap_assist.selection import why_not_read
-from ..mocap_assist.settings_properties import settings_from
-from ..mocap_assist.solver_operator import SolverOperator
+from ..mocap_assist.blender.settings_properties import settings_from
+from ..mocap_assist.check.checking import read_checking, show_checked
+from ..mocap_assist.check.choices import CheckSettings
+from ..mocap_assist.runtime.selection import why_not_read
+from ..mocap_assist.runtime.solver_operator import SolverOperator
 
 
 @settings_from(CheckSettings)

@@ -2,14 +2,14 @@
 
 import bpy
 
-from ..mocap_assist.reconstruct_choices import QUICK, ReconstructBundle
-from ..mocap_assist.reconstructing import (
+from ..mocap_assist.blender.settings_properties import settings_from
+from ..mocap_assist.reconstruct.choices import QUICK, ReconstructBundle
+from ..mocap_assist.reconstruct.reconstructing import (
     read_reconstructing,
     why_not_reconstruct,
     write_reconstructed,
 )
-from ..mocap_assist.settings_properties import settings_from
-from ..mocap_assist.solver_operator import SolverOperator
+from ..mocap_assist.runtime.solver_operator import SolverOperator
 
 
 @settings_from(ReconstructBundle)

@@ -2,11 +2,11 @@
 
 import bpy
 
-from ..mocap_assist.retarget_choices import UnbakeBundle
-from ..mocap_assist.selection import why_not_change
-from ..mocap_assist.settings_properties import settings_from
-from ..mocap_assist.solver_operator import SolverOperator
-from ..mocap_assist.unbaking import read_unbaking, write_unbaked
+from ..mocap_assist.blender.settings_properties import settings_from
+from ..mocap_assist.retarget.choices import UnbakeBundle
+from ..mocap_assist.retarget.unbaking import read_unbaking, write_unbaked
+from ..mocap_assist.runtime.selection import why_not_change
+from ..mocap_assist.runtime.solver_operator import SolverOperator
 
 
 @settings_from(UnbakeBundle)

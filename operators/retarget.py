@@ -2,11 +2,11 @@
 
 import bpy
 
-from ..mocap_assist.retarget_choices import RetargetBundle
-from ..mocap_assist.retargeting import read_retarget, write_retargeted
-from ..mocap_assist.selection import why_not_retarget
-from ..mocap_assist.settings_properties import settings_from
-from ..mocap_assist.solver_operator import SolverOperator
+from ..mocap_assist.blender.settings_properties import settings_from
+from ..mocap_assist.retarget.choices import RetargetBundle
+from ..mocap_assist.retarget.retargeting import read_retarget, write_retargeted
+from ..mocap_assist.runtime.selection import why_not_retarget
+from ..mocap_assist.runtime.solver_operator import SolverOperator
 
 
 @settings_from(RetargetBundle)

@@ -2,16 +2,16 @@
 
 import bpy
 
-from ..mocap_assist.retracking import (
+from ..mocap_assist.blender.settings_properties import settings_from
+from ..mocap_assist.runtime.selection import selected_armature
+from ..mocap_assist.runtime.watched_operator import WatchedOperator
+from ..mocap_assist.track.retracking import (
     RetrackBundle,
     read_retracking,
     watch_retracking,
     why_not_retrack,
     write_retracked,
 )
-from ..mocap_assist.selection import selected_armature
-from ..mocap_assist.settings_properties import settings_from
-from ..mocap_assist.watched_operator import WatchedOperator
 
 
 @settings_from(RetrackBundle)

@@ -2,8 +2,8 @@
 
 import bpy
 
-from ..mocap_assist.reverting import revert, why_not_revert
-from ..mocap_assist.selection import selected_subject
+from ..mocap_assist.check.reverting import revert, why_not_revert
+from ..mocap_assist.runtime.selection import selected_subject
 
 
 class MOCAP_OT_revert_to_raw(bpy.types.Operator):

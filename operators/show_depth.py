@@ -4,8 +4,8 @@ from typing import ClassVar
 
 import bpy
 
-from ..mocap_assist.scene.depth_preview import show_asked
-from ..mocap_assist.tracking import selected_preview
+from ..mocap_assist.depth.depth_preview import show_asked
+from ..mocap_assist.track.tracking import selected_preview
 from ..solvers.errors import MocapAssistError
 
 

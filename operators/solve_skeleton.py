@@ -2,9 +2,14 @@
 
 import bpy
 
-from ..mocap_assist.settings_properties import settings_from
-from ..mocap_assist.solver_operator import SolverOperator
-from ..mocap_assist.solving import SolveBundle, read_solving, why_not_solve, write_solved
+from ..mocap_assist.blender.settings_properties import settings_from
+from ..mocap_assist.markers.solving import (
+    SolveBundle,
+    read_solving,
+    why_not_solve,
+    write_solved,
+)
+from ..mocap_assist.runtime.solver_operator import SolverOperator
 
 
 @settings_from(SolveBundle)

@@ -2,8 +2,9 @@
 
 import bpy
 
-from ..mocap_assist.settings_properties import settings_from
-from ..mocap_assist.tracking import (
+from ..mocap_assist.blender.settings_properties import settings_from
+from ..mocap_assist.runtime.watched_operator import WatchedOperator
+from ..mocap_assist.track.tracking import (
     TrackBundle,
     keep_tracked,
     read_tracking,
@@ -12,7 +13,6 @@ from ..mocap_assist.tracking import (
     why_not_track,
     write_tracked,
 )
-from ..mocap_assist.watched_operator import WatchedOperator
 
 
 @settings_from(TrackBundle)

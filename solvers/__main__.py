@@ -3,7 +3,7 @@
 import os
 import sys
 
-from .processes.threads import thread_environment, threads_of_words
+from .processes import thread_environment, threads_of_words
 
 
 def main() -> int:

@@ -8,7 +8,7 @@ import pytest
 from hypothesis import settings
 
 from solvers.motion import Motion, Skeleton
-from solvers.motion.rotations import quaternion_from_rotation_vector
+from solvers.rotations.representations import quaternion_from_rotation_vector
 
 pytest_plugins = ("common_fixtures",)
 
@@ -22,9 +22,11 @@ ON_ONE_PYTHON = {
     "command_line/test_reconstruct_verb.py": (3, 11),
     "denoising": (3, 13),
     "depth_tracking": (3, 11),
+    "gestures": (3, 11),
     "markers": (3, 11),
-    "motion/test_depth_actor.py": (3, 13),
-    "motion/test_depth_floor.py": (3, 11),
+    "depth_scene/test_depth_actor.py": (3, 13),
+    "depth_scene/test_depth_floor.py": (3, 11),
+    "physics": (3, 13),
     "reconstruction": (3, 13),
     "retargeting": (3, 13),
     "retrieval": (3, 11),

@@ -1,6 +1,9 @@
 """The folder layout is a promise about who may know whom; this keeps the promise."""
 
 import ast
+from collections import Counter
+from collections.abc import Iterator
+from functools import cache
 from pathlib import Path
 
 import pytest
@@ -13,8 +16,8 @@ MAY_IMPORT = {
     "operators": {"mocap_assist", "solvers"},
 }
 SHARED_ROOMS = {
-    "archives", "errors", "faults", "files", "json_text", "motion", "npz_members", "progress",
-    "settings",
+    "archives", "depth_scene", "errors", "faults", "files", "json_text", "motion",
+    "npz_members", "progress", "rotations", "settings", "signals",
 }  # fmt: skip
 FAMILIES = [
     folder.name
@@ -22,16 +25,22 @@ FAMILIES = [
     if folder.is_dir() and folder.name not in {"__pycache__", "workflows", "command_line"}
 ]
 LONGEST_FILE = 300
+MOST_FILES = 24
 
 
 def modules(path: str) -> list[Path]:
     return sorted((ROOT / path).rglob("*.py"))
 
 
+@cache
+def tree(module: Path) -> ast.Module:
+    return ast.parse(module.read_text(encoding="utf-8"))
+
+
 def imports(module: Path) -> set[tuple[int, str]]:
     """(number of leading dots, first name) of each import statement, wherever it stands."""
     found = set()
-    for node in ast.walk(ast.parse(module.read_text(encoding="utf-8"))):
+    for node in ast.walk(tree(module)):
         if isinstance(node, ast.Import):
             found |= {(0, alias.name.split(".")[0]) for alias in node.names}
         elif isinstance(node, ast.ImportFrom):
@@ -40,10 +49,41 @@ def imports(module: Path) -> set[tuple[int, str]]:
     return found
 
 
-@pytest.mark.parametrize("path", ["solvers", "mocap_assist/jobs"])
-def test_free_of_blender(path):
-    for module in modules(path):
+def imported_paths(module: Path) -> Iterator[Path]:
+    """Modules and packages of ours that a module imports from, as paths without a suffix."""
+    for node in ast.walk(tree(module)):
+        if not isinstance(node, ast.ImportFrom) or not node.level:
+            continue
+        target = module.parents[node.level - 1].joinpath(*(node.module or "").split("."))
+        for alias in node.names:
+            inner = target / alias.name
+            is_module = not node.module and inner.with_suffix(".py").exists()
+            yield inner if is_module or inner.is_dir() else target
+
+
+def folder(path: Path) -> Path:
+    """Return the folder of what was imported; the few modules at the top are on their own."""
+    home = path if path.is_dir() else path.parent
+    return path if home.parent == ROOT else home
+
+
+def test_solvers_are_free_of_blender():
+    for module in modules("solvers"):
         assert not {name for _, name in imports(module)} & BLENDER, module
+
+
+def test_what_a_job_needs_is_free_of_blender():
+    """A solve runs in a bare Python; so do all modules that one of them imports."""
+    jobs = [*modules("mocap_assist/jobs"), *(ROOT / "mocap_assist").rglob("solve_*.py")]
+    seen = set[Path]()
+    while jobs:
+        module = jobs.pop()
+        if module in seen:
+            continue
+        seen.add(module)
+        assert not {name for _, name in imports(module)} & BLENDER, module
+        inner = (path.with_suffix(".py") for path in imported_paths(module))
+        jobs += [path for path in inner if path.exists() and "mocap_assist" in path.parts]
 
 
 @pytest.mark.parametrize("layer", MAY_IMPORT)
@@ -57,11 +97,39 @@ def test_layers_only_look_down(layer):
 
 
 @pytest.mark.parametrize("family", FAMILIES)
-def test_families_meet_only_in_the_vocabulary(family):
+def test_families_meet_only_in_shared_rooms(family):
     for module in modules(f"solvers/{family}"):
         depth = len(module.relative_to(ROOT / "solvers").parts)
         above = {name for dots, name in imports(module) if dots == depth}
         assert above <= SHARED_ROOMS, module
+
+
+def test_packages_of_solvers_are_used_by_their_faces():
+    """From outside, names come from a package's `__init__`, not from a module in it."""
+    for module in [each for layer in MAY_IMPORT for each in modules(layer)]:
+        for path in imported_paths(module):
+            inside = path.is_relative_to(ROOT / "solvers") and not path.is_dir()
+            faceless = {ROOT / "solvers", ROOT / "solvers" / "command_line", module.parent}
+            if inside and path.parent not in faceless:
+                raise AssertionError(f"{module} imports from {path.relative_to(ROOT)}.py")
+
+
+@pytest.mark.parametrize("layer", ["solvers", "mocap_assist"])
+def test_no_two_folders_import_each_other(layer):
+    ties = {
+        (folder(module), folder(path))
+        for module in modules(layer)
+        if module.name != "__init__.py"
+        for path in imported_paths(module)
+    }
+    both = {pair for pair in ties if pair[0] != pair[1] and pair[::-1] in ties}
+    assert not both
+
+
+@pytest.mark.parametrize("layer", ["solvers", "mocap_assist"])
+def test_no_folder_holds_too_many_files(layer):
+    for home, n_files in Counter(module.parent for module in modules(layer)).items():
+        assert n_files <= MOST_FILES, f"{home} has {n_files} modules"
 
 
 def test_no_file_is_too_long_to_read():
@@ -69,16 +137,6 @@ def test_no_file_is_too_long_to_read():
         for module in modules(layer):
             n_lines = len(module.read_text(encoding="utf-8").splitlines())
             assert n_lines <= LONGEST_FILE, f"{module} has {n_lines} lines"
-
-
-def test_files_of_others_are_opened_in_one_place():
-    """`open_regular` does not wait for a pipe, and refuses devices."""
-    for family in FAMILIES:
-        for module in modules(f"solvers/{family}"):
-            if family == "processes":
-                continue
-            for text in ('.open("rb")', "Path(path).open(", ".read_bytes()", ".read_text("):
-                assert text not in module.read_text(encoding="utf-8"), module
 
 
 def test_json_of_others_is_parsed_in_one_place():

@@ -6,11 +6,11 @@ from numpy.testing import assert_allclose
 from scipy.interpolate import make_smoothing_spline
 
 from solvers.motion import Motion
-from solvers.motion.rotations import quaternion_from_rotation_vector
-from tests.benchmarks.noise import corrupt, learn_channels
+from solvers.rotations.representations import quaternion_from_rotation_vector
 from tests.benchmarks.peers import gap_fillers, kalman, marker_fillers, smoothers
 from tests.benchmarks.peers.model_averaging import model_averaging
-from tests.benchmarks.tables import Scores
+from tests.benchmarks.shared.noise import corrupt, learn_channels
+from tests.benchmarks.shared.tables import Scores
 
 
 def test_gcv_spline_is_scipys(rng):

@@ -7,11 +7,17 @@ import pytest
 from box_person import box_person
 from numpy.testing import assert_allclose
 
+from solvers.depth_scene.camera import Camera
 from solvers.motion import Motion
-from solvers.motion.camera import Camera
-from solvers.motion.rotations import quaternion_from_rotation_vector
-from tests.benchmarks.blender_depth import blender_depth, difference, our_depth
-from tests.benchmarks.depth_more import TAKES, before_camera, body_of, more_sequence, place
+from solvers.rotations.representations import quaternion_from_rotation_vector
+from tests.benchmarks.depth.blender_depth import blender_depth, difference, our_depth
+from tests.benchmarks.depth.depth_more import (
+    TAKES,
+    before_camera,
+    body_of,
+    more_sequence,
+    place,
+)
 
 CAMERA = Camera(150.0, 120.0, 70.0, 65.5, 160, 120)
 """Pixels that are not square, and an axis beside the middle."""
@@ -77,7 +83,7 @@ def test_actors_turn_sit_and_cross_their_arms_as_said():
 
 @pytest.mark.usefixtures("recordings")
 def test_a_sequence_has_its_joints_inside_of_what_is_seen(monkeypatch, tmp_path):
-    monkeypatch.setattr("tests.benchmarks.depth_more.BUILD", tmp_path)
+    monkeypatch.setattr("tests.benchmarks.depth.depth_more.BUILD", tmp_path)
     sequence = more_sequence.__wrapped__("seated, side")
 
     depth = sequence.depth.frame(10)

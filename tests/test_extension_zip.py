@@ -28,7 +28,7 @@ OURS = {"solvers", "mocap_assist", "operators"}
 BLENDER = {"bpy", "bpy_extras", "mathutils", "bmesh", "gpu", "gpu_extras", "blf", "addon_utils"}
 BUNDLED = BLENDER | {"bl_ui", "numpy"}
 IMPORT_NAMES = {"pillow": "PIL"}
-ON_LOOPBACK = {"live_receiver.py", "replay_verb.py"}
+ON_LOOPBACK = {"receiver.py", "replay_verb.py"}
 NETWORK = {"urllib", "http", "socket", "requests", "ftplib"}
 
 

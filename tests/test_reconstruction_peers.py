@@ -5,15 +5,15 @@ import pytest
 from numpy.testing import assert_allclose
 
 from solvers.motion import JointRecording, Sensor, Tracks, find_humanoid_map
-from solvers.motion.posture_joints import POSTURE_JOINTS
-from solvers.reconstruction.physics_body import physics_body
+from solvers.motion.humanoid.posture_joints import POSTURE_JOINTS
+from solvers.physics.body import physics_body
 from solvers.samples import GaitSettings, walking_gait
-from tests.benchmarks.kinect_damage import Damaged, occluded, swapped, without
-from tests.benchmarks.kinect_errors import compared
-from tests.benchmarks.kinect_folds import seen_of
-from tests.benchmarks.kinect_pairs import Pair
 from tests.benchmarks.peers.one_euro import one_euro
-from tests.benchmarks.physics_momentum import impossible_force, outside_cone
+from tests.benchmarks.physics.physics_momentum import impossible_force, outside_cone
+from tests.benchmarks.reconstruction.kinect_damage import Damaged, occluded, swapped, without
+from tests.benchmarks.reconstruction.kinect_errors import compared
+from tests.benchmarks.reconstruction.kinect_folds import seen_of
+from tests.benchmarks.reconstruction.kinect_pairs import Pair
 
 LEFT_HAND, RIGHT_HAND = (POSTURE_JOINTS.index(f"{side}Hand") for side in ("left", "right"))
 

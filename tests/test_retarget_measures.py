@@ -4,10 +4,10 @@ import numpy as np
 import pytest
 
 from solvers.motion import Motion, Skeleton, find_humanoid_map
-from solvers.motion.rotations import multiply, quaternion_from_rotation_vector
+from solvers.rotations.representations import multiply, quaternion_from_rotation_vector
 from solvers.samples import GaitSettings, walking_gait
-from tests.benchmarks.part_unbake import to_and_fro
-from tests.benchmarks.retarget_measures import acted, ik_figures, seen_figures
+from tests.benchmarks.retarget.part_unbake import to_and_fro
+from tests.benchmarks.retarget.retarget_measures import acted, ik_figures, seen_figures
 
 WALK = walking_gait(GaitSettings(duration=2.0, frame_rate=30.0))
 ROLES = find_humanoid_map(WALK.skeleton)

@@ -7,18 +7,18 @@ import pytest
 from numpy.testing import assert_allclose
 
 from solvers.motion import Tracks, warp
-from solvers.motion.posture_joints import HIPS, POSTURE_JOINTS
+from solvers.motion.humanoid.posture_joints import HIPS, POSTURE_JOINTS
 from tests.benchmarks.peers.clip_alignment import warped_totals
 from tests.benchmarks.peers.clip_statistics import Covariances
 from tests.benchmarks.peers.motion_volumes import volume
 from tests.benchmarks.peers.string_matching import shared
 from tests.benchmarks.peers.whole_postures import learn_whole, resampled
-from tests.benchmarks.pyramid_methods import BODY, PARTS, only
-from tests.benchmarks.retrieval_clips import LabelledClip
-from tests.benchmarks.retrieval_damage import DAMAGES
-from tests.benchmarks.retrieval_fusion import Fused, manifold_ranking
-from tests.benchmarks.retrieval_methods import CUBES, METHODS, PUBLISHED, RANKED
-from tests.benchmarks.retrieval_protocol import answer, queries
+from tests.benchmarks.retrieval.pyramid_methods import BODY, PARTS, only
+from tests.benchmarks.retrieval.retrieval_clips import LabelledClip
+from tests.benchmarks.retrieval.retrieval_damage import DAMAGES
+from tests.benchmarks.retrieval.retrieval_fusion import Fused, manifold_ranking
+from tests.benchmarks.retrieval.retrieval_methods import CUBES, METHODS, PUBLISHED, RANKED
+from tests.benchmarks.retrieval.retrieval_protocol import answer, queries
 
 LARGE = {PUBLISHED, CUBES, RANKED}
 """Methods that eight clips of two seconds teach nothing."""
@@ -195,7 +195,7 @@ def test_fused_distances_are_sums_of_standard_scores(rng):
 
 
 def test_parts_are_told_alone(rng):
-    from solvers.retrieval.clip_postures import clip_postures
+    from solvers.retrieval.postures.clip_postures import clip_postures
 
     postures = clip_postures(moving(rng))
 

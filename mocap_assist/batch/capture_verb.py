@@ -6,16 +6,16 @@ from typing import get_type_hints
 
 import bpy
 
-from ...solvers.command_line import arguments_from, settings_from_arguments
 from ...solvers.command_line.files import found_in
+from ...solvers.command_line.options import arguments_from, settings_from_arguments
 from ...solvers.command_line.screen import Screen
 from ...solvers.errors import InvalidFileError
 from ...solvers.faults import Failure, attempt
 from ...solvers.settings import Settings
-from ..depth_folders import depth_recordings_in, is_take
-from ..import_choices import ImportChoices
-from ..importing import import_files
-from ..tracking import TrackBundle, read_tracking, selected_preview, write_tracked
+from ..importing.choices import ImportChoices
+from ..importing.depth_folders import depth_recordings_in, is_take
+from ..importing.importing import import_files
+from ..track.tracking import TrackBundle, read_tracking, selected_preview, write_tracked
 from .pictures import draw_played
 from .saving import save, target_file, tell
 from .solving import solve_apart

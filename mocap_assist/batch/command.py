@@ -8,13 +8,13 @@ from contextlib import AbstractContextManager, nullcontext
 
 import bpy
 
-from ...solvers.command_line import SentenceParser
+from ...solvers.command_line.options import SentenceParser
 from ...solvers.command_line.screen import Screen, escape_odd_names, printable
 from ...solvers.errors import InvalidFileError, InvalidSettingError, MocapAssistError
 from ...solvers.files import reason_of, written_whole
-from ...solvers.processes.threads import add_threads_option
+from ...solvers.processes import add_threads_option
+from ..actions.markers import markers_of
 from ..scene import history
-from ..scene.markers import markers_of
 from .capture_verb import HELP as CAPTURE_HELP
 from .capture_verb import add_capture_options, perform_capture
 from .each_child import OPTION, working_on

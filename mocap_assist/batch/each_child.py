@@ -9,9 +9,7 @@ from time import monotonic
 from typing import NamedTuple
 
 from ...solvers.errors import InvalidFileError
-from ...solvers.processes.locks import try_lock
-from ...solvers.processes.parent import end_with_stdin
-from ...solvers.processes.scratch import lock_for_work_on
+from ...solvers.processes import end_with_stdin, lock_for_work_on, try_lock
 
 OPTION = "--child-of-each"
 """First word of the command line of such a Blender."""

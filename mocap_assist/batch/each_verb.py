@@ -27,9 +27,9 @@ from ...solvers.errors import InvalidFileError, InvalidSettingError
 from ...solvers.faults import Failure, attempt, escaped
 from ...solvers.files import is_missing, real_path
 from ...solvers.json_text import parse_json
-from ...solvers.processes.scratch import ScratchFolder
-from ...solvers.recordings.folder_scan import files_below, is_folder, refuse_closed
-from ..depth_folders import all_recordings_in, depth_recordings_in
+from ...solvers.processes import ScratchFolder
+from ...solvers.recordings.containers import files_below, is_folder, refuse_closed
+from ..importing.depth_folders import all_recordings_in, depth_recordings_in
 from .each_child import OPTION, run_child
 
 HELP = "Do another verb to each of many files: each FILE... --output-folder DIR -- VERB ..."

@@ -5,13 +5,13 @@ from pathlib import Path
 
 import bpy
 
-from ...solvers.command_line import arguments_from, settings_from_arguments
 from ...solvers.command_line.files import found_in
+from ...solvers.command_line.options import arguments_from, settings_from_arguments
 from ...solvers.command_line.screen import Screen
 from ...solvers.errors import InvalidFileError
-from ..depth_folders import all_recordings_in, is_take
-from ..import_choices import ImportChoices
-from ..importing import import_files
+from ..importing.choices import ImportChoices
+from ..importing.depth_folders import all_recordings_in, is_take
+from ..importing.importing import import_files
 from .pictures import draw_played
 from .saving import save, target_file, tell
 

@@ -10,18 +10,18 @@ from typing import Any, get_type_hints
 
 import bpy
 
-from ...solvers.command_line import arguments_from, settings_from_arguments
+from ...solvers.command_line.options import arguments_from, settings_from_arguments
 from ...solvers.command_line.screen import Screen, printable
 from ...solvers.errors import InvalidFileError
 from ...solvers.files import real_path, written_whole
 from ...solvers.progress import Progress
-from ..jobs.finding import Found
-from ..jobs.indexing import IndexProblem, Place, index_places
-from ..library import searches
 from ..library.background import message_of
 from ..library.choices import FindBundle, LibraryChoices
-from ..library.finding import list_found, read_finding
 from ..library.places import asset_folders, background_blender, library_path
+from ..library.solve_indexing import IndexProblem, Place, index_places
+from ..search import searches
+from ..search.finding import list_found, read_finding
+from ..search.solve_finding import Found
 from .saving import STDOUT
 from .solving import solve_apart
 

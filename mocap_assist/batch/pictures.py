@@ -7,10 +7,10 @@ import bpy
 from ...solvers.errors import MocapAssistError
 from ...solvers.motion import Motion, Tracks
 from ...solvers.pictures import StickFigureSettings, draw_stick_figures
+from ..actions.armature_read import read_take
+from ..actions.marker_take import read_markers
+from ..runtime.selection import played_source
 from ..scene import history
-from ..scene.armature_read import read_take
-from ..scene.marker_take import read_markers
-from ..selection import played_source
 
 SIZE = StickFigureSettings(n_figures=9, height=150)
 

@@ -6,13 +6,13 @@ from typing import Any, get_type_hints
 
 import bpy
 
-from ...solvers.command_line import arguments_from, settings_from_arguments
+from ...solvers.command_line.options import arguments_from, settings_from_arguments
 from ...solvers.progress import Progress
-from ..name_lists import joined
-from ..reconstruct_choices import Postures, ReconstructBundle
-from ..reconstructing import read_reconstructing, write_reconstructed
+from ..blender.name_lists import joined
+from ..reconstruct.choices import Postures, ReconstructBundle
+from ..reconstruct.reconstructing import read_reconstructing, write_reconstructed
+from ..runtime.selection import played_result
 from ..scene import history
-from ..selection import played_result
 from .solving import solve_apart
 
 

@@ -5,13 +5,13 @@ from typing import Any
 
 import bpy
 
-from ...solvers.command_line import arguments_from, settings_from_arguments
+from ...solvers.command_line.options import arguments_from, settings_from_arguments
 from ...solvers.progress import Progress
 from ...solvers.retargeting import RetargetSettings, UnbakeSettings
-from ..retarget_choices import RetargetBundle, RetargetChoices, UnbakeBundle, UnbakeChoices
-from ..retargeting import read_retarget, write_retargeted
+from ..retarget.choices import RetargetBundle, RetargetChoices, UnbakeBundle, UnbakeChoices
+from ..retarget.retargeting import read_retarget, write_retargeted
+from ..retarget.unbaking import read_unbaking, write_unbaked
 from ..scene import history
-from ..unbaking import read_unbaking, write_unbaked
 from .solving import solve_apart
 
 CENTIMETRE = 0.01

@@ -5,11 +5,11 @@ from typing import Any
 
 import bpy
 
-from ...solvers.command_line import arguments_from, settings_from_arguments
+from ...solvers.command_line.options import arguments_from, settings_from_arguments
+from ...solvers.physics import SimulateSettings
 from ...solvers.progress import Progress
-from ...solvers.reconstruction import SimulateSettings
+from ..physics.simulating import SimulateBundle, read_simulating, write_simulated
 from ..scene import history
-from ..simulating import SimulateBundle, read_simulating, write_simulated
 from .solving import solve_apart
 
 

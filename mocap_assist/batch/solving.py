@@ -4,7 +4,7 @@ import argparse
 from collections.abc import Callable
 from typing import TypeVar
 
-from ...solvers.processes.threads import threads_from
+from ...solvers.processes import threads_from
 from ...solvers.progress import Progress
 from ..jobs.job import run_apart
 

@@ -6,7 +6,7 @@ from typing import Any, get_type_hints
 
 import bpy
 
-from ...solvers.command_line import arguments_from, settings_from_arguments
+from ...solvers.command_line.options import arguments_from, settings_from_arguments
 from ...solvers.progress import Progress, within
 from ..variants.choices import VaryBundle
 from ..variants.listing import chosen

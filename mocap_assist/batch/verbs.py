@@ -8,20 +8,20 @@ from typing import Any, NamedTuple, TypeVar, get_type_hints
 
 import bpy
 
-from ...solvers.command_line import arguments_from, settings_from_arguments
 from ...solvers.command_line.convert import convert
 from ...solvers.command_line.files import MOTIONS, POINTS_BY_DEFAULT, refuse_target
+from ...solvers.command_line.options import arguments_from, settings_from_arguments
 from ...solvers.errors import InvalidSettingError
 from ...solvers.progress import Progress
-from ..check_choices import CheckSettings
-from ..checking import read_checking, show_checked
-from ..clean_choices import CleanSettings, Prior
-from ..cleaning import read_cleaning, write_cleaned
-from ..name_lists import joined
+from ..actions.armature_read import read_take
+from ..actions.marker_take import read_markers
+from ..blender.name_lists import joined
+from ..check.checking import read_checking, show_checked
+from ..check.choices import CheckSettings
+from ..clean.choices import CleanSettings, Prior
+from ..clean.cleaning import read_cleaning, write_cleaned
+from ..runtime.selection import played_result, played_source
 from ..scene import history
-from ..scene.armature_read import read_take
-from ..scene.marker_take import read_markers
-from ..selection import played_result, played_source
 from .library_verbs import FIND_HELP, add_find_options, check_find, perform_find
 from .reconstruct_verb import add_reconstruct_options, perform_reconstruct
 from .retarget_verbs import (

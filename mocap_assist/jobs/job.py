@@ -14,8 +14,7 @@ from typing import Any, Generic, TypeVar
 
 from ...solvers.errors import MocapAssistError, OutOfMemoryError, SolveCancelled
 from ...solvers.files import reason_of
-from ...solvers.processes.scratch import ScratchFolder
-from ...solvers.processes.threads import thread_environment
+from ...solvers.processes import ScratchFolder, thread_environment
 from ...solvers.progress import Progress, unwatched
 from .protocol import LOG, REQUEST, RESULT, Ending, last_progress, last_words, read_shown
 

@@ -5,9 +5,9 @@ from collections.abc import Callable
 import bpy
 from bpy.app import handlers
 
-from ..jobs.indexing import Indexed
+from ..drawing.view_drawing import redraw
 from ..jobs.job import Job
-from ..scene.view_drawing import redraw
+from .solve_indexing import Indexed
 
 RUNNING = "The library is being indexed. Let it end, or press Esc."
 

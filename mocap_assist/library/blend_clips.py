@@ -8,15 +8,16 @@ import bpy
 from ...solvers.faults import Failure, attempt
 from ...solvers.motion import Motion
 from ...solvers.progress import Progress, unwatched
-from ...solvers.workflows.clip_sources import path_fault
+from ...solvers.workflows import path_fault
+from ..actions.armature_read import read_take
+from ..actions.fitting import fitting_slots, plays
+from ..blender import compat
+from ..blender.compat import Source
 from ..jobs.in_blender import BlendClip, BlendRead
-from ..scene import compat, history
-from ..scene.armature_read import read_take
-from ..scene.compat import Source
-from ..scene.evaluated_body import body_bones, with_body_shown
-from ..scene.fitting import fitting_slots, plays
-from ..scene.rigify import is_rigify
-from ..scene.target_read import find_roles
+from ..rigs.evaluated_body import body_bones, with_body_shown
+from ..rigs.rigify import is_rigify
+from ..rigs.target_read import find_roles
+from ..scene import history
 from .catalogs import NONE, catalog_file, read_catalogs
 
 NAME_ONE = "name a file with its rig, or index the file that has both."

@@ -6,9 +6,9 @@ from typing import NamedTuple
 
 from ...solvers.retrieval import FindSettings
 from ...solvers.settings import Settings, setting
-from ..clean_choices import Bones
-from ..scene.armature_write import Output
-from ..scene.frames import FrameRange
+from ..actions.armature_write import Output
+from ..actions.frames import FrameRange
+from ..runtime.selection import Bones
 
 
 @dataclass(frozen=True, kw_only=True)

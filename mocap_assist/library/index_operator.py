@@ -7,11 +7,11 @@ from typing import Any, ClassVar
 import bpy
 
 from ...solvers.errors import MocapAssistError, SolveCancelled
-from ..jobs.indexing import Indexed, index_places
 from ..jobs.job import run
-from ..solver_operator import in_background
+from ..runtime.solver_operator import in_background
 from .background import Indexing, message_of, why_indexing
 from .places import index_problem
+from .solve_indexing import Indexed, index_places
 
 logger = logging.getLogger(__name__)
 

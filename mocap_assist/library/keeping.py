@@ -10,10 +10,10 @@ from pathlib import Path
 import bpy
 
 from ...solvers.errors import MocapAssistError
-from ..jobs.indexing import IndexProblem, index_places
-from ..watch import why_busy
+from ..runtime.watch import why_busy
 from .background import Indexing, message_of, why_indexing
 from .kept_libraries import kept_libraries
+from .solve_indexing import IndexProblem, index_places
 
 logger = logging.getLogger(__name__)
 

@@ -9,12 +9,12 @@ from typing import Any
 
 import bpy
 
-from .. import permissions
+from ..blender import permissions
+from ..blender.name_lists import joined
 from ..jobs.in_blender import BackgroundBlender
-from ..jobs.indexing import IndexProblem, Place
-from ..name_lists import joined
 from .choices import LibraryChoices
 from .places import index_problem, library_path, places_of
+from .solve_indexing import IndexProblem, Place
 
 
 def kept_libraries() -> list[IndexProblem]:

@@ -5,11 +5,11 @@ from pathlib import Path
 import bpy
 
 from ...solvers.errors import InvalidFileError
+from ..blender.name_lists import listed
+from ..blender.path_properties import absolute
 from ..jobs.in_blender import BackgroundBlender
-from ..jobs.indexing import IndexProblem, Place
-from ..name_lists import listed
-from ..path_properties import absolute
 from .choices import LibraryChoices
+from .solve_indexing import IndexProblem, Place
 
 EXTENSION = __package__.rsplit(".", 2)[0]
 SHARED = "clips.library"

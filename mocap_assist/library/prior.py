@@ -6,11 +6,11 @@ from typing import Any
 import bpy
 
 from ...solvers.errors import InvalidFileError
-from ..jobs.library_prior import LibraryPrior, Own
-from ..path_properties import absolute
+from ..blender.path_properties import absolute
+from ..runtime.selection import played_source
 from ..scene.origin import origin_of
-from ..selection import played_source
 from .places import background_blender, library_path
+from .solve_prior import LibraryPrior, Own
 
 
 def library_prior(scene: bpy.types.Scene, subject: bpy.types.Object) -> LibraryPrior:

@@ -9,10 +9,10 @@ from dataclasses import dataclass
 
 import bpy
 
+from ...solvers.gestures import Gesture, GestureEvent
 from ...solvers.motion import JointRecording
-from ...solvers.retrieval.gesture_events import Gesture, GestureEvent
-from ..library.performing import page, search_with, show_library
-from ..scene.view_control import turn_views, zoom_views
+from ..drawing.view_control import turn_views, zoom_views
+from ..search.performing import page, search_with, show_library
 
 STARTED = "Perform what you search for, then clap."
 VIEWS = (Gesture.ZOOM, Gesture.TURN)

@@ -5,7 +5,7 @@ from typing import ClassVar
 import bpy
 
 from ...solvers.errors import MocapAssistError
-from ..ui.preferences import preferred
+from ..panels.preferred import preferred
 from . import listening
 
 NO_WINDOW = "Listening needs Blender's window."

@@ -6,13 +6,12 @@ from typing import Any
 import bpy
 from bpy.app import handlers
 
-from ...solvers.recordings.live_receiver import Receiver
-from ...solvers.recordings.live_stream import Heard
-from ...solvers.retrieval.gestures import Mode
-from ...solvers.workflows.live_session import LiveSession
-from ..scene.live_figure import LiveFigure
-from ..scene.overlay_drawing import Color
-from ..scene.view_drawing import redraw
+from ...solvers.gestures import Mode
+from ...solvers.recordings.live import Heard, Receiver
+from ...solvers.workflows import LiveSession
+from ..drawing.live_figure import LiveFigure
+from ..drawing.overlay_drawing import Color
+from ..drawing.view_drawing import redraw
 from .commands import obey_all, search_for
 
 logger = logging.getLogger(__name__)

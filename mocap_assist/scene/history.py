@@ -8,9 +8,9 @@ import bpy
 
 from ...solvers.settings import Settings
 from ...solvers.version import version
-from . import compat
-from .compat import Source
-from .stored_json import store, stored
+from ..blender import compat
+from ..blender.compat import Source
+from ..blender.stored_json import store, stored
 
 HISTORY = "mocap_assist_history"
 SOURCE = "mocap_assist_source"

@@ -5,9 +5,9 @@ from typing import Any
 
 import bpy
 
+from ...solvers.depth_scene import DepthRecording
 from ...solvers.motion import JointRecording, Motion, Tracks
-from ...solvers.motion.depth_recording import DepthRecording
-from .stored_json import store, stored
+from ..blender.stored_json import store, stored
 
 ORIGIN = "mocap_assist_recording"
 NOTED: dict[str, Any] = {

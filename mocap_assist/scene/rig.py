@@ -8,7 +8,7 @@ from mathutils import Matrix
 from numpy.typing import NDArray
 
 from ...solvers.errors import InvalidMotionError
-from ...solvers.motion.rotations import inverse, multiply, quaternion_from_matrix, rotate
+from ...solvers.rotations import inverse, multiply, quaternion_from_matrix, rotate
 
 Array = NDArray[np.float64]
 EVEN = 1e-3

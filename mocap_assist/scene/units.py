@@ -2,7 +2,7 @@
 
 import bpy
 
-from ...solvers.recordings.axes import guess_unit, longest_way
+from ...solvers.recordings.conventions import guess_unit, longest_way
 from .rig import Rig
 
 # Metres from foot to hand along the bones: from a cat to a dragon. Beyond it, a recording was

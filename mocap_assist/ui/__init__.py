@@ -1,21 +1,14 @@
 """What the animator sees: panels in the sidebar, menus, preferences and the overlay."""
 
-from . import (
-    bone_list,
-    example_list,
-    heat_switch,
-    import_menu,
-    library_panel,
-    manual,
-    menus,
-    overlay_switch,
-    preferences,
-    retarget_panel,
-    sidebar,
-    source_list,
-    translations,
-    vary_panel,
-)
+from ..clean import example_list
+from ..drawing import heat_switch, overlay_switch
+from ..importing import import_menu
+from ..retarget import bone_list
+from ..retarget import panel as retarget_panel
+from ..search import panel as library_panel
+from ..search import source_list
+from ..variants import panel as vary_panel
+from . import manual, menus, preferences, sidebar, translations
 
 PARTS = (
     translations,

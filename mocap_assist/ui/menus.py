@@ -2,7 +2,7 @@
 
 import bpy
 
-from .drawing import exists
+from ..panels.drawing import exists
 
 BUTTONS = (
     "mocap_assist.track_depth",

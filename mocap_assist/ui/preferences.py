@@ -1,35 +1,18 @@
 """The extension's preferences."""
 
 from pathlib import Path
-from typing import Any, ClassVar
+from typing import ClassVar
 
 import bpy
 
 from ...solvers.errors import MocapAssistError
-from ...solvers.recordings.live_frames import PORT
+from ...solvers.recordings.live import PORT
+from ..actions.armature_write import Output
+from ..drawing import overlay_drawing
 from ..library.kept_libraries import kept_libraries, stop_keeping
-from ..scene import overlay_drawing
-from ..scene.armature_write import Output
+from ..panels.preferred import EXTENSION, preferences, preferred
 
-EXTENSION = __package__.rsplit(".", 2)[0]  # Blender knows preferences by the root package
 STOP = "mocap_assist.stop_keeping"
-
-
-def preferences() -> bpy.types.AddonPreferences | None:
-    """Return the preferences; none where the extension was switched on for one session alone.
-
-    Blender does so for `--addons`, and keeps preferences of none but the others.
-    """
-    ours = bpy.context.preferences.addons.get(EXTENSION)
-    return None if ours is None else ours.preferences
-
-
-def preferred(name: str) -> Any:
-    """Return one preference, or what it is at first."""
-    ours = preferences()
-    if ours is not None:
-        return getattr(ours, name)
-    return MOCAP_AP_preferences.__annotations__[name].keywords["default"]
 
 
 def _move_panels(self: bpy.types.AddonPreferences, context: bpy.types.Context) -> None:

@@ -2,20 +2,20 @@
 
 import bpy
 
-from .check_panel import CheckPanel, MOCAP_UL_spots
-from .clean_panel import CleanPanel
-from .compare_panel import ComparePanel
-from .feet_panel import FeetPanel
-from .import_panel import ImportPanel
-from .library_panel import LibraryPanel
-from .markers_panel import MarkersPanel
-from .perform_panel import PerformPanel
-from .physics_panel import PhysicsPanel
-from .preferences import preferred
-from .reconstruct_panel import ReconstructPanel
-from .retarget_panel import RetargetPanel
-from .track_panel import TrackPanel
-from .vary_panel import VaryPanel
+from ..check.compare_panel import ComparePanel
+from ..check.panel import CheckPanel, MOCAP_UL_spots
+from ..clean.feet_panel import FeetPanel
+from ..clean.panel import CleanPanel
+from ..importing.panel import ImportPanel
+from ..live.panel import PerformPanel
+from ..markers.panel import MarkersPanel
+from ..panels.preferred import preferred
+from ..physics.panel import PhysicsPanel
+from ..reconstruct.panel import ReconstructPanel
+from ..retarget.panel import RetargetPanel
+from ..search.panel import LibraryPanel
+from ..track.panel import TrackPanel
+from ..variants.panel import VaryPanel
 
 EDITORS = {"": "VIEW_3D", "_graph": "GRAPH_EDITOR", "_dopesheet": "DOPESHEET_EDITOR"}
 TAB = "Mocap"

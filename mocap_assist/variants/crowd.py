@@ -7,10 +7,10 @@ import numpy as np
 from mathutils import Euler
 
 from ...solvers.errors import InvalidMotionError
-from ..library.nla import add_strip
-from ..scene.armature_write import check_writable
+from ..actions.armature_write import check_writable
 from ..scene.scene_rate import scene_rate
 from ..scene.units import unit_of
+from ..search.nla import add_strip
 from . import listing
 from .choices import CrowdBundle, CrowdChoices
 from .tags import is_variant

@@ -10,13 +10,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...solvers.motion import Motion
-from ..jobs.controls import BoneKeys
-from ..scene import compat
-from ..scene.bone_channels import animated_curves
-from ..scene.compat import Source
-from ..scene.curves import CONSTANT, deselect, write_first
+from ..actions.bone_channels import animated_curves
+from ..actions.curves import CONSTANT, deselect, write_first
+from ..actions.take import ArmatureTake, Part, basis_rotations, root_locations
+from ..blender import compat
+from ..blender.compat import Source
+from ..scene.controls import BoneKeys
 from ..scene.rig import Placement
-from ..scene.take import ArmatureTake, Part, basis_rotations, root_locations
 
 Array = NDArray[np.float64]
 STILL = 1e-6

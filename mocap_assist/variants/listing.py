@@ -5,10 +5,10 @@ from collections.abc import Sequence
 import bpy
 
 from ...solvers.errors import InvalidMotionError
-from ..scene import compat
-from ..scene.armature_write import check_writable
-from ..scene.compat import Source
-from ..scene.fitting import fitting_slots
+from ..actions.armature_write import check_writable
+from ..actions.fitting import fitting_slots
+from ..blender import compat
+from ..blender.compat import Source
 
 
 def fill(

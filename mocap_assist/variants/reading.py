@@ -9,24 +9,24 @@ import bpy
 
 from ...solvers.errors import InvalidMotionError
 from ...solvers.retargeting import RootMotion
-from ..jobs.varying import Controls, Varied, VaryProblem, vary
-from ..name_lists import listed
-from ..redo import fingerprint
-from ..retargeting import fitting_actions, source_called
-from ..scene.armature_read import read_take
-from ..scene.armature_write import check_writable
-from ..scene.compat import Source
-from ..scene.evaluated_body import body_bones, with_body_shown
-from ..scene.lasting import LastingSource
-from ..scene.movers import movers_of
-from ..scene.rigify import is_rigify
+from ..actions.armature_read import read_take
+from ..actions.armature_write import check_writable
+from ..actions.take import ArmatureTake
+from ..blender.compat import Source
+from ..blender.lasting import LastingSource
+from ..blender.name_lists import listed
+from ..blender.turns import Sliced, Steps
+from ..retarget.retargeting import fitting_actions, source_called
+from ..rigs.evaluated_body import body_bones, with_body_shown
+from ..rigs.movers import movers_of
+from ..rigs.rigify import is_rigify
+from ..rigs.target_read import find_roles, read_target, vertical_part
+from ..runtime.redo import fingerprint
+from ..runtime.selection import played_source, selected_armature
+from ..runtime.subject import Subject
 from ..scene.scene_rate import scene_rate
-from ..scene.take import ArmatureTake
-from ..scene.target_read import find_roles, read_target, vertical_part
-from ..selection import played_source, selected_armature
-from ..subject import Subject
-from ..turns import Sliced, Steps
 from .choices import VaryBundle, VaryChoices
+from .solve_varying import Controls, Varied, VaryProblem, vary
 from .tags import examples_of, is_variant
 
 Switches = Mapping[tuple[str, str], float]

@@ -7,9 +7,9 @@ import bpy
 
 from ...solvers.errors import InvalidFileError
 from ..jobs.job import run
-from ..jobs.varying import draw_sheet
 from . import listing
 from .reading import read_body
+from .solve_varying import draw_sheet
 
 MOST = 50
 

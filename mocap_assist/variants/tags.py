@@ -4,7 +4,7 @@ import re
 
 import bpy
 
-from ..scene.stored_json import store, stored
+from ..blender.stored_json import store, stored
 
 VARIANT = "mocap_assist_variant"
 """Custom property of actions that Vary made: of which, its number, and the seed."""

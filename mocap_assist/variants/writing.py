@@ -5,18 +5,19 @@ from typing import NamedTuple
 import bpy
 
 from ...solvers.errors import InvalidMotionError
-from ..jobs.varying import Varied
-from ..library.previews import give_picture
-from ..scene import compat, history
-from ..scene.action_write import write_action
-from ..scene.armature_write import check_writable
-from ..scene.compat import Source
-from ..subject import Subject, check_unchanged
-from ..turns import Sliced, Steps, due
+from ..actions.action_write import write_action
+from ..actions.armature_write import check_writable
+from ..blender import compat
+from ..blender.compat import Source
+from ..blender.turns import Sliced, Steps, due
+from ..runtime.subject import Subject, check_unchanged
+from ..scene import history
+from ..search.previews import give_picture
 from . import listing
 from .choices import VaryBundle
 from .keys import Stage, hold_others, without_still
 from .reading import Reading, Switches, read
+from .solve_varying import Varied
 from .tags import names_for, tag
 
 

@@ -11,8 +11,7 @@ from typing import Any, NamedTuple
 from ..faults import Failure, attempt
 from ..files import is_missing, real_path, remove_leftovers, written_whole
 from ..json_text import parse_json
-from ..processes.threads import threads_from
-from ..processes.workers import worker_pool
+from ..processes import threads_from, worker_pool
 from ..progress import Progress, unwatched
 from ..version import version
 from .report import FIGURES, PAGE, draw_task, forget_picture, picture_file

@@ -6,15 +6,14 @@ from pathlib import Path
 import numpy as np
 
 from ..denoising import PlantSettings
-from ..depth_tracking.body_model import BodyModel, load_body_model
-from ..depth_tracking.body_tables import LENGTHS
-from ..depth_tracking.capture import CaptureSettings
+from ..depth_scene import ForegroundSettings
+from ..depth_tracking.body import LENGTHS, BodyModel, load_body_model
+from ..depth_tracking.capturing import CaptureSettings
 from ..errors import InvalidSettingError
 from ..motion import JointRecording, Sensor
-from ..motion.depth_foreground import ForegroundSettings
 from ..progress import Progress, overheard, within
 from ..recordings import depth_in, read_depth, write_joint_csv
-from ..recordings.depth_settings import DepthSettings
+from ..recordings.depth_files import DepthSettings
 from ..workflows import CapturedMotion, capture_recording
 from .files import JOINTS, found_in, write
 from .options import arguments_from, settings_from_arguments

@@ -18,8 +18,7 @@ from ..recordings import (
     write_c3d,
     write_trc,
 )
-from ..recordings.folder_scan import is_folder
-from ..recordings.names import shown
+from ..recordings.containers import is_folder, shown
 
 MOTIONS = ".bvh"
 POINTS = {".c3d": write_c3d, ".trc": write_trc}

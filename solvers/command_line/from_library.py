@@ -9,12 +9,7 @@ from ..files import real_path
 from ..motion import JointRecording, Motion, Tracks
 from ..progress import Progress
 from ..retrieval import ClipLibrary, load_clip_library
-from ..workflows import (
-    LibraryBases,
-    LibraryPostures,
-    bases_from_library,
-    postures_from_library,
-)
+from ..workflows import LibraryBases, LibraryPostures, bases_from_library, postures_from_library
 from .options import settings_from_arguments
 
 

@@ -7,7 +7,7 @@ from typing import Any
 from ..errors import InvalidMotionError, InvalidSettingError
 from ..faults import escaped
 from ..motion import JointRecording
-from ..processes.threads import threads_from
+from ..processes import threads_from
 from ..progress import Progress, within
 from ..recordings import read_tracked
 from ..retrieval import ClipEntry, FindSettings, Match, find_similar, load_clip_library

@@ -18,12 +18,7 @@ from ..reconstruction import (
     load_residual_prior,
 )
 from ..recordings import read_tracked, write_joint_csv
-from ..workflows import (
-    postures_of,
-    reconstruct_motion,
-    reconstruct_recording,
-    try_to_plant,
-)
+from ..workflows import postures_of, reconstruct_motion, reconstruct_recording, try_to_plant
 from .files import JOINTS, add_reading_options, read_all, write
 from .from_library import add_library_option, check_library, postures_for
 from .options import arguments_from, settings_from_arguments

@@ -9,10 +9,10 @@ from dataclasses import replace
 
 from ..errors import InvalidMotionError, InvalidSettingError
 from ..motion import JOINTS, JointRecording, Motion, Sensor, Tracks
-from ..motion.posture_joints import motion_postures
+from ..motion.humanoid import motion_postures
 from ..progress import Progress, within
 from ..recordings import read_tracked
-from ..recordings.live_frames import MOST_JOINTS, PORT, LiveFrame, encode_frame, frames_of
+from ..recordings.live import MOST_JOINTS, PORT, LiveFrame, encode_frame, frames_of
 from .files import add_reading_options
 from .verb import Outcome, Task
 

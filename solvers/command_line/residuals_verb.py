@@ -7,10 +7,10 @@ from typing import Any
 
 from ..errors import InvalidFileError, InvalidMotionError, InvalidSettingError
 from ..motion import JointRecording, Motion, Tracks, resample
-from ..motion.posture_joints import POSTURE_JOINTS, motion_postures
+from ..motion.humanoid import POSTURE_JOINTS, motion_postures
 from ..progress import Progress, within
 from ..reconstruction import ResidualPriorSettings, learn_residual_prior
-from ..reconstruction.learn_confidence import calibrated
+from ..reconstruction.residual_correction import calibrated
 from ..recordings import read_tracked, recordings_in
 from .options import arguments_from, settings_from_arguments
 from .verb import Outcome, Task

@@ -11,7 +11,7 @@ from typing import Any
 from ..errors import InvalidSettingError, MocapAssistError
 from ..faults import Failure, attempt, escaped
 from ..files import reason_of
-from ..processes.threads import add_threads_option
+from ..processes import add_threads_option
 from .batch import RECORD, Finished, Made, work_on
 from .options import SentenceParser
 from .report import PAGE, Entry, draw_task, has_picture, write_report

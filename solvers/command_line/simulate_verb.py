@@ -6,8 +6,8 @@ import numpy as np
 
 from ..errors import InvalidMotionError
 from ..motion import Motion
+from ..physics import Simulated, SimulateSettings, simulate
 from ..progress import Progress, within
-from ..reconstruction import Simulated, SimulateSettings, simulate
 from .files import add_reading_options, read, write
 from .options import arguments_from, settings_from_arguments
 from .verb import Outcome, Task

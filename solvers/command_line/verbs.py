@@ -16,12 +16,7 @@ from .capture_verb import add_capture_options, perform_capture, read_body
 from .convert import convert
 from .denoise_verb import add_denoise_options, learn_once, perform_denoise
 from .files import add_reading_options, read, read_all
-from .library_verbs import (
-    add_find_options,
-    add_index_options,
-    perform_find,
-    perform_index,
-)
+from .library_verbs import add_find_options, add_index_options, perform_find, perform_index
 from .options import arguments_from, settings_from_arguments
 from .postures_verb import add_postures_options, perform_postures
 from .reconstruct_verb import add_reconstruct_options, perform_reconstruct, read_guides

@@ -13,18 +13,18 @@ True
 """
 
 from .denoise import Denoised, DenoiseSettings, Method, denoise
-from .filter_bases import (
-    FilterBases,
-    FilterBasesSettings,
-    learn_filter_bases,
-    load_filter_bases,
+from .feet import Planted, PlantSettings, plant_feet
+from .limits import JointLimitsSettings, keep_within, learn_joint_limits, limit_excess
+from .prior import FilterBases, FilterBasesSettings, learn_filter_bases, load_filter_bases
+from .quality import (
+    Quality,
+    QualitySettings,
+    Spot,
+    SpotSettings,
+    compare_quality,
+    find_worst_spots,
+    measure_quality,
 )
-from .keep_within import keep_within, limit_excess
-from .learn_limits import JointLimitsSettings, learn_joint_limits
-from .plant_feet import Planted, PlantSettings, plant_feet
-from .quality import Quality, QualitySettings, measure_quality
-from .quality_report import compare_quality
-from .worst_spots import Spot, SpotSettings, find_worst_spots
 
 __all__ = [
     "DenoiseSettings",

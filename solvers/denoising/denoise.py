@@ -9,17 +9,14 @@ from numpy.typing import NDArray
 
 from ..errors import InvalidMotionError
 from ..motion import JointLimits, Motion, Tracks
+from ..motion.skeletons import find_cuts, is_short, pieces, tell_of_cuts
 from ..progress import Progress, unwatched, within
 from ..settings import Settings, setting
-from .channels import CENTIMETRES, Channels
-from .channels_encode import decode, encode
-from .cuts import find_cuts, is_short, pieces, tell_of_cuts
-from .denoise_estimate import Estimate
-from .denoise_groups import estimate_in_groups
-from .fill_markers import FilledMarkers, fill_markers
-from .filter_bases import FilterBases
-from .impossible_turns import impossible_turns
-from .keep_within import keep_within
+from .channels import CENTIMETRES, Channels, decode, encode
+from .limits import impossible_turns, keep_within
+from .marker_gaps import FilledMarkers, fill_markers
+from .posterior import Estimate, estimate_in_groups
+from .prior import FilterBases
 from .published import filter_as_published
 
 Array = NDArray[np.float64]

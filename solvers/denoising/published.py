@@ -4,11 +4,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..progress import Progress
+from ..signals import hampel, interpolated
 from .channels import Channels
-from .denoise_estimate import Estimate
-from .filter_bases import FilterBases, FilterBasesSettings
-from .lag_covariance import LagProducts, strongest
-from .noise import hampel, interpolated
+from .posterior import Estimate
+from .prior import FilterBases, FilterBasesSettings, LagProducts, strongest
 
 Array = NDArray[np.float64]
 

@@ -5,7 +5,7 @@ from collections.abc import Mapping, Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from ..motion.rotations import (
+from ..rotations import (
     matrix_from_quaternion,
     quaternion_from_matrix,
     quaternion_from_rotation_vector,

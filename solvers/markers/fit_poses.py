@@ -5,8 +5,8 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from ..motion.rotations import quaternion_from_matrix, rotation_vector_from_quaternion
 from ..progress import Progress, unwatched
+from ..rotations import quaternion_from_matrix, rotation_vector_from_quaternion
 from .body import Body, Placed, Poses
 from .vectors import skewed, turned_by
 

@@ -8,8 +8,8 @@ from numpy.typing import NDArray
 
 from ..errors import InvalidMotionError
 from ..motion import Motion, Skeleton, Tracks
-from ..motion.rotations import quaternion_from_matrix, unroll
 from ..progress import Progress, unwatched, within
+from ..rotations import quaternion_from_matrix, unroll
 from ..settings import Settings, setting
 from .body import Body, Poses
 from .build_body import build_body

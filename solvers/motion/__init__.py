@@ -8,31 +8,48 @@
 [0.3, 0.0, 1.4]
 """
 
-from .bone_lengths import fit_bone_lengths, transfer_motion
-from .canonical import canonical_rotations, from_canonical, t_pose_alignment
-from .contacts import (
+from .humanoid import (
+    HUMANOID_ROLES,
     ContactSettings,
+    HumanoidMap,
+    canonical_rotations,
     contacts_of_points,
     detect_contacts,
+    find_humanoid_map,
+    fit_bone_lengths,
     foot_points,
+    from_canonical,
     leg_length,
+    motion_from_points,
+    read_humanoid_map,
+    roles_by_name,
+    skeleton_from_points,
+    t_pose_alignment,
+    transfer_motion,
+    write_humanoid_map,
 )
-from .depth_sensors import JOINTS, Sensor, joint_parents
-from .humanoid import HUMANOID_ROLES, HumanoidMap, find_humanoid_map
-from .humanoid_names import roles_by_name
-from .humanoid_presets import read_humanoid_map, write_humanoid_map
-from .joint_limits import JointLimits, load_joint_limits
-from .joint_recording import JointRecording
-from .kinematics import WorldPoses, forward_kinematics, local_rotations, world_poses
-from .limb_ik import ReachSettings, reach
-from .motion import Motion
-from .points_motion import motion_from_points
-from .points_skeleton import skeleton_from_points
-from .resampling import resample
-from .skeleton import Skeleton
-from .tracks import Tracks
-from .velocities import angular_velocities, linear_velocities
-from .warping import Alignment, warp
+from .skeletons import (
+    JOINTS,
+    Alignment,
+    JointLimits,
+    JointRecording,
+    Motion,
+    ReachSettings,
+    Sensor,
+    Skeleton,
+    Tracks,
+    WorldPoses,
+    angular_velocities,
+    forward_kinematics,
+    joint_parents,
+    linear_velocities,
+    load_joint_limits,
+    local_rotations,
+    reach,
+    resample,
+    warp,
+    world_poses,
+)
 
 __all__ = [
     "HUMANOID_ROLES",

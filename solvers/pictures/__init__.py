@@ -8,12 +8,15 @@
 (3, 'uint8')
 """
 
+from .canvas import SERIES, Canvas, paler
 from .curves import CurveSettings, draw_curves
 from .picture import Picture, stack_pictures
-from .stick_figures import StickFigureSettings, View, draw_stick_figures
+from .stick_figures import StickFigureSettings, View, draw_stick_figures, project
 from .table import draw_table
 
 __all__ = [
+    "SERIES",
+    "Canvas",
     "CurveSettings",
     "Picture",
     "StickFigureSettings",
@@ -21,5 +24,7 @@ __all__ = [
     "draw_curves",
     "draw_stick_figures",
     "draw_table",
+    "paler",
+    "project",
     "stack_pictures",
 ]

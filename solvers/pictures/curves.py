@@ -9,12 +9,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from ..errors import InvalidMotionError
 from ..motion import Motion
-from ..motion.rotations import (
-    inverse,
-    mean_rotation,
-    multiply,
-    rotation_vector_from_quaternion,
-)
+from ..rotations import inverse, mean_rotation, multiply, rotation_vector_from_quaternion
 from ..settings import Settings, setting
 from .canvas import FAINT, GRID, INK, SHADE, Canvas, series_colors
 from .picture import Picture

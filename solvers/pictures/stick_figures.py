@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from ..errors import InvalidMotionError
 from ..motion import JointRecording, Motion, Skeleton, Tracks, forward_kinematics
-from ..motion.rotations import rotate
+from ..rotations import rotate
 from ..settings import Settings, setting
 from .canvas import FAINT, INK, Canvas, Color, paler, series_colors
 from .picture import Picture

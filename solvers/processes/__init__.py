@@ -2,3 +2,21 @@
 
 Nothing here imports numpy: `threads` must act before that is imported.
 """
+
+from .locks import try_lock
+from .parent import end_with_stdin
+from .scratch import ScratchFolder, lock_for_work_on
+from .threads import add_threads_option, thread_environment, threads_from, threads_of_words
+from .workers import worker_pool
+
+__all__ = [
+    "ScratchFolder",
+    "add_threads_option",
+    "end_with_stdin",
+    "lock_for_work_on",
+    "thread_environment",
+    "threads_from",
+    "threads_of_words",
+    "try_lock",
+    "worker_pool",
+]

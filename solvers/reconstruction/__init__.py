@@ -1,41 +1,35 @@
-"""Clean poses from poor recordings: what a depth camera's tracker got wrong, and physics.
+"""Clean poses from the joints that a depth camera's tracker got wrong or lost."""
 
->>> from solvers.reconstruction import simulate
->>> from solvers.samples import GaitSettings, walking_gait
->>> walk = walking_gait(GaitSettings(duration=1.0, frame_rate=30.0))
->>> simulate(walk).message
-'The simulated body followed the whole take.'
-"""
-
-from .correct_postures import CorrectionMethod, CorrectionSettings, correct_postures
-from .learn_residual_prior import (
-    ResidualMethod,
-    ResidualPriorSettings,
-    learn_residual_prior,
-)
-from .physics_engine import NoPhysicsError
-from .physics_settings import Ground, SimulateSettings
-from .posture_library import (
+from .joint_rotations import Reconstruction
+from .pose_completion import PostureMethod, PostureSettings, reconstruct_postures
+from .pose_library import (
     PostureLibrary,
     PostureLibrarySettings,
     build_posture_library,
     load_posture_library,
 )
-from .posture_settings import PostureMethod, PostureSettings
 from .reconstruct import ReconstructMethod, ReconstructSettings, reconstruct
-from .reconstruct_postures import reconstruct_postures
-from .reliability import Reliability, measure_reliability
-from .reliability_markers import measure_marker_reliability
-from .reliability_settings import ReliabilityMethod, ReliabilitySettings
-from .residual_prior import ResidualPrior, load_residual_prior
-from .result import Reconstruction
-from .simulate import Simulated, simulate, with_strength
+from .reliability import (
+    Reliability,
+    ReliabilityMethod,
+    ReliabilitySettings,
+    measure_marker_reliability,
+    measure_reliability,
+)
+from .residual_correction import (
+    CorrectionMethod,
+    CorrectionSettings,
+    ResidualMethod,
+    ResidualPrior,
+    ResidualPriorSettings,
+    correct_postures,
+    learn_residual_prior,
+    load_residual_prior,
+)
 
 __all__ = [
     "CorrectionMethod",
     "CorrectionSettings",
-    "Ground",
-    "NoPhysicsError",
     "PostureLibrary",
     "PostureLibrarySettings",
     "PostureMethod",
@@ -49,8 +43,6 @@ __all__ = [
     "ResidualMethod",
     "ResidualPrior",
     "ResidualPriorSettings",
-    "SimulateSettings",
-    "Simulated",
     "build_posture_library",
     "correct_postures",
     "learn_residual_prior",
@@ -60,6 +52,4 @@ __all__ = [
     "measure_reliability",
     "reconstruct",
     "reconstruct_postures",
-    "simulate",
-    "with_strength",
 ]

@@ -9,24 +9,35 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..motion import JointRecording, Sensor, Tracks
-from ..motion.steadying import steadied
-from ..motion.straight_gaps import bridged
 from ..progress import Progress, unwatched, within
 from ..settings import Settings, setting
-from .bridge_gaps import bridged_losses
-from .correct_postures import CorrectionMethod, CorrectionSettings, correct_postures
-from .exchanges import undo_exchanges
-from .posture_library import PostureLibrary
-from .posture_settings import PostureMethod, PostureSettings
-from .reconstruct_postures import rebuilt_joints, reconstruct_postures
-from .reliability import measure_reliability
-from .reliability_settings import ReliabilityMethod, ReliabilitySettings
-from .residual_prior import ResidualPrior, load_residual_prior
-from .result import Reconstruction
+from ..signals import bridged, steadied
+from .joint_rotations import Reconstruction
+from .pose_completion import (
+    PostureMethod,
+    PostureSettings,
+    bridged_losses,
+    rebuilt_joints,
+    reconstruct_postures,
+)
+from .pose_library import PostureLibrary
+from .reliability import (
+    ReliabilityMethod,
+    ReliabilitySettings,
+    measure_reliability,
+    undo_exchanges,
+)
+from .residual_correction import (
+    CorrectionMethod,
+    CorrectionSettings,
+    ResidualPrior,
+    correct_postures,
+    load_residual_prior,
+)
 
 Array = NDArray[np.float64]
 
-SHIPPED = Path(__file__).parent / "models" / "residuals.npz"
+SHIPPED = Path(__file__).parent / "residual_correction" / "residuals.npz"
 
 DOUBTED, LOST = 0.5, 0.2
 """Joints that are trusted more than the first stay where they were seen; those trusted less

@@ -12,25 +12,24 @@
 (30, 30.0)
 """
 
-from .acclaim import read_acclaim
-from .acclaim_limits import read_acclaim_limits
-from .azure_csv import read_azure_csv
-from .azure_json import read_azure_json
-from .bvh import read_bvh
-from .bvh_writing import write_bvh
-from .c3d import read_c3d
-from .c3d_writing import write_c3d
-from .depth import depth_format_of, read_depth
-from .depth_folder import is_depth_folder
-from .depth_settings import DepthSettings, Held
-from .freemocap import read_freemocap
-from .irds import read_irds
-from .joint_csv import read_joint_csv, write_joint_csv
-from .joint_json import read_joint_json, write_joint_json
+from .depth_files import DepthSettings, Held, depth_format_of, is_depth_folder, read_depth
+from .joint_files import (
+    read_azure_csv,
+    read_azure_json,
+    read_freemocap,
+    read_irds,
+    read_joint_csv,
+    read_joint_json,
+    read_kinect_csv,
+    read_msr_action3d,
+    read_ntu_skeleton,
+    read_ui_prmd,
+    read_ui_prmd_pair,
+    write_joint_csv,
+    write_joint_json,
+)
 from .joints import read_joints, write_joints
-from .kinect_csv import read_kinect_csv
-from .msr_action3d import read_msr_action3d
-from .ntu_skeleton import read_ntu_skeleton
+from .marker_files import read_c3d, read_trc, write_c3d, write_trc
 from .read_recording import (
     depth_in,
     format_of,
@@ -42,9 +41,7 @@ from .read_recording import (
     recordings_in,
 )
 from .recording_figures import recording_figures
-from .trc import read_trc
-from .trc_writing import write_trc
-from .ui_prmd import read_ui_prmd, read_ui_prmd_pair
+from .skeleton_files import read_acclaim, read_acclaim_limits, read_bvh, write_bvh
 
 __all__ = [
     "DepthSettings",

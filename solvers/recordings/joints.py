@@ -5,8 +5,7 @@ from pathlib import Path
 from ..errors import InvalidFileError
 from ..motion import JointRecording
 from ..progress import Progress, unwatched
-from .joint_csv import write_joint_csv
-from .joint_json import write_joint_json
+from .joint_files import write_joint_csv, write_joint_json
 from .read_recording import read_tracked
 
 WRITERS = {".csv": write_joint_csv, ".json": write_joint_json}

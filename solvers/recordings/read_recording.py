@@ -5,33 +5,39 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import NamedTuple, Protocol
 
+from ..depth_scene import DepthRecording
 from ..errors import InvalidFileError, InvalidMotionError
 from ..faults import attempt
 from ..files import open_regular, unreadable
 from ..motion import JointRecording, Motion, Tracks
-from ..motion.depth_recording import DepthRecording
 from ..progress import Progress, unwatched
-from .acclaim import read_acclaim
-from .axes import check_scale
-from .azure_csv import is_azure_csv, read_azure_csv
-from .azure_json import is_azure_json, read_azure_json
-from .bvh import read_bvh
-from .c3d import read_c3d
-from .c3d_file import is_c3d
-from .depth import depth_format_of, read_depth
-from .depth_folder import is_depth_folder
-from .depth_settings import DepthSettings
-from .folder_scan import files_below, is_folder, refuse_closed
-from .freemocap import is_npy, read_freemocap
-from .irds import is_irds, read_irds
-from .joint_csv import is_joint_csv, read_joint_csv
-from .joint_json import is_joint_json, read_joint_json
-from .kinect_csv import is_kinect_csv, read_kinect_csv
-from .msr_action3d import is_msr_action3d, read_msr_action3d
-from .ntu_skeleton import is_ntu_skeleton, read_ntu_skeleton
-from .text import BYTE_ORDER_MARK
-from .trc import read_trc
-from .ui_prmd import is_ui_prmd, read_ui_prmd
+from .containers import BYTE_ORDER_MARK, files_below, is_c3d, is_folder, refuse_closed
+from .conventions import check_scale
+from .depth_files import DepthSettings, depth_format_of, is_depth_folder, read_depth
+from .joint_files import (
+    is_azure_csv,
+    is_azure_json,
+    is_irds,
+    is_joint_csv,
+    is_joint_json,
+    is_kinect_csv,
+    is_msr_action3d,
+    is_npy,
+    is_ntu_skeleton,
+    is_ui_prmd,
+    read_azure_csv,
+    read_azure_json,
+    read_freemocap,
+    read_irds,
+    read_joint_csv,
+    read_joint_json,
+    read_kinect_csv,
+    read_msr_action3d,
+    read_ntu_skeleton,
+    read_ui_prmd,
+)
+from .marker_files import read_c3d, read_trc
+from .skeleton_files import read_acclaim, read_bvh
 
 HEAD = 4096
 

@@ -5,8 +5,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from ..depth_scene import DepthRecording
 from ..motion import JointRecording, Motion, Tracks
-from ..motion.depth_recording import DepthRecording
 
 
 def recording_figures(

@@ -11,7 +11,8 @@
 60
 """
 
-from .key_curves import KeyCurve
+from .judged_points import find_judged_points
+from .key_curves import KeyCurve, fit_curve
 from .reduce_keys import SparseMotion, UnbakeSettings, load_sparse_motion, reduce_keys
 from .retarget import RetargetSettings, RootMotion, retarget
 from .root_motion import GroundPath, ground_path
@@ -25,6 +26,8 @@ __all__ = [
     "RotationChannels",
     "SparseMotion",
     "UnbakeSettings",
+    "find_judged_points",
+    "fit_curve",
     "ground_path",
     "load_sparse_motion",
     "reduce_keys",

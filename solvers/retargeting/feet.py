@@ -5,7 +5,7 @@ from numpy.typing import NDArray
 from scipy.ndimage import maximum_filter1d, uniform_filter1d
 
 from ..motion import WorldPoses, world_poses
-from ..motion.rotations import IDENTITY, rotate
+from ..rotations import IDENTITY, rotate
 from .body import SIDES
 from .limbs import Limb, Transfer, limb_pairs, limb_reaches, stretch
 from .meeting_hands import way_into_reach

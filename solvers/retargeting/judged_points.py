@@ -6,8 +6,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..motion import Skeleton
-from ..motion.kinematics import WorldPoses
-from ..motion.rotations import rotate
+from ..motion.skeletons import WorldPoses
+from ..rotations import rotate
 
 Array = NDArray[np.float64]
 

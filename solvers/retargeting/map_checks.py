@@ -7,7 +7,7 @@ from numpy.typing import NDArray
 
 from ..errors import InvalidMotionError
 from ..motion import Skeleton
-from ..motion.rotations import angle_between
+from ..rotations import angle_between
 
 Array = NDArray[np.float64]
 Joints = dict[str, int]

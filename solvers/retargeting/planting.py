@@ -3,7 +3,7 @@
 import numpy as np
 from numpy.typing import NDArray
 
-from ..motion.smooth_correction import smooth_correction
+from ..signals import smooth_correction
 
 Array = NDArray[np.float64]
 Flags = NDArray[np.bool_]

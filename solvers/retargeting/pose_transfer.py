@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..motion import WorldPoses
-from ..motion.rotations import IDENTITY, inverse, multiply, slerp
+from ..rotations import IDENTITY, inverse, multiply, slerp
 from .body import Body
 from .trunk_lean import leaning_swings
 

@@ -11,9 +11,9 @@ from numpy.typing import NDArray
 from ..archives import ArchiveLayout
 from ..errors import InvalidMotionError, InvalidSettingError
 from ..motion import Motion, Skeleton
-from ..motion.rotations import IDENTITY
 from ..npz_members import integers, numbers, words
 from ..progress import Progress, unwatched, within
+from ..rotations import IDENTITY
 from ..settings import Settings, setting
 from .key_curves import KeyCurve
 from .rotation_channels import RotationChannels

@@ -16,8 +16,8 @@ from ..motion import (
     forward_kinematics,
     world_poses,
 )
-from ..motion.rotations import IDENTITY
 from ..progress import Progress, unwatched
+from ..rotations import IDENTITY
 from ..settings import Settings, setting
 from .body import SIDES, Body, find_body, without_gaps
 from .feet import place_feet

@@ -7,7 +7,7 @@ from numpy.typing import NDArray
 from scipy.ndimage import gaussian_filter1d
 
 from ..motion import HumanoidMap, Motion, t_pose_alignment
-from ..motion.rotations import IDENTITY, inverse, multiply, rotate, twist_about
+from ..rotations import IDENTITY, inverse, multiply, rotate, twist_about
 from .body import held, hips_of
 
 Array = NDArray[np.float64]

@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..errors import InvalidMotionError
-from ..motion.rotations import (
+from ..rotations import (
     IDENTITY,
     euler_from_quaternion,
     inverse,

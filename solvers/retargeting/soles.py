@@ -6,13 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..motion import WorldPoses
-from ..motion.rotations import (
-    IDENTITY,
-    inverse,
-    multiply,
-    rotate,
-    rotation_between,
-)
+from ..rotations import IDENTITY, inverse, multiply, rotate, rotation_between
 from .body import Body
 from .placement import Placement, leg_length, rests_on_ground
 from .standing_feet import foot_bone

@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 from scipy.ndimage import gaussian_filter1d
 
 from ..motion import Skeleton, WorldPoses
-from ..motion.rotations import (
+from ..rotations import (
     inverse,
     multiply,
     quaternion_from_rotation_vector,

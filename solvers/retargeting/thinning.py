@@ -6,9 +6,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..motion import Motion, forward_kinematics
-from ..motion.kinematics import world_poses
-from ..motion.rotations import IDENTITY
+from ..motion.skeletons import world_poses
 from ..progress import Progress
+from ..rotations import IDENTITY
 from .judged_points import find_judged_points
 from .key_curves import KeyCurve, fit_curve
 from .rotation_channels import RotationChannels

@@ -4,7 +4,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.ndimage import maximum_filter1d, uniform_filter1d
 
-from ..motion.rotations import quaternion_from_rotation_vector, rotate
+from ..rotations import quaternion_from_rotation_vector, rotate
 
 Array = NDArray[np.float64]
 

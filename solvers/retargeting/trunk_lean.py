@@ -4,7 +4,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..motion import WorldPoses
-from ..motion.rotations import (
+from ..rotations import (
     inverse,
     multiply,
     quaternion_from_rotation_vector,

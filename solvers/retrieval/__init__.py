@@ -8,12 +8,10 @@
 'slow'
 """
 
-from .clip import Clip, ClipEntry, Match, Origin
-from .clip_library import ClipLibrary
-from .describe_clip import DescribedClip, describe_clip
-from .find_settings import FindMethod, FindSettings
 from .find_similar import find_similar
-from .open_library import build_clip_library, load_clip_library, open_clip_library
+from .index import Clip, ClipEntry, DescribedClip, Match, Origin, describe_clip
+from .library import ClipLibrary, build_clip_library, load_clip_library, open_clip_library
+from .search import FindMethod, FindSettings
 
 __all__ = [
     "Clip",

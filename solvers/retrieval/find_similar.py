@@ -9,16 +9,20 @@ from numpy.typing import NDArray
 
 from ..motion import JointRecording, Tracks
 from ..progress import Progress, unwatched, within
-from .align_clip import aligned
-from .clip import ClipEntry, Match
-from .clip_library import ClipLibrary
-from .clip_postures import ClipPostures, Recording, clip_postures
-from .describe_query import DescribedQuery, describe_query
-from .find_settings import USUAL, FindMethod, FindSettings
-from .rank_clips import Ranking, rank_clips
-from .rank_pyramids import rank_pyramids
-from .spans import RATE
-from .vocabulary import Vocabulary
+from .index import RATE, ClipEntry, Match, Vocabulary
+from .library import ClipLibrary
+from .postures import ClipPostures, Recording, clip_postures
+from .published import rank_pyramids
+from .search import (
+    USUAL,
+    DescribedQuery,
+    FindMethod,
+    FindSettings,
+    Ranking,
+    aligned,
+    describe_query,
+    rank_clips,
+)
 
 Array = NDArray[np.float64]
 Frames = NDArray[np.intp]

@@ -9,7 +9,7 @@ from scipy.interpolate import CubicSpline
 
 from ..errors import InvalidMotionError
 from ..motion import Motion, Skeleton
-from ..motion.rotations import multiply, quaternion_from_rotation_vector
+from ..rotations import multiply, quaternion_from_rotation_vector
 from ..settings import Settings, setting
 
 SWAY_PERIOD = 1.5

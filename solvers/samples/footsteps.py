@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.interpolate import BPoly
 
-from ..motion.rotations import multiply, quaternion_from_rotation_vector, rotate
+from ..rotations import multiply, quaternion_from_rotation_vector, rotate
 from .walker import ANKLE_HEIGHT
 
 Array = NDArray[np.float64]

@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 
 from ..errors import InvalidSettingError
 from ..motion import Motion, Skeleton, local_rotations
-from ..motion.rotations import (
+from ..rotations import (
     inverse,
     multiply,
     quaternion_from_matrix,

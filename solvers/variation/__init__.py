@@ -10,6 +10,7 @@
 
 from .borrow_variation import borrow_variation
 from .learn_variation import learn_variation_model
+from .loops import loop_at_rate, middle_round, repeated
 from .measure_variation import measure_variation
 from .partitions import Partition
 from .synthesize import Variant, draw_variants, synthesize
@@ -26,6 +27,9 @@ __all__ = [
     "draw_variants",
     "learn_variation_model",
     "load_variation_model",
+    "loop_at_rate",
     "measure_variation",
+    "middle_round",
+    "repeated",
     "synthesize",
 ]

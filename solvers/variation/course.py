@@ -6,9 +6,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..motion import Motion, Skeleton
-from ..motion.posture_heading import normalise
-from ..motion.posture_joints import motion_postures
-from ..motion.rotations import (
+from ..motion.humanoid import motion_postures, normalise
+from ..rotations import (
     inverse,
     multiply,
     quaternion_from_rotation_vector,

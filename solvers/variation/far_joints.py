@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.ndimage import gaussian_filter1d
 
-from ..motion.rotations import (
+from ..rotations import (
     IDENTITY,
     inverse,
     multiply,

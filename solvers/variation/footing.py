@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from ..errors import InvalidMotionError
 from ..motion import Motion
-from ..motion.contacts import detect_contacts
+from ..motion.humanoid import detect_contacts
 
 Array = NDArray[np.float64]
 

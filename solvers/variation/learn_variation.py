@@ -9,8 +9,8 @@ from numpy.typing import NDArray
 
 from ..errors import InvalidMotionError
 from ..motion import Motion, resample
-from ..motion.rotations import inverse, mean_rotation, multiply, rotation_vector_from_quaternion
 from ..progress import Progress, unwatched, within
+from ..rotations import inverse, mean_rotation, multiply, rotation_vector_from_quaternion
 from .align_examples import Alignment, align_examples
 from .course import HEIGHT, IMPOSSIBLE, Course, course_of, headings, without_heading
 from .curve_sampling import between_frames, sample_curves

@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..motion import Motion, resample
-from ..motion.rotations import inverse, multiply, rotate
+from ..rotations import inverse, multiply, rotate
 from .align_examples import body_positions
 from .course import HEIGHT, Course
 

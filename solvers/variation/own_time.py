@@ -4,7 +4,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.interpolate import PchipInterpolator
 
-from ..motion.rotations import normalize, unroll
+from ..rotations import normalize, unroll
 from .course import HEIGHT, Course
 from .curve_sampling import between_frames, sample_curves
 

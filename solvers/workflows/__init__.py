@@ -2,7 +2,9 @@
 
 from .capture_recording import CapturedMotion, capture_actor, capture_recording
 from .clean_from_library import LibraryBases, bases_from_library, clean_from_library
+from .clip_sources import path_fault
 from .index_files import IndexReport, index_files
+from .live_session import LiveSession
 from .motion_from_markers import MarkerMotion, MarkerMotionSettings, motion_from_markers
 from .postures_of import postures_of
 from .reconstruct_from_library import (
@@ -21,6 +23,7 @@ __all__ = [
     "IndexReport",
     "LibraryBases",
     "LibraryPostures",
+    "LiveSession",
     "MarkerMotion",
     "MarkerMotionSettings",
     "RebuiltMotion",
@@ -32,6 +35,7 @@ __all__ = [
     "clean_from_library",
     "index_files",
     "motion_from_markers",
+    "path_fault",
     "postures_from_library",
     "postures_of",
     "reconstruct_from_library",

@@ -4,14 +4,11 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 from ..denoising import Planted, PlantSettings
-from ..depth_tracking.body_model import BodyModel
-from ..depth_tracking.capture import Capture, CaptureSettings, capture
-from ..depth_tracking.found_pose import OnPose, unobserved
-from ..depth_tracking.motion_prior import MotionPrior
+from ..depth_scene import Actor, DepthRecording, ForegroundSettings, find_actor
+from ..depth_tracking.body import BodyModel, MotionPrior
+from ..depth_tracking.capturing import Capture, CaptureSettings, capture
+from ..depth_tracking.tracking import OnPose, unobserved
 from ..motion import Motion
-from ..motion.depth_actor import Actor, find_actor
-from ..motion.depth_foreground import ForegroundSettings
-from ..motion.depth_recording import DepthRecording
 from ..progress import Progress, unwatched, within
 from .capture_remarks import capture_remarks
 from .try_to_plant import try_to_plant

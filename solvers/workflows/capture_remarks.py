@@ -2,9 +2,9 @@
 
 import numpy as np
 
-from ..depth_tracking.body_model import usual_body
-from ..depth_tracking.capture import Capture
-from ..motion.depth_actor import Actor
+from ..depth_scene import Actor
+from ..depth_tracking.body import usual_body
+from ..depth_tracking.capturing import Capture
 
 MANY = 0.2
 """Share of joints out of sight from which the report tells it."""

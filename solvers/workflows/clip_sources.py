@@ -7,10 +7,10 @@ from pathlib import Path
 from ..errors import InvalidFileError
 from ..files import is_missing, real_path
 from ..recordings import recordings_in
-from ..recordings.acclaim import find_skeleton
-from ..recordings.folder_scan import is_folder
+from ..recordings.containers import is_folder
+from ..recordings.skeleton_files import find_skeleton
 from ..retrieval import Origin
-from ..retrieval.clip import is_utf_8, text_fault
+from ..retrieval.index import is_utf_8, text_fault
 
 
 @dataclass(frozen=True)

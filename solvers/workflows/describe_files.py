@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import NamedTuple
 
 from ..faults import Failure, attempt
-from ..processes.workers import worker_pool
+from ..processes import worker_pool
 from ..recordings import read_tracked
 from ..retrieval import Clip, DescribedClip, Origin, describe_clip
 

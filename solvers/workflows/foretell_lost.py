@@ -8,8 +8,8 @@ from numpy.typing import NDArray
 
 from ..denoising import FilterBases, denoise
 from ..motion import Motion
-from ..motion.rotations import angle_between
 from ..progress import Progress, within
+from ..rotations import angle_between
 
 Flags = NDArray[np.bool_]
 

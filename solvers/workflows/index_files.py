@@ -8,7 +8,7 @@ from ..errors import InvalidMotionError
 from ..files import is_missing, real_path, reason_of
 from ..progress import Progress, unwatched
 from ..retrieval import ClipEntry, ClipLibrary, DescribedClip, Origin, open_clip_library
-from ..retrieval.clip import tags_fault
+from ..retrieval.index import tags_fault
 from ..version import version
 from .clip_sources import ClipSource, clip_sources
 from .describe_files import Described, Wanted, describe_files

@@ -6,8 +6,8 @@ from scipy.ndimage import gaussian_filter1d, maximum_filter1d, minimum_filter1d
 
 from ..denoising.feet import SIDES, Leg, find_legs
 from ..motion import Motion, forward_kinematics
-from ..motion.limb_ik import ReachSettings, reach
-from ..motion.rotations import inverse, multiply, rotation_between
+from ..motion.skeletons import ReachSettings, reach
+from ..rotations import inverse, multiply, rotation_between
 
 Array = NDArray[np.float64]
 Flags = NDArray[np.bool_]

@@ -7,13 +7,17 @@ from numpy.typing import NDArray
 
 from ..errors import InvalidMotionError
 from ..motion import JOINTS, JointRecording, Sensor, Tracks
-from ..motion.body_size import LARGEST, SMALLEST, STATURE, size_of_body
-from ..motion.posture_joints import (
+from ..motion.humanoid import (
+    LARGEST,
+    LEGS,
     POSTURE_JOINTS,
+    SMALLEST,
+    STATURE,
     joints_of_names,
     posture_positions,
+    size_of_body,
+    with_hips,
 )
-from ..motion.unseen_hips import LEGS, with_hips
 
 LONG_GAP = 1.0
 """Seconds without any joint, from which on the result is a guess that is worth a word."""

@@ -6,7 +6,7 @@ from scipy.ndimage import gaussian_filter1d
 
 from ..denoising.feet import SIDES, Leg, find_legs
 from ..motion import Motion, WorldPoses, forward_kinematics
-from ..motion.rotations import IDENTITY, inverse, multiply, rotate, rotation_between, slerp
+from ..rotations import IDENTITY, inverse, multiply, rotate, rotation_between, slerp
 
 Array = NDArray[np.float64]
 

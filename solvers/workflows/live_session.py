@@ -8,13 +8,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..errors import InvalidFileError
+from ..gestures import Gesture, GestureEvent, GestureRecogniser, GestureSettings, Mode
 from ..motion import JointRecording
-from ..motion.posture_joints import POSTURE_JOINTS, joints_of_names
-from ..recordings.live_frames import LiveFrame
-from ..recordings.live_stream import Heard, StreamReader, recording_of
-from ..retrieval.gesture_events import Gesture, GestureEvent
-from ..retrieval.gesture_settings import GestureSettings
-from ..retrieval.gestures import GestureRecogniser, Mode
+from ..motion.humanoid import POSTURE_JOINTS, joints_of_names
+from ..recordings.live import Heard, LiveFrame, StreamReader, recording_of
 
 Array = NDArray[np.float64]
 

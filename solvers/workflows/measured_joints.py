@@ -4,7 +4,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..motion import JointRecording, Motion, Tracks, forward_kinematics, motion_from_points
-from ..motion.unseen_hips import with_hips
+from ..motion.humanoid import with_hips
 
 Array = NDArray[np.float64]
 SAME = 0.002

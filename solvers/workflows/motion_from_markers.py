@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..denoising import denoise
-from ..denoising.fill_markers import fill_markers
+from ..denoising.marker_gaps import fill_markers
 from ..markers import (
     SolvedSkeleton,
     SolveSettings,

@@ -5,7 +5,7 @@ from collections.abc import Sequence
 from ..errors import InvalidMotionError
 from ..motion import Motion, Tracks
 from ..progress import Progress, unwatched
-from ..reconstruction.posture_library import (
+from ..reconstruction.pose_library import (
     PostureLibrary,
     PostureLibrarySettings,
     build_posture_library,

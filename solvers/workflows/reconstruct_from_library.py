@@ -17,7 +17,7 @@ from ..reconstruction import (
     measure_reliability,
     reconstruct,
 )
-from ..reconstruction.posture_library import build_posture_library, joined_postures
+from ..reconstruction.pose_library import build_posture_library, joined_postures
 from ..retrieval import ClipLibrary, FindSettings
 from .library_clips import FOUND, Fetch, library_clips, read_origin
 from .reconstruct_motion import postures_recording

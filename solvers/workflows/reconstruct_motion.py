@@ -15,7 +15,7 @@ from ..motion import (
     forward_kinematics,
     joint_parents,
 )
-from ..motion.posture_joints import (
+from ..motion.humanoid import (
     POSTURE_JOINTS,
     joints_of_names,
     motion_postures,
@@ -30,8 +30,7 @@ from ..reconstruction import (
     ResidualPrior,
     reconstruct,
 )
-from ..reconstruction.follow_joints import follow_joints
-from ..reconstruction.turn_to_postures import turn_to_postures
+from ..reconstruction.joint_rotations import follow_joints, turn_to_postures
 from .known_body import KINECT_V1, check_size, check_tracked, gap_remarks
 from .measured_joints import measured_joints
 from .rebuilt_joints import rebuilt_joints

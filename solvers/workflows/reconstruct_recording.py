@@ -9,8 +9,7 @@ from ..denoising import Planted, PlantSettings
 from ..motion import JointRecording, Motion, Skeleton
 from ..progress import Progress, unwatched, within
 from ..reconstruction import PostureLibrary, ReconstructSettings, ResidualPrior, reconstruct
-from ..reconstruction.follow_joints import follow_joints
-from ..reconstruction.result import Reconstruction
+from ..reconstruction.joint_rotations import Reconstruction, follow_joints
 from .known_body import check_size, gap_remarks, known_body
 from .rebuilt_joints import rebuilt_joints
 from .try_to_plant import try_to_plant

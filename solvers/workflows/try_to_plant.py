@@ -10,7 +10,7 @@ from ..denoising import Planted, PlantSettings, plant_feet
 from ..denoising.feet import foot_joints
 from ..errors import InvalidMotionError
 from ..motion import Motion, forward_kinematics
-from ..motion.contacts import detect_contacts
+from ..motion.humanoid import detect_contacts
 from ..progress import Progress, unwatched
 from .keep_ankles import keep_ankles
 from .level_toes import level_toes

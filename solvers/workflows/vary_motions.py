@@ -7,7 +7,7 @@ import numpy as np
 
 from ..denoising import PlantSettings
 from ..motion import Motion
-from ..motion.contacts import detect_contacts
+from ..motion.humanoid import detect_contacts
 from ..progress import Progress, unwatched, within
 from ..variation import (
     Variant,
@@ -15,8 +15,9 @@ from ..variation import (
     borrow_variation,
     draw_variants,
     learn_variation_model,
+    middle_round,
+    repeated,
 )
-from ..variation.loops import middle_round, repeated
 from .try_to_plant import Footing, try_to_plant
 
 

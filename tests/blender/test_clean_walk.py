@@ -24,9 +24,9 @@ def walk(blank, recordings):
 
 
 def test_cleaning_brings_a_noisy_walk_nearer_to_the_truth(walk, blank, load, rng):
-    reading = load("mocap_assist.scene.armature_read")
-    writing = load("mocap_assist.scene.armature_write")
-    turns = load("solvers.motion.rotations")
+    reading = load("mocap_assist.actions.armature_read")
+    writing = load("mocap_assist.actions.armature_write")
+    turns = load("solvers.rotations.representations")
     scene = blank.context.scene
     truth = reading.read_take(walk, scene)
     motion = truth.parts[0].motion

@@ -23,7 +23,7 @@ def job(load):
 def problem(load, rng):
     """A leg that shakes, of so many frames."""
     motion = load("solvers.motion")
-    turns = load("solvers.motion.rotations")
+    turns = load("solvers.rotations.representations")
     skeleton = motion.Skeleton(("hip", "knee"), (-1, 0), np.array([[0, 0, 0.9], [0, 0, -0.4]]))
 
     def make(n_frames):
@@ -69,7 +69,7 @@ def test_cancelling_ends_it_at_once_and_leaves_nothing(job, load, problem):
 def test_what_the_solver_raises_is_raised_here_with_its_traceback(job, load, problem):
     motion = problem(10)
     contacts = np.zeros((3, 2), bool)
-    solve = partial(load("solvers.denoising.plant_feet").plant_feet, motion, contacts)
+    solve = partial(load("solvers.denoising.feet.plant_feet").plant_feet, motion, contacts)
 
     with pytest.raises(load("solvers.errors").InvalidMotionError) as caught:
         job(solve).result()

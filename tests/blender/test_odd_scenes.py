@@ -102,7 +102,7 @@ def test_keys_out_of_order_are_refused(walker, refused, button):
 def test_a_stray_key_far_out_is_refused_before_anything_is_sampled(
     walker, refused, load, monkeypatch, button, frame
 ):
-    channel = load("mocap_assist.scene.curves").Channel
+    channel = load("mocap_assist.actions.curves").Channel
     monkeypatch.setattr(channel, "_evaluated", lambda *_: pytest.fail("It was sampled."))
     curve = next(each for each in curves(walker) if "LeftArm" in each.data_path)
     curve.keyframe_points.insert(frame, 0.3)
@@ -152,8 +152,8 @@ def test_a_take_of_nan_only_is_refused(walker, refused, button):
 @pytest.fixture
 def press_slowly(press_button, load, monkeypatch):
     """Press Clean in a window; Blender has a turn after each bone that is read."""
-    monkeypatch.setattr(load("mocap_assist.solver_operator"), "AT_ONCE", 0.0)
-    choices = load("mocap_assist.clean_choices")
+    monkeypatch.setattr(load("mocap_assist.runtime.solver_operator"), "AT_ONCE", 0.0)
+    choices = load("mocap_assist.clean.choices")
     denoising = load("solvers.denoising")
 
     def press(**chosen):

@@ -38,7 +38,7 @@ def dish(load):
     class DISH_PG_test(bpy.types.PropertyGroup):
         pass
 
-    load("mocap_assist.settings_properties").settings_from(Menu)(DISH_PG_test)
+    load("mocap_assist.blender.settings_properties").settings_from(Menu)(DISH_PG_test)
     bpy.utils.register_class(DISH_PG_test)
     bpy.types.WindowManager.dish = bpy.props.PointerProperty(type=DISH_PG_test)
     group = bpy.context.window_manager.dish
@@ -109,11 +109,11 @@ def test_units_are_shown_where_blender_knows_them(dish):
 
 def test_every_button_offers_every_setting_with_a_tooltip(load):
     bundles = {
-        "denoise": load("mocap_assist.clean_choices").CleanSettings,
-        "measure_quality": load("mocap_assist.check_choices").CheckSettings,
-        "plant_feet": load("mocap_assist.planting").FeetSettings,
-        "learn_patterns": load("mocap_assist.learning").LearnSettings,
-        "simulate": load("mocap_assist.simulating").SimulateBundle,
+        "denoise": load("mocap_assist.clean.choices").CleanSettings,
+        "measure_quality": load("mocap_assist.check.choices").CheckSettings,
+        "plant_feet": load("mocap_assist.clean.planting").FeetSettings,
+        "learn_patterns": load("mocap_assist.clean.learning").LearnSettings,
+        "simulate": load("mocap_assist.physics.simulating").SimulateBundle,
     }
     for button, bundle in bundles.items():
         shown = getattr(bpy.ops.mocap_assist, button).get_rna_type().properties

@@ -29,14 +29,14 @@ from mkv_files import k4a
 from whole_files import JOINT_FILES, JOINT_TOKENS, RECORDING, SKELETON, TOKENS, WHOLE
 
 from solvers.command_line.batch import Made
+from solvers.depth_scene.recording import DepthRecording
 from solvers.errors import MocapAssistError
 from solvers.json_text import parse_json
 from solvers.motion import read_humanoid_map
-from solvers.motion.depth_recording import DepthRecording
 from solvers.recordings import DepthSettings, read_depth, read_recording
-from solvers.recordings.depth_folder import is_depth_folder
-from solvers.recordings.live_frames import decode_frame
-from solvers.recordings.png_header import png_header
+from solvers.recordings.containers.png_header import png_header
+from solvers.recordings.depth_files.folder import is_depth_folder
+from solvers.recordings.live.frames import decode_frame
 from solvers.retrieval import Clip, find_similar, load_clip_library
 
 DATA = Path(__file__).parents[1] / "data"

@@ -110,9 +110,9 @@ def look(number, name, frames):
 
 def time_of_a_redraw(armature):
     """Return what the body costs, apart from what the graphics card does with it."""
-    package = "bl_ext.user_default.mocap_assist.mocap_assist.scene"
-    overlay = importlib.import_module(f"{package}.body_overlay")
-    drawing = importlib.import_module(f"{package}.body_drawing")
+    package = "bl_ext.user_default.mocap_assist.mocap_assist"
+    overlay = importlib.import_module(f"{package}.track.body_overlay")
+    drawing = importlib.import_module(f"{package}.drawing.body_drawing")
     view = bgui.area().spaces.active.region_3d
     began = perf_counter()
     for _ in range(20):

@@ -23,12 +23,7 @@ from solvers.denoising import (
     measure_quality,
     plant_feet,
 )
-from solvers.markers import (
-    keep_rigid,
-    rigid_clusters,
-    solve_skeleton,
-    unswap_markers,
-)
+from solvers.markers import keep_rigid, rigid_clusters, solve_skeleton, unswap_markers
 from solvers.motion import (
     HumanoidMap,
     JointLimits,
@@ -42,8 +37,8 @@ from solvers.motion import (
     forward_kinematics,
     resample,
 )
+from solvers.physics import simulate
 from solvers.progress import Progress
-from solvers.reconstruction import simulate
 from solvers.retargeting import reduce_keys, retarget
 from solvers.samples import CorruptionSettings, GaitSettings, corrupt, walking_gait
 from solvers.workflows import motion_from_markers, reconstruct_recording

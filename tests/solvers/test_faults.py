@@ -61,7 +61,7 @@ def test_attempt_reports_a_fault_of_ours_when_the_work_raises_anything_else(erro
 def test_a_fault_is_located_in_our_code_when_a_library_raised_it():
     failure = attempt(SUBJECT, Skeleton, ("a",), (-1,), "no offsets")
 
-    assert re.search(r"\(\w+ at solvers/motion/\w+\.py:\d+\)", failure.sentence)
+    assert re.search(r"\(\w+ at solvers/motion/\w+/\w+\.py:\d+\)", failure.sentence)
 
 
 @pytest.mark.parametrize("error", [SolveCancelled(), KeyboardInterrupt(), SystemExit()])

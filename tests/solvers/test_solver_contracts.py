@@ -11,11 +11,15 @@ import numpy as np
 import pytest
 from numpy.testing import assert_allclose
 
-from solvers.denoising.quality import mean_jitter
+from solvers.denoising.quality.measure import mean_jitter
 from solvers.errors import SolveCancelled
 from solvers.motion import Motion, Tracks
-from solvers.motion.rotations import angle_between, multiply, quaternion_from_rotation_vector
 from solvers.progress import unwatched
+from solvers.rotations.representations import (
+    angle_between,
+    multiply,
+    quaternion_from_rotation_vector,
+)
 from solvers.samples import GaitSettings
 from tests.solvers.contract_verbs import VERBS, clean, points_of, spoilt, walk_of_few_joints
 

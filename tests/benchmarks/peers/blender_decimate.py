@@ -22,8 +22,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from solvers.motion import Motion, forward_kinematics
-from solvers.motion.rotations import IDENTITY, normalize, unroll
 from solvers.retargeting.judged_points import find_judged_points
+from solvers.rotations.representations import IDENTITY, normalize, unroll
 
 from .blender_graph import _graph_editor, _write
 

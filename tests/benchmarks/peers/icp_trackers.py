@@ -9,10 +9,10 @@ from collections.abc import Callable
 import numpy as np
 from scipy.spatial import cKDTree
 
-from solvers.depth_tracking.body_kinematics import joint_positions, segment_frames
-from solvers.depth_tracking.body_model import BodyModel
-from solvers.depth_tracking.hypothesis import Hypothesis, imagine
-from solvers.depth_tracking.normal_equations import (
+from solvers.depth_scene.recording import DepthRecording
+from solvers.depth_tracking.body.kinematics import joint_positions, segment_frames
+from solvers.depth_tracking.body.model import BodyModel
+from solvers.depth_tracking.body.normal_equations import (
     SurfaceRows,
     added,
     in_coordinates,
@@ -21,9 +21,9 @@ from solvers.depth_tracking.normal_equations import (
     step,
     toward,
 )
-from solvers.depth_tracking.observation import Observation, observe, rays_of
-from solvers.depth_tracking.pose_priors import foretell, joint_limits, stay_near
-from solvers.motion.depth_recording import DepthRecording
+from solvers.depth_tracking.body.pose_priors import foretell, joint_limits, stay_near
+from solvers.depth_tracking.terms.hypothesis import Hypothesis, imagine
+from solvers.depth_tracking.terms.observation import Observation, observe, rays_of
 
 ITERATIONS = 10
 FARTHEST = 0.2

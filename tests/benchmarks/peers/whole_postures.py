@@ -12,8 +12,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from solvers.motion import Tracks
-from solvers.retrieval.clip_postures import ClipPostures, clip_postures
-from solvers.retrieval.seen_signals import seen_signals
+from solvers.retrieval.postures.clip_postures import ClipPostures, clip_postures
+from solvers.retrieval.published.observed_signals import seen_signals
 
 Array = NDArray[np.float64]
 

@@ -37,8 +37,8 @@ def walks(recordings, tmp_path):
 @pytest.fixture
 def press(load, window, walks):
     """Import files of the folder; return the operator, which waits."""
-    choices = load("mocap_assist.import_choices")
-    module = load("mocap_assist.import_operator")
+    choices = load("mocap_assist.importing.choices")
+    module = load("mocap_assist.importing.import_operator")
 
     def start(*names, **chosen):
         class Operator(module.WaitingImport):

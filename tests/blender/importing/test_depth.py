@@ -205,8 +205,10 @@ def test_all_four_numbers_of_the_camera_can_be_given(archive, depth, bring):
 
 
 def test_a_camera_that_cannot_be_right_is_doubted(archive, blank, load):
-    choices = load("mocap_assist.import_choices").ImportChoices(focal_length=900.0)
-    told = load("mocap_assist.importing").import_files(blank.context, [archive], choices)
+    choices = load("mocap_assist.importing.choices").ImportChoices(focal_length=900.0)
+    told = load("mocap_assist.importing.importing").import_files(
+        blank.context, [archive], choices
+    )
     assert "The pictures would show 5 degrees of the scene" in told.sentence
 
 

@@ -89,7 +89,7 @@ def test_the_camera_of_the_scene_is_taken(folder, lens, blank):
 def test_they_are_copied_once_and_play_from_the_copy(folder, lens, blank, load):
     first, second = bring(blank, folder), bring(blank, folder)
 
-    shown = load("mocap_assist.scene.depth_preview").Shown
+    shown = load("mocap_assist.depth.depth_preview").Shown
     assert shown.read(first.data).path == shown.read(second.data).path
     write(blank, folder / "depth9.exr", depth_at(7))
     assert shown.read(bring(blank, folder).data).path != shown.read(first.data).path
@@ -139,7 +139,7 @@ def test_a_pipe_in_the_folder_is_passed_over(folder, lens, blank):
 @pytest.fixture
 def copies(load, blank, monkeypatch):
     """Where copies are kept, with none in it and room for two."""
-    exr_folder = load("mocap_assist.scene.exr_folder")
+    exr_folder = load("mocap_assist.depth.exr_folder")
     monkeypatch.setattr(exr_folder, "MAX_COPIES", 2)
     place = blank.utils.extension_path_user(exr_folder.EXTENSION, path="depth", create=True)
     exr_folder.remove_old_copies(Path(place), 0, 0)
@@ -149,9 +149,9 @@ def copies(load, blank, monkeypatch):
 def test_the_copies_that_were_used_longest_ago_go_when_another_is_made(
     folder, lens, blank, copies, load
 ):
-    exr_folder = load("mocap_assist.scene.exr_folder")
-    readable = load("mocap_assist.depth_folders").readable
-    choices = load("mocap_assist.import_choices").ImportChoices()
+    exr_folder = load("mocap_assist.depth.exr_folder")
+    readable = load("mocap_assist.importing.depth_folders").readable
+    choices = load("mocap_assist.importing.choices").ImportChoices()
     made = []
     for number in range(3):
         write(blank, folder / "depth9.exr", depth_at(20 + number))
@@ -166,11 +166,11 @@ def test_the_copies_that_were_used_longest_ago_go_when_another_is_made(
 
 def test_a_copy_that_the_open_file_shows_stays(folder, lens, blank, copies, load):
     bring(blank, folder)
-    shown = load("mocap_assist.scene.depth_preview").Shown.read(blank.context.object.data)
+    shown = load("mocap_assist.depth.depth_preview").Shown.read(blank.context.object.data)
 
-    load("mocap_assist.scene.exr_folder").remove_old_copies(copies, 0, 0)
+    load("mocap_assist.depth.exr_folder").remove_old_copies(copies, 0, 0)
 
     assert Path(shown.path).is_file()
     blank.ops.wm.read_homefile(use_empty=True, use_factory_startup=True)
-    load("mocap_assist.scene.exr_folder").remove_old_copies(copies, 0, 0)
+    load("mocap_assist.depth.exr_folder").remove_old_copies(copies, 0, 0)
     assert not list(copies.iterdir())

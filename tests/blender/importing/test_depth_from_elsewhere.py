@@ -11,7 +11,7 @@ NEAR = 1e-4  # metres: 32-bit numbers
 @pytest.fixture
 def elsewhere(load, tmp_path, monkeypatch):
     """Another machine: nothing was allowed there."""
-    permissions = load("mocap_assist.permissions")
+    permissions = load("mocap_assist.blender.permissions")
 
     def move():
         monkeypatch.setattr(permissions, "_file", lambda: tmp_path / "permissions.json")
@@ -25,7 +25,7 @@ def test_a_recording_that_was_never_opened_here_is_opened_only_when_asked(
     bring(archive, frame_rate="ONE")
     blank.ops.wm.save_as_mainfile(filepath=str(archive.with_suffix(".blend")))
     elsewhere()
-    preview = load("mocap_assist.scene.depth_preview")
+    preview = load("mocap_assist.depth.depth_preview")
     opened, read_depth = [], preview.read_depth
     monkeypatch.setattr(
         preview, "read_depth", lambda *given: opened.append(given) or read_depth(*given)
@@ -96,7 +96,7 @@ def test_the_steepest_step_shows_an_end_of_the_recording(archive, bring, blank, 
 
 def test_the_other_previews_follow_when_one_raises(archive, bring, blank, load, monkeypatch):
     meshes = [bring(archive).data for _ in range(2)]
-    preview = load("mocap_assist.scene.depth_preview")
+    preview = load("mocap_assist.depth.depth_preview")
     shown, show = [], preview._show
 
     def fail_once(mesh, frame):

@@ -33,9 +33,9 @@ class DyingReader:
 @pytest.fixture
 def dying(load, monkeypatch):
     """Files that begin with a certain word end the process that reads them."""
-    reading = load("mocap_assist.jobs.reading")
+    reading = load("mocap_assist.importing.solve_reading")
     monkeypatch.setattr(
-        load("mocap_assist.import_job"), "read_files", DyingReader(reading.__name__)
+        load("mocap_assist.importing.import_job"), "read_files", DyingReader(reading.__name__)
     )
 
 
@@ -87,7 +87,7 @@ def test_where_all_end_their_reader_the_scene_stays(dying, press, window, walks,
 
 @pytest.mark.parametrize("fault", [RecursionError("too deep"), ValueError("0"), MemoryError()])
 def test_a_fault_of_a_reader_keeps_no_other_file_out(load, walks, monkeypatch, fault):
-    reading = load("mocap_assist.jobs.reading")
+    reading = load("mocap_assist.importing.solve_reading")
     read = reading.read_tracked
 
     def fail(path, **more):
@@ -109,7 +109,7 @@ def test_a_fault_of_a_reader_keeps_no_other_file_out(load, walks, monkeypatch, f
 
 
 def test_a_fault_over_one_file_leaves_the_others_in_the_scene(load, walks, blank, monkeypatch):
-    arrival = load("mocap_assist.arrival")
+    arrival = load("mocap_assist.importing.arrival")
     real = arrival.make_objects
 
     def fail(context, name, *words, **more):
@@ -119,8 +119,8 @@ def test_a_fault_over_one_file_leaves_the_others_in_the_scene(load, walks, blank
         return made
 
     monkeypatch.setattr(arrival, "make_objects", fail)
-    importing = load("mocap_assist.importing")
-    choices = load("mocap_assist.import_choices").ImportChoices()
+    importing = load("mocap_assist.importing.importing")
+    choices = load("mocap_assist.importing.choices").ImportChoices()
 
     imported = importing.import_files(
         blank.context, [walks / "first.bvh", walks / "second.bvh"], choices

@@ -19,7 +19,7 @@ def test_an_armature_moves_as_the_file_says(file, recordings, bring, load, blank
 
     armature = bring(path)
 
-    take = load("mocap_assist.scene.armature_read").read_take(armature, blank.context.scene)
+    take = load("mocap_assist.actions.armature_read").read_take(armature, blank.context.scene)
     read = take.parts[0].motion
     assert sorted(read.skeleton.names) == sorted(recorded.skeleton.names)
     assert read.n_frames == recorded.n_frames
@@ -102,17 +102,17 @@ def test_odd_names_and_bones_without_length_are_no_obstacle(bring, load, blank, 
         [0, 0, -0.5], [0, 0, 0], [0, 0.1, 0],
     ])  # fmt: skip
     skeleton = motion.Skeleton(names, parents, offsets)
-    turns = load("solvers.motion.rotations").quaternion_from_rotation_vector(
+    turns = load("solvers.rotations.representations").quaternion_from_rotation_vector(
         0.3 * np.sin(np.arange(20 * 8 * 3.0)).reshape(20, 8, 3)
     )
     turns[:, 6:] = (1.0, 0.0, 0.0, 0.0)
     dance = motion.Motion(skeleton, turns, np.ones((20, 3)) * np.arange(20)[:, None], 24.0)
-    make = load("mocap_assist.recording_objects").make_objects
-    choices = load("mocap_assist.import_choices").ImportChoices()
+    make = load("mocap_assist.importing.recording_objects").make_objects
+    choices = load("mocap_assist.importing.choices").ImportChoices()
 
     armature = make(blank.context, "odd", dance, choices).top
 
-    take = load("mocap_assist.scene.armature_read").read_take(armature, blank.context.scene)
+    take = load("mocap_assist.actions.armature_read").read_take(armature, blank.context.scene)
     read = motion.forward_kinematics(take.parts[0].motion).positions
     expected = motion.forward_kinematics(dance).positions
     assert read.shape == expected.shape

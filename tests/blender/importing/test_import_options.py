@@ -141,7 +141,7 @@ def test_one_bad_file_does_not_keep_the_others_out(walk, tmp_path, blank):
 
 
 def test_what_fails_half_way_leaves_nothing(walk, blank, load, monkeypatch):
-    objects, errors = load("mocap_assist.recording_objects"), load("solvers.errors")
+    objects, errors = load("mocap_assist.importing.recording_objects"), load("solvers.errors")
     before = blank.context.scene.render.fps
 
     def fail(*_, **__):
@@ -198,7 +198,7 @@ def test_undo_is_one_step(walk, blank):
 
 
 def test_small_files_are_read_together_and_large_ones_alone(load, tmp_path, monkeypatch):
-    job = load("mocap_assist.import_job")
+    job = load("mocap_assist.importing.import_job")
     monkeypatch.setattr(job, "BYTES_AT_ONCE", 100)
     paths = []
     for number, size in enumerate([40, 60, 1, 300, 0, 99]):

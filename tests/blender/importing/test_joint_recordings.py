@@ -40,7 +40,7 @@ def test_what_was_not_tracked_has_no_keys(fps, lossy, bring, load, blank):
 
     armature = bring(lossy)
 
-    take = load("mocap_assist.scene.armature_read").read_take(armature, blank.context.scene)
+    take = load("mocap_assist.actions.armature_read").read_take(armature, blank.context.scene)
     read = take.parts[0].motion
     assert read.frame_rate == pytest.approx(30.0)
     assert sorted(read.skeleton.names) == sorted(expected.skeleton.names)
@@ -76,7 +76,7 @@ def test_confidence_is_kept_and_survives_cleaning(lossy, bring, load, target, bl
 
 def test_empties_give_back_what_the_camera_measured(lossy, bring, load, blank):
     recording = load("solvers.recordings").read_recording(lossy)
-    read = load("mocap_assist.scene.marker_take").read_markers
+    read = load("mocap_assist.actions.marker_take").read_markers
 
     tracks = read(bring(lossy, target="OBJECT"), blank.context.scene).tracks
 
@@ -147,7 +147,7 @@ def test_a_body_of_freemocap_becomes_an_armature(
     n_points, n_loose, bring, rng, load, tmp_path, capfd
 ):
     path = tmp_path / "skeleton_3d.npy"
-    body = load("solvers.motion.mediapipe").BODY
+    body = load("solvers.motion.skeletons.mediapipe").BODY
     points = rng.normal(scale=20.0, size=(50, n_points, 3))
     points[:, body.index("nose"), 2] += 1600.0
     for height, joint in enumerate(("ankle", "knee", "hip", "shoulder", "ear")):
@@ -199,8 +199,8 @@ def test_what_is_never_seen_is_said_and_takes_nothing_along(lossy, load, tmp_pat
     recordings.write_joints(
         recording.with_tracks(recording.tracks.with_positions(places)), tmp_path / "lost.csv"
     )
-    files = load("mocap_assist.importing")
-    choices = load("mocap_assist.import_choices").ImportChoices()
+    files = load("mocap_assist.importing.importing")
+    choices = load("mocap_assist.importing.choices").ImportChoices()
 
     imported = files.import_files(blank.context, [tmp_path / "lost.csv"], choices)
 

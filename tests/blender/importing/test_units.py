@@ -12,7 +12,9 @@ SAID = "Lengths are taken for millimetres, by the size of the body; give the uni
 def silent(load, tmp_path):
     """A walk of a Kinect in millimetres, in a file that does not say so."""
     motion = load("solvers.motion")
-    truth = true_positions(load("solvers.samples"), load("solvers.motion.posture_joints"))
+    truth = true_positions(
+        load("solvers.samples"), load("solvers.motion.humanoid.posture_joints")
+    )
     walk = tracked_walk(motion, 1000.0 * truth, noise=5.0)
     path = tmp_path / "walk.csv"
     load("solvers.recordings").write_joint_csv(walk, path)
@@ -55,7 +57,7 @@ def test_it_counts_for_every_format(bring, recordings):
 
 
 def test_the_dialog_says_what_was_guessed(load, silent, blank):
-    preview = load("mocap_assist.importing").preview
+    preview = load("mocap_assist.importing.importing").preview
 
     assert SAID in preview(blank.context, [silent])
 
@@ -63,7 +65,7 @@ def test_the_dialog_says_what_was_guessed(load, silent, blank):
 def test_a_window_tells_it_and_reads_in_the_unit_that_was_chosen(
     press, window, walks, silent, load, blank
 ):
-    units = load("mocap_assist.import_choices").Unit
+    units = load("mocap_assist.importing.choices").Unit
     for unit, told in ((units.GUESS, 1), (units.METRES, 0)):
         operator = press(silent.name, unit=unit)
         assert wait(operator, window) == {"FINISHED"}

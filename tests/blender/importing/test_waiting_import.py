@@ -68,7 +68,9 @@ def test_escape_after_the_first_has_come_in_takes_it_back(
 
 @pytest.mark.parametrize("bytes_at_once", [1, 64_000_000])
 def test_all_that_can_be_read_comes_in(press, window, load, monkeypatch, blank, bytes_at_once):
-    monkeypatch.setattr(load("mocap_assist.import_job"), "BYTES_AT_ONCE", bytes_at_once)
+    monkeypatch.setattr(
+        load("mocap_assist.importing.import_job"), "BYTES_AT_ONCE", bytes_at_once
+    )
     job = load("mocap_assist.jobs.job").Job
     done = job.done
     # The files are read in less time than may pass between two looks.
@@ -125,7 +127,7 @@ def test_the_redo_panel_need_not_read_again(press, window, load, walks, monkeypa
     def fail(*_, **__):
         raise AssertionError("It was read again.")
 
-    monkeypatch.setattr(load("mocap_assist.recent_files"), "read_file", fail)
+    monkeypatch.setattr(load("mocap_assist.importing.recent_files"), "read_file", fail)
     operator.execute(blank.context)
 
     assert len(blank.data.objects) == 2
@@ -150,7 +152,7 @@ def test_what_goes_wrong_unforeseen_leaves_no_watch(
     def fail(*_, **__):
         raise ZeroDivisionError
 
-    monkeypatch.setattr(load("mocap_assist.arrival").Arrival, "add", fail)
+    monkeypatch.setattr(load("mocap_assist.importing.arrival").Arrival, "add", fail)
     operator = press("first.bvh")
     with pytest.raises(ZeroDivisionError):
         wait(operator, window)
@@ -167,7 +169,7 @@ def test_a_fault_over_the_only_file_is_a_sentence_and_leaves_nothing(
     def fail(*_, **__):
         raise ZeroDivisionError
 
-    monkeypatch.setattr(load("mocap_assist.arrival"), "make_objects", fail)
+    monkeypatch.setattr(load("mocap_assist.importing.arrival"), "make_objects", fail)
 
     assert wait(press("first.bvh"), window) == {"CANCELLED"}
 
@@ -197,7 +199,9 @@ def test_a_script_too_keeps_pose_mode_and_selection_where_all_fails(
         def fail(*_, **__):
             raise errors.InvalidMotionError("Half way.")
 
-        monkeypatch.setattr(load("mocap_assist.recording_objects"), "write_motion", fail)
+        monkeypatch.setattr(
+            load("mocap_assist.importing.recording_objects"), "write_motion", fail
+        )
     name = "cut.bvh" if fault == "cut" else "first.bvh"
 
     with pytest.raises(RuntimeError, match=name):
@@ -207,7 +211,7 @@ def test_a_script_too_keeps_pose_mode_and_selection_where_all_fails(
 
 
 def test_the_dialog_does_not_wait_for_a_large_file(load, walks, monkeypatch, blank):
-    importing = load("mocap_assist.importing")
+    importing = load("mocap_assist.importing.importing")
     small = importing.preview(blank.context, [walks / "first.bvh"])
     monkeypatch.setattr(importing, "QUICKLY_READ", 1000)
     monkeypatch.setattr(importing, "read_again", None)

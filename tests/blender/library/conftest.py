@@ -14,7 +14,7 @@ KINDS = ("walk", "wave", "squat")
 def clip_motions(load):
     """Motions of three kinds of one figure, 2.5 s at 30 Hz: `clip_motions("walk", seed)`."""
     samples = load("solvers.samples")
-    rotations = load("solvers.motion.rotations")
+    rotations = load("solvers.rotations.representations")
 
     def make(kind, seed=0, seconds=2.5):
         rng = np.random.default_rng(seed)
@@ -108,7 +108,7 @@ def blend_file(blank, bring, clip_files, tmp_path):
 @pytest.fixture
 def index(load, tmp_path):
     """Index places into a library: `index(folder, ...)`; return what became of it."""
-    indexing = load("mocap_assist.jobs.indexing")
+    indexing = load("mocap_assist.library.solve_indexing")
 
     def do(*places, tags=(), assets_only=False, library=tmp_path / "clips.library", rig=""):
         found = tuple(indexing.Place(str(place), assets_only) for place in places)
@@ -160,7 +160,7 @@ def newcomer(bring, clip_motions, load, tmp_path, blank):
 @pytest.fixture
 def permissions(load, tmp_path, monkeypatch):
     """Permissions of this test alone."""
-    module = load("mocap_assist.permissions")
+    module = load("mocap_assist.blender.permissions")
     monkeypatch.setattr(module, "_file", lambda: tmp_path / "permissions.json")
     return module
 

@@ -13,7 +13,7 @@ import bpy
 from addon_utils import enable
 enable({package!r}, default_set=True)
 from importlib import import_module
-indexing = import_module({package!r} + ".mocap_assist.jobs.indexing")
+indexing = import_module({package!r} + ".mocap_assist.library.solve_indexing")
 places = tuple(indexing.Place(path) for path in sys.argv[2:])
 blender = indexing.BackgroundBlender("")
 done = indexing.index_places(indexing.IndexProblem(sys.argv[1], places, (), blender))
@@ -57,7 +57,7 @@ def test_clips_of_hardly_any_frames(
 
     strip = armature.animation_data.nla_tracks[-1].strips[0]
     assert strip.frame_end > strip.frame_start
-    assert load("mocap_assist.library.ghost_drawing").ghost_now(blank.context) is not None
+    assert load("mocap_assist.search.ghost_drawing").ghost_now(blank.context) is not None
 
 
 def test_a_query_of_one_frame(find, newcomer, blank):

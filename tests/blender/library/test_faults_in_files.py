@@ -66,7 +66,7 @@ def test_a_file_with_a_name_that_is_no_utf8_is_refused_and_the_others_are_not(
 def test_the_other_clips_are_indexed_when_one_cannot_be_described(
     load, index, blend_file, monkeypatch
 ):
-    indexing = load("mocap_assist.jobs.indexing")
+    indexing = load("mocap_assist.library.solve_indexing")
     real = indexing.describe_clip
 
     def fail(clip):
@@ -86,7 +86,7 @@ def test_the_other_clips_are_indexed_when_one_cannot_be_described(
 def test_the_others_are_indexed_when_a_file_goes_away_meanwhile(
     load, index, blend_file, clip_files, monkeypatch
 ):
-    indexing = load("mocap_assist.jobs.indexing")
+    indexing = load("mocap_assist.library.solve_indexing")
     gone = Path(shutil.copy(blend_file, blend_file.with_name("gone.blend")))
     index_files = indexing.index_files
 

@@ -35,12 +35,12 @@ def test_what_it_was_imported_from_is_not_told(find, bring, clip_files):
 
 def test_selected_bones_ask_for_their_parts(find, newcomer, blank, load):
     armature = newcomer("wave")
-    parts = load("mocap_assist.library.chosen_parts")
-    compat = load("mocap_assist.scene.compat")
+    parts = load("mocap_assist.search.chosen_parts")
+    compat = load("mocap_assist.blender.compat")
     for bone in armature.pose.bones:
         compat.select_bone(bone, bone.name in {"RightArm", "RightHand", "Spine"})
     settings = load("solvers.retrieval").FindSettings()
-    reading = load("mocap_assist.scene.armature_read")
+    reading = load("mocap_assist.actions.armature_read")
     skeleton = reading.read_take(armature, blank.context.scene).parts[0].motion.skeleton
     chosen = parts.parts_of_bones(skeleton, {"RightArm", "RightHand", "Spine"}, settings)
 
@@ -59,7 +59,7 @@ def test_a_range_of_frames_is_found_where_it_lies(find, newcomer, blank, bring, 
 
     find(frame_range="PREVIEW")
 
-    search = load("mocap_assist.library.searches").listed(blank.context)
+    search = load("mocap_assist.search.searches").listed(blank.context)
     assert (search.start, search.step) == (61.0, 1.0)
     assert len(search.finding.stage.places) == 60
     assert search.query == armature.animation_data.action.name
@@ -68,7 +68,7 @@ def test_a_range_of_frames_is_found_where_it_lies(find, newcomer, blank, bring, 
 def test_alignment_runs_through_both(find, newcomer, blank, load):
     newcomer("squat")
     find()
-    search = load("mocap_assist.library.searches").listed(blank.context)
+    search = load("mocap_assist.search.searches").listed(blank.context)
 
     for found in search.finding.found:
         pairs = found.pairs
@@ -80,7 +80,7 @@ def test_alignment_runs_through_both(find, newcomer, blank, load):
 def test_thumbnails_show_the_clip(find, newcomer, blank, load):
     newcomer("squat")
     find()
-    search = load("mocap_assist.library.searches").listed(blank.context)
+    search = load("mocap_assist.search.searches").listed(blank.context)
     pictures = [found.picture for found in search.finding.found]
 
     assert {picture.shape for picture in pictures} == {(128, 128, 3)}

@@ -15,7 +15,7 @@ def twin(blend_file, tmp_path):
 def test_no_clip_is_lost_when_another_indexes_a_file_of_the_same_name(
     index, entries, blend_file, twin, load, monkeypatch
 ):
-    indexing = load("mocap_assist.jobs.indexing")
+    indexing = load("mocap_assist.library.solve_indexing")
     describe, others = indexing.describe_clip, [twin]
 
     def describe_while_another_indexes(clip):
@@ -60,7 +60,7 @@ def test_library_of_another_suffix_is_refused_and_makes_no_folder(
 def test_file_that_ends_its_blender_is_refused_and_the_others_become_clips(
     index, entries, blend_file, twin, load, monkeypatch, fault
 ):
-    indexing = load("mocap_assist.jobs.indexing")
+    indexing = load("mocap_assist.library.solve_indexing")
     real, job = indexing.read_blends, load("mocap_assist.jobs.job")
     errors = {
         "ProcessDied": lambda: job.ProcessDied("by signal SIGABRT", ""),

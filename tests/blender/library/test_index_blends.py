@@ -38,7 +38,7 @@ def test_it_is_the_motion_of_the_recording(load, index, blend_file, clip_motions
 
 def test_only_what_has_changed_is_read_again(index, entries, blend_file, monkeypatch, load):
     index(blend_file)
-    indexing = load("mocap_assist.jobs.indexing")
+    indexing = load("mocap_assist.library.solve_indexing")
     read = []
     real = indexing.read_blends
     monkeypatch.setattr(

@@ -54,7 +54,7 @@ def test_only_what_matches_from_where_the_query_is(
     armature = newcomer("walk", seconds=6.0)
     blank.context.scene.frame_set(1)
     find()
-    search, match = load("mocap_assist.library.searches").chosen(blank.context)
+    search, match = load("mocap_assist.search.searches").chosen(blank.context)
     start = search.scene_frame(match.pairs[0, 0])
     before = poses(armature, [start])["Hips"][0]
 
@@ -78,7 +78,7 @@ def test_it_stands_there_however_the_armature_is_turned(
     armature.rotation_mode = "XYZ"
     blank.context.view_layer.update()
     find()
-    search, match = load("mocap_assist.library.searches").chosen(blank.context)
+    search, match = load("mocap_assist.search.searches").chosen(blank.context)
     frame = search.scene_frame(match.pairs[0, 0])
     before = poses(armature, [frame])["Hips"][0]
 
@@ -126,7 +126,7 @@ def test_as_a_strip_at_the_current_frame_in_the_time_of_the_query(find, newcomer
     armature = newcomer("walk")
     played = armature.animation_data.action
     find()
-    search, match = load("mocap_assist.library.searches").chosen(blank.context)
+    search, match = load("mocap_assist.search.searches").chosen(blank.context)
     blank.context.scene.frame_set(40)
 
     assert blank.ops.mocap_assist.load_match(result_as="NLA_TRACK") == {"FINISHED"}

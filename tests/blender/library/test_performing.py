@@ -5,7 +5,7 @@ import pytest
 
 @pytest.fixture
 def performing(load):
-    return load("mocap_assist.library.performing")
+    return load("mocap_assist.search.performing")
 
 
 @pytest.fixture

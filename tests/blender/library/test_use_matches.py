@@ -20,7 +20,9 @@ def use(blank):
 
 @pytest.fixture
 def at_once(load, monkeypatch):
-    monkeypatch.setattr(load("mocap_assist.solver_operator"), "run", lambda solve: solve())
+    monkeypatch.setattr(
+        load("mocap_assist.runtime.solver_operator"), "run", lambda solve: solve()
+    )
 
 
 def test_variants_of_what_was_found(find, newcomer, use, blank, at_once, capfd):

@@ -18,7 +18,7 @@ def choose(blank):
 @pytest.fixture
 def ghost(load, blank):
     """The lines of the ghost at a frame."""
-    drawing = load("mocap_assist.library.ghost_drawing")
+    drawing = load("mocap_assist.search.ghost_drawing")
 
     def lines(frame):
         blank.context.scene.frame_set(frame)
@@ -64,7 +64,10 @@ def test_there_is_no_ghost_without_a_match(ghost, blank):
 
 
 def test_the_ghost_goes_back_through_time_as_the_alignment_says(load):
-    ghost, finding = load("mocap_assist.library.ghost"), load("mocap_assist.jobs.finding")
+    ghost, finding = (
+        load("mocap_assist.search.ghost"),
+        load("mocap_assist.search.solve_finding"),
+    )
     retrieval = load("solvers.retrieval")
     pairs = np.array([[0, 10], [1, 10], [2, 10], [3, 12], [3, 14], [4, 16]])
     match = retrieval.Match("x", range(10, 17), 1.0, pairs)

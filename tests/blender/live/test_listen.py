@@ -162,8 +162,8 @@ def test_the_figure_stands_on_the_ground_at_the_origin(listen, act, load):
 
 
 def test_bones_that_are_not_seen_are_not_drawn(load):
-    figure = load("mocap_assist.scene.live_figure").LiveFigure((1, 1, 1, 1), 2.0)
-    frames, motion = load("solvers.recordings.live_frames"), load("solvers.motion")
+    figure = load("mocap_assist.drawing.live_figure").LiveFigure((1, 1, 1, 1), 2.0)
+    frames, motion = load("solvers.recordings.live.frames"), load("solvers.motion")
     names = motion.JOINTS[motion.Sensor.KINECT_V1]
     places, sure = np.ones((20, 3)), np.ones(20)
     places[7], sure[11] = np.nan, 0.1
@@ -177,7 +177,7 @@ def test_bones_that_are_not_seen_are_not_drawn(load):
 
 
 def test_turning_goes_round_the_vertical_and_zoom_has_ends(load, view):
-    control = load("mocap_assist.scene.view_control")
+    control = load("mocap_assist.drawing.view_control")
     area = SimpleNamespace(
         type="VIEW_3D",
         spaces=SimpleNamespace(active=SimpleNamespace(region_3d=view)),

@@ -107,7 +107,7 @@ def test_a_strip_is_as_long_as_its_action_between_frames(noisy, clean):
 
 
 def test_only_selected_bones_change(noisy, clean, keys_of, load):
-    compat = load("mocap_assist.scene.compat")
+    compat = load("mocap_assist.blender.compat")
     before = keys_of(noisy.animation_data.action)
     for bone in noisy.pose.bones:
         compat.select_bone(bone, bone.name == "Head")
@@ -191,7 +191,7 @@ def test_the_redo_panel_does_not_solve_again(noisy, clean, load, monkeypatch, bl
     clean(strength=0.5)
     blank.ops.mocap_assist.revert_to_raw()
     solved = []
-    cleaning = load("mocap_assist.jobs.cleaning")
+    cleaning = load("mocap_assist.clean.solve_cleaning")
     monkeypatch.setattr(cleaning, "solve", lambda *_, **__: solved.append(1))
 
     clean(strength=0.8, result_as="NLA_TRACK")

@@ -7,7 +7,7 @@ CLEAN = "walk.clean"
 
 
 def test_nothing_selected_is_said(noisy, clean, load):
-    compat = load("mocap_assist.scene.compat")
+    compat = load("mocap_assist.blender.compat")
     for bone in noisy.pose.bones:
         compat.select_bone(bone, False)
 

@@ -9,7 +9,7 @@ import pytest
 
 
 def test_the_animators_contacts_are_used_and_kept(noisy, clean, blank, load):
-    contacts = load("mocap_assist.scene.contacts")
+    contacts = load("mocap_assist.actions.contacts")
     frames = np.arange(1.0, 61.0)
     first = clean(plant_feet=True)
     found = contacts.read_contacts(first, first.slots[0], frames)
@@ -23,8 +23,8 @@ def test_the_animators_contacts_are_used_and_kept(noisy, clean, blank, load):
     assert second != first
     kept = contacts.read_contacts(second, second.slots[0], frames)
     assert (kept == keyed).all()
-    left = load("mocap_assist.scene.armature_read").read_take(noisy, blank.context.scene)
-    kinematics = load("solvers.motion.kinematics")
+    left = load("mocap_assist.actions.armature_read").read_take(noisy, blank.context.scene)
+    kinematics = load("solvers.motion.skeletons.kinematics")
     motion = left.parts[0].motion
     foot = kinematics.forward_kinematics(motion).positions[
         10:20, motion.skeleton.index("LeftFoot_end")
@@ -53,7 +53,7 @@ def contact_curve(action):
 
 
 def test_detected_contacts_are_detected_anew_until_one_is_edited(walker, clean, load, blank):
-    contacts = load("mocap_assist.scene.contacts")
+    contacts = load("mocap_assist.actions.contacts")
     played = {"frames": np.arange(1.0, walker.animation_data.action.frame_range[1] + 1.0)}
     result = clean(plant_feet=True)
     keys = contact_curve(result).keyframe_points
@@ -74,7 +74,7 @@ def test_detected_contacts_are_detected_anew_until_one_is_edited(walker, clean, 
 
 
 def test_plant_feet_detects_anew_too_until_a_key_is_edited(walker, load, blank):
-    contacts = load("mocap_assist.scene.contacts")
+    contacts = load("mocap_assist.actions.contacts")
     played = {"frames": np.arange(1.0, walker.animation_data.action.frame_range[1] + 1.0)}
     blank.ops.mocap_assist.plant_feet()
     first = walker.animation_data.action
@@ -93,7 +93,7 @@ def test_plant_feet_detects_anew_too_until_a_key_is_edited(walker, load, blank):
 def test_contacts_of_the_animator_stay_his_when_other_frames_are_cleaned(
     walker, clean, load, blank
 ):
-    contacts = load("mocap_assist.scene.contacts")
+    contacts = load("mocap_assist.actions.contacts")
     scene = blank.context.scene
     scene.frame_start, scene.frame_end = 1, 45
     first = clean(plant_feet=True, frame_range="SCENE")

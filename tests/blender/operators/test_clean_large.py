@@ -35,8 +35,8 @@ def work_of(load, monkeypatch):
 
         monkeypatch.setattr(owner, name, work)
 
-    channel = load("mocap_assist.scene.curves").Channel
-    count(load("mocap_assist.scene.armature_read"), "read_bone", "bone")
+    channel = load("mocap_assist.actions.curves").Channel
+    count(load("mocap_assist.actions.armature_read"), "read_bone", "bone")
     count(channel, "read_keys", "keys")
     count(channel, "_evaluated", "frames", lambda _, frames: len(frames))
 
@@ -51,18 +51,18 @@ def work_of(load, monkeypatch):
 @pytest.fixture
 def read_in_turns(load, monkeypatch, blank, work_of):
     """Read as Clean does; return what is to be solved, and the work of each turn."""
-    turns = load("mocap_assist.turns")
+    turns = load("mocap_assist.blender.turns")
     clock = itertools.count()
     monkeypatch.setattr(turns, "monotonic", lambda: next(clock))  # each look is a second
 
     def read(armature):
-        choices, denoising = load("mocap_assist.clean_choices"), load("solvers.denoising")
+        choices, denoising = load("mocap_assist.clean.choices"), load("solvers.denoising")
         settings = choices.CleanSettings(
             choices.CleanChoices(plant_feet=False),
             denoising.DenoiseSettings(),
             denoising.PlantSettings(),
         )
-        reading = load("mocap_assist.cleaning").read_cleaning
+        reading = load("mocap_assist.clean.cleaning").read_cleaning
         work, done = turns.Work(reading, blank.context.scene, armature, settings), []
         while not work.go_on(LOOKS):
             done.append(work_of())

@@ -133,7 +133,9 @@ def test_the_command_converts_what_is_played(dancer, blank, command, load, tmp_p
     said = json.loads(out)
     assert (status, said["n_frames"], said["frame_rate_hz"]) == (0, 300, 30.0)
     motion = load("solvers.recordings").read_bvh(tmp_path / "dance.bvh")
-    places = load("solvers.motion.kinematics").forward_kinematics(motion).positions[::50]
+    places = (
+        load("solvers.motion.skeletons.kinematics").forward_kinematics(motion).positions[::50]
+    )
     foot = places[:, motion.skeleton.index("LeftFoot")] - places[:, 0]
     expected = shown["LeftFoot"][:, :3, 3] - shown["Hips"][:, :3, 3]
     assert_allclose(foot, expected, atol=1e-4)

@@ -17,7 +17,7 @@ def test_check_lists_the_worst_spots_and_jump_goes_there(bad_arm, blank, load):
         "FINISHED"
     }
     assert blank.context.scene.frame_current == 101
-    selected = load("mocap_assist.scene.compat").is_selected
+    selected = load("mocap_assist.blender.compat").is_selected
     assert [bone.name for bone in bad_arm.pose.bones if selected(bone)] == ["LeftArm"]
     assert (
         blank.context.active_pose_bone is None
@@ -40,7 +40,7 @@ def test_jump_steps_through_the_list(bad_arm, blank):
 def test_plant_feet_uses_the_keyed_contacts_and_moves_only_legs_and_hips(
     dancer, blank, load, keys_of
 ):
-    contacts = load("mocap_assist.scene.contacts")
+    contacts = load("mocap_assist.actions.contacts")
     raw = dancer.animation_data.action
     frames = np.arange(1.0, 301.0)
     standing = np.zeros((300, 2), bool)

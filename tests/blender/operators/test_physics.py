@@ -77,7 +77,7 @@ def test_a_grey_button_says_why(blank):
 
 
 def test_the_engine_comes_from_the_extensions_wheels(extension, load):
-    engine = load("solvers.reconstruction.physics_engine").load_engine()
+    engine = load("solvers.physics.engine").load_engine()
 
     assert Path(engine.__file__).is_relative_to(Path(extension.__file__).parents[2] / ".local")
 
@@ -107,8 +107,8 @@ def lowest_foot(armature, blank, load, action=None):
         height = lowest_foot(armature, blank, load)
         armature.animation_data.action = kept
         return height
-    read = load("mocap_assist.scene.armature_read").read_take
-    source = load("mocap_assist.selection").played_source(armature)
+    read = load("mocap_assist.actions.armature_read").read_take
+    source = load("mocap_assist.runtime.selection").played_source(armature)
     body = read(armature, blank.context.scene, source=source).parts[0].motion
     positions = load("solvers.motion").forward_kinematics(body).positions
     feet = [n for n, name in enumerate(body.skeleton.names) if "Foot" in name]

@@ -18,7 +18,7 @@ def folders():
 @pytest.fixture
 def press_clean(make_button, window, load):
     """Press Clean, without feet; return the button, which waits."""
-    choices = load("mocap_assist.clean_choices")
+    choices = load("mocap_assist.clean.choices")
     denoising = load("solvers.denoising")
 
     def press(**chosen):
@@ -110,7 +110,10 @@ def test_what_is_adjusted_afterwards_is_adjusted_on_that_armature(
 def test_bones_that_are_selected_meanwhile_are_not_written(
     noisy, press_clean, window, load, keys_of
 ):
-    compat, bones = load("mocap_assist.scene.compat"), load("mocap_assist.clean_choices").Bones
+    compat, bones = (
+        load("mocap_assist.blender.compat"),
+        load("mocap_assist.clean.choices").Bones,
+    )
     before = keys_of(noisy.animation_data.action)
     for bone in noisy.pose.bones:
         compat.select_bone(bone, bone.name == "Head")
@@ -190,9 +193,9 @@ def test_closing_its_window_ends_the_solve(noisy, press_clean, window, blank):
 @pytest.fixture
 def real_manager(window, blank, load, monkeypatch):
     """Let what ends by itself, without the button's context, find the pretended window."""
-    found = SimpleNamespace(**vars(load("mocap_assist.watch").bpy))
+    found = SimpleNamespace(**vars(load("mocap_assist.runtime.watch").bpy))
     found.context = window.context
-    monkeypatch.setattr(load("mocap_assist.watch"), "bpy", found)
+    monkeypatch.setattr(load("mocap_assist.runtime.watch"), "bpy", found)
 
 
 def test_another_file_ends_the_solve(noisy, press_clean, window, blank, real_manager):

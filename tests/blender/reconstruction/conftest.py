@@ -7,7 +7,9 @@ from kinect_walks import tracked_walk, true_positions
 @pytest.fixture
 def truth(load):
     """Where the twenty joints truly are, shape (90, 20, 3)."""
-    return true_positions(load("solvers.samples"), load("solvers.motion.posture_joints"))
+    return true_positions(
+        load("solvers.samples"), load("solvers.motion.humanoid.posture_joints")
+    )
 
 
 @pytest.fixture

@@ -59,7 +59,7 @@ def test_all_actions_of_a_blend_teach_postures_and_nothing_of_it_stays(
 
 
 def test_a_rig_is_read_where_it_stands_in_its_own_file(library, walk, load, blank, stroll):
-    examples = load("mocap_assist.examples").read_examples(
+    examples = load("mocap_assist.clean.examples").read_examples(
         blank.context.scene, walk, str(library)
     )
 
@@ -75,7 +75,9 @@ def test_a_rig_is_read_where_it_stands_in_its_own_file(library, walk, load, blan
 
 def in_turns(load, *given):
     """Read examples with a turn for Blender whenever one is possible; count them."""
-    work = load("mocap_assist.turns").Work(load("mocap_assist.examples").read_examples, *given)
+    work = load("mocap_assist.blender.turns").Work(
+        load("mocap_assist.clean.examples").read_examples, *given
+    )
     n_turns = 0
     while not work.go_on(0.0):
         n_turns += 1
@@ -87,7 +89,7 @@ def test_they_are_read_in_turns_and_nothing_of_the_file_is_there_in_between(
     library, walk, load, blank, all_there_is
 ):
     scene, before = blank.context.scene, all_there_is()
-    at_once = load("mocap_assist.examples").read_examples(scene, walk, str(library))
+    at_once = load("mocap_assist.clean.examples").read_examples(scene, walk, str(library))
 
     between = [(turn, all_there_is()) for turn in in_turns(load, scene, walk, str(library))]
 

@@ -9,7 +9,7 @@ INSIDE = LOST.start + 15
 
 @pytest.fixture
 def heat(load):
-    return load("mocap_assist.scene.heat")
+    return load("mocap_assist.drawing.heat")
 
 
 def of_bone(armature, shown, name):

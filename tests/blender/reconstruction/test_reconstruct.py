@@ -16,7 +16,9 @@ def body(load, blank):
     """Read where the joints of an armature's action are, by name."""
 
     def read(armature):
-        take = load("mocap_assist.scene.armature_read").read_take(armature, blank.context.scene)
+        take = load("mocap_assist.actions.armature_read").read_take(
+            armature, blank.context.scene
+        )
         motion = take.parts[0].motion
         places = load("solvers.motion").forward_kinematics(motion).positions
         return dict(zip(motion.skeleton.names, np.moveaxis(places, 1, 0), strict=True))
@@ -69,7 +71,7 @@ def test_what_was_trusted_stays_where_it_was(walk, reconstruct, body):
 def test_trust_is_kept_with_the_action(walk, reconstruct, load):
     result = reconstruct()
 
-    trust = load("mocap_assist.scene.reliability_curves").reliability_at
+    trust = load("mocap_assist.actions.reliability_curves").reliability_at
     source = (result, walk.animation_data.action_slot)
     hidden = trust(source, ["WristLeft", "WristRight"], LOST.start + 15)
     seen = trust(source, ["WristLeft", "WristRight"], 10)

@@ -9,7 +9,9 @@ def found(load, blank):
     """What was measured for what an armature plays, or None."""
 
     def find(armature, path):
-        take = load("mocap_assist.scene.armature_read").read_take(armature, blank.context.scene)
+        take = load("mocap_assist.actions.armature_read").read_take(
+            armature, blank.context.scene
+        )
         recording = load("solvers.recordings").read_recording(path)
         measured = load("solvers.workflows.measured_joints").measured_joints
         return measured(take.parts[0].motion, recording)
@@ -69,7 +71,9 @@ def test_the_file_helps_where_a_joint_hangs_on_a_lost_one(
         if not kept:
             path.unlink()
         reconstruct()
-        take = load("mocap_assist.scene.armature_read").read_take(armature, blank.context.scene)
+        take = load("mocap_assist.actions.armature_read").read_take(
+            armature, blank.context.scene
+        )
         body = take.parts[0].motion
         places = motion.forward_kinematics(body).positions[:, body.skeleton.index("WristRight")]
         errors.append(np.linalg.norm(places - truth[:, wrist], axis=-1)[60:75].mean())
@@ -85,8 +89,8 @@ def test_a_part_of_the_take_is_found_in_its_file(
     scene = blank.context.scene
     scene.use_preview_range = True
     scene.frame_preview_start, scene.frame_preview_end = first, last
-    ranges = load("mocap_assist.scene.frames").FrameRange
-    take = load("mocap_assist.scene.armature_read").read_take(walk, scene, ranges.PREVIEW)
+    ranges = load("mocap_assist.actions.frames").FrameRange
+    take = load("mocap_assist.actions.armature_read").read_take(walk, scene, ranges.PREVIEW)
     recording = load("solvers.recordings").read_recording(walk_file)
 
     found = load("solvers.workflows.measured_joints").measured_joints(
@@ -100,7 +104,7 @@ def test_a_part_of_the_take_is_found_in_its_file(
         for places, each in zip(wrists, (found, recording), strict=True)
     )
     assert np.allclose(mine, theirs[first - 1 : last], atol=1e-4)
-    terms = load("mocap_assist.scene.heat").terms_told(walk)
+    terms = load("mocap_assist.drawing.heat").terms_told(walk)
     assert "KINEMATICS" in {term.name for term in terms}
 
 
@@ -125,5 +129,5 @@ def test_hips_that_were_never_tracked_are_between_the_legs(
     assert "with hips, never seen, between the legs," in told
     assert "HipCenter" in armature.pose.bones
     assert result.name == "walk.reconstructed"
-    terms = load("mocap_assist.scene.heat").terms_told(armature)
+    terms = load("mocap_assist.drawing.heat").terms_told(armature)
     assert "KINEMATICS" in {term.name for term in terms}

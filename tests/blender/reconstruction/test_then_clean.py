@@ -10,10 +10,10 @@ def elbows(load, blank):
     """Where the left elbow and wrist are in an action while the camera lost them."""
 
     def places(armature, action):
-        read = load("mocap_assist.scene.armature_read").read_take
+        read = load("mocap_assist.actions.armature_read").read_take
         take = read(armature, blank.context.scene, source=(action, action.slots[0]))
         motion = take.parts[0].motion
-        found = load("solvers.motion.kinematics").forward_kinematics(motion).positions
+        found = load("solvers.motion.skeletons.kinematics").forward_kinematics(motion).positions
         return found[LOST][:, [motion.skeleton.index(n) for n in ("ElbowLeft", "WristLeft")]]
 
     return places
@@ -44,6 +44,6 @@ def test_where_the_reconstruction_is_gone_clean_starts_from_the_recording(
     rebuilt = reconstruct()
     blank.ops.mocap_assist.denoise(plant_feet=False)
     blank.data.actions.remove(rebuilt)
-    played = load("mocap_assist.selection").played_source(walk)
+    played = load("mocap_assist.runtime.selection").played_source(walk)
     history = load("mocap_assist.scene.history")
     assert history.cleaned_from(played) == history.raw_of(played[0])

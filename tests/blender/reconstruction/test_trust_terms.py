@@ -10,12 +10,12 @@ TERMS = {"COMBINED", "BEHAVIOUR", "KINEMATICS", "TRACKING"}
 
 @pytest.fixture
 def curves(load):
-    return load("mocap_assist.scene.reliability_curves")
+    return load("mocap_assist.actions.reliability_curves")
 
 
 @pytest.fixture
 def heat(load):
-    return load("mocap_assist.scene.heat")
+    return load("mocap_assist.drawing.heat")
 
 
 @pytest.fixture

@@ -7,7 +7,7 @@ from modal_events import event, nothing_is_left, wait
 @pytest.fixture
 def press_reconstruct(make_button, window, load):
     """Press Reconstruct; return the button, which waits."""
-    choices = load("mocap_assist.reconstruct_choices")
+    choices = load("mocap_assist.reconstruct.choices")
 
     def press():
         settings = choices.ReconstructBundle(

@@ -67,14 +67,14 @@ def test_presets_that_are_none_are_refused_in_a_sentence(listed, blank, tmp_path
 
 
 def test_presets_are_kept_in_the_folder_of_the_user(load, extension):
-    folder = load("mocap_assist.ui.bone_list").preset_folder()
+    folder = load("mocap_assist.retarget.bone_list").preset_folder()
 
     assert folder.is_dir() and "bl_ext" not in str(folder)
     assert folder.name == "bone_maps" and ".user" in folder.parts
 
 
 def test_the_panel_says_what_is_missing(walker, blank, load, make_rig):
-    why = load("mocap_assist.ui.retarget_panel").why_not_pressed
+    why = load("mocap_assist.retarget.panel").why_not_pressed
     shown = blank.context.scene.mocap_assist.retarget
 
     assert "Choose the armature" in why(blank.context)

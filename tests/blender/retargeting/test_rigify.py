@@ -103,8 +103,8 @@ def test_with_both_the_animator_may_switch(hero, walker, give, poses, blank):
 
 def test_the_body_turns_as_solved(hero, walker, give, load, blank):
     """Every mapped part is where the solver wants it, which its own tests judge."""
-    retargeting = load("mocap_assist.retargeting")
-    choices = load("mocap_assist.retarget_choices")
+    retargeting = load("mocap_assist.retarget.retargeting")
+    choices = load("mocap_assist.retarget.choices")
     solvers = load("solvers.retargeting")
     motion = load("solvers.motion")
     give(walker, hero)

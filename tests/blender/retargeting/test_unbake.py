@@ -70,11 +70,11 @@ def test_gaps_are_not_unbaked(walker, blank):
 
 def rekeyed(armature, mode, load):
     """Key the same turns in another rotation mode."""
-    modes = load("mocap_assist.scene.rotation_modes")
-    reading = load("mocap_assist.scene.armature_read")
-    writing = load("mocap_assist.scene.action_write")
-    compat = load("mocap_assist.scene.compat")
-    controls = load("mocap_assist.jobs.controls")
+    modes = load("mocap_assist.actions.rotation_modes")
+    reading = load("mocap_assist.actions.armature_read")
+    writing = load("mocap_assist.actions.action_write")
+    compat = load("mocap_assist.blender.compat")
+    controls = load("mocap_assist.scene.controls")
     import bpy
 
     take = reading.read_take(armature, bpy.context.scene)

@@ -6,7 +6,7 @@ import pytest
 
 @pytest.fixture
 def contacts(load):
-    return load("mocap_assist.scene.contacts")
+    return load("mocap_assist.actions.contacts")
 
 
 @pytest.fixture
@@ -50,7 +50,7 @@ def test_it_keeps_its_foot_contacts_when_its_file_is_loaded_again(
 def test_a_key_without_a_value_means_that_the_foot_does_not_stand(
     override, blank, tmp_path, contacts, load, value
 ):
-    curves = load("mocap_assist.scene.bone_channels").animated_curves
+    curves = load("mocap_assist.actions.bone_channels").animated_curves
     animation = override.animation_data
     channel = curves(animation.action, animation.action_slot)['["mocap_contact_left"]', 0]
     for key in channel.curve.keyframe_points:

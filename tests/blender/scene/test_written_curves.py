@@ -22,7 +22,7 @@ def curve(make_armature, animate):
 
 @pytest.fixture
 def write(load):
-    return load("mocap_assist.scene.curves").write_values
+    return load("mocap_assist.actions.curves").write_values
 
 
 def select(key, selected):

@@ -18,13 +18,13 @@ def tracked(walk, blank):
 
 @pytest.fixture
 def body(load):
-    overlay = load("mocap_assist.scene.body_overlay")
+    overlay = load("mocap_assist.track.body_overlay")
     return lambda armature, frame=3: overlay.body_now(armature, frame)
 
 
 def place(load, armature, points, frame):
     """Return the points that the camera saw, in the scene."""
-    preview = load("mocap_assist.scene.depth_preview")
+    preview = load("mocap_assist.depth.depth_preview")
     recording = preview.recording_of(points.data)
     depth = recording.frame(frame)
     seen = recording.camera.back_project(depth)[depth > 0.0]
@@ -79,7 +79,7 @@ def test_it_survives_renaming_applied_transforms_and_saving(tracked, body, blank
 
 
 def test_rest_poses_that_were_turned_and_scaled_are_understood(tracked, load, blank):
-    kept = load("mocap_assist.scene.tracked_body")
+    kept = load("mocap_assist.track.tracked_body")
     model = kept.TrackedBody.read(tracked).body
     turn = Matrix.Rotation(0.7, 4, "Z") @ Matrix.Scale(2.0, 4)
     tracked.data.transform(turn)
@@ -95,7 +95,7 @@ def test_rest_poses_that_were_turned_and_scaled_are_understood(tracked, load, bl
 
 
 def test_what_was_damaged_is_not_drawn(tracked, body, load):
-    kept = load("mocap_assist.scene.tracked_body")
+    kept = load("mocap_assist.track.tracked_body")
     tracked.data[kept.KEY] = "{}"
     assert body(tracked) is None
     with pytest.raises(load("solvers.errors").InvalidMotionError, match="keeps no body"):
@@ -103,7 +103,7 @@ def test_what_was_damaged_is_not_drawn(tracked, body, load):
 
 
 def test_trust_is_shown_of_what_track_has_made(tracked, load):
-    heat = load("mocap_assist.scene.heat")
+    heat = load("mocap_assist.drawing.heat")
     shown = heat.heat_at(tracked, 3)
     assert shown is not None and len(shown.ends) == len(tracked.pose.bones)
     assert len(np.unique(shown.colors.reshape(-1, 4), axis=0)) > 3

@@ -55,9 +55,9 @@ class View:
 @pytest.fixture
 def press(load, window, blank, monkeypatch):
     """Press a button on which a view looks; return the button, which waits."""
-    monkeypatch.setattr(load("mocap_assist.solver_operator"), "Job", ShortJob)
+    monkeypatch.setattr(load("mocap_assist.runtime.solver_operator"), "Job", ShortJob)
     blank.ops.object.armature_add()
-    watched = load("mocap_assist.watched_operator").WatchedOperator
+    watched = load("mocap_assist.runtime.watched_operator").WatchedOperator
 
     class Button(watched):
         bl_idname, settings_group = "mocap_assist.count", "track"
@@ -129,7 +129,10 @@ def test_files_that_cannot_be_read_now_are_as_if_nothing_was_said(load, tmp_path
 
 def test_track_from_here_is_watched_if_its_caller_wants_that(write_tracked, load, blank):
     made = write_tracked()
-    retracking, choices = load("mocap_assist.retracking"), load("mocap_assist.tracking")
+    retracking, choices = (
+        load("mocap_assist.track.retracking"),
+        load("mocap_assist.track.tracking"),
+    )
     settings = load("solvers.depth_tracking").RetrackSettings()
     assert "watch" in blank.ops.mocap_assist.retrack.get_rna_type().properties
     blank.context.scene.mocap_assist.track.watch = False

@@ -29,7 +29,7 @@ def test_track_from_here_writes_what_is_known_of_a_residual(
     write_tracked, read_take, load, blank
 ):
     made = write_tracked()
-    solvers, retracking = load("solvers.depth_tracking"), load("mocap_assist.retracking")
+    solvers, retracking = load("solvers.depth_tracking"), load("mocap_assist.track.retracking")
     take = read_take(made)
     joints = load("solvers.motion").Tracks(("hips",), np.zeros((3, 1, 3)), 30.0)
     result = solvers.Retracked(take.motion, 5, 4, 6, (True, True), joints, np.full(3, np.nan))

@@ -31,7 +31,7 @@ def test_body_and_correction_in_centimetres_between_whole_frames(
     assert blank.ops.mocap_assist.track_depth(**QUICK) == {"FINISHED"}
     armature = blank.context.object
     blank.context.scene.frame_set(5)  # picture 5 is at frame 1 + 5 * 0.8
-    drawn = load("mocap_assist.scene.body_overlay").body_now(armature, 5)
+    drawn = load("mocap_assist.track.body_overlay").body_now(armature, 5)
     place = np.array(centimetres.matrix_world)
     seen = truth["joints"][5] @ place[:3, :3].T + place[:3, 3]
     assert np.ptp(drawn.points[:, 2]) == pytest.approx(np.ptp(seen[:, 2]), rel=0.2)
@@ -42,7 +42,7 @@ def test_body_and_correction_in_centimetres_between_whole_frames(
     entry = json.loads(armature.animation_data.action["mocap_assist_history"])[-1]
     assert entry["picture"] == 5
     assert (entry["first_picture"], entry["last_picture"]) == (3, 7)
-    compat = load("mocap_assist.scene.compat")
+    compat = load("mocap_assist.blender.compat")
     slot = armature.animation_data.action_slot
     path = 'pose.bones["hips"].rotation_quaternion'
     times = [

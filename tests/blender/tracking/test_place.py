@@ -14,7 +14,7 @@ def stood(load):
     """The floor below a camera that was rolled and tilted, in degrees."""
 
     def stood(roll, tilt):
-        floor = load("solvers.motion.depth_floor").Floor
+        floor = load("solvers.depth_scene.floor").Floor
         roll, tilt = np.radians([roll, tilt])
         up = (np.sin(roll) * np.cos(tilt), -np.cos(roll) * np.cos(tilt), -np.sin(tilt))
         return floor(np.array(up), 1.3)
@@ -28,8 +28,8 @@ def test_the_body_is_seen_where_the_camera_saw_it(
     roll, tilt, matrix, stood, write_tracked, given_poses, load, blank
 ):
     made = write_tracked(floor=stood(roll, tilt), matrix=matrix)
-    seen = load("solvers.depth_tracking.body_kinematics").segment_frames(made.body, given_poses)
-    shown = load("mocap_assist.scene.tracked_body").posed_frames
+    seen = load("solvers.depth_tracking.body.kinematics").segment_frames(made.body, given_poses)
+    shown = load("mocap_assist.track.tracked_body").posed_frames
     for picture in (0, 11):
         blank.context.scene.frame_set(1 + picture)
         through_points = np.array(made.points.matrix_world) @ seen[picture]

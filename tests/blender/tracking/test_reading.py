@@ -11,7 +11,7 @@ TURN = Quaternion((0.0, 1.0, 0.0), 0.5)
 @pytest.fixture
 def read(made, load, blank):
     """Read the scene as the button does; return the frame and pose that would be kept."""
-    retracking = load("mocap_assist.retracking")
+    retracking = load("mocap_assist.track.retracking")
     settings = retracking.RetrackBundle(load("solvers.depth_tracking").RetrackSettings())
 
     def read():
@@ -54,8 +54,8 @@ def test_turned_bones_and_moved_hips_are_read_as_they_are_seen(made, read, load,
     bones[ARM].rotation_quaternion = TURN @ bones[ARM].rotation_quaternion
     correction = read()
     assert correction.frame == 4
-    space = load("mocap_assist.scene.tracked_body")
-    moved = load("solvers.depth_tracking.body_motion")
+    space = load("mocap_assist.track.tracked_body")
+    moved = load("solvers.depth_tracking.body.motion")
     frames = moved.motion_frames(made.body, correction.pose)[0]
     to_armature = space.armature_from_motion(made.armature, made.body)
     expected = to_armature @ moved.scene_from_camera(None) @ frames

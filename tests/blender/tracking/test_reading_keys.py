@@ -15,7 +15,7 @@ def made(write_tracked, blank):
 
 @pytest.fixture
 def why_grey(load, blank):
-    why_not = load("mocap_assist.retracking").why_not_retrack
+    why_not = load("mocap_assist.track.retracking").why_not_retrack
     return lambda: why_not(blank.context)
 
 
@@ -23,7 +23,7 @@ def why_grey(load, blank):
 def strip(made, load):
     """Let a result play on an NLA track, as Clean does it."""
     write, history = (
-        load("mocap_assist.scene.armature_write"),
+        load("mocap_assist.actions.armature_write"),
         load("mocap_assist.scene.history"),
     )
     result = write.copy_of(made.source[0])
@@ -50,7 +50,7 @@ def test_a_strip_that_plays_at_other_frames_is_refused(change, strip, made, why_
         strip.use_animated_time = True
     sentence = "wall tracked.clean plays at other frames on its NLA strip"
     assert why_grey().startswith(sentence)
-    retracking = load("mocap_assist.retracking")
+    retracking = load("mocap_assist.track.retracking")
     settings = retracking.RetrackBundle(load("solvers.depth_tracking").RetrackSettings())
     scene = made.armature.users_scene[0]
     with pytest.raises(load("solvers.errors").InvalidMotionError, match=sentence):
@@ -60,7 +60,7 @@ def test_a_strip_that_plays_at_other_frames_is_refused(change, strip, made, why_
 @pytest.fixture
 def curves(made, load):
     """The F-Curves of a property of a bone."""
-    bag = load("mocap_assist.scene.compat").channelbag(*made.source)
+    bag = load("mocap_assist.blender.compat").channelbag(*made.source)
 
     def curves(bone, name):
         path = f'pose.bones["{bone}"].{name}'
@@ -97,7 +97,7 @@ def test_muted_and_empty_channels_are_no_keys(lost, curves, refused):
 
 
 def test_hips_without_location_keys_are_named(made, curves, refused, load):
-    bag = load("mocap_assist.scene.compat").channelbag(*made.source)
+    bag = load("mocap_assist.blender.compat").channelbag(*made.source)
     bag.fcurves.remove(curves("hips", "location")[1])
     refused("hips of wall tracked")
 

@@ -44,7 +44,7 @@ def turned_away(blank, armature, frames):
 
 
 def keys(action, load, slot):
-    bag = load("mocap_assist.scene.compat").channelbag(action, slot)
+    bag = load("mocap_assist.blender.compat").channelbag(action, slot)
     return {
         (curve.data_path, curve.array_index): [tuple(key.co) for key in curve.keyframe_points]
         for curve in bag.fcurves
@@ -123,7 +123,7 @@ def test_trust_and_residual_go_along_and_doubts_are_listed(tracked, blank, load)
     blank.context.scene.frame_set(8)
     assert blank.ops.mocap_assist.retrack(reach=0.2) == {"FINISHED"}
     action, slot = tracked.animation_data.action, tracked.animation_data.action_slot
-    bag = load("mocap_assist.scene.compat").channelbag(action, slot)
+    bag = load("mocap_assist.blender.compat").channelbag(action, slot)
     residual = bag.fcurves.find('["mocap_residual"]')
     assert len(residual.keyframe_points) == 16
     assert all(0.0 < key.co[1] < 0.06 for key in residual.keyframe_points)
@@ -146,7 +146,7 @@ def press(load, press_button, tracked):
     """Press Track from Here; return the button, which waits."""
     settings = load("solvers.depth_tracking").RetrackSettings()
     return lambda: press_button(
-        "retrack", load("mocap_assist.retracking").RetrackBundle(settings)
+        "retrack", load("mocap_assist.track.retracking").RetrackBundle(settings)
     )
 
 
@@ -163,7 +163,7 @@ def test_it_can_be_watched_and_esc_leaves_the_hand_pose_as_it_was(
     wait(button, window, until=lambda: button._view.drawn is not None)
     drawn = button._view.drawn.points
     shown = blank.context.scene.frame_current  # on a busy machine not the first one
-    body = load("mocap_assist.scene.body_overlay").body_now(tracked, shown).points
+    body = load("mocap_assist.track.body_overlay").body_now(tracked, shown).points
     assert np.linalg.norm(drawn.mean(axis=0) - body.mean(axis=0)) < 0.1
     assert button.modal(window.context, event("ESC", "PRESS")) == {"CANCELLED"}
 

@@ -52,7 +52,7 @@ def test_residual_trust_and_how_it_was_made_are_kept_and_clean_takes_it(points, 
     told = json.loads(action["mocap_assist_captured"])
     assert told["operation"] == "track_depth" and told["recording"].endswith("walk.npz")
     assert 0.0 < told["mean_residual_cm"] < 5.0
-    compat = load("mocap_assist.scene.compat")
+    compat = load("mocap_assist.blender.compat")
     bag = compat.channelbag(action, armature.animation_data.action_slot)
     residual = bag.fcurves.find('["mocap_residual"]')
     keyed = [point.co[0] for point in residual.keyframe_points]
@@ -76,7 +76,7 @@ def test_without_points_the_button_says_why(blank):
 
 def test_a_recording_that_is_gone_is_named_and_nothing_is_added(points, blank, load, tmp_path):
     (tmp_path / "walk.npz").unlink()
-    preview = load("mocap_assist.scene.depth_preview")
+    preview = load("mocap_assist.depth.depth_preview")
     preview._loaded()
     before = set(blank.data.objects.keys())
     with pytest.raises(RuntimeError, match=r"walk\.npz"):

@@ -10,13 +10,16 @@ from modal_events import event, nothing_is_left, wait
 @pytest.fixture
 def press(load, press_button, points):
     """Press Track with these choices of looking on; return the button, which waits."""
-    tracking, capture = load("mocap_assist.tracking"), load("solvers.depth_tracking.capture")
+    tracking, capture = (
+        load("mocap_assist.track.tracking"),
+        load("solvers.depth_tracking.capturing.capture"),
+    )
 
     def press(watch=True, keep_on_esc=False):
         settings = tracking.TrackBundle(
             tracking.TrackChoices(plant_feet=False),
             capture.CaptureSettings(backward=False, refine=False),
-            load("solvers.motion.depth_foreground").ForegroundSettings(),
+            load("solvers.depth_scene.foreground").ForegroundSettings(),
             load("solvers.denoising").PlantSettings(),
             tracking.WatchChoices(watch=watch),
             tracking.EscChoices(keep_on_esc=keep_on_esc),

@@ -7,8 +7,8 @@ import pytest
 @pytest.fixture
 def matched(load, blank):
     """A list of two matches, as a search leaves it."""
-    finding, retrieval = load("mocap_assist.jobs.finding"), load("solvers.retrieval")
-    searches = load("mocap_assist.library.searches")
+    finding, retrieval = load("mocap_assist.search.solve_finding"), load("solvers.retrieval")
+    searches = load("mocap_assist.search.searches")
     pairs = np.array([[0, 0], [9, 9]])
     found = tuple(
         finding.Found(
@@ -22,7 +22,7 @@ def matched(load, blank):
     )
     stage = finding.Stage(np.zeros((10, 3)), np.zeros(10), np.ones(20), 20.0)
     search = searches.keep("take", (1.0, 1.0), 1.0, finding.Finding(found, stage, 5))
-    load("mocap_assist.library.finding").fill_list(blank.context, search)
+    load("mocap_assist.search.finding").fill_list(blank.context, search)
     return search
 
 

@@ -155,8 +155,8 @@ def test_the_menu_holds_the_buttons(draw):
 def test_the_sidebar_starts_from_the_defaults_of_the_solvers(blank, load, group):
     shown = getattr(blank.context.scene.mocap_assist, group)
     bundle = {
-        "clean": load("mocap_assist.clean_choices").CleanSettings,
-        "check": load("mocap_assist.check_choices").CheckSettings,
+        "clean": load("mocap_assist.clean.choices").CleanSettings,
+        "check": load("mocap_assist.check.choices").CheckSettings,
     }[group]
 
     for name, kind in typing.get_type_hints(bundle).items():
@@ -166,7 +166,7 @@ def test_the_sidebar_starts_from_the_defaults_of_the_solvers(blank, load, group)
 
 
 def test_figures_compare_the_raw_take_with_the_last_result(load):
-    rows = load("mocap_assist.ui.figures").figure_rows([
+    rows = load("mocap_assist.panels.figures").figure_rows([
         {"before": {"spikes": 7, "missing_share": 0.013}, "after": {"spikes": 2}},
         {"operation": "other"},
         {"before": {"spikes": 2}, "after": {"spikes": 0, "missing_share": 0.0}},
@@ -176,7 +176,7 @@ def test_figures_compare_the_raw_take_with_the_last_result(load):
 
 
 def test_a_figure_that_is_not_known_is_a_dash(load):
-    rows = load("mocap_assist.ui.figures").figure_rows([
+    rows = load("mocap_assist.panels.figures").figure_rows([
         {"before": {"foot_slide_cm_per_s": None}, "after": {"foot_slide_cm_per_s": 1.25}}
     ])
 
@@ -184,14 +184,14 @@ def test_a_figure_that_is_not_known_is_a_dash(load):
 
 
 def test_frames_of_a_spot_are_read_as_one_says_them(load):
-    frames_text = load("mocap_assist.ui.figures").frames_text
+    frames_text = load("mocap_assist.panels.figures").frames_text
 
     assert frames_text(12.0, 12.0) == "12"
     assert frames_text(12.0, 15.5) == "12 – 15.5"
 
 
 def test_a_sentence_is_broken_to_fit_the_sidebar(load):
-    lines = load("mocap_assist.ui.drawing").column_lines
+    lines = load("mocap_assist.panels.drawing").column_lines
     sentence = "Select an armature that plays a captured action."
 
     assert len(lines(sentence, 200)) > len(lines(sentence, 400)) == 1

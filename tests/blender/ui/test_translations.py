@@ -57,7 +57,7 @@ def test_every_translated_text_is_one_that_a_panel_shows(
     elsewhere = {"Learn from", "Left foot stands", "Right foot stands", "Made from {raw}"}
     elsewhere |= {"Previous", "Next"}
     # A figure that is not known, as for feet that never stand, is not shown.
-    elsewhere |= {label for label, *_ in load("mocap_assist.ui.figures").FIGURES}
+    elsewhere |= {label for label, *_ in load("mocap_assist.panels.figures").FIGURES}
 
     assert set(translations.TEXTS) - shown - elsewhere == set()
 

@@ -31,7 +31,7 @@ def walker(blank, load, tmp_path):
 @pytest.fixture
 def at_once(load, monkeypatch):
     """Solve in this process, which is quicker to start than another."""
-    for module in ("mocap_assist.solver_operator", "mocap_assist.variants.sheet"):
+    for module in ("mocap_assist.runtime.solver_operator", "mocap_assist.variants.sheet"):
         monkeypatch.setattr(load(module), "run", lambda solve: solve())
 
 

@@ -176,7 +176,7 @@ def test_the_panel_bears_a_number_that_another_version_has_stored(blank, draw, w
 
 
 def test_the_panel_does_not_look_into_variants_however_many(vary, draw, load, monkeypatch):
-    retargeting, looks = load("mocap_assist.retargeting"), []
+    retargeting, looks = load("mocap_assist.retarget.retargeting"), []
     look = retargeting.animated_paths
 
     def counted(action, slot):

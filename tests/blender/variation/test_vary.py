@@ -11,7 +11,7 @@ EXAMPLES = ["walk_1", "walk_2", "walk_3"]
 @pytest.fixture
 def body(blank, walker, load):
     """The motion of an action as it is read back, and its joints' places."""
-    read = load("mocap_assist.scene.armature_read").read_take
+    read = load("mocap_assist.actions.armature_read").read_take
     places = load("solvers.motion").forward_kinematics
 
     def of(action):

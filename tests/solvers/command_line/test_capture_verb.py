@@ -8,9 +8,9 @@ import pytest
 from depth_folders import open3d, save_png
 from drawn_bodies import CAMERA, NATURAL
 
-from solvers.depth_tracking.body_kinematics import segment_frames
-from solvers.depth_tracking.body_model import load_body_model, usual_body
-from solvers.depth_tracking.ray_capsules import cast_rays
+from solvers.depth_tracking.body.kinematics import segment_frames
+from solvers.depth_tracking.body.model import load_body_model, usual_body
+from solvers.depth_tracking.body.ray_capsules import cast_rays
 from solvers.recordings import read_bvh, read_recording
 
 QUICK = ("--no-backward", "--no-refine", "--no-feet", "--check-every", "1000")

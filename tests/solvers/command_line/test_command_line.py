@@ -11,8 +11,8 @@ from numpy.testing import assert_allclose
 from solvers.command_line.verbs import VERBS
 from solvers.denoising import learn_joint_limits, limit_excess, load_filter_bases
 from solvers.motion import Tracks
-from solvers.motion.rotations import multiply, quaternion_from_rotation_vector
 from solvers.recordings import read_bvh, read_c3d, read_trc, write_bvh, write_c3d, write_trc
+from solvers.rotations.representations import multiply, quaternion_from_rotation_vector
 from solvers.samples import GaitSettings, walking_gait
 
 

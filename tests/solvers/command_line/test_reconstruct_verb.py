@@ -9,7 +9,8 @@ from kinect_walks import tracked_walk, true_positions
 
 from solvers import motion as vocabulary
 from solvers import samples
-from solvers.motion import JOINTS, Sensor, Tracks, posture_joints
+from solvers.motion import JOINTS, Sensor, Tracks
+from solvers.motion.humanoid import posture_joints
 from solvers.reconstruction import load_posture_library
 from solvers.recordings import read_bvh, read_joint_csv, write_bvh, write_joint_csv, write_trc
 

@@ -9,9 +9,9 @@ from numpy.testing import assert_allclose
 
 from solvers.command_line.replay_verb import looped, paced
 from solvers.motion import Tracks
-from solvers.motion.posture_joints import motion_postures
+from solvers.motion.humanoid.posture_joints import motion_postures
 from solvers.recordings import write_bvh, write_joints, write_trc
-from solvers.recordings.live_frames import decode_frame, frames_of
+from solvers.recordings.live.frames import decode_frame, frames_of
 from solvers.samples import GaitSettings, PerformanceSettings, perform, walking_gait
 
 

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from solvers.motion import JOINTS, JointRecording, Sensor, Tracks
-from solvers.motion.posture_joints import motion_postures
+from solvers.motion.humanoid.posture_joints import motion_postures
 from solvers.reconstruction import load_residual_prior
 from solvers.recordings import read_recording, write_bvh, write_joint_csv
 from solvers.samples import GaitSettings, walking_gait

@@ -16,9 +16,9 @@ from solvers.motion import (
     read_humanoid_map,
     write_humanoid_map,
 )
-from solvers.motion.rotations import IDENTITY
 from solvers.recordings import read_bvh, write_bvh, write_trc
 from solvers.retargeting import load_sparse_motion
+from solvers.rotations.representations import IDENTITY
 from solvers.samples import GaitSettings, walking_gait
 
 

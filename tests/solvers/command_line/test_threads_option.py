@@ -6,7 +6,7 @@ import pytest
 from kinect_walks import tracked_walk, true_positions
 
 from solvers import motion, samples
-from solvers.motion import posture_joints
+from solvers.motion.humanoid import posture_joints
 from solvers.processes.threads import VARIABLES
 from solvers.recordings import write_bvh, write_joints
 

@@ -3,7 +3,7 @@
 import numpy as np
 from scipy.optimize import minimize
 
-from solvers.denoising.blend_estimates import DOUBT, blend_weights
+from solvers.denoising.marker_gaps.blend_estimates import DOUBT, blend_weights
 
 N_FRAMES = 4000
 

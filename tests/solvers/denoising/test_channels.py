@@ -4,10 +4,10 @@ import numpy as np
 import pytest
 from numpy.testing import assert_allclose
 
-from solvers.denoising.channels_encode import decode, encode
-from solvers.denoising.channels_path import local_lines, smooth_path, turned
+from solvers.denoising.channels.encode import decode, encode
+from solvers.denoising.channels.ground_path import local_lines, smooth_path, turned
 from solvers.motion import Motion, Skeleton, Tracks, forward_kinematics
-from solvers.motion.rotations import (
+from solvers.rotations.representations import (
     angle_between,
     inverse,
     multiply,

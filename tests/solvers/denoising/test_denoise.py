@@ -16,8 +16,8 @@ from solvers.denoising import (
     load_filter_bases,
 )
 from solvers.motion import Motion, Skeleton, Tracks
-from solvers.motion.rotations import angle_between, multiply, quaternion_from_rotation_vector
 from solvers.recordings import read_bvh
+from solvers.rotations import angle_between, multiply, quaternion_from_rotation_vector
 from solvers.samples import GaitSettings, walking_gait
 
 

@@ -3,16 +3,16 @@
 import numpy as np
 from numpy.testing import assert_allclose
 
-from solvers.denoising.denoise_covariance import Covariance
-from solvers.denoising.denoise_filters import (
+from solvers.denoising.posterior.covariance import Covariance
+from solvers.denoising.posterior.filters import (
     Filter,
     filters_of,
     gains_of,
     variance_of,
     weight_of,
 )
-from solvers.denoising.denoise_gaps import GapSolution, gap_patterns, long_gaps
-from solvers.denoising.denoise_windows import Windows
+from solvers.denoising.posterior.gaps import GapSolution, gap_patterns, long_gaps
+from solvers.denoising.posterior.windows import Windows
 
 LENGTH, N_SLOW, N_CHANNELS = 8, 5, 3
 
@@ -159,7 +159,7 @@ def test_gaps_of_endless_patterns_do_not_fill_the_memory(rng, monkeypatch):
     windows = Windows(57, 20, 1.0)
     assert len(gap_patterns(known, windows, N_SLOW)) > 1
 
-    monkeypatch.setattr("solvers.denoising.denoise_gaps.MOST_NUMBERS", 50)
+    monkeypatch.setattr("solvers.denoising.posterior.gaps.MOST_NUMBERS", 50)
 
     (pattern,) = gap_patterns(known, windows, N_SLOW)
     assert not pattern.channels.size

@@ -4,13 +4,16 @@ import numpy as np
 import pytest
 
 from solvers.denoising import DenoiseSettings, denoise, learn_filter_bases
-from solvers.denoising.fill_markers import fill_markers
-from solvers.denoising.gap_borders import bridge
-from solvers.denoising.stray_points import stray
+from solvers.denoising.marker_gaps.fill_markers import fill_markers
+from solvers.denoising.marker_gaps.gap_borders import bridge
+from solvers.denoising.marker_gaps.transient_outliers import stray
 from solvers.errors import SolveCancelled
 from solvers.motion import Tracks
-from solvers.motion.rotations import matrix_from_quaternion, quaternion_from_rotation_vector
 from solvers.recordings import read_c3d
+from solvers.rotations.representations import (
+    matrix_from_quaternion,
+    quaternion_from_rotation_vector,
+)
 
 RATE = 60.0
 LOST = slice(70, 130)

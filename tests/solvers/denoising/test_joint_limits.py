@@ -4,12 +4,12 @@ import numpy as np
 import pytest
 from numpy.testing import assert_allclose
 
-from solvers.denoising.keep_within import keep_within, limit_excess
-from solvers.denoising.learn_limits import JointLimitsSettings, learn_joint_limits
+from solvers.denoising.limits.keep_within import keep_within, limit_excess
+from solvers.denoising.limits.learn_limits import JointLimitsSettings, learn_joint_limits
 from solvers.errors import InvalidFileError, InvalidMotionError, InvalidSettingError
 from solvers.motion import JointLimits, Motion, Skeleton, find_humanoid_map, load_joint_limits
-from solvers.motion.canonical import canonical_rotations, from_canonical
-from solvers.motion.rotations import (
+from solvers.motion.humanoid.canonical import canonical_rotations, from_canonical
+from solvers.rotations.representations import (
     IDENTITY,
     angle_between,
     inverse,

@@ -8,7 +8,7 @@ from numpy.lib.stride_tricks import sliding_window_view
 from numpy.testing import assert_allclose
 
 from solvers.denoising import learn_filter_bases
-from solvers.denoising.lag_covariance import MOST_ENDS, LagProducts, strongest
+from solvers.denoising.prior.lag_covariance import MOST_ENDS, LagProducts, strongest
 from solvers.errors import InvalidMotionError
 from solvers.samples import GaitSettings, walking_gait
 

@@ -3,13 +3,17 @@
 import numpy as np
 import pytest
 
-from solvers.denoising.feet import find_legs
-from solvers.denoising.plant_feet import PlantSettings, plant_feet
+from solvers.denoising.feet.legs import find_legs
+from solvers.denoising.feet.plant_feet import PlantSettings, plant_feet
 from solvers.errors import InvalidMotionError, SolveCancelled
 from solvers.motion import Motion, Skeleton, forward_kinematics
-from solvers.motion.contacts import detect_contacts
-from solvers.motion.rotations import angle_between, multiply, quaternion_from_rotation_vector
-from solvers.recordings.bvh import read_bvh
+from solvers.motion.humanoid.contacts import detect_contacts
+from solvers.recordings.skeleton_files.bvh import read_bvh
+from solvers.rotations.representations import (
+    angle_between,
+    multiply,
+    quaternion_from_rotation_vector,
+)
 from solvers.samples import GaitSettings, walking_gait
 
 

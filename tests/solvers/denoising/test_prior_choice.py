@@ -6,11 +6,16 @@ import numpy as np
 import pytest
 from numpy.testing import assert_allclose
 
-from solvers.denoising.denoise_groups import LARGEST_GROUP, groups_of
-from solvers.denoising.denoise_windows import Windows
-from solvers.denoising.prior import Smoothness, WavePrior, mixed, smooth_prior
-from solvers.denoising.prior_choice import BLUR, choose_prior, foresight, joint_foresight
-from solvers.denoising.smoothness import LENGTHS, smooth_kernels
+from solvers.denoising.posterior.groups import LARGEST_GROUP, groups_of
+from solvers.denoising.posterior.prior_choice import (
+    BLUR,
+    choose_prior,
+    foresight,
+    joint_foresight,
+)
+from solvers.denoising.posterior.smoothness import LENGTHS, smooth_kernels
+from solvers.denoising.posterior.windows import Windows
+from solvers.denoising.prior.window_prior import Smoothness, WavePrior, mixed, smooth_prior
 from solvers.progress import unwatched
 
 LENGTH, RATE = 10, 30.0

@@ -6,13 +6,13 @@ import numpy as np
 import pytest
 from numpy.testing import assert_allclose
 
-from solvers.denoising.bone_drift import bone_drifts
-from solvers.denoising.foot_slide import foot_slide
-from solvers.denoising.quality import QualitySettings, mean_jitter, measure_quality
-from solvers.denoising.quality_report import compare_quality
+from solvers.denoising.quality.bone_drift import bone_drifts
+from solvers.denoising.quality.foot_slide import foot_slide
+from solvers.denoising.quality.measure import QualitySettings, mean_jitter, measure_quality
+from solvers.denoising.quality.report import compare_quality
 from solvers.errors import InvalidMotionError, InvalidSettingError, SolveCancelled
 from solvers.motion import Motion, Tracks, forward_kinematics
-from solvers.motion.rotations import multiply, quaternion_from_rotation_vector, rotate
+from solvers.rotations.representations import multiply, quaternion_from_rotation_vector, rotate
 from solvers.samples import GaitSettings, walking_gait
 
 

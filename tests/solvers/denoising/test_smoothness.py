@@ -5,8 +5,8 @@ import pytest
 from numpy.testing import assert_allclose
 from scipy.fft import dct
 
-from solvers.denoising.denoise_windows import Windows
-from solvers.denoising.smoothness import LENGTHS, fit_smoothness, smooth_kernels
+from solvers.denoising.posterior.smoothness import LENGTHS, fit_smoothness, smooth_kernels
+from solvers.denoising.posterior.windows import Windows
 
 WINDOW, RATE, N_FRAMES = 20, 30.0, 400
 

@@ -3,7 +3,7 @@
 import numpy as np
 from numpy.testing import assert_allclose
 
-from solvers.denoising.whole_joints import WholeJoints
+from solvers.denoising.posterior.joint_outliers import WholeJoints
 
 JOINTS = np.array([0, 0, 0, 1, 2, 2])
 RATE = 0.05

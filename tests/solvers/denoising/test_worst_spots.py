@@ -3,11 +3,11 @@
 import numpy as np
 import pytest
 
-from solvers.denoising.quality import measure_quality
-from solvers.denoising.worst_spots import SpotSettings, find_worst_spots
+from solvers.denoising.quality.measure import measure_quality
+from solvers.denoising.quality.worst_issues import SpotSettings, find_worst_spots
 from solvers.motion import Motion
-from solvers.motion.rotations import multiply, quaternion_from_rotation_vector
-from solvers.recordings.bvh import read_bvh
+from solvers.recordings.skeleton_files.bvh import read_bvh
+from solvers.rotations.representations import multiply, quaternion_from_rotation_vector
 
 
 def shaken(motion: Motion, joint: int, frames: slice, scale: float, rng) -> Motion:

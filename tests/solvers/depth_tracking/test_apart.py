@@ -4,13 +4,13 @@ import numpy as np
 from drawn_bodies import CAMERA, posed
 from numpy.testing import assert_allclose
 
-from solvers.depth_tracking.apart_term import SOFTNESS, _closest, apart_term
-from solvers.depth_tracking.body_model import usual_body
-from solvers.depth_tracking.body_tables import CAPSULE_SEGMENTS
-from solvers.depth_tracking.coordinates import COORDINATES
-from solvers.depth_tracking.hypothesis import imagine
-from solvers.depth_tracking.normal_equations import in_coordinates, segment_equations, step
-from solvers.depth_tracking.pose_priors import natural_stance
+from solvers.depth_tracking.body.coordinates import COORDINATES
+from solvers.depth_tracking.body.model import usual_body
+from solvers.depth_tracking.body.normal_equations import in_coordinates, segment_equations, step
+from solvers.depth_tracking.body.pose_priors import natural_stance
+from solvers.depth_tracking.body.tables import CAPSULE_SEGMENTS
+from solvers.depth_tracking.terms.hypothesis import imagine
+from solvers.depth_tracking.terms.overlap import SOFTNESS, _closest, apart_term
 
 BODY = usual_body()
 

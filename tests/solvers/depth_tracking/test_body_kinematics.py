@@ -5,14 +5,14 @@ import pytest
 from numpy.testing import assert_allclose
 from scipy.spatial.transform import Rotation
 
-from solvers.depth_tracking.body_kinematics import (
+from solvers.depth_tracking.body.coordinates import COORDINATES, TURNS
+from solvers.depth_tracking.body.kinematics import (
     joint_positions,
     segment_frames,
     segment_twists,
 )
-from solvers.depth_tracking.body_model import usual_body
-from solvers.depth_tracking.body_tables import JOINTS, PARENTS, SEGMENTS
-from solvers.depth_tracking.coordinates import COORDINATES, TURNS
+from solvers.depth_tracking.body.model import usual_body
+from solvers.depth_tracking.body.tables import JOINTS, PARENTS, SEGMENTS
 
 
 def posed(**coordinates):

@@ -6,12 +6,12 @@ import numpy as np
 import pytest
 from numpy.testing import assert_allclose, assert_array_equal
 
-from solvers.depth_tracking.body_kinematics import joint_positions, segment_frames
-from solvers.depth_tracking.body_model import BodyModel, load_body_model, usual_body
-from solvers.depth_tracking.body_tables import CAPSULES, JOINTS, LENGTHS, PARENTS, SEGMENTS
-from solvers.depth_tracking.coordinates import COORDINATES, mirrored_coordinates
+from solvers.depth_tracking.body.coordinates import COORDINATES, mirrored_coordinates
+from solvers.depth_tracking.body.kinematics import joint_positions, segment_frames
+from solvers.depth_tracking.body.model import BodyModel, load_body_model, usual_body
+from solvers.depth_tracking.body.tables import CAPSULES, JOINTS, LENGTHS, PARENTS, SEGMENTS
 from solvers.errors import InvalidFileError, InvalidMotionError
-from solvers.motion.humanoid import HUMANOID_ROLES
+from solvers.motion.humanoid.roles import HUMANOID_ROLES
 
 
 def joint(body, pose, name):

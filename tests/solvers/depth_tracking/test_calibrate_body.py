@@ -5,20 +5,20 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from solvers.depth_tracking.body_model import usual_body
-from solvers.depth_tracking.body_tables import CAPSULES
-from solvers.depth_tracking.calibrate_body import (
+from solvers.depth_scene.camera import Camera
+from solvers.depth_scene.recording import DepthRecording
+from solvers.depth_tracking.body.coordinates import COORDINATES, N_COORDINATES
+from solvers.depth_tracking.body.model import usual_body
+from solvers.depth_tracking.body.tables import CAPSULES
+from solvers.depth_tracking.capturing.calibrate_body import (
     CalibrationSettings,
     body_of_cylinders,
     calibrate_body,
 )
-from solvers.depth_tracking.coordinates import COORDINATES, N_COORDINATES
-from solvers.depth_tracking.hypothesis import imagine
-from solvers.depth_tracking.pixel_forest import load_pixel_forest
-from solvers.depth_tracking.sample_cylinders import Cylinder, sample_cylinder
+from solvers.depth_tracking.capturing.sample_cylinders import Cylinder, sample_cylinder
+from solvers.depth_tracking.forest.pixel_forest import load_pixel_forest
+from solvers.depth_tracking.terms.hypothesis import imagine
 from solvers.errors import InvalidMotionError
-from solvers.motion.camera import Camera
-from solvers.motion.depth_recording import DepthRecording
 
 CAMERA = Camera(285.63, 285.63, 159.5, 119.5, 320, 240)
 LIMBS = ("UpperArm", "LowerArm", "UpperLeg", "LowerLeg")

@@ -4,11 +4,11 @@ import numpy as np
 from drawn_bodies import posed
 from numpy.testing import assert_allclose
 
-from solvers.depth_tracking.body_kinematics import segment_frames
-from solvers.depth_tracking.body_model import usual_body
-from solvers.depth_tracking.body_tables import CAPSULES
-from solvers.depth_tracking.capsule_surface import capsule_surface
-from solvers.depth_tracking.hypothesis import capsule_normals, capsule_offsets
+from solvers.depth_tracking.body.capsule_surface import capsule_surface
+from solvers.depth_tracking.body.kinematics import segment_frames
+from solvers.depth_tracking.body.model import usual_body
+from solvers.depth_tracking.body.tables import CAPSULES
+from solvers.depth_tracking.terms.hypothesis import capsule_normals, capsule_offsets
 
 BODY = usual_body()
 

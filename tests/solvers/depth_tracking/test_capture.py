@@ -9,19 +9,19 @@ from hypothesis import given
 from hypothesis import strategies as st
 from numpy.testing import assert_allclose, assert_array_equal
 
-from solvers.depth_tracking.body_kinematics import joint_positions, segment_frames
-from solvers.depth_tracking.body_model import usual_body
-from solvers.depth_tracking.body_motion import SCENE_FROM_CAMERA, body_motion, body_skeleton
-from solvers.depth_tracking.body_tables import JOINTS
-from solvers.depth_tracking.capture import Capture, CaptureSettings, capture
-from solvers.depth_tracking.choose_poses import choose_poses, nearest_known
-from solvers.depth_tracking.coordinates import COORDINATES
-from solvers.depth_tracking.motion_prior import load_motion_prior
-from solvers.depth_tracking.smooth_take import smooth_take
+from solvers.depth_scene.floor import Floor
+from solvers.depth_scene.recording import DepthRecording
+from solvers.depth_tracking.body.coordinates import COORDINATES
+from solvers.depth_tracking.body.kinematics import joint_positions, segment_frames
+from solvers.depth_tracking.body.model import usual_body
+from solvers.depth_tracking.body.motion import SCENE_FROM_CAMERA, body_motion, body_skeleton
+from solvers.depth_tracking.body.motion_prior import load_motion_prior
+from solvers.depth_tracking.body.tables import JOINTS
+from solvers.depth_tracking.capturing.capture import Capture, CaptureSettings, capture
+from solvers.depth_tracking.capturing.choose_poses import choose_poses, nearest_known
+from solvers.depth_tracking.capturing.smooth_take import smooth_take
 from solvers.errors import InvalidMotionError, SolveCancelled
 from solvers.motion import find_humanoid_map, forward_kinematics
-from solvers.motion.depth_floor import Floor
-from solvers.motion.depth_recording import DepthRecording
 
 BODY = usual_body()
 

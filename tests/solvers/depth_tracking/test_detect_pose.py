@@ -3,15 +3,15 @@
 import numpy as np
 import pytest
 
-from solvers.depth_tracking.body_kinematics import joint_positions, segment_frames
-from solvers.depth_tracking.body_model import usual_body
-from solvers.depth_tracking.body_tables import JOINTS
-from solvers.depth_tracking.coordinates import COORDINATES, N_COORDINATES
-from solvers.depth_tracking.detect_pose import DetectorSettings, detect_pose
-from solvers.depth_tracking.hypothesis import imagine
-from solvers.depth_tracking.pixel_forest import classify_pixels, load_pixel_forest
+from solvers.depth_scene.camera import Camera
+from solvers.depth_tracking.body.coordinates import COORDINATES, N_COORDINATES
+from solvers.depth_tracking.body.kinematics import joint_positions, segment_frames
+from solvers.depth_tracking.body.model import usual_body
+from solvers.depth_tracking.body.tables import JOINTS
+from solvers.depth_tracking.detection.detect_pose import DetectorSettings, detect_pose
+from solvers.depth_tracking.forest.pixel_forest import classify_pixels, load_pixel_forest
+from solvers.depth_tracking.terms.hypothesis import imagine
 from solvers.errors import InvalidMotionError
-from solvers.motion.camera import Camera
 
 CAMERA = Camera(142.8, 142.8, 79.5, 59.5, 160, 120)
 BODY = usual_body()

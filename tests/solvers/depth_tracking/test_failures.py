@@ -4,20 +4,20 @@ import numpy as np
 import pytest
 from drawn_bodies import CAMERA, NATURAL, drawn, recorded, waving
 
-from solvers.depth_tracking.body_model import usual_body
-from solvers.depth_tracking.coordinates import COORDINATES
-from solvers.depth_tracking.failure_test import (
+from solvers.depth_tracking.body.coordinates import COORDINATES
+from solvers.depth_tracking.body.model import usual_body
+from solvers.depth_tracking.body.normal_equations import PoseEquations
+from solvers.depth_tracking.terms.hypothesis import imagine
+from solvers.depth_tracking.terms.observation import Observation
+from solvers.depth_tracking.tracking.failure_test import (
     FEATURES,
     FailureTest,
     failure_chance,
     failure_features,
     has_failed,
 )
-from solvers.depth_tracking.fit_quality import fit_quality, unseen
-from solvers.depth_tracking.hypothesis import imagine
-from solvers.depth_tracking.normal_equations import PoseEquations
-from solvers.depth_tracking.observation import Observation
-from solvers.depth_tracking.register_pose import Registered
+from solvers.depth_tracking.tracking.fit_quality import fit_quality, unseen
+from solvers.depth_tracking.tracking.register_pose import Registered
 
 BODY = usual_body()
 LIMIT = 0.08

@@ -5,13 +5,13 @@ import pytest
 from drawn_bodies import CAMERA, recorded, waving
 from numpy.testing import assert_allclose, assert_array_equal
 
-from solvers.depth_tracking import find_body
-from solvers.depth_tracking.body_model import usual_body
-from solvers.depth_tracking.capture import CaptureSettings, capture
-from solvers.depth_tracking.found_pose import shifted
-from solvers.depth_tracking.unfinished_capture import unfinished_capture
+from solvers.depth_scene.recording import DepthRecording
+from solvers.depth_tracking.body.model import usual_body
+from solvers.depth_tracking.capturing import find_body
+from solvers.depth_tracking.capturing.capture import CaptureSettings, capture
+from solvers.depth_tracking.capturing.unfinished_capture import unfinished_capture
+from solvers.depth_tracking.tracking.pose_preview import shifted
 from solvers.errors import InvalidMotionError
-from solvers.motion.depth_recording import DepthRecording
 
 
 def test_every_pass_is_shown_and_the_last_poses_are_the_result():

@@ -7,24 +7,24 @@ import pytest
 from drawn_bodies import CAMERA, NATURAL, drawn, observed, recorded, waving
 from numpy.testing import assert_allclose, assert_array_equal
 
-from solvers.depth_tracking.body_model import usual_body
-from solvers.depth_tracking.capture import CaptureSettings, capture
-from solvers.depth_tracking.coordinates import COORDINATES, N_ROOT
-from solvers.depth_tracking.depth_edges import canny, edge_pixels
-from solvers.depth_tracking.edge_term import edge_term
-from solvers.depth_tracking.hypothesis import imagine
-from solvers.depth_tracking.motion_prior import (
+from solvers.depth_tracking.body.coordinates import COORDINATES, N_ROOT
+from solvers.depth_tracking.body.model import usual_body
+from solvers.depth_tracking.body.motion_prior import (
     LAYOUT,
     LocalPca,
     load_motion_prior,
     local_pca,
     motion_prior_of,
 )
-from solvers.depth_tracking.normal_equations import in_coordinates, segment_equations, step
-from solvers.depth_tracking.observation import Observation
-from solvers.depth_tracking.surface_term import Memory, remembered_intensities, surface_term
-from solvers.depth_tracking.track_pose import track_pose
-from solvers.depth_tracking.tracker_settings import LOU12, USUAL, WZC12
+from solvers.depth_tracking.body.normal_equations import in_coordinates, segment_equations, step
+from solvers.depth_tracking.capturing.capture import CaptureSettings, capture
+from solvers.depth_tracking.terms.depth_edges import canny, edge_pixels
+from solvers.depth_tracking.terms.edges import edge_term
+from solvers.depth_tracking.terms.hypothesis import imagine
+from solvers.depth_tracking.terms.observation import Observation
+from solvers.depth_tracking.terms.surface import Memory, remembered_intensities, surface_term
+from solvers.depth_tracking.terms.tracker_settings import LOU12, USUAL, WZC12
+from solvers.depth_tracking.tracking.track_pose import track_pose
 from solvers.errors import InvalidFileError, InvalidMotionError
 
 BODY = usual_body()

@@ -8,8 +8,14 @@ from box_person import box_person
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from solvers.depth_tracking.depth_differences import FAR, differences, pixel_views, with_margin
-from solvers.depth_tracking.grow_tree import (
+from solvers.depth_scene.camera import Camera
+from solvers.depth_tracking.forest.depth_differences import (
+    FAR,
+    differences,
+    pixel_views,
+    with_margin,
+)
+from solvers.depth_tracking.forest.grow_tree import (
     EDGES,
     N_BINS,
     Tree,
@@ -17,24 +23,23 @@ from solvers.depth_tracking.grow_tree import (
     _gains,
     grow_tree,
 )
-from solvers.depth_tracking.parts import N_PARTS
-from solvers.depth_tracking.pixel_forest import (
+from solvers.depth_tracking.forest.parts import N_PARTS
+from solvers.depth_tracking.forest.pixel_forest import (
     LAYOUT,
     SHIPPED,
     PixelForest,
     classify_pixels,
     load_pixel_forest,
 )
-from solvers.depth_tracking.render_mesh import NOTHING
-from solvers.depth_tracking.train_forest import (
+from solvers.depth_tracking.forest_training.render_mesh import NOTHING
+from solvers.depth_tracking.forest_training.train_forest import (
     PixelForestSettings,
     draw_pictures,
     draw_pixels,
     train_pixel_forest,
 )
-from solvers.depth_tracking.training_pictures import CAMERA, picture_source
+from solvers.depth_tracking.forest_training.training_images import CAMERA, picture_source
 from solvers.errors import InvalidFileError, InvalidMotionError
-from solvers.motion.camera import Camera
 from solvers.samples import GaitSettings, walking_gait
 
 SMALL = PixelForestSettings(

@@ -5,17 +5,21 @@ import pytest
 from drawn_bodies import CAMERA, NATURAL, recorded, waving
 from numpy.testing import assert_allclose
 
-from solvers.depth_tracking.body_model import usual_body
-from solvers.depth_tracking.body_shape import MEASURES, resized, shape_jacobian
-from solvers.depth_tracking.body_tables import LENGTHS
-from solvers.depth_tracking.depth_image_term import depth_image_term
-from solvers.depth_tracking.hypothesis import imagine
-from solvers.depth_tracking.observation import Observation
-from solvers.depth_tracking.pixel_groups import group_pixels
-from solvers.depth_tracking.refine_body import RefineBodySettings, pose_jacobian, refine_body
-from solvers.depth_tracking.track_pose import track_pose
+from solvers.depth_scene.recording import DepthRecording
+from solvers.depth_tracking.body.model import usual_body
+from solvers.depth_tracking.body.shape import MEASURES, resized, shape_jacobian
+from solvers.depth_tracking.body.tables import LENGTHS
+from solvers.depth_tracking.capturing.refine_body import (
+    RefineBodySettings,
+    pose_jacobian,
+    refine_body,
+)
+from solvers.depth_tracking.terms.depth_image import depth_image_term
+from solvers.depth_tracking.terms.hypothesis import imagine
+from solvers.depth_tracking.terms.observation import Observation
+from solvers.depth_tracking.terms.pixel_groups import group_pixels
+from solvers.depth_tracking.tracking.track_pose import track_pose
 from solvers.errors import InvalidMotionError
-from solvers.motion.depth_recording import DepthRecording
 
 BODY = usual_body()
 

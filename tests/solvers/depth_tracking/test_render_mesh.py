@@ -6,8 +6,8 @@ from box_person import box_person
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from solvers.depth_tracking.render_mesh import NOTHING, render_mesh
-from solvers.motion.camera import Camera
+from solvers.depth_scene.camera import Camera
+from solvers.depth_tracking.forest_training.render_mesh import NOTHING, render_mesh
 
 CAMERA = Camera(30.0, 32.0, 14.5, 11.5, 31, 24)
 

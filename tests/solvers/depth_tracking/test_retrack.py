@@ -7,16 +7,16 @@ import pytest
 from drawn_bodies import recorded, waving
 from numpy.testing import assert_allclose, assert_array_equal
 
-from solvers.depth_tracking.body_kinematics import joint_positions, segment_frames
-from solvers.depth_tracking.body_model import usual_body
-from solvers.depth_tracking.body_motion import body_motion, motion_frames
-from solvers.depth_tracking.body_tables import JOINTS
-from solvers.depth_tracking.coordinates import COORDINATES
-from solvers.depth_tracking.pose_from_joints import pose_from_frames
-from solvers.depth_tracking.retrack import RetrackSettings, retrack
+from solvers.depth_scene.floor import Floor
+from solvers.depth_tracking.body.coordinates import COORDINATES
+from solvers.depth_tracking.body.kinematics import joint_positions, segment_frames
+from solvers.depth_tracking.body.model import usual_body
+from solvers.depth_tracking.body.motion import body_motion, motion_frames
+from solvers.depth_tracking.body.pose_from_joints import pose_from_frames
+from solvers.depth_tracking.body.tables import JOINTS
+from solvers.depth_tracking.capturing.retrack import RetrackSettings, retrack
 from solvers.errors import InvalidMotionError, SolveCancelled
-from solvers.motion.depth_floor import Floor
-from solvers.motion.rotations import (
+from solvers.rotations.representations import (
     angle_between,
     multiply,
     quaternion_from_rotation_vector,

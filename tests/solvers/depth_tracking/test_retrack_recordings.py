@@ -3,15 +3,15 @@
 import numpy as np
 import pytest
 
-from solvers.depth_tracking.body_kinematics import joint_positions
-from solvers.depth_tracking.body_model import usual_body
-from solvers.depth_tracking.body_motion import body_motion, motion_frames
-from solvers.depth_tracking.body_tables import JOINTS
-from solvers.depth_tracking.coordinates import COORDINATES
-from solvers.depth_tracking.pose_from_joints import body_of_joints, pose_from_joints
-from solvers.depth_tracking.retrack import retrack
-from solvers.motion.camera import Camera
-from solvers.motion.depth_recording import DepthRecording
+from solvers.depth_scene.camera import Camera
+from solvers.depth_scene.recording import DepthRecording
+from solvers.depth_tracking.body.coordinates import COORDINATES
+from solvers.depth_tracking.body.kinematics import joint_positions
+from solvers.depth_tracking.body.model import usual_body
+from solvers.depth_tracking.body.motion import body_motion, motion_frames
+from solvers.depth_tracking.body.pose_from_joints import body_of_joints, pose_from_joints
+from solvers.depth_tracking.body.tables import JOINTS
+from solvers.depth_tracking.capturing.retrack import retrack
 
 CMU = {
     "hips": "Hips", "chest": "Spine1", "neck": "Neck1", "head": "Head",

@@ -3,30 +3,30 @@
 import numpy as np
 import pytest
 
-from solvers.depth_tracking.body_kinematics import joint_positions, segment_frames
-from solvers.depth_tracking.body_model import usual_body
-from solvers.depth_tracking.body_tables import CAPSULE_SEGMENTS, CAPSULES, JOINTS
-from solvers.depth_tracking.coordinates import COORDINATES, N_COORDINATES
-from solvers.depth_tracking.hypothesis import imagine
-from solvers.depth_tracking.labelled_fit import (
+from solvers.depth_scene.camera import Camera
+from solvers.depth_tracking.body.coordinates import COORDINATES, N_COORDINATES
+from solvers.depth_tracking.body.kinematics import joint_positions, segment_frames
+from solvers.depth_tracking.body.model import usual_body
+from solvers.depth_tracking.body.tables import CAPSULE_SEGMENTS, CAPSULES, JOINTS
+from solvers.depth_tracking.detection.labeled_fit import (
     capsule_distances,
     first_pose,
     fit_parts,
     fit_pixels,
 )
-from solvers.depth_tracking.observation import Observation
-from solvers.depth_tracking.part_capsules import (
+from solvers.depth_tracking.detection.part_capsules import (
     PART_CAPSULES,
     PART_SEGMENTS,
     PART_SPANS,
     part_axes,
 )
-from solvers.depth_tracking.parts import MIRRORED, N_PARTS, PARTS
-from solvers.depth_tracking.pixel_forest import PixelParts
-from solvers.depth_tracking.pose_score import pose_score
-from solvers.depth_tracking.pose_trials import exchange_orders, trial_poses
-from solvers.depth_tracking.robust_parts import FoundParts, find_parts
-from solvers.motion.camera import Camera
+from solvers.depth_tracking.detection.pose_score import pose_score
+from solvers.depth_tracking.detection.pose_trials import exchange_orders, trial_poses
+from solvers.depth_tracking.detection.robust_parts import FoundParts, find_parts
+from solvers.depth_tracking.forest.parts import MIRRORED, N_PARTS, PARTS
+from solvers.depth_tracking.forest.pixel_forest import PixelParts
+from solvers.depth_tracking.terms.hypothesis import imagine
+from solvers.depth_tracking.terms.observation import Observation
 
 CAMERA = Camera(142.8, 142.8, 79.5, 59.5, 160, 120)
 BODY = usual_body()

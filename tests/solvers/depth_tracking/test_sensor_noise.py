@@ -4,9 +4,13 @@ from dataclasses import replace
 
 import numpy as np
 
-from solvers.depth_tracking.render_mesh import NOTHING, RenderedMesh
-from solvers.depth_tracking.sensor_noise import CLEAN, DISPARITY, with_sensor_noise
-from solvers.motion.camera import Camera
+from solvers.depth_scene.camera import Camera
+from solvers.depth_tracking.forest_training.render_mesh import NOTHING, RenderedMesh
+from solvers.depth_tracking.forest_training.sensor_noise import (
+    CLEAN,
+    DISPARITY,
+    with_sensor_noise,
+)
 
 CAMERA = Camera(280.0, 280.0, 79.5, 59.5, 160, 120)
 

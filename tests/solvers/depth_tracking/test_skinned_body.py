@@ -4,17 +4,23 @@ import numpy as np
 import pytest
 from box_person import box_person
 
-from solvers.depth_tracking.parts import MIRRORED, N_PARTS, PARTS, other_side, part_of_role
-from solvers.depth_tracking.skinned_body import load_skinned_body
+from solvers.depth_tracking.forest.parts import (
+    MIRRORED,
+    N_PARTS,
+    PARTS,
+    other_side,
+    part_of_role,
+)
+from solvers.depth_tracking.forest_training.skinned_body import load_skinned_body
 from solvers.errors import InvalidFileError, InvalidMotionError
 from solvers.motion import HUMANOID_ROLES, Motion, find_humanoid_map, forward_kinematics
-from solvers.motion.rotations import (
+from solvers.recordings import read_bvh
+from solvers.rotations.representations import (
     IDENTITY,
     multiply,
     quaternion_from_rotation_vector,
     rotate,
 )
-from solvers.recordings import read_bvh
 from solvers.samples import GaitSettings, walking_gait
 
 CMU_METRES = 0.0254 / 0.45

@@ -5,23 +5,23 @@ import pytest
 from drawn_bodies import CAMERA, NATURAL, observed, posed
 from numpy.testing import assert_allclose
 
-from solvers.depth_tracking.body_model import usual_body
-from solvers.depth_tracking.body_tables import CAPSULES, SEGMENTS
-from solvers.depth_tracking.closest_surface_term import closest_surface, closest_surface_term
-from solvers.depth_tracking.depth_image_term import depth_gradients, depth_image_term
-from solvers.depth_tracking.extra_depth_term import extra_depth_term
-from solvers.depth_tracking.free_space_term import off_actor_term, too_near_term
-from solvers.depth_tracking.hypothesis import imagine
-from solvers.depth_tracking.normal_equations import (
+from solvers.depth_tracking.body.model import usual_body
+from solvers.depth_tracking.body.normal_equations import (
     SurfaceRows,
     in_coordinates,
     segment_equations,
     step,
     toward,
 )
-from solvers.depth_tracking.observation import Observation
-from solvers.depth_tracking.pixel_groups import group_pixels
-from solvers.depth_tracking.silhouette_term import silhouette_term
+from solvers.depth_tracking.body.tables import CAPSULES, SEGMENTS
+from solvers.depth_tracking.terms.closest_surface import closest_surface, closest_surface_term
+from solvers.depth_tracking.terms.depth_image import depth_gradients, depth_image_term
+from solvers.depth_tracking.terms.extra_depth import extra_depth_term
+from solvers.depth_tracking.terms.free_space import off_actor_term, too_near_term
+from solvers.depth_tracking.terms.hypothesis import imagine
+from solvers.depth_tracking.terms.observation import Observation
+from solvers.depth_tracking.terms.pixel_groups import group_pixels
+from solvers.depth_tracking.terms.silhouette import silhouette_term
 
 BODY = usual_body()
 

@@ -5,16 +5,16 @@ import pytest
 from drawn_bodies import CAMERA, NATURAL, observed, recorded, waving
 from numpy.testing import assert_allclose, assert_array_equal
 
-from solvers.depth_tracking.body_kinematics import joint_positions, segment_frames
-from solvers.depth_tracking.body_model import usual_body
-from solvers.depth_tracking.body_tables import JOINTS
-from solvers.depth_tracking.coordinates import LEAST, MOST
-from solvers.depth_tracking.pose_priors import foretell, joint_limits, stay_near
-from solvers.depth_tracking.register_pose import register_pose
-from solvers.depth_tracking.track_pose import track_pose
-from solvers.depth_tracking.tracker_settings import USUAL, WZC12, TrackerSettings
+from solvers.depth_scene.recording import DepthRecording
+from solvers.depth_tracking.body.coordinates import LEAST, MOST
+from solvers.depth_tracking.body.kinematics import joint_positions, segment_frames
+from solvers.depth_tracking.body.model import usual_body
+from solvers.depth_tracking.body.pose_priors import foretell, joint_limits, stay_near
+from solvers.depth_tracking.body.tables import JOINTS
+from solvers.depth_tracking.terms.tracker_settings import USUAL, WZC12, TrackerSettings
+from solvers.depth_tracking.tracking.register_pose import register_pose
+from solvers.depth_tracking.tracking.track_pose import track_pose
 from solvers.errors import InvalidMotionError, SolveCancelled
-from solvers.motion.depth_recording import DepthRecording
 
 BODY = usual_body()
 

@@ -6,10 +6,14 @@ import numpy as np
 import pytest
 from box_person import box_person
 
-from solvers.depth_tracking.loose_poses import PoseMixer, most_different, without_heading
-from solvers.depth_tracking.parts import MIRRORED, PARTS
-from solvers.depth_tracking.render_mesh import NOTHING
-from solvers.depth_tracking.training_pictures import (
+from solvers.depth_tracking.forest.parts import MIRRORED, PARTS
+from solvers.depth_tracking.forest_training.augmented_poses import (
+    PoseMixer,
+    most_different,
+    without_heading,
+)
+from solvers.depth_tracking.forest_training.render_mesh import NOTHING
+from solvers.depth_tracking.forest_training.training_images import (
     CAMERA,
     SHAPE_LASTS,
     TrainingPicturesSettings,
@@ -18,7 +22,7 @@ from solvers.depth_tracking.training_pictures import (
 )
 from solvers.errors import InvalidMotionError, InvalidSettingError
 from solvers.motion import Skeleton, world_poses
-from solvers.motion.rotations import (
+from solvers.rotations.representations import (
     IDENTITY,
     multiply,
     quaternion_from_rotation_vector,

@@ -4,7 +4,7 @@ import pytest
 
 from solvers.markers import find_marker_set
 from solvers.markers.marker_sets import SETS, SPOTS
-from solvers.recordings.ui_prmd import MARKERS
+from solvers.recordings.joint_files.ui_prmd import MARKERS
 
 
 @pytest.mark.parametrize("title", SETS)

@@ -8,9 +8,9 @@ from numpy.testing import assert_allclose
 from solvers.errors import InvalidMotionError
 from solvers.markers import SolveSettings, solve_skeleton
 from solvers.motion import Motion, Tracks, find_humanoid_map, forward_kinematics
-from solvers.motion.rotations import angle_between
 from solvers.recordings import read_acclaim, read_c3d
-from solvers.recordings.ui_prmd import read_ui_prmd_pair
+from solvers.recordings.joint_files.ui_prmd import read_ui_prmd_pair
+from solvers.rotations.representations import angle_between
 from solvers.samples import GaitSettings, walking_gait
 
 LIMBS = [

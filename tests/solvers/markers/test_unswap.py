@@ -8,7 +8,7 @@ from solvers.markers import Swap, UnswapSettings, unswap_markers
 from solvers.markers.pair_swaps import _viterbi
 from solvers.motion import Tracks
 from solvers.recordings import read_c3d
-from solvers.recordings.ui_prmd import read_ui_prmd_pair
+from solvers.recordings.joint_files.ui_prmd import read_ui_prmd_pair
 from solvers.samples import GaitSettings, walking_gait
 
 

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from solvers.motion import Motion, Skeleton
-from solvers.motion.rotations import quaternion_from_rotation_vector
+from solvers.rotations.representations import quaternion_from_rotation_vector
 
 SIDE = (
     ("UpLeg", "Hips", (0.09, 0.0, -0.05)),

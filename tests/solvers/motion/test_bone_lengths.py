@@ -5,12 +5,7 @@ import pytest
 from numpy.testing import assert_allclose
 
 from solvers.errors import InvalidMotionError
-from solvers.motion import (
-    Skeleton,
-    fit_bone_lengths,
-    forward_kinematics,
-    transfer_motion,
-)
+from solvers.motion import Skeleton, fit_bone_lengths, forward_kinematics, transfer_motion
 
 
 @pytest.fixture

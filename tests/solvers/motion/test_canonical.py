@@ -14,7 +14,7 @@ from solvers.motion import (
     from_canonical,
     t_pose_alignment,
 )
-from solvers.motion.rotations import (
+from solvers.rotations.representations import (
     IDENTITY,
     angle_between,
     inverse,

@@ -14,14 +14,14 @@ from solvers.motion import (
     forward_kinematics,
     reach,
 )
-from solvers.motion.rotations import (
+from solvers.recordings import read_bvh
+from solvers.rotations.representations import (
     IDENTITY,
     inverse,
     multiply,
     quaternion_from_rotation_vector,
     rotate,
 )
-from solvers.recordings import read_bvh
 
 STANCE = 0.6
 """Part of each step cycle of one second in which a foot of `walk` stands."""

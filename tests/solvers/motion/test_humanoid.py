@@ -16,8 +16,8 @@ from solvers.motion import (
     find_humanoid_map,
     t_pose_alignment,
 )
-from solvers.motion.humanoid import ESSENTIAL_ROLES
-from solvers.motion.humanoid_structure import roles_by_structure
+from solvers.motion.humanoid.roles import ESSENTIAL_ROLES
+from solvers.motion.humanoid.structure import roles_by_structure
 from solvers.recordings import read_bvh
 
 

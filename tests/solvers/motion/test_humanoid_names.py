@@ -3,7 +3,7 @@
 import pytest
 
 from solvers.motion import roles_by_name
-from solvers.motion.humanoid import ESSENTIAL_ROLES
+from solvers.motion.humanoid.roles import ESSENTIAL_ROLES
 
 LIMBS = ("UpperArm", "LowerArm", "Hand", "UpperLeg", "LowerLeg", "Foot")
 FAMILIES = {

@@ -4,7 +4,7 @@ import pytest
 from rigs import RIGS, with_all_fingers
 
 from solvers.motion import HUMANOID_ROLES, Skeleton, find_humanoid_map
-from solvers.motion.humanoid_tables import FINGERS
+from solvers.motion.humanoid.tables import FINGERS
 from solvers.recordings import read_acclaim, read_bvh
 
 BODY = [role for role in HUMANOID_ROLES if not any(finger in role for finger in FINGERS)]

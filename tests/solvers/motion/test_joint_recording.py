@@ -7,13 +7,7 @@ import pytest
 from numpy.testing import assert_array_equal
 
 from solvers.errors import InvalidMotionError
-from solvers.motion import (
-    JOINTS,
-    JointRecording,
-    Sensor,
-    Tracks,
-    joint_parents,
-)
+from solvers.motion import JOINTS, JointRecording, Sensor, Tracks, joint_parents
 
 
 @pytest.fixture

@@ -4,7 +4,7 @@ import numpy as np
 from numpy.testing import assert_allclose
 
 from solvers.motion import Motion, Skeleton, forward_kinematics, local_rotations, world_poses
-from solvers.motion.rotations import (
+from solvers.rotations.representations import (
     angle_between,
     matrix_from_quaternion,
     multiply,

@@ -6,7 +6,7 @@ from numpy.testing import assert_allclose
 
 from solvers.errors import InvalidMotionError
 from solvers.motion import Motion, ReachSettings, Skeleton, forward_kinematics, reach
-from solvers.motion.rotations import (
+from solvers.rotations.representations import (
     angle_between,
     multiply,
     quaternion_from_rotation_vector,

@@ -16,9 +16,9 @@ from solvers.motion import (
     motion_from_points,
     skeleton_from_points,
 )
-from solvers.motion.rigid_fit import best_turns
-from solvers.motion.rotations import angle_between, quaternion_from_rotation_vector
 from solvers.recordings import read_recording
+from solvers.rotations.representations import angle_between, quaternion_from_rotation_vector
+from solvers.rotations.rigid_fit import best_turns
 
 SENSORS = [Sensor.KINECT_V1, Sensor.KINECT_V2, Sensor.AZURE_KINECT]
 

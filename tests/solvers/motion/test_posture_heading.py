@@ -6,9 +6,9 @@ import pytest
 from numpy.testing import assert_allclose
 
 from solvers import samples
-from solvers.motion import posture_joints
-from solvers.motion.posture_heading import normalise, turned
-from solvers.motion.posture_joints import MIRROR_IMAGES
+from solvers.motion.humanoid import posture_joints
+from solvers.motion.humanoid.posture_heading import normalise, turned
+from solvers.motion.humanoid.posture_joints import MIRROR_IMAGES
 
 
 @pytest.fixture(scope="module")

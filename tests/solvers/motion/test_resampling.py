@@ -6,7 +6,11 @@ from numpy.testing import assert_allclose
 
 from solvers.errors import InvalidMotionError
 from solvers.motion import Motion, Tracks, forward_kinematics, resample
-from solvers.motion.rotations import angle_between, quaternion_from_rotation_vector, unroll
+from solvers.rotations.representations import (
+    angle_between,
+    quaternion_from_rotation_vector,
+    unroll,
+)
 
 
 def waves(rate: float, seconds: float, highest: float = 4.0) -> Tracks:

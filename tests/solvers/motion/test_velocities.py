@@ -4,7 +4,7 @@ import numpy as np
 from numpy.testing import assert_allclose
 
 from solvers.motion import angular_velocities, linear_velocities
-from solvers.motion.rotations import multiply, quaternion_from_rotation_vector
+from solvers.rotations.representations import multiply, quaternion_from_rotation_vector
 
 
 def test_exact_for_constant_acceleration_inside():

@@ -7,7 +7,6 @@ from PIL import Image
 
 from solvers.errors import InvalidMotionError
 from solvers.motion import Motion, Skeleton
-from solvers.motion.rotations import quaternion_from_rotation_vector
 from solvers.pictures import (
     CurveSettings,
     Picture,
@@ -21,6 +20,7 @@ from solvers.pictures import (
 from solvers.pictures.canvas import SERIES, Canvas
 from solvers.pictures.curves import ticks
 from solvers.pictures.stick_figures import project
+from solvers.rotations.representations import quaternion_from_rotation_vector
 
 RAW, CLEAN = SERIES[:2]
 

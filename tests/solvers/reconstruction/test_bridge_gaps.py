@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from solvers.reconstruction.bridge_gaps import SHORT, bridged_losses
+from solvers.reconstruction.pose_completion.bridge_gaps import SHORT, bridged_losses
 
 RATE = 100.0
 

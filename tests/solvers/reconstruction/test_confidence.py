@@ -9,9 +9,17 @@ from numpy.testing import assert_allclose
 
 from solvers.errors import InvalidFileError, InvalidMotionError
 from solvers.reconstruction import correct_postures, learn_residual_prior, load_residual_prior
-from solvers.reconstruction.confidence import AS_TOLD, Calibration, chance_within
-from solvers.reconstruction.learn_confidence import calibrated, fitted, with_calibration
-from solvers.reconstruction.residual_prior import LAYOUT
+from solvers.reconstruction.residual_correction.confidence import (
+    AS_TOLD,
+    Calibration,
+    chance_within,
+)
+from solvers.reconstruction.residual_correction.learn_confidence import (
+    calibrated,
+    fitted,
+    with_calibration,
+)
+from solvers.reconstruction.residual_correction.prior import LAYOUT
 
 ACTORS = ("anna", "anna", "bob", "carla")
 

@@ -9,8 +9,8 @@ from scipy.optimize import minimize
 
 from solvers.errors import InvalidMotionError
 from solvers.motion import Tracks
-from solvers.motion.posture_heading import mirrored, turned
-from solvers.motion.posture_joints import MIRROR_IMAGES
+from solvers.motion.humanoid.posture_heading import mirrored, turned
+from solvers.motion.humanoid.posture_joints import MIRROR_IMAGES
 from solvers.reconstruction import (
     CorrectionMethod,
     CorrectionSettings,
@@ -18,9 +18,9 @@ from solvers.reconstruction import (
     correct_postures,
     learn_residual_prior,
 )
-from solvers.reconstruction.confidence import chance_within
-from solvers.reconstruction.correct_postures import _frame_by_frame
-from solvers.reconstruction.steady_paths import followed, smoothed
+from solvers.reconstruction.residual_correction.confidence import chance_within
+from solvers.reconstruction.residual_correction.correct_postures import _frame_by_frame
+from solvers.reconstruction.residual_correction.smooth_paths import followed, smoothed
 
 
 @pytest.fixture(scope="module")

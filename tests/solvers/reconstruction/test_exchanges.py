@@ -6,9 +6,10 @@ import pytest
 from numpy.testing import assert_allclose, assert_array_equal
 
 from solvers import motion, samples
-from solvers.motion import JointRecording, Tracks, posture_joints
+from solvers.motion import JointRecording, Tracks
+from solvers.motion.humanoid import posture_joints
 from solvers.reconstruction import reconstruct
-from solvers.reconstruction.exchanges import undo_exchanges
+from solvers.reconstruction.reliability.left_right_swaps import undo_exchanges
 from solvers.recordings import read_recording
 
 ARMS, LEGS = ("Elbow", "Wrist", "Hand"), ("Knee", "Ankle", "Foot")

@@ -18,11 +18,11 @@ from solvers.motion import (
     forward_kinematics,
     joint_parents,
     motion_from_points,
-    posture_joints,
 )
-from solvers.motion.rotations import angle_between, rotate
-from solvers.reconstruction.follow_joints import follow_joints
+from solvers.motion.humanoid import posture_joints
+from solvers.reconstruction.joint_rotations.follow_joints import follow_joints
 from solvers.recordings import read_recording
+from solvers.rotations.representations import angle_between, rotate
 
 NAMES = JOINTS[Sensor.KINECT_V1]
 PARENTS = joint_parents(NAMES)

@@ -8,13 +8,13 @@ from numpy.testing import assert_allclose
 from upright_places import PLACES
 
 from solvers.motion import JOINTS, Motion, Sensor, Tracks, forward_kinematics, joint_parents
-from solvers.motion.posture_joints import motion_postures
-from solvers.motion.rotations import rotate
+from solvers.motion.humanoid.posture_joints import motion_postures
 from solvers.reconstruction import ReconstructMethod, ReconstructSettings, reconstruct
-from solvers.reconstruction.follow_joints import follow_joints
-from solvers.reconstruction.limb_twist import twisted
-from solvers.reconstruction.posture_library import build_posture_library
-from solvers.reconstruction.trunk_twist import LimbTwists
+from solvers.reconstruction.joint_rotations.follow_joints import follow_joints
+from solvers.reconstruction.joint_rotations.limb_twist import twisted
+from solvers.reconstruction.joint_rotations.trunk_twist import LimbTwists
+from solvers.reconstruction.pose_library.posture_library import build_posture_library
+from solvers.rotations.representations import rotate
 from solvers.samples import GaitSettings, walking_gait
 from solvers.workflows.reconstruct_motion import postures_recording
 

@@ -3,10 +3,10 @@
 import numpy as np
 import pytest
 
-from solvers.motion.rotations import IDENTITY, angle_between, rotate
-from solvers.reconstruction.follow_joints import follow_joints
-from solvers.reconstruction.limb_twist import steady_way, twisted
+from solvers.reconstruction.joint_rotations.follow_joints import follow_joints
+from solvers.reconstruction.joint_rotations.limb_twist import steady_way, twisted
 from solvers.recordings import read_recording
+from solvers.rotations.representations import IDENTITY, angle_between, rotate
 
 RATE = 30.0
 UP = np.tile((0.0, 0.0, 1.0), (60, 1))

@@ -8,16 +8,17 @@ from bad_sensor import KNEE, QUICK, pair, recording, seen_by_a_bad_sensor, truth
 from numpy.testing import assert_allclose
 
 from solvers.errors import InvalidFileError
-from solvers.motion.posture_heading import mirrored
+from solvers.motion.humanoid.posture_heading import mirrored
 from solvers.reconstruction import learn_residual_prior, load_residual_prior
-from solvers.reconstruction.learn_movement_process import (
+from solvers.reconstruction.residual_correction.inputs import calm_postures
+from solvers.reconstruction.residual_correction.learn_movement_process import (
     ACTOR,
     MEAN,
     TAKE,
     Take,
     learn_movement_process,
 )
-from solvers.reconstruction.movement_process import (
+from solvers.reconstruction.residual_correction.movement_process import (
     CONTEXT,
     MOVEMENT,
     PERSONAL,
@@ -25,7 +26,6 @@ from solvers.reconstruction.movement_process import (
     SHARED,
     movement_parts,
 )
-from solvers.reconstruction.residual_inputs import calm_postures
 
 RATE = 30.0
 

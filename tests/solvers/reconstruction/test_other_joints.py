@@ -5,8 +5,8 @@ import pytest
 from numpy.testing import assert_allclose
 
 from solvers.motion import JOINTS, Sensor
-from solvers.motion.posture_joints import POSTURE_JOINTS, joints_of_names
-from solvers.reconstruction.other_joints import all_joints
+from solvers.motion.humanoid.posture_joints import POSTURE_JOINTS, joints_of_names
+from solvers.reconstruction.joint_rotations.other_joints import all_joints
 from solvers.recordings import read_recording
 
 NAMES = JOINTS[Sensor.KINECT_V2]

@@ -3,18 +3,30 @@
 import numpy as np
 import pytest
 
-from solvers.motion.body_size import USUAL_LENGTHS, resize, segment_lengths
-from solvers.motion.posture_joints import PARENTS
-from solvers.reconstruction.keep_lengths import keep_lengths
-from solvers.reconstruction.library_body import BodyPostures
-from solvers.reconstruction.neighbours import Query, index_postures, nearest_postures
-from solvers.reconstruction.posture_energy import Demands, EnergyWeights, posture_energy
-from solvers.reconstruction.posture_groups import group_postures
-from solvers.reconstruction.posture_search import search_in_turn, search_postures
-from solvers.reconstruction.posture_space import local_pca
-from solvers.reconstruction.posture_synthesis import solve_in_turn, solve_postures
-from solvers.reconstruction.probable_posture import ERROR, probable_postures
-from solvers.reconstruction.smooth_course import causal_course, fading_course, noise_of
+from solvers.motion.humanoid.body_size import USUAL_LENGTHS, resize, segment_lengths
+from solvers.motion.humanoid.posture_joints import PARENTS
+from solvers.reconstruction.joint_rotations.library_body import BodyPostures
+from solvers.reconstruction.pose_completion.keep_lengths import keep_lengths
+from solvers.reconstruction.pose_completion.probable_posture import ERROR, probable_postures
+from solvers.reconstruction.pose_completion.residual_smoother import (
+    causal_course,
+    fading_course,
+    noise_of,
+)
+from solvers.reconstruction.pose_library.neighbors import (
+    Query,
+    index_postures,
+    nearest_postures,
+)
+from solvers.reconstruction.pose_library.posture_groups import group_postures
+from solvers.reconstruction.pose_space.posture_energy import (
+    Demands,
+    EnergyWeights,
+    posture_energy,
+)
+from solvers.reconstruction.pose_space.posture_space import local_pca
+from solvers.reconstruction.published.posture_search import search_in_turn, search_postures
+from solvers.reconstruction.published.posture_synthesis import solve_in_turn, solve_postures
 
 N_FRAMES = 6
 UP = np.array([0.0, 0.0, 2.0])

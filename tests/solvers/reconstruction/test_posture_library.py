@@ -4,23 +4,19 @@ import numpy as np
 import pytest
 
 from solvers.errors import InvalidFileError, InvalidMotionError
-from solvers.motion.body_size import USUAL_LENGTHS, body_lengths
-from solvers.motion.bone_directions import (
-    along_bones,
-    bone_changes,
-    bone_directions,
-)
-from solvers.motion.posture_heading import mirrored, normalise
-from solvers.motion.posture_joints import POSTURE_JOINTS, motion_postures
-from solvers.reconstruction.library_body import ANATOMY, anatomy_turns, on_body
-from solvers.reconstruction.posture_library import (
+from solvers.motion.humanoid.body_size import USUAL_LENGTHS, body_lengths
+from solvers.motion.humanoid.bone_directions import along_bones, bone_changes, bone_directions
+from solvers.motion.humanoid.posture_heading import mirrored, normalise
+from solvers.motion.humanoid.posture_joints import POSTURE_JOINTS, motion_postures
+from solvers.reconstruction.joint_rotations.library_body import ANATOMY, anatomy_turns, on_body
+from solvers.reconstruction.pose_library.posture_library import (
     LAYOUT,
     SHIPPED,
     PostureLibrarySettings,
     build_posture_library,
     load_posture_library,
 )
-from solvers.reconstruction.thin_out import thin_out
+from solvers.reconstruction.pose_library.subsample import thin_out
 from solvers.samples import GaitSettings, walking_gait
 
 

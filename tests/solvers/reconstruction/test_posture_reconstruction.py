@@ -5,17 +5,17 @@ import pytest
 
 from solvers.errors import InvalidMotionError, SolveCancelled
 from solvers.motion import JOINTS, JointRecording, Sensor, Tracks, forward_kinematics
-from solvers.motion.posture_heading import turned
-from solvers.motion.posture_joints import (
+from solvers.motion.humanoid.posture_heading import turned
+from solvers.motion.humanoid.posture_joints import (
     POSTURE_JOINTS,
     joints_of_names,
     motion_postures,
 )
-from solvers.reconstruction.other_joints import all_joints, anchors
-from solvers.reconstruction.posture_library import build_posture_library
-from solvers.reconstruction.posture_settings import PostureMethod, PostureSettings
-from solvers.reconstruction.reconstruct_postures import reconstruct_postures
-from solvers.reconstruction.reliability import Reliability
+from solvers.reconstruction.joint_rotations.other_joints import all_joints, anchors
+from solvers.reconstruction.pose_completion.reconstruct_postures import reconstruct_postures
+from solvers.reconstruction.pose_completion.settings import PostureMethod, PostureSettings
+from solvers.reconstruction.pose_library.posture_library import build_posture_library
+from solvers.reconstruction.reliability.scores import Reliability
 from solvers.recordings import read_bvh, read_recording
 from solvers.samples import GaitSettings, walking_gait
 

@@ -5,9 +5,9 @@ import pytest
 
 from solvers.errors import InvalidMotionError
 from solvers.motion import JOINTS, Sensor, Tracks
-from solvers.motion.body_size import body_lengths, resize, segment_lengths
-from solvers.motion.posture_heading import normalise, turned
-from solvers.motion.posture_joints import (
+from solvers.motion.humanoid.body_size import body_lengths, resize, segment_lengths
+from solvers.motion.humanoid.posture_heading import normalise, turned
+from solvers.motion.humanoid.posture_joints import (
     PARENTS,
     POSTURE_JOINTS,
     joints_of_names,

@@ -7,8 +7,9 @@ import numpy as np
 import pytest
 
 from solvers import motion, samples
-from solvers.motion import JointRecording, Sensor, forward_kinematics, posture_joints
-from solvers.motion.posture_heading import turned
+from solvers.motion import JointRecording, Sensor, forward_kinematics
+from solvers.motion.humanoid import posture_joints
+from solvers.motion.humanoid.posture_heading import turned
 from solvers.reconstruction import (
     CorrectionMethod,
     CorrectionSettings,
@@ -19,11 +20,11 @@ from solvers.reconstruction import (
     ReliabilityMethod,
     ReliabilitySettings,
     correct_postures,
-    follow_postures,
     measure_reliability,
     reconstruct,
     reconstruct_postures,
 )
+from solvers.reconstruction.pose_completion import follow_postures
 from solvers.reconstruction.reconstruct import shipped_residual_prior
 
 LOST, HIDDEN = kinect_walks.LOST, [5, 6, 7]

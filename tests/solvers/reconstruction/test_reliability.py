@@ -5,10 +5,10 @@ import pytest
 from numpy.testing import assert_allclose, assert_array_equal
 
 from solvers.motion import JOINTS, JointRecording, Sensor, Tracks
-from solvers.motion.posture_heading import turned
-from solvers.motion.posture_joints import POSTURE_JOINTS, motion_postures
+from solvers.motion.humanoid.posture_heading import turned
+from solvers.motion.humanoid.posture_joints import POSTURE_JOINTS, motion_postures
 from solvers.reconstruction import ReliabilityMethod, ReliabilitySettings, measure_reliability
-from solvers.reconstruction.reliability_reference import (
+from solvers.reconstruction.reliability.reference import (
     reference_lengths,
     reference_postures,
     segments,

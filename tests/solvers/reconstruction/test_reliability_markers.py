@@ -6,7 +6,7 @@ from numpy.testing import assert_allclose
 
 from solvers.errors import InvalidMotionError
 from solvers.motion import Tracks
-from solvers.motion.posture_heading import turned
+from solvers.motion.humanoid.posture_heading import turned
 from solvers.reconstruction import measure_marker_reliability
 from solvers.recordings import read_c3d
 

@@ -5,7 +5,7 @@ import pytest
 from scipy.stats import rankdata
 
 from solvers.motion import JointRecording, Sensor, Tracks
-from solvers.motion.joint_recording import TRACKED
+from solvers.motion.skeletons.joint_recording import TRACKED
 from solvers.reconstruction import ReliabilityMethod, ReliabilitySettings, measure_reliability
 from solvers.recordings import read_recording, read_ui_prmd_pair
 

@@ -8,9 +8,9 @@ from scipy.stats import norm
 from solvers.errors import InvalidSettingError
 from solvers.motion import JointRecording, Sensor, Tracks
 from solvers.reconstruction import ReliabilityMethod, ReliabilitySettings, measure_reliability
-from solvers.reconstruction.reliability_error import CAUSAL as AS_IT_COMES
-from solvers.reconstruction.reliability_error import CENTRED
-from solvers.reconstruction.reliability_terms import (
+from solvers.reconstruction.reliability.error_model import CAUSAL as AS_IT_COMES
+from solvers.reconstruction.reliability.error_model import CENTRED
+from solvers.reconstruction.reliability.terms import (
     behaviour_term,
     gaussian_mean,
     kinematics_term,

@@ -3,14 +3,14 @@
 import numpy as np
 import pytest
 
-from solvers.reconstruction.residual_kernel import (
+from solvers.reconstruction.residual_correction.kernel import (
     Kernel,
     _unlikeliness,
     alike,
     learn_kernel,
     squared_distances,
 )
-from solvers.reconstruction.residual_sparse import (
+from solvers.reconstruction.residual_correction.sparse_process import (
     FREE_MEAN,
     basis,
     inducing_points,

@@ -6,13 +6,10 @@ import pytest
 from numpy.testing import assert_array_equal
 
 from solvers import motion, samples
-from solvers.motion import JointRecording, posture_joints
-from solvers.reconstruction import (
-    ReliabilitySettings,
-    measure_reliability,
-    reconstruct,
-)
-from solvers.reconstruction.short_jumps import short_jumps
+from solvers.motion import JointRecording
+from solvers.motion.humanoid import posture_joints
+from solvers.reconstruction import ReliabilitySettings, measure_reliability, reconstruct
+from solvers.reconstruction.reliability.transient_jumps import short_jumps
 from solvers.recordings import read_recording
 
 CAUSAL = ReliabilitySettings(causal=True)

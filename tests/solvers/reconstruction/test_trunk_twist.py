@@ -9,19 +9,11 @@ from scipy.spatial.transform import Rotation
 
 from solvers.errors import InvalidFileError
 from solvers.motion import Motion, Skeleton, find_humanoid_map
-from solvers.motion.canonical import canonical_rotations, from_canonical
-from solvers.motion.posture_heading import mirrored, turned
-from solvers.motion.posture_joints import POSTURE_JOINTS, motion_postures
-from solvers.motion.rotations import multiply, quaternion_from_rotation_vector
-from solvers.reconstruction.clip_twists import agreed_twists, clip_twists
-from solvers.reconstruction.limb_angles import angles_about
-from solvers.reconstruction.posture_library import (
-    LAYOUT,
-    build_posture_library,
-    joined_postures,
-    load_posture_library,
-)
-from solvers.reconstruction.trunk_twist import (
+from solvers.motion.humanoid.canonical import canonical_rotations, from_canonical
+from solvers.motion.humanoid.posture_heading import mirrored, turned
+from solvers.motion.humanoid.posture_joints import POSTURE_JOINTS, motion_postures
+from solvers.reconstruction.joint_rotations.limb_angles import angles_about
+from solvers.reconstruction.joint_rotations.trunk_twist import (
     TWISTED,
     LimbTwists,
     bend_normals,
@@ -30,6 +22,14 @@ from solvers.reconstruction.trunk_twist import (
     mirrored_twists,
     plain_hinges,
 )
+from solvers.reconstruction.pose_library.clip_twists import agreed_twists, clip_twists
+from solvers.reconstruction.pose_library.posture_library import (
+    LAYOUT,
+    build_posture_library,
+    joined_postures,
+    load_posture_library,
+)
+from solvers.rotations.representations import multiply, quaternion_from_rotation_vector
 from solvers.samples import GaitSettings, walking_gait
 
 LEFT_ARM = 0

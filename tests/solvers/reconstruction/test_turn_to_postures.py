@@ -8,11 +8,14 @@ from numpy.testing import assert_allclose
 
 from solvers.errors import InvalidMotionError
 from solvers.motion import Motion, forward_kinematics
-from solvers.motion.posture_heading import turned
-from solvers.motion.posture_joints import POSTURE_JOINTS, motion_postures
-from solvers.motion.rotations import multiply, quaternion_from_rotation_vector
-from solvers.reconstruction.turn_to_postures import turn_to_postures, without_gaps
+from solvers.motion.humanoid.posture_heading import turned
+from solvers.motion.humanoid.posture_joints import POSTURE_JOINTS, motion_postures
+from solvers.reconstruction.joint_rotations.turn_to_postures import (
+    turn_to_postures,
+    without_gaps,
+)
 from solvers.recordings import read_bvh
+from solvers.rotations.representations import multiply, quaternion_from_rotation_vector
 from solvers.samples import GaitSettings, walking_gait
 
 RAISED = np.array([0.0, 0.0, 0.2])

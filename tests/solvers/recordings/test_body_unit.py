@@ -9,10 +9,11 @@ from kinect_walks import tracked_walk, true_positions
 import solvers.motion as motion_module
 from solvers import samples
 from solvers.errors import MocapAssistError
-from solvers.motion import JointRecording, Sensor, Tracks, posture_joints
+from solvers.motion import JointRecording, Sensor, Tracks
+from solvers.motion.humanoid import posture_joints
 from solvers.recordings import read_recording, write_joint_csv
-from solvers.recordings.body_unit import in_unit_of_body
-from solvers.recordings.tracked_joints import joint_recording
+from solvers.recordings.conventions.body_unit import in_unit_of_body
+from solvers.recordings.conventions.tracked_joints import joint_recording
 
 WORDS = {1.0: "metres", 0.01: "centimetres", 0.001: "millimetres"}
 

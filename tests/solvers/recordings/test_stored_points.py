@@ -7,14 +7,9 @@ from numpy.testing import assert_allclose, assert_array_equal
 
 from solvers.errors import InvalidFileError
 from solvers.motion import JointRecording, Sensor
-from solvers.motion.humanoid_names import roles_by_name
-from solvers.motion.mediapipe import BODY
-from solvers.recordings import (
-    read_freemocap,
-    read_recording,
-    read_ui_prmd,
-    read_ui_prmd_pair,
-)
+from solvers.motion.humanoid.names import roles_by_name
+from solvers.motion.skeletons.mediapipe import BODY
+from solvers.recordings import read_freemocap, read_recording, read_ui_prmd, read_ui_prmd_pair
 
 NOSE, LEFT_WRIST, RIGHT_WRIST, ANKLES = 0, 15, 16, (27, 28)
 TRIPLE = [NOSE, LEFT_WRIST, RIGHT_WRIST]

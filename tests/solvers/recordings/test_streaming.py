@@ -12,17 +12,12 @@ from whole_files import JOINT_FILES, JOINT_TOKENS, SKELETON, TOKENS, WHOLE
 
 from solvers.errors import InvalidFileError, InvalidMotionError
 from solvers.motion import JointRecording, Motion
-from solvers.recordings import (
-    acclaim,
-    line_reader,
-    read_acclaim,
-    read_bvh,
-    read_joint_csv,
-    read_trc,
-    trc,
-)
-from solvers.recordings.growing_table import GrowingTable
-from solvers.recordings.line_reader import Block, LineReader
+from solvers.recordings import read_acclaim, read_bvh, read_joint_csv, read_trc
+from solvers.recordings.containers import line_reader
+from solvers.recordings.containers.growing_table import GrowingTable
+from solvers.recordings.containers.line_reader import Block, LineReader
+from solvers.recordings.marker_files import trc
+from solvers.recordings.skeleton_files import acclaim
 
 FILES = {
     "bvh": (read_bvh, WHOLE["bvh"], TOKENS),

@@ -5,7 +5,7 @@ import pytest
 from numpy.testing import assert_allclose, assert_array_equal
 
 from solvers.errors import InvalidFileError
-from solvers.recordings.time_stamps import ConstantRate
+from solvers.recordings.conventions.time_stamps import ConstantRate
 
 FRAME = 1.0 / 30.0
 

@@ -14,16 +14,16 @@ from solvers.motion import (
     foot_points,
     forward_kinematics,
 )
-from solvers.motion.rotations import (
+from solvers.recordings import read_recording
+from solvers.retargeting.body import find_body
+from solvers.retargeting.planting import planting_shift
+from solvers.retargeting.soles import Depths, sole_above_ground
+from solvers.rotations.representations import (
     angle_between,
     multiply,
     quaternion_from_rotation_vector,
     rotate,
 )
-from solvers.recordings import read_recording
-from solvers.retargeting.body import find_body
-from solvers.retargeting.planting import planting_shift
-from solvers.retargeting.soles import Depths, sole_above_ground
 from solvers.samples import GaitSettings, walking_gait
 
 BODIES = {**RIGS, "Child": child}

@@ -16,12 +16,12 @@ from solvers.motion import (
     joint_parents,
     motion_from_points,
 )
-from solvers.motion.rotations import quaternion_from_rotation_vector, rotate
 from solvers.recordings import read_recording
 from solvers.retargeting import retarget
 from solvers.retargeting.body import find_body
 from solvers.retargeting.soles import Depths, sole_above_ground
 from solvers.retargeting.toes import toes_up
+from solvers.rotations.representations import quaternion_from_rotation_vector, rotate
 
 RIG = mixamo()
 FEET = [

@@ -6,16 +6,10 @@ from given_motions import every_fourth, given_to, growth
 from numpy.testing import assert_allclose
 from rigs import RIGS, mixamo
 
-from solvers.motion import (
-    Motion,
-    Skeleton,
-    find_humanoid_map,
-    forward_kinematics,
-    reach,
-)
-from solvers.motion.rotations import quaternion_from_rotation_vector
+from solvers.motion import Motion, Skeleton, find_humanoid_map, forward_kinematics, reach
 from solvers.recordings import read_recording
 from solvers.retargeting.low_hands import within_reach
+from solvers.rotations.representations import quaternion_from_rotation_vector
 from solvers.samples import GaitSettings, walking_gait
 
 WRISTS = ("leftHand", "rightHand")

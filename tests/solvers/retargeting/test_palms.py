@@ -12,13 +12,13 @@ from solvers.motion import (
     forward_kinematics,
     t_pose_alignment,
 )
-from solvers.motion.rotations import (
+from solvers.retargeting import retarget
+from solvers.rotations.representations import (
     angle_between,
     multiply,
     quaternion_from_rotation_vector,
     rotate,
 )
-from solvers.retargeting import retarget
 from solvers.samples import GaitSettings, walking_gait
 
 WALK = walking_gait(GaitSettings(duration=1.0, frame_rate=30.0))

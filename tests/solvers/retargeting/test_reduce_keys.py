@@ -9,7 +9,6 @@ from scipy.spatial.transform import Rotation
 
 from solvers.errors import InvalidFileError, InvalidMotionError, InvalidSettingError
 from solvers.motion import Motion, Skeleton, forward_kinematics
-from solvers.motion.rotations import IDENTITY, angle_between, quaternion_from_rotation_vector
 from solvers.recordings import read_bvh
 from solvers.retargeting import (
     RotationChannels,
@@ -18,6 +17,11 @@ from solvers.retargeting import (
     reduce_keys,
 )
 from solvers.retargeting.key_curves import KeyCurve, fit_curve
+from solvers.rotations.representations import (
+    IDENTITY,
+    angle_between,
+    quaternion_from_rotation_vector,
+)
 from solvers.samples import GaitSettings, walking_gait
 
 

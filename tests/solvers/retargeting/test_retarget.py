@@ -16,9 +16,13 @@ from solvers.motion import (
     forward_kinematics,
     leg_length,
 )
-from solvers.motion.rotations import IDENTITY, angle_between, quaternion_from_rotation_vector
 from solvers.recordings import read_bvh
 from solvers.retargeting import RetargetSettings, RootMotion, retarget
+from solvers.rotations.representations import (
+    IDENTITY,
+    angle_between,
+    quaternion_from_rotation_vector,
+)
 from solvers.samples import GaitSettings, walking_gait
 
 CMU_METRES = 0.0254 / 0.45

@@ -16,8 +16,8 @@ from solvers.motion import (
     find_humanoid_map,
     forward_kinematics,
 )
-from solvers.motion.rotations import quaternion_from_rotation_vector
 from solvers.retargeting import RetargetSettings, RootMotion, retarget
+from solvers.rotations.representations import quaternion_from_rotation_vector
 from solvers.samples import GaitSettings, walking_gait
 
 WALK = walking_gait(GaitSettings(duration=1.0, frame_rate=30.0))

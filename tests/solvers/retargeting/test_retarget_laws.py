@@ -7,16 +7,14 @@ from hypothesis import strategies as st
 from numpy.testing import assert_allclose
 from rigs import RIGS, mixamo, unreal
 
-from solvers.motion import (
-    HumanoidMap,
-    Motion,
-    Skeleton,
-    find_humanoid_map,
-    forward_kinematics,
-)
-from solvers.motion.rotations import angle_between, quaternion_from_rotation_vector, rotate
+from solvers.motion import HumanoidMap, Motion, Skeleton, find_humanoid_map, forward_kinematics
 from solvers.retargeting import RetargetSettings, RootMotion, ground_path, retarget
 from solvers.retargeting.feet import hips_drop
+from solvers.rotations.representations import (
+    angle_between,
+    quaternion_from_rotation_vector,
+    rotate,
+)
 from solvers.samples import GaitSettings, walking_gait
 
 WALK = walking_gait(GaitSettings(duration=2.0, frame_rate=30.0))

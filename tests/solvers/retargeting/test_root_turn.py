@@ -6,13 +6,13 @@ from numpy.testing import assert_allclose
 from rigs import mixamo
 
 from solvers.motion import Motion, find_humanoid_map
-from solvers.motion.rotations import (
+from solvers.recordings import read_recording
+from solvers.retargeting import ground_path
+from solvers.rotations.representations import (
     angle_between,
     multiply,
     quaternion_from_rotation_vector,
 )
-from solvers.recordings import read_recording
-from solvers.retargeting import ground_path
 
 WHOLE_TURN = np.linspace(0.0, 2.0 * np.pi, 120)
 

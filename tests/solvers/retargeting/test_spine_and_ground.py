@@ -13,14 +13,14 @@ from solvers.motion import (
     find_humanoid_map,
     forward_kinematics,
 )
-from solvers.motion.rotations import (
+from solvers.recordings import read_bvh
+from solvers.retargeting import RetargetSettings, retarget
+from solvers.rotations.representations import (
     angle_between,
     inverse,
     multiply,
     quaternion_from_rotation_vector,
 )
-from solvers.recordings import read_bvh
-from solvers.retargeting import RetargetSettings, retarget
 from solvers.samples import GaitSettings, walking_gait
 
 CMU_METRES = 0.0254 / 0.45

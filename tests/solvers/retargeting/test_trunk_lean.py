@@ -5,13 +5,13 @@ import pytest
 from rigs import RIGS, mixamo, rigify_deform
 
 from solvers.motion import Motion, Skeleton, find_humanoid_map, forward_kinematics
-from solvers.motion.rotations import (
+from solvers.retargeting import retarget
+from solvers.rotations.representations import (
     angle_between,
     inverse,
     multiply,
     quaternion_from_rotation_vector,
 )
-from solvers.retargeting import retarget
 from solvers.samples import GaitSettings, walking_gait
 
 

@@ -15,12 +15,12 @@ from solvers.retrieval import (
     FindSettings,
     Origin,
     build_clip_library,
-    clip_library,
     describe_clip,
     find_similar,
     load_clip_library,
     open_clip_library,
 )
+from solvers.retrieval.library import clip_library
 
 SPEEDS = (1.6, 2.0, 2.4, 2.8)
 

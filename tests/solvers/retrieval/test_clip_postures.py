@@ -9,10 +9,10 @@ from numpy.testing import assert_allclose
 
 from solvers.errors import InvalidMotionError
 from solvers.motion import Tracks, find_humanoid_map
-from solvers.motion.body_size import USUAL_LENGTHS, segment_lengths
-from solvers.motion.posture_joints import POSTURE_JOINTS, motion_postures
+from solvers.motion.humanoid.body_size import USUAL_LENGTHS, segment_lengths
+from solvers.motion.humanoid.posture_joints import POSTURE_JOINTS, motion_postures
 from solvers.recordings import read_recording
-from solvers.retrieval.clip_postures import clip_postures
+from solvers.retrieval.postures.clip_postures import clip_postures
 from solvers.samples import GaitSettings, walking_gait
 
 

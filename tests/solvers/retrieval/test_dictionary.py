@@ -5,10 +5,14 @@ import pytest
 from numpy.testing import assert_allclose
 
 from solvers.errors import InvalidMotionError, SolveCancelled
-from solvers.retrieval.clip_postures import ClipPostures
-from solvers.retrieval.dictionary import DictionarySettings, PostureDictionary, learn_dictionary
-from solvers.retrieval.seen_signals import seen_signals
-from solvers.retrieval.sparse_codes import sparse_codes
+from solvers.retrieval.postures.clip_postures import ClipPostures
+from solvers.retrieval.published.dictionary import (
+    DictionarySettings,
+    PostureDictionary,
+    learn_dictionary,
+)
+from solvers.retrieval.published.observed_signals import seen_signals
+from solvers.retrieval.published.sparse_codes import sparse_codes
 
 
 def as_clip(signals, frame_rate=30.0):

@@ -9,7 +9,7 @@ from numpy.testing import assert_array_equal
 
 from solvers.errors import InvalidMotionError
 from solvers.motion import JointRecording, Sensor, Tracks
-from solvers.motion.posture_joints import POSTURE_JOINTS
+from solvers.motion.humanoid.posture_joints import POSTURE_JOINTS
 from solvers.retrieval import Clip, FindMethod, FindSettings, build_clip_library, find_similar
 
 KEPT = dict.fromkeys(("trunk", "left_arm", "right_arm", "left_leg", "right_leg"), False)

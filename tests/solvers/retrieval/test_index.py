@@ -9,18 +9,23 @@ from hypothesis import given
 from hypothesis import strategies as st
 from numpy.testing import assert_allclose, assert_array_equal
 
-from solvers.motion.posture_joints import POSTURE_JOINTS
-from solvers.retrieval import index_block
-from solvers.retrieval.body_parts import BodyPart, part_coverage, part_features
-from solvers.retrieval.clip_postures import clip_postures
-from solvers.retrieval.index_block import block_arrays, block_from_arrays, block_of, merged
-from solvers.retrieval.posting_lists import posting_lists
-from solvers.retrieval.spans import FULL, describe_spans, span_frames, with_stance
-from solvers.retrieval.vocabulary import (
+from solvers.motion.humanoid.posture_joints import POSTURE_JOINTS
+from solvers.retrieval.index import index_block
+from solvers.retrieval.index.index_block import (
+    block_arrays,
+    block_from_arrays,
+    block_of,
+    merged,
+)
+from solvers.retrieval.index.posting_lists import posting_lists
+from solvers.retrieval.index.segments import FULL, describe_spans, span_frames, with_stance
+from solvers.retrieval.index.vocabulary import (
     learn_vocabulary,
     vocabulary_arrays,
     vocabulary_from_arrays,
 )
+from solvers.retrieval.postures.body_parts import BodyPart, part_coverage, part_features
+from solvers.retrieval.postures.clip_postures import clip_postures
 
 CLIPS = [clip_postures(act(name, 2.5), 20.0) for name in ACTS]
 

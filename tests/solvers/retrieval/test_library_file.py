@@ -19,10 +19,10 @@ from solvers.retrieval import (
     Clip,
     build_clip_library,
     find_similar,
-    library_file,
     load_clip_library,
     open_clip_library,
 )
+from solvers.retrieval.library import library_file
 
 ROOT = Path(__file__).parents[3]
 ADD = """

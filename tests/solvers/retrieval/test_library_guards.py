@@ -13,13 +13,12 @@ from solvers.retrieval import (
     Clip,
     Origin,
     build_clip_library,
-    clip_library,
     describe_clip,
     find_similar,
-    library_file,
     load_clip_library,
     open_clip_library,
 )
+from solvers.retrieval.library import clip_library, library_file
 
 ODD = {
     "a\r\nb": r"'a\r\nb' has control characters",

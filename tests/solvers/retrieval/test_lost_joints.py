@@ -5,11 +5,11 @@ import pytest
 from acted import ACTS, act
 from numpy.testing import assert_allclose, assert_array_equal
 
-from solvers.motion.posture_joints import PARENTS, POSTURE_JOINTS
-from solvers.retrieval.body_parts import JOINTS, ROOTS, BodyPart
-from solvers.retrieval.clip_postures import clip_postures
-from solvers.retrieval.part_reliability import part_reliability
-from solvers.retrieval.usual_postures import NOISE, usual_postures
+from solvers.motion.humanoid.posture_joints import PARENTS, POSTURE_JOINTS
+from solvers.retrieval.postures.body_parts import JOINTS, ROOTS, BodyPart
+from solvers.retrieval.postures.clip_postures import clip_postures
+from solvers.retrieval.postures.mean_postures import NOISE, usual_postures
+from solvers.retrieval.postures.part_reliability import part_reliability
 
 USUAL = usual_postures([clip_postures(act(name, 2.5), 20.0) for name in ACTS])
 RIGHT_ARM = list(BodyPart).index(BodyPart.RIGHT_ARM)

@@ -8,15 +8,19 @@ from numpy.testing import assert_allclose
 from scipy.sparse import csr_array, vstack
 
 from solvers.recordings import read_acclaim
-from solvers.retrieval.clip_postures import ClipPostures, clip_postures
-from solvers.retrieval.dictionary import DictionarySettings, PostureDictionary, learn_dictionary
-from solvers.retrieval.pyramid_matching import (
+from solvers.retrieval.postures.clip_postures import ClipPostures, clip_postures
+from solvers.retrieval.published.dictionary import (
+    DictionarySettings,
+    PostureDictionary,
+    learn_dictionary,
+)
+from solvers.retrieval.published.pyramid_matching import (
     PyramidSettings,
     pyramid_descriptor,
     pyramid_kernel,
 )
-from solvers.retrieval.sparse_codes import SparseCodes
-from solvers.retrieval.temporal_codes import temporal_codes
+from solvers.retrieval.published.sparse_codes import SparseCodes
+from solvers.retrieval.published.temporal_codes import temporal_codes
 
 N_ATOMS = 7
 

@@ -9,24 +9,19 @@ from numpy.testing import assert_allclose, assert_array_equal
 from plain_warping import plain_cost
 from scipy.spatial.distance import cdist
 
-from solvers.motion.posture_heading import turned
-from solvers.motion.posture_joints import POSTURE_JOINTS
-from solvers.retrieval import (
-    Clip,
-    FindSettings,
-    build_clip_library,
-    find_similar,
-    likes,
-    search_index,
-)
-from solvers.retrieval.body_parts import BodyPart
-from solvers.retrieval.clip_postures import ClipPostures, clip_postures
-from solvers.retrieval.index_block import IndexBlock
-from solvers.retrieval.posting_lists import posting_lists
-from solvers.retrieval.search_index import SearchIndex
-from solvers.retrieval.spans import STANCE, with_stance
-from solvers.retrieval.usual_postures import usual_postures
-from solvers.retrieval.vocabulary import learn_vocabulary
+from solvers.motion.humanoid.posture_heading import turned
+from solvers.motion.humanoid.posture_joints import POSTURE_JOINTS
+from solvers.retrieval import Clip, FindSettings, build_clip_library, find_similar
+from solvers.retrieval.index import reranking as likes
+from solvers.retrieval.index import search_index
+from solvers.retrieval.index.index_block import IndexBlock
+from solvers.retrieval.index.posting_lists import posting_lists
+from solvers.retrieval.index.search_index import SearchIndex
+from solvers.retrieval.index.segments import STANCE, with_stance
+from solvers.retrieval.index.vocabulary import learn_vocabulary
+from solvers.retrieval.postures.body_parts import BodyPart
+from solvers.retrieval.postures.clip_postures import ClipPostures, clip_postures
+from solvers.retrieval.postures.mean_postures import usual_postures
 
 RNG = np.random.default_rng(5)
 BELIEVED, BLAMED = likes.BELIEF_IN_LIKES, likes.MOST_BLAME

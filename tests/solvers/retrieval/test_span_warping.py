@@ -8,8 +8,8 @@ from numpy.testing import assert_allclose
 from plain_warping import plain_cost
 from scipy.spatial.distance import cdist
 
-from solvers.retrieval.align_clip import STILL, aligned
-from solvers.retrieval.span_warping import frame_distances, warping_costs
+from solvers.retrieval.index.time_warping import frame_distances, warping_costs
+from solvers.retrieval.search.align_clip import STILL, aligned
 
 
 @given(seed=st.integers(0, 999), n_steps=st.integers(1, 9), n_frames=st.integers(1, 9))

@@ -8,7 +8,7 @@ from numpy.testing import assert_allclose
 from sklearn.linear_model import orthogonal_mp
 
 from solvers.errors import InvalidSettingError
-from solvers.retrieval.sparse_codes import sparse_codes
+from solvers.retrieval.published.sparse_codes import sparse_codes
 
 
 def unit(rows):

@@ -5,7 +5,7 @@ import pytest
 from numpy.testing import assert_allclose
 
 from solvers.errors import InvalidMotionError, InvalidSettingError
-from solvers.motion.rotations import inverse, multiply, rotation_vector_from_quaternion
+from solvers.rotations.representations import inverse, multiply, rotation_vector_from_quaternion
 from solvers.samples import CorruptionSettings, GaitSettings, corrupt, walking_gait
 
 CLEAN = CorruptionSettings(jitter=0.0)

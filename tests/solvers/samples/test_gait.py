@@ -6,7 +6,7 @@ from numpy.testing import assert_allclose
 
 from solvers.errors import InvalidSettingError
 from solvers.motion import forward_kinematics
-from solvers.motion.rotations import angle_between
+from solvers.rotations.representations import angle_between
 from solvers.samples import GaitSettings, walker_skeleton, walking_gait
 
 TOE_HEIGHT = 0.02

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from solvers.motion import forward_kinematics, resample
-from solvers.motion.rotations import multiply, quaternion_from_rotation_vector
+from solvers.rotations.representations import multiply, quaternion_from_rotation_vector
 from solvers.variation import (
     Method,
     VarySettings,

@@ -3,7 +3,7 @@
 import numpy as np
 from numpy.testing import assert_allclose
 
-from solvers.motion.rotations import (
+from solvers.rotations.representations import (
     IDENTITY,
     inverse,
     multiply,

@@ -7,8 +7,8 @@ import pytest
 from numpy.testing import assert_allclose, assert_array_equal
 
 from solvers.motion import Motion
-from solvers.motion.contacts import detect_contacts
-from solvers.motion.rotations import IDENTITY
+from solvers.motion.humanoid.contacts import detect_contacts
+from solvers.rotations.representations import IDENTITY
 from solvers.variation import (
     Method,
     VarySettings,

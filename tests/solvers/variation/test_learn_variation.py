@@ -8,7 +8,7 @@ from numpy.testing import assert_allclose
 
 from solvers.errors import InvalidFileError, InvalidMotionError
 from solvers.motion import Motion, Skeleton, resample
-from solvers.motion.rotations import IDENTITY, multiply
+from solvers.rotations.representations import IDENTITY, multiply
 from solvers.variation import (
     Method,
     VarySettings,

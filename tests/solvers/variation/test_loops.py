@@ -8,8 +8,8 @@ from numpy.testing import assert_allclose
 from scipy.signal import find_peaks
 
 from solvers.motion import forward_kinematics
-from solvers.motion.rotations import multiply, rotation_vector_from_quaternion
 from solvers.recordings import read_bvh
+from solvers.rotations.representations import multiply, rotation_vector_from_quaternion
 from solvers.samples import GaitSettings, walking_gait
 from solvers.variation import (
     VarySettings,
@@ -19,13 +19,7 @@ from solvers.variation import (
 )
 from solvers.variation.align_examples import body_positions
 from solvers.variation.course import Course, course_of, headings, motion_of
-from solvers.variation.loops import (
-    close_loop,
-    loop_at_rate,
-    loops,
-    middle_round,
-    repeated,
-)
+from solvers.variation.loops import close_loop, loop_at_rate, loops, middle_round, repeated
 from solvers.workflows.vary_motions import stand
 
 CMU_METRES = 0.0254 / 0.45

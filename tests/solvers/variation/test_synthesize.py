@@ -8,7 +8,7 @@ from numpy.testing import assert_allclose, assert_array_equal
 
 from solvers.errors import InvalidMotionError, SolveCancelled
 from solvers.motion import forward_kinematics, warp
-from solvers.motion.rotations import inverse, multiply, rotation_vector_from_quaternion
+from solvers.rotations.representations import inverse, multiply, rotation_vector_from_quaternion
 from solvers.variation import (
     Method,
     Partition,

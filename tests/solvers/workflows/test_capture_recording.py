@@ -8,13 +8,13 @@ import numpy as np
 import pytest
 from drawn_bodies import CAMERA, drawn, recorded, waving
 
-from solvers.depth_tracking.body_kinematics import joint_positions, segment_frames
-from solvers.depth_tracking.body_model import BodyModel, usual_body
-from solvers.depth_tracking.body_tables import JOINTS
-from solvers.depth_tracking.capture import CaptureSettings
+from solvers.depth_scene.camera import Camera
+from solvers.depth_scene.recording import DepthRecording
+from solvers.depth_tracking.body.kinematics import joint_positions, segment_frames
+from solvers.depth_tracking.body.model import BodyModel, usual_body
+from solvers.depth_tracking.body.tables import JOINTS
+from solvers.depth_tracking.capturing.capture import CaptureSettings
 from solvers.errors import InvalidMotionError
-from solvers.motion.camera import Camera
-from solvers.motion.depth_recording import DepthRecording
 from solvers.recordings import read_depth
 from solvers.workflows import capture_recording
 from solvers.workflows.capture_remarks import thickness

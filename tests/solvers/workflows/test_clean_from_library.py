@@ -9,13 +9,13 @@ from numpy.testing import assert_array_equal
 from solvers.denoising import denoise
 from solvers.errors import InvalidFileError, InvalidMotionError, SolveCancelled
 from solvers.motion import Motion, Tracks, resample
-from solvers.motion.rotations import (
+from solvers.recordings import read_acclaim, write_bvh
+from solvers.retrieval import Clip, Origin, build_clip_library, load_clip_library
+from solvers.rotations.representations import (
     angle_between,
     multiply,
     quaternion_from_rotation_vector,
 )
-from solvers.recordings import read_acclaim, write_bvh
-from solvers.retrieval import Clip, Origin, build_clip_library, load_clip_library
 from solvers.samples import GaitSettings, walking_gait
 from solvers.workflows import bases_from_library, clean_from_library, index_files
 from solvers.workflows.library_clips import read_origin

@@ -6,12 +6,12 @@ import numpy as np
 import pytest
 from numpy.testing import assert_allclose
 
+from solvers.gestures.events import Gesture
+from solvers.gestures.recognition import Mode
+from solvers.gestures.settings import GestureSettings
 from solvers.motion import JOINTS, JointRecording, Sensor
-from solvers.motion.posture_joints import POSTURE_JOINTS
-from solvers.recordings.live_frames import LiveFrame, encode_frame, frames_of
-from solvers.retrieval.gesture_events import Gesture
-from solvers.retrieval.gesture_settings import GestureSettings
-from solvers.retrieval.gestures import Mode
+from solvers.motion.humanoid.posture_joints import POSTURE_JOINTS
+from solvers.recordings.live.frames import LiveFrame, encode_frame, frames_of
 from solvers.samples import PerformanceSettings, perform
 from solvers.workflows.live_session import DROPPED, TOO_SHORT, LiveSession, posture_of
 

@@ -7,9 +7,10 @@ from numpy.testing import assert_allclose, assert_array_equal
 
 from solvers import motion as vocabulary
 from solvers import samples
-from solvers.motion import Motion, Skeleton, motion_from_points, posture_joints
-from solvers.motion.rotations import multiply, quaternion_from_rotation_vector, rotate
-from solvers.motion.unseen_hips import with_hips
+from solvers.motion import Motion, Skeleton, motion_from_points
+from solvers.motion.humanoid import posture_joints
+from solvers.motion.humanoid.missing_hips import with_hips
+from solvers.rotations.representations import multiply, quaternion_from_rotation_vector, rotate
 from solvers.workflows.measured_joints import measured_joints
 
 

@@ -7,7 +7,7 @@ import pytest
 
 from solvers.motion import Motion, resample
 from solvers.reconstruction import load_posture_library, reconstruct
-from solvers.reconstruction.posture_library import joined_postures
+from solvers.reconstruction.pose_library.posture_library import joined_postures
 from solvers.recordings import read_acclaim
 from solvers.retrieval import Clip, build_clip_library
 from solvers.workflows import postures_from_library, reconstruct_from_library

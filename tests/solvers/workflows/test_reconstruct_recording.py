@@ -15,8 +15,8 @@ from solvers.motion import (
     Tracks,
     forward_kinematics,
     motion_from_points,
-    posture_joints,
 )
+from solvers.motion.humanoid import posture_joints
 from solvers.reconstruction import ReconstructSettings
 from solvers.recordings import read_joint_csv, read_recording
 from solvers.workflows import reconstruct_motion, reconstruct_recording

@@ -9,7 +9,8 @@ from kinect_walks import HIDDEN, LOST, tracked_walk, true_positions
 import solvers.motion as motion_module
 from solvers import samples
 from solvers.errors import InvalidMotionError
-from solvers.motion import motion_from_points, posture_joints
+from solvers.motion import motion_from_points
+from solvers.motion.humanoid import posture_joints
 from solvers.workflows import reconstruct_motion
 
 GUESSED = 0.5  # what an inferred joint counts for

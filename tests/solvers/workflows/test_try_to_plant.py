@@ -6,16 +6,9 @@ from kinect_walks import true_positions
 
 from solvers import samples
 from solvers.denoising import PlantSettings
-from solvers.motion import (
-    JOINTS,
-    Motion,
-    Sensor,
-    Tracks,
-    forward_kinematics,
-    joint_parents,
-    posture_joints,
-)
-from solvers.reconstruction.follow_joints import follow_joints
+from solvers.motion import JOINTS, Motion, Sensor, Tracks, forward_kinematics, joint_parents
+from solvers.motion.humanoid import posture_joints
+from solvers.reconstruction.joint_rotations.follow_joints import follow_joints
 from solvers.recordings import read_recording
 from solvers.workflows import reconstruct_recording, try_to_plant
 

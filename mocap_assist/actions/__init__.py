@@ -1,0 +1,1 @@
+"""Actions as motions and markers as tracks, read and written in bulk."""

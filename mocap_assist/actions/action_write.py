@@ -1,0 +1,85 @@
+"""Write a new action for an armature, from channels of its bones."""
+
+from collections.abc import Mapping
+
+import bpy
+import numpy as np
+from numpy.typing import NDArray
+
+from ..blender import compat
+from ..blender.compat import Source
+from ..scene.controls import BoneKeys
+from .bone_channels import bone_path
+from .curves import CONSTANT, deselect, write_first
+from .rotation_modes import channels_from_quaternions, rotation_property
+
+Array = NDArray[np.float64]
+
+
+def write_action(
+    armature: bpy.types.Object,
+    name: str,
+    frames: Array,
+    keys: Mapping[str, BoneKeys],
+    switches: Mapping[tuple[str, str], float],
+) -> Source:
+    """Make an action that keys these bones at every frame, and nothing else.
+
+    Parameters
+    ----------
+    armature : bpy.types.Object
+        Not changed, nor given the action; may be linked.
+    name : str
+    frames : shape (n_frames,)
+    keys : by bone
+        Frames at which a channel is NaN get no key.
+    switches : values of custom properties, by bone and property
+        Those that the bone has get one key, at the first frame.
+
+    Returns
+    -------
+    action, slot
+    """
+    action, slot = compat.new_action(name, armature)
+    bag = compat.channelbag(action, slot, ensure=True)
+    for bone_name, channels in keys.items():
+        bone = armature.pose.bones[bone_name]
+        if channels.rotations is not None:
+            known = np.isfinite(channels.rotations).all(axis=1)
+            prop, width = rotation_property(bone.rotation_mode)
+            near = np.zeros((1, width))
+            near[:, 0] = float(width == len("WXYZ") and bone.rotation_mode == "QUATERNION")
+            turns = channels.rotations[known]
+            if len(turns):
+                values = channels_from_quaternions(turns, bone.rotation_mode, near)
+                _write(bag, bone_name, prop, frames[known], values)
+        if channels.locations is not None:
+            known = np.isfinite(channels.locations).all(axis=1)
+            if known.any():
+                _write(bag, bone_name, "location", frames[known], channels.locations[known])
+    _write_switches(armature, bag, frames, switches)
+    return action, slot
+
+
+def _write(
+    bag: bpy.types.ActionChannelbag, bone: str, prop: str, frames: Array, values: Array
+) -> None:
+    for index, column in enumerate(values.T):
+        curve = compat.new_curve(bag, bone_path(bone, prop), index, bone)
+        write_first(curve, frames, column)
+        deselect(curve)
+
+
+def _write_switches(
+    armature: bpy.types.Object,
+    bag: bpy.types.ActionChannelbag,
+    frames: Array,
+    switches: Mapping[tuple[str, str], float],
+) -> None:
+    for (bone, prop), value in switches.items():
+        if bone not in armature.pose.bones or prop not in armature.pose.bones[bone]:
+            continue
+        path = bone_path(bone, "")[:-1] + f'["{bpy.utils.escape_identifier(prop)}"]'
+        curve = compat.new_curve(bag, path, 0, bone)
+        write_first(curve, frames[:1], np.array([value]), interpolation=CONSTANT)
+        deselect(curve)

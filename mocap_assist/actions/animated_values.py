@@ -1,0 +1,83 @@
+"""Values that actions animate, kept as they are while other frames and actions are played."""
+
+from collections.abc import Iterable, Iterator
+from contextlib import contextmanager
+from typing import Any, NamedTuple
+
+import bpy
+
+from ..blender.compat import Source
+from .bone_channels import animated_curves
+
+
+@contextmanager
+def values_kept(animated: bpy.types.Object, *more: Source) -> Iterator[None]:
+    """Put back, at the end, what an object's animation has changed since the start.
+
+    These are the values that the action, the NLA strips, or one of `more` have keys for: what
+    was posed without a key, too, and what only the other action keys, which would otherwise
+    stay as that has left it. The caller brings frame and action back.
+
+    Parameters
+    ----------
+    animated : bpy.types.Object
+    more : actions, each with the slot that will be played
+    """
+    kept = [_Value.of(animated, path) for path in _paths(animated, more)]
+    try:
+        yield
+    finally:
+        for value in kept:
+            value.put_back(animated)
+        animated.update_tag(refresh={"OBJECT", "DATA"})
+        bpy.context.view_layer.update()
+
+
+def _paths(animated: bpy.types.Object, more: Iterable[Source]) -> set[str]:
+    """Return the data paths of all that is animated, or will be."""
+    animation = animated.animation_data
+    strips = [strip for track in animation.nla_tracks for strip in track.strips]
+    played = [(each.action, each.action_slot) for each in (animation, *strips)]
+    return {
+        path
+        for action, slot in (*played, *more)
+        if action is not None and slot is not None
+        for path, _ in animated_curves(action, slot)
+    }
+
+
+class _Value(NamedTuple):
+    """What one of Blender's own properties, or a custom one, holds."""
+
+    owner: str
+    """Data path of what has the property; nothing for the object itself."""
+    name: str
+    is_custom: bool
+    held: Any
+    """None where there is no such property."""
+
+    @classmethod
+    def of(cls, animated: bpy.types.Object, path: str) -> "_Value":
+        is_custom = path.endswith('"]')
+        owner, _, name = path.removesuffix('"]').rpartition('["' if is_custom else ".")
+        name = bpy.utils.unescape_identifier(name)
+        try:
+            holder = _holder(animated, owner)
+            held = holder[name] if is_custom else getattr(holder, name)
+        except (ValueError, KeyError, AttributeError):
+            held = None
+        alone = held is None or isinstance(held, (bool, int, float, str))
+        return cls(owner, name, is_custom, held if alone else tuple(held))
+
+    def put_back(self, animated: bpy.types.Object) -> None:
+        if self.held is None:
+            return
+        holder = _holder(animated, self.owner)
+        if self.is_custom:
+            holder[self.name] = self.held
+        else:
+            setattr(holder, self.name, self.held)
+
+
+def _holder(animated: bpy.types.Object, owner: str) -> Any:
+    return animated.path_resolve(owner) if owner else animated

@@ -1,0 +1,153 @@
+"""Write a cleaned take into a copy of its action; the source is never touched."""
+
+import re
+from collections.abc import Collection, Mapping
+from enum import Enum
+
+import bpy
+import numpy as np
+from numpy.typing import NDArray
+
+from ...solvers.errors import InvalidMotionError
+from ..blender import compat
+from ..blender.compat import Source
+from .bone_channels import (
+    animated_curves,
+    bone_path,
+    location_curves,
+    rotation_curves,
+    sampled_rotation,
+)
+from .curve_modifiers import act_on_keys
+from .curves import Channel, write_values
+from .rotation_modes import channels_from_quaternions
+from .take import ArmatureTake
+
+Array = NDArray[np.float64]
+KeyTypes = Mapping[str, NDArray[np.uint8]]
+SUFFIX = ".clean"
+NUMBERED = re.compile(r"\.(clean|physics|reconstructed|retracked)(\.\d{3,})?$")
+"""As Blender names a second result."""
+
+
+class Output(Enum):
+    """Where the result goes."""
+
+    ACTION = "action"
+    NLA_TRACK = "NLA track"
+
+
+def write_take(
+    armature: bpy.types.Object,
+    source: Source,
+    take: ArmatureTake,
+    bones: Collection[str],
+    key_types: KeyTypes,
+    *,
+    suffix: str = SUFFIX,
+) -> Source:
+    """Copy an action and replace the rotation and location keys of some of its bones.
+
+    Parameters
+    ----------
+    armature : the armature that the take was read from
+    source : action and slot that the take was read from; may be linked
+    take : ArmatureTake
+        The result, over the frames to replace. Keys outside of them stay.
+    bones : names of the bones to change
+        All else is copied bit for bit; so are muted channels, channels of other rotation modes
+        than the bone's own, and Euler or location channels that have no keys.
+    key_types : per bone name, shape (n_frames,)
+        Blender's type of each key.
+    suffix : ending of the result's name
+
+    Returns
+    -------
+    action, slot
+        Named like the source with the suffix, and kept by a fake user.
+    """
+    action = copy_of(source[0], suffix)
+    slot = same_slot(action, source[1])
+    curves = animated_curves(action, slot)
+    rotations, locations = take.bone_rotations(), take.bone_locations()
+    for index, name in enumerate(take.rig.bones):
+        if name not in bones:
+            continue
+        bone, types = armature.pose.bones[name], key_types.get(name)
+        if take.channels[index].rotation_keyed and index in rotations:
+            turning = rotation_curves(bone, curves)
+            near = sampled_rotation(bone, turning, take.frames[:1])
+            values = channels_from_quaternions(rotations[index], bone.rotation_mode, near)
+            _write(turning, take.frames, values, types)
+        if take.channels[index].location_keyed and index in locations:
+            _write(location_curves(bone, curves), take.frames, locations[index], types)
+    return action, slot
+
+
+def count_modified(source: Source, bones: Collection[str]) -> int:
+    """Count the F-Curves of these bones whose modifiers change what their keys say."""
+    owned = tuple(bone_path(bone, "") for bone in bones)
+    curves = animated_curves(*source).items()
+    return sum(act_on_keys(each.curve) for (path, _), each in curves if path.startswith(owned))
+
+
+def put_to_use(
+    armature: bpy.types.Object,
+    action: bpy.types.Action,
+    slot: bpy.types.ActionSlot,
+    output: Output,
+) -> None:
+    """Let the armature play a result: as its action, or on an NLA track of its own.
+
+    Raises
+    ------
+    InvalidMotionError
+        Nothing can be assigned to the armature; see `check_writable`.
+    """
+    check_writable(armature)
+    if output is Output.ACTION:
+        compat.assign(armature, action, slot)
+        return
+    armature.animation_data.action = None
+    track = armature.animation_data.nla_tracks.new()
+    track.name = action.name
+    strip = track.strips.new(action.name, int(action.frame_range[0]), action)
+    strip.action_slot = slot
+    strip.frame_start, strip.frame_end = action.frame_range  # not always whole frames
+
+
+def check_writable(armature: bpy.types.Object) -> None:
+    """Raise InvalidMotionError where an armature cannot be given another action."""
+    if armature.library is not None:
+        raise InvalidMotionError(
+            f"{armature.name} is linked from {armature.library.name}. Make a library override"
+            " of it, then it can play the result."
+        )
+    if armature.animation_data is not None and armature.animation_data.use_tweak_mode:
+        raise InvalidMotionError(
+            f"{armature.name} is in tweak mode, which locks its action. Leave it in the NLA"
+            " Editor (Tab)."
+        )
+
+
+def copy_of(original: bpy.types.Action, suffix: str = SUFFIX) -> bpy.types.Action:
+    """Return a copy, named like the original with an ending, and kept by a fake user."""
+    action = original.copy()
+    action.name = NUMBERED.sub("", original.name) + suffix
+    action.use_fake_user = True
+    return action
+
+
+def same_slot(copy: bpy.types.Action, slot: bpy.types.ActionSlot) -> bpy.types.ActionSlot:
+    """Return the slot of a copied action that was `slot` of the original."""
+    return next(each for each in copy.slots if each.handle == slot.handle)
+
+
+def _write(
+    channels: Mapping[int, Channel],
+    frames: Array,
+    values: Array,
+    types: NDArray[np.uint8] | None,
+) -> None:
+    for index, channel in channels.items():
+        write_values(channel.curve, frames, values[:, index], types)

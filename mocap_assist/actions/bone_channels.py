@@ -1,0 +1,135 @@
+"""One bone's F-Curves as rotations and locations over the frames of a take."""
+
+from collections.abc import Iterator, Mapping
+
+import bpy
+import numpy as np
+from numpy.typing import NDArray
+
+from ...solvers.rotations import multiply, rotate
+from ..blender import compat
+from ..scene.rig import Placement, placement_of
+from .curves import Channel
+from .gaps import unobserved
+from .rotation_modes import quaternions_from_channels, rotation_property
+from .take import BoneChannels
+
+Array = NDArray[np.float64]
+Curves = Mapping[tuple[str, int], Channel]
+
+
+def animated_curves(action: bpy.types.Action, slot: bpy.types.ActionSlot) -> Curves:
+    """Return the slot's F-Curves that are not muted, by data path and index."""
+    bag = compat.channelbag(action, slot)
+    channels = map(Channel, () if bag is None else bag.fcurves)
+    return {
+        (each.curve.data_path, each.curve.array_index): each for each in channels if each.is_on
+    }
+
+
+def animated_paths(action: bpy.types.Action, slot: bpy.types.ActionSlot) -> Iterator[str]:
+    """Yield the data paths of the slot's F-Curves that are not muted, one for each curve.
+
+    For panels, which ask at every redraw: whoever has seen enough may stop.
+    """
+    bag = compat.channelbag(action, slot)
+    for curve in () if bag is None else bag.fcurves:
+        if Channel(curve).is_on:
+            yield curve.data_path
+
+
+def bone_path(bone: str, name: str) -> str:
+    """Return the data path of a pose bone's property."""
+    return f'pose.bones["{bpy.utils.escape_identifier(bone)}"].{name}'
+
+
+def read_bone(
+    bone: bpy.types.PoseBone,
+    curves: Curves,
+    frames: Array,
+    step: float | None = None,
+    *,
+    gaps: bool = True,
+) -> BoneChannels:
+    """Read the rotation channels of the bone's own mode, and its location.
+
+    Channels without keys have the pose's present value. `step` is that of `unobserved`; without
+    `gaps` nothing is.
+    """
+    turning, shifting = rotation_curves(bone, curves), location_curves(bone, curves)
+    angles = sampled_rotation(bone, turning, frames)
+    rotations = quaternions_from_channels(angles, bone.rotation_mode)
+    if gaps:
+        rotations[gaps_of(turning, frames, step)] = np.nan
+    if bone.bone.use_connect and bone.parent:
+        return BoneChannels(rotations, np.zeros((len(frames), 3)), bool(turning), False)
+    locations = sampled(shifting, bone.location, frames)
+    if gaps:
+        locations[gaps_of(shifting, frames, step)] = np.nan
+    return BoneChannels(rotations, locations, bool(turning), bool(shifting))
+
+
+def rotation_curves(bone: bpy.types.PoseBone, curves: Curves) -> dict[int, Channel]:
+    """Return the F-Curves of the bone's own rotation mode, by channel."""
+    name, n_channels = rotation_property(bone.rotation_mode)
+    return curves_of(curves, bone_path(bone.name, name), n_channels)
+
+
+def location_curves(bone: bpy.types.PoseBone, curves: Curves) -> dict[int, Channel]:
+    """Return the F-Curves of the bone's location, by axis."""
+    return curves_of(curves, bone_path(bone.name, "location"), 3)
+
+
+def sampled_rotation(
+    bone: bpy.types.PoseBone, turning: Mapping[int, Channel], frames: Array
+) -> Array:
+    """Return the rotation channels at each frame, shape (n_frames, 3 or 4)."""
+    name, _ = rotation_property(bone.rotation_mode)
+    return sampled(turning, getattr(bone, name), frames)
+
+
+def read_space(armature: bpy.types.Object, curves: Curves, frames: Array) -> Placement:
+    """Read where the armature object stands at each frame, by its own keys or as it is now.
+
+    Raises
+    ------
+    InvalidMotionError
+        Its scale is not the same on all axes.
+    """
+    bpy.context.view_layer.update()
+    turn, origin, scale = placement_of(armature.matrix_world, armature.name)
+    name, n_channels = rotation_property(armature.rotation_mode)
+    turning, shifting = curves_of(curves, name, n_channels), curves_of(curves, "location", 3)
+    if not (turning or shifting):
+        n_frames = len(frames)
+        return Placement(np.tile(turn, (n_frames, 1)), np.tile(origin, (n_frames, 1)), scale)
+    around = armature.matrix_world @ armature.matrix_basis.inverted()
+    turn, origin, size = placement_of(around, armature.name)
+    angles = sampled(turning, getattr(armature, name), frames)
+    turns = quaternions_from_channels(angles, armature.rotation_mode)
+    places = sampled(shifting, armature.location, frames)
+    return Placement(multiply(turn, turns), size * rotate(turn, places) + origin, scale)
+
+
+def curves_of(curves: Curves, path: str, n_channels: int) -> dict[int, Channel]:
+    """Return the F-Curves of a property, by channel."""
+    return {
+        index: curves[path, index] for index in range(n_channels) if (path, index) in curves
+    }
+
+
+def sampled(curves: Mapping[int, Channel], present: object, frames: Array) -> Array:
+    """Return a property, now `present`, at each frame: shape (n_frames, n_channels)."""
+    values = np.tile(np.array(present, dtype=np.float64), (len(frames), 1))
+    for index, channel in curves.items():
+        values[:, index] = channel.values(frames)
+    return values
+
+
+def gaps_of(
+    curves: Mapping[int, Channel], frames: Array, step: float | None = None
+) -> NDArray[np.bool_]:
+    """Tell the frames at which a property was not captured; see `unobserved`."""
+    if not curves or all(channel.keyed_at(frames) for channel in curves.values()):
+        return np.zeros(len(frames), bool)
+    return unobserved([channel.keys for channel in curves.values()], frames, step)

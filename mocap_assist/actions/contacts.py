@@ -1,0 +1,131 @@
+"""When each foot stands, as keys on custom properties that the animator can edit."""
+
+import hashlib
+
+import bpy
+import numpy as np
+from bpy.app import handlers
+from numpy.typing import NDArray
+
+from ..blender import compat
+from ..blender.compat import Source
+from ..scene import history
+from .bone_channels import animated_curves
+from .curves import CONSTANT, GENERATED, write_values
+
+PROPERTIES = ("mocap_contact_left", "mocap_contact_right")
+GROUP = "Foot contacts"
+DETECTED = "mocap_assist_detected_contacts"
+"""Property of an action: a digest of its contact keys, if they were detected."""
+Flags = NDArray[np.bool_]
+
+
+def read_contacts(
+    action: bpy.types.Action, slot: bpy.types.ActionSlot, frames: NDArray[np.float64]
+) -> Flags | None:
+    """Return when the left and the right foot stand, shape (n_frames, 2).
+
+    None where the action has no such keys for all of these frames: they were not cleaned yet.
+    """
+    curves = animated_curves(action, slot)
+    keyed = [curves.get((_path(name), 0)) for name in PROPERTIES]
+    for channel in keyed:
+        times = np.empty(0) if channel is None else channel.keys[:, 0]
+        if not len(times) or times[0] > frames[0] or times[-1] < frames[-1]:
+            return None
+    return np.stack([channel.values(frames) > 0.5 for channel in keyed], axis=1)
+
+
+def animators_contacts(source: Source, frames: NDArray[np.float64]) -> Flags | None:
+    """Return the contacts, but only if the animator keyed them or edited those detected."""
+    return None if _untouched(*source) else read_contacts(*source, frames)
+
+
+def write_contacts(
+    armature: bpy.types.Object,
+    action: bpy.types.Action,
+    slot: bpy.types.ActionSlot,
+    frames: NDArray[np.float64],
+    contacts: Flags,
+    *,
+    detected: bool = False,
+) -> None:
+    """Key the two custom properties of the armature wherever a foot comes down or lifts off.
+
+    The keys are held until the next one: 1 the foot stands, 0 it does not. Few as they are,
+    they are moved, added and removed like any others in the Dope Sheet. The first and the last
+    frame are keyed too, and so tell which frames are meant.
+
+    Keys that were `detected` have the type GENERATED, and the action remembers them: until one
+    of them is edited they are nobody's decision, and are detected anew next time.
+    """
+    bag = compat.channelbag(action, slot)
+    detected &= _untouched(action, slot) or not any(_contact_keys(action, slot))
+    for name, standing in zip(PROPERTIES, contacts.T, strict=True):
+        _declare(armature, name, int(standing[0]))
+        curve = bag.fcurves.find(_path(name), index=0)
+        if curve is None:
+            curve = compat.new_curve(bag, _path(name), 0, GROUP)
+        changes = np.flatnonzero(np.diff(standing)) + 1
+        keyed = np.unique([0, *changes, len(frames) - 1])
+        values = standing[keyed].astype(np.float64)
+        types = np.full(len(keyed), GENERATED, np.uint8) if detected else None
+        write_values(curve, frames[keyed], values, types, interpolation=CONSTANT)
+    if detected:
+        action[DETECTED] = _digest(action, slot)
+
+
+def register() -> None:
+    """Give the properties back to overrides when a file is loaded."""
+    handlers.load_post.append(_give_back)
+
+
+def unregister() -> None:
+    """Do so no longer."""
+    handlers.load_post.remove(_give_back)
+
+
+@handlers.persistent
+def _give_back(*_: object) -> None:
+    """A library override loses properties that its library does not have; its keys stay."""
+    for armature in bpy.data.objects:
+        if armature.override_library is None or armature.animation_data is None:
+            continue
+        animation = armature.animation_data
+        played = history.played_result(armature) or (animation.action, animation.action_slot)
+        if None in played:
+            continue
+        curves = animated_curves(*played)
+        for name in PROPERTIES:
+            if (_path(name), 0) in curves and name not in armature:
+                value = curves[_path(name), 0].curve.evaluate(
+                    bpy.context.scene.frame_current_final
+                )
+                _declare(armature, name, int(value > 0.5))  # NaN is not
+
+
+def _declare(armature: bpy.types.Object, name: str, value: int) -> None:
+    armature[name] = value
+    armature.id_properties_ui(name).update(
+        min=0, max=1, description="1 while the foot stands. Clean keeps it from sliding then"
+    )
+
+
+def _untouched(action: bpy.types.Action, slot: bpy.types.ActionSlot) -> bool:
+    """Whether the contact keys are as they were detected."""
+    return action.get(DETECTED) == _digest(action, slot)
+
+
+def _digest(action: bpy.types.Action, slot: bpy.types.ActionSlot) -> str:
+    return hashlib.sha256(repr(_contact_keys(action, slot)).encode()).hexdigest()
+
+
+def _contact_keys(action: bpy.types.Action, slot: bpy.types.ActionSlot) -> list[list[float]]:
+    """Frames and values of the keys of each foot; what moves no key but mutes it is an edit."""
+    curves = animated_curves(action, slot)
+    channels = [curves.get((_path(name), 0)) for name in PROPERTIES]
+    return [[] if each is None else each.keys.ravel().tolist() for each in channels]
+
+
+def _path(name: str) -> str:
+    return f'["{name}"]'

@@ -1,0 +1,77 @@
+"""Make empties that move as recorded points do: one action for all, a slot for each."""
+
+import bpy
+import numpy as np
+from numpy.typing import NDArray
+
+from ...solvers.motion import Tracks
+from ...solvers.progress import Progress, unwatched
+from ..blender import compat
+from ..blender.data_names import fitting_name
+from ..scene.scene_objects import add_object, add_quietly, in_object_mode
+from .new_action import write_channels
+
+Array = NDArray[np.float64]
+POINT = "mocap_assist_point"
+"""Custom property of an empty: the name of its point, which Blender may have to change."""
+SIZE = 0.015  # metres: radius of the sphere that shows a marker
+CROSS = 0.2  # metres: half the length of the cross that shows what holds them
+
+
+def build_empties(
+    context: bpy.types.Context, name: str, points: tuple[str, ...], metres: float
+) -> tuple[bpy.types.Object, tuple[bpy.types.Object, ...]]:
+    """Add an empty for each point, below one that holds them together, which becomes active.
+
+    `metres` is the length of one of the scene's units.
+    """
+    in_object_mode(context)
+    holder = bpy.data.objects.new(fitting_name(name), None)
+    holder.empty_display_size = CROSS / metres
+    made = []
+    for point in points:
+        empty = bpy.data.objects.new(fitting_name(point), None)
+        empty.empty_display_type = "SPHERE"
+        empty.empty_display_size = SIZE / metres
+        empty[POINT] = point
+        empty.parent = holder
+        add_quietly(context, empty)
+        made.append(empty)
+    add_object(context, holder)
+    return holder, tuple(made)
+
+
+def write_tracks(
+    name: str,
+    empties: tuple[bpy.types.Object, ...],
+    tracks: Tracks,
+    frames: Array,
+    metres: float,
+    *,
+    progress: Progress = unwatched,
+) -> bpy.types.Action:
+    """Let empties move as points do, by one new action; where nothing was seen are no keys.
+
+    Parameters
+    ----------
+    name : of the action
+    empties : one for each point
+    tracks : Tracks
+    frames : shape (n_frames,), scene frames
+    metres : length of one of the scene's units
+    progress : Progress
+
+    Returns
+    -------
+    bpy.types.Action
+    """
+    action = bpy.data.actions.new(name)
+    action.use_fake_user = True
+    for point, empty in enumerate(empties):
+        progress(point / len(empties), "Writing keys")
+        slot = action.slots.new("OBJECT", fitting_name(tracks.names[point]))
+        bag = compat.channelbag(action, slot, ensure=True)
+        places = tracks.positions[:, point] / metres
+        write_channels(bag, "location", "Location", frames, places)
+        compat.assign(empty, action, slot)
+    return action

@@ -1,0 +1,40 @@
+"""Keys of whole actions, read once as plain numbers, to look at a few frames at a time."""
+
+from collections.abc import Mapping
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..blender.compat import Source
+from .bone_channels import Curves, animated_curves
+from .curves import ON_FRAME
+
+Array = NDArray[np.float64]
+Keys = Mapping[tuple[str, int], NDArray[np.float32]]
+N_BESIDE = 16
+"""Keys to either side of a hole that tell how densely a bone was recorded."""
+
+
+def read_keys(source: Source) -> Keys:
+    """Return frame and value of every key, by channel: shape (n_keys, 2), as Blender has it."""
+    return {
+        name: each.keys.astype(np.float32) for name, each in animated_curves(*source).items()
+    }
+
+
+def curves_near(source: Source, keys: Keys, frames: Array) -> Curves:
+    """Return the F-Curves as they are now, with so many of the keys as the frames ask for."""
+    curves = animated_curves(*source)
+    for name in curves.keys() & keys.keys():
+        curves[name].keys = _near(keys[name], frames)
+    return curves
+
+
+def _near(keys: NDArray[np.float32], frames: Array) -> Array:
+    """Return the keys on the frames; if some frame has none, the keys beside them too."""
+    times = keys[:, 0]
+    edges = np.array([frames[0] - ON_FRAME, frames[-1] + ON_FRAME], np.float32)
+    first, last = np.searchsorted(times, edges)
+    if last - first != len(frames) or (np.abs(times[first:last] - frames) > ON_FRAME).any():
+        first, last = max(first - N_BESIDE, 0), last + N_BESIDE
+    return keys[first:last].astype(np.float64)

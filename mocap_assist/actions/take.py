@@ -1,0 +1,182 @@
+"""A take: an armature's action as the motions that solvers understand, and the way back."""
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ...solvers.motion import Motion, Skeleton, Tracks
+from ...solvers.rotations import inverse, multiply, rotate
+from ..blender.turns import Sliced, Steps, due
+from ..scene.rig import Placement, Rig
+from .frames import Grid
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True, eq=False)
+class BoneChannels:
+    """What the action and the pose say about one bone, over the frames of the take."""
+
+    rotations: Array
+    """Pose-bone rotation (Blender's basis), shape (n_frames, 4); NaN in gaps."""
+    locations: Array
+    """Pose-bone location, shape (n_frames, 3), in the armature's unit; NaN in gaps.
+
+    Zero for connected bones, which ignore theirs.
+    """
+    rotation_keyed: bool
+    location_keyed: bool
+
+    @property
+    def travels(self) -> bool:
+        """Whether its location is keyed and does change."""
+        known = self.locations[np.isfinite(self.locations).all(axis=1)]
+        return self.location_keyed and bool((known != known[:1]).any())
+
+
+@dataclass(frozen=True, eq=False)
+class Part:
+    """One tree of bones as a Motion; its root may hang on bones that are not part of it."""
+
+    motion: Motion
+    bones: tuple[int, ...]
+    """Rig bone of each joint; -1 for end sites."""
+    carrier: Placement
+    """Armature space, moved by the bones above the root as it is at each frame."""
+
+
+@dataclass(frozen=True, eq=False)
+class ArmatureTake:
+    """What was read, in the form in which it is solved.
+
+    `parts[0]` is the body: the tree of hips, spine and limbs, in the world. Further trees, such
+    as props and IK controls, follow, each in the space in which its parent rests. `offsets`
+    are the locations of bones inside the trees, in their parents' rest axes, metres.
+    """
+
+    rig: Rig
+    grid: Grid
+    parts: tuple[Part, ...]
+    offsets: Tracks | None
+    channels: tuple[BoneChannels, ...]
+    rest: Placement
+
+    @property
+    def frames(self) -> Array:
+        """Scene frames, shape (n_frames,)."""
+        return self.grid.frames
+
+    @property
+    def recordings(self) -> tuple[Motion | Tracks, ...]:
+        """Everything to be solved, the body first."""
+        motions = tuple(part.motion for part in self.parts)
+        return motions if self.offsets is None else (*motions, self.offsets)
+
+    def with_recordings(self, recordings: tuple[Motion | Tracks, ...]) -> "ArmatureTake":
+        """Return the take with other motions in the place of its own."""
+        n_parts = len(self.parts)
+        parts = tuple(
+            replace(part, motion=motion)
+            for part, motion in zip(self.parts, recordings[:n_parts], strict=True)
+        )
+        offsets = recordings[n_parts] if self.offsets is not None else None
+        return replace(self, parts=parts, offsets=offsets)
+
+    def bone_rotations(self) -> dict[int, Array]:
+        """Return the pose-bone rotation, shape (n_frames, 4), of every bone in a part."""
+        found: dict[int, Array] = {}
+        for part in self.parts:
+            found |= basis_rotations(part, self.rig, self.rest)
+        return found
+
+    def bone_locations(self) -> dict[int, Array]:
+        """Return the pose-bone location, shape (n_frames, 3), of every bone that has one."""
+        found = {}
+        for part in self.parts:
+            found[part.bones[0]] = root_locations(part, self.rig)
+        if self.offsets is not None:
+            for place, name in enumerate(self.offsets.names):
+                bone = self.rig.bones.index(name)
+                axes = multiply(self.rest.rotations[0], self.rig.rest_rotations[bone])
+                shift = self.offsets.positions[:, place] / self.rest.scale
+                found[bone] = rotate(inverse(axes), shift)
+        return found
+
+
+@Sliced
+def part_of(
+    rig: Rig,
+    bones: list[int],
+    channels: tuple[BoneChannels, ...],
+    carrier: Placement,
+    rest: Placement,
+    frame_rate: float,
+) -> Steps[Part]:
+    """Turn pose-bone channels into local rotations about world axes, L = A B A^-1.
+
+    A is the rest orientation of the bone in the world. No forward kinematics is needed, since
+    a joint's local rotation and Blender's basis are the same turn seen from different axes.
+    The root's rotation is then carried into the world.
+    """
+    world = multiply(rest.rotations[0], rig.rest_rotations)
+    rotations = []
+    for number, bone in enumerate(bones):
+        turn = multiply(multiply(world[bone], channels[bone].rotations), inverse(world[bone]))
+        rotations.append(turn)
+        if due():
+            yield 0.7 + 0.3 * number / len(bones)
+    carried = multiply(carrier.rotations, inverse(rest.rotations[0]))
+    rotations[0] = multiply(carried, rotations[0])
+    root = bones[0]
+    moved = rotate(rig.rest_rotations[root], channels[root].locations)
+    positions = carrier.points(rig.heads[root] + moved)
+    skeleton, owners = skeleton_of(rig, bones, rest)
+    still = np.tile([1.0, 0.0, 0.0, 0.0], (len(positions), 1))
+    rotations += [still] * (len(owners) - len(bones))
+    motion = Motion(skeleton, np.stack(rotations, axis=1), positions, frame_rate)
+    return Part(motion, owners, carrier)
+
+
+def basis_rotations(part: Part, rig: Rig, rest: Placement) -> dict[int, Array]:
+    """Undo `part_of`: the pose-bone rotation, shape (n_frames, 4), of each bone."""
+    local = np.array(part.motion.rotations)
+    carried = multiply(part.carrier.rotations, inverse(rest.rotations[0]))
+    local[:, 0] = multiply(inverse(carried), local[:, 0])
+    world = multiply(rest.rotations[0], rig.rest_rotations)
+    return {
+        bone: multiply(multiply(inverse(world[bone]), local[:, joint]), world[bone])
+        for joint, bone in enumerate(part.bones)
+        if bone >= 0
+    }
+
+
+def root_locations(part: Part, rig: Rig) -> Array:
+    """Undo `part_of`: the pose-bone location, shape (n_frames, 3), of the part's root."""
+    root = part.bones[0]
+    moved = part.carrier.points_back(part.motion.root_positions) - rig.heads[root]
+    return rotate(inverse(rig.rest_rotations[root]), moved)
+
+
+def skeleton_of(
+    rig: Rig, bones: list[int], rest: Placement
+) -> tuple[Skeleton, tuple[int, ...]]:
+    """Joints at the bones' heads, and an end site at the tail of each last bone."""
+    place = {bone: joint for joint, bone in enumerate(bones)}
+    names = [rig.bones[bone] for bone in bones]
+    parents = [-1, *(place[rig.parents[bone]] for bone in bones[1:])]
+    points = [rig.heads[bone] for bone in bones]
+    for joint, bone in enumerate(bones):
+        end = f"{rig.bones[bone]}_end"
+        last = bone not in rig.parents and not (
+            rig.ends[bone] or rig.bones[bone].endswith("_end")
+        )
+        if last and end not in rig.bones:
+            names.append(end)
+            parents.append(joint)
+            points.append(rig.tails[bone])
+    axes, scale = rest.rotations[0], rest.scale
+    where = scale * rotate(axes, np.array(points)) + rest.origins[0]
+    offsets = where - np.where(np.array(parents)[:, None] < 0, 0.0, where[parents])
+    owners = (*bones, *[-1] * (len(names) - len(bones)))
+    return Skeleton(tuple(names), tuple(parents), offsets), owners

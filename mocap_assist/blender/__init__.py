@@ -1,0 +1,1 @@
+"""What Blender itself asks for: versions, names, paths, properties, long work in turns."""

@@ -1,0 +1,113 @@
+"""Blender properties made from settings classes, so that each setting is described once."""
+
+from collections.abc import Callable
+from dataclasses import Field, fields
+from enum import Enum
+from inspect import get_annotations
+from math import isfinite, isnan
+from typing import Any, NamedTuple, TypeVar, get_type_hints
+
+import bpy
+import numpy as np
+
+from ...solvers.settings import Described, Settings, in_title_case, label_of
+from .path_properties import path_property
+
+Class = TypeVar("Class", bound=type)
+Bundle = TypeVar("Bundle", bound=NamedTuple)
+SUBTYPES = {"rad": "ANGLE", "m": "DISTANCE", "s": "TIME_ABSOLUTE", "%": "PERCENTAGE"}
+
+
+def settings_from(bundle: type[Bundle]) -> Callable[[Class], Class]:
+    """Decorate an operator or property group: a property for each setting of a bundle.
+
+    A bundle is a NamedTuple of settings classes. The decorated class gets `settings()`, which
+    returns the bundle with the checked values of the properties, and `setting_names`. Settings
+    of the same name in two classes become one property.
+    """
+    classes = get_type_hints(bundle)
+    described = {item.name: item for each in classes.values() for item in fields(each)}
+
+    def settings(self: Any) -> Bundle:
+        return bundle(**{name: _settings_of(self, each) for name, each in classes.items()})
+
+    def decorate(cls: Class) -> Class:
+        # Blender would fill in what a button did last, and so what the sidebar says now
+        # would seem to be what the caller gave.
+        options = {"SKIP_SAVE"} if issubclass(cls, bpy.types.Operator) else set()
+        properties = {name: _property(item, options) for name, item in described.items()}
+        cls.__annotations__ = properties | get_annotations(cls)
+        cls.settings = settings
+        cls.setting_names = tuple(described)
+        return cls
+
+    return decorate
+
+
+def _settings_of(properties: Any, settings_class: type[Settings]) -> Settings:
+    return settings_class(**{
+        item.name: _value(getattr(properties, item.name), item)
+        for item in fields(settings_class)
+    })
+
+
+def _property(item: "Field[Any]", options: set[str]) -> Any:
+    described: Described = item.metadata["described"]
+    kind = type(item.default)
+    shown = {
+        "name": label_of(item),
+        "description": described.help,
+        "default": item.default,
+        "options": {"ANIMATABLE"} | options,
+    }
+    if issubclass(kind, Enum):
+        choices = [(each.name, _words(each), "", index)
+                   for index, each in enumerate(kind)]  # fmt: skip
+        return bpy.props.EnumProperty(
+            **shown | {"items": choices, "default": item.default.name}
+        )
+    if kind is bool:
+        return bpy.props.BoolProperty(**shown)
+    if kind is str:
+        is_path = item.name.endswith("_file")
+        return (path_property if is_path else bpy.props.StringProperty)(**shown)
+    limits = {
+        name: limit
+        for name, limit in (("min", described.minimum), ("max", described.maximum))
+        if isfinite(limit)
+    }
+    if kind is int:
+        return bpy.props.IntProperty(**shown, **limits)
+    return bpy.props.FloatProperty(**shown | _unit(described), **limits, precision=3)
+
+
+def _unit(described: Described) -> dict[str, str]:
+    """Let Blender show the unit where it knows it, and say it in the tooltip where not."""
+    if described.unit in SUBTYPES:
+        return {"subtype": SUBTYPES[described.unit]}
+    if (described.minimum, described.maximum, described.unit) == (0.0, 1.0, ""):
+        return {"subtype": "FACTOR"}
+    unit = f" ({described.unit})" if described.unit else ""
+    return {"description": described.help + unit}
+
+
+def _value(value: Any, item: "Field[Any]") -> Any:
+    """Undo what Blender does to a value: enums become words, floats lose half their digits.
+
+    A file of another version may hold what is no value here: the nearest one is returned, or
+    the default.
+    """
+    default, described = item.default, item.metadata["described"]
+    if isinstance(default, Enum):
+        return type(default).__members__.get(value, default)
+    if isinstance(default, bool | str):
+        return value
+    if isinstance(default, float):
+        if np.float32(default) == np.float32(value) or isnan(value):
+            return default
+        value = float(f"{value:.7g}")  # 0.1 comes back as 0.10000000149
+    return type(default)(min(max(value, described.minimum), described.maximum))
+
+
+def _words(choice: Enum) -> str:
+    return in_title_case(str(choice.value))

@@ -1,0 +1,1 @@
+"""The buttons Check, Compare and Revert."""

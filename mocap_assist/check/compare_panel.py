@@ -1,0 +1,48 @@
+"""Panel: raw and clean together, and the way back."""
+
+import bpy
+
+from ..panels.drawing import exists
+from ..panels.preferred import preferences
+from ..runtime.selection import played_result, selected_subject
+from ..scene import history
+
+REVERT = "mocap_assist.revert_to_raw"
+
+
+class ComparePanel:
+    """The overlay's switch, and Revert."""
+
+    bl_label = "Compare"
+
+    def draw(self, context: bpy.types.Context) -> None:
+        layout = self.layout
+        _draw_actions(layout, context)
+        column = layout.column(align=True)
+        column.prop(context.window_manager, "mocap_assist_overlay", toggle=True, icon="OVERLAY")
+        if preferences() is not None:
+            _draw_colors(column)
+        if exists(REVERT):
+            layout.operator(REVERT, icon="LOOP_BACK")
+
+
+def _draw_colors(column: bpy.types.UILayout) -> None:
+    colors = column.row(align=True)
+    for color in ("raw_color", "clean_color"):
+        colors.prop(preferences(), color, text="")
+    names = column.row(align=True)
+    for text in ("Raw", "Clean"):
+        name = names.row()
+        name.alignment = "CENTER"
+        name.label(text=text)
+
+
+def _draw_actions(layout: bpy.types.UILayout, context: bpy.types.Context) -> None:
+    played = played_result(selected_subject(context))
+    if played is None:
+        return
+    raw, _ = history.raw_of(played[0])
+    column = layout.column(align=True)
+    column.label(text=played[0].name, icon="ACTION", translate=False)
+    made_from = bpy.app.translations.pgettext_iface("Made from {raw}").format(raw=raw.name)
+    column.label(text=made_from, icon="BLANK1", translate=False)

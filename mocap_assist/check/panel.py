@@ -1,0 +1,113 @@
+"""Panel: what is wrong with the action, in figures and place by place."""
+
+import bpy
+
+from ...solvers.errors import InvalidMotionError
+from ..panels.drawing import draw_job, draw_sentence, exists, is_wide
+from ..panels.figures import figure_rows, frames_text
+from ..runtime.selection import played_result, played_source, selected_subject
+from ..scene import history
+
+CHECK, JUMP = "mocap_assist.measure_quality", "mocap_assist.jump_to_spot"
+ICONS = {
+    "spike": "IPO_ELASTIC",
+    "gap": "REMOVE",
+    "jitter": "RNDCURVE",
+    "foot slide": "FORWARD",
+    "limit": "CON_ROTLIMIT",
+}
+STALE = "These are the spots of {action}. Press Check again."
+FEWEST, MOST = 4, 8  # rows of the list
+
+
+class MOCAP_UL_spots(bpy.types.UIList):
+    """Worst spots; a click on one goes there."""
+
+    def draw_item(
+        self, context, layout, data, item, icon, active_data, active_property, index
+    ) -> None:
+        row = layout.split(factor=0.55)
+        frames = frames_text(item.start, item.stop)
+        _jump(row, index, item.name, ICONS.get(item.kind, "ERROR"))
+        if is_wide(context):
+            row = row.split(factor=0.5)
+            _jump(row, index, item.kind, "NONE")
+        _jump(row, index, frames, "NONE")
+
+
+class CheckPanel:
+    """Figures before and after, and the worst spots."""
+
+    bl_label = "Check"
+
+    @classmethod
+    def poll(cls, context: bpy.types.Context) -> bool:
+        return exists(CHECK)
+
+    def draw(self, context: bpy.types.Context) -> None:
+        layout, found = self.layout, context.scene.mocap_assist
+        draw_job(layout, context, "check")
+        row = layout.row()
+        row.scale_y = 1.3
+        row.operator(CHECK, icon="VIEWZOOM")
+        _draw_figures(layout, context)
+        if found.spots:
+            _draw_spots(layout, context)
+        _draw_thresholds(layout, found.check)
+
+
+def _draw_figures(layout: bpy.types.UILayout, context: bpy.types.Context) -> None:
+    result = played_result(selected_subject(context))
+    rows = figure_rows(history.history(result[0])) if result else []
+    if not rows:
+        return
+    table = layout.box().column(align=True)
+    table.scale_y = 0.9
+    for label, before, after in (("", "Before", "After"), *rows):
+        names = table.split(factor=0.52)
+        names.label(text=label)
+        values = names.split(factor=0.5)
+        values.label(text=before)
+        values.label(text=after)
+
+
+def _draw_spots(layout: bpy.types.UILayout, context: bpy.types.Context) -> None:
+    found = context.scene.mocap_assist
+    rows = min(max(len(found.spots), FEWEST), MOST)
+    layout.template_list(
+        "MOCAP_UL_spots", "", found, "spots", found, "active_spot", rows=rows, maxrows=rows
+    )
+    row = layout.row(align=True)
+    row.operator(JUMP, text="Previous", icon="TRIA_LEFT").step = -1
+    row.operator(JUMP, text="Next", icon="TRIA_RIGHT").step = 1
+    if 0 <= found.active_spot < len(found.spots):
+        draw_sentence(layout, context, found.spots[found.active_spot].sentence)
+    subject = selected_subject(context)
+    if subject is not None and is_stale(found.checked, subject):
+        said = bpy.app.translations.pgettext_iface(STALE).format(action=found.checked)
+        draw_sentence(layout, context, said, icon="INFO")
+
+
+def is_stale(checked: str, subject: bpy.types.Object) -> bool:
+    """Whether the subject plays another action than the one that was checked."""
+    try:
+        return played_source(subject)[0].name != checked
+    except InvalidMotionError:
+        return True
+
+
+def _draw_thresholds(layout: bpy.types.UILayout, check: bpy.types.PropertyGroup) -> None:
+    header, body = layout.panel("mocap_assist_check_thresholds", default_closed=True)
+    header.label(text="What counts")
+    if body is None:
+        return
+    body.use_property_split = True
+    body.use_property_decorate = False
+    for name in type(check).setting_names:
+        body.prop(check, name)
+
+
+def _jump(layout: bpy.types.UILayout, index: int, text: str, icon: str) -> None:
+    row = layout.row()
+    row.alignment = "LEFT"
+    row.operator(JUMP, text=text, icon=icon, emboss=False, translate=False).index = index

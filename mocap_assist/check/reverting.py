@@ -1,0 +1,43 @@
+"""The way back from a result to the action that was recorded."""
+
+import bpy
+
+from ..blender import compat
+from ..runtime.selection import played_result, players, selected_subject
+from ..scene import history
+
+
+def why_not_revert(context: bpy.types.Context) -> str:
+    """Return why the button is grey, or nothing."""
+    subject = selected_subject(context)
+    if subject is None:
+        return "Select an armature, or captured markers."
+    if played_result(subject) is None:
+        return (
+            f"{subject.name} plays no result of Mocap Assist whose raw action is in this file."
+        )
+    return ""
+
+
+def revert(subject: bpy.types.Object) -> str:
+    """Let an armature, or each of the markers below an object, play what was recorded."""
+    result, _ = played_result(subject)
+    raw, _ = history.raw_of(result)
+    for player in players(subject):
+        if played := history.played_result(player):
+            _revert(player, *played)
+    return f"{subject.name} plays {raw.name} again; {result.name} is kept."
+
+
+def _revert(player: bpy.types.Object, result: bpy.types.Action, slot: object) -> None:
+    """Assign the recorded action and slot again; NLA tracks of results made from it go."""
+    raw = history.raw_of(result, slot)
+    tracks = player.animation_data.nla_tracks
+    for track in list(tracks):
+        made_from = [
+            strip.action and history.raw_of(strip.action, strip.action_slot)
+            for strip in track.strips
+        ]
+        if made_from == [raw] and not track.mute:
+            tracks.remove(track)
+    compat.assign(player, *raw)

@@ -1,0 +1,1 @@
+"""The buttons Clean, Learn and Plant Feet."""

@@ -1,0 +1,89 @@
+"""What Clean finds on an armature, and how its result is written there."""
+
+from typing import Any, NamedTuple
+
+import bpy
+import numpy as np
+from numpy.typing import NDArray
+
+from ...solvers.motion import JointLimits
+from ..actions.armature_read import read_take
+from ..actions.armature_write import check_writable, count_modified, put_to_use, write_take
+from ..actions.contacts import animators_contacts, write_contacts
+from ..actions.limits import read_limits
+from ..actions.take import ArmatureTake
+from ..blender.compat import Source
+from ..blender.turns import Steps
+from ..runtime.selection import chosen_bones, played_source
+from ..runtime.subject import Subject
+from ..scene import history
+from .choices import CleanChoices, Limits
+from .solve_cleaning import Cleaned, Recordings, names_of
+
+
+class ArmatureReading(NamedTuple):
+    """An armature, what it plays, and the bones to change."""
+
+    scene: bpy.types.Scene
+    armature: bpy.types.Object
+    recorded: Source
+    played: Source
+    """What the armature plays: the recorded action, or an earlier result made from it."""
+    raw: ArmatureTake
+    chosen: frozenset[str]
+
+    @classmethod
+    def of(
+        cls, scene: bpy.types.Scene, armature: bpy.types.Object, choices: CleanChoices
+    ) -> "Steps[ArmatureReading]":
+        """Read what was recorded."""
+        check_writable(armature)
+        here = Subject.of(scene, armature)
+        recorded = history.cleaned_from(played_source(armature))
+        raw = yield from read_take.steps(armature, scene, choices.frame_range, recorded)
+        scene, armature = here.find()
+        bones, played = chosen_bones(armature, choices.bones), played_source(armature)
+        return cls(scene, armature, history.cleaned_from(played), played, raw, bones)
+
+    def limits(self, choices: CleanChoices) -> JointLimits | None:
+        """Return how far the rig lets joints turn, if that was asked for."""
+        if choices.joint_limits is not Limits.CONSTRAINTS:
+            return None
+        return read_limits(self.armature, self.raw, self.chosen)
+
+    def contacts(self) -> NDArray[np.bool_] | None:
+        """Return when each foot stands, as the animator keyed it."""
+        return animators_contacts(self.played, self.raw.frames)
+
+    def present(self) -> Steps[Recordings | None]:
+        """What an earlier result shows of the bones that stay, if it differs from the raw."""
+        everything = len(self.chosen) == len(self.raw.rig.bones)
+        if everything or self.played == self.recorded:
+            return None
+        take = yield from read_take.steps(
+            self.armature, self.scene, source=self.played, grid=self.raw.grid
+        )
+        same = [names_of(one) for one in take.recordings] == [
+            names_of(one) for one in self.raw.recordings
+        ]
+        return take.recordings if same else None
+
+    def write(
+        self,
+        choices: CleanChoices,
+        cleaned: Cleaned,
+        types: dict[str, NDArray[np.uint8]],
+        entry: dict[str, Any],
+    ) -> tuple[str, int]:
+        """Write a new action and play it; return its name and how many curves were modified."""
+        take = self.raw.with_recordings(cleaned.recordings)
+        n_modified = count_modified(self.played, cleaned.moved)
+        action, slot = write_take(self.armature, self.played, take, cleaned.moved, types)
+        if cleaned.planted is not None:
+            contacts, detected = cleaned.planted.contacts, self.contacts() is None
+            write_contacts(
+                self.armature, action, slot, take.frames, contacts, detected=detected
+            )
+        history.record(action, self.played, entry)
+        put_to_use(self.armature, action, slot, choices.result_as)
+        return action.name, n_modified

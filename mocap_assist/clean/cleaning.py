@@ -1,0 +1,135 @@
+"""What the button Clean reads from the scene, and what it writes back."""
+
+from dataclasses import replace
+from functools import partial
+
+import bpy
+import numpy as np
+from numpy.typing import NDArray
+
+from ...solvers.denoising import Denoised
+from ...solvers.errors import InvalidMotionError
+from ...solvers.motion import Tracks
+from ..actions.curves import GENERATED, MEASURED
+from ..actions.frames import Grid
+from ..actions.marker_take import MarkerTake
+from ..actions.take import ArmatureTake
+from ..blender.turns import Sliced, Steps
+from ..jobs.job import Quick
+from ..library.prior import library_prior
+from ..runtime import redo
+from ..runtime.selection import Bones
+from ..runtime.subject import Subject, check_unchanged
+from .armature import ArmatureReading
+from .choices import CleanChoices, CleanSettings, Limits, Prior
+from .examples import read_prior
+from .markers import MarkerReading
+from .report import clean_report, entry_of
+from .solve_cleaning import Cleaned, Examples, Finish, Problem, Recordings, clean, names_of
+
+UNSURE = 0.5  # confidence below which a key counts as generated
+EASE = 5  # frames over which a cleaned range joins the frames outside it
+
+
+@Sliced
+def read_cleaning(
+    scene: bpy.types.Scene, subject: bpy.types.Object, settings: CleanSettings
+) -> "Steps[partial[Cleaned]]":
+    """Read what an armature, or the markers below an object, play.
+
+    Returns what is to be solved, which may be pickled.
+    """
+    choices = settings.choices
+    examples, found = yield from _read(Subject.of(scene, subject), choices)
+    problem = _problem(found.raw, settings, examples)
+    plants = choices.plant_feet and isinstance(found.raw, ArmatureTake)
+    limits, contacts = found.limits(choices), found.contacts()
+    finish = Finish(
+        strength=settings.denoising.strength,
+        ease=ease_of(found.raw.grid),
+        chosen=found.chosen,
+        present=(yield from found.present()),
+        limits=limits,
+        planting=settings.planting if plants else None,
+        contacts=contacts,
+    )
+    solution = redo.recall(problem)
+    return (partial if solution is None else Quick)(clean, problem, finish, solution)
+
+
+@Sliced
+def write_cleaned(
+    scene: bpy.types.Scene,
+    subject: bpy.types.Object,
+    settings: CleanSettings,
+    cleaned: Cleaned,
+    asked: str | None = None,
+) -> Steps[str]:
+    """Write the result as a new action and put it to use; return a sentence about it.
+
+    Raises InvalidMotionError if the subject plays something else than what was `asked`, a
+    fingerprint of the problem.
+    """
+    here = Subject.of(scene, subject)
+    examples, found = yield from _read(here, settings.choices)
+    problem = _problem(found.raw, settings, examples)
+    check_unchanged(here.find()[1], asked, problem)
+    redo.remember(problem, cleaned.solution)
+    types = key_types(cleaned.solution.recordings, cleaned.solution.denoised)
+    entry = entry_of("denoise", settings, cleaned)
+    name, n_modified = found.write(settings.choices, cleaned, types, entry)
+    return clean_report(len(found.raw.frames), cleaned, name, n_modified)
+
+
+def key_types(
+    recordings: Recordings, denoised: tuple[Denoised, ...]
+) -> dict[str, NDArray[np.uint8]]:
+    """Paint the keys of each bone: what was filled or corrected is GENERATED, the rest not."""
+    types: dict[str, NDArray[np.uint8]] = {}
+    for recording, result in zip(recordings, denoised, strict=True):
+        seen = recording.visible if isinstance(recording, Tracks) else recording.observed
+        unsure = ~seen | result.outliers | (result.confidence < UNSURE)
+        for name, flags in zip(names_of(recording), unsure.T, strict=True):
+            painted = np.where(flags, GENERATED, MEASURED).astype(np.uint8)
+            types[name] = np.maximum(painted, types.get(name, MEASURED))
+    return types
+
+
+def _read(
+    here: Subject, choices: CleanChoices
+) -> Steps[tuple[Examples, ArmatureReading | MarkerReading]]:
+    """Read what is to be learned from, and then what is to be cleaned."""
+    scene, subject = here.find()
+    if choices.prior is Prior.LIBRARY:
+        examples = Examples(library=library_prior(scene, subject))
+    else:
+        examples = yield from read_prior.steps(scene, subject, choices)
+    scene, subject = here.find()
+    kind = ArmatureReading if subject.type == "ARMATURE" else MarkerReading
+    return examples, (yield from kind.of(scene, subject, choices))
+
+
+def _problem(
+    raw: ArmatureTake | MarkerTake, settings: CleanSettings, examples: Examples
+) -> Problem:
+    choices = settings.choices
+    learn_limits = choices.joint_limits is Limits.EXAMPLES and isinstance(raw, ArmatureTake)
+    if learn_limits and choices.prior is not Prior.EXAMPLES:
+        raise InvalidMotionError(
+            "Joint limits can only be learned from examples: choose those to learn from."
+        )
+    return Problem(
+        recordings=raw.recordings,
+        settings=replace(settings.denoising, strength=1.0),
+        examples=examples,
+        learn_limits=learn_limits,
+        unswap=choices.unswap and choices.bones is Bones.ALL and isinstance(raw, MarkerTake),
+    )
+
+
+def ease_of(grid: Grid) -> NDArray[np.float64]:
+    """Rise from 0 and fall to 0 where the action goes on before or after the cleaned frames."""
+    n_frames = len(grid.frames)
+    ramp = np.minimum((np.arange(n_frames) + 1.0) / (EASE + 1.0), 1.0)
+    before, after = grid.joins
+    return np.minimum(ramp if before else 1.0, ramp[::-1] if after else np.ones(n_frames))

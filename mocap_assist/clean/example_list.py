@@ -1,0 +1,191 @@
+"""The list of clean actions and recordings to learn from, and the ways to fill it."""
+
+from pathlib import Path
+from typing import Any, ClassVar
+
+import bpy
+
+from ..blender.name_lists import SEPARATOR, joined, listed
+from ..blender.path_properties import FOLDER, HIDDEN, absolute, chosen_files, path_property
+from ..runtime.selection import selected_armature
+from ..scene import history
+
+ADD, ADD_FILES = "mocap_assist.add_example", "mocap_assist.add_example_files"
+ADD_FOLDER = "mocap_assist.add_example_folder"
+REMOVE = "mocap_assist.remove_example"
+CLEAN, RECONSTRUCT = "clean", "reconstruct"
+"""Whose list it is: a property of `scene.mocap_assist`."""
+RECORDINGS = "*.bvh;*.amc;*.c3d;*.trc;*.blend"
+CHANGES_A_LIST = {"INTERNAL", "UNDO"}
+LONGEST_MENU = 30
+
+
+def draw_examples(
+    layout: bpy.types.UILayout, settings: bpy.types.PropertyGroup, group: str = CLEAN
+) -> None:
+    """Draw the examples, each with a button that takes it out."""
+    for index, name in enumerate(listed(settings.examples)):
+        row = layout.row(align=True)
+        action = name in bpy.data.actions
+        shown = name if action else Path(name).name
+        icon = "ACTION" if action else "FILE" if Path(name).suffix else "FILE_FOLDER"
+        row.label(text=shown, icon=icon, translate=False)
+        button = row.operator(REMOVE, text="", icon="X", emboss=False)
+        button.index, button.group = index, group
+    layout.menu(MENUS[group], icon="ADD")
+
+
+def candidates(context: bpy.types.Context, group: str = CLEAN) -> list[str]:
+    """Return the actions that may serve: recordings and clean ones, but not the one played."""
+    armature = selected_armature(context)
+    animation = armature.animation_data if armature is not None else None
+    played = animation.action if animation is not None else None
+    taken = _examples(context, group)
+    return [
+        action.name
+        for action in bpy.data.actions
+        if action not in {played, played and played.get(history.SOURCE)}
+        and action.name not in taken
+        and SEPARATOR not in action.name
+    ]
+
+
+class MOCAP_MT_examples(bpy.types.Menu):
+    """Actions of this file, and recordings on disk."""
+
+    bl_label = "Add Example"
+
+    def draw(self, context: bpy.types.Context) -> None:
+        _draw_menu(self.layout, context, CLEAN)
+
+
+class MOCAP_MT_posture_examples(bpy.types.Menu):
+    """The same, of which postures are learned."""
+
+    bl_label = "Add Clip"
+
+    def draw(self, context: bpy.types.Context) -> None:
+        _draw_menu(self.layout, context, RECONSTRUCT)
+
+
+def _draw_menu(layout: bpy.types.UILayout, context: bpy.types.Context, group: str) -> None:
+    for name in candidates(context, group)[:LONGEST_MENU]:
+        button = layout.operator(ADD, text=name, translate=False, icon="ACTION")
+        button.example, button.group = name, group
+    layout.separator()
+    layout.operator(ADD_FILES, icon="FILE_FOLDER").group = group
+    layout.operator(ADD_FOLDER, icon="FILE_FOLDER").group = group
+
+
+MENUS = {CLEAN: "MOCAP_MT_examples", RECONSTRUCT: "MOCAP_MT_posture_examples"}
+
+
+def _examples(context: bpy.types.Context, group: str) -> list[str]:
+    return listed(getattr(context.scene.mocap_assist, group).examples)
+
+
+def _set_examples(context: bpy.types.Context, group: str, entries: list[str]) -> set[str]:
+    getattr(context.scene.mocap_assist, group).examples = joined(entries)
+    return {"FINISHED"}
+
+
+def _group() -> Any:
+    """Return a property that says whose list is meant."""
+    return bpy.props.StringProperty(default=CLEAN, options={"HIDDEN", "SKIP_SAVE"})
+
+
+class MOCAP_OT_add_example(bpy.types.Operator):
+    bl_idname = ADD
+    bl_options: ClassVar = CHANGES_A_LIST
+    bl_label = "Add Action"
+    bl_description = "Learn from this action too; it must be clean, and may be of another rig"
+
+    example: bpy.props.StringProperty(
+        name="Action", description="Name of the action", options={"SKIP_SAVE"}
+    )
+    group: _group()
+
+    def execute(self, context: bpy.types.Context) -> set[str]:
+        return _set_examples(
+            context, self.group, [*_examples(context, self.group), self.example]
+        )
+
+
+class MOCAP_OT_remove_example(bpy.types.Operator):
+    bl_idname = REMOVE
+    bl_options: ClassVar = CHANGES_A_LIST
+    bl_label = "Remove Example"
+    bl_description = "Do not learn from this one"
+
+    index: bpy.props.IntProperty(
+        name="Example", description="Place in the list", min=0, options={"SKIP_SAVE"}
+    )
+    group: _group()
+
+    def execute(self, context: bpy.types.Context) -> set[str]:
+        entries = enumerate(_examples(context, self.group))
+        kept = [name for place, name in entries if place != self.index]
+        return _set_examples(context, self.group, kept)
+
+
+class MOCAP_OT_add_example_files(bpy.types.Operator):
+    bl_idname = ADD_FILES
+    bl_options: ClassVar = CHANGES_A_LIST
+    bl_label = "Recordings or .blend Files..."
+    bl_description = (
+        "Learn from clean recordings on disk too, of any rig, or from all actions of .blend"
+        " files that have their rig with them"
+    )
+
+    directory: path_property(FOLDER, HIDDEN)
+    files: bpy.props.CollectionProperty(type=bpy.types.OperatorFileListElement, options=HIDDEN)
+    filter_glob: bpy.props.StringProperty(default=RECORDINGS, options=HIDDEN)
+    group: _group()
+
+    def invoke(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
+        context.window_manager.fileselect_add(self)
+        return {"RUNNING_MODAL"}
+
+    def execute(self, context: bpy.types.Context) -> set[str]:
+        chosen = map(str, chosen_files(self))
+        return _set_examples(context, self.group, [*_examples(context, self.group), *chosen])
+
+
+class MOCAP_OT_add_example_folder(bpy.types.Operator):
+    bl_idname = ADD_FOLDER
+    bl_options: ClassVar = CHANGES_A_LIST
+    bl_label = "Folder on Disk..."
+    bl_description = "Learn from all clean recordings in a folder, of any rig"
+
+    directory: path_property(FOLDER, HIDDEN)
+    group: _group()
+
+    def invoke(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
+        context.window_manager.fileselect_add(self)
+        return {"RUNNING_MODAL"}
+
+    def execute(self, context: bpy.types.Context) -> set[str]:
+        folder = str(absolute(self.directory))
+        return _set_examples(context, self.group, [*_examples(context, self.group), folder])
+
+
+CLASSES = (
+    MOCAP_MT_examples,
+    MOCAP_MT_posture_examples,
+    MOCAP_OT_add_example,
+    MOCAP_OT_remove_example,
+    MOCAP_OT_add_example_files,
+    MOCAP_OT_add_example_folder,
+)
+
+
+def register() -> None:
+    """Add the list's menu and buttons."""
+    for each in CLASSES:
+        bpy.utils.register_class(each)
+
+
+def unregister() -> None:
+    """Take them away."""
+    for each in reversed(CLASSES):
+        bpy.utils.unregister_class(each)

@@ -1,0 +1,33 @@
+"""Panel: when each foot stands, as keys that the animator can edit."""
+
+from typing import ClassVar
+
+import bpy
+
+from ..actions.contacts import PROPERTIES
+from ..panels.drawing import draw_sentence, exists
+from ..runtime.selection import selected_armature
+
+PLANT = "mocap_assist.plant_feet"
+SIDES = ("Left foot stands", "Right foot stands")
+HINT = "Key 1 where a foot stands and 0 where it does not, then plant the feet again."
+
+
+class FeetPanel:
+    """The keyed contacts, and the button that plants the feet by them."""
+
+    bl_label = "Feet"
+    bl_options: ClassVar = {"DEFAULT_CLOSED"}
+
+    @classmethod
+    def poll(cls, context: bpy.types.Context) -> bool:
+        return exists(PLANT)
+
+    def draw(self, context: bpy.types.Context) -> None:
+        layout, armature = self.layout, selected_armature(context)
+        if armature is not None and all(name in armature for name in PROPERTIES):
+            column = layout.column(align=True)
+            for name, text in zip(PROPERTIES, SIDES, strict=True):
+                column.prop(armature, f'["{name}"]', text=text)
+            draw_sentence(layout, context, bpy.app.translations.pgettext_iface(HINT))
+        layout.operator(PLANT, icon="CON_FLOOR")

@@ -1,0 +1,68 @@
+"""What the button Learn reads from the scene, and the file that it writes."""
+
+from dataclasses import dataclass
+from functools import partial
+from pathlib import Path
+from typing import NamedTuple
+
+import bpy
+
+from ...solvers.denoising import FilterBases, FilterBasesSettings
+from ...solvers.errors import InvalidFileError
+from ...solvers.settings import Settings, setting
+from ..blender.path_properties import file_to_write
+from ..blender.turns import Sliced, Steps
+from .examples import read_examples
+from .solve_learning import learn
+
+ENDING = ".npz"
+
+
+@dataclass(frozen=True, kw_only=True)
+class LearnChoices(Settings):
+    """What is learned, and where it is kept. The names are those of Clean's settings."""
+
+    examples: str = setting(
+        "", "Clean actions of this file, or recordings on disk, separated by semicolons"
+    )
+    learned_file: str = setting("", "File to write; Clean can use it in any .blend")
+
+
+class LearnSettings(NamedTuple):
+    """All that the button offers."""
+
+    choices: LearnChoices
+    bases: FilterBasesSettings
+
+
+@Sliced
+def read_learning(
+    scene: bpy.types.Scene, armature: bpy.types.Object, settings: LearnSettings
+) -> "Steps[partial[FilterBases]]":
+    """Read the examples; return what is to be solved, which may be pickled."""
+    target_of(settings)
+    examples = yield from read_examples.steps(scene, armature, settings.choices.examples)
+    return partial(learn, examples, settings.bases)
+
+
+def write_learned(
+    scene: bpy.types.Scene,
+    armature: bpy.types.Object,
+    settings: LearnSettings,
+    bases: FilterBases,
+    asked: str | None = None,
+) -> str:
+    """Save what was learned; return a sentence about it."""
+    target = target_of(settings)
+    bases.save(target)
+    return f"Learned {len(bases.values)} patterns from {bases.n_clips} clips into {target}."
+
+
+def target_of(settings: LearnSettings) -> Path:
+    """Return the file to write, after looking whether it can be written."""
+    if not settings.choices.learned_file:
+        raise InvalidFileError("Choose the file that what is learned shall be written to.")
+    target = file_to_write(settings.choices.learned_file, ENDING)
+    if not target.is_absolute() or not target.parent.is_dir():
+        raise InvalidFileError(f"There is no folder {target.parent} to write {target.name} in.")
+    return target

@@ -1,0 +1,70 @@
+"""What Clean finds on the markers of a take, and how its result is written there."""
+
+from typing import Any, NamedTuple
+
+import bpy
+import numpy as np
+from numpy.typing import NDArray
+
+from ..actions.armature_write import check_writable, put_to_use
+from ..actions.marker_take import MarkerTake, read_markers, write_markers
+from ..actions.markers import markers_of
+from ..blender.turns import Steps
+from ..runtime.selection import chosen_markers
+from ..runtime.subject import Subject
+from ..scene import history
+from .choices import CleanChoices
+from .solve_cleaning import Cleaned, Recordings
+
+
+class MarkerReading(NamedTuple):
+    """Markers below one object, and those of them to change."""
+
+    scene: bpy.types.Scene
+    holder: bpy.types.Object
+    raw: MarkerTake
+    chosen: frozenset[str]
+
+    @classmethod
+    def of(
+        cls, scene: bpy.types.Scene, holder: bpy.types.Object, choices: CleanChoices
+    ) -> "Steps[MarkerReading]":
+        """Read what was recorded."""
+        for marker in markers_of(holder):
+            check_writable(marker)
+        here = Subject.of(scene, holder)
+        raw = yield from read_markers.steps(holder, scene, choices.frame_range, recorded=True)
+        scene, holder = here.find()
+        return cls(scene, holder, raw, chosen_markers(raw, choices.bones))
+
+    def limits(self, choices: CleanChoices) -> None:
+        """Markers are no joints."""
+
+    def contacts(self) -> None:
+        """Nor are they feet."""
+
+    def present(self) -> Steps[Recordings | None]:
+        """What an earlier result shows of the markers that stay."""
+        if len(self.chosen) == self.raw.tracks.n_points:
+            return None
+        played = yield from read_markers.steps(self.holder, self.scene, grid=self.raw.grid)
+        same = played.tracks.names == self.raw.tracks.names
+        return played.recordings if same else None
+
+    def write(
+        self,
+        choices: CleanChoices,
+        cleaned: Cleaned,
+        types: dict[str, NDArray[np.uint8]],
+        entry: dict[str, Any],
+    ) -> tuple[str, int]:
+        """Write a new action and play it; return its name, and that no curve was modified."""
+        played = read_markers(self.holder, self.scene, grid=self.raw.grid)
+        take = played.with_recordings(cleaned.recordings)
+        names = set()
+        for marker, source, made in write_markers(take, cleaned.moved, types):
+            if made[0].name not in names:
+                history.record(made[0], source, entry)
+            names.add(made[0].name)
+            put_to_use(marker, *made, choices.result_as)
+        return ", ".join(sorted(names)), 0

@@ -1,0 +1,79 @@
+"""Panel: take jitter, spikes and gaps out of the action."""
+
+import bpy
+
+from ...solvers.denoising import DenoiseSettings, PlantSettings
+from ..panels.drawing import draw_job, draw_sentence, exists, folded
+from ..runtime.selection import selected_subject, why_not_clean
+from .choices import Prior
+from .example_list import draw_examples
+
+LEARN = "mocap_assist.learn_patterns"
+OF_JOINTS = {"joint_limits"}
+MAIN = ("strength", "frame_range", "joint_limits", "result_as")
+
+
+class CleanPanel:
+    """Settings of Clean, and its button."""
+
+    bl_label = "Clean"
+
+    def draw(self, context: bpy.types.Context) -> None:
+        layout = self.layout
+        running = draw_job(layout, context, "clean")
+        column = layout.column()
+        column.enabled = not running
+        clean = context.scene.mocap_assist.clean
+        column.use_property_split = True
+        column.use_property_decorate = False
+        subject = selected_subject(context)
+        joints = subject is None or subject.type == "ARMATURE"
+        _draw_main(column, clean, joints)
+        _draw_folded(column, clean, joints)
+        button = layout.row()
+        button.scale_y = 1.6
+        button.operator("mocap_assist.denoise", icon="BRUSH_DATA")
+        if reason := why_not_clean(context):
+            draw_sentence(layout, context, reason, icon="INFO")
+
+
+def _draw_main(
+    column: bpy.types.UILayout, clean: bpy.types.PropertyGroup, joints: bool
+) -> None:
+    """Draw what everybody needs; markers have neither joint limits nor feet."""
+    column.row().prop(clean, "bones", text="Bones" if joints else "Markers", expand=True)
+    column.prop(clean, "prior", text="Learn from")
+    if clean.prior == Prior.EXAMPLES.name:
+        draw_examples(column, clean)
+    if clean.prior in {Prior.EXAMPLES.name, Prior.LEARNED.name}:
+        _draw_learned(column, clean)
+    for name in MAIN:
+        if joints or name not in OF_JOINTS:
+            column.prop(clean, name)
+    column.prop(clean, "plant_feet" if joints else "unswap")
+
+
+def _draw_learned(column: bpy.types.UILayout, clean: bpy.types.PropertyGroup) -> None:
+    """Draw the file that patterns are learned from, or that Learn can keep them in."""
+    if clean.prior == Prior.LEARNED.name:
+        column.prop(clean, "learned_file")
+    elif clean.examples and exists(LEARN):
+        column.prop(clean, "learned_file", text="Keep as")
+        column.operator(LEARN, text="Learn and Keep", icon="FILE_TICK")
+
+
+def _draw_folded(
+    column: bpy.types.UILayout, clean: bpy.types.PropertyGroup, joints: bool
+) -> None:
+    header, body = column.panel("mocap_assist_clean_advanced", default_closed=True)
+    header.label(text="Advanced")
+    if body is None:
+        return
+    for name in folded(DenoiseSettings, MAIN):
+        body.prop(clean, name)
+    if not joints:
+        return
+    feet = body.column()
+    feet.active = clean.plant_feet
+    for name in folded(PlantSettings, MAIN):
+        feet.prop(clean, name)

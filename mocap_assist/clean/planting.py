@@ -1,0 +1,73 @@
+"""What the button Plant Feet reads from the scene, and what it writes back."""
+
+from functools import partial
+from typing import NamedTuple
+
+import bpy
+
+from ...solvers.denoising import PlantSettings
+from ..actions.armature_read import read_take
+from ..actions.armature_write import Output, check_writable, put_to_use, write_take
+from ..actions.contacts import animators_contacts, write_contacts
+from ..blender.turns import Sliced, Steps
+from ..jobs.job import Quick
+from ..runtime.selection import played_source
+from ..runtime.subject import Subject, check_unchanged
+from ..scene import history
+from .solve_planting import Replanted, plant
+
+N_QUICK = 5000
+"""Frames that are solved in half a second: less than it takes to start another process."""
+
+
+class FeetSettings(NamedTuple):
+    """All that the button offers."""
+
+    planting: PlantSettings
+
+
+@Sliced
+def read_planting(
+    scene: bpy.types.Scene, armature: bpy.types.Object, settings: FeetSettings
+) -> "Steps[partial[Replanted]]":
+    """Read what an armature plays; return what is to be solved, which may be pickled."""
+    check_writable(armature)
+    here = Subject.of(scene, armature)
+    take = yield from read_take.steps(armature, scene, source=played_source(armature))
+    _, armature = here.find()
+    contacts = animators_contacts(played_source(armature), take.frames)
+    kind = Quick if len(take.frames) <= N_QUICK else partial
+    return kind(plant, take.parts[0].motion, contacts, settings.planting)
+
+
+@Sliced
+def write_planted(
+    scene: bpy.types.Scene,
+    armature: bpy.types.Object,
+    settings: FeetSettings,
+    result: Replanted,
+    asked: str | None = None,
+) -> Steps[str]:
+    """Write the result as a new action and put it to use; return a sentence about it."""
+    here = Subject.of(scene, armature)
+    take = yield from read_take.steps(armature, scene, source=played_source(armature))
+    scene, armature = here.find()
+    played, planted = played_source(armature), result.planted
+    body, *others = take.recordings
+    check_unchanged(armature, asked, body)
+    take = take.with_recordings((planted.motion, *others))
+    action, slot = write_take(armature, played, take, result.moved, {})
+    detected = animators_contacts(played, take.frames) is None
+    write_contacts(armature, action, slot, take.frames, planted.contacts, detected=detected)
+    entry = {
+        "operation": "plant_feet",
+        "settings": history.plain(*settings),
+        "slide_before_cm": 100 * planted.slide_before,
+        "slide_after_cm": 100 * planted.slide_after,
+    }
+    history.record(action, played, entry)
+    put_to_use(armature, action, slot, Output.ACTION)
+    return (
+        f"{action.name}: feet slid {100 * planted.slide_before:.1f} cm while they stood, now"
+        f" {100 * planted.slide_after:.1f} cm. {len(result.moved)} bones moved."
+    )

@@ -1,0 +1,246 @@
+"""What the button Clean has solved for it: each part of a take denoised, then feet planted.
+
+The slow part, `solve`, depends neither on how strongly the result is applied nor on the feet:
+what it returns is kept, so that the redo panel has only `finish` to repeat.
+"""
+
+from dataclasses import dataclass, replace
+from functools import partial
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ...solvers.denoising import (
+    Denoised,
+    DenoiseSettings,
+    FilterBases,
+    Planted,
+    PlantSettings,
+    Quality,
+    denoise,
+    keep_within,
+    learn_filter_bases,
+    learn_joint_limits,
+    load_filter_bases,
+    measure_quality,
+    plant_feet,
+)
+from ...solvers.denoising.feet import find_legs
+from ...solvers.markers import Swap, unswap_markers
+from ...solvers.motion import JointLimits, Motion, Tracks
+from ...solvers.progress import Progress, unwatched, within
+from ...solvers.recordings import read_motion_or_tracks
+from ...solvers.rotations import angle_between, slerp
+from ..library.solve_prior import LibraryPrior
+
+Array = NDArray[np.float64]
+Recordings = tuple[Motion | Tracks, ...]
+
+SAME = 1e-6  # radians or metres below which planting did not move a joint
+
+
+class Learned(NamedTuple):
+    """What examples teach."""
+
+    bases: FilterBases | None
+    limits: JointLimits | None
+    said: str = ""
+    """A sentence on where it is from, if there is more to say than what was chosen."""
+
+
+@dataclass(frozen=True, eq=False, kw_only=True)
+class Examples:
+    """Where clean motion to learn from comes from; with nothing given, the take itself."""
+
+    motions: tuple[Motion, ...] = ()
+    files: tuple[str, ...] = ()
+    bases_file: str = ""
+    library: LibraryPrior | None = None
+
+    def learned(self, body: Motion | Tracks, limits: bool, progress: Progress) -> Learned:
+        """Learn from the examples, or load what was learned."""
+        if self.library is not None:
+            found = self.library.bases(body, progress)
+            return Learned(found.bases, None, found.said)
+        if self.bases_file:
+            return Learned(load_filter_bases(self.bases_file), None)
+        clips = [*self.motions, *map(read_motion_or_tracks, self.files)]
+        if not clips:
+            return Learned(None, None)
+        bases = learn_filter_bases(clips, progress=within(progress, 0.0, 0.9))
+        bodies = [clip for clip in clips if isinstance(clip, Motion)]
+        return Learned(bases, learn_joint_limits(bodies) if limits else None)
+
+
+@dataclass(frozen=True, eq=False, kw_only=True)
+class Problem:
+    """All that the slow part depends on."""
+
+    recordings: Recordings
+    """The body first."""
+    settings: DenoiseSettings
+    examples: Examples = Examples()
+    learn_limits: bool = False
+    """Whether the examples also teach how far joints turn."""
+    unswap: bool = False
+    """Whether labels of markers are put right first."""
+
+
+@dataclass(frozen=True, eq=False, kw_only=True)
+class Finish:
+    """How a solution is applied to the take."""
+
+    strength: float
+    """Share of the estimate, 0 to 1; gaps are filled with it all the same."""
+    ease: Array
+    """Shape (n_frames,): 1, and less where the cleaned frames join others."""
+    chosen: frozenset[str]
+    """Names of joints and points to change."""
+    present: Recordings | None = None
+    """What an earlier result made of the others; without it they are as recorded."""
+    limits: JointLimits | None = None
+    """Of the rig."""
+    planting: PlantSettings | None = None
+    """None leaves the feet alone."""
+    contacts: NDArray[np.bool_] | None = None
+    """When each foot stands, shape (n_frames, 2), as the animator keyed it."""
+
+
+@dataclass(frozen=True, eq=False)
+class Solution:
+    """Each recording of the problem, denoised at full strength."""
+
+    denoised: tuple[Denoised, ...]
+    limits: JointLimits | None
+    """How far joints turn in the examples."""
+    recordings: Recordings
+    """As they were, but for labels that were put right."""
+    swaps: tuple[Swap, ...] = ()
+
+
+@dataclass(frozen=True, eq=False)
+class Cleaned:
+    """What is to be written, and what there is to say about it."""
+
+    recordings: Recordings
+    moved: frozenset[str]
+    """Names of the joints that changed: those chosen, and those that planted the feet."""
+    solution: Solution
+    planted: Planted | None
+    before: Quality
+    """Of the recording, its feet measured at the contacts at which they were planted."""
+    after: Quality
+
+
+def names_of(recording: Motion | Tracks) -> tuple[str, ...]:
+    """Return the names of the joints or points."""
+    return recording.names if isinstance(recording, Tracks) else recording.skeleton.names
+
+
+def solve(problem: Problem, *, progress: Progress = unwatched) -> Solution:
+    """Denoise the body by what the examples teach, and all else by what the take teaches."""
+    body, *others = problem.recordings
+    swaps: tuple[Swap, ...] = ()
+    if problem.unswap and isinstance(body, Tracks):
+        unswapped = unswap_markers(body, progress=within(progress, 0.0, 0.2))
+        body, swaps = unswapped.tracks, unswapped.swaps
+    learned = problem.examples.learned(body, problem.learn_limits, within(progress, 0.2, 0.3))
+    settings = replace(problem.settings, strength=1.0)
+    result = denoise(
+        body,
+        learned.bases,
+        limits=learned.limits,
+        settings=settings,
+        progress=within(progress, 0.3, 0.8),
+    )
+    results = [replace(result, prior_used=f"{learned.said} {result.prior_used}".strip())]
+    for index, recording in enumerate(others):
+        share = (0.8 + 0.2 * index / len(others), 0.8 + 0.2 * (index + 1) / len(others))
+        results.append(denoise(recording, settings=settings, progress=within(progress, *share)))
+    return Solution(tuple(results), learned.limits, (body, *others), swaps)
+
+
+def clean(
+    problem: Problem,
+    finish: Finish,
+    solution: Solution | None = None,
+    *,
+    progress: Progress = unwatched,
+) -> Cleaned:
+    """Solve the problem, unless its solution is given, and finish it.
+
+    The estimate is mixed with the recording, held within the joints' limits, and its feet are
+    planted. How far the feet slid, before and after, is in `planted`.
+    """
+    if solution is None:
+        solution = solve(problem, progress=within(progress, 0.0, 0.8))
+    estimates = [each.recording for each in solution.denoised]
+    body, *others = map(
+        partial(_mixed, finish=finish),
+        solution.recordings,
+        finish.present or solution.recordings,
+        estimates,
+    )
+    for limits in (finish.limits, solution.limits):
+        body = body if limits is None else keep_within(body, limits)
+    planted = _planted(body, finish, within(progress, 0.8, 0.9))
+    moved = finish.chosen
+    if planted is not None:
+        eased = toward(body, planted.motion, finish.ease[:, None])
+        moved |= differing(body, eased)
+        body = eased
+    contacts = None if planted is None else planted.contacts
+    before, after = (
+        measure_quality(each, contacts=contacts, progress=within(progress, start, start + 0.05))
+        for each, start in ((problem.recordings[0], 0.9), (body, 0.95))
+    )
+    return Cleaned((body, *others), moved, solution, planted, before, after)
+
+
+def _planted(body: Motion | Tracks, finish: Finish, progress: Progress) -> Planted | None:
+    """Plant the feet of what has legs, if the legs were chosen at all."""
+    if finish.planting is None or isinstance(body, Tracks):
+        return None
+    legs = find_legs(body.skeleton)
+    joints = {body.skeleton.names[joint] for leg in legs for joint in (leg.hip, leg.knee)}
+    if not joints & finish.chosen:
+        return None
+    return plant_feet(body, finish.contacts, settings=finish.planting, progress=progress)
+
+
+def _mixed(
+    raw: Motion | Tracks, present: Motion | Tracks, clean: Motion | Tracks, finish: Finish
+) -> Motion | Tracks:
+    """Go from the recording towards the estimate; where nothing was recorded, all the way."""
+    chosen = np.array([name in finish.chosen for name in names_of(raw)])
+    share = finish.strength * finish.ease[:, None] * chosen
+    if isinstance(raw, Tracks):
+        start = np.where(chosen[:, None], raw.positions, present.positions)
+        known = np.isfinite(start).all(axis=-1, keepdims=True)
+        start = np.where(known, start, clean.positions)
+        return clean.with_positions(start + share[..., None] * (clean.positions - start))
+    turns = np.where(chosen[:, None], raw.rotations, present.rotations)
+    place = raw.root_positions if chosen[0] else present.root_positions
+    start = clean.with_poses(
+        _first_known(turns, clean.rotations), _first_known(place, clean.root_positions)
+    )
+    return toward(start, clean, share)
+
+
+def toward(start: Motion, stop: Motion, share: Array) -> Motion:
+    """Turn and shift by a share, shape (n_frames, n_joints or 1), of the way."""
+    moved = start.root_positions + share[:, :1] * (stop.root_positions - start.root_positions)
+    return start.with_poses(slerp(start.rotations, stop.rotations, share), moved)
+
+
+def _first_known(values: Array, otherwise: Array) -> Array:
+    return np.where(np.isfinite(values).all(axis=-1, keepdims=True), values, otherwise)
+
+
+def differing(before: Motion, after: Motion) -> frozenset[str]:
+    """Names of the joints that were turned or, the root, shifted."""
+    turned = np.abs(angle_between(before.rotations, after.rotations)).max(axis=0) > SAME
+    turned[0] |= np.abs(before.root_positions - after.root_positions).max() > SAME
+    names = before.skeleton.names
+    return frozenset(name for name, turns in zip(names, turned, strict=True) if turns)

@@ -1,0 +1,31 @@
+"""What the button Plant Feet has solved for it."""
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ...solvers.denoising import Planted, PlantSettings, plant_feet
+from ...solvers.motion import Motion
+from ...solvers.progress import Progress, unwatched
+from .solve_cleaning import differing
+
+
+@dataclass(frozen=True, eq=False)
+class Replanted:
+    """A motion whose feet stand, and the names of the joints that moved for it."""
+
+    planted: Planted
+    moved: frozenset[str]
+
+
+def plant(
+    body: Motion,
+    contacts: NDArray[np.bool_] | None,
+    settings: PlantSettings,
+    *,
+    progress: Progress = unwatched,
+) -> Replanted:
+    """Plant the feet where the animator keyed contacts, or where they are detected."""
+    planted = plant_feet(body, contacts, settings=settings, progress=progress)
+    return Replanted(planted, differing(body, planted.motion))

@@ -1,0 +1,1 @@
+"""Depth recordings as points that follow the timeline."""

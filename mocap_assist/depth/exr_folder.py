@@ -1,0 +1,157 @@
+"""Folders of EXR pictures of depth, such as Blender's own Z pass, made readable for all.
+
+Blender reads the pictures; a process without Blender could not. So they are copied once, into
+an archive in the extension's own folder, which is read like any other recording.
+"""
+
+import hashlib
+import shutil
+import zipfile
+from collections.abc import Iterator
+from pathlib import Path
+
+import bpy
+import numpy as np
+from numpy.typing import NDArray
+
+from ...solvers.depth_scene import Camera
+from ...solvers.errors import InvalidFileError
+from ...solvers.files import written_whole
+from ...solvers.progress import Progress, unwatched
+from ...solvers.recordings.depth_files import check_exr, in_order
+
+EXR = ".exr"
+EXTENSION = __package__.rpartition(".mocap_assist")[0]
+FARTHEST = 65_000.0
+"""Units of the picture; Blender writes 10 000 000 000 where nothing is, or the most it can."""
+
+MAX_COPIES, MAX_COPY_BYTES = 16, 8_000_000_000
+"""Copies that are kept: those that were used last, and those that the open file shows."""
+
+Depth = NDArray[np.float32]
+
+
+def exr_files(folder: Path) -> list[Path]:
+    """Return the EXR pictures in a folder, in their order."""
+    if not folder.is_dir():
+        return []
+    names = [
+        path.name
+        for path in folder.iterdir()
+        if path.suffix.lower() == EXR and path.is_file()  # not a pipe, which never ends
+    ]
+    return [folder / name for name in in_order(names)]
+
+
+def as_archive(
+    folder: Path, camera: Camera, frame_rate: float, progress: Progress = unwatched
+) -> Path:
+    """Return an archive of the depth in the first channel of the pictures of a folder.
+
+    One that was made before from the same pictures is used again. Before another one is made,
+    those go that were used longest ago, where there are too many (`MAX_COPIES`).
+
+    Parameters
+    ----------
+    folder : Path
+    camera : Camera
+    frame_rate : float, hertz
+    progress : Progress
+
+    Raises
+    ------
+    InvalidFileError
+        A picture cannot be read, or has another size than the first.
+    SolveCancelled
+        Raised by `progress`.
+    """
+    files = exr_files(folder)
+    states = [(each.name, each.stat().st_mtime_ns, each.stat().st_size) for each in files]
+    key = repr((str(folder.resolve()), states, camera, frame_rate))
+    digest = hashlib.sha256(key.encode()).hexdigest()[:16]
+    place = Path(bpy.utils.extension_path_user(EXTENSION, path="depth", create=True))
+    archive = place / digest / f"{folder.name}.npz"
+    if archive.is_file():
+        archive.touch()
+        return archive
+    remove_old_copies(place, MAX_COPIES - 1, MAX_COPY_BYTES)
+    archive.parent.mkdir(parents=True, exist_ok=True)
+    numbers = {name: getattr(camera, name) for name in ("fx", "fy", "cx", "cy")}
+    numbers["frame_rate"] = frame_rate
+    shape = (len(files), camera.height, camera.width)
+    packed = zipfile.ZIP_DEFLATED
+    with written_whole(archive) as part, zipfile.ZipFile(part, "w", packed) as made:
+        with made.open("depth.npy", "w", force_zip64=True) as file:
+            header = {"descr": "<f4", "fortran_order": False, "shape": shape}
+            np.lib.format.write_array_header_1_0(file, header)
+            for number, depth in enumerate(_pictures(files, shape[1:])):
+                file.write(depth.astype("<f4").tobytes())
+                progress(number / len(files), "Reading")
+        for name, number in numbers.items():
+            with made.open(f"{name}.npy", "w") as file:
+                np.lib.format.write_array(file, np.array(float(number)))
+    return archive
+
+
+def remove_old_copies(place: Path, n_copies: int, n_bytes: int) -> None:
+    """Remove the copies that were used longest ago, until so many, and so many bytes, are left.
+
+    Each is a folder of its own, named by its digest. Those that the open file shows stay.
+    """
+    shown = [
+        value
+        for data in (*bpy.data.meshes, *bpy.data.armatures)
+        for value in data.values()
+        if isinstance(value, str)
+    ]
+    copies = sorted(filter(Path.is_dir, place.iterdir()), key=_last_use, reverse=True)
+    sizes = np.cumsum([sum(file.stat().st_size for file in copy.iterdir()) for copy in copies])
+    for number, (copy, size) in enumerate(zip(copies, sizes, strict=True), start=1):
+        in_use = any(copy.name in value for value in shown)
+        if (number > n_copies or size > n_bytes) and not in_use:
+            shutil.rmtree(copy, ignore_errors=True)
+
+
+def _last_use(copy: Path) -> float:
+    return max((file.stat().st_mtime for file in copy.iterdir()), default=0.0)
+
+
+def size_of(path: Path) -> tuple[int, int]:
+    """Return width and height of a picture; raises InvalidFileError if it cannot be read."""
+    height, width = _picture(path).shape
+    return width, height
+
+
+def _pictures(files: list[Path], shape: tuple[int, ...]) -> Iterator[Depth]:
+    for path in files:
+        depth = _picture(path)
+        if depth.shape != shape:
+            raise InvalidFileError(
+                f"{path} has {depth.shape[1]} x {depth.shape[0]} pixels, the first picture"
+                f" {shape[1]} x {shape[0]}. Take it out of the folder."
+            )
+        yield depth
+
+
+def _picture(path: Path) -> Depth:
+    """Return the first channel, the top row first; 0 where nothing is seen."""
+    check_exr(path)  # Blender unpacks pictures of any size.
+    try:
+        image = bpy.data.images.load(str(path), check_existing=False)
+    except RuntimeError:
+        raise InvalidFileError(f"{path} cannot be read. Render it again.") from None
+    try:
+        image.colorspace_settings.name = "Non-Color"
+        width, height = image.size
+        if not (width and height and image.has_data | bool(len(image.pixels))):
+            raise InvalidFileError(
+                f"{path} is no picture that Blender can read: it is damaged, or has several"
+                " layers. Write depth as a file of its own."
+            )
+        pixels = np.empty(width * height * image.channels, np.float32)
+        image.pixels.foreach_get(pixels)
+        depth = pixels.reshape(height, width, image.channels)[::-1, :, 0]
+    finally:
+        bpy.data.images.remove(image)
+    seen = np.isfinite(depth) & (depth > 0.0) & (depth < FARTHEST)
+    return np.where(seen, depth, np.float32(0.0))

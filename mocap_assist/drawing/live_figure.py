@@ -1,0 +1,55 @@
+"""The actor before the camera, drawn over the 3D View; nothing of the scene is touched."""
+
+import bpy
+import numpy as np
+from mathutils import Matrix
+from numpy.typing import NDArray
+
+from ...solvers.motion import joint_parents
+from ...solvers.recordings.live import LiveFrame
+from ..scene.units import unit_of
+from .overlay_drawing import Color, draw_lines
+from .view_drawing import ViewDrawing
+
+FAINT = 0.25
+"""Confidence below which a bone is not drawn."""
+FOOT_LENGTH = 0.05
+"""Metres from the lowest joint to the ground, about."""
+
+
+class LiveFigure:
+    """The figure on the ground at the world's origin, as it was when it was first seen."""
+
+    def __init__(self, color: Color, width: float) -> None:
+        self._color, self._width = color, width
+        self._frame: LiveFrame | None = None
+        self._origin: NDArray[np.float64] | None = None
+        self._drawing = ViewDrawing(self._draw)
+
+    def show(self, frame: LiveFrame) -> None:
+        """Draw this frame from now on."""
+        if self._origin is None and np.isfinite(frame.positions).any():
+            middle = np.nanmean(frame.positions, axis=0)
+            ground = np.nanmin(frame.positions[:, 2]) - FOOT_LENGTH
+            self._origin = np.array([middle[0], middle[1], ground])
+        self._frame = frame
+
+    def lines(self) -> NDArray[np.float64]:
+        """Return the bones that are seen, shape (n_bones, 2, 3), metres."""
+        frame, origin = self._frame, self._origin
+        if frame is None or origin is None:
+            return np.zeros((0, 2, 3))
+        parents = np.array(joint_parents(frame.names))
+        ends = np.stack([frame.positions[parents], frame.positions], axis=1) - origin
+        seen = np.isfinite(ends).all(axis=(1, 2)) & (frame.confidence >= FAINT)
+        return np.asarray(ends[seen & (parents >= 0)])
+
+    def remove(self) -> None:
+        """Draw nothing any more; again does nothing."""
+        self._drawing.close()
+
+    def _draw(self, context: bpy.types.Context) -> None:
+        lines = self.lines()
+        if len(lines):
+            in_units = Matrix.Scale(1.0 / unit_of(context.scene), 4)
+            draw_lines(lines, in_units, self._color, self._width)

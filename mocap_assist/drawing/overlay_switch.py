@@ -1,0 +1,35 @@
+"""The overlay's switch: on the window manager, so that the scene stays as it is."""
+
+import bpy
+
+from ..panels.preferred import preferred
+from . import overlay_drawing
+
+
+def _switched(self: bpy.types.WindowManager, context: bpy.types.Context) -> None:
+    overlay_drawing.refresh()
+
+
+def _draw(context: bpy.types.Context) -> None:
+    if context.window_manager.mocap_assist_overlay:
+        colors = (tuple(preferred("raw_color")), tuple(preferred("clean_color")))
+        overlay_drawing.draw(context, colors, preferred("line_width"))
+
+
+def register() -> None:
+    """Add the switch; nothing is drawn until it is on."""
+    bpy.types.WindowManager.mocap_assist_overlay = bpy.props.BoolProperty(
+        name="Raw and Clean Overlay",
+        description=(
+            "Draw stick figures, or markers and their trails, of the recorded and of the clean"
+            " action over the 3D View. They show the keys alone, without constraints"
+        ),
+        update=_switched,
+    )
+    overlay_drawing.start(_draw)
+
+
+def unregister() -> None:
+    """Take the switch and the drawing away."""
+    overlay_drawing.stop()
+    del bpy.types.WindowManager.mocap_assist_overlay

@@ -1,0 +1,1 @@
+"""The button Import: recordings as armatures, empties and points."""

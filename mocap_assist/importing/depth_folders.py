@@ -1,0 +1,94 @@
+"""Folders of pictures that are one recording of depth, and how they are chosen."""
+
+from pathlib import Path
+
+import bpy
+
+from ...solvers.depth_scene import Camera
+from ...solvers.errors import InvalidFileError
+from ...solvers.faults import attempt
+from ...solvers.recordings import depth_format_of, depth_in, is_depth_folder, recordings_in
+from ...solvers.recordings.containers import is_folder
+from ..depth.exr_folder import as_archive, exr_files, size_of
+from ..scene.scene_rate import scene_rate
+from .choices import ImportChoices
+
+WITHIN = ("depth", "color", "rgb", "image", "confidence")
+"""Folders that a recording has in it."""
+BESIDE = (
+    "depth.txt", "rgb.txt", "associations.txt", "associates.txt", "associated.txt",
+    "camera_matrix.csv", "odometry.csv", "intrinsic.json", "camera_intrinsic.json",
+)  # fmt: skip
+"""Files that a recording has in it beside its pictures."""
+PICTURES = (".png", ".exr", ".jpg", ".jpeg")
+
+
+def is_take(folder: Path) -> bool:
+    """Whether a folder is a recording of depth; not if it cannot be looked into."""
+    if not is_folder(folder):
+        return False
+    return attempt(folder, lambda: bool(exr_files(folder) or depth_format_of(folder))) is True
+
+
+def depth_recordings_in(folder: Path) -> list[Path]:
+    """Return the recordings of depth in a folder and below; the folder itself if it is one."""
+    return depth_in(folder, lambda each: bool(exr_files(each)) or is_depth_folder(each))
+
+
+def all_recordings_in(folder: Path) -> list[Path]:
+    """Return the recordings in a folder and below, of motion and of depth, by name."""
+    takes = depth_recordings_in(folder)
+    others = [path for path in recordings_in(folder) if not {*path.parents} & {*takes}]
+    return sorted({*takes, *others})
+
+
+def take_of(path: Path) -> Path:
+    """Return the recording that a chosen file belongs to: the folder of a picture of depth."""
+    if path.suffix.lower() in PICTURES:
+        inside = path.parent.name in WITHIN and is_take(path.parent.parent)
+        return path.parent.parent if inside else path.parent
+    if path.name in BESIDE and is_take(path.parent):
+        return path.parent
+    return path
+
+
+def readable(context: bpy.types.Context, path: Path, choices: ImportChoices) -> Path:
+    """Return a path that can be read without Blender: of EXR pictures, their archive.
+
+    The camera is the one that was given, or the scene's own, which may have rendered them.
+
+    Raises InvalidFileError where neither is known, or a picture cannot be read.
+    """
+    files = exr_files(path)
+    if not files:
+        return path
+    width, height = size_of(files[0])
+    told = _scene_camera(context, width, height)
+    camera = choices.depth.camera(width, height, told)
+    if camera is None:
+        raise InvalidFileError(
+            f"{path} does not tell through which camera it was rendered: give the focal length"
+            " in pixels, or give the scene that camera."
+        )
+    rate = scene_rate(context.scene)
+    return as_archive(path, camera, rate)
+
+
+def _scene_camera(context: bpy.types.Context, width: int, height: int) -> Camera | None:
+    """Return the camera of the scene for pictures of a size; None without a usual one."""
+    owner = context.scene.camera
+    if owner is None or owner.type != "CAMERA" or owner.data.type != "PERSP":
+        return None
+    lens = owner.data
+    by_height = lens.sensor_fit == "VERTICAL" or (lens.sensor_fit == "AUTO" and height > width)
+    sensor = lens.sensor_height if lens.sensor_fit == "VERTICAL" else lens.sensor_width
+    focal = lens.lens / sensor * (height if by_height else width)
+    wide = max(width, height) if lens.sensor_fit == "AUTO" else (height if by_height else width)
+    return Camera(
+        focal,
+        focal,
+        (width - 1) / 2.0 - lens.shift_x * wide,
+        (height - 1) / 2.0 + lens.shift_y * wide,
+        width,
+        height,
+    )

@@ -1,0 +1,40 @@
+"""A recording of depth as an object of the scene."""
+
+from pathlib import Path
+
+import bpy
+
+from ...solvers.depth_scene import LEVEL, DepthRecording, camera_doubts, find_floor
+from ...solvers.progress import Progress, unwatched
+from ..blender.permissions import allow_recording
+from ..depth.depth_preview import Shown, build_preview, cheap_step
+from ..scene.scene_rate import timing
+from ..scene.units import unit_of
+from .choices import ImportChoices
+from .recording_objects import Made
+
+
+def make_preview(
+    context: bpy.types.Context,
+    path: Path,
+    recording: DepthRecording,
+    choices: ImportChoices,
+    *,
+    progress: Progress = unwatched,
+) -> Made:
+    """Add points that play as the recording does, on the floor if it is seen."""
+    samples = timing(
+        context.scene, choices.frame_rate, recording.frame_rate, choices.frame_start
+    )
+    floor = find_floor(recording, progress=progress)
+    every = cheap_step(recording)
+    shown = Shown(str(path), choices.depth, samples.start, samples.step, every)
+    allow_recording(shown.path)
+    scale = choices.global_scale / unit_of(context.scene)
+    made = build_preview(context, path.stem, recording, shown, floor or LEVEL, scale)
+    camera = recording.camera
+    what = f"depth of {camera.width} x {camera.height} pixels"
+    what += ", on the floor" if floor else ", without a floor"
+    if doubts := camera_doubts(camera):
+        what += f". {' '.join(doubts).removesuffix('.')}"
+    return Made(made, None, float(samples.frames(recording.n_frames)[-1]), what)

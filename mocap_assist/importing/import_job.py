@@ -1,0 +1,160 @@
+"""Files that are read in a process of its own and then come into the scene one by one."""
+
+from collections import deque
+from collections.abc import Iterable, Iterator
+from functools import partial
+from pathlib import Path
+
+import bpy
+
+from ...solvers.errors import InvalidFileError, MocapAssistError, OutOfMemoryError
+from ...solvers.faults import Failure, attempt
+from ..jobs.job import Job, ProcessDied
+from ..runtime.watch import Watch
+from .arrival import READING, Arrival
+from .choices import ImportChoices
+from .depth_folders import readable
+from .recent_files import State, remember, state_of
+from .recording_objects import wanted_of
+from .solve_reading import Known, Read, read_files
+
+BYTES_AT_ONCE = 64_000_000
+"""Of the files that are read before what they hold comes into the scene."""
+
+
+class ImportJob:
+    """One import; `step` is called now and then, and never works for long.
+
+    Parameters
+    ----------
+    context : bpy.types.Context
+        With a window, whose status bar tells how far the work is.
+    paths : files, at least one
+    choices : ImportChoices
+    """
+
+    def __init__(
+        self, context: bpy.types.Context, paths: list[Path], choices: ImportChoices
+    ) -> None:
+        self.arrival = Arrival(context, choices)
+        paths = self._readable(context, paths, choices)
+        self._wanted = wanted_of(context, choices)
+        self._batches = deque(batches(paths))
+        self._n_files, self._n_read, self._n_in = len(paths), 0, 0
+        self._shown = 0.0
+        self._states: list[State] = []
+        self._read: deque[tuple[Path, State, Read | MocapAssistError]] = deque()
+        self.job: Job[list[Read | MocapAssistError]] = Job(self._next_batch())
+        self.watch = Watch(context, "import", self._stop)
+        self._show(context)
+
+    def step(self, context: bpy.types.Context) -> bool:
+        """Do a little; return whether all is done, and nothing is shown any more."""
+        if self._read:
+            self._bring_in(context, *self._read.popleft())
+            self._n_in += 1
+        elif self.job.done():
+            self._fetch()
+        if not (self._read or self._batches or self._n_in < self._n_files):
+            self.watch.end(context)
+            return True
+        self._show(context)
+        return False
+
+    def cancel(self, context: bpy.types.Context) -> None:
+        """Stop at once and leave the scene as it was."""
+        self.watch.abandon(context)
+        self.arrival.take_back(context)
+
+    def _stop(self) -> None:
+        self.job.cancel()
+        self.job.tidy_up()
+
+    def _readable(
+        self, context: bpy.types.Context, paths: list[Path], choices: ImportChoices
+    ) -> list[Path]:
+        """Return what another process can read, and refuse the rest; raise if it is all."""
+        found = [attempt(path, readable, context, path, choices) for path in paths]
+        failed = [each for each in found if isinstance(each, Failure)]
+        if len(failed) == len(paths):
+            raise failed[0].as_error()
+        for path, each in zip(paths, found, strict=True):
+            if isinstance(each, Failure):
+                self.arrival.refuse(path, each.as_error())
+        return [each for each in found if isinstance(each, Path)]
+
+    def _next_batch(self) -> "partial[list[Read | MocapAssistError]]":
+        self._states = [state_of(path) for path in self._batches[0]]
+        return partial(read_files, self._batches[0], self._wanted)
+
+    def _fetch(self) -> None:
+        """Take over what was read, and let the next files be read meanwhile.
+
+        Where the process has died, nobody knows of which file: halves of them are read again,
+        until it is alone.
+        """
+        paths = self._batches.popleft()
+        try:
+            found = self.job.result()
+        except (ProcessDied, OutOfMemoryError) as error:
+            if half := len(paths) // 2:
+                self._batches.extendleft([paths[half:], paths[:half]])
+            found = [] if half else [_refusal(paths[0], error)]
+        if found:
+            self._read.extend(zip(paths, self._states, found, strict=True))
+            self._n_read += len(paths)
+        if self._batches:
+            self.job = Job(self._next_batch())
+
+    def _bring_in(
+        self,
+        context: bpy.types.Context,
+        path: Path,
+        state: State,
+        found: Read | MocapAssistError,
+    ) -> None:
+        if isinstance(found, MocapAssistError):
+            self.arrival.refuse(path, found)
+        else:
+            recording, moving, warnings = found
+            remember(path, state, Known(recording, warnings), self._wanted.unit)
+            self.arrival.add(context, path, recording, moving=moving, warnings=warnings)
+
+    def _show(self, context: bpy.types.Context) -> None:
+        fraction, message = 0.0, ""
+        if self._batches:
+            fraction, message = self.job.progress()
+            fraction *= len(self._batches[0])
+        if self._read:
+            message = f"Bringing in {self._read[0][0].name}"
+        reading = READING * (self._n_read + fraction)
+        done = (reading + (1.0 - READING) * self._n_in) / self._n_files
+        self._shown = max(self._shown, done)  # less is done where files are read once more
+        self.watch.show(context, self._shown, message)
+
+
+def batches(paths: Iterable[Path]) -> Iterator[list[Path]]:
+    """Part files into as many as are read at once: several small ones, or a large one."""
+    batch: list[Path] = []
+    room = BYTES_AT_ONCE
+    for path in paths:
+        size = path.stat().st_size if path.is_file() else 0
+        if batch and size > room:
+            yield batch
+            batch, room = [], BYTES_AT_ONCE
+        batch.append(path)
+        room -= size
+    if batch:
+        yield batch
+
+
+def _refusal(path: Path, error: ProcessDied | OutOfMemoryError) -> MocapAssistError:
+    """Say which file it was that could not be read."""
+    if isinstance(error, OutOfMemoryError):
+        return InvalidFileError(
+            f"{path} needs more memory than there is. Import a part of the take."
+        )
+    return InvalidFileError(
+        f"{path} made its reader end early, {error.cause}. Import a part of the take, or have"
+        f" it exported anew.{error.last_words}"
+    )

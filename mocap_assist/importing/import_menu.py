@@ -1,0 +1,40 @@
+"""Import in the File menu, and by dropping files into the 3D view."""
+
+import bpy
+from bpy_extras.io_utils import poll_file_object_drop
+
+from ..panels.drawing import exists
+from .importing import EXTENSIONS
+
+IMPORT = "mocap_assist.import_recording"
+ENTRY = "Motion Capture (.bvh, .amc, .c3d, .trc, depth camera joints)"
+
+
+class MOCAP_FH_recording(bpy.types.FileHandler):
+    """Files dropped into the 3D view or the outliner; Blender asks where others want them."""
+
+    bl_idname = "MOCAP_FH_recording"
+    bl_label = "Motion Capture (Mocap Assist)"
+    bl_import_operator = IMPORT
+    bl_file_extensions = ";".join(EXTENSIONS)
+
+    @classmethod
+    def poll_drop(cls, context: bpy.types.Context) -> bool:
+        return exists(IMPORT) and poll_file_object_drop(context)
+
+
+def _draw_entry(self: bpy.types.Menu, context: bpy.types.Context) -> None:
+    if exists(IMPORT):
+        self.layout.operator(IMPORT, text=ENTRY)
+
+
+def register() -> None:
+    """Append the entry and take dropped files."""
+    bpy.utils.register_class(MOCAP_FH_recording)
+    bpy.types.TOPBAR_MT_file_import.append(_draw_entry)
+
+
+def unregister() -> None:
+    """Remove both."""
+    bpy.types.TOPBAR_MT_file_import.remove(_draw_entry)
+    bpy.utils.unregister_class(MOCAP_FH_recording)

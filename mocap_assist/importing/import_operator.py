@@ -1,0 +1,102 @@
+"""What the two operators of Import have in common, and how the second one waits."""
+
+from typing import Any, ClassVar
+
+import bpy
+from bpy.props import CollectionProperty, StringProperty
+
+from ...solvers.errors import MocapAssistError
+from ..blender.path_properties import FILE, FOLDER, HIDDEN, path_property
+from ..panels.drawing import draw_lines
+from ..runtime.watch import why_busy
+from .arrival import Imported
+from .import_job import ImportJob
+from .importing import chosen_paths, import_files
+
+WIDTH = 400  # of the dialog, pixels at scale 1
+
+
+class FilesOperator:
+    """Mix in before bpy.types.Operator: files to import, how, and the import itself."""
+
+    setting_names: ClassVar[tuple[str, ...]]
+    """Supplied by the decorator `settings_from`, as is the method `settings`."""
+
+    directory: path_property(FOLDER, HIDDEN)
+    files: CollectionProperty(type=bpy.types.OperatorFileListElement, options=HIDDEN)
+    filepath: path_property(FILE, HIDDEN)
+    note: StringProperty(options=HIDDEN)
+
+    @classmethod
+    def poll(cls, context: bpy.types.Context) -> bool:
+        if reason := why_busy():
+            cls.poll_message_set(reason)
+        return not reason
+
+    def execute(self, context: bpy.types.Context) -> set[str]:
+        """Import while a script, or the redo panel, waits."""
+        paths, choices = chosen_paths(self), self.settings().choices
+        return self.end(import_files(context, paths, choices))
+
+    def end(self, imported: Imported) -> set[str]:
+        """Tell what became of the files."""
+        self.note = imported.note
+        self.report({"ERROR"} if imported.failed else {"INFO"}, imported.sentence)
+        return {"FINISHED"} if imported.made else {"CANCELLED"}
+
+    def given(self) -> dict[str, Any]:
+        """Return files and settings, to hand them on to another operator."""
+        files = [{"name": each.name} for each in self.files]
+        settings = {name: getattr(self, name) for name in type(self).setting_names}
+        return {
+            "directory": self.directory,
+            "files": files,
+            "filepath": self.filepath,
+            **settings,
+        }
+
+    def draw(self, context: bpy.types.Context) -> None:
+        self.layout.use_property_split = True
+        self.layout.use_property_decorate = False
+        for name in type(self).setting_names:
+            self.layout.prop(self, name)
+        if self.note:
+            draw_lines(self.layout, self.note, WIDTH)
+
+
+class WaitingImport(FilesOperator):
+    """Mix in likewise: the window swallows all input but Esc until everything has come in."""
+
+    def invoke(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
+        paths = chosen_paths(self)
+        if not paths:
+            return self.execute(context)
+        try:
+            self._job = ImportJob(context, paths, self.settings().choices)
+        except MocapAssistError as error:
+            self.report({"ERROR"}, str(error))
+            return {"CANCELLED"}
+        context.window_manager.modal_handler_add(self)
+        return {"RUNNING_MODAL"}
+
+    def modal(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
+        job = self._job
+        if not job.watch.is_on:
+            return {"CANCELLED"}
+        if event.type in {"ESC", "RIGHTMOUSE"} and event.value == "PRESS":
+            job.cancel(context)
+            self.report({"INFO"}, "Cancelled.")
+            return {"CANCELLED"}
+        if event.type != "TIMER":
+            return {"RUNNING_MODAL"}
+        try:
+            ended = job.step(context)
+        except BaseException:
+            job.cancel(context)
+            raise
+        return self.end(job.arrival.end(context)) if ended else {"RUNNING_MODAL"}
+
+    def cancel(self, context: bpy.types.Context) -> None:
+        """Blender ends the operator: another file is loaded, or the window closes."""
+        if self._job.watch.is_on:
+            self._job.cancel(context)

@@ -1,0 +1,110 @@
+"""What the button Import makes of files."""
+
+from pathlib import Path
+
+import bpy
+
+from ...solvers.errors import MocapAssistError, SolveCancelled
+from ...solvers.faults import Failure, attempt
+from ...solvers.progress import Progress, unwatched, within
+from ..blender.path_properties import absolute, chosen_files
+from ..scene.scene_rate import scene_rate
+from .arrival import READING, Arrival, Imported
+from .choices import ImportChoices
+from .depth_folders import is_take, readable, take_of
+from .recent_files import read_again
+
+QUICKLY_READ = 2_000_000  # bytes
+
+
+EXTENSIONS = (
+    ".bvh", ".amc", ".asf", ".c3d", ".trc", ".skeleton", ".csv", ".json", ".txt", ".npy",
+    ".npz", ".mkv", ".mat",
+)  # fmt: skip
+"""What files of a format known here may be called; what they hold decides."""
+PICTURES = (".png", ".exr")
+"""What pictures of depth may be called, of which a folder is a recording."""
+FILTER = ";".join(f"*{extension}" for extension in (*EXTENSIONS, *PICTURES))
+
+
+def chosen_paths(operator: bpy.types.Operator) -> list[Path]:
+    """Return the files that an operator was given, as a list in a folder or as one path.
+
+    The skeleton that an AMC file needs may be among them: it is found anyway. A folder of
+    pictures of depth may be given itself, by being the one that is looked at, or by files in
+    it.
+    """
+    paths = chosen_files(operator)
+    if not paths and operator.filepath:
+        paths = [absolute(operator.filepath)]
+    if not paths and operator.directory and is_take(absolute(operator.directory)):
+        paths = [absolute(operator.directory)]
+    paths = list(dict.fromkeys(map(take_of, paths)))
+    if any(path.suffix.lower() == ".amc" for path in paths):
+        paths = [path for path in paths if path.suffix.lower() != ".asf"]
+    return paths
+
+
+def preview(context: bpy.types.Context, paths: list[Path]) -> str:
+    """Return a line about the first file, for a dialog that asks how to import it.
+
+    A large one is not read for it: the dialog would be long in coming.
+    """
+    path, scene = paths[0], scene_rate(context.scene)
+    plays = f"the scene plays {scene:g} frames per second"
+    try:
+        size = path.stat().st_size
+        if size > QUICKLY_READ:
+            return f"{path.name}: {size / 1e6:.0f} MB; {plays}"
+        recording, warnings = read_again(path)
+    except MocapAssistError as error:
+        return str(error)
+    except OSError as error:
+        return f"{path} cannot be read ({error.strerror})."
+    frames = f"{recording.n_frames} frames at {recording.frame_rate:g} Hz"
+    return ". ".join([f"{path.name}: {frames}; {plays}", *warnings])
+
+
+def import_files(
+    context: bpy.types.Context,
+    paths: list[Path],
+    choices: ImportChoices,
+    *,
+    progress: Progress = unwatched,
+) -> Imported:
+    """Make an armature or empties of each file; those that cannot be read are told of.
+
+    A file that fails leaves nothing behind. Raises SolveCancelled by `progress`; the scene is
+    then as it was.
+    """
+    arrival = Arrival(context, choices)
+    try:
+        for index, path in enumerate(paths):
+            share = within(progress, index / len(paths), (index + 1) / len(paths))
+            source = attempt(path, readable, context, path, choices)
+            if isinstance(source, Failure):
+                arrival.refuse(path, source.as_error())
+                continue
+            try:
+                known = read_again(
+                    source,
+                    within(share, 0.0, READING),
+                    unit=choices.unit.metres,
+                    depth=choices.depth,
+                )
+            except SolveCancelled:
+                raise
+            except MocapAssistError as error:
+                arrival.refuse(path, error)
+            else:
+                arrival.add(
+                    context,
+                    source,
+                    known.recording,
+                    within(share, READING, 1.0),
+                    warnings=known.warnings,
+                )
+    except BaseException:
+        arrival.take_back(context)
+        raise
+    return arrival.end(context)

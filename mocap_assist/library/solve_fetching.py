@@ -1,0 +1,137 @@
+"""What is done for the button that gives a clip to a rig: it is read again and retargeted."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+
+from ...solvers.errors import InvalidFileError, InvalidMotionError
+from ...solvers.motion import Motion, find_humanoid_map, resample
+from ...solvers.progress import Progress, unwatched, within
+from ...solvers.retargeting import RetargetSettings
+from ...solvers.retrieval import Origin
+from ...solvers.rotations import IDENTITY
+from ..importing.solve_reading import Wanted, as_wanted, read_file
+from ..jobs.in_blender import BackgroundBlender, read_blends
+from ..retarget.solve_retargeting import Clip, RetargetProblem, Start, retarget_clips
+from ..scene.controls import BoneKeys, TargetRig
+
+BLEND = ".blend"
+AS_ARMATURE = Wanted(armature=True, scale=1.0, frame_rate=None)
+Keys = Mapping[str, BoneKeys]
+
+
+@dataclass(frozen=True, eq=False)
+class FetchProblem:
+    """A clip, and who is to make its motion."""
+
+    origin: Origin
+    frames: range | None
+    """Of the clip, in its own frames; None for all."""
+    frame_rate: float
+    """Of the keys, hertz."""
+    start: Start | None
+    target: TargetRig
+    settings: RetargetSettings
+    blender: BackgroundBlender
+
+
+@dataclass(frozen=True, eq=False)
+class Fetched:
+    """The keys of the target."""
+
+    keys: Keys
+    n_frames: int
+
+
+@dataclass(frozen=True, eq=False)
+class FetchProblems:
+    """Several clips for the same target, and their names."""
+
+    problems: tuple[FetchProblem, ...]
+    names: tuple[str, ...]
+
+
+@dataclass(frozen=True, eq=False)
+class FetchedClips:
+    """Those that could be had, None for others, and what was wrong with the first of these."""
+
+    clips: tuple[Fetched | None, ...]
+    trouble: str
+
+
+def fetch_clips(wanted: FetchProblems, *, progress: Progress = unwatched) -> FetchedClips:
+    """Read several clips again, and give them to the target.
+
+    Raises
+    ------
+    InvalidFileError, InvalidMotionError
+        None can be had; see `fetch_clip`.
+    """
+    found: list[Fetched | None] = []
+    troubles: list[InvalidFileError | InvalidMotionError] = []
+    n = len(wanted.problems)
+    for place, (problem, name) in enumerate(zip(wanted.problems, wanted.names, strict=True)):
+        progress(place / n, f"Fetching {name}")
+        try:
+            found.append(
+                fetch_clip(problem, progress=within(progress, place / n, (place + 1) / n))
+            )
+        except (InvalidFileError, InvalidMotionError) as error:
+            found.append(None)
+            troubles.append(error)
+    if len(troubles) == n:
+        raise troubles[0]
+    return FetchedClips(tuple(found), str(troubles[0]) if troubles else "")
+
+
+def fetch_clip(problem: FetchProblem, *, progress: Progress = unwatched) -> Fetched:
+    """Read a clip again from where it came from, and give it to the target.
+
+    Raises
+    ------
+    InvalidFileError
+        Its file is missing, cannot be read, or has changed so that the clip is not there.
+    InvalidMotionError
+        It has no bones.
+    """
+    progress(0.0, "Reading the clip")
+    motion = read_origin(problem.origin, problem.blender)
+    if problem.frames is not None:
+        motion = _part(motion, problem.frames, problem.origin)
+    motion = resample(motion, problem.frame_rate)
+    clip = Clip(motion, np.zeros(3), np.array(IDENTITY), problem.start)
+    roles = find_humanoid_map(motion.skeleton)
+    whole = RetargetProblem((clip,), roles, problem.target, problem.settings)
+    (keys,) = retarget_clips(whole, progress=within(progress, 0.3, 1.0))
+    return Fetched(keys, motion.n_frames)
+
+
+def read_origin(origin: Origin, blender: BackgroundBlender) -> Motion:
+    """Read the motion of a clip again; see `fetch_clip`."""
+    if not Path(origin.path).is_file():
+        raise InvalidFileError(
+            f"{origin.path} is gone. The library still knows the clip, but its motion is there"
+            " no more."
+        )
+    if origin.path.endswith(BLEND):
+        (found,) = read_blends(blender, [origin.path], items=[origin.item])
+        if not found.clips:
+            why = " ".join(found.refused)
+            raise InvalidFileError(
+                why or f"{origin.path} has no action {origin.item} any more. Index it again."
+            )
+        return found.clips[0].motion
+    moving = as_wanted(read_file(Path(origin.path)).recording, AS_ARMATURE)
+    if not isinstance(moving, Motion):
+        raise InvalidMotionError(f"{origin.path} holds points without bones.")
+    return moving
+
+
+def _part(motion: Motion, frames: range, origin: Origin) -> Motion:
+    if frames.stop > motion.n_frames:
+        raise InvalidFileError(
+            f"{origin.path} has changed since it was indexed. Index it, and search again."
+        )
+    return motion.slice(frames.start, frames.stop)

@@ -1,0 +1,246 @@
+"""What the button Index has done for it: files and .blend files become clips of a library."""
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from functools import cached_property
+from pathlib import Path
+
+from ...solvers.errors import InvalidFileError, OutOfMemoryError
+from ...solvers.faults import Failure, attempt
+from ...solvers.files import real_path, reason_of
+from ...solvers.progress import Progress, unwatched, within
+from ...solvers.recordings.containers import files_below
+from ...solvers.retrieval import (
+    Clip,
+    ClipEntry,
+    ClipLibrary,
+    DescribedClip,
+    Origin,
+    describe_clip,
+    open_clip_library,
+)
+from ...solvers.retrieval.library import refuse_other_suffix
+from ...solvers.workflows import index_files
+from ..jobs.in_blender import BackgroundBlender, BlendClip, BlendRead, read_blends
+from ..jobs.job import ProcessDied
+
+BLEND = ".blend"
+BYTES_AT_ONCE = 100_000_000
+"""Of .blend files that one Blender reads: what it has read is kept if the next one crashes."""
+
+
+@dataclass(frozen=True)
+class Place:
+    """A file or a folder that clips come from."""
+
+    path: str
+    assets_only: bool = False
+    """Of .blend files, leave out actions that are not marked as assets."""
+
+
+@dataclass(frozen=True)
+class IndexProblem:
+    """What is to be indexed."""
+
+    library: str
+    places: tuple[Place, ...]
+    tags: tuple[str, ...]
+    """Given to all clips."""
+    blender: BackgroundBlender
+
+
+@dataclass(frozen=True)
+class Indexed:
+    """What became of it."""
+
+    n_clips: int
+    """In the library now."""
+    n_added: int = 0
+    n_kept: int = 0
+    """That were indexed before, and have not changed."""
+    n_removed: int = 0
+    refused: tuple[str, ...] = ()
+    """A sentence for each file or action that could not be read."""
+
+
+@dataclass(frozen=True)
+class _Blend:
+    """A .blend file, and by which name its clips begin."""
+
+    path: Path
+    name: str
+    assets_only: bool
+
+    @cached_property
+    def state(self) -> tuple[int, int]:
+        """Size and date when it was first looked at; raises OSError if it has just gone."""
+        found = self.path.stat()
+        return found.st_size, found.st_mtime_ns
+
+
+def index_places(problem: IndexProblem, *, progress: Progress = unwatched) -> Indexed:
+    """Index what is new or has changed since; clips of other places stay.
+
+    Raises
+    ------
+    InvalidFileError
+        The library cannot be read or written, or the file of the rig is missing.
+    """
+    problem.blender.look_for_rig()
+    path = Path(problem.library)
+    try:
+        if not path.exists():
+            refuse_other_suffix(path)
+        path.parent.mkdir(parents=True, exist_ok=True)
+    except OSError as error:
+        raise InvalidFileError(
+            f"The library {path} cannot be kept there: {reason_of(error)}."
+        ) from None
+    refused, files, blends = list[str](), list[str](), dict[Path, _Blend]()
+    for place in problem.places:
+        found = attempt(place.path, _blends, place)
+        if isinstance(found, Failure):
+            refused.append(found.sentence)
+            continue
+        for each in found:
+            blends.setdefault(each.path, each)
+        files += [] if place.path.endswith(BLEND) else [place.path]
+    share = len(files) / max(len(files) + len(blends), 1)
+    report = index_files(path, files, tags=problem.tags, progress=within(progress, 0.0, share))
+    refused += [why for _, why in report.refused]
+    with open_clip_library(path) as library:
+        indexing = _Indexing(library, problem.tags, refused)
+        blender = problem.blender
+        indexing.index_blends([*blends.values()], blender, within(progress, share, 1.0))
+        return Indexed(
+            n_clips=len(library.entries),
+            n_added=len(report.added) + len(report.changed) + indexing.added,
+            n_kept=len(report.unchanged) + indexing.kept,
+            n_removed=len(report.removed) + indexing.removed,
+            refused=tuple(refused),
+        )
+
+
+def _blends(place: Place) -> list[_Blend]:
+    """Return the .blend files in a place; not the backups beside them.
+
+    Raises InvalidFileError where there is nothing, and OSError where that cannot be seen.
+    """
+    try:
+        Path(place.path).stat()
+    except (FileNotFoundError, NotADirectoryError):
+        raise InvalidFileError(f"There is no file or folder {place.path}.") from None
+    top = real_path(place.path)
+    return [
+        _Blend(
+            path,
+            path.relative_to(top.parent if path == top else top).with_suffix("").as_posix(),
+            place.assets_only,
+        )
+        for path in (files_below(top) if top.is_dir() else [top])
+        if path.suffix == BLEND and path.is_file()
+    ]
+
+
+class _Indexing:
+    """Adds clips to a library, and counts them."""
+
+    def __init__(self, library: ClipLibrary, tags: tuple[str, ...], refused: list[str]) -> None:
+        self._library, self._tags, self._refused = library, tags, refused
+        self.added = self.kept = self.removed = 0
+
+    def index_blends(
+        self, blends: list[_Blend], blender: BackgroundBlender, progress: Progress
+    ) -> None:
+        """Read the .blend files that are new or have changed, and replace their clips."""
+        changed = []
+        for blend in blends:
+            known = attempt(blend.path, self._known, blend)
+            if isinstance(known, Failure):
+                self._refused.append(known.sentence)
+            elif not known:
+                changed.append(blend)
+        done = 0
+        for batch in _batches(changed):
+            start, stop = done / len(changed), (done + len(batch)) / len(changed)
+            for blend, read in self._read(batch, blender, within(progress, start, stop)):
+                self._replace(blend, read)
+            done += len(batch)
+
+    def _known(self, blend: _Blend) -> bool:
+        """Whether all clips of the file are as they were, and have all the tags."""
+        entries = self._entries(blend).values()
+        states = {(each.origin.size, each.origin.modified) for each in entries if each.origin}
+        tagged = all(set(self._tags) <= set(each.tags) for each in entries)
+        known = tagged and states == {blend.state}
+        self.kept += len(entries) if known else 0
+        return known
+
+    def _entries(self, blend: _Blend) -> dict[int, ClipEntry]:
+        """Return what the library has of a file, by its numbers."""
+        return {
+            number: entry
+            for number, entry in self._library.numbered().items()
+            if entry.origin is not None and entry.origin.path == str(blend.path)
+        }
+
+    def _read(
+        self, batch: list[_Blend], blender: BackgroundBlender, progress: Progress
+    ) -> Iterator[tuple[_Blend, BlendRead]]:
+        """Read files together; where Blender crashes, each by itself."""
+        for assets_only in (False, True):
+            paths = [each for each in batch if each.assets_only == assets_only]
+            if not paths:
+                continue
+            names = [str(each.path) for each in paths]
+            try:
+                found = read_blends(blender, names, assets_only=assets_only, progress=progress)
+            except (ProcessDied, OutOfMemoryError) as error:
+                if len(paths) > 1:
+                    for each in paths:
+                        yield from self._read([each], blender, progress)
+                    continue
+                found = [BlendRead((), (_refusal(names[0], error),))]
+            yield from zip(paths, found, strict=True)
+
+    def _replace(self, blend: _Blend, read: BlendRead) -> None:
+        """Put what a file holds now in the place of what it held."""
+        before = list(self._entries(blend))
+        self._refused += read.refused
+        described = []
+        for clip in read.clips:
+            found = attempt(f"{blend.path}, {clip.item}", self._describe, blend, clip)
+            if isinstance(found, Failure):
+                self._refused.append(found.sentence)
+            else:
+                described.append(found)
+        self.added += len(self._library.add_described(described))
+        self.removed += len(self._library.discard(before))  # but for those just replaced
+
+    def _describe(self, blend: _Blend, clip: BlendClip) -> DescribedClip:
+        return describe_clip(self._clip(blend, clip))
+
+    def _clip(self, blend: _Blend, clip: BlendClip) -> Clip:
+        tags = tuple(dict.fromkeys([*self._tags, *clip.tags]))
+        origin = Origin(str(blend.path), clip.item, *blend.state)
+        return Clip(f"{blend.name}/{clip.item}", clip.motion, tags, origin)
+
+
+def _refusal(name: str, error: ProcessDied | OutOfMemoryError) -> str:
+    if isinstance(error, OutOfMemoryError):
+        return f"{name} needs more memory than there is."
+    return f"{name} made Blender end, {error.cause}."
+
+
+def _batches(blends: list[_Blend]) -> Iterator[list[_Blend]]:
+    batch: list[_Blend] = []
+    room = BYTES_AT_ONCE
+    for blend in blends:
+        size = blend.state[0]
+        if batch and size > room:
+            yield batch
+            batch, room = [], BYTES_AT_ONCE
+        batch.append(blend)
+        room -= size
+    if batch:
+        yield batch

@@ -1,0 +1,36 @@
+"""Panel: search by performing before a camera."""
+
+import bpy
+
+from ..panels.drawing import draw_sentence, exists
+from ..panels.preferred import preferences
+from .listening import current
+
+LISTEN = "mocap_assist.listen"
+
+
+class PerformPanel:
+    """The button Listen, the port, and what is heard."""
+
+    bl_label = "Perform"
+
+    @classmethod
+    def poll(cls, context: bpy.types.Context) -> bool:
+        return exists(LISTEN)
+
+    def draw(self, context: bpy.types.Context) -> None:
+        layout = self.layout
+        listening = current()
+        if listening is None:
+            layout.operator(LISTEN, icon="OUTLINER_OB_ARMATURE")
+            if preferences() is not None:
+                layout.prop(preferences(), "live_port")
+            return
+        layout.operator(LISTEN, text="Stop Listening", icon="CANCEL")
+        draw_sentence(layout, context, listening.state())
+        if listening.said:
+            draw_sentence(layout, context, listening.said, icon="INFO")
+        heard = listening.heard
+        layout.label(text=f"{heard.frames} frames, {heard.dropped} dropped", translate=False)
+        if heard.why:
+            draw_sentence(layout, context, heard.why, icon="ERROR")

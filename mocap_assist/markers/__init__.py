@@ -1,0 +1,1 @@
+"""The button Make Skeleton: from markers to the motion of a skeleton."""

@@ -1,0 +1,41 @@
+"""Panel: from the markers of an optical take to a skeleton."""
+
+from dataclasses import fields
+from typing import ClassVar
+
+import bpy
+
+from ...solvers.markers import SolveSettings
+from ...solvers.workflows import MarkerMotionSettings
+from ..panels.drawing import draw_job, draw_sentence, exists
+from ..runtime.selection import selected_subject
+from .solving import why_not_solve
+
+SOLVE = "mocap_assist.solve_skeleton"
+
+
+class MarkersPanel:
+    """Settings of Make Skeleton, and its button."""
+
+    bl_label = "Markers"
+    bl_options: ClassVar = {"DEFAULT_CLOSED"}
+
+    @classmethod
+    def poll(cls, context: bpy.types.Context) -> bool:
+        subject = selected_subject(context)
+        return exists(SOLVE) and subject is not None and subject.type != "ARMATURE"
+
+    def draw(self, context: bpy.types.Context) -> None:
+        layout = self.layout
+        running = draw_job(layout, context, "solve")
+        column = layout.column()
+        column.enabled = not running
+        column.use_property_split = True
+        column.use_property_decorate = False
+        solve = context.scene.mocap_assist.solve
+        for item in (*fields(MarkerMotionSettings), *fields(SolveSettings)):
+            if not item.metadata["described"].advanced:
+                column.prop(solve, item.name)
+        layout.operator(SOLVE, icon="ARMATURE_DATA")
+        if reason := why_not_solve(context):
+            draw_sentence(layout, context, reason, icon="INFO")

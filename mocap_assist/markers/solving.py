@@ -1,0 +1,104 @@
+"""What the button Make Skeleton reads from the scene, and the armature that it adds."""
+
+from functools import partial
+from typing import NamedTuple
+
+import bpy
+import numpy as np
+
+from ...solvers.errors import InvalidMotionError
+from ...solvers.markers import SolveSettings
+from ...solvers.workflows import MarkerMotion, MarkerMotionSettings, motion_from_markers
+from ..actions.armature_build import build_armature
+from ..actions.marker_take import read_markers
+from ..actions.new_action import write_motion
+from ..blender.turns import Sliced, Steps
+from ..runtime.selection import played_source, selected_subject
+from ..runtime.subject import Subject, check_unchanged
+from ..scene import history
+from ..scene.origin import ORIGIN
+from ..scene.scene_objects import all_or_nothing
+from ..scene.units import unit_of
+
+MODE = "QUATERNION"
+
+
+class SolveBundle(NamedTuple):
+    """All that the button offers."""
+
+    steps: MarkerMotionSettings
+    solving: SolveSettings
+
+
+def why_not_solve(context: bpy.types.Context) -> str:
+    """Return why no skeleton can be made, or nothing."""
+    subject = selected_subject(context)
+    if subject is None or subject.type == "ARMATURE":
+        return "Select the markers of an optical take."
+    try:
+        played_source(subject)
+    except InvalidMotionError as error:
+        return str(error)
+    return ""
+
+
+@Sliced
+def read_solving(
+    scene: bpy.types.Scene, holder: bpy.types.Object, settings: SolveBundle
+) -> "Steps[partial[MarkerMotion]]":
+    """Read what the markers play; return what is to be solved, which may be pickled."""
+    take = yield from read_markers.steps(holder, scene)
+    return partial(
+        motion_from_markers, take.tracks, settings=settings.steps, solving=settings.solving
+    )
+
+
+@Sliced
+def write_solved(
+    scene: bpy.types.Scene,
+    holder: bpy.types.Object,
+    settings: SolveBundle,
+    result: MarkerMotion,
+    asked: str | None = None,
+) -> Steps[str]:
+    """Add an armature that moves as the markers do; return a sentence about it.
+
+    Raises InvalidMotionError if the markers play something else than what was `asked`.
+    """
+    here = Subject.of(scene, holder)
+    take = yield from read_markers.steps(holder, scene)
+    scene, holder = here.find()
+    check_unchanged(holder, asked, take.tracks)
+    context, metres = bpy.context, unit_of(scene)
+    with all_or_nothing(context):
+        name = f"{holder.name} skeleton"
+        armature, bones = build_armature(context, name, result.motion.skeleton, metres, MODE)
+        action, _ = write_motion(armature, bones, result.motion, take.frames, metres)
+    history.record(action, played_source(holder), _entry(settings, result), of_another_rig=True)
+    for owner in (armature, action):
+        if ORIGIN in holder:
+            owner[ORIGIN] = holder[ORIGIN]
+    return f"{armature.name}: {_said(result)}"
+
+
+def _said(result: MarkerMotion) -> str:
+    error = 1000.0 * np.nanmean(result.solved.error)
+    n_joints = sum(not name.endswith("_end") for name in result.motion.skeleton.names)
+    n_markers, its_set = len(result.solved.markers), result.solved.marker_set.name
+    said = (
+        f"{n_joints} joints from {n_markers} markers ({its_set}), which lie {error:.1f} mm"
+        " from where the skeleton has them."
+    )
+    if result.swaps:
+        said += f" {len(result.swaps)} swaps of labels were put right first."
+    return said
+
+
+def _entry(settings: SolveBundle, result: MarkerMotion) -> dict[str, object]:
+    return {
+        "operation": "solve_skeleton",
+        "settings": history.plain(*settings),
+        "marker_set": result.solved.marker_set.name,
+        "mean_error_mm": float(1000.0 * np.nanmean(result.solved.error)),
+        "swaps": [[*swap.names, swap.frames.start, swap.frames.stop] for swap in result.swaps],
+    }

@@ -1,0 +1,74 @@
+"""Pieces that several panels draw."""
+
+from dataclasses import fields
+from textwrap import wrap
+
+import bpy
+
+from ...solvers.settings import Settings
+
+LETTER = 6.2  # width of a letter of the interface, in pixels at scale 1, on average
+BORDER = 50  # of a panel, likewise
+WIDE = 340  # pixels; Blender's sidebars are narrower at first
+FEWEST_LETTERS = 24  # in a line
+
+
+def exists(idname: str) -> bool:
+    """Whether Blender knows an operator, such as mocap_assist.denoise."""
+    family, _, name = idname.partition(".")
+    return hasattr(bpy.types, f"{family.upper()}_OT_{name}")
+
+
+def draw_sentence(
+    layout: bpy.types.UILayout, context: bpy.types.Context, text: str, icon: str = "NONE"
+) -> None:
+    """Draw a sentence over as many lines as the sidebar's width asks for."""
+    draw_lines(layout, text, sidebar_width(context), icon)
+
+
+def draw_lines(layout: bpy.types.UILayout, text: str, width: float, icon: str = "NONE") -> None:
+    """Draw a sentence over as many lines as a width, in pixels at scale 1, asks for."""
+    lines = column_lines(text, width)
+    column = layout.column(align=True)
+    column.scale_y = 0.8
+    for index, line in enumerate(lines):
+        if icon == "NONE":
+            column.label(text=line, translate=False)
+        else:
+            shown = "BLANK1" if index else icon
+            column.label(text=line, translate=False, icon=shown)
+
+
+def column_lines(text: str, width: float) -> list[str]:
+    """Break a sentence into lines for a panel of that width."""
+    return wrap(text, max(int((width - BORDER) / LETTER), FEWEST_LETTERS))
+
+
+def is_wide(context: bpy.types.Context) -> bool:
+    """Whether there is room for a column more than usual."""
+    return sidebar_width(context) >= WIDE
+
+
+def sidebar_width(context: bpy.types.Context) -> float:
+    """Return the width in pixels at scale 1; 0 where there is no window."""
+    scale = context.preferences.system.ui_scale
+    return context.region.width / scale if context.region is not None and scale else 0.0
+
+
+def draw_job(layout: bpy.types.UILayout, context: bpy.types.Context, *owners: str) -> bool:
+    """Draw how far the running solve is, if it is one of these owners'.
+
+    Return whether any runs: settings can wait until it has ended.
+    """
+    job = context.window_manager.mocap_assist_job
+    if job.running and job.owner in owners:
+        column = layout.column(align=True)
+        text = f"{job.message} {job.fraction:.0%}"
+        column.progress(factor=job.fraction, type="BAR", text=text, translate=False)
+        column.label(text="Esc cancels")
+    return bool(job.running)
+
+
+def folded(settings: type[Settings], shown: tuple[str, ...]) -> list[str]:
+    """Return the names of the settings that a panel folds away."""
+    return [item.name for item in fields(settings) if item.name not in shown]

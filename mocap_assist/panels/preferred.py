@@ -1,0 +1,28 @@
+"""What the animator has set in the extension's preferences."""
+
+from typing import Any
+
+import bpy
+
+EXTENSION = __package__.rsplit(".", 2)[0]  # Blender knows preferences by the root package
+
+
+def preferences() -> bpy.types.AddonPreferences | None:
+    """Return the preferences; none where the extension was switched on for one session alone.
+
+    Blender does so for `--addons`, and keeps preferences of none but the others.
+    """
+    ours = bpy.context.preferences.addons.get(EXTENSION)
+    return None if ours is None else ours.preferences
+
+
+def preferred(name: str) -> Any:
+    """Return one preference, or what it is at first."""
+    ours = preferences()
+    if ours is not None:
+        return getattr(ours, name)
+    return _class().__annotations__[name].keywords["default"]
+
+
+def _class() -> type[bpy.types.AddonPreferences]:
+    return bpy.types.AddonPreferences.bl_rna_get_subclass_py("MOCAP_AP_preferences")

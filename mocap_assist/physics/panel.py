@@ -1,0 +1,39 @@
+"""Panel: let a body with mass and muscles make the motion."""
+
+from dataclasses import fields
+from typing import ClassVar
+
+import bpy
+
+from ...solvers.physics import Ground, SimulateSettings
+from ..panels.drawing import draw_job, draw_sentence, exists
+from ..runtime.selection import why_not_change
+
+SIMULATE = "mocap_assist.simulate"
+
+
+class PhysicsPanel:
+    """Settings of Physics, and its button."""
+
+    bl_label = "Physics"
+    bl_options: ClassVar = {"DEFAULT_CLOSED"}
+
+    @classmethod
+    def poll(cls, context: bpy.types.Context) -> bool:
+        return exists(SIMULATE)
+
+    def draw(self, context: bpy.types.Context) -> None:
+        layout = self.layout
+        running = draw_job(layout, context, "simulate")
+        column = layout.column()
+        column.enabled = not running
+        column.use_property_split = True
+        column.use_property_decorate = False
+        simulate = context.scene.mocap_assist.simulate
+        for item in fields(SimulateSettings):
+            row = column.row()
+            row.active = item.name != "ground_height" or simulate.ground != Ground.FEET.name
+            row.prop(simulate, item.name)
+        layout.operator(SIMULATE, icon="PHYSICS")
+        if reason := why_not_change(context):
+            draw_sentence(layout, context, reason, icon="INFO")

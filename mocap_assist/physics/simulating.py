@@ -1,0 +1,82 @@
+"""What the button Physics reads from the scene, and what it writes back."""
+
+from functools import partial
+from typing import NamedTuple
+
+import bpy
+
+from ...solvers.physics import SimulateSettings
+from ..actions.armature_read import read_take
+from ..actions.armature_write import Output, check_writable, put_to_use, write_take
+from ..blender.turns import Sliced, Steps
+from ..jobs.job import Quick
+from ..runtime import redo
+from ..runtime.selection import played_source
+from ..runtime.subject import Subject, check_unchanged
+from ..scene import history
+from .solve_simulating import Resimulated, simulate_take, take_of
+
+SUFFIX = ".physics"
+
+
+class SimulateBundle(NamedTuple):
+    """All that the button offers."""
+
+    simulating: SimulateSettings
+
+
+@Sliced
+def read_simulating(
+    scene: bpy.types.Scene, armature: bpy.types.Object, settings: SimulateBundle
+) -> "Steps[partial[Resimulated]]":
+    """Read what an armature plays; return what is to be solved, which may be pickled."""
+    check_writable(armature)
+    read = yield from read_take.steps(armature, scene, source=played_source(armature))
+    take = take_of(read.parts[0].motion, settings.simulating)
+    known = redo.recall(take)
+    kind = partial if known is None else Quick
+    return kind(simulate_take, take, settings.simulating.strength, known)
+
+
+@Sliced
+def write_simulated(
+    scene: bpy.types.Scene,
+    armature: bpy.types.Object,
+    settings: SimulateBundle,
+    result: Resimulated,
+    asked: str | None = None,
+) -> Steps[str]:
+    """Write the result as a new action and put it to use; return a sentence about it.
+
+    Raises InvalidMotionError if the armature plays something else than what was `asked`.
+    """
+    here = Subject.of(scene, armature)
+    read = yield from read_take.steps(armature, scene, source=played_source(armature))
+    scene, armature = here.find()
+    played = played_source(armature)
+    body, *others = read.recordings
+    take = take_of(body, settings.simulating)
+    check_unchanged(armature, asked, take)
+    redo.remember(take, result.simulated)
+    read = read.with_recordings((result.body, *others))
+    action, slot = write_take(armature, played, read, result.moved, {}, suffix=SUFFIX)
+    history.record(action, played, _entry(settings, result))
+    put_to_use(armature, action, slot, Output.ACTION)
+    return f"{action.name}: {result.simulated.message} {len(result.moved)} bones moved."
+
+
+def _entry(settings: SimulateBundle, result: Resimulated) -> dict[str, object]:
+    simulated = result.simulated
+    return {
+        "operation": "simulate",
+        "settings": history.plain(*settings),
+        "frames_not_followed": int((~simulated.followed).sum()),
+        "ground_m": simulated.ground,
+        "at_full_strength": {
+            "penetration_before_cm": 100 * simulated.penetration_before,
+            "penetration_after_cm": 100 * simulated.penetration_after,
+            "slide_before_cm": 100 * simulated.slide_before,
+            "slide_after_cm": 100 * simulated.slide_after,
+            "distance_cm": 100 * simulated.distance,
+        },
+    }

@@ -1,0 +1,43 @@
+"""What the button Physics has solved for it."""
+
+from dataclasses import replace
+from typing import NamedTuple
+
+from ...solvers.motion import Motion
+from ...solvers.physics import Simulated, SimulateSettings, simulate, with_strength
+from ...solvers.progress import Progress, unwatched
+from ..clean.solve_cleaning import differing
+
+
+class Take(NamedTuple):
+    """What is simulated; its strength is 1."""
+
+    body: Motion
+    settings: SimulateSettings
+
+
+class Resimulated(NamedTuple):
+    """What was simulated at full strength, what the body gets of it, and what moved by it."""
+
+    simulated: Simulated
+    body: Motion
+    moved: frozenset[str]
+
+
+def take_of(body: Motion, settings: SimulateSettings) -> Take:
+    """Return what must be simulated, whatever the strength."""
+    return Take(body, replace(settings, strength=1.0))
+
+
+def simulate_take(
+    take: Take,
+    strength: float,
+    simulated: Simulated | None = None,
+    *,
+    progress: Progress = unwatched,
+) -> Resimulated:
+    """Simulate a take, unless that was done already, and take over so much of it."""
+    if simulated is None:
+        simulated = simulate(take.body, settings=take.settings, progress=progress)
+    body = with_strength(take.body, simulated, strength)
+    return Resimulated(simulated, body, differing(take.body, body))

@@ -1,0 +1,62 @@
+"""Panel: rebuild what a depth camera lost, and see how far each joint was trusted."""
+
+from typing import ClassVar
+
+import bpy
+
+from ...solvers.denoising import PlantSettings
+from ...solvers.reconstruction import ReconstructSettings
+from ..clean.example_list import RECONSTRUCT, draw_examples
+from ..drawing.heat_switch import draw_heat_switch
+from ..panels.drawing import draw_job, draw_sentence, exists, folded
+from .choices import Postures
+from .reconstructing import why_not_reconstruct
+
+BUTTON = "mocap_assist.reconstruct"
+
+
+class ReconstructPanel:
+    """Settings of Reconstruct, its button, and the switch of the heat colours."""
+
+    bl_label = "Reconstruct"
+    bl_options: ClassVar = {"DEFAULT_CLOSED"}
+
+    @classmethod
+    def poll(cls, context: bpy.types.Context) -> bool:
+        return exists(BUTTON)
+
+    def draw(self, context: bpy.types.Context) -> None:
+        layout = self.layout
+        running = draw_job(layout, context, "reconstruct")
+        column = layout.column()
+        column.enabled = not running
+        settings = context.scene.mocap_assist.reconstruct
+        column.use_property_split = True
+        column.use_property_decorate = False
+        column.prop(settings, "postures", text="Postures")
+        if settings.postures == Postures.EXAMPLES.name:
+            draw_examples(column, settings, RECONSTRUCT)
+        elif settings.postures == Postures.LEARNED.name:
+            column.prop(settings, "postures_file")
+        for name in ("frame_range", "result_as", "plant_feet"):
+            column.prop(settings, name)
+        _draw_folded(column, settings)
+        button = layout.row()
+        button.scale_y = 1.6
+        button.operator(BUTTON, icon="OUTLINER_OB_ARMATURE")
+        if reason := why_not_reconstruct(context):
+            draw_sentence(layout, context, reason, icon="INFO")
+        draw_heat_switch(layout, context)
+
+
+def _draw_folded(column: bpy.types.UILayout, settings: bpy.types.PropertyGroup) -> None:
+    header, body = column.panel("mocap_assist_reconstruct_advanced", default_closed=True)
+    header.label(text="Advanced")
+    if body is None:
+        return
+    for name in ("residuals_file", *folded(ReconstructSettings, ())):
+        body.prop(settings, name)
+    feet = body.column()
+    feet.active = settings.plant_feet
+    for name in folded(PlantSettings, ()):
+        feet.prop(settings, name)

@@ -1,0 +1,206 @@
+"""What the button Reconstruct reads from the scene, and what it writes back."""
+
+from functools import partial
+from typing import Any, NamedTuple
+
+import bpy
+import numpy as np
+from numpy.typing import NDArray
+
+from ...solvers.errors import InvalidMotionError
+from ...solvers.motion import Motion
+from ..actions.armature_read import read_take
+from ..actions.armature_write import check_writable, count_modified, put_to_use, write_take
+from ..actions.contacts import animators_contacts, write_contacts
+from ..actions.curves import GENERATED, MEASURED
+from ..actions.reliability_curves import Term, write_reliability
+from ..actions.sensor_notes import read_states
+from ..actions.take import ArmatureTake
+from ..blender.compat import Source
+from ..blender.path_properties import absolute
+from ..blender.turns import Sliced, Steps
+from ..clean.cleaning import ease_of
+from ..clean.examples import read_examples
+from ..clean.report import figures
+from ..clean.solve_cleaning import Examples
+from ..jobs.job import Quick
+from ..library.prior import library_prior
+from ..runtime import redo
+from ..runtime.selection import played_source, selected_armature, why_not_clean
+from ..runtime.subject import Subject, check_unchanged
+from ..scene import history
+from ..scene.origin import origin_of
+from .choices import Postures, ReconstructBundle
+from .solve_reconstructing import RebuildFinish, RebuildProblem, Rebuilt, rebuild
+
+SUFFIX = ".reconstructed"
+
+
+class _Reading(NamedTuple):
+    """What an armature plays, and what was recorded for it."""
+
+    played: Source
+    recorded: Source
+    take: ArmatureTake
+
+    @classmethod
+    def of(
+        cls, scene: bpy.types.Scene, armature: bpy.types.Object, settings: ReconstructBundle
+    ) -> "Steps[_Reading]":
+        check_writable(armature)
+        here = Subject.of(scene, armature)
+        played = played_source(armature)
+        recorded = history.raw_of(played[0]) or played
+        take = yield from read_take.steps(
+            armature, scene, settings.choices.frame_range, recorded
+        )
+        played = played_source(here.find()[1])
+        return cls(played, history.raw_of(played[0]) or played, take)
+
+    @property
+    def body(self) -> Motion:
+        return self.take.parts[0].motion
+
+
+def why_not_reconstruct(context: bpy.types.Context) -> str:
+    """Return why nothing can be reconstructed, or nothing."""
+    if selected_armature(context) is None:
+        return (
+            "Select an armature that plays a captured action; import joints of a depth camera"
+            " as an armature."
+        )
+    return why_not_clean(context)
+
+
+@Sliced
+def read_reconstructing(
+    scene: bpy.types.Scene, armature: bpy.types.Object, settings: ReconstructBundle
+) -> "Steps[partial[Rebuilt]]":
+    """Read what was recorded; return what is to be solved, which may be pickled."""
+    found, problem = yield from _read(Subject.of(scene, armature), settings)
+    finish = RebuildFinish(
+        ease=ease_of(found.take.grid),
+        planting=settings.planting if settings.choices.plant_feet else None,
+        contacts=animators_contacts(found.played, found.take.frames),
+    )
+    solution = redo.recall(problem)
+    return (partial if solution is None else Quick)(rebuild, problem, finish, solution)
+
+
+@Sliced
+def write_reconstructed(
+    scene: bpy.types.Scene,
+    armature: bpy.types.Object,
+    settings: ReconstructBundle,
+    rebuilt: Rebuilt,
+    asked: str | None = None,
+) -> Steps[str]:
+    """Write the result as a new action and put it to use; return a sentence about it.
+
+    Raises InvalidMotionError if the armature plays something else than what was `asked`, a
+    fingerprint of the problem.
+    """
+    here = Subject.of(scene, armature)
+    found, problem = yield from _read(here, settings)
+    scene, armature = here.find()
+    check_unchanged(armature, asked, problem)
+    redo.remember(problem, rebuilt.solution)
+    names = problem.body.skeleton.names
+    bones = frozenset(names) & frozenset(found.take.rig.bones)
+    others = found.take.recordings[1:]
+    take = found.take.with_recordings((rebuilt.motion, *others))
+    n_modified = count_modified(found.recorded, bones)
+    action, slot = write_take(
+        armature, found.recorded, take, bones, _key_types(names, rebuilt), suffix=SUFFIX
+    )
+    for term in Term:
+        values = getattr(rebuilt.solution.trust, term.name.lower())
+        trusted = dict(zip(names, values.T, strict=True))
+        write_reliability(armature, action, slot, take.frames, trusted, term)
+    if rebuilt.planted is not None:
+        detected = animators_contacts(found.played, take.frames) is None
+        contacts = rebuilt.planted.contacts
+        write_contacts(armature, action, slot, take.frames, contacts, detected=detected)
+    history.record(action, found.recorded, _entry(settings, rebuilt))
+    put_to_use(armature, action, slot, settings.choices.result_as)
+    return _said(action.name, rebuilt, n_modified)
+
+
+def _read(here: Subject, settings: ReconstructBundle) -> Steps[tuple[_Reading, RebuildProblem]]:
+    """Read what is to be learned from, and then what was recorded."""
+    examples, choices = None, settings.choices
+    if choices.postures is Postures.EXAMPLES:
+        examples = yield from read_examples.steps(*here.find(), choices.examples)
+    found = yield from _Reading.of(*here.find(), settings)
+    return found, _problem(*here.find(), found, settings, examples)
+
+
+def _problem(
+    scene: bpy.types.Scene,
+    armature: bpy.types.Object,
+    found: _Reading,
+    settings: ReconstructBundle,
+    examples: Examples | None,
+) -> RebuildProblem:
+    body = found.body
+    choices, postures, library = settings.choices, None, None
+    if choices.postures is Postures.LIBRARY:
+        library = library_prior(scene, armature)
+    elif choices.postures is Postures.LEARNED:
+        if not choices.postures_file:
+            raise InvalidMotionError("Choose the file of postures, or other postures.")
+        postures = _dated(choices.postures_file)
+    state = read_states(found.recorded, body.skeleton.names, found.take.frames)
+    return RebuildProblem(
+        body=body,
+        tracking_state=state,
+        source=_source_of(found.recorded[0]),
+        settings=settings.rebuilding,
+        examples=examples,
+        postures_file=postures,
+        residuals_file=_dated(choices.residuals_file) if choices.residuals_file else None,
+        library=library,
+    )
+
+
+def _source_of(action: bpy.types.Action) -> tuple[str, int] | None:
+    """Return the file that an action was imported from, and its date; None if it is gone."""
+    path = str(origin_of(action).get("file", ""))
+    return _dated(path) if absolute(path).is_file() else None
+
+
+def _dated(file: str) -> tuple[str, int]:
+    """Return a file and its date; 0 where it is missing, which its reader says better."""
+    path = absolute(file)
+    return str(path), path.stat().st_mtime_ns if path.is_file() else 0
+
+
+def _key_types(names: tuple[str, ...], rebuilt: Rebuilt) -> dict[str, NDArray[np.uint8]]:
+    """Paint the keys of joints that were rebuilt."""
+    painted = np.where(rebuilt.solution.rebuilt, GENERATED, MEASURED).astype(np.uint8)
+    return dict(zip(names, painted.T, strict=True))
+
+
+def _entry(settings: ReconstructBundle, rebuilt: Rebuilt) -> dict[str, Any]:
+    """Return what the action's history keeps, JSON-ready."""
+    return {
+        "operation": "reconstruct",
+        "settings": history.plain(*settings),
+        "method": rebuilt.solution.method,
+        "rebuilt_share": rebuilt.solution.rebuilt_share,
+        "remarks": list(rebuilt.remarks),
+        "before": figures(rebuilt.before),
+        "after": figures(rebuilt.after),
+    }
+
+
+def _said(name: str, rebuilt: Rebuilt, n_modified: int) -> str:
+    """Return what a status bar has room for, and what the animator must know."""
+    short = f"{name}: {100 * rebuilt.solution.rebuilt_share:.1f} % of joints rebuilt"
+    if planted := rebuilt.planted:
+        slides = (100 * planted.slide_before, 100 * planted.slide_after)
+        short += ", feet slid {:.1f} cm and now {:.1f} cm".format(*slides)
+    said = [f"{short}.", *rebuilt.remarks]
+    if n_modified:
+        said.append(f"The modifiers of {n_modified} curves are part of the new keys now.")
+    return " ".join(said)

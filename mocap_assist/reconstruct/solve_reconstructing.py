@@ -1,0 +1,147 @@
+"""What the button Reconstruct has solved for it: poses rebuilt, then feet planted.
+
+The slow part, `solve`, does not depend on the feet: what it returns is kept, so that the redo
+panel has only `finish` to repeat.
+"""
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ...solvers.denoising import Planted, PlantSettings, Quality, measure_quality
+from ...solvers.errors import MocapAssistError
+from ...solvers.motion import JointRecording, Motion
+from ...solvers.progress import Progress, unwatched, within
+from ...solvers.reconstruction import (
+    ReconstructSettings,
+    load_posture_library,
+    load_residual_prior,
+)
+from ...solvers.recordings import read_motion_or_tracks, read_tracked
+from ...solvers.workflows import RebuiltMotion, postures_of, reconstruct_motion, try_to_plant
+from ..clean.solve_cleaning import Examples, toward
+from ..library.solve_prior import LibraryPrior
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True, eq=False, kw_only=True)
+class RebuildProblem:
+    """All that the slow part depends on."""
+
+    body: Motion
+    tracking_state: NDArray[np.int8] | None
+    """What the sensor said of each joint, shape (n_frames, n_joints)."""
+    source: tuple[str, int] | None
+    """The file that the take was imported from, if it is there, and its date."""
+    settings: ReconstructSettings
+    examples: Examples | None
+    """Clips of natural postures; None for those that are shipped, or of a file."""
+    postures_file: tuple[str, int] | None = None
+    """The file of a posture library, and its date."""
+    residuals_file: tuple[str, int] | None = None
+    """The file of a residual prior, and its date; None for the one that is shipped."""
+    library: LibraryPrior | None = None
+    """In which clips of natural postures are found, in the place of examples."""
+
+
+@dataclass(frozen=True, eq=False, kw_only=True)
+class RebuildFinish:
+    """How the solution is applied to the take."""
+
+    ease: Array
+    """Shape (n_frames,): 1, and less where the frames join others that stay."""
+    planting: PlantSettings | None
+    """None leaves the feet alone."""
+    contacts: NDArray[np.bool_] | None
+    """When each foot stands, shape (n_frames, 2), as the animator keyed it."""
+
+
+@dataclass(frozen=True, eq=False)
+class Rebuilt:
+    """What is to be written, and what there is to say about it."""
+
+    motion: Motion
+    solution: RebuiltMotion
+    planted: Planted | None
+    remarks: tuple[str, ...]
+    before: Quality
+    """Of the recording, its feet measured at the contacts at which they were planted."""
+    after: Quality
+
+
+def solve(problem: RebuildProblem, *, progress: Progress = unwatched) -> RebuiltMotion:
+    """Rebuild the poses of the body."""
+    postures, prior, said = None, None, ""
+    sharing = within(progress, 0.0, 0.2)
+    if problem.postures_file is not None:
+        postures = load_posture_library(problem.postures_file[0])
+    if problem.residuals_file is not None:
+        prior = load_residual_prior(problem.residuals_file[0])
+    if problem.library is not None:
+        found = problem.library.postures(problem.body, sharing)
+        postures, said = found.postures, found.said
+    elif problem.examples is not None:
+        clips = [*problem.examples.motions, *map(read_motion_or_tracks, problem.examples.files)]
+        postures = postures_of(clips, progress=sharing)
+    rebuilt = reconstruct_motion(
+        problem.body,
+        postures,
+        prior,
+        source=_source(problem),
+        tracking_state=problem.tracking_state,
+        settings=problem.settings,
+        progress=within(progress, 0.2, 1.0),
+    )
+    return replace(rebuilt, remarks=(said, *rebuilt.remarks)) if said else rebuilt
+
+
+def _source(problem: RebuildProblem) -> JointRecording | None:
+    """Return the recording of a take, if its file is still there and readable."""
+    if problem.source is None:
+        return None
+    try:
+        recording = read_tracked(problem.source[0])
+    except MocapAssistError:
+        return None
+    return recording if isinstance(recording, JointRecording) else None
+
+
+def rebuild(
+    problem: RebuildProblem,
+    finish: RebuildFinish,
+    solution: RebuiltMotion | None = None,
+    *,
+    progress: Progress = unwatched,
+) -> Rebuilt:
+    """Solve the problem, unless its solution is given, and finish it."""
+    if solution is None:
+        solution = solve(problem, progress=within(progress, 0.0, 0.8))
+    motion, planted, remarks = try_to_plant(
+        solution.motion,
+        finish.planting,
+        finish.contacts,
+        reliability=solution.reliability,
+        progress=within(progress, 0.8, 0.9),
+    )
+    motion = _eased(problem.body, motion, finish.ease)
+    contacts = None if planted is None else planted.contacts
+    before, after = (
+        measure_quality(each, contacts=contacts, progress=within(progress, start, start + 0.05))
+        for each, start in ((problem.body, 0.9), (motion, 0.95))
+    )
+    return Rebuilt(motion, solution, planted, (*solution.remarks, *remarks), before, after)
+
+
+def _eased(raw: Motion, motion: Motion, ease: Array) -> Motion:
+    """Join the frames outside, where the recording knows the way."""
+    if (ease == 1.0).all():
+        return motion
+    known = np.isfinite(raw.rotations).all(axis=-1, keepdims=True)
+    placed = np.isfinite(raw.root_positions).all(axis=-1, keepdims=True)
+    start = motion.with_poses(
+        np.where(known, raw.rotations, motion.rotations),
+        np.where(placed, raw.root_positions, motion.root_positions),
+    )
+    return toward(start, motion, ease[:, None])

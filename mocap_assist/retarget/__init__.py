@@ -1,0 +1,1 @@
+"""The buttons Retarget and Unbake."""

@@ -1,0 +1,198 @@
+"""The editable list of which bone plays which part, and its presets."""
+
+from collections.abc import Callable
+from functools import partial
+from pathlib import Path
+from typing import ClassVar
+
+import bpy
+
+from ...solvers.errors import MocapAssistError
+from ...solvers.motion import read_humanoid_map, write_humanoid_map
+from ..blender.path_properties import absolute, path_property
+from ..runtime.selection import selected_armature, why_not_retarget
+from .bone_map import SIDES, BoneMaps, find_maps, list_maps, listed_maps
+from .retargeting import target_called
+
+FIND, SAVE, LOAD = (
+    f"mocap_assist.{name}" for name in ("find_bones", "save_bone_map", "load_bone_map")
+)
+ROLE_COLUMN = 0.38  # of the list's width
+PACKAGE = __package__.rpartition(".mocap_assist.")[0]
+
+
+class MOCAP_UL_bones(bpy.types.UIList):
+    """A row for each part of the body: the bone of the source, and that of the target."""
+
+    def draw_item(
+        self,
+        context: bpy.types.Context,
+        layout: bpy.types.UILayout,
+        listed: bpy.types.PropertyGroup,
+        row: bpy.types.PropertyGroup,
+        icon: int,
+        active_data: bpy.types.PropertyGroup,
+        active_property: str,
+        index: int,
+    ) -> None:
+        """Draw the role and both bones; those that do not exist in red."""
+        columns = layout.split(factor=ROLE_COLUMN, align=True)
+        columns.label(text=row.name, translate=False)
+        for side in SIDES:
+            armature, bone = listed_armature(context, listed, side), getattr(row, side)
+            cell = columns.row()
+            cell.alert = bool(bone) and armature is not None and bone not in armature.data.bones
+            cell.label(text=bone or "-", translate=False)
+
+
+def listed_armature(
+    context: bpy.types.Context, listed: bpy.types.PropertyGroup, side: str
+) -> bpy.types.Object | None:
+    """Return the armature on one side of the list, if it is still there."""
+    armature = context.scene.objects.get(getattr(listed, side))
+    return armature if armature is not None and armature.type == "ARMATURE" else None
+
+
+class _BoneButton:
+    """A button that fills the list."""
+
+    bl_options: ClassVar = {"INTERNAL", "UNDO"}
+
+    @classmethod
+    def poll(cls, context: bpy.types.Context) -> bool:
+        reason = why_not_retarget(context)
+        if not reason and not context.scene.mocap_assist.retarget.target:
+            reason = "Choose the armature that is to make the motion first."
+        if reason:
+            cls.poll_message_set(reason)
+        return not reason
+
+    def done(self, act: Callable[[], None]) -> set[str]:
+        """Do it; an error is said in a sentence."""
+        try:
+            act()
+        except MocapAssistError as error:
+            self.report({"ERROR"}, str(error))
+            return {"CANCELLED"}
+        return {"FINISHED"}
+
+
+class MOCAP_OT_find_bones(_BoneButton, bpy.types.Operator):
+    bl_idname = FIND
+    bl_label = "Find Bones"
+    bl_description = (
+        "Find out, by names and by the shape of the rest pose, which bone plays"
+        " which part in both armatures"
+    )
+
+    def execute(self, context: bpy.types.Context) -> set[str]:
+        return self.done(partial(self.find, context))
+
+    def find(self, context: bpy.types.Context) -> None:
+        """Fill the list anew."""
+        found = context.scene.mocap_assist
+        source = selected_armature(context)
+        target = target_called(context.scene, found.retarget.target, source)
+        list_maps(found.bone_map, source, target, find_maps(source, target))
+
+
+class _PresetButton(_BoneButton):
+    """A button for a file of one armature's bones."""
+
+    filepath: path_property(options={"SKIP_SAVE"})
+    filter_glob: bpy.props.StringProperty(default="*.json", options={"HIDDEN", "SKIP_SAVE"})
+    side: bpy.props.EnumProperty(
+        name="Armature",
+        description="Whose bones they are",
+        items=[(side, side.capitalize(), "") for side in SIDES],
+        options={"SKIP_SAVE"},
+    )
+
+    def invoke(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
+        name = getattr(context.scene.mocap_assist.bone_map, self.side) or self.side
+        self.filepath = str(preset_folder() / f"{bpy.path.clean_name(name)}.json")
+        context.window_manager.fileselect_add(self)
+        return {"RUNNING_MODAL"}
+
+
+class MOCAP_OT_save_bone_map(_PresetButton, bpy.types.Operator):
+    bl_idname = SAVE
+    bl_label = "Save Bones"
+    bl_description = "Keep what the list says of one armature as a preset"
+
+    def execute(self, context: bpy.types.Context) -> set[str]:
+        return self.done(partial(self.save, context))
+
+    def save(self, context: bpy.types.Context) -> None:
+        """Write the file, whole or not at all."""
+        maps = listed_maps(context.scene.mocap_assist.bone_map)
+        write_humanoid_map(getattr(maps, self.side), absolute(self.filepath))
+
+
+class MOCAP_OT_load_bone_map(_PresetButton, bpy.types.Operator):
+    bl_idname = LOAD
+    bl_label = "Load Bones"
+    bl_description = "Let a preset say which bones of one armature play which part"
+
+    def execute(self, context: bpy.types.Context) -> set[str]:
+        return self.done(partial(self.load, context))
+
+    def load(self, context: bpy.types.Context) -> None:
+        """Put the preset into the list, which is filled first if it was of other armatures."""
+        found = context.scene.mocap_assist
+        source = selected_armature(context)
+        target = target_called(context.scene, found.retarget.target, source)
+        loaded = read_humanoid_map(absolute(self.filepath))
+        listed = found.bone_map
+        same = (listed.source, listed.target) == (source.name, target.name)
+        maps = listed_maps(listed) if same else find_maps(source, target)
+        list_maps(listed, source, target, BoneMaps(**maps._asdict() | {self.side: loaded}))
+
+
+def preset_folder() -> Path:
+    """Return the folder of presets, which is the user's and outlives the extension."""
+    return Path(bpy.utils.extension_path_user(PACKAGE, path="bone_maps", create=True))
+
+
+def draw_bones(layout: bpy.types.UILayout, context: bpy.types.Context) -> None:
+    """Draw the list, how sure it is, and its buttons."""
+    listed = context.scene.mocap_assist.bone_map
+    layout.operator(FIND, icon="VIEWZOOM")
+    if not len(listed.rows):
+        return
+    heads = layout.split(factor=ROLE_COLUMN, align=True)
+    heads.label(text="")
+    for side in SIDES:
+        score = getattr(listed, f"{side}_score")
+        heads.label(text=f"{getattr(listed, side)} {score:.0%}", translate=False)
+    layout.template_list("MOCAP_UL_bones", "", listed, "rows", listed, "active_row", rows=8)
+    row = listed.rows[min(listed.active_row, len(listed.rows) - 1)]
+    column = layout.column(align=True)
+    for side in SIDES:
+        if (armature := listed_armature(context, listed, side)) is not None:
+            column.prop_search(
+                row, side, armature.data, "bones", text=side.capitalize(), icon="BONE_DATA"
+            )
+    for idname, icon in ((SAVE, "FILE_TICK"), (LOAD, "FILE_FOLDER")):
+        row = layout.row(align=True)
+        for side in SIDES:
+            row.operator(
+                idname,
+                text=f"{idname.split('.')[1].split('_')[0].capitalize()} {side.capitalize()}",
+                icon=icon,
+            ).side = side
+
+
+CLASSES = (MOCAP_UL_bones, MOCAP_OT_find_bones, MOCAP_OT_save_bone_map, MOCAP_OT_load_bone_map)
+
+
+def register() -> None:
+    """Add the list and its buttons."""
+    for each in CLASSES:
+        bpy.utils.register_class(each)
+
+
+def unregister() -> None:
+    """Take them away."""
+    for each in reversed(CLASSES):
+        bpy.utils.unregister_class(each)

@@ -1,0 +1,84 @@
+"""Which bones of source and target play which part: found, edited, or from presets."""
+
+from typing import NamedTuple
+
+import bpy
+
+from ...solvers.motion import HUMANOID_ROLES, HumanoidMap, read_humanoid_map
+from ..blender.path_properties import absolute
+from ..rigs.target_read import find_roles
+
+FINGERS = ("Thumb", "Index", "Middle", "Ring", "Little")
+SIDES = ("source", "target")
+
+
+class BoneMaps(NamedTuple):
+    """Names of bones by role, of both armatures."""
+
+    source: HumanoidMap
+    target: HumanoidMap
+
+
+def find_maps(source: bpy.types.Object, target: bpy.types.Object) -> BoneMaps:
+    """Find out by names and structure which bones play which part."""
+    return BoneMaps(find_roles(source), find_roles(target))
+
+
+def maps_for(
+    scene: bpy.types.Scene,
+    source: bpy.types.Object,
+    target: bpy.types.Object,
+    files: tuple[str, str] = ("", ""),
+) -> BoneMaps:
+    """Return the maps of presets, or of the list if it is of these armatures; or find them.
+
+    Raises InvalidFileError for a preset that cannot be read.
+    """
+    listed = scene.mocap_assist.bone_map
+    armatures = (source, target)
+    known: tuple[HumanoidMap | None, ...] = (None, None)
+    if (listed.source, listed.target) == (source.name, target.name) and len(listed.rows):
+        known = listed_maps(listed)
+    return BoneMaps(
+        *(
+            read_humanoid_map(absolute(file)) if file else map_ or find_roles(each)
+            for each, file, map_ in zip(armatures, files, known, strict=True)
+        )
+    )
+
+
+def listed_maps(listed: bpy.types.PropertyGroup) -> BoneMaps:
+    """Return what the list of bones says; a bone that is named twice counts once."""
+    maps = []
+    for side in SIDES:
+        roles: dict[str, str] = {}
+        for row in listed.rows:
+            bone = getattr(row, side)
+            if bone and row.name in HUMANOID_ROLES and bone not in roles.values():
+                roles[row.name] = bone
+        maps.append(HumanoidMap(roles, getattr(listed, f"{side}_score")))
+    return BoneMaps(*maps)
+
+
+def list_maps(
+    listed: bpy.types.PropertyGroup,
+    source: bpy.types.Object,
+    target: bpy.types.Object,
+    maps: BoneMaps,
+) -> None:
+    """Show maps in the list of bones, a row for each role; fingers only where there are any."""
+    listed.source, listed.target = source.name, target.name
+    listed.source_score, listed.target_score = (each.score for each in maps)
+    listed.rows.clear()
+    played = {role for each in maps for role in each.joints}
+    for role in sorted(HUMANOID_ROLES, key=is_finger):
+        if role in played or not is_finger(role):
+            row = listed.rows.add()
+            row.name = role
+            row.source = maps.source.joint(role) or ""
+            row.target = maps.target.joint(role) or ""
+
+
+def is_finger(role: str) -> bool:
+    """Tell whether a role is a part of a finger."""
+    return any(finger in role for finger in FINGERS)

@@ -1,0 +1,150 @@
+"""Panel: let another armature make the motion, and thin out keys."""
+
+from typing import ClassVar
+
+import bpy
+
+from ...solvers.errors import MocapAssistError
+from ...solvers.retargeting import RetargetSettings, RootMotion
+from ..blender.name_lists import SEPARATOR, joined, listed
+from ..panels.drawing import draw_job, draw_sentence, exists, folded
+from ..rigs.rigify import is_rigify
+from ..runtime.selection import selected_armature, why_not_read, why_not_retarget
+from .bone_list import draw_bones
+from .choices import Takes
+from .retargeting import fitting_actions, target_called
+
+RETARGET, UNBAKE, TICK = (
+    f"mocap_assist.{name}" for name in ("retarget", "reduce_keys", "tick_action")
+)
+MAIN = ("root_motion", "keep_feet", "keep_hands")
+LONGEST = 30
+
+
+class RetargetPanel:
+    """Who makes the motion, which motions, how, and the button."""
+
+    bl_label = "Retarget"
+    bl_options: ClassVar = {"DEFAULT_CLOSED"}
+
+    @classmethod
+    def poll(cls, context: bpy.types.Context) -> bool:
+        return exists(RETARGET)
+
+    def draw(self, context: bpy.types.Context) -> None:
+        layout = self.layout
+        running = draw_job(layout, context, "retarget", "unbake")
+        shown = context.scene.mocap_assist.retarget
+        reason = why_not_pressed(context)
+        column = layout.column()
+        column.enabled = not running
+        column.use_property_split = True
+        column.use_property_decorate = False
+        column.prop_search(shown, "target", context.scene, "objects", icon="ARMATURE_DATA")
+        column.prop(shown, "takes")
+        if shown.takes == Takes.LISTED.name:
+            _draw_actions(column, context)
+        for name in MAIN:
+            column.prop(shown, name)
+        target = context.scene.objects.get(shown.target)
+        if target is not None and target.type == "ARMATURE" and is_rigify(target.data.bones):
+            column.prop(shown, "limbs")
+        _draw_folded(column, shown)
+        _draw_bones(layout, context)
+        button = layout.row()
+        button.scale_y = 1.6
+        button.enabled = not reason
+        button.operator(RETARGET, icon="CON_ARMATURE")
+        if reason:
+            draw_sentence(layout, context, reason, icon="INFO")
+        if exists(UNBAKE):
+            _draw_unbake(layout, context)
+
+
+def why_not_pressed(context: bpy.types.Context) -> str:
+    """Return why Retarget would do nothing with what the panel shows, or nothing."""
+    if reason := why_not_retarget(context):
+        return reason
+    shown = context.scene.mocap_assist.retarget
+    if shown.takes == Takes.PLAYED.name and (reason := why_not_read(context)):
+        return reason
+    try:
+        target_called(context.scene, shown.target, selected_armature(context))
+    except MocapAssistError as error:
+        return str(error)
+    return ""
+
+
+def _draw_actions(column: bpy.types.UILayout, context: bpy.types.Context) -> None:
+    ticked = listed(context.scene.mocap_assist.retarget.actions)
+    source = selected_armature(context)
+    found = [] if source is None else fitting_actions(source)
+    box = column.column(align=True)
+    for action, _ in found[:LONGEST]:
+        icon = "CHECKBOX_HLT" if action.name in ticked else "CHECKBOX_DEHLT"
+        box.operator(TICK, text=action.name, translate=False, icon=icon).action = action.name
+    if len(found) > LONGEST:
+        column.prop(context.scene.mocap_assist.retarget, "actions")
+
+
+def _draw_folded(column: bpy.types.UILayout, shown: bpy.types.PropertyGroup) -> None:
+    header, body = column.panel("mocap_assist_retarget_advanced", default_closed=True)
+    header.label(text="Advanced")
+    if body is None:
+        return
+    on_root = shown.root_motion == RootMotion.ROOT_BONE.name
+    for name in folded(RetargetSettings, MAIN):
+        row = body.row()
+        row.active = on_root or name != "turn_root"
+        row.prop(shown, name)
+    body.prop(shown, "source_map_file")
+    body.prop(shown, "target_map_file")
+
+
+def _draw_bones(layout: bpy.types.UILayout, context: bpy.types.Context) -> None:
+    header, body = layout.panel("mocap_assist_retarget_bones", default_closed=False)
+    header.label(text="Bones")
+    if body is not None:
+        draw_bones(body, context)
+
+
+def _draw_unbake(layout: bpy.types.UILayout, context: bpy.types.Context) -> None:
+    column = layout.column(align=True)
+    column.separator()
+    column.prop(context.scene.mocap_assist.unbake, "tolerance")
+    column.prop(context.scene.mocap_assist.unbake, "key_poses")
+    column.operator(UNBAKE, icon="KEYFRAME")
+
+
+class MOCAP_OT_tick_action(bpy.types.Operator):
+    bl_idname = TICK
+    bl_label = "Choose This Action"
+    bl_description = "Take this action too, or no longer"
+    bl_options: ClassVar = {"INTERNAL", "UNDO"}
+
+    action: bpy.props.StringProperty(
+        name="Action", description="Name of the action", options={"SKIP_SAVE"}
+    )
+    group: bpy.props.StringProperty(default="retarget", options={"HIDDEN", "SKIP_SAVE"})
+
+    def execute(self, context: bpy.types.Context) -> set[str]:
+        if SEPARATOR in self.action:
+            self.report(
+                {"ERROR"}, f"Rename {self.action}: {SEPARATOR} parts names in the list."
+            )
+            return {"CANCELLED"}
+        shown = getattr(context.scene.mocap_assist, self.group)
+        names = listed(shown.actions)
+        others = [name for name in names if name != self.action]
+        shown.actions = joined(others if len(others) < len(names) else [*names, self.action])
+        return {"FINISHED"}
+
+
+def register() -> None:
+    """Add the button of the list of actions."""
+    bpy.utils.register_class(MOCAP_OT_tick_action)
+
+
+def unregister() -> None:
+    """Take it away."""
+    bpy.utils.unregister_class(MOCAP_OT_tick_action)

@@ -1,0 +1,257 @@
+"""What the button Retarget reads from the scene, and what it writes back."""
+
+from collections.abc import Iterable, Mapping
+from functools import partial
+from typing import NamedTuple
+
+import bpy
+import numpy as np
+
+from ...solvers.errors import InvalidMotionError
+from ...solvers.motion import HumanoidMap
+from ...solvers.retargeting import RootMotion
+from ..actions.action_write import write_action
+from ..actions.armature_read import read_take
+from ..actions.armature_write import check_writable
+from ..actions.bone_channels import animated_paths, bone_path
+from ..actions.take import ArmatureTake
+from ..blender import compat
+from ..blender.compat import Source
+from ..blender.lasting import LastingSource
+from ..blender.name_lists import listed
+from ..blender.turns import Sliced, Steps
+from ..jobs.job import Quick
+from ..rigs.evaluated_body import body_bones, with_body_shown
+from ..rigs.rigify import is_rigify
+from ..rigs.target_read import read_target, vertical_part
+from ..runtime.selection import played_source
+from ..runtime.subject import Subject, check_unchanged
+from ..scene import history
+from .bone_map import BoneMaps, is_finger, maps_for
+from .choices import RetargetBundle, RetargetChoices, Takes
+from .solve_retargeting import Clip, Retargeted, RetargetProblem, retarget_clips
+
+N_QUICK = 5000
+"""Frames that are solved in half a second: less than it takes to start another process."""
+
+
+class Reading(NamedTuple):
+    """What Retarget found in the scene."""
+
+    target: bpy.types.Object
+    sources: tuple[Source, ...]
+    takes: tuple[ArmatureTake, ...]
+    switches: Mapping[tuple[str, str], float]
+    maps: BoneMaps
+    problem: RetargetProblem
+
+
+@Sliced
+def read_retarget(
+    scene: bpy.types.Scene, source: bpy.types.Object, settings: RetargetBundle
+) -> "Steps[partial[Retargeted]]":
+    """Read source and target; return what is to be solved, which may be pickled."""
+    found = yield from _read(Subject.of(scene, source), settings)
+    problem = found.problem
+    n_frames = sum(clip.motion.n_frames for clip in problem.clips)
+    return (Quick if n_frames <= N_QUICK else partial)(retarget_clips, problem)
+
+
+@Sliced
+def write_retargeted(
+    scene: bpy.types.Scene,
+    source: bpy.types.Object,
+    settings: RetargetBundle,
+    results: Retargeted,
+    asked: str | None = None,
+) -> Steps[str]:
+    """Write an action for each clip, let the target play the last; return a sentence.
+
+    A linked target plays nothing: its actions are for its override.
+    """
+    here = Subject.of(scene, source)
+    found = yield from _read(here, settings)
+    scene, source = here.find()
+    check_unchanged(source, asked, found.problem)
+    for made_from, take, keys in zip(found.sources, found.takes, results, strict=True):
+        name = f"{made_from[0].name}.{found.target.name}"
+        action, slot = write_action(found.target, name, take.frames, keys, found.switches)
+        entry = _entry(source, found, settings)
+        history.record(action, made_from, entry, of_another_rig=True)
+    linked = found.target.library is not None
+    if not linked:
+        compat.assign(found.target, action, slot)
+    n_bones, n_frames = len(results[-1]), sum(len(take.frames) for take in found.takes)
+    made = action.name if len(results) == 1 else f"{len(results)} actions"
+    score = min(found.maps.source.score, found.maps.target.score)
+    return (
+        f"{made}: {n_frames} frames on {n_bones} bones of {found.target.name}"
+        f" (bones matched {score:.0%})."
+        + (" It is linked: let its library override play the action." if linked else "")
+    )
+
+
+def target_called(
+    scene: bpy.types.Scene, name: str, source: bpy.types.Object
+) -> bpy.types.Object:
+    """Return the armature of that name; raise InvalidMotionError where it cannot be used."""
+    if not name:
+        raise InvalidMotionError("Choose the armature that is to make the motion.")
+    named = [each for each in scene.objects if each.name == name and each.type == "ARMATURE"]
+    # A linked armature and its override may have one name; only the override can be animated.
+    target = min(named, key=lambda each: each.library is not None, default=None)
+    if target is None:
+        raise InvalidMotionError(f"The scene has no armature {name}.")
+    if target == source:
+        raise InvalidMotionError(
+            f"{name} is the source itself. Choose another armature to make the motion."
+        )
+    if target.library is None:
+        check_writable(target)
+    return target
+
+
+def chosen_sources(source: bpy.types.Object, choices: RetargetChoices) -> tuple[Source, ...]:
+    """Return the actions to retarget, and the slot of each that fits the armature."""
+    if choices.takes is Takes.PLAYED:
+        return (played_source(source),)
+    if choices.takes is Takes.ALL:
+        if not (fitting := fitting_actions(source)):
+            raise InvalidMotionError(f"No action has keys for the bones of {source.name}.")
+        return fitting
+    names = listed(choices.actions)
+    if not names:
+        raise InvalidMotionError("No action is listed. Add one to the list.")
+    return tuple(source_called(name, source) for name in names)
+
+
+def source_called(name: str, armature: bpy.types.Object) -> Source:
+    """Return the action of that name, and its slot that keys any of the armature's bones.
+
+    Raises InvalidMotionError where there is none.
+    """
+    action = bpy.data.actions.get(name)
+    slot = None if action is None else _fitting_slot(action, _paths_of(armature))
+    if slot is None:
+        raise InvalidMotionError(
+            f"There is no action {name} with keys for the bones of {armature.name}."
+        )
+    return action, slot
+
+
+def fitting_actions(
+    armature: bpy.types.Object, actions: Iterable[bpy.types.Action] | None = None
+) -> tuple[Source, ...]:
+    """Return all actions, or all of these, that key any of the armature's bones.
+
+    Linked ones too. What was given to another armature, whose bones may have the same names,
+    is left out.
+    """
+    paths = _paths_of(armature)
+    found = [
+        (each, _fitting_slot(each, paths))
+        for each in (bpy.data.actions if actions is None else actions)
+        if history.given_to(each) in {"", armature.name}
+    ]
+    return tuple((action, slot) for action, slot in found if slot is not None)
+
+
+def _paths_of(armature: bpy.types.Object) -> frozenset[str]:
+    return frozenset(bone_path(bone.name, "") for bone in armature.data.bones)
+
+
+def _fitting_slot(
+    action: bpy.types.Action, paths: frozenset[str]
+) -> bpy.types.ActionSlot | None:
+    """Return the first slot that keys any of the bones with these paths."""
+    for slot in action.slots:
+        if slot.target_id_type in compat.TARGETS and any(
+            path[: path.rfind(".") + 1] in paths for path in animated_paths(action, slot)
+        ):
+            return slot
+    return None
+
+
+def _read(here: Subject, settings: RetargetBundle) -> Steps[Reading]:
+    choices = settings.choices
+    scene, source = here.find()
+    target_called(scene, choices.target, source)  # or it cannot be used, and all is in vain
+    lasting = [LastingSource.of(each) for each in chosen_sources(source, choices)]
+    takes = []
+    for each in lasting:
+        take = yield from _read_clip(here, each, choices)
+        takes.append(take)
+    scene, source = here.find()
+    target = target_called(scene, choices.target, source)
+    sources = tuple(each.find() for each in lasting)
+    maps, known = _roles(scene, source, target, choices)
+    on_root = settings.retargeting.root_motion is RootMotion.ROOT_BONE
+    roles = _wanted(maps)
+    rig, switches = read_target(scene, target, roles, choices.limbs, on_root)
+    problem = RetargetProblem(tuple(map(_clip, takes)), known, rig, settings.retargeting)
+    return Reading(target, sources, tuple(takes), switches, maps, problem)
+
+
+def _read_clip(
+    here: Subject, action: LastingSource, choices: RetargetChoices
+) -> Steps[ArmatureTake]:
+    """Read an action; of a control rig what its body does."""
+    scene, source = here.find()
+    take = yield from read_take.steps(source, scene, source=action.find())
+    scene, source = here.find()
+    if not is_rigify(source.data.bones):
+        return take
+    target = target_called(scene, choices.target, source)
+    _, known = _roles(scene, source, target, choices)
+    return (yield from with_body_shown.steps(scene, source, take, known, action.find()))
+
+
+def _roles(
+    scene: bpy.types.Scene,
+    source: bpy.types.Object,
+    target: bpy.types.Object,
+    choices: RetargetChoices,
+) -> tuple[BoneMaps, HumanoidMap]:
+    """Return the bones of both armatures by role, and those that show the source's body."""
+    files = (choices.source_map_file, choices.target_map_file)
+    maps = maps_for(scene, source, target, files)
+    known = _known(maps.source, source)
+    shows = is_rigify(source.data.bones)
+    return maps, body_bones(known, source.data.bones) if shows else known
+
+
+def _clip(take: ArmatureTake) -> Clip:
+    origin = take.rest.origins[0] * (1.0, 1.0, 0.0)
+    return Clip(take.parts[0].motion, origin, vertical_part(take.rest.rotations[0]))
+
+
+def _wanted(maps: BoneMaps) -> HumanoidMap:
+    """Return the target's roles, without fingers of which the source knows nothing."""
+    joints = maps.target.joints.items()
+    kept = {role: bone for role, bone in joints if maps.source.has(role) or not is_finger(role)}
+    return HumanoidMap(kept, maps.target.score)
+
+
+def _known(roles: HumanoidMap, source: bpy.types.Object) -> HumanoidMap:
+    """Return the roles of bones that the armature has."""
+    bones = source.data.bones
+    return HumanoidMap(
+        {role: bone for role, bone in roles.joints.items() if bone in bones}, roles.score
+    )
+
+
+def _entry(
+    source: bpy.types.Object, found: Reading, settings: RetargetBundle
+) -> dict[str, object]:
+    """Return what the action remembers of how it was made."""
+    return {
+        "operation": "retarget",
+        "source_armature": source.name,
+        "target_armature": found.target.name,
+        "settings": history.plain(*settings),
+        "bones": {
+            "source": dict(found.maps.source.joints),
+            "target": dict(found.maps.target.joints),
+        },
+        "score": float(np.round(min(each.score for each in found.maps), 3)),
+    }

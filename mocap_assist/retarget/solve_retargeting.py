@@ -1,0 +1,155 @@
+"""What the button Retarget has solved for it: motions as the target's controls make them."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ...solvers.errors import InvalidMotionError
+from ...solvers.motion import HumanoidMap, Motion, Skeleton, forward_kinematics
+from ...solvers.motion.humanoid import motion_postures, normalise
+from ...solvers.progress import Progress, unwatched, within
+from ...solvers.retargeting import RetargetSettings, RootMotion, ground_path, retarget
+from ...solvers.rotations import IDENTITY, inverse, multiply, rotate
+from ..scene.controls import BoneKeys, Carried, TargetRig, keys_of
+
+Array = NDArray[np.float64]
+
+
+class Start(NamedTuple):
+    """Where the body is to stand on the target's stage at first, and which way it faces."""
+
+    place: Array
+    """On the ground, shape (2,), metres."""
+    heading: float
+    """Radians about the vertical; 0 is -Y."""
+
+
+@dataclass(frozen=True, eq=False)
+class Clip:
+    """A motion in the world, and the stage that it is played on."""
+
+    motion: Motion
+    origin: Array
+    """Where the source's armature stands on the ground, shape (3,), metres."""
+    turn: Array
+    """How it is turned about the vertical, shape (4,)."""
+    start: Start | None = None
+    """Without, the target stands as the source does."""
+
+    def on_stage(self) -> Motion:
+        """Return the motion with the armature in the middle, facing as it was built."""
+        back, skeleton = inverse(self.turn), self.motion.skeleton
+        offsets = skeleton.offsets - (np.arange(skeleton.n_joints) == 0)[:, None] * self.origin
+        return Motion(
+            Skeleton(skeleton.names, skeleton.parents, rotate(back, offsets)),
+            multiply(multiply(back, self.motion.rotations), self.turn),
+            rotate(back, self.motion.root_positions - self.origin),
+            self.motion.frame_rate,
+        )
+
+
+@dataclass(frozen=True, eq=False)
+class RetargetProblem:
+    """All that Retarget depends on."""
+
+    clips: tuple[Clip, ...]
+    roles: HumanoidMap
+    """Of the source's joints."""
+    target: TargetRig
+    settings: RetargetSettings
+
+
+Retargeted = tuple[Mapping[str, BoneKeys], ...]
+"""For each clip, the channels of each keyed bone."""
+
+
+def retarget_clips(problem: RetargetProblem, *, progress: Progress = unwatched) -> Retargeted:
+    """Give each clip to the target, one after the other."""
+    found, n_clips = [], len(problem.clips)
+    for index, clip in enumerate(problem.clips):
+        share = within(progress, index / n_clips, (index + 1) / n_clips)
+        found.append(_retarget(clip, problem, share))
+    return tuple(found)
+
+
+def _retarget(
+    clip: Clip, problem: RetargetProblem, progress: Progress
+) -> Mapping[str, BoneKeys]:
+    target, settings = problem.target, problem.settings
+    on_root = settings.root_motion is RootMotion.ROOT_BONE
+    if on_root and all(control.joint >= 0 for control in target.controls):
+        raise InvalidMotionError(
+            "The target has no bone above the hips that could carry the travel. Keep it on the"
+            " hips, or add a root bone."
+        )
+    kept = RootMotion.KEEP if on_root else settings.root_motion
+    result = retarget(
+        clip.on_stage(),
+        problem.roles,
+        target.skeleton,
+        target.humanoid,
+        settings=replace(settings, root_motion=kept),
+        progress=within(progress, 0.0, 0.8),
+    )
+    progress(0.8, "Moving the controls")
+    if clip.start is not None:
+        result = _started(result, target.humanoid, clip.start)
+    gaps = ~np.isfinite(result.rotations).all(axis=-1)
+    gaps[:, 0] |= ~np.isfinite(result.root_positions).all(axis=-1)
+    whole = result.with_poses(
+        _held(result.rotations), _held(result.root_positions[:, None])[:, 0]
+    )
+    poses = forward_kinematics(whole)
+    keys = keys_of(target, poses, _travel(whole, target, settings))
+    return {
+        control.bone: _with_gaps(keys[control.bone], gaps[:, max(control.joint, 0)])
+        for control in target.controls
+    }
+
+
+def _started(motion: Motion, roles: HumanoidMap, start: Start) -> Motion:
+    """Return the motion turned and shifted as a whole, so that it begins at `start`."""
+    body = normalise(motion_postures(motion, roles), motion.frame_rate)
+    half = 0.5 * (start.heading - body.headings[0])
+    turn = np.array([np.cos(half), 0.0, 0.0, np.sin(half)])
+    first = body.places[0] * (1.0, 1.0, 0.0)
+    rotations = np.array(motion.rotations)
+    rotations[:, 0] = multiply(turn, rotations[:, 0])
+    places = rotate(turn, motion.root_positions - first) + np.append(start.place, 0.0)
+    return motion.with_poses(rotations, places)
+
+
+def _travel(motion: Motion, target: TargetRig, settings: RetargetSettings) -> Carried:
+    """Return how a bone on the ground moves that carries the body along."""
+    path = ground_path(
+        motion, target.humanoid, settings.travel_smoothing, turn=settings.turn_root
+    )
+    hips = target.humanoid.indices(target.skeleton)["hips"]
+    rest = target.skeleton.rest_positions[hips] * (1.0, 1.0, 0.0)
+    return Carried(path.rotations, rest, path.positions)
+
+
+def _held(values: Array) -> Array:
+    """Return values, shape (n_frames, n, k), in whose gaps the last one seen is held."""
+    values = values.copy()
+    for column in np.flatnonzero(~np.isfinite(values).all(axis=(0, 2))):
+        known = np.isfinite(values[:, column]).all(axis=-1)
+        usual = IDENTITY if values.shape[2] == len(IDENTITY) else np.zeros(values.shape[2])
+        if not known.any():
+            values[:, column] = usual
+            continue
+        frames = np.where(known, np.arange(len(known)), known.argmax())
+        values[:, column] = values[np.maximum.accumulate(frames), column]
+    return values
+
+
+def _with_gaps(keys: BoneKeys, gaps: NDArray[np.bool_]) -> BoneKeys:
+    if not gaps.any():
+        return keys
+    channels = (keys.rotations, keys.locations)
+    return BoneKeys(
+        *(None if each is None else np.where(gaps[:, None], np.nan, each) for each in channels)
+    )

@@ -1,0 +1,93 @@
+"""What the button Unbake reads from the scene, and what it writes back."""
+
+from functools import partial
+
+import bpy
+import numpy as np
+
+from ...solvers.motion import Motion
+from ...solvers.rotations import inverse, multiply
+from ..actions.armature_read import read_take
+from ..actions.armature_write import Output, check_writable, put_to_use
+from ..actions.bone_channels import animated_curves
+from ..actions.take import ArmatureTake, Part
+from ..blender.turns import Sliced, Steps
+from ..runtime.selection import played_source
+from ..runtime.subject import Subject, check_unchanged
+from ..scene import history
+from .choices import UnbakeBundle
+from .solve_unbaking import BoneShape, Tree, Unbaked, UnbakeProblem, unbake
+from .sparse_write import count_keys, write_sparse
+
+
+@Sliced
+def read_unbaking(
+    scene: bpy.types.Scene, armature: bpy.types.Object, settings: UnbakeBundle
+) -> "Steps[partial[Unbaked]]":
+    """Read what an armature plays; return what is to be solved, which may be pickled."""
+    check_writable(armature)
+    take = yield from read_take.steps(armature, scene, source=played_source(armature))
+    return partial(unbake, _problem(take, settings))
+
+
+@Sliced
+def write_unbaked(
+    scene: bpy.types.Scene,
+    armature: bpy.types.Object,
+    settings: UnbakeBundle,
+    result: Unbaked,
+    asked: str | None = None,
+) -> Steps[str]:
+    """Write a copy of the action with few keys and put it to use; return a sentence."""
+    here = Subject.of(scene, armature)
+    take = yield from read_take.steps(armature, scene, source=played_source(armature))
+    scene, armature = here.find()
+    played = played_source(armature)
+    check_unchanged(armature, asked, _problem(take, settings))
+    action, slot = write_sparse(armature, played, take.grid, result.keys)
+    before, after = (count_keys(animated_curves(*each)) for each in (played, (action, slot)))
+    entry = {
+        "operation": "reduce_keys",
+        "settings": history.plain(*settings),
+        "keys_before": before,
+        "keys_after": after,
+        "error_cm": 100 * result.error,
+    }
+    history.record(action, played, entry)
+    put_to_use(armature, action, slot, Output.ACTION)
+    return (
+        f"{action.name}: {after} keys instead of {before}; hands, feet and head are off by"
+        f" {100 * result.error:.2f} cm at most."
+    )
+
+
+def _problem(take: ArmatureTake, settings: UnbakeBundle) -> UnbakeProblem:
+    trees = tuple(_tree(take, part) for part in take.parts)
+    return UnbakeProblem(trees, settings.choices.tolerance, settings.unbaking)
+
+
+def _tree(take: ArmatureTake, part: Part) -> Tree:
+    """Return a part as it moves within what carries it, which keeps its own keys."""
+    rig, rest, root = take.rig, take.rest, part.bones[0]
+    turn = rest.rotations[0]
+    motion = part.motion
+    rotations = motion.rotations.copy()
+    carried = multiply(part.carrier.rotations, inverse(turn))
+    rotations[:, 0] = multiply(inverse(carried), rotations[:, 0])
+    places = rest.points(part.carrier.points_back(motion.root_positions))
+    axes = multiply(turn, rig.rest_rotations)
+    shapes = tuple(
+        None
+        if bone < 0
+        else BoneShape(
+            rig.bones[bone], rig.modes[bone], axes[bone], take.channels[bone].rotation_keyed
+        )
+        for bone in part.bones
+    )
+    return Tree(
+        Motion(motion.skeleton, rotations, places, motion.frame_rate),
+        shapes,
+        take.channels[root].location_keyed,
+        np.asarray(rest.points(rig.heads[root])),
+        rest.scale,
+    )

@@ -1,0 +1,1 @@
+"""Production rigs: controls, what they move, and Rigify."""

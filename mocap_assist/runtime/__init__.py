@@ -1,0 +1,1 @@
+"""What all buttons have in common: what is selected, solving, waiting and redoing."""

@@ -1,0 +1,176 @@
+"""A rig as what is keyed of it: controls, the joints that they turn, and what carries them.
+
+A control follows a joint: it turns as that joint does, from its own rest pose, and may keep its
+place beside another joint. What carries a control, be it a parent or bones with constraints, is
+known by the control that it moves along with. So the channels of all controls come out of the
+joints' places in the world without evaluating the rig.
+"""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ...solvers.motion import HumanoidMap, Skeleton, WorldPoses
+from ...solvers.rotations import inverse, multiply, rotate
+
+Array = NDArray[np.float64]
+AT_REST = -1
+STRAIGHT, BENT = 0.001, 0.005
+"""Way of a hinge from the line of its limb, as part of the limb's length: up to the first, the
+upper bone tells where the hinge points; beyond the second, the bend does."""
+
+
+@dataclass(frozen=True, eq=False)
+class Control:
+    """A bone that is keyed.
+
+    Attributes
+    ----------
+    bone : str
+    joint : int
+        The joint that it turns with; -1 for the travel over the ground.
+    anchor : int
+        The joint that it keeps its place beside, carried by the turn of `joint`.
+    carrier : int
+        Control that carries it, -1 for none.
+    axes : shape (4,)
+        Its rest pose in the stage.
+    location_axes : shape (4,)
+        Those of its location.
+    head : shape (3,), metres
+        Where it rests.
+    turns, moves : bool
+        Which channels are keyed.
+    limb : upper joint, hinge and end for a pole target, which lies before the hinge
+    """
+
+    bone: str
+    joint: int
+    anchor: int
+    carrier: int
+    axes: Array
+    location_axes: Array
+    head: Array
+    turns: bool
+    moves: bool
+    limb: tuple[int, int, int] | None = None
+
+
+@dataclass(frozen=True, eq=False)
+class TargetRig:
+    """All that has to be known of a rig to give it a motion.
+
+    The stage is the place in which the armature stands: the world, but with the armature's
+    origin in the middle and without its turn about the vertical.
+
+    Attributes
+    ----------
+    skeleton : Skeleton
+        The joints that play roles, in the stage, metres.
+    humanoid : HumanoidMap
+    controls : tuple of Control
+    metres : float
+        Length of the armature's own unit.
+    """
+
+    skeleton: Skeleton
+    humanoid: HumanoidMap
+    controls: tuple[Control, ...]
+    metres: float
+
+
+@dataclass(frozen=True, eq=False)
+class BoneKeys:
+    """Channels of one bone, NaN where nothing is known of its joint."""
+
+    rotations: Array | None
+    """Shape (n_frames, 4), Blender's basis."""
+    locations: Array | None
+    """Shape (n_frames, 3), in the armature's unit."""
+
+
+@dataclass(frozen=True, eq=False)
+class Carried:
+    """How something has moved from its rest pose: x goes to turn(x - rest) + place."""
+
+    turns: Array
+    rest: Array
+    places: Array
+
+    def points(self, points: Array) -> Array:
+        """Take points of the rest pose, shape (3,), to where they are."""
+        return np.asarray(rotate(self.turns, points - self.rest) + self.places)
+
+    def points_back(self, points: Array) -> Array:
+        """Take points, shape (n_frames, 3), to where they are in the rest pose."""
+        return np.asarray(rotate(inverse(self.turns), points - self.places) + self.rest)
+
+
+def keys_of(target: TargetRig, poses: WorldPoses, travel: Carried) -> Mapping[str, BoneKeys]:
+    """Return the channels that bring each control to where its joints ask for it.
+
+    Parameters
+    ----------
+    target : TargetRig
+    poses : WorldPoses
+        Of its skeleton, without gaps.
+    travel : Carried
+        Of controls that follow the travel.
+    """
+    moved = [_moved(control, target.skeleton, poses, travel) for control in target.controls]
+    n_frames = len(poses.positions)
+    still = Carried(np.tile([1.0, 0.0, 0.0, 0.0], (n_frames, 1)), np.zeros(3), np.zeros(3))
+    found = {}
+    for control, delta in zip(target.controls, moved, strict=True):
+        carrier = still if control.carrier == AT_REST else moved[control.carrier]
+        found[control.bone] = BoneKeys(
+            _basis_turns(control, carrier, delta) if control.turns else None,
+            _basis_shifts(control, carrier, delta) / target.metres if control.moves else None,
+        )
+    return found
+
+
+def _basis_turns(control: Control, carrier: Carried, moved: Carried) -> Array:
+    local = multiply(inverse(carrier.turns), moved.turns)
+    return np.asarray(multiply(multiply(inverse(control.axes), local), control.axes))
+
+
+def _basis_shifts(control: Control, carrier: Carried, moved: Carried) -> Array:
+    shift = carrier.points_back(moved.points(control.head)) - control.head
+    return np.asarray(rotate(inverse(control.location_axes), shift))
+
+
+def _moved(control: Control, skeleton: Skeleton, poses: WorldPoses, travel: Carried) -> Carried:
+    if control.joint < 0:
+        return travel
+    rest = skeleton.rest_positions
+    anchor = control.anchor
+    moved = Carried(poses.rotations[:, control.joint], rest[anchor], poses.positions[:, anchor])
+    if control.limb is None:
+        return moved
+    return Carried(moved.turns, control.head, _pole_places(control, rest, poses, moved))
+
+
+def _pole_places(control: Control, rest: Array, poses: WorldPoses, upper: Carried) -> Array:
+    """Return points before a limb's hinge, as far away as in the rest pose, (n_frames, 3)."""
+    assert control.limb is not None
+    start, hinge, end = (poses.positions[:, joint] for joint in control.limb)
+    line = end - start
+    length = np.linalg.norm(np.diff(rest[list(control.limb)], axis=0), axis=1).sum()
+    along = ((hinge - start) * line).sum(axis=1, keepdims=True)
+    foot = start + line * along / np.maximum((line * line).sum(axis=1, keepdims=True), 1e-12)
+    bend = hinge - foot
+    depth = np.linalg.norm(bend, axis=1, keepdims=True)
+    straight = upper.points(control.head) - hinge
+    axis = line / np.maximum(np.linalg.norm(line, axis=1, keepdims=True), 1e-9)
+    straight -= axis * (straight * axis).sum(axis=1, keepdims=True)
+    share = np.clip((depth / length - STRAIGHT) / (BENT - STRAIGHT), 0.0, 1.0)
+    ahead = share * _unit(bend) + (1.0 - share) * _unit(straight)
+    distance = np.linalg.norm(control.head - rest[control.limb[1]])
+    return np.asarray(hinge + distance * _unit(ahead))
+
+
+def _unit(vectors: Array) -> Array:
+    return np.asarray(vectors / np.maximum(np.linalg.norm(vectors, axis=1)[:, None], 1e-9))

@@ -1,0 +1,1 @@
+"""The button Find Similar, and what can be done with matches."""

@@ -1,0 +1,117 @@
+"""What the button Find Similar reads from the scene, and the list that it fills."""
+
+from functools import partial
+from typing import NamedTuple
+
+import bpy
+
+from ...solvers.errors import InvalidMotionError
+from ...solvers.motion import Motion, Tracks
+from ...solvers.retrieval import FindSettings
+from ..actions.armature_read import read_take
+from ..actions.frames import FrameRange, Grid
+from ..actions.marker_take import read_markers
+from ..blender.turns import Sliced, Steps
+from ..library.choices import FindBundle
+from ..library.places import library_path
+from ..library.prior import own_origins
+from ..runtime.selection import Bones, chosen_bones, played_source, why_not_read
+from ..runtime.subject import Subject, check_unchanged
+from ..scene.units import unit_of
+from . import searches
+from .chosen_parts import parts_of_bones
+from .solve_finding import Finding, FindProblem, find_clips
+
+
+class Query(NamedTuple):
+    """What is looked for."""
+
+    recording: Motion | Tracks
+    grid: Grid
+
+
+def why_not_find(context: bpy.types.Context) -> str:
+    """Return why nothing can be looked for, or nothing."""
+    if reason := why_not_read(context):
+        return reason
+    choices = context.scene.mocap_assist.library.settings().choices
+    # A panel that is drawn does not look at a path that the .blend file names.
+    missing = not choices.library_file and not library_path(choices).is_file()
+    return "There is no library yet. Add folders, and press Index." if missing else ""
+
+
+@Sliced
+def read_query(
+    scene: bpy.types.Scene, subject: bpy.types.Object, choice: FrameRange
+) -> Steps[Query]:
+    """Read what the armature, or the markers, play within a range of frames."""
+    if subject.type == "ARMATURE":
+        take = yield from read_take.steps(subject, scene, choice, played_source(subject))
+        return Query(take.parts[0].motion, take.grid)
+    markers = yield from read_markers.steps(subject, scene, choice)
+    return Query(markers.tracks, markers.grid)
+
+
+@Sliced
+def read_finding(
+    scene: bpy.types.Scene, subject: bpy.types.Object, settings: FindBundle
+) -> "Steps[partial[Finding]]":
+    """Read what is looked for; return what is to be solved, which may be pickled."""
+    problem, _ = yield from _problem(Subject.of(scene, subject), settings)
+    return partial(find_clips, problem)
+
+
+@Sliced
+def list_found(
+    scene: bpy.types.Scene,
+    subject: bpy.types.Object,
+    settings: FindBundle,
+    finding: Finding,
+    asked: str | None = None,
+) -> Steps[str]:
+    """List what was found; return a sentence about it."""
+    here = Subject.of(scene, subject)
+    problem, query = yield from _problem(here, settings)
+    scene, subject = here.find()
+    check_unchanged(subject, asked, problem)
+    grid = (float(query.grid.frames[0]), query.grid.step)
+    name = played_source(subject)[0].name
+    fill_list(bpy.context, searches.keep(name, grid, unit_of(scene), finding))
+    n_found = len(finding.found)
+    if not n_found:
+        return f"Nothing in the library ({finding.n_clips} clips) is like {name}."
+    best = finding.found[0]
+    return (
+        f"{n_found} of {finding.n_clips} clips; most like {name} is {best.entry.name}"
+        f" ({best.match.score:.0%})."
+    )
+
+
+def fill_list(context: bpy.types.Context, search: searches.Search) -> None:
+    """Show in the sidebar what was found."""
+    listed = context.window_manager.mocap_assist_matches
+    listed.rows.clear()
+    for found in search.finding.found:
+        row = listed.rows.add()
+        row.name = found.entry.name
+        row.score = found.match.score
+        row.start, row.stop = found.match.frames.start, found.match.frames.stop - 1
+        row.tags = ", ".join(found.entry.tags)
+    listed.search, listed.query, listed.active = search.number, search.query, 0
+
+
+def _problem(here: Subject, settings: FindBundle) -> Steps[tuple[FindProblem, Query]]:
+    query = yield from read_query.steps(*here.find(), settings.choices.frame_range)
+    scene, subject = here.find()
+    library = library_path(scene.mocap_assist.library.settings().choices)
+    wanted = _parts(subject, query, settings)
+    return FindProblem(query.recording, str(library), wanted, own_origins(subject)), query
+
+
+def _parts(subject: bpy.types.Object, query: Query, settings: FindBundle) -> FindSettings:
+    if settings.choices.bones is Bones.ALL:
+        return settings.finding
+    if not isinstance(query.recording, Motion):
+        raise InvalidMotionError("Markers are no parts of a body. Choose the parts themselves.")
+    bones = chosen_bones(subject, Bones.SELECTED)
+    return parts_of_bones(query.recording.skeleton, bones, settings.finding)

@@ -1,0 +1,57 @@
+"""The ghost: a match as a stick figure in time with the query. Knows nothing of Blender."""
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ...solvers.motion.humanoid import PARENTS, resize, turned
+from .solve_finding import Found, Stage
+
+Array = NDArray[np.float64]
+BONES = np.array([(parent, joint) for joint, parent in enumerate(PARENTS) if parent >= 0])
+
+
+def ghost_lines(stage: Stage, found: Found, query_frame: float) -> Array:
+    """Return what the clip does when the query is at a frame: where it is, with its build.
+
+    Parameters
+    ----------
+    stage : Stage
+    found : Found
+    query_frame : float
+        Before the first one it stands still, as after the last one.
+
+    Returns
+    -------
+    shape (n_lines, 2, 3), metres
+        Without what was not tracked.
+    """
+    posture = _posture_at(found, clip_frame(found, query_frame))
+    row = int(np.clip(round(query_frame), 0, len(stage.places) - 1))
+    heading = np.array([stage.headings[row]])
+    body = resize(posture[None], stage.lengths)
+    joints = turned(body, heading)[0] + stage.places[row]
+    lines = joints[BONES]
+    return lines[np.isfinite(lines).all(axis=(1, 2))]
+
+
+def clip_frame(found: Found, query_frame: float) -> float:
+    """Return the frame of the clip that belongs to a frame of the query.
+
+    Where the clip runs on while the query waits, it is the middle of what it does meanwhile.
+    """
+    ours, where, counts = np.unique(found.pairs[:, 0], return_inverse=True, return_counts=True)
+    sums = np.bincount(where.reshape(-1), weights=found.pairs[:, 1])
+    return float(np.interp(query_frame, ours, sums / counts))
+
+
+def _posture_at(found: Found, frame: float) -> Array:
+    """Return the joints between two of the postures that are known, shape (20, 3)."""
+    first = int(found.match.frames.start * found.rate / found.entry.frame_rate)
+    place = frame * found.rate / found.entry.frame_rate - first
+    place = float(np.clip(place, 0.0, len(found.postures) - 1.0))
+    before = int(place)
+    after = min(before + 1, len(found.postures) - 1)
+    share = place - before
+    return np.asarray(
+        (1.0 - share) * found.postures[before] + share * found.postures[after], np.float64
+    )

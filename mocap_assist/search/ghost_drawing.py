@@ -1,0 +1,57 @@
+"""Draw the ghost of the chosen match over the 3D Views."""
+
+import bpy
+from mathutils import Matrix
+
+from ...solvers.errors import InvalidMotionError
+from ..drawing.overlay_drawing import Color, draw_lines
+from ..drawing.view_drawing import ViewDrawing, redraw
+from . import searches
+from .ghost import Array, ghost_lines
+
+COLOR: Color = (0.45, 0.95, 0.55, 0.95)
+WIDTH = 4.0
+
+_drawing: list[ViewDrawing] = []
+
+
+def ghost_now(context: bpy.types.Context) -> Array | None:
+    """Return the lines of the ghost at this frame, in the scene's units; None without one."""
+    try:
+        search, found = searches.chosen(context)
+    except InvalidMotionError:
+        return None
+    frame = (context.scene.frame_current_final - search.start) / search.step
+    lines: Array = ghost_lines(search.finding.stage, found, frame) / search.metres
+    return lines
+
+
+def _draw(context: bpy.types.Context) -> None:
+    if not context.window_manager.mocap_assist_ghost:
+        return
+    lines = ghost_now(context)
+    if lines is not None:
+        draw_lines(lines, Matrix.Identity(4), COLOR, WIDTH)
+
+
+def _switched(self: bpy.types.WindowManager, context: bpy.types.Context) -> None:
+    redraw(context, "VIEW_3D")
+
+
+def register() -> None:
+    """Add the switch; nothing is drawn until it is on."""
+    bpy.types.WindowManager.mocap_assist_ghost = bpy.props.BoolProperty(
+        name="Ghost",
+        description=(
+            "Draw the clip that is chosen as a stick figure over the 3D View: where the query"
+            " stands, and in its time"
+        ),
+        update=_switched,
+    )
+    _drawing.append(ViewDrawing(_draw))
+
+
+def unregister() -> None:
+    """Take the switch and the drawing away."""
+    _drawing.pop().close()
+    del bpy.types.WindowManager.mocap_assist_ghost

@@ -1,0 +1,49 @@
+"""Matches as what Clean and Reconstruct learn from: the loop from a take to its library."""
+
+from pathlib import Path
+
+import bpy
+
+from ...solvers.errors import MocapAssistError
+from ..blender.name_lists import SEPARATOR, joined
+from ..clean.choices import Prior
+from ..reconstruct.choices import Postures
+from . import searches
+from .linking import fits_somebody, is_action, take_action
+from .solve_finding import Found
+
+CLEAN, RECONSTRUCT = "clean", "reconstruct"
+
+
+def learn_from_best(context: bpy.types.Context, group: str, n_best: int) -> str:
+    """Put the best matches, in place of others, on the list of examples.
+
+    Returns a sentence about it; raises InvalidMotionError where nothing was found.
+    """
+    search, _ = searches.chosen(context)
+    best = search.finding.found[:n_best]
+    usable = dict.fromkeys(entry for found in best if (entry := _example(context, found)))
+    settings = getattr(context.scene.mocap_assist, group)
+    settings.examples = joined(usable)
+    if group == CLEAN:
+        settings.prior = Prior.EXAMPLES.name
+    else:
+        settings.postures = Postures.EXAMPLES.name
+    said = f"{group.capitalize()} learns from {len(usable)} clips."
+    if lost := len(best) - len(usable):
+        said += f" {lost} cannot serve: their files are gone, or no rig here has their bones."
+    return said
+
+
+def _example(context: bpy.types.Context, found: Found) -> str:
+    """Return what the list of examples calls a match; nothing if it cannot serve."""
+    origin = found.entry.origin
+    if origin is None or SEPARATOR in origin.path or not Path(origin.path).is_file():
+        return ""
+    if not is_action(found):
+        return origin.path
+    try:
+        action = take_action(found, link=True)
+    except MocapAssistError:
+        return ""
+    return action.name if fits_somebody(context.scene, action) else ""

@@ -1,0 +1,172 @@
+"""Panel: a library of clips, what in it is like the action, and what to do with that."""
+
+from typing import ClassVar
+
+import bpy
+
+from ...solvers.retrieval import FindSettings
+from ..library.kept_libraries import choices_are_kept
+from ..panels.drawing import draw_job, draw_sentence, exists, folded, is_wide
+from ..panels.figures import frames_text
+from ..runtime.selection import Bones
+from . import searches
+from .finding import why_not_find
+from .previews import icon_of
+from .source_list import draw_sources
+
+KEEP = "mocap_assist.keep_current"
+INDEX, FIND = "mocap_assist.index_library", "mocap_assist.find_similar"
+LOAD, LINK = "mocap_assist.load_match", "mocap_assist.link_match"
+LEARN, MARK = "mocap_assist.learn_from_matches", "mocap_assist.mark_asset"
+USE = "mocap_assist.use_matches"
+PARTS = (("trunk",), ("left_arm", "right_arm"), ("left_leg", "right_leg"))
+SHOWN_APART = {"n_matches", "n_aligned", *(name for row in PARTS for name in row)}
+FEWEST, MOST = 3, 6  # rows of the list
+ROW, LARGE = 1.6, 7.0  # sizes of the pictures
+
+
+class MOCAP_UL_matches(bpy.types.UIList):
+    """Clips that are like the query, the best first."""
+
+    def draw_item(
+        self, context, layout, data, item, icon, active_data, active_property, index
+    ) -> None:
+        search = searches.listed(context)
+        row = layout.row()
+        if search is not None and index < len(search.finding.found):
+            row.template_icon(icon_of(search, index), scale=ROW)
+        texts = row.split(factor=0.5 if is_wide(context) else 0.75)
+        texts.label(text=item.name, translate=False)
+        if is_wide(context):
+            texts = texts.split(factor=0.4)
+        texts.label(text=f"{item.score:.0%}", translate=False)
+        if is_wide(context):
+            texts.label(text=frames_text(item.start, item.stop), translate=False)
+
+
+class LibraryPanel:
+    """The library, the search, and its matches."""
+
+    bl_label = "Library"
+    bl_options: ClassVar = {"DEFAULT_CLOSED"}
+
+    @classmethod
+    def poll(cls, context: bpy.types.Context) -> bool:
+        return exists(FIND)
+
+    def draw(self, context: bpy.types.Context) -> None:
+        layout = self.layout
+        _draw_library(layout, context)
+        running = draw_job(layout, context, "find", "load", "use")
+        column = layout.column()
+        column.enabled = not running
+        _draw_query(column, context)
+        listed = context.window_manager.mocap_assist_matches
+        if listed.rows:
+            _draw_matches(column, context)
+
+
+def _draw_library(layout: bpy.types.UILayout, context: bpy.types.Context) -> None:
+    library = context.scene.mocap_assist.library
+    state = context.window_manager.mocap_assist_indexing
+    header, body = layout.panel("mocap_assist_library_sources", default_closed=False)
+    header.label(text="Sources")
+    if body is not None:
+        body.use_property_decorate = False
+        draw_sources(body, library)
+        body.prop(library, "tags", text="Tags")
+        body.prop(library, "rig_file", text="Rig")
+        body.prop(library, "library_file", text="File")
+        row = body.row(align=True)
+        row.operator(INDEX, icon="FILE_REFRESH")
+        kept = choices_are_kept(library.settings().choices)
+        row.operator(KEEP, icon="RECOVER_LAST", depress=kept)
+    if state.running:
+        text = f"{state.message} {state.fraction:.0%}"
+        layout.progress(factor=state.fraction, type="BAR", text=text, translate=False)
+    elif state.said:
+        draw_sentence(layout, context, state.said)
+
+
+def _draw_query(column: bpy.types.UILayout, context: bpy.types.Context) -> None:
+    find = context.scene.mocap_assist.find
+    column.use_property_split = True
+    column.use_property_decorate = False
+    column.prop(find, "frame_range")
+    column.row().prop(find, "bones", text="Compare", expand=True)
+    if find.bones == Bones.ALL.name:
+        parts = column.column(align=True)
+        parts.use_property_split = False
+        for names in PARTS:
+            row = parts.row(align=True)
+            for name in names:
+                row.prop(find, name, toggle=True)
+    header, body = column.panel("mocap_assist_find_advanced", default_closed=True)
+    header.label(text="Advanced")
+    if body is not None:
+        for name in ("n_matches", *folded(FindSettings, tuple(SHOWN_APART))):
+            body.prop(find, name)
+    button = column.row()
+    button.scale_y = 1.6
+    button.operator(FIND, icon="VIEWZOOM")
+    if reason := why_not_find(context):
+        draw_sentence(column, context, reason, icon="INFO")
+
+
+def _draw_matches(column: bpy.types.UILayout, context: bpy.types.Context) -> None:
+    listed = context.window_manager.mocap_assist_matches
+    search = searches.listed(context)
+    if search is None:
+        draw_sentence(column, context, "Press Find Similar again.", icon="INFO")
+        return
+    draw_sentence(column, context, f"Like {listed.query}:")
+    rows = min(max(len(listed.rows), FEWEST), MOST)
+    column.template_list(
+        "MOCAP_UL_matches", "", listed, "rows", listed, "active", rows=rows, maxrows=rows
+    )
+    if 0 <= listed.active < len(search.finding.found):
+        _draw_chosen(column, context, search, listed.active)
+
+
+def _draw_chosen(
+    column: bpy.types.UILayout, context: bpy.types.Context, search: searches.Search, place: int
+) -> None:
+    found = search.finding.found[place]
+    column.template_icon(icon_of(search, place), scale=LARGE)
+    entry, frames = found.entry, found.match.frames
+    tags = f" Tags: {', '.join(entry.tags)}." if entry.tags else ""
+    draw_sentence(
+        column,
+        context,
+        f"{entry.name}: frames {frames.start}–{frames.stop - 1} of {entry.n_frames},"
+        f" {entry.frame_rate:g} Hz.{tags}",
+    )
+    switch = column.row()
+    switch.use_property_split = False
+    switch.prop(context.window_manager, "mocap_assist_ghost", toggle=True, icon="GHOST_ENABLED")
+    load = context.scene.mocap_assist.load
+    column.prop(load, "part")
+    column.prop(load, "at_query", text="Stand where it does")
+    row = column.row(align=True)
+    row.operator(LOAD, text="Append", icon="ACTION").result_as = "ACTION"
+    row.operator(LOAD, text="To NLA", icon="NLA").result_as = "NLA_TRACK"
+    row.operator(LINK, text="Link", icon="LINKED")
+    column.label(text="Learn from the best for:")
+    row = column.row(align=True)
+    row.operator(LEARN, text="Clean", icon="BRUSH_DATA").group = "clean"
+    row.operator(LEARN, text="Reconstruct", icon="ARMATURE_DATA").group = "reconstruct"
+    column.label(text="Vary the best:")
+    row = column.row(align=True)
+    row.operator(USE, icon="MOD_ARRAY")
+    row.prop(context.scene.mocap_assist.use, "n_best", text="")
+    column.operator(MARK, icon="ASSET_MANAGER")
+
+
+def register() -> None:
+    """Add the list."""
+    bpy.utils.register_class(MOCAP_UL_matches)
+
+
+def unregister() -> None:
+    """Take it away."""
+    bpy.utils.unregister_class(MOCAP_UL_matches)

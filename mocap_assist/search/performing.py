@@ -1,0 +1,86 @@
+"""The library for somebody who stands before a camera: show, page, and search by performing.
+
+Each function returns a sentence to show.
+"""
+
+from functools import partial
+
+import bpy
+from bpy.app import timers
+
+from ...solvers.errors import MocapAssistError
+from ...solvers.motion import JointRecording
+from ..drawing.view_drawing import redraw
+from ..jobs.job import Job, run
+from ..library.places import library_path
+from ..runtime.solver_operator import in_background
+from ..scene.units import unit_of
+from . import searches
+from .finding import fill_list
+from .solve_finding import Finding, FindProblem, find_clips
+
+BETWEEN_LOOKS = 0.2  # seconds
+PERFORMED = "your performance"
+
+
+def show_library(context: bpy.types.Context) -> str:
+    """Open the sidebar of every 3D View of the window on the library, with the ghost."""
+    for area in context.window.screen.areas if context.window else ():
+        if area.type == "VIEW_3D":
+            area.spaces.active.show_region_ui = True
+    bpy.context.window_manager.mocap_assist_ghost = True
+    redraw(bpy.context)
+    return chosen_sentence()
+
+
+def page(context: bpy.types.Context, step: int) -> str:
+    """Choose the next match, or the one before; from the last one on to the first."""
+    listed = bpy.context.window_manager.mocap_assist_matches
+    if listed.rows:
+        listed.active = (listed.active + step) % len(listed.rows)
+        redraw(bpy.context)
+    return chosen_sentence()
+
+
+def search_with(context: bpy.types.Context, query: JointRecording) -> str:
+    """Search with a recording; the list is filled when that is done, nobody waits for it."""
+    scene = bpy.context.scene
+    library = library_path(scene.mocap_assist.library.settings().choices)
+    if not library.is_file():
+        return "There is no library yet. Add folders, and press Index."
+    wanted = scene.mocap_assist.find.settings().finding
+    solve = partial(find_clips, FindProblem(query, str(library), wanted))
+    start, metres = float(scene.frame_current), unit_of(scene)
+    step = scene.render.fps / scene.render.fps_base / query.frame_rate
+    if in_background():
+        return _listed(run(solve), (start, step), metres)
+    job: Job[Finding] = Job(solve)
+    timers.register(partial(_look, job, (start, step), metres), first_interval=BETWEEN_LOOKS)
+    return f"Searching with {query.n_frames} frames ..."
+
+
+def chosen_sentence() -> str:
+    """Say which match is chosen."""
+    listed = bpy.context.window_manager.mocap_assist_matches
+    if not listed.rows:
+        return "Nothing was searched for yet."
+    place = min(listed.active, len(listed.rows) - 1)
+    row = listed.rows[place]
+    return f"{place + 1} of {len(listed.rows)}: {row.name} ({row.score:.0%})."
+
+
+def _look(job: Job[Finding], grid: tuple[float, float], metres: float) -> float | None:
+    """Fill the list once the job has ended; Blender asks again after so many seconds."""
+    if not job.done():
+        return BETWEEN_LOOKS
+    try:
+        _listed(job.result(), grid, metres)
+    except MocapAssistError as error:
+        bpy.context.window_manager.mocap_assist_indexing.said = str(error)
+    redraw(bpy.context)
+    return None
+
+
+def _listed(finding: Finding, grid: tuple[float, float], metres: float) -> str:
+    fill_list(bpy.context, searches.keep(PERFORMED, grid, metres, finding))
+    return chosen_sentence()

@@ -1,0 +1,69 @@
+"""What was found last, kept for as long as Blender runs: too much to keep in a .blend file."""
+
+from typing import NamedTuple
+
+import bpy
+
+from ...solvers.errors import InvalidMotionError
+from .solve_finding import Finding, Found
+
+N_KEPT = 8
+
+
+class Search(NamedTuple):
+    """What was found, and for what."""
+
+    number: int
+    query: str
+    """Name of the action."""
+    start: float
+    """Scene frame of the query's first frame."""
+    step: float
+    """Scene frames from one of its frames to the next."""
+    metres: float
+    """Length of one of the scene's units."""
+    finding: Finding
+
+    def scene_frame(self, query_frame: float) -> float:
+        """Return when a frame of the query is seen."""
+        return self.start + self.step * query_frame
+
+
+_kept: dict[int, Search] = {}
+_last: list[int] = [0]
+
+
+def keep(query: str, grid: tuple[float, float], metres: float, finding: Finding) -> Search:
+    """Keep what was found; what was found long before is forgotten."""
+    _last[0] += 1
+    search = Search(_last[0], query, *grid, metres, finding)
+    _kept[search.number] = search
+    while len(_kept) > N_KEPT:
+        del _kept[next(iter(_kept))]
+    return search
+
+
+def listed(context: bpy.types.Context) -> Search | None:
+    """Return the search whose matches are listed, if it is still known."""
+    return _kept.get(context.window_manager.mocap_assist_matches.search)
+
+
+def chosen(context: bpy.types.Context) -> tuple[Search, Found]:
+    """Return the match that is chosen in the list, and the search that has found it.
+
+    Raises InvalidMotionError where there is none.
+    """
+    search = listed(context)
+    place = context.window_manager.mocap_assist_matches.active
+    if search is None or not 0 <= place < len(search.finding.found):
+        raise InvalidMotionError("No clip is chosen. Press Find Similar, and click on one.")
+    return search, search.finding.found[place]
+
+
+def why_none(context: bpy.types.Context) -> str:
+    """Return why no match is chosen, or nothing."""
+    try:
+        chosen(context)
+    except InvalidMotionError as error:
+        return str(error)
+    return ""

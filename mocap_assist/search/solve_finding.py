@@ -1,0 +1,142 @@
+"""What the button Find Similar has done for it: the best clips, and all there is to show."""
+
+from dataclasses import dataclass, replace
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ...solvers.motion import JointRecording, Motion, Tracks
+from ...solvers.motion.humanoid import (
+    body_lengths,
+    motion_postures,
+    normalise,
+    posture_positions,
+)
+from ...solvers.progress import Progress, unwatched, within
+from ...solvers.retrieval import (
+    ClipEntry,
+    ClipLibrary,
+    FindSettings,
+    Match,
+    find_similar,
+    load_clip_library,
+)
+from ..library.solve_prior import Own, own_clips
+from ..library.thumbnails import Pixels, thumbnail
+
+Array = NDArray[np.float64]
+Recording = Motion | Tracks | JointRecording
+
+MOST = 48
+"""Matches that are listed: nobody looks at more."""
+
+
+@dataclass(frozen=True, eq=False)
+class FindProblem:
+    """What is looked for, and where."""
+
+    query: Recording
+    library: str
+    settings: FindSettings
+    own: Own = ()
+    """Files, and actions in them, that the query itself is from; they are not told."""
+
+
+@dataclass(frozen=True, eq=False)
+class Stage:
+    """Where the query stands, frame by frame, and how the actor is built."""
+
+    places: Array
+    """Of the hips, shape (n_frames, 3), metres."""
+    headings: Array
+    """Shape (n_frames,), radians."""
+    lengths: Array
+    """Of the actor's bones, shape (20,), metres."""
+    frame_rate: float
+
+
+@dataclass(frozen=True, eq=False)
+class Found:
+    """A clip that is like the query, with what is to be seen of it."""
+
+    entry: ClipEntry
+    match: Match
+    postures: NDArray[np.float32]
+    """Of the frames that match, at `rate`: shape (n, 20, 3), metres; see `ClipPostures`."""
+    rate: float
+    picture: Pixels
+
+    @property
+    def pairs(self) -> NDArray[np.intp]:
+        """Frames of the query and of the clip that belong together, shape (n, 2)."""
+        assert self.match.alignment is not None
+        return self.match.alignment
+
+
+@dataclass(frozen=True, eq=False)
+class Finding:
+    """What a search has found."""
+
+    found: tuple[Found, ...]
+    stage: Stage
+    n_clips: int
+    """In the library."""
+
+
+def find_clips(problem: FindProblem, *, progress: Progress = unwatched) -> Finding:
+    """Search a library, and draw what is found.
+
+    Raises
+    ------
+    InvalidFileError
+        The library is missing or cannot be read.
+    InvalidMotionError
+        The query shows no body, or nothing of what is to be compared.
+    """
+    stage = stage_of(problem.query)
+    wanted = min(problem.settings.n_matches or MOST, MOST)
+    with load_clip_library(Path(problem.library)) as library:
+        entries = library.numbered()
+        settings = replace(
+            problem.settings,
+            n_matches=wanted,
+            n_aligned=wanted,
+        )
+        matches = find_similar(
+            problem.query,
+            library,
+            settings=settings,
+            ignore=own_clips(library, problem.own),
+            progress=within(progress, 0.0, 0.7),
+        )
+        numbers = {entry.name: number for number, entry in entries.items()}
+        found = []
+        for place, match in enumerate(matches):
+            progress(0.7 + 0.3 * place / len(matches), "Drawing")
+            found.append(_shown(match, numbers[match.clip], library))
+    return Finding(tuple(found), stage, len(entries))
+
+
+def _shown(match: Match, number: int, library: ClipLibrary) -> Found:
+    entry, postures = library.numbered()[number], library.postures(number)
+    per_frame = postures.frame_rate / entry.frame_rate
+    first = min(int(match.frames.start * per_frame), postures.n_frames - 1)
+    stop = int(np.ceil(match.frames.stop * per_frame))
+    part = postures.positions[first : max(stop, first + 1)].astype(np.float32)
+    return Found(entry, match, part, postures.frame_rate, thumbnail(part))
+
+
+def stage_of(query: Recording) -> Stage:
+    """Return where a recording stands and how its actor is built.
+
+    Raises InvalidMotionError where no body is recognised in it.
+    """
+    tracks = query.tracks if isinstance(query, JointRecording) else query
+    if isinstance(tracks, Motion):
+        positions = motion_postures(tracks)
+    else:
+        positions = posture_positions(tracks)
+    body = normalise(positions, tracks.frame_rate)
+    lengths = body_lengths(body.postures)
+    return Stage(body.places, np.unwrap(body.headings), lengths, tracks.frame_rate)

@@ -1,0 +1,107 @@
+"""The list of places that a library is made of, and the ways to fill it."""
+
+from pathlib import Path
+from typing import ClassVar
+
+import bpy
+
+from ..blender.name_lists import listed
+from ..blender.path_properties import FOLDER, HIDDEN, absolute, chosen_files, path_property
+from ..clean.example_list import CHANGES_A_LIST
+from ..library.kept_libraries import change_sources
+from ..library.places import asset_folders
+
+ADD_FOLDER, ADD_FILES = "mocap_assist.add_source_folder", "mocap_assist.add_source_files"
+REMOVE = "mocap_assist.remove_source"
+FILES = "*.bvh;*.amc;*.c3d;*.trc;*.skeleton;*.csv;*.json;*.txt;*.npy;*.npz;*.blend"
+
+
+def draw_sources(layout: bpy.types.UILayout, library: bpy.types.PropertyGroup) -> None:
+    """Draw the places, each with a button that takes it out."""
+    column = layout.column(align=True)
+    for index, name in enumerate(listed(library.sources)):
+        row = column.row(align=True)
+        path = Path(name)
+        icon = "FILE_BLEND" if path.suffix == ".blend" else "FILE"
+        row.label(
+            text=path.name or name, icon=icon if path.suffix else "FILE_FOLDER", translate=False
+        )
+        row.operator(REMOVE, text="", icon="X", emboss=False).index = index
+    row = column.row(align=True)
+    row.operator(ADD_FOLDER, text="Folder", icon="ADD")
+    row.operator(ADD_FILES, text="Files", icon="ADD")
+    n_assets = len(asset_folders())
+    if n_assets or library.asset_libraries:
+        column.prop(library, "asset_libraries", text=f"{n_assets} asset libraries")
+
+
+def _add(context: bpy.types.Context, chosen: list[str]) -> set[str]:
+    library = context.scene.mocap_assist.library
+    change_sources(library, [*listed(library.sources), *chosen])
+    return {"FINISHED"}
+
+
+class MOCAP_OT_add_source_folder(bpy.types.Operator):
+    bl_idname = ADD_FOLDER
+    bl_options: ClassVar = CHANGES_A_LIST
+    bl_label = "Add Folder"
+    bl_description = "Index all recordings and .blend files in a folder, and below it"
+
+    directory: path_property(FOLDER, HIDDEN)
+
+    def invoke(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
+        context.window_manager.fileselect_add(self)
+        return {"RUNNING_MODAL"}
+
+    def execute(self, context: bpy.types.Context) -> set[str]:
+        return _add(context, [str(absolute(self.directory))])
+
+
+class MOCAP_OT_add_source_files(bpy.types.Operator):
+    bl_idname = ADD_FILES
+    bl_options: ClassVar = CHANGES_A_LIST
+    bl_label = "Add Files"
+    bl_description = "Index these recordings, or the actions of these .blend files"
+
+    directory: path_property(FOLDER, HIDDEN)
+    files: bpy.props.CollectionProperty(type=bpy.types.OperatorFileListElement, options=HIDDEN)
+    filter_glob: bpy.props.StringProperty(default=FILES, options=HIDDEN)
+
+    def invoke(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
+        context.window_manager.fileselect_add(self)
+        return {"RUNNING_MODAL"}
+
+    def execute(self, context: bpy.types.Context) -> set[str]:
+        return _add(context, [str(path) for path in chosen_files(self)])
+
+
+class MOCAP_OT_remove_source(bpy.types.Operator):
+    bl_idname = REMOVE
+    bl_options: ClassVar = CHANGES_A_LIST
+    bl_label = "Remove Source"
+    bl_description = "Do not index this one any more; its clips stay in the library"
+
+    index: bpy.props.IntProperty(
+        name="Source", description="Place in the list", min=0, options={"SKIP_SAVE"}
+    )
+
+    def execute(self, context: bpy.types.Context) -> set[str]:
+        library = context.scene.mocap_assist.library
+        entries = enumerate(listed(library.sources))
+        change_sources(library, [name for place, name in entries if place != self.index])
+        return {"FINISHED"}
+
+
+CLASSES = (MOCAP_OT_add_source_folder, MOCAP_OT_add_source_files, MOCAP_OT_remove_source)
+
+
+def register() -> None:
+    """Add the list's buttons."""
+    for each in CLASSES:
+        bpy.utils.register_class(each)
+
+
+def unregister() -> None:
+    """Take them away."""
+    for each in reversed(CLASSES):
+        bpy.utils.unregister_class(each)

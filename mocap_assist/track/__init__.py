@@ -1,0 +1,1 @@
+"""The button Track: the actor of a depth recording as an armature."""

@@ -1,0 +1,68 @@
+"""Panel: track the actor whom a depth camera recorded."""
+
+from typing import ClassVar
+
+import bpy
+
+from ...solvers.depth_scene import ForegroundWay
+from ..panels.drawing import draw_job, draw_sentence, exists
+from .retracking import why_not_retrack
+from .tracked_body import is_tracked
+from .tracking import why_not_track
+
+TRACK, RETRACK = "mocap_assist.track_depth", "mocap_assist.retrack"
+HOW = "Pose the armature in a frame that is wrong, then track from there."
+CUT = ("nearest", "farthest")
+SHOWN = ("backward", "refine", "smoothing", "recorded", "plant_feet", "watch", "keep_on_esc")
+
+
+class TrackPanel:
+    """Settings of Track, and its button."""
+
+    bl_label = "Track"
+    bl_options: ClassVar = {"DEFAULT_CLOSED"}
+
+    @classmethod
+    def poll(cls, context: bpy.types.Context) -> bool:
+        return exists(TRACK)
+
+    def draw(self, context: bpy.types.Context) -> None:
+        layout = self.layout
+        running = draw_job(layout, context, "track", "retrack")
+        active = context.view_layer.objects.active
+        draw = _draw_correction if is_tracked(active) else _draw_tracking
+        column = layout.column()
+        column.enabled = not running
+        draw(column, context)
+
+
+def _draw_tracking(layout: bpy.types.UILayout, context: bpy.types.Context) -> None:
+    """Draw what makes an armature of points."""
+    track = context.scene.mocap_assist.track
+    column = _settings(layout)
+    column.prop(track, "way")
+    if track.way == ForegroundWay.CUT.name:
+        for name in CUT:
+            column.prop(track, name)
+    for name in SHOWN:
+        column.prop(track, name)
+    layout.operator(TRACK, icon="OUTLINER_OB_ARMATURE")
+    if reason := why_not_track(context):
+        draw_sentence(layout, context, reason, icon="INFO")
+
+
+def _draw_correction(layout: bpy.types.UILayout, context: bpy.types.Context) -> None:
+    """Draw what shows and mends what was tracked."""
+    layout.prop(context.window_manager, "mocap_assist_body", toggle=True, icon="MOD_SKIN")
+    column = _settings(layout)
+    for name in ("reach", "watch"):
+        column.prop(context.scene.mocap_assist.retrack, name)
+    layout.operator(RETRACK, icon="TRACKING")
+    draw_sentence(layout, context, why_not_retrack(context) or HOW, icon="INFO")
+
+
+def _settings(layout: bpy.types.UILayout) -> bpy.types.UILayout:
+    column = layout.column()
+    column.use_property_split = True
+    column.use_property_decorate = False
+    return column

@@ -1,0 +1,163 @@
+"""What a tracked armature plays as a motion of the body, and the way back into an action."""
+
+from collections.abc import Iterable
+from dataclasses import dataclass, replace
+
+import bpy
+import numpy as np
+from mathutils import Matrix
+from numpy.typing import NDArray
+
+from ...solvers.depth_tracking.body import JOINTS, SEGMENTS, body_skeleton
+from ...solvers.errors import InvalidMotionError
+from ...solvers.motion import Motion
+from ..actions.bone_channels import animated_curves, read_bone, rotation_curves
+from ..actions.curves import Channel
+from ..actions.frames import Grid
+from ..actions.take import ArmatureTake, BoneChannels, Part, part_of
+from ..blender.compat import Source
+from ..blender.lasting import Lasting, LastingSource
+from ..blender.turns import Sliced, Steps, due
+from ..scene.rig import Placement, Rig, placement_of, read_rig
+from .tracked_body import TrackedBody, armature_from_motion, bones_of
+from .tracked_checks import check_keyed, check_posed
+
+Array = NDArray[np.float64]
+
+STILL = (1.0, 0.0, 0.0, 0.0)
+OFF_GRID = 0.05
+"""Of a step, how far the ends of an action may be from a picture's moment."""
+
+
+@dataclass(frozen=True, eq=False)
+class TrackedTake:
+    """An action over the moments of pictures, in the space in which the body was tracked."""
+
+    tracked: TrackedBody
+    bones: dict[str, str]
+    """The bone of each joint of the body."""
+    first: int
+    """Picture of the first frame."""
+    frames: Array
+    """Scene frames, shape (n_frames,)."""
+    rig: Rig
+    channels: tuple[BoneChannels, ...]
+    space: Placement
+    """Takes the armature's space to the motion's; one row."""
+    rate: float
+
+    @property
+    def motion(self) -> Motion:
+        """The motion of the body; hands and toes, which do not turn, are at rest."""
+        return self._of_body(self._part(self.channels, len(self.frames)))
+
+    def pose(self, armature: bpy.types.Object) -> Motion:
+        """Return the pose that the armature has now, keyed or not, as one frame.
+
+        Raises InvalidMotionError where that is not what is seen; see `check_posed`.
+        """
+        bpy.context.view_layer.update()
+        bones = [armature.pose.bones[name] for name in self.rig.bones]
+        channels = tuple(
+            BoneChannels(
+                np.array([bone.matrix_basis.to_quaternion()], dtype=np.float64),
+                np.array([bone.matrix_basis.translation], dtype=np.float64),
+                False,
+                False,
+            )
+            for bone in bones
+        )
+        pose = self._of_body(self._part(channels, 1))
+        check_posed(armature, self.tracked, pose)
+        return pose
+
+    def with_motion(self, motion: Motion, first: int, last: int) -> ArmatureTake:
+        """Return frames of a motion of the body as `write_take` writes them."""
+        rows = slice(first, last + 1)
+        part = self._part(self.channels, len(self.frames))
+        joints = self._joints(part)
+        rotations = np.array(part.motion.rotations[rows])
+        rotations[:, joints] = motion.rotations[rows, : len(SEGMENTS)]
+        cut = replace(
+            part.motion, rotations=rotations, root_positions=motion.root_positions[rows]
+        )
+        carrier = self._carrier(last + 1 - first)
+        frames = self.frames[rows]
+        grid = Grid(frames, self.tracked.shown.step, (True, True))
+        parts = (Part(cut, part.bones, carrier),)
+        return ArmatureTake(self.rig, grid, parts, None, self.channels, self.space)
+
+    def _part(self, channels: tuple[BoneChannels, ...], n_frames: int) -> Part:
+        root = self.rig.bones.index(self.bones["hips"])
+        bones, carrier = self.rig.subtree(root), self._carrier(n_frames)
+        return part_of(self.rig, bones, channels, carrier, self.space, self.rate)
+
+    def _carrier(self, n_frames: int) -> Placement:
+        turns, places = (
+            np.tile(each, (n_frames, 1)) for each in (self.space.rotations, self.space.origins)
+        )
+        return Placement(turns, places, self.space.scale)
+
+    def _joints(self, part: Part) -> list[int]:
+        """Return the place of each of the `SEGMENTS` among the joints of a part."""
+        owners = [self.rig.bones[bone] if bone >= 0 else "" for bone in part.bones]
+        return [owners.index(self.bones[name]) for name in SEGMENTS]
+
+    def _of_body(self, part: Part) -> Motion:
+        motion = part.motion
+        rotations = np.tile(STILL, (motion.n_frames, len(JOINTS), 1))
+        rotations[:, : len(SEGMENTS)] = motion.rotations[:, self._joints(part)]
+        skeleton = body_skeleton(self.tracked.body)
+        return Motion(skeleton, rotations, motion.root_positions, self.rate)
+
+
+@Sliced
+def read_tracked_take(
+    armature: bpy.types.Object, source: Source, n_pictures: int, rate: float
+) -> Steps[TrackedTake]:
+    """Read an action of a tracked armature at the moments of the recording's pictures.
+
+    Raises
+    ------
+    InvalidMotionError
+        The armature keeps no body, its bones are other ones now, have no keys, or those of the
+        hips are elsewhere in time.
+    """
+    tracked = TrackedBody.read(armature)
+    bones, rig = bones_of(armature), read_rig(armature)
+    if rig.parents[rig.bones.index(bones["hips"])] >= 0:
+        raise InvalidMotionError(
+            f"{bones['hips']} hangs on another bone now. Clear its parent, then track again."
+        )
+    curves = animated_curves(*source)
+    check_keyed(armature, curves)
+    keyed = rotation_curves(armature.pose.bones[bones["hips"]], curves).values()
+    frames, first = _moments(keyed, tracked, n_pictures, source[0].name)
+    lasting, channels = (Lasting.of(armature), LastingSource.of(source)), []
+    for number, bone in enumerate(rig.bones):
+        channels.append(read_bone(armature.pose.bones[bone], curves, frames, gaps=False))
+        if due():
+            yield number / len(rig.bones)
+            armature, source = (each.find() for each in lasting)
+            curves = animated_curves(*source)
+            bones_of(armature)  # or one of them was deleted meanwhile
+    motion_from_armature = np.linalg.inv(armature_from_motion(armature, tracked.body))
+    turn, origin, scale = placement_of(Matrix(motion_from_armature.tolist()), armature.name)
+    space = Placement(turn[np.newaxis], origin[np.newaxis], scale)
+    return TrackedTake(tracked, bones, first, frames, rig, tuple(channels), space, rate)
+
+
+def _moments(
+    keyed: Iterable[Channel], tracked: TrackedBody, n_pictures: int, name: str
+) -> tuple[Array, int]:
+    """Return the frames of the pictures that these curves cover, and the first picture."""
+    shown = tracked.shown
+    ends = np.concatenate([channel.keys[[0, -1], 0] for channel in keyed])
+    start, stop = ((frame - shown.start) / shown.step for frame in (ends.min(), ends.max()))
+    first = max(int(np.ceil(start - OFF_GRID)), 0)
+    last = min(int(np.floor(stop + OFF_GRID)), n_pictures - 1)
+    if last < first:
+        raise InvalidMotionError(
+            f"{name} has no keys in the time of the recording. Move it back there."
+        )
+    return shown.start + shown.step * np.arange(first, last + 1), first

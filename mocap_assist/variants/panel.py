@@ -1,0 +1,166 @@
+"""Panel: many new actions of a few, and what to do with them."""
+
+from dataclasses import fields
+from typing import ClassVar
+
+import bpy
+
+from ...solvers.denoising import PlantSettings
+from ...solvers.variation import VarySettings
+from ..blender.name_lists import listed
+from ..panels.drawing import draw_job, draw_sentence, exists
+from ..retarget.panel import TICK
+from ..runtime.selection import selected_armature
+from ..search import searches
+from .listing import chosen
+from .reading import candidates, why_not_vary
+from .tags import short_name
+
+VARY, KEEP, SHEET, STACK, MARK, ASSIGN = (
+    f"mocap_assist.{name}"
+    for name in (
+        "vary", "keep_variants", "draw_variants", "stack_variants", "mark_variants",
+        "assign_variants",
+    )
+)  # fmt: skip
+USE = "mocap_assist.use_matches"
+MAIN = ("amount", "timing", "length")
+PARTS = (("trunk",), ("left_arm", "right_arm"), ("left_leg", "right_leg"))
+OTHERS = ("pin_start", "pin_end")
+SHOWN_APART = {"seed", *MAIN, *OTHERS, *(name for row in PARTS for name in row)}
+CROWD = ("delay", "spread", "turn", "crowd_seed")
+LONGEST = 30
+FEWEST, MOST = 3, 7  # rows of the list
+ROW, LARGE = 1.8, 7.0  # sizes of the pictures
+
+
+class MOCAP_UL_variants(bpy.types.UIList):
+    """Variants, each with a picture and a tick."""
+
+    def draw_item(
+        self, context, layout, data, item, icon, active_data, active_property, index
+    ) -> None:
+        row = layout.row()
+        if item.action is None:
+            row.label(text="Deleted", icon="ORPHAN_DATA")
+            return
+        row.template_icon(picture_of(item.action), scale=ROW)
+        row.label(text=short_name(item.action), translate=False)
+        icon = "SOLO_ON" if item.picked else "SOLO_OFF"
+        row.prop(item, "picked", text="", icon=icon, emboss=False)
+
+
+class VaryPanel:
+    """Of what, how strongly and how many, the button, and the variants."""
+
+    bl_label = "Vary"
+    bl_options: ClassVar = {"DEFAULT_CLOSED"}
+
+    @classmethod
+    def poll(cls, context: bpy.types.Context) -> bool:
+        return exists(VARY)
+
+    def draw(self, context: bpy.types.Context) -> None:
+        layout = self.layout
+        running = draw_job(layout, context, "vary", "use")
+        column = layout.column()
+        column.enabled = not running
+        column.use_property_split = True
+        column.use_property_decorate = False
+        _draw_actions(column, context)
+        _draw_settings(column, context.scene.mocap_assist.vary)
+        button = column.row()
+        button.scale_y = 1.6
+        button.operator(VARY, icon="MOD_ARRAY")
+        if reason := why_not_vary(context):
+            draw_sentence(column, context, reason, icon="INFO")
+        if context.scene.mocap_assist.variants.rows:
+            _draw_variants(column, context)
+
+
+def picture_of(action: bpy.types.Action) -> int:
+    """Return the number of the icon that shows what an action does."""
+    return int(action.preview.icon_id) if action.preview is not None else 0
+
+
+def _draw_actions(column: bpy.types.UILayout, context: bpy.types.Context) -> None:
+    ticked = listed(context.scene.mocap_assist.vary.actions)
+    armature = selected_armature(context)
+    found = [] if armature is None else candidates(armature)
+    box = column.column(align=True)
+    for action in found[:LONGEST]:
+        icon = "CHECKBOX_HLT" if action.name in ticked else "CHECKBOX_DEHLT"
+        button = box.operator(TICK, text=action.name, translate=False, icon=icon)
+        button.action, button.group = action.name, "vary"
+    if search := searches.listed(context):
+        column.operator(USE, text=f"Best Matches of {search.query}", icon="VIEWZOOM")
+    if len(found) > LONGEST:
+        column.prop(context.scene.mocap_assist.vary, "actions")
+
+
+def _draw_settings(column: bpy.types.UILayout, vary: bpy.types.PropertyGroup) -> None:
+    column.prop(vary, "n_variants", text="Variants")
+    column.prop(vary, "seed")
+    for name in MAIN:
+        column.prop(vary, name, slider=name != "length")
+    parts = column.column(align=True)
+    parts.use_property_split = False
+    for names in PARTS:
+        row = parts.row(align=True)
+        for name in names:
+            row.prop(vary, name, slider=True)
+    column.prop(vary, "plant_feet")
+    _draw_folded(column, vary)
+
+
+def _draw_folded(column: bpy.types.UILayout, vary: bpy.types.PropertyGroup) -> None:
+    header, body = column.panel("mocap_assist_vary_advanced", default_closed=True)
+    header.label(text="Advanced")
+    if body is None:
+        return
+    for name in OTHERS:
+        body.prop(vary, name)
+    for item in fields(VarySettings):
+        if item.name not in SHOWN_APART:
+            body.prop(vary, item.name)
+    feet = body.column()
+    feet.active = vary.plant_feet
+    for item in fields(PlantSettings):
+        feet.prop(vary, item.name)
+
+
+def _draw_variants(column: bpy.types.UILayout, context: bpy.types.Context) -> None:
+    variants = context.scene.mocap_assist.variants
+    rows = min(max(len(variants.rows), FEWEST), MOST)
+    column.template_list(
+        "MOCAP_UL_variants", "", variants, "rows", variants, "active", rows=rows, maxrows=rows
+    )
+    if 0 <= variants.active < len(variants.rows):
+        action = variants.rows[variants.active].action
+        if action is not None:
+            column.template_icon(picture_of(action), scale=LARGE)
+    picked = any(row.picked for row in variants.rows)
+    n_chosen = len(chosen(context.scene))
+    which = f"the {n_chosen} picked" if picked else f"all {n_chosen}"
+    draw_sentence(column, context, f"With {which}:")
+    column.operator(KEEP, icon="SOLO_ON")
+    row = column.row(align=True)
+    row.operator(STACK, icon="NLA")
+    row.operator(SHEET, icon="IMAGE_DATA")
+    column.operator(MARK, text="Mark as Assets", icon="ASSET_MANAGER")
+    header, body = column.panel("mocap_assist_vary_crowd", default_closed=True)
+    header.label(text="Crowd")
+    if body is not None:
+        for name in CROWD:
+            body.prop(context.scene.mocap_assist.crowd, name)
+        body.operator(ASSIGN, icon="COMMUNITY")
+
+
+def register() -> None:
+    """Add the list."""
+    bpy.utils.register_class(MOCAP_UL_variants)
+
+
+def unregister() -> None:
+    """Take it away."""
+    bpy.utils.unregister_class(MOCAP_UL_variants)

@@ -1,0 +1,29 @@
+"""Recordings of either kind as channels, and back."""
+
+from collections.abc import Mapping
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ...motion import Motion, Tracks
+from .channels import Channels
+from .motion_channels import decode_motion, encode_motion
+from .track_channels import decode_tracks, encode_tracks
+
+Array = NDArray[np.float64]
+
+
+def encode(
+    recording: Motion | Tracks, references: Mapping[str, Array] | None = None
+) -> Channels:
+    """Turn a recording into channels about these references, or else about its own means."""
+    if isinstance(recording, Motion):
+        return encode_motion(recording, references)
+    return encode_tracks(recording, references)
+
+
+def decode(recording: Motion | Tracks, channels: Channels, values: Array) -> Motion | Tracks:
+    """Return the recording with these channel values, shape (n_frames, n_parts, 3)."""
+    if isinstance(recording, Motion):
+        return decode_motion(recording, channels, values)
+    return decode_tracks(recording, channels, values)

@@ -1,0 +1,140 @@
+"""Clean recordings as channels to learn from, all of the same parts and at one frame rate."""
+
+from collections.abc import Iterator, Sequence
+from itertools import pairwise
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.interpolate import CubicSpline
+
+from ...motion import Motion, Tracks
+from ...motion.skeletons import find_cuts, is_short, pieces
+from ...progress import Progress
+from ...signals import interpolated
+from .encode import encode
+
+Array = NDArray[np.float64]
+
+MINUTE = 60.0
+"""Seconds, encoded at a time. The few windows across two of them are left out."""
+NEAR_MULTIPLE = 0.02
+"""Part by which a frame rate may miss a multiple of another and still count as one."""
+
+
+class ExampleChannels:
+    """All examples as channels, about the means of the first and in its order.
+
+    They are encoded whenever they are asked for, a minute at a time, and not kept: many frames
+    take no more memory than few.
+    """
+
+    def __init__(
+        self,
+        examples: Sequence[Motion | Tracks],
+        frame_rate: float,
+        window: int,
+        weights: Sequence[float],
+    ) -> None:
+        self._frame_rate, self._window = frame_rate, window
+        self._takes = [
+            (example, weight, *part)
+            for example, weight in zip(examples, weights, strict=True)
+            for part in _whole_pieces(example)
+        ]
+        example, _, start, stop = self._takes[0]
+        first = encode(example.slice(start, stop))
+        self.keys, self.references = first.keys, first.references
+
+    @property
+    def n_channels(self) -> int:
+        """Number of channels."""
+        return 3 * len(self.keys)
+
+    def read(self, progress: Progress) -> Iterator[tuple[float, list[Array]]]:
+        """Yield the weight of each take, and a list of interleaved clips of it.
+
+        Clips have shape (n_frames, n_channels).
+
+        Those that are shorter than a window are left out, and so are takes that have no other.
+        What an example does not have, or never shows, is NaN.
+        """
+        for index, (example, weight, start, stop) in enumerate(self._takes):
+            take = example.slice(start, stop)
+            channels = encode(take, self.references)
+            place = {key: part for part, key in enumerate(channels.keys)}
+            columns = np.full((len(channels.values), len(self.keys), 3), np.nan)
+            for part, key in enumerate(self.keys):
+                if key in place:
+                    columns[:, part] = channels.values[:, place[key]]
+            flat = columns.reshape(len(columns), -1)
+            seen = np.isfinite(flat).any(axis=0)
+            clips = _at_rate(interpolated(flat), take.frame_rate, self._frame_rate)
+            if long := [clip for clip in clips if len(clip) >= self._window]:
+                yield weight, [np.where(seen, clip, np.nan) for clip in long]
+            progress((index + 1) / len(self._takes), "Reading examples")
+
+
+class Moments:
+    """Means and standard deviations of channels over the takes that have them."""
+
+    def __init__(self, n_channels: int) -> None:
+        self.means = np.empty((0, n_channels))
+        """Of each take; NaN where it lacks the channel."""
+        self._counts, self._squares = np.empty((0, 1)), np.empty((0, n_channels))
+
+    def add(self, clips: Sequence[Array], weight: float) -> None:
+        """Add a take, a list of clips, that counts so much."""
+        count = sum(map(len, clips))
+        mean = sum(clip.sum(axis=0) for clip in clips) / count
+        square = sum(((clip - mean) ** 2).sum(axis=0) for clip in clips)
+        self.means = np.vstack([self.means, mean])
+        self._squares = np.vstack([self._squares, weight * square])
+        self._counts = np.vstack([self._counts, [[weight * count]]])
+
+    def total(self) -> tuple[Array, Array]:
+        """Return mean and standard deviation of each channel over all takes."""
+        has = np.isfinite(self.means)
+        counts = self._counts * has
+        n_frames = np.where(has.any(axis=0), counts.sum(axis=0), 1.0)
+        mean = (counts * np.nan_to_num(self.means)).sum(axis=0) / n_frames
+        between = counts * (np.nan_to_num(self.means) - mean) ** 2
+        square = (np.nan_to_num(self._squares) + between).sum(axis=0)
+        return mean, np.sqrt(square / n_frames)
+
+
+def _at_rate(values: Array, frame_rate: float, wanted: float) -> list[Array]:
+    """Return channels at another frame rate.
+
+    A multiple of the wanted rate is split into interleaved takes, so that no frame is lost;
+    other rates are interpolated by cubic splines.
+    """
+    step = frame_rate / wanted
+    if step >= 1.0 and abs(step - round(step)) < NEAR_MULTIPLE * step:
+        return [values[start :: round(step)] for start in range(round(step))]
+    if len(values) < 2:
+        return [values]
+    times = np.arange(0.0, (len(values) - 1) * wanted / frame_rate + 1e-9) / wanted
+    spline = CubicSpline(np.arange(len(values)) / frame_rate, values, axis=0)
+    return [np.asarray(spline(times))]
+
+
+def _whole_pieces(example: Motion | Tracks) -> list[tuple[int, int]]:
+    """Return first and last-but-one frames of the pieces of an example that show movement.
+
+    Pieces are those of which it was joined, and of long ones each minute.
+    """
+    found = [
+        (start, stop)
+        for start, stop in pieces(example, find_cuts(example))
+        if not is_short(stop - start, example.frame_rate)
+    ]
+    return [
+        part for piece in found or [(0, example.n_frames)] for part in _minutes(*piece, example)
+    ]
+
+
+def _minutes(start: int, stop: int, example: Motion | Tracks) -> Iterator[tuple[int, int]]:
+    """Yield parts of at most two minutes and, but for a whole piece, at least one."""
+    n_parts = max(int((stop - start) / (MINUTE * example.frame_rate)), 1)
+    edges = np.linspace(start, stop, n_parts + 1).astype(int)
+    yield from pairwise(edges.tolist())

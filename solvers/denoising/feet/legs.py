@@ -1,0 +1,71 @@
+"""The legs of a skeleton, and the points of its feet."""
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ...motion import Motion, Skeleton, Tracks
+from ...motion.humanoid import HumanoidMap, find_humanoid_map, roles_by_name
+
+SIDES = ("left", "right")
+
+
+@dataclass(frozen=True)
+class Leg:
+    """Indices of the joints of one leg."""
+
+    side: str
+    hip: int
+    knee: int
+    ankle: int
+    toe: int | None
+    """Ball of the foot; None where the rig has no toes."""
+
+    @property
+    def chain(self) -> tuple[int, int, int]:
+        """Hip, knee and ankle."""
+        return self.hip, self.knee, self.ankle
+
+    def length(self, skeleton: Skeleton) -> float:
+        """Return the way from hip over knee to ankle in metres."""
+        joints = skeleton.rest_positions[list(self.chain)]
+        return float(np.linalg.norm(np.diff(joints, axis=0), axis=1).sum())
+
+
+def find_legs(skeleton: Skeleton, humanoid_map: HumanoidMap | None = None) -> tuple[Leg, ...]:
+    """Return the legs whose hip, knee and ankle are known, left first."""
+    joints = (humanoid_map or find_humanoid_map(skeleton)).indices(skeleton)
+    found = []
+    for side in SIDES:
+        chain = [joints.get(f"{side}{role}") for role in ("UpperLeg", "LowerLeg", "Foot")]
+        if None in chain:
+            continue
+        hip, knee, ankle = (joint for joint in chain if joint is not None)
+        if knee in skeleton.subtree(hip)[1:] and ankle in skeleton.subtree(knee)[1:]:
+            toe = joints.get(f"{side}Toes")
+            toe = toe if toe in skeleton.subtree(ankle)[1:] else None
+            found.append(Leg(side, hip, knee, ankle, toe))
+    return tuple(found)
+
+
+def foot_joints(
+    recording: Motion | Tracks, humanoid_map: HumanoidMap | None = None
+) -> NDArray[np.intp] | None:
+    """Return the indices of ankle and toes (columns) of the left and right foot (rows).
+
+    Joints of a motion, or points of tracks that are called like joints. An ankle without toes
+    is there twice. None where not both feet are known.
+    """
+    if isinstance(recording, Motion):
+        humanoid = humanoid_map or find_humanoid_map(recording.skeleton)
+        known = humanoid.indices(recording.skeleton)
+    else:
+        place = {name: index for index, name in enumerate(recording.names)}
+        roles = humanoid_map.joints if humanoid_map else roles_by_name(recording.names)
+        known = {role: place[name] for role, name in roles.items() if name in place}
+    if any(f"{side}Foot" not in known for side in SIDES):
+        return None
+    ankles = [known[f"{side}Foot"] for side in SIDES]
+    toes = [known.get(f"{side}Toes", ankle) for side, ankle in zip(SIDES, ankles, strict=True)]
+    return np.stack([ankles, toes], axis=1)

@@ -1,0 +1,166 @@
+"""Hold a motion within the limits of its joints."""
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ...errors import InvalidSettingError
+from ...motion import Motion, Skeleton
+from ...motion.humanoid import HumanoidMap, find_humanoid_map, t_pose_alignment
+from ...motion.skeletons import ROTATION_VECTOR, JointLimits
+from ...rotations import (
+    euler_from_quaternion,
+    inverse,
+    multiply,
+    quaternion_from_euler,
+    quaternion_from_rotation_vector,
+    rotation_vector_from_quaternion,
+)
+
+Array = NDArray[np.float64]
+
+SOFTNESS = np.radians(5.0)
+
+
+def keep_within(
+    motion: Motion,
+    limits: JointLimits,
+    *,
+    softness: float = SOFTNESS,
+    humanoid_map: HumanoidMap | None = None,
+) -> Motion:
+    """Return the motion with each joint drawn back to its limits.
+
+    An angle within its limits stays as it is, bit for bit. One that is x beyond is let
+    through as softness * tanh(x / softness): a curve that leaves the limit with the same slope
+    and curvature, so that nothing kinks, and never exceeds the limit by more than `softness`.
+
+    Parameters
+    ----------
+    motion : Motion
+        NaN stays NaN. Joints that the limits do not name stay as they are.
+    limits : JointLimits
+    softness : float, radians
+        Greater is gentler; 0 stops at the limit.
+    humanoid_map : HumanoidMap
+        Who plays the roles that the limits name; found where it is not given.
+
+    Returns
+    -------
+    Motion
+
+    Raises
+    ------
+    InvalidSettingError
+        The softness is negative.
+    """
+    if not softness >= 0.0:
+        raise InvalidSettingError(f"softness is {softness:g} rad; it must not be negative.")
+    rotations = motion.rotations.copy()
+    for joint, limit in _bound_limits(limits, motion.skeleton, humanoid_map):
+        angles, beyond = limit.angles(motion.rotations[:, joint])
+        outside = (beyond != 0.0).any(axis=1)
+        if outside.any():
+            held = angles[outside] - beyond[outside] + _soft(beyond[outside], softness)
+            rotations[outside, joint] = limit.rotations(held)
+    return motion.with_poses(rotations=rotations)
+
+
+def limit_excess(
+    motion: Motion, limits: JointLimits, humanoid_map: HumanoidMap | None = None
+) -> Array:
+    """Return how far each joint is beyond its limits, shape (n_frames, n_joints), radians.
+
+    The worst of the three angles; 0 within the limits, for joints without limits and where
+    nothing was observed.
+    """
+    excess = np.zeros((motion.n_frames, motion.n_joints))
+    for joint, limit in _bound_limits(limits, motion.skeleton, humanoid_map):
+        _, beyond = limit.angles(motion.rotations[:, joint])
+        excess[:, joint] = np.maximum(
+            excess[:, joint], np.nan_to_num(np.abs(beyond)).max(axis=1)
+        )
+    return excess
+
+
+@dataclass(frozen=True, eq=False)
+class _Limit:
+    """The limit of one joint of one rig."""
+
+    left: Array
+    right: Array
+    order: str
+    lower: Array
+    upper: Array
+
+    def angles(self, rotations: Array) -> tuple[Array, Array]:
+        """Return the limited coordinates and how far they are beyond, each (n_frames, 3)."""
+        seen = multiply(multiply(inverse(self.left), rotations), self.right)
+        if self.order == ROTATION_VECTOR:
+            vectors = rotation_vector_from_quaternion(seen)
+            return vectors, self._beyond(vectors)
+        # Every rotation has two triples of Euler angles, each up to full turns. Take the one
+        # that breaks the limits least and turns least about the axes that are free: else a knee
+        # far beyond its limit could be read as half a turn about both other axes.
+        first = euler_from_quaternion(seen, self.order)
+        forms = self._near(np.stack([first, first * (1.0, -1.0, 1.0) + np.pi]))
+        beyond = self._beyond(forms)
+        free = np.isinf(self.lower) & np.isinf(self.upper)
+        cost = np.sum(np.abs(beyond) + free * np.abs(forms), axis=-1)
+        second = (cost[1] < cost[0])[:, None]
+        return np.where(second, forms[1], forms[0]), np.where(second, beyond[1], beyond[0])
+
+    def rotations(self, angles: Array) -> Array:
+        """Undo `angles`."""
+        if self.order == ROTATION_VECTOR:
+            seen = quaternion_from_rotation_vector(angles)
+        else:
+            seen = quaternion_from_euler(angles, self.order)
+        return multiply(multiply(self.left, seen), inverse(self.right))
+
+    def _near(self, angles: Array) -> Array:
+        """Shift by full turns to the nearest of the middle of the limits, where both exist."""
+        bounded = np.isfinite(self.lower) & np.isfinite(self.upper)
+        middle = 0.5 * (np.where(bounded, self.lower, 0.0) + np.where(bounded, self.upper, 0.0))
+        return np.asarray(angles - 2 * np.pi * np.round((angles - middle) / (2 * np.pi)))
+
+    def _beyond(self, angles: Array) -> Array:
+        """Signed distance from the box: 0 inside."""
+        over = np.maximum(angles - self.upper, 0.0)
+        return np.asarray(over + np.minimum(angles - self.lower, 0.0))
+
+
+def _bound_limits(
+    limits: JointLimits, skeleton: Skeleton, humanoid_map: HumanoidMap | None
+) -> Iterator[tuple[int, _Limit]]:
+    """Yield the limits that this skeleton has a joint for, in terms of its own rest pose."""
+    joints = {name: joint for joint, name in enumerate(skeleton.names)}
+    roles: dict[str, int] = {}
+    alignment = np.empty((0, 4))
+    if limits.by_role.any():
+        humanoid_map = humanoid_map or find_humanoid_map(skeleton)
+        roles = humanoid_map.indices(skeleton)
+        alignment = t_pose_alignment(skeleton, humanoid_map)
+    for place, name in enumerate(limits.names):
+        by_role = limits.by_role[place]
+        joint = (roles if by_role else joints).get(name)
+        if joint is None:
+            continue
+        left, right = limits.left[place], limits.right[place]
+        if by_role:
+            # A canonical rotation is parent^-1 L own, see motion/canonical.py.
+            above = skeleton.parents[joint]
+            left = multiply(alignment[above], left) if above >= 0 else left
+            right = multiply(alignment[joint], right)
+        yield (
+            joint,
+            _Limit(left, right, limits.orders[place], limits.lower[place], limits.upper[place]),
+        )
+
+
+def _soft(beyond: Array, softness: float) -> Array:
+    if softness == 0.0:
+        return np.zeros_like(beyond)
+    return np.asarray(softness * np.tanh(beyond / softness))

@@ -1,0 +1,8 @@
+"""Missing markers predicted from the markers around them."""
+
+from .fill_markers import FilledMarkers, fill_markers
+
+__all__ = [
+    "FilledMarkers",
+    "fill_markers",
+]

@@ -1,0 +1,264 @@
+"""Learn which movements over two thirds of a second belong together."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass, fields
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.fft import dct
+
+from ...archives import ArchiveLayout
+from ...errors import InvalidMotionError
+from ...motion import Motion, Tracks
+from ...npz_members import flags, integers, numbers, words
+from ...progress import Progress, unwatched, within
+from ...settings import Settings, setting
+from ..channels import ExampleChannels, Moments
+from .lag_covariance import LagCovariance, strongest
+from .window_prior import n_slow_waves
+
+Array = NDArray[np.float64]
+
+KEPT_ENERGY = 0.99
+"""Share of the movement that the stored patterns hold, as in [LC10]."""
+STILL = 0.05
+"""Standard deviation, degrees or centimetres, below which a channel does not move."""
+AT_REST = 1e-6
+"""The same where no channel moves: what is below is rounding."""
+N_REFERENCE = 12
+LAYOUT = ArchiveLayout(
+    "filter bases",
+    3,
+    {
+        "keys": words("parts"),
+        "references": numbers("parts", N_REFERENCE),
+        "mean": numbers("3*parts"),
+        "vectors": numbers("bases", "window", "3*parts"),
+        "values": numbers("bases"),
+        "moving": integers("moving", minimum=0),
+        "slow": numbers("slow", "moving", "slow", "moving"),
+        "fast": numbers("fast", "moving"),
+        "clip_means": numbers("pieces", "moving"),
+        "frame_rate": numbers(),
+        "n_clips": integers(minimum=1),
+        "of_points": flags(),
+    },
+    holds="damaged bases",
+    remedy="Learn them again.",
+)
+
+
+@dataclass(frozen=True, kw_only=True)
+class FilterBasesSettings(Settings):
+    """How movement patterns are learned."""
+
+    window: float = setting(
+        20 / 30, "Length of the patterns; longer ones know more of the course of a movement",
+        unit="s", minimum=0.1, maximum=3.0,
+    )  # fmt: skip
+    frame_rate: float = setting(
+        30.0, "Rate at which patterns are stored; higher keeps faster movements",
+        unit="Hz", minimum=5.0, maximum=240.0, advanced=True,
+    )  # fmt: skip
+
+    @property
+    def n_frames(self) -> int:
+        """Length of the patterns in frames."""
+        return max(round(self.window * self.frame_rate), 2)
+
+
+@dataclass(frozen=True, eq=False)
+class FilterBases:
+    """What was learned of clean recordings: their patterns over a short window.
+
+    Channels are degrees or centimetres; each part (joint, point or the root's place) has three.
+
+    Attributes
+    ----------
+    keys : shape (n_parts,), str
+        What the parts are called: humanoid roles or names.
+    references : shape (n_parts, 12)
+        What each part is told relative to (see `channels_motion`), filled up with 0.
+    mean : shape (n_parts * 3,)
+    vectors : shape (n_bases, window, n_parts * 3)
+        The filter bases of [LC10]: orthonormal patterns, strongest first, that hold 99 % of
+        the movement.
+    values : shape (n_bases,)
+        Mean square of each pattern's weight.
+    moving : shape (n_moving,), int
+        Channels that move; `slow` and `fast` tell of these.
+    slow : shape (n_slow, n_moving, n_slow, n_moving)
+        Covariance of the slow cosine waves of a window about the mean of its clip: all
+        patterns, however weak.
+    fast : shape (window - n_slow, n_moving)
+        Variances of the faster waves.
+    clip_means : shape (n_pieces, n_moving)
+        Mean pose of each piece of an example; the mean of all for what it lacks.
+    frame_rate : shape (), hertz
+    n_clips : shape (), int
+    of_points : shape (), bool
+        Learned from tracks rather than from motions.
+    """
+
+    keys: NDArray[np.str_]
+    references: Array
+    mean: Array
+    vectors: Array
+    values: Array
+    moving: NDArray[np.intp]
+    slow: Array
+    fast: Array
+    clip_means: Array
+    frame_rate: Array
+    n_clips: NDArray[np.intp]
+    of_points: NDArray[np.bool_]
+
+    @property
+    def window(self) -> int:
+        """Length of the patterns, frames."""
+        return int(self.vectors.shape[1])
+
+    @property
+    def reference_of(self) -> dict[str, Array]:
+        """Mean rotation or position of each key."""
+        return dict(zip(map(str, self.keys), self.references, strict=True))
+
+    def save(self, path: Path | str) -> None:
+        """Write an archive that `load_filter_bases` reads."""
+        LAYOUT.write(path, {one.name: getattr(self, one.name) for one in fields(self)})
+
+
+def load_filter_bases(path: Path | str) -> FilterBases:
+    """Read what `FilterBases.save` wrote.
+
+    Raises
+    ------
+    InvalidFileError
+        The file is missing, damaged, or holds something else.
+    """
+    bases = FilterBases(**LAYOUT.read(path))
+    if fault := _fault(bases):
+        raise LAYOUT.damaged(path, fault)
+    return bases
+
+
+def _fault(bases: FilterBases) -> str:
+    """Return what keeps bases from a file from being used, or nothing."""
+    if not len(bases.clip_means) or not len(bases.slow):
+        return "nothing was learned"
+    n_slow = len(bases.slow)
+    if not bases.vectors.size or len(bases.fast) != bases.window - n_slow:
+        return "the shapes do not fit, first that of fast"
+    if not np.isin(bases.moving, np.arange(len(bases.mean))).all():
+        return "they speak of channels that there are not"
+    rate = float(bases.frame_rate)
+    return "" if rate > 0.0 else f"a frame rate of {rate:g} Hz"
+
+
+def learn_filter_bases(
+    examples: Sequence[Motion | Tracks],
+    *,
+    weights: Sequence[float] | None = None,
+    settings: FilterBasesSettings = FilterBasesSettings(),
+    progress: Progress = unwatched,
+) -> FilterBases:
+    """Learn filter bases from clean recordings by multichannel singular spectrum analysis.
+
+    The eigenvectors of the lag covariance of all channels [1]_. The covariance comes from a
+    recursion over lags, clip by clip, so the matrix of all windows is never built, and clips
+    are encoded a minute at a time: many frames take no more memory than few. Rigs may differ
+    where their joints have humanoid roles; clips that lack a joint tell nothing of it. Nothing
+    is learned across a cut.
+
+    Parameters
+    ----------
+    examples : sequence of Motion or Tracks
+        Of one kind. Frame rates may differ; gaps are bridged by straight lines.
+    weights : sequence of float, optional
+        How much the frames of each example count, more than 0; all the same without.
+    settings : FilterBasesSettings
+    progress : Progress
+
+    Returns
+    -------
+    FilterBases
+        Its keys are the joints or points of the first example.
+
+    Raises
+    ------
+    InvalidMotionError
+        There is no example, kinds are mixed, weights do not fit them, no example is as long
+        as the window, or nothing in them moves.
+    SolveCancelled
+        Raised by `progress`.
+
+    References
+    ----------
+    .. [1] Lou, Chai (2010). Example-based human motion denoising. IEEE TVCG 16(5), section 3.
+    """
+    shares = _checked(examples, weights)
+    window = settings.n_frames
+    channels = ExampleChannels(examples, settings.frame_rate, window, shares)
+    moments = Moments(channels.n_channels)
+    for weight, clips in channels.read(within(progress, 0.0, 0.4)):
+        moments.add(clips, weight)
+    if not len(moments.means):
+        raise InvalidMotionError(
+            f"No example is as long as the window of {settings.window:.2g} s; choose longer"
+            " ones or a shorter window."
+        )
+    mean, spread = moments.total()
+    if spread.max() < AT_REST:
+        raise InvalidMotionError(
+            "Nothing that was observed in the examples moves; choose clips with movement."
+        )
+    moving = np.flatnonzero(spread >= min(STILL, spread.max()))
+    about_all, about_own = (LagCovariance(len(moving), window) for _ in range(2))
+    reading = channels.read(within(progress, 0.4, 0.8))
+    for (weight, clips), own in zip(reading, moments.means, strict=True):
+        for clip in clips:
+            about_all.add(clip[:, moving], mean[moving], weight)
+            about_own.add(clip[:, moving], own[moving], weight)
+    progress(0.8, "Finding patterns")
+    values, vectors = strongest(about_all.total(), KEPT_ENERGY)
+    patterns = np.zeros((len(values), window, len(mean)))
+    patterns[:, :, moving] = vectors.T.reshape(len(values), window, len(moving))
+    slow, fast = _waves(about_own.total(), window)
+    progress(1.0, "Learned")
+    rows = np.zeros((len(channels.keys), N_REFERENCE))
+    for row, key in zip(rows, channels.keys, strict=True):
+        row[: len(channels.references[key])] = channels.references[key]
+    means = moments.means[:, moving]
+    return FilterBases(
+        np.array(channels.keys), rows, mean, patterns, values, moving, slow, fast,
+        np.where(np.isfinite(means), means, mean[moving]),
+        np.array(settings.frame_rate), np.array(len(examples)),
+        np.array(isinstance(examples[0], Tracks)),
+    )  # fmt: skip
+
+
+def _checked(
+    examples: Sequence[Motion | Tracks], weights: Sequence[float] | None
+) -> tuple[float, ...]:
+    """Return the weights of the examples, on average 1."""
+    if not examples:
+        raise InvalidMotionError("There is no example to learn from; choose clean clips.")
+    if len({isinstance(example, Motion) for example in examples}) > 1:
+        raise InvalidMotionError("Learn from motions or from tracks, not from both at once.")
+    given = np.ones(len(examples)) if weights is None else np.array(weights, dtype=float)
+    if given.shape != (len(examples),) or not (np.isfinite(given) & (given > 0.0)).all():
+        raise InvalidMotionError(
+            f"{given.size} weights for {len(examples)} examples; give each one above 0."
+        )
+    return tuple(map(float, given / given.mean()))
+
+
+def _waves(covariance: Array, window: int) -> tuple[Array, Array]:
+    """Return the covariance of the slow cosine waves, and the variances of the others."""
+    n_channels = len(covariance) // window
+    blocks = covariance.reshape(window, n_channels, window, n_channels)
+    waves = np.asarray(dct(dct(blocks, axis=0, norm="ortho"), axis=2, norm="ortho"))
+    n_slow = n_slow_waves(window)
+    fast = np.einsum("kckc->kc", waves)[n_slow:]
+    return waves[:n_slow, :, :n_slow].copy(), np.maximum(fast, 0.0)

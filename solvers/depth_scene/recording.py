@@ -1,0 +1,65 @@
+"""What a depth camera recorded: a picture of distances per frame, read when asked for."""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..errors import InvalidMotionError
+from ..motion.skeletons import check_frame_rate
+from .camera import Camera
+
+DepthPicture = NDArray[np.float32]
+ColorPicture = NDArray[np.uint8]
+
+
+@dataclass(frozen=True, eq=False)
+class DepthRecording:
+    """Depth pictures of one camera, of which only those that are asked for are in memory.
+
+    Attributes
+    ----------
+    camera : Camera
+    n_frames : int
+    frame_rate : float, hertz
+    read_depth : callable
+        Takes a frame and returns its depth, shape (height, width), metres along the optical
+        axis; 0: no reading.
+    read_color : callable, or None
+        Takes a frame and returns the colours that each pixel of depth sees, shape
+        (height, width, 3), 0 to 255; None where no aligned colour was recorded.
+    """
+
+    camera: Camera
+    n_frames: int
+    frame_rate: float
+    read_depth: Callable[[int], DepthPicture]
+    read_color: Callable[[int], ColorPicture] | None = None
+
+    def __post_init__(self) -> None:
+        if self.n_frames < 1:
+            raise InvalidMotionError("A depth recording needs at least one frame.")
+        check_frame_rate(self.frame_rate)
+
+    def frame(self, index: int) -> DepthPicture:
+        """Return the depth of a frame, shape (height, width), metres; 0: no reading."""
+        self._check(index)
+        depth = np.asarray(self.read_depth(index), dtype=np.float32)
+        if depth.shape != (self.camera.height, self.camera.width):
+            raise InvalidMotionError(
+                f"Frame {index} has {depth.shape[::-1]} pixels, not"
+                f" {(self.camera.width, self.camera.height)} as the camera."
+            )
+        return np.where(np.isfinite(depth) & (depth > 0.0), depth, np.float32(0.0))
+
+    def color(self, index: int) -> ColorPicture | None:
+        """Return the colours (height, width, 3) of a frame, 0 to 255, or None if unknown."""
+        self._check(index)
+        return None if self.read_color is None else self.read_color(index)
+
+    def _check(self, index: int) -> None:
+        if not 0 <= index < self.n_frames:
+            raise InvalidMotionError(
+                f"There is no frame {index}; the recording has frames 0 to {self.n_frames - 1}."
+            )

@@ -1,0 +1,95 @@
+"""The joint coordinates, the 34 of [WZC12] and two ankles: what each turns, and how far."""
+
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from .tables import SEGMENTS, SIDES
+
+Array = NDArray[np.float64]
+
+
+class CoordinateRow(NamedTuple):
+    """One coordinate: a component of the rotation vector of the segments that it turns."""
+
+    name: str
+    segments: dict[str, tuple[float, float, float]]
+    """Rotation vector per unit, in the frame of the segment above; x left, y down, z back."""
+    least: float
+    most: float
+    """Soft limits, radians."""
+
+
+def _trunk() -> list[CoordinateRow]:
+    return [
+        *(CoordinateRow(f"lowerBack{name}", {"spine": half, "chest": half}, least, most)
+          for name, half, least, most in (("X", (0.5, 0.0, 0.0), -0.7, 1.6),
+                                          ("Y", (0.0, 0.5, 0.0), -0.9, 0.9),
+                                          ("Z", (0.0, 0.0, 0.5), -0.7, 0.7))),
+        CoordinateRow("lowerNeckX", {"neck": (1.0, 0.0, 0.0)}, -0.6, 0.8),
+        CoordinateRow("lowerNeckZ", {"neck": (0.0, 0.0, 1.0)}, -0.5, 0.5),
+        CoordinateRow("headX", {"head": (1.0, 0.0, 0.0)}, -0.8, 0.8),
+        CoordinateRow("headY", {"head": (0.0, 1.0, 0.0)}, -1.3, 1.3),
+        CoordinateRow("headZ", {"head": (0.0, 0.0, 1.0)}, -0.6, 0.6),
+    ]  # fmt: skip
+
+
+def _limbs(side: str) -> list[CoordinateRow]:
+    """Return the coordinates of one side; turns about y and z are mirrored on the right."""
+    out = 1.0 if side == "left" else -1.0
+
+    def row(
+        name: str, segment: str, axis: tuple[float, float, float], least: float, most: float
+    ) -> CoordinateRow:
+        return CoordinateRow(f"{side}{name}", {f"{side}{segment}": axis}, least, most)
+
+    x, y, z = (-1.0, 0.0, 0.0), (0.0, out, 0.0), (0.0, 0.0, -out)
+    return [
+        row("ClavicleY", "Shoulder", y, -0.5, 0.5),
+        row("ClavicleZ", "Shoulder", z, -0.3, 0.7),
+        row("HumerusX", "UpperArm", x, -1.1, 3.1),
+        row("HumerusY", "UpperArm", y, -2.0, 2.0),
+        row("HumerusZ", "UpperArm", z, -0.9, 3.0),
+        row("Radius", "LowerArm", x, -0.05, 2.6),
+        row("FemurX", "UpperLeg", x, -0.7, 2.3),
+        row("FemurY", "UpperLeg", y, -0.9, 0.9),
+        row("FemurZ", "UpperLeg", z, -0.5, 1.2),
+        row("Tibia", "LowerLeg", (1.0, 0.0, 0.0), -0.05, 2.6),
+        row("Ankle", "Foot", (1.0, 0.0, 0.0), -0.6, 0.9),
+    ]
+
+
+ROOT = ("rootX", "rootY", "rootZ", "yaw", "roll", "pitch")
+"""Where the hips are (metres, camera frame), and how they are turned: first pitch about their
+x, then roll about z, then yaw about the camera's y. Yaw and pitch may go round and round;
+only lying exactly on the side is singular."""
+N_ROOT = len(ROOT)
+_ROWS = (*_trunk(), *_limbs("left"), *_limbs("right"))
+COORDINATES = (*ROOT, *(row.name for row in _ROWS))
+N_COORDINATES = len(COORDINATES)
+
+TURNS = np.zeros((len(SEGMENTS), 3, N_COORDINATES))
+"""(n_segments, 3, 36): rotation vector of a segment in its parent = TURNS @ coordinates."""
+for _place, _row in enumerate(_ROWS):
+    for _segment, _axis in _row.segments.items():
+        TURNS[SEGMENTS.index(_segment), :, N_ROOT + _place] = _axis
+
+LEAST = np.array([*[-np.inf] * N_ROOT, *(row.least for row in _ROWS)])
+MOST = np.array([*[np.inf] * N_ROOT, *(row.most for row in _ROWS)])
+
+
+def mirrored_coordinates() -> tuple[NDArray[np.intp], Array]:
+    """Return which coordinates to take, and with which sign, to exchange left and right.
+
+    The mirror is the camera's plane x = 0.
+    """
+    exchanged = dict(zip(SIDES, reversed(SIDES), strict=True))
+    order, signs = [], []
+    for name in COORDINATES:
+        side = next((side for side in SIDES if name.startswith(side)), None)
+        other = name if side is None else exchanged[side] + name.removeprefix(side)
+        order.append(COORDINATES.index(other))
+        middle_turns = side is None and (name[-1] in "YZ" or name in {"yaw", "roll"})
+        signs.append(-1.0 if name == "rootX" or (middle_turns and name[:4] != "root") else 1.0)
+    return np.array(order), np.array(signs)

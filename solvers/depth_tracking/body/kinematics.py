@@ -1,0 +1,160 @@
+"""Where a pose puts the segments and joints of a body, and how each coordinate moves them."""
+
+import numpy as np
+from numpy.typing import NDArray
+
+from .coordinates import N_COORDINATES, N_ROOT, TURNS
+from .model import BodyModel
+from .tables import END_SEGMENTS, PARENTS, SEGMENTS
+
+Array = NDArray[np.float64]
+
+N_SEGMENTS = len(SEGMENTS)
+_PARENT = np.array(PARENTS)
+_ALMOST_STILL = 1e-4
+_CROSS_FLAT = np.zeros((3, 9))
+"""v @ _CROSS_FLAT is the matrix [v]x, flat: [v]x @ u = v x u."""
+for _i, _j, _k in ((0, 1, 2), (1, 2, 0), (2, 0, 1)):
+    _CROSS_FLAT[_i, 3 * _k + _j], _CROSS_FLAT[_i, 3 * _j + _k] = 1.0, -1.0
+
+
+def _axis_tables() -> tuple[NDArray[np.intp], Array, Array, Array]:
+    """List every pair of a segment and a coordinate that turns it about its own joint.
+
+    Returns the segment of each such axis (n_axes,), its rotation vector (n_axes, 3), which
+    segments it moves (n_segments, n_axes), and its coordinate as (n_axes, 36) of 0 and 1.
+    """
+    segments, coordinates = np.nonzero(np.any(TURNS != 0.0, axis=1))
+    moves = np.zeros((N_SEGMENTS, len(segments)))
+    for segment in range(N_SEGMENTS):
+        above = segment
+        while above >= 0:
+            moves[segment, segments == above] = 1.0
+            above = PARENTS[above]
+    return (
+        segments,
+        TURNS[segments, :, coordinates],
+        moves,
+        np.eye(N_COORDINATES)[coordinates],
+    )
+
+
+_AXIS_SEGMENT, _AXES, _MOVES, _AXIS_COORDINATE = _axis_tables()
+
+
+def segment_frames(body: BodyModel, poses: Array) -> Array:
+    """Return where the segments of a body are.
+
+    Parameters
+    ----------
+    body : BodyModel
+    poses : shape (..., 36)
+        Coordinates in the order of `COORDINATES`; metres and radians.
+
+    Returns
+    -------
+    array, shape (..., 17, 4, 4)
+        camera_from_segment of each of the `SEGMENTS`; its translation is the joint.
+    """
+    poses = np.asarray(poses, dtype=np.float64)
+    turned = turns(np.einsum("sik,...k->...si", TURNS, poses))
+    rotations = np.empty((*poses.shape[:-1], N_SEGMENTS, 3, 3))
+    origins = np.empty((*poses.shape[:-1], N_SEGMENTS, 3))
+    rotations[..., 0, :, :] = _root_rotation(poses)
+    origins[..., 0, :] = poses[..., :3]
+    for segment, parent in enumerate(PARENTS[1:], start=1):
+        above = rotations[..., parent, :, :]
+        rotations[..., segment, :, :] = above @ turned[..., segment, :, :]
+        origins[..., segment, :] = origins[..., parent, :] + above @ body.offsets[segment]
+    frames = np.zeros((*poses.shape[:-1], N_SEGMENTS, 4, 4))
+    frames[..., :3, :3], frames[..., :3, 3] = rotations, origins
+    frames[..., 3, 3] = 1.0
+    return frames
+
+
+def joint_positions(body: BodyModel, frames: Array) -> Array:
+    """Return the `JOINTS` (..., 21, 3), metres, of segments (..., 17, 4, 4) in their places."""
+    carrier = frames[..., list(END_SEGMENTS), :, :]
+    ends = carrier[..., :3, 3] + np.einsum(
+        "...sij,sj->...si", carrier[..., :3, :3], body.offsets[N_SEGMENTS:]
+    )
+    return np.concatenate([frames[..., :3, 3], ends], axis=-2)
+
+
+def segment_twists(pose: Array, frames: Array) -> Array:
+    """Return how each coordinate moves each segment: the exact derivative of `segment_frames`.
+
+    Parameters
+    ----------
+    pose : shape (36,)
+    frames : shape (17, 4, 4)
+        The segments in this pose.
+
+    Returns
+    -------
+    array, shape (17, 6, 36)
+        Spatial twists: a coordinate that grows by a small e turns a segment by e times the
+        first three components, about an axis through the camera, and then shifts it by e times
+        the last three; a point p on it moves by e (twist[:3] x p + twist[3:]). Zero where a
+        coordinate does not move a segment.
+    """
+    rotations = frames[:, :3, :3]
+    vectors = (TURNS @ pose)[_AXIS_SEGMENT]
+    local = np.einsum("nij,nj->ni", _left_jacobians(vectors), _AXES)
+    axes = np.einsum("nij,nj->ni", rotations[_PARENT[_AXIS_SEGMENT]], local)
+    centres = frames[_AXIS_SEGMENT, :3, 3]
+    screws = np.concatenate([axes, np.cross(centres, axes)], axis=1)
+    moved = _MOVES[:, np.newaxis, :] * screws.T
+    twists: Array = moved @ _AXIS_COORDINATE
+    twists[:, :, :N_ROOT] = _root_twists(pose)
+    return twists
+
+
+def turns(vectors: Array) -> Array:
+    """Return the rotation matrices (..., 3, 3) of rotation vectors (..., 3), radians."""
+    angles, crosses = _angles_and_crosses(vectors)
+    first, second = np.sinc(angles / np.pi), 0.5 * np.sinc(0.5 * angles / np.pi) ** 2
+    return _series(first, second, crosses)
+
+
+def _left_jacobians(vectors: Array) -> Array:
+    """Return how rotation vectors' changes turn: exp(w + dw) = exp(J dw) exp(w)."""
+    angles, crosses = _angles_and_crosses(vectors)
+    squares = np.maximum(angles, _ALMOST_STILL) ** 2
+    third = np.where(
+        angles < _ALMOST_STILL, 1.0 / 6.0, (1.0 - np.sinc(angles / np.pi)) / squares
+    )
+    return _series(0.5 * np.sinc(0.5 * angles / np.pi) ** 2, third, crosses)
+
+
+def _angles_and_crosses(vectors: Array) -> tuple[Array, Array]:
+    angles = np.sqrt(np.einsum("...i,...i->...", vectors, vectors))
+    return angles, (vectors @ _CROSS_FLAT).reshape(*vectors.shape, 3)
+
+
+def _series(first: Array, second: Array, crosses: Array) -> Array:
+    series: Array = np.eye(3) + first[..., np.newaxis, np.newaxis] * crosses
+    series += second[..., np.newaxis, np.newaxis] * (crosses @ crosses)
+    return series
+
+
+def _root_rotation(poses: Array) -> Array:
+    yaw, roll, pitch = np.moveaxis(poses[..., 3:N_ROOT], -1, 0)
+    unit = np.eye(3)
+    about_y, about_z, about_x = (
+        turns(angle[..., np.newaxis] * unit[axis])
+        for angle, axis in ((yaw, 1), (roll, 2), (pitch, 0))
+    )
+    rotation: Array = about_y @ about_z @ about_x
+    return rotation
+
+
+def _root_twists(pose: Array) -> Array:
+    """Return how the root's coordinates move everything, shape (6, 6)."""
+    twists = np.zeros((6, N_ROOT))
+    twists[3:, :3] = np.eye(3)
+    about_y = turns(np.array([0.0, pose[3], 0.0]))
+    about_z = turns(np.array([0.0, 0.0, pose[4]]))
+    axes = np.array([[0.0, 1.0, 0.0], about_y[:, 2], (about_y @ about_z)[:, 0]])
+    twists[:3, 3:], twists[3:, 3:] = axes.T, np.cross(pose[:3], axes).T
+    return twists

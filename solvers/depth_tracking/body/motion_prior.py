@@ -1,0 +1,157 @@
+"""What recorded motions say about the next pose: principal components of similar moments."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import cached_property
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.spatial import cKDTree
+
+from ...archives import ArchiveLayout
+from ...errors import InvalidFileError, InvalidMotionError
+from ...npz_members import Values, integers, words
+from .coordinates import COORDINATES, N_COORDINATES, N_ROOT
+from .normal_equations import PoseEquations
+
+Array = NDArray[np.float64]
+
+LAYOUT = ArchiveLayout(
+    "motion prior",
+    1,
+    {
+        "poses": Values("f", ("poses", len(COORDINATES) - N_ROOT)),
+        "clips": integers("poses", minimum=0, maximum=2**31 - 1),
+        "trained_on": words(optional=True),
+        "coordinates": words("coordinates"),
+    },
+    holds="a damaged prior",
+    remedy="Learn it again.",
+)
+SHIPPED = Path(__file__).parent / "motions.npz"
+NEIGHBOURS, FOLLOWING, ENERGY = 50, 3, 0.95
+"""K, w and the share of the variance kept, of [LOU12] section 3.5."""
+
+
+@dataclass(frozen=True, eq=False)
+class MotionPrior:
+    """Poses of recorded motions, in order, without where the bodies were.
+
+    Attributes
+    ----------
+    poses : shape (n_poses, 30)
+        The joint coordinates of every frame.
+    clips : int, shape (n_poses,)
+        Which motion each belongs to, in ascending order.
+    trained_on : str
+        Which motions, in words.
+    """
+
+    poses: Array
+    clips: NDArray[np.intp]
+    trained_on: str = ""
+
+    @cached_property
+    def tree(self) -> Any:
+        """The poses, ready to be asked for the nearest."""
+        return cKDTree(self.poses)
+
+    def save(self, path: Path | str) -> None:
+        """Write an archive that `load_motion_prior` reads."""
+        arrays: dict[str, NDArray[Any]] = {
+            "poses": self.poses.astype(np.float16), "clips": self.clips.astype(np.int32),
+            "trained_on": np.array(self.trained_on),
+            "coordinates": np.array(COORDINATES[N_ROOT:]),
+        }  # fmt: skip
+        LAYOUT.write(path, arrays)
+
+
+def load_motion_prior(path: Path | str = SHIPPED) -> MotionPrior:
+    """Read what `MotionPrior.save` wrote; without a path, the prior that is shipped.
+
+    Raises
+    ------
+    InvalidFileError
+        The file is missing, damaged, or holds something else.
+    """
+    arrays = LAYOUT.read(path)
+    if tuple(arrays["coordinates"].tolist()) != COORDINATES[N_ROOT:]:
+        raise InvalidFileError(f"{path} holds a prior of other parts. Learn it again.")
+    poses, clips = arrays["poses"], arrays["clips"].astype(np.intp)
+    if not len(poses) or (np.diff(clips) < 0).any():
+        raise LAYOUT.damaged(path, "its clips are not one after the other")
+    return MotionPrior(poses.astype(np.float64), clips, str(arrays.get("trained_on", "")))
+
+
+def motion_prior_of(sequences: Sequence[Array], trained_on: str = "") -> MotionPrior:
+    """Return the prior of sequences of poses, each of shape (n_frames, 36).
+
+    Raises
+    ------
+    InvalidMotionError
+        There is no pose.
+    """
+    if not sum(len(sequence) for sequence in sequences):
+        raise InvalidMotionError("There is no pose to learn from; choose recorded motions.")
+    clips = np.repeat(np.arange(len(sequences)), [len(sequence) for sequence in sequences])
+    return MotionPrior(np.concatenate(sequences)[:, N_ROOT:], clips, trained_on)
+
+
+@dataclass(frozen=True, eq=False)
+class LocalPca:
+    """A plane of poses near what is likely to come.
+
+    Attributes
+    ----------
+    mean : shape (30,)
+    basis : shape (30, n_components)
+        Orthonormal.
+    """
+
+    mean: Array
+    basis: Array
+
+    def equations(self, pose: Array, weight: float) -> PoseEquations:
+        """Ask a pose (36,) to come back to the plane, eq. 3.12 and 3.13 of [LOU12]."""
+        across = np.eye(len(self.mean)) - self.basis @ self.basis.T
+        off = across @ (pose[N_ROOT:] - self.mean)
+        matrix, vector = np.zeros((N_COORDINATES, N_COORDINATES)), np.zeros(N_COORDINATES)
+        matrix[N_ROOT:, N_ROOT:], vector[N_ROOT:] = weight * across, -weight * off
+        return PoseEquations(matrix, vector, 0.5 * weight * float(off @ off))
+
+
+def local_pca(prior: MotionPrior, pose: Array) -> LocalPca:
+    """Return the plane of the poses that followed the most similar recorded ones.
+
+    The `FOLLOWING` poses after each of the `NEIGHBOURS` nearest to `pose` (36,), the pose of
+    the frame before, are analysed by principal components; as many are kept as hold `ENERGY`
+    of the variance [LOU12]_.
+
+    References
+    ----------
+    .. [LOU12] Lou (2012). Acquiring 3D full-body motion from noisy and ambiguous input. PhD
+       dissertation, Texas A&M University, section 3.5.
+    """
+    n_neighbours = min(NEIGHBOURS, len(prior.poses))
+    _, nearest = prior.tree.query(pose[N_ROOT:], k=n_neighbours)
+    chosen = followers(prior, np.atleast_1d(nearest), FOLLOWING)
+    mean = chosen.mean(axis=0)
+    values, vectors = np.linalg.eigh(np.cov(chosen.T, bias=True))
+    shares = np.cumsum(values[::-1]) / max(values.sum(), 1e-300)
+    n_components = int(np.searchsorted(shares, ENERGY)) + 1
+    return LocalPca(mean, vectors[:, ::-1][:, :n_components])
+
+
+def followers(prior: MotionPrior, places: NDArray[np.intp], ahead: int) -> Array:
+    """Return the `ahead` poses (n, 30) after each of these in its clip.
+
+    The poses themselves, if none follows or none is asked for.
+    """
+    following = (places[:, np.newaxis] + np.arange(1, ahead + 1)).ravel()
+    clips = np.repeat(prior.clips[places], ahead)
+    inside = following < len(prior.poses)
+    inside[inside] = prior.clips[following[inside]] == clips[inside]
+    found: Array = prior.poses[following[inside]] if inside.any() else prior.poses[places]
+    return found

@@ -1,0 +1,243 @@
+"""Grow one randomised tree, level by level, over all of its pixels at once."""
+
+from dataclasses import dataclass
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ...progress import Progress, unwatched
+from ...settings import Settings, setting
+from .depth_differences import PixelViews, differences
+from .parts import N_PARTS
+
+Floats = NDArray[np.float32]
+Nodes = NDArray[np.int32]
+
+CENTIMETRES = 100.0
+_ABOVE_ZERO = (15, 30, 50, 80, 120, 180, 260, 380, 550, 1000)
+EDGES = np.array([*(-edge for edge in reversed(_ABOVE_ZERO)), 0, *_ABOVE_ZERO], dtype=np.int16)
+"""Thresholds that are tried, millimetres. Beyond the outermost, one place saw nothing."""
+N_BINS = len(EDGES) + 1
+_OUTERMOST = _ABOVE_ZERO[-1] + 1
+_BIN_OF = np.searchsorted(EDGES, np.arange(-_OUTERMOST, _OUTERMOST + 1)).astype(np.int32)
+AT_ONCE = 1 << 15
+"""Pixels of which a feature is computed at a time: few enough for the processor's cache."""
+NODES_AT_ONCE = 2048
+STOPPED = -1
+
+
+@dataclass(frozen=True, kw_only=True)
+class TreeSettings(Settings):
+    """How large a tree becomes, and how hard each of its tests is looked for."""
+
+    levels: int = setting(
+        16, "Most tests on the way to a leaf; more is finer and larger", minimum=1, maximum=24
+    )
+    n_candidates: int = setting(
+        100, "Features tried at each level; more finds better ones and takes longer",
+        minimum=1, maximum=100_000,
+    )  # fmt: skip
+    least_pixels: int = setting(
+        40, "Nodes of fewer pixels are not split; more makes a smaller tree",
+        minimum=2, maximum=1_000_000,
+    )  # fmt: skip
+    reach: float = setting(
+        1.0, "How far from a pixel a feature looks", unit="m", minimum=0.05, maximum=1.27
+    )
+    first_pixels: int = setting(
+        300_000, "Pixels that the first levels look at; all are looked at further down",
+        minimum=100, maximum=1_000_000_000,
+    )  # fmt: skip
+
+
+@dataclass(frozen=True, eq=False)
+class Tree:
+    """Nodes breadth first: both children of the i-th split node are nodes 1 + 2 i and 2 + 2 i.
+
+    Attributes
+    ----------
+    splits : bool, shape (n_nodes,)
+    offsets : int8, shape (n_splits, 4), centimetres
+    thresholds : int16, shape (n_splits,), millimetres
+        A pixel whose difference is not above it goes to the first child.
+    shares : uint8, shape (n_leaves, N_PARTS)
+        How often pixels of each part reach the leaf, the sum being about 255.
+    """
+
+    splits: NDArray[np.bool_]
+    offsets: NDArray[np.int8]
+    thresholds: NDArray[np.int16]
+    shares: NDArray[np.uint8]
+
+
+class _Level(NamedTuple):
+    """What is known of the nodes of one level while features are tried."""
+
+    gain: Floats
+    feature: Nodes
+    edge: Nodes
+
+
+def grow_tree(
+    views: PixelViews,
+    parts: NDArray[np.uint8],
+    settings: TreeSettings,
+    rng: np.random.Generator,
+    *,
+    progress: Progress = unwatched,
+) -> Tree:
+    """Grow a tree that tells the parts (n,) of pixels, in any order of theirs.
+
+    At each level the same random features are tried in all nodes, and each node takes the
+    feature and threshold that gain it most information.
+    """
+    node = np.zeros(len(parts), dtype=np.int32)
+    n_nodes, splits, offsets, thresholds = 1, [], [], []
+    shares = [np.empty((0, N_PARTS), dtype=np.uint8)]
+    for level in range(settings.levels + 1):
+        counts = _counts(node, parts, n_nodes)
+        open_nodes = (counts.sum(axis=1) >= settings.least_pixels) & (
+            counts.max(axis=1) < counts.sum(axis=1)
+        )
+        if level == settings.levels:
+            open_nodes[:] = False
+        features = random_offsets(settings.n_candidates, settings.reach, rng)
+        best = _best_tests(views, parts, node, open_nodes, features, settings, level, rng)
+        split = open_nodes & (best.gain > 0.0)
+        splits.append(split)
+        offsets.append(features[best.feature[split]])
+        thresholds.append(EDGES[best.edge[split]])
+        shares.append(_told_shares(counts[~split]))
+        node = _moved_on(views, node, split, features, best)
+        n_nodes = 2 * int(split.sum())
+        progress((level + 1) / (settings.levels + 1), "Growing a tree")
+        if not n_nodes:
+            break
+    return Tree(
+        np.concatenate(splits),
+        np.concatenate(offsets),
+        np.concatenate(thresholds),
+        np.concatenate(shares),
+    )
+
+
+def random_offsets(n: int, reach: float, rng: np.random.Generator) -> NDArray[np.int8]:
+    """Return n features (n, 4), centimetres: places near and far alike, or one at the pixel."""
+    angle = rng.uniform(0.0, 2.0 * np.pi, (n, 2))
+    way = np.exp(rng.uniform(np.log(0.02), np.log(reach), (n, 2)))
+    way[rng.random(n) < 0.25, 1] = 0.0
+    places = np.stack([way * np.cos(angle), way * np.sin(angle)], axis=2).reshape(n, 4)
+    rounded: NDArray[np.int8] = np.rint(places * CENTIMETRES).astype(np.int8)
+    return rounded
+
+
+def _best_tests(
+    views: PixelViews,
+    parts: NDArray[np.uint8],
+    node: Nodes,
+    open_nodes: NDArray[np.bool_],
+    features: NDArray[np.int8],
+    settings: TreeSettings,
+    level: int,
+    rng: np.random.Generator,
+) -> _Level:
+    """Return the feature, the edge and the gain of the best test of each node."""
+    n_nodes = len(open_nodes)
+    best = _Level(
+        np.zeros(n_nodes, dtype=np.float32),
+        np.zeros(n_nodes, dtype=np.int32),
+        np.zeros(n_nodes, dtype=np.int32),
+    )
+    rank = np.where(open_nodes, np.cumsum(open_nodes) - 1, STOPPED).astype(np.int32)
+    chosen = np.flatnonzero((node >= 0) & open_nodes[node])
+    wanted = settings.first_pixels * 2 ** (level // 2)
+    if len(chosen) > wanted:
+        chosen = np.sort(rng.choice(chosen, wanted, replace=False))
+    if not len(chosen):
+        return best
+    looked, key = views.part(chosen), rank[node[chosen]] * (N_BINS * N_PARTS) + parts[chosen]
+    which = np.flatnonzero(open_nodes)
+    for number, feature in enumerate(features):
+        gain, edge = _gains(_histograms(looked, key, feature, len(which)))
+        better = which[gain > best.gain[which]]
+        told = rank[better]
+        best.gain[better], best.edge[better] = gain[told], edge[told]
+        best.feature[better] = number
+    return best
+
+
+def _histograms(
+    views: PixelViews, key: NDArray[np.int32], feature: NDArray[np.int8], n_nodes: int
+) -> NDArray[np.int64]:
+    """Count pixels by node, bin of the feature and part: (n_nodes, N_BINS, N_PARTS)."""
+    spots = np.empty(len(key), dtype=np.int32)
+    for start in range(0, len(key), AT_ONCE):
+        block = slice(start, start + AT_ONCE)
+        spots[block] = key[block] + N_PARTS * _bins(views.part(block), feature)
+    counts = np.bincount(spots, minlength=n_nodes * N_BINS * N_PARTS)
+    return counts.reshape(n_nodes, N_BINS, N_PARTS)
+
+
+def _bins(views: PixelViews, feature: NDArray[np.int8]) -> NDArray[np.int32]:
+    told = differences(views, feature.astype(np.float32) / np.float32(CENTIMETRES))
+    return np.asarray(_BIN_OF[np.clip(told, -_OUTERMOST, _OUTERMOST) + _OUTERMOST])
+
+
+def _gains(counts: NDArray[np.int64]) -> tuple[Floats, Nodes]:
+    """Return the most information that a threshold gains each node, and which edge does.
+
+    Information is in nats times pixels: what the entropies of both children are less than
+    the node's own.
+    """
+    gain = np.empty(len(counts), dtype=np.float32)
+    edge = np.empty(len(counts), dtype=np.int32)
+    for start in range(0, len(counts), NODES_AT_ONCE):
+        block = slice(start, start + NODES_AT_ONCE)
+        below = np.cumsum(counts[block], axis=1, dtype=np.float32)
+        whole = below[:, -1:]
+        order = _order(below[:, :-1]) + _order(whole - below[:, :-1]) - _order(whole)
+        edge[block] = order.argmax(axis=1)
+        gain[block] = order.max(axis=1)
+    return gain, edge
+
+
+def _order(counts: Floats) -> Floats:
+    """Return minus the entropy times the number of pixels, over the last axis."""
+    each = counts * np.log(np.maximum(counts, 1.0))
+    total = counts.sum(axis=-1)
+    return np.asarray(each.sum(axis=-1) - total * np.log(np.maximum(total, 1.0)))
+
+
+def _counts(node: Nodes, parts: NDArray[np.uint8], n_nodes: int) -> NDArray[np.int64]:
+    """Count pixels by node and part; those that have reached a leaf are left out."""
+    going = node >= 0
+    key = node[going] * N_PARTS + parts[going]
+    return np.bincount(key, minlength=n_nodes * N_PARTS).reshape(n_nodes, N_PARTS)
+
+
+def _told_shares(counts: NDArray[np.int64]) -> NDArray[np.uint8]:
+    total = np.maximum(counts.sum(axis=1, keepdims=True), 1)
+    shares: NDArray[np.uint8] = np.rint(255.0 * counts / total).astype(np.uint8)
+    return shares
+
+
+def _moved_on(
+    views: PixelViews,
+    node: Nodes,
+    split: NDArray[np.bool_],
+    features: NDArray[np.int8],
+    best: _Level,
+) -> Nodes:
+    """Return the node of each pixel on the next level, or STOPPED in a leaf."""
+    moved = np.full(len(node), STOPPED, dtype=np.int32)
+    first_child = (2 * (np.cumsum(split) - 1)).astype(np.int32)
+    metres = features.astype(np.float32).T / np.float32(CENTIMETRES)
+    for start in range(0, len(node), AT_ONCE):
+        block = np.arange(start, min(start + AT_ONCE, len(node)))
+        block = block[node[block] >= 0]
+        block = block[split[node[block]]]
+        at = node[block]
+        told = differences(views.part(block), metres[:, best.feature[at]])
+        moved[block] = first_child[at] + (told > EDGES[best.edge[at]])
+    return moved

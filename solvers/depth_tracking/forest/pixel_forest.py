@@ -1,0 +1,211 @@
+"""A forest of randomised trees that tells which part of a body each depth pixel sees."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import cached_property
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ...archives import ArchiveLayout
+from ...depth_scene import Camera, DepthPicture
+from ...errors import InvalidMotionError
+from ...npz_members import Values, integers, words
+from .depth_differences import differences, pixel_views, with_margin
+from .grow_tree import CENTIMETRES, Tree
+from .parts import N_PARTS, PARTS
+
+FARTHEST = 2**15 - 1
+"""Centimetres or millimetres that a node may compare: those of 16-bit numbers."""
+LAYOUT = ArchiveLayout(
+    "pixel forest",
+    1,
+    {
+        "parts": words("parts"),
+        "n_nodes": integers("trees", minimum=1),
+        "splits": Values("u", ("bytes",), maximum=255),
+        "offsets": integers("splits", 4, minimum=-FARTHEST, maximum=FARTHEST),
+        "thresholds": integers("splits", minimum=-FARTHEST, maximum=FARTHEST),
+        "shares": integers("leaves", N_PARTS, minimum=0, maximum=255),
+        "trained_on": words(),
+    },
+    holds="a damaged forest",
+    remedy="Train it again.",
+)
+SHIPPED = Path(__file__).parent / "forest.npz"
+
+
+@dataclass(frozen=True, eq=False)
+class PixelForest:
+    """Trees whose leaves tell how likely each of the `PARTS` is.
+
+    Attributes
+    ----------
+    trees : tuple of Tree
+    trained_on : str
+        In words.
+    """
+
+    trees: tuple[Tree, ...]
+    trained_on: str = ""
+
+    def __post_init__(self) -> None:
+        if not self.trees:
+            raise InvalidMotionError("A forest needs at least one tree.")
+
+    def save(self, path: Path | str) -> None:
+        """Write an archive that `load_pixel_forest` reads."""
+        arrays: dict[str, NDArray[Any]] = {
+            "parts": np.array(PARTS),
+            "n_nodes": np.array([len(tree.splits) for tree in self.trees]),
+            "splits": np.packbits(np.concatenate([tree.splits for tree in self.trees])),
+            "trained_on": np.array(self.trained_on),
+        }
+        for name in ("offsets", "thresholds", "shares"):
+            arrays[name] = np.concatenate([getattr(tree, name) for tree in self.trees])
+        LAYOUT.write(path, arrays)
+
+    @cached_property
+    def _nodes(self) -> "_Nodes":
+        return _laid_out(self.trees)
+
+
+class _Nodes:
+    """All nodes of all trees behind each other."""
+
+    def __init__(
+        self,
+        roots: NDArray[np.int32],
+        offsets: NDArray[np.float32],
+        thresholds: NDArray[np.int32],
+        children: NDArray[np.int32],
+        shares: NDArray[np.float32],
+    ) -> None:
+        self.roots, self.offsets, self.thresholds = roots, offsets, thresholds
+        self.children, self.shares = children, shares
+
+
+@dataclass(frozen=True, eq=False)
+class PixelParts:
+    """Which part each pixel of a body sees.
+
+    Attributes
+    ----------
+    rows, columns : int arrays, shape (n,)
+        Pixels that see anything.
+    shares : float32, shape (n, N_PARTS)
+        How likely each of the `PARTS` is; sums to one.
+    """
+
+    rows: NDArray[np.intp]
+    columns: NDArray[np.intp]
+    shares: NDArray[np.float32]
+
+    @cached_property
+    def labels(self) -> NDArray[np.intp]:
+        """The likeliest part of each pixel, as its place in `PARTS`."""
+        return np.asarray(self.shares.argmax(axis=1))
+
+
+def classify_pixels(depth: DepthPicture, camera: Camera, forest: PixelForest) -> PixelParts:
+    """Tell the part that each pixel sees which sees anything.
+
+    Parameters
+    ----------
+    depth : float32, shape (height, width), metres
+        Of nothing but the body; 0: no reading.
+    camera : Camera
+    forest : PixelForest
+        Its trees' answers are averaged: Wei, Zhang, Chai 2012, eq. 13.
+    """
+    rows, columns = np.nonzero(depth)
+    pictures = with_margin(depth)[np.newaxis]
+    nodes = forest._nodes
+    n_trees = len(forest.trees)
+    views = pixel_views(pictures, np.zeros(len(rows), dtype=np.intp), rows, columns, camera)
+    views = views.part(np.tile(np.arange(len(rows)), n_trees))
+    at = np.repeat(nodes.roots, len(rows))
+    going = np.arange(len(at))
+    while len(going):
+        here = at[going]
+        told = differences(views, nodes.offsets[:, here])
+        at[going] = here = nodes.children[here] + (told > nodes.thresholds[here])
+        on = np.flatnonzero(nodes.children[here] >= 0)
+        if len(on) < len(going):
+            going, views = going[on], views.part(on)
+    leaves = (-1 - nodes.children[at]).reshape(n_trees, len(rows))
+    shares = nodes.shares[leaves[0]]
+    for others in leaves[1:]:
+        shares += nodes.shares[others]
+    return PixelParts(rows, columns, shares / np.float32(n_trees))
+
+
+def load_pixel_forest(path: Path | str = SHIPPED) -> PixelForest:
+    """Read what `PixelForest.save` wrote; without a path, the forest that is shipped.
+
+    Raises
+    ------
+    InvalidFileError
+        The file is missing, damaged, or holds something else.
+    """
+    arrays = LAYOUT.read(path)
+    arrays["splits"] = arrays["splits"].astype(np.uint8)
+    if fault := _fault(arrays):
+        raise LAYOUT.damaged(path, fault)
+    ends = np.cumsum(arrays["n_nodes"])
+    splits = np.unpackbits(arrays["splits"], count=int(ends[-1])).astype(np.bool_)
+    split_ends = np.cumsum(splits)[ends - 1]
+    leaf_ends = ends - split_ends
+    trees = (
+        np.split(splits, ends[:-1]),
+        np.split(arrays["offsets"], split_ends[:-1]),
+        np.split(arrays["thresholds"], split_ends[:-1]),
+        np.split(arrays["shares"], leaf_ends[:-1]),
+    )
+    return PixelForest(
+        tuple(Tree(*tree) for tree in zip(*trees, strict=True)), str(arrays["trained_on"])
+    )
+
+
+def _fault(arrays: dict[str, NDArray[Any]]) -> str:
+    """Return what keeps a forest from a file from being used, or nothing."""
+    if tuple(arrays["parts"].tolist()) != PARTS:
+        return "it tells other parts"
+    n_nodes = arrays["n_nodes"]
+    total = sum(n_nodes.tolist())  # Of Python's integers: NumPy's would wrap around.
+    if not len(n_nodes) or len(arrays["splits"]) != -(-total // 8):
+        return "its nodes do not fit"
+    splits = np.unpackbits(arrays["splits"], count=total)
+    n_splits = [int(part.sum()) for part in np.split(splits, np.cumsum(n_nodes)[:-1])]
+    if (n_nodes != 2 * np.array(n_splits) + 1).any():
+        return "its nodes do not fit"
+    sizes = {
+        "offsets": sum(n_splits), "thresholds": sum(n_splits), "shares": total - sum(n_splits),
+    }  # fmt: skip
+    if wrong := [name for name, size in sizes.items() if len(arrays[name]) != size]:
+        return f"the shapes do not fit, first that of {wrong[0]}"
+    return "" if (arrays["shares"].sum(axis=1) > 0).all() else "a leaf tells nothing"
+
+
+def _laid_out(trees: Sequence[Tree]) -> _Nodes:
+    """Put the nodes of all trees behind each other, each with the place of its first child.
+
+    A leaf's child is minus one less its place among the leaves.
+    """
+    starts = np.cumsum([0, *(len(tree.splits) for tree in trees)])
+    leaf_starts = np.cumsum([0, *(len(tree.shares) for tree in trees)])
+    offsets = np.zeros((4, starts[-1]), dtype=np.float32)
+    thresholds = np.zeros(starts[-1], dtype=np.int32)
+    children = np.empty(starts[-1], dtype=np.int32)
+    for tree, start, leaf_start in zip(trees, starts, leaf_starts, strict=False):
+        split = start + np.flatnonzero(tree.splits)
+        leaf = start + np.flatnonzero(~tree.splits)
+        offsets[:, split] = tree.offsets.T / CENTIMETRES
+        thresholds[split] = tree.thresholds
+        children[split] = start + 1 + 2 * np.arange(len(split))
+        children[leaf] = -1 - (leaf_start + np.arange(len(leaf)))
+    shares = np.concatenate([tree.shares for tree in trees]).astype(np.float32)
+    shares /= shares.sum(axis=1, keepdims=True)
+    return _Nodes(starts[:-1].astype(np.int32), offsets, thresholds, children, shares)

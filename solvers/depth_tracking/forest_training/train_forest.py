@@ -1,0 +1,137 @@
+"""Learn to tell the parts of bodies in depth pictures, from motions and skinned bodies."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ...errors import InvalidMotionError
+from ...motion import Motion
+from ...progress import Progress, unwatched, within
+from ...settings import setting
+from ..forest import (
+    N_PARTS,
+    PixelForest,
+    PixelViews,
+    TreeSettings,
+    grow_tree,
+    pixel_views,
+    with_margin,
+)
+from .render_mesh import NOTHING, RenderedMesh
+from .skinned_body import SkinnedBody
+from .training_images import (
+    CAMERA,
+    SHAPE_LASTS,
+    PictureSource,
+    TrainingPicturesSettings,
+    picture_source,
+)
+
+
+@dataclass(frozen=True, kw_only=True)
+class PixelForestSettings(TrainingPicturesSettings, TreeSettings):
+    """How large the forest is, and what it learns from."""
+
+    n_trees: int = setting(3, "Trees; more is surer and slower", minimum=1, maximum=100)
+    n_pixels: int = setting(
+        120, "Pixels of each picture that a tree learns from", minimum=1, maximum=20_000
+    )
+    seed: int = setting(0, "Another seed draws other pictures and tests", minimum=0)
+
+
+class LearnedPixels(NamedTuple):
+    """Pictures, and every pixel of them that sees a body."""
+
+    pictures: NDArray[np.uint16]
+    """Of `with_margin`, (n_pictures, height + 2, width + 2)."""
+    labels: NDArray[np.uint8]
+    """(n_pictures, height, width)."""
+
+
+def train_pixel_forest(
+    poses: Sequence[Motion],
+    bodies: Sequence[SkinnedBody],
+    settings: PixelForestSettings = PixelForestSettings(),
+    *,
+    trained_on: str = "",
+    progress: Progress = unwatched,
+) -> PixelForest:
+    """Learn which part of a body a depth pixel sees.
+
+    The poses of the clips are thinned out and mixed, the bodies pose and are seen from all
+    around, with and without the noise of a sensor; then randomised trees over differences of
+    depth are grown [1]_.
+
+    Parameters
+    ----------
+    poses : sequence of Motion
+        Any humanoids.
+    bodies : sequence of SkinnedBody
+        Of the same joints.
+    settings : PixelForestSettings
+    trained_on : str
+        What the poses and bodies are, in words; it is kept in the forest.
+    progress : Progress
+
+    Raises
+    ------
+    InvalidMotionError
+        There are no poses, no bodies, or bodies of different joints.
+
+    References
+    ----------
+    .. [1] Wei, Zhang, Chai (2012). Accurate realtime full-body motion capture using a single
+       depth camera. ACM Transactions on Graphics 31(6), section 4.1.
+       doi:10.1145/2366145.2366207
+    """
+    source = picture_source(poses, bodies, settings, settings.seed)
+    seen = draw_pictures(source, range(-(-settings.n_pictures // SHAPE_LASTS)))
+    progress(0.2, "Growing trees")
+    grown = []
+    for number in range(settings.n_trees):
+        rng = np.random.default_rng((settings.seed, number, 1))
+        views, parts = draw_pixels(seen, settings.n_pixels, rng)
+        start, stop = 0.2 + 0.8 * np.array([number, number + 1]) / settings.n_trees
+        grown.append(
+            grow_tree(views, parts, settings, rng, progress=within(progress, start, stop))
+        )
+    return PixelForest(tuple(grown), trained_on)
+
+
+def draw_pictures(source: PictureSource, blocks: Sequence[int]) -> LearnedPixels:
+    """Draw some blocks of pictures."""
+    drawn: list[RenderedMesh] = [one for block in blocks for one in source.pictures(block)]
+    return LearnedPixels(
+        np.stack([with_margin(picture.depth) for picture in drawn]),
+        np.stack([picture.labels for picture in drawn]),
+    )
+
+
+def draw_pixels(
+    seen: LearnedPixels, n_pixels: int, rng: np.random.Generator
+) -> tuple[PixelViews, NDArray[np.uint8]]:
+    """Draw pixels from each picture, rather more of small parts, with the parts they see.
+
+    A part that fills k pixels is drawn from as often as the square root of k tells.
+    """
+    places = []
+    area = seen.labels.shape[1] * seen.labels.shape[2]
+    for number, labels in enumerate(seen.labels.reshape(len(seen.labels), -1)):
+        body = np.flatnonzero(labels != NOTHING)
+        if not len(body):
+            continue
+        sizes = np.bincount(labels[body], minlength=N_PARTS)
+        # Exponential races: the n first are a weighted draw without replacement.
+        races = rng.standard_exponential(len(body)) * np.sqrt(sizes[labels[body]])
+        first = min(n_pixels, len(body)) - 1
+        places.append(number * area + body[np.argpartition(races, first)[: first + 1]])
+    if not places:
+        raise InvalidMotionError("No picture to learn from shows a body.")
+    spots = np.concatenate(places)
+    number, rest = np.divmod(spots, area)
+    rows, columns = np.divmod(rest, seen.labels.shape[2])
+    views = pixel_views(seen.pictures, number, rows, columns, CAMERA)
+    return views, seen.labels.reshape(-1)[spots]

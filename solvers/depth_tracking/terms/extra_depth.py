@@ -1,0 +1,66 @@
+"""The extra depth term: pixels that cannot be compared pull on the closest points instead."""
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.spatial import cKDTree
+
+from ..body import NO_ROWS, SurfaceRows, toward
+from .hypothesis import Hypothesis
+from .observation import Observation
+from .pixel_groups import PixelGroups
+
+Array = NDArray[np.float64]
+Integers = NDArray[np.intp]
+
+
+def extra_depth_term(
+    hypothesis: Hypothesis,
+    observation: Observation,
+    groups: PixelGroups,
+    weight: float,
+    limit: float,
+) -> SurfaceRows:
+    """Return the rows of the extra depth term of [WZC12]_, eq. 5 and 17: four types of pairs.
+
+    Visible points off the actor (type 1) or in front of what was observed (type 3) are pushed
+    to the closest observed point; observed points that the body does not cover (type 2) or that
+    lie in front of it (type 4) pull the closest visible point. One-to-one: of the pairs of a
+    type that share a point, the shortest stays. Pairs whose depths differ by more than `limit`
+    are left out.
+
+    Parameters
+    ----------
+    hypothesis : Hypothesis
+    observation : Observation
+    groups : PixelGroups
+    weight : float, per square metre
+        1 / sigma^2 of one pair.
+    limit : float, metres
+    """
+    if not (len(hypothesis.points) and len(observation.points)):
+        return NO_ROWS
+    pushed = np.concatenate([groups.off_actor, groups.too_near])
+    behind = hypothesis.picture.pixels[groups.too_far]
+    pulling = observation.index_picture[np.concatenate([groups.uncovered, behind])]
+    drawn = cKDTree(hypothesis.points, balanced_tree=False, compact_nodes=False)
+    pushes = _one_to_one(pushed, *observation.tree.query(hypothesis.points[pushed]))
+    pulls = _one_to_one(pulling, *drawn.query(observation.points[pulling]))
+    moved = np.concatenate([pushes[0], pulls[1]])
+    targets = observation.points[np.concatenate([pushes[1], pulls[0]])]
+    near = np.abs(hypothesis.points[moved, 2] - targets[:, 2]) <= limit
+    moved, targets = moved[near], targets[near]
+    return toward(
+        hypothesis.points[moved], targets, np.full(len(moved), weight),
+        hypothesis.picture.capsules[moved],
+    )  # fmt: skip
+
+
+def _one_to_one(
+    asking: Integers, distances: Array, found: Integers
+) -> tuple[Integers, Integers]:
+    """Keep the shortest of the pairs that share the point found."""
+    order = np.lexsort((distances, found))
+    first = np.ones(len(order), dtype=bool)
+    first[1:] = found[order][1:] != found[order][:-1]
+    kept = order[first]
+    return asking[kept], found[kept]

@@ -1,0 +1,123 @@
+"""A body in a pose as the camera would see it: every visible point, and its normal."""
+
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ...depth_scene import Camera
+from ..body import (
+    CAPSULE_SEGMENTS,
+    BodyModel,
+    BodyPicture,
+    cast_rays,
+    segment_frames,
+    segment_twists,
+)
+from .observation import rays_of
+
+Array = NDArray[np.float64]
+Integers = NDArray[np.intp]
+
+
+@dataclass(frozen=True, eq=False)
+class Hypothesis:
+    """A pose under test.
+
+    Attributes
+    ----------
+    body : BodyModel
+    pose : shape (36,)
+    frames : shape (17, 4, 4)
+        Segments in this pose.
+    picture : BodyPicture
+    """
+
+    body: BodyModel
+    pose: Array
+    frames: Array
+    picture: BodyPicture
+
+    @cached_property
+    def segments(self) -> Integers:
+        """Segment of each visible point, shape (n,)."""
+        return self.picture.segments
+
+    @cached_property
+    def rays(self) -> Array:
+        """Where the pixels of visible points look, one metre forward, shape (n, 3)."""
+        return rays_of(self.picture.camera, self.picture.pixels)
+
+    @cached_property
+    def points(self) -> Array:
+        """Visible points of the surface, shape (n, 3), metres."""
+        return self.rays * self.picture.depths[:, np.newaxis]
+
+    @cached_property
+    def normals(self) -> Array:
+        """Outward unit normals at the visible points, shape (n, 3)."""
+        return capsule_normals(self.body, self.frames, self.points, self.picture.capsules)
+
+    @cached_property
+    def twists(self) -> Array:
+        """How each coordinate moves each segment, shape (17, 6, 36)."""
+        return segment_twists(self.pose, self.frames)
+
+    @cached_property
+    def index_picture(self) -> Integers:
+        """Which visible point each pixel sees, -1 for none, shape (height * width,)."""
+        camera = self.picture.camera
+        found = np.full(camera.width * camera.height, -1)
+        found[self.picture.pixels] = np.arange(len(self.picture.pixels))
+        return found
+
+
+def imagine(body: BodyModel, pose: Array, camera: Camera) -> Hypothesis:
+    """Return what `camera` would see of `body` in `pose` (36,)."""
+    frames = segment_frames(body, pose)
+    return Hypothesis(body, pose, frames, cast_rays(body, frames, camera))
+
+
+def capsule_normals(body: BodyModel, frames: Array, points: Array, capsules: Integers) -> Array:
+    """Return outward unit normals (n, 3) at points (n, 3) on these capsules (n,)."""
+    scales = 1.0 / body.radii[:, [0, 1, 1]]
+    placed = frames[CAPSULE_SEGMENTS]
+    # In frames that are stretched to radius 1, out is straight away from the axis.
+    stretch = scales[:, :, np.newaxis] * placed[:, :3, :3].swapaxes(1, 2)
+    starts, stops = (body.capsule_ends * scales[:, np.newaxis]).swapaxes(0, 1)
+    axes = stops - starts
+    starts = starts + np.einsum("cij,cj->ci", stretch, placed[:, :3, 3])
+    slopes = axes / (axes**2).sum(axis=1)[:, np.newaxis]
+    stretch, axes = stretch[capsules], axes[capsules]
+    out = np.einsum("nij,nj->ni", stretch, points) - starts[capsules]
+    along = np.einsum("ni,ni->n", out, slopes[capsules])
+    out -= np.clip(along, 0.0, 1.0)[:, np.newaxis] * axes
+    normals: Array = np.einsum("nji,nj->ni", stretch, out)
+    normals /= np.sqrt(np.einsum("ni,ni->n", normals, normals) + 1e-24)[:, np.newaxis]
+    return normals
+
+
+def capsule_offsets(
+    body: BodyModel, frames: Array, points: Array, capsules: Integers
+) -> tuple[Array, Array]:
+    """Return how far points are outside their capsules, and which way is out.
+
+    Returns
+    -------
+    (n,) array
+        Distance from the axis in units of the radius there: 1 on the surface.
+    (n, 3) array
+        Gradient of it in the camera's frame, per metre.
+    """
+    frame = frames[CAPSULE_SEGMENTS[capsules]]
+    scales = 1.0 / body.radii[capsules][:, [0, 1, 1]]
+    local = np.einsum("nji,nj->ni", frame[:, :3, :3], points - frame[:, :3, 3])
+    ends = body.capsule_ends[capsules] * scales[:, np.newaxis]
+    axis = ends[:, 1] - ends[:, 0]
+    from_start = local * scales - ends[:, 0]
+    along = np.einsum("ni,ni->n", from_start, axis) / np.einsum("ni,ni->n", axis, axis)
+    out = from_start - np.clip(along, 0.0, 1.0)[:, np.newaxis] * axis
+    size = np.sqrt(np.einsum("ni,ni->n", out, out))
+    slope = scales * out / np.maximum(size, 1e-12)[:, np.newaxis]
+    return size, np.einsum("nij,nj->ni", frame[:, :3, :3], slope)

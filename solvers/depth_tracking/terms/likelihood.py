@@ -1,0 +1,65 @@
+"""Everything that a picture of depth asks of a pose: the terms of a tracker, by weight."""
+
+from collections.abc import Callable
+
+from ..body import SurfaceRows, joined
+from .closest_surface import closest_surface_term
+from .depth_image import depth_image_term
+from .edges import edge_term
+from .extra_depth import extra_depth_term
+from .free_space import off_actor_term, too_near_term
+from .hypothesis import Hypothesis
+from .observation import Observation
+from .overlap import apart_term
+from .pixel_groups import group_pixels
+from .silhouette import silhouette_term
+from .surface import Memory, surface_term
+from .tracker_settings import TrackerSettings
+
+EVERY = 2
+"""Every so many observed points are asked for their closest surface, and weigh as much more."""
+USUAL_AREA = 4e-4
+"""Square metres that a pixel sees for which the weights are given."""
+
+
+def likelihood_rows(
+    hypothesis: Hypothesis,
+    observation: Observation,
+    settings: TrackerSettings,
+    memory: Memory | None = None,
+) -> SurfaceRows:
+    """Return the rows of every term that has a weight.
+
+    Parameters
+    ----------
+    hypothesis : Hypothesis
+    observation : Observation
+    settings : TrackerSettings
+    memory : Memory, optional
+        The frame before, for the colours of `surface_term`.
+    """
+    groups = group_pixels(hypothesis, observation, settings.limit)
+    area = pixel_area(observation) / USUAL_AREA
+    scale, limit = settings.robust_scale, settings.limit
+    both = (hypothesis, observation)
+    terms: tuple[tuple[float, Callable[[float], SurfaceRows]], ...] = (
+        (settings.depth_weight, lambda w: depth_image_term(*both, groups, w)),
+        (settings.extra_weight, lambda w: extra_depth_term(*both, groups, w, limit)),
+        (settings.silhouette_weight, lambda w: silhouette_term(*both, w)),
+        (settings.closest_weight,
+         lambda w: closest_surface_term(
+             hypothesis, observation.points[::EVERY], EVERY * w, scale)),
+        (settings.surface_weight, lambda w: surface_term(*both, memory, w)),
+        (settings.edge_weight, lambda w: edge_term(*both, w)),
+        (settings.off_actor_weight, lambda w: off_actor_term(*both, groups, w, scale)),
+        (settings.too_near_weight, lambda w: too_near_term(*both, groups, w, scale)),
+    )  # fmt: skip
+    rows = [term(area * weight) for weight, term in terms if weight > 0.0]
+    if settings.apart_weight > 0.0:
+        rows.append(apart_term(hypothesis, settings.apart_weight))
+    return joined(rows)
+
+
+def pixel_area(observation: Observation) -> float:
+    """Return how much surface a pixel sees where the actor is, square metres."""
+    return observation.pixel_area

@@ -1,0 +1,152 @@
+"""Read which joint plays which humanoid role from the joints' names."""
+
+import re
+from collections import Counter
+from collections.abc import Mapping, Sequence
+from itertools import accumulate
+from operator import and_, eq
+
+from .tables import CENTRAL_ROLES, COLUMNS, FINGERS, TABLES
+
+SIDES = {"left": "left", "right": "right", "l": "left", "r": "right"}
+OTHER = {"left": "right", "right": "left", "l": "r", "r": "l"}
+
+SHARED = 0.75
+"""A first word that so many joints have is the rig's prefix ("mixamorig", "Bip01")."""
+
+WORD = re.compile(r"[A-Z]+(?![a-z])|[A-Z]?[a-z]+|\d+")
+FINGER = re.compile(
+    r"(thumb|index|mid(?:dle)?|ring|pinky|little).*?"
+    r"(0?[123]|metacarpal|proximal|intermediate|medial|distal)$"
+)
+SPELLINGS = {"mid": "Middle", "pinky": "Little"}
+PARTS = {
+    "1": 0, "2": 1, "3": 2, "metacarpal": 0, "proximal": 0, "intermediate": 1, "medial": 1,
+    "distal": 2,
+}  # fmt: skip
+
+Key = tuple[str, str]
+"""Side ("left", "right" or "") and the name without it, in small letters and digits."""
+
+
+def roles_by_name(names: Sequence[str]) -> dict[str, str]:
+    """Return joint names by humanoid role, from the table that finds most roles.
+
+    Parameters
+    ----------
+    names : sequence of str
+        The joints of one skeleton. Earlier ones win where two names say the same.
+
+    Returns
+    -------
+    dict of role to joint name; empty where no table knows any name.
+    """
+    keys = _keys(names)
+    found = max((_looked_up(row, keys) for row in TABLES.values()), key=len)
+    return found | _fingers(names, found)
+
+
+def _looked_up(row: Sequence[str], keys: dict[Key, str]) -> dict[str, str]:
+    """Return the joints that one table finds, by role."""
+    found: dict[str, str] = {}
+    for column, spellings in zip(COLUMNS, row, strict=True):
+        for side in ("",) if column in CENTRAL_ROLES else ("left", "right"):
+            for spelling in spellings.split():
+                joint = keys.get((side, "".join(_words(spelling))))
+                if joint is not None and joint not in found.values():
+                    found[side + column] = joint
+                    break
+    return found
+
+
+def _keys(names: Sequence[str]) -> dict[Key, str]:
+    """Return each joint by side and bare name, with and without the rig's prefix."""
+    bare = _bare_names(names)
+    split = [_side_and_words(name, bare) for name in names]
+    keys: dict[Key, str] = {}
+    for name, (side, words) in zip(names, split, strict=True):
+        keys.setdefault((side, "".join(words)), name)
+    while prefix := _shared_first_word([words for _, words in split]):
+        split = [(side, words[words[:1] == [prefix] :]) for side, words in split]
+        for name, (side, words) in zip(names, split, strict=True):
+            keys.setdefault((side, "".join(words)), name)
+    return keys
+
+
+def _shared_first_word(split: Sequence[Sequence[str]]) -> str:
+    counts = Counter(words[0] for words in split if len(words) > 1)
+    word, count = counts.most_common(1)[0] if counts else ("", 0)
+    return word if count >= max(3, SHARED * len(split)) else ""
+
+
+def _side_and_words(name: str, all_names: frozenset[str]) -> tuple[str, list[str]]:
+    """Split "mixamorig:LeftUpLeg" into "left" and its other words.
+
+    A lone letter, or one glued to the name as in "lfemur", is a side only where the other side
+    has the same joint: "L5" is a vertebra and "lowerback" no left "owerback".
+    """
+    words = _words(re.split(r"[:|]", name)[-1])
+    for place, word in enumerate(words):
+        if word in SIDES and (len(word) > 1 or _mirrored(words, place) in all_names):
+            return SIDES[word], words[:place] + words[place + 1 :]
+    for place in {0, len(words) - 1} if words else ():
+        word = words[place]
+        for side in SIDES:
+            rest = word.removeprefix(side) if place == 0 else word
+            rest = word.removesuffix(side) if rest == word and len(side) > 1 else rest
+            other = [*words[:place], _swapped(word, side, rest), *words[place + 1 :]]
+            if rest not in {word, ""} and "".join(other) in all_names:
+                return SIDES[side], [*words[:place], rest, *words[place + 1 :]]
+    return "", words
+
+
+def _mirrored(words: list[str], place: int) -> str:
+    return "".join([*words[:place], OTHER[words[place]], *words[place + 1 :]])
+
+
+def _swapped(word: str, side: str, rest: str) -> str:
+    return OTHER[side] + rest if word.startswith(side) else rest + OTHER[side]
+
+
+def _words(name: str) -> list[str]:
+    """Split at separators, digits and humps: "J_Bip_L_UpperArm" is j, bip, l, upper, arm."""
+    return [word.lower() for word in WORD.findall(name)]
+
+
+def _bare_names(names: Sequence[str]) -> frozenset[str]:
+    return frozenset("".join(_words(re.split(r"[:|]", name)[-1])) for name in names)
+
+
+def _fingers(names: Sequence[str], found: Mapping[str, str]) -> dict[str, str]:
+    """Return the finger joints by role; a finger of one joint only (CMU) has no role.
+
+    Where several joints claim one role (DEF- and ORG- bones), the one that is named most like
+    the hand has it.
+    """
+    claims: dict[tuple[str, str], dict[int, list[str]]] = {}
+    bare = _bare_names(names)
+    for name in names:
+        side, words = _side_and_words(name, bare)
+        match = FINGER.search("".join(words))
+        if side and match and not name.endswith("_end"):
+            finger = SPELLINGS.get(match[1], match[1].capitalize())
+            part = PARTS[match[2].lstrip("0")] + (finger == "Thumb" and match[2] == "proximal")
+            claims.setdefault((side, finger), {}).setdefault(part, []).append(name)
+    return {
+        side + finger + _part(finger, part): _most_like(found.get(f"{side}Hand", ""), alike)
+        for (side, finger), joints in claims.items()
+        if len(joints) > 1
+        for part, alike in sorted(joints.items())
+    }
+
+
+def _most_like(hand: str, names: Sequence[str]) -> str:
+    """Return the name that agrees with the hand's longest from its beginning."""
+    return max(names, key=lambda name: sum(accumulate(map(eq, hand, name), and_)))
+
+
+def _part(finger: str, part: int) -> str:
+    middle = (
+        ("Metacarpal", "Proximal") if finger == FINGERS[0] else ("Proximal", "Intermediate")
+    )
+    return (*middle, "Distal")[part]

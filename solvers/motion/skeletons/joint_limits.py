@@ -1,0 +1,123 @@
+"""How far each joint may turn."""
+
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ...archives import ArchiveLayout
+from ...errors import InvalidMotionError
+from ...npz_members import flags, numbers, words
+
+Array = NDArray[np.float64]
+
+LAYOUT = ArchiveLayout(
+    "joint limits",
+    1,
+    {
+        "names": words("limits"),
+        "by_role": flags("limits"),
+        "left": numbers("limits", 4),
+        "right": numbers("limits", 4),
+        "orders": words("limits"),
+        "lower": numbers("limits", 3, finite=False),
+        "upper": numbers("limits", 3, finite=False),
+    },
+    holds="damaged joint limits",
+    remedy="Learn them again.",
+)
+ROTATION_VECTOR = ""
+EULER_ORDERS = ("XYZ", "XZY", "YXZ", "YZX", "ZXY", "ZYX")
+
+
+@dataclass(frozen=True, eq=False)
+class JointLimits:
+    """A box of allowed angles per joint.
+
+    A local rotation L is seen as left^-1 L right, and its three coordinates must lie between
+    `lower` and `upper`. A limit constraint of Blender speaks of turns about the bone's own rest
+    axes: left and right are both those axes, in the world. Learned limits are centred on the
+    mean rotation and aligned with the directions in which the joint moves most.
+
+    Attributes
+    ----------
+    names : tuple of str
+        Joints; or humanoid roles, for which see `by_role`.
+    by_role : bool array, shape (n_limits,)
+        True: the name is a humanoid role, and the rotation is that of the canonical T-pose, so
+        that the limit holds for any rig. False: it is a joint's.
+    left, right : shape (n_limits, 4), unit quaternions w x y z
+    orders : tuple of str
+        Per limit: the order of `quaternion_from_euler` ("ZYX" for Blender's "XYZ"), whose
+        angles are limited in the order in which it lists them; or "" for the rotation vector.
+    lower, upper : shape (n_limits, 3), radians; -inf and inf where an axis is free
+    """
+
+    names: tuple[str, ...]
+    by_role: NDArray[np.bool_]
+    left: Array
+    right: Array
+    orders: tuple[str, ...]
+    lower: Array
+    upper: Array
+
+    def __post_init__(self) -> None:
+        n_limits = len(self.names)
+        for name, width in (("left", 4), ("right", 4), ("lower", 3), ("upper", 3)):
+            array = np.array(getattr(self, name), dtype=np.float64).reshape(-1, width)
+            object.__setattr__(self, name, array)
+        object.__setattr__(self, "by_role", np.array(self.by_role, dtype=np.bool_))
+        lengths = {
+            len(getattr(self, name))
+            for name in ("by_role", "left", "right", "orders", "lower", "upper")
+        }
+        if lengths != {n_limits}:
+            raise InvalidMotionError(
+                f"{n_limits} joint limits need as many of every attribute."
+            )
+        wrong = [
+            order for order in self.orders if order not in (ROTATION_VECTOR, *EULER_ORDERS)
+        ]
+        if wrong:
+            raise InvalidMotionError(f"There are no such Euler orders: {', '.join(wrong)}.")
+        empty = ~(self.lower <= self.upper).all(axis=1)
+        if empty.any():
+            names = [name for name, none in zip(self.names, empty, strict=True) if none]
+            raise InvalidMotionError(
+                f"The lower limit must not exceed the upper one: {', '.join(names)}."
+            )
+
+    def save(self, path: Path | str) -> None:
+        """Write to an archive that `load_joint_limits` reads."""
+        arrays = {
+            name: getattr(self, name) for name in ("by_role", "left", "right", "lower", "upper")
+        }
+        text = {
+            "names": np.array(self.names, dtype=str),
+            "orders": np.array(self.orders, dtype=str),
+        }
+        LAYOUT.write(path, {**arrays, **text})
+
+
+def load_joint_limits(path: Path | str) -> JointLimits:
+    """Read what `JointLimits.save` wrote.
+
+    Raises
+    ------
+    InvalidFileError
+        The file is missing, damaged, or holds something else.
+    """
+    saved = LAYOUT.read(path)
+    try:
+        return JointLimits(
+            names=tuple(saved["names"].tolist()),
+            by_role=saved["by_role"],
+            left=saved["left"],
+            right=saved["right"],
+            orders=tuple(saved["orders"].tolist()),
+            lower=saved["lower"],
+            upper=saved["upper"],
+        )
+    except InvalidMotionError as error:
+        raise LAYOUT.damaged(path, str(error).removesuffix(".")) from None

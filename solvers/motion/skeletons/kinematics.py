@@ -1,0 +1,71 @@
+"""Where the joints of a motion are in the world."""
+
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ...rotations import inverse, multiply, product, turned
+from .motion import Motion
+from .skeleton import Skeleton
+
+
+class WorldPoses(NamedTuple):
+    """Every joint in the world."""
+
+    rotations: NDArray[np.float64]
+    """Unit quaternions w x y z, rest pose to world, shape (n_frames, n_joints, 4)."""
+    positions: NDArray[np.float64]
+    """Rotation centres, shape (n_frames, n_joints, 3), metres."""
+
+
+def forward_kinematics(motion: Motion) -> WorldPoses:
+    """Return world rotations and positions of all joints and frames; NaN spreads downwards."""
+    return world_poses(motion.skeleton, motion.rotations, motion.root_positions)
+
+
+def world_poses(
+    skeleton: Skeleton,
+    rotations: NDArray[np.float64],
+    root_positions: NDArray[np.float64],
+) -> WorldPoses:
+    """Forward kinematics of bare arrays.
+
+    Parameters
+    ----------
+    skeleton : Skeleton
+    rotations : shape (..., n_joints, 4)
+        Local unit quaternions w x y z.
+    root_positions : shape (..., 3), metres
+
+    Returns
+    -------
+    WorldPoses
+        Arrays of shape (..., n_joints, 4) and (..., n_joints, 3).
+    """
+    # Components come first and frames last here, so that each step runs over whole arrays.
+    local = np.ascontiguousarray(
+        np.moveaxis(rotations.reshape(-1, *rotations.shape[-2:]), 0, -1)
+    )
+    world = np.empty_like(local)
+    positions = np.empty((local.shape[0], 3, local.shape[2]))
+    world[0] = local[0]
+    positions[0] = root_positions.reshape(-1, 3).T
+    for joint, parent in enumerate(skeleton.parents[1:], start=1):
+        world[joint] = product(world[parent], local[joint])
+        positions[joint] = turned(world[parent], skeleton.offsets[joint])
+        positions[joint] += positions[parent]
+    return WorldPoses(
+        np.moveaxis(world, -1, 0).reshape(rotations.shape),
+        np.moveaxis(positions, -1, 0).reshape(*rotations.shape[:-1], 3),
+    )
+
+
+def local_rotations(
+    skeleton: Skeleton, world_rotations: NDArray[np.float64]
+) -> NDArray[np.float64]:
+    """Return local rotations from world ones, both (..., n_joints, 4): undoes `world_poses`."""
+    local = np.array(world_rotations, dtype=np.float64)
+    above = local[..., list(skeleton.parents[1:]), :]
+    local[..., 1:, :] = multiply(inverse(above), local[..., 1:, :])
+    return local

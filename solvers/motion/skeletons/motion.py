@@ -1,0 +1,121 @@
+"""Poses of a skeleton over time."""
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ...errors import InvalidMotionError
+from .frame_rate import check_frame_rate
+from .skeleton import FARTHEST, Skeleton
+
+UNIT_TOLERANCE = 1e-3
+ROUNDING = 1e-14
+"""Lengths this near to one are left alone, so that what nobody changes stays bit for bit."""
+
+FRAMES_AT_ONCE = 2000
+
+
+@dataclass(frozen=True, eq=False)
+class Motion:
+    """A skeleton in motion. NaN means: not observed.
+
+    Attributes
+    ----------
+    skeleton : Skeleton
+    rotations : float array, shape (n_frames, n_joints, 4), unit quaternions w x y z
+        Local: turns the parent's frame into the joint's own; identity in the rest pose.
+        Where any component is NaN, all four are.
+    root_positions : float array, shape (n_frames, 3), metres, world space, Z up
+    frame_rate : float, hertz
+        Frame i is seen at time i / frame_rate.
+    """
+
+    skeleton: Skeleton
+    rotations: NDArray[np.float64]
+    root_positions: NDArray[np.float64]
+    frame_rate: float
+
+    def __post_init__(self) -> None:
+        rotations = np.array(self.rotations, dtype=np.float64)
+        root_positions = np.array(self.root_positions, dtype=np.float64)
+        expected = (len(rotations), self.skeleton.n_joints, 4)
+        if rotations.shape != expected or not len(rotations):
+            raise InvalidMotionError(
+                "A motion needs at least one frame and rotations of shape (n_frames,"
+                f" {self.skeleton.n_joints}, 4), not {rotations.shape}."
+            )
+        if root_positions.shape != (len(rotations), 3):
+            raise InvalidMotionError(
+                f"A motion of {len(rotations)} frames needs root positions of shape"
+                f" ({len(rotations)}, 3), not {root_positions.shape}."
+            )
+        check_frame_rate(self.frame_rate)
+        if np.isinf(root_positions).any():
+            raise InvalidMotionError("The root has infinite positions; NaN marks missing ones.")
+        if (farthest := np.nanmax(np.abs(root_positions), initial=0.0)) > FARTHEST:
+            raise InvalidMotionError(
+                f"The root goes as far as {farthest:.3g} m; give the scale of the recording, or"
+                " take those frames out."
+            )
+        self._normalize(rotations)
+        object.__setattr__(self, "rotations", rotations)
+        object.__setattr__(self, "root_positions", root_positions)
+        object.__setattr__(self, "frame_rate", float(self.frame_rate))
+
+    def _normalize(self, rotations: NDArray[np.float64]) -> None:
+        """Change rotations to unit length, if they are nearly; block by block saves memory."""
+        wrong = np.zeros(self.skeleton.n_joints, dtype=np.bool_)
+        for start in range(0, len(rotations), FRAMES_AT_ONCE):
+            block = rotations[start : start + FRAMES_AT_ONCE]
+            norms = np.linalg.norm(block, axis=-1, keepdims=True)
+            off = np.abs(norms - 1.0)
+            wrong |= (off > UNIT_TOLERANCE).any(axis=(0, 2))
+            if not wrong.any():
+                np.divide(block, norms, out=block, where=~(off <= ROUNDING))
+        if wrong.any():
+            names = [self.skeleton.names[joint] for joint in np.flatnonzero(wrong)]
+            raise InvalidMotionError(
+                f"Rotations must be unit quaternions; these are not: {', '.join(names)}."
+            )
+
+    @property
+    def n_frames(self) -> int:
+        """Number of poses."""
+        return len(self.rotations)
+
+    @property
+    def n_joints(self) -> int:
+        """Number of joints, end sites included."""
+        return self.skeleton.n_joints
+
+    @property
+    def dt(self) -> float:
+        """Seconds from one frame to the next."""
+        return 1.0 / self.frame_rate
+
+    @property
+    def observed(self) -> NDArray[np.bool_]:
+        """Whether each joint's rotation is known, shape (n_frames, n_joints).
+
+        The root counts as known only where its position is known too.
+        """
+        known = np.isfinite(self.rotations).all(axis=-1)
+        known[:, 0] &= np.isfinite(self.root_positions).all(axis=-1)
+        return np.asarray(known)
+
+    def with_poses(
+        self,
+        rotations: NDArray[np.float64] | None = None,
+        root_positions: NDArray[np.float64] | None = None,
+    ) -> "Motion":
+        """Return the same skeleton with other rotations, root positions, or both."""
+        return replace(
+            self,
+            rotations=self.rotations if rotations is None else rotations,
+            root_positions=self.root_positions if root_positions is None else root_positions,
+        )
+
+    def slice(self, start: int, stop: int) -> "Motion":
+        """Return frames `start` up to but without `stop`."""
+        return self.with_poses(self.rotations[start:stop], self.root_positions[start:stop])

@@ -1,0 +1,94 @@
+"""Point trajectories: what an optical system or a depth camera measures."""
+
+from collections import Counter
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ...errors import InvalidMotionError
+from .frame_rate import check_frame_rate
+from .skeleton import FARTHEST
+
+
+@dataclass(frozen=True, eq=False)
+class Tracks:
+    """Named points moving through space. NaN means: not observed.
+
+    Attributes
+    ----------
+    names : tuple of str, length n_points, all different
+    positions : float array, shape (n_frames, n_points, 3), metres, world space, Z up
+    frame_rate : float, hertz
+    confidence : float array, shape (n_frames, n_points), 0 to 1, or None
+        How sure the sensor is of each point.
+    """
+
+    names: tuple[str, ...]
+    positions: NDArray[np.float64]
+    frame_rate: float
+    confidence: NDArray[np.float64] | None = None
+
+    def __post_init__(self) -> None:
+        positions = np.array(self.positions, dtype=np.float64)
+        if positions.shape != (len(positions), len(self.names), 3) or not positions.size:
+            raise InvalidMotionError(
+                "Tracks need at least one frame and one point, and positions of shape"
+                f" (n_frames, {len(self.names)}, 3), not {positions.shape}."
+            )
+        twice = sorted(name for name, times in Counter(self.names).items() if times > 1)
+        if twice:
+            raise InvalidMotionError(f"Point names must differ; twice: {', '.join(twice)}.")
+        check_frame_rate(self.frame_rate)
+        farthest = max(np.nanmax(positions, initial=0.0), -np.nanmin(positions, initial=0.0))
+        if np.isinf(farthest):
+            raise InvalidMotionError("There are infinite positions; NaN marks missing ones.")
+        if farthest > FARTHEST:
+            raise InvalidMotionError(
+                f"A point is as far as {farthest:.3g} m; give the scale of the recording, or"
+                " take those frames out."
+            )
+        object.__setattr__(self, "names", tuple(self.names))
+        object.__setattr__(self, "positions", positions)
+        object.__setattr__(self, "frame_rate", float(self.frame_rate))
+        if self.confidence is not None:
+            object.__setattr__(self, "confidence", self._checked(self.confidence))
+
+    def _checked(self, confidence: NDArray[np.float64]) -> NDArray[np.float64]:
+        confidence = np.array(confidence, dtype=np.float64)
+        if confidence.shape != self.positions.shape[:2]:
+            raise InvalidMotionError(
+                f"Confidence needs shape {self.positions.shape[:2]}, not {confidence.shape}."
+            )
+        if not ((confidence >= 0.0) & (confidence <= 1.0)).all():
+            raise InvalidMotionError("Confidence must lie between 0 and 1.")
+        return confidence
+
+    @property
+    def n_frames(self) -> int:
+        """Number of moments."""
+        return len(self.positions)
+
+    @property
+    def n_points(self) -> int:
+        """Number of named points."""
+        return len(self.names)
+
+    @property
+    def dt(self) -> float:
+        """Seconds from one frame to the next."""
+        return 1.0 / self.frame_rate
+
+    @property
+    def visible(self) -> NDArray[np.bool_]:
+        """Whether each point was seen, shape (n_frames, n_points)."""
+        return np.asarray(np.isfinite(self.positions).all(axis=-1))
+
+    def with_positions(self, positions: NDArray[np.float64]) -> "Tracks":
+        """Return the same points, elsewhere; the sensor's confidence stays."""
+        return replace(self, positions=positions)
+
+    def slice(self, start: int, stop: int) -> "Tracks":
+        """Return frames `start` up to but without `stop`."""
+        confidence = None if self.confidence is None else self.confidence[start:stop]
+        return replace(self, positions=self.positions[start:stop], confidence=confidence)

@@ -1,0 +1,21 @@
+"""A simulated body with mass, muscles and ground contact that performs a captured motion.
+
+>>> from solvers.physics import simulate
+>>> from solvers.samples import GaitSettings, walking_gait
+>>> walk = walking_gait(GaitSettings(duration=1.0, frame_rate=30.0))
+>>> simulate(walk).message
+'The simulated body followed the whole take.'
+"""
+
+from .engine import NoPhysicsError
+from .settings import Ground, SimulateSettings
+from .simulate import Simulated, simulate, with_strength
+
+__all__ = [
+    "Ground",
+    "NoPhysicsError",
+    "SimulateSettings",
+    "Simulated",
+    "simulate",
+    "with_strength",
+]

@@ -1,0 +1,279 @@
+"""Postures of clean clips, thinned out to an even density: what natural bodies do."""
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ...archives import ArchiveLayout
+from ...errors import InvalidMotionError
+from ...motion import Motion, resample
+from ...motion.humanoid import (
+    N_JOINTS,
+    bone_changes,
+    bone_directions,
+    mirrored,
+    motion_postures,
+    normalise,
+)
+from ...npz_members import integers, words
+from ...progress import Progress, unwatched, within
+from ...settings import Settings, setting
+from ..joint_rotations import N_TWISTED, mirrored_twists
+from .clip_twists import ClipTwists, agreed_twists, clip_twists
+from .posture_groups import group_postures
+from .subsample import thin_out
+
+Array = NDArray[np.float64]
+
+SHIPPED = Path(__file__).parent / "postures.npz"
+DIRECTION_STEP = 1.0 / 500.0
+CHANGE_STEP = 1.0 / 8.0
+TWIST_STEP = 1.0 / 127.0
+"""Steps in which directions, their changes per second, and twists are stored."""
+LAYOUT = ArchiveLayout(
+    "posture library",
+    1,
+    {
+        "directions": integers("postures", N_JOINTS - 1, 3),
+        "changes": integers("postures", N_JOINTS - 1, 3, minimum=-128, maximum=127),
+        "groups": integers("postures", minimum=0),
+        "n_seen": integers(minimum=0),
+        "trained_on": words(),
+        "twists": integers("postures", N_TWISTED, 2, minimum=-128, maximum=127, optional=True),
+    },
+    holds="damaged postures",
+    remedy="Build them again.",
+)
+PACE = 0.1
+"""Seconds of movement that count as much as the same way between two postures."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class PostureLibrarySettings(Settings):
+    """How postures are taken from clips."""
+
+    frame_rate: float = setting(
+        15.0, "Postures looked at per second of a clip; more catches faster movements",
+        unit="Hz", minimum=1.0, maximum=120.0,
+    )  # fmt: skip
+    spacing: float = setting(
+        0.01, "Least difference between two postures kept, as a mean over joints; more keeps"
+        " fewer", unit="m", minimum=0.0, maximum=1.0,
+    )  # fmt: skip
+    n_postures: int = setting(
+        2500, "Most postures kept, the most different ones; more knows more and is slower",
+        minimum=1, maximum=1_000_000,
+    )  # fmt: skip
+    mirror: bool = setting(True, "Also learn each posture with left and right exchanged")
+
+
+@dataclass(frozen=True, eq=False)
+class PostureLibrary:
+    """Postures without heading, place and size.
+
+    Attributes
+    ----------
+    directions : float32, shape (n_postures, 20, 3)
+        Unit vectors from the joint above to each of `POSTURE_JOINTS`, in an actor who faces -Y
+        with his left at +X; zero for the hips.
+    changes : float32, shape (n_postures, 20, 3)
+        How the directions change, per second.
+    groups : int32, shape (n_postures,)
+        Number of the group of alike postures that each belongs to.
+    n_seen : int
+        Postures of the clips before they were thinned out.
+    trained_on : str
+        Which clips they are of, in words.
+    twists : complex64, shape (n_postures, 4), optional
+        How upper arms and thighs are twisted against the trunk (`LimbTwists.vectors`). None in
+        files of Mocap Assist before it kept them.
+    """
+
+    directions: NDArray[np.float32]
+    changes: NDArray[np.float32]
+    groups: NDArray[np.int32]
+    n_seen: int
+    trained_on: str = ""
+    twists: NDArray[np.complex64] | None = None
+
+    @property
+    def n_postures(self) -> int:
+        """Number of postures."""
+        return len(self.directions)
+
+    @property
+    def known_twists(self) -> NDArray[np.complex64]:
+        """Twists, shape (n_postures, 4); 0 where nothing is known of them."""
+        if self.twists is None:
+            return np.zeros((self.n_postures, N_TWISTED), np.complex64)
+        return self.twists
+
+    def save(self, path: Path | str) -> None:
+        """Write an archive that `load_posture_library` reads."""
+        arrays = {
+            "directions": np.round(self.directions[:, 1:] / DIRECTION_STEP).astype(np.int16),
+            "changes": np.clip(np.round(self.changes[:, 1:] / CHANGE_STEP), -127, 127).astype(
+                np.int8
+            ),
+            "groups": self.groups,
+            "n_seen": np.array(self.n_seen),
+            "trained_on": np.array(self.trained_on),
+        }
+        if self.twists is not None:
+            parts = np.stack([self.twists.real, self.twists.imag], axis=-1)
+            arrays["twists"] = np.round(parts / TWIST_STEP).astype(np.int8)
+        LAYOUT.write(path, arrays)
+
+
+def load_posture_library(path: Path | str = SHIPPED) -> PostureLibrary:
+    """Read what `PostureLibrary.save` wrote; without a path, the library that is shipped.
+
+    Files of before twists were kept are read too; limbs are then twisted by bends alone.
+
+    Raises
+    ------
+    InvalidFileError
+        The file is missing, damaged, or holds something else.
+    """
+    arrays = LAYOUT.read(path)
+    if fault := _fault(arrays):
+        raise LAYOUT.damaged(path, fault)
+    directions, changes = (
+        np.pad(arrays[name] * np.float32(step), ((0, 0), (1, 0), (0, 0)))
+        for name, step in (("directions", DIRECTION_STEP), ("changes", CHANGE_STEP))
+    )
+    sizes = np.linalg.norm(directions[:, 1:], axis=-1, keepdims=True)
+    directions[:, 1:] /= sizes
+    twists = None
+    if "twists" in arrays:
+        parts = arrays["twists"] * np.float32(TWIST_STEP)
+        twists = (parts[..., 0] + 1j * parts[..., 1]).astype(np.complex64)
+    return PostureLibrary(
+        directions, changes, arrays["groups"], int(arrays["n_seen"]),
+        str(arrays["trained_on"]), twists,
+    )  # fmt: skip
+
+
+def joined_postures(
+    first: PostureLibrary, second: PostureLibrary, words: str = "{}, and {}"
+) -> PostureLibrary:
+    """Return a library of the postures of two; `words` says what both were trained on."""
+    directions = np.concatenate([first.directions, second.directions])
+    told = first.twists is not None or second.twists is not None
+    return PostureLibrary(
+        directions,
+        np.concatenate([first.changes, second.changes]),
+        group_postures(directions),
+        first.n_seen + second.n_seen,
+        words.format(first.trained_on, second.trained_on),
+        np.concatenate([first.known_twists, second.known_twists]) if told else None,
+    )
+
+
+def _fault(arrays: dict[str, NDArray[Any]]) -> str:
+    """Return what keeps postures from a file from being used, or nothing."""
+    if not len(arrays["directions"]):
+        return "there are none"
+    if (arrays["groups"] >= len(arrays["groups"])).any():
+        return "groups has numbers out of range"
+    sizes = np.linalg.norm(arrays["directions"] * DIRECTION_STEP, axis=-1)
+    return "" if (np.abs(sizes - 1.0) < 0.05).all() else "directions are not of length 1"
+
+
+def build_posture_library(
+    motions: Sequence[Motion],
+    *,
+    settings: PostureLibrarySettings = PostureLibrarySettings(),
+    trained_on: str = "",
+    progress: Progress = unwatched,
+) -> PostureLibrary:
+    """Collect the postures of clean clips, and keep the most different ones.
+
+    As the motion database of [SHJT13]_: heading and place are removed, and postures that are
+    too similar are left out, so that the neighbours of a posture show how it may vary. What is
+    kept are directions of bones, so that the body is that of whoever is recorded later. Here
+    two postures also differ by where they are going (a tenth of a second of movement).
+
+    Parameters
+    ----------
+    motions : sequence of Motion
+        Clean clips. Skeletons may differ; each needs hips, arms and legs.
+    settings : PostureLibrarySettings
+    trained_on : str
+        Kept with the library: which clips these are.
+    progress : Progress
+
+    Returns
+    -------
+    PostureLibrary
+        The most different postures first.
+
+    Raises
+    ------
+    InvalidMotionError
+        There is no clip, or a skeleton lacks hips, arms or legs.
+    SolveCancelled
+        Raised by `progress`.
+
+    References
+    ----------
+    .. [SHJT13] Shum, Ho, Jiang, Takagi (2013). Real-time posture reconstruction for Microsoft
+       Kinect. IEEE Transactions on Cybernetics 43(5), section V-A.
+    """
+    if not motions:
+        raise InvalidMotionError("There is no clip to learn postures from; choose clean clips.")
+    found = []
+    for place, motion in enumerate(motions):
+        progress(0.5 * place / len(motions), "Reading postures")
+        found.append(_postures(motion, settings))
+    directions, changes = (np.concatenate([each[part] for each in found]) for part in (0, 1))
+    told = [each[2] for each in found]
+    own = agreed_twists([motion.skeleton for motion in motions], told)
+    twists = np.concatenate([_both(each, mirrored_twists, settings) for each in own])
+    whole = np.isfinite(directions).all(axis=(1, 2)) & np.isfinite(changes).all(axis=(1, 2))
+    directions, changes, twists = directions[whole], changes[whole], twists[whole]
+    if not len(directions):
+        raise InvalidMotionError("No posture of the clips is complete; fill their gaps first.")
+    kept = thin_out(
+        np.concatenate([directions, PACE * changes], axis=1),
+        settings.n_postures,
+        settings.spacing,
+        within(progress, 0.5, 1.0),
+    )
+    single = directions[kept].astype(np.float32)
+    return PostureLibrary(
+        single, changes[kept].astype(np.float32), group_postures(single), len(directions),
+        trained_on, twists[kept].astype(np.complex64),
+    )  # fmt: skip
+
+
+def _postures(
+    motion: Motion, settings: PostureLibrarySettings
+) -> tuple[Array, Array, ClipTwists]:
+    """Directions and changes of a clip and of its mirror image, and its own twists."""
+    fine = max(settings.frame_rate, min(motion.frame_rate, 2.0 / PACE))
+    if abs(motion.frame_rate - fine) > 1e-6:
+        motion = resample(motion, fine)
+    positions = motion_postures(motion)
+    directions = bone_directions(normalise(positions, fine).postures)
+    changes = bone_changes(directions, fine)
+    step = max(round(fine / settings.frame_rate), 1)
+    twists = clip_twists(motion, positions)
+    return (
+        _both(directions[::step], mirrored, settings),
+        _both(changes[::step], mirrored, settings),
+        ClipTwists(twists.rotated[::step], twists.bent[::step], twists.shares[::step]),
+    )
+
+
+def _both(
+    values: NDArray[Any],
+    mirror: Callable[[NDArray[Any]], NDArray[Any]],
+    settings: PostureLibrarySettings,
+) -> NDArray[Any]:
+    """Return values of postures, and of their mirror images if these are learned too."""
+    return np.concatenate([values, mirror(values)]) if settings.mirror else values

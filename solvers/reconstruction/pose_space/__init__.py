@@ -1,0 +1,13 @@
+"""The local linear space of poses near a measured one, and the energy of a pose in it."""
+
+from .posture_energy import N_BONES, Demands, posture_energy, style_distances
+from .posture_space import PostureSpaces, local_pca
+
+__all__ = [
+    "N_BONES",
+    "Demands",
+    "PostureSpaces",
+    "local_pca",
+    "posture_energy",
+    "style_distances",
+]

@@ -1,0 +1,139 @@
+"""The posture of least energy by Gauss-Newton steps in the natural posture space."""
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ...motion.humanoid import ABOVE, N_JOINTS
+from ..pose_space import N_BONES, Demands, PostureSpaces, posture_energy, style_distances
+from .sequential import in_turn
+
+Array = NDArray[np.float64]
+
+N_STEPS = 6
+ENOUGH = 1e-4
+"""Share of the energy; a step that gains less is the last one."""
+RIDGE = 1e-9
+
+
+def solve_postures(spaces: PostureSpaces, demands: Demands, n_starts: int = 2) -> Array:
+    """Return the coordinates of the postures of least energy, shape (n_frames, n_dimensions).
+
+    But for the lengths of segments and for which neighbour is the nearest, the energy is a
+    quadratic. It is minimised for each neighbour in turn, in closed form; from the best of
+    these minima Gauss-Newton steps follow, with lengths linearised and the nearest neighbour
+    taken anew before each. A step that does not gain is halved.
+
+    Parameters
+    ----------
+    spaces : PostureSpaces
+    demands : Demands
+    n_starts : int
+        Minima to go on from.
+    """
+    quadratic = _Quadratic(spaces, demands)
+    starts = quadratic.minima(n_starts)
+    best, least = starts[0], np.full(len(starts[0]), np.inf)
+    for start in starts:
+        z, energy = _descend(spaces, demands, quadratic, start)
+        better = energy < least
+        best, least = np.where(better[:, None], z, best), np.where(better, energy, least)
+    return best
+
+
+def solve_in_turn(
+    spaces: PostureSpaces, demands: Demands, n_starts: int = 2, before: Array | None = None
+) -> tuple[Array, Array]:
+    """Solve frame after frame; each goes on from the postures of the two before it.
+
+    Returns
+    -------
+    postures : shape (n_frames, 20, 3), metres
+    energies : shape (n_frames,)
+    """
+
+    def choose(space: PostureSpaces, asked: Demands, last: Array | None, frame: int) -> Array:
+        return solve_postures(space, asked, n_starts)
+
+    return in_turn(spaces, demands, choose, before)
+
+
+class _Quadratic:
+    """The terms of the energy that are quadratic in the coordinates."""
+
+    def __init__(self, spaces: PostureSpaces, demands: Demands) -> None:
+        w, axes = demands.weights, spaces.axes
+        told = np.isfinite(demands.observed).all(axis=-1)
+        self.style = w.style / N_JOINTS
+        control = np.repeat(w.control * np.where(told, demands.trust, 0.0), 3, axis=1)
+        asked = np.nan_to_num(demands.observed).reshape(control.shape) - spaces.means
+        weights, pull = control + self.style, control * asked
+        if demands.expected is not None:
+            known = np.isfinite(demands.expected).all(axis=-1)
+            going = np.repeat(known * w.continuity / N_JOINTS, 3, axis=1)
+            to = np.nan_to_num(demands.expected).reshape(control.shape) - spaces.means
+            weights, pull = weights + going, pull + going * to
+        turned = axes.swapaxes(-1, -2)
+        self.H = turned @ (axes * weights[..., None]) + RIDGE * np.eye(axes.shape[-1])
+        self.b = np.einsum("fji,fj->fi", axes, pull)
+        self.off = spaces.neighbours - spaces.means[:, None]
+        self.places = self.off @ axes
+        """Coordinates of the neighbours."""
+
+    def minima(self, n_starts: int) -> list[Array]:
+        """Return the best minima over which neighbour is the nearest one."""
+        right = self.b[..., None] + self.style * self.places.swapaxes(-1, -2)
+        z = np.linalg.solve(self.H, right)
+        energies = self.style * np.einsum("fni,fni->fn", self.off, self.off)
+        energies -= np.einsum("fin,fin->fn", right, z)
+        n_starts = min(n_starts, energies.shape[1])
+        order = np.argsort(energies, axis=1, kind="stable")[:, :n_starts]
+        return [
+            np.take_along_axis(z, order[:, None, [place]], axis=2)[..., 0]
+            for place in range(n_starts)
+        ]
+
+
+def _descend(
+    spaces: PostureSpaces, demands: Demands, quadratic: _Quadratic, z: Array
+) -> tuple[Array, Array]:
+    """Gauss-Newton from one start; returns coordinates and energies."""
+    bones = spaces.axes.reshape(len(z), N_JOINTS, 3, -1)
+    bones = (bones - bones[:, ABOVE])[:, 1:]
+    w = demands.weights.kinematics / N_BONES
+    x = spaces.postures(z)
+    energy = posture_energy(x, demands)
+    for _ in range(N_STEPS):
+        nearest = style_distances(x[:, None], demands)[:, 0].argmin(axis=-1)
+        place = np.take_along_axis(quadratic.places, nearest[:, None, None], axis=1)[:, 0]
+        ways = (x - x[:, ABOVE])[:, 1:]
+        sizes = np.maximum(np.linalg.norm(ways, axis=-1), 1e-9)
+        J = np.einsum("fsk,fskd->fsd", ways / sizes[..., None], bones)
+        long = sizes - demands.lengths[1:]
+        H = quadratic.H + w * (J.swapaxes(-1, -2) @ J)
+        slope = quadratic.b + quadratic.style * place - w * np.einsum("fsd,fs->fd", J, long)
+        slope -= np.einsum("fij,fj->fi", quadratic.H, z)
+        step = np.linalg.solve(H, slope[..., None])[..., 0]
+        before = energy
+        z, x, energy = _step(spaces, demands, (z, x, energy), step)
+        if (before - energy <= ENOUGH * before).all():
+            break
+    return z, energy
+
+
+def _step(
+    spaces: PostureSpaces, demands: Demands, at: tuple[Array, Array, Array], step: Array
+) -> tuple[Array, Array, Array]:
+    """Go the step, or half of it, or a quarter, where that lessens the energy."""
+    z, x, energy = at
+    for _ in range(3):
+        there = z + step
+        posture = spaces.postures(there)
+        found = posture_energy(posture, demands)
+        better = found < energy
+        z = np.where(better[:, None], there, z)
+        x = np.where(better[:, None, None], posture, x)
+        energy = np.where(better, found, energy)
+        if better.all():
+            break
+        step = np.where(better[:, None], 0.0, 0.5 * step)
+    return z, x, energy

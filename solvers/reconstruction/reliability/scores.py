@@ -1,0 +1,100 @@
+"""How far each tracked joint can be trusted [SHJT13, section IV]."""
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ...motion import JointRecording
+from ...motion.humanoid import N_JOINTS, POSTURE_JOINTS, joints_of_names
+from ...progress import Progress, unwatched
+from .error_model import CAUSAL, CENTRED, signs_of_error
+from .reference import reference_lengths, reference_postures, segments
+from .settings import USUAL, ReliabilityMethod, ReliabilitySettings
+from .terms import behaviour_term, gaussian_mean, is_tracked, kinematics_term, tracking_term
+
+
+@dataclass(frozen=True, eq=False)
+class Reliability:
+    """How far each joint can be trusted at each frame, 0 to 1, and why.
+
+    Attributes
+    ----------
+    combined, behaviour, kinematics, tracking : shape (n_frames, n_joints)
+        The last three are the terms of [SHJT13], eq. 4, 6 and 7; a term that the recording
+        tells nothing of is 1.
+    """
+
+    combined: NDArray[np.float64]
+    behaviour: NDArray[np.float64]
+    kinematics: NDArray[np.float64]
+    tracking: NDArray[np.float64]
+
+
+def measure_reliability(
+    recording: JointRecording,
+    *,
+    settings: ReliabilitySettings = USUAL,
+    progress: Progress = unwatched,
+) -> Reliability:
+    """Measure how far each joint of a depth camera's recording can be trusted.
+
+    Parameters
+    ----------
+    recording : JointRecording
+        Any joints; NaN where not tracked.
+    settings : ReliabilitySettings
+    progress : Progress
+
+    Returns
+    -------
+    Reliability
+        For the joints of the recording, in their order. A joint that is NaN has 0 everywhere.
+
+    Raises
+    ------
+    SolveCancelled
+        Raised by `progress`.
+
+    References
+    ----------
+    .. [SHJT13] Shum, Ho, Jiang, Takagi (2013). Real-time posture reconstruction for Microsoft
+       Kinect. IEEE Transactions on Cybernetics 43(5). doi:10.1109/TCYB.2013.2275945
+    """
+    positions, parents = recording.tracks.positions, np.array(recording.parents)
+    visible = recording.tracks.visible
+    behaviour = behaviour_term(positions, recording.frame_rate, settings)
+    tracking = tracking_term(recording, settings)
+    progress(0.4, "Measuring reliability")
+    lengths = segments(positions, parents)
+    tracked = is_tracked(recording)
+    postures = reference_postures(recording.names, positions, tracked)
+    steady = np.minimum(behaviour, tracked)
+    trust = np.minimum(steady, steady[:, np.maximum(parents, 0)])
+    reference = reference_lengths(lengths, postures, trust)
+    kinematics = kinematics_term(lengths, reference, parents)
+    behaviour, kinematics, tracking = (
+        np.where(visible, term, 0.0) for term in (behaviour, kinematics, tracking)
+    )
+    rate = recording.frame_rate
+    if settings.method is ReliabilityMethod.PUBLISHED:
+        worst = np.minimum(np.minimum(behaviour, kinematics), tracking)
+        combined = gaussian_mean(worst, rate, settings)
+    else:
+        signs = signs_of_error(positions, lengths - reference, parents, rate, settings.causal)
+        model = CAUSAL if settings.causal else CENTRED
+        within = model.chance_within(signs, settings.tolerance)
+        combined = np.minimum(within, gaussian_mean(tracking, rate, settings))
+    combined = np.where(visible, combined, 0.0)
+    progress(1.0, "Measuring reliability")
+    return Reliability(combined, behaviour, kinematics, tracking)
+
+
+def posture_reliability(
+    recording: JointRecording, combined: NDArray[np.float64]
+) -> NDArray[np.float64]:
+    """Return the reliability of the joints of postures, (n_frames, 20); 0 where not seen."""
+    result = np.zeros((recording.n_frames, N_JOINTS))
+    for role, place in joints_of_names(recording.names).items():
+        result[:, POSTURE_JOINTS.index(role)] = combined[:, place]
+    return result

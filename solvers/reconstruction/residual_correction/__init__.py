@@ -1,0 +1,20 @@
+"""Gaussian processes that predict how a sensor errs, and the correction of its poses."""
+
+from .correct_postures import CorrectionMethod, CorrectionSettings, correct_postures
+from .kernel import squared_distances
+from .learn_confidence import calibrated
+from .learn_residual_prior import ResidualMethod, ResidualPriorSettings, learn_residual_prior
+from .prior import ResidualPrior, load_residual_prior
+
+__all__ = [
+    "CorrectionMethod",
+    "CorrectionSettings",
+    "ResidualMethod",
+    "ResidualPrior",
+    "ResidualPriorSettings",
+    "calibrated",
+    "correct_postures",
+    "learn_residual_prior",
+    "load_residual_prior",
+    "squared_distances",
+]

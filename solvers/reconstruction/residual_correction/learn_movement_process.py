@@ -1,0 +1,136 @@
+"""Learn the Gaussian process of movements from takes that another system saw as well."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.linalg import cho_factor, cho_solve
+
+from ...motion.humanoid import MIRROR_IMAGES, mirrored
+from .movement_process import (
+    PERSONAL,
+    SHARED,
+    MovementProcess,
+    Single,
+    components_of,
+    likeness,
+    movement_parts,
+    ways_between,
+)
+
+Array = NDArray[np.float64]
+Numbers = NDArray[np.int64]
+
+N_COMPONENTS = 40
+TAKE, ACTOR, MEAN = 0.2, 1.9, 70.0
+"""Variances, in those of the noise, of the constant errors of a take, an actor, and all."""
+KNOWN = 0.5
+"""Share of the examples in which a joint must be known to be foretold."""
+FEWEST = 20
+"""Examples without which nothing is learned."""
+
+
+@dataclass(frozen=True, eq=False)
+class Take:
+    """One take: calm postures of usual size without gaps, and true minus seen places.
+
+    Both have shape (n_frames, 20, 3) and no heading; errors are NaN where not known.
+    """
+
+    features: Array
+    errors: Array
+    frame_rate: float
+    actor: str
+
+
+def learn_movement_process(
+    takes: Sequence[Take], frame_rate: float, n_points: int, mirror: bool
+) -> MovementProcess | None:
+    """Return the process, or nothing where too little is known.
+
+    At most `n_points` examples are taken, evenly from all takes, and `frame_rate` of a second.
+
+    With `mirror` each example is there as its mirror image too, by another actor. The
+    covariance is then [[A, B], [B, A]], and errors that a mirror leaves as they are, and those
+    that it turns about, are solved for with A + B and with A - B.
+    """
+    parts, errors, take, actor = _gathered(takes, frame_rate)
+    joints = _foretold(errors, mirror)
+    known = np.isfinite(errors[:, joints]).all(axis=(1, 2))
+    rows = np.flatnonzero(known)
+    if len(joints) < 2 or len(rows) < FEWEST:
+        return None
+    rows = rows[np.linspace(0, len(rows) - 1, min(n_points, len(rows))).round().astype(int)]
+    parts, errors = parts[:, rows], np.nan_to_num(errors[rows])
+    image = mirrored(parts) if mirror else parts
+    centre, axes = _space(np.concatenate([parts[0], image[0]])[:, joints])
+    points, others = (components_of(one, joints, centre, axes) for one in (parts, image))
+    own = _covariance(points, take[rows], actor[rows])
+    if mirror:
+        across = likeness(ways_between(points, others), SHARED).astype(np.float64) + MEAN
+        even = 0.5 * (errors + mirrored(errors))
+        weights = _solved(own + across, even) + _solved(own - across, errors - even)
+        total = weights.sum(axis=0)
+        mean = MEAN * (total + mirrored(total))
+    else:
+        weights = _solved(own, errors)
+        mean = MEAN * weights.sum(axis=0)
+    flat = weights[:, joints].reshape(len(rows), -1)
+    return MovementProcess(
+        joints, centre, axes, points, flat.astype(np.float32), mean[joints].reshape(-1),
+        np.array(mirror),
+    )  # fmt: skip
+
+
+def _gathered(
+    takes: Sequence[Take], frame_rate: float
+) -> tuple[Array, Array, Numbers, Numbers]:
+    """Return parts and errors of some frames of all takes, and whose they are."""
+    names = sorted({one.actor for one in takes})
+    parts, errors, take, actor = [], [], [], []
+    for number, one in enumerate(takes):
+        step = max(round(one.frame_rate / frame_rate), 1)
+        some = slice(min(step // 2, len(one.features) - 1), None, step)
+        parts.append(movement_parts(one.features, one.frame_rate)[:, some])
+        errors.append(one.errors[some])
+        take += [number] * len(errors[-1])
+        actor += [names.index(one.actor)] * len(errors[-1])
+    return (
+        np.concatenate(parts, axis=1),
+        np.concatenate(errors),
+        np.array(take),
+        np.array(actor),
+    )
+
+
+def _foretold(errors: Array, mirror: bool) -> Numbers:
+    """Return the joints that are known often enough, and their mirror images too."""
+    share = np.isfinite(errors).all(axis=-1).mean(axis=0)
+    if mirror:
+        share = np.minimum(share, share[list(MIRROR_IMAGES)])
+    return np.flatnonzero(share >= KNOWN).astype(np.int64)
+
+
+def _space(postures: Array) -> tuple[Array, Array]:
+    """Return mean and principal axes of postures."""
+    flat = postures.reshape(len(postures), -1)
+    centre = flat.mean(axis=0)
+    axes = np.linalg.svd(flat - centre, full_matrices=False)[2][:N_COMPONENTS].T
+    return centre, np.ascontiguousarray(axes)
+
+
+def _covariance(points: Single, take: Numbers, actor: Numbers) -> Array:
+    ways = ways_between(points, points)
+    result = likeness(ways, SHARED).astype(np.float64) + MEAN
+    same = actor[:, None] == actor
+    result += same * (likeness(ways, PERSONAL).astype(np.float64) + ACTOR)
+    result += TAKE * (take[:, None] == take)
+    result[np.diag_indices(len(points))] += 1.0
+    return result
+
+
+def _solved(covariance: Array, errors: Array) -> Array:
+    factor = cho_factor(covariance, lower=True, check_finite=False)
+    found = cho_solve(factor, errors.reshape(len(errors), -1), check_finite=False)
+    return np.asarray(found.reshape(errors.shape))

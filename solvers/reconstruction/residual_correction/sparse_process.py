@@ -1,0 +1,101 @@
+"""The sparse Gaussian process of one joint: inducing points, and all examples through them.
+
+FITC [1]_: the process is told by its values at inducing points; what they leave open at an
+example counts as independent noise of that example.
+
+.. [1] Snelson, Ghahramani (2006). Sparse Gaussian processes using pseudo-inputs. NIPS 18.
+"""
+
+from collections.abc import Sequence
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.cluster.vq import kmeans2
+from scipy.linalg import solve_triangular
+
+from .kernel import Kernel, alike
+
+Array = NDArray[np.float64]
+
+JITTER = 1e-6
+FREE_MEAN = 1e4
+"""Variance of the mean error in square metres: nothing is known beforehand."""
+
+
+def inducing_points(features: Array, count: int, seed: int) -> Array:
+    """Return at most `count` points amid the features: centres of clusters (k-means)."""
+    different = np.unique(features, axis=0)
+    if len(different) <= count:
+        return different
+    centres, _ = kmeans2(features, count, iter=5, minit="++", seed=np.random.default_rng(seed))
+    return np.asarray(centres)
+
+
+def triangle(points: Array, length: float) -> Array:
+    """Return the lower triangular root of the inducing points' covariance."""
+    return np.linalg.cholesky(alike(points, points, length) + JITTER * np.eye(len(points)))
+
+
+def basis(features: Array, points: Array, length: float, lower: Array | None = None) -> Array:
+    """Return functions of unit prior variance whose sum is the process, (n, n_points).
+
+    `lower` is the `triangle` of the same points and length, if it is at hand.
+    """
+    if lower is None:
+        lower = triangle(points, length)
+    values = alike(features, points, length)
+    return np.asarray(solve_triangular(lower, values.T, lower=True, check_finite=False).T)
+
+
+def posterior(
+    bases: Sequence[Array],
+    errors: Array,
+    takes: NDArray[np.int64],
+    actors: NDArray[np.int64],
+    kernel: Kernel,
+    repeats: float,
+) -> tuple[Array, Array]:
+    """Return mean and covariance of the weights of the shared functions and of the mean error.
+
+    Parameters
+    ----------
+    bases : local and whole, as `basis` gives them
+    errors : shape (n, 3), metres
+    takes, actors : shape (n,), int, counted from 0
+    kernel : Kernel
+    repeats : float
+        Examples that tell as much as one would alone, since neighbouring frames err alike.
+
+    Returns
+    -------
+    mean : shape (n_weights, 3)
+    covariance : shape (n_weights, n_weights)
+    """
+    open_variance = sum(
+        (shared + personal) * np.maximum(1.0 - (one**2).sum(axis=1), 0.0)
+        for one, shared, personal in zip(bases, kernel.shared, kernel.personal, strict=True)
+    )
+    scale = 1.0 / np.sqrt(open_variance + repeats * kernel.noise)[:, None]
+    columns = shared_columns(bases, kernel)
+    n_shared = columns.shape[1]
+    parts = [columns]
+    for actor in range(int(actors.max()) + 1):
+        here = (actors == actor)[:, None]
+        parts += [
+            np.sqrt(personal) * one * here
+            for one, personal in zip(bases, kernel.personal, strict=True)
+        ]
+    parts.append(np.sqrt(kernel.take) * np.eye(int(takes.max()) + 1)[takes])
+    parts.append(np.sqrt(kernel.actor) * np.eye(int(actors.max()) + 1)[actors])
+    design = np.concatenate(parts, axis=1) * scale
+    precision = design.T @ design + np.eye(design.shape[1])
+    covariance = np.linalg.inv(precision)
+    mean = covariance @ (design.T @ (errors * scale))
+    return mean[:n_shared], covariance[:n_shared, :n_shared]
+
+
+def shared_columns(bases: Sequence[Array], kernel: Kernel) -> Array:
+    """Return what the weights of `posterior` multiply, shape (n, n_weights)."""
+    ones = np.full((len(bases[0]), 1), np.sqrt(FREE_MEAN))
+    scaled = [np.sqrt(shared) * one for one, shared in zip(bases, kernel.shared, strict=True)]
+    return np.concatenate([*scaled, ones], axis=1)

@@ -1,0 +1,87 @@
+"""Container formats and tables: C3D, EBML, MAT, NPZ, text rows."""
+
+from .c3d_file import BLOCK, C3D_ID, CHARACTERS, FLOATS, INTEGERS, C3dFile, is_c3d
+from .folder_scan import files_below, is_folder, refuse_closed
+from .growing_table import GrowingTable
+from .json_members import json_members, numbers_of
+from .line_reader import Block, LineReader
+from .listed_images import bounded_image, is_listed, largest_color, listed_image
+from .matlab_file import MatlabArray, is_matlab, matlab_arrays
+from .matroska import Matroska, Track, index_matroska, is_matroska
+from .names import LONGEST, DifferentNames, printable, shown
+from .png_header import PngHeader, is_png, png_header
+from .row_stream import stream_rows
+from .stored_arrays import NPY_MAGIC, NUMBERS, read_archive, read_array
+from .stored_bytes import (
+    CHUNK,
+    DENSEST,
+    MOST_CHECKED,
+    PackedBytes,
+    PartOfBytes,
+    PlainBytes,
+    StoredBytes,
+)
+from .text import (
+    BYTE_ORDER_MARK,
+    ROWS_AT_ONCE,
+    parted_by_blanks,
+    read_bytes,
+    read_number,
+    read_rows,
+    read_some_rows,
+)
+
+__all__ = [
+    "BLOCK",
+    "BYTE_ORDER_MARK",
+    "C3D_ID",
+    "CHARACTERS",
+    "CHUNK",
+    "DENSEST",
+    "FLOATS",
+    "INTEGERS",
+    "LONGEST",
+    "MOST_CHECKED",
+    "NPY_MAGIC",
+    "NUMBERS",
+    "ROWS_AT_ONCE",
+    "Block",
+    "C3dFile",
+    "DifferentNames",
+    "GrowingTable",
+    "LineReader",
+    "MatlabArray",
+    "Matroska",
+    "PackedBytes",
+    "PartOfBytes",
+    "PlainBytes",
+    "PngHeader",
+    "StoredBytes",
+    "Track",
+    "bounded_image",
+    "files_below",
+    "index_matroska",
+    "is_c3d",
+    "is_folder",
+    "is_listed",
+    "is_matlab",
+    "is_matroska",
+    "is_png",
+    "json_members",
+    "largest_color",
+    "listed_image",
+    "matlab_arrays",
+    "numbers_of",
+    "parted_by_blanks",
+    "png_header",
+    "printable",
+    "read_archive",
+    "read_array",
+    "read_bytes",
+    "read_number",
+    "read_rows",
+    "read_some_rows",
+    "refuse_closed",
+    "shown",
+    "stream_rows",
+]

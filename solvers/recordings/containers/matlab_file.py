@@ -1,0 +1,122 @@
+"""Find an array of numbers in a MATLAB 5 file, without reading its numbers.
+
+SciPy's reader would do but for two things: it reads whole arrays, and it believes what a
+damaged file says of their size.
+"""
+
+import struct
+import zlib
+from collections.abc import Iterator
+from math import prod
+from pathlib import Path
+from typing import NamedTuple
+
+from ...errors import InvalidFileError
+from ...files import DAMAGE, open_regular
+from .stored_bytes import DENSEST, PackedBytes, PartOfBytes, PlainBytes, StoredBytes, cut_short
+
+HEADER = 128
+MATRIX, PACKED = 14, 15
+KINDS = {1: "i1", 2: "u1", 3: "i2", 4: "u2", 5: "i4", 6: "u4", 7: "f4", 9: "f8"}
+"""NumPy's names of the types of stored numbers."""
+WITH_HEADER = 15
+"""What zlib calls the window of packed bytes with its own header."""
+MOST_DIMENSIONS, LONGEST_NAME = 8, 64
+SMALL = 4
+
+
+class MatlabArray(NamedTuple):
+    """An array: its numbers, column by column, their type and its shape."""
+
+    name: str
+    shape: tuple[int, ...]
+    kind: str
+    content: StoredBytes
+
+
+def is_matlab(head: bytes) -> bool:
+    """Tell from the first bytes; newer files than version 5 are HDF5 and none."""
+    return head[:10] == b"MATLAB 5.0" and head[126:128] in {b"IM", b"MI"}
+
+
+def matlab_arrays(path: Path) -> list[MatlabArray]:
+    """Return the arrays of numbers that a file holds, in its order.
+
+    Raises
+    ------
+    InvalidFileError
+        The file is missing, damaged or cut short.
+    """
+    try:
+        with open_regular(path) as file:
+            order = "<" if file.read(HEADER)[126:128] == b"IM" else ">"
+        found = [_array(content, order) for content in _elements(path, order)]
+    except FileNotFoundError:
+        raise InvalidFileError(f"There is no file {path}.") from None
+    except InvalidFileError:
+        raise
+    except DAMAGE:
+        raise InvalidFileError(
+            f"{path} is a damaged file of MATLAB's. Copy or export it again."
+        ) from None
+    return [array for array in found if array is not None]
+
+
+def _elements(path: Path, order: str) -> Iterator[StoredBytes]:
+    """Yield what stands in the file's matrices."""
+    at, end = HEADER, path.stat().st_size
+    while at + 8 <= end:
+        kind, size = struct.unpack(f"{order}II", PlainBytes(path, at, 8).read(0, 8))
+        at += 8
+        if at + size > end:
+            raise cut_short(path)
+        if kind == PACKED:
+            yield _unpacked(path, at, size, order)
+        elif kind == MATRIX:
+            yield PlainBytes(path, at, size)
+        at += size
+
+
+def _unpacked(path: Path, at: int, packed: int, order: str) -> StoredBytes:
+    with open_regular(path) as file:
+        file.seek(at)
+        head = zlib.decompressobj().decompress(file.read(min(packed, 1024)), 8)
+    kind, size = struct.unpack(f"{order}II", head)
+    if kind != MATRIX or size > DENSEST * packed:
+        raise ValueError(kind)
+    content = PackedBytes(path, at, packed, size + 8, WITH_HEADER)
+    content.check()
+    return PartOfBytes(content, 8, size)
+
+
+def _array(content: StoredBytes, order: str) -> MatlabArray | None:
+    """Read what precedes the numbers of a matrix; None for one that is not of numbers."""
+    _, flags, at = _element(content, 0, order, 8)
+    (number,) = struct.unpack(f"{order}I", flags[:4])
+    if not 6 <= number & 0xFF <= 13:  # double to uint32
+        return None
+    _, lengths, at = _element(content, at, order, 4 * MOST_DIMENSIONS)
+    shape = struct.unpack(f"{order}{len(lengths) // 4}i", lengths)
+    _, name, at = _element(content, at, order, LONGEST_NAME)
+    kind, size, start = _tag(content, at, order)
+    stored = f"{order}{KINDS[kind]}"
+    if min(shape) < 0 or prod(shape) * int(stored[-1]) != size or start + size > content.size:
+        raise ValueError(shape)
+    return MatlabArray(name.decode("latin1"), shape, stored, PartOfBytes(content, start, size))
+
+
+def _element(content: StoredBytes, at: int, order: str, most: int) -> tuple[int, bytes, int]:
+    """Return type and bytes of a short element, and where the next one begins."""
+    kind, size, start = _tag(content, at, order)
+    if size > most:
+        raise ValueError(size)
+    end = start + size
+    return kind, content.read(start, size), end + -end % 8
+
+
+def _tag(content: StoredBytes, at: int, order: str) -> tuple[int, int, int]:
+    """Return type, size and beginning of an element; up to 4 bytes stand in the tag itself."""
+    first, second = struct.unpack(f"{order}II", content.read(at, 8))
+    if first >> 16:
+        return first & 0xFFFF, min(first >> 16, SMALL), at + 4
+    return first, second, at + 8

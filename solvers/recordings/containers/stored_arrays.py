@@ -1,0 +1,55 @@
+"""Arrays of numbers in NumPy's files, read by the guards of `archives`."""
+
+import os
+import zipfile
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ...errors import InvalidFileError
+from ...files import open_regular
+from ...npz_members import READABLE, RECORDED, Values, array_content, array_header, read_members
+
+NPY_MAGIC = b"\x93NUMPY"
+NUMBERS = Values("fiu", None, finite=False)
+
+
+def read_array(path: Path | str) -> NDArray[np.float64]:
+    """Return the numbers of a `.npy` file; raises InvalidFileError for whatever else."""
+    try:
+        with open_regular(path) as file:
+            header = array_header(file)
+            room = os.fstat(file.fileno()).st_size - header.start
+            if header.dtype.kind not in NUMBERS.kinds or header.n_bytes > room:
+                raise ValueError(header)
+            return _as_float(array_content(file, header))
+    except FileNotFoundError:
+        raise InvalidFileError(f"There is no file {path}.") from None
+    except READABLE:
+        raise _damaged(path) from None
+
+
+def read_archive(path: Path | str, names: tuple[str, ...]) -> list[NDArray[np.float64]]:
+    """Return arrays of numbers of a `.npz` archive; raises InvalidFileError where one fails."""
+    try:
+        with open_regular(path) as file, zipfile.ZipFile(file) as archive:
+            arrays = read_members(archive, dict.fromkeys(names, NUMBERS), RECORDED)
+    except FileNotFoundError:
+        raise InvalidFileError(f"There is no file {path}.") from None
+    except READABLE:
+        raise _damaged(path) from None
+    return [_as_float(arrays[name]) for name in names]
+
+
+def _as_float(array: NDArray[Any]) -> NDArray[np.float64]:
+    with np.errstate(invalid="ignore", over="ignore"):  # of damaged or very large floats
+        return array.astype(np.float64)
+
+
+def _damaged(path: Path | str) -> InvalidFileError:
+    return InvalidFileError(
+        f"{path} is no readable file of NumPy's with arrays of numbers: it is damaged, cut"
+        " short or of another kind. Export it again."
+    )

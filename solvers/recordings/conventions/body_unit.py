@@ -1,0 +1,49 @@
+"""The unit of joints whose file does not say it, by the size of the body that they make."""
+
+from dataclasses import replace
+
+import numpy as np
+
+from ...errors import InvalidMotionError
+from ...motion import JointRecording
+from ...motion.humanoid import LARGEST, SMALLEST, posture_positions, size_of_body
+from ...progress import Progress
+
+UNITS = {1.0: "metres", 0.01: "centimetres", 0.001: "millimetres"}
+
+
+def in_unit_of_body(
+    recording: JointRecording, unit: float, progress: Progress
+) -> JointRecording:
+    """Return a recording, taken in this unit, in the one of `UNITS` that makes a human body.
+
+    It stays as it is where the unit does, where none does, or where no body is recognised.
+
+    Parameters
+    ----------
+    recording : JointRecording
+    unit : float, metres
+    progress : Progress
+        Told of another unit.
+    """
+    try:
+        size = size_of_body(posture_positions(recording))
+    except InvalidMotionError:  # no hips
+        return recording
+    if SMALLEST <= size <= LARGEST or not size > 0.0:
+        return recording
+    likely = min(UNITS, key=lambda other: abs(np.log(size * other / unit)))
+    factor = likely / unit
+    if not SMALLEST <= size * factor <= LARGEST:
+        return recording
+    progress(1.0, guessed_unit(likely))
+    tracks = recording.tracks
+    return replace(recording, tracks=tracks.with_positions(factor * tracks.positions))
+
+
+def guessed_unit(unit: float) -> str:
+    """Say that lengths are taken for metres, centimetres or millimetres, and why."""
+    return (
+        f"Lengths are taken for {UNITS[unit]}, by the size of the body; give the unit if that"
+        " is wrong"
+    )

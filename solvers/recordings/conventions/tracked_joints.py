@@ -1,0 +1,87 @@
+"""What all readers of joint recordings do last: gaps marked, a constant rate, checked."""
+
+from collections.abc import Sequence
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ...errors import InvalidFileError
+from ...motion import JointRecording, Sensor, Tracks
+from ...progress import Progress
+from .body_unit import in_unit_of_body
+from .time_stamps import USUAL_RATE, ConstantRate
+
+
+def joint_recording(
+    path: Path | str,
+    names: Sequence[str],
+    positions: NDArray[np.float64],
+    sensor: Sensor,
+    *,
+    states: NDArray[np.int8] | None = None,
+    confidence: NDArray[np.float64] | None = None,
+    times: NDArray[np.float64] | None = None,
+    frame_rate: float = USUAL_RATE,
+    nan_only: bool = False,
+    scale: float | None,
+    usual_unit: float = 1.0,
+    progress: Progress,
+) -> JointRecording:
+    """Make a recording of what a file holds.
+
+    Parameters
+    ----------
+    path : Path or str
+        For error messages.
+    names : sequence of str
+    positions : float array, shape (n_frames, n_joints, 3), in the file's unit, Z up
+        What is NaN, exactly 0, or in state 0 was not observed: its state becomes 0, and the
+        position NaN.
+    sensor : Sensor
+    states : int8 array, shape (n_frames, n_joints), or None
+    confidence : float array, shape (n_frames, n_joints), 0 to 1, or None
+    times : float array, shape (n_frames,), seconds, or None
+        When each frame was seen; then `frame_rate` does not count, and the recording is
+        brought to a constant rate (`ConstantRate`).
+    frame_rate : float, hertz
+    nan_only : bool
+        True: only NaN was not observed; the origin is a place like others, and a joint that was
+        not tracked keeps the place that it was given.
+    scale : float, metres per unit of the file, or None
+        None: the usual unit, or the one that makes a human body where that does not.
+    usual_unit : float, metres
+        The one that such files have.
+    progress : Progress
+        Told that this is done, and of the unit where it is guessed.
+
+    Returns
+    -------
+    JointRecording
+
+    Raises
+    ------
+    InvalidFileError
+        No joint is seen in any frame; or the time stamps make no sense.
+    """
+    missing = ~np.isfinite(positions).all(axis=-1)
+    if not nan_only:
+        missing |= (positions == 0.0).all(axis=-1)
+        missing |= False if states is None else states == 0
+    if states is not None:
+        states = np.where(missing, 0, states).astype(np.int8)
+    positions = np.where(missing[..., None], np.nan, positions)
+    if missing.all():
+        raise InvalidFileError(f"{path} has no joint that is seen in any frame.")
+    if times is not None:
+        clock = ConstantRate(path, times)
+        frame_rate = clock.frame_rate
+        positions = clock.positions(positions)
+        states = None if states is None else clock.states(states)
+        confidence = None if confidence is None else clock.confidence(confidence)
+    progress(1.0, "Reading" if times is None else f"Resampled to {frame_rate:.4g} Hz")
+    unit = usual_unit if scale is None else scale
+    positions *= unit  # a copy of what was given
+    tracks = Tracks(tuple(names), positions, frame_rate, confidence)
+    recording = JointRecording(tracks, states, sensor)
+    return recording if scale is not None else in_unit_of_body(recording, unit, progress)

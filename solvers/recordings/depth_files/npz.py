@@ -1,0 +1,166 @@
+"""Read depth that is kept in an archive of NumPy's: `depth` and the camera's numbers."""
+
+import struct
+import zipfile
+from pathlib import Path
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from ...depth_scene import Camera, DepthRecording
+from ...errors import InvalidFileError
+from ...files import open_regular
+from ...npz_members import READABLE, member_header
+from ...progress import Progress, unwatched
+from ..containers import (
+    CHUNK,
+    DENSEST,
+    MOST_CHECKED,
+    NUMBERS,
+    PackedBytes,
+    PartOfBytes,
+    PlainBytes,
+    StoredBytes,
+    read_archive,
+)
+from ..conventions import USUAL_RATE
+from .settings import USUAL, DepthSettings
+from .stack import MILLIMETRE, ColorStack, DepthStack, check_size
+
+INTRINSICS = ("fx", "fy", "cx", "cy")
+LOCAL_HEADER = 30
+WITHOUT_HEADER = -15
+"""What zlib calls the window of packed bytes without its own header."""
+
+
+class _Member(NamedTuple):
+    """An array in an archive: the bytes of its numbers, and how they are laid out."""
+
+    content: StoredBytes
+    shape: tuple[int, ...]
+    kind: np.dtype[Any]
+
+
+def is_depth_npz(path: Path, head: bytes) -> bool:
+    """Tell whether a file is an archive with an array called depth."""
+    if head[:4] != b"PK\x03\x04":
+        return False
+    try:
+        with open_regular(path) as file, zipfile.ZipFile(file) as archive:
+            return "depth.npy" in archive.namelist()
+    except READABLE:
+        return b"depth.npy" in head
+
+
+def read_depth_npz(
+    path: Path | str,
+    settings: DepthSettings = USUAL,
+    *,
+    progress: Progress = unwatched,
+) -> DepthRecording:
+    """Read an `.npz` archive of depth pictures, each when it is asked for.
+
+    Keys: `depth` (frames, height, width), `fx`, `fy`, `cx`, `cy` in pixels, `frame_rate` in
+    hertz (30 without it), and `color` (frames, height, width, 3) uint8 if it was recorded.
+
+    Parameters and errors are those of `read_depth`. Whole numbers are millimetres and others
+    metres, unless a scale is given.
+    """
+    path = Path(path)
+    depth = _member(path, "depth")
+    if len(depth.shape) != 3 or not depth.shape[0]:
+        raise InvalidFileError(
+            f"{path}: its depth has the shape {depth.shape}; it must be (frames, rows,"
+            " columns)."
+        )
+    n_frames, height, width = depth.shape
+    check_size(path, height, width)
+    usual = MILLIMETRE if depth.kind.kind in "iu" else 1.0
+    stack = DepthStack(depth.content, depth.kind.str, (height, width), settings.scale or usual)
+    progress(1.0, "Reading")
+    return DepthRecording(
+        _camera(path, height, width, settings),
+        n_frames,
+        settings.frame_rate or _rate(path),
+        stack,
+        _color(path, depth.shape),
+    )
+
+
+def _member(path: Path, name: str) -> _Member:
+    """Find an array in the archive without reading its numbers."""
+    try:
+        with open_regular(path) as file, zipfile.ZipFile(file) as archive:
+            member = archive.getinfo(f"{name}.npy")
+            if member.file_size > DENSEST * member.compress_size + DENSEST:
+                raise ValueError(name)
+            header = member_header(archive, name)
+            if header.by_column or header.dtype.kind not in NUMBERS.kinds:
+                raise ValueError(header.dtype)
+            if member.file_size <= MOST_CHECKED:
+                _compare_checksum(archive, member)
+        content = _content(path, member, header.start, header.n_bytes)
+        return _Member(content, header.shape, header.dtype)
+    except FileNotFoundError:
+        raise InvalidFileError(f"There is no file {path}.") from None
+    except READABLE:
+        raise InvalidFileError(
+            f"{path} has no readable array called {name}: it is damaged, cut short or of"
+            " another kind. Export it again."
+        ) from None
+
+
+def _compare_checksum(archive: zipfile.ZipFile, member: zipfile.ZipInfo) -> None:
+    """Raise BadZipFile if the checksum of a member, which stands at its end, is another."""
+    with archive.open(member) as file:
+        while file.read(CHUNK):
+            pass
+
+
+def _content(path: Path, member: zipfile.ZipInfo, skipped: int, size: int) -> StoredBytes:
+    with open_regular(path) as file:
+        file.seek(member.header_offset)
+        head = file.read(LOCAL_HEADER)
+    name, extra = struct.unpack("<HH", head[26:30])
+    start = member.header_offset + LOCAL_HEADER + name + extra
+    if member.compress_type == zipfile.ZIP_STORED:
+        return PlainBytes(path, start + skipped, size)
+    packed = PackedBytes(path, start, member.compress_size, member.file_size, WITHOUT_HEADER)
+    return PartOfBytes(packed, skipped, size)
+
+
+def _camera(path: Path, height: int, width: int, settings: DepthSettings) -> Camera:
+    given = settings.camera(width, height)
+    if given is not None and not _has(path, INTRINSICS):
+        return given
+    fx, fy, cx, cy = (_number(path, name) for name in INTRINSICS)
+    told = Camera(fx, fy, cx, cy, width, height)
+    return settings.camera(width, height, told) or told
+
+
+def _has(path: Path, names: tuple[str, ...]) -> bool:
+    with open_regular(path) as file, zipfile.ZipFile(file) as archive:
+        return {f"{name}.npy" for name in names} <= set(archive.namelist())
+
+
+def _rate(path: Path) -> float:
+    return _number(path, "frame_rate") if _has(path, ("frame_rate",)) else USUAL_RATE
+
+
+def _number(path: Path, name: str) -> float:
+    (array,) = read_archive(path, (name,))
+    if array.size != 1:
+        raise InvalidFileError(f"{path}: {name} is not a single number.")
+    return float(array.reshape(()))
+
+
+def _color(path: Path, shape: tuple[int, ...]) -> ColorStack | None:
+    if not _has(path, ("color",)):
+        return None
+    color = _member(path, "color")
+    if color.shape != (*shape, 3) or color.kind != np.uint8:
+        raise InvalidFileError(
+            f"{path}: its color has the shape {color.shape} of {color.kind}; beside this depth"
+            f" it must be {(*shape, 3)} of uint8."
+        )
+    return ColorStack(color.content, (shape[1], shape[2]))

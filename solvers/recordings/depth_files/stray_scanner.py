@@ -1,0 +1,112 @@
+"""Folders of Stray Scanner: depth of an iPhone's LiDAR, with its confidence and its course."""
+
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ...errors import InvalidFileError
+from ..containers import read_bytes
+from .layouts import Focal, Layout, pictures_in
+from .settings import Held
+from .stack import MILLIMETRE
+
+Array = NDArray[np.float64]
+
+USUAL_RATE = 60.0
+WIDTHS = ((1920, 1440), (1280, 960), (640, 480), (256, 192))
+"""Of the video, for which the camera's matrix holds: it is not said."""
+WITH_TIMES, POSE = 9, 7
+"""Numbers in a line of the course: time, frame, and the pose; or the pose alone."""
+STEADY = 0.1
+"""Metres by which a camera that stands may have moved."""
+
+
+def stray_layout(root: Path) -> Layout | None:
+    """Lay out a folder of Stray Scanner's: `camera_matrix.csv`, `depth/`, `confidence/`."""
+    depth = pictures_in(root, "depth")
+    if not depth or not (root / "camera_matrix.csv").is_file():
+        return None
+    focal, size = _focal(root / "camera_matrix.csv")
+    sure = {Path(name).stem: name for name in pictures_in(root, "confidence")}
+    known = all(Path(name).stem in sure for name in depth)
+    course = _course(root / "odometry.csv")
+    held, remarks = _held(course)
+    times = _times(course, depth)
+    return Layout(
+        root,
+        depth,
+        times,
+        rate=USUAL_RATE,
+        metres=MILLIMETRE,
+        focal=focal,
+        focal_size=size,
+        confidence=tuple(sure[Path(name).stem] for name in depth) if known else None,
+        held=held,
+        remarks=remarks,
+    )
+
+
+def _focal(path: Path) -> tuple[Focal, tuple[int, int]]:
+    matrix = _numbers(path)
+    if matrix.shape != (3, 3):
+        raise InvalidFileError(f"{path} holds no 3 x 3 matrix of a camera.")
+    fx, fy, cx, cy = matrix[0, 0], matrix[1, 1], matrix[0, 2], matrix[1, 2]
+    size = min(WIDTHS, key=lambda known: abs(np.log(max(cx, 1.0) * 2.0 / known[0])))
+    return (float(fx), float(fy), float(cx), float(cy)), size
+
+
+def _course(path: Path) -> Array:
+    """Return time, frame and pose of the camera for each frame, shape (n, 9); n may be 0."""
+    rows = _numbers(path) if path.is_file() else np.empty((0, WITH_TIMES))
+    if rows.shape[1] == POSE:
+        nothing = np.full((len(rows), 1), np.nan)
+        rows = np.concatenate([nothing, np.arange(len(rows))[:, np.newaxis], rows], axis=1)
+    return rows if rows.shape[1] == WITH_TIMES else np.empty((0, WITH_TIMES))
+
+
+def _numbers(path: Path) -> Array:
+    """Return the rows of numbers of a table; a first row of names is passed over."""
+    lines = read_bytes(path).decode("utf-8", errors="replace").splitlines()
+    rows = []
+    for number, line in enumerate(lines, start=1):
+        words = [word for word in line.replace(",", " ").split() if word]
+        try:
+            rows.append([float(word) for word in words])
+        except ValueError:
+            if number > 1:
+                raise InvalidFileError(f"{path}, line {number}: not a number.") from None
+    rows = [row for row in rows if row]
+    if not rows or len({len(row) for row in rows}) > 1:
+        raise InvalidFileError(f"{path} is no table of numbers. Export the scan again.")
+    return np.array(rows)
+
+
+def _held(course: Array) -> tuple[Held, tuple[str, ...]]:
+    """Tell from the poses how the telephone was held, and whether it stood still.
+
+    The world of ARKit has Y up. Of the camera, x is to the right of the picture and y down.
+    """
+    poses = course[np.isfinite(course[:, 2:]).all(axis=1), 2:]
+    if not len(poses):
+        return Held.UPRIGHT, ()
+    x, y, z, w = poses[:, 3:].T
+    with np.errstate(invalid="ignore", over="ignore"):  # of damaged numbers
+        up = np.median([2.0 * (x * y + z * w), 1.0 - 2.0 * (x * x + z * z)], axis=1)
+        moved = float(np.linalg.norm(np.ptp(poses[:, :3], axis=0)))
+    remarks = (
+        (f"The camera moved by {moved:.1f} m; it is taken to stand still.",)
+        if moved > STEADY
+        else ()
+    )
+    if abs(up[0]) > abs(up[1]):
+        return (Held.RIGHT if up[0] > 0.0 else Held.LEFT), remarks
+    return (Held.UPSIDE_DOWN if up[1] > 0.0 else Held.UPRIGHT), remarks
+
+
+def _times(course: Array, depth: tuple[str, ...]) -> Array | None:
+    """Return the time of each picture, if all of them are known."""
+    known = dict(zip(course[:, 1].tolist(), course[:, 0].tolist(), strict=True))
+    numbers = [int(stem) if (stem := Path(name).stem).isdecimal() else -1 for name in depth]
+    times = np.array([known.get(number, np.nan) for number in numbers])
+    return times if np.isfinite(times).all() else None

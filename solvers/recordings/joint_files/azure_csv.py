@@ -1,0 +1,178 @@
+"""Read tables of Azure Kinect joints: a line per joint, or a line per frame."""
+
+import re
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ...errors import InvalidFileError
+from ...motion import JOINTS, JointRecording, Sensor
+from ...progress import Progress, unwatched, within
+from ..containers import GrowingTable, LineReader, parted_by_blanks, read_number, stream_rows
+from ..conventions import USUAL_RATE, check_scale, from_azure_space, joint_recording
+
+NAMES = JOINTS[Sensor.AZURE_KINECT]
+MILLIMETRE = 0.001
+PER_JOINT = re.compile(rb"(?i)[^\n]*\n?[ \t]*body id\s*,\s*joint #\s*,\s*x\s*,\s*y\s*,\s*z")
+PER_FRAME = re.compile(rb"(?i)[^\n]*\bpelvis\.x\s*,")
+ONLY_AZURE = re.compile(rb"(?i)[^\n]*(\bspine_?(chest|nav[ae]l)\b|\bclavicle)")
+LEAST_WORDS = 10
+NOT_SEEN = np.tile((np.nan, np.nan, np.nan, 0.0), (len(NAMES), 1))
+SPELLINGS = {name.upper(): name for name in NAMES} | {"SPINENAVAL": "SpineNavel"}
+STATES = (  # What the SDK calls its levels of confidence, and what a state is.
+    (rb"out of range|\bnone\b|^0$", 0),
+    (rb"not observed|\blow\b|^1$", 1),
+    (rb"\bmedium\b|\bhigh\b|^[23]$", 2),
+)
+
+
+def is_azure_csv(head: bytes) -> bool:
+    """Tell from the first bytes."""
+    per_frame = PER_FRAME.match(head) and ONLY_AZURE.match(head)
+    return bool(PER_JOINT.match(head) or per_frame)
+
+
+def azure_joint(name: str) -> str:
+    """Return a joint's name in our spelling; names that are not the SDK's stay."""
+    return SPELLINGS.get(name.strip().replace("_", "").upper(), name.strip())
+
+
+def read_azure_csv(
+    path: Path | str,
+    *,
+    scale: float | None = None,
+    frame_rate: float = USUAL_RATE,
+    progress: Progress = unwatched,
+) -> JointRecording:
+    """Read a table of Azure Kinect joints, in metres, Z up; joints not tracked are NaN.
+
+    Two layouts are known. A line per joint, under the headings `Body ID, Joint #, x, y, z, x,
+    y, z, w, Confidence Level`: a frame of a body ends where its joint numbers begin again, and
+    the body seen in most frames is taken. A line per frame, under `PELVIS.x, PELVIS.y, ...`.
+    Neither has times: `frame_rate` counts. Orientations are not read. Medium and high
+    confidence are state 2, low (predicted) is 1, none is 0.
+
+    Parameters
+    ----------
+    path : Path or str
+    scale : float, metres per unit of the file, or None
+        None: millimetres.
+    frame_rate : float, hertz
+    progress : Progress
+
+    Returns
+    -------
+    JointRecording
+        All 32 joints in the SDK's order, or those of the columns; the camera looks along +Y.
+        No tracking state from a line per frame.
+
+    Raises
+    ------
+    InvalidFileError
+        The file is missing, damaged or has no joints.
+    InvalidSettingError
+        The scale is not positive.
+    SolveCancelled
+        Raised by `progress`.
+    """
+    check_scale(scale)
+    reader = LineReader(path)
+    headings = [line for line in reader.peek(4) if line.strip()]  # "\r\r\n" leaves blank ones
+    per_joint = PER_JOINT.match(b"\n".join(headings[:2]))
+    read = _read_joint_lines if per_joint else _read_frame_lines
+    names, values = read(reader, path, within(progress, 0.0, 0.9))
+    states = values[..., 3].astype(np.int8) if values.shape[-1] > 3 else None
+    return joint_recording(
+        path,
+        names,
+        from_azure_space(values[..., :3]),
+        Sensor.AZURE_KINECT,
+        states=states,
+        frame_rate=frame_rate,
+        scale=scale,
+        usual_unit=MILLIMETRE,
+        progress=progress,
+    )
+
+
+def _read_joint_lines(
+    reader: LineReader, path: Path | str, progress: Progress
+) -> tuple[tuple[str, ...], NDArray[np.float64]]:
+    """Return the joints' names, and x y z state, shape (n_frames, n_joints, 4)."""
+    bodies: dict[bytes, _Body] = {}
+    for block in reader.rest():
+        for count, line in enumerate(block.lines, start=block.first):
+            words = line.split(b",")
+            body = words[0].strip()
+            if not body[:1].isdigit():
+                continue  # headings, and blank lines
+            joint, values = _joint(words, f"{path}, line {count}")
+            bodies.setdefault(body, _Body()).see(joint, values)
+        progress(block.stop, "Reading")
+    if not bodies:
+        raise InvalidFileError(f"{path} has headings but no joints.")
+    return NAMES, max(bodies.values(), key=lambda body: body.n_frames).frames()
+
+
+class _Body:
+    """What is seen of one body, frame by frame."""
+
+    def __init__(self) -> None:
+        self._table = GrowingTable(4 * len(NAMES))
+        self._frame = NOT_SEEN.copy()
+        self._last = len(NAMES)
+        self.n_frames = 0
+
+    def see(self, joint: int, values: list[float]) -> None:
+        """Take x, y, z and state of a joint; a frame ends where its numbers begin again."""
+        if joint <= self._last:
+            self._end_frame()
+            self.n_frames += 1
+        self._frame[joint] = values
+        self._last = joint
+
+    def frames(self) -> NDArray[np.float64]:
+        """Return all, shape (n_frames, n_joints, 4)."""
+        self._end_frame()
+        return self._table.rows().reshape(-1, len(NAMES), 4)
+
+    def _end_frame(self) -> None:
+        if self.n_frames:
+            self._table.add(self._frame.reshape(1, -1))
+            self._frame[:] = NOT_SEEN
+
+
+def _joint(words: list[bytes], place: str) -> tuple[int, list[float]]:
+    """Return the joint's number, and x, y, z and state."""
+    joint = words[1].strip() if len(words) >= LEAST_WORDS else b""
+    if not joint.isdigit() or len(joint) > 2 or int(joint) >= len(NAMES):
+        raise InvalidFileError(
+            f"{place}: a body, one of {len(NAMES)} joints, its place, turn and confidence"
+            " belong there. The file is damaged or cut short; delete that line."
+        )
+    said = b",".join(words[9:]).strip(b", \t").lower()
+    states = [state for pattern, state in STATES if re.search(pattern, said)]
+    if not states:
+        raise InvalidFileError(
+            f"{place}: no level of confidence ends it. The file is damaged or cut short; delete"
+            " that line."
+        )
+    return int(joint), [*(read_number(word.strip(), place) for word in words[2:5]), states[0]]
+
+
+def _read_frame_lines(
+    reader: LineReader, path: Path | str, progress: Progress
+) -> tuple[tuple[str, ...], NDArray[np.float64]]:
+    """Return the joints' names, and x y z, shape (n_frames, n_joints, 3)."""
+    heading = b"".join(reader.take()).decode("latin-1")
+    header = [word.strip() for word in heading.split(",")]
+    columns = {azure_joint(word[:-2]) + word[-2:].lower(): at for at, word in enumerate(header)}
+    names = [name for name in NAMES if all(f"{name}.{axis}" in columns for axis in "xyz")]
+    if not names:
+        raise InvalidFileError(f"{path} has no columns x, y and z of any joint.")
+    rows = stream_rows(reader, len(header), path, progress, tidied=parted_by_blanks)
+    if not len(rows):
+        raise InvalidFileError(f"{path} has headings but no joints.")
+    used = [columns[f"{name}.{axis}"] for name in names for axis in "xyz"]
+    return tuple(names), rows[:, used].reshape(len(rows), len(names), 3)

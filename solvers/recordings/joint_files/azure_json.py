@@ -1,0 +1,118 @@
+"""Read the JSON that the Azure Kinect body tracking sample `offline_processor` writes."""
+
+import re
+from collections.abc import Hashable
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ...errors import InvalidFileError
+from ...motion import JOINTS, JointRecording, Sensor
+from ...progress import Progress, unwatched
+from ..containers import DifferentNames, json_members, numbers_of, printable
+from ..conventions import (
+    check_scale,
+    frames_of,
+    from_azure_space,
+    joint_recording,
+    longest_seen,
+)
+from .azure_csv import MILLIMETRE, azure_joint
+
+MICROSECOND = 1e-6
+HEAD = re.compile(rb'\s*\{\s*"(?:[^"]*"[^{}]*")?(k4abt_sdk_version|bone_list|joint_names)"')
+Bodies = dict[Hashable, NDArray[np.float64]]
+
+
+def is_azure_json(head: bytes) -> bool:
+    """Tell from the first bytes."""
+    return HEAD.match(head) is not None
+
+
+def read_azure_json(
+    path: Path | str, *, scale: float | None = None, progress: Progress = unwatched
+) -> JointRecording:
+    """Read `offline_processor` JSON [1]_, in metres, Z up.
+
+    Of several bodies the one seen in most frames is taken, and of equals the one seen first;
+    bodies are told by their id, in whatever order they come. Frames are brought to a constant
+    rate by their time stamps (30 Hz where there are none); frames that were lost, or are
+    without that body, are gaps. Orientations are not read. The format has no confidence, so
+    there is no tracking state: joints that the tracker merely predicted look like all others.
+
+    Parameters
+    ----------
+    path : Path or str
+    scale : float, metres per unit of the file, or None
+        None: millimetres.
+    progress : Progress
+
+    Returns
+    -------
+    JointRecording
+        The joints that the file names, or else all 32 in the SDK's order; the camera looks
+        along +Y.
+
+    Raises
+    ------
+    InvalidFileError
+        The file is missing, damaged, cut short, or has no body.
+    InvalidSettingError
+        The scale is not positive.
+    SolveCancelled
+        Raised by `progress`.
+
+    References
+    ----------
+    .. [1] Microsoft, Azure-Kinect-Samples, body-tracking-samples/offline_processor.
+    """
+    check_scale(scale)
+    frames: list[Bodies] = []
+    times: list[float] = []
+    given = DifferentNames()
+    names: list[str] = []
+    for member in json_members(path):
+        if member.key == "frames":
+            place = f"{path}, frame {len(frames) + 1}"
+            time, bodies = _read_frame(member.value, place)
+            frames.append(bodies)
+            times.append(time)
+            progress(0.9 * member.done, "Reading")
+        elif member.key == "joint_names":
+            names.append(given.give(printable(azure_joint(str(member.value)))))
+    if not any(frames):
+        raise InvalidFileError(f"{path} has {len(frames)} frames but no body in any of them.")
+    joints = names or list(JOINTS[Sensor.AZURE_KINECT])
+    if {len(places) for frame in frames for places in frame.values()} != {len(joints)}:
+        raise InvalidFileError(
+            f"{path}: not every body has a place for each of the {len(joints)} joints. The file"
+            " is damaged; export it again."
+        )
+    positions = frames_of(longest_seen(frames), frames)
+    return joint_recording(
+        path,
+        joints,
+        from_azure_space(positions),
+        Sensor.AZURE_KINECT,
+        times=None if np.isnan(times).all() else MICROSECOND * np.array(times),
+        scale=scale,
+        usual_unit=MILLIMETRE,
+        progress=progress,
+    )
+
+
+def _read_frame(frame: Any, place: str) -> tuple[float, Bodies]:
+    """Return the time stamp, or NaN, and the joints' places of each body."""
+    listed = frame.get("bodies", []) if isinstance(frame, dict) else None
+    if not isinstance(listed, list) or not all(isinstance(body, dict) for body in listed):
+        raise InvalidFileError(
+            f"{place}: a list of bodies belongs there. The file is damaged; export it again."
+        )
+    bodies: Bodies = {}
+    for count, body in enumerate(listed):
+        places = numbers_of(body.get("joint_positions"), (-1, 3), f"{place}, joint_positions")
+        bodies.setdefault(str(body.get("body_id", count)), places)
+    time = numbers_of(frame.get("timestamp_usec"), (), f"{place}, timestamp_usec")
+    return float(time), bodies

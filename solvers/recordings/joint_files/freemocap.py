@@ -1,0 +1,146 @@
+"""Read freemocap's arrays of points, shape (n_frames, n_points, 3)."""
+
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ...errors import InvalidFileError
+from ...motion import JointRecording, Sensor, Tracks
+from ...motion.skeletons import BODY, CENTRES, HAND
+from ...progress import Progress, unwatched
+from ..containers import NPY_MAGIC, read_array
+from ..conventions import USUAL_RATE, check_scale, guessed_unit, z_up_from_y_up
+
+WITH_HANDS = len(BODY) + 2 * len(HAND)
+FACES = (0, 468, 478)
+MILLIMETRE = 0.001
+LARGEST_IN_METRES = 20.0
+"""Extent of a body in its file's units, above which they are no metres."""
+
+
+def is_npy(head: bytes) -> bool:
+    """Tell from the first bytes."""
+    return head.startswith(NPY_MAGIC)
+
+
+def read_freemocap(
+    path: Path | str,
+    *,
+    scale: float | None = None,
+    frame_rate: float = USUAL_RATE,
+    progress: Progress = unwatched,
+) -> JointRecording | Tracks:
+    """Read a `.npy` file of freemocap, in metres, Z up; what was not observed is NaN.
+
+    The array tells neither names, unit, axes nor frame rate. Arrays of 33, 75, 543 or 553
+    points are MediaPipe's: body, two hands, face; which hand comes first has changed, so the
+    one nearer to the left wrist is the left. The joints on the middle of the body, which
+    MediaPipe lacks, are added (`CENTRES`). Others are points called `point_<number>`.
+    Millimetres, unless the extent is a body's in metres. Up is where a known body has its nose,
+    seen from its ankles; of other points, Z. Where the actor faces is not changed otherwise.
+
+    Parameters
+    ----------
+    path : Path or str
+    scale : float, metres per unit of the file, or None
+        None: millimetres or metres, as said above.
+    frame_rate : float, hertz
+    progress : Progress
+
+    Returns
+    -------
+    JointRecording of a body, or Tracks of other points
+
+    Raises
+    ------
+    InvalidFileError
+        The file is missing, damaged, or holds no points.
+    InvalidSettingError
+        The scale is not positive.
+    SolveCancelled
+        Raised by `progress`.
+    """
+    check_scale(scale)
+    points = read_array(path)
+    if points.ndim != 3 or points.shape[2] != 3:
+        raise InvalidFileError(
+            f"{path} holds an array of shape {points.shape}; points over time have the shape"
+            " (frames, points, 3)."
+        )
+    points = np.where(np.isfinite(points).all(axis=-1)[..., None], points, np.nan)
+    if np.isnan(points).all():
+        raise InvalidFileError(f"{path} has no points that are seen in any frame.")
+    progress(0.5, "Reading")
+    names = _names(points)
+    is_body = names[0] == BODY[0]
+    if is_body:
+        names, points = _with_centres(names, _z_up(points))
+    unit = _unit(points) if scale is None else scale
+    tracks = Tracks(names, points * unit, frame_rate)
+    progress(1.0, guessed_unit(unit) if scale is None and is_body else "Reading")
+    return JointRecording(tracks, None, Sensor.MEDIAPIPE) if is_body else tracks
+
+
+def _with_centres(
+    names: tuple[str, ...], points: NDArray[np.float64]
+) -> tuple[tuple[str, ...], NDArray[np.float64]]:
+    """Add the joints on the middle of the body; unseen where any of their points is."""
+    centres = [
+        points[:, [BODY.index(side) for side in sides]].mean(axis=1)
+        for sides in CENTRES.values()
+    ]
+    together = np.concatenate([points, np.stack(centres, axis=1)], axis=1)
+    return (*names, *CENTRES), together
+
+
+def _names(points: NDArray[np.float64]) -> tuple[str, ...]:
+    n_points = points.shape[1]
+    if n_points == len(BODY):
+        return BODY
+    if n_points - WITH_HANDS not in FACES:
+        return tuple(f"point_{number}" for number in range(1, n_points + 1))
+    hands = [points[:, len(BODY)], points[:, len(BODY) + len(HAND)]]
+    wrists = [points[:, BODY.index(f"{side}_wrist")] for side in ("left", "right")]
+    (first_left, first_right), (second_left, second_right) = (
+        [_apart(hand, wrist) for wrist in wrists] for hand in hands
+    )
+    nearer_crossed = (
+        first_left - first_right, first_left - second_left,
+        second_right - second_left, second_right - first_right,
+    )  # fmt: skip
+    sides = ("left", "right") if np.nansum(nearer_crossed) < 0.0 else ("right", "left")
+    named = (f"{side}_hand_{part}" for side in sides for part in HAND)
+    face = (f"face_{number}" for number in range(1, n_points - WITH_HANDS + 1))
+    return (*BODY, *named, *face)
+
+
+def _apart(one: NDArray[np.float64], other: NDArray[np.float64]) -> float:
+    """Return the usual distance of two points; NaN where they are never seen together."""
+    with np.errstate(over="ignore"):
+        distances = np.linalg.norm(one - other, axis=-1)
+    known = distances[np.isfinite(distances)]
+    return float(np.median(known)) if len(known) else np.nan
+
+
+def _z_up(points: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Turn a known body so that its nose is above its ankles, if they are seen."""
+    ankles = [BODY.index("left_ankle"), BODY.index("right_ankle")]
+    way = points[:, :1] - points[:, ankles]
+    known = way[np.isfinite(way).all(axis=-1)]
+    if not len(known):
+        return points
+    up = np.median(known, axis=0)
+    axis = int(np.argmax(np.abs(up)))
+    if axis == 0:
+        points = np.roll(points, -1, axis=-1)  # x y z -> y z x
+    elif axis == 1:
+        points = z_up_from_y_up(points)
+    return points * (1.0, -1.0, -1.0) if up[axis] < 0.0 else points
+
+
+def _unit(points: NDArray[np.float64]) -> float:
+    """Return metres per unit, of points in the file's units."""
+    spread = np.nanquantile(points, [0.05, 0.95], axis=(0, 1))
+    with np.errstate(over="ignore"):
+        return MILLIMETRE if float(np.ptp(spread, axis=0).max()) > LARGEST_IN_METRES else 1.0

@@ -1,0 +1,122 @@
+"""What the two joint formats of our own have in common: what they say before their numbers."""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ...errors import InvalidFileError, InvalidMotionError
+from ...motion import JointRecording, Sensor
+from ...progress import Progress
+from ..containers import shown
+from ..conventions import METRES, joint_recording, z_up_from_y_up
+from .kinect_csv import checked_states
+
+FORMAT = "mocap-assist-joints"
+VERSION = 1
+UP = ("x", "y", "z", "-x", "-y", "-z")
+
+
+@dataclass(frozen=True)
+class JointHeader:
+    """What the numbers mean.
+
+    Frame rate in hertz, or None where each frame has its time; metres per unit, or None where
+    it does not say; the axis that is up; the sensor.
+    """
+
+    frame_rate: float | None
+    unit: float | None
+    up: str
+    sensor: Sensor
+
+    def z_up(self, points: NDArray[np.float64]) -> NDArray[np.float64]:
+        """Turn points so that the axis that is up becomes Z: about X or, for X, cyclically."""
+        if self.up[-1] == "x":
+            points = np.roll(points, -1, axis=-1)  # x y z -> y z x
+        if self.up[-1] == "y":
+            points = z_up_from_y_up(points)
+        return points * (1.0, -1.0, -1.0) if self.up[0] == "-" else points
+
+
+def joint_header(said: Mapping[str, Any], place: str) -> JointHeader:
+    """Read a header; `place` begins the sentence of the InvalidFileError for a wrong one."""
+    if said.get("format") != FORMAT or str(said.get("version")) != str(VERSION):
+        raise InvalidFileError(
+            f"{place}: this Mocap Assist reads {FORMAT} {VERSION}, not"
+            f" {shown(str(said.get('format')))} {shown(str(said.get('version')))}."
+        )
+    rate = said.get("frame_rate")
+    try:
+        frame_rate = None if rate is None or rate == "" else float(str(rate))
+    except ValueError:
+        frame_rate = 0.0
+    if frame_rate is not None and not 0.0 < frame_rate < float("inf"):
+        raise InvalidFileError(
+            f"{place}: a frame_rate of {shown(str(rate))} is not above 0; write hertz, or leave"
+            " it out and give each frame its time."
+        )
+    unit = METRES[_choice(said, "units", "m", tuple(METRES), place)]
+    up = _choice(said, "up", "z", UP, place)
+    sensors = tuple(sensor.value for sensor in Sensor)
+    sensor = _choice(said, "sensor", Sensor.OTHER.value, sensors, place)
+    return JointHeader(frame_rate, unit if "units" in said else None, up, Sensor(sensor))
+
+
+def _choice(
+    said: Mapping[str, Any], key: str, default: str, choices: tuple[str, ...], place: str
+) -> str:
+    value = str(said.get(key, default)).strip().lower()
+    if value not in choices:
+        raise InvalidFileError(
+            f"{place}: {key} is {shown(value)!r}; write one of {', '.join(choices)}."
+        )
+    return value
+
+
+def told_recording(
+    path: Path | str,
+    names: Sequence[str],
+    header: JointHeader,
+    positions: NDArray[np.float64],
+    *,
+    states: NDArray[np.float64] | None,
+    confidence: NDArray[np.float64] | None,
+    times: NDArray[np.float64] | None,
+    scale: float | None,
+    progress: Progress,
+) -> JointRecording:
+    """Make a recording as `joint_recording` does, by a header; what has no state has state 0.
+
+    Positions are in the unit and axes of the file. Times count where there is no frame rate.
+    """
+    if confidence is not None:
+        confidence = np.nan_to_num(confidence)
+        if not ((confidence >= 0.0) & (confidence <= 1.0)).all():
+            raise InvalidFileError(f"{path} has a confidence that is not between 0 and 1.")
+    return joint_recording(
+        path,
+        names,
+        header.z_up(positions),
+        header.sensor,
+        states=None if states is None else checked_states(np.nan_to_num(states), path),
+        confidence=confidence,
+        times=times if header.frame_rate is None else None,
+        frame_rate=header.frame_rate or 1.0,
+        nan_only=True,
+        scale=header.unit if scale is None else scale,
+        progress=progress,
+    )
+
+
+def check_names(names: Sequence[str]) -> None:
+    """Raise InvalidMotionError for joints whose names would not come back from one line."""
+    wrong = [name for name in names if not name.isprintable() or name != name.strip()]
+    if wrong:
+        raise InvalidMotionError(
+            f"Joint names with line breaks, other control characters or outer blanks cannot be"
+            f" written: {', '.join(map(repr, wrong))}. Rename them."
+        )

@@ -1,0 +1,187 @@
+"""Joints as JSON that any recorder can write: see docs/formats/joint_json.md."""
+
+import json
+import re
+from collections import Counter
+from pathlib import Path
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ...errors import InvalidFileError
+from ...files import written_whole
+from ...motion import JointRecording
+from ...progress import Progress, unwatched
+from ..containers import json_members, numbers_of, shown
+from ..conventions import check_scale
+from .joint_header import FORMAT, VERSION, check_names, joint_header, told_recording
+
+HEAD = re.compile(rb'\s*\{[^{}\[\]]*"format"\s*:\s*"' + FORMAT.encode() + rb'"')
+UNSEEN = (np.nan, np.nan, np.nan)
+
+
+class Frame(NamedTuple):
+    """Positions, shape (n_joints, 3), states and confidence, shape (n_joints,), and seconds."""
+
+    positions: NDArray[np.float64]
+    states: NDArray[np.float64] | None
+    confidence: NDArray[np.float64] | None
+    time: float
+
+
+def is_joint_json(head: bytes) -> bool:
+    """Tell from the first bytes."""
+    return HEAD.match(head) is not None
+
+
+def read_joint_json(
+    path: Path | str, *, scale: float | None = None, progress: Progress = unwatched
+) -> JointRecording:
+    """Read our own JSON of joints, in metres, Z up; what was not observed is NaN.
+
+    One object: `format` "mocap-assist-joints", `version` 1, `frame_rate`, `units` ("m"), `up`
+    ("z"), `sensor` ("other"), `joints` (names), `frames`; each frame an object with
+    `positions`, one [x, y, z] or null per joint, and where known `states` (2, 1, 0),
+    `confidence` (0 to 1) and `time` (seconds). Without a frame rate frames are brought to a
+    constant rate by their times, where gaps stay gaps.
+
+    Parameters
+    ----------
+    path : Path or str
+    scale : float, metres per unit of the file, or None
+        None takes the file's word.
+    progress : Progress
+
+    Returns
+    -------
+    JointRecording
+
+    Raises
+    ------
+    InvalidFileError
+        The file is missing, damaged, cut short, or has no joints.
+    InvalidSettingError
+        The scale is not positive.
+    SolveCancelled
+        Raised by `progress`.
+    """
+    check_scale(scale)
+    said: dict[str, Any] = {}
+    names: list[str] = []
+    frames: list[Frame] = []
+    for member in json_members(path):
+        if member.key == "frames":
+            frames.append(_frame(member.value, f"{path}, frame {len(frames) + 1}"))
+            progress(0.9 * member.done, "Reading")
+        elif member.key == "joints":
+            names.append(str(member.value))
+        else:
+            said[member.key] = member.value
+    header = joint_header(said, str(path))
+    _check(names, frames, path)
+    times = np.array([frame.time for frame in frames])
+    if header.frame_rate is None and np.isnan(times).all():
+        raise InvalidFileError(
+            f"{path}: neither a frame_rate nor a time in each frame tells when it was seen."
+        )
+    positions = np.stack([frame.positions for frame in frames])
+    return told_recording(
+        path,
+        names,
+        header,
+        positions,
+        states=_stacked([frame.states for frame in frames]),
+        confidence=_stacked([frame.confidence for frame in frames]),
+        times=times,
+        scale=scale,
+        progress=progress,
+    )
+
+
+def write_joint_json(
+    recording: JointRecording, path: Path | str, *, progress: Progress = unwatched
+) -> None:
+    """Write joints as `read_joint_json` reads them, whole or not at all, a line per frame.
+
+    In metres, Z up, with all digits. What was not observed is null; reading gives it the
+    tracking state 0.
+
+    Parameters
+    ----------
+    recording : JointRecording
+    path : Path or str
+    progress : Progress
+
+    Raises
+    ------
+    InvalidMotionError
+        A joint's name has letters that cannot be written.
+    InvalidFileError
+        The file cannot be written.
+    SolveCancelled
+        Raised by `progress`.
+    """
+    tracks = recording.tracks
+    check_names(tracks.names)
+    said = {
+        "format": FORMAT, "version": VERSION, "frame_rate": tracks.frame_rate, "units": "m",
+        "up": "z", "sensor": recording.sensor.value, "joints": tracks.names,
+    }  # fmt: skip
+    with written_whole(path) as part, part.open("w", encoding="utf-8") as file:
+        file.write(json.dumps(said)[:-1] + ', "frames": [')
+        for frame, seen in enumerate(tracks.visible):
+            places = tracks.positions[frame].tolist()
+            line: dict[str, Any] = {
+                "positions": [
+                    place if known else None for place, known in zip(places, seen, strict=True)
+                ]
+            }
+            if recording.tracking_state is not None:
+                line["states"] = recording.tracking_state[frame].tolist()
+            if tracks.confidence is not None:
+                line["confidence"] = tracks.confidence[frame].tolist()
+            file.write(("," if frame else "") + "\n" + json.dumps(line))
+            progress((frame + 1) / tracks.n_frames, "Writing")
+        file.write("\n]}\n")
+
+
+def _frame(frame: Any, place: str) -> Frame:
+    listed = frame.get("positions") if isinstance(frame, dict) else None
+    if not isinstance(listed, list):
+        raise InvalidFileError(f"{place}: a list of positions belongs there.")
+    places = [UNSEEN if position is None else position for position in listed]
+    positions = numbers_of(places, (len(places), 3) if places else (0,), f"{place}, positions")
+    states, confidence = (
+        None
+        if frame.get(key) is None
+        else numbers_of(frame[key], (len(places),), f"{place}, {key}")
+        for key in ("states", "confidence")
+    )
+    time = float(numbers_of(frame.get("time"), (), f"{place}, time"))
+    return Frame(positions.reshape(-1, 3), states, confidence, time)
+
+
+def _check(names: list[str], frames: list[Frame], path: Path | str) -> None:
+    """Raise InvalidFileError unless each frame has a place for each of the joints."""
+    if not names or not frames:
+        raise InvalidFileError(f"{path} has no joints or no frames.")
+    if twice := [name for name, times in Counter(names).items() if times > 1]:
+        raise InvalidFileError(
+            f"{path}: more than one joint is called {shown(twice[0])!r}; names must differ."
+        )
+    for number, frame in enumerate(frames, start=1):
+        if len(frame.positions) != len(names):
+            raise InvalidFileError(
+                f"{path}, frame {number}: {len(frame.positions)} positions stand there for"
+                f" {len(names)} joints."
+            )
+
+
+def _stacked(values: list[NDArray[np.float64] | None]) -> NDArray[np.float64] | None:
+    """Return values of all frames; NaN in those without any; None if all are."""
+    given = next((value for value in values if value is not None), None)
+    if given is None:
+        return None
+    nothing = np.full_like(given, np.nan)
+    return np.asarray(np.stack([nothing if value is None else value for value in values]))

@@ -1,0 +1,111 @@
+"""Read tables of Kinect v2 joints: one line per frame, x, y, z and state of 25 joints."""
+
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ...errors import InvalidFileError
+from ...motion import JOINTS, JointRecording, Sensor
+from ...progress import Progress, unwatched, within
+from ..containers import LineReader, parted_by_blanks, stream_rows
+from ..conventions import USUAL_RATE, check_scale, from_kinect_space, joint_recording
+
+NAMES = JOINTS[Sensor.KINECT_V2]
+WITHOUT_TIME = 4 * len(NAMES)
+TICK = 1e-7
+"""Seconds in a unit of the sensor's clock."""
+
+
+def is_kinect_csv(head: bytes) -> bool:
+    """Tell from the first bytes."""
+    lines = head.split(b"\n")
+    first = next((line for line in lines if line.strip()), b"")
+    words = first.strip().removesuffix(b",").split(b",")
+    if len(words) not in {WITHOUT_TIME, WITHOUT_TIME + 1}:
+        return False
+    states = words[len(words) - WITHOUT_TIME :][3::4]
+    return {state.strip() for state in states} <= {b"0", b"1", b"2"}
+
+
+def read_kinect_csv(
+    path: Path | str,
+    *,
+    scale: float | None = None,
+    frame_rate: float = USUAL_RATE,
+    progress: Progress = unwatched,
+) -> JointRecording:
+    """Read a table of Kinect v2 joints, in metres, Z up; joints not tracked are NaN.
+
+    Each line holds x, y, z and tracking state of the 25 joints in the sensor's order, parted by
+    commas; before them may stand the time in ticks of 100 ns, as in the LabanotationSuite [1]_;
+    without, as in KIMORE [2]_, `frame_rate` counts. Frames with times are brought to a constant
+    rate; where frames were lost there is a gap. Blank lines do not count.
+
+    Parameters
+    ----------
+    path : Path or str
+    scale : float, metres per unit of the file, or None
+        None: metres.
+    frame_rate : float, hertz
+        Of a file without times.
+    progress : Progress
+
+    Returns
+    -------
+    JointRecording
+        The camera looks along +Y.
+
+    Raises
+    ------
+    InvalidFileError
+        The file is missing, damaged or has no joints.
+    InvalidSettingError
+        The scale is not positive.
+    SolveCancelled
+        Raised by `progress`.
+
+    References
+    ----------
+    .. [1] Ikeuchi, Ma, Yan, Kudoh, Nakamura (2018). Describing upper-body motions based on
+       Labanotation for learning-from-observation robots. IJCV 126.
+       doi:10.1007/s11263-018-1123-1
+    .. [2] Capecci et al. (2019). The KIMORE dataset. IEEE TNSRE 27(7).
+       doi:10.1109/TNSRE.2019.2923060
+    """
+    check_scale(scale)
+    reader = LineReader(path)
+    reader.pass_over_blank()
+    width = len(b"".join(map(_tidied, reader.peek())).split())
+    if width not in {WITHOUT_TIME, WITHOUT_TIME + 1}:
+        raise InvalidFileError(
+            f"{path} is no table of Kinect v2 joints: {WITHOUT_TIME} numbers belong in each"
+            f" line, or {WITHOUT_TIME + 1} with the time, not {width}."
+        )
+    rows = stream_rows(reader, width, path, within(progress, 0.0, 0.9), tidied=_tidied)
+    joints = rows[:, width - WITHOUT_TIME :].reshape(len(rows), len(NAMES), 4)
+    return joint_recording(
+        path,
+        NAMES,
+        from_kinect_space(joints[..., :3]),
+        Sensor.KINECT_V2,
+        states=checked_states(joints[..., 3], path),
+        times=rows[:, 0] * TICK if width > WITHOUT_TIME else None,
+        frame_rate=frame_rate,
+        scale=scale,
+        progress=progress,
+    )
+
+
+def _tidied(line: bytes) -> bytes:
+    return parted_by_blanks(line.strip().removesuffix(b","))
+
+
+def checked_states(values: NDArray[np.float64], path: Path | str) -> NDArray[np.int8]:
+    """Return tracking states as such; raises InvalidFileError where there are others."""
+    if not np.isin(values, (0.0, 1.0, 2.0)).all():
+        raise InvalidFileError(
+            f"{path} has tracking states other than 0, 1 and 2: it is damaged, or its columns"
+            " are not x, y, z and state."
+        )
+    return values.astype(np.int8)

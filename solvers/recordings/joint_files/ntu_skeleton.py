@@ -1,0 +1,177 @@
+"""Read the `.skeleton` files of NTU RGB+D: bodies of a Kinect v2 as text."""
+
+import re
+from pathlib import Path
+
+import numpy as np
+
+from ...errors import InvalidFileError
+from ...motion import JOINTS, JointRecording, Sensor
+from ...progress import Progress, unwatched, within
+from ..containers import read_bytes, read_rows
+from ..conventions import (
+    check_scale,
+    frames_of,
+    from_kinect_space,
+    joint_recording,
+    longest_seen,
+)
+from .kinect_csv import checked_states
+
+NAMES = JOINTS[Sensor.KINECT_V2]
+HEAD = re.compile(
+    rb"\s*\d+\s*\n\s*\d{1,2}[ \t]*\r?\n"
+    rb"(?:\s*\d{1,2}[ \t]*\r?\n)*(?:\s*\d+(?:[ \t]+[-+.\de]+){9}\s|\s*\Z)",
+    re.IGNORECASE,
+)
+BODY_WORDS, JOINT_WORDS = 10, 12
+MOST_BODIES = 6
+"""The Kinect v2 tracks no more."""
+Frames = list[dict[bytes, range]]
+
+
+def is_ntu_skeleton(head: bytes) -> bool:
+    """Tell from the first bytes: frames, bodies, and ten words about the first body."""
+    return HEAD.match(head) is not None
+
+
+def read_ntu_skeleton(
+    path: Path | str, *, scale: float | None = None, progress: Progress = unwatched
+) -> JointRecording:
+    """Read an NTU RGB+D `.skeleton` file [1]_, in metres, Z up; joints not tracked are NaN.
+
+    Of several bodies the one seen in most frames is taken, and of equals the one seen first;
+    bodies are told by their id, in whatever order they come. Frames without it are gaps. A body
+    that the sensor lost and found again under another id counts as two. Places in the pictures,
+    orientations, the states of the hands and the lean are not read. The files have no times;
+    the Kinect v2 gives 30 frames per second.
+
+    Parameters
+    ----------
+    path : Path or str
+    scale : float, metres per unit of the file, or None
+        None: metres.
+    progress : Progress
+
+    Returns
+    -------
+    JointRecording
+        All 25 joints of the Kinect v2 in its own order; the camera looks along +Y.
+
+    Raises
+    ------
+    InvalidFileError
+        The file is missing, damaged, cut short, or has no body.
+    InvalidSettingError
+        The scale is not positive.
+    SolveCancelled
+        Raised by `progress`.
+
+    References
+    ----------
+    .. [1] Shahroudy, Liu, Ng, Wang (2016). NTU RGB+D: a large scale dataset for 3D human
+       activity analysis. CVPR. doi:10.1109/CVPR.2016.115
+    """
+    check_scale(scale)
+    lines = read_bytes(path).splitlines()
+    places = [place for place, line in enumerate(lines) if line.strip()]
+    frames = _find_bodies(lines, places, path)
+    if not any(frames):
+        raise InvalidFileError(f"{path} has {len(frames)} frames but no body in any of them.")
+    body = longest_seen(frames)
+    used = [place for frame in frames for place in frame.get(body, ())]
+    rows = read_rows(
+        [lines[place] for place in used],
+        JOINT_WORDS,
+        path,
+        [place + 1 for place in used],
+        within(progress, 0.0, 0.9),
+    ).reshape(-1, len(NAMES), JOINT_WORDS)
+    tracked = iter(np.concatenate([rows[..., :3], rows[..., -1:]], axis=-1))
+    joints = frames_of(body, [{body: next(tracked)} if body in f else {} for f in frames])
+    unseen = np.isnan(joints).all(axis=(1, 2))
+    joints[unseen, :, 3] = 0.0
+    return joint_recording(
+        path,
+        NAMES,
+        from_kinect_space(joints[..., :3]),
+        Sensor.KINECT_V2,
+        states=checked_states(joints[..., 3], path),
+        scale=scale,
+        progress=progress,
+    )
+
+
+def _find_bodies(lines: list[bytes], places: list[int], path: Path | str) -> Frames:
+    """Return for each frame the lines of each body's joints."""
+    cursor = _Cursor(lines, places, path)
+    n_frames = cursor.count("the number of frames")
+    frames: Frames = []
+    while cursor.left:
+        frame: dict[bytes, range] = {}
+        for _ in range(cursor.count("the number of bodies", MOST_BODIES)):
+            body = cursor.words("a body's id and nine words about it", BODY_WORDS)[0]
+            n_joints = cursor.count("the number of joints")
+            if n_joints != len(NAMES):
+                raise cursor.error(f"{n_joints} joints, where {len(NAMES)} belong,")
+            frame.setdefault(body, cursor.skip(n_joints))
+        frames.append(frame)
+    if len(frames) < n_frames:
+        raise InvalidFileError(
+            f"{path} is cut short: it announces {n_frames} frames and has {len(frames)}."
+            " Copy it again, or write the true number into its first line."
+        )
+    return frames
+
+
+class _Cursor:
+    """Goes through the lines that are not blank."""
+
+    def __init__(self, lines: list[bytes], places: list[int], path: Path | str) -> None:
+        self._lines, self._places, self._path = lines, places, path
+        self._at = 0
+
+    @property
+    def left(self) -> int:
+        """Number of lines still to come."""
+        return len(self._places) - self._at
+
+    def words(self, what: str, n_words: int) -> list[bytes]:
+        """Return the words of the next line."""
+        if not self.left:
+            raise InvalidFileError(
+                f"{self._path} is cut short: it ends where {what} belongs. Copy it again."
+            )
+        words = self._lines[self._places[self._at]].split()
+        if len(words) != n_words:
+            raise self.error(f"not {what} but {len(words)} words")
+        self._at += 1
+        return words
+
+    def count(self, what: str, most: int = 10**9) -> int:
+        """Return the number that is the next line."""
+        (word,) = self.words(what, 1)
+        if not word.isdigit() or len(word) > 9 or int(word) > most:
+            self._at -= 1
+            raise self.error(f"something other than {what}")
+        return int(word)
+
+    def skip(self, n_lines: int) -> range:
+        """Pass over lines that follow each other; return where they are in the file."""
+        if self.left < n_lines:
+            raise InvalidFileError(
+                f"{self._path} is cut short: it ends within the joints of a body. Copy it"
+                " again."
+            )
+        taken = self._places[self._at : self._at + n_lines]
+        if taken[-1] - taken[0] != n_lines - 1:
+            raise self.error("a blank line among joints")
+        self._at += n_lines
+        return range(taken[0], taken[-1] + 1)
+
+    def error(self, found: str) -> InvalidFileError:
+        """Return the error that something is found in the next line, or the last one."""
+        place = self._places[min(self._at, len(self._places) - 1)]
+        return InvalidFileError(
+            f"{self._path}, line {place + 1}: {found} stands there. The file is damaged."
+        )

@@ -1,0 +1,97 @@
+"""Read UI-PRMD takes: a Kinect v2 and an optical system that saw the same exercise."""
+
+from pathlib import Path
+
+import numpy as np
+
+from ...errors import InvalidFileError
+from ...motion import JointRecording, Sensor, Tracks
+from ...motion.skeletons import UI_PRMD
+from ...progress import Progress, unwatched, within
+from ..containers import read_archive
+from ..conventions import check_scale, joint_recording
+
+NAMES = tuple(UI_PRMD)
+MARKERS = (
+    "LFHD", "RFHD", "LBHD", "RBHD", "C7", "T10", "CLAV", "STRN", "RBAK", "LSHO", "LUPA", "LELB",
+    "LFRM", "LWRA", "LWRB", "LFIN", "RSHO", "RUPA", "RELB", "RFRM", "RWRA", "RWRB", "RFIN",
+    "LASI", "RASI", "LPSI", "RPSI", "LTHI", "LKNE", "LTIB", "LANK", "LHEE", "LTOE", "RTHI",
+    "RKNE", "RTIB", "RANK", "RHEE", "RTOE",
+)  # fmt: skip
+KEYS = ("kinect", "markers", "unit_m", "frame_rate")
+
+
+def is_ui_prmd(head: bytes) -> bool:
+    """Tell from the first bytes: an archive that begins with the array of joints."""
+    return head[:4] == b"PK\x03\x04" and head[30:40] == b"kinect.npy"
+
+
+def read_ui_prmd(
+    path: Path | str, *, scale: float | None = None, progress: Progress = unwatched
+) -> JointRecording:
+    """Read what the Kinect saw in a UI-PRMD take [1]_: `read_ui_prmd_pair` without markers."""
+    return read_ui_prmd_pair(path, scale=scale, progress=progress)[0]
+
+
+def read_ui_prmd_pair(
+    path: Path | str, *, scale: float | None = None, progress: Progress = unwatched
+) -> tuple[JointRecording, Tracks]:
+    """Read a UI-PRMD take [1]_ kept as `.npz`: Kinect joints and optical markers, in metres.
+
+    Both are in the same world, Z up, and frame by frame at the same time, as they were aligned
+    when the archive was made (keys kinect, markers, unit_m, frame_rate). Which way the actor
+    faces is not changed. What lies exactly at the origin was not observed and is NaN. The set
+    keeps no tracking state.
+
+    Parameters
+    ----------
+    path : Path or str
+    scale : float, metres per unit of the file, or None
+        None takes the file's word (unit_m).
+    progress : Progress
+
+    Returns
+    -------
+    JointRecording, Tracks
+        22 joints and 39 markers, of equal length and frame rate.
+
+    Raises
+    ------
+    InvalidFileError
+        The file is missing, damaged, or holds other arrays.
+    InvalidSettingError
+        The scale is not positive.
+    SolveCancelled
+        Raised by `progress`.
+
+    References
+    ----------
+    .. [1] Vakanski, Jun, Paul, Baker (2018). A data set of human body movements for physical
+       rehabilitation exercises. Data 3(1). doi:10.3390/data3010002
+    """
+    check_scale(scale)
+    kinect, markers, unit, frame_rate = read_archive(path, KEYS)
+    n_frames = len(kinect) if kinect.ndim else 0
+    shapes = ((n_frames, len(NAMES), 3), (n_frames, len(MARKERS), 3), (), ())
+    found = tuple(array.shape for array in (kinect, markers, unit, frame_rate))
+    if found != shapes or not (0.0 < unit < np.inf and 0.0 < frame_rate < np.inf):
+        raise InvalidFileError(
+            f"{path} holds arrays of shapes {', '.join(map(str, found))}; a UI-PRMD take has"
+            f" {len(NAMES)} joints and {len(MARKERS)} markers in as many frames, a unit and a"
+            " frame rate."
+        )
+    metres = float(unit) if scale is None else scale
+    recording = joint_recording(
+        path,
+        NAMES,
+        kinect,
+        Sensor.KINECT_V2,
+        frame_rate=float(frame_rate),
+        scale=metres,
+        progress=within(progress, 0.0, 0.9),
+    )
+    unseen = (markers == 0.0).all(axis=-1) | ~np.isfinite(markers).all(axis=-1)
+    positions = np.where(unseen[..., None], np.nan, markers * metres)
+    tracks = Tracks(MARKERS, positions, float(frame_rate))
+    progress(1.0, "Reading")
+    return recording, tracks

@@ -1,0 +1,239 @@
+"""Read Acclaim recordings (AMC with the ASF of the actor): CMU's library and HDM05."""
+
+import re
+from collections import defaultdict
+from collections.abc import Mapping
+from pathlib import Path
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ...errors import InvalidFileError, InvalidSettingError
+from ...motion import Motion, Skeleton
+from ...progress import Progress, unwatched, within
+from ...rotations import inverse, multiply, quaternion_from_euler
+from ..containers import Block, LineReader, read_some_rows, shown
+from ..conventions import check_scale, turns_z_up_from_y_up, z_up_from_y_up
+from .acclaim_skeleton import AcclaimBone, AcclaimSkeleton, read_acclaim_skeleton
+
+LINES_OF_HEAD = 100
+RADIANS = re.compile(rb"^[ \t]*:RADIANS", re.MULTILINE | re.IGNORECASE)
+
+
+def read_acclaim(
+    amc_path: Path | str,
+    asf_path: Path | str | None = None,
+    *,
+    frame_rate: float = 120.0,
+    scale: float | None = None,
+    progress: Progress = unwatched,
+) -> Motion:
+    """Read an AMC file and the ASF file of its actor, turned from Y up to Z up.
+
+    In these files a rotation belongs to a bone and is given about the bone's own axes C: with
+    M the turn that is recorded, C M C^-1 turns the bone in rest-pose axes [1]_. Here each bone
+    becomes a joint of the same name that lies where the bone starts, and the last bone of a
+    branch gets an end site. Bones that the recording never mentions stay at rest; a bone that
+    single frames leave out has a gap (NaN) there. CMU's and HDM05's files leave out one of the
+    three angles of the feet, whose toes stray by some centimetres when the ankle bends far.
+
+    Parameters
+    ----------
+    amc_path : Path or str
+    asf_path : Path, str or None
+        None looks beside the AMC file: for the same name, or else for the longest name that
+        the recording's own name starts with.
+    frame_rate : float, hertz
+        AMC files do not say theirs. CMU and HDM05 were recorded at 120 Hz.
+    scale : float, metres per unit of the files, or None
+        None takes it from the ASF file's `length`: 0.0254 / length.
+    progress : Progress
+
+    Returns
+    -------
+    Motion
+
+    Raises
+    ------
+    InvalidFileError
+        A file is missing or damaged, or the two do not belong together.
+    InvalidSettingError
+        The frame rate or scale is not positive.
+    SolveCancelled
+        Raised by `progress`.
+
+    References
+    ----------
+    .. [1] Lander (1998). Working with motion capture file formats. Game Developer, January.
+    """
+    check_scale(scale)
+    if not (np.isfinite(frame_rate) and frame_rate > 0.0):
+        raise InvalidSettingError(f"A frame rate of {frame_rate} Hz is not positive.")
+    skeleton = read_acclaim_skeleton(find_skeleton(amc_path) if asf_path is None else asf_path)
+    reader = LineReader(amc_path)
+    in_radians = RADIANS.search(b"\n".join(reader.peek(LINES_OF_HEAD)))
+    angle_unit = 1.0 if in_radians else skeleton.angle_unit
+    recorded = _recorded(reader, skeleton, amc_path, within(progress, 0.0, 0.7))
+    return _motion(
+        skeleton, recorded, frame_rate, scale, angle_unit, within(progress, 0.7, 1.0)
+    )
+
+
+def find_skeleton(amc_path: Path | str) -> Path:
+    """Return the ASF file beside a recording that its name belongs to.
+
+    Raises
+    ------
+    InvalidFileError
+        There is none, or the folder is missing or may not be read.
+    """
+    amc_path = Path(amc_path)
+    try:
+        others = sorted(amc_path.parent.iterdir())
+    except OSError as error:
+        raise InvalidFileError(
+            f"The folder {amc_path.parent} cannot be searched for the skeleton of"
+            f" {amc_path.name} ({error.strerror}). Name the .asf file, or move both."
+        ) from None
+    beside = [path for path in others if _is_for(path, amc_path)]
+    if not beside:
+        raise InvalidFileError(
+            f"There is no skeleton for {amc_path}: put the actor's .asf file beside it, under"
+            " the same name or the beginning of it."
+        )
+    return max(beside, key=lambda path: len(path.stem))
+
+
+def _is_for(path: Path, amc_path: Path) -> bool:
+    return path.suffix.lower() == ".asf" and amc_path.stem.startswith(path.stem)
+
+
+class _Mentions(NamedTuple):
+    """What some lines say of one bone."""
+
+    frames: NDArray[np.intp]
+    rows: NDArray[np.float64]
+    """Shape (n, n_channels)."""
+
+
+def _recorded(
+    reader: LineReader, skeleton: AcclaimSkeleton, path: Path | str, progress: Progress
+) -> dict[str, NDArray[np.float64]]:
+    """Return what is recorded of each bone, shape (n_frames, n_channels), by its name."""
+    known = {bone.name.encode(): bone for bone in skeleton.bones}
+    found: dict[bytes, list[_Mentions]] = {}
+    n_frames = 0
+    for block in reader.rest():
+        frame_lines, mentions = _mentions(block, n_frames > 0, path)
+        if strange := [
+            shown(name.decode("ascii", "backslashreplace")) for name in mentions.keys() - known
+        ]:
+            raise InvalidFileError(
+                f"{path} moves bones that its skeleton does not have: {', '.join(strange[:5])}."
+                " It belongs to another .asf file, or is damaged."
+            )
+        for name, numbers in mentions.items():
+            texts = [
+                block.lines[number - block.first].lstrip()[len(name) :] for number in numbers
+            ]
+            rows = read_some_rows(texts, len(known[name].channels), path, numbers)
+            frames = np.searchsorted(frame_lines, numbers) - 1 + n_frames
+            found.setdefault(name, []).append(_Mentions(frames, rows))
+        n_frames += len(frame_lines)
+        progress(block.stop, "Reading")
+    if not found:
+        raise InvalidFileError(f"{path} is no Acclaim recording: nothing moves in it.")
+    return {known[name].name: _table(parts, n_frames) for name, parts in found.items()}
+
+
+def _table(parts: list[_Mentions], n_frames: int) -> NDArray[np.float64]:
+    """Return a row for each frame, NaN where a bone is left out; empties the list."""
+    table = np.full((n_frames, parts[0].rows.shape[1]), np.nan)
+    parts.reverse()
+    while parts:
+        frames, rows = parts.pop()
+        table[frames] = rows
+    return table
+
+
+def _mentions(
+    block: Block, begun: bool, path: Path | str
+) -> tuple[list[int], dict[bytes, list[int]]]:
+    """Return the lines with a frame number, and those that begin with each bone's name.
+
+    Lines are counted from 1. Nothing may be said of a bone before the first frame has `begun`.
+    """
+    frame_lines: list[int] = []
+    mentions: defaultdict[bytes, list[int]] = defaultdict(list)
+    for number, line in enumerate(block.lines, start=block.first):
+        words = line.split(None, 1)
+        if not words or words[0][:1] in b"#:":
+            continue
+        if len(words) == 1 and words[0].isdigit():
+            frame_lines.append(number)
+        elif (begun or frame_lines) and len(words) == 2:
+            mentions[words[0]].append(number)
+        else:
+            raise InvalidFileError(
+                f"{path}, line {number}: a frame number or a bone with its angles belongs here."
+                " The file is damaged, cut short or no Acclaim recording."
+            )
+    return frame_lines, mentions
+
+
+def _motion(
+    skeleton: AcclaimSkeleton,
+    recorded: dict[str, NDArray[np.float64]],
+    frame_rate: float,
+    scale: float | None,
+    angle_unit: float,
+    progress: Progress,
+) -> Motion:
+    """Turn what is recorded into a motion; it is emptied, not to be in memory twice."""
+    n_frames = len(next(iter(recorded.values())))
+    scale = skeleton.unit if scale is None else scale
+    names, parents, offsets = _joints(skeleton)
+    rotations = np.zeros((n_frames, len(names), 4))
+    rotations[..., 0] = 1.0
+    place = np.tile(skeleton.position, (n_frames, 1))
+    for joint, bone in enumerate(skeleton.bones):
+        if bone.name not in recorded:
+            continue
+        columns = dict(zip(bone.channels, recorded.pop(bone.name).T, strict=True))
+        turns = _turns(bone, columns, angle_unit)
+        rotations[:, joint] = turns_z_up_from_y_up(turns)
+        if joint == 0:
+            for axis, letter in enumerate("xyz"):
+                place[:, axis] = columns.get(f"t{letter}", place[:, axis])
+        progress((joint + 1) / len(skeleton.bones), "Reading")
+    rest = Skeleton(names, parents, scale * z_up_from_y_up(offsets))
+    return Motion(rest, rotations, scale * z_up_from_y_up(place), frame_rate)
+
+
+def _joints(
+    skeleton: AcclaimSkeleton,
+) -> tuple[tuple[str, ...], tuple[int, ...], NDArray[np.float64]]:
+    """Return names, parents and offsets, Y up, of the bones' starts and of the last ends."""
+    names = [bone.name for bone in skeleton.bones]
+    parents = list(skeleton.parents)
+    offsets = [skeleton.position]
+    offsets += [skeleton.bones[parent].vector for parent in parents[1:]]
+    for last in sorted(set(range(len(names))) - set(parents)):
+        names.append(f"{names[last]}_end")
+        parents.append(last)
+        offsets.append(skeleton.bones[last].vector)
+    return tuple(names), tuple(parents), np.array(offsets)
+
+
+def _turns(
+    bone: AcclaimBone, columns: Mapping[str, NDArray[np.float64]], angle_unit: float
+) -> NDArray[np.float64]:
+    """Return C M C^-1 as quaternions, shape (n_frames, 4), in the file's axes."""
+    n_frames = len(next(iter(columns.values())))
+    order = bone.order[::-1]  # The axis that is turned about first stands last in a product.
+    still = np.zeros(n_frames)
+    angles = np.stack([columns.get(f"r{axis.lower()}", still) for axis in order], axis=-1)
+    turned = quaternion_from_euler(angle_unit * angles, order)
+    turned[np.isnan(turned).any(axis=-1)] = np.nan
+    return multiply(multiply(bone.frame, turned), inverse(bone.frame))

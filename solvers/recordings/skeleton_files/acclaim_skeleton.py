@@ -1,0 +1,217 @@
+"""Read Acclaim skeletons (ASF): the bones that the numbers of an AMC file turn."""
+
+import re
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from typing import NoReturn
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ...errors import InvalidFileError
+from ...rotations import quaternion_from_euler
+from ..containers import read_bytes, shown
+from ..conventions import PLAUSIBLE_REACH, guess_unit, longest_way
+
+INCH = 0.0254
+ROOT = "root"
+BRACKETS = re.compile(r"\(([^()]*)\)")
+CHANNELS = {f"{kind}{axis}" for kind in "rt" for axis in "xyz"} | {"l"}
+
+
+@dataclass(frozen=True, eq=False)
+class AcclaimBone:
+    """A bone as the file has it, Y up; a joint of the same name lies where it starts."""
+
+    name: str
+    vector: NDArray[np.float64]
+    """From start to end in the rest pose, shape (3,), in units of the file."""
+    frame: NDArray[np.float64]
+    """The axes about which it turns, as a quaternion w x y z, shape (4,)."""
+    order: str
+    """Axis that is turned about first, second, third."""
+    channels: tuple[str, ...]
+    """What the AMC file records of it, such as `rx`, `rz`."""
+    limits: Mapping[str, tuple[float, float]]
+    """Lowest and highest of these channels, where the file says them, in its own units."""
+
+
+@dataclass(frozen=True, eq=False)
+class AcclaimSkeleton:
+    """Bones in an order in which parents come first; the root is the first."""
+
+    bones: tuple[AcclaimBone, ...]
+    parents: tuple[int, ...]
+    position: NDArray[np.float64]
+    """Where the root rests, shape (3,)."""
+    angle_unit: float
+    """Radians in one unit of an angle."""
+    unit: float
+    """Metres in one unit of a length."""
+
+
+def read_acclaim_skeleton(path: Path | str) -> AcclaimSkeleton:
+    """Read an ASF file.
+
+    Raises
+    ------
+    InvalidFileError
+        The file is missing, damaged, or no Acclaim skeleton.
+    """
+    return _SkeletonFile(path).skeleton()
+
+
+class _SkeletonFile:
+    """The lines of an ASF file under their headings, and what they mean."""
+
+    def __init__(self, path: Path | str) -> None:
+        self.path = path
+        self.line = 0
+        self.sections: dict[str, list[tuple[int, list[str]]]] = {}
+        heading: list[tuple[int, list[str]]] = []
+        for number, line in enumerate(read_bytes(path).splitlines(), start=1):
+            words = line.split(b"#")[0].decode("utf-8", "replace").split()
+            if words and words[0].startswith(":"):
+                heading = self.sections.setdefault(words[0].lower(), [])
+            elif words:
+                heading.append((number, words))
+        for name in (":root", ":bonedata", ":hierarchy"):
+            if name not in self.sections:
+                raise InvalidFileError(f"{path} is no Acclaim skeleton: it has no {name} part.")
+
+    def skeleton(self) -> AcclaimSkeleton:
+        units = {words[0].lower(): words[1:] for words in self._lines(":units")}
+        in_degrees = units.get("angle", ["deg"])[:1] != ["rad"]
+        angle_unit = np.pi / 180.0 if in_degrees else 1.0
+        described = {words[0].lower(): words[1:] for words in self._lines(":root")}
+        position = self._vector(described.get("position", ["0", "0", "0"]))
+        root = self._bone(ROOT, {**_as_bone(described), "direction": ["0"] * 3}, angle_unit)
+        bones = {ROOT: root}
+        for entries in self._entries():
+            name = " ".join(entries.get("name", []))
+            if not name or name in bones:
+                self._refuse(f"a bone has no name or a name that is taken ({shown(name)!r})")
+            bones[name] = self._bone(name, entries, angle_unit)
+        ordered, parents = self._hierarchy(bones)
+        unit = self._unit(ordered, parents, units)
+        return AcclaimSkeleton(tuple(ordered), tuple(parents), position, angle_unit, unit)
+
+    def _entries(self) -> Iterator[dict[str, list[str]]]:
+        """Yield what stands between `begin` and `end` of each bone, by its first word."""
+        entries: dict[str, list[str]] = {}
+        for words in self._lines(":bonedata"):
+            keyword = words[0].lower()
+            if keyword == "begin":
+                entries = {}
+            elif keyword == "end":
+                yield entries
+            elif keyword.startswith("("):  # A bone has a line of limits for each channel.
+                entries["limits"] = entries.get("limits", []) + words
+            else:
+                entries[keyword] = words[1:]
+
+    def _bone(
+        self, name: str, entries: Mapping[str, list[str]], angle_unit: float
+    ) -> AcclaimBone:
+        direction = self._vector(entries.get("direction", []))
+        length = self._numbers(entries.get("length", ["0"]), 1)[0]
+        axis = entries.get("axis", ["0", "0", "0"])
+        order = axis[3].upper() if len(axis) > 3 else "XYZ"
+        if sorted(order) != ["X", "Y", "Z"]:
+            self._refuse(f"{shown(name)} turns about the axes {shown(order)!r}")
+        angles = dict(zip("XYZ", self._vector(axis[:3]) * angle_unit, strict=True))
+        applied_last_first = order[::-1]
+        frame = quaternion_from_euler(
+            [angles[letter] for letter in applied_last_first], applied_last_first
+        )
+        channels = tuple(word.lower() for word in entries.get("dof", []))
+        if not set(channels) <= CHANNELS or len(set(channels)) != len(channels):
+            self._refuse(
+                f"{shown(name)} has the degrees of freedom {shown(' '.join(channels))!r}"
+            )
+        limits = self._limits(name, entries.get("limits", []), channels)
+        return AcclaimBone(name, direction * length, frame, order, channels, limits)
+
+    def _limits(
+        self, name: str, words: list[str], channels: tuple[str, ...]
+    ) -> dict[str, tuple[float, float]]:
+        """Return what stands in the brackets, in the order of the channels."""
+        pairs = BRACKETS.findall(" ".join(words))
+        if len(pairs) > len(channels):
+            self._refuse(f"{shown(name)} has more limits than degrees of freedom")
+        found = {}
+        for channel, pair in zip(channels, pairs, strict=False):
+            try:
+                low, high = (float(bound) for bound in pair.replace(",", " ").split())
+            except ValueError:
+                low, high = np.inf, -np.inf
+            if not low <= high:
+                self._refuse(f"{shown(name)} has the limits {shown(pair)!r}")
+            found[channel] = low, high
+        return found
+
+    def _hierarchy(
+        self, bones: Mapping[str, AcclaimBone]
+    ) -> tuple[list[AcclaimBone], list[int]]:
+        below: dict[str, list[str]] = {}
+        for name, *children in self._lines(":hierarchy"):
+            if name not in {"begin", "end"}:
+                below.setdefault(name, []).extend(children)
+        ordered, parents, waiting = [], [], [(ROOT, -1)]
+        met = {ROOT}
+        while waiting:
+            name, parent = waiting.pop()
+            if name not in bones:
+                self._refuse(
+                    f"the hierarchy names a bone {shown(name)!r} that is not described"
+                )
+            ordered.append(bones[name])
+            parents.append(parent)
+            children = below.get(name, [])
+            if met & set(children):
+                self._refuse(f"a bone below {shown(name)} stands in the hierarchy twice")
+            met |= set(children)
+            waiting.extend((child, len(ordered) - 1) for child in reversed(children))
+        return ordered, parents
+
+    def _unit(
+        self, bones: list[AcclaimBone], parents: list[int], units: Mapping[str, list[str]]
+    ) -> float:
+        """Return metres per unit: inches divided by the file's own factor, if that can be."""
+        vectors = np.array([bone.vector for bone in bones])
+        factor = self._numbers(units.get("length", ["1"]), 1)[0]
+        unit = INCH / factor if factor > 0.0 else 0.0
+        low, high = PLAUSIBLE_REACH
+        if low <= longest_way(parents, vectors) * unit <= high:
+            return unit
+        return guess_unit(parents, vectors)
+
+    def _lines(self, section: str) -> Iterator[list[str]]:
+        for number, words in self.sections.get(section, []):
+            self.line = number
+            yield words
+
+    def _vector(self, words: list[str]) -> NDArray[np.float64]:
+        return np.array(self._numbers(words, 3))
+
+    def _numbers(self, words: list[str], count: int) -> list[float]:
+        try:
+            values = [float(word) for word in words[:count]]
+        except ValueError:
+            values = []
+        if len(values) != count or not all(abs(value) < 1e9 for value in values):
+            self._refuse(f"{count} numbers belong where {shown(' '.join(words))!r} stands")
+        return values
+
+    def _refuse(self, what: str) -> NoReturn:
+        raise InvalidFileError(
+            f"{self.path}, near line {self.line}: {what}. The skeleton file is damaged; take"
+            " another copy."
+        )
+
+
+def _as_bone(root: Mapping[str, list[str]]) -> dict[str, list[str]]:
+    """Return the root's description with the keywords that bones have."""
+    orientation = root.get("orientation", ["0", "0", "0"])
+    return {"axis": orientation[:3] + root.get("axis", ["XYZ"]), "dof": root.get("order", [])}

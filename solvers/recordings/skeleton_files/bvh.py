@@ -1,0 +1,124 @@
+"""Read BVH files: the format that most capture software and libraries of clips exchange."""
+
+from decimal import Decimal, InvalidOperation
+from pathlib import Path
+from typing import Literal
+
+from ...errors import InvalidFileError
+from ...motion import Motion
+from ...progress import Progress, unwatched, within
+from ..containers import LineReader, stream_rows
+from ..conventions import check_scale
+from .bvh_channels import BvhChannels, motion_of_poses
+from .bvh_hierarchy import read_hierarchy
+
+USUAL_RATES = (24, 25, 30, 48, 50, 60, 90, 100, 120, 200, 240)
+RATE_WITHOUT_FRAME_TIME = 30.0
+MOST_BLANK_LINES = 4096
+LONGEST_HIERARCHY = 1 << 24
+"""Characters."""
+
+
+def read_bvh(
+    path: Path | str,
+    *,
+    scale: float | None = None,
+    up: Literal["Y", "Z"] | None = None,
+    progress: Progress = unwatched,
+) -> Motion:
+    """Read a BVH file, turned from Y up, facing +Z, to Z up, facing -Y.
+
+    The rest pose is the file's. The number of frames is that of the rows present, whatever
+    the file claims; a missing frame time means 30 Hz; values that are not numbers are gaps.
+
+    A `Motion` has bones of fixed length, so position channels beyond the root's are rendered
+    as nearly as it can: below a root with a single child, which then carries the body, they
+    move the root; their median stands in place of the joint's OFFSET; and a joint with a
+    single child turns towards it. Channels that would shrink the skeleton to a point are
+    added to the OFFSET instead.
+
+    Parameters
+    ----------
+    path : Path or str
+    scale : float, metres per unit of the file, or None
+        None guesses it from the length of the bones (`axes.guess_unit`): centimetres for most
+        files, 0.0254 / 0.45 for those made from CMU's library.
+    up : "Y", "Z" or None
+        None means Y, as the format has it, unless the skeleton would lie on its face: Blender
+        writes its own axes, with Z up.
+    progress : Progress
+
+    Returns
+    -------
+    Motion
+        Names are unique (`hand`, `hand_2`); end sites are joints `<parent>_end`.
+
+    Raises
+    ------
+    InvalidFileError
+        The file is missing, no BVH, damaged, cut short or without a frame.
+    InvalidSettingError
+        The scale is not positive.
+    SolveCancelled
+        Raised by `progress`.
+    """
+    check_scale(scale)
+    reader = LineReader(path)
+    joints = read_hierarchy(_hierarchy(reader, path), path)
+    frame_rate = _frame_rate(reader)
+    width = sum(len(joint.channels) for joint in joints)
+    if not width:
+        raise InvalidFileError(f"{path} has no CHANNELS, so nothing in it moves.")
+    rows = stream_rows(reader, width, path, within(progress, 0.0, 0.7))
+    if not len(rows):
+        raise InvalidFileError(f"{path} has no frames: nothing follows its Frame Time.")
+    poses = BvhChannels(joints, rows).poses(within(progress, 0.7, 1.0))
+    del rows
+    return motion_of_poses(joints, poses, frame_rate, scale, up)
+
+
+def _hierarchy(reader: LineReader, path: Path | str) -> bytes:
+    """Take the lines down to the word MOTION; return those before it."""
+    lines: list[bytes] = []
+    while (line := reader.peek()) and not line[0].strip() and len(lines) < MOST_BLANK_LINES:
+        lines += reader.take()
+    if not b"".join(line).lstrip().upper().startswith(b"HIERARCHY"):
+        raise InvalidFileError(f"{path} is no BVH file: it does not begin with HIERARCHY.")
+    length = 0
+    while (line := reader.take()) and length < LONGEST_HIERARCHY:
+        if line[0].strip(b" \t").upper() == b"MOTION":
+            return b"\n".join(lines)
+        lines += line
+        length += len(line[0])
+    raise InvalidFileError(f"{path} has no MOTION part: it is cut short. Export it again.")
+
+
+def _frame_rate(reader: LineReader) -> float:
+    """Take the lines before the first frame; return the rate in hertz."""
+    rate = RATE_WITHOUT_FRAME_TIME
+    while line := reader.peek():
+        words = line[0].lower().replace(b":", b" ").split()
+        if words[:2] == [b"frame", b"time"] and len(words) == 3:
+            rate = _rate_from_time(words[2].decode("ascii", "replace"))
+        elif words and not words[0].startswith(b"frame"):
+            break
+        reader.take()
+    return rate
+
+
+def _rate_from_time(word: str) -> float:
+    """Return the usual rate whose frame time rounds to `word`: 0.00833333 means 120 Hz."""
+    try:
+        exact = Decimal(word.replace(",", "."))
+        time = float(exact)
+    except InvalidOperation:
+        return RATE_WITHOUT_FRAME_TIME
+    if not 1e-5 < time < 1e3:
+        return RATE_WITHOUT_FRAME_TIME
+    whole = round(1.0 / time)
+    half_digit = 0.51 * 10.0 ** int(exact.as_tuple().exponent)
+    usual = [(rate, half_digit) for rate in USUAL_RATES]
+    for rate, tolerance in [(whole, 1e-12), *usual, (whole, min(half_digit, 1e-8))]:
+        if rate and abs(1.0 / rate - time) <= tolerance:
+            return float(rate)
+    return 1.0 / time

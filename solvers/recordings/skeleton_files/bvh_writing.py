@@ -1,0 +1,141 @@
+"""Write BVH files that Blender, MotionBuilder and Maya read."""
+
+import re
+from collections.abc import Collection, Iterator
+from pathlib import Path
+
+import numpy as np
+
+from ...errors import InvalidMotionError, InvalidSettingError
+from ...files import written_whole
+from ...motion import Motion, Skeleton
+from ...progress import Progress, unwatched
+from ...rotations import euler_from_quaternion, unwrap_euler
+from ..conventions import CENTIMETRE, turns_y_up_from_z_up, y_up_from_z_up
+
+ORDERS = ("XYZ", "XZY", "YXZ", "YZX", "ZXY", "ZYX")
+FRAMES_AT_ONCE = 500
+SAME_TURN = 1e-9
+TAB = "\t"
+
+
+def write_bvh(
+    motion: Motion,
+    path: Path | str,
+    *,
+    scale: float = CENTIMETRE,
+    order: str = "ZXY",
+    progress: Progress = unwatched,
+) -> None:
+    """Write a motion as a BVH file, Y up, facing +Z, whole or not at all.
+
+    Angles are continuous in time and have six decimals. Joints that are called
+    `<parent>_end` and never turn become end sites; spaces in names become underscores.
+
+    Parameters
+    ----------
+    motion : Motion
+        Without gaps: BVH cannot say "not observed", and other programs stumble over NaN.
+    path : Path or str
+    scale : float, metres per unit of the file
+    order : str
+        Order of the rotation channels.
+    progress : Progress
+
+    Raises
+    ------
+    InvalidMotionError
+        The motion has gaps.
+    InvalidSettingError
+        The scale is not positive, or there is no such order of axes.
+    InvalidFileError
+        The file cannot be written.
+    SolveCancelled
+        Raised by `progress`; the file is as it was.
+    """
+    if order not in ORDERS or not (np.isfinite(scale) and scale > 0.0):
+        raise InvalidSettingError(
+            f"BVH needs a positive scale (not {scale}) and one of the orders"
+            f" {', '.join(ORDERS)} (not {order})."
+        )
+    _refuse_gaps(motion)
+    turning = [joint for joint in _depth_first(motion.skeleton) if not _is_end(motion, joint)]
+    rotations = turns_y_up_from_z_up(motion.rotations[:, turning])
+    angles = np.degrees(unwrap_euler(euler_from_quaternion(rotations, order)))
+    places = y_up_from_z_up(motion.root_positions) / scale
+    rows = np.concatenate([places, angles.reshape(motion.n_frames, -1)], axis=1)
+    rows = np.round(rows, 6) + 0.0  # No "-0.000000".
+    row_format = " ".join(["%.6f"] * rows.shape[1]) + "\n"
+    with written_whole(path) as part, part.open("w", encoding="utf-8", newline="\n") as file:
+        file.write("HIERARCHY\n")
+        file.writelines(_hierarchy(motion.skeleton, turning, scale, order))
+        file.write(f"MOTION\nFrames: {motion.n_frames}\nFrame Time: {motion.dt:.10f}\n")
+        for start in range(0, len(rows), FRAMES_AT_ONCE):
+            block = rows[start : start + FRAMES_AT_ONCE]
+            file.write("".join([row_format % tuple(row) for row in block.tolist()]))
+            progress(min(1.0, (start + FRAMES_AT_ONCE) / len(rows)), "Writing")
+
+
+def _refuse_gaps(motion: Motion) -> None:
+    gaps = ~motion.observed
+    if gaps.any():
+        joints = [motion.skeleton.names[joint] for joint in np.flatnonzero(gaps.any(axis=0))]
+        named = ", ".join(joints[:5]) + (", ..." if len(joints) > 5 else "")
+        raise InvalidMotionError(
+            f"{len(joints)} joints have gaps ({named}; the first at frame"
+            f" {np.flatnonzero(gaps.any(axis=1))[0]}), and BVH has no way to say so. Fill the"
+            " gaps first with Clean (denoise)."
+        )
+
+
+def _is_end(motion: Motion, joint: int) -> bool:
+    """Whether the joint can be written as an end site and come back as it is."""
+    skeleton = motion.skeleton
+    return (
+        joint > 0
+        and skeleton.is_end_site(joint)
+        and skeleton.names[joint] == f"{skeleton.names[skeleton.parents[joint]]}_end"
+        and bool((np.abs(motion.rotations[:, joint, 1:]) < SAME_TURN).all())
+        and bool(skeleton.offsets[joint].any())
+    )
+
+
+def _depth_first(skeleton: Skeleton) -> list[int]:
+    """Return all joints as BVH lists them: each followed by all that is below it."""
+    order, waiting = [], [0]
+    while waiting:
+        order.append(waiting.pop())
+        waiting.extend(reversed(skeleton.children[order[-1]]))
+    return order
+
+
+def _hierarchy(
+    skeleton: Skeleton, turning: Collection[int], scale: float, order: str
+) -> Iterator[str]:
+    """Yield the lines of the first part, with `turning` as joints and the others as ends."""
+    offsets = y_up_from_z_up(skeleton.offsets) / scale + 0.0
+    rotations = " ".join(f"{axis}rotation" for axis in order)
+    places = "Xposition Yposition Zposition"
+    level = 0
+    for joint in _depth_first(skeleton):
+        for above in range(level, int(skeleton.depths[joint]), -1):
+            yield TAB * (above - 1) + "}\n"
+        level = int(skeleton.depths[joint])
+        name = re.sub(r"[\s{}]+", "_", skeleton.names[joint]) or "joint"
+        title = f"JOINT {name}" if joint else f"ROOT {name}"
+        x, y, z = offsets[joint]
+        lines = [
+            title if joint in turning else "End Site",
+            "{",
+            f"\tOFFSET {x:.6f} {y:.6f} {z:.6f}",
+        ]
+        if joint in turning:
+            lines.append(
+                f"\tCHANNELS 3 {rotations}" if joint else f"\tCHANNELS 6 {places} {rotations}"
+            )
+            if not skeleton.children[joint]:  # Many programs insist on an end of every branch.
+                lines += ["\tEnd Site", "\t{", "\t\tOFFSET 0 0 0", "\t}"]
+        yield "".join(f"{TAB * level}{line}\n" for line in lines)
+        level += 1
+    for above in range(level, 0, -1):
+        yield TAB * (above - 1) + "}\n"

@@ -1,0 +1,38 @@
+"""What a library keeps of a clip: little, and fit to be sent from another process."""
+
+from dataclasses import dataclass
+
+from ...errors import InvalidMotionError
+from ...motion import JointRecording
+from ..postures import ClipPostures, clip_postures
+from .clip import Clip, ClipEntry
+from .segments import RATE
+
+
+@dataclass(frozen=True, eq=False)
+class DescribedClip:
+    """A clip as a library keeps it."""
+
+    entry: ClipEntry
+    postures: ClipPostures
+    """At 20 Hz."""
+
+
+def describe_clip(clip: Clip) -> DescribedClip:
+    """Describe a clip for a library.
+
+    Raises
+    ------
+    InvalidMotionError
+        It shows no body; the sentence begins with its name.
+    """
+    recording = clip.recording
+    frames = recording.tracks if isinstance(recording, JointRecording) else recording
+    try:
+        postures = clip_postures(recording, RATE)
+    except InvalidMotionError as error:
+        raise InvalidMotionError(f"{clip.name}: {error}") from None
+    return DescribedClip(
+        ClipEntry(clip.name, clip.tags, clip.origin, frames.n_frames, frames.frame_rate),
+        postures,
+    )

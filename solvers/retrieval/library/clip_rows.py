@@ -1,0 +1,175 @@
+"""The clips of a library as rows of its database, one for each."""
+
+import json
+import sqlite3
+from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
+from dataclasses import replace
+from functools import lru_cache
+from itertools import count
+from typing import Any
+
+import numpy as np
+
+from ...errors import InvalidMotionError
+from ...json_text import parse_json
+from ...motion.skeletons import check_frame_rate
+from ..index import RATE, ClipEntry, DescribedClip, Origin
+from ..postures import ClipPostures, half_precision
+from .database_errors import decoding
+from .values import MAX_BYTES, number_in, printable_text, row_numbers, text
+
+FreeName = Callable[[ClipEntry, Collection[str]], str]
+"""Returns a name for a clip that is none of those that are taken."""
+MAX_FRAMES = 10**9
+"""Of a clip: a day at 10 kHz."""
+ENTRY_COLUMNS = "name, tags, path, item, size, modified, n_frames, frame_rate"
+
+
+def numbered_name(entry: ClipEntry, taken: Collection[str]) -> str:
+    """Return the name of a clip with the first number that makes it free: "walk (2)"."""
+    names = (f"{entry.name} ({number})" for number in count(2))
+    return next(name for name in names if name not in taken)
+
+
+def write_clips(
+    database: sqlite3.Connection, clips: Sequence[DescribedClip], free_name: FreeName
+) -> dict[int, str]:
+    """Add clips within a transaction; return their numbers and names.
+
+    One that came from a file takes the place, and the name, of the one that came from there
+    before: its name is only a label, and a new one gets another where that is taken. One of
+    no file takes the place of the one of its name.
+    """
+    taken = {name for (name,) in database.execute("SELECT name FROM clips")}
+    written = {}
+    for clip in clips:
+        entry = clip.entry
+        names = _names_from(database, entry.origin)
+        if names:
+            entry = replace(entry, name=names[0])
+        elif entry.origin is not None and entry.name in taken:
+            entry = replace(entry, name=free_name(entry, taken))
+        _remove(database, [*names, entry.name])
+        written[_write_clip(database, entry, clip.postures)] = entry.name
+        taken.add(entry.name)
+    return written
+
+
+def remove_clips(database: sqlite3.Connection, numbers: Iterable[int]) -> list[str]:
+    """Remove the clips of these numbers that are still there, and return their names."""
+    names = []
+    for number in numbers:
+        row = database.execute("DELETE FROM clips WHERE number = ? RETURNING name", (number,))
+        names += [name for (name,) in row.fetchall()]
+    return names
+
+
+def _names_from(database: sqlite3.Connection, origin: Origin | None) -> list[str]:
+    if origin is None:
+        return []
+    rows = database.execute(
+        "SELECT name FROM clips WHERE path = ? AND item = ? ORDER BY number",
+        (origin.path, origin.item),
+    )
+    return [name for (name,) in rows]
+
+
+def _remove(database: sqlite3.Connection, names: Iterable[str]) -> None:
+    database.executemany("DELETE FROM clips WHERE name = ?", [(name,) for name in names])
+
+
+def _write_clip(database: sqlite3.Connection, entry: ClipEntry, postures: ClipPostures) -> int:
+    origin = entry.origin or Origin("")
+    done = database.execute(
+        f"INSERT INTO clips ({ENTRY_COLUMNS}, positions, course)"
+        " VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?, ?)",
+        (
+            entry.name, json.dumps(entry.tags), origin.path or None, origin.item, origin.size,
+            origin.modified, entry.n_frames, entry.frame_rate,
+            half_precision(postures.positions).tobytes(),
+            half_precision(postures.course).tobytes(),
+        ),
+    )  # fmt: skip
+    return int(done.lastrowid or 0)
+
+
+def clip_numbers(database: sqlite3.Connection) -> list[int]:
+    """Return the numbers of all clips, oldest first."""
+    with decoding():
+        return row_numbers(database, "clips")
+
+
+def read_entries(
+    database: sqlite3.Connection, known: Mapping[int, ClipEntry]
+) -> dict[int, ClipEntry]:
+    """Return what is told of each clip, by its number; what is known is not read again.
+
+    Numbers grow, and what is told of one never changes.
+    """
+    there = clip_numbers(database)
+    rows = database.execute(
+        f"SELECT number, {ENTRY_COLUMNS} FROM clips WHERE number > ?", (max(known, default=0),)
+    )
+    with decoding():
+        new = {number: _entry(row) for number, *row in rows}
+    return {number: known.get(number) or new[number] for number in there}
+
+
+@lru_cache(maxsize=1024)
+def _tags(stored: str) -> tuple[str, ...]:
+    tags = parse_json(stored)
+    if not isinstance(tags, list):
+        raise ValueError("Tags are a list.")
+    return tuple(printable_text(tag) for tag in tags)
+
+
+def _entry(row: Sequence[Any]) -> ClipEntry:
+    name, tags, path, item, size, modified, n_frames, frame_rate = row
+    check_frame_rate(frame_rate)
+    return ClipEntry(
+        printable_text(name),
+        _tags(text(tags)),
+        None if path is None else stored_origin(path, item, size, modified),
+        number_in(n_frames, 1, MAX_FRAMES),
+        float(frame_rate),
+    )
+
+
+def stored_origin(path: Any, item: Any, size: Any, modified: Any) -> Origin:
+    """Return an origin as a row has it; raise ValueError where it names no file."""
+    return Origin(
+        text(path),
+        text(item),
+        number_in(size, 0, MAX_BYTES),
+        number_in(modified, -MAX_BYTES, MAX_BYTES),
+    )
+
+
+def read_postures(database: sqlite3.Connection, number: int, n_frames: int = 0) -> ClipPostures:
+    """Return the postures of a clip, at 20 Hz.
+
+    Fewer than `n_frames`, to which the index points, are damage.
+
+    Raises
+    ------
+    InvalidMotionError
+        It has just been removed, by another process.
+    """
+    row = database.execute(
+        "SELECT positions, course FROM clips WHERE number = ?", (number,)
+    ).fetchone()
+    if row is None:
+        raise InvalidMotionError(
+            "A clip has just been removed from the library by another program; try again."
+        )
+    with decoding():
+        positions, course = (np.frombuffer(stored, "<f2").astype(np.float64) for stored in row)
+        positions, course = positions.reshape(-1, 20, 3), course.reshape(-1, 4)
+        positions[np.isnan(positions)] = np.nan  # Some stored ones are signals of an error.
+        if len(positions) != len(course):
+            raise ValueError("The frames do not fit each other.")
+        if np.isinf(positions).any() or not np.isfinite(course).all():
+            raise ValueError("Something is infinite.")
+        if len(positions) < n_frames:
+            raise ValueError("The index points beyond the end of the clip.")
+        return ClipPostures(positions, course, RATE)

@@ -1,0 +1,204 @@
+"""Clip libraries as SQLite databases: one file, changed in whole transactions.
+
+SQLite locks the file while it is written, so that two Blenders can index at once, and leaves it
+whole when a process dies. Views and triggers, which SQLite would execute, are refused.
+"""
+
+import os
+import sqlite3
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+
+from ...errors import InvalidFileError
+from ..index import (
+    IndexBlock,
+    Vocabulary,
+    block_arrays,
+    block_from_arrays,
+    vocabulary_arrays,
+    vocabulary_from_arrays,
+)
+from .database_errors import decoding, readable_errors
+from .schema import MAX_NUMBER, check_schema, lay_out, refuse_siblings
+from .values import number_in, row_numbers
+
+SUFFIXES = (".clips", ".library")
+"""Of files that may be begun as libraries; older versions called the shared one .library."""
+APPLICATION = 0x4D434C42
+"""Marks our files among SQLite's ("MCLB")."""
+VERSION = 1
+PATIENCE = 120.0
+"""Seconds to wait for another process that is writing."""
+BLOCK_COLUMNS = ("clips", "frames", "histograms", "summaries", "starts", "spans", "weights")
+
+
+def create_database() -> sqlite3.Connection:
+    """Return an empty library in memory."""
+    database = sqlite3.connect(":memory:", isolation_level=None, check_same_thread=False)
+    _lay_out(database)
+    return database
+
+
+def begin_file(path: Path) -> None:
+    """Lay out an empty library in a file that is not there, or empty; others stay as they are.
+
+    Where another process does so at the same time, one of them does it.
+
+    Raises
+    ------
+    InvalidFileError
+        The name does not end as that of a library; the folder is missing or may not be
+        written to.
+    """
+    refuse_other_suffix(path)
+    with readable_errors(path):
+        database = _connect(path)
+        try:
+            if not database.execute("PRAGMA page_count").fetchone()[0]:
+                with _all_or_nothing(database):
+                    if not database.execute("SELECT 1 FROM sqlite_master").fetchone():
+                        _lay_out(database)
+        finally:
+            database.close()
+
+
+def refuse_other_suffix(path: Path) -> None:
+    """Raise InvalidFileError where no library may be begun: its file ends in another way."""
+    if Path(os.path.realpath(path)).suffix.lower() not in SUFFIXES:
+        raise InvalidFileError(
+            f"No clip library can be made as {path}; end its name in {SUFFIXES[0]}."
+        )
+
+
+def open_database(path: Path) -> sqlite3.Connection:
+    """Open the library in a file.
+
+    Raises
+    ------
+    InvalidFileError
+        There is no such file, it is not a library, or one of a newer version.
+    """
+    if not path.is_file():
+        raise InvalidFileError(f"There is no clip library {path}.")
+    with readable_errors(path):
+        database = _connect(path)
+        try:
+            _check(database, path)
+        except BaseException:
+            database.close()
+            raise
+    return database
+
+
+def _connect(path: Path) -> sqlite3.Connection:
+    """Open a file of which nothing is known, as SQLite advises for one by a stranger."""
+    refuse_siblings(path)
+    database = sqlite3.connect(
+        path, timeout=PATIENCE, isolation_level=None, check_same_thread=False
+    )
+    database.execute("PRAGMA trusted_schema = OFF")
+    database.execute("PRAGMA cell_size_check = ON")
+    return database
+
+
+@contextmanager
+def transaction(database: sqlite3.Connection) -> Iterator[None]:
+    """Change all that is changed within, or nothing; others wait."""
+    with _all_or_nothing(database):
+        check_schema(database)
+        yield
+
+
+@contextmanager
+def _all_or_nothing(database: sqlite3.Connection) -> Iterator[None]:
+    database.execute("BEGIN IMMEDIATE")
+    try:
+        yield
+        database.execute("COMMIT")
+    except BaseException:
+        if database.in_transaction:  # on a full disk SQLite has already rolled back
+            database.execute("ROLLBACK")
+        raise
+
+
+@contextmanager
+def one_state(database: sqlite3.Connection) -> Iterator[None]:
+    """Read all that is read within as it was at one moment."""
+    if database.in_transaction:
+        yield
+        return
+    database.execute("BEGIN")
+    try:
+        check_schema(database)
+        yield
+    finally:
+        if database.in_transaction:
+            database.execute("ROLLBACK")
+
+
+def _lay_out(database: sqlite3.Connection) -> None:
+    lay_out(database)
+    database.execute(f"PRAGMA application_id = {APPLICATION}")
+    database.execute(f"PRAGMA user_version = {VERSION}")
+
+
+def _check(database: sqlite3.Connection, path: Path) -> None:
+    application = database.execute("PRAGMA application_id").fetchone()[0]
+    version = database.execute("PRAGMA user_version").fetchone()[0]
+    if application != APPLICATION:
+        raise InvalidFileError(f"{path} is not a clip library.")
+    if version > VERSION:
+        raise InvalidFileError(
+            f"The clip library {path} was written by a newer version of Mocap Assist"
+            f" (format {version}; this version reads up to {VERSION}). Update the add-on."
+        )
+    with one_state(database):  # It checks the tables.
+        pass
+
+
+def vocabulary_number(database: sqlite3.Connection) -> int:
+    """Return what grows with each new vocabulary."""
+    number = database.execute("SELECT max(number) FROM vocabulary").fetchone()[0] or 0
+    with decoding():
+        return number_in(number, 0, MAX_NUMBER)
+
+
+def read_vocabulary(database: sqlite3.Connection) -> Vocabulary | None:
+    """Return what the index is told in; None in a library that never had a clip."""
+    rows = database.execute("SELECT name, value FROM vocabulary").fetchall()
+    with decoding():
+        return vocabulary_from_arrays(dict(rows)) if rows else None
+
+
+def write_vocabulary(database: sqlite3.Connection, vocabulary: Vocabulary) -> None:
+    """Replace what the index is told in."""
+    number = vocabulary_number(database)
+    database.execute("DELETE FROM vocabulary")
+    for place, (name, value) in enumerate(vocabulary_arrays(vocabulary).items(), number + 1):
+        database.execute("INSERT INTO vocabulary VALUES (?, ?, ?)", (place, name, value))
+
+
+def block_numbers(database: sqlite3.Connection) -> list[int]:
+    """Return the numbers of all blocks of the index, oldest first."""
+    with decoding():
+        return row_numbers(database, "blocks")
+
+
+def read_block(database: sqlite3.Connection, number: int, n_words: int) -> IndexBlock:
+    """Return a block of the index."""
+    row = database.execute(
+        f"SELECT {', '.join(BLOCK_COLUMNS)} FROM blocks WHERE number = ?", (number,)
+    ).fetchone()
+    with decoding():
+        return block_from_arrays(dict(zip(BLOCK_COLUMNS, row, strict=True)), n_words)
+
+
+def write_block(database: sqlite3.Connection, block: IndexBlock) -> None:
+    """Add a block to the index."""
+    stored = block_arrays(block)
+    marks = ", ".join("?" * len(BLOCK_COLUMNS))
+    database.execute(
+        f"INSERT INTO blocks ({', '.join(BLOCK_COLUMNS)}) VALUES ({marks})",
+        [stored[name] for name in BLOCK_COLUMNS],
+    )

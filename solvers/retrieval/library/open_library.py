@@ -1,0 +1,54 @@
+"""Make a library of clips, or open the one in a file."""
+
+from collections.abc import Iterable
+from pathlib import Path
+
+from ...progress import Progress, unwatched
+from ..index import Clip
+from . import library_file as files
+from .clip_library import ClipLibrary
+
+
+def build_clip_library(clips: Iterable[Clip], *, progress: Progress = unwatched) -> ClipLibrary:
+    """Index clips in a library in memory; `save` writes it to a file.
+
+    Parameters
+    ----------
+    clips : Clip, any number
+        With recordings of bodies: armatures with humanoid roles, Kinect-style joints.
+
+    Raises
+    ------
+    InvalidMotionError
+        A clip shows no body, or two have one name.
+    """
+    library = ClipLibrary(files.create_database())
+    library.add(clips, progress=progress)
+    return library
+
+
+def load_clip_library(path: Path | str) -> ClipLibrary:
+    """Open the library in a file; nothing in it is ever executed.
+
+    Raises
+    ------
+    InvalidFileError
+        There is no such file, it is no library or damaged, or of a newer version.
+    """
+    path = Path(path)
+    return ClipLibrary(files.open_database(path), path)
+
+
+def open_clip_library(path: Path | str) -> ClipLibrary:
+    """Open the library in a file; where there is no file, begin one without clips.
+
+    Raises
+    ------
+    InvalidFileError
+        It is no library or damaged, of a newer version, or cannot be written; or it would be
+        begun in a file whose name does not end in .clips or .library.
+    """
+    path = Path(path)
+    if not path.exists() or (path.is_file() and not path.stat().st_size):
+        files.begin_file(path)
+    return load_clip_library(path)

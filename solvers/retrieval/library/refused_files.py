@@ -1,0 +1,43 @@
+"""What a library remembers of files that are of no use to it: they need not be read again."""
+
+import sqlite3
+from collections.abc import Iterable
+
+from ..index import Origin
+from .clip_rows import stored_origin
+from .database_errors import decoding
+from .schema import REFUSED
+from .values import printable_text
+
+
+def read_refused(database: sqlite3.Connection, reader: str) -> dict[Origin, str]:
+    """Return the sentences on files that this version of the reader has refused.
+
+    A library from before there was such a table knows of none.
+    """
+    if not database.execute(
+        "SELECT 1 FROM sqlite_master WHERE type = 'table' AND name = 'refused'"
+    ).fetchone():
+        return {}
+    rows = database.execute(
+        "SELECT path, size, modified, sentence FROM refused WHERE reader = ?", (reader,)
+    )
+    with decoding():
+        return {
+            stored_origin(path, "", size, modified): printable_text(sentence)
+            for path, size, modified, sentence in rows
+        }
+
+
+def write_refused(
+    database: sqlite3.Connection, reader: str, refused: Iterable[tuple[Origin, str]]
+) -> None:
+    """Remember files as they are now, in place of what was known of them."""
+    database.execute(REFUSED)
+    database.executemany(
+        "INSERT OR REPLACE INTO refused VALUES (?, ?, ?, ?, ?)",
+        [
+            (origin.path, origin.size, origin.modified, reader, sentence)
+            for origin, sentence in refused
+        ],
+    )

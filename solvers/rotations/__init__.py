@@ -1,0 +1,48 @@
+"""Unit quaternions (w x y z): conversions, algebra, interpolation and rigid fits."""
+
+from .quaternion_algebra import product, turned
+from .representations import (
+    IDENTITY,
+    angle_between,
+    euler_from_quaternion,
+    inverse,
+    matrix_from_quaternion,
+    mean_rotation,
+    multiply,
+    normalize,
+    quaternion_from_euler,
+    quaternion_from_matrix,
+    quaternion_from_rotation_vector,
+    rotate,
+    rotation_between,
+    rotation_vector_from_quaternion,
+    slerp,
+    twist_about,
+    unroll,
+    unwrap_euler,
+)
+from .rigid_fit import best_turns
+
+__all__ = [
+    "IDENTITY",
+    "angle_between",
+    "best_turns",
+    "euler_from_quaternion",
+    "inverse",
+    "matrix_from_quaternion",
+    "mean_rotation",
+    "multiply",
+    "normalize",
+    "product",
+    "quaternion_from_euler",
+    "quaternion_from_matrix",
+    "quaternion_from_rotation_vector",
+    "rotate",
+    "rotation_between",
+    "rotation_vector_from_quaternion",
+    "slerp",
+    "turned",
+    "twist_about",
+    "unroll",
+    "unwrap_euler",
+]

@@ -1,0 +1,1 @@
+"""Clean and feet, beside filters and the published method."""

@@ -1,0 +1,1 @@
+"""The depth tracker, its terms, detector and body, beside other trackers."""

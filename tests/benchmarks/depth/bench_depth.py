@@ -1,0 +1,260 @@
+"""The depth tracker against known joints: terms, peers, wrong bodies, noise, resolution.
+
+make bench-depth                    # some five minutes
+make bench-depth ARGUMENTS=--docs   # into docs/benchmarks_depth.md
+"""
+
+import argparse
+from collections.abc import Callable
+from dataclasses import replace
+from functools import partial
+from time import perf_counter, process_time
+
+import numpy as np
+from threadpoolctl import threadpool_limits
+
+from solvers.depth_tracking.body.model import BodyModel
+from solvers.depth_tracking.body.tables import JOINTS
+from solvers.depth_tracking.capturing.refine_body import refine_body
+from solvers.depth_tracking.terms.tracker_settings import LOU12, USUAL, WZC12, TrackerSettings
+from solvers.depth_tracking.tracking.track_pose import track_pose
+
+from ..peers.icp_trackers import articulated_icp, ray_constrained_icp
+from ..shared.report import DOCS, PICTURES, Report
+from ..shared.tables import Scores
+from .depth_more import more_sequence
+from .depth_sequences import (
+    SCORED,
+    TRUTH,
+    Errors,
+    Sequence,
+    errors,
+    length_error,
+    noisier,
+    sequence,
+)
+from .depth_takes import SUBJECTS
+from .depth_tuning import TAKES as TUNED_ON
+from .depth_tuning import tuning_sequence
+from .lou_sequences import colored, others_motions
+from .part_depth_capture import FPS, captures, more, more_ways, ways
+from .part_depth_kinect import kinect
+from .part_depth_memory import LENGTHS, memory
+from .part_depth_recorded import recorded
+from .part_depth_renderers import renderers
+from .part_detector import detector
+from .part_failures import failures
+from .part_retracking import retracking
+from .plot_bars import draw_bars
+
+Track = Callable[[Sequence, BodyModel], np.ndarray]
+UNIT = "each sequence counts as one clip"
+HARD = ("walk_side", "walk_diagonal")
+"""Sequences with occlusions, on which parts are left out."""
+HARDER = (
+    "run in a circle", "kick, side", "throw", "crossed arms, side", "seated, side",
+)  # fmt: skip
+"""Of `depth_more`, the same. The walk that turns round would drown all: it is lost anyway."""
+LEAST = 50.0
+"""Per cent at which the bars of a picture begin."""
+WITHOUT = {
+    "all terms (default)": {},
+    "no depth image": {"depth_weight": 0.0},
+    "no extra depth": {"extra_weight": 0.0},
+    "no silhouette": {"silhouette_weight": 0.0},
+    "no closest surface": {"closest_weight": 0.0},
+    "no free space (off actor, too near)": {"off_actor_weight": 0.0, "too_near_weight": 0.0},
+    "no prediction": {"trust": 0.0},
+    "no smoothness": {"turn_weight": 0.0, "shift_weight": 0.0},
+    "no natural stance": {"natural_weight": 0.0},
+    "limbs also push each other apart": {"apart_weight": 20000.0},
+    "no joint limits": {"limit_weight": 0.0},
+    "no occlusion handling": {"limit": 1.0},
+    "not robust": {"robust_scale": 10.0},
+    "every step accepted": {"accept_only_better": False},
+    "no coarse steps": {"coarse_iterations": 0, "iterations": 4},
+}
+
+
+def main() -> None:
+    """Print the tables."""
+    parser = argparse.ArgumentParser(description=(__doc__ or "").splitlines()[0])
+    parser.add_argument("--docs", action="store_true", help="write docs/benchmarks_depth.md")
+    parser.add_argument("--only", help="parts, with commas between")
+    parser.add_argument(
+        "--subjects", type=int, nargs="+", default=SUBJECTS, help="of the Kinect"
+    )
+    parser.add_argument("--frames", type=int, nargs="+", default=LENGTHS, help="of long takes")
+    chosen = parser.parse_args()
+    if not TRUTH.exists():
+        raise SystemExit(f"There are no recordings in {TRUTH}.")
+    report = Report(chosen.docs, DOCS / "benchmarks_depth.md")
+    parts = {
+        "trackers": trackers, "captures": captures, "more": more, "ways": ways,
+        "more-ways": more_ways,
+        "terms": terms, "bodies": bodies, "noise": noise, "resolution": resolution,
+        "kinect": partial(kinect, chosen.subjects), "renderers": renderers,
+        "memory": partial(memory, chosen.frames), "detector": detector,
+        "failures": failures, "recorded": recorded, "retracking": retracking,
+        "tuning": tuning,
+    }  # fmt: skip
+    for name, part in parts.items():
+        if chosen.only and name not in chosen.only.split(","):
+            continue
+        started = perf_counter()
+        with threadpool_limits(1):
+            texts = part()
+        report.part(name, texts, perf_counter() - started)
+
+
+def ours(settings: TrackerSettings, one: Sequence, body: BodyModel) -> np.ndarray:
+    """Return joints as our tracker finds them."""
+    tracked = track_pose(one.depth, body, one.first_pose(body), settings=settings)
+    return tracked.joints.positions
+
+
+def peer(track: Callable[..., np.ndarray], one: Sequence, body: BodyModel) -> np.ndarray:
+    """Return joints as a peer finds them."""
+    return track(one.depth, body, one.first_pose(body))
+
+
+def lou12(one: Sequence, body: BodyModel) -> np.ndarray:
+    """Return joints as [LOU12] finds them, with painted bodies and motions of other actors."""
+    painted = colored(one.name)
+    tracked = track_pose(
+        painted.depth, body, one.first_pose(body), others_motions(), settings=LOU12
+    )
+    return tracked.joints.positions
+
+
+def measured(track: Track, one: Sequence, body: BodyModel) -> tuple[Errors, float]:
+    """Return errors, and frames per second of this process's time."""
+    started = process_time()
+    with np.errstate(all="ignore"):
+        joints = track(one, body)
+    return errors(joints, one.joints), one.depth.n_frames / (process_time() - started)
+
+
+def trackers() -> list[str]:
+    """Compare trackers, started from the true first pose, bodies of the true lengths."""
+    methods: dict[str, Track] = {
+        "ours (default)": partial(ours, USUAL),
+        "WZC12 preset": partial(ours, WZC12),
+        "WZC12 terms, damped, with limits": partial(ours, DAMPED_WZC12),
+        "LOU12 preset, colour and clips": lou12,
+        "LOU12 preset, no colour, no clips": partial(ours, LOU12),
+        "articulated ICP": partial(peer, articulated_icp),
+        "ray-constrained ICP": partial(peer, ray_constrained_icp),
+    }
+    scores = Scores("Trackers from the true first pose", UNIT, "")
+    by_sequence = Scores("Ours, by sequence", "one each", "")
+    by_joint = Scores("Ours, by joint, cm after offset", UNIT, "")
+    for name in SCORED:
+        one = sequence(name)
+        colored(name), others_motions()
+        for method, track in methods.items():
+            found, speed = measured(track, one, one.body)
+            for column, figure in (found.figures() | {FPS: speed}).items():
+                scores.add(method, column, name, figure)
+                if method == "ours (default)":
+                    by_sequence.add(name, column, name, figure)
+            if method == "ours (default)":
+                for joint, figure in zip(JOINTS, found.offset_taken.mean(axis=0), strict=True):
+                    by_joint.add(joint, "cm", name, 100.0 * figure)
+                    near = found.offset_taken[:, JOINTS.index(joint)] < 0.1
+                    by_joint.add(joint, "% < 10 cm", name, 100.0 * near.mean())
+    return [scores.markdown(), _single(by_sequence), by_joint.markdown()]
+
+
+DAMPED_WZC12 = replace(
+    USUAL, closest_weight=0.0, off_actor_weight=0.0, too_near_weight=0.0,
+    depth_weight=1000.0, extra_weight=10000.0, silhouette_weight=0.1,
+)  # fmt: skip
+
+
+def terms() -> list[str]:
+    """Leave each term or safeguard out, from the true first pose."""
+    sequences = [sequence(name) for name in HARD] + [more_sequence(name) for name in HARDER]
+    scores = _without(sequences, "Without each part")
+    draw_bars(scores, {"cm": 0.0, "% < 10 cm": LEAST}, PICTURES / "depth_terms.png")
+    return [scores.markdown(), "![What each part is worth](pictures/depth_terms.png)\n"]
+
+
+def tuning() -> list[str]:
+    """Leave each term or safeguard out, on the sequences by which defaults are chosen."""
+    sequences = [tuning_sequence(name) for name in TUNED_ON]
+    return [_without(sequences, "Without each part, sequences for tuning").markdown()]
+
+
+def _without(sequences: list[Sequence], title: str) -> Scores:
+    scores = Scores(title, f"{len(sequences)} sequences as clips", "")
+    for label, changes in WITHOUT.items():
+        settings = replace(USUAL, **changes)
+        for one in sequences:
+            found, speed = measured(partial(ours, settings), one, one.body)
+            for column, figure in (found.figures() | {FPS: speed}).items():
+                scores.add(label, column, one.name, figure)
+    return scores
+
+
+def bodies() -> list[str]:
+    """Track with wrong radii, with a usual body, and with bodies refined from tracking."""
+    scores = Scores("Bodies", UNIT, "")
+    for name in HARD:
+        one = sequence(name)
+        true = one.body
+        cases = {
+            "true lengths, usual radii": true,
+            "radii 15 % thinner": BodyModel(true.lengths, 0.85 * true.radii),
+            "radii 15 % thicker": BodyModel(true.lengths, 1.15 * true.radii),
+            "usual body": one.usual,
+            "usual body 5 % too tall": one.usual.scaled(1.05),
+        }
+        for label in ("usual body", "usual body 5 % too tall"):
+            cases[f"{label}, refined"] = _refined(one, cases[label])
+        for label, body in cases.items():
+            found, _ = measured(partial(ours, USUAL), one, body)
+            figures = found.figures() | {"% off in length": length_error(body, true)}
+            for column, figure in figures.items():
+                scores.add(label, column, name, figure)
+    return [scores.markdown()]
+
+
+def _refined(one: Sequence, body: BodyModel) -> BodyModel:
+    for _ in range(2):
+        tracked = track_pose(one.depth, body, one.first_pose(body))
+        body = refine_body(one.depth, body, tracked.poses)
+    return body
+
+
+def noise() -> list[str]:
+    """Add noise to the walk that has none."""
+    scores = Scores("Noise on walk_front_clean, at 3 m", "one walk", "")
+    cases = [sequence("walk_front_clean"), sequence("walk_front")]
+    cases += [noisier(cases[0], sigma) for sigma in (0.01, 0.02, 0.04, 0.08)]
+    for one in cases:
+        found, _ = measured(partial(ours, USUAL), one, one.body)
+        for column, figure in found.figures().items():
+            scores.add(one.name, column, one.name, figure)
+    return [_single(scores)]
+
+
+def resolution() -> list[str]:
+    """Look at fewer or more columns."""
+    scores = Scores("Columns looked at", UNIT, "")
+    for width in (80, 160, 320):
+        settings = replace(USUAL, picture_width=width)
+        for name in HARD:
+            one = sequence(name)
+            found, speed = measured(partial(ours, settings), one, one.body)
+            for column, figure in (found.figures() | {FPS: speed}).items():
+                scores.add(f"{width} columns", column, name, figure)
+    return [scores.markdown()]
+
+
+def _single(scores: Scores) -> str:
+    return scores.markdown().replace(" ± 0.00", "")
+
+
+if __name__ == "__main__":
+    main()

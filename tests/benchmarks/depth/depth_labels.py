@@ -1,0 +1,115 @@
+"""Frames of depth/truth with the part that each pixel sees, and pictures of unseen clips.
+
+The takes were rendered by other code from bodies and clips that we have, so that the same
+bodies in the same poses, laid over the true joints, tell the parts.
+"""
+
+from collections.abc import Iterator
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from solvers.depth_scene.camera import Camera
+from solvers.depth_tracking.body.tables import JOINTS
+from solvers.depth_tracking.forest.depth_differences import FAR, MILLIMETRES
+from solvers.depth_tracking.forest_training.render_mesh import NOTHING, render_mesh
+from solvers.depth_tracking.forest_training.skinned_body import SkinnedBody, load_skinned_body
+from solvers.depth_tracking.forest_training.train_forest import draw_pictures
+from solvers.depth_tracking.forest_training.training_images import (
+    CAMERA,
+    TrainingPicturesSettings,
+    picture_source,
+)
+from solvers.recordings import read_bvh
+
+from .forest_sources import CMU_METRES, DATA, TRUTH, all_bodies, unseen_motions
+
+Array = NDArray[np.float64]
+SAME_DEPTH = 0.08
+"""Metres between both renderings beyond which a pixel's part is not known."""
+CMU_JOINTS = {
+    "hips": "Hips", "spine": "LowerBack", "chest": "Spine", "neck": "Neck", "head": "Head",
+    "UpperArm": "Arm", "LowerArm": "ForeArm", "Hand": "Hand",
+    "UpperLeg": "UpLeg", "LowerLeg": "Leg", "Foot": "Foot", "Toes": "ToeBase",
+}  # fmt: skip
+"""Joints of the body model and those of the truth; clavicles differ and are left out."""
+
+
+class LabelledFrame(NamedTuple):
+    """One picture and what is true in it."""
+
+    take: str
+    frame: int
+    camera: Camera
+    depth: NDArray[np.float32]
+    labels: NDArray[np.uint8]
+    """Place in `PARTS`, or `NOTHING` where it is not known."""
+    joints: Array
+    """The `JOINTS` of the body model; NaN where the truth has none alike."""
+
+
+def truth_frames(take: str, every: int = 1, step: int = 2) -> Iterator[LabelledFrame]:
+    """Yield every so manieth frame of a take, every `step`-th column and row of it."""
+    body, laid = truth_bodies(take, every)
+    with np.load(DATA / "depth" / "truth" / f"{take}.npz") as archive:
+        truth = {name: np.array(archive[name]) for name in archive.files}
+    n_rows, n_columns = truth["depth"].shape[1:]
+    focal = [float(truth[name]) for name in ("fx", "fy", "cx", "cy")]
+    camera = Camera(*focal, n_columns, n_rows).every(step)
+    for frame, vertices in laid:
+        depth = (truth["depth"][frame, ::step, ::step] / MILLIMETRES).astype(np.float32)
+        joints = truth["joints"][frame].astype(float)
+        seen = render_mesh(vertices, body.triangles, body.vertex_parts, camera)
+        same = (seen.depth > 0.0) & (np.abs(seen.depth - depth) < SAME_DEPTH)
+        labels = np.where(same, seen.labels, np.uint8(NOTHING))
+        yield LabelledFrame(
+            take, frame, camera, depth, labels, _ours(truth["joint_names"].tolist(), joints)
+        )
+
+
+def truth_bodies(take: str, every: int = 1) -> tuple[SkinnedBody, Iterator[tuple[int, Array]]]:
+    """Return the body of a take, and frames with its vertices there, camera frame, metres."""
+    clip, first, body_name = TRUTH[take]
+    body = load_skinned_body(DATA / "body" / f"{body_name}.npz")
+    poses = body.rotations_of(read_bvh(DATA / "mocap" / clip, scale=CMU_METRES))
+    with np.load(DATA / "depth" / "truth" / f"{take}.npz") as archive:
+        truth = archive["joints"].astype(float)
+
+    def laid() -> Iterator[tuple[int, Array]]:
+        for frame in range(0, len(truth), every):
+            vertices, places = body.pose(poses[first + 4 * frame], np.zeros(3))
+            turn, shift = _laid_over(places, truth[frame])
+            yield frame, vertices @ turn + shift
+
+    return body, laid()
+
+
+def unseen_frames(n_blocks: int = 30, loose: float = 0.0) -> Iterator[LabelledFrame]:
+    """Yield pictures of HDM05's actors, whom no forest here has learned from."""
+    settings = TrainingPicturesSettings(loose=loose, nearest=2.0, farthest=4.0)
+    source = picture_source(unseen_motions(), all_bodies(), settings, 5)
+    seen = draw_pictures(source, range(n_blocks))
+    for number, (picture, labels) in enumerate(zip(*seen, strict=True)):
+        inner = picture[1:-1, 1:-1]
+        depth = (np.where(inner == FAR, 0, inner) / MILLIMETRES).astype(np.float32)
+        unknown = np.full((len(JOINTS), 3), np.nan)
+        yield LabelledFrame("HDM05", number, CAMERA, depth, labels, unknown)
+
+
+def _ours(names: list[str], joints: Array) -> Array:
+    found = np.full((len(JOINTS), 3), np.nan)
+    for place, joint in enumerate(JOINTS):
+        side = next((side for side in ("left", "right") if joint.startswith(side)), "")
+        name = side.capitalize() + CMU_JOINTS.get(joint.removeprefix(side), "-")
+        if name in names:
+            found[place] = joints[names.index(name)]
+    return found
+
+
+def _laid_over(points: Array, onto: Array) -> tuple[Array, Array]:
+    """Return turn and shift of points @ turn + shift, the best rigid way onto others."""
+    start, stop = points.mean(axis=0), onto.mean(axis=0)
+    left, _, right = np.linalg.svd((points - start).T @ (onto - stop))
+    turn = left @ np.diag([1.0, 1.0, np.sign(np.linalg.det(left @ right))]) @ right
+    return turn, stop - start @ turn

@@ -1,0 +1,90 @@
+"""Takes of a real Kinect (UTD-MHAD), and how far a body found in them is off the depth.
+
+`read_depth` turns the mirrored pictures right; so are the joints of the Kinect's SDK here.
+"""
+
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+from scipy.io import loadmat
+from scipy.spatial import cKDTree
+
+from solvers.depth_scene.recording import DepthRecording
+from solvers.depth_tracking.body.tables import JOINTS
+from solvers.recordings import read_depth
+
+TAKES = Path(__file__).resolve().parents[4] / "shared" / "data" / "depth" / "utd_mhad"
+SUBJECTS = (1, 3, 5, 7)
+ACTIONS = (
+    "swipe left", "swipe right", "wave", "clap", "throw", "cross arms", "basketball shot",
+    "draw x", "draw circle", "draw circle back", "draw triangle", "bowling", "boxing",
+    "baseball swing", "tennis swing", "arm curl", "tennis serve", "push", "knock", "catch",
+    "pick up and throw", "jog", "walk", "sit to stand", "stand to sit", "lunge", "squat",
+)  # fmt: skip
+LATE = 2
+"""depth[t] fits skeleton[t - 2] (data/README.md)."""
+SDK = {
+    "head": 0, "neck": 1, "spine": 2, "hips": 3,
+    "leftUpperArm": 4, "leftLowerArm": 5, "leftHand": 6,
+    "rightUpperArm": 8, "rightLowerArm": 9, "rightHand": 10,
+    "leftUpperLeg": 12, "leftLowerLeg": 13, "leftFoot": 14,
+    "rightUpperLeg": 16, "rightLowerLeg": 17, "rightFoot": 18,
+}  # fmt: skip
+"""Our joints, and their places in the SDK's skeleton."""
+OURS = [JOINTS.index(joint) for joint in SDK]
+STABLE = [
+    place for place, joint in enumerate(SDK) if not joint.endswith(("Hand", "LowerArm", "Foot"))
+]
+"""Of `SDK`: trunk, shoulders, hips and knees."""
+HANDS = [list(SDK).index(joint) for joint in ("leftHand", "rightHand")]
+AWAY = 0.1
+"""Metres between a hand and the nearest point of the depth from which on it is in the air."""
+
+
+@dataclass(frozen=True, eq=False)
+class KinectTake:
+    """A depth recording, and the joints that the Kinect's SDK told."""
+
+    action: int
+    subject: int
+    depth: DepthRecording
+    joints: np.ndarray
+    """Shape (n_frames, 16, 3), metres, camera frame (y down); NaN before the SDK began."""
+
+    @property
+    def name(self) -> str:
+        """What the files are called."""
+        return f"a{self.action}_s{self.subject}_t1"
+
+    def distances(self, found: np.ndarray) -> np.ndarray:
+        """Return how far our joints (n_frames, 21, 3) are from the SDK's, (n_frames, 16).
+
+        Metres, after the median offset of each joint, for joints are defined differently.
+        """
+        off = found[:, OURS] - self.joints
+        return np.linalg.norm(off - np.nanmedian(off, axis=0), axis=-1)
+
+    def hands_in_air(self, hands: np.ndarray) -> float:
+        """Return the share of hands (n_frames, 2, 3) that are far from all that was seen."""
+        told = []
+        for frame in range(self.depth.n_frames):
+            depth = self.depth.frame(frame)
+            points = self.depth.camera.back_project(depth)[depth > 0.0]
+            here = hands[frame][np.isfinite(hands[frame]).all(axis=-1)]
+            if len(points) and len(here):
+                told += (cKDTree(points).query(here)[0] > AWAY).tolist()
+        return float(np.mean(told))
+
+
+def kinect_take(action: int, subject: int) -> KinectTake | None:
+    """Read one take, or None where there is none."""
+    stem = f"a{action}_s{subject}_t1"
+    if not (TAKES / f"{stem}_depth.mat").exists():
+        return None
+    depth = read_depth(TAKES / f"{stem}_depth.mat")
+    told = np.moveaxis(loadmat(TAKES / f"{stem}_skeleton.mat")["d_skel"], 2, 0)
+    joints = np.full((depth.n_frames, len(SDK), 3), np.nan)
+    n_frames = min(depth.n_frames - LATE, len(told))
+    joints[LATE : LATE + n_frames] = told[:n_frames, list(SDK.values())] * [-1.0, -1.0, 1.0]
+    return KinectTake(action, subject, depth, joints)

@@ -1,0 +1,86 @@
+"""Capture of all actions of a real Kinect (UTD-MHAD), against the skeleton of its SDK.
+
+    python -m tests.benchmarks.depth.bench_depth --only kinect [--docs]
+
+That skeleton is a reference and no truth. Nothing is given to `capture` but the depth. Sheets
+of pictures go to build/depth_kinect, for each subject; smaller ones of the first into docs.
+"""
+
+from collections.abc import Sequence
+from pathlib import Path
+
+import numpy as np
+from PIL import Image
+
+from solvers.depth_tracking.capturing.capture import Capture, capture
+
+from ..shared.report import PICTURES
+from ..shared.tables import Scores
+from .depth_overlays import overlay, save_sheet, strip
+from .depth_takes import ACTIONS, HANDS, OURS, STABLE, SUBJECTS, KinectTake, kinect_take
+
+LOOKED_AT = 5
+"""Frames of a take that are drawn."""
+SHEETS = 3
+BUILD = Path(__file__).resolve().parents[3] / "build" / "depth_kinect"
+NEAR = 0.1
+
+
+def kinect(subjects: Sequence[int] = SUBJECTS) -> list[str]:
+    """Capture each action of each subject; return the table."""
+    which = ", ".join(map(str, subjects))
+    scores = Scores("UTD-MHAD, a real Kinect", f"clips are the subjects {which}", "")
+    everything = []
+    for subject in subjects:
+        rows = []
+        for action, label in enumerate(ACTIONS, start=1):
+            take = kinect_take(action, subject)
+            if take is None:
+                continue
+            found = capture(take.depth)
+            told = figures(take, found)
+            for column, figure in told.items():
+                scores.add(f"{action} {label}", column, take.name, figure)
+                everything.append((column, take.name, figure))
+            rows.append(drawn(take, found))
+            print(take.name, {key: round(value, 2) for key, value in told.items()}, flush=True)
+        per_sheet = -(-len(rows) // SHEETS)
+        for sheet in range(SHEETS):
+            part = rows[sheet * per_sheet : (sheet + 1) * per_sheet]
+            save_sheet(part, 1, 0.6, BUILD / f"s{subject}_{sheet}.jpg")
+            if subject == subjects[0]:
+                save_sheet(part, 3, 0.42, PICTURES / f"depth_kinect_{sheet}.jpg")
+    for column, name, figure in everything:
+        scores.add("all", column, name, figure)
+    text = scores.markdown()
+    return [text.replace(" ± 0.00", "") if len(subjects) == 1 else text, *_pictures()]
+
+
+def _pictures() -> list[str]:
+    names = [f"depth_kinect_{sheet}.jpg" for sheet in range(SHEETS)]
+    return [f"![All actions of one subject](pictures/{name})" for name in names]
+
+
+def figures(take: KinectTake, found: Capture) -> dict[str, float]:
+    """Return what the table says of one take."""
+    apart = take.distances(found.joints.positions)
+    told = apart[np.isfinite(apart).all(axis=1)]
+    hands = [OURS[place] for place in HANDS]
+    return {
+        "cm, stable joints": 100.0 * float(told[:, STABLE].mean()),
+        "% < 10 cm": 100.0 * float((told < NEAR)[:, STABLE].mean()),
+        "cm, hands": 100.0 * float(told[:, HANDS].mean()),
+        "% hands in air": 100.0 * take.hands_in_air(found.joints.positions[:, hands]),
+        "% SDK's in air": 100.0 * take.hands_in_air(take.joints[:, HANDS]),
+        "cm in depth": 100.0 * float(np.nanmean(found.residual)),
+        "coverage": float(found.coverage.mean()),
+        "restarts": float(len(found.restarts)),
+        "flagged %": 100.0 * float(found.doubtful.mean()),
+    }
+
+
+def drawn(take: KinectTake, found: Capture) -> Image.Image:
+    """Draw some frames of a take beside each other."""
+    frames = np.linspace(0, take.depth.n_frames - 1, LOOKED_AT + 2)[1:-1].round().astype(int)
+    panels = [overlay(take.depth, found, one, take.joints[one]) for one in frames.tolist()]
+    return strip(panels, f"{take.action} {ACTIONS[take.action - 1]}")

@@ -1,0 +1,152 @@
+"""How long recordings of five minutes take to come into Blender, and how true they come back.
+
+    make bench-import
+    make bench-import ARGUMENTS=--docs    # into docs/importing.md
+
+The recordings are made: a walk of our own generator, as BVH with 120 frames a second, 25
+joints at 30 Hz as a camera has them, and 41 points at 120 Hz. Blender's own BVH
+importer reads the same file in the same run.
+"""
+
+import argparse
+import contextlib
+import io
+import os
+import sys
+from pathlib import Path
+from statistics import median
+from tempfile import TemporaryDirectory
+from time import perf_counter
+
+import bpy
+import numpy as np
+
+from ..shared.report import Report
+from ..shared.tables import table
+from .bench_scene_io import CHECKOUT, load_checkout
+
+REPEATS = 3
+SECONDS = 300.0
+N_MARKERS = 41
+
+
+def main() -> None:
+    """Print the table."""
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("--seconds", type=float, default=SECONDS, help="length of the takes")
+    parser.add_argument("--docs", action="store_true", help="rewrite docs/importing.md")
+    arguments = parser.parse_args()
+    started = perf_counter()
+    load_checkout()
+    with TemporaryDirectory() as folder:
+        rows = {
+            file.name: measured(file) for file in write_takes(Path(folder), arguments.seconds)
+        }
+        own = median(timed(lambda: blenders_own(Path(folder) / "walk.bvh")))
+        rows["walk.bvh, Blender's own importer"] = [f"{own:.2f}", "-"]
+    header = ["recording", "seconds", "read back, at most off, mm"]
+    title = f"Blender {bpy.app.version_string}, takes of {arguments.seconds:g} s"
+    text = f"**{title}**, median of {REPEATS} runs\n\n{table(header, rows)}\n"
+    report = Report(arguments.docs, CHECKOUT / "docs" / "importing.md")
+    report.part("import", [text], perf_counter() - started)
+
+
+def write_takes(folder: Path, seconds: float) -> list[Path]:
+    """Write a walk as a skeleton's motion, as joints of a camera, and as markers."""
+    from mocap_ext.solvers.motion import (
+        JOINTS,
+        JointRecording,
+        Sensor,
+        Tracks,
+        forward_kinematics,
+        resample,
+    )
+    from mocap_ext.solvers.recordings import write_bvh, write_joints, write_trc
+    from mocap_ext.solvers.samples import GaitSettings, walking_gait
+
+    walk = walking_gait(GaitSettings(duration=seconds, frame_rate=120.0))
+    write_bvh(walk, folder / "walk.bvh")
+    slow = resample(walk, 30.0)
+    names = JOINTS[Sensor.KINECT_V2]
+    seen = forward_kinematics(slow).positions
+    joints = Tracks(names, seen[:, np.resize(np.arange(seen.shape[1]), len(names))], 30.0)
+    write_joints(JointRecording(joints, None, Sensor.KINECT_V2), folder / "joints.csv")
+    places = forward_kinematics(walk).positions
+    several = np.resize(np.arange(places.shape[1]), N_MARKERS)
+    markers = places[:, several] + np.linspace(0.0, 0.05, N_MARKERS)[:, None]
+    names = tuple(f"marker_{number}" for number in range(N_MARKERS))
+    write_trc(Tracks(names, markers, 120.0), folder / "markers.trc")
+    return [folder / name for name in ("walk.bvh", "joints.csv", "markers.trc")]
+
+
+def measured(file: Path) -> list[str]:
+    """Return the seconds that Import takes, and the greatest error of what is read back."""
+    from mocap_ext.mocap_assist.importing.choices import ImportChoices
+    from mocap_ext.mocap_assist.importing.importing import import_files
+
+    made = []
+
+    def run() -> None:
+        os.utime(file)  # else the redo panel's memory of it would serve
+        imported = import_files(bpy.context, [file], ImportChoices())
+        assert not imported.failed, imported.failed
+        made[:] = imported.made
+
+    seconds = f"{median(timed(run)):.2f}"
+    if file.suffix == ".csv":  # Bones of constant length go where joints nearly are.
+        return [seconds, "-"]
+    return [seconds, f"{1000.0 * furthest(file, made[0]):.4f}"]
+
+
+def furthest(file: Path, made: bpy.types.Object) -> float:
+    """Return how far any joint or marker that is read back is from the file's, metres."""
+    from mocap_ext.mocap_assist.actions.armature_read import read_take
+    from mocap_ext.mocap_assist.actions.marker_take import read_markers
+    from mocap_ext.solvers.motion import Motion, forward_kinematics
+    from mocap_ext.solvers.recordings import read_motion_or_tracks
+
+    if made.type == "ARMATURE":
+        motion = read_take(made, bpy.context.scene).parts[0].motion
+        found = dict(zip(motion.skeleton.names, positions_of(motion), strict=True))
+    else:
+        tracks = read_markers(made, bpy.context.scene).tracks
+        found = dict(zip(tracks.names, np.moveaxis(tracks.positions, 1, 0), strict=True))
+    recorded = read_motion_or_tracks(file)
+    if isinstance(recorded, Motion):
+        names, places = recorded.skeleton.names, forward_kinematics(recorded).positions
+    else:
+        names, places = recorded.names, recorded.positions
+    shared = [index for index, name in enumerate(names) if name in found]
+    errors = [
+        np.linalg.norm(found[names[index]] - places[:, index], axis=1) for index in shared
+    ]
+    return float(np.max(errors))
+
+
+def positions_of(motion) -> np.ndarray:
+    """Return places of joints, shape (n_joints, n_frames, 3), metres."""
+    from mocap_ext.solvers.motion import forward_kinematics
+
+    return np.moveaxis(forward_kinematics(motion).positions, 1, 0)
+
+
+def blenders_own(file: Path) -> None:
+    with contextlib.redirect_stdout(io.StringIO()):
+        bpy.ops.import_anim.bvh(filepath=str(file), global_scale=0.01, update_scene_fps=True)
+
+
+def timed(run) -> list[float]:
+    """Return the seconds of each of several runs, each in an empty scene."""
+    times = []
+    for _ in range(REPEATS):
+        bpy.ops.wm.read_homefile(use_empty=True, use_factory_startup=True)
+        start = perf_counter()
+        run()
+        times.append(perf_counter() - start)
+    return times
+
+
+if __name__ == "__main__":
+    main()
+    sys.stdout.flush()
+    os._exit(0)  # Blender may hang at its end

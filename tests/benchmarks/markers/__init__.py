@@ -1,0 +1,1 @@
+"""Gaps, swaps and rigid clusters of markers, and the skeleton solved from them."""

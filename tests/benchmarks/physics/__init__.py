@@ -1,0 +1,1 @@
+"""The simulated body: momentum, contact forces and slide."""

@@ -1,0 +1,1 @@
+"""Reconstruct and its parts, on recordings with known truth."""

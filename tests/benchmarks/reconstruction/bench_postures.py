@@ -1,0 +1,125 @@
+"""Postures from a library: parts used, energies, lost joints; large libraries.
+
+    python -m tests.benchmarks.reconstruction.bench_postures          # about five minutes
+    python -m tests.benchmarks.reconstruction.bench_postures --dev    # clips to tune on
+    python -m tests.benchmarks.reconstruction.bench_postures --docs   # into docs/benchmarks.md
+    python -m tests.benchmarks.reconstruction.bench_postures --search # large libraries alone
+
+Libraries are of other persons than the clips: CMU walkers for development and one actor of
+HDM05. "Lost" joints are taken out of the capture; all methods are told which. Interpolation
+knows both ends of a loss, as does ours but for "causal". Only one loss in each take.
+"""
+
+import argparse
+import sys
+from time import perf_counter
+
+import numpy as np
+from numpy.typing import NDArray
+from threadpoolctl import threadpool_limits
+
+from solvers.motion.humanoid.body_size import USUAL_LENGTHS
+from solvers.reconstruction.joint_rotations.library_body import BodyPostures, on_body
+from solvers.reconstruction.pose_library.neighbors import (
+    Query,
+    index_postures,
+    nearest_postures,
+)
+from solvers.reconstruction.pose_library.posture_groups import group_postures
+from solvers.reconstruction.pose_library.posture_library import PostureLibrary
+
+from ..shared.report import Report
+from ..shared.tables import Scores, number, table
+from . import part_postures as part
+
+Single = NDArray[np.float32]
+SIZES = (2500, 10_000, 30_000, 100_000)
+N_QUERIES = 256
+
+
+def main() -> None:
+    """Print the tables."""
+    parser = argparse.ArgumentParser(description=(__doc__ or "").splitlines()[0])
+    parser.add_argument("--dev", action="store_true", help="clips to tune on instead")
+    parser.add_argument("--docs", action="store_true", help="rewrite docs/benchmarks.md")
+    parser.add_argument("--search", action="store_true", help="search in large libraries")
+    chosen = parser.parse_args()
+    started = perf_counter()
+    tables: list[Scores | str] = []
+    if chosen.search:
+        with threadpool_limits(1):
+            found_tables = [growth()]
+        Report(chosen.docs).part("posture search", found_tables, perf_counter() - started)
+        return
+    with threadpool_limits(1):
+        optical, kinect = part.optical_clips(chosen.dev), part.kinect_clips(chosen.dev)
+        titles = f"{len(optical)} CMU and HDM05 clips", f"{len(kinect)} Kinect takes"
+        for title, found in zip(titles, (optical, kinect), strict=True):
+            tables.append(part.parts_used(title, found))
+        tables.append(part.energies(optical[::3]))
+        _say("parts, energies")
+        for title, found in zip(titles, (optical, kinect), strict=True):
+            tables += part.lost_joints(title, found)
+            _say(f"lost joints, {title}")
+    Report(chosen.docs).part("postures", tables, perf_counter() - started)
+
+
+def growth() -> str:
+    """Time and recall of the search as a library grows (mixed and disturbed real postures)."""
+    library = part.optical_clips(True)[0].library
+    random = np.random.default_rng(0)
+    rows = {}
+    for size in SIZES:
+        directions, changes = _mixed(library, size, random)
+        asked, speeds = _mixed(library, N_QUERIES, random)
+        body = on_body(directions, changes, USUAL_LENGTHS)
+        query = _query(on_body(asked, speeds, USUAL_LENGTHS), random)
+        groups = group_postures(directions)
+        index = index_postures(body, groups)
+        started = perf_counter()
+        found, _ = nearest_postures(index, query)
+        quick = perf_counter() - started
+        whole = index_postures(body, 0 * groups)
+        started = perf_counter()
+        truth, _ = nearest_postures(whole, query, n_looked_at=size)
+        slow = perf_counter() - started
+        shared = [len(set(a) & set(b)) / 30 for a, b in zip(found, truth, strict=True)]
+        times = [1e3 * each / N_QUERIES for each in (quick, slow)]
+        rows[f"{size:,}"] = [*map(number, times), f"{np.mean(shared):.3f}"]
+    header = ["postures", "ours, ms per frame", "each posture, ms", "true neighbours found"]
+    return "**Search in large libraries** (30 neighbours)\n\n" + table(header, rows) + "\n"
+
+
+def _mixed(
+    library: PostureLibrary, size: int, random: np.random.Generator
+) -> tuple[Single, Single]:
+    """More postures: each between two alike ones of the library, with limbs of others."""
+    first = random.integers(library.n_postures, size=size)
+    limbs = random.integers(library.n_postures, size=(size, 4))
+    directions, changes = library.directions[first].copy(), library.changes[first].copy()
+    for limb in range(4):
+        place = slice(4 + 4 * limb, 8 + 4 * limb)
+        swapped = random.uniform(size=size) < 0.3
+        directions[swapped, place] = library.directions[limbs[swapped, limb], place]
+        changes[swapped, place] = library.changes[limbs[swapped, limb], place]
+    directions = directions + random.normal(scale=0.05, size=directions.shape)
+    directions[:, 0] = 0.0
+    sizes = np.linalg.norm(directions, axis=-1, keepdims=True)
+    directions /= np.where(sizes > 0.0, sizes, 1.0)
+    return directions.astype(np.float32), changes
+
+
+def _query(body: BodyPostures, random: np.random.Generator) -> Query:
+    trust = random.uniform(0.5, 1.0, size=body.positions.shape[:2])
+    for frame, limb in enumerate(random.integers(5, size=len(trust))):
+        trust[frame, 4 + 4 * limb : 8 + 4 * limb] = 0.0
+    wide = (each.astype(np.float64) for each in (body.positions, body.speeds))
+    return Query(*wide, trust, 0.2)
+
+
+def _say(what: str) -> None:
+    print(f"Done: {what}", file=sys.stderr, flush=True)
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,42 @@
+"""How far joints of postures are off, and how jerky they move."""
+
+import numpy as np
+from numpy.typing import NDArray
+
+from solvers.motion.humanoid.posture_joints import N_JOINTS, PARENTS
+
+from .kinect_pairs import Pair
+
+Array = NDArray[np.float64]
+
+ABOVE = np.maximum(PARENTS, 0)
+
+
+def compared(made: Array, truth: Array) -> tuple[Array, Array, Array]:
+    """Return errors of all kinds, each of shape (n_frames, 20)."""
+    off = made - truth
+    between = off - off[:, ABOVE]
+    between[:, 0] = np.nan
+    known = np.isfinite(off).any(axis=(0, 2))
+    usual = np.zeros((N_JOINTS, 3))
+    usual[known] = np.nanmean(off[:, known], axis=0)
+    absolute, relative, free = (
+        np.linalg.norm(one, axis=-1) for one in (off, between, off - usual)
+    )
+    return absolute, relative, free
+
+
+def apart_free(made: Array, truth: Array) -> Array:
+    """Return errors of the way from the joint above beside their means, (n_frames, 20)."""
+    off = made - truth
+    between = off - off[:, ABOVE]
+    between[:, 0] = np.nan
+    known = np.isfinite(between).any(axis=(0, 2))
+    between[:, known] -= np.nanmean(between[:, known], axis=0)
+    return np.asarray(np.linalg.norm(between, axis=-1))
+
+
+def jerk(made: Array, pair: Pair) -> Array:
+    """Sizes of the third differences, m/s³."""
+    third = np.diff(made, 3, axis=0) * pair.kinect.frame_rate**3
+    return np.asarray(np.linalg.norm(third, axis=-1))

@@ -1,0 +1,226 @@
+"""All that rebuilds what a Kinect saw: ours, the published methods, and peers."""
+
+from collections.abc import Callable
+from functools import cache, partial
+
+import numpy as np
+from numpy.typing import NDArray
+
+from solvers.motion.humanoid.posture_heading import normalise, turned
+from solvers.motion.humanoid.posture_joints import N_JOINTS, posture_positions
+from solvers.reconstruction import (
+    CorrectionMethod,
+    CorrectionSettings,
+    PostureMethod,
+    PostureSettings,
+    Reconstruction,
+    ReconstructMethod,
+    ReconstructSettings,
+    ReliabilityMethod,
+    ReliabilitySettings,
+    ResidualMethod,
+    correct_postures,
+    measure_reliability,
+    reconstruct,
+    reconstruct_postures,
+)
+from solvers.reconstruction.residual_correction.correct_postures import smoothed
+from solvers.reconstruction.residual_correction.inputs import calm_postures
+
+from ..peers import posture_regression
+from ..peers.kalman import constant_velocity
+from ..peers.one_euro import one_euro
+from ..peers.posture_regression import Predict
+from ..peers.smoothers import gaussian, gcv_spline
+from .kinect_folds import (
+    confident_prior,
+    others,
+    posture_library,
+    residual_prior,
+    seen_of,
+    truth_of,
+)
+from .kinect_pairs import Pair
+
+Array = NDArray[np.float64]
+Method = Callable[[Pair, str], Array]
+"""From a take, and who was left out, to the joints of postures (n_frames, 20, 3)."""
+
+CALM = 1 / 30
+"""Seconds of the Gaussian that regressions see through, as our prior does."""
+SMOOTHING = 0.05
+"""Seconds; what regressions foretell is smoothed as ours is."""
+THINNED = 5
+"""Every so manieth frame is an example, 6 a second as for our prior."""
+SIGNS_PUBLISHED = ReliabilitySettings(method=ReliabilityMethod.PUBLISHED)
+TERMS_PUBLISHED = CorrectionSettings(method=CorrectionMethod.PUBLISHED)
+
+
+def raw(pair: Pair, subject: str) -> Array:
+    """As it was seen."""
+    return seen_of(pair)
+
+
+def filtered(
+    smooth: Callable[..., Array], pair: Pair, subject: str, **settings: float
+) -> Array:
+    """Smooth each coordinate on its own."""
+    seen = seen_of(pair)
+    known = np.isfinite(seen).all(axis=(0, 2))
+    flat = seen[:, known].reshape(len(seen), -1)
+    seen[:, known] = smooth(flat, pair.kinect.frame_rate, **settings).reshape(len(seen), -1, 3)
+    return seen
+
+
+def regressed(learn: Callable[[Array, Array], Predict], pair: Pair, subject: str) -> Array:
+    """Add the offsets that a regression foretells in the frame of the heading."""
+    calm = calm_postures(pair.kinect, CALM)
+    columns = _tracked(calm.features)
+    offsets = np.zeros_like(calm.features)
+    predict = _regression(learn, subject)
+    foretold = predict(calm.features[:, columns[1:]].reshape(len(offsets), -1))
+    offsets[:, columns] = foretold.reshape(len(offsets), -1, 3)
+    return _calmed(calm.positions + calm.turn_back(offsets), pair)
+
+
+def from_examples(learn: Callable[[Array], Predict], pair: Pair, subject: str) -> Array:
+    """Take the whole posture from true postures of others, brought to the actor's size."""
+    calm = calm_postures(pair.kinect, CALM)
+    columns = _tracked(calm.features)
+    predict = _memory(learn, subject)
+    made = np.full_like(calm.features, np.nan)
+    found = predict(calm.features[:, columns].reshape(len(made), -1))
+    seen = calm.normalised.postures[:, columns]
+    size = np.linalg.norm(seen) / np.linalg.norm(calm.features[:, columns])
+    made[:, columns] = size * found.reshape(len(made), -1, 3)
+    return _calmed(calm.normalised.put_back(made), pair)
+
+
+@cache
+def _regression(learn: Callable[[Array, Array], Predict], subject: str) -> Predict:
+    features, offsets = [], []
+    for pair in others(subject):
+        calm = calm_postures(pair.kinect, CALM)
+        columns = _tracked(calm.features)
+        off = turned(truth_of(pair) - calm.positions, -calm.normalised.headings)
+        features.append(calm.features[::THINNED, columns[1:]])
+        offsets.append(off[::THINNED, columns])
+    X, Y = (_flat(parts) for parts in (features, offsets))
+    known = np.isfinite(Y).all(axis=1)
+    return learn(X[known], Y[known])
+
+
+@cache
+def _memory(learn: Callable[[Array], Predict], subject: str) -> Predict:
+    examples = []
+    for pair in others(subject):
+        plain = normalise(truth_of(pair), pair.truth.frame_rate)
+        seen = calm_postures(pair.kinect, CALM)
+        size = np.nanmax(np.abs(seen.features)) / np.nanmax(np.abs(seen.normalised.postures))
+        columns = _tracked(seen.features)
+        examples.append(size * plain.postures[::THINNED, columns])
+    X = _flat(examples)
+    return learn(X[np.isfinite(X).all(axis=1)])
+
+
+def _tracked(features: Array) -> NDArray[np.intp]:
+    """Which joints this sensor tells; the hips come first."""
+    return np.flatnonzero(np.isfinite(features).all(axis=(0, 2)))
+
+
+def _flat(parts: list[Array]) -> Array:
+    together = np.concatenate(parts)
+    return together.reshape(len(together), -1)
+
+
+def _calmed(positions: Array, pair: Pair) -> Array:
+    ones = np.ones((len(positions), N_JOINTS))
+    return smoothed(positions, ones, SMOOTHING * pair.kinect.frame_rate)
+
+
+def by_postures(
+    pair: Pair, subject: str, *, method: PostureMethod, others_too: bool = True
+) -> Reconstruction:
+    """[SHJT13]: a library of postures alone."""
+    published = method is PostureMethod.PUBLISHED
+    return reconstruct_postures(
+        pair.kinect,
+        posture_library(subject, others_too),
+        settings=PostureSettings(method=method),
+        reliability=measure_reliability(pair.kinect, settings=SIGNS_PUBLISHED)
+        if published
+        else None,
+    )
+
+
+def by_published_residuals(
+    pair: Pair, subject: str, settings: CorrectionSettings = TERMS_PUBLISHED
+) -> Reconstruction:
+    """[ZH14]: Gaussian processes joint by joint, and three terms frame by frame."""
+    return correct_postures(
+        pair.kinect,
+        residual_prior(subject, ResidualMethod.PUBLISHED),
+        reliability=measure_reliability(pair.kinect, settings=SIGNS_PUBLISHED),
+        settings=settings,
+    )
+
+
+def by_reconstruct(
+    pair: Pair,
+    subject: str,
+    *,
+    method: ReconstructMethod,
+    others_too: bool = True,
+    causal: bool = False,
+    confident: bool = False,
+    shift: bool = True,
+) -> Reconstruction:
+    """Ours, with the offsets of the sensor that the prior knows.
+
+    `confident`: and with what leaving out each of the others tells of its confidence.
+    """
+    return reconstruct(
+        pair.kinect,
+        posture_library(subject, others_too),
+        confident_prior(subject)
+        if confident
+        else residual_prior(subject, ResidualMethod.HIERARCHICAL),
+        settings=ReconstructSettings(method=method, shift=shift, causal=causal),
+    )
+
+
+def joints(solve: Callable[..., Reconstruction], **settings: object) -> Method:
+    """Only where the joints of postures are."""
+    return lambda pair, subject: posture_positions(solve(pair, subject, **settings).tracks)
+
+
+METHODS: dict[str, Method] = {
+    "raw": raw,
+    **{
+        f"Gaussian, {n} frames": partial(filtered, gaussian, sigma_frames=float(n))
+        for n in (1, 2, 3)
+    },
+    "one-euro (causal)": partial(filtered, one_euro, slowest=2.0, haste=5.0),
+    "Kalman, constant velocity, smoothed": partial(filtered, constant_velocity, agility=0.5),
+    "GCV smoothing spline": partial(filtered, gcv_spline),
+    "constant offset": partial(regressed, posture_regression.constant),
+    "ridge, whole posture": partial(regressed, posture_regression.ridge),
+    "random-forest offsets (as Shen 2012)": partial(
+        regressed, posture_regression.random_forest
+    ),
+    "Gaussian process, scikit-learn": partial(regressed, posture_regression.gaussian_process),
+    "PCA projection": partial(from_examples, posture_regression.principal_projection),
+    "kNN mean, true postures": partial(from_examples, posture_regression.nearest_mean),
+    "[SHJT13] postures, as published": joints(by_postures, method=PostureMethod.PUBLISHED),
+    "postures": joints(by_postures, method=PostureMethod.PROBABLE),
+    "postures, of CMU alone": joints(
+        by_postures, method=PostureMethod.PROBABLE, others_too=False
+    ),
+    "[ZH14] residuals, as published": joints(by_published_residuals),
+    "residuals": joints(by_reconstruct, method=ReconstructMethod.RESIDUALS),
+    "ours (both)": joints(by_reconstruct, method=ReconstructMethod.BOTH),
+    "ours (both), CMU alone": joints(
+        by_reconstruct, method=ReconstructMethod.BOTH, others_too=False
+    ),
+    "ours (both), causal": joints(by_reconstruct, method=ReconstructMethod.BOTH, causal=True),
+}

@@ -1,0 +1,146 @@
+"""[SHJT13] on UI-PRMD: what each term of its energy is good for, and its table IV."""
+
+from collections.abc import Iterator
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from solvers.motion.humanoid.body_size import body_lengths, segment_lengths
+from solvers.motion.humanoid.bone_directions import bone_changes
+from solvers.motion.humanoid.posture_heading import Normalised, normalise
+from solvers.reconstruction import PostureMethod, ReconstructMethod
+from solvers.reconstruction.joint_rotations.library_body import on_body
+from solvers.reconstruction.pose_library.neighbors import (
+    Query,
+    index_postures,
+    nearest_postures,
+)
+from solvers.reconstruction.pose_space.posture_energy import Demands, EnergyWeights
+from solvers.reconstruction.pose_space.posture_space import PostureSpaces, local_pca
+from solvers.reconstruction.published.posture_synthesis import solve_in_turn
+
+from ..peers.gap_fillers import linear
+from ..shared.tables import number, table
+from .kinect_damage import Damaged, hidden, lost
+from .kinect_errors import compared, jerk
+from .kinect_folds import SUBJECTS, posture_library, seen_of, takes_of, truth_of
+from .kinect_methods import Method, by_postures, by_reconstruct, joints
+from .part_losses import REPETITIONS, bridged_by, error
+
+Array = NDArray[np.float64]
+
+PUBLISHED = EnergyWeights()
+VARIANTS = {
+    "all four, as published": PUBLISHED,
+    "without control": PUBLISHED._replace(control=0.0),
+    "without style": PUBLISHED._replace(style=0.0),
+    "without kinematics": PUBLISHED._replace(kinematics=0.0),
+    "without continuity": PUBLISHED._replace(continuity=0.0),
+    "control alone": EnergyWeights(1.0, 0.0, 0.0, 0.0),
+    "twice the control": PUBLISHED._replace(control=2.0),
+    "twice the style": PUBLISHED._replace(style=1.0),
+    "twice the kinematics": PUBLISHED._replace(kinematics=3.0),
+    "ten times the continuity": PUBLISHED._replace(continuity=2.5),
+}
+EVERY = 10
+"""One of so many exercises: the frames are solved one after the other."""
+SECONDS = "1 s"
+CLASSES: dict[str, Method] = {
+    "raw, gaps bridged by lines": lambda pair, subject: bridged_by(linear, pair, subject),
+    "[SHJT13] postures, as published": joints(by_postures, method=PostureMethod.PUBLISHED),
+    "postures": joints(by_postures, method=PostureMethod.PROBABLE),
+    "ours (both)": joints(by_reconstruct, method=ReconstructMethod.BOTH),
+}
+
+
+class Asked(NamedTuple):
+    """A damaged take, and what any weights of the energy are to solve."""
+
+    damaged: Damaged
+    plain: Normalised
+    spaces: PostureSpaces
+    demands: Demands
+
+
+def energy_weights() -> str:
+    """Return the error without each term of the energy, in the same natural posture spaces."""
+    asked = list(_all_asked())
+    rows = {}
+    for name, weights in VARIANTS.items():
+        found = [_measured(one, weights) for one in asked]
+        gone, apart, lengths, jerks = (
+            np.concatenate(each) for each in zip(*found, strict=True)
+        )
+        cells = [f"{100.0 * np.nanmean(one):.2f}" for one in (gone, apart, lengths)]
+        rows[name] = [*cells, number(float(np.nanmean(jerks)))]
+    columns = ["lost joints, cm", "to the joint above, cm", "lengths vary by, cm", "jerk, m/s³"]
+    head = (
+        "**Weights of the energy of [SHJT13]** (eq. 10 to 15; published 1, .5, 1.5, .25;"
+        f" Gauss-Newton), joints lost for {SECONDS}, {len(asked)} cases, subject left out\n\n"
+    )
+    return head + table(["terms", *columns], rows) + "\n"
+
+
+def _all_asked() -> Iterator[Asked]:
+    for subject in SUBJECTS:
+        library = posture_library(subject)
+        for count, pair in enumerate(takes_of(subject, *REPETITIONS)[::EVERY]):
+            for damaged in lost(pair, np.random.default_rng(count)):
+                if damaged.seconds == SECONDS and damaged.what in {"4", "arm", "leg"}:
+                    seen, rate = seen_of(damaged.pair), pair.kinect.frame_rate
+                    trust = np.isfinite(seen).all(axis=-1).astype(np.float64)
+                    plain = normalise(seen, rate, trust)
+                    lengths = body_lengths(plain.postures, trust)
+                    body = on_body(library.directions, library.changes, lengths)
+                    index = index_postures(body, library.groups)
+                    speeds = bone_changes(plain.postures, rate)
+                    query = Query(plain.postures, speeds, trust, 0.0)
+                    places, _ = nearest_postures(index, query)
+                    spaces = local_pca(body.positions[places].astype(np.float64))
+                    demands = Demands(plain.postures, trust, spaces.neighbours, lengths)
+                    yield Asked(damaged, plain, spaces, demands)
+
+
+def _measured(asked: Asked, weights: EnergyWeights) -> tuple[Array, Array, Array, Array]:
+    """Return errors of lost joints, of ways from the joint above, of lengths, and jerks."""
+    demands = Demands(
+        asked.demands.observed, asked.demands.trust, asked.demands.neighbours,
+        asked.demands.lengths, weights=weights,
+    )  # fmt: skip
+    made = asked.plain.put_back(solve_in_turn(asked.spaces, demands)[0])
+    pair = asked.damaged.pair
+    _, apart, _ = compared(made, truth_of(pair))
+    return (
+        error(made, asked.damaged),
+        apart.ravel(),
+        segment_lengths(made)[:, 1:].std(axis=0),
+        jerk(made, pair).ravel(),
+    )
+
+
+def classes() -> str:
+    """Return table IV of [SHJT13]: eq. 18, the worse the body is seen."""
+    errors: dict[str, dict[str, list[Array]]] = {name: {} for name in CLASSES}
+    for subject in SUBJECTS:
+        for pair in takes_of(subject, *REPETITIONS)[::EVERY]:
+            nothing = np.zeros(seen_of(pair).shape[:2], bool)
+            cases = [("(a) as it is", Damaged("", "", pair, nothing))]
+            cases += [(f"(b) hidden, {one.what}", one) for one in hidden(pair)]
+            cases += [
+                (f"(c) 8 joints lost, {one.seconds}", one)
+                for one in lost(pair, np.random.default_rng(0))
+                if one.what == "8"
+            ]
+            for what, damaged in cases:
+                for name, method in CLASSES.items():
+                    made = method(damaged.pair, subject)
+                    _, apart, _ = compared(made, truth_of(pair))
+                    errors[name].setdefault(what, []).append(apart.ravel())
+    columns = sorted(dict.fromkeys(what for each in errors.values() for what in each))
+    rows = {
+        name: [f"{100.0 * np.nanmean(np.concatenate(each[what])):.2f}" for what in columns]
+        for name, each in errors.items()
+    }
+    head = "**Table IV of [SHJT13]**: cm to the joint above (eq. 18), all joints and frames\n\n"
+    return head + table(["method", *columns], rows) + "\n"

@@ -1,0 +1,246 @@
+"""Error on joints of UI-PRMD that are lost, hidden, shaken or swapped.
+
+What is measured is the distance to the true joint beside the joint's mean offset over those
+frames of the take that are not damaged.
+"""
+
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass
+from functools import cache, partial
+
+import numpy as np
+from numpy.typing import NDArray
+
+from solvers.motion.humanoid.posture_heading import normalise
+from solvers.reconstruction import PostureMethod, ReconstructMethod
+from solvers.reconstruction.residual_correction.inputs import CalmPostures, calm_postures
+
+from ..peers.gap_fillers import cubic, linear, pchip
+from ..peers.one_euro import one_euro
+from ..peers.smoothers import gaussian, hampel_gcv_spline
+from ..shared.tables import table
+from .kinect_damage import Damaged, hidden, lost, shaken, swapped
+from .kinect_folds import SUBJECTS, others, seen_of, takes_of, truth_of
+from .kinect_methods import (
+    CALM,
+    THINNED,
+    Method,
+    by_postures,
+    by_reconstruct,
+    filtered,
+    joints,
+    raw,
+)
+from .kinect_pairs import Pair
+
+Array = NDArray[np.float64]
+
+N_NEIGHBOURS, N_COMPONENTS = 30, 20
+NOISE = 0.02
+"""Metres by which seen joints may lie beside the space of components."""
+REPETITIONS = (1, 1)
+"""How many of each exercise after how many: the second. A first one is doubtful."""
+LINEAR = "linear interpolation"
+
+
+def hold(gapped: Array, frame_rate: float) -> Array:
+    """Stay where a joint was seen last."""
+    seen = np.isfinite(gapped)
+    last = np.maximum.accumulate(np.where(seen, np.arange(len(gapped))[:, None], 0), axis=0)
+    return np.take_along_axis(gapped, last, axis=0)
+
+
+def bridged_by(
+    fill: Callable[[Array, float], Array], pair: Pair, subject: str, in_body: bool = False
+) -> Array:
+    """Fill the gaps of each coordinate, in the world or beside hips and heading."""
+    seen, rate = seen_of(pair), pair.kinect.frame_rate
+    if not in_body:
+        return fill(seen.reshape(len(seen), -1), rate).reshape(seen.shape)
+    plain = normalise(seen, rate, np.isfinite(seen).all(axis=-1).astype(float))
+    flat = plain.postures.reshape(len(seen), -1)
+    return plain.put_back(fill(flat, rate).reshape(seen.shape))
+
+
+def by_example(complete: Callable[..., Array], pair: Pair, subject: str) -> Array:
+    """Complete postures frame by frame from what the Kinect saw of other subjects."""
+    seen = seen_of(pair)
+    plain = normalise(
+        seen, pair.kinect.frame_rate, np.isfinite(seen).all(axis=-1).astype(float)
+    )
+    size = _size(calm_postures(pair.kinect, CALM))
+    flat = size * plain.postures.reshape(len(seen), -1)
+    told = np.isfinite(flat)
+    examples = seen_examples(subject)
+    known = np.isfinite(examples).all(axis=0)
+    result = flat.copy()
+    patterns, which = np.unique(told, axis=0, return_inverse=True)
+    for number, pattern in enumerate(patterns):
+        rows = np.flatnonzero(which.ravel() == number)
+        result[np.ix_(rows, ~pattern & known)] = complete(
+            examples, flat[rows][:, pattern], pattern, ~pattern & known
+        )
+    made = plain.put_back(result.reshape(seen.shape) / size)
+    return np.where(np.isfinite(seen), seen, made)
+
+
+def nearest_mean(examples: Array, seen: Array, told: Array, wanted: Array) -> Array:
+    """Mean of the nearest examples."""
+    known = examples[:, told]
+    far = (known**2).sum(axis=1) - 2.0 * seen @ known.T
+    nearest = np.argpartition(far, N_NEIGHBOURS, axis=1)[:, :N_NEIGHBOURS]
+    return examples[:, wanted][nearest].mean(axis=1)
+
+
+def principal(examples: Array, seen: Array, told: Array, wanted: Array) -> Array:
+    """Most probable point in the space of principal components."""
+    mean, axes, spread = examples.mean(axis=0), *_components(examples)
+    known = axes[:, told]
+    pull = np.diag(NOISE**2 / spread)
+    found = np.linalg.solve(known @ known.T + pull, known @ (seen - mean[told]).T)
+    return mean[wanted] + found.T @ axes[:, wanted]
+
+
+def _components(examples: Array) -> tuple[Array, Array]:
+    """Principal axes, (n, 60), and variances along them."""
+    told = np.isfinite(examples).all(axis=0)
+    spread, vectors = np.linalg.eigh(np.cov(examples[:, told].T))
+    axes = np.zeros((N_COMPONENTS, examples.shape[1]))
+    axes[:, told] = vectors.T[::-1][:N_COMPONENTS]
+    return axes, spread[::-1][:N_COMPONENTS]
+
+
+@cache
+def seen_examples(subject: str) -> Array:
+    """What the Kinect saw of the others, normalised and of usual size, (n, 60)."""
+    found = [calm_postures(pair.kinect, CALM).features[::THINNED] for pair in others(subject)]
+    together = np.concatenate(found)
+    return together.reshape(len(together), -1)
+
+
+def _size(calm: CalmPostures) -> float:
+    sizes = [np.nanmax(np.abs(one)) for one in (calm.features, calm.normalised.postures)]
+    return float(sizes[0] / sizes[1])
+
+
+FILLED: dict[str, Method] = {
+    "hold": partial(bridged_by, hold),
+    LINEAR: partial(bridged_by, linear),
+    "linear, in the body's frame": partial(bridged_by, linear, in_body=True),
+    "PCHIP": partial(bridged_by, pchip),
+    "cubic spline": partial(bridged_by, cubic),
+    "PCA projection": partial(by_example, principal),
+    "kNN mean": partial(by_example, nearest_mean),
+}
+OURS: dict[str, Method] = {
+    "[SHJT13] postures, as published": joints(by_postures, method=PostureMethod.PUBLISHED),
+    "postures": joints(by_postures, method=PostureMethod.PROBABLE),
+    "postures, of CMU alone": joints(
+        by_postures, method=PostureMethod.PROBABLE, others_too=False
+    ),
+    "residuals": joints(by_reconstruct, method=ReconstructMethod.RESIDUALS),
+    "ours (both)": joints(by_reconstruct, method=ReconstructMethod.BOTH),
+    "ours (both), CMU alone": joints(
+        by_reconstruct, method=ReconstructMethod.BOTH, others_too=False
+    ),
+}
+CALMED: dict[str, Method] = {
+    "raw": raw,
+    "Gaussian, 2 frames": partial(filtered, gaussian, sigma_frames=2.0),
+    "one-euro (causal)": partial(filtered, one_euro, slowest=2.0, haste=5.0),
+    "Hampel, GCV spline": partial(filtered, hampel_gcv_spline),
+}
+
+
+def error(made: Array, damaged: Damaged) -> Array:
+    """Distances on the damaged joints, metres, (n,)."""
+    off = made - truth_of(damaged.pair)
+    sound = np.where(damaged.where[..., None], np.nan, off)
+    known = np.isfinite(sound).any(axis=(0, 2))
+    usual = np.full(off.shape[1:], np.nan)
+    usual[known] = np.nanmean(sound[:, known], axis=0)
+    return np.asarray(np.linalg.norm(off - usual, axis=-1)[damaged.where])
+
+
+@dataclass(frozen=True, eq=False)
+class Found:
+    """Errors of one method on the joints of one damage."""
+
+    what: str
+    seconds: str
+    errors: Array
+
+
+def losses(n_repetitions: int) -> list[str]:
+    """Return tables of what was lost and of what was hidden."""
+    methods = {**FILLED, **OURS}
+    random, behind = (
+        errors_of(lost, methods, every=4),
+        errors_of(hidden, methods, every=2),
+    )
+    return [
+        errors_table("Joints lost, by how many", random, lambda one: one.what),
+        errors_table("Joints lost, by how long", random, lambda one: one.seconds),
+        errors_table(
+            "Joints hidden by the body, by where the sensor is", behind, lambda one: one.what
+        ),
+    ]
+
+
+def damages(n_repetitions: int) -> list[str]:
+    """Return tables of joints that were shaken or swapped, without a word of the tracker."""
+    methods = {**CALMED, **OURS}
+    jumpy, wrong = (
+        errors_of(shaken, methods, every=3),
+        errors_of(swapped, methods, every=3),
+    )
+    return [
+        errors_table("Joints that vibrate", jumpy, lambda one: one.seconds),
+        errors_table("Limbs swapped", wrong, lambda one: one.what),
+    ]
+
+
+def errors_of(
+    damage: Callable[..., Iterator[Damaged]],
+    methods: dict[str, Method],
+    subjects: Sequence[str] = SUBJECTS,
+    every: int = 1,
+) -> dict[str, list[Found]]:
+    """Let all methods mend the same damages; the last two rows see the takes undamaged.
+
+    `every` second exercise is used where it is 2, and so on.
+    """
+    sound = {"nothing damaged, raw": raw, "nothing damaged, ours": OURS["ours (both)"]}
+    result: dict[str, list[Found]] = {name: [] for name in (*methods, *sound)}
+    for subject in subjects:
+        for number, pair in enumerate(takes_of(subject, *REPETITIONS)[::every]):
+            chance = [] if damage is hidden else [np.random.default_rng(number)]
+            before = {name: method(pair, subject) for name, method in sound.items()}
+            for each in damage(pair, *chance):
+                made = {name: method(each.pair, subject) for name, method in methods.items()}
+                for name, positions in {**made, **before}.items():
+                    found = Found(each.what, each.seconds, error(positions, each))
+                    result[name].append(found)
+    return result
+
+
+def errors_table(title: str, found: dict[str, list[Found]], by: Callable[[Found], str]) -> str:
+    base = LINEAR if LINEAR in found else "raw"
+    columns = list(dict.fromkeys(by(one) for one in found[base]))
+    usual = _mean(found[base])
+    rows = {}
+    for name, all_found in found.items():
+        cells = [_mean([one for one in all_found if by(one) == column]) for column in columns]
+        overall = _mean(all_found)
+        rows[name] = [*map(_centimetres, [*cells, overall]), f"{overall / usual - 1.0:+.0%}"]
+    n = sum(len(one.errors) for one in found[base])
+    head = f"**{title}** (cm on these {n} joint-frames, offset-free)\n\n"
+    return head + table(["method", *columns, "all", f"against {base}"], rows) + "\n"
+
+
+def _mean(found: list[Found]) -> float:
+    return float(np.nanmean(np.concatenate([one.errors for one in found])))
+
+
+def _centimetres(metres: float) -> str:
+    return f"{100.0 * metres:.2f}"

@@ -1,0 +1,281 @@
+"""Postures that come back from a library: parts used, energies, and joints that are lost."""
+
+from collections.abc import Callable, Iterator
+from functools import cache, partial
+from time import perf_counter
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.interpolate import CubicSpline, PchipInterpolator
+
+from solvers.motion import JOINTS, JointRecording, Motion, Sensor, Tracks
+from solvers.motion.humanoid.body_size import body_lengths, segment_lengths
+from solvers.motion.humanoid.bone_directions import ABOVE, bone_changes
+from solvers.motion.humanoid.posture_heading import normalise
+from solvers.motion.humanoid.posture_joints import N_JOINTS, motion_postures, posture_positions
+from solvers.reconstruction.joint_rotations.library_body import on_body
+from solvers.reconstruction.pose_completion.reconstruct_postures import reconstruct_postures
+from solvers.reconstruction.pose_completion.settings import USUAL, PostureSettings
+from solvers.reconstruction.pose_library.neighbors import (
+    Query,
+    index_postures,
+    nearest_postures,
+)
+from solvers.reconstruction.pose_library.posture_library import (
+    PostureLibrary,
+    build_posture_library,
+)
+from solvers.reconstruction.pose_space.posture_energy import Demands
+from solvers.reconstruction.pose_space.posture_space import local_pca
+from solvers.reconstruction.published.posture_search import search_in_turn
+from solvers.reconstruction.published.posture_synthesis import solve_in_turn
+from solvers.reconstruction.reliability.scores import Reliability
+from solvers.recordings import read_recording
+
+from ..shared import clips
+from ..shared.tables import Scores
+
+Array = NDArray[np.float64]
+Flags = NDArray[np.bool_]
+Method = Callable[[Array, Flags, PostureLibrary], Array]
+"""From true postures, which joints are lost, and a library to estimates."""
+
+RATE = clips.FRAME_RATE
+KINECT_EXERCISES = ("m01", "m03", "m06", "m08")
+ARM, LEG, OTHER_LEG = (4, 5, 6, 7), (12, 13, 14, 15), (16, 17, 18, 19)
+LOST: dict[str, int | tuple[int, ...]] = {
+    "1": 1, "2": 2, "4": 4, "8": 8, "arm": ARM, "leg": LEG, "legs": LEG + OTHER_LEG,
+}  # fmt: skip
+SECONDS = (0.25, 0.5, 1.0, 2.0)
+LEAST_SEEN = 4
+"""Frames before and after a loss."""
+PARTS = {
+    "left hand, left foot": (6, 14),
+    "hands": (6, 10),
+    "hands, feet": (6, 10, 14, 18),
+    "hands, feet, elbows, knees": (6, 10, 14, 18, 5, 9, 13, 17),
+    "all": tuple(range(N_JOINTS)),
+}
+"""Of [SHJT13], table III; the hips are always used: postures are told relative to them."""
+
+
+class Clip(NamedTuple):
+    """Postures in the world, and a library without that person."""
+
+    name: str
+    postures: Array
+    library: PostureLibrary
+
+
+@cache
+def optical_clips(dev: bool) -> tuple[Clip, ...]:
+    """Walks and HDM05 clips, with libraries of other persons."""
+    walks = {
+        name: walk
+        for name, walk in clips.walks().items()
+        if name.split("_")[0] in clips.DEV_SUBJECTS
+    }
+    teachers = ("bk",) if dev else tuple(clips.DEV_ACTORS)
+    acted = [(name, clips.hdm05(name)) for name in clips.hdm05_classes()]
+    examples = [clip for _, found in acted for clip in _of(found, teachers)]
+    chosen = clips.development(False) if dev else clips.scored(False)
+    result = []
+    for name in chosen:
+        others = [walk for key, walk in walks.items() if key[:2] != name[:2]]
+        library = _library(tuple(others + examples))
+        result.append(Clip(name, motion_postures(clips.walks()[name]), library))
+    library = _library((*walks.values(), *examples))
+    for motion_class, found in acted:
+        for actor in ("bd",) if dev else ("bk", "dg"):
+            motion = _of(found, (actor,))[0]
+            result.append(Clip(f"{motion_class} {actor}", motion_postures(motion), library))
+    return tuple(result)
+
+
+@cache
+def _library(motions: tuple[Motion, ...]) -> PostureLibrary:
+    return build_posture_library(motions)
+
+
+def _of(found: dict[str, Motion], actors: tuple[str, ...]) -> list[Motion]:
+    return [motion for key, motion in found.items() if key.split("_")[0] in actors]
+
+
+@cache
+def kinect_clips(dev: bool) -> tuple[Clip, ...]:
+    """Takes of UI-PRMD, of one subject for development and of another for scoring."""
+    folder = clips.DATA / "kinect" / "ui_prmd"
+    subject = "s01" if dev else "s03"
+    return tuple(
+        Clip(path.stem, posture_positions(read_recording(path)), optical_clips(dev)[-1].library)
+        for exercise in KINECT_EXERCISES
+        for path in sorted(folder.glob(f"{exercise}_{subject}_e0[24].npz"))
+    )
+
+
+def ours(
+    postures: Array,
+    lost: Flags,
+    library: PostureLibrary,
+    settings: PostureSettings = USUAL,
+) -> Array:
+    """Reconstruct as the verb does, with all that is not lost trusted."""
+    seen = np.where(lost[..., None], np.nan, postures)
+    trust = np.isfinite(seen).all(axis=-1).astype(float)
+    recording = JointRecording(
+        Tracks(JOINTS[Sensor.KINECT_V1], seen, RATE), None, Sensor.KINECT_V1
+    )
+    return reconstruct_postures(
+        recording,
+        library,
+        settings=settings,
+        reliability=Reliability(trust, trust, trust, trust),
+    ).tracks.positions
+
+
+def interpolated(
+    kind: str, in_body: bool, postures: Array, lost: Flags, library: PostureLibrary
+) -> Array:
+    """Bridge each loss by a curve, in the world or relative to hips and heading."""
+    if in_body:
+        seen = np.where(lost[..., None], np.nan, postures)
+        plain = normalise(seen, RATE, 1.0 - lost)
+        return plain.put_back(interpolated(kind, False, plain.postures, lost, library))
+    result, frames = postures.copy(), np.arange(len(postures))
+    for joint in np.flatnonzero(lost.any(axis=0)):
+        gone = lost[:, joint]
+        x, y = frames[~gone], postures[~gone, joint]
+        if kind == "hold":
+            result[gone, joint] = y[np.searchsorted(x, frames[gone]) - 1]
+        elif kind == "linear":
+            for axis in range(3):
+                result[gone, joint, axis] = np.interp(frames[gone], x, y[:, axis])
+        else:
+            curve = {"PCHIP": PchipInterpolator, "cubic": CubicSpline}[kind]
+            result[gone, joint] = curve(x, y)(frames[gone])
+    return result
+
+
+def from_neighbours(
+    project: bool, postures: Array, lost: Flags, library: PostureLibrary
+) -> Array:
+    """Take lost joints from the mean of 30 neighbours, or from 20 components of all."""
+    seen = np.where(lost[..., None], np.nan, postures)
+    plain = normalise(seen, RATE, 1.0 - lost)
+    body = on_body(library.directions, library.changes, body_lengths(seen))
+    if project:
+        known = np.broadcast_to(body.positions, (1, *body.positions.shape))
+        space = local_pca(known[:, :: max(library.n_postures // 800, 1)])
+        made = _projected(space.means[0], space.axes[0], plain.postures)
+    else:
+        query = Query(plain.postures, 0.0 * plain.postures, 1.0 - lost, 0.0)
+        places, _ = nearest_postures(index_postures(body, 0 * library.groups), query)
+        made = body.positions[places].mean(axis=1).astype(np.float64)
+    return np.where(lost[..., None], plain.put_back(made), postures)
+
+
+def _projected(mean: Array, axes: Array, postures: Array) -> Array:
+    """Least squares on what was seen."""
+    result = np.empty_like(postures)
+    for frame, flat in enumerate(postures.reshape(len(postures), -1)):
+        told = np.isfinite(flat)
+        z = np.linalg.lstsq(axes[told], (flat - mean)[told], rcond=1e-3)[0]
+        result[frame] = (mean + axes @ z).reshape(N_JOINTS, 3)
+    return result
+
+
+METHODS: dict[str, Method] = {
+    "ours": ours,
+    "ours, causal": partial(ours, settings=PostureSettings(causal=True)),
+    "linear": partial(interpolated, "linear", False),
+    "PCHIP": partial(interpolated, "PCHIP", False),
+    "cubic": partial(interpolated, "cubic", False),
+    "PCHIP in the body's frame": partial(interpolated, "PCHIP", True),
+    "cubic in the body's frame": partial(interpolated, "cubic", True),
+    "hold": partial(interpolated, "hold", False),
+    "PCA projection": partial(from_neighbours, True),
+    "kNN mean": partial(from_neighbours, False),
+}
+
+
+def lost_joints(title: str, found: tuple[Clip, ...]) -> tuple[Scores, Scores]:
+    """Error of lost joints, by how many were lost and by how long."""
+    by_joints, by_seconds = (
+        Scores(f"Lost joints, {title}, by {by}", "mm on the lost joints")
+        for by in ("joints", "seconds")
+    )
+    for number, clip in enumerate(found):
+        for what, seconds, lost in _losses(clip.postures, np.random.default_rng(number)):
+            for name, method in METHODS.items():
+                made = method(clip.postures, lost, clip.library)
+                error = 1e3 * np.linalg.norm(made - clip.postures, axis=-1)[lost].mean()
+                case = f"{clip.name} {what} {seconds}"
+                by_joints.add(name, what, case, float(error))
+                by_seconds.add(name, f"{seconds} s", case, float(error))
+    for scores in (by_joints, by_seconds):
+        scores.add_overall()
+    return by_joints, by_seconds
+
+
+def _losses(postures: Array, random: np.random.Generator) -> Iterator[tuple[str, float, Flags]]:
+    seen = np.flatnonzero(np.isfinite(postures).all(axis=(0, 2)))
+    for seconds in SECONDS:
+        n = round(seconds * RATE)
+        if n + 2 * LEAST_SEEN >= len(postures):
+            continue
+        for what, which in LOST.items():
+            start = random.integers(LEAST_SEEN, len(postures) - n - LEAST_SEEN)
+            joints = (
+                random.choice(seen, which, replace=False) if isinstance(which, int) else which
+            )
+            lost = np.zeros(postures.shape[:2], bool)
+            lost[start : start + n, np.intersect1d(joints, seen)] = True
+            yield what, seconds, lost
+
+
+def parts_used(title: str, found: tuple[Clip, ...]) -> Scores:
+    """Table III of [SHJT13]: all joints from some, by the difference of eq. 18.
+
+    Only the first frame shows all, and so the lengths of bones.
+    """
+    scores = Scores(f"Parts used, {title}", "cm, eq. 18")
+    for clip in found:
+        for column, parts in PARTS.items():
+            lost = np.ones(clip.postures.shape[:2], bool)
+            lost[:, [0, *parts]] = False
+            lost[0] = False
+            ways = {"ours": ours, "kNN mean": partial(from_neighbours, False)}
+            for name, method in ways.items():
+                made = method(clip.postures, lost, clip.library)
+                off = (made - made[:, ABOVE]) - (clip.postures - clip.postures[:, ABOVE])
+                figure = 100.0 * np.nanmean(np.linalg.norm(off, axis=-1)[:, 1:])
+                scores.add(name, column, clip.name, float(figure))
+    return scores
+
+
+def energies(found: tuple[Clip, ...]) -> Scores:
+    """Energy and time of the published search and of Gauss-Newton, in the same spaces."""
+    scores = Scores(
+        "Least energy, frame after frame", "energy in cm², time in ms", "Gauss-Newton"
+    )
+    solvers = {"Gauss-Newton": solve_in_turn, "published search": search_in_turn}
+    for number, clip in enumerate(found):
+        lost = np.zeros(clip.postures.shape[:2], bool)
+        limb = (ARM, LEG, OTHER_LEG)[number % 3]
+        lost[len(lost) // 3 : 2 * len(lost) // 3, limb] = True
+        plain = normalise(clip.postures, RATE, 1.0 - lost)
+        lengths = np.nanmedian(segment_lengths(plain.postures), axis=0)
+        library = clip.library
+        body = on_body(library.directions, library.changes, lengths)
+        query = Query(plain.postures, bone_changes(plain.postures, RATE), 1.0 - lost, 0.0)
+        places, _ = nearest_postures(index_postures(body, library.groups), query)
+        spaces = local_pca(body.positions[places].astype(np.float64))
+        asked = Demands(plain.postures, 1.0 - lost, spaces.neighbours, lengths)
+        for name, solve in solvers.items():
+            started = perf_counter()
+            _, found_energies = solve(spaces, asked)
+            taken = 1e3 * (perf_counter() - started) / len(lost)
+            scores.add(name, "energy", clip.name, 1e4 * float(found_energies.mean()))
+            scores.add(name, "ms per frame", clip.name, taken, follows=False)
+    return scores

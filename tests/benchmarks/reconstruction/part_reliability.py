@@ -1,0 +1,138 @@
+"""How well reliability tells wrong joints: on UI-PRMD, where an optical system saw them too."""
+
+from collections.abc import Iterable, Iterator
+from dataclasses import dataclass
+from itertools import product
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.stats import rankdata
+
+from solvers.motion import JointRecording
+from solvers.reconstruction import ReliabilityMethod, ReliabilitySettings, measure_reliability
+from solvers.reconstruction.reliability.error_model import (
+    CENTIMETRE,
+    ErrorModel,
+    Signs,
+    signs_of_error,
+)
+from solvers.reconstruction.reliability.reference import reference_lengths, segments
+
+from . import kinect_pairs
+
+Array = NDArray[np.float64]
+Flags = NDArray[np.bool_]
+
+LIMITS = (0.05, 0.10)
+"""Metres from the truth that are wrong."""
+FEWEST = 20
+"""Wrong and right ones that there must be for a curve."""
+SHARES = (0.1, 0.15, 0.2, 0.3, 0.5)
+FLOORS = (0.0002, 0.0003, 0.0005, 0.001, 0.002)
+
+
+@dataclass(frozen=True, eq=False)
+class Pair:
+    """A take of a Kinect, and how far each joint was off."""
+
+    name: str
+    recording: JointRecording
+    error: Array
+    """Metres beside the median offset of each joint, (n_frames, n_joints)."""
+
+    @property
+    def subject(self) -> str:
+        """Who moved."""
+        return self.name.split("_")[1]
+
+
+def read_pairs(folder: Path) -> list[Pair]:
+    """Read all takes that are paired rightly."""
+    pairs = []
+    for pair in kinect_pairs.read_pairs(folder):
+        off = pair.kinect.tracks.positions - pair.truth.positions
+        seen = np.isfinite(off).any(axis=(0, 2))
+        off[:, seen] -= np.nanmedian(off[:, seen], axis=0)
+        pairs.append(Pair(pair.name, pair.kinect, np.linalg.norm(off, axis=-1)))
+    return pairs
+
+
+def area_under_curve(score: Array, wrong: Flags) -> float:
+    """Return the probability that a wrong one has the higher score than a right one."""
+    n_wrong, n_right = int(wrong.sum()), int((~wrong).sum())
+    if min(n_wrong, n_right) < FEWEST:
+        return float("nan")
+    ranks = rankdata(score)[wrong].sum() - n_wrong * (n_wrong + 1) / 2.0
+    return float(ranks / (n_wrong * n_right))
+
+
+def areas_by_subject(pairs: list[Pair], doubt: list[Array], limit: float) -> list[float]:
+    """Return for each subject how well doubt finds joints more than a limit off."""
+    areas = []
+    for subject in sorted({pair.subject for pair in pairs}):
+        mine = [place for place, pair in enumerate(pairs) if pair.subject == subject]
+        error = np.concatenate([pairs[place].error.ravel() for place in mine])
+        score = np.concatenate([doubt[place].ravel() for place in mine])
+        known = np.isfinite(error)
+        areas.append(area_under_curve(score[known], error[known] > limit))
+    return areas
+
+
+def doubts(pairs: list[Pair], causal: bool) -> Iterator[tuple[str, list[Array]]]:
+    """Yield each measure's name and 1 less reliability of every take."""
+    ways = {method: [] for method in ReliabilityMethod}
+    for pair, method in product(pairs, ways):
+        settings = ReliabilitySettings(method=method, causal=causal)
+        ways[method].append(measure_reliability(pair.recording, settings=settings))
+    published = ways[ReliabilityMethod.PUBLISHED]
+    yield "behaviour term", [1.0 - found.behaviour for found in published]
+    yield "kinematics term", [1.0 - found.kinematics for found in published]
+    yield "published: least of the terms, window", [1.0 - found.combined for found in published]
+    yield (
+        "default as it ships",
+        [1.0 - found.combined for found in ways[ReliabilityMethod.DEFAULT]],
+    )
+
+
+def signs_of(recording: JointRecording, causal: bool) -> Signs:
+    """Return what betrays errors in a take without tracking states."""
+    positions, parents = recording.tracks.positions, np.array(recording.parents)
+    lengths = segments(positions, parents)
+    trust = recording.tracks.visible.astype(float)
+    reference = reference_lengths(lengths, np.zeros(len(positions), bool), trust)
+    return signs_of_error(positions, lengths - reference, parents, recording.frame_rate, causal)
+
+
+def fit_model(signs: Iterable[Signs], errors: Iterable[Array]) -> ErrorModel:
+    """Fit a line to logarithms of errors, by least squares."""
+    error = np.concatenate([each.ravel() for each in errors])
+    known = np.isfinite(error)
+    aim = np.log(error[known] + CENTIMETRE)
+    both = list(signs)
+    every = Signs(
+        np.concatenate([each.deviation.ravel() for each in both])[known],
+        np.concatenate([each.stretch.ravel() for each in both])[known],
+        np.concatenate([each.away.ravel() for each in both])[known],
+    )
+    fits = []
+    for share, floor in product(SHARES, FLOORS):
+        sign = ErrorModel(share, floor, 0.0, 1.0, 1.0).sign(every)
+        slope, level = np.polyfit(sign, aim, 1)
+        spread = float(np.std(aim - level - slope * sign))
+        fits.append(ErrorModel(share, floor, float(level), float(slope), spread))
+    return min(fits, key=lambda fit: fit.spread)
+
+
+def doubts_left_out(pairs: list[Pair], signs: list[Signs], limit: float) -> list[Array]:
+    """Return 1 less the chance to be right, from models that know nothing of the subject."""
+    found: dict[int, Array] = {}
+    for subject in sorted({pair.subject for pair in pairs}):
+        known = [place for place, pair in enumerate(pairs) if pair.subject != subject]
+        model = fit_model(
+            [signs[place] for place in known], [pairs[place].error for place in known]
+        )
+        for place, pair in enumerate(pairs):
+            if pair.subject == subject:
+                found[place] = 1.0 - model.chance_within(signs[place], limit)
+    return [found[place] for place in range(len(pairs))]

@@ -1,0 +1,203 @@
+"""Terms of the published correction alone and together, reliability terms, and confidence."""
+
+from collections.abc import Callable
+from dataclasses import replace
+from functools import partial
+from itertools import pairwise
+
+import numpy as np
+from numpy.typing import NDArray
+
+from solvers.motion.humanoid.posture_joints import (
+    N_JOINTS,
+    POSTURE_JOINTS,
+    joints_of_names,
+    posture_positions,
+)
+from solvers.reconstruction import (
+    CorrectionMethod,
+    CorrectionSettings,
+    PostureSettings,
+    Reconstruction,
+    ReconstructMethod,
+    Reliability,
+    measure_reliability,
+    reconstruct_postures,
+)
+
+from ..shared.tables import number, table
+from .kinect_damage import shaken, swapped
+from .kinect_folds import SUBJECTS, posture_library, takes_of, truth_of
+from .kinect_methods import (
+    SIGNS_PUBLISHED,
+    Method,
+    by_published_residuals,
+    by_reconstruct,
+    joints,
+    raw,
+)
+from .kinect_pairs import Pair
+from .part_energy import classes, energy_weights
+from .part_kinect import WORST, Errors, errors_of
+from .part_losses import Found, errors_table
+from .part_losses import errors_of as damage_errors
+
+Array = NDArray[np.float64]
+
+SPATIAL, TEMPORAL, TRUST = 0.6, 0.2, 0.2
+TERMS = {
+    "spatial": (SPATIAL, 0.0, 0.0),
+    "temporal": (0.0, TEMPORAL, 0.0),
+    "reliability": (0.0, 0.0, TRUST),
+    "spatial, temporal": (SPATIAL, TEMPORAL, 0.0),
+    "spatial, reliability": (SPATIAL, 0.0, TRUST),
+    "temporal, reliability": (0.0, TEMPORAL, TRUST),
+    "all three": (SPATIAL, TEMPORAL, TRUST),
+}
+SIGNS = {
+    "no reliability": (),
+    "behaviour": ("behaviour",),
+    "kinematics": ("kinematics",),
+    "both, published": ("behaviour", "kinematics"),
+}
+BINS = (0.0, 0.3, 0.5, 0.6, 0.7, 0.8, 0.9, 1.0)
+WITHIN = 0.05
+"""Metres; what confidence tells the chance of."""
+
+
+def terms(n_repetitions: int) -> list[str]:
+    """Return table 5.3 of [ZH14]; energy, table IV and reliability terms of [SHJT13]."""
+    few = max(n_repetitions // 2, 1)
+    before = errors_of(raw, few)
+    worst = before.free >= np.nanquantile(before.free, 1.0 - WORST)
+    rows = {"raw": _cells(before, worst)}
+    for name, weights in TERMS.items():
+        rows[name] = _cells(errors_of(_published(*weights), few), worst)
+    columns = ["absolute, cm", "offset-free, cm", "worst tenth, cm", "jerk, m/s³"]
+    head = "**Terms of [ZH14], as published, used alone and together** (table 5.3)\n\n"
+    return [
+        head + table(["terms", *columns], rows) + "\n",
+        energy_weights(),
+        classes(),
+        *signs(),
+    ]
+
+
+def _published(spatial: float, temporal: float, trust: float) -> Method:
+    settings = CorrectionSettings(
+        method=CorrectionMethod.PUBLISHED, spatial=spatial, temporal=temporal, trust=trust
+    )
+    return joints(by_published_residuals, settings=settings)
+
+
+def _cells(found: Errors, worst: NDArray[np.bool_]) -> list[str]:
+    means = (found.absolute, found.free, found.free[worst])
+    return [*(number(100.0 * float(np.nanmean(one))) for one in means), number(found.jerk)]
+
+
+def signs() -> list[str]:
+    """Return errors of postures by which signs of reliability were looked at."""
+    methods: dict[str, Method] = {"raw": raw}
+    for name, used in SIGNS.items():
+        methods[name] = joints(_trusting, used=used)
+    methods["ours"] = joints(_trusting, used=None)
+    return [
+        errors_table(
+            f"Postures by sign of reliability, {what}", damage_errors(damage, methods), by
+        )
+        for what, damage, by in (
+            ("joints that vibrate", shaken, _seconds),
+            ("limbs swapped", swapped, _what),
+        )
+    ]
+
+
+def _seconds(found: Found) -> str:
+    return found.seconds
+
+
+def _what(found: Found) -> str:
+    return found.what
+
+
+def _trusting(pair: Pair, subject: str, used: tuple[str, ...] | None) -> Reconstruction:
+    """Rebuild postures, trusting joints by some signs only; None: as by default."""
+    trust = measure_reliability(pair.kinect)
+    if used is not None:
+        trust = _only(measure_reliability(pair.kinect, settings=SIGNS_PUBLISHED), used)
+    return reconstruct_postures(
+        pair.kinect, posture_library(subject), reliability=trust, settings=PostureSettings()
+    )
+
+
+def _only(trust: Reliability, used: tuple[str, ...]) -> Reliability:
+    combined = np.ones_like(trust.combined)
+    for name in used:
+        combined = np.minimum(combined, getattr(trust, name))
+    return replace(trust, combined=combined)
+
+
+def confidence(n_repetitions: int) -> list[str]:
+    """Return what was told of joints, and how many of them lay within 5 cm."""
+    plain, residuals, both = "as the prior tells", "residuals", "ours (both)"
+    ways = {
+        plain: partial(by_reconstruct, method=ReconstructMethod.RESIDUALS),
+        residuals: partial(by_reconstruct, method=ReconstructMethod.RESIDUALS, confident=True),
+        both: partial(by_reconstruct, method=ReconstructMethod.BOTH, confident=True),
+    }
+    beside = {name: partial(ways[name], shift=False) for name in (plain, both)}
+    return [
+        _confidence_table(
+            "**Confidence**, subject left out: chance that a joint lies within 5 cm of the true"
+            " one as told, and share that does; in the row before the last all, and the mean of"
+            " -log(chance of what came true)",
+            {name: _told(solve, n_repetitions) for name, solve in ways.items()},
+        ),
+        _confidence_table(
+            "**The same beside the mean offset of joint and take**, where that is not to be"
+            " taken out (without *shift*, as Reconstruct does by default)",
+            {name: _told(solve, n_repetitions, True) for name, solve in beside.items()},
+        ),
+    ]
+
+
+def _confidence_table(title: str, found: dict[str, tuple[Array, Array]]) -> str:
+    rows: dict[str, list[str]] = {}
+    columns: list[str] = []
+    for name, (told, right) in found.items():
+        columns += [f"{word}, {name}" for word in ("of all", "told", "true")]
+        for low, high in [*pairwise(BINS), (0.0, 1.0 + 1e-9)]:
+            here = (told >= low) & (told < high)
+            label = f"{low:g} to {min(high, 1.0):g}"
+            figures = [f"{here.mean():.1%}", "-", "-"]
+            if here.any():
+                figures[1:] = [f"{told[here].mean():.3f}", f"{right[here].mean():.3f}"]
+            rows.setdefault(label, []).extend(figures)
+        rows.setdefault("log-loss", []).extend(["-", f"{_log_loss(told, right):.3f}", "-"])
+    return f"{title}\n\n" + table(["told", *columns], rows) + "\n"
+
+
+def _log_loss(told: Array, right: Array) -> float:
+    chance = np.clip(np.where(right, told, 1.0 - told), 1e-3, 1.0)
+    return float(-np.log(chance).mean())
+
+
+def _told(
+    solve: Callable[..., Reconstruction], n_repetitions: int, beside_offset: bool = False
+) -> tuple[Array, Array]:
+    told, right = [], []
+    for subject in SUBJECTS:
+        for pair in takes_of(subject, n_repetitions):
+            result = solve(pair, subject)
+            ways = posture_positions(result.tracks) - truth_of(pair)
+            if beside_offset:
+                seen = np.isfinite(ways).any(axis=(0, 2))
+                ways[:, seen] -= np.nanmean(ways[:, seen], axis=0)
+            off = np.linalg.norm(ways, axis=-1)
+            known = np.isfinite(off)
+            said = np.zeros((len(off), N_JOINTS))
+            for role, place in joints_of_names(pair.kinect.names).items():
+                said[:, POSTURE_JOINTS.index(role)] = result.confidence[:, place]
+            told.append(said[known])
+            right.append(off[known] < WITHIN)
+    return np.concatenate(told), np.concatenate(right)

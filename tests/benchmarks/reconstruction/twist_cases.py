@@ -1,0 +1,154 @@
+"""Clips whose rotations are known, as positions of joints: true, as a Kinect errs, and lost.
+
+Makers' elbows and knees turn about axes that are turned about limbs by a constant (30 degrees
+in the arms of CMU and HDM05). It is measured where limbs bend and taken out of the truth.
+"""
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, replace
+from functools import cache
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from solvers.motion import JointRecording, Motion, find_humanoid_map, forward_kinematics
+from solvers.motion.humanoid.canonical import t_pose_alignment
+from solvers.motion.humanoid.posture_heading import normalise, turned
+from solvers.motion.humanoid.posture_joints import POSTURE_JOINTS, motion_postures
+from solvers.reconstruction.joint_rotations.trunk_twist import TWISTED, TwistedLimb
+from solvers.rotations.representations import multiply, quaternion_from_rotation_vector, rotate
+from solvers.workflows.known_body import KINECT_V1
+from solvers.workflows.reconstruct_motion import postures_recording
+
+from .kinect_folds import pairs, seen_of, truth_of
+
+Array = NDArray[np.float64]
+Flags = NDArray[np.bool_]
+
+TRUE, KINECT, LOST = "as it was", "as a Kinect errs", "limb lost 1.5 s"
+BENT = np.radians(30.0)
+"""Bends from which on a maker's hinge is measured."""
+HAND_ENDS, HANDS = (7, 11), (6, 10)
+"""What UI-PRMD does not tell errs as the hand does."""
+EVERY = 7
+"""Every so manieth take of UI-PRMD lends its errors."""
+SECONDS = 1.5
+"""How long a limb is lost."""
+MARGIN = 4
+"""Frames at both ends of a clip in which nothing is lost."""
+
+
+class Truth(NamedTuple):
+    """Bends in radians, (n_frames, 4), and world rotations of `TWISTED`, (n_frames, 4, 4).
+
+    Rotations are from a T-pose whose elbows bend forward.
+    """
+
+    bends: Array
+    rotations: Array
+
+
+@dataclass(frozen=True, eq=False)
+class Case:
+    """A clip, its joints as they were seen, and which limbs in which frames are scored."""
+
+    recording: JointRecording
+    truth: Truth
+    scored: Flags
+
+
+def true_rotations(motions: Sequence[Motion]) -> list[Truth]:
+    """Return how limbs were turned in clips of one rig."""
+    plain = [_as_made(motion) for motion in motions]
+    off = np.zeros(len(TWISTED), complex)
+    for (bends, rotations), normals in plain:
+        for place, limb in enumerate(TWISTED):
+            bent = bends[:, place] > BENT
+            world, normal = rotations[bent, place], normals[bent, place]
+            axis, hinge = rotate(world, np.array(limb.along)), rotate(world, limb.hinge)
+            sin = np.einsum("fi,fi->f", np.cross(hinge, normal), axis)
+            cos = np.einsum("fi,fi->f", hinge, normal)
+            off[place] += ((cos + 1j * sin) / np.hypot(cos, sin)).sum()
+    turns = quaternion_from_rotation_vector(
+        np.angle(off)[:, None] * np.array([limb.along for limb in TWISTED])
+    )
+    return [Truth(made.bends, multiply(made.rotations, turns)) for made, _ in plain]
+
+
+def _as_made(motion: Motion) -> tuple[Truth, Array]:
+    """Return what the maker says, and the normals of bends, (n_frames, 4, 3)."""
+    humanoid = find_humanoid_map(motion.skeleton)
+    joints = humanoid.indices(motion.skeleton)
+    alignment = t_pose_alignment(motion.skeleton, humanoid)
+    world = multiply(forward_kinematics(motion).rotations, alignment)
+    postures = motion_postures(motion)
+    ways = [_ways(postures, limb) for limb in TWISTED]
+    normals = np.stack([np.cross(*each) for each in ways], axis=1)
+    cos = np.stack([np.einsum("fi,fi->f", *each) for each in ways], axis=1)
+    bends = np.arctan2(np.linalg.norm(normals, axis=-1), cos)
+    own = [joints[POSTURE_JOINTS[limb.upper]] for limb in TWISTED]
+    return Truth(bends, world[:, own]), normals
+
+
+def _ways(postures: Array, limb: TwistedLimb) -> tuple[Array, Array]:
+    first = postures[:, limb.lower] - postures[:, limb.upper]
+    second = postures[:, limb.end] - postures[:, limb.lower]
+    first /= np.linalg.norm(first, axis=-1, keepdims=True)
+    return first, second / np.linalg.norm(second, axis=-1, keepdims=True)
+
+
+@cache
+def kinect_errors() -> tuple[Array, ...]:
+    """Errors of whole takes beside their means, in the actor's heading, (n_frames, 20, 3)."""
+    found = []
+    for pair in pairs()[::EVERY]:
+        heading = normalise(truth_of(pair), pair.truth.frame_rate).headings
+        off = turned(seen_of(pair) - truth_of(pair), -heading)
+        off[:, HAND_ENDS] = off[:, HANDS]
+        if pair.matched and np.isfinite(off).all():
+            found.append(off - off.mean(axis=0))
+    return tuple(found)
+
+
+def as_a_kinect_errs(motion: Motion, random: np.random.Generator) -> Array:
+    """Add the errors of a take that is drawn, to and fro, to the joints of postures."""
+    postures = motion_postures(motion)
+    heading = normalise(postures, motion.frame_rate).headings
+    errors = kinect_errors()
+    off = errors[random.integers(len(errors))]
+    there_and_back = np.concatenate([off, off[::-1]])
+    places = (random.integers(len(off)) + np.arange(len(postures))) % len(there_and_back)
+    return postures + turned(there_and_back[places], heading)
+
+
+def cases(motions: Sequence[Motion], seen: str) -> Iterator[Case]:
+    """Yield the clips of one rig, seen in one of three ways."""
+    random = np.random.default_rng(4)
+    for motion, truth in zip(motions, true_rotations(motions), strict=True):
+        recording = postures_recording(motion)
+        scored = np.ones(truth.bends.shape, bool)
+        if seen != TRUE:
+            known = np.isfinite(motion_postures(motion)).all(axis=-1).any(axis=0)
+            places = as_a_kinect_errs(motion, random)[:, known]
+            if seen == LOST:
+                scored = _lost(recording, places, random)
+            recording = replace(recording, tracks=recording.tracks.with_positions(places))
+        yield Case(recording, truth, scored)
+
+
+def _lost(recording: JointRecording, places: Array, random: np.random.Generator) -> Flags:
+    """Take out what is below one elbow and one knee, for a while; say which limbs and when."""
+    n_frames = len(places)
+    length = min(round(SECONDS * recording.frame_rate), n_frames - 2 * MARGIN)
+    lost = np.zeros((n_frames, len(TWISTED)), bool)
+    for pair in ((0, 1), (2, 3)):
+        place = int(random.choice(pair))
+        start = int(random.integers(MARGIN, n_frames - length - MARGIN + 1))
+        lost[start : start + length, place] = True
+        limb = TWISTED[place]
+        below = [limb.lower, limb.end, limb.end + 1]
+        names = {KINECT_V1[POSTURE_JOINTS[joint]] for joint in below} & set(recording.names)
+        for name in names:
+            places[start : start + length, recording.names.index(name)] = np.nan
+    return lost

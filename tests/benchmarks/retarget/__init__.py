@@ -1,0 +1,1 @@
+"""Retarget and Unbake, beside other retargeters."""

@@ -1,0 +1,1 @@
+"""Find Similar and gestures, beside published methods."""

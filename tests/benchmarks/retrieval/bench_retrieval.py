@@ -1,0 +1,68 @@
+"""Finding clips of the same class: ours, [ZLLS14] as published, and peers.
+
+make bench-retrieval                                # some 20 minutes
+make bench-retrieval ARGUMENTS="--method DTW"       # those with this in their name
+make bench-retrieval ARGUMENTS=--docs               # into docs/benchmarks_retrieval.md
+make bench-retrieval ARGUMENTS=--choose             # settings of pyramids, training classes
+make bench-retrieval ARGUMENTS=--pursuit            # sparse codes, beside scikit-learn's
+make bench-retrieval ARGUMENTS=--times              # one search, step by step
+
+What methods answer is kept under build/retrieval, and told of all methods that are there.
+"""
+
+import argparse
+import sys
+from collections.abc import Callable
+from time import perf_counter
+
+from threadpoolctl import threadpool_limits
+
+from ..shared.report import DOCS, Report
+from . import part_retrieval as part
+from .part_retrieval_choice import choose
+from .part_retrieval_times import time_searches
+from .part_sparse_codes import compare_pursuits
+from .retrieval_methods import METHODS
+
+
+def main() -> None:
+    """Print the tables."""
+    parser = argparse.ArgumentParser(description=(__doc__ or "").splitlines()[0])
+    parser.add_argument(
+        "--method", default="", help="ask only those with this in their name anew"
+    )
+    parser.add_argument("--jobs", type=int, default=2, help="methods at a time")
+    parser.add_argument("--choose", action="store_true", help="settings of pyramids")
+    parser.add_argument("--pursuit", action="store_true", help="time of sparse codes")
+    parser.add_argument("--times", action="store_true", help="one search, step by step")
+    parser.add_argument(
+        "--docs", action="store_true", help="rewrite docs/benchmarks_retrieval.md"
+    )
+    chosen = parser.parse_args()
+    report = Report(chosen.docs, DOCS / "benchmarks_retrieval.md")
+    started = perf_counter()
+    apart: dict[str, Callable[[], str]] = {
+        "choice": lambda: choose()[1], "pursuit": compare_pursuits, "times": time_searches,
+    }  # fmt: skip
+    asked = {"choice": chosen.choose, "pursuit": chosen.pursuit, "times": chosen.times}
+    for name in [name for name, wanted in asked.items() if wanted]:
+        with threadpool_limits(1):
+            tables = [apart[name]()]
+        report.part(name, tables, perf_counter() - started)
+        return
+    names = [name for name in METHODS if chosen.method.lower() in name.lower()]
+    part.find_all(names, chosen.jobs, _say)
+    found = part.kept()
+    tables = [part.accuracy(found), part.damaged(found), part.seen_by_kinect(found),
+              part.each_class(found)]  # fmt: skip
+    if chosen.docs:
+        tables.append(part.pictures(found))
+    report.part("retrieval", tables, perf_counter() - started)
+
+
+def _say(what: str) -> None:
+    print(f"Done: {what}", file=sys.stderr, flush=True)
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,299 @@
+r"""How a clip library grows: 300 to 100,000 clips, built in one file and searched.
+
+    python -m tests.benchmarks.retrieval.part_growth  # up to 10,000: ten minutes
+    python -m tests.benchmarks.retrieval.part_growth --sizes 300 1000 100000  # an hour
+    python -m tests.benchmarks.retrieval.part_growth --told growth.log --docs  # of a run
+
+The clips are those of HDM05 and the CMU walks, varied: faster or slower (0.7 to 1.4), bones
+turned by some degrees, shaken, mirrored. They are varied as postures of the standard body, in
+which all actors have the same bone lengths anyway; to read and describe a real clip of two
+seconds takes about 15 ms beside that. Each query is a clip of the library, at another speed and
+shaken again; it is found when that clip comes first, or among the first ten. At each size a
+process of its own searches, so that its memory can be told. Times are of the processor, with
+one thread: other work on the machine does not count.
+"""
+
+import argparse
+import json
+import re
+import subprocess
+import sys
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from tempfile import TemporaryDirectory
+from time import perf_counter, process_time
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.interpolate import interp1d
+
+from solvers.motion import Tracks
+from solvers.motion.humanoid.posture_joints import (
+    MIRROR_IMAGES,
+    N_JOINTS,
+    PARENTS,
+    POSTURE_JOINTS,
+)
+from solvers.retrieval import (
+    ClipEntry,
+    ClipLibrary,
+    DescribedClip,
+    FindSettings,
+    find_similar,
+    load_clip_library,
+    open_clip_library,
+)
+from solvers.retrieval.index.segments import RATE, describe
+from solvers.retrieval.postures.clip_postures import ClipPostures, clip_postures
+from solvers.rotations.representations import (
+    IDENTITY,
+    multiply,
+    quaternion_from_rotation_vector,
+    rotate,
+)
+
+from ..shared import clips
+from ..shared.report import DOCS, PICTURES, Report
+from ..shared.tables import table
+from .retrieval_pictures import draw_growth
+
+Array = NDArray[np.float64]
+
+SIZES = (300, 1_000, 3_000, 10_000)
+BATCH = 100
+N_QUERIES = 30
+TOLD = 20
+SLOWEST, FASTEST = 0.7, 1.4
+TURNED, SHAKEN, ASKED = np.radians(6.0), 0.005, 0.01
+"""Standard deviations, radians by which bones are turned for good, and metres by which joints
+are shaken in the library and beyond that in what asks."""
+SHOWN = {
+    "hours": "hours", "add_s": "to add all, s", "file_mb": "file, MB", "open_ms": "to open, ms",
+    "ask_ms": "describe, ms", "find_ms": "search, ms", "search_mb": "memory, MB",
+    "first": "found first", "in_ten": "in the first ten", "kin": "of its kind in ten",
+}  # fmt: skip
+DRAWN = ("search_mb", "open_ms", "find_ms", "ask_ms")
+PICTURE = PICTURES / "retrieval_growth.png"
+
+
+@dataclass(frozen=True)
+class Row:
+    """What is measured at one size."""
+
+    n_clips: int
+    hours: float
+    """Of motion."""
+    add_s: float
+    """Seconds for all clips until now."""
+    file_mb: float
+    build_mb: float
+    """Peak memory of the process that builds; 100 clips are described at a time."""
+    open_ms: float
+    search_mb: float
+    """Peak memory of the process that searches."""
+    ask_ms: float
+    """Median: describing the query."""
+    find_ms: float
+    """Median: all the rest."""
+    first: float
+    """Share of queries whose clip comes first."""
+    in_ten: float
+    kin: float
+    """Share, in the first ten, of variations of the clip that the query varies."""
+
+
+def run(sizes: Sequence[int] = SIZES, n_queries: int = N_QUERIES) -> list[Row]:
+    """Build a library up to each size, and search it at each."""
+    rows: list[Row] = []
+    with TemporaryDirectory() as folder:
+        path = Path(folder) / "growing.clips"
+        adding, seconds, done = 0.0, 0.0, 0
+        with open_clip_library(path) as library:
+            for size in sizes:
+                while done < size:
+                    numbers = range(done, min(done + BATCH, size))
+                    found = [described(number) for number in numbers]
+                    began = process_time()
+                    library.add_described(found)
+                    adding += process_time() - began
+                    seconds += sum(clip.entry.seconds for clip in found)
+                    done += len(found)
+                built = (size, seconds / 3600.0, adding)
+                rows.append(Row(*built, _megabytes(path), _peak(), *_searched(path, n_queries)))
+                print(rows[-1], flush=True)
+    return rows
+
+
+def described(number: int) -> DescribedClip:
+    """Return the clip of this number."""
+    postures = varied(number)
+    entry = ClipEntry(f"{number:06d}", (), None, postures.n_frames, RATE)
+    return DescribedClip(entry, postures)
+
+
+def varied(number: int) -> ClipPostures:
+    """Return postures of a clip that are varied."""
+    rng = np.random.default_rng(number)
+    original = originals()[number % len(originals())]
+    speed = np.exp(rng.uniform(np.log(SLOWEST), np.log(FASTEST)))
+    last = original.n_frames - 1.0
+    moments = np.arange(0.0, last + 1e-9, speed)
+    positions, course = (
+        interp1d(np.arange(last + 1.0), values, axis=0)(moments)
+        for values in (original.positions, original.course)
+    )
+    turned = turned_bones(positions, TURNED * rng.normal(size=(N_JOINTS, 3)))
+    turned += SHAKEN * rng.normal(size=turned.shape)
+    if rng.integers(2):
+        turned = turned[:, MIRROR_IMAGES] * (-1.0, 1.0, 1.0)
+        course = course * (-1.0, 1.0, 1.0, -1.0)
+    return ClipPostures(turned, speed * course, RATE)
+
+
+def turned_bones(positions: Array, vectors: Array) -> Array:
+    """Return postures each of whose bones is turned, and with it what hangs on it."""
+    turns, result = [IDENTITY], positions.copy()
+    for joint in range(1, N_JOINTS):
+        above = PARENTS[joint]
+        turns.append(multiply(turns[above], quaternion_from_rotation_vector(vectors[joint])))
+        bones = positions[:, joint] - positions[:, above]
+        result[:, joint] = result[:, above] + rotate(turns[joint], bones)
+    return result
+
+
+def asking(number: int) -> Tracks:
+    """Return what is searched with: a clip of the library, shaken and at another speed."""
+    rng = np.random.default_rng([number, 1])
+    clip = varied(number)
+    headings = np.cumsum(clip.course[:, 3]) / RATE
+    turns = quaternion_from_rotation_vector(headings[:, None] * (0.0, 0.0, 1.0))
+    places = np.cumsum(rotate(turns, clip.course[:, :3]), axis=0) / RATE
+    positions = rotate(turns[:, None], clip.positions) + places[:, None]
+    positions += ASKED * rng.normal(size=positions.shape)
+    return Tracks(POSTURE_JOINTS, positions, RATE * rng.uniform(0.95, 1.05))
+
+
+def originals() -> list[ClipPostures]:
+    """Return the clips that are varied."""
+    if not _ORIGINALS:
+        motions = list(clips.walks().values())
+        for name in clips.hdm05_classes():
+            motions += clips.hdm05(name).values()
+        _ORIGINALS.extend(clip_postures(motion, RATE) for motion in motions)
+    return _ORIGINALS
+
+
+_ORIGINALS: list[ClipPostures] = []
+
+
+def search(path: Path, n_queries: int) -> dict[str, float]:
+    """Open a library, ask it for some of its clips, and tell what came of it."""
+    began = process_time()
+    library = load_clip_library(path)
+    entries = library.entries
+    assert library.blocks
+    opened = process_time() - began
+    rng = np.random.default_rng(len(entries))
+    asked = rng.permutation(len(entries))[:n_queries]
+    told = [_asked(library, int(number)) for number in asked]
+    ask, find, first, in_ten, kin = (np.array(column) for column in zip(*told, strict=True))
+    return {
+        "open_ms": 1000.0 * opened,
+        "search_mb": _peak(),
+        "ask_ms": 1000.0 * float(np.median(ask)),
+        "find_ms": 1000.0 * float(np.median(find)),
+        "first": float(first.mean()),
+        "in_ten": float(in_ten.mean()),
+        "kin": float(kin.mean()),
+    }
+
+
+def _asked(library: ClipLibrary, number: int) -> tuple[float, float, bool, bool, float]:
+    query = asking(number)
+    vocabulary = library.vocabulary
+    assert vocabulary is not None
+    began = process_time()
+    features = vocabulary.features(clip_postures(query, RATE))
+    describe(features, np.array([[0, len(features)]], dtype=np.int32), vocabulary)
+    asked = process_time()
+    matches = find_similar(query, library, settings=FindSettings(n_matches=TOLD))
+    found = process_time()
+    ten = [int(match.clip) for match in matches[:10]]
+    kin = np.mean([one % len(originals()) == number % len(originals()) for one in ten])
+    description = asked - began
+    return description, found - asked - description, ten[0] == number, number in ten, float(kin)
+
+
+def _searched(path: Path, n_queries: int) -> tuple[float, ...]:
+    words = [
+        sys.executable,
+        "-m",
+        "tests.benchmarks.retrieval.part_growth",
+        "--search",
+        str(path),
+    ]
+    said = subprocess.run(
+        [*words, "--queries", str(n_queries)], check=True, capture_output=True, text=True
+    ).stdout
+    return tuple(json.loads(said).values())
+
+
+def _megabytes(path: Path) -> float:
+    return path.stat().st_size / 1e6
+
+
+def _peak() -> float:
+    """Return the most memory that this process has had, less what it was started from."""
+    status = Path("/proc/self/status").read_text(encoding="ascii")
+    return float(status.split("VmHWM:")[1].split()[0]) / 1e3
+
+
+def rows_of(path: Path) -> list[Row]:
+    """Read the rows that a run printed, which may have been cut short."""
+    lines = [line for line in path.read_text(encoding="utf-8").splitlines() if "Row(" in line]
+    told = [dict(re.findall(r"(\w+)=([^,)]+)", line)) for line in lines]
+    return [
+        Row(int(one.pop("n_clips")), **{name: float(value) for name, value in one.items()})
+        for one in told
+    ]
+
+
+def tables(rows: Sequence[Row]) -> list[str]:
+    """Return the table, and the line that shows the picture."""
+    cells = {
+        f"{row.n_clips:,}": [
+            f"{getattr(row, name):,.{max(2 - int(np.log10(max(getattr(row, name), 1))), 0)}f}"
+            for name in SHOWN
+        ]
+        for row in rows
+    }
+    return [
+        f"**Growth of a library**\n\n{table(['clips', *SHOWN.values()], cells)}\n",
+        f"![growth](pictures/{PICTURE.name})\n",
+    ]
+
+
+def main() -> None:
+    """Run from the command line."""
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("--sizes", type=int, nargs="+", default=SIZES)
+    parser.add_argument("--queries", type=int, default=N_QUERIES)
+    parser.add_argument("--search", type=Path, help=argparse.SUPPRESS)
+    parser.add_argument("--told", type=Path, help="rows that an earlier run printed")
+    parser.add_argument("--docs", action="store_true", help="into docs/benchmarks_retrieval.md")
+    chosen = parser.parse_args()
+    if chosen.search is not None:
+        print(json.dumps(search(chosen.search, chosen.queries)))
+        return
+    began = perf_counter()
+    rows = rows_of(chosen.told) if chosen.told else run(sorted(chosen.sizes), chosen.queries)
+    if chosen.docs:
+        drawn = {SHOWN[name]: [getattr(row, name) for row in rows] for name in DRAWN}
+        draw_growth([row.n_clips for row in rows], drawn, "Growth of a library", PICTURE)
+    report = Report(chosen.docs, DOCS / "benchmarks_retrieval.md")
+    report.part("growth", tables(rows), perf_counter() - began)
+
+
+if __name__ == "__main__":
+    main()

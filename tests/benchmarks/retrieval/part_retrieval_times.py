@@ -1,0 +1,64 @@
+"""Time of one search, step by step: what the machine can do, not what others left of it."""
+
+from collections.abc import Callable, Sequence
+from functools import partial
+from time import process_time
+
+import numpy as np
+
+from solvers.motion import resample
+from solvers.retrieval import FindSettings, find_similar
+
+from ..shared.tables import number, table
+from .retrieval_clips import library
+from .retrieval_default import Default
+
+REPEATS = 10
+EVERY = 4
+"""Of the clips, that many-th asks."""
+TOLD = 20
+RATES = (120.0, 30.0)
+
+
+def time_searches() -> str:
+    """Return the table: for each step the median over queries of the shortest of ten times."""
+    clips = library()
+    prepared = Default().prepare([clip.tracks for clip in clips])
+    allowed = ~np.eye(len(clips), dtype=bool)
+    places = range(0, len(clips), EVERY)
+    rows = {}
+    for rate in RATES:
+        tracks = {place: resample(clips[place].tracks, rate) for place in places}
+        times = [_shortest(partial(prepared.describe, tracks[at])) for at in places]
+        rows[f"describing a query of {rate:.0f} Hz"] = times
+    asked = {at: prepared.describe(clips[at].tracks) for at in places}
+    rows["search: all clips ranked"] = [
+        _shortest(partial(prepared.distances, asked[at], allowed[at])) for at in places
+    ]
+    for n_aligned in (0, FindSettings().n_aligned):
+        settings = FindSettings(n_matches=TOLD, n_aligned=n_aligned)
+        name = f"find_similar, {TOLD} told, {n_aligned} aligned frame by frame, 120 Hz"
+        rows[name] = [
+            _shortest(
+                partial(find_similar, clips[at].tracks, prepared.library, settings=settings)
+            )
+            for at in places
+        ]
+    return (
+        f"**Time of one search of {len(clips)} clips**, one thread, ms: median over"
+        f" {len(places)} queries of the shortest of {REPEATS}\n\n{_table(rows)}\n"
+    )
+
+
+def _shortest(ask: Callable[[], object]) -> float:
+    times = []
+    for _ in range(REPEATS):
+        started = process_time()
+        ask()
+        times.append(process_time() - started)
+    return 1e3 * min(times)
+
+
+def _table(rows: dict[str, Sequence[float]]) -> str:
+    cells = {name: [number(float(np.median(times)))] for name, times in rows.items()}
+    return table(["step", "ms"], cells)

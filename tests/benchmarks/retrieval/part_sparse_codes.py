@@ -1,0 +1,71 @@
+"""How long orthogonal matching pursuit takes, beside scikit-learn's."""
+
+import warnings
+from collections.abc import Callable
+from time import process_time
+
+import numpy as np
+from numpy.typing import NDArray
+from sklearn.decomposition import sparse_encode
+
+from solvers.retrieval.postures.clip_postures import clip_postures
+from solvers.retrieval.published.dictionary import DictionarySettings, learn_dictionary
+from solvers.retrieval.published.observed_signals import seen_signals
+from solvers.retrieval.published.sparse_codes import sparse_codes
+
+from ..shared.tables import number, table
+from .retrieval_clips import training_library
+
+Array = NDArray[np.float64]
+
+N_SIGNALS, N_ATOMS = 300, 700
+RATE = 30.0
+REPEATS = 5
+
+
+def compare_pursuits() -> str:
+    """Return a table of milliseconds for 300 postures, the least of five runs."""
+    clips = [clip_postures(clip.tracks, RATE) for clip in training_library()]
+    found = [seen_signals(clip.positions) for clip in clips]
+    postures = np.concatenate([signals for signals, seen in found if seen.all()])
+    rng = np.random.default_rng(0)
+    drawn = rng.permutation(len(postures))
+    asked, first = postures[drawn[:N_SIGNALS]], postures[drawn[N_SIGNALS:][:N_ATOMS]]
+    settings = DictionarySettings(n_atoms=N_ATOMS, n_rounds=5, n_examples=5000)
+    random = rng.normal(size=first.shape)
+    atoms = {
+        "learned by K-SVD": learn_dictionary(clips, settings).atoms,
+        "postures": first / np.linalg.norm(first, axis=1, keepdims=True),
+        "random": random / np.linalg.norm(random, axis=1, keepdims=True),
+    }
+    rows = {}
+    for name, each in atoms.items():
+        for n_nonzeros in (35, 5):
+            label = f"{name}, {n_nonzeros} non-zeros"
+            rows[label] = _row(asked, each, n_nonzeros)
+    header = [f"{N_ATOMS} atoms", "ours, ms", "scikit-learn, ms", "times", "left, mm", "theirs"]
+    return f"**Sparse codes of {N_SIGNALS} postures**\n\n{table(header, rows)}\n"
+
+
+def _row(signals: Array, atoms: Array, n_nonzeros: int) -> list[str]:
+    def theirs() -> Array:
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore", RuntimeWarning)
+            found = sparse_encode(signals, atoms, algorithm="omp", n_nonzero_coefs=n_nonzeros)
+        return np.asarray(found @ atoms)
+
+    def ours() -> Array:
+        return sparse_codes(signals, atoms, n_nonzeros).signals(atoms)
+
+    times = [_milliseconds(each) for each in (ours, theirs)]
+    left = [1000.0 * np.abs(each() - signals).mean() for each in (ours, theirs)]
+    return [*map(number, times), f"{times[1] / times[0]:.1f}", *map(number, left)]
+
+
+def _milliseconds(work: Callable[[], object]) -> float:
+    times = []
+    for _ in range(REPEATS):
+        began = process_time()
+        work()
+        times.append(process_time() - began)
+    return 1000.0 * min(times)

@@ -1,0 +1,56 @@
+"""What is done to queries: joints lost, noise, other speeds."""
+
+from collections.abc import Callable
+from dataclasses import replace
+
+import numpy as np
+
+from solvers.motion import Tracks, resample
+from solvers.motion.humanoid.posture_joints import HIPS, N_JOINTS
+
+Random = np.random.Generator
+Damage = Callable[[Tracks, Random], Tracks]
+
+LOST = 0.3
+NOISE = 0.02
+"""Metres; standard deviation of each coordinate, new in each frame."""
+
+
+def unharmed(tracks: Tracks, random: Random) -> Tracks:
+    return tracks
+
+
+def lose_joints(tracks: Tracks, random: Random) -> Tracks:
+    """Lose 30 % of the joints for the whole clip, any but the hips."""
+    others = np.setdiff1d(np.arange(N_JOINTS), [HIPS])
+    lost = random.choice(others, round(LOST * N_JOINTS), replace=False)
+    positions = tracks.positions.copy()
+    positions[:, lost] = np.nan
+    return replace(tracks, positions=positions)
+
+
+def lose_at_random(tracks: Tracks, random: Random) -> Tracks:
+    """Lose 30 % of all joints in all frames, the hips too."""
+    lost = random.uniform(size=tracks.positions.shape[:2]) < LOST
+    return replace(tracks, positions=np.where(lost[..., None], np.nan, tracks.positions))
+
+
+def add_noise(tracks: Tracks, random: Random) -> Tracks:
+    noise = random.normal(scale=NOISE, size=tracks.positions.shape)
+    return replace(tracks, positions=tracks.positions + noise)
+
+
+def at_speed(speed: float, tracks: Tracks) -> Tracks:
+    """Return what a camera of the same rate would see of someone that much faster."""
+    faster = replace(tracks, frame_rate=tracks.frame_rate * speed)
+    return resample(faster, tracks.frame_rate)
+
+
+DAMAGES: dict[str, Damage] = {
+    "clean": unharmed,
+    "joints lost": lose_joints,
+    "lost at random": lose_at_random,
+    "noise 2 cm": add_noise,
+    "0.7x speed": lambda tracks, random: at_speed(0.7, tracks),
+    "1.4x speed": lambda tracks, random: at_speed(1.4, tracks),
+}

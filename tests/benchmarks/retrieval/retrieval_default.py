@@ -1,0 +1,64 @@
+"""The search that users have, as a method of the benchmark: `find_similar` in two steps."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from solvers.motion import Tracks
+from solvers.retrieval import Clip, ClipLibrary, FindSettings, build_clip_library
+from solvers.retrieval.index.segments import RATE
+from solvers.retrieval.postures.clip_postures import clip_postures
+from solvers.retrieval.search.describe_query import DescribedQuery, describe_query
+from solvers.retrieval.search.rank_clips import rank_clips
+
+Array = NDArray[np.float64]
+Flags = NDArray[np.bool_]
+
+
+@dataclass(frozen=True)
+class Default:
+    """`find_similar`, without alignment of what was found."""
+
+    settings: FindSettings = FindSettings()
+
+    def prepare(self, clips: Sequence[Tracks]) -> "DefaultLibrary":
+        library = build_clip_library([
+            Clip(str(number), clip) for number, clip in enumerate(clips)
+        ])  # fmt: skip
+        names = {number: int(entry.name) for number, entry in library.numbered().items()}
+        places = np.zeros(max(names) + 1, dtype=np.intp)
+        places[list(names)] = list(names.values())
+        return DefaultLibrary(library, places, self.settings)
+
+
+class Asked(NamedTuple):
+    """A query, and the settings it is asked with: those for a sensor, if one saw it."""
+
+    described: DescribedQuery
+    settings: FindSettings
+
+
+@dataclass(frozen=True, eq=False)
+class DefaultLibrary:
+    library: ClipLibrary
+    places: NDArray[np.intp]
+    """Which clip each number of the library is."""
+    settings: FindSettings
+
+    def describe(self, tracks: Tracks) -> Asked:
+        vocabulary = self.library.vocabulary
+        assert vocabulary is not None
+        postures = clip_postures(tracks, RATE)
+        settings = self.settings if tracks.confidence is None else self.settings.for_sensor()
+        return Asked(describe_query(postures, vocabulary, settings), settings)
+
+    def distances(self, query: Asked, allowed: Flags) -> Array:
+        ignored = self.library.numbers_of(map(str, np.flatnonzero(~allowed)))
+        described, index = query.described, self.library.search_index
+        ranking = rank_clips(described.spans, described.weights, index, query.settings, ignored)
+        result = np.full(len(allowed), np.inf)
+        result[self.places[ranking.clips]] = ranking.distances
+        return result

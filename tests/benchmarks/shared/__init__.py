@@ -1,0 +1,1 @@
+"""Clips, noise, tables, plots and reports of all benchmarks."""

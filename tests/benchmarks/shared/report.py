@@ -1,0 +1,61 @@
+"""What a run leaves behind: tables on the terminal and, if asked for, in docs/benchmarks.md.
+
+A part's tables replace what stands between its two marks in the document; everything else in
+it is written by hand.
+"""
+
+import platform
+import re
+import sys
+from collections.abc import Sequence
+from datetime import UTC, datetime
+from pathlib import Path
+
+from .plots import draw_scores
+from .tables import Scores
+
+DOCS = Path(__file__).resolve().parents[3] / "docs"
+DOCUMENT = DOCS / "benchmarks.md"
+PICTURES = DOCS / "pictures"
+
+
+class Report:
+    """Where the tables go."""
+
+    def __init__(self, to_document: bool, document: Path = DOCUMENT) -> None:
+        self._to_document, self._document = to_document, document
+
+    def part(self, name: str, tables: Sequence[Scores | str], seconds: float) -> None:
+        """Print the tables of one part; put them into the document with a picture each."""
+        for scores in tables:
+            print(f"\n{_text(scores)}", flush=True)
+        if self._to_document:
+            text = [_run(seconds)]
+            for number, scores in enumerate(tables):
+                text.append(_text(scores))
+                if isinstance(scores, Scores):
+                    path = PICTURES / f"bench_{name}_{number}.png"
+                    draw_scores(scores, path)
+                    text.append(f"![{scores.title}](pictures/{path.name})\n")
+            _replace(self._document, name, "\n".join(text))
+
+
+def _text(scores: Scores | str) -> str:
+    return scores if isinstance(scores, str) else scores.markdown()
+
+
+def _run(seconds: float) -> str:
+    now = datetime.now(UTC).strftime("%Y-%m-%d %H:%M UTC")
+    words = [f"python -m tests.benchmarks.{Path(sys.argv[0]).stem}", *sys.argv[1:]]
+    machine = f"{platform.system()} {platform.machine()}, Python {platform.python_version()}"
+    return f"`{' '.join(words)}`, {now}, {machine}, one BLAS thread, {seconds:.0f} s.\n"
+
+
+def _replace(path: Path, name: str, text: str) -> None:
+    begin, end = f"<!-- {name} -->", f"<!-- end of {name} -->"
+    document = path.read_text(encoding="utf-8") if path.exists() else ""
+    if begin not in document:
+        document += f"\n{begin}\n{end}\n"
+    pattern = re.compile(f"{re.escape(begin)}.*?{re.escape(end)}", re.DOTALL)
+    filled = pattern.sub(lambda _: f"{begin}\n{text}\n{end}", document)
+    path.write_text(filled, encoding="utf-8")

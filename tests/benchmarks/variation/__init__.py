@@ -1,0 +1,1 @@
+"""Vary, beside other ways to make variants."""

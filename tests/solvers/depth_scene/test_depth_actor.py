@@ -1,0 +1,208 @@
+"""The actor among floors, walls, furniture and other people, where it is known who it is."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from depth_rooms import in_room, room, tilted
+
+from solvers.depth_scene.actor import find_actor
+from solvers.depth_scene.bodies import find_bodies
+from solvers.depth_scene.camera import Camera
+from solvers.depth_scene.foreground import ForegroundSettings, ForegroundWay
+from solvers.depth_scene.recording import DepthRecording
+from solvers.errors import InvalidMotionError, SolveCancelled
+from solvers.recordings import read_depth
+
+KINECT = Camera(285.63, 285.63, 159.5, 119.5, 320, 240)
+UP = tilted(0.0)
+FLOOR = 0.95
+
+
+@pytest.fixture(scope="module")
+def takes(recordings):
+    def read(name):
+        with np.load(recordings / "depth" / "truth" / f"{name}.npz") as archive:
+            depth = (archive["depth"] * 0.001).astype(np.float32)
+        return DepthRecording(KINECT, len(depth), 30.0, lambda frame: depth[frame])
+
+    return {name: read(name) for name in ("walk_front", "walk_side", "walk_diagonal", "jump")}
+
+
+def agreement(found: np.ndarray, true: np.ndarray) -> float:
+    """Intersection over union."""
+    return float((found & true).sum() / max((found | true).sum(), 1))
+
+
+def agreements(alone: DepthRecording, true: DepthRecording) -> list[float]:
+    frames = range(0, true.n_frames, 12)
+    return [agreement(alone.frame(frame) > 0, true.frame(frame) > 0) for frame in frames]
+
+
+def changed(take: DepthRecording, change) -> DepthRecording:
+    return replace(take, read_depth=lambda frame: change(frame, take.frame(frame)))
+
+
+def floor_of(take: DepthRecording) -> float:
+    """Height of the camera above the lowest point of the actor, metres."""
+    lowest = [
+        take.camera.back_project(take.frame(frame))[take.frame(frame) > 0.0, 1].max()
+        for frame in range(0, take.n_frames, 5)
+    ]
+    return float(np.quantile(lowest, 0.9))
+
+
+@pytest.mark.parametrize("name", ["walk_front", "walk_side", "walk_diagonal", "jump"])
+def test_in_a_room_without_being_told_anything(takes, name):
+    take = takes[name]
+    taken = in_room(take, room(KINECT, UP, floor_of(take) + 0.01, 5.5), 0.0015)
+
+    actor = find_actor(taken)
+
+    assert actor.way is ForegroundWay.AUTOMATIC
+    assert actor.floor.height == pytest.approx(floor_of(take), abs=0.03)
+    assert actor.seen.all()
+    assert actor.remarks == ()
+    assert np.mean(agreements(actor.recording, take)) > 0.85
+
+
+def test_furniture_is_nobody(takes):
+    """A cupboard that shows more surface than the actor, and a stool."""
+    take = takes["walk_side"]
+    empty = room(KINECT, UP, floor_of(take) + 0.01, 5.5)
+    empty[40:200, 5:60] = np.minimum(empty[40:200, 5:60], 3.0)
+    empty[170:200, 280:310] = np.minimum(empty[170:200, 280:310], 3.5)
+
+    actor = find_actor(in_room(take, empty, 0.001))
+
+    assert actor.remarks == ()
+    assert np.mean(agreements(actor.recording, take)) > 0.85
+
+
+def test_frames_of_the_empty_room_help(takes):
+    """The actor stands at the cupboard, and still the two are told apart."""
+    take = takes["walk_front"]
+    empty = room(KINECT, UP, floor_of(take) + 0.01, 5.0)
+    beside = np.nonzero((take.frame(40) > 0.0).any(axis=0))[0].max()
+    depth = float(np.median(take.frame(40)[take.frame(40) > 0.0])) + 0.1
+    empty[30:220, beside - 5 : beside + 60] = depth
+    nobody = np.zeros((240, 320), np.float32)
+    taken = in_room(
+        DepthRecording(
+            KINECT, 106, 30.0, lambda frame: nobody if frame < 30 else take.frame(frame - 30)
+        ),
+        empty,
+        0.001,
+    )
+
+    actor = find_actor(taken, empty=range(30))
+
+    assert actor.way is ForegroundWay.BACKGROUND
+    assert not actor.seen[:25].any()
+    assert actor.seen[31:].all()
+    assert any("Nobody is seen in" in remark for remark in actor.remarks)
+    found = agreement(actor.recording.frame(70) > 0.0, take.frame(40) > 0.0)
+    assert found > 0.8
+    with pytest.raises(InvalidMotionError, match="Name frames without the actor"):
+        find_actor(taken, ForegroundSettings(way=ForegroundWay.BACKGROUND), empty=[])
+
+
+def test_a_recording_of_nothing_else_is_taken_as_it_is(recordings):
+    folder = recordings / "depth" / "utd_mhad"
+    for path in sorted(folder.glob("a*_s7_t1_depth.mat"))[::4]:
+        taken = read_depth(path)
+        actor = find_actor(taken)
+        assert actor.way is ForegroundWay.RECORDED, path
+        assert actor.floor is None
+        assert (actor.seen.all(), actor.feet_seen, actor.remarks) == (True, True, ()), path
+        assert min(agreements(actor.recording, taken)) > 0.98
+
+
+def test_of_an_actor_close_by_it_is_said_that_there_are_no_feet(recordings):
+    for path in sorted((recordings / "depth" / "skeltrack").iterdir()):
+        actor = find_actor(read_depth(path))
+        assert actor.way is ForegroundWay.RECORDED
+        assert not actor.feet_seen
+        assert "The picture ends above the feet" in actor.remarks[0]
+
+
+@pytest.mark.parametrize("in_a_room", [False, True])
+def test_of_two_people_the_same_is_kept_though_they_pass_each_other(takes, in_a_room):
+    """A smaller one comes from the right edge and leaves at the left, behind the actor."""
+    take, other = takes["walk_front"], takes["walk_side"]
+
+    def with_another(frame, depth):
+        small = np.where(
+            other.frame(frame)[::2, ::2] > 0.0, other.frame(frame)[::2, ::2] + 1.3, 0
+        )
+        picture = np.zeros((240, 640), np.float32)
+        left = 160 + 290 - 6 * frame
+        picture[60:180, left : left + 160] = small
+        behind = picture[:, 160:480]
+        return np.where(depth > 0.0, depth, behind)
+
+    both = changed(take, with_another)
+    if in_a_room:
+        both = in_room(both, room(KINECT, UP, floor_of(take) + 0.01, 7.5), 0.0005)
+
+    actor = find_actor(both, ForegroundSettings(farthest=7.0))
+
+    assert "2 people are seen" in actor.remarks[0]
+    assert actor.seen.all()
+    assert min(agreements(actor.recording, take)) > 0.8
+
+
+def test_an_actor_who_leaves_and_comes_back(takes):
+    take = takes["walk_diagonal"]
+    away = range(30, 60)
+    taken = changed(take, lambda frame, depth: depth * (frame not in away))
+
+    actor = find_actor(taken)
+
+    assert (~actor.seen).sum() == pytest.approx(30, abs=6)
+    assert not actor.seen[36:54].any()
+    assert all(actor.recording.frame(frame).max() == 0.0 for frame in away)
+    assert min(agreements(actor.recording, taken)[:2]) > 0.98
+    assert agreement(actor.recording.frame(80) > 0, take.frame(80) > 0) > 0.98
+    assert "Nobody is seen in" in actor.remarks[0]
+
+
+@pytest.mark.parametrize("in_a_room", [False, True])
+def test_without_anybody_it_is_said(in_a_room):
+    nobody = DepthRecording(KINECT, 20, 30.0, lambda _: np.zeros((240, 320), np.float32))
+    taken = in_room(nobody, room(KINECT, UP, 0.9, 4.0), 0.001) if in_a_room else nobody
+
+    with pytest.raises(InvalidMotionError, match="Nobody is seen in this recording"):
+        find_actor(taken)
+
+
+def test_many_pixels_are_divided_as_few_are(takes):
+    """At four times the pixels, bodies are found in a coarse picture and then refined."""
+    depth = takes["walk_front"].frame(40)
+    large = depth.repeat(4, axis=0).repeat(4, axis=1)
+    camera = Camera(4 * 285.63, 4 * 285.63, 639.5, 479.5, 1280, 960)
+
+    small, found = find_bodies(depth, KINECT, 0.08), find_bodies(large, camera, 0.08)
+
+    assert len(small.areas) == len(found.areas) == 1
+    np.testing.assert_allclose(found.areas, small.areas, rtol=0.05)
+    np.testing.assert_allclose(found.middles, small.middles, atol=0.02)
+    assert agreement(found.mask(1), large > 0.0) > 0.97
+
+
+def test_looking_can_be_stopped(takes):
+    def cancel(fraction: float, message: str = "") -> None:
+        raise SolveCancelled("Cancelled.")
+
+    with pytest.raises(SolveCancelled):
+        find_actor(takes["walk_front"], progress=cancel)
+
+
+@pytest.mark.parametrize("factor", [0.25, 2.0])
+def test_a_wrong_focal_length_is_noticed_by_the_size_of_the_actor(takes, factor):
+    take = takes["walk_front"]
+    wrong = Camera(285.63 / factor, 285.63 / factor, 159.5, 119.5, 320, 240)
+
+    actor = find_actor(replace(take, camera=wrong), ForegroundSettings(smallest_body=0.01))
+
+    assert f"The actor would be {1.62 * factor:.1f} m tall: check" in actor.remarks[-1]

@@ -1,0 +1,61 @@
+"""People before a Kinect: subjects 3 and 4, whom nobody looked at while thresholds were set."""
+
+from itertools import pairwise
+
+import numpy as np
+import pytest
+
+from solvers.gestures.events import Gesture
+from solvers.gestures.recognition import recognise
+from solvers.gestures.settings import GestureSettings
+from solvers.motion.humanoid.posture_joints import posture_positions
+from solvers.recordings import read_joints
+from solvers.recordings.live.frames import frames_of
+from solvers.workflows.live_session import posture_of
+
+CLAP, WAVE = "a10", "a02"
+USUAL = GestureSettings()
+
+
+def gestures_in(path, settings=USUAL):
+    recording = read_joints(path)
+    frames = [posture_of(frame) for frame in frames_of(recording)]
+    positions, confidence = (np.stack(each) for each in zip(*frames, strict=True))
+    times = np.arange(len(frames)) / recording.frame_rate
+    return {event.gesture for event in recognise(times, positions, confidence, settings)}
+
+
+def test_most_claps_and_all_waves_are_told(recordings):
+    folder = recordings / "kinect" / "msr_action3d"
+    always = GestureSettings(waves_need_hand_up=False)
+
+    claps = [gestures_in(path) for path in sorted(folder.glob(f"{CLAP}_s0[34]_*"))]
+    waves = [gestures_in(path, always) for path in sorted(folder.glob(f"{WAVE}_s0[34]_*"))]
+
+    assert len(claps) >= 6 and len(waves) >= 3
+    assert sum(Gesture.CAPTURE_START in told for told in claps) >= 4
+    assert all({Gesture.PAGE_BACK, Gesture.PAGE_NEXT} & told for told in waves)
+
+
+@pytest.mark.parametrize("subject", ["03", "04"])
+def test_exercising_gives_no_command(recordings, subject):
+    """Four minutes of squats, lunges and arm raises, as one stream."""
+    paths = sorted((recordings / "kinect" / "ui_prmd").glob(f"*_s{subject}_*"))
+    clips = [posture_positions(read_joints(path)) for path in paths]
+    positions = np.concatenate(clips)
+
+    events = recognise(np.arange(len(positions)) / 30.0, positions)
+
+    assert len(positions) > 3 * 60 * 30
+    assert events == ()
+
+
+def test_a_confident_joint_is_what_the_recording_says(recordings):
+    path = next((recordings / "kinect" / "msr_action3d").glob("a10_s03_*"))
+    recording = read_joints(path)
+
+    frames = list(frames_of(recording))
+
+    positions = np.stack([posture_of(frame)[0] for frame in frames])
+    np.testing.assert_array_equal(positions, posture_positions(recording))
+    assert all(one.time < other.time for one, other in pairwise(frames))

@@ -1,0 +1,249 @@
+"""A simulated motion has weight, stands on the ground, and stays near the one it follows."""
+
+import numpy as np
+import pytest
+from numpy.testing import assert_allclose
+
+from solvers.motion import Motion, detect_contacts, forward_kinematics
+from solvers.physics import Ground, SimulateSettings, simulate, with_strength
+from solvers.rotations.representations import multiply, quaternion_from_rotation_vector
+from solvers.samples import CorruptionSettings, GaitSettings, corrupt, walking_gait
+
+CENTIMETRE = 0.01
+AT_ZERO = SimulateSettings(ground=Ground.HEIGHT)
+
+
+@pytest.fixture(scope="module")
+def walk():
+    return walking_gait(GaitSettings(duration=2.0, frame_rate=30.0))
+
+
+@pytest.fixture(scope="module")
+def simulated(walk):
+    return simulate(walk)
+
+
+@pytest.fixture(scope="module")
+def standing(walk):
+    """Three seconds in the pose in which both feet are on the ground."""
+    frame = detect_contacts(walk).all(axis=1).argmax()
+    return Motion(
+        walk.skeleton,
+        np.repeat(walk.rotations[frame : frame + 1], 90, axis=0),
+        np.repeat(walk.root_positions[frame : frame + 1], 90, axis=0),
+        30.0,
+    )
+
+
+def test_stays_near_a_good_walk_and_sinks_nowhere(walk, simulated):
+    assert simulated.followed.all()
+    assert simulated.message == "The simulated body followed the whole take."
+    assert simulated.distance < 3 * CENTIMETRE
+    assert_allclose(simulated.distance, distance(walk, simulated.motion), atol=0.005)
+    assert simulated.penetration_after < 0.5 * CENTIMETRE
+
+
+def test_keeps_the_skeleton_the_frames_and_every_length(walk, simulated):
+    result = simulated.motion
+
+    assert result.skeleton is walk.skeleton
+    assert (result.n_frames, result.frame_rate) == (walk.n_frames, walk.frame_rate)
+    for each in (walk, result):
+        positions = forward_kinematics(each).positions
+        bones = positions[:, 1:] - positions[:, list(walk.skeleton.parents[1:])]
+        lengths = np.linalg.norm(walk.skeleton.offsets[1:], axis=-1)
+        assert_allclose(np.linalg.norm(bones, axis=-1), np.tile(lengths, (60, 1)), atol=1e-12)
+
+
+def test_who_stands_goes_on_standing_on_own_feet(standing):
+    result = simulate(standing)
+
+    assert result.followed.all()
+    assert distance(standing, result.motion) < 2 * CENTIMETRE
+    late = forward_kinematics(result.motion).positions[45:]
+    assert np.ptp(late, axis=0).max() < 1 * CENTIMETRE
+    assert result.contacts[45:].all()
+    assert result.support[45:].mean() < 0.15
+
+
+def test_who_is_held_by_nothing_falls_as_stones_do(standing):
+    """In the air a body without help from outside has the acceleration of gravity."""
+    high = raised(standing, 1.5).slice(0, 9)
+
+    result = simulate(high, settings=SimulateSettings(support=0.0))
+
+    fall = result.motion.root_positions[:, 2] - high.root_positions[:, 2]
+    time = np.arange(5) / 30.0
+    assert_allclose(fall[:5], -0.5 * 9.81 * time * (time + 1 / 240), atol=0.01)
+
+
+@pytest.mark.parametrize("depth", [0.05, 1.0])
+def test_who_is_under_the_floor_comes_up(walk, simulated, depth):
+    result = simulate(raised(walk, -depth), settings=AT_ZERO)
+
+    assert result.penetration_before > 0.9 * depth
+    assert result.penetration_after < 0.5 * CENTIMETRE
+    shift = result.motion.root_positions - simulated.motion.root_positions
+    assert np.abs(shift).mean() < 1.5 * CENTIMETRE
+
+
+def test_who_hovers_a_little_comes_down(walk, simulated):
+    result = simulate(raised(walk, 0.08))
+
+    shift = result.motion.root_positions - simulated.motion.root_positions
+    assert np.abs(shift).mean() < 1.5 * CENTIMETRE
+
+
+def test_the_ground_is_where_it_is_said_to_be_or_under_the_feet(walk, simulated):
+    up = raised(walk, 3.0)
+    given = SimulateSettings(ground_height=3.0)
+    found = SimulateSettings(ground=Ground.FEET)
+
+    at_height, under_feet = (simulate(up, settings=each) for each in (given, found))
+
+    assert at_height.ground == 3.0
+    assert_allclose(under_feet.ground, 3.0, atol=0.02)
+    for each in (at_height, under_feet):
+        assert each.followed.all()
+        assert distance(raised(simulated.motion, 3.0), each.motion) < 2.5 * CENTIMETRE
+
+
+@pytest.mark.parametrize("height", [-0.73, 1.2])
+def test_a_take_that_is_measured_from_the_camera_stays_where_it_stands(walk, simulated, height):
+    result = simulate(raised(walk, height))
+
+    assert_allclose(result.ground, height, atol=0.02)
+    assert "far from 0.00 m: the ground is taken to be under its feet" in result.message
+    assert distance(raised(simulated.motion, height), result.motion) < 2.5 * CENTIMETRE
+    assert "far from" not in simulated.message
+    assert simulated.ground == simulate(raised(walk, 0.1)).ground == 0.0
+
+
+def test_friction_holds_feet_that_the_take_drags_about(standing):
+    sway = 0.02 * np.sin(2 * np.pi * 1.0 * np.arange(90) / 30.0)
+    dragged = standing.with_poses(
+        root_positions=standing.root_positions + np.outer(sway, [1.0, 0.5, 0.0])
+    )
+
+    held = simulate(dragged)
+    icy = simulate(dragged, settings=SimulateSettings(friction=0.0, plant=False))
+
+    assert held.slide_before > 0.2
+    assert held.slide_after < 0.1 * held.slide_before
+    assert icy.slide_after > 0.9 * icy.slide_before
+
+
+def test_mass_takes_the_shaking_out(walk):
+    shaking = corrupt(walk, CorruptionSettings(jitter=1.0, root_jitter=0.005))
+
+    result = simulate(shaking)
+
+    assert result.followed.all()
+    assert jerk(result.motion) < 0.15 * jerk(shaking)
+    assert distance(walk, result.motion) < 0.8 * distance(walk, shaking)
+
+
+def test_a_take_that_shakes_too_much_to_follow_is_calmed_until_it_does_not(walk):
+    shaking = corrupt(walk, CorruptionSettings(jitter=2.0, root_jitter=0.005))
+
+    result = simulate(shaking)
+
+    assert result.smoothing > SimulateSettings().smoothing
+    assert result.message.endswith(f"It had to be calmed by {result.smoothing:.2g} s for that.")
+    assert result.followed.all()
+
+
+def test_more_smoothing_is_calmer(walk):
+    shaking = corrupt(walk, CorruptionSettings(jitter=0.7))
+
+    usual, calm = (
+        simulate(shaking, settings=SimulateSettings(smoothing=smoothing))
+        for smoothing in (0.04, 0.08)
+    )
+
+    assert jerk(calm.motion) < 0.7 * jerk(usual.motion)
+
+
+def test_a_higher_response_is_nearer(walk):
+    shaking = corrupt(walk, CorruptionSettings(jitter=0.7))
+
+    soft, stiff = (
+        simulate(shaking, settings=SimulateSettings(response=response, smoothing=0.04))
+        for response in (1.0, 8.0)
+    )
+
+    assert stiff.distance < soft.distance
+
+
+def test_strength_nought_gives_the_same_bits_gaps_and_all(walk):
+    rotations = walk.rotations.copy()
+    rotations[10:20, 3] = np.nan
+    gapped = walk.with_poses(rotations)
+
+    result = simulate(gapped, settings=SimulateSettings(strength=0.0))
+
+    assert np.array_equal(result.motion.rotations, gapped.rotations, equal_nan=True)
+    assert np.array_equal(result.motion.root_positions, gapped.root_positions)
+
+
+def test_half_the_strength_goes_half_the_way(walk, simulated):
+    half = simulate(walk, settings=SimulateSettings(strength=0.5)).motion
+
+    assert_allclose(
+        half.root_positions,
+        (walk.root_positions + simulated.motion.root_positions) / 2,
+        atol=1e-9,
+    )
+    later = with_strength(walk, simulated, 0.5)
+    assert_allclose(np.abs((later.rotations * half.rotations).sum(axis=-1)), 1.0, atol=1e-9)
+    assert np.array_equal(
+        with_strength(walk, simulated, 1.0).rotations, simulated.motion.rotations
+    )
+    assert np.array_equal(with_strength(walk, simulated, 0.0).rotations, walk.rotations)
+
+
+def test_a_root_bone_on_the_floor_is_carried_along(walk, simulated):
+    """Hips that hang on another joint are simulated as hips; the joint above only moves."""
+    floor = np.array([0.0, 0.0, 0.0])
+    skeleton, hips = walk.skeleton, walk.rotations[:, :1]
+    offsets = skeleton.offsets.copy()
+    rigged = type(skeleton)(
+        ("Armature", *skeleton.names),
+        (-1, *(parent + 1 for parent in skeleton.parents)),
+        np.concatenate([[floor], [[0.0, 0.0, 1.0]], offsets[1:]]),
+    )
+    turn = quaternion_from_rotation_vector([0.0, 0.0, 0.4])
+    still = np.tile(turn, (walk.n_frames, 1, 1))
+    back = multiply(turn * (1, -1, -1, -1), hips)
+    motion = Motion(
+        rigged,
+        np.concatenate([still, back, walk.rotations[:, 1:]], axis=1),
+        walk.root_positions - (0.0, 0.0, 1.0),
+        walk.frame_rate,
+    )
+    before = forward_kinematics(motion).positions[:, 1:]
+    assert_allclose(before, forward_kinematics(walk).positions, atol=1e-9)
+
+    result = simulate(motion).motion
+
+    assert np.array_equal(result.rotations[:, 0], motion.rotations[:, 0])
+    after = forward_kinematics(result).positions[:, 1:]
+    apart = np.abs(after - forward_kinematics(simulated.motion).positions)
+    assert apart.mean() < 0.002, "rounding may decide when a foot touches"
+
+
+def raised(motion, height):
+    return motion.with_poses(root_positions=motion.root_positions + np.array([0, 0, height]))
+
+
+def distance(one, other):
+    """Mean distance of the joints, metres."""
+    here, there = (forward_kinematics(each).positions for each in (one, other))
+    return float(np.linalg.norm(here - there, axis=-1).mean())
+
+
+def jerk(motion):
+    """Mean third derivative of the joints' places, m/s^3."""
+    positions = forward_kinematics(motion).positions
+    thirds = np.diff(positions, 3, axis=0) * motion.frame_rate**3
+    return float(np.linalg.norm(thirds, axis=-1).mean())

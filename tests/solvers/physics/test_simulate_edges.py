@@ -1,0 +1,182 @@
+"""Whatever it is given, a simulation ends, with finite numbers or one clear sentence."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as some
+from numpy.testing import assert_allclose
+
+from solvers.errors import InvalidMotionError
+from solvers.motion import Motion, Skeleton, forward_kinematics
+from solvers.physics import Ground, SimulateSettings, simulate
+from solvers.physics import run as physics_run
+from solvers.physics.control import drive
+from solvers.samples import GaitSettings, walking_gait
+
+WALK = walking_gait(GaitSettings(duration=1.0, frame_rate=30.0))
+STILL = [1.0, 0.0, 0.0, 0.0]
+
+
+def test_who_is_in_the_sky_is_left_there_and_told_why():
+    sky = WALK.with_poses(root_positions=WALK.root_positions + np.array([0, 0, 10.0]))
+
+    result = simulate(sky, settings=SimulateSettings(ground=Ground.HEIGHT))
+
+    assert np.array_equal(result.motion.rotations, sky.rotations)
+    assert np.array_equal(result.motion.root_positions, sky.root_positions)
+    assert not result.followed.any()
+    assert result.message.startswith("The simulated body could not follow the take, which is")
+    assert "The take stands at a height of 10.0" in result.message
+    assert "the ground is at 0.00 m: choose the ground under the feet" in result.message
+
+
+def test_the_frames_that_cannot_be_followed_are_the_takes_own():
+    """A walker who is lifted by more than a metre, for a second and a half of eight."""
+    long = walking_gait(GaitSettings(duration=8.0, frame_rate=30.0))
+    lift = np.interp(np.arange(240), [100, 108, 145, 153], [0.0, 1.2, 1.2, 0.0])
+    roots = long.root_positions + np.outer(lift, [0.0, 0.0, 1.0])
+
+    result = simulate(long.with_poses(root_positions=roots))
+
+    lost = np.flatnonzero(~result.followed)
+    assert len(lost) and set(lost) <= set(range(100, 190))
+    assert np.array_equal(result.motion.root_positions[lost], roots[lost])
+    assert not np.array_equal(result.motion.root_positions[10:50], roots[10:50])
+    assert f"in {len(lost)} of 240 frames, the first of them {lost[0]}" in result.message
+    steps = np.abs(np.diff(result.motion.root_positions, axis=0)).max()
+    assert steps < 2 * np.abs(np.diff(roots, axis=0)).max(), "it eases over"
+
+
+def test_who_jumps_from_place_to_place_is_simulated_at_each():
+    roots = WALK.root_positions.copy()
+    roots[12:] += [5.0, -3.0, 0.0]
+
+    result = simulate(WALK.with_poses(root_positions=roots))
+
+    assert result.followed.all()
+    assert np.abs(result.motion.root_positions - roots).max() < 0.05
+    alone = simulate(WALK.slice(0, 12)).motion
+    assert_allclose(result.motion.root_positions[:12], alone.root_positions, atol=0.01)
+
+
+def test_gaps_are_filled_where_the_body_is_simulated():
+    rotations, roots = WALK.rotations.copy(), WALK.root_positions.copy()
+    rotations[5:10], rotations[:, 3], roots[20:] = np.nan, np.nan, np.nan
+
+    result = simulate(WALK.with_poses(rotations, roots))
+
+    assert np.isfinite(result.motion.rotations[:, :3]).all()
+    assert np.isfinite(result.motion.root_positions).all()
+
+
+def test_a_root_that_was_never_seen_is_refused():
+    roots = np.full_like(WALK.root_positions, np.nan)
+
+    with pytest.raises(InvalidMotionError, match="place of the root is never observed"):
+        simulate(WALK.with_poses(root_positions=roots))
+
+
+def test_a_wrong_unit_is_refused():
+    skeleton = WALK.skeleton
+    ant = Skeleton(skeleton.names, skeleton.parents, 0.01 * skeleton.offsets)
+
+    with pytest.raises(InvalidMotionError, match="no size for physics; give the scale of the"):
+        simulate(Motion(ant, WALK.rotations, 0.01 * WALK.root_positions, 30.0))
+
+
+def test_a_frame_rate_that_tells_nothing_is_refused():
+    with pytest.raises(InvalidMotionError, match="At 2 frames a second nothing tells how"):
+        simulate(replace(WALK, frame_rate=2.0))
+
+
+@pytest.mark.parametrize("n_frames", [1, 2, 3])
+def test_few_frames_are_enough(n_frames):
+    result = simulate(WALK.slice(0, n_frames))
+
+    assert result.motion.n_frames == n_frames and result.followed.all()
+    assert result.distance < 0.01
+
+
+@pytest.mark.parametrize("plant", [True, False])
+def test_an_engine_that_explodes_in_every_try_ends_in_the_take(monkeypatch, plant):
+    """Where muscles pull beyond all bounds in one step, forces of the ground are no numbers."""
+    calls = []
+
+    def exploding(engine, world, *others):
+        used = drive(engine, world, *others)
+        calls.append(used)
+        if len(calls) % 100 == 50:
+            world.data.qfrc_applied[:] = 1e300
+        return used
+
+    monkeypatch.setattr(physics_run, "drive", exploding)
+
+    result = simulate(WALK, settings=SimulateSettings(plant=plant))
+
+    assert np.isfinite(result.carried).all() and np.isfinite(result.support).all()
+    lost = ~result.followed
+    assert lost.any()
+    assert np.array_equal(result.motion.rotations[lost], WALK.rotations[lost])
+    assert np.isfinite(result.motion.rotations).all()
+
+
+@pytest.mark.parametrize("n_joints", [1, 2, 5])
+def test_what_is_no_human_is_a_chain_of_bones(n_joints):
+    """A stick that starts upright above the ground falls onto it and keeps its length."""
+    names = tuple(f"joint{n}" for n in range(n_joints))
+    offsets = np.tile([0.0, 0.0, 0.2], (n_joints, 1))
+    skeleton = Skeleton(names, tuple(range(-1, n_joints - 1)), offsets)
+    roots = np.tile([0.0, 0.0, 0.1], (60, 1))
+    motion = Motion(skeleton, np.tile(STILL, (60, n_joints, 1)), roots, 30.0)
+
+    result = simulate(motion)
+
+    assert np.isfinite(result.motion.rotations).all()
+    assert result.penetration_after <= max(result.penetration_before, 0.005)
+    places = forward_kinematics(result.motion).positions
+    lengths = np.linalg.norm(np.diff(places, axis=1), axis=-1)
+    assert_allclose(lengths, 0.2, atol=1e-12)
+
+
+@pytest.mark.parametrize("bones", ["all in one place", "one tiny bone"])
+def test_bones_without_length_do_not_explode(bones):
+    offsets = np.zeros((3, 3))
+    if bones == "one tiny bone":
+        offsets[1:] = [[0, 0, 1e-7], [0, 0, 0.5]]
+    skeleton = Skeleton(("a", "b", "c"), (-1, 0, 1), offsets)
+    motion = Motion(
+        skeleton, np.tile(STILL, (20, 3, 1)), np.tile([0.0, 0.0, 0.2], (20, 1)), 30.0
+    )
+
+    result = simulate(motion)
+
+    assert np.isfinite(result.motion.rotations).all()
+
+
+@settings(max_examples=12)
+@given(
+    seed=some.integers(0, 1000),
+    turns=some.floats(0.0, 3.0),
+    travel=some.floats(0.0, 2.0),
+    options=some.fixed_dictionaries({
+        "support": some.floats(0.0, 3.0),
+        "friction": some.floats(0.0, 5.0),
+        "response": some.floats(0.5, 15.0),
+        "smoothing": some.floats(0.0, 0.5),
+    }),
+)
+def test_nonsense_ends_in_finite_numbers(seed, turns, travel, options):
+    rng = np.random.default_rng(seed)
+    shaken = WALK.rotations + turns * rng.normal(size=WALK.rotations.shape)
+    shaken /= np.linalg.norm(shaken, axis=-1, keepdims=True)
+    roots = WALK.root_positions + travel * rng.normal(size=WALK.root_positions.shape)
+    motion = WALK.with_poses(shaken, roots)
+
+    result = simulate(motion.slice(0, 15), settings=SimulateSettings(**options))
+
+    assert np.isfinite(result.motion.rotations).all()
+    assert np.isfinite(result.motion.root_positions).all()
+    assert np.isfinite(result.distance) and np.isfinite(result.support).all()
+    assert result.message.startswith("The simulated body")

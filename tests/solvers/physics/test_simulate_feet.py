@@ -1,0 +1,290 @@
+"""Feet that carry the body stay where they are; feet that do not are left alone."""
+
+import numpy as np
+import pytest
+from numpy.testing import assert_allclose
+
+from solvers.motion import Motion, find_humanoid_map, forward_kinematics
+from solvers.physics import SimulateSettings, simulate
+from solvers.physics.body import physics_body
+from solvers.physics.feet import with_soles
+from solvers.physics.foot_contacts import CLEAR, PRESSED, with_feet_on_ground
+from solvers.physics.pelvis_offset import LegGoal, hips_shift
+from solvers.physics.plant_target import planted
+from solvers.physics.stance import bearing, in_contact
+from solvers.physics.surface import SIDES, bottoms, leg_chain, of_foot
+from solvers.rotations.representations import (
+    multiply,
+    quaternion_from_rotation_vector,
+    rotation_vector_from_quaternion,
+)
+from solvers.samples import CorruptionSettings, GaitSettings, corrupt, walking_gait
+
+MILLIMETRE = 0.001
+LOADED = 0.5
+"""Share of the weight."""
+
+
+@pytest.fixture(scope="module")
+def walk():
+    return walking_gait(GaitSettings(duration=3.0, frame_rate=60.0))
+
+
+@pytest.fixture(scope="module")
+def body(walk):
+    humanoid = find_humanoid_map(walk.skeleton)
+    return with_soles(physics_body(walk, humanoid), walk, humanoid, 0.0)
+
+
+@pytest.fixture(scope="module")
+def shaking(walk):
+    return corrupt(walk, CorruptionSettings(jitter=0.7, root_jitter=0.004, seed=3))
+
+
+@pytest.fixture(scope="module")
+def by_friction(shaking):
+    return simulate(shaking, settings=SimulateSettings(plant=False))
+
+
+@pytest.fixture(scope="module")
+def kept(shaking):
+    return simulate(shaking)
+
+
+def test_a_foot_that_carries_the_body_rests_on_a_point_that_does_not_move(
+    body, by_friction, kept
+):
+    assert np.array_equal(kept.carried, by_friction.carried)
+    loaded = kept.carried[:-1] > LOADED
+    assert loaded.mean() > 0.3
+    slow = steps(body, by_friction.motion)[loaded] < 0.3 / 60.0
+
+    creep, rest = (steps(body, each.motion)[loaded][slow] for each in (by_friction, kept))
+
+    assert rest.mean() < 0.35 * creep.mean()
+    assert np.percentile(rest, 95) < 0.5 * MILLIMETRE
+
+
+def test_it_is_kept_level_so_nothing_sinks_or_rises(body, by_friction, kept):
+    before, after = (bottoms(body, each.motion)[..., 2] for each in (by_friction, kept))
+
+    own = of_foot(body, "left") | of_foot(body, "right")
+    assert_allclose(after[:, own], before[:, own], atol=1.5 * MILLIMETRE)
+    assert kept.penetration_after < by_friction.penetration_after + MILLIMETRE
+    assert np.abs(kept.motion.root_positions - by_friction.motion.root_positions).max() < 0.01
+
+
+def test_it_stays_calm_and_near_the_take(shaking, by_friction, kept):
+    assert jerk(kept.motion) < 1.03 * jerk(by_friction.motion)
+    assert kept.distance < by_friction.distance + MILLIMETRE
+
+
+def test_bones_keep_their_lengths_and_the_input_its_bits(shaking, kept):
+    before = shaking.rotations.copy(), shaking.root_positions.copy()
+
+    again = simulate(shaking)
+
+    assert np.array_equal(shaking.rotations, before[0])
+    assert np.array_equal(shaking.root_positions, before[1])
+    assert np.array_equal(again.motion.rotations, kept.motion.rotations)
+    positions = forward_kinematics(again.motion).positions
+    bones = positions[:, 1:] - positions[:, list(shaking.skeleton.parents[1:])]
+    lengths = np.linalg.norm(shaking.skeleton.offsets[1:], axis=-1)
+    assert_allclose(np.linalg.norm(bones, axis=-1) - lengths, 0.0, atol=1e-12)
+
+
+def test_the_ground_carries_the_weight_of_who_stands(walk):
+    """Newton's third law, on average over the steps of a walk that comes back to its height."""
+    result = simulate(walk)
+
+    carried = result.carried.sum(axis=1)[30:-30].mean()
+    helped = result.support.mean()
+    assert abs(carried - 1.0) < 0.05 + helped
+
+
+def test_who_hops_flies_and_lands(walk):
+    """Half a second of standing, a hop of 0.4 s, and standing again."""
+    frame = in_contact_of(walk).all(axis=1).argmax()
+    n_frames, rate = 90, 60.0
+    time = np.arange(n_frames) / rate - 0.6
+    flight = np.where(np.abs(time) < 0.2, 0.5 * 9.81 * (0.2**2 - time**2), 0.0)
+    hop = Motion(
+        walk.skeleton,
+        np.repeat(walk.rotations[frame : frame + 1], n_frames, axis=0),
+        walk.root_positions[frame] + np.outer(flight, [0.0, 0.0, 1.0]),
+        rate,
+    )
+
+    result = simulate(hop)
+
+    assert result.followed.all()
+    in_air = ~result.contacts.any(axis=1)
+    assert in_air[33:39].all()
+    assert result.contacts[:20].any(axis=1).mean() > 0.9
+    assert result.carried[33:39].max() == 0.0
+    rise = np.ptp(result.motion.root_positions[:, 2])
+    assert 0.4 * flight.max() < rise < 1.3 * flight.max()
+
+
+def test_a_foot_that_means_to_slide_is_let_slide(walk):
+    """Who is carried sideways at 2 m/s in a stiff pose, feet on the ground, slides."""
+    frame = in_contact_of(walk).all(axis=1).argmax()
+    n_frames, rate = 60, 60.0
+    way = np.outer(np.arange(n_frames) / rate * 2.0, [1.0, 0.0, 0.0])
+    sliding = Motion(
+        walk.skeleton,
+        np.repeat(walk.rotations[frame : frame + 1], n_frames, axis=0),
+        walk.root_positions[frame] + way,
+        rate,
+    )
+
+    kept, free = (
+        simulate(sliding, settings=SimulateSettings(plant=plant)).motion
+        for plant in (True, False)
+    )
+
+    assert np.array_equal(kept.rotations, free.rotations)
+    assert np.array_equal(kept.root_positions, free.root_positions)
+    ways = kept.root_positions[-1] - kept.root_positions[0]
+    assert_allclose(ways, way[-1], atol=0.1)
+
+
+def test_held_feet_do_not_move_whatever_the_body_did(walk, body, rng):
+    """Planting alone: the part of the sole that bears the foot rests to a tenth of a mm."""
+    sway = np.cumsum(rng.normal(scale=0.0008, size=(walk.n_frames, 2)), axis=0)
+    turn = np.cumsum(rng.normal(scale=0.001, size=walk.n_frames))
+    rotations = walk.rotations.copy()
+    turn = quaternion_from_rotation_vector(turn[:, None] * (0.0, 0.0, 1.0))
+    rotations[:, 0] = multiply(turn, rotations[:, 0])
+    roots = walk.root_positions + np.pad(sway, ((0, 0), (0, 1)))
+    swaying = walk.with_poses(rotations, roots)
+    stands = in_contact(body, walk)
+    held = stands[1:] & stands[:-1]
+
+    result = planted(body, swaying, held.astype(np.float64), 0.0)
+
+    assert loaded_steps(body, swaying)[held].mean() > 0.5 * MILLIMETRE
+    assert np.percentile(loaded_steps(body, result)[held], 99) < 0.1 * MILLIMETRE
+    assert turning(body, result)[held].mean() < 0.5 * turning(body, swaying)[held].mean()
+
+
+def test_nothing_is_moved_where_nothing_is_held(walk, body):
+    result = planted(body, walk, np.zeros((walk.n_frames - 1, 2)), 0.0)
+
+    assert result is walk
+
+
+def test_the_lowest_part_of_the_sole_bears_the_foot():
+    heights = np.tile([0.0, 0.03, 0.06], (30, 1))
+
+    shares = bearing(heights, 60.0, 1.0)
+
+    assert_allclose(shares[15], [1.0, 0.0, 0.0], atol=1e-6)
+    assert_allclose(bearing(0.0 * heights, 60.0, 1.0)[15], 1 / 3)
+    (
+        assert_allclose(bearing(heights - 0.06, 60.0, 1.0)[15], 1 / 3),
+        "what is under presses no more",
+    )
+
+
+def test_feet_of_the_target_meet_the_ground(walk, body):
+    low = walk.with_poses(root_positions=walk.root_positions - (0.0, 0.0, 0.02))
+    stands = in_contact(body, walk).astype(np.float64)
+
+    result = with_feet_on_ground(body, low, stands, stands, 0.0)
+
+    points = bottoms(body, result)
+    inner = slice(15, -15)
+    for column, side in enumerate(SIDES):
+        lowest = points[:, of_foot(body, side), 2].min(axis=1)[inner] / body.size
+        always = moving_minimum(stands[inner, column]) == 1.0
+        never = moving_minimum(1.0 - stands[inner, column]) == 1.0
+        assert always.any() and never.any()
+        assert_allclose(lowest[always], -PRESSED, atol=MILLIMETRE)
+        assert lowest[never].min() > 0.5 * CLEAR
+
+
+def test_hips_go_where_straight_legs_would_have_to_stretch(walk, body):
+    """A goal that is farther along a straight leg is reached by the hips, not by the knee."""
+    straight = quaternion_from_rotation_vector(np.zeros((40, walk.n_joints, 3)))
+    upright = walk.slice(0, 40).with_poses(straight)
+    poses = forward_kinematics(upright)
+    goals = []
+    for side in SIDES:
+        chain = leg_chain(body, side)
+        down = poses.positions[:, chain[-1]] - (0.0, 0.0, 0.01)
+        goals.append(LegGoal(chain, down))
+
+    shift = hips_shift(poses, goals, 60.0, body.size)
+
+    assert_allclose(shift[:, 2], -0.01, atol=0.002)
+    assert np.abs(shift[:, :2]).max() < 0.002
+
+
+def test_hips_stay_where_no_leg_changes(walk, body):
+    poses = forward_kinematics(walk)
+    goals = [LegGoal(chain, poses.positions[:, chain[-1]]) for chain in chains(body)]
+
+    assert_allclose(hips_shift(poses, goals, 60.0, body.size), 0.0, atol=1e-12)
+
+
+def test_a_turned_take_is_planted_turned(shaking, kept):
+    turn = quaternion_from_rotation_vector([0.0, 0.0, 1.0])
+    rotations = shaking.rotations.copy()
+    rotations[:, 0] = multiply(turn, rotations[:, 0])
+    c, s = np.cos(1.0), np.sin(1.0)
+    about = np.array([[c, s, 0.0], [-s, c, 0.0], [0.0, 0.0, 1.0]])
+
+    result = simulate(shaking.with_poses(rotations, shaking.root_positions @ about))
+
+    apart = result.motion.root_positions - kept.motion.root_positions @ about
+    assert np.abs(apart).mean() < MILLIMETRE
+
+
+def steps(body, motion):
+    """Way of the slowest point of each sole to the next frame, (n_frames - 1, 2), metres."""
+    points = bottoms(body, motion)
+    ways = np.linalg.norm(np.diff(points[..., :2], axis=0), axis=-1)
+    return np.stack([ways[:, of_foot(body, side)].min(axis=1) for side in SIDES], -1)
+
+
+def loaded_steps(body, motion):
+    """Way of what bears each sole, (n_frames - 1, 2), metres."""
+    points = bottoms(body, motion)
+    found = []
+    for side in SIDES:
+        own = points[:, of_foot(body, side)]
+        share = bearing(own[..., 2], motion.frame_rate, body.size)
+        share = 0.5 * (share[1:] + share[:-1])
+        way = (share[..., None] * np.diff(own[..., :2], axis=0)).sum(axis=1)
+        found.append(np.linalg.norm(way, axis=-1))
+    return np.stack(found, axis=-1)
+
+
+def turning(body, motion):
+    """Angle about the vertical by which feet turn to the next frame, (n_frames - 1, 2)."""
+    ankles = [leg_chain(body, side)[-1] for side in SIDES]
+    turns = forward_kinematics(motion).rotations[:, ankles]
+    steps = multiply(turns[1:], turns[:-1] * (1, -1, -1, -1))
+    return np.abs(rotation_vector_from_quaternion(steps)[..., 2])
+
+
+def moving_minimum(values):
+    return np.array([values[max(i - 9, 0) : i + 10].min() for i in range(len(values))])
+
+
+def chains(body):
+    return [leg_chain(body, side) for side in SIDES]
+
+
+def result_body(motion):
+    return physics_body(motion, find_humanoid_map(motion.skeleton))
+
+
+def in_contact_of(motion):
+    return in_contact(result_body(motion), motion)
+
+
+def jerk(motion):
+    thirds = np.diff(forward_kinematics(motion).positions, 3, axis=0) * motion.frame_rate**3
+    return float(np.linalg.norm(thirds, axis=-1).mean())

@@ -1,0 +1,37 @@
+"""By how much the ground carries the parts of a body."""
+
+from dataclasses import replace
+
+import numpy as np
+from numpy.testing import assert_allclose
+
+from solvers.motion import HumanoidMap, Motion, Skeleton
+from solvers.physics.body import Capsule, physics_body
+from solvers.physics.engine import load_engine
+from solvers.physics.loads import add_loads
+from solvers.physics.world import build_world
+
+STEP = 1.0 / 240.0
+RADIUS = 0.1
+
+
+def test_the_ground_carries_a_beam_at_the_end_that_is_heavier():
+    """A light beam that bears a ball over its second end: the lever of the first is nought."""
+    engine = load_engine()
+    beam = Capsule(0, np.array([[-0.5, 0.0, 0.0], [0.5, 0.0, 0.0]]), RADIUS, 1e-6)
+    keel = Capsule(0, np.array([[0.0, -0.5, 0.0], [0.0, 0.5, 0.0]]), RADIUS, 1e-6)
+    weight = Capsule(0, np.tile([0.4, 0.0, 0.0], (2, 1)), RADIUS, 1.0, touches=False)
+    skeleton = Skeleton(("beam",), (-1,), np.zeros((1, 3)))
+    motion = Motion(skeleton, np.tile([1.0, 0, 0, 0], (1, 1, 1)), np.zeros((1, 3)), 30.0)
+    body = replace(physics_body(motion, HumanoidMap()), capsules=(weight, beam, keel), size=1.0)
+    world = build_world(engine, body, 0.0, 1.0, STEP)
+    world.data.qpos[2] = RADIUS
+    loads = np.zeros(4)
+
+    for _ in range(480):
+        engine.mj_step(world.model, world.data)
+    add_loads(world, loads, 1.0 / 9.81)
+
+    assert_allclose(loads.sum(), 1.0, rtol=0.01)
+    assert loads[1] > 0.7
+    assert loads[0] < 0.1

@@ -1,0 +1,49 @@
+"""The first guess of the noise decides how much is believed, of odd channels too."""
+
+import numpy as np
+import pytest
+from numpy.testing import assert_allclose
+
+from solvers.denoising import denoise
+from solvers.samples import CorruptionSettings, GaitSettings, corrupt, walking_gait
+from solvers.signals.noise import alike, rough_noise
+
+
+def test_rough_noise_sees_the_noise_and_not_the_motion(rng):
+    time = np.arange(2000) / 60.0
+    smooth = 30.0 * np.sin(2 * np.pi * time)[:, None]
+
+    found = rough_noise(smooth + rng.normal(scale=[0.5, 3.0], size=(2000, 2)))
+
+    assert_allclose(found, [0.5, 3.0], rtol=0.1)
+
+
+def test_channels_that_differ_by_chance_are_drawn_together(rng):
+    n_samples = np.full(60, 50)
+    found = np.exp(np.log(2.0) + rng.normal(scale=np.sqrt(0.5 / 50), size=60))
+
+    assert_allclose(alike(found, n_samples), 2.0, rtol=0.08)
+    assert alike(found, n_samples).std() < 0.5 * found.std()
+
+
+@pytest.mark.parametrize("own", [0.3, 20.0])
+def test_a_channel_of_another_kind_keeps_its_own_noise(own, rng):
+    """The root's place in centimetres, among rotations in degrees."""
+    found = np.append(np.exp(np.log(3.0) + rng.normal(scale=0.05, size=60)), own)
+
+    assert_allclose(alike(found, np.full(61, 200))[-1], own, rtol=0.05)
+
+
+@pytest.mark.parametrize("jitter", [0.0, 3.0])
+def test_the_root_is_cleaned_whatever_the_joints_noise(jitter):
+    """With the joints' 3 degrees taken for its 4 mm, the root would lose its bob and sway."""
+    walk = walking_gait(GaitSettings(duration=6.0, frame_rate=30.0))
+    raw = corrupt(walk, CorruptionSettings(jitter=jitter, root_jitter=0.004))
+
+    clean = denoise(raw).recording
+
+    assert spread(clean, walk) < 0.7 * spread(raw, walk)
+
+
+def spread(motion, truth):
+    return (motion.root_positions - truth.root_positions).std()
