@@ -31,7 +31,7 @@ def damaged(
         return _archive(target, content, rng, mutate)[:max_size]
     if target.is_database and rng.random() < 0.8:
         for start in (content, target.seed):
-            with suppress(sqlite3.Error, OverflowError):
+            with suppress(sqlite3.Error, OverflowError, ValueError):
                 return _database(start, target.tokens, rng, mutate)[:max_size]
     return _bytes(content, target.tokens, rng, mutate, max_size)
 
