@@ -1,11 +1,13 @@
 """Write into the documents what they quote from the code, so that it cannot go stale.
 
-    python .ci/write_docs.py               tables of settings, in README.md and docs/*.md
+    python .ci/write_docs.py               tables of settings and of buttons, in docs
     python .ci/write_docs.py --pictures    and the pictures in docs/pictures
 
-A table stands between `<!-- settings solvers.denoising.DenoiseSettings -->` and `<!-- end -->`.
+A table of settings stands between `<!-- settings solvers.denoising.DenoiseSettings -->` and
+`<!-- end -->`, the table of buttons between `<!-- buttons -->` and `<!-- end -->`.
 """
 
+import ast
 import re
 import sys
 from dataclasses import fields
@@ -16,18 +18,73 @@ from typing import Any
 
 ROOT = Path(__file__).resolve().parents[1]
 sys.path.insert(0, str(ROOT))
-DOCUMENTS = [ROOT / "README.md", *sorted((ROOT / "docs").glob("*.md"))]
+DOCUMENTS = [ROOT / "README.md", *sorted((ROOT / "docs").rglob("*.md"))]
 PICTURES = ROOT / "docs" / "pictures"
 ENDLESS = 1e6
 label_of = import_module("solvers.settings").label_of
-BLOCK = re.compile(r"(<!-- settings ([\w.]+)\.(\w+) -->\n).*?(<!-- end -->)", re.DOTALL)
+SETTINGS = re.compile(r"(<!-- settings ([\w.]+)\.(\w+) -->\n).*?(<!-- end -->)", re.DOTALL)
+BUTTONS = re.compile(r"(<!-- buttons -->\n).*?(<!-- end -->)", re.DOTALL)
+NOT_BUTTONS = {"import_job"}
+"""Operators that another operator starts: no user sees them."""
+PAGES = {
+    "importing": "import_recording show_depth",
+    "tracking": "track_depth retrack",
+    "reconstruction": "reconstruct",
+    "cleaning": "denoise learn_patterns plant_feet measure_quality jump_to_spot revert_to_raw",
+    "physics": "simulate",
+    "markers": "solve_skeleton",
+    "retargeting": "retarget reduce_keys",
+    "library_in_blender": "index_library keep_current find_similar load_match link_match"
+    " learn_from_matches use_matches mark_asset",
+    "performing": "listen",
+    "variation": "vary keep_variants stack_variants assign_variants draw_variants"
+    " mark_variants",
+}
+"""By page of docs, the buttons that it describes, in the order of the work."""
 
 
 def renewed(text: str) -> str:
     """Return the text of a document with all its tables as the code now says."""
-    return BLOCK.sub(
+    text = SETTINGS.sub(
         lambda found: found[1] + settings_table(found[2], found[3]) + found[4], text
     )
+    return BUTTONS.sub(lambda found: found[1] + buttons_table() + found[2], text)
+
+
+def buttons_table() -> str:
+    """Return a Markdown table of all buttons: label, identifier, tooltip and page."""
+    known = buttons()
+    rows = ["| button | operator | what it does | page |", "|---|---|---|---|"]
+    for page, names in PAGES.items():
+        for name in names.split():
+            label, tooltip = known[name]
+            rows.append(
+                f"| **{label}** | `mocap_assist.{name}` | {tooltip}. | [{page}.md]({page}.md) |"
+            )
+    return "\n".join(rows) + "\n"
+
+
+def buttons() -> dict[str, tuple[str, str]]:
+    """Label and tooltip of every button, read from the source, since Blender may be absent."""
+    found = {}
+    for module in sorted((ROOT / "operators").glob("*.py")):
+        for node in ast.walk(ast.parse(module.read_text(encoding="utf-8"))):
+            if isinstance(node, ast.ClassDef):
+                texts = _constants(node)
+                name = texts.get("bl_idname", "").removeprefix("mocap_assist.")
+                if name and name not in NOT_BUTTONS:
+                    found[name] = texts["bl_label"], texts["bl_description"]
+    return found
+
+
+def _constants(node: ast.ClassDef) -> dict[str, str]:
+    return {
+        statement.targets[0].id: statement.value.value
+        for statement in node.body
+        if isinstance(statement, ast.Assign)
+        and isinstance(statement.targets[0], ast.Name)
+        and isinstance(statement.value, ast.Constant)
+    }
 
 
 def settings_table(module: str, name: str) -> str:
