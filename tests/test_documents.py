@@ -21,6 +21,7 @@ GUIDES = [ROOT / "CONTRIBUTING.md", ROOT / "docs" / "architecture.md"]
 """What names files of the code: after a move they are renamed here, too."""
 COMMAND = re.compile(r"^ *python -m solvers ([\w-]+)(.*)$", re.MULTILINE)
 LINK = re.compile(r"\]\(([^)#\s]+)[^)]*\)")
+ANCHOR = re.compile(r"\]\(([^):#\s]*)#([^)\s]+)\)")
 README_LINES = 130
 
 
@@ -50,6 +51,20 @@ def test_links_lead_somewhere(document):
 
     lost = [link for link in links if ":" not in link and not (document.parent / link).exists()]
     assert not lost
+
+
+@pytest.mark.parametrize("document", DOCUMENTS, ids=name_of)
+def test_links_into_pages_meet_a_heading(document):
+    for link, anchor in ANCHOR.findall(document.read_text(encoding="utf-8")):
+        page = (document.parent / link) if link else document
+        headings = re.findall(r"^#+ (.+)$", page.read_text(encoding="utf-8"), re.MULTILINE)
+
+        assert anchor in map(anchor_of, headings), f"{link}#{anchor}"
+
+
+def anchor_of(heading: str) -> str:
+    """Return what GitHub makes of a heading."""
+    return re.sub(r"[^\w -]", "", heading.lower()).replace(" ", "-")
 
 
 @pytest.mark.parametrize("document", GUIDES, ids=name_of)
