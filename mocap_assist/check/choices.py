@@ -2,11 +2,11 @@
 
 from typing import NamedTuple
 
-from ...solvers.denoising import QualitySettings, SpotSettings
+from ...solvers.denoising import IssueSettings, QualitySettings
 
 
 class CheckSettings(NamedTuple):
     """All that the button offers."""
 
     quality: QualitySettings
-    spots: SpotSettings
+    spots: IssueSettings

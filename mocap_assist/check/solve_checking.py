@@ -6,11 +6,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...solvers.denoising import (
+    Issue,
+    IssueSettings,
     Quality,
     QualitySettings,
-    Spot,
-    SpotSettings,
-    find_worst_spots,
+    find_worst_issues,
     measure_quality,
 )
 from ...solvers.motion import JointLimits, Motion, Tracks
@@ -22,13 +22,13 @@ class Checked:
     """What is wrong with a take, in all and place by place."""
 
     quality: Quality
-    spots: tuple[Spot, ...]
+    spots: tuple[Issue, ...]
 
 
 def check(
     body: Motion | Tracks,
     settings: QualitySettings,
-    spots: SpotSettings,
+    spots: IssueSettings,
     *,
     contacts: NDArray[np.bool_] | None,
     limits: JointLimits | None,
@@ -42,5 +42,7 @@ def check(
         limits=limits,
         progress=within(progress, 0.0, 0.9),
     )
-    found = find_worst_spots(body, quality, settings=spots, progress=within(progress, 0.9, 1.0))
+    found = find_worst_issues(
+        body, quality, settings=spots, progress=within(progress, 0.9, 1.0)
+    )
     return Checked(quality, found)

@@ -18,8 +18,8 @@ from ...solvers.denoising import (
     Planted,
     PlantSettings,
     Quality,
+    clamp_to_limits,
     denoise,
-    keep_within,
     learn_filter_bases,
     learn_joint_limits,
     load_filter_bases,
@@ -183,7 +183,7 @@ def clean(
         estimates,
     )
     for limits in (finish.limits, solution.limits):
-        body = body if limits is None else keep_within(body, limits)
+        body = body if limits is None else clamp_to_limits(body, limits)
     planted = _planted(body, finish, within(progress, 0.8, 0.9))
     moved = finish.chosen
     if planted is not None:

@@ -1,28 +1,28 @@
 """Clean recordings: learn how bodies move, and take out jitter, spikes and gaps.
 
->>> from solvers.denoising import find_worst_spots, measure_quality, plant_feet
+>>> from solvers.denoising import find_worst_issues, measure_quality, plant_feet
 >>> from solvers.samples import CorruptionSettings, GaitSettings, corrupt, walking_gait
 >>> walk = walking_gait(GaitSettings(duration=2.0, frame_rate=60.0))
 >>> planted = plant_feet(walk)
 >>> planted.slide_after < planted.slide_before
 True
 >>> spoilt = corrupt(walk, CorruptionSettings(jitter=1.0), missing={"RightArm": range(20, 80)})
->>> spots = find_worst_spots(spoilt, measure_quality(spoilt))
+>>> spots = find_worst_issues(spoilt, measure_quality(spoilt))
 >>> next(spot.sentence for spot in spots if spot.kind == "gap")
 'RightArm is missing for 1.00 s.'
 """
 
 from .denoise import Denoised, DenoiseSettings, Method, denoise
 from .feet import Planted, PlantSettings, plant_feet
-from .limits import JointLimitsSettings, keep_within, learn_joint_limits, limit_excess
+from .limits import JointLimitsSettings, clamp_to_limits, learn_joint_limits, limit_excess
 from .prior import FilterBases, FilterBasesSettings, learn_filter_bases, load_filter_bases
 from .quality import (
+    Issue,
+    IssueSettings,
     Quality,
     QualitySettings,
-    Spot,
-    SpotSettings,
     compare_quality,
-    find_worst_spots,
+    find_worst_issues,
     measure_quality,
 )
 
@@ -31,18 +31,18 @@ __all__ = [
     "Denoised",
     "FilterBases",
     "FilterBasesSettings",
+    "Issue",
+    "IssueSettings",
     "JointLimitsSettings",
     "Method",
     "PlantSettings",
     "Planted",
     "Quality",
     "QualitySettings",
-    "Spot",
-    "SpotSettings",
+    "clamp_to_limits",
     "compare_quality",
     "denoise",
-    "find_worst_spots",
-    "keep_within",
+    "find_worst_issues",
     "learn_filter_bases",
     "learn_joint_limits",
     "limit_excess",

@@ -13,7 +13,7 @@ from ..motion.skeletons import find_cuts, is_short, pieces, tell_of_cuts
 from ..progress import Progress, unwatched, within
 from ..settings import Settings, setting
 from .channels import CENTIMETRES, Channels, decode, encode
-from .limits import impossible_turns, keep_within
+from .limits import clamp_to_limits, impossible_turns
 from .marker_gaps import FilledMarkers, fill_markers
 from .posterior import Estimate, estimate_in_groups
 from .prior import FilterBases
@@ -98,7 +98,7 @@ def denoise(
         Patterns of clean recordings. Without them the take's own patterns are used.
     limits : JointLimits, optional
         How far the joints of a motion may turn. At any strength the result is held softly
-        within them (`keep_within`); with bases, it is estimated again without what is far
+        within them (`clamp_to_limits`); with bases, it is estimated again without what is far
         beyond, where the first estimate believed that.
     settings : DenoiseSettings
     progress : Progress
@@ -176,7 +176,7 @@ def _denoised_piece(
     cleaned = decode(whole, channels, values.reshape(channels.values.shape))
     cleaned = _kept_where_unchanged(piece, cleaned, settings)
     if limits is not None and isinstance(cleaned, Motion):
-        cleaned = keep_within(cleaned, limits)
+        cleaned = clamp_to_limits(cleaned, limits)
     confidence = _confidence(_worst(piece, channels, estimate.deviation), filled)
     if isinstance(cleaned, Tracks):
         unknown = _never_shown(cleaned.names, piece, bases)

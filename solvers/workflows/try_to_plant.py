@@ -7,7 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..denoising import Planted, PlantSettings, plant_feet
-from ..denoising.feet import foot_joints
+from ..denoising.feet import find_foot_joints
 from ..errors import InvalidMotionError
 from ..motion import Motion, forward_kinematics
 from ..motion.humanoid import detect_contacts
@@ -57,7 +57,7 @@ def try_to_plant(
 
 def _more_slide(planted: Planted, kept: Motion) -> float:
     """Return by how much more feet slide that were brought back, metres."""
-    feet = foot_joints(kept)
+    feet = find_foot_joints(kept)
     if feet is None:
         return 0.0
     ways = []

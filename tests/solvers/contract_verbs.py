@@ -15,9 +15,9 @@ from solvers.denoising import (
     DenoiseSettings,
     FilterBases,
     Method,
+    clamp_to_limits,
     denoise,
-    find_worst_spots,
-    keep_within,
+    find_worst_issues,
     learn_filter_bases,
     learn_joint_limits,
     measure_quality,
@@ -97,16 +97,16 @@ VERBS = {
         lambda motion, progress: measure_quality(motion, progress=progress),
         figures=lambda result: (result.jitter, result.spikes, result.gaps),
     ),
-    "find_worst_spots": Verb(
-        lambda motion, progress: find_worst_spots(motion, progress=progress),
+    "find_worst_issues": Verb(
+        lambda motion, progress: find_worst_issues(motion, progress=progress),
         figures=lambda result: result,
     ),
     "learn_joint_limits": Verb(
         lambda motion, progress: learn_joint_limits([motion], progress=progress),
         figures=lambda result: (result.names, result.upper - result.lower),
     ),
-    "keep_within": Verb(
-        lambda motion, progress: keep_within(motion, limits()),
+    "clamp_to_limits": Verb(
+        lambda motion, progress: clamp_to_limits(motion, limits()),
         recording=lambda result: result,
         reports=False,
         any_rate=True,

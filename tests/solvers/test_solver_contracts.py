@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 from numpy.testing import assert_allclose
 
-from solvers.denoising.quality.measure import mean_jitter
+from solvers.denoising.quality.measure import measure_jitter
 from solvers.errors import SolveCancelled
 from solvers.motion import Motion, Tracks
 from solvers.progress import unwatched
@@ -133,7 +133,7 @@ def new_result(name: str) -> Any:
 
 def jitter(recording: Motion | Tracks) -> float:
     points = recording if isinstance(recording, Tracks) else points_of(recording)
-    return float(mean_jitter(points.positions, points.frame_rate).mean())
+    return float(measure_jitter(points.positions, points.frame_rate).mean())
 
 
 def carried(recording: Motion | Tracks) -> Motion | Tracks:

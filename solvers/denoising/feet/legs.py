@@ -49,7 +49,7 @@ def find_legs(skeleton: Skeleton, humanoid_map: HumanoidMap | None = None) -> tu
     return tuple(found)
 
 
-def foot_joints(
+def find_foot_joints(
     recording: Motion | Tracks, humanoid_map: HumanoidMap | None = None
 ) -> NDArray[np.intp] | None:
     """Return the indices of ankle and toes (columns) of the left and right foot (rows).

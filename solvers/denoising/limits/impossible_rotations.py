@@ -5,7 +5,7 @@ from numpy.typing import NDArray
 
 from ...motion import JointLimits, Motion
 from ...signals import runs
-from .keep_within import limit_excess
+from .clamp_to_limits import limit_excess
 
 IMPOSSIBLE = np.radians(10.0)
 """A joint this much beyond its limits was not observed, whatever the recording says."""

@@ -2,14 +2,14 @@
 
 from .measure import Quality, QualitySettings, measure_quality
 from .report import compare_quality
-from .worst_issues import Spot, SpotSettings, find_worst_spots
+from .worst_issues import Issue, IssueSettings, find_worst_issues
 
 __all__ = [
+    "Issue",
+    "IssueSettings",
     "Quality",
     "QualitySettings",
-    "Spot",
-    "SpotSettings",
     "compare_quality",
-    "find_worst_spots",
+    "find_worst_issues",
     "measure_quality",
 ]

@@ -46,7 +46,7 @@ class FootSlide:
         return float(np.nansum(self.speed) / self.frame_rate)
 
 
-def foot_slide(
+def measure_foot_slide(
     side: str,
     joint: str,
     points: Array,

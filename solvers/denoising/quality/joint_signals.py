@@ -38,7 +38,7 @@ class Signal:
         Spikes are higher than this.
     spikes : bool, shape (n_frames,)
     shake : shape (n_frames,), rad or m
-        The noise about each frame: standard deviation of one component, see `local_shake`.
+        Standard deviation of one component about each frame (`estimate_local_noise`).
     """
 
     joint: str
@@ -89,7 +89,7 @@ def signals_of(
         spikes = told.spikes(threshold)
         deviation = _angle(told.deviation) if turns else told.deviation
         calm = np.where(spikes[:, None], np.nan, apart)
-        shake = local_shake(calm, round(SHAKE_WINDOW * recording.frame_rate))
+        shake = estimate_local_noise(calm, round(SHAKE_WINDOW * recording.frame_rate))
         found.append(
             Signal(
                 joint, turns, told.scale, deviation[places], threshold, spikes[places],
@@ -107,7 +107,7 @@ def _pulled_apart(n_frames: int, cuts: tuple[int, ...], by: int) -> NDArray[np.i
     return np.asarray(np.arange(n_frames) + np.cumsum(moved))
 
 
-def local_shake(course: Array, window: int) -> Array:
+def estimate_local_noise(course: Array, window: int) -> Array:
     """Return the standard deviation of one component of white noise about each frame.
 
     Third differences d of white noise follow each other with opposite sign: their covariance

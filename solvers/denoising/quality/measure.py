@@ -13,11 +13,11 @@ from ...motion.humanoid import HumanoidMap, contacts_of_points, detect_contacts
 from ...motion.skeletons import find_cuts
 from ...progress import Progress, unwatched, within
 from ...settings import Settings, setting
-from ..feet import SIDES, foot_joints
+from ..feet import SIDES, find_foot_joints
 from ..limits import limit_excess
 from .bone_drift import BoneDrift, bone_drifts
 from .figures import quality_figures
-from .foot_slide import FootSlide, foot_slide
+from .foot_slide import FootSlide, measure_foot_slide
 from .joint_signals import Signal, SpikeRule, signals_of
 from .report import quality_report
 
@@ -178,7 +178,7 @@ def measure_quality(
         names=names,
         n_frames=recording.n_frames,
         frame_rate=recording.frame_rate,
-        jitter=mean_jitter(positions, recording.frame_rate, cuts),
+        jitter=measure_jitter(positions, recording.frame_rate, cuts),
         signals=signals_of(recording, rule, within(progress, 0.0, 0.8), cuts),
         feet=_foot_slides(recording, names, positions, contacts, humanoid_map, cuts),
         bones=bones,
@@ -189,7 +189,7 @@ def measure_quality(
     return quality
 
 
-def mean_jitter(positions: Array, frame_rate: float, cuts: tuple[int, ...] = ()) -> Array:
+def measure_jitter(positions: Array, frame_rate: float, cuts: tuple[int, ...] = ()) -> Array:
     """Return the mean absolute third difference over time, shape (n_joints,), m/s^3.
 
     Parameters
@@ -222,7 +222,7 @@ def _foot_slides(
         raise InvalidMotionError(
             f"Contacts need shape ({recording.n_frames}, 2), not {np.shape(contacts)}."
         )
-    joints = foot_joints(recording, humanoid_map)
+    joints = find_foot_joints(recording, humanoid_map)
     if joints is None:
         return ()
     points = positions[:, joints]
@@ -233,7 +233,7 @@ def _foot_slides(
             else contacts_of_points(points, recording.frame_rate)
         )
     return tuple(
-        foot_slide(
+        measure_foot_slide(
             side,
             names[joints[place, 0]],
             points[:, place],

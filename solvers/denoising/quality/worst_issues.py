@@ -22,7 +22,7 @@ LARGE_EXCESS = np.radians(10.0)
 
 
 @dataclass(frozen=True, kw_only=True)
-class SpotSettings(Settings):
+class IssueSettings(Settings):
     """What is worth a look."""
 
     n_spots: int = setting(
@@ -68,7 +68,7 @@ class SpotSettings(Settings):
 
 
 @dataclass(frozen=True)
-class Spot:
+class Issue:
     """One fault of one joint."""
 
     joint: str
@@ -82,13 +82,13 @@ class Spot:
     sentence: str
 
 
-def find_worst_spots(
+def find_worst_issues(
     recording: Motion | Tracks,
     quality: Quality | None = None,
     *,
-    settings: SpotSettings = SpotSettings(),
+    settings: IssueSettings = IssueSettings(),
     progress: Progress = unwatched,
-) -> tuple[Spot, ...]:
+) -> tuple[Issue, ...]:
     """List the faults of a take, worst first.
 
     Shaking is judged against the take itself: a joint is listed where its noise is several
@@ -99,12 +99,12 @@ def find_worst_spots(
     recording : Motion or Tracks
     quality : Quality
         What `measure_quality` found in this recording; measured here where it is not given.
-    settings : SpotSettings
+    settings : IssueSettings
     progress : Progress
 
     Returns
     -------
-    tuple of Spot
+    tuple of Issue
         As many as the settings allow.
 
     Raises
@@ -128,7 +128,7 @@ def find_worst_spots(
     return tuple(islice(found, settings.n_spots))
 
 
-def _spikes(quality: Quality, pause: int) -> Iterator[Spot]:
+def _spikes(quality: Quality, pause: int) -> Iterator[Issue]:
     for signal in quality.signals:
         for start, stop in _merged(runs(signal.spikes), pause):
             height = float(
@@ -136,7 +136,7 @@ def _spikes(quality: Quality, pause: int) -> Iterator[Spot]:
             )
             times = len(runs(signal.spikes[start:stop]))
             often = f" {times} times, by up to" if times > 1 else " by"
-            yield Spot(
+            yield Issue(
                 signal.joint,
                 start,
                 stop,
@@ -146,7 +146,7 @@ def _spikes(quality: Quality, pause: int) -> Iterator[Spot]:
             )
 
 
-def _gaps(quality: Quality) -> Iterator[Spot]:
+def _gaps(quality: Quality) -> Iterator[Issue]:
     for signal in quality.signals:
         for start, stop in runs(signal.gaps):
             seconds = (stop - start) / quality.frame_rate
@@ -156,10 +156,10 @@ def _gaps(quality: Quality) -> Iterator[Spot]:
                 if whole
                 else f"{signal.joint} is missing for {seconds:.2f} s."
             )
-            yield Spot(signal.joint, start, stop, "gap", seconds / LONG_GAP, sentence)
+            yield Issue(signal.joint, start, stop, "gap", seconds / LONG_GAP, sentence)
 
 
-def _shaking(quality: Quality, settings: SpotSettings, pause: int) -> Iterator[Spot]:
+def _shaking(quality: Quality, settings: IssueSettings, pause: int) -> Iterator[Issue]:
     for turns, smallest in (
         (True, settings.smallest_shake_turn),
         (False, settings.smallest_shake_move),
@@ -173,7 +173,7 @@ def _shaking(quality: Quality, settings: SpotSettings, pause: int) -> Iterator[S
             for start, stop in _merged(runs(signal.shake > threshold), pause):
                 level = float(signal.shake[start:stop].max())
                 amount = _amount(signal, level) + _compared(level, usual)
-                yield Spot(
+                yield Issue(
                     signal.joint,
                     start,
                     stop,
@@ -183,12 +183,12 @@ def _shaking(quality: Quality, settings: SpotSettings, pause: int) -> Iterator[S
                 )
 
 
-def _slides(quality: Quality, settings: SpotSettings) -> Iterator[Spot]:
+def _slides(quality: Quality, settings: IssueSettings) -> Iterator[Issue]:
     for foot in quality.feet:
         for start, stop in runs(foot.contact):
             way = float(np.linalg.norm(np.nansum(foot.steps[start:stop], axis=0)))
             if way >= settings.smallest_slide:
-                yield Spot(
+                yield Issue(
                     foot.joint,
                     start,
                     stop,
@@ -198,20 +198,20 @@ def _slides(quality: Quality, settings: SpotSettings) -> Iterator[Spot]:
                 )
 
 
-def _beyond_limits(quality: Quality, pause: int) -> Iterator[Spot]:
+def _beyond_limits(quality: Quality, pause: int) -> Iterator[Issue]:
     if quality.limit_excess is None:
         return
     for name, excess in zip(quality.names, quality.limit_excess.T, strict=True):
         for start, stop in _merged(runs(excess > LARGE_EXCESS / 5), pause):
             angle = float(excess[start:stop].max())
             sentence = f"{name} turns {np.degrees(angle):.0f}° beyond its limits."
-            yield Spot(name, start, stop, "limit", angle / LARGE_EXCESS, sentence)
+            yield Issue(name, start, stop, "limit", angle / LARGE_EXCESS, sentence)
 
 
-def _cuts(quality: Quality) -> Iterator[Spot]:
+def _cuts(quality: Quality) -> Iterator[Issue]:
     for frame in quality.cuts:
         sentence = "The whole body jumps: the take is cut here, or begins with a pose apart."
-        yield Spot(quality.names[0], frame - 1, frame + 1, "cut", CUT_SEVERITY, sentence)
+        yield Issue(quality.names[0], frame - 1, frame + 1, "cut", CUT_SEVERITY, sentence)
 
 
 def _merged(stretches: list[tuple[int, int]], pause: int) -> list[tuple[int, int]]:

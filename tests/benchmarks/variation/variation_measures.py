@@ -7,8 +7,8 @@ import numpy as np
 from scipy.spatial.distance import cdist
 
 from solvers.denoising import learn_joint_limits, limit_excess
-from solvers.denoising.feet.legs import SIDES, foot_joints
-from solvers.denoising.quality.foot_slide import foot_slide
+from solvers.denoising.feet.legs import SIDES, find_foot_joints
+from solvers.denoising.quality.foot_slide import measure_foot_slide
 from solvers.motion import Motion, forward_kinematics, warp
 from solvers.motion.humanoid.contacts import detect_contacts
 from solvers.rotations.representations import inverse, multiply, rotation_vector_from_quaternion
@@ -142,10 +142,10 @@ def footing_figures(motions: Sequence[Motion]) -> tuple[float, float]:
     """
     slides, stands = [], []
     for motion in motions:
-        contacts, joints = detect_contacts(motion), foot_joints(motion)
+        contacts, joints = detect_contacts(motion), find_foot_joints(motion)
         places = forward_kinematics(motion).positions[:, joints]
         feet = [
-            foot_slide(side, "", places[:, row], contacts[:, row], motion.frame_rate)
+            measure_foot_slide(side, "", places[:, row], contacts[:, row], motion.frame_rate)
             for row, side in enumerate(SIDES)
         ]
         speeds = np.concatenate([foot.speed for foot in feet])

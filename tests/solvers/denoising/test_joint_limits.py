@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from numpy.testing import assert_allclose
 
-from solvers.denoising.limits.keep_within import keep_within, limit_excess
+from solvers.denoising.limits.clamp_to_limits import clamp_to_limits, limit_excess
 from solvers.denoising.limits.learn_limits import JointLimitsSettings, learn_joint_limits
 from solvers.errors import InvalidFileError, InvalidMotionError, InvalidSettingError
 from solvers.motion import JointLimits, Motion, Skeleton, find_humanoid_map, load_joint_limits
@@ -55,7 +55,7 @@ def test_a_turn_beyond_a_limit_of_the_bones_own_axis_stops_there(leg, bone_axes)
     motion = turned(leg, 1, about_bone_x(bone_axes, [-20.0, 30.0, 60.0]))
     limits = euler_limits("knee", bone_axes, [0, 0, 0], np.radians([0, 0, 45]))
 
-    held = keep_within(motion, limits, softness=0.0)
+    held = clamp_to_limits(motion, limits, softness=0.0)
 
     assert_allclose(
         angle_between(held.rotations[:, 1], about_bone_x(bone_axes, [0.0, 30.0, 45.0])),
@@ -69,7 +69,7 @@ def test_a_soft_limit_is_left_with_slope_one_and_never_exceeded_by_more_than_its
     motion = turned(leg, 1, about_bone_x(IDENTITY, degrees))
     limits = euler_limits("knee", IDENTITY, [-INF, -INF, 0], [INF, INF, np.radians(45)])
 
-    held = keep_within(motion, limits, softness=np.radians(10.0))
+    held = clamp_to_limits(motion, limits, softness=np.radians(10.0))
 
     angles = np.degrees(angle_between(held.rotations[:, 1], IDENTITY))
     slopes = np.diff(angles) / 0.5
@@ -81,7 +81,7 @@ def test_a_soft_limit_is_left_with_slope_one_and_never_exceeded_by_more_than_its
 def test_what_is_within_or_has_no_limit_stays_bit_for_bit(walk):
     limits = euler_limits("LeftLeg", IDENTITY, [-INF] * 3, np.radians([5.0, 180.0, 180.0]))
 
-    held = keep_within(walk, limits)
+    held = clamp_to_limits(walk, limits)
 
     changed = np.flatnonzero((held.rotations != walk.rotations).any(axis=(0, 2)))
     assert set(changed) <= {walk.skeleton.index("LeftLeg")}
@@ -116,7 +116,7 @@ def test_angles_are_limited_in_the_order_that_lists_them(leg, order):
     motion = turned(leg, 1, quaternion_from_euler(angles, order))
     limits = euler_limits("knee", IDENTITY, [-INF] * 3, np.radians([15, 15, 40]), order)
 
-    held = keep_within(motion, limits, softness=0.0)
+    held = clamp_to_limits(motion, limits, softness=0.0)
 
     wanted = quaternion_from_euler(np.radians([[10.0, 15.0, 30.0]]), order)
     assert_allclose(angle_between(held.rotations[:, 1], wanted), 0.0, atol=1e-7)
@@ -128,7 +128,7 @@ def test_gaps_stay_gaps(walk):
     gapped = walk.with_poses(rotations)
     limits = learn_joint_limits([walk])
 
-    assert np.isnan(keep_within(gapped, limits).rotations[5:9, 3]).all()
+    assert np.isnan(clamp_to_limits(gapped, limits).rotations[5:9, 3]).all()
     assert np.isfinite(limit_excess(gapped, limits)).all()
 
 
@@ -212,7 +212,7 @@ def test_held_motions_are_within_their_limits(walk, rng):
     noise = quaternion_from_rotation_vector(rng.normal(scale=0.5, size=(90, walk.n_joints, 3)))
     noisy = walk.with_poses(multiply(walk.rotations, noise))
 
-    held = keep_within(noisy, limits, softness=np.radians(3.0))
+    held = clamp_to_limits(noisy, limits, softness=np.radians(3.0))
 
     assert np.degrees(limit_excess(noisy, limits).max()) > 20.0
     assert np.degrees(limit_excess(held, limits).max()) < 3.0 + 1e-9
@@ -247,7 +247,7 @@ def test_an_unknown_order_is_refused():
 
 def test_negative_softness_is_refused(walk):
     with pytest.raises(InvalidSettingError, match="softness is -1 rad"):
-        keep_within(walk, learn_joint_limits([walk]), softness=-1.0)
+        clamp_to_limits(walk, learn_joint_limits([walk]), softness=-1.0)
 
 
 def test_no_examples_are_refused():

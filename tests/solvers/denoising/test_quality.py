@@ -7,8 +7,8 @@ import pytest
 from numpy.testing import assert_allclose
 
 from solvers.denoising.quality.bone_drift import bone_drifts
-from solvers.denoising.quality.foot_slide import foot_slide
-from solvers.denoising.quality.measure import QualitySettings, mean_jitter, measure_quality
+from solvers.denoising.quality.foot_slide import measure_foot_slide
+from solvers.denoising.quality.measure import QualitySettings, measure_jitter, measure_quality
 from solvers.denoising.quality.report import compare_quality
 from solvers.errors import InvalidMotionError, InvalidSettingError, SolveCancelled
 from solvers.motion import Motion, Tracks, forward_kinematics
@@ -20,7 +20,7 @@ def test_jitter_of_a_cubic_is_its_third_derivative():
     time = np.arange(50) / 120.0
     positions = (time**3)[:, None, None] * np.array([[[1.0, 2.0, 2.0]]])
 
-    assert_allclose(mean_jitter(positions, 120.0), 6.0 * 3.0, rtol=1e-6)
+    assert_allclose(measure_jitter(positions, 120.0), 6.0 * 3.0, rtol=1e-6)
 
 
 def test_jitter_leaves_out_what_was_not_observed(rng):
@@ -28,11 +28,11 @@ def test_jitter_leaves_out_what_was_not_observed(rng):
     gapped = positions.copy()
     gapped[20:, 0] = np.nan
 
-    assert_allclose(mean_jitter(gapped, 30.0)[0], mean_jitter(positions[:20], 30.0)[0])
+    assert_allclose(measure_jitter(gapped, 30.0)[0], measure_jitter(positions[:20], 30.0)[0])
 
 
 def test_jitter_of_three_frames_is_unknown():
-    assert np.isnan(mean_jitter(np.zeros((3, 2, 3)), 30.0)).all()
+    assert np.isnan(measure_jitter(np.zeros((3, 2, 3)), 30.0)).all()
 
 
 def test_finds_spikes_and_gaps_where_they_are(swinging_leg):
@@ -103,7 +103,7 @@ def test_slide_is_the_way_of_a_foot_that_stands():
     points[:, :, 0] = 0.003 * np.arange(201)[:, None]
     contact = np.arange(201) >= 100
 
-    slide = foot_slide("left", "foot", points, contact, 100.0)
+    slide = measure_foot_slide("left", "foot", points, contact, 100.0)
 
     assert_allclose(slide.mean_speed, 0.3, rtol=1e-9)
     assert_allclose(slide.distance, 0.3, rtol=1e-9)
@@ -113,7 +113,7 @@ def test_a_foot_that_rolls_over_its_toe_does_not_slide():
     points = np.zeros((50, 2, 3))
     points[:, 0, 1] = -0.01 * np.arange(50)
 
-    slide = foot_slide("left", "foot", points, np.ones(50, dtype=bool), 60.0)
+    slide = measure_foot_slide("left", "foot", points, np.ones(50, dtype=bool), 60.0)
 
     assert slide.distance == 0.0
 

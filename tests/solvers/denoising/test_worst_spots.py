@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from solvers.denoising.quality.measure import measure_quality
-from solvers.denoising.quality.worst_issues import SpotSettings, find_worst_spots
+from solvers.denoising.quality.worst_issues import IssueSettings, find_worst_issues
 from solvers.motion import Motion
 from solvers.recordings.skeleton_files.bvh import read_bvh
 from solvers.rotations.representations import multiply, quaternion_from_rotation_vector
@@ -19,7 +19,7 @@ def shaken(motion: Motion, joint: int, frames: slice, scale: float, rng) -> Moti
 
 
 def test_a_clean_take_has_no_spots(swinging_leg):
-    assert find_worst_spots(swinging_leg) == ()
+    assert find_worst_issues(swinging_leg) == ()
 
 
 def test_a_spike_is_named_with_its_place_and_size(swinging_leg):
@@ -27,7 +27,7 @@ def test_a_spike_is_named_with_its_place_and_size(swinging_leg):
     jump = quaternion_from_rotation_vector([0.0, np.radians(40.0), 0.0])
     rotations[70:72, 1] = multiply(rotations[70:72, 1], jump)
 
-    (spot,) = find_worst_spots(swinging_leg.with_poses(rotations))
+    (spot,) = find_worst_issues(swinging_leg.with_poses(rotations))
 
     assert (spot.joint, spot.start_frame, spot.stop_frame, spot.kind) == (
         "knee",
@@ -45,7 +45,7 @@ def test_spikes_in_quick_succession_are_one_spot(swinging_leg):
     for frame in (60, 66):
         rotations[frame, 1] = multiply(rotations[frame, 1], jump)
 
-    (spot,) = find_worst_spots(swinging_leg.with_poses(rotations))
+    (spot,) = find_worst_issues(swinging_leg.with_poses(rotations))
 
     assert (spot.start_frame, spot.stop_frame) == (60, 67)
     assert spot.sentence.startswith("knee jumps 2 times, by up to ")
@@ -56,7 +56,7 @@ def test_a_gap_is_worse_the_longer_it_is(swinging_leg):
     rotations[10:20, 2] = np.nan
     rotations[50:90, 1] = np.nan
 
-    spots = find_worst_spots(swinging_leg.with_poses(rotations))
+    spots = find_worst_issues(swinging_leg.with_poses(rotations))
 
     assert [(spot.joint, spot.kind) for spot in spots] == [("knee", "gap"), ("ankle", "gap")]
     assert spots[0].sentence == "knee is missing for 0.67 s."
@@ -65,7 +65,7 @@ def test_a_gap_is_worse_the_longer_it_is(swinging_leg):
 def test_a_joint_that_shakes_for_a_while_is_found(swinging_leg, rng):
     take = shaken(swinging_leg, 1, slice(60, 110), 0.05, rng)
 
-    spots = [spot for spot in find_worst_spots(take) if spot.kind == "jitter"]
+    spots = [spot for spot in find_worst_issues(take) if spot.kind == "jitter"]
 
     assert {spot.joint for spot in spots} == {"knee"}
     assert spots[0].start_frame < 75 and spots[0].stop_frame > 95
@@ -76,7 +76,7 @@ def test_noise_all_over_the_take_is_no_spot(swinging_leg, rng, scale):
     """It is the take's own standard; the report states its size."""
     take = shaken(swinging_leg, slice(0, 3), slice(None), scale, rng)
 
-    assert not [spot for spot in find_worst_spots(take) if spot.kind == "jitter"]
+    assert not [spot for spot in find_worst_issues(take) if spot.kind == "jitter"]
 
 
 def test_a_foot_that_slides_while_it_stands_is_found(recordings):
@@ -86,7 +86,7 @@ def test_a_foot_that_slides_while_it_stands_is_found(recordings):
 
     quality = measure_quality(walk, contacts=contacts)
 
-    spots = [spot for spot in find_worst_spots(walk, quality) if spot.kind == "foot slide"]
+    spots = [spot for spot in find_worst_issues(walk, quality) if spot.kind == "foot slide"]
     assert all((spot.start_frame, spot.stop_frame) == (20, 60) for spot in spots)
 
 
@@ -96,8 +96,8 @@ def test_worst_first_and_no_more_than_asked_for(swinging_leg, rng):
         jump = quaternion_from_rotation_vector([0.0, angle, 0.0])
         rotations[frame, 1] = multiply(rotations[frame, 1], jump)
 
-    spots = find_worst_spots(
-        swinging_leg.with_poses(rotations), settings=SpotSettings(n_spots=2)
+    spots = find_worst_issues(
+        swinging_leg.with_poses(rotations), settings=IssueSettings(n_spots=2)
     )
 
     assert [spot.start_frame for spot in spots] == [50, 80]
@@ -107,7 +107,7 @@ def test_a_joint_never_observed_is_one_spot(swinging_leg):
     rotations = swinging_leg.rotations.copy()
     rotations[:, 1] = np.nan
 
-    (spot,) = find_worst_spots(swinging_leg.with_poses(rotations))
+    (spot,) = find_worst_issues(swinging_leg.with_poses(rotations))
 
     assert spot.sentence == "knee is never observed."
     assert (spot.start_frame, spot.stop_frame) == (0, 120)

@@ -6,7 +6,7 @@ from numpy.testing import assert_allclose, assert_array_equal
 
 from solvers.denoising import (
     denoise,
-    find_worst_spots,
+    find_worst_issues,
     learn_filter_bases,
     measure_quality,
     plant_feet,
@@ -168,7 +168,7 @@ def test_the_jump_is_named_and_is_no_fault_of_the_body(walk):
     quality = measure_quality(take, contacts=standing)
     plain = measure_quality(walk, contacts=standing[1:])
 
-    spots = find_worst_spots(take, quality)
+    spots = find_worst_issues(take, quality)
 
     assert quality.cuts == (1,) and "cut before frame 2" in quality.report()
     assert quality.mean_jitter == pytest.approx(plain.mean_jitter)

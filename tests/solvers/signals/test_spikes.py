@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from numpy.testing import assert_allclose
 
-from solvers.denoising.quality.joint_signals import local_shake
+from solvers.denoising.quality.joint_signals import estimate_local_noise
 from solvers.signals.spikes import disturbance, runs
 
 
@@ -86,7 +86,7 @@ def test_shaking_is_where_the_noise_is(rng):
     course = np.sin(2 * np.pi * 2.0 * time)[:, None] * [1.0, 0.0, 0.0]
     course[300:] += rng.normal(scale=0.05, size=(300, 3))
 
-    shake = local_shake(course, 30)
+    shake = estimate_local_noise(course, 30)
 
     assert shake[:280].max() == 0.0
     assert_allclose(np.median(shake[320:]), 0.05, rtol=0.2)

@@ -8,7 +8,7 @@ import pytest
 from acclaim_files import LEG
 from numpy.testing import assert_allclose
 
-from solvers.denoising.limits.keep_within import limit_excess
+from solvers.denoising.limits.clamp_to_limits import limit_excess
 from solvers.errors import InvalidFileError
 from solvers.recordings import read_acclaim, read_acclaim_limits
 

@@ -24,7 +24,7 @@ Array = NDArray[np.float64]
 SOFTNESS = np.radians(5.0)
 
 
-def keep_within(
+def clamp_to_limits(
     motion: Motion,
     limits: JointLimits,
     *,
