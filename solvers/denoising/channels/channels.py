@@ -6,7 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from .ground_path import Path
+from .travel_path import Path
 
 Array = NDArray[np.float64]
 

@@ -17,7 +17,7 @@ from ...rotations import (
     rotation_vector_from_quaternion,
 )
 from .channels import CENTIMETRES, Channels
-from .ground_path import Path, smooth_path
+from .travel_path import Path, smooth_path
 
 Array = NDArray[np.float64]
 

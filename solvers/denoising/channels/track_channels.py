@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 from ...motion import Tracks
 from ...signals import interpolated
 from .channels import CENTIMETRES, Channels
-from .ground_path import Path, smooth_path, turned
+from .travel_path import Path, smooth_path, turned
 
 Array = NDArray[np.float64]
 

@@ -13,10 +13,10 @@ from ...motion.skeletons import ReachSettings, find_cuts, is_short, pieces, reac
 from ...progress import Progress, unwatched, within
 from ...rotations import inverse, multiply
 from ...settings import Settings, setting
-from .knee_relief import knee_relief
+from .knee_smoothing import knee_relief
 from .legs import SIDES, Leg, find_legs
-from .planted_path import Plant, planted_path
-from .root_shift import root_shift
+from .foot_trajectory import Plant, planted_path
+from .root_offset import root_shift
 
 Array = NDArray[np.float64]
 Flags = NDArray[np.bool_]

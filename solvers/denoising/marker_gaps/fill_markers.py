@@ -8,8 +8,8 @@ from numpy.typing import NDArray
 from ...motion import Tracks
 from ...progress import Progress, unwatched
 from ...signals import interpolated, runs
-from .gap_borders import bridge, expected_error, frames_to_learn, usual_jitter
-from .predict_point import foretell
+from .gap_boundaries import bridge, expected_error, frames_to_learn, usual_jitter
+from .predict_marker import foretell
 from .reference_markers import find_companions
 from .transient_outliers import stray
 

@@ -1,7 +1,7 @@
 """The default method: the posterior of all windows under a prior that adapts to the take."""
 
 from .estimate import Estimate
-from .groups import estimate_in_groups
+from .channel_groups import estimate_in_groups
 
 __all__ = [
     "Estimate",

@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 from scipy.linalg.lapack import dpotrf, dpotri
 
 from .covariance import Covariance
-from .gaps import GapPattern, GapSolution
+from .gap_patterns import GapPattern, GapSolution
 from .windows import Windows
 
 Array = NDArray[np.float64]

@@ -10,12 +10,12 @@ from ...signals import alike
 from ..prior import WavePrior
 from .covariance import adapted, expected
 from .estimate import Estimate
-from .fast_moves import quick_moves
+from .fast_motion import quick_moves
 from .filters import Filter, filters_of, variance_of, weight_of
-from .gaps import gap_patterns, long_gaps
+from .gap_patterns import gap_patterns, long_gaps
 from .joint_outliers import WholeJoints
 from .smoothness import fit_smoothness
-from .sweep import swept
+from .filter_pass import swept
 from .windows import Windows
 
 Array = NDArray[np.float64]

@@ -5,7 +5,7 @@ import pytest
 from numpy.testing import assert_allclose
 
 from solvers.denoising.channels.encode import decode, encode
-from solvers.denoising.channels.ground_path import local_lines, smooth_path, turned
+from solvers.denoising.channels.travel_path import local_lines, smooth_path, turned
 from solvers.motion import Motion, Skeleton, Tracks, forward_kinematics
 from solvers.rotations.representations import (
     angle_between,

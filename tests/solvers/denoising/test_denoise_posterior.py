@@ -11,7 +11,7 @@ from solvers.denoising.posterior.filters import (
     variance_of,
     weight_of,
 )
-from solvers.denoising.posterior.gaps import GapSolution, gap_patterns, long_gaps
+from solvers.denoising.posterior.gap_patterns import GapSolution, gap_patterns, long_gaps
 from solvers.denoising.posterior.windows import Windows
 
 LENGTH, N_SLOW, N_CHANNELS = 8, 5, 3
@@ -159,7 +159,7 @@ def test_gaps_of_endless_patterns_do_not_fill_the_memory(rng, monkeypatch):
     windows = Windows(57, 20, 1.0)
     assert len(gap_patterns(known, windows, N_SLOW)) > 1
 
-    monkeypatch.setattr("solvers.denoising.posterior.gaps.MOST_NUMBERS", 50)
+    monkeypatch.setattr("solvers.denoising.posterior.gap_patterns.MOST_NUMBERS", 50)
 
     (pattern,) = gap_patterns(known, windows, N_SLOW)
     assert not pattern.channels.size

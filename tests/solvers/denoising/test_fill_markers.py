@@ -5,7 +5,7 @@ import pytest
 
 from solvers.denoising import DenoiseSettings, denoise, learn_filter_bases
 from solvers.denoising.marker_gaps.fill_markers import fill_markers
-from solvers.denoising.marker_gaps.gap_borders import bridge
+from solvers.denoising.marker_gaps.gap_boundaries import bridge
 from solvers.denoising.marker_gaps.transient_outliers import stray
 from solvers.errors import SolveCancelled
 from solvers.motion import Tracks

@@ -12,7 +12,7 @@ from ..prior import FilterBases, FilterBasesSettings, WavePrior
 from .estimate import Estimate
 from .joint_outliers import WholeJoints
 from .posterior import estimate_channels
-from .prior_choice import UNKNOWN, choose_prior, examples_prior, take_prior
+from .prior_selection import UNKNOWN, choose_prior, examples_prior, take_prior
 from .windows import Windows
 
 Array = NDArray[np.float64]

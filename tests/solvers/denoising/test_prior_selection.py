@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 from numpy.testing import assert_allclose
 
-from solvers.denoising.posterior.groups import LARGEST_GROUP, groups_of
-from solvers.denoising.posterior.prior_choice import (
+from solvers.denoising.posterior.channel_groups import LARGEST_GROUP, groups_of
+from solvers.denoising.posterior.prior_selection import (
     BLUR,
     choose_prior,
     foresight,

@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 from ...progress import Progress
 from ..prior import FilterBases, Smoothness, WavePrior, mixed, smooth_prior
 from .filters import gains_of
-from .offsets import take_offset
+from .mean_pose import take_offset
 from .posterior import estimate_channels
 from .smoothness import smooth_kernels
 from .windows import Windows

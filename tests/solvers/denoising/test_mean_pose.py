@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from numpy.testing import assert_allclose
 
-from solvers.denoising.posterior.offsets import take_offset
+from solvers.denoising.posterior.mean_pose import take_offset
 
 N_FRAMES = 100.0
 

@@ -9,7 +9,7 @@ from scipy.ndimage import gaussian_filter1d
 
 from ...motion import WorldPoses
 from ...rotations import multiply, quaternion_from_rotation_vector, rotate
-from .planted_path import Plant
+from .foot_trajectory import Plant
 
 Array = NDArray[np.float64]
 

@@ -7,7 +7,7 @@ from numpy.typing import NDArray
 
 from ...motion import Skeleton, WorldPoses
 from ...signals import smooth_correction
-from .planted_path import Plant
+from .foot_trajectory import Plant
 
 Array = NDArray[np.float64]
 

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from scipy.ndimage import gaussian_filter1d
 
-from solvers.denoising.posterior.fast_moves import quick_moves
+from solvers.denoising.posterior.fast_motion import quick_moves
 
 HILL = [0.0, 4.0, 10.0, 14.0, 9.0, 4.0, 0.0, 0.0]
 

@@ -4,7 +4,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...signals import DIFFERENCE_GAIN, DIFFERENCE_ORDER, runs
-from .predict_point import Foretold
+from .predict_marker import Foretold
 
 Array = NDArray[np.float64]
 Flags = NDArray[np.bool_]
