@@ -12,8 +12,8 @@ from ..motion import JointLimits, Motion, Tracks
 from ..motion.skeletons import find_cuts, is_short, pieces, tell_of_cuts
 from ..progress import Progress, unwatched, within
 from ..settings import Settings, setting
-from .channels import CENTIMETRES, Channels, decode, encode
-from .limits import clamp_to_limits, impossible_turns
+from .channels import CENTIMETERS, Channels, decode, encode
+from .limits import clamp_to_limits, find_impossible_rotations
 from .marker_gaps import FilledMarkers, fill_markers
 from .posterior import Estimate, estimate_in_groups
 from .prior import FilterBases
@@ -21,9 +21,9 @@ from .published import filter_as_published
 
 Array = NDArray[np.float64]
 
-SMALLEST_SPIKE = 2.0
+MIN_OUTLIER_ERROR = 2.0
 """Degrees or centimetres: what is nearer to the estimate is not called an outlier."""
-UNSURE = 5.0
+HALF_CONFIDENCE_DEVIATION = 5.0
 """Standard deviation, degrees or centimetres, at which confidence is one half."""
 
 
@@ -123,99 +123,113 @@ def denoise(
         learned = "points" if bases.of_points else "joints"
         raise InvalidMotionError(f"The examples are of {learned}, the recording is not.")
     progress(0.0, "Reading")
-    if not _seen(recording).any():
+    if not _observed_mask(recording).any():
         raise InvalidMotionError(
             "Nothing was observed in this take; there is nothing to clean."
         )
     cuts = find_cuts(recording)
-    parts = []
+    results = []
     for start, stop in pieces(recording, cuts):
-        piece = recording.slice(start, stop) if cuts else recording
+        segment = recording.slice(start, stop) if cuts else recording
         step = within(progress, start / recording.n_frames, stop / recording.n_frames)
         if cuts and is_short(stop - start, recording.frame_rate):
-            kept = replace(settings, strength=0.0)
-            parts.append(
-                _as_it_is(piece)
-                if _seen(piece).all()
-                else _denoised_piece(piece, bases, None, kept, step)
+            unchanged_settings = replace(settings, strength=0.0)
+            results.append(
+                _unchanged(segment)
+                if _observed_mask(segment).all()
+                else _denoise_segment(segment, bases, None, unchanged_settings, step)
             )
         else:
-            parts.append(_denoised_piece(piece, bases, limits, settings, step))
+            results.append(_denoise_segment(segment, bases, limits, settings, step))
     progress(1.0, "Done")
-    return _joined(recording, parts, cuts) if cuts else parts[0]
+    return _join_segments(recording, results, cuts) if cuts else results[0]
 
 
-def _denoised_piece(
-    piece: Motion | Tracks,
+def _denoise_segment(
+    segment: Motion | Tracks,
     bases: FilterBases | None,
     limits: JointLimits | None,
     settings: DenoiseSettings,
     progress: Progress,
 ) -> Denoised:
     """Denoise what is of one piece."""
-    filled = _filled(piece, settings, within(progress, 0.0, 0.05))
-    whole = filled.tracks if filled else piece
-    channels = encode(whole, bases.reference_of if bases else None)
-    halved = limits is not None and bases is not None
-    first = within(progress, 0.05, 0.5 if halved else 0.95)
-    estimate, used = _estimated(channels, piece.frame_rate, bases, settings, first)
-    if limits is not None and bases is not None and isinstance(piece, Motion):
-        believed = decode(piece, channels, estimate.values.reshape(channels.values.shape))
-        assert isinstance(believed, Motion)
-        impossible = impossible_turns(piece, believed, limits)[:, channels.joints]
-        impossible[:, -1] = False  # the last part is the root's place, which no limit is about
-        if impossible.any():
-            values = np.where(impossible[..., None], np.nan, channels.values)
-            possible = replace(channels, values=values)
-            second = within(progress, 0.5, 0.95)
-            estimate, used = _estimated(possible, piece.frame_rate, bases, settings, second)
-    noisy, known = channels.flat, np.isfinite(channels.flat)
-    spikes = (estimate.inliers < 0.5) & (np.abs(noisy - estimate.values) > SMALLEST_SPIKE)
+    filled = _fill_gaps(segment, settings, within(progress, 0.0, 0.05))
+    complete = filled.tracks if filled else segment
+    channels = encode(complete, bases.reference_of if bases else None)
+    two_passes = limits is not None and bases is not None
+    first_progress = within(progress, 0.05, 0.5 if two_passes else 0.95)
+    estimate, prior_used = _estimate(
+        channels, segment.frame_rate, bases, settings, first_progress
+    )
+    if limits is not None and bases is not None and isinstance(segment, Motion):
+        estimated_motion = decode(
+            segment, channels, estimate.values.reshape(channels.values.shape)
+        )
+        assert isinstance(estimated_motion, Motion)
+        impossible_mask = find_impossible_rotations(segment, estimated_motion, limits)[
+            :, channels.joints
+        ]
+        impossible_mask[:, -1] = (
+            False  # the last part is the root's place, which no limit is about
+        )
+        if impossible_mask.any():
+            values = np.where(impossible_mask[..., None], np.nan, channels.values)
+            possible_channels = replace(channels, values=values)
+            second_progress = within(progress, 0.5, 0.95)
+            estimate, prior_used = _estimate(
+                possible_channels, segment.frame_rate, bases, settings, second_progress
+            )
+    noisy, observed_mask = channels.flat, np.isfinite(channels.flat)
+    spikes = (estimate.inliers < 0.5) & (np.abs(noisy - estimate.values) > MIN_OUTLIER_ERROR)
     blended = noisy + settings.strength * (estimate.values - noisy)
-    values = np.where(known, blended, estimate.values)
-    cleaned = decode(whole, channels, values.reshape(channels.values.shape))
-    cleaned = _kept_where_unchanged(piece, cleaned, settings)
+    values = np.where(observed_mask, blended, estimate.values)
+    cleaned = decode(complete, channels, values.reshape(channels.values.shape))
+    cleaned = _restore_observed(segment, cleaned, settings)
     if limits is not None and isinstance(cleaned, Motion):
         cleaned = clamp_to_limits(cleaned, limits)
-    confidence = _confidence(_worst(piece, channels, estimate.deviation), filled)
+    confidence = _confidence(_max_per_joint(segment, channels, estimate.deviation), filled)
     if isinstance(cleaned, Tracks):
-        unknown = _never_shown(cleaned.names, piece, bases)
-        confidence[:, unknown] = 0.0
-        cleaned = cleaned.with_positions(np.where(unknown[:, None], np.nan, cleaned.positions))
+        unknown_mask = _unknown_points(cleaned.names, segment, bases)
+        confidence[:, unknown_mask] = 0.0
+        cleaned = cleaned.with_positions(
+            np.where(unknown_mask[:, None], np.nan, cleaned.positions)
+        )
     return Denoised(
         cleaned,
-        (_worst(piece, channels, spikes) > 0.0) & _seen(piece),
+        (_max_per_joint(segment, channels, spikes) > 0.0) & _observed_mask(segment),
         confidence,
         estimate.iterations,
         estimate.converged,
-        used,
+        prior_used,
     )
 
 
-def _never_shown(
-    names: Sequence[str], piece: Motion | Tracks, bases: FilterBases | None
+def _unknown_points(
+    names: Sequence[str], segment: Motion | Tracks, bases: FilterBases | None
 ) -> NDArray[np.bool_]:
     """Tell which points neither this piece nor the examples show, shape (n_points,)."""
-    told = bases.reference_of if bases else {}
-    return np.asarray(~_seen(piece).any(axis=0) & [name not in told for name in names])
+    known_means = bases.reference_of if bases else {}
+    return np.asarray(
+        ~_observed_mask(segment).any(axis=0) & [name not in known_means for name in names]
+    )
 
 
-def _filled(
-    piece: Motion | Tracks, settings: DenoiseSettings, progress: Progress
+def _fill_gaps(
+    segment: Motion | Tracks, settings: DenoiseSettings, progress: Progress
 ) -> FilledMarkers | None:
     """Fill gaps of points: the filter then takes for seen what their companions foretell."""
-    if isinstance(piece, Tracks) and settings.method is Method.DEFAULT:
-        return fill_markers(piece, progress)
+    if isinstance(segment, Tracks) and settings.method is Method.DEFAULT:
+        return fill_markers(segment, progress)
     return None
 
 
 def _confidence(deviation: Array, filled: FilledMarkers | None) -> Array:
     if filled is not None:
-        deviation = np.where(filled.filled, CENTIMETRES * filled.deviation, deviation)
-    return np.asarray(1.0 / (1.0 + (deviation / UNSURE) ** 2))
+        deviation = np.where(filled.filled, CENTIMETERS * filled.deviation, deviation)
+    return np.asarray(1.0 / (1.0 + (deviation / HALF_CONFIDENCE_DEVIATION) ** 2))
 
 
-def _estimated(
+def _estimate(
     channels: Channels,
     frame_rate: float,
     bases: FilterBases | None,
@@ -227,44 +241,46 @@ def _estimated(
     return estimate_in_groups(channels, frame_rate, bases, progress)
 
 
-def _as_it_is(piece: Motion | Tracks) -> Denoised:
-    shape = _seen(piece).shape
-    return Denoised(piece, np.zeros(shape, dtype=np.bool_), np.ones(shape), 0, True, "")
+def _unchanged(segment: Motion | Tracks) -> Denoised:
+    shape = _observed_mask(segment).shape
+    return Denoised(segment, np.zeros(shape, dtype=np.bool_), np.ones(shape), 0, True, "")
 
 
-def _joined(
-    recording: Motion | Tracks, parts: Sequence[Denoised], cuts: tuple[int, ...]
+def _join_segments(
+    recording: Motion | Tracks, results: Sequence[Denoised], cuts: tuple[int, ...]
 ) -> Denoised:
     """Join the pieces of a take again; the longest tells which patterns were used."""
-    cleaned = [part.recording for part in parts]
-    whole: Motion | Tracks
+    cleaned = [part.recording for part in results]
+    complete: Motion | Tracks
     if isinstance(recording, Motion):
-        motions = [each for each in cleaned if isinstance(each, Motion)]
-        whole = recording.with_poses(
+        motions = [item for item in cleaned if isinstance(item, Motion)]
+        complete = recording.with_poses(
             np.concatenate([motion.rotations for motion in motions]),
             np.concatenate([motion.root_positions for motion in motions]),
         )
     else:
-        tracks = [each for each in cleaned if isinstance(each, Tracks)]
-        whole = recording.with_positions(np.concatenate([each.positions for each in tracks]))
-    longest = max(parts, key=lambda part: part.recording.n_frames * bool(part.prior_used))
+        tracks = [item for item in cleaned if isinstance(item, Tracks)]
+        complete = recording.with_positions(np.concatenate([item.positions for item in tracks]))
+    longest_segment = max(
+        results, key=lambda part: part.recording.n_frames * bool(part.prior_used)
+    )
     return Denoised(
-        whole,
-        np.concatenate([part.outliers for part in parts]),
-        np.concatenate([part.confidence for part in parts]),
-        max(part.iterations for part in parts),
-        all(part.converged for part in parts),
-        f"{longest.prior_used} {tell_of_cuts(recording, cuts)}".strip(),
+        complete,
+        np.concatenate([part.outliers for part in results]),
+        np.concatenate([part.confidence for part in results]),
+        max(part.iterations for part in results),
+        all(part.converged for part in results),
+        f"{longest_segment.prior_used} {tell_of_cuts(recording, cuts)}".strip(),
         cuts,
     )
 
 
-def _seen(recording: Motion | Tracks) -> NDArray[np.bool_]:
+def _observed_mask(recording: Motion | Tracks) -> NDArray[np.bool_]:
     """Where each joint or point was observed, shape (n_frames, n_joints)."""
     return recording.observed if isinstance(recording, Motion) else recording.visible
 
 
-def _kept_where_unchanged(
+def _restore_observed(
     recording: Motion | Tracks, cleaned: Motion | Tracks, settings: DenoiseSettings
 ) -> Motion | Tracks:
     """At strength 0, return what was observed as it was, to the last bit."""
@@ -278,16 +294,18 @@ def _kept_where_unchanged(
         )
     assert isinstance(recording, Tracks)
     assert isinstance(cleaned, Tracks)
-    places = recording.positions
-    return recording.with_positions(np.where(np.isfinite(places), places, cleaned.positions))
+    positions = recording.positions
+    return recording.with_positions(
+        np.where(np.isfinite(positions), positions, cleaned.positions)
+    )
 
 
-def _worst(
+def _max_per_joint(
     recording: Motion | Tracks, channels: Channels, values: NDArray[np.generic]
 ) -> Array:
     """Return the largest of each joint's channels, shape (n_frames, n_joints)."""
-    parts = values.reshape(channels.values.shape).max(axis=2)
-    result = np.zeros(_seen(recording).shape)
+    per_part = values.reshape(channels.values.shape).max(axis=2)
+    result = np.zeros(_observed_mask(recording).shape)
     for part, joint in enumerate(channels.joints):
-        result[:, joint] = np.maximum(result[:, joint], parts[:, part])
+        result[:, joint] = np.maximum(result[:, joint], per_part[:, part])
     return result

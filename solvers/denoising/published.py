@@ -7,20 +7,20 @@ from ..progress import Progress
 from ..signals import hampel, interpolated
 from .channels import Channels
 from .posterior import Estimate
-from .prior import FilterBases, FilterBasesSettings, LagProducts, strongest
+from .prior import FilterBases, FilterBasesSettings, LagProducts, find_leading_eigenpairs
 
 Array = NDArray[np.float64]
 
-ENERGY = 0.99
-WELSCH = 3.0
+KEPT_ENERGY = 0.99
+WELSCH_SCALE_DEG = 3.0
 """p of the Welsch estimator, degrees."""
 PATTERN_WEIGHT = 0.1
 """lambda of eq. 2.10."""
-UNKNOWN = 30.0
+UNOBSERVED_DEVIATION = 30.0
 """Standard deviation said of what was not observed or not believed: the method has none."""
 N_REWEIGHTS = 3
 MAX_ITERATIONS = 20
-SETTLED = 1e-3
+MAX_RELATIVE_CHANGE = 1e-3
 """Relative change of the cost below which the alternation ends."""
 
 
@@ -32,18 +32,18 @@ def filter_as_published(
     Takes at a multiple of the bases' frame rate are filtered as interleaved takes at that rate.
     """
     noisy = channels.flat
-    wanted = float(bases.frame_rate) if bases else FilterBasesSettings().frame_rate
-    step = max(min(round(frame_rate / wanted), len(noisy)), 1)
+    base_rate = float(bases.frame_rate) if bases else FilterBasesSettings().frame_rate
+    step = max(min(round(frame_rate / base_rate), len(noisy)), 1)
     takes = [noisy[start::step] for start in range(step)]
-    patterns, mean, used = _patterns(channels, takes, frame_rate, bases)
+    patterns, mean, used = _select_patterns(channels, takes, frame_rate, bases)
     values, inliers = noisy.copy(), np.ones_like(noisy)
     iterations, converged = 0, True
     for start, take in enumerate(takes):
-        motion, weight, needed, settled = alternate(take - mean, patterns[:, : len(take)])
+        motion, weight, n_needed, has_settled = alternate(take - mean, patterns[:, : len(take)])
         values[start::step], inliers[start::step] = motion + mean, weight
-        iterations, converged = max(iterations, needed), converged and settled
+        iterations, converged = max(iterations, n_needed), converged and has_settled
         progress((start + 1) / step, "Filtering")
-    deviation = np.where(inliers > 0.5, WELSCH, UNKNOWN)
+    deviation = np.where(inliers > 0.5, WELSCH_SCALE_DEG, UNOBSERVED_DEVIATION)
     unknown = np.full_like(values, np.nan)
     return Estimate(values, inliers, deviation, unknown, iterations, converged), used
 
@@ -70,19 +70,19 @@ def alternate(noisy: Array, patterns: Array) -> tuple[Array, Array, int, bool]:
     .. [1] Lou (2012). Acquiring 3D full-body motion from noisy and ambiguous input. PhD
        dissertation, Texas A&M, section 2.2.
     """
-    known = np.isfinite(noisy)
-    observed = np.where(known, noisy, 0.0)
+    observed_mask = np.isfinite(noisy)
+    observed = np.where(observed_mask, noisy, 0.0)
     motion = interpolated(noisy)
-    weight, cost, converged, iteration = known.astype(float), np.inf, False, 0
+    weight, cost, converged, iteration = observed_mask.astype(float), np.inf, False, 0
     while iteration < MAX_ITERATIONS and not converged:
         iteration += 1
         fitted, count = fit_windows(motion, patterns)  # eq. 2.13
-        pull = 2.0 * PATTERN_WEIGHT * count[:, None]
+        pattern_pull = 2.0 * PATTERN_WEIGHT * count[:, None]
         for _ in range(N_REWEIGHTS):  # eq. 2.15
-            weight = known * np.exp(-(((motion - observed) / WELSCH) ** 2))
-            motion = (weight * observed + pull * fitted) / (weight + pull)
-        before, cost = cost, published_cost(motion, observed, known, patterns)
-        converged = before - cost < SETTLED * cost
+            weight = observed_mask * np.exp(-(((motion - observed) / WELSCH_SCALE_DEG) ** 2))
+            motion = (weight * observed + pattern_pull * fitted) / (weight + pattern_pull)
+        before, cost = cost, published_cost(motion, observed, observed_mask, patterns)
+        converged = before - cost < MAX_RELATIVE_CHANGE * cost
     return motion, weight, iteration, converged
 
 
@@ -101,9 +101,9 @@ def fit_windows(motion: Array, patterns: Array) -> tuple[Array, Array]:
     """
     weights = _pattern_weights(motion, patterns)
     total, count = np.zeros_like(motion), np.zeros(len(motion))
-    for place in range(patterns.shape[1]):
-        total[place : place + len(weights)] += weights @ patterns[:, place]
-        count[place : place + len(weights)] += 1.0
+    for offset in range(patterns.shape[1]):
+        total[offset : offset + len(weights)] += weights @ patterns[:, offset]
+        count[offset : offset + len(weights)] += 1.0
     return total / count[:, None], count
 
 
@@ -114,52 +114,57 @@ def _pattern_weights(motion: Array, patterns: Array) -> Array:
     """
     n_bases, window, _ = patterns.shape
     weights = np.zeros((len(motion) - window + 1, n_bases))
-    for place in range(window):
-        weights += motion[place : place + len(weights)] @ patterns[:, place].T
+    for offset in range(window):
+        weights += motion[offset : offset + len(weights)] @ patterns[:, offset].T
     return weights
 
 
-def published_cost(motion: Array, observed: Array, known: Array, patterns: Array) -> float:
+def published_cost(
+    motion: Array, observed: Array, observed_mask: Array, patterns: Array
+) -> float:
     """Return eq. 2.16 with the best pattern weights; both motions are centred."""
     weights = _pattern_weights(motion, patterns)
-    power = (motion**2).sum(axis=1)
+    frame_power = (motion**2).sum(axis=1)
     in_windows = sum(
-        float(power[place : place + len(weights)].sum()) for place in range(patterns.shape[1])
+        float(frame_power[offset : offset + len(weights)].sum())
+        for offset in range(patterns.shape[1])
     )
     outside = in_windows - (weights**2).sum()
-    robust = WELSCH**2 / 2 * (1 - np.exp(-(((motion - observed) / WELSCH) ** 2)))
-    return float((known * robust).sum() + PATTERN_WEIGHT * outside)
+    robust = (
+        WELSCH_SCALE_DEG**2 / 2 * (1 - np.exp(-(((motion - observed) / WELSCH_SCALE_DEG) ** 2)))
+    )
+    return float((observed_mask * robust).sum() + PATTERN_WEIGHT * outside)
 
 
-def _patterns(
+def _select_patterns(
     channels: Channels, takes: list[Array], frame_rate: float, bases: FilterBases | None
 ) -> tuple[Array, Array, str]:
     """Return patterns of the take's channels, their mean, and where they are from."""
-    unfit = _why_not(channels, takes, bases)
-    if bases is not None and not unfit:
-        place = {str(key): part for part, key in enumerate(bases.keys)}
-        columns = np.concatenate([3 * place[key] + np.arange(3) for key in channels.keys])
+    reason = _reason_against(channels, takes, bases)
+    if bases is not None and not reason:
+        offset = {str(key): part for part, key in enumerate(bases.keys)}
+        columns = np.concatenate([3 * offset[key] + np.arange(3) for key in channels.keys])
         n_clips = int(bases.n_clips)
-        said = f"Patterns of {n_clips} example clip{'s' * (n_clips != 1)}."
-        return bases.vectors[:, :, columns], bases.mean[columns], said
-    rough = [interpolated(hampel(take, 4, 3.5)) for take in takes]
-    mean = np.concatenate(rough).mean(axis=0)
+        message = f"Patterns of {n_clips} example clip{'s' * (n_clips != 1)}."
+        return bases.vectors[:, :, columns], bases.mean[columns], message
+    despiked = [interpolated(hampel(take, 4, 3.5)) for take in takes]
+    mean = np.concatenate(despiked).mean(axis=0)
     window = min(FilterBasesSettings().n_frames, len(takes[-1]))
     products = LagProducts(len(mean), window)
-    for take in rough:
+    for take in despiked:
         products.add(take - mean)
-    _, vectors = strongest(products.total(), ENERGY)
+    _, vectors = find_leading_eigenpairs(products.total(), KEPT_ENERGY)
     patterns = vectors.T.reshape(-1, window, len(mean))
-    return patterns, mean, f"The take's own patterns: {unfit}."
+    return patterns, mean, f"The take's own patterns: {reason}."
 
 
-def _why_not(channels: Channels, takes: list[Array], bases: FilterBases | None) -> str:
+def _reason_against(channels: Channels, takes: list[Array], bases: FilterBases | None) -> str:
     """Return why this method cannot use the bases; nothing where it can."""
     if bases is None:
         return "no examples were given"
-    lacking = len(set(channels.keys) - set(map(str, bases.keys)))
-    if lacking:
-        joints = "one joint" if lacking == 1 else f"{lacking} joints"
+    n_missing = len(set(channels.keys) - set(map(str, bases.keys)))
+    if n_missing:
+        joints = "one joint" if n_missing == 1 else f"{n_missing} joints"
         return f"the examples lack {joints} of it, and all are needed"
     if len(takes[-1]) < bases.window:
         return "it is shorter than those of the examples"

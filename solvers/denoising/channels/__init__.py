@@ -1,11 +1,11 @@
 """Recordings as columns of numbers for a linear model, and back."""
 
-from .channels import CENTIMETRES, Channels
+from .channels import CENTIMETERS, Channels
 from .encode import decode, encode
 from .examples import ExampleChannels, Moments
 
 __all__ = [
-    "CENTIMETRES",
+    "CENTIMETERS",
     "Channels",
     "ExampleChannels",
     "Moments",

@@ -6,11 +6,11 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from .travel_path import Path
+from .travel_path import TravelPath
 
 Array = NDArray[np.float64]
 
-CENTIMETRES = 100.0
+CENTIMETERS = 100.0
 """Lengths are in centimetres and angles in degrees: for limbs a few of either are alike."""
 
 
@@ -38,7 +38,7 @@ class Channels:
     values: Array
     joints: NDArray[np.intp]
     references: Mapping[str, Array]
-    path: Path
+    path: TravelPath
 
     @property
     def flat(self) -> Array:

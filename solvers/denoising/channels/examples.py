@@ -15,9 +15,9 @@ from .encode import encode
 
 Array = NDArray[np.float64]
 
-MINUTE = 60.0
+BLOCK_S = 60.0
 """Seconds, encoded at a time. The few windows across two of them are left out."""
-NEAR_MULTIPLE = 0.02
+MULTIPLE_TOLERANCE = 0.02
 """Part by which a frame rate may miss a multiple of another and still count as one."""
 
 
@@ -39,7 +39,7 @@ class ExampleChannels:
         self._takes = [
             (example, weight, *part)
             for example, weight in zip(examples, weights, strict=True)
-            for part in _whole_pieces(example)
+            for part in _usable_segments(example)
         ]
         example, _, start, stop = self._takes[0]
         first = encode(example.slice(start, stop))
@@ -61,16 +61,16 @@ class ExampleChannels:
         for index, (example, weight, start, stop) in enumerate(self._takes):
             take = example.slice(start, stop)
             channels = encode(take, self.references)
-            place = {key: part for part, key in enumerate(channels.keys)}
+            index_of_key = {key: part for part, key in enumerate(channels.keys)}
             columns = np.full((len(channels.values), len(self.keys), 3), np.nan)
             for part, key in enumerate(self.keys):
-                if key in place:
-                    columns[:, part] = channels.values[:, place[key]]
+                if key in index_of_key:
+                    columns[:, part] = channels.values[:, index_of_key[key]]
             flat = columns.reshape(len(columns), -1)
-            seen = np.isfinite(flat).any(axis=0)
-            clips = _at_rate(interpolated(flat), take.frame_rate, self._frame_rate)
-            if long := [clip for clip in clips if len(clip) >= self._window]:
-                yield weight, [np.where(seen, clip, np.nan) for clip in long]
+            observed = np.isfinite(flat).any(axis=0)
+            clips = _resample(interpolated(flat), take.frame_rate, self._frame_rate)
+            if long_clips := [clip for clip in clips if len(clip) >= self._window]:
+                yield weight, [np.where(observed, clip, np.nan) for clip in long_clips]
             progress((index + 1) / len(self._takes), "Reading examples")
 
 
@@ -93,48 +93,52 @@ class Moments:
 
     def total(self) -> tuple[Array, Array]:
         """Return mean and standard deviation of each channel over all takes."""
-        has = np.isfinite(self.means)
-        counts = self._counts * has
-        n_frames = np.where(has.any(axis=0), counts.sum(axis=0), 1.0)
+        is_observed = np.isfinite(self.means)
+        counts = self._counts * is_observed
+        n_frames = np.where(is_observed.any(axis=0), counts.sum(axis=0), 1.0)
         mean = (counts * np.nan_to_num(self.means)).sum(axis=0) / n_frames
         between = counts * (np.nan_to_num(self.means) - mean) ** 2
         square = (np.nan_to_num(self._squares) + between).sum(axis=0)
         return mean, np.sqrt(square / n_frames)
 
 
-def _at_rate(values: Array, frame_rate: float, wanted: float) -> list[Array]:
+def _resample(values: Array, frame_rate: float, target_rate: float) -> list[Array]:
     """Return channels at another frame rate.
 
     A multiple of the wanted rate is split into interleaved takes, so that no frame is lost;
     other rates are interpolated by cubic splines.
     """
-    step = frame_rate / wanted
-    if step >= 1.0 and abs(step - round(step)) < NEAR_MULTIPLE * step:
+    step = frame_rate / target_rate
+    if step >= 1.0 and abs(step - round(step)) < MULTIPLE_TOLERANCE * step:
         return [values[start :: round(step)] for start in range(round(step))]
     if len(values) < 2:
         return [values]
-    times = np.arange(0.0, (len(values) - 1) * wanted / frame_rate + 1e-9) / wanted
+    times = np.arange(0.0, (len(values) - 1) * target_rate / frame_rate + 1e-9) / target_rate
     spline = CubicSpline(np.arange(len(values)) / frame_rate, values, axis=0)
     return [np.asarray(spline(times))]
 
 
-def _whole_pieces(example: Motion | Tracks) -> list[tuple[int, int]]:
+def _usable_segments(example: Motion | Tracks) -> list[tuple[int, int]]:
     """Return first and last-but-one frames of the pieces of an example that show movement.
 
     Pieces are those of which it was joined, and of long ones each minute.
     """
-    found = [
+    segments = [
         (start, stop)
         for start, stop in pieces(example, find_cuts(example))
         if not is_short(stop - start, example.frame_rate)
     ]
     return [
-        part for piece in found or [(0, example.n_frames)] for part in _minutes(*piece, example)
+        part
+        for segment in segments or [(0, example.n_frames)]
+        for part in _split_into_blocks(*segment, example)
     ]
 
 
-def _minutes(start: int, stop: int, example: Motion | Tracks) -> Iterator[tuple[int, int]]:
+def _split_into_blocks(
+    start: int, stop: int, example: Motion | Tracks
+) -> Iterator[tuple[int, int]]:
     """Yield parts of at most two minutes and, but for a whole piece, at least one."""
-    n_parts = max(int((stop - start) / (MINUTE * example.frame_rate)), 1)
+    n_parts = max(int((stop - start) / (BLOCK_S * example.frame_rate)), 1)
     edges = np.linspace(start, stop, n_parts + 1).astype(int)
     yield from pairwise(edges.tolist())

@@ -16,14 +16,14 @@ from ...rotations import (
     rotate,
     rotation_vector_from_quaternion,
 )
-from .channels import CENTIMETRES, Channels
-from .travel_path import Path, smooth_path
+from .channels import CENTIMETERS, Channels
+from .travel_path import TravelPath, fit_travel_path
 
 Array = NDArray[np.float64]
 
-PLACE = "place"
+ROOT_POSITION = "place"
 """Key of the root's position relative to its path: beside it, along it, above the ground."""
-NOWHERE = np.zeros(3)
+ORIGIN = np.zeros(3)
 
 
 class Rig(NamedTuple):
@@ -31,9 +31,9 @@ class Rig(NamedTuple):
 
     joints: list[int]
     keys: tuple[str, ...]
-    above: Array
+    parent_alignment: Array
     """From the T-pose to the rest pose, of each joint's parent, shape (n, 4)."""
-    own: Array
+    joint_alignment: Array
     """The same of the joint itself."""
 
 
@@ -54,28 +54,38 @@ def encode_motion(motion: Motion, references: Mapping[str, Array] | None = None)
     """
     references = references or {}
     rig = _rig(motion.skeleton)
-    path = _path(motion)
+    path = _fit_path(motion)
     rotations = motion.rotations[:, rig.joints]
-    rotations[:, 0] = multiply(inverse(path.turns), rotations[:, 0])
-    own = np.concatenate([mean_rotation(rotations), rig.above, rig.own], axis=1)
-    told = np.array([references.get(key, row) for key, row in zip(rig.keys, own, strict=True)])
-    before, after = _changes(rig, told)
-    moved = multiply(multiply(before, rotations), after)
-    turned = multiply(inverse(told[:, :4]), moved)
-    vectors = _unwrapped(rotation_vector_from_quaternion(turned), mean_rotation(turned))
-    place = motion.root_positions.copy()
-    place[:, :2] -= path.places
-    place = rotate(inverse(path.turns), place)
-    known = np.isfinite(place).all(axis=1)
-    middle = np.median(place[known], axis=0) if known.any() else NOWHERE
-    values = np.concatenate(
-        [np.degrees(vectors), CENTIMETRES * (place - middle)[:, None]], axis=1
+    rotations[:, 0] = multiply(inverse(path.rotations), rotations[:, 0])
+    own_references = np.concatenate(
+        [mean_rotation(rotations), rig.parent_alignment, rig.joint_alignment], axis=1
     )
-    used = dict(zip(rig.keys, told, strict=True)) | {PLACE: middle}
-    return Channels((*rig.keys, PLACE), values, np.array([*rig.joints, 0]), used, path)
+    references_used = np.array([
+        references.get(key, row) for key, row in zip(rig.keys, own_references, strict=True)
+    ])
+    before, after = _conversion_between_rigs(rig, references_used)
+    converted = multiply(multiply(before, rotations), after)
+    from_mean = multiply(inverse(references_used[:, :4]), converted)
+    rotation_vectors = _nearest_rotation_vectors(
+        rotation_vector_from_quaternion(from_mean), mean_rotation(from_mean)
+    )
+    root = motion.root_positions.copy()
+    root[:, :2] -= path.ground_positions
+    root = rotate(inverse(path.rotations), root)
+    observed = np.isfinite(root).all(axis=1)
+    median_root = np.median(root[observed], axis=0) if observed.any() else ORIGIN
+    values = np.concatenate(
+        [np.degrees(rotation_vectors), CENTIMETERS * (root - median_root)[:, None]], axis=1
+    )
+    references_by_key = dict(zip(rig.keys, references_used, strict=True)) | {
+        ROOT_POSITION: median_root
+    }
+    return Channels(
+        (*rig.keys, ROOT_POSITION), values, np.array([*rig.joints, 0]), references_by_key, path
+    )
 
 
-def _unwrapped(vectors: Array, mean: Array) -> Array:
+def _nearest_rotation_vectors(rotation_vectors: Array, mean: Array) -> Array:
     """Tell turns by the rotation vector nearer to their mean's, even beyond 180 degrees.
 
     Joints that are told about the mean of another rig may lie half a turn from it.
@@ -85,11 +95,13 @@ def _unwrapped(vectors: Array, mean: Array) -> Array:
     vectors : shape (n_frames, n_joints, 3)
     mean : shape (n_joints, 4)
     """
-    centre = rotation_vector_from_quaternion(mean)
-    angles = np.linalg.norm(vectors, axis=-1, keepdims=True)
-    other = vectors * (1.0 - 2.0 * np.pi / np.maximum(angles, 1e-150))
-    farther = ((vectors - centre) ** 2).sum(axis=-1) > ((other - centre) ** 2).sum(axis=-1)
-    return np.where(farther[..., None], other, vectors)
+    mean_vector = rotation_vector_from_quaternion(mean)
+    angles = np.linalg.norm(rotation_vectors, axis=-1, keepdims=True)
+    opposite = rotation_vectors * (1.0 - 2.0 * np.pi / np.maximum(angles, 1e-150))
+    is_farther = ((rotation_vectors - mean_vector) ** 2).sum(axis=-1) > (
+        (opposite - mean_vector) ** 2
+    ).sum(axis=-1)
+    return np.where(is_farther[..., None], opposite, rotation_vectors)
 
 
 def decode_motion(motion: Motion, channels: Channels, values: Array) -> Motion:
@@ -103,39 +115,45 @@ def decode_motion(motion: Motion, channels: Channels, values: Array) -> Motion:
     values : shape (n_frames, n_parts, 3)
     """
     rig, path = _rig(motion.skeleton), channels.path
-    told = np.array([channels.references[key] for key in rig.keys])
-    before, after = _changes(rig, told)
-    moved = multiply(told[:, :4], quaternion_from_rotation_vector(np.radians(values[:, :-1])))
-    local = multiply(multiply(inverse(before), moved), inverse(after))
-    local[:, 0] = multiply(path.turns, local[:, 0])
+    references_used = np.array([channels.references[key] for key in rig.keys])
+    before, after = _conversion_between_rigs(rig, references_used)
+    converted = multiply(
+        references_used[:, :4], quaternion_from_rotation_vector(np.radians(values[:, :-1]))
+    )
+    local = multiply(multiply(inverse(before), converted), inverse(after))
+    local[:, 0] = multiply(path.rotations, local[:, 0])
     rotations = np.where(np.isfinite(motion.rotations), motion.rotations, IDENTITY)
     rotations[:, rig.joints] = local
-    roots = rotate(path.turns, values[:, -1] / CENTIMETRES + channels.references[PLACE])
-    roots[:, :2] += path.places
+    roots = rotate(
+        path.rotations, values[:, -1] / CENTIMETERS + channels.references[ROOT_POSITION]
+    )
+    roots[:, :2] += path.ground_positions
     return motion.with_poses(rotations, roots)
 
 
 def _rig(skeleton: Skeleton) -> Rig:
     humanoid = find_humanoid_map(skeleton)
     alignment = t_pose_alignment(skeleton, humanoid)
-    above = np.concatenate([IDENTITY[None], alignment[list(skeleton.parents[1:])]])
+    parent_alignment = np.concatenate([IDENTITY[None], alignment[list(skeleton.parents[1:])]])
     joints = [joint for joint in range(skeleton.n_joints) if not skeleton.is_end_site(joint)]
     names = [skeleton.names[joint] for joint in joints]
     keys = tuple(humanoid.role(name) or f"joint {name}" for name in names)
-    return Rig(joints, keys, above[joints], alignment[joints])
+    return Rig(joints, keys, parent_alignment[joints], alignment[joints])
 
 
-def _changes(rig: Rig, told: Array) -> tuple[Array, Array]:
+def _conversion_between_rigs(rig: Rig, references_used: Array) -> tuple[Array, Array]:
     """Return what turns local rotations into those of the rig that the references are of.
 
     With B and A the alignments of parent and joint, a local rotation L of this rig is
     B^-1 L A from the T-pose (see `motion.canonical`), and so B' B^-1 L A A'^-1 in the other.
     """
-    above, own = told[:, 4:8], told[:, 8:12]
-    return multiply(above, inverse(rig.above)), multiply(rig.own, inverse(own))
+    parent_alignment, joint_alignment = references_used[:, 4:8], references_used[:, 8:12]
+    return multiply(parent_alignment, inverse(rig.parent_alignment)), multiply(
+        rig.joint_alignment, inverse(joint_alignment)
+    )
 
 
-def _path(motion: Motion) -> Path:
+def _fit_path(motion: Motion) -> TravelPath:
     root = motion.rotations[:, 0]
     headings = 2.0 * np.arctan2(root[:, 3], root[:, 0])
-    return smooth_path(motion.root_positions[:, :2], headings, motion.frame_rate)
+    return fit_travel_path(motion.root_positions[:, :2], headings, motion.frame_rate)

@@ -7,8 +7,8 @@ from numpy.typing import NDArray
 
 from ...motion import Tracks
 from ...signals import interpolated
-from .channels import CENTIMETRES, Channels
-from .travel_path import Path, smooth_path, turned
+from .channels import CENTIMETERS, Channels
+from .travel_path import TravelPath, fit_travel_path, rotate_on_ground
 
 Array = NDArray[np.float64]
 
@@ -29,53 +29,57 @@ def encode_tracks(tracks: Tracks, references: Mapping[str, Array] | None = None)
         Mean places to use where the name is known; elsewhere, the tracks' own.
     """
     references = references or {}
-    path, shape = _fit_body(tracks, references)
+    path, shape = _fit_shape_and_path(tracks, references)
     means = {
-        name: np.asarray(references.get(name, place))[:3]
-        for name, place in zip(tracks.names, shape, strict=True)
+        name: np.asarray(references.get(name, mean_position))[:3]
+        for name, mean_position in zip(tracks.names, shape, strict=True)
     }
-    inside = _seen_from(tracks.positions, path)
-    anchors = np.array([means[name] for name in tracks.names])
-    values = CENTIMETRES * (inside - anchors)
+    local = _to_path_frame(tracks.positions, path)
+    means_array = np.array([means[name] for name in tracks.names])
+    values = CENTIMETERS * (local - means_array)
     return Channels(tracks.names, values, np.arange(tracks.n_points), means, path)
 
 
 def decode_tracks(tracks: Tracks, channels: Channels, values: Array) -> Tracks:
     """Return the tracks that have these channel values; undoes `encode_tracks`."""
     path = channels.path
-    anchors = np.array([channels.references[key] for key in channels.keys])
-    inside = values / CENTIMETRES + anchors
-    positions = inside.copy()
-    for point in range(inside.shape[1]):
-        positions[:, point, :2] = turned(inside[:, point, :2], path.headings) + path.places
+    means_array = np.array([channels.references[key] for key in channels.keys])
+    local = values / CENTIMETERS + means_array
+    positions = local.copy()
+    for point in range(local.shape[1]):
+        positions[:, point, :2] = (
+            rotate_on_ground(local[:, point, :2], path.headings) + path.ground_positions
+        )
     return tracks.with_positions(positions)
 
 
-def _fit_body(tracks: Tracks, references: Mapping[str, Array]) -> tuple[Path, Array]:
+def _fit_shape_and_path(
+    tracks: Tracks, references: Mapping[str, Array]
+) -> tuple[TravelPath, Array]:
     """Fit mean shape (n_points, 3) and path to each other, starting without turning."""
     positions = tracks.positions
     filled = interpolated(positions.reshape(len(positions), -1)).reshape(positions.shape)
-    known = np.array([name in references for name in tracks.names])
-    given = np.array([references.get(name, np.zeros(3))[:3] for name in tracks.names])
-    ever_seen = tracks.visible.any(axis=0)
-    weights = np.where(tracks.visible, 1.0, 1e-6) * ever_seen
-    if (known & ever_seen).sum() >= 2:
-        weights = weights * known
-        shape = given
+    has_reference = np.array([name in references for name in tracks.names])
+    given_means = np.array([references.get(name, np.zeros(3))[:3] for name in tracks.names])
+    ever_observed = tracks.visible.any(axis=0)
+    weights = np.where(tracks.visible, 1.0, 1e-6) * ever_observed
+    if (has_reference & ever_observed).sum() >= 2:
+        weights = weights * has_reference
+        shape = given_means
     else:
-        shape = _along_x(filled[0])
-    places, headings = _rigid_fits(filled, shape, weights)
+        shape = _align_with_x(filled[0])
+    ground_positions, headings = _fit_shape(filled, shape, weights)
     for _ in range(N_FITS):
-        inside = _seen_from(positions, Path(places, headings))
-        middle = _medians(inside)
-        if not (known & ever_seen).any():
-            shape = middle
-        places, headings = _rigid_fits(filled, shape, weights)
-    path = smooth_path(places, headings, tracks.frame_rate)
-    return path, _medians(_seen_from(positions, path))
+        local = _to_path_frame(positions, TravelPath(ground_positions, headings))
+        medians = _median_positions(local)
+        if not (has_reference & ever_observed).any():
+            shape = medians
+        ground_positions, headings = _fit_shape(filled, shape, weights)
+    path = fit_travel_path(ground_positions, headings, tracks.frame_rate)
+    return path, _median_positions(_to_path_frame(positions, path))
 
 
-def _along_x(points: Array) -> Array:
+def _align_with_x(points: Array) -> Array:
     """Centre points, shape (n_points, 3), over the origin, their main direction along X.
 
     So the axes of the channels, for each of which outliers are judged, are those of the body
@@ -87,30 +91,34 @@ def _along_x(points: Array) -> Array:
     return np.stack([flat.real, flat.imag, points[:, 2]], axis=-1)
 
 
-def _rigid_fits(positions: Array, shape: Array, weights: Array) -> tuple[Array, Array]:
+def _fit_shape(positions: Array, shape: Array, weights: Array) -> tuple[Array, Array]:
     """Lay the shape (n_points, 3) over every frame by turning about Z and moving."""
     total = weights.sum(axis=1, keepdims=True)
     total = np.where(total > 0.0, total, 1.0)
     flat, plan = positions[..., 0] + 1j * positions[..., 1], shape[:, 0] + 1j * shape[:, 1]
     centre = (weights * flat).sum(axis=1, keepdims=True) / total
-    middle = (weights * plan).sum(axis=1, keepdims=True) / total
-    agreement = (weights * (flat - centre) * np.conj(plan - middle)).sum(axis=1)
+    medians = (weights * plan).sum(axis=1, keepdims=True) / total
+    agreement = (weights * (flat - centre) * np.conj(plan - medians)).sum(axis=1)
     headings = np.angle(agreement + 1e-12)
-    places = centre[:, 0] - np.exp(1j * headings) * middle[:, 0]
-    return np.stack([places.real, places.imag], axis=-1), headings
+    ground_positions = centre[:, 0] - np.exp(1j * headings) * medians[:, 0]
+    return np.stack([ground_positions.real, ground_positions.imag], axis=-1), headings
 
 
-def _medians(inside: Array) -> Array:
+def _median_positions(local: Array) -> Array:
     """Return the median place of each point; the middle of all where it is never seen."""
-    seen = np.isfinite(inside).all(axis=2)
-    places = [inside[seen[:, point], point] for point in range(inside.shape[1])]
-    found = [np.median(place, axis=0) for place in places if len(place)]
-    middle = np.mean(found, axis=0) if found else np.zeros(3)
-    return np.array([np.median(place, axis=0) if len(place) else middle for place in places])
+    observed = np.isfinite(local).all(axis=2)
+    samples = [local[observed[:, point], point] for point in range(local.shape[1])]
+    known_medians = [np.median(sample, axis=0) for sample in samples if len(sample)]
+    medians = np.mean(known_medians, axis=0) if known_medians else np.zeros(3)
+    return np.array([
+        np.median(sample, axis=0) if len(sample) else medians for sample in samples
+    ])
 
 
-def _seen_from(positions: Array, path: Path) -> Array:
-    inside = positions.copy()
+def _to_path_frame(positions: Array, path: TravelPath) -> Array:
+    local = positions.copy()
     for point in range(positions.shape[1]):
-        inside[:, point, :2] = turned(positions[:, point, :2] - path.places, -path.headings)
-    return inside
+        local[:, point, :2] = rotate_on_ground(
+            positions[:, point, :2] - path.ground_positions, -path.headings
+        )
+    return local

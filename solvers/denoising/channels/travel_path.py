@@ -11,9 +11,9 @@ from ...signals import hampel, interpolated
 
 Array = NDArray[np.float64]
 
-SMOOTHING = 0.5
+SMOOTHING_S = 0.5
 """Width (standard deviation) of the kernel that takes the gait out of the path, seconds."""
-SPIKE_HALF_WIDTH = 0.15
+SPIKE_HALF_WIDTH_S = 0.15
 """Neighbourhood to either side that a spike of the path stands out from, seconds."""
 SPIKE_TOLERANCE = 3.5
 """Robust standard deviations of the neighbourhood from which on it is a spike."""
@@ -22,54 +22,54 @@ GAP_WEIGHT = 1e-3
 
 
 @dataclass(frozen=True, eq=False)
-class Path:
+class TravelPath:
     """A slow frame of reference that travels along: everything else is told relative to it."""
 
-    places: Array
+    ground_positions: Array
     """On the ground, shape (n_frames, 2), metres. No NaN."""
     headings: Array
     """Turn about Z, unwrapped, shape (n_frames,), radians. No NaN."""
 
     @property
-    def turns(self) -> Array:
+    def rotations(self) -> Array:
         """Quaternions from the path's frame to the world, shape (n_frames, 4)."""
         vectors = np.zeros((len(self.headings), 3))
         vectors[:, 2] = self.headings
         return quaternion_from_rotation_vector(vectors)
 
 
-def smooth_path(places: Array, headings: Array, frame_rate: float) -> Path:
+def fit_travel_path(ground_positions: Array, headings: Array, frame_rate: float) -> TravelPath:
     """Fit a path to noisy places (n_frames, 2) and headings (n_frames,); NaN: not observed.
 
     Spikes are left out, a straight line is fitted around every frame, and gaps are bridged.
     It moves and turns about Z with its input: all is done as seen from the mean heading.
     """
     mean = float(np.angle(np.nansum(np.exp(1j * headings)) + 1e-12))
-    seen = turned(places, -mean)
-    together = np.column_stack([seen, unwrapped(headings) - mean])
-    half_width = max(round(SPIKE_HALF_WIDTH * frame_rate), 2)
-    clean = hampel(together, half_width, SPIKE_TOLERANCE)
-    fitted = local_lines(clean, SMOOTHING * frame_rate)
-    return Path(turned(fitted[:, :2], mean), fitted[:, 2] + mean)
+    aligned = rotate_on_ground(ground_positions, -mean)
+    coordinates = np.column_stack([aligned, unwrap_angles(headings) - mean])
+    half_width = max(round(SPIKE_HALF_WIDTH_S * frame_rate), 2)
+    clean = hampel(coordinates, half_width, SPIKE_TOLERANCE)
+    fitted = fit_local_lines(clean, SMOOTHING_S * frame_rate)
+    return TravelPath(rotate_on_ground(fitted[:, :2], mean), fitted[:, 2] + mean)
 
 
-def turned(places: Array, angle: float | Array) -> Array:
+def rotate_on_ground(ground_positions: Array, angle: float | Array) -> Array:
     """Turn points on the ground, shape (n_frames, 2), by an angle in radians."""
-    x, y = places[:, 0], places[:, 1]
+    x, y = ground_positions[:, 0], ground_positions[:, 1]
     return np.stack(
         [x * np.cos(angle) - y * np.sin(angle), x * np.sin(angle) + y * np.cos(angle)], axis=-1
     )
 
 
-def unwrapped(angles: Array) -> Array:
+def unwrap_angles(angles: Array) -> Array:
     """Return the angles (n_frames,) without jumps of whole turns; NaN is passed over."""
     result = angles.copy()
-    known = np.isfinite(angles)
-    result[known] = np.unwrap(angles[known])
+    observed = np.isfinite(angles)
+    result[observed] = np.unwrap(angles[observed])
     return result
 
 
-def local_lines(values: Array, width: float) -> Array:
+def fit_local_lines(values: Array, width: float) -> Array:
     """Regress a line around every frame with Gaussian weights; NaN has no weight.
 
     Parameters
@@ -86,14 +86,16 @@ def local_lines(values: Array, width: float) -> Array:
     steps = np.arange(-reach, reach + 1.0)
     kernel = np.exp(-0.5 * (steps / width) ** 2)
     # Gaps count for little, but so that a line bridges even those wider than the kernel.
-    bridged = interpolated(values)
+    interpolated_values = interpolated(values)
     weight = np.where(np.isfinite(values), 1.0, GAP_WEIGHT)
-    s0, s1, s2 = (_moment(weight, kernel * steps**power) for power in (0, 1, 2))
-    t0, t1 = (_moment(weight * bridged, kernel * steps**power) for power in (0, 1))
+    s0, s1, s2 = (_weighted_sum(weight, kernel * steps**power) for power in (0, 1, 2))
+    t0, t1 = (
+        _weighted_sum(weight * interpolated_values, kernel * steps**power) for power in (0, 1)
+    )
     determinant = s0 * s2 - s1**2
     line = (s2 * t0 - s1 * t1) / np.where(determinant > 0.0, determinant, 1.0)
     return np.where(determinant > 1e-9 * s0 * s2, line, t0 / s0)
 
 
-def _moment(values: Array, kernel: Array) -> Array:
+def _weighted_sum(values: Array, kernel: Array) -> Array:
     return np.asarray(correlate1d(values, kernel, axis=0, mode="constant"))

@@ -16,26 +16,26 @@ from ...rotations import (
 )
 from ...signals import runs, smooth_correction
 from .legs import Leg
-from .sole import CALM, loads, sole_points, standing_heights
+from .sole import SMOOTHING_S, estimate_loads, measure_standing_heights, sole_points
 
 Array = NDArray[np.float64]
 Flags = NDArray[np.bool_]
 
-ADULT_LEG = 0.9
-LEVEL = 0.007
+ADULT_LEG_M = 0.9
+MAX_LEVEL_SPREAD_M = 0.007
 """Metres: a floor whose contacts differ by more, typically, is not level."""
-NEAR_FLOOR = 0.03
+MAX_FLOOR_DISTANCE_M = 0.03
 """Metres, for a leg of 0.9 m: a foot planted farther above or below stands on something."""
-LIFTING = 0.01
+MIN_LIFT_M = 0.01
 """Metres, for a leg of 0.9 m, above its usual height at which a planted sole is let rise."""
-FLUNG = 1.0
+MAX_SOLE_SPEED = 1.0
 """Metres per second, for a leg of 0.9 m, at which a loaded sole no longer follows its ankle."""
-FLAT_TURNING = 0.6
+MAX_FLAT_RATE = 0.6
 """Radians per second: a foot that turns faster is rolling, not resting."""
 
 
 @dataclass(frozen=True, eq=False)
-class Plant:
+class FootTrajectory:
     """One leg and the course that its foot should take.
 
     Attributes
@@ -56,19 +56,21 @@ class Plant:
 
     leg: Leg
     contact: Flags
-    turn: Array
-    toe_turn: Array
+    foot_rotation: Array
+    toe_rotation: Array
     ankle: Array
-    arms: Array
+    sole_offsets: Array
     load: Array
 
     def slide(self, skeleton: Skeleton, poses: WorldPoses) -> float:
         """Return the way in metres that the loaded part of the sole covers in contact."""
-        steps = _loaded_steps(sole_points(skeleton, poses, self.leg), self.load)
-        return float(np.linalg.norm(steps[within(self.contact), :2], axis=1).sum())
+        displacements = _loaded_displacements(sole_points(skeleton, poses, self.leg), self.load)
+        return float(
+            np.linalg.norm(displacements[both_in_contact(self.contact), :2], axis=1).sum()
+        )
 
 
-def planted_path(
+def plan_foot_trajectory(
     motion: Motion,
     poses: WorldPoses,
     leg: Leg,
@@ -78,7 +80,7 @@ def planted_path(
     hold: float,
     hold_rotation: bool,
     floor: bool,
-) -> Plant:
+) -> FootTrajectory:
     """Plan the course of one foot.
 
     Parameters
@@ -98,79 +100,95 @@ def planted_path(
         Bring contacts that are near the foot's usual height to that height.
     """
     rate = motion.frame_rate
-    size = leg.length(motion.skeleton) / ADULT_LEG
+    size = leg.length(motion.skeleton) / ADULT_LEG_M
     ankle, rotations = poses.positions[:, leg.ankle], poses.rotations[:, leg.ankle]
     points = sole_points(motion.skeleton, poses, leg)
-    standing = standing_heights(points, contact, rate)
-    load = loads(points[..., 2] - standing, rate, size)
-    turn = np.tile([1.0, 0.0, 0.0, 0.0], (motion.n_frames, 1))
+    standing = measure_standing_heights(points, contact, rate)
+    load = estimate_loads(points[..., 2] - standing, rate, size)
+    foot_rotation = np.tile([1.0, 0.0, 0.0, 0.0], (motion.n_frames, 1))
     if hold_rotation and motion.n_frames > 1:
-        turn = _stilled(rotations, contact, load, rate, blend)
-    arms = rotate(turn[:, None], points - ankle[:, None])
-    points = ankle[:, None] + arms
+        foot_rotation = _hold_foot_rotation(rotations, contact, load, rate, blend)
+    sole_offsets = rotate(foot_rotation[:, None], points - ankle[:, None])
+    points = ankle[:, None] + sole_offsets
     height = np.sum(load * (points[..., 2] - standing), axis=1)
-    usual = _usual_heights(height, contact)
-    steps = _loaded_steps(points, load)
-    held = within(contact) * _sound(steps - np.diff(ankle, axis=0), rate, size)
-    held = np.repeat(held[:, None], 3, axis=1)
-    held[:, 2] *= _not_lifting(np.abs(height - usual), size)
+    contact_height = _median_contact_heights(height, contact)
+    displacements = _loaded_displacements(points, load)
+    contact_weight = both_in_contact(contact) * _plausibility(
+        displacements - np.diff(ankle, axis=0), rate, size
+    )
+    contact_weight = np.repeat(contact_weight[:, None], 3, axis=1)
+    contact_weight[:, 2] *= _on_floor(np.abs(height - contact_height), size)
     goal, pulled = np.zeros_like(ankle), np.zeros_like(ankle)
     if floor and contact.any():
         level = np.median(height[contact])
-        if np.median(np.abs(usual[contact] - level)) < LEVEL * size:
+        if np.median(np.abs(contact_height[contact] - level)) < MAX_LEVEL_SPREAD_M * size:
             goal[:, 2] = level - height
-            near = contact & (np.abs(usual - level) < NEAR_FLOOR * size)
-            pulled[:-1, 2] = near[:-1] * held[:, 2]
+            near_level = contact & (
+                np.abs(contact_height - level) < MAX_FLOOR_DISTANCE_M * size
+            )
+            pulled[:-1, 2] = near_level[:-1] * contact_weight[:, 2]
     shift = smooth_correction(
-        -steps * rate, held, rate, blend, hold=hold, goal=goal, pulled=pulled
+        -displacements * rate, contact_weight, rate, blend, hold=hold, goal=goal, pulled=pulled
     )
-    return Plant(leg, contact, turn, turn, ankle + shift, arms, load)
+    return FootTrajectory(
+        leg, contact, foot_rotation, foot_rotation, ankle + shift, sole_offsets, load
+    )
 
 
-def within(contact: Flags) -> Flags:
+def both_in_contact(contact: Flags) -> Flags:
     """Return the steps between frames that are both in contact."""
     return np.asarray(contact[1:] & contact[:-1])
 
 
-def _stilled(rotations: Array, contact: Flags, load: Array, rate: float, blend: float) -> Array:
+def _hold_foot_rotation(
+    rotations: Array, contact: Flags, load: Array, rate: float, blend: float
+) -> Array:
     """Return world turns, (n_frames, 4), that keep the foot from turning where it rests flat.
 
     It rests where it is in contact, heel and ball share the load, and it turns slowly.
     """
-    steps = rotation_vector_from_quaternion(multiply(rotations[1:], inverse(rotations[:-1])))
-    turning = gaussian_filter1d(steps * rate, CALM * rate, axis=0)
-    slow = np.clip(2.0 - 2.0 * np.linalg.norm(turning, axis=1) / FLAT_TURNING, 0.0, 1.0)
+    displacements = rotation_vector_from_quaternion(
+        multiply(rotations[1:], inverse(rotations[:-1]))
+    )
+    angular_velocity = gaussian_filter1d(displacements * rate, SMOOTHING_S * rate, axis=0)
+    slowness = np.clip(
+        2.0 - 2.0 * np.linalg.norm(angular_velocity, axis=1) / MAX_FLAT_RATE, 0.0, 1.0
+    )
     heel = load[:, 0]
-    shared = np.clip(4.0 * heel * (1.0 - heel), 0.0, 1.0)
-    rests = within(contact) * slow * 0.5 * (shared[1:] + shared[:-1])
-    return quaternion_from_rotation_vector(smooth_correction(-steps * rate, rests, rate, blend))
+    load_balance = np.clip(4.0 * heel * (1.0 - heel), 0.0, 1.0)
+    rest_weight = (
+        both_in_contact(contact) * slowness * 0.5 * (load_balance[1:] + load_balance[:-1])
+    )
+    return quaternion_from_rotation_vector(
+        smooth_correction(-displacements * rate, rest_weight, rate, blend)
+    )
 
 
-def _loaded_steps(points: Array, load: Array) -> Array:
+def _loaded_displacements(points: Array, load: Array) -> Array:
     """Return how the loaded part of the sole moves from frame to frame, (n_frames - 1, 3)."""
-    share = 0.5 * (load[1:] + load[:-1])
-    return np.asarray(np.einsum("fp,fpi->fi", share, np.diff(points, axis=0)))
+    mean_load = 0.5 * (load[1:] + load[:-1])
+    return np.asarray(np.einsum("fp,fpi->fi", mean_load, np.diff(points, axis=0)))
 
 
-def _usual_heights(height: Array, contact: Flags) -> Array:
+def _median_contact_heights(height: Array, contact: Flags) -> Array:
     """Return, for each contact, the median of its heights; the height itself elsewhere."""
-    usual = height.copy()
+    contact_height = height.copy()
     for start, stop in runs(contact):
-        usual[start:stop] = np.median(height[start:stop])
-    return usual
+        contact_height[start:stop] = np.median(height[start:stop])
+    return contact_height
 
 
-def _sound(turning: Array, rate: float, size: float) -> Array:
+def _plausibility(angular_velocity: Array, rate: float, size: float) -> Array:
     """Return 1 for steps in which the sole follows the ankle, towards 0 where it is flung.
 
     No foot that stands swings its sole about the ankle at such a speed: its rotation is wrong,
     and an ankle that made up for it would be flung in turn.
     """
-    speed = np.linalg.norm(turning, axis=1) * rate
-    return np.asarray(np.clip(2.0 - speed / (FLUNG * size), 0.0, 1.0))
+    speed = np.linalg.norm(angular_velocity, axis=1) * rate
+    return np.asarray(np.clip(2.0 - speed / (MAX_SOLE_SPEED * size), 0.0, 1.0))
 
 
-def _not_lifting(rise: Array, size: float) -> Array:
+def _on_floor(rise: Array, size: float) -> Array:
     """Return 1 for steps on the floor, towards 0 where the whole sole lifts off it."""
     rise = np.maximum(rise[1:], rise[:-1])
-    return np.asarray(np.clip(2.0 - rise / (LIFTING * size), 0.0, 1.0))
+    return np.asarray(np.clip(2.0 - rise / (MIN_LIFT_M * size), 0.0, 1.0))

@@ -9,26 +9,26 @@ from scipy.ndimage import gaussian_filter1d
 
 from ...motion import WorldPoses
 from ...rotations import multiply, quaternion_from_rotation_vector, rotate
-from .foot_trajectory import Plant
+from .foot_trajectory import FootTrajectory
 
 Array = NDArray[np.float64]
 
 UP = np.array([0.0, 0.0, 1.0])
-CALM = 0.08
+KNEE_WINDOW_S = 0.08
 """Seconds to either side over which a knee should bend like a parabola."""
-EDGE = 0.03
+RELIEF_RAMP_S = 0.03
 """Seconds over which relief sets in."""
-MOST_PITCH = np.radians(6.0)
-MOST_SHIFT = 0.004
+MAX_PITCH = np.radians(6.0)
+MAX_ROOT_OFFSET_M = 0.004
 """Metres by which the root may give way: trembling, not motion."""
-SHORT_LEVER = 0.03
+MIN_LEVER_M = 0.03
 """Metres: a foot that turns about less lever hardly lengthens the leg."""
 N_ROUNDS = 2
 
 
-def knee_relief(
-    plants: Sequence[Plant], poses: WorldPoses, shift: Array, frame_rate: float
-) -> tuple[list[Plant], Array]:
+def smooth_knees(
+    trajectories: Sequence[FootTrajectory], poses: WorldPoses, shift: Array, frame_rate: float
+) -> tuple[list[FootTrajectory], Array]:
     """Return plants with pitched feet, and a root shift, that let the knees bend smoothly.
 
     A leg that is nearly straight bends by six degrees when it gets a millimetre shorter, so
@@ -47,67 +47,73 @@ def knee_relief(
         By which the root, and so the hip, will be moved.
     frame_rate : float, hertz
     """
-    relieved = []
+    smoothed = []
     normal = np.zeros((len(shift), 3, 3)) + 0.1 * np.eye(3)
-    wish = np.zeros_like(shift)
-    for plant in plants:
-        plant, along, lacking = _pitched(plant, poses, shift, frame_rate)
-        relieved.append(plant)
-        weight = gaussian_filter1d(plant.contact.astype(float), EDGE * frame_rate)
-        weight *= plant.contact
+    weighted_offset = np.zeros_like(shift)
+    for trajectory in trajectories:
+        trajectory, along, missing_reach = _pitch_foot(trajectory, poses, shift, frame_rate)
+        smoothed.append(trajectory)
+        weight = gaussian_filter1d(trajectory.contact.astype(float), RELIEF_RAMP_S * frame_rate)
+        weight *= trajectory.contact
         normal += weight[:, None, None] * along[:, :, None] * along[:, None, :]
-        tremble = MOST_SHIFT * np.tanh(lacking / MOST_SHIFT)
-        wish -= (weight * tremble)[:, None] * along
-    return relieved, shift + np.linalg.solve(normal, wish[..., None])[..., 0]
+        offset = MAX_ROOT_OFFSET_M * np.tanh(missing_reach / MAX_ROOT_OFFSET_M)
+        weighted_offset -= (weight * offset)[:, None] * along
+    return smoothed, shift + np.linalg.solve(normal, weighted_offset[..., None])[..., 0]
 
 
-def _pitched(
-    plant: Plant, poses: WorldPoses, shift: Array, frame_rate: float
-) -> tuple[Plant, Array, Array]:
+def _pitch_foot(
+    trajectory: FootTrajectory, poses: WorldPoses, shift: Array, frame_rate: float
+) -> tuple[FootTrajectory, Array, Array]:
     """Pitch the foot about its ball; return also the leg's direction and what it lacks."""
-    hip, knee, ankle = (poses.positions[:, joint] for joint in plant.leg.chain)
+    hip, knee, ankle = (poses.positions[:, joint] for joint in trajectory.leg.chain)
     thigh, shin = np.linalg.norm(knee - hip, axis=1), np.linalg.norm(ankle - knee, axis=1)
-    way = plant.ankle - hip - shift
-    bend = _bend(np.linalg.norm(way, axis=1), thigh, shin)
-    wanted = _reach(np.maximum(_calmed(bend, frame_rate), 0.0), thigh, shin)
-    heel_free = plant.contact * np.clip(1.0 - 3.0 * plant.load[:, 0], 0.0, 1.0)
-    heel_free = gaussian_filter1d(heel_free, EDGE * frame_rate)
+    hip_to_ankle = trajectory.ankle - hip - shift
+    flexion = _flexion_from_distance(np.linalg.norm(hip_to_ankle, axis=1), thigh, shin)
+    target_distance = _distance_from_flexion(
+        np.maximum(_smooth_flexion(flexion, frame_rate), 0.0), thigh, shin
+    )
+    heel_free = trajectory.contact * np.clip(1.0 - 3.0 * trajectory.load[:, 0], 0.0, 1.0)
+    heel_free = gaussian_filter1d(heel_free, RELIEF_RAMP_S * frame_rate)
     for _ in range(N_ROUNDS):
-        distance = np.linalg.norm(plant.ankle - hip - shift, axis=1)
-        along = (plant.ankle - hip - shift) / np.maximum(distance, 1e-9)[:, None]
-        to_ball = plant.arms[:, 1]
-        across = np.cross(UP, to_ball - plant.arms[:, 0])
+        distance = np.linalg.norm(trajectory.ankle - hip - shift, axis=1)
+        along = (trajectory.ankle - hip - shift) / np.maximum(distance, 1e-9)[:, None]
+        to_ball = trajectory.sole_offsets[:, 1]
+        across = np.cross(UP, to_ball - trajectory.sole_offsets[:, 0])
         across /= np.maximum(np.linalg.norm(across, axis=1), 1e-9)[:, None]
         lever = np.einsum("fi,fi->f", np.cross(across, -to_ball), along)
-        angle = heel_free * (wanted - distance) * lever / (lever**2 + SHORT_LEVER**2)
-        angle = MOST_PITCH * np.tanh(angle / MOST_PITCH)
+        angle = heel_free * (target_distance - distance) * lever / (lever**2 + MIN_LEVER_M**2)
+        angle = MAX_PITCH * np.tanh(angle / MAX_PITCH)
         pitch = quaternion_from_rotation_vector(angle[:, None] * across)
-        plant = replace(
-            plant,
-            turn=multiply(pitch, plant.turn),
-            ankle=plant.ankle + to_ball - rotate(pitch, to_ball),
-            arms=rotate(pitch[:, None], plant.arms),
+        trajectory = replace(
+            trajectory,
+            foot_rotation=multiply(pitch, trajectory.foot_rotation),
+            ankle=trajectory.ankle + to_ball - rotate(pitch, to_ball),
+            sole_offsets=rotate(pitch[:, None], trajectory.sole_offsets),
         )
-    way = plant.ankle - hip - shift
-    distance = np.linalg.norm(way, axis=1)
-    return plant, way / np.maximum(distance, 1e-9)[:, None], wanted - distance
+    hip_to_ankle = trajectory.ankle - hip - shift
+    distance = np.linalg.norm(hip_to_ankle, axis=1)
+    return (
+        trajectory,
+        hip_to_ankle / np.maximum(distance, 1e-9)[:, None],
+        target_distance - distance,
+    )
 
 
-def _calmed(bend: Array, frame_rate: float) -> Array:
-    window = 2 * round(CALM * frame_rate) + 1
-    if window < 5 or len(bend) < window:
-        return bend
+def _smooth_flexion(flexion: Array, frame_rate: float) -> Array:
+    window = 2 * round(KNEE_WINDOW_S * frame_rate) + 1
+    if window < 5 or len(flexion) < window:
+        return flexion
     from scipy.signal import savgol_filter  # takes a second to import: not before it is needed
 
-    return np.asarray(savgol_filter(bend, window, 2))
+    return np.asarray(savgol_filter(flexion, window, 2))
 
 
-def _bend(distance: Array, thigh: Array, shin: Array) -> Array:
+def _flexion_from_distance(distance: Array, thigh: Array, shin: Array) -> Array:
     """Return the knee's flexion in radians, 0 straight, for a distance of hip and ankle."""
     cosine = (distance**2 - thigh**2 - shin**2) / np.maximum(2.0 * thigh * shin, 1e-12)
     return np.asarray(np.arccos(np.clip(cosine, -1.0, 1.0)))
 
 
-def _reach(bend: Array, thigh: Array, shin: Array) -> Array:
+def _distance_from_flexion(flexion: Array, thigh: Array, shin: Array) -> Array:
     """Undo `_bend`."""
-    return np.asarray(np.sqrt(thigh**2 + shin**2 + 2.0 * thigh * shin * np.cos(bend)))
+    return np.asarray(np.sqrt(thigh**2 + shin**2 + 2.0 * thigh * shin * np.cos(flexion)))

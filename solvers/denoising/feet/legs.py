@@ -36,7 +36,7 @@ class Leg:
 def find_legs(skeleton: Skeleton, humanoid_map: HumanoidMap | None = None) -> tuple[Leg, ...]:
     """Return the legs whose hip, knee and ankle are known, left first."""
     joints = (humanoid_map or find_humanoid_map(skeleton)).indices(skeleton)
-    found = []
+    legs = []
     for side in SIDES:
         chain = [joints.get(f"{side}{role}") for role in ("UpperLeg", "LowerLeg", "Foot")]
         if None in chain:
@@ -45,8 +45,8 @@ def find_legs(skeleton: Skeleton, humanoid_map: HumanoidMap | None = None) -> tu
         if knee in skeleton.subtree(hip)[1:] and ankle in skeleton.subtree(knee)[1:]:
             toe = joints.get(f"{side}Toes")
             toe = toe if toe in skeleton.subtree(ankle)[1:] else None
-            found.append(Leg(side, hip, knee, ankle, toe))
-    return tuple(found)
+            legs.append(Leg(side, hip, knee, ankle, toe))
+    return tuple(legs)
 
 
 def find_foot_joints(
@@ -61,9 +61,11 @@ def find_foot_joints(
         humanoid = humanoid_map or find_humanoid_map(recording.skeleton)
         known = humanoid.indices(recording.skeleton)
     else:
-        place = {name: index for index, name in enumerate(recording.names)}
+        index_of_name = {name: index for index, name in enumerate(recording.names)}
         roles = humanoid_map.joints if humanoid_map else roles_by_name(recording.names)
-        known = {role: place[name] for role, name in roles.items() if name in place}
+        known = {
+            role: index_of_name[name] for role, name in roles.items() if name in index_of_name
+        }
     if any(f"{side}Foot" not in known for side in SIDES):
         return None
     ankles = [known[f"{side}Foot"] for side in SIDES]

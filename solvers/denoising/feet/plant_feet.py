@@ -13,10 +13,10 @@ from ...motion.skeletons import ReachSettings, find_cuts, is_short, pieces, reac
 from ...progress import Progress, unwatched, within
 from ...rotations import inverse, multiply
 from ...settings import Settings, setting
-from .knee_smoothing import knee_relief
+from .foot_trajectory import FootTrajectory, plan_foot_trajectory
+from .knee_smoothing import smooth_knees
 from .legs import SIDES, Leg, find_legs
-from .foot_trajectory import Plant, planted_path
-from .root_offset import root_shift
+from .root_offset import compute_root_offset
 
 Array = NDArray[np.float64]
 Flags = NDArray[np.bool_]
@@ -133,28 +133,28 @@ def plant_feet(
        Symposium on Computer Animation. doi:10.1145/545261.545277
     """
     humanoid_map = humanoid_map or find_humanoid_map(motion.skeleton)
-    legs = _legs(motion, humanoid_map)
-    contacts = None if contacts is None else _checked(contacts, motion)
-    cuts, parts = find_cuts(motion), []
+    legs = _require_legs(motion, humanoid_map)
+    contacts = None if contacts is None else _check_contacts(contacts, motion)
+    cuts, results = find_cuts(motion), []
     for start, stop in pieces(motion, cuts):
-        piece = motion.slice(start, stop) if cuts else motion
+        segment = motion.slice(start, stop) if cuts else motion
         too_short = bool(cuts) and is_short(stop - start, motion.frame_rate)
         if contacts is not None:
             standing = contacts[start:stop]
         elif too_short:
             standing = np.zeros((stop - start, len(SIDES)), dtype=np.bool_)
         else:
-            standing = detect_contacts(piece, humanoid_map)
+            standing = detect_contacts(segment, humanoid_map)
         if too_short:
-            parts.append(Planted(piece, standing, 0.0, 0.0))
+            results.append(Planted(segment, standing, 0.0, 0.0))
         else:
             step = within(progress, start / motion.n_frames, stop / motion.n_frames)
-            parts.append(_planted_piece(piece, legs, standing, settings, step))
+            results.append(_plant_segment(segment, legs, standing, settings, step))
     progress(1.0, "Planted the feet")
-    return _joined(motion, parts) if cuts else parts[0]
+    return _join_segments(motion, results) if cuts else results[0]
 
 
-def _planted_piece(
+def _plant_segment(
     motion: Motion,
     legs: Sequence[Leg],
     contacts: Flags,
@@ -168,45 +168,51 @@ def _planted_piece(
         return Planted(motion, contacts, 0.0, 0.0)
     progress(0.2, "Planning the feet")
     poses = forward_kinematics(motion)
-    plants = _plants(motion, poses, standing, contacts, settings)
+    trajectories = _plan_trajectories(motion, poses, standing, contacts, settings)
     progress(0.4, "Moving the hips")
-    shift = _hips_shift(motion, poses, plants, settings)
+    root_offset = _root_offset(motion, poses, trajectories, settings)
     progress(0.6, "Solving the legs")
     if settings.spare_knees:
-        plants, shift = knee_relief(plants, poses, shift, motion.frame_rate)
-    result = motion.with_poses(root_positions=motion.root_positions + shift)
-    for plant in plants:
-        result = _followed(result, poses, plant, settings.softness)
+        trajectories, root_offset = smooth_knees(
+            trajectories, poses, root_offset, motion.frame_rate
+        )
+    result = motion.with_poses(root_positions=motion.root_positions + root_offset)
+    for trajectory in trajectories:
+        result = _apply_trajectory(result, poses, trajectory, settings.softness)
     after = forward_kinematics(result)
     return Planted(
         result,
         contacts,
-        slide_before=sum(plant.slide(motion.skeleton, poses) for plant in plants),
-        slide_after=sum(plant.slide(motion.skeleton, after) for plant in plants),
+        slide_before=sum(
+            trajectory.slide(motion.skeleton, poses) for trajectory in trajectories
+        ),
+        slide_after=sum(
+            trajectory.slide(motion.skeleton, after) for trajectory in trajectories
+        ),
     )
 
 
-def _joined(motion: Motion, parts: Sequence[Planted]) -> Planted:
-    rotations = np.concatenate([part.motion.rotations for part in parts])
-    roots = np.concatenate([part.motion.root_positions for part in parts])
+def _join_segments(motion: Motion, results: Sequence[Planted]) -> Planted:
+    rotations = np.concatenate([result.motion.rotations for result in results])
+    roots = np.concatenate([result.motion.root_positions for result in results])
     return Planted(
         motion.with_poses(rotations, roots),
-        np.concatenate([part.contacts for part in parts]),
-        slide_before=sum(part.slide_before for part in parts),
-        slide_after=sum(part.slide_after for part in parts),
+        np.concatenate([result.contacts for result in results]),
+        slide_before=sum(result.slide_before for result in results),
+        slide_after=sum(result.slide_after for result in results),
     )
 
 
-def _plants(
+def _plan_trajectories(
     motion: Motion,
     poses: WorldPoses,
     legs: Sequence[Leg],
     contacts: Flags,
     settings: PlantSettings,
-) -> list[Plant]:
+) -> list[FootTrajectory]:
     """Plan the course of each foot for itself."""
     return [
-        planted_path(
+        plan_foot_trajectory(
             motion,
             poses,
             leg,
@@ -220,40 +226,50 @@ def _plants(
     ]
 
 
-def _hips_shift(
-    motion: Motion, poses: WorldPoses, plants: Sequence[Plant], settings: PlantSettings
+def _root_offset(
+    motion: Motion,
+    poses: WorldPoses,
+    trajectories: Sequence[FootTrajectory],
+    settings: PlantSettings,
 ) -> Array:
     """Return how the root must move for the legs to reach, (n_frames, 3); 0 if it may not."""
     if not settings.move_root or motion.n_frames == 1:
         return np.zeros_like(motion.root_positions)
-    return root_shift(
+    return compute_root_offset(
         motion.skeleton,
         poses,
-        plants,
+        trajectories,
         motion.frame_rate,
         softness=settings.softness,
         blend=settings.blend,
     )
 
 
-def _followed(motion: Motion, poses: WorldPoses, plant: Plant, softness: float) -> Motion:
+def _apply_trajectory(
+    motion: Motion, poses: WorldPoses, trajectory: FootTrajectory, softness: float
+) -> Motion:
     """Return the motion whose ankle follows its course and whose foot and toes are turned.
 
     `poses` are those of the motion before anything was changed.
     """
-    leg = plant.leg
-    result = reach(motion, leg.chain, plant.ankle, ReachSettings(softness=softness))
-    for joint, turn in ((leg.ankle, plant.turn), (leg.toe, plant.toe_turn)):
+    leg = trajectory.leg
+    result = reach(motion, leg.chain, trajectory.ankle, ReachSettings(softness=softness))
+    for joint, foot_rotation in (
+        (leg.ankle, trajectory.foot_rotation),
+        (leg.toe, trajectory.toe_rotation),
+    ):
         if joint is not None:
-            above = forward_kinematics(result).rotations[:, motion.skeleton.parents[joint]]
+            parent_rotations = forward_kinematics(result).rotations[
+                :, motion.skeleton.parents[joint]
+            ]
             rotations = result.rotations.copy()
-            wanted = multiply(turn, poses.rotations[:, joint])
-            rotations[:, joint] = multiply(inverse(above), wanted)
+            target = multiply(foot_rotation, poses.rotations[:, joint])
+            rotations[:, joint] = multiply(inverse(parent_rotations), target)
             result = result.with_poses(rotations)
     return result
 
 
-def _legs(motion: Motion, humanoid_map: HumanoidMap) -> tuple[Leg, ...]:
+def _require_legs(motion: Motion, humanoid_map: HumanoidMap) -> tuple[Leg, ...]:
     legs = find_legs(motion.skeleton, humanoid_map)
     if not legs:
         raise InvalidMotionError(
@@ -270,7 +286,7 @@ def _legs(motion: Motion, humanoid_map: HumanoidMap) -> tuple[Leg, ...]:
     return legs
 
 
-def _checked(contacts: Flags, motion: Motion) -> Flags:
+def _check_contacts(contacts: Flags, motion: Motion) -> Flags:
     contacts = np.array(contacts, dtype=np.bool_)
     if contacts.shape != (motion.n_frames, len(SIDES)):
         raise InvalidMotionError(

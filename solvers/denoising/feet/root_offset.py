@@ -7,20 +7,20 @@ from numpy.typing import NDArray
 
 from ...motion import Skeleton, WorldPoses
 from ...signals import smooth_correction
-from .foot_trajectory import Plant
+from .foot_trajectory import FootTrajectory
 
 Array = NDArray[np.float64]
 
 N_ROUNDS = 30
-CLOSE_ENOUGH = 5e-4
-SLOWER = 2.0
+MAX_MISSING_REACH_M = 5e-4
+BLEND_FACTOR = 2.0
 """The body is heavier than a foot: its shift fades over this many times the blend."""
 
 
-def root_shift(
+def compute_root_offset(
     skeleton: Skeleton,
     poses: WorldPoses,
-    plants: Sequence[Plant],
+    trajectories: Sequence[FootTrajectory],
     frame_rate: float,
     *,
     softness: float,
@@ -44,29 +44,37 @@ def root_shift(
         Time over which a foot's correction fades.
     """
     n_frames = len(poses.positions)
-    shift, goal = np.zeros((n_frames, 3)), np.zeros((n_frames, 3))
-    still = np.zeros((n_frames - 1, 3)), np.zeros(n_frames - 1)
+    offset, goal = np.zeros((n_frames, 3)), np.zeros((n_frames, 3))
+    no_velocity = np.zeros((n_frames - 1, 3)), np.zeros(n_frames - 1)
     for _ in range(N_ROUNDS):
         missing = np.zeros((n_frames, 3))
-        for plant in plants:
-            lacking = _missing(skeleton, poses, plant, shift, softness)
-            missing = np.where(np.abs(lacking) > np.abs(missing), lacking, missing)
-        if np.linalg.norm(missing, axis=1).max() < CLOSE_ENOUGH:
+        for trajectory in trajectories:
+            leg_missing = _missing_reach(skeleton, poses, trajectory, offset, softness)
+            missing = np.where(np.abs(leg_missing) > np.abs(missing), leg_missing, missing)
+        if np.linalg.norm(missing, axis=1).max() < MAX_MISSING_REACH_M:
             break
-        goal = np.where(missing.any(axis=1)[:, None], shift + missing, goal)
-        asked = np.repeat(goal.any(axis=1)[:, None], 3, axis=1).astype(np.float64)
-        shift = smooth_correction(*still, frame_rate, SLOWER * blend, goal=goal, pulled=asked)
-    return shift
+        goal = np.where(missing.any(axis=1)[:, None], offset + missing, goal)
+        goal_weight = np.repeat(goal.any(axis=1)[:, None], 3, axis=1).astype(np.float64)
+        offset = smooth_correction(
+            *no_velocity, frame_rate, BLEND_FACTOR * blend, goal=goal, pulled=goal_weight
+        )
+    return offset
 
 
-def _missing(
-    skeleton: Skeleton, poses: WorldPoses, plant: Plant, shift: Array, softness: float
+def _missing_reach(
+    skeleton: Skeleton,
+    poses: WorldPoses,
+    trajectory: FootTrajectory,
+    offset: Array,
+    softness: float,
 ) -> Array:
     """Return how far, and in which direction, the root must come nearer to the foot."""
-    hip, knee, ankle = (poses.positions[:, joint] for joint in plant.leg.chain)
-    longest = np.linalg.norm(knee - hip, axis=1) + np.linalg.norm(ankle - knee, axis=1)
-    usable = np.maximum((1.0 - softness) * longest, np.linalg.norm(ankle - hip, axis=1))
-    way = plant.ankle - hip - shift
-    distance = np.linalg.norm(way, axis=1)
-    lacking = np.where(plant.contact, np.maximum(distance - usable, 0.0), 0.0)
-    return np.asarray(way * (lacking / np.maximum(distance, 1e-9))[:, None])
+    hip, knee, ankle = (poses.positions[:, joint] for joint in trajectory.leg.chain)
+    leg_length = np.linalg.norm(knee - hip, axis=1) + np.linalg.norm(ankle - knee, axis=1)
+    usable_length = np.maximum(
+        (1.0 - softness) * leg_length, np.linalg.norm(ankle - hip, axis=1)
+    )
+    to_ankle = trajectory.ankle - hip - offset
+    distance = np.linalg.norm(to_ankle, axis=1)
+    leg_missing = np.where(trajectory.contact, np.maximum(distance - usable_length, 0.0), 0.0)
+    return np.asarray(to_ankle * (leg_missing / np.maximum(distance, 1e-9))[:, None])

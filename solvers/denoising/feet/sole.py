@@ -10,16 +10,16 @@ from .legs import Leg
 
 Array = NDArray[np.float64]
 
-HEEL_LENGTH = 0.2
+HEEL_FRACTION = 0.2
 """How far the heel is behind the ankle, as part of the way from ankle to ball."""
-ROLLING = 0.007
+LOAD_FALLOFF_M = 0.007
 """Metres, for a leg of 0.9 m: a point this much above the lowest carries 1/e of its load."""
-TIP_RISE = 0.012
+TIP_HEIGHT_M = 0.012
 """Metres, for a leg of 0.9 m, by which the ball is above the tip when both carry as much:
 captured toes tremble, and a trembling tip should not carry a resting foot."""
-STILL = 0.15
+MAX_REST_SPEED = 0.15
 """Metres per second below which all of the foot rests on the floor."""
-CALM = 0.03
+SMOOTHING_S = 0.03
 """Seconds over which speeds and heights are smoothed before they are judged."""
 
 
@@ -32,17 +32,19 @@ def sole_points(skeleton: Skeleton, poses: WorldPoses, leg: Leg) -> Array:
     floor with that.
     """
     rest = skeleton.rest_positions
-    ball = leg.toe if leg.toe is not None else _end(skeleton, leg.ankle)
+    ball = leg.toe if leg.toe is not None else _first_child(skeleton, leg.ankle)
     foot = rest[ball] - rest[leg.ankle]
-    heel = np.array([0.0, 0.0, foot[2]]) - HEEL_LENGTH * foot * (1.0, 1.0, 0.0)
+    heel = np.array([0.0, 0.0, foot[2]]) - HEEL_FRACTION * foot * (1.0, 1.0, 0.0)
     ankle = poses.positions[:, leg.ankle]
     points = [ankle + rotate(poses.rotations[:, leg.ankle], heel), poses.positions[:, ball]]
-    if leg.toe is not None and (tip := _end(skeleton, leg.toe)) != leg.toe:
+    if leg.toe is not None and (tip := _first_child(skeleton, leg.toe)) != leg.toe:
         points.append(poses.positions[:, tip])
     return np.stack(points, axis=1)
 
 
-def standing_heights(points: Array, contact: NDArray[np.bool_], frame_rate: float) -> Array:
+def measure_standing_heights(
+    points: Array, contact: NDArray[np.bool_], frame_rate: float
+) -> Array:
     """Return how much higher than the ball each point is when the foot rests, (n_points,).
 
     Rest poses are not always drawn with flat feet, so it is measured where all points stand
@@ -51,14 +53,14 @@ def standing_heights(points: Array, contact: NDArray[np.bool_], frame_rate: floa
     level = np.zeros(points.shape[1])
     if len(points) > 1:
         speeds = np.linalg.norm(np.gradient(points, axis=0), axis=-1) * frame_rate
-        speeds = gaussian_filter1d(speeds, CALM * frame_rate, axis=0)
-        rests = contact & (speeds < STILL).all(axis=1)
+        speeds = gaussian_filter1d(speeds, SMOOTHING_S * frame_rate, axis=0)
+        rests = contact & (speeds < MAX_REST_SPEED).all(axis=1)
         if rests.any():
             level = np.median((points - points[:, 1:2])[rests, :, 2], axis=0)
     return level
 
 
-def loads(heights: Array, frame_rate: float, size: float) -> Array:
+def estimate_loads(heights: Array, frame_rate: float, size: float) -> Array:
     """Return which part of the load each point carries, (n_frames, n_points), summing to 1.
 
     The lowest carry it; as the foot rolls it passes smoothly from heel to ball to tip.
@@ -71,12 +73,14 @@ def loads(heights: Array, frame_rate: float, size: float) -> Array:
     size : float
         Of the body, 1 for a leg of 0.9 m.
     """
-    calm = gaussian_filter1d(heights, CALM * frame_rate, axis=0)
-    calm[:, 2:] += TIP_RISE * size
-    shares = np.exp((calm.min(axis=1, keepdims=True) - calm) / (ROLLING * size))
-    return np.asarray(shares / shares.sum(axis=1, keepdims=True))
+    smoothed = gaussian_filter1d(heights, SMOOTHING_S * frame_rate, axis=0)
+    smoothed[:, 2:] += TIP_HEIGHT_M * size
+    fractions = np.exp(
+        (smoothed.min(axis=1, keepdims=True) - smoothed) / (LOAD_FALLOFF_M * size)
+    )
+    return np.asarray(fractions / fractions.sum(axis=1, keepdims=True))
 
 
-def _end(skeleton: Skeleton, joint: int) -> int:
+def _first_child(skeleton: Skeleton, joint: int) -> int:
     """Return the joint's first child, or itself where it has none."""
     return next(iter(skeleton.children[joint]), joint)

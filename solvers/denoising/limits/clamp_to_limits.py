@@ -21,14 +21,14 @@ from ...rotations import (
 
 Array = NDArray[np.float64]
 
-SOFTNESS = np.radians(5.0)
+DEFAULT_SOFTNESS = np.radians(5.0)
 
 
 def clamp_to_limits(
     motion: Motion,
     limits: JointLimits,
     *,
-    softness: float = SOFTNESS,
+    softness: float = DEFAULT_SOFTNESS,
     humanoid_map: HumanoidMap | None = None,
 ) -> Motion:
     """Return the motion with each joint drawn back to its limits.
@@ -59,12 +59,16 @@ def clamp_to_limits(
     if not softness >= 0.0:
         raise InvalidSettingError(f"softness is {softness:g} rad; it must not be negative.")
     rotations = motion.rotations.copy()
-    for joint, limit in _bound_limits(limits, motion.skeleton, humanoid_map):
-        angles, beyond = limit.angles(motion.rotations[:, joint])
-        outside = (beyond != 0.0).any(axis=1)
+    for joint, limit in _limits_of_skeleton(limits, motion.skeleton, humanoid_map):
+        angles, signed_excess = limit.angles(motion.rotations[:, joint])
+        outside = (signed_excess != 0.0).any(axis=1)
         if outside.any():
-            held = angles[outside] - beyond[outside] + _soft(beyond[outside], softness)
-            rotations[outside, joint] = limit.rotations(held)
+            clamped = (
+                angles[outside]
+                - signed_excess[outside]
+                + _soften(signed_excess[outside], softness)
+            )
+            rotations[outside, joint] = limit.rotations(clamped)
     return motion.with_poses(rotations=rotations)
 
 
@@ -77,10 +81,10 @@ def limit_excess(
     nothing was observed.
     """
     excess = np.zeros((motion.n_frames, motion.n_joints))
-    for joint, limit in _bound_limits(limits, motion.skeleton, humanoid_map):
-        _, beyond = limit.angles(motion.rotations[:, joint])
+    for joint, limit in _limits_of_skeleton(limits, motion.skeleton, humanoid_map):
+        _, signed_excess = limit.angles(motion.rotations[:, joint])
         excess[:, joint] = np.maximum(
-            excess[:, joint], np.nan_to_num(np.abs(beyond)).max(axis=1)
+            excess[:, joint], np.nan_to_num(np.abs(signed_excess)).max(axis=1)
         )
     return excess
 
@@ -97,42 +101,44 @@ class _Limit:
 
     def angles(self, rotations: Array) -> tuple[Array, Array]:
         """Return the limited coordinates and how far they are beyond, each (n_frames, 3)."""
-        seen = multiply(multiply(inverse(self.left), rotations), self.right)
+        in_limit_frame = multiply(multiply(inverse(self.left), rotations), self.right)
         if self.order == ROTATION_VECTOR:
-            vectors = rotation_vector_from_quaternion(seen)
-            return vectors, self._beyond(vectors)
+            vectors = rotation_vector_from_quaternion(in_limit_frame)
+            return vectors, self._signed_excess(vectors)
         # Every rotation has two triples of Euler angles, each up to full turns. Take the one
         # that breaks the limits least and turns least about the axes that are free: else a knee
         # far beyond its limit could be read as half a turn about both other axes.
-        first = euler_from_quaternion(seen, self.order)
-        forms = self._near(np.stack([first, first * (1.0, -1.0, 1.0) + np.pi]))
-        beyond = self._beyond(forms)
+        first = euler_from_quaternion(in_limit_frame, self.order)
+        forms = self._wrap_to_limits(np.stack([first, first * (1.0, -1.0, 1.0) + np.pi]))
+        signed_excess = self._signed_excess(forms)
         free = np.isinf(self.lower) & np.isinf(self.upper)
-        cost = np.sum(np.abs(beyond) + free * np.abs(forms), axis=-1)
-        second = (cost[1] < cost[0])[:, None]
-        return np.where(second, forms[1], forms[0]), np.where(second, beyond[1], beyond[0])
+        cost = np.sum(np.abs(signed_excess) + free * np.abs(forms), axis=-1)
+        use_second = (cost[1] < cost[0])[:, None]
+        return np.where(use_second, forms[1], forms[0]), np.where(
+            use_second, signed_excess[1], signed_excess[0]
+        )
 
     def rotations(self, angles: Array) -> Array:
         """Undo `angles`."""
         if self.order == ROTATION_VECTOR:
-            seen = quaternion_from_rotation_vector(angles)
+            in_limit_frame = quaternion_from_rotation_vector(angles)
         else:
-            seen = quaternion_from_euler(angles, self.order)
-        return multiply(multiply(self.left, seen), inverse(self.right))
+            in_limit_frame = quaternion_from_euler(angles, self.order)
+        return multiply(multiply(self.left, in_limit_frame), inverse(self.right))
 
-    def _near(self, angles: Array) -> Array:
+    def _wrap_to_limits(self, angles: Array) -> Array:
         """Shift by full turns to the nearest of the middle of the limits, where both exist."""
         bounded = np.isfinite(self.lower) & np.isfinite(self.upper)
-        middle = 0.5 * (np.where(bounded, self.lower, 0.0) + np.where(bounded, self.upper, 0.0))
-        return np.asarray(angles - 2 * np.pi * np.round((angles - middle) / (2 * np.pi)))
+        center = 0.5 * (np.where(bounded, self.lower, 0.0) + np.where(bounded, self.upper, 0.0))
+        return np.asarray(angles - 2 * np.pi * np.round((angles - center) / (2 * np.pi)))
 
-    def _beyond(self, angles: Array) -> Array:
+    def _signed_excess(self, angles: Array) -> Array:
         """Signed distance from the box: 0 inside."""
         over = np.maximum(angles - self.upper, 0.0)
         return np.asarray(over + np.minimum(angles - self.lower, 0.0))
 
 
-def _bound_limits(
+def _limits_of_skeleton(
     limits: JointLimits, skeleton: Skeleton, humanoid_map: HumanoidMap | None
 ) -> Iterator[tuple[int, _Limit]]:
     """Yield the limits that this skeleton has a joint for, in terms of its own rest pose."""
@@ -143,24 +149,24 @@ def _bound_limits(
         humanoid_map = humanoid_map or find_humanoid_map(skeleton)
         roles = humanoid_map.indices(skeleton)
         alignment = t_pose_alignment(skeleton, humanoid_map)
-    for place, name in enumerate(limits.names):
-        by_role = limits.by_role[place]
+    for index, name in enumerate(limits.names):
+        by_role = limits.by_role[index]
         joint = (roles if by_role else joints).get(name)
         if joint is None:
             continue
-        left, right = limits.left[place], limits.right[place]
+        left, right = limits.left[index], limits.right[index]
         if by_role:
             # A canonical rotation is parent^-1 L own, see motion/canonical.py.
-            above = skeleton.parents[joint]
-            left = multiply(alignment[above], left) if above >= 0 else left
+            parent = skeleton.parents[joint]
+            left = multiply(alignment[parent], left) if parent >= 0 else left
             right = multiply(alignment[joint], right)
         yield (
             joint,
-            _Limit(left, right, limits.orders[place], limits.lower[place], limits.upper[place]),
+            _Limit(left, right, limits.orders[index], limits.lower[index], limits.upper[index]),
         )
 
 
-def _soft(beyond: Array, softness: float) -> Array:
+def _soften(signed_excess: Array, softness: float) -> Array:
     if softness == 0.0:
-        return np.zeros_like(beyond)
-    return np.asarray(softness * np.tanh(beyond / softness))
+        return np.zeros_like(signed_excess)
+    return np.asarray(softness * np.tanh(signed_excess / softness))

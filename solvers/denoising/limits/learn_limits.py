@@ -96,14 +96,14 @@ def learn_joint_limits(
     if humanoid_maps is None:
         humanoid_maps = [find_humanoid_map(motion.skeleton) for motion in motions]
     examples: dict[Key, list[Array]] = {}
-    for place, (motion, humanoid) in enumerate(zip(motions, humanoid_maps, strict=True)):
-        for key, rotations in _turning(motion, humanoid).items():
+    for index, (motion, humanoid) in enumerate(zip(motions, humanoid_maps, strict=True)):
+        for key, rotations in _observed_rotations(motion, humanoid).items():
             examples.setdefault(key, []).append(rotations)
-        progress(0.5 * (place + 1) / len(motions), "Reading the examples")
+        progress(0.5 * (index + 1) / len(motions), "Reading the examples")
     boxes = {}
-    for place, (key, parts) in enumerate(examples.items()):
-        boxes[key] = _box(np.concatenate(parts), settings)
-        progress(0.5 + 0.5 * (place + 1) / len(examples), "Learning joint limits")
+    for index, (key, rotations_list) in enumerate(examples.items()):
+        boxes[key] = _learn_limit(np.concatenate(rotations_list), settings)
+        progress(0.5 + 0.5 * (index + 1) / len(examples), "Learning joint limits")
     if not boxes:
         raise InvalidMotionError("No joint of the examples is ever observed.")
     lefts, rights, lowers, uppers = zip(*boxes.values(), strict=True)
@@ -118,13 +118,13 @@ def learn_joint_limits(
     )
 
 
-def _turning(motion: Motion, humanoid: HumanoidMap) -> dict[Key, Array]:
+def _observed_rotations(motion: Motion, humanoid: HumanoidMap) -> dict[Key, Array]:
     """Return the observed rotations, (n, 4), of each joint below the hips."""
     skeleton = motion.skeleton
     canonical = canonical_rotations(motion, humanoid)
     hips = humanoid.indices(skeleton).get("hips", 0)
     free = {0, hips, *skeleton.ancestors(hips)}
-    found = {}
+    result = {}
     for joint, name in enumerate(skeleton.names):
         if joint in free or skeleton.is_end_site(joint):
             continue
@@ -132,20 +132,22 @@ def _turning(motion: Motion, humanoid: HumanoidMap) -> dict[Key, Array]:
         rotations = motion.rotations[:, joint] if role is None else canonical[:, joint]
         rotations = rotations[np.isfinite(rotations).all(axis=1)]
         if len(rotations):
-            found[role is not None, role or name] = rotations
-    return found
+            result[role is not None, role or name] = rotations
+    return result
 
 
-def _box(rotations: Array, settings: JointLimitsSettings) -> tuple[Array, Array, Array, Array]:
+def _learn_limit(
+    rotations: Array, settings: JointLimitsSettings
+) -> tuple[Array, Array, Array, Array]:
     """Return left, right, lower and upper of one limit."""
-    middle = mean_rotation(rotations)
-    vectors = rotation_vector_from_quaternion(multiply(inverse(middle), rotations))
+    mean = mean_rotation(rotations)
+    vectors = rotation_vector_from_quaternion(multiply(inverse(mean), rotations))
     _, axes = np.linalg.eigh(vectors.T @ vectors)
     axes = axes[:, ::-1] * np.sign(np.linalg.det(axes[:, ::-1]))
-    along = vectors @ axes
-    ends = (settings.percentile, 100.0 - settings.percentile)
-    low, high = np.percentile(along, ends, axis=0)
-    wider = settings.margin + settings.stretch * (high - low)
-    turn = quaternion_from_matrix(axes)
+    coordinates = vectors @ axes
+    percentiles = (settings.percentile, 100.0 - settings.percentile)
+    low, high = np.percentile(coordinates, percentiles, axis=0)
+    widening = settings.margin + settings.stretch * (high - low)
+    axes_rotation = quaternion_from_matrix(axes)
     # left^-1 L right turns by axes^T vector where middle^-1 L turns by vector.
-    return multiply(middle, turn), turn, low - wider, high + wider
+    return multiply(mean, axes_rotation), axes_rotation, low - widening, high + widening

@@ -8,11 +8,11 @@ from scipy.optimize import nnls
 
 Array = NDArray[np.float64]
 
-DOUBT = 0.3
+INDEPENDENT_FRACTION = 0.3
 """Share of each estimate's own error that is held to be independent of all others, besides."""
-TINY = 1e-9
+MIN_SQUARED_ERROR = 1e-9
 """Square metres: errors below 0.03 mm are the same."""
-FIRMLY = 100.0
+SUM_WEIGHT = 100.0
 """How much heavier than the errors it weighs that the weights add up to one."""
 
 
@@ -39,10 +39,10 @@ def blend_weights(trials: Sequence[Array]) -> Array:
     """
     errors = np.array(trials).reshape(len(trials), -1)
     products = errors @ errors.T / len(trials[0])
-    squares = np.diag(products) + TINY
-    products += np.diag(TINY + DOUBT * squares)
+    squares = np.diag(products) + MIN_SQUARED_ERROR
+    products += np.diag(MIN_SQUARED_ERROR + INDEPENDENT_FRACTION * squares)
     root = np.linalg.cholesky(products / squares.min()).T
-    wanted = np.zeros(len(root) + 1)
-    wanted[-1] = FIRMLY
-    weights, _ = nnls(np.vstack([root, np.full(len(root), FIRMLY)]), wanted)
+    target = np.zeros(len(root) + 1)
+    target[-1] = SUM_WEIGHT
+    weights, _ = nnls(np.vstack([root, np.full(len(root), SUM_WEIGHT)]), target)
     return np.asarray(weights / weights.sum())

@@ -8,23 +8,28 @@ from numpy.typing import NDArray
 from ...motion import Tracks
 from ...progress import Progress, unwatched
 from ...signals import interpolated, runs
-from .gap_boundaries import bridge, expected_error, frames_to_learn, usual_jitter
-from .predict_marker import foretell
-from .reference_markers import find_companions
-from .transient_outliers import stray
+from .gap_boundaries import (
+    estimate_gap_error,
+    estimate_jitter,
+    extrapolate_boundary_errors,
+    select_training_frames,
+)
+from .predict_marker import predict_marker
+from .reference_markers import find_reference_markers
+from .transient_outliers import find_transient_outliers
 
 Array = NDArray[np.float64]
 Flags = NDArray[np.bool_]
 Gap = tuple[int, int, int, int]
 """Length, point, first frame, frame after the last."""
 
-BRIEF = 4
+MAX_BRIEF_FRAMES = 4
 """Frames: so short a gap is left to the filter; its neighbours tell enough."""
-LIKE_SEEN = 0.25
+MAX_RELATIVE_GAP = 0.25
 """Of a gap's length: other points' gaps up to so long hardly matter, once filled."""
-MOST_GAPS = 12
+MAX_GAPS_TOGETHER = 12
 """Gaps of one point that are filled together."""
-FEWEST_LEARNED = 12
+MIN_TRAINING_FRAMES = 12
 N_ROUNDS = 3
 """Times that what is left of a gap is tried with other companions."""
 
@@ -46,7 +51,7 @@ class _Take:
     positions: Array
     gap_length: NDArray[np.intp]
     """Frames of the gap that each sample is in; 0 where seen, shape (n_frames, n_points)."""
-    known: Flags
+    usable: Flags
     deviation: Array
     frame_rate: float
 
@@ -77,25 +82,25 @@ def fill_markers(tracks: Tracks, progress: Progress = unwatched) -> FilledMarker
        data using marker intercorrelations. doi:10.1371/journal.pone.0152616
     .. [2] Tits, Tilmanne, Dutoit (2018). doi:10.1371/journal.pone.0199744
     """
-    lost = ~tracks.visible
-    if not lost.any():
-        return FilledMarkers(tracks, lost, np.zeros(lost.shape))
-    take = _read(tracks)
+    missing = ~tracks.visible
+    if not missing.any():
+        return FilledMarkers(tracks, missing, np.zeros(missing.shape))
+    take = _prepare_take(tracks)
     for _ in range(N_ROUNDS):
-        gaps = _open_gaps(take)
+        gaps = _list_open_gaps(take)
         for number, (length, point, start, stop) in enumerate(gaps):
             progress(number / len(gaps), "Filling gaps")
-            if not take.known[start:stop, point].all():
-                _fill(take, point, length, gaps)
-    filled = take.known & (take.gap_length > BRIEF) & lost
-    places = np.where(filled[..., None], take.positions, tracks.positions)
+            if not take.usable[start:stop, point].all():
+                _fill_point(take, point, length, gaps)
+    filled = take.usable & (take.gap_length > MAX_BRIEF_FRAMES) & missing
+    positions = np.where(filled[..., None], take.positions, tracks.positions)
     deviation = np.where(filled, take.deviation, 0.0)
-    return FilledMarkers(tracks.with_positions(places), filled, deviation)
+    return FilledMarkers(tracks.with_positions(positions), filled, deviation)
 
 
-def _read(tracks: Tracks) -> _Take:
+def _prepare_take(tracks: Tracks) -> _Take:
     """Take spikes for brief gaps, and bridge all gaps for as long as they are open."""
-    visible = tracks.visible & ~stray(tracks.positions)
+    visible = tracks.visible & ~find_transient_outliers(tracks.positions)
     positions = np.where(visible[..., None], tracks.positions, np.nan)
     gap_length = np.zeros(visible.shape, dtype=np.intp)
     for point in np.flatnonzero(~visible.all(axis=0)):
@@ -104,48 +109,56 @@ def _read(tracks: Tracks) -> _Take:
     return _Take(
         interpolated(positions.reshape(len(positions), -1)).reshape(positions.shape),
         gap_length,
-        (gap_length <= BRIEF) & visible.any(axis=0),
+        (gap_length <= MAX_BRIEF_FRAMES) & visible.any(axis=0),
         np.zeros(visible.shape),
         tracks.frame_rate,
     )
 
 
-def _open_gaps(take: _Take) -> list[Gap]:
+def _list_open_gaps(take: _Take) -> list[Gap]:
     """Return all gaps that are not filled yet, the shortest first."""
-    points = np.flatnonzero(~take.known.all(axis=0) & take.known.any(axis=0))
+    points = np.flatnonzero(~take.usable.all(axis=0) & take.usable.any(axis=0))
     return sorted(
         (stop - start, int(point), start, stop)
         for point in points
-        for start, stop in runs(~take.known[:, point])
+        for start, stop in runs(~take.usable[:, point])
     )
 
 
-def _fill(take: _Take, point: int, length: int, gaps: list[Gap]) -> None:
+def _fill_point(take: _Take, point: int, length: int, gaps: list[Gap]) -> None:
     """Fill the gaps of a point that are of this length or a little longer, all at once."""
-    alike = [
+    similar_gaps = [
         (start, stop)
-        for size, other, start, stop in gaps
-        if other == point and length <= size <= length / LIKE_SEEN
-        and not take.known[start:stop, point].all()
-    ][:MOST_GAPS]  # fmt: skip
-    first = slice(*alike[0])
-    seen = take.gap_length[:, point] == 0
-    there = take.known & (take.gap_length <= LIKE_SEEN * length)
-    gap = np.zeros(len(seen), dtype=bool)
-    gap[first] = True
-    companions = find_companions(take.positions, seen, there, point, gap)
-    if companions is None or len(companions.learned) < FEWEST_LEARNED:
+        for other_length, other, start, stop in gaps
+        if other == point and length <= other_length <= length / MAX_RELATIVE_GAP
+        and not take.usable[start:stop, point].all()
+    ][:MAX_GAPS_TOGETHER]  # fmt: skip
+    first_gap = slice(*similar_gaps[0])
+    observed = take.gap_length[:, point] == 0
+    available = take.usable & (take.gap_length <= MAX_RELATIVE_GAP * length)
+    gap = np.zeros(len(observed), dtype=bool)
+    gap[first_gap] = True
+    references = find_reference_markers(take.positions, observed, available, point, gap)
+    if references is None or len(references.training_frames) < MIN_TRAINING_FRAMES:
         return
-    whole = there[:, companions.points].all(axis=1)
-    for start, stop in alike[1:]:
-        gap[start:stop] = whole[start:stop].all()
-    learned = frames_to_learn(companions.learned, seen & whole, gap, take.frame_rate, len(gaps))
-    foretold = np.flatnonzero(gap & whole)
-    companions = companions._replace(learned=learned, foretold=foretold)
-    result = foretell(take.positions, point, companions, take.frame_rate, length)
-    missed = take.positions[learned, point] - result.places[: len(learned)]
-    noise = usual_jitter(np.where(seen[:, None], take.positions[:, point], np.nan))
-    step = bridge(missed, learned, foretold, noise, take.frame_rate)
-    take.positions[foretold, point] = result.places[len(learned) :] + step
-    take.deviation[foretold, point] = expected_error(result, gap)[whole[gap]]
-    take.known[foretold, point] = True
+    all_available = available[:, references.points].all(axis=1)
+    for start, stop in similar_gaps[1:]:
+        gap[start:stop] = all_available[start:stop].all()
+    training_frames = select_training_frames(
+        references.training_frames, observed & all_available, gap, take.frame_rate, len(gaps)
+    )
+    gap_frames = np.flatnonzero(gap & all_available)
+    references = references._replace(training_frames=training_frames, gap_frames=gap_frames)
+    prediction = predict_marker(take.positions, point, references, take.frame_rate, length)
+    boundary_errors = (
+        take.positions[training_frames, point] - prediction.positions[: len(training_frames)]
+    )
+    noise = estimate_jitter(np.where(observed[:, None], take.positions[:, point], np.nan))
+    correction = extrapolate_boundary_errors(
+        boundary_errors, training_frames, gap_frames, noise, take.frame_rate
+    )
+    take.positions[gap_frames, point] = (
+        prediction.positions[len(training_frames) :] + correction
+    )
+    take.deviation[gap_frames, point] = estimate_gap_error(prediction, gap)[all_available[gap]]
+    take.usable[gap_frames, point] = True

@@ -7,7 +7,7 @@ from numpy.typing import NDArray
 from scipy.linalg.lapack import dpotrf, dpotri
 
 from .blend_estimates import blend_weights
-from .reference_markers import SLACK, Companions, body_frames
+from .reference_markers import MIN_DEVIATION_M, ReferenceMarkers, fit_rigid_frames
 
 Array = NDArray[np.float64]
 
@@ -18,14 +18,14 @@ VARIANTS = ((3, 8), (3, 16), (8, 24), (3, 5), (5, 12))
 class Kernel(NamedTuple):
     """How alike two moments are; variances relative to that of the point in its frame."""
 
-    linear: float
-    similar: float
-    reach: float
+    linear_variance: float
+    pose_variance: float
+    pose_length_scale: float
     """Of similar poses, relative to the usual distance of two poses."""
-    steady: float
-    seconds: float
+    time_variance: float
+    time_scale: float
     """For which the part that does not depend on the pose lasts."""
-    unexplained: float
+    noise_variance: float
 
 
 KERNELS = (
@@ -36,39 +36,39 @@ KERNELS = (
     Kernel(1.0, 1.0, 2.0, 0.1, 0.03, 1e-4),
     Kernel(1.0, 1.0, 2.0, 0.1, 0.1, 1e-4),
 )
-TINY = 1e-9
+MIN_SQUARED_ERROR = 1e-9
 """Square metres: what is nearer than 0.03 mm is the same."""
 
 
-class Foretold(NamedTuple):
+class Prediction(NamedTuple):
     """A point foretold, metres."""
 
-    places: Array
+    positions: Array
     """Shape (n_frames, 3), learned frames first, then those of the gap."""
-    trial: Array
+    held_out_error: Array
     """Error where frames that were learned are left out by stretches as long as the gap,
     shape (n_learned, 3)."""
-    depth: Array
+    held_out_depth: Array
     """Frames that each of these was from the end of its stretch, shape (n_learned,)."""
 
 
-class Problem(NamedTuple):
+class RegressionProblem(NamedTuple):
     """One choice of frame and pose, ready for any kernel."""
 
-    wanted: Array
+    targets: Array
     """The point in the frame, relative to its mean, shape (n_learned, 3)."""
     mean: Array
-    turns: Array
+    rotations: Array
     origins: Array
     products: Array
     """Of all poses with all learned ones, shape (n_frames, n_learned)."""
-    square_distances: Array
-    seconds_apart: Array
+    squared_distances: Array
+    time_differences: Array
 
 
-def foretell(
-    positions: Array, point: int, companions: Companions, frame_rate: float, length: int
-) -> Foretold:
+def predict_marker(
+    positions: Array, point: int, references: ReferenceMarkers, frame_rate: float, length: int
+) -> Prediction:
     """Average what several frames and kernels foretell, by how they fare when tried.
 
     In a frame that travels with its companions, a point is a smooth function of their pose
@@ -92,69 +92,74 @@ def foretell(
        using soft skeleton constraints and model averaging. doi:10.1371/journal.pone.0199744
     .. [2] Rasmussen, Williams (2006). Gaussian Processes for Machine Learning, 5.4.2.
     """
-    rows = np.concatenate([companions.learned, companions.foretold])
-    poses = positions[np.ix_(rows, companions.points)]
-    truth = positions[companions.learned, point]
-    stretches, depth = _stretches(companions.learned, length)
-    found, trials = [], []
-    for spanning, telling in _variants(len(companions.points)):
-        weights = 1.0 / (companions.slack**2 + SLACK**2)
-        problem = _problem(
-            poses[:, :telling], truth, weights[:telling], spanning, rows / frame_rate
+    rows = np.concatenate([references.training_frames, references.gap_frames])
+    poses = positions[np.ix_(rows, references.points)]
+    truth = positions[references.training_frames, point]
+    blocks, held_out_depth = _split_into_blocks(references.training_frames, length)
+    estimates, errors = [], []
+    for n_frame, n_pose in _variants(len(references.points)):
+        weights = 1.0 / (references.deviation**2 + MIN_DEVIATION_M**2)
+        problem = _build_problem(
+            poses[:, :n_pose], truth, weights[:n_pose], n_frame, rows / frame_rate
         )
         for kernel in KERNELS:
-            local, error = _solved(problem, kernel, stretches)
-            turned = np.einsum("fij,fj->fi", problem.turns, local + problem.mean)
-            found.append(turned + problem.origins)
-            trials.append(np.einsum("fij,fj->fi", problem.turns[: len(error)], error))
-    weights = blend_weights(trials)
-    places = np.tensordot(weights, found, 1)
-    return Foretold(places, np.tensordot(weights, trials, 1), depth)
+            local, error = _solve(problem, kernel, blocks)
+            rotated = np.einsum("fij,fj->fi", problem.rotations, local + problem.mean)
+            estimates.append(rotated + problem.origins)
+            errors.append(np.einsum("fij,fj->fi", problem.rotations[: len(error)], error))
+    weights = blend_weights(errors)
+    predicted = np.tensordot(weights, estimates, 1)
+    return Prediction(predicted, np.tensordot(weights, errors, 1), held_out_depth)
 
 
 def _variants(n_companions: int) -> list[tuple[int, int]]:
     """Return the variants that differ with so many companions."""
     possible = [
-        (min(spanning, n_companions), min(telling, n_companions))
-        for spanning, telling in VARIANTS
+        (min(n_frame, n_companions), min(n_pose, n_companions)) for n_frame, n_pose in VARIANTS
     ]
     return list(dict.fromkeys(possible))
 
 
-def _problem(
-    places: Array, truth: Array, weights: Array, spanning: int, seconds: Array
-) -> Problem:
+def _build_problem(
+    positions: Array, truth: Array, weights: Array, n_frame: int, time_scale: Array
+) -> RegressionProblem:
     n_learned = len(truth)
-    turns, origins = body_frames(places[:, :spanning], weights[:spanning])
-    local = np.einsum("fij,fi->fj", turns[:n_learned], truth - origins[:n_learned])
-    pose = np.einsum("fij,fpi->fpj", turns, places - origins[:, None])
+    rotations, origins = fit_rigid_frames(positions[:, :n_frame], weights[:n_frame])
+    local = np.einsum("fij,fi->fj", rotations[:n_learned], truth - origins[:n_learned])
+    pose = np.einsum("fij,fpi->fpj", rotations, positions - origins[:, None])
     pose -= pose[:n_learned].mean(axis=0)
     pose = (pose * np.sqrt(weights)[:, None]).reshape(len(pose), -1)
-    pose /= np.sqrt((pose[:n_learned] ** 2).sum(axis=1).mean() + TINY)
+    pose /= np.sqrt((pose[:n_learned] ** 2).sum(axis=1).mean() + MIN_SQUARED_ERROR)
     products = pose @ pose[:n_learned].T
     sizes = (pose**2).sum(axis=1)
     squares = np.maximum(sizes[:, None] + sizes[:n_learned] - 2.0 * products, 0.0)
     mean = local.mean(axis=0)
-    apart = np.abs(seconds[:, None] - seconds[:n_learned])
-    return Problem(local - mean, mean, turns, origins, products, squares, apart)
+    time_distances = np.abs(time_scale[:, None] - time_scale[:n_learned])
+    return RegressionProblem(
+        local - mean, mean, rotations, origins, products, squares, time_distances
+    )
 
 
-def _solved(
-    problem: Problem, kernel: Kernel, stretches: list[NDArray[np.intp]]
+def _solve(
+    problem: RegressionProblem, kernel: Kernel, blocks: list[NDArray[np.intp]]
 ) -> tuple[Array, Array]:
     """Return what is foretold in all frames, and the errors of stretches left out."""
-    wanted, n_learned = problem.wanted, len(problem.wanted)
-    alike = kernel.linear * problem.products
-    if kernel.similar:
-        alike += kernel.similar * np.exp(problem.square_distances / (-2.0 * kernel.reach**2))
-    alike += kernel.steady * matern(problem.seconds_apart / kernel.seconds)
-    unexplained = kernel.unexplained + TINY / ((wanted**2).mean() + TINY)
-    inverse = _inverse(alike[:n_learned] + unexplained * np.eye(n_learned))
-    gain = inverse @ wanted
-    error = np.zeros_like(wanted)
-    for stretch in stretches:
-        error[stretch] = np.linalg.solve(inverse[np.ix_(stretch, stretch)], gain[stretch])
-    return alike @ gain, error
+    targets, n_learned = problem.targets, len(problem.targets)
+    covariance = kernel.linear_variance * problem.products
+    if kernel.pose_variance:
+        covariance += kernel.pose_variance * np.exp(
+            problem.squared_distances / (-2.0 * kernel.pose_length_scale**2)
+        )
+    covariance += kernel.time_variance * matern(problem.time_differences / kernel.time_scale)
+    noise_variance = kernel.noise_variance + MIN_SQUARED_ERROR / (
+        (targets**2).mean() + MIN_SQUARED_ERROR
+    )
+    inverse = _inverse(covariance[:n_learned] + noise_variance * np.eye(n_learned))
+    gain = inverse @ targets
+    error = np.zeros_like(targets)
+    for block in blocks:
+        error[block] = np.linalg.solve(inverse[np.ix_(block, block)], gain[block])
+    return covariance @ gain, error
 
 
 def matern(steps: Array) -> Array:
@@ -169,9 +174,13 @@ def _inverse(matrix: Array) -> Array:
     return np.asarray(inverse + np.tril(inverse, -1).T)
 
 
-def _stretches(frames: NDArray[np.intp], length: int) -> tuple[list[NDArray[np.intp]], Array]:
+def _split_into_blocks(
+    frames: NDArray[np.intp], length: int
+) -> tuple[list[NDArray[np.intp]], Array]:
     """Sort learned frames into stretches of the gap's length, at least two of them."""
     length = max(min(length, (int(np.ptp(frames)) + 1) // 2), 1)
-    number, place = np.divmod(frames - frames[0], length)
-    depth = np.minimum(place + 1, length - place)
-    return [np.flatnonzero(number == each) for each in np.unique(number)], depth.astype(float)
+    number, offset = np.divmod(frames - frames[0], length)
+    held_out_depth = np.minimum(offset + 1, length - offset)
+    return [
+        np.flatnonzero(number == each) for each in np.unique(number)
+    ], held_out_depth.astype(float)

@@ -8,35 +8,35 @@ from numpy.typing import NDArray
 Array = NDArray[np.float64]
 Flags = NDArray[np.bool_]
 
-MOST = 24
+MAX_REFERENCES = 24
 """Points that take part in foretelling one."""
-FEWEST = 3
+MIN_REFERENCES = 3
 """Points that span a frame."""
-COVERED, LEARNED = 0.8, 0.6
+MIN_GAP_COVERAGE, MIN_SHARED_FRACTION = 0.8, 0.6
 """Shares of the gap, and of the frames in which the lost point is seen, that all companions
 together have to be seen in."""
-APART, OFF_LINE = 0.01, 0.03
+MIN_DISTANCE_M, MIN_LINE_DISTANCE_M = 0.01, 0.03
 """Metres that the second point is from the first, and the third from their line, at least."""
-SLACK = 0.001
+MIN_DEVIATION_M = 0.001
 """Metres that even a distance which never varied is held to be uncertain by."""
 N_FITS = 3
 
 
-class Companions(NamedTuple):
+class ReferenceMarkers(NamedTuple):
     """Points whose distance to a lost one varies least, the first three not on a line."""
 
     points: NDArray[np.intp]
-    slack: Array
+    deviation: Array
     """Standard deviation of each one's distance to the lost point, metres."""
-    learned: NDArray[np.intp]
+    training_frames: NDArray[np.intp]
     """Frames in which the lost point and all companions are seen."""
-    foretold: NDArray[np.intp]
+    gap_frames: NDArray[np.intp]
     """Frames of the gap in which all companions are seen."""
 
 
-def find_companions(
-    positions: Array, seen: Flags, there: Flags, point: int, gap: Flags
-) -> Companions | None:
+def find_reference_markers(
+    positions: Array, observed: Flags, available: Flags, point: int, gap: Flags
+) -> ReferenceMarkers | None:
     """Choose the points that are nearest to being rigid with the lost one.
 
     Parameters
@@ -55,62 +55,74 @@ def find_companions(
     -------
     Companions, or None where fewer than three points will do.
     """
-    slack = _slack(positions, seen, there, point)
-    coverage = there[gap].mean(axis=0)
-    usable = np.isfinite(slack) & (coverage >= COVERED * coverage.max(initial=0.0))
+    deviation = _distance_deviations(positions, observed, available, point)
+    coverage = available[gap].mean(axis=0)
+    usable = np.isfinite(deviation) & (coverage >= MIN_GAP_COVERAGE * coverage.max(initial=0.0))
     usable &= coverage > 0.0
-    learned, foretold = seen.copy(), gap.copy()
+    training_frames, gap_frames = observed.copy(), gap.copy()
     chosen: list[int] = []
-    fewest, least = LEARNED * seen.sum(), COVERED * coverage.max(initial=0.0) * gap.sum()
-    for other in np.argsort(slack, kind="stable"):
-        if not usable[other] or len(chosen) == MOST:
+    min_shared, min_covered = (
+        MIN_SHARED_FRACTION * observed.sum(),
+        MIN_GAP_COVERAGE * coverage.max(initial=0.0) * gap.sum(),
+    )
+    for other in np.argsort(deviation, kind="stable"):
+        if not usable[other] or len(chosen) == MAX_REFERENCES:
             continue
-        both, during = learned & there[:, other], foretold & there[:, other]
-        if both.sum() >= fewest and during.sum() >= least:
-            learned, foretold = both, during
+        shared, covered = (
+            training_frames & available[:, other],
+            gap_frames & available[:, other],
+        )
+        if shared.sum() >= min_shared and covered.sum() >= min_covered:
+            training_frames, gap_frames = shared, covered
             chosen.append(int(other))
-    if len(chosen) < FEWEST:
+    if len(chosen) < MIN_REFERENCES:
         return None
-    order = _spanning_first(positions[learned][:, chosen])
+    order = _order_by_span(positions[training_frames][:, chosen])
     points = np.array(chosen)[order]
-    return Companions(points, slack[points], np.flatnonzero(learned), np.flatnonzero(foretold))
+    return ReferenceMarkers(
+        points, deviation[points], np.flatnonzero(training_frames), np.flatnonzero(gap_frames)
+    )
 
 
-def _slack(positions: Array, seen: Flags, there: Flags, point: int) -> Array:
+def _distance_deviations(
+    positions: Array, observed: Flags, available: Flags, point: int
+) -> Array:
     """Return how much each distance to the point varies, metres; infinite where unknown."""
-    both = seen[:, None] & there
-    both[:, point] = False
-    count = both.sum(axis=0)
-    apart = np.linalg.norm(positions - positions[:, [point]], axis=2)
-    apart = np.where(both, apart, 0.0)
-    mean = apart.sum(axis=0) / np.maximum(count, 1)
-    square = (np.where(both, apart - mean, 0.0) ** 2).sum(axis=0) / np.maximum(count, 1)
-    return np.where(count >= LEARNED * seen.sum(), np.sqrt(square), np.inf)
+    shared = observed[:, None] & available
+    shared[:, point] = False
+    count = shared.sum(axis=0)
+    distances = np.linalg.norm(positions - positions[:, [point]], axis=2)
+    distances = np.where(shared, distances, 0.0)
+    mean = distances.sum(axis=0) / np.maximum(count, 1)
+    variance = (np.where(shared, distances - mean, 0.0) ** 2).sum(axis=0) / np.maximum(count, 1)
+    return np.where(count >= MIN_SHARED_FRACTION * observed.sum(), np.sqrt(variance), np.inf)
 
 
-def _spanning_first(places: Array) -> NDArray[np.intp]:
+def _order_by_span(positions: Array) -> NDArray[np.intp]:
     """Put three to the front that are not on one line; else the order is kept.
 
     Parameters
     ----------
     places : shape (n_frames, n_companions, 3)
     """
-    order = list(range(places.shape[1]))
-    away = np.linalg.norm(places - places[:, :1], axis=2).mean(axis=0)
-    second = next((place for place in order[1:] if away[place] > APART), 1)
-    line = places[:, second] - places[:, 0]
+    order = list(range(positions.shape[1]))
+    distances_to_first = np.linalg.norm(positions - positions[:, :1], axis=2).mean(axis=0)
+    second = next(
+        (index for index in order[1:] if distances_to_first[index] > MIN_DISTANCE_M), 1
+    )
+    line = positions[:, second] - positions[:, 0]
     length = np.maximum(np.linalg.norm(line, axis=1), 1e-9)
-    arms = places - places[:, :1]
-    height = np.linalg.norm(np.cross(line[:, None], arms), axis=2) / length[:, None]
+    offsets = positions - positions[:, :1]
+    height = np.linalg.norm(np.cross(line[:, None], offsets), axis=2) / length[:, None]
     off_line = height.mean(axis=0)
     off_line[[0, second]] = 0.0
-    third = next((place for place in order[1:] if off_line[place] > OFF_LINE), None)
+    third = next((index for index in order[1:] if off_line[index] > MIN_LINE_DISTANCE_M), None)
     third = int(np.argmax(off_line)) if third is None else third
     front = [0, second, third]
-    return np.array(front + [place for place in order if place not in front])
+    return np.array(front + [index for index in order if index not in front])
 
 
-def body_frames(places: Array, weights: Array) -> tuple[Array, Array]:
+def fit_rigid_frames(positions: Array, weights: Array) -> tuple[Array, Array]:
     """Fit a rigid shape to points in every frame (Kabsch 1976, doi:10.1107/S0567739476001873).
 
     The shape is their mean, fitted in turn with the frames.
@@ -127,13 +139,13 @@ def body_frames(places: Array, weights: Array) -> tuple[Array, Array]:
     origins : shape (n_frames, 3), metres
     """
     weights = weights / weights.sum()
-    origins = np.einsum("p,fpi->fi", weights, places)
-    arms = places - origins[:, None]
-    shape = arms[len(arms) // 2]
+    origins = np.einsum("p,fpi->fi", weights, positions)
+    offsets = positions - origins[:, None]
+    shape = offsets[len(offsets) // 2]
     for _ in range(N_FITS):
-        spread = np.einsum("p,fpi,pj->fij", weights, arms, shape)
+        spread = np.einsum("p,fpi,pj->fij", weights, offsets, shape)
         left, _, right = np.linalg.svd(spread)
         left[:, :, 2] *= np.linalg.det(left @ right)[:, None]
-        turns = left @ right
-        shape = np.einsum("fij,fpi->pj", turns, arms) / len(arms)
-    return turns, origins
+        rotations = left @ right
+        shape = np.einsum("fij,fpi->pj", rotations, offsets) / len(offsets)
+    return rotations, origins

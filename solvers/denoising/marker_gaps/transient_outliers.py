@@ -6,17 +6,17 @@ from scipy.ndimage import median_filter
 
 Array = NDArray[np.float64]
 
-REACH = (1, 2)
+COMPARED_FRAMES = (1, 2)
 """Frames to both sides that a point is compared with."""
-AROUND = 8
+NEIGHBORHOOD_FRAMES = 8
 """Frames to both sides that say what is usual."""
-USUAL = 6.0
+MIN_SPIKE_RATIO = 6.0
 """Times as far as usual is a jump."""
-SMALLEST = 0.02
+MIN_SPIKE_M = 0.02
 """Metres: nothing nearer is one."""
 
 
-def stray(positions: Array) -> NDArray[np.bool_]:
+def find_transient_outliers(positions: Array) -> NDArray[np.bool_]:
     """Return where points jump away, shape (n_frames, n_points).
 
     A point is compared with the middles between where it was and where it will be; the
@@ -29,12 +29,12 @@ def stray(positions: Array) -> NDArray[np.bool_]:
         NaN where not observed.
     """
     n_frames = len(positions)
-    away = np.full((len(REACH), *positions.shape[:2]), np.nan)
-    for place, reach in enumerate(REACH):
+    distances = np.full((len(COMPARED_FRAMES), *positions.shape[:2]), np.nan)
+    for row, reach in enumerate(COMPARED_FRAMES):
         if n_frames > 2 * reach:
             middle = 0.5 * (positions[: -2 * reach] + positions[2 * reach :])
-            apart = np.linalg.norm(positions[reach:-reach] - middle, axis=2)
-            away[place, reach:-reach] = apart
-    found = np.nan_to_num(np.fmin.reduce(away))  # the lesser that is known
-    usual = median_filter(found, (2 * AROUND + 1, 1), mode="nearest")
-    return np.asarray(found > np.maximum(SMALLEST, USUAL * usual))
+            distance = np.linalg.norm(positions[reach:-reach] - middle, axis=2)
+            distances[row, reach:-reach] = distance
+    jump = np.nan_to_num(np.fmin.reduce(distances))  # the lesser that is known
+    typical_jump = median_filter(jump, (2 * NEIGHBORHOOD_FRAMES + 1, 1), mode="nearest")
+    return np.asarray(jump > np.maximum(MIN_SPIKE_M, MIN_SPIKE_RATIO * typical_jump))

@@ -1,7 +1,7 @@
 """The default method: the posterior of all windows under a prior that adapts to the take."""
 
-from .estimate import Estimate
 from .channel_groups import estimate_in_groups
+from .estimate import Estimate
 
 __all__ = [
     "Estimate",

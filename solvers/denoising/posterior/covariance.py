@@ -5,13 +5,13 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from ..prior import WavePrior
+from ..prior import WindowPrior
 
 Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True, eq=False)
-class Covariance:
+class WindowCovariance:
     """Of the waves of a window."""
 
     slow: Array
@@ -22,12 +22,16 @@ class Covariance:
     """Variances of the faster waves, shape (length - n_slow, n_channels)."""
 
 
-def expected(prior: WavePrior, length: int) -> Covariance:
+def covariance_from_prior(prior: WindowPrior, length: int) -> WindowCovariance:
     """Return what a prior says by itself of windows of so many frames."""
-    return Covariance(prior.matrix, prior.matrix, _extended(prior.fast, length - prior.n_slow))
+    return WindowCovariance(
+        prior.matrix, prior.matrix, _extend_fast_variances(prior.fast, length - prior.n_slow)
+    )
 
 
-def adapted(prior: WavePrior, slow: Array, power: Array, noise: Array) -> Covariance:
+def adapt_covariance(
+    prior: WindowPrior, slow: Array, power: Array, noise: Array
+) -> WindowCovariance:
     """Mix the prior's covariance with that of the take, as it is estimated so far.
 
     Parameters
@@ -40,24 +44,28 @@ def adapted(prior: WavePrior, slow: Array, power: Array, noise: Array) -> Covari
     noise : shape (n_channels,)
         Standard deviation of a wave.
     """
-    usual, in_gaps = (
-        _mixed(prior.matrix, slow, np.tile(trust, prior.n_slow))
-        for trust in (prior.trust, prior.trust_in_gaps)
+    complete, in_gaps = (
+        _mix_covariances(prior.matrix, slow, np.tile(own_weight, prior.n_slow))
+        for own_weight in (prior.own_weight, prior.own_weight_in_gaps)
     )
     power = np.maximum(power - noise**2, 0.0)
-    fast = _extended(prior.fast, len(power))
-    return Covariance(usual, in_gaps, fast * (1.0 - prior.trust) + power * prior.trust)
+    fast = _extend_fast_variances(prior.fast, len(power))
+    return WindowCovariance(
+        complete, in_gaps, fast * (1.0 - prior.own_weight) + power * prior.own_weight
+    )
 
 
-def _mixed(prior: Array, own: Array, trust: Array) -> Array:
-    of_own, rest = np.sqrt(trust), np.sqrt(1.0 - trust)
-    return np.asarray(prior * np.outer(rest, rest) + own * np.outer(of_own, of_own))
+def _mix_covariances(prior: Array, own: Array, own_weight: Array) -> Array:
+    own_scale, prior_scale = np.sqrt(own_weight), np.sqrt(1.0 - own_weight)
+    return np.asarray(
+        prior * np.outer(prior_scale, prior_scale) + own * np.outer(own_scale, own_scale)
+    )
 
 
-def _extended(fast: Array, n_waves: int) -> Array:
+def _extend_fast_variances(fast: Array, n_coefficients: int) -> Array:
     """Return the variances of more (or fewer) fast waves; those unheard of fade away."""
-    if len(fast) >= n_waves:
-        return fast[:n_waves]
+    if len(fast) >= n_coefficients:
+        return fast[:n_coefficients]
     last = fast[-1:] if len(fast) else np.zeros((1, fast.shape[1]))
-    steps = np.arange(1, n_waves - len(fast) + 1)[:, None]
+    steps = np.arange(1, n_coefficients - len(fast) + 1)[:, None]
     return np.concatenate([fast, last / (1.0 + steps / max(len(fast), 1)) ** 4])

@@ -17,7 +17,7 @@ class Estimate:
     """Probability that a sample is no outlier; 0 where not observed."""
     deviation: Array
     """Standard deviation of the estimate's error."""
-    surprise: Array
+    leave_one_out_error: Array
     """How far each sample is from what all others foretell; NaN where that is not known."""
     iterations: int
     converged: bool

@@ -10,12 +10,12 @@ from .windows import Windows
 
 Array = NDArray[np.float64]
 
-BLOCK = 512
+MAX_BLOCK_WINDOWS = 512
 """Windows worked on at a time: this bounds the memory, however long the take."""
 
 
 @dataclass(eq=False)
-class Sweep:
+class FilterPass:
     """What one pass over all windows adds up."""
 
     total: Array
@@ -26,34 +26,42 @@ class Sweep:
     """Mean square of the measured fast waves, shape (length - n_slow, n_channels)."""
 
 
-def swept(drawn: Array, filters: list[Filter], windows: Windows, with_moments: bool) -> Sweep:
+def filter_windows(
+    blended: Array, filters: list[Filter], windows: Windows, with_moments: bool
+) -> FilterPass:
     """Filter every window; sum windows and, where asked for, second moments."""
-    n_channels = drawn.shape[1]
+    n_channels = blended.shape[1]
     size, n_slow = len(filters[0].gains.slow), len(filters[0].gains.slow) // n_channels
-    sweep = Sweep(
-        np.zeros_like(drawn), np.zeros((size, size)), np.zeros_like(filters[0].gains.fast)
+    result = FilterPass(
+        np.zeros_like(blended), np.zeros((size, size)), np.zeros_like(filters[0].gains.fast)
     )
-    for one in filters:
-        scale = np.tile(one.gains.noise, n_slow)
-        for first in range(0, len(one.pattern.starts), BLOCK):
-            starts = one.pattern.starts[first : first + BLOCK]
-            frames = windows.cut(drawn, starts)
-            waves = windows.waves_of(frames)
-            seen = windows.waves_of(one.pattern.observed(frames)) if one.gaps else waves
-            slow = seen[:, :n_slow].reshape(-1, size) / scale
+    for window_filter in filters:
+        scale = np.tile(window_filter.gains.noise, n_slow)
+        for first in range(0, len(window_filter.pattern.starts), MAX_BLOCK_WINDOWS):
+            starts = window_filter.pattern.starts[first : first + MAX_BLOCK_WINDOWS]
+            frames = windows.extract(blended, starts)
+            coefficients = windows.coefficients_from_frames(frames)
+            observed = (
+                windows.coefficients_from_frames(window_filter.pattern.mask_frames(frames))
+                if window_filter.gaps
+                else coefficients
+            )
+            slow = observed[:, :n_slow].reshape(-1, size) / scale
             slow = (
-                one.gaps.mean(slow, one.pattern.places) if one.gaps else slow @ one.gains.slow
+                window_filter.gaps.posterior_mean(slow, window_filter.pattern.indices)
+                if window_filter.gaps
+                else slow @ window_filter.gains.slow
             )
             slow *= scale
             if with_moments:
-                sweep.slow_moment += slow.T @ slow
-                sweep.fast_power += (waves[:, n_slow:] ** 2).sum(axis=0)
-            waves[:, :n_slow] = slow.reshape(-1, n_slow, n_channels)
-            waves[:, n_slow:] *= one.gains.fast
-            windows.add(sweep.total, windows.frames_of(waves), starts)
+                result.slow_moment += slow.T @ slow
+                result.fast_power += (coefficients[:, n_slow:] ** 2).sum(axis=0)
+            coefficients[:, :n_slow] = slow.reshape(-1, n_slow, n_channels)
+            coefficients[:, n_slow:] *= window_filter.gains.fast
+            windows.add(result.total, windows.frames_from_coefficients(coefficients), starts)
         if with_moments:
-            one.add_covariance(sweep.slow_moment)
-    n_windows = sum(len(one.pattern.starts) for one in filters)
-    sweep.slow_moment /= n_windows
-    sweep.fast_power /= n_windows
-    return sweep
+            window_filter.add_covariance(result.slow_moment)
+    n_windows = sum(len(window_filter.pattern.starts) for window_filter in filters)
+    result.slow_moment /= n_windows
+    result.fast_power /= n_windows
+    return result

@@ -7,7 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.linalg.lapack import dpotrf, dpotri
 
-from .covariance import Covariance
+from .covariance import WindowCovariance
 from .gap_patterns import GapPattern, GapSolution
 from .windows import Windows
 
@@ -41,19 +41,19 @@ class Filter:
         n_windows = len(self.pattern.starts)
         total += n_windows * self.gains.slow * np.outer(scale, scale)
         if self.gaps:
-            places = self.pattern.places
-            more = self.gaps.more_covariance * np.outer(scale[places], scale[places])
-            total[np.ix_(places, places)] += n_windows * more
+            indices = self.pattern.indices
+            added = self.gaps.added_covariance * np.outer(scale[indices], scale[indices])
+            total[np.ix_(indices, indices)] += n_windows * added
 
 
-def filters_of(
+def build_filters(
     patterns: list[GapPattern],
-    covariance: Covariance,
+    covariance: WindowCovariance,
     noise: Array,
-    caution: float,
+    decoupling: float,
     windows: Windows,
     *,
-    stale: Sequence[Filter] = (),
+    reusable: Sequence[Filter] = (),
 ) -> list[Filter]:
     """Return the filter of each pattern of gaps.
 
@@ -63,46 +63,55 @@ def filters_of(
     filters, gains = [], dict[bool, Gains]()
     for index, pattern in enumerate(patterns):
         has_gaps = bool(pattern.channels.size)
-        if has_gaps and stale:
-            filters.append(stale[index])
+        if has_gaps and reusable:
+            filters.append(reusable[index])
             continue
         if has_gaps not in gains:
             gains[has_gaps] = (
-                _gapped(covariance, noise, caution, patterns, windows)
+                _gapped_gains(covariance, noise, decoupling, patterns, windows)
                 if has_gaps
-                else gains_of(covariance.slow, covariance.fast, noise, windows.density)
+                else compute_gains(covariance.slow, covariance.fast, noise, windows.density)
             )
-        usual = gains[has_gaps]
-        solution = GapSolution.of(pattern, usual.slow) if has_gaps else None
-        filters.append(Filter(pattern, usual, solution))
+        window_gains = gains[has_gaps]
+        solution = GapSolution.solve(pattern, window_gains.slow) if has_gaps else None
+        filters.append(Filter(pattern, window_gains, solution))
     return filters
 
 
-def variance_of(filters: list[Filter], windows: Windows, like: Array) -> tuple[Array, Array]:
+def compute_variance(
+    filters: list[Filter], windows: Windows, samples: Array
+) -> tuple[Array, Array]:
     """Return the posterior variance of every sample, and its leverage: its part in itself.
 
     Both of shape (n_frames, n_channels). The leverage is relative to the noise that each filter
     was made for; where nothing is observed it means nothing.
     """
-    total, leverage = np.zeros_like(like), np.zeros_like(like)
-    weight = weight_of([one.pattern for one in filters], windows)
-    usual: dict[int, Array] = {}
-    for one in filters:
-        key = id(one.gains)
-        if key not in usual:
-            usual[key] = _window_variance(one.gains.slow, one.gains.noise, windows)
-            usual[key] += _fast_variance(one.gains, windows)
-        variance = usual[key].copy()
-        if one.gaps:
-            gaps, noise = one.pattern.channels, one.gains.noise[one.pattern.channels]
-            variance[:, gaps] += _window_variance(one.gaps.more_covariance, noise, windows)
-        windows.add(total, variance, one.pattern.starts)
-        per_sample = one.gains.noise**2 * windows.density
-        windows.add(leverage, variance / per_sample, one.pattern.starts)
+    total, leverage = np.zeros_like(samples), np.zeros_like(samples)
+    weight = sum_window_weights([window_filter.pattern for window_filter in filters], windows)
+    window_gains: dict[int, Array] = {}
+    for window_filter in filters:
+        key = id(window_filter.gains)
+        if key not in window_gains:
+            window_gains[key] = _window_variance(
+                window_filter.gains.slow, window_filter.gains.noise, windows
+            )
+            window_gains[key] += _fast_variance(window_filter.gains, windows)
+        variance = window_gains[key].copy()
+        if window_filter.gaps:
+            gaps, noise = (
+                window_filter.pattern.channels,
+                window_filter.gains.noise[window_filter.pattern.channels],
+            )
+            variance[:, gaps] += _window_variance(
+                window_filter.gaps.added_covariance, noise, windows
+            )
+        windows.add(total, variance, window_filter.pattern.starts)
+        per_sample = window_filter.gains.noise**2 * windows.density
+        windows.add(leverage, variance / per_sample, window_filter.pattern.starts)
     return np.maximum(total / weight, 0.0), np.maximum(leverage / weight, 0.0)
 
 
-def weight_of(patterns: list[GapPattern], windows: Windows) -> Array:
+def sum_window_weights(patterns: list[GapPattern], windows: Windows) -> Array:
     """Return what all windows add up to where each is 1, shape (n_frames, 1)."""
     weight = np.zeros((windows.n_frames, 1))
     for pattern in patterns:
@@ -110,10 +119,10 @@ def weight_of(patterns: list[GapPattern], windows: Windows) -> Array:
     return weight
 
 
-def _gapped(
-    covariance: Covariance,
+def _gapped_gains(
+    covariance: WindowCovariance,
     noise: Array,
-    caution: float,
+    decoupling: float,
     patterns: list[GapPattern],
     windows: Windows,
 ) -> Gains:
@@ -124,17 +133,17 @@ def _gapped(
     """
     slow, fast = covariance.slow_in_gaps, covariance.fast
     n_slow, n_channels = len(slow) // len(noise), len(noise)
-    cautious = ((1.0 - caution) * slow).reshape(n_slow, n_channels, n_slow, n_channels)
+    decoupled = ((1.0 - decoupling) * slow).reshape(n_slow, n_channels, n_slow, n_channels)
     channels = np.arange(n_channels)
-    blocks = slow.reshape(cautious.shape)[:, channels, :, channels]
-    cautious[:, channels, :, channels] += caution * blocks
+    blocks = slow.reshape(decoupled.shape)[:, channels, :, channels]
+    decoupled[:, channels, :, channels] += decoupling * blocks
     gaps = np.unique(np.concatenate([pattern.channels for pattern in patterns]))
     blurred = noise**2
     blurred[gaps] += fast[:, gaps].sum(axis=0) * windows.density / windows.length
-    return gains_of(cautious.reshape(slow.shape), fast, np.sqrt(blurred), windows.density)
+    return compute_gains(decoupled.reshape(slow.shape), fast, np.sqrt(blurred), windows.density)
 
 
-def gains_of(slow: Array, fast: Array, noise: Array, density: float) -> Gains:
+def compute_gains(slow: Array, fast: Array, noise: Array, density: float) -> Gains:
     """Return the filter of complete windows for a prior and a noise.
 
     Parameters
@@ -148,8 +157,8 @@ def gains_of(slow: Array, fast: Array, noise: Array, density: float) -> Gains:
     density : float
         Frames of the take per frame of the patterns.
     """
-    per_wave = noise / np.sqrt(density)
-    scale = np.tile(per_wave, len(slow) // len(noise))
+    noise_per_coefficient = noise / np.sqrt(density)
+    scale = np.tile(noise_per_coefficient, len(slow) // len(noise))
     size = len(scale)
     whitened = slow / np.outer(scale, scale)
     whitened[np.diag_indices(size)] += 1.0
@@ -159,7 +168,7 @@ def gains_of(slow: Array, fast: Array, noise: Array, density: float) -> Gains:
     gain = -dpotri(lower, lower=1, overwrite_c=1)[0]
     gain += np.tril(gain, -1).T
     gain[np.diag_indices(size)] += 1.0
-    return Gains(gain, fast / (fast + per_wave**2), per_wave)
+    return Gains(gain, fast / (fast + noise_per_coefficient**2), noise_per_coefficient)
 
 
 def _window_variance(covariance: Array, noise: Array, windows: Windows) -> Array:
@@ -169,14 +178,14 @@ def _window_variance(covariance: Array, noise: Array, windows: Windows) -> Array
     """
     n_channels = len(noise)
     n_slow = len(covariance) // n_channels
-    shapes = windows.wave_shapes(n_slow)
+    basis = windows.dct_basis(n_slow)
     blocks = covariance.reshape(n_slow, n_channels, n_slow, n_channels)
     own = np.einsum("kcjc->ckj", blocks)
-    return np.asarray(np.einsum("tk,ckj,tj->tc", shapes, own, shapes) * noise**2)
+    return np.asarray(np.einsum("tk,ckj,tj->tc", basis, own, basis) * noise**2)
 
 
 def _fast_variance(gains: Gains, windows: Windows) -> Array:
     """Return what the faster waves add to the variance of each frame, as if without gaps."""
     n_fast = len(gains.fast)
-    shapes = windows.wave_shapes(windows.length)[:, windows.length - n_fast :]
-    return np.asarray(shapes**2 @ gains.fast * gains.noise**2)
+    basis = windows.dct_basis(windows.length)[:, windows.length - n_fast :]
+    return np.asarray(basis**2 @ gains.fast * gains.noise**2)

@@ -9,7 +9,7 @@ from .windows import Windows
 
 Array = NDArray[np.float64]
 
-MOST_NUMBERS = 40_000_000
+MAX_MATRIX_ENTRIES = 40_000_000
 """In one matrix of each pattern of gaps, all together; three such are kept, some 1 GB."""
 
 
@@ -20,17 +20,17 @@ class GapPattern:
     starts: NDArray[np.intp]
     channels: NDArray[np.intp]
     """Channels with gaps; none for windows that are complete."""
-    seen: NDArray[np.bool_]
+    observed_mask: NDArray[np.bool_]
     """Where these channels are observed, shape (length, n_gap_channels)."""
-    places: NDArray[np.intp]
+    indices: NDArray[np.intp]
     """Of the slow waves of these channels among all, waves outermost."""
-    unseen: Array
+    missing_projection: Array
     """The part of the identity that is unobserved, at these places: a square matrix."""
 
-    def observed(self, frames: Array) -> Array:
+    def mask_frames(self, frames: Array) -> Array:
         """Return windows with zero for whatever stands in the gaps."""
         frames = frames.copy()
-        frames[:, :, self.channels] *= self.seen
+        frames[:, :, self.channels] *= self.observed_mask
         return frames
 
 
@@ -48,25 +48,27 @@ class GapSolution:
     """G, shape (size, size)."""
     lift: Array
     """N (1 - G N)^-1 at the places of the gaps, a square matrix."""
-    more_covariance: Array
+    added_covariance: Array
     """What the gaps add to the posterior covariance there, in units of the noise."""
 
     @classmethod
-    def of(cls, pattern: GapPattern, gain: Array) -> "GapSolution":
+    def solve(cls, pattern: GapPattern, gain: Array) -> "GapSolution":
         """Solve once for all windows of a pattern."""
-        inner = gain[np.ix_(pattern.places, pattern.places)]
-        system = np.eye(len(inner)) - inner @ pattern.unseen
-        both = np.linalg.solve(system, np.hstack([np.eye(len(inner)), inner]))
-        lift = pattern.unseen @ both[:, : len(inner)]
-        return cls(gain, lift, both[:, len(inner) :] - inner)
+        inner = gain[np.ix_(pattern.indices, pattern.indices)]
+        system = np.eye(len(inner)) - inner @ pattern.missing_projection
+        solved = np.linalg.solve(system, np.hstack([np.eye(len(inner)), inner]))
+        lift = pattern.missing_projection @ solved[:, : len(inner)]
+        return cls(gain, lift, solved[:, len(inner) :] - inner)
 
-    def mean(self, observed: Array, places: NDArray[np.intp]) -> Array:
+    def posterior_mean(self, coefficients: Array, indices: NDArray[np.intp]) -> Array:
         """Return posterior waves from those of what is observed, shape (n_windows, size)."""
-        mean = observed @ self.gain
-        return np.asarray(mean + (mean[:, places] @ self.lift.T) @ self.gain[places])
+        mean = coefficients @ self.gain
+        return np.asarray(mean + (mean[:, indices] @ self.lift.T) @ self.gain[indices])
 
 
-def gap_patterns(known: NDArray[np.bool_], windows: Windows, n_slow: int) -> list[GapPattern]:
+def find_gap_patterns(
+    observed: NDArray[np.bool_], windows: Windows, n_slow: int
+) -> list[GapPattern]:
     """Sort the windows by the long gaps in them; of those with gaps, every second will do.
 
     The short gaps of a channel that has a long one in the window belong to it: filled round by
@@ -75,55 +77,56 @@ def gap_patterns(known: NDArray[np.bool_], windows: Windows, n_slow: int) -> lis
     Gaps of so many patterns that their matrices would fill the memory are filled round by
     round, like short ones.
     """
-    gaps = long_gaps(known, windows.long_gap)
+    gaps = find_long_gaps(observed, windows.long_gap)
     groups: dict[bytes, list[int]] = {}
     for index, start in enumerate(windows.starts):
-        missing = _missing(known, gaps, start, windows.length)
+        missing = _missing_samples(observed, gaps, start, windows.length)
         if index % 2 and start != windows.starts[-1] and missing.any():
             continue
         groups.setdefault(np.packbits(missing).tobytes(), []).append(int(start))
     sizes = [
-        n_slow * int(_missing(known, gaps, starts[0], windows.length).any(axis=0).sum())
+        n_slow
+        * int(_missing_samples(observed, gaps, starts[0], windows.length).any(axis=0).sum())
         for starts in groups.values()
     ]
-    if sum(size**2 for size in sizes) > MOST_NUMBERS:
-        return gap_patterns(known, replace(windows, solve_gaps=False), n_slow)
-    shapes = windows.wave_shapes(n_slow) / np.sqrt(windows.density)
+    if sum(size**2 for size in sizes) > MAX_MATRIX_ENTRIES:
+        return find_gap_patterns(observed, replace(windows, solve_gaps=False), n_slow)
+    basis = windows.dct_basis(n_slow) / np.sqrt(windows.density)
     patterns = []
     for starts in groups.values():
-        missing = _missing(known, gaps, starts[0], windows.length)
+        missing = _missing_samples(observed, gaps, starts[0], windows.length)
         channels = np.flatnonzero(missing.any(axis=0))
         mask = missing[:, channels].astype(float)
-        blocks = np.einsum("tk,tc,tj->ckj", shapes, mask, shapes)
-        unseen = np.zeros((n_slow, len(channels), n_slow, len(channels)))
-        for place in range(len(channels)):
-            unseen[:, place, :, place] = blocks[place]
-        places = np.arange(n_slow)[:, None] * known.shape[1] + channels
+        blocks = np.einsum("tk,tc,tj->ckj", basis, mask, basis)
+        missing_projection = np.zeros((n_slow, len(channels), n_slow, len(channels)))
+        for channel in range(len(channels)):
+            missing_projection[:, channel, :, channel] = blocks[channel]
+        indices = np.arange(n_slow)[:, None] * observed.shape[1] + channels
         size = n_slow * len(channels)
         patterns.append(
             GapPattern(
                 np.array(starts),
                 channels,
                 mask == 0.0,
-                places.ravel(),
-                unseen.reshape(size, size),
+                indices.ravel(),
+                missing_projection.reshape(size, size),
             )
         )
     return patterns
 
 
-def _missing(
-    known: NDArray[np.bool_], gaps: NDArray[np.bool_], start: int, length: int
+def _missing_samples(
+    observed: NDArray[np.bool_], gaps: NDArray[np.bool_], start: int, length: int
 ) -> NDArray[np.bool_]:
     """Return what is missing in a window of channels with long gaps, (length, n_channels)."""
     window = slice(start, start + length)
-    return np.asarray(~known[window] & gaps[window].any(axis=0))
+    return np.asarray(~observed[window] & gaps[window].any(axis=0))
 
 
-def long_gaps(known: NDArray[np.bool_], at_least: int) -> NDArray[np.bool_]:
+def find_long_gaps(observed: NDArray[np.bool_], min_frames: int) -> NDArray[np.bool_]:
     """Return where a channel is unobserved for at least so many frames on end."""
-    n_frames = len(known)
+    n_frames = len(observed)
     frames = np.arange(n_frames)[:, None]
-    before = np.maximum.accumulate(np.where(known, frames, -1), axis=0)
-    after = np.minimum.accumulate(np.where(known, frames, n_frames)[::-1], axis=0)[::-1]
-    return np.asarray(~known & (after - before > at_least))
+    before = np.maximum.accumulate(np.where(observed, frames, -1), axis=0)
+    after = np.minimum.accumulate(np.where(observed, frames, n_frames)[::-1], axis=0)[::-1]
+    return np.asarray(~observed & (after - before > min_frames))

@@ -7,16 +7,16 @@ from numpy.typing import NDArray
 
 Array = NDArray[np.float64]
 
-MOST = 0.9
+MAX_OUTLIER_PROBABILITY = 0.9
 """Probability of being an outlier that no fellow can exceed."""
-LEAST = 1e-4
+MIN_OUTLIER_PROBABILITY = 1e-4
 """Probability of being an outlier that every sample has."""
-DOUBT = 0.01
+MIN_OUTLIER_FRACTION = 0.01
 """Share of a take that must be outliers to tell whether joints are wrong as a whole."""
 
 
 @dataclass(frozen=True, eq=False)
-class WholeJoints:
+class JointOutlierPrior:
     """Which channels belong to one joint, and how its channels outside this group fare.
 
     A tracker that loses a limb turns the whole joint; a slip of the hand in a curve, or the
@@ -25,10 +25,12 @@ class WholeJoints:
 
     joints: NDArray[np.intp]
     """Of each channel of the group, ascending; a joint has at most three."""
-    elsewhere: Array
+    other_channels: Array
     """Greatest outlier probability of its joint's channels that were solved for before."""
 
-    def rates(self, outside: Array, known: NDArray[np.bool_], rate: float) -> Array:
+    def outlier_rates(
+        self, outlier_probability: Array, observed: NDArray[np.bool_], rate: float
+    ) -> Array:
         """Return how likely each sample is to be an outlier before it is looked at.
 
         Parameters
@@ -39,18 +41,35 @@ class WholeJoints:
         rate : float
             Share of outliers.
         """
-        fellows = self.elsewhere.copy()
+        joint_outliers = self.other_channels.copy()
         for step in (1, 2):
             (first,) = np.nonzero(self.joints[step:] == self.joints[:-step])
             second = first + step
-            fellows[:, first] = np.maximum(fellows[:, first], outside[:, second])
-            fellows[:, second] = np.maximum(fellows[:, second], outside[:, first])
-        n_known, of_fellows = np.count_nonzero(known), float(fellows[known].sum())
-        both = float((outside * fellows).sum())
-        together = min(both / max(of_fellows + DOUBT * n_known, DOUBT), MOST)
-        if together <= rate:
-            return np.full(fellows.shape, rate)
+            joint_outliers[:, first] = np.maximum(
+                joint_outliers[:, first], outlier_probability[:, second]
+            )
+            joint_outliers[:, second] = np.maximum(
+                joint_outliers[:, second], outlier_probability[:, first]
+            )
+        n_observed, total_joint_outliers = (
+            np.count_nonzero(observed),
+            float(joint_outliers[observed].sum()),
+        )
+        joint_and_own = float((outlier_probability * joint_outliers).sum())
+        rate_with_joint = min(
+            joint_and_own
+            / max(
+                total_joint_outliers + MIN_OUTLIER_FRACTION * n_observed, MIN_OUTLIER_FRACTION
+            ),
+            MAX_OUTLIER_PROBABILITY,
+        )
+        if rate_with_joint <= rate:
+            return np.full(joint_outliers.shape, rate)
         # So that all together are as likely as before.
-        alone = (rate * n_known - together * of_fellows) / max(n_known - of_fellows, 1.0)
-        alone = max(alone, LEAST)
-        return np.asarray(alone + fellows * (together - alone))
+        rate_without_joint = (rate * n_observed - rate_with_joint * total_joint_outliers) / max(
+            n_observed - total_joint_outliers, 1.0
+        )
+        rate_without_joint = max(rate_without_joint, MIN_OUTLIER_PROBABILITY)
+        return np.asarray(
+            rate_without_joint + joint_outliers * (rate_with_joint - rate_without_joint)
+        )

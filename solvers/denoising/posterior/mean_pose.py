@@ -11,25 +11,25 @@ from numpy.typing import NDArray
 
 Array = NDArray[np.float64]
 
-LIKENESS = 4.0
+KERNEL_WIDTH = 4.0
 """Root mean square difference of two mean poses, degrees or centimetres per channel, over which
 one tells of the other."""
-UNLIKE = 0.1
+CLIP_VARIANCE_FRACTION = 0.1
 """Variance that two clips of one person in one mood still have, as a share of all clips'."""
-MEMORY = 10.0
+CORRELATION_FRAMES = 10.0
 """Frames of the examples' patterns after which a pose tells something new of the mean pose."""
-MOST = 300
+MAX_NEIGHBORS = 300
 """Clips, nearest first, that tell of the mean pose: others are too unlike to say anything."""
-SMALLEST = 1e-3
+MIN_VARIANCE = 1e-3
 """Variance below which no mean is known, square degrees or centimetres."""
-USUAL = 8.0
+DEFAULT_DEVIATION = 8.0
 """Standard deviation of mean poses, degrees or centimetres, which few examples cannot tell."""
-WIDEST = 2.0
+VARIANCE_INFLATION = 2.0
 """Of the variance over the examples' mean poses, that a stranger's is expected to have."""
 
 
-def take_offset(
-    means: Array, own: Array, n_seen: Array, n_frames: float, variance: Array, noise: Array
+def estimate_mean_pose(
+    means: Array, own: Array, n_observed: Array, n_frames: float, variance: Array, noise: Array
 ) -> tuple[Array, Array]:
     """Return the mean pose of a take and its variance, both of shape (n_channels,).
 
@@ -48,36 +48,56 @@ def take_offset(
     noise : shape (n_channels,)
         Variance of what is added to each observation.
     """
-    expected, spread = _foretold(means, own, n_seen > 0.5 * n_frames)
-    share_seen = 1.0 / np.maximum(n_seen, 1e-9)
-    of_own = variance * MEMORY * (share_seen - 1.0 / n_frames) + noise * share_seen + SMALLEST
-    share = spread / (spread + of_own)
-    return expected + share * np.where(n_seen > 0, own - expected, 0.0), share * of_own
+    predicted, prior_variance = _predict_mean_pose(means, own, n_observed > 0.5 * n_frames)
+    inverse_count = 1.0 / np.maximum(n_observed, 1e-9)
+    own_variance = (
+        variance * CORRELATION_FRAMES * (inverse_count - 1.0 / n_frames)
+        + noise * inverse_count
+        + MIN_VARIANCE
+    )
+    own_fraction = prior_variance / (prior_variance + own_variance)
+    return predicted + own_fraction * np.where(
+        n_observed > 0, own - predicted, 0.0
+    ), own_fraction * own_variance
 
 
-def _foretold(means: Array, own: Array, seen: NDArray[np.bool_]) -> tuple[Array, Array]:
+def _predict_mean_pose(
+    means: Array, own: Array, observed: NDArray[np.bool_]
+) -> tuple[Array, Array]:
     """Return mean and variance that the examples' mean poses foretell from what is seen."""
-    middle = means.mean(axis=0)
+    overall_mean = means.mean(axis=0)
     n_distinct = len(np.unique(np.round(means), axis=0))
-    spread = WIDEST * np.maximum(means.var(axis=0), (USUAL / n_distinct) ** 2) + SMALLEST
-    if not seen.any():
-        return middle, spread
-    apart = _apart(means[:, seen], own[None, seen])[:, 0]
-    nearest = np.argsort(apart, kind="stable")[:MOST]
-    near = means[nearest]
-    kernel = _alike(_apart(near[:, seen], near[:, seen]))
-    towards = _alike(apart[nearest])
-    weights = np.linalg.solve(kernel + UNLIKE * np.eye(len(near)), towards)
-    unknown = 1.0 + UNLIKE - float(weights @ towards)
-    return middle + weights @ (near - middle), spread * unknown
+    prior_variance = (
+        VARIANCE_INFLATION
+        * np.maximum(means.var(axis=0), (DEFAULT_DEVIATION / n_distinct) ** 2)
+        + MIN_VARIANCE
+    )
+    if not observed.any():
+        return overall_mean, prior_variance
+    distances = _squared_distances(means[:, observed], own[None, observed])[:, 0]
+    nearest = np.argsort(distances, kind="stable")[:MAX_NEIGHBORS]
+    nearest_means = means[nearest]
+    kernel = _kernel(_squared_distances(nearest_means[:, observed], nearest_means[:, observed]))
+    similarity = _kernel(distances[nearest])
+    weights = np.linalg.solve(
+        kernel + CLIP_VARIANCE_FRACTION * np.eye(len(nearest_means)), similarity
+    )
+    remaining_fraction = 1.0 + CLIP_VARIANCE_FRACTION - float(weights @ similarity)
+    return overall_mean + weights @ (
+        nearest_means - overall_mean
+    ), prior_variance * remaining_fraction
 
 
-def _apart(some: Array, others: Array) -> Array:
+def _squared_distances(poses: Array, other_poses: Array) -> Array:
     """Return the mean square difference per channel of each of some poses to each of others."""
-    square = (some**2).sum(axis=1)[:, None] + (others**2).sum(axis=1) - 2.0 * some @ others.T
-    return np.asarray(np.maximum(square, 0.0) / some.shape[1])
+    squared = (
+        (poses**2).sum(axis=1)[:, None]
+        + (other_poses**2).sum(axis=1)
+        - 2.0 * poses @ other_poses.T
+    )
+    return np.asarray(np.maximum(squared, 0.0) / poses.shape[1])
 
 
-def _alike(apart: Array) -> Array:
+def _kernel(distances: Array) -> Array:
     """Return how much poses tell of each other, 0 to 1."""
-    return np.asarray(np.exp(-0.5 * apart / LIKENESS**2))
+    return np.asarray(np.exp(-0.5 * distances / KERNEL_WIDTH**2))

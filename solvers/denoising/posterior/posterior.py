@@ -7,36 +7,36 @@ from numpy.typing import NDArray
 
 from ...progress import Progress, unwatched
 from ...signals import alike
-from ..prior import WavePrior
-from .covariance import adapted, expected
+from ..prior import WindowPrior
+from .covariance import adapt_covariance, covariance_from_prior
 from .estimate import Estimate
-from .fast_motion import quick_moves
-from .filters import Filter, filters_of, variance_of, weight_of
-from .gap_patterns import gap_patterns, long_gaps
-from .joint_outliers import WholeJoints
+from .fast_motion import find_fast_motion
+from .filter_pass import filter_windows
+from .filters import Filter, build_filters, compute_variance, sum_window_weights
+from .gap_patterns import find_gap_patterns, find_long_gaps
+from .joint_outliers import JointOutlierPrior
 from .smoothness import fit_smoothness
-from .filter_pass import swept
 from .windows import Windows
 
 Array = NDArray[np.float64]
 
 OUTLIER_DENSITY = 1.0 / 120.0
 """Of an outlier's error, per degree or centimetre: anything within +-60 is as likely."""
-SMALL_ERROR = 0.5
+MIN_OUTLIER_ERROR = 0.5
 """Degrees or centimetres: nothing so near to the estimate is called an outlier."""
-FIRST_OUTLIERS = 0.03
-MOST_OUTLIERS = 0.6
+INITIAL_OUTLIER_RATE = 0.03
+MAX_OUTLIER_RATE = 0.6
 MAX_ITERATIONS = 30
-ADAPTATIONS = 5
+N_ADAPTATIONS = 5
 """Iterations in which the prior still adapts to the take."""
-SETTLED = 0.01
+MAX_SETTLED_CHANGE = 0.01
 """Root mean square change, degrees or centimetres, below which the estimate is settled."""
-LOOKS = (8.0, 4.0, 2.0)
+NOISE_FACTORS = (8.0, 4.0, 2.0)
 """Times the noise that the first rounds take it for."""
-FEW = 4
+MAX_CHEAP_PATTERNS = 4
 """Patterns of gaps that are solved for again whenever the prior adapts."""
-MOST_LEVERAGE = 0.98
-FARTHEST, BEYOND = 4.0, 0.5
+MAX_LEVERAGE = 0.98
+MAX_PRIOR_DEVIATIONS, MAX_RANGE_FRACTION = 4.0, 0.5
 """How far an estimate may leave what was seen: in standard deviations of the prior, or in
 extents of what was seen."""
 NOISE_BOUNDS = (0.5, 1.1)
@@ -47,13 +47,13 @@ def estimate_channels(
     noisy: Array,
     start: Array,
     noise: Array,
-    prior: WavePrior,
+    prior: WindowPrior,
     windows: Windows,
     progress: Progress = unwatched,
     *,
-    joints: WholeJoints | None = None,
-    looks: Sequence[float] = LOOKS,
-    at_most: int = MAX_ITERATIONS,
+    joints: JointOutlierPrior | None = None,
+    noise_factors: Sequence[float] = NOISE_FACTORS,
+    max_iterations: int = MAX_ITERATIONS,
 ) -> Estimate:
     """Alternate between outlier weights, the posterior of all windows, and what they tell.
 
@@ -83,32 +83,32 @@ def estimate_channels(
     at_most : int
         Iterations after them.
     """
-    rounds = _Rounds(noisy, start, noise, prior, windows.fewer, joints)
-    n_looks, n_rounds = len(looks), len(looks) + at_most
-    for look, times in enumerate(looks):
-        progress(look / n_rounds, "Denoising")
-        rounds.believe()
-        rounds.tune(times)
-        rounds.filter()
+    state = _PosteriorState(noisy, start, noise, prior, windows.with_less_overlap, joints)
+    n_first_rounds, n_rounds = len(noise_factors), len(noise_factors) + max_iterations
+    for index, factor in enumerate(noise_factors):
+        progress(index / n_rounds, "Denoising")
+        state.update_outliers()
+        state.update_filters(factor)
+        state.update_estimate()
     iteration, change = 0, np.inf
-    while iteration < at_most and change > SETTLED:
-        progress((n_looks + iteration) / n_rounds, "Denoising")
-        adapts = iteration < ADAPTATIONS
+    while iteration < max_iterations and change > MAX_SETTLED_CHANGE:
+        progress((n_first_rounds + iteration) / n_rounds, "Denoising")
+        adapts = iteration < N_ADAPTATIONS
         # Halfway, lest a sample that is judged by its own estimate goes in and out for ever.
-        rounds.believe(1.0 if iteration <= ADAPTATIONS else 0.5)
+        state.update_outliers(1.0 if iteration <= N_ADAPTATIONS else 0.5)
         if iteration == 0:
-            rounds.fit()
-        if iteration == ADAPTATIONS:
-            rounds.use(windows)
-        if iteration <= ADAPTATIONS:
-            rounds.tune(nearly=adapts and iteration > 0)
-        moved = rounds.filter(adapts=adapts)
-        change = np.inf if adapts else moved
+            state.update_smoothness()
+        if iteration == N_ADAPTATIONS:
+            state.set_windows(windows)
+        if iteration <= N_ADAPTATIONS:
+            state.update_filters(reuse_gapped=adapts and iteration > 0)
+        last_change = state.update_estimate(adapts=adapts)
+        change = np.inf if adapts else last_change
         iteration += 1
-    return rounds.estimated(iteration, change <= SETTLED)
+    return state.result(iteration, change <= MAX_SETTLED_CHANGE)
 
 
-class _Rounds:
+class _PosteriorState:
     """What is believed of a take, from round to round: `believe`, `tune`, `filter`."""
 
     def __init__(
@@ -116,126 +116,137 @@ class _Rounds:
         noisy: Array,
         start: Array,
         noise: Array,
-        prior: WavePrior,
+        prior: WindowPrior,
         windows: Windows,
-        joints: WholeJoints | None,
+        joints: JointOutlierPrior | None,
     ) -> None:
-        self.known, self.observed = np.isfinite(noisy), np.nan_to_num(noisy)
-        self.joints, self.prior = joints, prior.at_most(windows.length)
-        self.use(windows)
+        self.observed, self.samples = np.isfinite(noisy), np.nan_to_num(noisy)
+        self.joints, self.prior = joints, prior.truncated(windows.length)
+        self.set_windows(windows)
         self.estimate, self.mean = start, prior.mean
         self.bounds = _bounds(start, prior)
-        self.first_guess = self.noise = noise
-        self.covariance = expected(self.prior, windows.length)
+        self.first_noise = self.noise = noise
+        self.covariance = covariance_from_prior(self.prior, windows.length)
         self.filters = list[Filter]()
-        self.weight, self.rate = self.known.astype(float), FIRST_OUTLIERS
+        self.weight, self.rate = self.observed.astype(float), INITIAL_OUTLIER_RATE
         self.variance = np.zeros_like(noisy)
-        self.alone = np.ones_like(noisy)
+        self.leave_one_out_ratio = np.ones_like(noisy)
         """Variance without the sample over that with it, `variance`."""
 
-    def use(self, windows: Windows) -> None:
+    def set_windows(self, windows: Windows) -> None:
         """Cut the take into these windows."""
         self.windows = windows
-        self.patterns = gap_patterns(self.known, windows, self.prior.n_slow)
-        self.total_weight = weight_of(self.patterns, windows)
+        self.patterns = find_gap_patterns(self.observed, windows, self.prior.n_slow)
+        self.total_weight = sum_window_weights(self.patterns, windows)
 
-    def believe(self, step: float = 1.0) -> None:
+    def update_outliers(self, step: float = 1.0) -> None:
         """Go this part of the way to each sample's probability of being no outlier."""
-        error = self.observed - self.estimate
-        foretold = error * (self.weight * self.alone + 1.0 - self.weight)
-        spread = self.noise**2 + self.variance * self.alone + SMALL_ERROR**2
-        rates: float | Array = self.rate
+        error = self.samples - self.estimate
+        prediction_error = error * (self.weight * self.leave_one_out_ratio + 1.0 - self.weight)
+        spread = self.noise**2 + self.variance * self.leave_one_out_ratio + MIN_OUTLIER_ERROR**2
+        outlier_rates: float | Array = self.rate
         if self.joints is not None:
-            rates = self.joints.rates(self.known * (1.0 - self.weight), self.known, self.rate)
-        inside = _inlier_probability(foretold, spread, rates)
-        quick = quick_moves(
-            np.where(self.known, error, np.nan), inside, self.noise, self.rate,
+            outlier_rates = self.joints.outlier_rates(
+                self.observed * (1.0 - self.weight), self.observed, self.rate
+            )
+        inlier_probability = _inlier_probability_of(prediction_error, spread, outlier_rates)
+        fast_motion = find_fast_motion(
+            np.where(self.observed, error, np.nan), inlier_probability, self.noise, self.rate,
             self.windows.length,
         )  # fmt: skip
-        believed = self.known * np.where(quick, 1.0, inside)
-        self.weight = self.weight + step * (believed - self.weight)
-        outside = 1.0 - float(self.weight[self.known].mean()) if self.known.any() else 0.0
-        self.rate = float(np.clip(outside, 1e-4, MOST_OUTLIERS))
+        target_weight = self.observed * np.where(fast_motion, 1.0, inlier_probability)
+        self.weight = self.weight + step * (target_weight - self.weight)
+        outlier_fraction = (
+            1.0 - float(self.weight[self.observed].mean()) if self.observed.any() else 0.0
+        )
+        self.rate = float(np.clip(outlier_fraction, 1e-4, MAX_OUTLIER_RATE))
 
-    def tune(self, times: float = 1.0, *, nearly: bool = False) -> None:
+    def update_filters(self, factor: float = 1.0, *, reuse_gapped: bool = False) -> None:
         """Make the filters for the noise, taken so many times greater.
 
         With `nearly`, filters of windows with gaps may stay as they are: they are costly.
         """
-        noise = times * self.noise
-        self.filters = filters_of(
-            self.patterns, self.covariance, noise, self.prior.caution, self.windows,
-            stale=self.filters if nearly and len(self.patterns) > FEW else [],
+        noise = factor * self.noise
+        self.filters = build_filters(
+            self.patterns, self.covariance, noise, self.prior.decoupling, self.windows,
+            reusable=self.filters if reuse_gapped and len(self.patterns) > MAX_CHEAP_PATTERNS else [],
         )  # fmt: skip
-        self.variance, leverage = variance_of(self.filters, self.windows, self.observed)
-        self.alone = 1.0 / (1.0 - np.minimum(leverage, MOST_LEVERAGE))
+        self.variance, leverage = compute_variance(self.filters, self.windows, self.samples)
+        self.leave_one_out_ratio = 1.0 / (1.0 - np.minimum(leverage, MAX_LEVERAGE))
 
-    def fit(self) -> None:
+    def update_smoothness(self) -> None:
         """Fit how fast the channels move to what is believed of them."""
-        drawn = self.estimate + self.weight * (self.observed - self.estimate) - self.mean
+        blended = self.estimate + self.weight * (self.samples - self.estimate) - self.mean
         noise = self.noise * np.sqrt(self.weight.mean(axis=0))
-        found = fit_smoothness(drawn, noise, self.prior.smooth.kernels, self.windows)
-        seen = self.known.mean(axis=0)
-        weights = seen * found + (1.0 - seen) * self.prior.smooth.weights
+        new_values = fit_smoothness(blended, noise, self.prior.smooth.kernels, self.windows)
+        observed_fraction = self.observed.mean(axis=0)
+        weights = (
+            observed_fraction * new_values
+            + (1.0 - observed_fraction) * self.prior.smooth.weights
+        )
         self.prior = self.prior.with_smoothness(weights)
-        self.covariance = expected(self.prior, self.windows.length)
+        self.covariance = covariance_from_prior(self.prior, self.windows.length)
 
-    def filter(self, *, adapts: bool = False) -> float:
+    def update_estimate(self, *, adapts: bool = False) -> float:
         """Estimate again, and how noise and prior are; return the root mean square change."""
-        drawn = self.estimate + self.weight * (self.observed - self.estimate) - self.mean
-        sweep = swept(drawn, self.filters, self.windows, with_moments=adapts)
+        blended = self.estimate + self.weight * (self.samples - self.estimate) - self.mean
+        filtered = filter_windows(blended, self.filters, self.windows, with_moments=adapts)
         # Where nearly all is missing, windows that lean on each other can drift without end.
-        found = sweep.total / self.total_weight + self.mean
-        before, self.estimate = self.estimate, np.clip(found, *self.bounds)
+        new_values = filtered.total / self.total_weight + self.mean
+        before, self.estimate = self.estimate, np.clip(new_values, *self.bounds)
         if adapts:
             shift = self.estimate.mean(axis=0) - self.mean
-            self.mean = self.mean + self.prior.follows * shift
-            wave_noise = self.noise / np.sqrt(self.windows.density)
-            self.covariance = adapted(
-                self.prior, sweep.slow_moment, sweep.fast_power, wave_noise
+            self.mean = self.mean + self.prior.mean_adaptation * shift
+            coefficient_noise = self.noise / np.sqrt(self.windows.density)
+            self.covariance = adapt_covariance(
+                self.prior, filtered.slow_moment, filtered.fast_power, coefficient_noise
             )
-            error = self.observed - self.estimate
-            self.noise = _noise(error, self.weight, self.variance, self.first_guess)
+            error = self.samples - self.estimate
+            self.noise = _estimate_noise(error, self.weight, self.variance, self.first_noise)
         return float(np.sqrt(np.mean((self.estimate - before) ** 2)))
 
-    def estimated(self, iterations: int, converged: bool) -> Estimate:
+    def result(self, iterations: int, converged: bool) -> Estimate:
         """Return the estimate, and how sure it is."""
-        error = np.where(self.known, self.observed - self.estimate, np.nan)
+        error = np.where(self.observed, self.samples - self.estimate, np.nan)
         # In long gaps the variance is without the sample.
-        alone = np.where(long_gaps(self.known, self.windows.long_gap), 1.0, self.alone)
-        variance = self.variance * (self.weight + (1.0 - self.weight) * alone)
+        leave_one_out_ratio = np.where(
+            find_long_gaps(self.observed, self.windows.long_gap), 1.0, self.leave_one_out_ratio
+        )
+        variance = self.variance * (self.weight + (1.0 - self.weight) * leave_one_out_ratio)
         return Estimate(
             self.estimate,
             self.weight,
             np.sqrt(variance),
-            error * self.alone,
+            error * self.leave_one_out_ratio,
             iterations,
             converged,
         )
 
 
-def _bounds(start: Array, prior: WavePrior) -> tuple[Array, Array]:
+def _bounds(start: Array, prior: WindowPrior) -> tuple[Array, Array]:
     """Return how low and how high each channel may be estimated, shape (n_channels,)."""
     low = np.minimum(start.min(axis=0), prior.mean)
     high = np.maximum(start.max(axis=0), prior.mean)
-    reach = np.maximum(BEYOND * (high - low), FARTHEST * prior.deviation)
-    return low - reach, high + reach
+    margin = np.maximum(
+        MAX_RANGE_FRACTION * (high - low), MAX_PRIOR_DEVIATIONS * prior.deviation
+    )
+    return low - margin, high + margin
 
 
-def _inlier_probability(error: Array, spread: Array, rate: float | Array) -> Array:
+def _inlier_probability_of(error: Array, spread: Array, rate: float | Array) -> Array:
     """Weigh noise around what all other samples foretell against an outlier."""
-    inside = np.exp(-0.5 * error**2 / spread) / np.sqrt(2 * np.pi * spread)
-    inside *= 1.0 - rate
-    return np.asarray(inside / (inside + rate * OUTLIER_DENSITY))
+    inlier_probability = np.exp(-0.5 * error**2 / spread) / np.sqrt(2 * np.pi * spread)
+    inlier_probability *= 1.0 - rate
+    return np.asarray(inlier_probability / (inlier_probability + rate * OUTLIER_DENSITY))
 
 
-def _noise(error: Array, weight: Array, variance: Array, first_guess: Array) -> Array:
+def _estimate_noise(error: Array, weight: Array, variance: Array, first_noise: Array) -> Array:
     """Return the noise of each channel, from what the estimate leaves over."""
     total = weight.sum(axis=0)
     square = (weight * (error**2 + variance)).sum(axis=0) / np.maximum(total, 1e-9)
-    noise = np.where(total > 0.0, np.sqrt(square), first_guess)
+    noise = np.where(total > 0.0, np.sqrt(square), first_noise)
     noise = np.sqrt(
-        first_guess
-        * np.clip(noise, NOISE_BOUNDS[0] * first_guess, NOISE_BOUNDS[1] * first_guess)
+        first_noise
+        * np.clip(noise, NOISE_BOUNDS[0] * first_noise, NOISE_BOUNDS[1] * first_noise)
     )
     return alike(noise, total)

@@ -10,14 +10,14 @@ from scipy.fft import dct, idct
 
 Array = NDArray[np.float64]
 
-HOPS = 6
+N_OVERLAPS = 6
 """Windows that start in the length of one."""
-FEW_HOPS = 4
+N_FEW_OVERLAPS = 4
 """The same where an estimate is not the last, and in long takes."""
-LONG = 20_000
+LONG_TAKE_FRAMES = 20_000
 """Frames from which on windows overlap less."""
 
-LONG_GAP = 0.2
+LONG_GAP_FRACTION = 0.2
 """Share of a window from which on a gap is solved for exactly. Shorter ones fill quickly."""
 
 
@@ -33,49 +33,49 @@ class Windows:
     length: int
     density: float
     """Frames of the take per frame of the patterns that it is compared with."""
-    hops: int = HOPS
+    n_overlaps: int = N_OVERLAPS
     """Windows that start in the length of one, as far as frames allow."""
     solve_gaps: bool = True
     """Solve for long gaps exactly; otherwise fill them round by round, like short ones."""
 
     @property
-    def fewer(self) -> "Windows":
+    def with_less_overlap(self) -> "Windows":
         """The same with windows that overlap less."""
-        return replace(self, hops=FEW_HOPS)
+        return replace(self, n_overlaps=N_FEW_OVERLAPS)
 
     @property
     def long_gap(self) -> int:
         """Frames from which on a gap is solved for exactly."""
         if not self.solve_gaps:
             return self.n_frames
-        return max(round(LONG_GAP * self.length), 2)
+        return max(round(LONG_GAP_FRACTION * self.length), 2)
 
     @cached_property
     def starts(self) -> NDArray[np.intp]:
         """First frame of every window; the last window ends with the take."""
         last = self.n_frames - self.length
-        hops = self.hops if self.n_frames < LONG else FEW_HOPS
-        hop = max(self.length // hops, 1)
+        n_overlaps = self.n_overlaps if self.n_frames < LONG_TAKE_FRAMES else N_FEW_OVERLAPS
+        hop = max(self.length // n_overlaps, 1)
         return np.asarray(np.unique(np.append(np.arange(0, last, hop), last)), dtype=np.intp)
 
     @cached_property
     def _taper(self) -> Array:
         """A window knows least at its ends, and counts least there."""
-        places = (np.arange(self.length) + 0.5) / self.length
-        return np.asarray(0.1 + np.sin(np.pi * places[:, None]))
+        phases = (np.arange(self.length) + 0.5) / self.length
+        return np.asarray(0.1 + np.sin(np.pi * phases[:, None]))
 
-    def cut(self, values: Array, starts: NDArray[np.intp]) -> Array:
+    def extract(self, values: Array, starts: NDArray[np.intp]) -> Array:
         """Return the frames of these windows, shape (n_windows, length, n_channels)."""
-        cut = sliding_window_view(values, self.length, axis=0)[starts]
-        return np.asarray(cut.transpose(0, 2, 1))
+        extract = sliding_window_view(values, self.length, axis=0)[starts]
+        return np.asarray(extract.transpose(0, 2, 1))
 
-    def waves_of(self, frames: Array) -> Array:
+    def coefficients_from_frames(self, frames: Array) -> Array:
         """Return the waves of windows, both of shape (n_windows, length, n_channels)."""
         return np.asarray(dct(frames, axis=1, norm="ortho") / np.sqrt(self.density))
 
-    def frames_of(self, waves: Array) -> Array:
+    def frames_from_coefficients(self, coefficients: Array) -> Array:
         """Undo `waves_of`."""
-        return np.asarray(idct(waves, axis=1, norm="ortho") * np.sqrt(self.density))
+        return np.asarray(idct(coefficients, axis=1, norm="ortho") * np.sqrt(self.density))
 
     def add(self, total: Array, frames: Array, starts: NDArray[np.intp]) -> None:
         """Add windows of frames, or the same one at all starts, to the sum of all."""
@@ -83,7 +83,7 @@ class Windows:
         for start, window in zip(starts, frames, strict=True):
             total[start : start + self.length] += window
 
-    def wave_shapes(self, n_waves: int) -> Array:
+    def dct_basis(self, n_coefficients: int) -> Array:
         """Return the slowest waves, shape (length, n_waves): frames = shapes @ waves."""
-        unit = np.eye(self.length)[:, :n_waves]
-        return np.asarray(idct(unit, axis=0, norm="ortho") * np.sqrt(self.density))
+        identity = np.eye(self.length)[:, :n_coefficients]
+        return np.asarray(idct(identity, axis=0, norm="ortho") * np.sqrt(self.density))

@@ -6,18 +6,18 @@ from .filter_bases import (
     learn_filter_bases,
     load_filter_bases,
 )
-from .lag_covariance import LagProducts, strongest
-from .window_prior import Smoothness, WavePrior, mixed, smooth_prior
+from .lag_covariance import LagProducts, find_leading_eigenpairs
+from .window_prior import SmoothPrior, WindowPrior, build_smooth_prior, mix_priors
 
 __all__ = [
     "FilterBases",
     "FilterBasesSettings",
     "LagProducts",
-    "Smoothness",
-    "WavePrior",
+    "SmoothPrior",
+    "WindowPrior",
+    "build_smooth_prior",
+    "find_leading_eigenpairs",
     "learn_filter_bases",
     "load_filter_bases",
-    "mixed",
-    "smooth_prior",
-    "strongest",
+    "mix_priors",
 ]

@@ -15,16 +15,16 @@ from ...npz_members import flags, integers, numbers, words
 from ...progress import Progress, unwatched, within
 from ...settings import Settings, setting
 from ..channels import ExampleChannels, Moments
-from .lag_covariance import LagCovariance, strongest
-from .window_prior import n_slow_waves
+from .lag_covariance import LagCovariance, find_leading_eigenpairs
+from .window_prior import count_slow_coefficients
 
 Array = NDArray[np.float64]
 
 KEPT_ENERGY = 0.99
 """Share of the movement that the stored patterns hold, as in [LC10]."""
-STILL = 0.05
+MIN_CHANNEL_DEVIATION = 0.05
 """Standard deviation, degrees or centimetres, below which a channel does not move."""
-AT_REST = 1e-6
+MIN_ANY_DEVIATION = 1e-6
 """The same where no channel moves: what is below is rounding."""
 N_REFERENCE = 12
 LAYOUT = ArchiveLayout(
@@ -197,9 +197,9 @@ def learn_filter_bases(
     ----------
     .. [1] Lou, Chai (2010). Example-based human motion denoising. IEEE TVCG 16(5), section 3.
     """
-    shares = _checked(examples, weights)
+    normalized_weights = _normalize_weights(examples, weights)
     window = settings.n_frames
-    channels = ExampleChannels(examples, settings.frame_rate, window, shares)
+    channels = ExampleChannels(examples, settings.frame_rate, window, normalized_weights)
     moments = Moments(channels.n_channels)
     for weight, clips in channels.read(within(progress, 0.0, 0.4)):
         moments.add(clips, weight)
@@ -209,22 +209,24 @@ def learn_filter_bases(
             " ones or a shorter window."
         )
     mean, spread = moments.total()
-    if spread.max() < AT_REST:
+    if spread.max() < MIN_ANY_DEVIATION:
         raise InvalidMotionError(
             "Nothing that was observed in the examples moves; choose clips with movement."
         )
-    moving = np.flatnonzero(spread >= min(STILL, spread.max()))
-    about_all, about_own = (LagCovariance(len(moving), window) for _ in range(2))
+    moving = np.flatnonzero(spread >= min(MIN_CHANNEL_DEVIATION, spread.max()))
+    around_common_mean, around_clip_means = (
+        LagCovariance(len(moving), window) for _ in range(2)
+    )
     reading = channels.read(within(progress, 0.4, 0.8))
     for (weight, clips), own in zip(reading, moments.means, strict=True):
         for clip in clips:
-            about_all.add(clip[:, moving], mean[moving], weight)
-            about_own.add(clip[:, moving], own[moving], weight)
+            around_common_mean.add(clip[:, moving], mean[moving], weight)
+            around_clip_means.add(clip[:, moving], own[moving], weight)
     progress(0.8, "Finding patterns")
-    values, vectors = strongest(about_all.total(), KEPT_ENERGY)
+    values, vectors = find_leading_eigenpairs(around_common_mean.total(), KEPT_ENERGY)
     patterns = np.zeros((len(values), window, len(mean)))
     patterns[:, :, moving] = vectors.T.reshape(len(values), window, len(moving))
-    slow, fast = _waves(about_own.total(), window)
+    slow, fast = _dct_covariance(around_clip_means.total(), window)
     progress(1.0, "Learned")
     rows = np.zeros((len(channels.keys), N_REFERENCE))
     for row, key in zip(rows, channels.keys, strict=True):
@@ -238,7 +240,7 @@ def learn_filter_bases(
     )  # fmt: skip
 
 
-def _checked(
+def _normalize_weights(
     examples: Sequence[Motion | Tracks], weights: Sequence[float] | None
 ) -> tuple[float, ...]:
     """Return the weights of the examples, on average 1."""
@@ -254,11 +256,11 @@ def _checked(
     return tuple(map(float, given / given.mean()))
 
 
-def _waves(covariance: Array, window: int) -> tuple[Array, Array]:
+def _dct_covariance(covariance: Array, window: int) -> tuple[Array, Array]:
     """Return the covariance of the slow cosine waves, and the variances of the others."""
     n_channels = len(covariance) // window
     blocks = covariance.reshape(window, n_channels, window, n_channels)
-    waves = np.asarray(dct(dct(blocks, axis=0, norm="ortho"), axis=2, norm="ortho"))
-    n_slow = n_slow_waves(window)
-    fast = np.einsum("kckc->kc", waves)[n_slow:]
-    return waves[:n_slow, :, :n_slow].copy(), np.maximum(fast, 0.0)
+    coefficients = np.asarray(dct(dct(blocks, axis=0, norm="ortho"), axis=2, norm="ortho"))
+    n_slow = count_slow_coefficients(window)
+    fast = np.einsum("kckc->kc", coefficients)[n_slow:]
+    return coefficients[:n_slow, :, :n_slow].copy(), np.maximum(fast, 0.0)

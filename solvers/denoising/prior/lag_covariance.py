@@ -7,9 +7,9 @@ from scipy.sparse.linalg import eigsh
 
 Array = NDArray[np.float64]
 
-MOST_ENDS = 64
+MAX_CLIP_ENDS = 64
 """Clips whose first and last frames are kept until they are summed up."""
-FIRST_GUESS = 160
+N_FIRST_EIGENVECTORS = 160
 """Number of eigenvectors asked for at first; doubled until they hold enough."""
 
 
@@ -34,8 +34,8 @@ class LagProducts:
             self._first[:, lag] += clip[:last].T @ clip[lag : last + lag]
         self._heads.append(clip[: self._window - 1].copy())
         self._tails.append(clip[last:].copy())
-        if len(self._heads) == MOST_ENDS:
-            self._sum_up()
+        if len(self._heads) == MAX_CLIP_ENDS:
+            self._flush()
 
     def total(self) -> Array:
         """Return the sum.
@@ -44,10 +44,10 @@ class LagProducts:
         eq. 2.3 to 2.5 of [LOU12], with channels and lags interchanged.
         """
         if self._heads:
-            self._sum_up()
+            self._flush()
         return self._sum
 
-    def _sum_up(self) -> None:
+    def _flush(self) -> None:
         """Add what came since the last time, and forget it."""
         n_channels, window, _ = self._first.shape
         blocks = np.empty((window, n_channels, window, n_channels))
@@ -87,25 +87,25 @@ class LagCovariance:
         return np.asarray(total / scale[:, None])
 
 
-def strongest(covariance: Array, energy: float) -> tuple[Array, Array]:
+def find_leading_eigenpairs(covariance: Array, energy: float) -> tuple[Array, Array]:
     """Return the largest eigenvalues that hold this share of the trace, and their vectors.
 
     Implicitly restarted Lanczos iteration; small matrices are solved whole. Each vector's
     largest entry is positive, so that the same clips give the same signs everywhere.
     """
-    size, wanted = len(covariance), FIRST_GUESS
+    size, n_wanted = len(covariance), N_FIRST_EIGENVECTORS
     total = float(np.trace(covariance))
     while True:
-        if 3 * wanted >= size:
+        if 3 * n_wanted >= size:
             values, vectors = eigh(covariance)
         else:
-            values, vectors = eigsh(covariance, wanted, which="LA", v0=np.ones(size))
+            values, vectors = eigsh(covariance, n_wanted, which="LA", v0=np.ones(size))
         order = np.argsort(values)[::-1]
         values, vectors = np.maximum(values[order], 0.0), vectors[:, order]
-        enough = int(np.searchsorted(np.cumsum(values), energy * total)) + 1
-        if enough <= len(values) or len(values) == size:
-            values, vectors = values[:enough], vectors[:, :enough]
+        n_enough = int(np.searchsorted(np.cumsum(values), energy * total)) + 1
+        if n_enough <= len(values) or len(values) == size:
+            values, vectors = values[:n_enough], vectors[:, :n_enough]
             peaks = np.abs(vectors).argmax(axis=0)
             signs = np.sign(vectors[peaks, np.arange(vectors.shape[1])])
             return values, vectors * np.where(signs == 0.0, 1.0, signs)
-        wanted *= 2
+        n_wanted *= 2

@@ -7,36 +7,36 @@ from numpy.typing import NDArray
 
 Array = NDArray[np.float64]
 
-SLOW_SHARE = 0.6
+SLOW_FRACTION = 0.6
 """Share of the waves, slowest first, that are told together; faster ones are independent."""
-FASTEST = 1e-4
+FAST_VARIANCE_FLOOR = 1e-4
 """Variance, relative to a channel's own, that any fast wave may have."""
 
 
 @dataclass(frozen=True, eq=False)
-class Smoothness:
+class SmoothPrior:
     """What is expected of channels of which only variance and smoothness are known."""
 
     kernels: Array
     """Covariances of waves at each correlation time, shape (n_kernels, n_waves, n_waves)."""
     weights: Array
     """Variance of each channel at each correlation time, shape (n_kernels, n_channels)."""
-    share: float = 1.0
+    fraction: float = 1.0
     """Of it in the prior that it is part of."""
 
     def slow(self, n_slow: int) -> Array:
         """Return covariances of slow waves, shape (n_channels, n_slow, n_slow)."""
-        inside = self.kernels[:, :n_slow, :n_slow]
-        return np.asarray(np.einsum("lc,lkj->ckj", self.weights, inside))
+        slow_kernels = self.kernels[:, :n_slow, :n_slow]
+        return np.asarray(np.einsum("lc,lkj->ckj", self.weights, slow_kernels))
 
     def fast(self, n_slow: int) -> Array:
         """Return variances of the other waves, shape (n_waves - n_slow, n_channels)."""
-        variances = np.einsum("lkk->kl", self.kernels)[n_slow:] + FASTEST
+        variances = np.einsum("lkk->kl", self.kernels)[n_slow:] + FAST_VARIANCE_FLOOR
         return np.asarray(variances @ self.weights)
 
 
 @dataclass(frozen=True, eq=False)
-class WavePrior:
+class WindowPrior:
     """A Gaussian over the waves of a window of all channels.
 
     Attributes
@@ -59,12 +59,12 @@ class WavePrior:
     mean: Array
     slow: Array
     fast: Array
-    trust: Array
-    trust_in_gaps: Array
-    follows: Array
-    smooth: Smoothness
+    own_weight: Array
+    own_weight_in_gaps: Array
+    mean_adaptation: Array
+    smooth: SmoothPrior
     """The part of the covariance that can be fitted to the take."""
-    caution: float = 0.5
+    decoupling: float = 0.5
     """Share by which channels are taken as independent where one of them has a long gap."""
 
     @property
@@ -72,34 +72,36 @@ class WavePrior:
         """Number of slow waves."""
         return len(self.slow)
 
-    def at_most(self, n_waves: int) -> "WavePrior":
+    def truncated(self, n_coefficients: int) -> "WindowPrior":
         """Return the prior of windows that have only so many waves."""
         return replace(
             self,
-            slow=self.slow[:n_waves, :, :n_waves],
-            fast=self.fast[: max(n_waves - self.n_slow, 0)],
-            smooth=replace(self.smooth, kernels=self.smooth.kernels[:, :n_waves, :n_waves]),
+            slow=self.slow[:n_coefficients, :, :n_coefficients],
+            fast=self.fast[: max(n_coefficients - self.n_slow, 0)],
+            smooth=replace(
+                self.smooth, kernels=self.smooth.kernels[:, :n_coefficients, :n_coefficients]
+            ),
         )
 
-    def of_channels(self, channels: NDArray[np.intp]) -> "WavePrior":
+    def select_channels(self, channels: NDArray[np.intp]) -> "WindowPrior":
         """Return the prior of some of the channels."""
         return replace(
             self,
             mean=self.mean[channels],
             slow=self.slow[:, channels][:, :, :, channels],
             fast=self.fast[:, channels],
-            trust=self.trust[channels],
-            trust_in_gaps=self.trust_in_gaps[channels],
-            follows=self.follows[channels],
+            own_weight=self.own_weight[channels],
+            own_weight_in_gaps=self.own_weight_in_gaps[channels],
+            mean_adaptation=self.mean_adaptation[channels],
             smooth=replace(self.smooth, weights=self.smooth.weights[:, channels]),
         )
 
-    def with_smoothness(self, weights: Array) -> "WavePrior":
+    def with_smoothness(self, weights: Array) -> "WindowPrior":
         """Return the prior with other variances at each correlation time."""
-        more = replace(self.smooth, weights=weights - self.smooth.weights)
-        slow, channels, share = self.slow.copy(), np.arange(len(self.mean)), more.share
-        slow[:, channels, :, channels] += share * more.slow(self.n_slow)
-        fast = self.fast + share * more.fast(self.n_slow)
+        change = replace(self.smooth, weights=weights - self.smooth.weights)
+        slow, channels, fraction = self.slow.copy(), np.arange(len(self.mean)), change.fraction
+        slow[:, channels, :, channels] += fraction * change.slow(self.n_slow)
+        fast = self.fast + fraction * change.fast(self.n_slow)
         return replace(self, slow=slow, fast=fast, smooth=replace(self.smooth, weights=weights))
 
     @property
@@ -115,29 +117,35 @@ class WavePrior:
         return self.slow.reshape(size, size)
 
 
-def n_slow_waves(window: int) -> int:
+def count_slow_coefficients(window: int) -> int:
     """Return how many waves of a window are told together."""
-    return max(round(SLOW_SHARE * window), 1)
+    return max(round(SLOW_FRACTION * window), 1)
 
 
-def smooth_prior(
-    mean: Array, smooth: Smoothness, trust: float, trust_in_gaps: float
-) -> WavePrior:
+def build_smooth_prior(
+    mean: Array, smooth: SmoothPrior, own_weight: float, own_weight_in_gaps: float
+) -> WindowPrior:
     """Return the prior of channels of which only variance and smoothness are known."""
-    n_slow, channels = n_slow_waves(smooth.kernels.shape[1]), np.arange(len(mean))
+    n_slow, channels = count_slow_coefficients(smooth.kernels.shape[1]), np.arange(len(mean))
     slow = np.zeros((n_slow, len(mean), n_slow, len(mean)))
     slow[:, channels, :, channels] = smooth.slow(n_slow)
-    none = np.zeros(len(mean))
-    return WavePrior(
-        mean, slow, smooth.fast(n_slow), none + trust, none + trust_in_gaps, none, smooth
+    zeros = np.zeros(len(mean))
+    return WindowPrior(
+        mean,
+        slow,
+        smooth.fast(n_slow),
+        zeros + own_weight,
+        zeros + own_weight_in_gaps,
+        zeros,
+        smooth,
     )
 
 
-def mixed(examples: WavePrior, own: WavePrior, share: float) -> WavePrior:
+def mix_priors(examples: WindowPrior, own: WindowPrior, fraction: float) -> WindowPrior:
     """Return the examples' prior with a share of the one that knows only smoothness."""
     return replace(
         examples,
-        slow=(1.0 - share) * examples.slow + share * own.slow,
-        fast=(1.0 - share) * examples.fast + share * own.fast,
-        smooth=replace(own.smooth, share=share),
+        slow=(1.0 - fraction) * examples.slow + fraction * own.slow,
+        fast=(1.0 - fraction) * examples.fast + fraction * own.fast,
+        smooth=replace(own.smooth, fraction=fraction),
     )

@@ -16,22 +16,22 @@ def quality_figures(quality: "Quality") -> dict[str, Any]:
     figures: dict[str, Any] = {
         "n_frames": quality.n_frames,
         "frame_rate_hz": quality.frame_rate,
-        "mean_jitter_m_per_s3": _plain(quality.mean_jitter),
+        "mean_jitter_m_per_s3": _json_number(quality.mean_jitter),
         "spikes": sum(len(runs(signal.spikes)) for signal in quality.signals),
         "missing_share": float(np.mean([signal.gaps for signal in quality.signals])),
-        "foot_slide_cm_per_s": _plain(100.0 * quality.foot_slide),
+        "foot_slide_cm_per_s": _json_number(100.0 * quality.foot_slide),
         "joints": {
-            name: {"jitter_m_per_s3": _plain(jitter)}
+            name: {"jitter_m_per_s3": _json_number(jitter)}
             for name, jitter in zip(quality.names, quality.jitter.tolist(), strict=True)
         },
     }
     for signal in quality.signals:
-        figures["joints"][signal.joint].update(_of_signal(signal))
+        figures["joints"][signal.joint].update(_signal_figures(signal))
     figures["feet"] = {
         foot.side: {
             "joint": foot.joint,
             "contact_share": float(foot.contact.mean()),
-            "slide_cm_per_s": _plain(100.0 * foot.mean_speed),
+            "slide_cm_per_s": _json_number(100.0 * foot.mean_speed),
             "slide_cm": 100.0 * foot.distance,
         }
         for foot in quality.feet
@@ -52,7 +52,7 @@ def quality_figures(quality: "Quality") -> dict[str, Any]:
     return figures
 
 
-def _of_signal(signal: Signal) -> dict[str, Any]:
+def _signal_figures(signal: Signal) -> dict[str, Any]:
     """Rotations and positions have names of their own: the root has both."""
     spikes = runs(signal.spikes)
     kind, noise, factor = (
@@ -66,5 +66,5 @@ def _of_signal(signal: Signal) -> dict[str, Any]:
     }
 
 
-def _plain(value: float) -> float | None:
+def _json_number(value: float) -> float | None:
     return float(value) if np.isfinite(value) else None

@@ -69,9 +69,9 @@ def measure_foot_slide(
         Frames that have nothing to do with those before: no step leads to them.
     """
     steps = np.full((len(points), 2), np.nan)
-    moved = np.diff(points[..., :2], axis=0)
-    lengths = np.nan_to_num(np.linalg.norm(moved, axis=-1), nan=np.inf)
-    slowest = moved[np.arange(len(moved)), lengths.argmin(axis=1)]
+    displacements = np.diff(points[..., :2], axis=0)
+    lengths = np.nan_to_num(np.linalg.norm(displacements, axis=-1), nan=np.inf)
+    slowest = displacements[np.arange(len(displacements)), lengths.argmin(axis=1)]
     steps[1:] = np.where((contact[1:] & contact[:-1])[:, None], slowest, np.nan)
     steps[list(cuts)] = np.nan
     return FootSlide(side, joint, contact, steps, frame_rate)

@@ -14,10 +14,10 @@ from ...signals import disturbance
 
 Array = NDArray[np.float64]
 
-HALF_WINDOW = 0.12
+HALF_WINDOW_S = 0.12
 """Seconds to either side that the smooth course of a signal is fitted to."""
-FEWEST_FRAMES = 3
-SHAKE_WINDOW = 0.5
+MIN_HALF_WINDOW_FRAMES = 3
+NOISE_WINDOW_S = 0.5
 """Seconds over which shaking is averaged."""
 
 
@@ -47,7 +47,7 @@ class Signal:
     deviation: Array
     spike_threshold: float
     spikes: NDArray[np.bool_]
-    shake: Array
+    local_noise: Array
 
     @property
     def gaps(self) -> NDArray[np.bool_]:
@@ -59,14 +59,14 @@ class Signal:
 class SpikeRule:
     """What counts as a spike: both must be exceeded."""
 
-    times_noise: float
-    turn: float
+    noise_factor: float
+    min_rotation: float
     """Radians."""
-    move: float
+    min_displacement: float
     """Metres."""
 
 
-def signals_of(
+def extract_signals(
     recording: Motion | Tracks,
     rule: SpikeRule,
     progress: Progress,
@@ -76,38 +76,40 @@ def signals_of(
 
     End sites, which never turn, have none. No course leads across a cut.
     """
-    half_window = max(FEWEST_FRAMES, round(HALF_WINDOW * recording.frame_rate))
-    courses = list(_courses(recording))
-    found = []
-    places = _pulled_apart(recording.n_frames, cuts, half_window)
-    for place, (joint, turns, course) in enumerate(courses):
-        apart = np.full((places[-1] + 1, course.shape[1]), np.nan)
-        apart[places] = course
-        smallest = rule.turn if turns else rule.move
-        told = disturbance(apart, half_window, smallest)
-        threshold = max(smallest, rule.times_noise * told.scale)
-        spikes = told.spikes(threshold)
-        deviation = _angle(told.deviation) if turns else told.deviation
-        calm = np.where(spikes[:, None], np.nan, apart)
-        shake = estimate_local_noise(calm, round(SHAKE_WINDOW * recording.frame_rate))
-        found.append(
+    half_window = max(MIN_HALF_WINDOW_FRAMES, round(HALF_WINDOW_S * recording.frame_rate))
+    trajectories = list(_trajectories(recording))
+    signals = []
+    padded_frames = _spread_at_cuts(recording.n_frames, cuts, half_window)
+    for index, (joint, turns, trajectory) in enumerate(trajectories):
+        padded = np.full((padded_frames[-1] + 1, trajectory.shape[1]), np.nan)
+        padded[padded_frames] = trajectory
+        min_spike = rule.min_rotation if turns else rule.min_displacement
+        disturbed = disturbance(padded, half_window, min_spike)
+        threshold = max(min_spike, rule.noise_factor * disturbed.scale)
+        spikes = disturbed.spikes(threshold)
+        deviation = _angle_from_chord(disturbed.deviation) if turns else disturbed.deviation
+        without_spikes = np.where(spikes[:, None], np.nan, padded)
+        local_noise = estimate_local_noise(
+            without_spikes, round(NOISE_WINDOW_S * recording.frame_rate)
+        )
+        signals.append(
             Signal(
-                joint, turns, told.scale, deviation[places], threshold, spikes[places],
-                shake[places],
+                joint, turns, disturbed.scale, deviation[padded_frames], threshold, spikes[padded_frames],
+                local_noise[padded_frames],
             )
         )  # fmt: skip
-        progress((place + 1) / len(courses), "Looking for spikes")
-    return tuple(found)
+        progress((index + 1) / len(trajectories), "Looking for spikes")
+    return tuple(signals)
 
 
-def _pulled_apart(n_frames: int, cuts: tuple[int, ...], by: int) -> NDArray[np.intp]:
+def _spread_at_cuts(n_frames: int, cuts: tuple[int, ...], by: int) -> NDArray[np.intp]:
     """Return where to put frames so that `by` empty ones are at each cut."""
-    moved = np.zeros(n_frames, dtype=np.intp)
-    moved[list(cuts)] = by
-    return np.asarray(np.arange(n_frames) + np.cumsum(moved))
+    padding = np.zeros(n_frames, dtype=np.intp)
+    padding[list(cuts)] = by
+    return np.asarray(np.arange(n_frames) + np.cumsum(padding))
 
 
-def estimate_local_noise(course: Array, window: int) -> Array:
+def estimate_local_noise(trajectory: Array, window: int) -> Array:
     """Return the standard deviation of one component of white noise about each frame.
 
     Third differences d of white noise follow each other with opposite sign: their covariance
@@ -119,21 +121,23 @@ def estimate_local_noise(course: Array, window: int) -> Array:
     course : shape (n_frames, n_components), of three degrees of freedom; NaN is left out
     window : int, frames to average over
     """
-    shake = np.zeros(len(course))
-    if len(course) < 5:
-        return shake
-    differences = np.diff(course, n=3, axis=0)
-    against = -np.sum(differences[1:] * differences[:-1], axis=1) / (3 * 15.0)
-    known = np.isfinite(against)
-    size = min(max(window, 1), len(against))
-    power = uniform_filter1d(np.where(known, against, 0.0), size, mode="constant")
-    share = uniform_filter1d(known.astype(np.float64), size, mode="constant")
-    shake[2:-2] = np.sqrt(np.maximum(power, 0.0) / np.maximum(share, 1.0 / size))
-    shake[:2], shake[-2:] = shake[2], shake[-3]
-    return shake
+    local_noise = np.zeros(len(trajectory))
+    if len(trajectory) < 5:
+        return local_noise
+    differences = np.diff(trajectory, n=3, axis=0)
+    lagged_products = -np.sum(differences[1:] * differences[:-1], axis=1) / (3 * 15.0)
+    observed = np.isfinite(lagged_products)
+    size = min(max(window, 1), len(lagged_products))
+    power = uniform_filter1d(np.where(observed, lagged_products, 0.0), size, mode="constant")
+    observed_fraction = uniform_filter1d(observed.astype(np.float64), size, mode="constant")
+    local_noise[2:-2] = np.sqrt(
+        np.maximum(power, 0.0) / np.maximum(observed_fraction, 1.0 / size)
+    )
+    local_noise[:2], local_noise[-2:] = local_noise[2], local_noise[-3]
+    return local_noise
 
 
-def _courses(recording: Motion | Tracks) -> Iterator[tuple[str, bool, Array]]:
+def _trajectories(recording: Motion | Tracks) -> Iterator[tuple[str, bool, Array]]:
     if isinstance(recording, Tracks):
         for point, name in enumerate(recording.names):
             yield name, False, recording.positions[:, point]
@@ -147,6 +151,6 @@ def _courses(recording: Motion | Tracks) -> Iterator[tuple[str, bool, Array]]:
             yield name, True, rotations[:, joint]
 
 
-def _angle(chord: Array) -> Array:
+def _angle_from_chord(chord: Array) -> Array:
     """Angle in radians between rotations whose doubled quaternions are `chord` apart."""
     return np.asarray(4.0 * np.arcsin(np.minimum(chord / 4.0, 1.0)))

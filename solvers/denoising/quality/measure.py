@@ -15,10 +15,10 @@ from ...progress import Progress, unwatched, within
 from ...settings import Settings, setting
 from ..feet import SIDES, find_foot_joints
 from ..limits import limit_excess
-from .bone_drift import BoneDrift, bone_drifts
+from .bone_drift import BoneDrift, measure_bone_drifts
 from .figures import quality_figures
 from .foot_slide import FootSlide, measure_foot_slide
-from .joint_signals import Signal, SpikeRule, signals_of
+from .joint_signals import Signal, SpikeRule, extract_signals
 from .report import quality_report
 
 Array = NDArray[np.float64]
@@ -101,15 +101,15 @@ class Quality:
     @property
     def mean_jitter(self) -> float:
         """Mean of `jitter` over the joints that have one, m/s^3."""
-        known = self.jitter[np.isfinite(self.jitter)]
-        return float(known.mean()) if len(known) else float("nan")
+        observed = self.jitter[np.isfinite(self.jitter)]
+        return float(observed.mean()) if len(observed) else float("nan")
 
     @property
     def foot_slide(self) -> float:
         """Mean horizontal speed of the feet in contact, m/s; NaN where there is no contact."""
         speeds = [foot.speed[np.isfinite(foot.speed)] for foot in self.feet]
-        known = np.concatenate(speeds) if speeds else np.empty(0)
-        return float(known.mean()) if len(known) else float("nan")
+        observed = np.concatenate(speeds) if speeds else np.empty(0)
+        return float(observed.mean()) if len(observed) else float("nan")
 
     def report(self) -> str:
         """Return a table for the animator's eyes, in degrees and centimetres."""
@@ -120,11 +120,11 @@ class Quality:
         return quality_figures(self)
 
     def _by_joint(self, flags: list[Flags]) -> Flags:
-        place = {name: index for index, name in enumerate(self.names)}
-        found = np.zeros((self.n_frames, len(self.names)), dtype=np.bool_)
+        column_of = {name: index for index, name in enumerate(self.names)}
+        flags_by_joint = np.zeros((self.n_frames, len(self.names)), dtype=np.bool_)
         for signal, flag in zip(self.signals, flags, strict=True):
-            found[:, place[signal.joint]] |= flag
-        return found
+            flags_by_joint[:, column_of[signal.joint]] |= flag
+        return flags_by_joint
 
 
 def measure_quality(
@@ -172,14 +172,14 @@ def measure_quality(
         bones: tuple[BoneDrift, ...] = ()
     else:
         names, positions = recording.names, recording.positions
-        bones = bone_drifts(recording)
+        bones = measure_bone_drifts(recording)
     cuts = find_cuts(recording)
     quality = Quality(
         names=names,
         n_frames=recording.n_frames,
         frame_rate=recording.frame_rate,
         jitter=measure_jitter(positions, recording.frame_rate, cuts),
-        signals=signals_of(recording, rule, within(progress, 0.0, 0.8), cuts),
+        signals=extract_signals(recording, rule, within(progress, 0.0, 0.8), cuts),
         feet=_foot_slides(recording, names, positions, contacts, humanoid_map, cuts),
         bones=bones,
         limit_excess=_excess(recording, limits, humanoid_map),
@@ -204,9 +204,9 @@ def measure_jitter(positions: Array, frame_rate: float, cuts: tuple[int, ...] = 
     jerk = np.linalg.norm(np.diff(positions, n=3, axis=0), axis=-1) * frame_rate**3
     for cut in cuts:
         jerk[max(cut - 3, 0) : cut] = np.nan
-    known = np.isfinite(jerk)
-    total = np.where(known, jerk, 0.0).sum(axis=0)
-    count = known.sum(axis=0)
+    observed = np.isfinite(jerk)
+    total = np.where(observed, jerk, 0.0).sum(axis=0)
+    count = observed.sum(axis=0)
     return np.where(count > 0, total / np.maximum(count, 1), np.nan)
 
 
@@ -235,13 +235,13 @@ def _foot_slides(
     return tuple(
         measure_foot_slide(
             side,
-            names[joints[place, 0]],
-            points[:, place],
-            contacts[:, place],
+            names[joints[index, 0]],
+            points[:, index],
+            contacts[:, index],
             recording.frame_rate,
             cuts,
         )
-        for place, side in enumerate(SIDES)
+        for index, side in enumerate(SIDES)
     )
 
 

@@ -13,11 +13,11 @@ from ...signals import runs
 from .joint_signals import Signal
 from .measure import Quality, measure_quality
 
-LONG_GAP = 0.25
+LONG_GAP_S = 0.25
 """Seconds that an animator can still bridge by eye: severity 1."""
 CUT_SEVERITY = 10.0
 """What is joined should be taken apart before anything else is done."""
-LARGE_EXCESS = np.radians(10.0)
+SEVERE_EXCESS = np.radians(10.0)
 """Severity 1 of a joint beyond its limits; a fifth of it is not mentioned."""
 
 
@@ -115,17 +115,17 @@ def find_worst_issues(
     if quality is None:
         quality = measure_quality(recording, progress=progress)
     pause = round(settings.pause * quality.frame_rate)
-    found = [
+    issues = [
         *_spikes(quality, pause),
         *_gaps(quality),
-        *_shaking(quality, settings, pause),
+        *_jitter(quality, settings, pause),
         *_slides(quality, settings),
         *_beyond_limits(quality, pause),
         *_cuts(quality),
     ]
-    found.sort(key=lambda spot: (-spot.severity, spot.start_frame, spot.joint))
+    issues.sort(key=lambda issue: (-issue.severity, issue.start_frame, issue.joint))
     progress(1.0, "Found the worst spots")
-    return tuple(islice(found, settings.n_spots))
+    return tuple(islice(issues, settings.n_spots))
 
 
 def _spikes(quality: Quality, pause: int) -> Iterator[Issue]:
@@ -134,15 +134,15 @@ def _spikes(quality: Quality, pause: int) -> Iterator[Issue]:
             height = float(
                 np.nanmax(np.where(signal.spikes, signal.deviation, 0.0)[start:stop])
             )
-            times = len(runs(signal.spikes[start:stop]))
-            often = f" {times} times, by up to" if times > 1 else " by"
+            n_spikes = len(runs(signal.spikes[start:stop]))
+            count = f" {n_spikes} times, by up to" if n_spikes > 1 else " by"
             yield Issue(
                 signal.joint,
                 start,
                 stop,
                 "spike",
                 height / signal.spike_threshold,
-                f"{signal.joint} jumps{often} {_amount(signal, height)}.",
+                f"{signal.joint} jumps{count} {_amount(signal, height)}.",
             )
 
 
@@ -150,29 +150,29 @@ def _gaps(quality: Quality) -> Iterator[Issue]:
     for signal in quality.signals:
         for start, stop in runs(signal.gaps):
             seconds = (stop - start) / quality.frame_rate
-            whole = stop - start == quality.n_frames
+            all_missing = stop - start == quality.n_frames
             sentence = (
                 f"{signal.joint} is never observed."
-                if whole
+                if all_missing
                 else f"{signal.joint} is missing for {seconds:.2f} s."
             )
-            yield Issue(signal.joint, start, stop, "gap", seconds / LONG_GAP, sentence)
+            yield Issue(signal.joint, start, stop, "gap", seconds / LONG_GAP_S, sentence)
 
 
-def _shaking(quality: Quality, settings: IssueSettings, pause: int) -> Iterator[Issue]:
-    for turns, smallest in (
+def _jitter(quality: Quality, settings: IssueSettings, pause: int) -> Iterator[Issue]:
+    for turns, min_noise in (
         (True, settings.smallest_shake_turn),
         (False, settings.smallest_shake_move),
     ):
         signals = [signal for signal in quality.signals if signal.turns is turns]
         if not signals:
             continue
-        usual = float(np.median([signal.shake for signal in signals]))
-        threshold = max(settings.shake_ratio * usual, smallest)
+        typical_noise = float(np.median([signal.local_noise for signal in signals]))
+        threshold = max(settings.shake_ratio * typical_noise, min_noise)
         for signal in signals:
-            for start, stop in _merged(runs(signal.shake > threshold), pause):
-                level = float(signal.shake[start:stop].max())
-                amount = _amount(signal, level) + _compared(level, usual)
+            for start, stop in _merged(runs(signal.local_noise > threshold), pause):
+                level = float(signal.local_noise[start:stop].max())
+                amount = _amount(signal, level) + _compared(level, typical_noise)
                 yield Issue(
                     signal.joint,
                     start,
@@ -186,15 +186,15 @@ def _shaking(quality: Quality, settings: IssueSettings, pause: int) -> Iterator[
 def _slides(quality: Quality, settings: IssueSettings) -> Iterator[Issue]:
     for foot in quality.feet:
         for start, stop in runs(foot.contact):
-            way = float(np.linalg.norm(np.nansum(foot.steps[start:stop], axis=0)))
-            if way >= settings.smallest_slide:
+            slide = float(np.linalg.norm(np.nansum(foot.steps[start:stop], axis=0)))
+            if slide >= settings.smallest_slide:
                 yield Issue(
                     foot.joint,
                     start,
                     stop,
                     "foot slide",
-                    way / settings.smallest_slide,
-                    f"{foot.joint} slides {100 * way:.1f} cm while it stands.",
+                    slide / settings.smallest_slide,
+                    f"{foot.joint} slides {100 * slide:.1f} cm while it stands.",
                 )
 
 
@@ -202,10 +202,10 @@ def _beyond_limits(quality: Quality, pause: int) -> Iterator[Issue]:
     if quality.limit_excess is None:
         return
     for name, excess in zip(quality.names, quality.limit_excess.T, strict=True):
-        for start, stop in _merged(runs(excess > LARGE_EXCESS / 5), pause):
+        for start, stop in _merged(runs(excess > SEVERE_EXCESS / 5), pause):
             angle = float(excess[start:stop].max())
             sentence = f"{name} turns {np.degrees(angle):.0f}° beyond its limits."
-            yield Issue(name, start, stop, "limit", angle / LARGE_EXCESS, sentence)
+            yield Issue(name, start, stop, "limit", angle / SEVERE_EXCESS, sentence)
 
 
 def _cuts(quality: Quality) -> Iterator[Issue]:
@@ -214,10 +214,10 @@ def _cuts(quality: Quality) -> Iterator[Issue]:
         yield Issue(quality.names[0], frame - 1, frame + 1, "cut", CUT_SEVERITY, sentence)
 
 
-def _merged(stretches: list[tuple[int, int]], pause: int) -> list[tuple[int, int]]:
+def _merged(intervals: list[tuple[int, int]], pause: int) -> list[tuple[int, int]]:
     """Join stretches that are at most `pause` frames apart."""
     merged: list[tuple[int, int]] = []
-    for start, stop in stretches:
+    for start, stop in intervals:
         if merged and start - merged[-1][1] <= pause:
             merged[-1] = (merged[-1][0], stop)
         else:
@@ -231,7 +231,7 @@ def _amount(signal: Signal, value: float) -> str:
     return f"{100 * value:.1f} cm"
 
 
-def _compared(level: float, usual: float) -> str:
-    if usual <= 0.0:
+def _compared(level: float, typical_noise: float) -> str:
+    if typical_noise <= 0.0:
         return ""
-    return f", {level / usual:.0f} times as much as is usual here"
+    return f", {level / typical_noise:.0f} times as much as is usual here"

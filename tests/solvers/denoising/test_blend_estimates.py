@@ -3,7 +3,7 @@
 import numpy as np
 from scipy.optimize import minimize
 
-from solvers.denoising.marker_gaps.blend_estimates import DOUBT, blend_weights
+from solvers.denoising.marker_gaps.blend_estimates import INDEPENDENT_FRACTION, blend_weights
 
 N_FRAMES = 4000
 
@@ -26,8 +26,8 @@ def test_the_weights_are_those_that_a_general_search_finds():
     trials = [first, first + second, third + 0.8 * first]
     flat = np.array(trials).reshape(3, -1)
     products = flat @ flat.T / N_FRAMES
-    products += DOUBT * np.diag(np.diag(products))
-    found = minimize(
+    products += INDEPENDENT_FRACTION * np.diag(np.diag(products))
+    minimum = minimize(
         lambda weights: 1e4 * weights @ products @ weights,
         np.full(3, 1.0 / 3.0),
         bounds=[(0.0, 1.0)] * 3,
@@ -35,7 +35,7 @@ def test_the_weights_are_those_that_a_general_search_finds():
         options={"ftol": 1e-12},
     )
 
-    assert np.allclose(blend_weights(trials), found.x, atol=2e-3)
+    assert np.allclose(blend_weights(trials), minimum.x, atol=2e-3)
 
 
 def test_errors_of_opposite_sign_cancel():

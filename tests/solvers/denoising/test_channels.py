@@ -5,7 +5,11 @@ import pytest
 from numpy.testing import assert_allclose
 
 from solvers.denoising.channels.encode import decode, encode
-from solvers.denoising.channels.travel_path import local_lines, smooth_path, turned
+from solvers.denoising.channels.travel_path import (
+    fit_local_lines,
+    fit_travel_path,
+    rotate_on_ground,
+)
 from solvers.motion import Motion, Skeleton, Tracks, forward_kinematics
 from solvers.rotations.representations import (
     angle_between,
@@ -41,8 +45,8 @@ def test_a_joint_told_about_a_mean_half_a_turn_away_does_not_flip(walk):
     """As between actors whose feet rest in other poses: the sign of a turn must not jump."""
     references = dict(encode(walk).references)
     key = "leftUpperLeg"
-    far = multiply(references[key][:4], quaternion_from_rotation_vector([np.pi, 0.0, 0.0]))
-    references[key] = np.concatenate([far, references[key][4:]])
+    opposite = multiply(references[key][:4], quaternion_from_rotation_vector([np.pi, 0.0, 0.0]))
+    references[key] = np.concatenate([opposite, references[key][4:]])
 
     channels = encode(walk, references)
 
@@ -93,30 +97,30 @@ def test_what_is_not_observed_stays_unknown_and_disturbs_nothing_else(walk):
     rotations = walk.rotations.copy()
     rotations[10:20, 3] = np.nan
 
-    holed = encode(walk.with_poses(rotations), encode(walk).references)
+    gapped = encode(walk.with_poses(rotations), encode(walk).references)
 
-    unknown = np.isnan(holed.values).any(axis=2)
-    assert unknown.sum() == 10
-    whole = encode(walk).values
-    assert_allclose(holed.values[~unknown], whole[~unknown], atol=1e-9)
+    missing = np.isnan(gapped.values).any(axis=2)
+    assert missing.sum() == 10
+    complete = encode(walk).values
+    assert_allclose(gapped.values[~missing], complete[~missing], atol=1e-9)
 
 
 def test_a_path_is_straight_where_the_walk_is_and_bridges_a_gap():
-    places = np.stack([np.zeros(120), -np.arange(120) / 30.0], axis=-1)
-    seen = places.copy()
-    seen[40:70] = np.nan
+    ground_positions = np.stack([np.zeros(120), -np.arange(120) / 30.0], axis=-1)
+    observed = ground_positions.copy()
+    observed[40:70] = np.nan
 
-    path = smooth_path(seen, np.full(120, 0.4), 30.0)
+    path = fit_travel_path(observed, np.full(120, 0.4), 30.0)
 
-    assert_allclose(path.places, places, atol=1e-9)
+    assert_allclose(path.ground_positions, ground_positions, atol=1e-9)
     assert_allclose(path.headings, 0.4, atol=1e-9)
 
 
 def test_lines_are_their_own_regression(rng):
     line = np.outer(np.arange(50.0), [1.0, -2.0]) + 3.0
 
-    assert_allclose(local_lines(line, 4.0), line, atol=1e-9)
-    assert_allclose(turned(turned(line, 0.7), -0.7), line, atol=1e-9)
+    assert_allclose(fit_local_lines(line, 4.0), line, atol=1e-9)
+    assert_allclose(rotate_on_ground(rotate_on_ground(line, 0.7), -0.7), line, atol=1e-9)
 
 
 def with_lowered_arms(walk: Motion) -> Motion:

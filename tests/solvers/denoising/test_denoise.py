@@ -71,10 +71,10 @@ def test_cleans_points_too(swinging_leg, rng):
 
     cleaned = denoise(noisy).recording.positions
 
-    seen = noisy.visible
+    observed = noisy.visible
     assert (
-        np.abs(cleaned - truth)[seen].mean()
-        < 0.7 * np.abs(noisy.positions - truth)[seen].mean()
+        np.abs(cleaned - truth)[observed].mean()
+        < 0.7 * np.abs(noisy.positions - truth)[observed].mean()
     )
     assert np.isfinite(cleaned).all()
 
@@ -120,8 +120,8 @@ def test_strength_zero_fills_gaps_and_changes_nothing_else(swinging_leg, rng):
 def test_finds_the_spikes(swinging_leg, rng):
     noisy = shaken(swinging_leg, rng, np.radians(1))
     spikes = [20, 57, 58, 90]
-    kick = quaternion_from_rotation_vector([np.radians(40), 0.0, 0.0])
-    noisy.rotations[spikes, 1] = multiply(noisy.rotations[spikes, 1], kick)
+    spike = quaternion_from_rotation_vector([np.radians(40), 0.0, 0.0])
+    noisy.rotations[spikes, 1] = multiply(noisy.rotations[spikes, 1], spike)
 
     result = denoise(noisy)
 
@@ -153,9 +153,9 @@ def test_beats_the_published_filter_on_a_real_walk(recordings, rng):
     noisy = shaken(truth, rng, np.radians(3), n_still=0)
 
     ours = error(denoise(noisy, bases), truth)
-    published = DenoiseSettings(method=Method.PUBLISHED)
+    published_settings = DenoiseSettings(method=Method.PUBLISHED)
 
-    assert ours < 0.9 * error(denoise(noisy, bases, settings=published), truth)
+    assert ours < 0.9 * error(denoise(noisy, bases, settings=published_settings), truth)
     assert ours < 0.6 * angle_between(noisy.rotations, truth.rotations)[:, moving(truth)].mean()
 
 
@@ -174,8 +174,8 @@ def test_a_limb_off_for_a_fifth_of_a_second_is_put_back(recordings, rng):
         (80, "LeftLeg"),
     ):
         off[start : start + 6, noisy.skeleton.index(name)] = True
-    turn = quaternion_from_rotation_vector([0.5, -0.5, 0.5])
-    noisy.rotations[off] = multiply(turn, noisy.rotations[off])
+    rotation = quaternion_from_rotation_vector([0.5, -0.5, 0.5])
+    noisy.rotations[off] = multiply(rotation, noisy.rotations[off])
 
     result = denoise(noisy, bases)
 
@@ -195,8 +195,8 @@ def test_the_other_limbs_tell_that_one_is_off(rng):
     noisy = shaken(truth, rng, np.radians(1), n_still=0)
     off = np.zeros((truth.n_frames, 7), dtype=bool)
     off[30:36, 2] = off[60:66, 4] = off[90:95, 5] = True
-    turn = quaternion_from_rotation_vector([0.5, -0.5, 0.5])
-    noisy.rotations[off] = multiply(turn, noisy.rotations[off])
+    rotation = quaternion_from_rotation_vector([0.5, -0.5, 0.5])
+    noisy.rotations[off] = multiply(rotation, noisy.rotations[off])
 
     result = denoise(noisy, bases)
 
@@ -223,17 +223,18 @@ def test_what_is_quick_again_and_again_is_no_error(rng):
     mix = rng.normal(size=(2, 7, 3, 2))
     bases = learn_filter_bases([dancer(mix, seed) for seed in range(6)])
     plain = dancer(mix, 6)
-    wave = np.zeros((plain.n_frames, 7, 3))
-    wave[:, 3, 0] = 0.7 * np.sin(2 * np.pi * 2.5 * np.arange(plain.n_frames) / 30.0)
-    waving = plain.with_poses(
-        multiply(plain.rotations, quaternion_from_rotation_vector(wave)), plain.root_positions
+    waving_angles = np.zeros((plain.n_frames, 7, 3))
+    waving_angles[:, 3, 0] = 0.7 * np.sin(2 * np.pi * 2.5 * np.arange(plain.n_frames) / 30.0)
+    waving_motion = plain.with_poses(
+        multiply(plain.rotations, quaternion_from_rotation_vector(waving_angles)),
+        plain.root_positions,
     )
 
-    result = denoise(shaken(waving, rng, np.radians(1), n_still=0), bases)
+    result = denoise(shaken(waving_motion, rng, np.radians(1), n_still=0), bases)
 
     assert result.outliers[:, 3].mean() < 0.1
-    left = angle_between(result.recording.rotations, waving.rotations)[:, 3]
-    assert left.mean() < np.radians(2)
+    remaining_error = angle_between(result.recording.rotations, waving_motion.rotations)[:, 3]
+    assert remaining_error.mean() < np.radians(2)
 
 
 def test_a_knee_bent_forwards_is_not_believed(swinging_leg, rng):
@@ -243,11 +244,11 @@ def test_a_knee_bent_forwards_is_not_believed(swinging_leg, rng):
     forwards = quaternion_from_rotation_vector(np.tile([1.2, 0.0, 0.0], (36, 1)))
     noisy.rotations[50:86, 1] = multiply(forwards, noisy.rotations[50:86, 1])
 
-    alone, held = denoise(noisy, bases), denoise(noisy, bases, limits=limits)
+    alone, limited = denoise(noisy, bases), denoise(noisy, bases, limits=limits)
 
-    assert limit_excess(held.recording, limits).max() < np.radians(5.0)
-    assert held.outliers[50:86, 1].mean() > 2 * alone.outliers[50:86, 1].mean()
-    assert error(held, swinging_leg) < 0.9 * error(alone, swinging_leg)
+    assert limit_excess(limited.recording, limits).max() < np.radians(5.0)
+    assert limited.outliers[50:86, 1].mean() > 2 * alone.outliers[50:86, 1].mean()
+    assert error(limited, swinging_leg) < 0.9 * error(alone, swinging_leg)
 
 
 def test_limits_of_another_body_do_not_take_the_take_away(swinging_leg, rng):
@@ -280,18 +281,18 @@ def test_a_limb_that_was_never_seen_is_a_guess():
     arm = walk.skeleton.subtree(walk.skeleton.index("LeftArm"))
     rotations[:, arm] = np.nan
 
-    done = denoise(walk.with_poses(rotations, walk.root_positions))
+    result = denoise(walk.with_poses(rotations, walk.root_positions))
 
     joints = [joint for joint in arm if not walk.skeleton.is_end_site(joint)]
-    assert (done.confidence[:, joints] < 0.2).all()
-    assert done.confidence.mean() > 0.5
+    assert (result.confidence[:, joints] < 0.2).all()
+    assert result.confidence.mean() > 0.5
 
 
 def test_at_two_frames_a_second_no_frame_is_left_out(rng):
-    places = rng.normal(size=(40, 3, 3))
-    places[10:20, 0] = np.nan
+    positions = rng.normal(size=(40, 3, 3))
+    positions[10:20, 0] = np.nan
 
-    done = denoise(Tracks(("a", "b", "c"), places, 2.0))
+    result = denoise(Tracks(("a", "b", "c"), positions, 2.0))
 
-    assert np.isfinite(done.recording.positions).all()
-    assert np.isfinite(done.confidence).all()
+    assert np.isfinite(result.recording.positions).all()
+    assert np.isfinite(result.confidence).all()

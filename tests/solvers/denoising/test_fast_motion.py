@@ -4,37 +4,37 @@ import numpy as np
 import pytest
 from scipy.ndimage import gaussian_filter1d
 
-from solvers.denoising.posterior.fast_motion import quick_moves
+from solvers.denoising.posterior.fast_motion import find_fast_motion
 
-HILL = [0.0, 4.0, 10.0, 14.0, 9.0, 4.0, 0.0, 0.0]
+GRADUAL = [0.0, 4.0, 10.0, 14.0, 9.0, 4.0, 0.0, 0.0]
 
 
-def moves(*columns, noise=0.05, rate=0.002, window=20):
+def fast_motion(*columns, noise=0.05, rate=0.002, window=20):
     error = np.array(columns).T
     inlier = np.where(np.abs(error) > 1.0, 0.0, 1.0)
-    return quick_moves(error, inlier, np.full(len(columns), noise), rate, window)
+    return find_fast_motion(error, inlier, np.full(len(columns), noise), rate, window)
 
 
 def test_each_channel_is_judged_for_itself():
-    tower = [0.0, 0.0, 0.0, 14.0, 0.0, 0.0, 0.0, 0.0]
+    step_spike = [0.0, 0.0, 0.0, 14.0, 0.0, 0.0, 0.0, 0.0]
     burst = [0.0, 14.0, 14.0, 14.0, 14.0, 14.0, 0.0, 0.0]
 
-    found = moves(tower, HILL, burst, [-each for each in HILL])
+    flagged = fast_motion(step_spike, GRADUAL, burst, [-each for each in GRADUAL])
 
-    assert not found[:, [0, 2]].any()
-    assert found[:, [1, 3]].any(axis=1).tolist() == [False] + 5 * [True] + 2 * [False]
-    assert (found[:, 1] == found[:, 3]).all()
+    assert not flagged[:, [0, 2]].any()
+    assert flagged[:, [1, 3]].any(axis=1).tolist() == [False] + 5 * [True] + 2 * [False]
+    assert (flagged[:, 1] == flagged[:, 3]).all()
 
 
 def test_what_has_one_steep_side_is_a_spike():
     steep = [0.0, 14.0, 10.0, 7.0, 4.0, 2.0, 0.0, 0.0]
 
-    assert not moves(steep, steep[::-1]).any()
+    assert not fast_motion(steep, steep[::-1]).any()
 
 
 def test_at_the_ends_and_beside_gaps_nothing_is_known_of_the_slope():
-    assert not moves([4.0, 10.0, 4.0, 0.0, 0.0]).any()
-    assert not moves([0.0, np.nan, 14.0, 9.0, 4.0, 0.0]).any()
+    assert not fast_motion([4.0, 10.0, 4.0, 0.0, 0.0]).any()
+    assert not fast_motion([0.0, np.nan, 14.0, 9.0, 4.0, 0.0]).any()
 
 
 @pytest.mark.parametrize(("noise", "rate"), [(0.6, 0.002), (0.05, 0.05), (3.0, 0.4)])
@@ -42,22 +42,22 @@ def test_in_noisy_takes_and_among_many_outliers_only_long_hills_are_moves(noise,
     short = [0.0, 0.0, 8.0, 9.0, 0.5, 0.0, 0.0, 0.0]
     rough = [0.0, 8.0, -9.0, 12.0, 5.0, -7.0, 0.0, 0.0]
 
-    found = moves(HILL, short, rough, noise=noise, rate=rate)
+    flagged = fast_motion(GRADUAL, short, rough, noise=noise, rate=rate)
 
-    assert found[:, 0].tolist() == [False] + 5 * [True] + 2 * [False]
-    assert not found[:, 1:].any()
+    assert flagged[:, 0].tolist() == [False] + 5 * [True] + 2 * [False]
+    assert not flagged[:, 1:].any()
 
 
 def test_a_softened_spike_is_none():
     soft = gaussian_filter1d(np.repeat([0.0, 30.0, 0.0], [20, 3, 20]), 0.6)
 
-    assert not moves(soft, noise=2.0, rate=0.1).any()
+    assert not fast_motion(soft, noise=2.0, rate=0.1).any()
 
 
 def test_short_windows_do_not_make_spikes_of_two_frames_moves():
     spikes = np.tile([0.0, 0.0, 0.0, 0.0, 30.0, 31.0, 0.0, 0.0], 8)
 
-    assert not moves(spikes, noise=2.0, rate=0.3, window=3).any()
+    assert not fast_motion(spikes, noise=2.0, rate=0.3, window=3).any()
 
 
 def test_what_swings_through_zero_is_one_move():
@@ -67,28 +67,28 @@ def test_what_swings_through_zero_is_one_move():
         np.zeros(9),
     ])
 
-    found = moves(swing, noise=2.0, rate=0.1)[:, 0]
+    flagged = fast_motion(swing, noise=2.0, rate=0.1)[:, 0]
 
-    assert found[np.abs(swing) > 1.0].all()
+    assert flagged[np.abs(swing) > 1.0].all()
 
 
 def test_a_wave_is_many_hills():
     wave = 30.0 * np.sin(np.arange(100) * 2 * np.pi / 11.3)
 
-    found = moves(wave, noise=2.0, rate=0.4)[:, 0]
+    flagged = fast_motion(wave, noise=2.0, rate=0.4)[:, 0]
 
-    doubted = np.abs(wave) > 1.0
-    assert found[doubted][4:-6].all()
-    assert not found[~doubted].any()
+    deviating = np.abs(wave) > 1.0
+    assert flagged[deviating][4:-6].all()
+    assert not flagged[~deviating].any()
 
 
 def test_what_is_doubted_for_as_long_as_a_window_is_believed():
     """Errors of either sign without a slope between them: only how long it lasts can tell."""
-    for_long, for_a_moment = np.zeros(100), np.zeros(100)
-    for_long[20:80] = 30.0 * (-1.0) ** np.arange(60)
-    for_a_moment[20:28] = 30.0 * (-1.0) ** np.arange(8)
+    lasting, brief = np.zeros(100), np.zeros(100)
+    lasting[20:80] = 30.0 * (-1.0) ** np.arange(60)
+    brief[20:28] = 30.0 * (-1.0) ** np.arange(8)
 
-    found = moves(for_long, for_a_moment, noise=2.0, rate=0.3)
+    flagged = fast_motion(lasting, brief, noise=2.0, rate=0.3)
 
-    assert found[25:75, 0].all()
-    assert not found[:, 1].any()
+    assert flagged[25:75, 0].all()
+    assert not flagged[:, 1].any()

@@ -23,7 +23,7 @@ from solvers.samples import GaitSettings, walking_gait
 INF = np.inf
 
 
-def turned(skeleton: Skeleton, joint: int, rotations: np.ndarray) -> Motion:
+def motion_of_joint(skeleton: Skeleton, joint: int, rotations: np.ndarray) -> Motion:
     """A motion in which one joint turns and the others rest."""
     all_rotations = np.tile(IDENTITY, (len(rotations), skeleton.n_joints, 1))
     all_rotations[:, joint] = rotations
@@ -52,13 +52,13 @@ def about_bone_x(axes, degrees) -> np.ndarray:
 
 
 def test_a_turn_beyond_a_limit_of_the_bones_own_axis_stops_there(leg, bone_axes):
-    motion = turned(leg, 1, about_bone_x(bone_axes, [-20.0, 30.0, 60.0]))
+    motion = motion_of_joint(leg, 1, about_bone_x(bone_axes, [-20.0, 30.0, 60.0]))
     limits = euler_limits("knee", bone_axes, [0, 0, 0], np.radians([0, 0, 45]))
 
-    held = clamp_to_limits(motion, limits, softness=0.0)
+    clamped = clamp_to_limits(motion, limits, softness=0.0)
 
     assert_allclose(
-        angle_between(held.rotations[:, 1], about_bone_x(bone_axes, [0.0, 30.0, 45.0])),
+        angle_between(clamped.rotations[:, 1], about_bone_x(bone_axes, [0.0, 30.0, 45.0])),
         0,
         atol=1e-7,
     )
@@ -66,14 +66,14 @@ def test_a_turn_beyond_a_limit_of_the_bones_own_axis_stops_there(leg, bone_axes)
 
 def test_a_soft_limit_is_left_with_slope_one_and_never_exceeded_by_more_than_its_softness(leg):
     degrees = np.arange(40.0, 150.0, 0.5)
-    motion = turned(leg, 1, about_bone_x(IDENTITY, degrees))
+    motion = motion_of_joint(leg, 1, about_bone_x(IDENTITY, degrees))
     limits = euler_limits("knee", IDENTITY, [-INF, -INF, 0], [INF, INF, np.radians(45)])
 
-    held = clamp_to_limits(motion, limits, softness=np.radians(10.0))
+    clamped = clamp_to_limits(motion, limits, softness=np.radians(10.0))
 
-    angles = np.degrees(angle_between(held.rotations[:, 1], IDENTITY))
+    angles = np.degrees(angle_between(clamped.rotations[:, 1], IDENTITY))
     slopes = np.diff(angles) / 0.5
-    assert (held.rotations[degrees <= 45.0] == motion.rotations[degrees <= 45.0]).all()
+    assert (clamped.rotations[degrees <= 45.0] == motion.rotations[degrees <= 45.0]).all()
     assert angles.max() < 55.0
     assert (slopes > -1e-9).all() and np.abs(np.diff(slopes)).max() < 0.06
 
@@ -81,18 +81,18 @@ def test_a_soft_limit_is_left_with_slope_one_and_never_exceeded_by_more_than_its
 def test_what_is_within_or_has_no_limit_stays_bit_for_bit(walk):
     limits = euler_limits("LeftLeg", IDENTITY, [-INF] * 3, np.radians([5.0, 180.0, 180.0]))
 
-    held = clamp_to_limits(walk, limits)
+    clamped = clamp_to_limits(walk, limits)
 
-    changed = np.flatnonzero((held.rotations != walk.rotations).any(axis=(0, 2)))
+    changed = np.flatnonzero((clamped.rotations != walk.rotations).any(axis=(0, 2)))
     assert set(changed) <= {walk.skeleton.index("LeftLeg")}
     inside = limit_excess(walk, limits)[:, walk.skeleton.index("LeftLeg")] == 0.0
-    assert (held.rotations[inside] == walk.rotations[inside]).all()
-    assert (held.root_positions == walk.root_positions).all()
+    assert (clamped.rotations[inside] == walk.rotations[inside]).all()
+    assert (clamped.root_positions == walk.root_positions).all()
 
 
 def test_limits_beyond_half_a_turn_are_understood(leg):
     """150 to 210 degrees: 200 is within, though Euler angles call it -160."""
-    motion = turned(leg, 1, about_bone_x(IDENTITY, [200.0, 230.0]))
+    motion = motion_of_joint(leg, 1, about_bone_x(IDENTITY, [200.0, 230.0]))
     limits = euler_limits(
         "knee", IDENTITY, np.radians([-30, -30, 150]), np.radians([30, 30, 210])
     )
@@ -104,7 +104,9 @@ def test_limits_beyond_half_a_turn_are_understood(leg):
 
 def test_a_middle_angle_beyond_a_right_angle_is_understood(leg):
     """120 degrees about y alone, which Euler angles may also call (180, 60, 180)."""
-    motion = turned(leg, 1, quaternion_from_euler(np.radians([[0.0, 120.0, 0.0]]), "ZYX"))
+    motion = motion_of_joint(
+        leg, 1, quaternion_from_euler(np.radians([[0.0, 120.0, 0.0]]), "ZYX")
+    )
     limits = euler_limits("knee", IDENTITY, np.radians([-5, 0, -5]), np.radians([5, 130, 5]))
 
     assert limit_excess(motion, limits).max() < 1e-9
@@ -113,13 +115,13 @@ def test_a_middle_angle_beyond_a_right_angle_is_understood(leg):
 @pytest.mark.parametrize("order", ["XYZ", "ZXY", "YZX"])
 def test_angles_are_limited_in_the_order_that_lists_them(leg, order):
     angles = np.radians([[10.0, 20.0, 30.0]])
-    motion = turned(leg, 1, quaternion_from_euler(angles, order))
+    motion = motion_of_joint(leg, 1, quaternion_from_euler(angles, order))
     limits = euler_limits("knee", IDENTITY, [-INF] * 3, np.radians([15, 15, 40]), order)
 
-    held = clamp_to_limits(motion, limits, softness=0.0)
+    clamped = clamp_to_limits(motion, limits, softness=0.0)
 
-    wanted = quaternion_from_euler(np.radians([[10.0, 15.0, 30.0]]), order)
-    assert_allclose(angle_between(held.rotations[:, 1], wanted), 0.0, atol=1e-7)
+    expected = quaternion_from_euler(np.radians([[10.0, 15.0, 30.0]]), order)
+    assert_allclose(angle_between(clamped.rotations[:, 1], expected), 0.0, atol=1e-7)
 
 
 def test_gaps_stay_gaps(walk):
@@ -147,9 +149,9 @@ def test_learned_limits_are_a_hinge_where_a_joint_is_one(walk):
 
     limits = learn_joint_limits([walk], settings=settings)
 
-    place = limits.names.index("leftLowerLeg")
-    widths = np.degrees(limits.upper - limits.lower)[place]
-    assert limits.by_role[place]
+    index = limits.names.index("leftLowerLeg")
+    widths = np.degrees(limits.upper - limits.lower)[index]
+    assert limits.by_role[index]
     assert widths[0] > 30.0 and widths[1:].max() < 1.0
 
 
@@ -157,15 +159,15 @@ def test_limits_learned_on_one_rig_hold_on_another(walk):
     """The other rig rests with lowered arms, and calls its joints otherwise."""
     lowered, names = rested_otherwise(walk)
     limits = learn_joint_limits([walk])
-    back = learn_joint_limits([lowered])
+    reverse_limits = learn_joint_limits([lowered])
 
     assert limit_excess(lowered, limits).max() < 1e-6
-    assert limit_excess(walk, back).max() < 1e-6
+    assert limit_excess(walk, reverse_limits).max() < 1e-6
     assert set(names).isdisjoint(walk.skeleton.names)
-    here = limit_excess(bent_back(walk, "LeftForeArm"), limits)
-    there = limit_excess(bent_back(lowered, "lowerarm_l"), limits)
-    assert here.max() > 0.5
-    assert_allclose(there, here, atol=1e-6)
+    first_rig = limit_excess(bent_back(walk, "LeftForeArm"), limits)
+    other_rig = limit_excess(bent_back(lowered, "lowerarm_l"), limits)
+    assert first_rig.max() > 0.5
+    assert_allclose(other_rig, first_rig, atol=1e-6)
 
 
 def rested_otherwise(motion: Motion) -> tuple[Motion, list[str]]:
@@ -212,10 +214,10 @@ def test_held_motions_are_within_their_limits(walk, rng):
     noise = quaternion_from_rotation_vector(rng.normal(scale=0.5, size=(90, walk.n_joints, 3)))
     noisy = walk.with_poses(multiply(walk.rotations, noise))
 
-    held = clamp_to_limits(noisy, limits, softness=np.radians(3.0))
+    clamped = clamp_to_limits(noisy, limits, softness=np.radians(3.0))
 
     assert np.degrees(limit_excess(noisy, limits).max()) > 20.0
-    assert np.degrees(limit_excess(held, limits).max()) < 3.0 + 1e-9
+    assert np.degrees(limit_excess(clamped, limits).max()) < 3.0 + 1e-9
 
 
 def test_limits_survive_a_file(walk, tmp_path):

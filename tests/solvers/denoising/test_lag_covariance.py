@@ -8,7 +8,11 @@ from numpy.lib.stride_tricks import sliding_window_view
 from numpy.testing import assert_allclose
 
 from solvers.denoising import learn_filter_bases
-from solvers.denoising.prior.lag_covariance import MOST_ENDS, LagProducts, strongest
+from solvers.denoising.prior.lag_covariance import (
+    MAX_CLIP_ENDS,
+    LagProducts,
+    find_leading_eigenpairs,
+)
 from solvers.errors import InvalidMotionError
 from solvers.samples import GaitSettings, walking_gait
 
@@ -26,7 +30,7 @@ def test_equals_the_product_of_the_trajectory_matrix(rng, n_frames, window):
 
 
 def test_many_clips_are_summed_up_as_they_come(rng):
-    clips = [rng.normal(size=(rng.integers(5, 12), 2)) for _ in range(2 * MOST_ENDS + 3)]
+    clips = [rng.normal(size=(rng.integers(5, 12), 2)) for _ in range(2 * MAX_CLIP_ENDS + 3)]
     products = LagProducts(2, 5)
     for clip in clips:
         products.add(clip)
@@ -57,18 +61,18 @@ def test_a_long_example_is_learned_from_minute_by_minute():
     walk = walking_gait(GaitSettings(duration=130.0, frame_rate=30.0))
     halves = [walk.slice(0, 1950), walk.slice(1950, 3900)]
 
-    whole, parts = learn_filter_bases([walk]), learn_filter_bases(halves)
+    complete, parts = learn_filter_bases([walk]), learn_filter_bases(halves)
 
-    assert len(whole.clip_means) == 2
-    assert_allclose(whole.clip_means, parts.clip_means, atol=1e-6)
-    assert_allclose(whole.slow, parts.slow, rtol=1e-6, atol=1e-9)
+    assert len(complete.clip_means) == 2
+    assert_allclose(complete.clip_means, parts.clip_means, atol=1e-6)
+    assert_allclose(complete.slow, parts.slow, rtol=1e-6, atol=1e-9)
 
 
 def test_patterns_hold_the_share_that_is_asked_for(rng):
     factors = rng.normal(size=(300, 300)) * np.geomspace(1, 1e-4, 300)
     covariance = factors.T @ factors
 
-    values, vectors = strongest(covariance, 0.99)
+    values, vectors = find_leading_eigenpairs(covariance, 0.99)
 
     everything = np.sort(np.linalg.eigvalsh(covariance))[::-1]
     n_needed = int(np.searchsorted(everything.cumsum(), 0.99 * everything.sum())) + 1
@@ -78,17 +82,22 @@ def test_patterns_hold_the_share_that_is_asked_for(rng):
 
 def test_a_clip_that_lacks_a_joint_tells_nothing_of_it(swinging_leg):
     """As if it had not been given, for the joint's mean, spread and patterns."""
-    lost = swinging_leg.with_poses(swinging_leg.rotations.copy())
-    lost.rotations[:, 1] = np.nan
+    without_knee = swinging_leg.with_poses(swinging_leg.rotations.copy())
+    without_knee.rotations[:, 1] = np.nan
 
-    alone, both = learn_filter_bases([swinging_leg]), learn_filter_bases([swinging_leg, lost])
+    alone, both = (
+        learn_filter_bases([swinging_leg]),
+        learn_filter_bases([swinging_leg, without_knee]),
+    )
 
     knee = 3 * alone.keys.tolist().index("joint knee") + np.arange(3)
     assert_allclose(both.mean[knee], alone.mean[knee], atol=1e-9)
     assert set(both.moving) == set(alone.moving)
-    places = np.flatnonzero(np.isin(alone.moving, knee))
-    own = np.ix_(np.arange(len(alone.slow)), places, np.arange(len(alone.slow)), places)
-    assert_allclose(both.slow[own], alone.slow[own], rtol=1e-6, atol=1e-9)
+    knee_channels = np.flatnonzero(np.isin(alone.moving, knee))
+    knee_block = np.ix_(
+        np.arange(len(alone.slow)), knee_channels, np.arange(len(alone.slow)), knee_channels
+    )
+    assert_allclose(both.slow[knee_block], alone.slow[knee_block], rtol=1e-6, atol=1e-9)
 
 
 def test_an_example_has_one_mean_pose_at_any_frame_rate(swinging_leg):

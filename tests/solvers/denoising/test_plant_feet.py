@@ -27,20 +27,20 @@ def contacts(walk):
     return detect_contacts(walk)
 
 
-def skated(motion: Motion, share: float = 0.15) -> Motion:
+def add_foot_slide(motion: Motion, fraction: float = 0.15) -> Motion:
     """The same steps, but the body travels farther than the feet carry it."""
-    place = motion.root_positions.copy()
-    place[:, :2] += share * (place[:, :2] - place[0, :2])
-    return motion.with_poses(root_positions=place)
+    root_positions = motion.root_positions.copy()
+    root_positions[:, :2] += fraction * (root_positions[:, :2] - root_positions[0, :2])
+    return motion.with_poses(root_positions=root_positions)
 
 
-def balls(motion: Motion) -> np.ndarray:
+def ball_positions(motion: Motion) -> np.ndarray:
     """Positions of the toe joints, (n_frames, left and right, 3)."""
     toes = [leg.toe for leg in find_legs(motion.skeleton)]
     return forward_kinematics(motion).positions[:, toes]
 
 
-def middles(contacts: np.ndarray, margin: int) -> np.ndarray:
+def inner_steps(contacts: np.ndarray, margin: int) -> np.ndarray:
     """Steps between frames that are in contact and have been, and will be, for a while."""
     inner = contacts.copy()
     for shift in range(1, margin + 1):
@@ -50,7 +50,7 @@ def middles(contacts: np.ndarray, margin: int) -> np.ndarray:
 
 
 def test_a_skating_walk_stops_skating(walk, contacts):
-    planted = plant_feet(skated(walk), contacts)
+    planted = plant_feet(add_foot_slide(walk), contacts)
 
     assert planted.slide_before > 0.3
     assert planted.slide_after < 0.02 * planted.slide_before
@@ -59,20 +59,20 @@ def test_a_skating_walk_stops_skating(walk, contacts):
 
 def test_a_ball_in_contact_moves_less_than_a_millimetre(walk, contacts):
     """Once the foot has rolled onto it, for which the last third of a stance is time enough."""
-    planted = plant_feet(skated(walk), contacts).motion
+    planted = plant_feet(add_foot_slide(walk), contacts).motion
 
-    steps = np.linalg.norm(np.diff(balls(planted)[..., :2], axis=0), axis=-1)
+    steps = np.linalg.norm(np.diff(ball_positions(planted)[..., :2], axis=0), axis=-1)
     assert (
-        np.linalg.norm(np.diff(balls(skated(walk)), axis=0), axis=-1)[
-            middles(contacts, 9)
+        np.linalg.norm(np.diff(ball_positions(add_foot_slide(walk)), axis=0), axis=-1)[
+            inner_steps(contacts, 9)
         ].max()
         > 0.002
     )
-    assert steps[middles(contacts, 9)].max() < 0.001
+    assert steps[inner_steps(contacts, 9)].max() < 0.001
 
 
 def test_nothing_above_the_hips_turns(walk, contacts):
-    source = skated(walk)
+    source = add_foot_slide(walk)
 
     planted = plant_feet(source, contacts).motion
 
@@ -99,7 +99,7 @@ def test_a_clean_walk_hardly_changes(walk):
 
 def test_feet_keep_their_own_roll(walk, contacts):
     """Heel strike and push-off tilt the foot by tens of degrees; planting, by a few."""
-    source = skated(walk)
+    source = add_foot_slide(walk)
     ankles = [leg.ankle for leg in find_legs(walk.skeleton)]
 
     planted = plant_feet(source, contacts).motion
@@ -113,7 +113,7 @@ def test_feet_keep_their_own_roll(walk, contacts):
 def test_a_foot_that_is_flung_about_does_not_fling_its_leg(walk, contacts):
     """For a tenth of a second in mid-stance the foot is captured upside down."""
     leg = find_legs(walk.skeleton)[0]
-    middle = int(np.flatnonzero(middles(contacts, 12)[:, 0])[0]) + 3
+    middle = int(np.flatnonzero(inner_steps(contacts, 12)[:, 0])[0]) + 3
     rotations = walk.rotations.copy()
     flip = quaternion_from_rotation_vector([2.5, 0.0, 0.0])
     frames = slice(middle, middle + 6)
@@ -154,23 +154,23 @@ def test_contact_throughout_holds_both_feet(walk):
 
 
 def test_turns_and_moves_with_its_input(walk, contacts):
-    turn = quaternion_from_rotation_vector([0.0, 0.0, 2.0])
-    source = skated(walk).slice(0, 90)
-    turned = source.rotations.copy()
-    turned[:, 0] = multiply(turn, turned[:, 0])
+    rotation = quaternion_from_rotation_vector([0.0, 0.0, 2.0])
+    source = add_foot_slide(walk).slice(0, 90)
+    rotations = source.rotations.copy()
+    rotations[:, 0] = multiply(rotation, rotations[:, 0])
     c, s = np.cos(2.0), np.sin(2.0)
-    place = source.root_positions @ np.array([[c, -s, 0], [s, c, 0], [0, 0, 1]]).T
+    root_positions = source.root_positions @ np.array([[c, -s, 0], [s, c, 0], [0, 0, 1]]).T
 
     here = plant_feet(source, contacts[:90]).motion
     there = plant_feet(
-        source.with_poses(turned, np.add(place, (5.0, -3.0, 0.0))), contacts[:90]
+        source.with_poses(rotations, np.add(root_positions, (5.0, -3.0, 0.0))), contacts[:90]
     ).motion
 
     assert angle_between(here.rotations[:, 1:], there.rotations[:, 1:]).max() < 1e-5
 
 
 def test_at_twice_the_frame_rate_the_feet_go_the_same_way():
-    fast = skated(walking_gait(GaitSettings(duration=3.0, frame_rate=120.0)))
+    fast = add_foot_slide(walking_gait(GaitSettings(duration=3.0, frame_rate=120.0)))
     contacts = detect_contacts(fast)
     slow = Motion(fast.skeleton, fast.rotations[::2], fast.root_positions[::2], 60.0)
 
@@ -184,7 +184,7 @@ def test_at_twice_the_frame_rate_the_feet_go_the_same_way():
 
 def test_hips_come_down_where_a_leg_is_too_short(walk, contacts):
     """Strides of half a foot more than the legs can make."""
-    source = skated(walk, 0.45)
+    source = add_foot_slide(walk, 0.45)
 
     planted = plant_feet(source, contacts)
     without = plant_feet(source, contacts, settings=PlantSettings(move_root=False))
@@ -213,22 +213,25 @@ def test_knees_of_real_walks_do_not_pop(recordings):
 
 def test_uneven_ground_stays_uneven(walk, contacts):
     """A walk up a ramp of 1 in 10: each plant keeps its height."""
-    place = walk.root_positions.copy()
-    place[:, 2] -= 0.1 * place[:, 1]
-    uphill = walk.with_poses(root_positions=place)
+    root_positions = walk.root_positions.copy()
+    root_positions[:, 2] -= 0.1 * root_positions[:, 1]
+    uphill = walk.with_poses(root_positions=root_positions)
 
     planted = plant_feet(uphill, contacts).motion
 
-    assert np.abs(balls(planted)[..., 2] - balls(uphill)[..., 2])[contacts].max() < 0.03
+    assert (
+        np.abs(ball_positions(planted)[..., 2] - ball_positions(uphill)[..., 2])[contacts].max()
+        < 0.03
+    )
 
 
 def test_feet_on_a_level_floor_stand_at_one_height(walk, contacts):
-    place = walk.root_positions.copy()
-    place[:, 2] += 0.008 * np.sin(np.arange(walk.n_frames) / 60.0)
-    planted = plant_feet(walk.with_poses(root_positions=place), contacts).motion
+    root_positions = walk.root_positions.copy()
+    root_positions[:, 2] += 0.008 * np.sin(np.arange(walk.n_frames) / 60.0)
+    planted = plant_feet(walk.with_poses(root_positions=root_positions), contacts).motion
 
-    inner = np.concatenate([[False], middles(contacts, 6)[:, 0]])
-    assert np.ptp(balls(planted)[inner, 0, 2]) < 0.006
+    inner = np.concatenate([[False], inner_steps(contacts, 6)[:, 0]])
+    assert np.ptp(ball_positions(planted)[inner, 0, 2]) < 0.006
 
 
 def test_one_frame_is_planted():
@@ -262,10 +265,10 @@ def test_contacts_of_another_clip_are_refused(walk):
 
 
 def test_rises_to_one_and_can_be_cancelled(walk):
-    told = []
-    plant_feet(walk, progress=lambda fraction, message="": told.append(fraction))
+    fractions = []
+    plant_feet(walk, progress=lambda fraction, message="": fractions.append(fraction))
 
-    assert told == sorted(told) and told[-1] == 1.0
+    assert fractions == sorted(fractions) and fractions[-1] == 1.0
 
     def stop(fraction, message=""):
         raise SolveCancelled

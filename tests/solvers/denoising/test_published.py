@@ -8,7 +8,12 @@ from numpy.testing import assert_allclose
 from scipy.optimize import minimize
 
 from solvers.denoising import DenoiseSettings, Method, denoise, learn_filter_bases
-from solvers.denoising.published import PATTERN_WEIGHT, WELSCH, alternate, published_cost
+from solvers.denoising.published import (
+    PATTERN_WEIGHT,
+    WELSCH_SCALE_DEG,
+    alternate,
+    published_cost,
+)
 
 WINDOW = 6
 
@@ -30,32 +35,34 @@ def noisy(rng):
 def test_the_cost_is_that_of_the_best_pattern_weights(patterns, noisy, rng):
     """Eq. 2.16 of [LOU12] by explicit least squares, window after window."""
     motion = rng.normal(size=noisy.shape)
-    known = np.isfinite(noisy)
-    residual = (motion - noisy)[known]
-    robust = (WELSCH**2 / 2 * (1 - np.exp(-((residual / WELSCH) ** 2)))).sum()
+    observed_mask = np.isfinite(noisy)
+    residual = (motion - noisy)[observed_mask]
+    robust = (
+        WELSCH_SCALE_DEG**2 / 2 * (1 - np.exp(-((residual / WELSCH_SCALE_DEG) ** 2)))
+    ).sum()
     E = patterns.reshape(4, -1).T
-    apart = 0.0
+    distance = 0.0
     for start in range(len(motion) - WINDOW + 1):
         window = motion[start : start + WINDOW].ravel()
         weights = np.linalg.lstsq(E, window, rcond=None)[0]
-        apart += ((window - E @ weights) ** 2).sum()
+        distance += ((window - E @ weights) ** 2).sum()
 
-    cost = published_cost(motion, np.nan_to_num(noisy), known, patterns)
+    cost = published_cost(motion, np.nan_to_num(noisy), observed_mask, patterns)
 
-    assert_allclose(cost, robust + PATTERN_WEIGHT * apart, rtol=1e-12)
+    assert_allclose(cost, robust + PATTERN_WEIGHT * distance, rtol=1e-12)
 
 
 def test_the_alternation_finds_a_minimum_that_direct_descent_cannot_better(
     patterns, noisy, monkeypatch
 ):
     monkeypatch.setattr("solvers.denoising.published.MAX_ITERATIONS", 3000)
-    monkeypatch.setattr("solvers.denoising.published.SETTLED", 1e-12)
-    known, observed = np.isfinite(noisy), np.nan_to_num(noisy)
+    monkeypatch.setattr("solvers.denoising.published.MAX_RELATIVE_CHANGE", 1e-12)
+    observed_mask, observed = np.isfinite(noisy), np.nan_to_num(noisy)
 
     motion, weight, _, converged = alternate(noisy, patterns)
 
     def cost(flat):
-        return published_cost(flat.reshape(noisy.shape), observed, known, patterns)
+        return published_cost(flat.reshape(noisy.shape), observed, observed_mask, patterns)
 
     better = minimize(cost, motion.ravel(), options={"gtol": 1e-9})
     assert converged
@@ -64,12 +71,12 @@ def test_the_alternation_finds_a_minimum_that_direct_descent_cannot_better(
 
 
 def test_every_round_lowers_the_cost(patterns, noisy, monkeypatch):
-    known, observed = np.isfinite(noisy), np.nan_to_num(noisy)
+    observed_mask, observed = np.isfinite(noisy), np.nan_to_num(noisy)
     costs = []
     for rounds in range(1, 8):
         monkeypatch.setattr("solvers.denoising.published.MAX_ITERATIONS", rounds)
         motion, _, _, _ = alternate(noisy, patterns)
-        costs.append(published_cost(motion, observed, known, patterns))
+        costs.append(published_cost(motion, observed, observed_mask, patterns))
 
     assert (np.diff(costs) <= 1e-9).all()
 
@@ -81,14 +88,14 @@ def test_says_why_it_does_not_use_the_examples(swinging_leg, leg):
     foreign = learn_filter_bases([replace(swinging_leg, skeleton=other)])
     bases = learn_filter_bases([swinging_leg])
 
-    said = [
+    messages = [
         denoise(swinging_leg, None, settings=settings).prior_used,
         denoise(swinging_leg, foreign, settings=settings).prior_used,
         denoise(swinging_leg.slice(0, 30), bases, settings=settings).prior_used,
         denoise(swinging_leg, bases, settings=settings).prior_used,
     ]
 
-    assert said == [
+    assert messages == [
         "The take's own patterns: no examples were given.",
         "The take's own patterns: the examples lack one joint of it, and all are needed.",
         "The take's own patterns: it is shorter than those of the examples.",

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from numpy.testing import assert_allclose
 
-from solvers.denoising.quality.bone_drift import bone_drifts
+from solvers.denoising.quality.bone_drift import measure_bone_drifts
 from solvers.denoising.quality.foot_slide import measure_foot_slide
 from solvers.denoising.quality.measure import QualitySettings, measure_jitter, measure_quality
 from solvers.denoising.quality.report import compare_quality
@@ -50,10 +50,10 @@ def test_finds_spikes_and_gaps_where_they_are(swinging_leg):
 
 
 def test_a_root_that_jumps_is_a_spike_of_the_root(swinging_leg):
-    place = swinging_leg.root_positions.copy()
-    place[40] += [0.0, 0.0, 0.3]
+    root_positions = swinging_leg.root_positions.copy()
+    root_positions[40] += [0.0, 0.0, 0.3]
 
-    quality = measure_quality(swinging_leg.with_poses(root_positions=place))
+    quality = measure_quality(swinging_leg.with_poses(root_positions=root_positions))
 
     assert np.argwhere(quality.spikes).tolist() == [[40, 0]]
 
@@ -81,15 +81,15 @@ def test_noise_is_reported_in_its_own_size_at_any_frame_rate(rng, leg, rate):
 
 
 def test_a_turned_and_moved_take_has_the_same_faults(swinging_leg, rng):
-    turn = quaternion_from_rotation_vector([0.0, 0.0, 1.0])
+    rotation = quaternion_from_rotation_vector([0.0, 0.0, 1.0])
     rotations = multiply(
         swinging_leg.rotations,
         quaternion_from_rotation_vector(rng.normal(scale=0.03, size=(120, 4, 3))),
     )
     take = swinging_leg.with_poses(rotations)
-    turned = rotations.copy()
-    turned[:, 0] = multiply(turn, turned[:, 0])
-    elsewhere = take.with_poses(turned, np.add(take.root_positions, (3.0, -2.0, 0.0)))
+    rotated = rotations.copy()
+    rotated[:, 0] = multiply(rotation, rotated[:, 0])
+    elsewhere = take.with_poses(rotated, np.add(take.root_positions, (3.0, -2.0, 0.0)))
 
     a, b = measure_quality(take), measure_quality(elsewhere)
 
@@ -120,11 +120,14 @@ def test_a_foot_that_rolls_over_its_toe_does_not_slide():
 
 def test_a_skating_walk_slides_and_a_planted_one_does_not():
     walk = walking_gait(GaitSettings(duration=3.0, frame_rate=60.0))
-    place = walk.root_positions.copy()
-    place[:, 1] -= 0.1 * np.arange(walk.n_frames) / 60.0  # everything drifts at 10 cm/s
+    root_positions = walk.root_positions.copy()
+    root_positions[:, 1] -= (
+        0.1 * np.arange(walk.n_frames) / 60.0
+    )  # everything drifts at 10 cm/s
 
     clean, skating = (
-        measure_quality(motion) for motion in (walk, walk.with_poses(root_positions=place))
+        measure_quality(motion)
+        for motion in (walk, walk.with_poses(root_positions=root_positions))
     )
 
     assert clean.foot_slide < 0.02
@@ -147,16 +150,17 @@ def test_points_called_like_joints_have_feet():
 def test_bones_are_found_and_their_drift_measured(rng):
     """Two rigid rods that wander apart; one point creeps along its rod by 4 cm."""
     n_frames = 400
-    away = np.cumsum(rng.normal(scale=0.05, size=(n_frames, 2, 3)), axis=0)
+    origins = np.cumsum(rng.normal(scale=0.05, size=(n_frames, 2, 3)), axis=0)
     turns = quaternion_from_rotation_vector(rng.normal(size=(n_frames, 2, 3)))
     rods = rotate(turns, [0.3, 0.0, 0.0])
     rods[:, 1] *= np.linspace(1.0, 1.0 + 0.04 / 0.3, n_frames)[:, None]
     positions = np.stack(
-        [away[:, 0], away[:, 0] + rods[:, 0], away[:, 1], away[:, 1] + rods[:, 1]], axis=1
+        [origins[:, 0], origins[:, 0] + rods[:, 0], origins[:, 1], origins[:, 1] + rods[:, 1]],
+        axis=1,
     )
     tracks = Tracks(("a", "b", "c", "d"), positions, 60.0)
 
-    bones = {(bone.first, bone.second): bone for bone in bone_drifts(tracks)}
+    bones = {(bone.first, bone.second): bone for bone in measure_bone_drifts(tracks)}
 
     assert ("a", "b") in bones and ("c", "d") in bones
     assert_allclose(bones["a", "b"].length, 0.3, rtol=1e-6)
@@ -174,7 +178,7 @@ def test_a_steady_bone_is_preferred_to_a_nearer_point_that_wobbles(rng):
     hovering = 0.5 * (start + stop) + rng.normal(scale=0.01, size=(300, 3))
     tracks = Tracks(("a", "b", "c"), np.stack([start, stop, hovering], axis=1), 60.0)
 
-    assert ("a", "b") in {(bone.first, bone.second) for bone in bone_drifts(tracks)}
+    assert ("a", "b") in {(bone.first, bone.second) for bone in measure_bone_drifts(tracks)}
 
 
 def test_tracks_with_gaps_are_measured(rng):
@@ -233,10 +237,12 @@ def test_a_threshold_below_the_noise_is_refused():
 
 
 def test_rises_to_one_and_can_be_cancelled(swinging_leg):
-    told = []
-    measure_quality(swinging_leg, progress=lambda fraction, message="": told.append(fraction))
+    fractions = []
+    measure_quality(
+        swinging_leg, progress=lambda fraction, message="": fractions.append(fraction)
+    )
 
-    assert told == sorted(told) and told[-1] == 1.0
+    assert fractions == sorted(fractions) and fractions[-1] == 1.0
 
     def stop(fraction, message=""):
         raise SolveCancelled

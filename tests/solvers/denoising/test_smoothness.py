@@ -5,7 +5,11 @@ import pytest
 from numpy.testing import assert_allclose
 from scipy.fft import dct
 
-from solvers.denoising.posterior.smoothness import LENGTHS, fit_smoothness, smooth_kernels
+from solvers.denoising.posterior.smoothness import (
+    CORRELATION_TIMES_S,
+    build_smooth_kernels,
+    fit_smoothness,
+)
 from solvers.denoising.posterior.windows import Windows
 
 WINDOW, RATE, N_FRAMES = 20, 30.0, 400
@@ -13,37 +17,41 @@ WINDOW, RATE, N_FRAMES = 20, 30.0, 400
 
 def test_kernels_are_covariances_of_the_waves():
     steps = np.subtract.outer(np.arange(WINDOW), np.arange(WINDOW)) / RATE
-    for kernel, length in zip(smooth_kernels(WINDOW, RATE), LENGTHS, strict=True):
+    for kernel, length in zip(
+        build_smooth_kernels(WINDOW, RATE), CORRELATION_TIMES_S, strict=True
+    ):
         frames = np.exp(-0.5 * (steps / length) ** 2)
         expected = dct(dct(frames, axis=0, norm="ortho"), axis=1, norm="ortho")
         assert_allclose(kernel, expected, atol=1e-12)
 
 
-@pytest.mark.parametrize("place", [0, 2, 3])
+@pytest.mark.parametrize("index", [0, 2, 3])
 @pytest.mark.parametrize("density", [1.0, 4.0])
-def test_finds_the_time_and_the_size_of_a_movement(rng, place, density):
+def test_finds_the_time_and_the_size_of_a_movement(rng, index, density):
     rate, n_frames = RATE * density, round(N_FRAMES * density)
     steps = np.subtract.outer(np.arange(n_frames), np.arange(n_frames)) / rate
-    kernel = np.exp(-0.5 * (steps / LENGTHS[place]) ** 2)
+    kernel = np.exp(-0.5 * (steps / CORRELATION_TIMES_S[index]) ** 2)
     values, vectors = np.linalg.eigh(kernel)
     factor = vectors * np.sqrt(np.maximum(values, 0.0))
-    moves = 5.0 * factor @ rng.normal(size=(n_frames, 40))
-    noisy = moves + rng.normal(size=moves.shape)
+    movement = 5.0 * factor @ rng.normal(size=(n_frames, 40))
+    noisy = movement + rng.normal(size=movement.shape)
     windows = Windows(n_frames, round(WINDOW * density), density)
 
     weights = fit_smoothness(
-        noisy, np.ones(40), smooth_kernels(WINDOW, RATE), windows
+        noisy, np.ones(40), build_smooth_kernels(WINDOW, RATE), windows
     ).mean(axis=1)  # fmt: skip
 
     assert_allclose(weights.sum(), 25.0, rtol=0.2)
-    assert weights[max(place - 1, 0) : place + 2].sum() > 0.85 * weights.sum()
+    assert weights[max(index - 1, 0) : index + 2].sum() > 0.85 * weights.sum()
 
 
 def test_noise_is_not_taken_for_movement(rng):
     noise = 3.0 * rng.normal(size=(N_FRAMES, 30))
     windows = Windows(N_FRAMES, WINDOW, 1.0)
 
-    weights = fit_smoothness(noise, np.full(30, 3.0), smooth_kernels(WINDOW, RATE), windows)
+    weights = fit_smoothness(
+        noise, np.full(30, 3.0), build_smooth_kernels(WINDOW, RATE), windows
+    )
 
     assert (weights >= 0.0).all()
     assert weights.sum(axis=0).mean() < 0.1 * 9.0
@@ -53,19 +61,22 @@ def test_few_frames_move_as_the_other_channels_do(rng):
     """One window tells little of one channel: what all of them tell counts beside it."""
     times = np.arange(WINDOW)[:, None] / RATE
     slow = 10.0 * np.sin(2 * np.pi * 0.5 * times + np.linspace(0, 6, 20))
-    odd = 5.0 * np.sin(2 * np.pi * 3.0 * times)
-    windows, kernels = Windows(WINDOW, WINDOW, 1.0), smooth_kernels(WINDOW, RATE)
+    fast_channel = 5.0 * np.sin(2 * np.pi * 3.0 * times)
+    windows, kernels = Windows(WINDOW, WINDOW, 1.0), build_smooth_kernels(WINDOW, RATE)
 
-    alone = fit_smoothness(odd, np.full(1, 3.0), kernels, windows)[:, 0]
-    together = fit_smoothness(
-        np.column_stack([slow, odd]), np.full(21, 3.0), kernels, windows
+    fitted_alone = fit_smoothness(fast_channel, np.full(1, 3.0), kernels, windows)[:, 0]
+    fitted_together = fit_smoothness(
+        np.column_stack([slow, fast_channel]), np.full(21, 3.0), kernels, windows
     )[:, -1]  # fmt: skip
 
-    assert together[3:].sum() / together.sum() > alone[3:].sum() / alone.sum() + 0.05
+    assert (
+        fitted_together[3:].sum() / fitted_together.sum()
+        > fitted_alone[3:].sum() / fitted_alone.sum() + 0.05
+    )
 
 
 def test_what_never_moves_is_no_error():
-    windows, kernels = Windows(WINDOW, WINDOW, 1.0), smooth_kernels(WINDOW, RATE)
+    windows, kernels = Windows(WINDOW, WINDOW, 1.0), build_smooth_kernels(WINDOW, RATE)
 
     weights = fit_smoothness(np.zeros((WINDOW, 2)), np.full(2, 0.01), kernels, windows)
 

@@ -5,7 +5,7 @@ import pytest
 from numpy.testing import assert_allclose
 
 from solvers.denoising.feet.legs import find_legs
-from solvers.denoising.feet.sole import loads, sole_points, standing_heights
+from solvers.denoising.feet.sole import estimate_loads, measure_standing_heights, sole_points
 from solvers.motion import HumanoidMap, Motion, Skeleton, forward_kinematics
 from solvers.samples import GaitSettings, walking_gait
 
@@ -40,7 +40,7 @@ def test_how_high_a_resting_heel_is_drawn_is_measured():
     points[..., 2] = [0.03, 0.0, -0.01]
     points[:20, :, 0] = np.arange(20)[::-1, None] * 0.05
 
-    heights = standing_heights(points, np.arange(60) >= 15, 60.0)
+    heights = measure_standing_heights(points, np.arange(60) >= 15, 60.0)
 
     assert_allclose(heights, [0.03, 0.0, -0.01], atol=1e-9)
 
@@ -50,7 +50,7 @@ def test_how_high_a_resting_heel_is_drawn_is_measured():
     [((0.0, 0.06, 0.08), 0), ((0.06, 0.0, 0.0), 1), ((0.1, 0.05, 0.0), 2)],
 )
 def test_the_lowest_point_carries(heights, carries):
-    load = loads(np.tile(np.array(heights), (10, 1)), 60.0, 1.0)
+    load = estimate_loads(np.tile(np.array(heights), (10, 1)), 60.0, 1.0)
 
     assert_allclose(load.sum(axis=1), 1.0)
     assert (load.argmax(axis=1) == carries).all()
@@ -58,7 +58,7 @@ def test_the_lowest_point_carries(heights, carries):
 
 
 def test_a_level_foot_stands_on_heel_and_ball_rather_than_on_its_trembling_toes():
-    load = loads(np.zeros((10, 3)), 60.0, 1.0)
+    load = estimate_loads(np.zeros((10, 3)), 60.0, 1.0)
 
     assert_allclose(load[:, 0], load[:, 1])
     assert load[0, 2] < 0.1

@@ -27,16 +27,16 @@ def test_a_spike_is_named_with_its_place_and_size(swinging_leg):
     jump = quaternion_from_rotation_vector([0.0, np.radians(40.0), 0.0])
     rotations[70:72, 1] = multiply(rotations[70:72, 1], jump)
 
-    (spot,) = find_worst_issues(swinging_leg.with_poses(rotations))
+    (issue,) = find_worst_issues(swinging_leg.with_poses(rotations))
 
-    assert (spot.joint, spot.start_frame, spot.stop_frame, spot.kind) == (
+    assert (issue.joint, issue.start_frame, issue.stop_frame, issue.kind) == (
         "knee",
         70,
         72,
         "spike",
     )
-    assert spot.sentence.startswith("knee jumps by 4")
-    assert spot.severity > 3.0
+    assert issue.sentence.startswith("knee jumps by 4")
+    assert issue.severity > 3.0
 
 
 def test_spikes_in_quick_succession_are_one_spot(swinging_leg):
@@ -45,10 +45,10 @@ def test_spikes_in_quick_succession_are_one_spot(swinging_leg):
     for frame in (60, 66):
         rotations[frame, 1] = multiply(rotations[frame, 1], jump)
 
-    (spot,) = find_worst_issues(swinging_leg.with_poses(rotations))
+    (issue,) = find_worst_issues(swinging_leg.with_poses(rotations))
 
-    assert (spot.start_frame, spot.stop_frame) == (60, 67)
-    assert spot.sentence.startswith("knee jumps 2 times, by up to ")
+    assert (issue.start_frame, issue.stop_frame) == (60, 67)
+    assert issue.sentence.startswith("knee jumps 2 times, by up to ")
 
 
 def test_a_gap_is_worse_the_longer_it_is(swinging_leg):
@@ -56,19 +56,22 @@ def test_a_gap_is_worse_the_longer_it_is(swinging_leg):
     rotations[10:20, 2] = np.nan
     rotations[50:90, 1] = np.nan
 
-    spots = find_worst_issues(swinging_leg.with_poses(rotations))
+    issues = find_worst_issues(swinging_leg.with_poses(rotations))
 
-    assert [(spot.joint, spot.kind) for spot in spots] == [("knee", "gap"), ("ankle", "gap")]
-    assert spots[0].sentence == "knee is missing for 0.67 s."
+    assert [(issue.joint, issue.kind) for issue in issues] == [
+        ("knee", "gap"),
+        ("ankle", "gap"),
+    ]
+    assert issues[0].sentence == "knee is missing for 0.67 s."
 
 
 def test_a_joint_that_shakes_for_a_while_is_found(swinging_leg, rng):
     take = shaken(swinging_leg, 1, slice(60, 110), 0.05, rng)
 
-    spots = [spot for spot in find_worst_issues(take) if spot.kind == "jitter"]
+    issues = [issue for issue in find_worst_issues(take) if issue.kind == "jitter"]
 
-    assert {spot.joint for spot in spots} == {"knee"}
-    assert spots[0].start_frame < 75 and spots[0].stop_frame > 95
+    assert {issue.joint for issue in issues} == {"knee"}
+    assert issues[0].start_frame < 75 and issues[0].stop_frame > 95
 
 
 @pytest.mark.parametrize("scale", [0.005, 0.02, 0.08])
@@ -76,7 +79,7 @@ def test_noise_all_over_the_take_is_no_spot(swinging_leg, rng, scale):
     """It is the take's own standard; the report states its size."""
     take = shaken(swinging_leg, slice(0, 3), slice(None), scale, rng)
 
-    assert not [spot for spot in find_worst_issues(take) if spot.kind == "jitter"]
+    assert not [issue for issue in find_worst_issues(take) if issue.kind == "jitter"]
 
 
 def test_a_foot_that_slides_while_it_stands_is_found(recordings):
@@ -86,8 +89,8 @@ def test_a_foot_that_slides_while_it_stands_is_found(recordings):
 
     quality = measure_quality(walk, contacts=contacts)
 
-    spots = [spot for spot in find_worst_issues(walk, quality) if spot.kind == "foot slide"]
-    assert all((spot.start_frame, spot.stop_frame) == (20, 60) for spot in spots)
+    issues = [issue for issue in find_worst_issues(walk, quality) if issue.kind == "foot slide"]
+    assert all((issue.start_frame, issue.stop_frame) == (20, 60) for issue in issues)
 
 
 def test_worst_first_and_no_more_than_asked_for(swinging_leg, rng):
@@ -96,18 +99,18 @@ def test_worst_first_and_no_more_than_asked_for(swinging_leg, rng):
         jump = quaternion_from_rotation_vector([0.0, angle, 0.0])
         rotations[frame, 1] = multiply(rotations[frame, 1], jump)
 
-    spots = find_worst_issues(
+    issues = find_worst_issues(
         swinging_leg.with_poses(rotations), settings=IssueSettings(n_spots=2)
     )
 
-    assert [spot.start_frame for spot in spots] == [50, 80]
+    assert [issue.start_frame for issue in issues] == [50, 80]
 
 
 def test_a_joint_never_observed_is_one_spot(swinging_leg):
     rotations = swinging_leg.rotations.copy()
     rotations[:, 1] = np.nan
 
-    (spot,) = find_worst_issues(swinging_leg.with_poses(rotations))
+    (issue,) = find_worst_issues(swinging_leg.with_poses(rotations))
 
-    assert spot.sentence == "knee is never observed."
-    assert (spot.start_frame, spot.stop_frame) == (0, 120)
+    assert issue.sentence == "knee is never observed."
+    assert (issue.start_frame, issue.stop_frame) == (0, 120)
