@@ -1,4 +1,4 @@
-"""Clean recordings: learn how bodies move, and take out jitter, spikes and gaps.
+"""Clean recordings: learn how bodies move, then remove jitter, spikes and gaps.
 
 >>> from solvers.denoising import find_worst_issues, measure_quality, plant_feet
 >>> from solvers.samples import CorruptionSettings, GaitSettings, corrupt, walking_gait
@@ -6,9 +6,10 @@
 >>> planted = plant_feet(walk)
 >>> planted.slide_after < planted.slide_before
 True
->>> spoilt = corrupt(walk, CorruptionSettings(jitter=1.0), missing={"RightArm": range(20, 80)})
->>> spots = find_worst_issues(spoilt, measure_quality(spoilt))
->>> next(spot.sentence for spot in spots if spot.kind == "gap")
+>>> jitter = CorruptionSettings(jitter=1.0)
+>>> corrupted = corrupt(walk, jitter, missing={"RightArm": range(20, 80)})
+>>> issues = find_worst_issues(corrupted, measure_quality(corrupted))
+>>> next(issue.sentence for issue in issues if issue.kind == "gap")
 'RightArm is missing for 1.00 s.'
 """
 

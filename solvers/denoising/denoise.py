@@ -1,4 +1,4 @@
-"""Take jitter, spikes and gaps out of a recording, guided by how bodies move."""
+"""Remove jitter, spikes and gaps from a recording, guided by how bodies move."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
@@ -22,13 +22,13 @@ from .published import filter_as_published
 Array = NDArray[np.float64]
 
 MIN_OUTLIER_ERROR = 2.0
-"""Degrees or centimetres: what is nearer to the estimate is not called an outlier."""
+"""Degrees or centimeters: a sample closer to the estimate is not reported as an outlier."""
 HALF_CONFIDENCE_DEVIATION = 5.0
-"""Standard deviation, degrees or centimetres, at which confidence is one half."""
+"""Standard deviation, degrees or centimeters, at which confidence is one half."""
 
 
 class Method(Enum):
-    """Ways to denoise."""
+    """Methods of denoising."""
 
     DEFAULT = "default"
     PUBLISHED = "published"
@@ -36,38 +36,38 @@ class Method(Enum):
 
 @dataclass(frozen=True, kw_only=True)
 class DenoiseSettings(Settings):
-    """How a recording is denoised."""
+    """Settings of `denoise`."""
 
     method: Method = setting(
         Method.DEFAULT,
-        "Default estimates the noise and weighs every pattern; published is the filter of"
-        " Lou and Chai (2010) as printed",
+        "Default estimates the noise and weights every pattern; published is the filter of"
+        " Lou and Chai (2010), unchanged",
         advanced=True,
     )
     strength: float = setting(
-        1.0, "How far to go from recording to estimate; gaps are filled at any strength",
+        1.0, "Blend from recording (0) to estimate (1); gaps are filled at any strength",
         minimum=0.0, maximum=1.0,
     )  # fmt: skip
 
 
 @dataclass(frozen=True, eq=False)
 class Denoised:
-    """A clean recording, and how sure each part of it is."""
+    """A clean recording with the confidence of each joint."""
 
     recording: Motion | Tracks
-    """Same joints or points, same frames; no NaN is left, but of points that neither the take
-    nor the examples ever show."""
+    """Same joints or points, same frames. NaN remains only for points that neither the take nor
+    the examples show."""
     outliers: NDArray[np.bool_]
-    """Where the input was taken for a spike, shape (n_frames, n_joints)."""
+    """Where a sample of the input was classified as a spike, shape (n_frames, n_joints)."""
     confidence: Array
-    """0 (a guess) to 1 (sure) that the cleaned joint is right, shape (n_frames, n_joints): one
-    half where its standard deviation is 5 degrees or centimetres."""
+    """0 (a guess) to 1 (certain) for each cleaned joint, shape (n_frames, n_joints). It is
+    one half where the standard deviation is 5 degrees or centimeters."""
     iterations: int
     converged: bool
     prior_used: str
-    """Which patterns guided the estimate, and why; and what was taken for a piece apart."""
+    """Which patterns guided the estimate, and why; also which cuts were found."""
     cuts: tuple[int, ...] = ()
-    """First frames of the pieces of which the take was found to be made, but the first."""
+    """First frame of each segment of a joined take, except the first segment."""
 
 
 def denoise(
@@ -80,15 +80,15 @@ def denoise(
 ) -> Denoised:
     """Estimate the true movement from a noisy recording with spikes and gaps.
 
-    A Gaussian prior over short windows of all joints together [1]_, mixed with plain smoothness
-    as far as it explains the take (examples of another movement are laid aside), adapts to the
-    take; noise, spikes and missing joints are estimated with it. Bones keep their lengths. Long
-    gaps of points are first filled from the points around them (`fill_markers`). It does not
-    keep feet on the ground: see `plant_feet`.
+    The prior is Gaussian over short windows of all joints together [1]_. It is mixed with plain
+    smoothness where the examples explain the take poorly, and it adapts to the take. The method
+    estimates noise, spikes and missing joints with it. Bone lengths stay constant. Long gaps of
+    points are first filled from the points around them (`fill_markers`). Feet are not kept on
+    the ground: see `plant_feet`.
 
-    A take that was joined of several is cleaned piece by piece. A piece of less than a quarter
-    of a second, such as the T-pose with which many recordings begin, is kept as it is, but for
-    its gaps.
+    A take that was joined from several recordings is cleaned segment by segment. A segment of
+    less than a quarter of a second keeps its samples; only its gaps are filled. Such a segment
+    is the T-pose at the start of many recordings.
 
     Parameters
     ----------
@@ -97,9 +97,9 @@ def denoise(
     bases : FilterBases, optional
         Patterns of clean recordings. Without them the take's own patterns are used.
     limits : JointLimits, optional
-        How far the joints of a motion may turn. At any strength the result is held softly
-        within them (`clamp_to_limits`); with bases, it is estimated again without what is far
-        beyond, where the first estimate believed that.
+        Range of motion of the joints. At any strength the result is softly limited to it
+        (`clamp_to_limits`). With bases, samples far beyond the limits are discarded where the
+        first estimate followed them, and the take is estimated again.
     settings : DenoiseSettings
     progress : Progress
 
@@ -111,7 +111,7 @@ def denoise(
     ------
     InvalidMotionError
         The bases were learned from tracks and the recording is a motion, or the reverse; or
-        nothing was observed.
+        no frame was observed.
     SolveCancelled
         Raised by `progress`.
 
@@ -152,7 +152,7 @@ def _denoise_segment(
     settings: DenoiseSettings,
     progress: Progress,
 ) -> Denoised:
-    """Denoise what is of one piece."""
+    """Denoise one segment of the take."""
     filled = _fill_gaps(segment, settings, within(progress, 0.0, 0.05))
     complete = filled.tracks if filled else segment
     channels = encode(complete, bases.reference_of if bases else None)
@@ -169,9 +169,7 @@ def _denoise_segment(
         impossible_mask = find_impossible_rotations(segment, estimated_motion, limits)[
             :, channels.joints
         ]
-        impossible_mask[:, -1] = (
-            False  # the last part is the root's place, which no limit is about
-        )
+        impossible_mask[:, -1] = False  # the root position has no limit
         if impossible_mask.any():
             values = np.where(impossible_mask[..., None], np.nan, channels.values)
             possible_channels = replace(channels, values=values)
@@ -207,7 +205,7 @@ def _denoise_segment(
 def _unknown_points(
     names: Sequence[str], segment: Motion | Tracks, bases: FilterBases | None
 ) -> NDArray[np.bool_]:
-    """Tell which points neither this piece nor the examples show, shape (n_points,)."""
+    """Return which points neither this segment nor the examples show, shape (n_points,)."""
     known_means = bases.reference_of if bases else {}
     return np.asarray(
         ~_observed_mask(segment).any(axis=0) & [name not in known_means for name in names]
@@ -217,7 +215,7 @@ def _unknown_points(
 def _fill_gaps(
     segment: Motion | Tracks, settings: DenoiseSettings, progress: Progress
 ) -> FilledMarkers | None:
-    """Fill gaps of points: the filter then takes for seen what their companions foretell."""
+    """Fill gaps of points, so that the filter treats predicted samples as observed."""
     if isinstance(segment, Tracks) and settings.method is Method.DEFAULT:
         return fill_markers(segment, progress)
     return None
@@ -249,7 +247,7 @@ def _unchanged(segment: Motion | Tracks) -> Denoised:
 def _join_segments(
     recording: Motion | Tracks, results: Sequence[Denoised], cuts: tuple[int, ...]
 ) -> Denoised:
-    """Join the pieces of a take again; the longest tells which patterns were used."""
+    """Join the cleaned segments; the longest one reports which patterns were used."""
     cleaned = [part.recording for part in results]
     complete: Motion | Tracks
     if isinstance(recording, Motion):
@@ -276,14 +274,14 @@ def _join_segments(
 
 
 def _observed_mask(recording: Motion | Tracks) -> NDArray[np.bool_]:
-    """Where each joint or point was observed, shape (n_frames, n_joints)."""
+    """Return where each joint or point was observed, shape (n_frames, n_joints)."""
     return recording.observed if isinstance(recording, Motion) else recording.visible
 
 
 def _restore_observed(
     recording: Motion | Tracks, cleaned: Motion | Tracks, settings: DenoiseSettings
 ) -> Motion | Tracks:
-    """At strength 0, return what was observed as it was, to the last bit."""
+    """Return the observed samples unchanged, to the last bit, at strength 0."""
     if settings.strength > 0.0:
         return cleaned
     if isinstance(recording, Motion) and isinstance(cleaned, Motion):
@@ -303,7 +301,7 @@ def _restore_observed(
 def _max_per_joint(
     recording: Motion | Tracks, channels: Channels, values: NDArray[np.generic]
 ) -> Array:
-    """Return the largest of each joint's channels, shape (n_frames, n_joints)."""
+    """Return the maximum over each joint's channels, shape (n_frames, n_joints)."""
     per_part = values.reshape(channels.values.shape).max(axis=2)
     result = np.zeros(_observed_mask(recording).shape)
     for part, joint in enumerate(channels.joints):

@@ -1,4 +1,4 @@
-"""The filter of Lou and Chai (2010) as printed, to compare with."""
+"""The filter of Lou and Chai (2010), unchanged, as a baseline."""
 
 import numpy as np
 from numpy.typing import NDArray
@@ -17,7 +17,7 @@ WELSCH_SCALE_DEG = 3.0
 PATTERN_WEIGHT = 0.1
 """lambda of eq. 2.10."""
 UNOBSERVED_DEVIATION = 30.0
-"""Standard deviation said of what was not observed or not believed: the method has none."""
+"""Standard deviation reported for missing samples and outliers: the method has none."""
 N_REWEIGHTS = 3
 MAX_ITERATIONS = 20
 MAX_RELATIVE_CHANGE = 1e-3
@@ -27,7 +27,7 @@ MAX_RELATIVE_CHANGE = 1e-3
 def filter_as_published(
     channels: Channels, frame_rate: float, bases: FilterBases | None, progress: Progress
 ) -> tuple[Estimate, str]:
-    """Filter a take with the bases' patterns, or with its own; a sentence says which.
+    """Filter a take with the patterns of the bases, or with its own; return which were used.
 
     Takes at a multiple of the bases' frame rate are filtered as interleaved takes at that rate.
     """
@@ -49,21 +49,21 @@ def filter_as_published(
 
 
 def alternate(noisy: Array, patterns: Array) -> tuple[Array, Array, int, bool]:
-    """Minimise eq. 2.16 of [1]_ by alternating between pattern weights and motion.
+    """Minimize eq. 2.16 of [1]_ by alternating between pattern weights and motion.
 
-    Eq. 2.15 drops the factor 1/2 of the Welsch function (eq. 2.9); it is kept here, so that
-    each step lowers the cost that is printed.
+    Eq. 2.15 omits the factor 1/2 of the Welsch function (eq. 2.9). It is kept here, so that
+    each step lowers the printed cost.
 
     Parameters
     ----------
     noisy : shape (n_frames, n_channels)
-        Centred; NaN where not observed: the weights alpha of eq. 2.16 are 0 there.
+        Centered; NaN where not observed: the weights alpha of eq. 2.16 are 0 there.
     patterns : shape (n_bases, window, n_channels)
 
     Returns
     -------
     tuple
-        Motion, weights of the estimator, iterations, and whether the cost has settled.
+        Motion, weights of the estimator, iterations, and whether the cost has converged.
 
     References
     ----------
@@ -110,7 +110,8 @@ def fit_windows(motion: Array, patterns: Array) -> tuple[Array, Array]:
 def _pattern_weights(motion: Array, patterns: Array) -> Array:
     """Return the weight of each pattern in each window, shape (n_windows, n_bases).
 
-    Frame by frame of the window, so that the windows of a long take are never built.
+    It iterates over the frames of the window, so that the windows of a long take are never
+    built.
     """
     n_bases, window, _ = patterns.shape
     weights = np.zeros((len(motion) - window + 1, n_bases))
@@ -122,7 +123,7 @@ def _pattern_weights(motion: Array, patterns: Array) -> Array:
 def published_cost(
     motion: Array, observed: Array, observed_mask: Array, patterns: Array
 ) -> float:
-    """Return eq. 2.16 with the best pattern weights; both motions are centred."""
+    """Return eq. 2.16 with the best pattern weights; both motions are centered."""
     weights = _pattern_weights(motion, patterns)
     frame_power = (motion**2).sum(axis=1)
     in_windows = sum(
@@ -139,7 +140,7 @@ def published_cost(
 def _select_patterns(
     channels: Channels, takes: list[Array], frame_rate: float, bases: FilterBases | None
 ) -> tuple[Array, Array, str]:
-    """Return patterns of the take's channels, their mean, and where they are from."""
+    """Return patterns of the take's channels, their mean, and their source."""
     reason = _reason_against(channels, takes, bases)
     if bases is not None and not reason:
         offset = {str(key): part for part, key in enumerate(bases.keys)}
@@ -159,7 +160,7 @@ def _select_patterns(
 
 
 def _reason_against(channels: Channels, takes: list[Array], bases: FilterBases | None) -> str:
-    """Return why this method cannot use the bases; nothing where it can."""
+    """Return why this method cannot use the bases; nothing if it can."""
     if bases is None:
         return "no examples were given"
     n_missing = len(set(channels.keys) - set(map(str, bases.keys)))

@@ -1,4 +1,4 @@
-"""Recordings as columns of numbers for a linear model, and back."""
+"""Convert recordings to the channels of a linear model, and back."""
 
 from .channels import CENTIMETERS, Channels
 from .encode import decode, encode

@@ -1,4 +1,4 @@
-"""Recordings as plain columns of numbers that a linear model can speak about."""
+"""A recording as plain columns of numbers for a linear model."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass
@@ -11,27 +11,26 @@ from .travel_path import TravelPath
 Array = NDArray[np.float64]
 
 CENTIMETERS = 100.0
-"""Lengths are in centimetres and angles in degrees: for limbs a few of either are alike."""
+"""Lengths are in centimeters and angles in degrees: for limbs these are of similar size."""
 
 
 @dataclass(frozen=True, eq=False)
 class Channels:
-    """A recording relative to where its body is and to mean rotations or positions.
+    """A recording relative to the travel path of its body and to mean rotations or positions.
 
     Attributes
     ----------
     keys : tuple of str, length n_parts
-        What each part of three channels tells about: a joint (by its humanoid role, or else its
-        name), a point, or the root's place. Equal keys mean the same in all recordings.
-    values : shape (n_frames, n_parts, 3), degrees or centimetres
+        Name of each part of three channels: a joint (its humanoid role, or its name), a point,
+        or the root position. Equal keys mean the same in all recordings.
+    values : shape (n_frames, n_parts, 3), degrees or centimeters
         NaN where not observed.
     joints : shape (n_parts,)
-        Index of the joint or point that each part belongs to.
+        Index of the joint or point of each part.
     references : mapping of key to array
-        What each part is told relative to; as many numbers as `channels_motion` or
-        `channels_tracks` need.
-    path : Path
-        Where the body is.
+        Origin of each part's values, as `encode_motion` or `encode_tracks` needs it.
+    path : TravelPath
+        Position and heading of the body.
     """
 
     keys: tuple[str, ...]
@@ -42,5 +41,5 @@ class Channels:
 
     @property
     def flat(self) -> Array:
-        """The values as columns, shape (n_frames, 3 n_parts)."""
+        """Values as columns, shape (n_frames, 3 n_parts)."""
         return self.values.reshape(len(self.values), -1)

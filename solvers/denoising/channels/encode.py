@@ -1,4 +1,4 @@
-"""Recordings of either kind as channels, and back."""
+"""Convert recordings of either kind to channels, and back."""
 
 from collections.abc import Mapping
 
@@ -16,7 +16,7 @@ Array = NDArray[np.float64]
 def encode(
     recording: Motion | Tracks, references: Mapping[str, Array] | None = None
 ) -> Channels:
-    """Turn a recording into channels about these references, or else about its own means."""
+    """Convert a recording to channels about these references, or about its own means."""
     if isinstance(recording, Motion):
         return encode_motion(recording, references)
     return encode_tracks(recording, references)

@@ -1,4 +1,4 @@
-"""Clean recordings as channels to learn from, all of the same parts and at one frame rate."""
+"""Convert clean recordings to channels with the same parts and frame rate, for learning."""
 
 from collections.abc import Iterator, Sequence
 from itertools import pairwise
@@ -16,16 +16,16 @@ from .encode import encode
 Array = NDArray[np.float64]
 
 BLOCK_S = 60.0
-"""Seconds, encoded at a time. The few windows across two of them are left out."""
+"""Seconds encoded at a time. The few windows across two blocks are skipped."""
 MULTIPLE_TOLERANCE = 0.02
-"""Part by which a frame rate may miss a multiple of another and still count as one."""
+"""Relative difference up to which a frame rate counts as a multiple of another."""
 
 
 class ExampleChannels:
     """All examples as channels, about the means of the first and in its order.
 
-    They are encoded whenever they are asked for, a minute at a time, and not kept: many frames
-    take no more memory than few.
+    Each request encodes them again, a minute at a time, and keeps nothing: many frames need no
+    more memory than few.
     """
 
     def __init__(
@@ -53,10 +53,8 @@ class ExampleChannels:
     def read(self, progress: Progress) -> Iterator[tuple[float, list[Array]]]:
         """Yield the weight of each take, and a list of interleaved clips of it.
 
-        Clips have shape (n_frames, n_channels).
-
-        Those that are shorter than a window are left out, and so are takes that have no other.
-        What an example does not have, or never shows, is NaN.
+        Clips have shape (n_frames, n_channels). Clips shorter than a window are skipped, and so
+        are takes with no other clips. Channels that an example lacks, or never shows, are NaN.
         """
         for index, (example, weight, start, stop) in enumerate(self._takes):
             take = example.slice(start, stop)
@@ -83,7 +81,7 @@ class Moments:
         self._counts, self._squares = np.empty((0, 1)), np.empty((0, n_channels))
 
     def add(self, clips: Sequence[Array], weight: float) -> None:
-        """Add a take, a list of clips, that counts so much."""
+        """Add a take, a list of clips, with this weight."""
         count = sum(map(len, clips))
         mean = sum(clip.sum(axis=0) for clip in clips) / count
         square = sum(((clip - mean) ** 2).sum(axis=0) for clip in clips)
@@ -105,7 +103,7 @@ class Moments:
 def _resample(values: Array, frame_rate: float, target_rate: float) -> list[Array]:
     """Return channels at another frame rate.
 
-    A multiple of the wanted rate is split into interleaved takes, so that no frame is lost;
+    A multiple of the target rate is split into interleaved takes, so that no frame is lost;
     other rates are interpolated by cubic splines.
     """
     step = frame_rate / target_rate
@@ -119,9 +117,9 @@ def _resample(values: Array, frame_rate: float, target_rate: float) -> list[Arra
 
 
 def _usable_segments(example: Motion | Tracks) -> list[tuple[int, int]]:
-    """Return first and last-but-one frames of the pieces of an example that show movement.
+    """Return the start and stop frames of the segments of an example that are long enough.
 
-    Pieces are those of which it was joined, and of long ones each minute.
+    A joined take is split at its cuts, and long segments into blocks of about a minute.
     """
     segments = [
         (start, stop)
@@ -138,7 +136,7 @@ def _usable_segments(example: Motion | Tracks) -> list[tuple[int, int]]:
 def _split_into_blocks(
     start: int, stop: int, example: Motion | Tracks
 ) -> Iterator[tuple[int, int]]:
-    """Yield parts of at most two minutes and, but for a whole piece, at least one."""
+    """Yield blocks of one to two minutes; a shorter segment is one block."""
     n_parts = max(int((stop - start) / (BLOCK_S * example.frame_rate)), 1)
     edges = np.linspace(start, stop, n_parts + 1).astype(int)
     yield from pairwise(edges.tolist())

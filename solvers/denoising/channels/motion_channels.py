@@ -1,4 +1,5 @@
-"""Motion as channels: rotation vectors about mean rotations; the root relative to its path."""
+"""Convert motion to channels: rotation vectors about mean rotations; the root about its
+path."""
 
 from collections.abc import Mapping
 from typing import NamedTuple
@@ -22,35 +23,34 @@ from .travel_path import TravelPath, fit_travel_path
 Array = NDArray[np.float64]
 
 ROOT_POSITION = "place"
-"""Key of the root's position relative to its path: beside it, along it, above the ground."""
+"""Key of the root position relative to its path: sideways, forward, above the ground."""
 ORIGIN = np.zeros(3)
 
 
 class Rig(NamedTuple):
-    """The joints that are encoded, and how their rest pose differs from the T-pose."""
+    """The encoded joints, and how their rest pose differs from the T-pose."""
 
     joints: list[int]
     keys: tuple[str, ...]
     parent_alignment: Array
     """From the T-pose to the rest pose, of each joint's parent, shape (n, 4)."""
     joint_alignment: Array
-    """The same of the joint itself."""
+    """The same for the joint itself."""
 
 
 def encode_motion(motion: Motion, references: Mapping[str, Array] | None = None) -> Channels:
-    """Tell every joint by its rotation vector about a mean rotation, in degrees.
+    """Encode every joint as its rotation vector about a mean rotation, in degrees.
 
-    The root's rotation is told relative to the smooth heading of its path, and its position,
-    in centimetres, relative to the path and the ground: a walk in another direction or at
-    another place has the same channels. End sites are left out.
+    The root's rotation is relative to the smooth heading of its path. Its position, in
+    centimeters, is relative to the path and the ground. A walk in another direction or
+    elsewhere therefore has the same channels. End sites are omitted.
 
     Parameters
     ----------
     motion : Motion
     references : mapping of key to array, optional
-        Of another encoding. Joints of the same humanoid role are told about the same mean, as
-        if they rested in the same pose, whatever the rig; joints without one, or unheard of,
-        are told about the motion's own means.
+        Of another encoding. Joints of the same humanoid role use the same mean, as if they had
+        the same rest pose, on any rig. Other joints use the motion's own means.
     """
     references = references or {}
     rig = _rig(motion.skeleton)
@@ -86,13 +86,13 @@ def encode_motion(motion: Motion, references: Mapping[str, Array] | None = None)
 
 
 def _nearest_rotation_vectors(rotation_vectors: Array, mean: Array) -> Array:
-    """Tell turns by the rotation vector nearer to their mean's, even beyond 180 degrees.
+    """Return the rotation vectors nearest to that of their mean, even beyond 180 degrees.
 
-    Joints that are told about the mean of another rig may lie half a turn from it.
+    Joints encoded about the mean of another rig may be half a turn away from it.
 
     Parameters
     ----------
-    vectors : shape (n_frames, n_joints, 3)
+    rotation_vectors : shape (n_frames, n_joints, 3)
     mean : shape (n_joints, 4)
     """
     mean_vector = rotation_vector_from_quaternion(mean)
@@ -105,12 +105,12 @@ def _nearest_rotation_vectors(rotation_vectors: Array, mean: Array) -> Array:
 
 
 def decode_motion(motion: Motion, channels: Channels, values: Array) -> Motion:
-    """Return the motion that has these channel values; undoes `encode_motion`.
+    """Return the motion with these channel values; inverts `encode_motion`.
 
     Parameters
     ----------
     motion : Motion
-        What was encoded.
+        The encoded motion.
     channels : Channels
     values : shape (n_frames, n_parts, 3)
     """
@@ -142,10 +142,10 @@ def _rig(skeleton: Skeleton) -> Rig:
 
 
 def _conversion_between_rigs(rig: Rig, references_used: Array) -> tuple[Array, Array]:
-    """Return what turns local rotations into those of the rig that the references are of.
+    """Return the factors that convert local rotations to those of the references' rig.
 
     With B and A the alignments of parent and joint, a local rotation L of this rig is
-    B^-1 L A from the T-pose (see `motion.canonical`), and so B' B^-1 L A A'^-1 in the other.
+    B^-1 L A from the T-pose (see `canonical_rotations`), and so B' B^-1 L A A'^-1 in the other.
     """
     parent_alignment, joint_alignment = references_used[:, 4:8], references_used[:, 8:12]
     return multiply(parent_alignment, inverse(rig.parent_alignment)), multiply(

@@ -1,4 +1,4 @@
-"""Tracks as channels: each point relative to its mean place in the frame of the body."""
+"""Convert tracks to channels: each point relative to its mean position in the body's frame."""
 
 from collections.abc import Mapping
 
@@ -13,20 +13,21 @@ from .travel_path import TravelPath, fit_travel_path, rotate_on_ground
 Array = NDArray[np.float64]
 
 N_FITS = 4
-"""Times that the body's mean shape and its place in every frame are fitted in turn."""
+"""Alternating fits of the body's mean shape and its position in every frame."""
 
 
 def encode_tracks(tracks: Tracks, references: Mapping[str, Array] | None = None) -> Channels:
-    """Tell every point, in centimetres, by its place in a frame that travels with the body.
+    """Encode every point, in centimeters, by its position in a frame that travels with the body.
 
-    The frame is fitted to the mean shape of the points by turning about Z and moving over the
-    ground, and smoothed: a walk in another direction or at another place has the same channels.
+    The frame is fitted to the mean shape of the points by a rotation about Z and a translation
+    over the ground, then smoothed. A walk in another direction or elsewhere therefore has the
+    same channels.
 
     Parameters
     ----------
     tracks : Tracks
     references : mapping of point name to array, shape (3,), optional
-        Mean places to use where the name is known; elsewhere, the tracks' own.
+        Mean positions of known names; other points use the tracks' own.
     """
     references = references or {}
     path, shape = _fit_shape_and_path(tracks, references)
@@ -41,7 +42,7 @@ def encode_tracks(tracks: Tracks, references: Mapping[str, Array] | None = None)
 
 
 def decode_tracks(tracks: Tracks, channels: Channels, values: Array) -> Tracks:
-    """Return the tracks that have these channel values; undoes `encode_tracks`."""
+    """Return the tracks with these channel values; inverts `encode_tracks`."""
     path = channels.path
     means_array = np.array([channels.references[key] for key in channels.keys])
     local = values / CENTIMETERS + means_array
@@ -56,7 +57,7 @@ def decode_tracks(tracks: Tracks, channels: Channels, values: Array) -> Tracks:
 def _fit_shape_and_path(
     tracks: Tracks, references: Mapping[str, Array]
 ) -> tuple[TravelPath, Array]:
-    """Fit mean shape (n_points, 3) and path to each other, starting without turning."""
+    """Fit mean shape (n_points, 3) and path to each other, starting without a rotation."""
     positions = tracks.positions
     filled = interpolated(positions.reshape(len(positions), -1)).reshape(positions.shape)
     has_reference = np.array([name in references for name in tracks.names])
@@ -80,10 +81,9 @@ def _fit_shape_and_path(
 
 
 def _align_with_x(points: Array) -> Array:
-    """Centre points, shape (n_points, 3), over the origin, their main direction along X.
+    """Center points, shape (n_points, 3), over the origin, with their main direction along X.
 
-    So the axes of the channels, for each of which outliers are judged, are those of the body
-    and not those of the room.
+    Outliers are classified per axis, so the axes must be those of the body, not of the room.
     """
     flat = points[:, 0] + 1j * points[:, 1]
     flat = flat - flat.mean()
@@ -92,20 +92,20 @@ def _align_with_x(points: Array) -> Array:
 
 
 def _fit_shape(positions: Array, shape: Array, weights: Array) -> tuple[Array, Array]:
-    """Lay the shape (n_points, 3) over every frame by turning about Z and moving."""
+    """Fit the shape to every frame by a rotation about Z and a translation over the ground."""
     total = weights.sum(axis=1, keepdims=True)
     total = np.where(total > 0.0, total, 1.0)
     flat, plan = positions[..., 0] + 1j * positions[..., 1], shape[:, 0] + 1j * shape[:, 1]
-    centre = (weights * flat).sum(axis=1, keepdims=True) / total
+    center = (weights * flat).sum(axis=1, keepdims=True) / total
     medians = (weights * plan).sum(axis=1, keepdims=True) / total
-    agreement = (weights * (flat - centre) * np.conj(plan - medians)).sum(axis=1)
+    agreement = (weights * (flat - center) * np.conj(plan - medians)).sum(axis=1)
     headings = np.angle(agreement + 1e-12)
-    ground_positions = centre[:, 0] - np.exp(1j * headings) * medians[:, 0]
+    ground_positions = center[:, 0] - np.exp(1j * headings) * medians[:, 0]
     return np.stack([ground_positions.real, ground_positions.imag], axis=-1), headings
 
 
 def _median_positions(local: Array) -> Array:
-    """Return the median place of each point; the middle of all where it is never seen."""
+    """Return the median position of each point; the mean of all if it is never observed."""
     observed = np.isfinite(local).all(axis=2)
     samples = [local[observed[:, point], point] for point in range(local.shape[1])]
     known_medians = [np.median(sample, axis=0) for sample in samples if len(sample)]

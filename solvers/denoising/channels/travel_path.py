@@ -1,4 +1,4 @@
-"""The smooth way that a body takes over the ground, and where it looks, without its gait."""
+"""Fit the smooth path and heading of a body over the ground, without its gait."""
 
 from dataclasses import dataclass
 
@@ -12,23 +12,23 @@ from ...signals import hampel, interpolated
 Array = NDArray[np.float64]
 
 SMOOTHING_S = 0.5
-"""Width (standard deviation) of the kernel that takes the gait out of the path, seconds."""
+"""Standard deviation of the kernel that removes the gait from the path, seconds."""
 SPIKE_HALF_WIDTH_S = 0.15
-"""Neighbourhood to either side that a spike of the path stands out from, seconds."""
+"""Half width of the neighborhood in which a spike of the path is detected, seconds."""
 SPIKE_TOLERANCE = 3.5
-"""Robust standard deviations of the neighbourhood from which on it is a spike."""
+"""Robust standard deviations of the neighborhood beyond which a sample is a spike."""
 GAP_WEIGHT = 1e-3
-"""Of a frame that was not observed, relative to one that was."""
+"""Weight of a frame that was not observed, relative to one that was."""
 
 
 @dataclass(frozen=True, eq=False)
 class TravelPath:
-    """A slow frame of reference that travels along: everything else is told relative to it."""
+    """A slow frame of reference that travels with the body; all channels are relative to it."""
 
     ground_positions: Array
-    """On the ground, shape (n_frames, 2), metres. No NaN."""
+    """On the ground, shape (n_frames, 2), meters. No NaN."""
     headings: Array
-    """Turn about Z, unwrapped, shape (n_frames,), radians. No NaN."""
+    """Rotation about Z, unwrapped, shape (n_frames,), radians. No NaN."""
 
     @property
     def rotations(self) -> Array:
@@ -39,10 +39,10 @@ class TravelPath:
 
 
 def fit_travel_path(ground_positions: Array, headings: Array, frame_rate: float) -> TravelPath:
-    """Fit a path to noisy places (n_frames, 2) and headings (n_frames,); NaN: not observed.
+    """Fit a path to noisy positions (n_frames, 2) and headings (n_frames,); NaN: not observed.
 
-    Spikes are left out, a straight line is fitted around every frame, and gaps are bridged.
-    It moves and turns about Z with its input: all is done as seen from the mean heading.
+    Spikes are removed, a straight line is fitted around every frame, and gaps are bridged. The
+    path moves and rotates about Z with its input: all steps are relative to the mean heading.
     """
     mean = float(np.angle(np.nansum(np.exp(1j * headings)) + 1e-12))
     aligned = rotate_on_ground(ground_positions, -mean)
@@ -54,7 +54,7 @@ def fit_travel_path(ground_positions: Array, headings: Array, frame_rate: float)
 
 
 def rotate_on_ground(ground_positions: Array, angle: float | Array) -> Array:
-    """Turn points on the ground, shape (n_frames, 2), by an angle in radians."""
+    """Rotate points on the ground, shape (n_frames, 2), by an angle in radians."""
     x, y = ground_positions[:, 0], ground_positions[:, 1]
     return np.stack(
         [x * np.cos(angle) - y * np.sin(angle), x * np.sin(angle) + y * np.cos(angle)], axis=-1
@@ -62,7 +62,7 @@ def rotate_on_ground(ground_positions: Array, angle: float | Array) -> Array:
 
 
 def unwrap_angles(angles: Array) -> Array:
-    """Return the angles (n_frames,) without jumps of whole turns; NaN is passed over."""
+    """Return the angles (n_frames,) without jumps of full turns; NaN is skipped."""
     result = angles.copy()
     observed = np.isfinite(angles)
     result[observed] = np.unwrap(angles[observed])
@@ -70,7 +70,7 @@ def unwrap_angles(angles: Array) -> Array:
 
 
 def fit_local_lines(values: Array, width: float) -> Array:
-    """Regress a line around every frame with Gaussian weights; NaN has no weight.
+    """Fit a line around every frame with Gaussian weights; NaN has no weight.
 
     Parameters
     ----------
@@ -80,12 +80,12 @@ def fit_local_lines(values: Array, width: float) -> Array:
     Returns
     -------
     Array
-        Same shape, no NaN. A straight line, seen anywhere, is returned as it is.
+        Same shape, no NaN. A straight line, wherever observed, is returned unchanged.
     """
     reach = int(np.ceil(4 * width))
     steps = np.arange(-reach, reach + 1.0)
     kernel = np.exp(-0.5 * (steps / width) ** 2)
-    # Gaps count for little, but so that a line bridges even those wider than the kernel.
+    # Gaps have a small weight, so that a line bridges even those wider than the kernel.
     interpolated_values = interpolated(values)
     weight = np.where(np.isfinite(values), 1.0, GAP_WEIGHT)
     s0, s1, s2 = (_weighted_sum(weight, kernel * steps**power) for power in (0, 1, 2))

@@ -1,4 +1,4 @@
-"""Foot-skate cleanup: feet that stand are held in place."""
+"""Foot-skate cleanup: hold planted feet in place."""
 
 from .legs import SIDES, Leg, find_foot_joints, find_legs
 from .plant_feet import Planted, PlantSettings, plant_feet

@@ -1,4 +1,4 @@
-"""Where one foot should go so that it stands still on the floor."""
+"""Plan the trajectory of one foot so that it does not slide on the floor."""
 
 from dataclasses import dataclass
 
@@ -23,35 +23,37 @@ Flags = NDArray[np.bool_]
 
 ADULT_LEG_M = 0.9
 MAX_LEVEL_SPREAD_M = 0.007
-"""Metres: a floor whose contacts differ by more, typically, is not level."""
+"""Meters: the floor is not level if its contacts typically differ by more."""
 MAX_FLOOR_DISTANCE_M = 0.03
-"""Metres, for a leg of 0.9 m: a foot planted farther above or below stands on something."""
+"""Meters, for a leg of 0.9 m: a foot planted farther above or below stands on something
+else."""
 MIN_LIFT_M = 0.01
-"""Metres, for a leg of 0.9 m, above its usual height at which a planted sole is let rise."""
+"""Meters, for a leg of 0.9 m: a planted sole this far above its contact height may rise."""
 MAX_SOLE_SPEED = 1.0
-"""Metres per second, for a leg of 0.9 m, at which a loaded sole no longer follows its ankle."""
+"""Meters per second, for a leg of 0.9 m, above which a loaded sole no longer follows its
+ankle."""
 MAX_FLAT_RATE = 0.6
-"""Radians per second: a foot that turns faster is rolling, not resting."""
+"""Radians per second: a foot that rotates faster is rolling, not resting."""
 
 
 @dataclass(frozen=True, eq=False)
 class FootTrajectory:
-    """One leg and the course that its foot should take.
+    """One leg and the planned trajectory of its foot.
 
     Attributes
     ----------
     leg : Leg
     contact : bool, shape (n_frames,)
-    turn : shape (n_frames, 4)
+    foot_rotation : shape (n_frames, 4)
         World rotation to add to the foot's own.
-    toe_turn : shape (n_frames, 4)
+    toe_rotation : shape (n_frames, 4)
         World rotation to add to the toes' own.
-    ankle : shape (n_frames, 3), metres
-        Where the ankle should be.
-    arms : shape (n_frames, n_points, 3), metres
-        From the ankle to the points of the sole, with the foot turned.
+    ankle : shape (n_frames, 3), meters
+        Target position of the ankle.
+    sole_offsets : shape (n_frames, n_points, 3), meters
+        From the ankle to the points of the sole, with the foot rotated.
     load : shape (n_frames, n_points)
-        Part of the load that each point of the sole carries.
+        Fraction of the load on each point of the sole.
     """
 
     leg: Leg
@@ -63,7 +65,7 @@ class FootTrajectory:
     load: Array
 
     def slide(self, skeleton: Skeleton, poses: WorldPoses) -> float:
-        """Return the way in metres that the loaded part of the sole covers in contact."""
+        """Return the distance in meters that the loaded part of the sole covers in contact."""
         displacements = _loaded_displacements(sole_points(skeleton, poses, self.leg), self.load)
         return float(
             np.linalg.norm(displacements[both_in_contact(self.contact), :2], axis=1).sum()
@@ -81,7 +83,7 @@ def plan_foot_trajectory(
     hold_rotation: bool,
     floor: bool,
 ) -> FootTrajectory:
-    """Plan the course of one foot.
+    """Plan the trajectory of one foot.
 
     Parameters
     ----------
@@ -93,11 +95,11 @@ def plan_foot_trajectory(
     blend : float, seconds
         Time over which corrections fade.
     hold : float, seconds
-        A foot that slides for much longer may creep.
+        A foot that slides for much longer may drift.
     hold_rotation : bool
-        Keep a foot that rests flat from turning.
+        Keep a foot that rests flat from rotating.
     floor : bool
-        Bring contacts that are near the foot's usual height to that height.
+        Move contacts near the foot's typical height to that height.
     """
     rate = motion.frame_rate
     size = leg.length(motion.skeleton) / ADULT_LEG_M
@@ -143,9 +145,9 @@ def both_in_contact(contact: Flags) -> Flags:
 def _hold_foot_rotation(
     rotations: Array, contact: Flags, load: Array, rate: float, blend: float
 ) -> Array:
-    """Return world turns, (n_frames, 4), that keep the foot from turning where it rests flat.
+    """Return world rotations, (n_frames, 4), that keep a flat resting foot from rotating.
 
-    It rests where it is in contact, heel and ball share the load, and it turns slowly.
+    The foot rests flat in contact if heel and ball share the load and it rotates slowly.
     """
     displacements = rotation_vector_from_quaternion(
         multiply(rotations[1:], inverse(rotations[:-1]))
@@ -165,13 +167,13 @@ def _hold_foot_rotation(
 
 
 def _loaded_displacements(points: Array, load: Array) -> Array:
-    """Return how the loaded part of the sole moves from frame to frame, (n_frames - 1, 3)."""
+    """Return the displacement of the loaded part of the sole per frame, (n_frames - 1, 3)."""
     mean_load = 0.5 * (load[1:] + load[:-1])
     return np.asarray(np.einsum("fp,fpi->fi", mean_load, np.diff(points, axis=0)))
 
 
 def _median_contact_heights(height: Array, contact: Flags) -> Array:
-    """Return, for each contact, the median of its heights; the height itself elsewhere."""
+    """Return the median height of each contact; the height itself elsewhere."""
     contact_height = height.copy()
     for start, stop in runs(contact):
         contact_height[start:stop] = np.median(height[start:stop])
@@ -179,16 +181,16 @@ def _median_contact_heights(height: Array, contact: Flags) -> Array:
 
 
 def _plausibility(angular_velocity: Array, rate: float, size: float) -> Array:
-    """Return 1 for steps in which the sole follows the ankle, towards 0 where it is flung.
+    """Return 1 for steps in which the sole follows the ankle, towards 0 at high speeds.
 
-    No foot that stands swings its sole about the ankle at such a speed: its rotation is wrong,
-    and an ankle that made up for it would be flung in turn.
+    No foot in contact swings its sole about the ankle at such a speed. Its rotation is wrong,
+    and an ankle that compensated for it would jump in turn.
     """
     speed = np.linalg.norm(angular_velocity, axis=1) * rate
     return np.asarray(np.clip(2.0 - speed / (MAX_SOLE_SPEED * size), 0.0, 1.0))
 
 
 def _on_floor(rise: Array, size: float) -> Array:
-    """Return 1 for steps on the floor, towards 0 where the whole sole lifts off it."""
+    """Return 1 for steps on the floor, towards 0 where the entire sole lifts off it."""
     rise = np.maximum(rise[1:], rise[:-1])
     return np.asarray(np.clip(2.0 - rise / (MIN_LIFT_M * size), 0.0, 1.0))

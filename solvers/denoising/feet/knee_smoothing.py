@@ -1,4 +1,4 @@
-"""Keep knees from popping: let heel and hips give way where the leg is nearly straight."""
+"""Keep knees from popping: move heel and hips slightly where the leg is nearly straight."""
 
 from collections.abc import Sequence
 from dataclasses import replace
@@ -15,36 +15,35 @@ Array = NDArray[np.float64]
 
 UP = np.array([0.0, 0.0, 1.0])
 KNEE_WINDOW_S = 0.08
-"""Seconds to either side over which a knee should bend like a parabola."""
+"""Seconds to either side over which the knee flexion is fitted with a parabola."""
 RELIEF_RAMP_S = 0.03
-"""Seconds over which relief sets in."""
+"""Seconds over which the correction sets in."""
 MAX_PITCH = np.radians(6.0)
 MAX_ROOT_OFFSET_M = 0.004
-"""Metres by which the root may give way: trembling, not motion."""
+"""Meters by which the root may move: enough for jitter, not for motion."""
 MIN_LEVER_M = 0.03
-"""Metres: a foot that turns about less lever hardly lengthens the leg."""
+"""Meters: with a shorter lever, pitching the foot hardly lengthens the leg."""
 N_ROUNDS = 2
 
 
 def smooth_knees(
     trajectories: Sequence[FootTrajectory], poses: WorldPoses, shift: Array, frame_rate: float
 ) -> tuple[list[FootTrajectory], Array]:
-    """Return plants with pitched feet, and a root shift, that let the knees bend smoothly.
+    """Pitch feet and offset the root so that the knees bend smoothly.
 
-    A leg that is nearly straight bends by six degrees when it gets a millimetre shorter, so
-    that whatever trembles between a still foot and the hips becomes a knee that pops. What
-    remains of the knee's bend when a running parabola is taken away is that tremble. While
-    the ball carries the load the heel is free: half a degree of pitch about the ball takes up
-    the same millimetre. What is left is the trembling of the hips, seen from a foot at rest,
-    and is taken from the root.
+    A nearly straight leg bends by six degrees when it gets a millimeter shorter, so jitter
+    between a planted foot and the hips makes the knee pop. That jitter is the knee flexion
+    minus a running parabola. While the ball carries the load the heel is free: half a degree
+    of pitch about the ball absorbs the same millimeter. What remains is jitter of the hips
+    relative to a foot at rest, and is subtracted from the root.
 
     Parameters
     ----------
-    plants : sequence of Plant
+    trajectories : sequence of FootTrajectory
     poses : WorldPoses
         Of the original motion.
-    shift : shape (n_frames, 3), metres
-        By which the root, and so the hip, will be moved.
+    shift : shape (n_frames, 3), meters
+        Planned offset of the root, and so of the hip.
     frame_rate : float, hertz
     """
     smoothed = []
@@ -64,7 +63,7 @@ def smooth_knees(
 def _pitch_foot(
     trajectory: FootTrajectory, poses: WorldPoses, shift: Array, frame_rate: float
 ) -> tuple[FootTrajectory, Array, Array]:
-    """Pitch the foot about its ball; return also the leg's direction and what it lacks."""
+    """Pitch the foot about its ball; return also the leg's direction and its missing length."""
     hip, knee, ankle = (poses.positions[:, joint] for joint in trajectory.leg.chain)
     thigh, shin = np.linalg.norm(knee - hip, axis=1), np.linalg.norm(ankle - knee, axis=1)
     hip_to_ankle = trajectory.ankle - hip - shift
@@ -103,17 +102,17 @@ def _smooth_flexion(flexion: Array, frame_rate: float) -> Array:
     window = 2 * round(KNEE_WINDOW_S * frame_rate) + 1
     if window < 5 or len(flexion) < window:
         return flexion
-    from scipy.signal import savgol_filter  # takes a second to import: not before it is needed
+    from scipy.signal import savgol_filter  # takes a second to import
 
     return np.asarray(savgol_filter(flexion, window, 2))
 
 
 def _flexion_from_distance(distance: Array, thigh: Array, shin: Array) -> Array:
-    """Return the knee's flexion in radians, 0 straight, for a distance of hip and ankle."""
+    """Return the knee flexion in radians, 0 straight, for a distance from hip to ankle."""
     cosine = (distance**2 - thigh**2 - shin**2) / np.maximum(2.0 * thigh * shin, 1e-12)
     return np.asarray(np.arccos(np.clip(cosine, -1.0, 1.0)))
 
 
 def _distance_from_flexion(flexion: Array, thigh: Array, shin: Array) -> Array:
-    """Undo `_bend`."""
+    """Invert `_flexion_from_distance`."""
     return np.asarray(np.sqrt(thigh**2 + shin**2 + 2.0 * thigh * shin * np.cos(flexion)))

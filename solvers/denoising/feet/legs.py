@@ -1,4 +1,4 @@
-"""The legs of a skeleton, and the points of its feet."""
+"""Find the legs of a skeleton, and the points of its feet."""
 
 from dataclasses import dataclass
 
@@ -13,7 +13,7 @@ SIDES = ("left", "right")
 
 @dataclass(frozen=True)
 class Leg:
-    """Indices of the joints of one leg."""
+    """Joint indices of one leg."""
 
     side: str
     hip: int
@@ -28,13 +28,13 @@ class Leg:
         return self.hip, self.knee, self.ankle
 
     def length(self, skeleton: Skeleton) -> float:
-        """Return the way from hip over knee to ankle in metres."""
+        """Return the length of thigh and shin together, meters."""
         joints = skeleton.rest_positions[list(self.chain)]
         return float(np.linalg.norm(np.diff(joints, axis=0), axis=1).sum())
 
 
 def find_legs(skeleton: Skeleton, humanoid_map: HumanoidMap | None = None) -> tuple[Leg, ...]:
-    """Return the legs whose hip, knee and ankle are known, left first."""
+    """Return the legs that have hip, knee and ankle, left first."""
     joints = (humanoid_map or find_humanoid_map(skeleton)).indices(skeleton)
     legs = []
     for side in SIDES:
@@ -54,20 +54,23 @@ def find_foot_joints(
 ) -> NDArray[np.intp] | None:
     """Return the indices of ankle and toes (columns) of the left and right foot (rows).
 
-    Joints of a motion, or points of tracks that are called like joints. An ankle without toes
-    is there twice. None where not both feet are known.
+    They are joints of a motion, or points of tracks with the names of joints. Without toes the
+    ankle appears twice. Returns None unless both feet are found.
     """
     if isinstance(recording, Motion):
         humanoid = humanoid_map or find_humanoid_map(recording.skeleton)
-        known = humanoid.indices(recording.skeleton)
+        joint_of_role = humanoid.indices(recording.skeleton)
     else:
         index_of_name = {name: index for index, name in enumerate(recording.names)}
         roles = humanoid_map.joints if humanoid_map else roles_by_name(recording.names)
-        known = {
+        joint_of_role = {
             role: index_of_name[name] for role, name in roles.items() if name in index_of_name
         }
-    if any(f"{side}Foot" not in known for side in SIDES):
+    if any(f"{side}Foot" not in joint_of_role for side in SIDES):
         return None
-    ankles = [known[f"{side}Foot"] for side in SIDES]
-    toes = [known.get(f"{side}Toes", ankle) for side, ankle in zip(SIDES, ankles, strict=True)]
+    ankles = [joint_of_role[f"{side}Foot"] for side in SIDES]
+    toes = [
+        joint_of_role.get(f"{side}Toes", ankle)
+        for side, ankle in zip(SIDES, ankles, strict=True)
+    ]
     return np.stack([ankles, toes], axis=1)

@@ -1,4 +1,4 @@
-"""Stop feet from sliding: foot-skate clean-up."""
+"""Stop feet from sliding: foot-skate cleanup."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -24,11 +24,11 @@ Flags = NDArray[np.bool_]
 
 @dataclass(frozen=True, kw_only=True)
 class PlantSettings(Settings):
-    """How feet are planted."""
+    """Settings of `plant_feet`."""
 
     blend: float = setting(
         0.3,
-        "Time over which a planted foot eases into its own motion; higher is softer, but moves"
+        "Time over which a planted foot blends into its own motion; higher is softer, but moves"
         " the foot for longer",
         unit="s",
         minimum=0.02,
@@ -36,46 +36,44 @@ class PlantSettings(Settings):
     )
     hold: float = setting(
         10.0,
-        "A foot that slides for much longer than this may creep instead of ending up far from"
-        " where it was captured; higher holds stricter",
+        "A foot that slides for much longer than this may drift, so that it stays near its"
+        " captured position; higher holds the foot more strictly",
         unit="s",
         minimum=0.5,
         maximum=1000.0,
         advanced=True,
     )
-    hold_rotation: bool = setting(
-        True, "Also keep a foot that stands flat from turning and tilting"
-    )
+    hold_rotation: bool = setting(True, "Also keep a foot that stands flat from rotating")
     floor: bool = setting(
-        True, "Put planted feet that are near the floor onto it, all to the same height"
+        True, "Place planted feet that are near the floor on it, all at the same height"
     )
     softness: float = setting(
         0.01,
-        "Part of the leg's length that is kept in reserve so that knees do not snap straight;"
+        "Fraction of the leg's length kept in reserve so that knees do not snap straight;"
         " higher bends knees more and lowers the hips more",
         minimum=0.0,
         maximum=0.2,
         advanced=True,
     )
     spare_knees: bool = setting(
-        True, "Let the heel of a rolling foot give way so that the knee bends smoothly"
+        True, "Let the heel of a rolling foot move so that the knee bends smoothly"
     )
     move_root: bool = setting(
-        True, "Shift the hips a little, and smoothly, where a leg cannot reach"
+        True, "Shift the hips smoothly by a small amount where a leg cannot reach"
     )
 
 
 @dataclass(frozen=True, eq=False)
 class Planted:
-    """A motion whose feet stand still.
+    """A motion whose planted feet do not slide.
 
     Attributes
     ----------
     motion : Motion
     contacts : bool, shape (n_frames, 2), left and right
-        When each foot stands: as given, or as detected.
-    slide_before, slide_after : float, metres
-        Way that both soles cover over the floor while they should stand.
+        When each foot is in contact: as given, or as detected.
+    slide_before, slide_after : float, meters
+        Distance that both soles cover over the floor while in contact.
     """
 
     motion: Motion
@@ -92,33 +90,33 @@ def plant_feet(
     settings: PlantSettings = PlantSettings(),
     progress: Progress = unwatched,
 ) -> Planted:
-    """Return the motion with the feet at rest wherever they stand.
+    """Return the motion with each foot fixed to the floor while in contact.
 
-    The aim is that of Kovar, Schreiner and Gleicher [1]_, footplants that are met exactly and
-    a motion that is otherwise close to the original and smooth; the way differs. A foot that
-    stands may roll: what must not move is the part of the sole that carries the load, heel,
-    ball or both. Subtracting that part's motion leaves one free shift per contact; the shifts,
-    and the curve that joins them through the air, are those of least displacement and bending,
-    from one banded linear system (`smooth_correction`). Where a leg would be too short the
-    root is shifted smoothly; bones never stretch. Then hip and knee are turned so that the
-    ankle follows (`reach`). Nothing above the hips turns. The pieces of a take that was joined
-    of several are planted apart; in one of less than a quarter of a second no foot stands.
+    The aim is that of Kovar, Schreiner and Gleicher [1]_: footplants are met exactly, and the
+    motion is otherwise close to the original and smooth. The method differs. A foot in contact
+    may roll; only the loaded part of the sole, heel, ball or both, must not move. Subtracting
+    the motion of that part leaves one free offset per contact. One banded linear system
+    (`smooth_correction`) yields the offsets, and the curve between them, with the least
+    displacement and curvature. Where a leg would be too short the root is shifted smoothly;
+    bones never stretch. Then hip and knee rotate so that the ankle follows (`reach`). No joint
+    above the hips rotates. Segments of a joined take are planted separately; a segment of less
+    than a quarter of a second has no contact.
 
     Parameters
     ----------
     motion : Motion
         Without gaps.
     contacts : bool, shape (n_frames, 2), left and right
-        When each foot stands; detected where it is not given. All False changes nothing.
+        When each foot is in contact; detected if not given. All False changes nothing.
     humanoid_map : HumanoidMap
-        Says which joints are legs; found by name and structure where it is not given.
+        Identifies the legs; found by name and structure if not given.
     settings : PlantSettings
     progress : Progress
 
     Returns
     -------
     Planted
-        Of its motion, only the root's place and the legs' rotations differ from the input.
+        Only the root position and the rotations of the legs differ from the input.
 
     Raises
     ------
@@ -164,7 +162,7 @@ def _plant_segment(
     """Plant the feet of a motion without cuts."""
     standing = [leg for leg in legs if contacts[:, SIDES.index(leg.side)].any()]
     if not standing:
-        progress(1.0, "No foot stands")
+        progress(1.0, "No foot is in contact")
         return Planted(motion, contacts, 0.0, 0.0)
     progress(0.2, "Planning the feet")
     poses = forward_kinematics(motion)
@@ -210,7 +208,7 @@ def _plan_trajectories(
     contacts: Flags,
     settings: PlantSettings,
 ) -> list[FootTrajectory]:
-    """Plan the course of each foot for itself."""
+    """Plan the trajectory of each foot separately."""
     return [
         plan_foot_trajectory(
             motion,
@@ -232,7 +230,7 @@ def _root_offset(
     trajectories: Sequence[FootTrajectory],
     settings: PlantSettings,
 ) -> Array:
-    """Return how the root must move for the legs to reach, (n_frames, 3); 0 if it may not."""
+    """Return the root offset that lets the legs reach, (n_frames, 3); 0 if it may not move."""
     if not settings.move_root or motion.n_frames == 1:
         return np.zeros_like(motion.root_positions)
     return compute_root_offset(
@@ -248,9 +246,9 @@ def _root_offset(
 def _apply_trajectory(
     motion: Motion, poses: WorldPoses, trajectory: FootTrajectory, softness: float
 ) -> Motion:
-    """Return the motion whose ankle follows its course and whose foot and toes are turned.
+    """Return the motion whose ankle, foot and toes follow the trajectory.
 
-    `poses` are those of the motion before anything was changed.
+    `poses` are those of the unchanged motion.
     """
     leg = trajectory.leg
     result = reach(motion, leg.chain, trajectory.ankle, ReachSettings(softness=softness))
@@ -280,7 +278,7 @@ def _require_legs(motion: Motion, humanoid_map: HumanoidMap) -> tuple[Leg, ...]:
     if gaps.any():
         names = [motion.skeleton.names[joint] for joint in np.flatnonzero(gaps.any(axis=0))]
         raise InvalidMotionError(
-            f"Feet can be planted only where all is known; these have gaps: {', '.join(names)}."
+            f"Feet can be planted only without gaps; these have gaps: {', '.join(names)}."
             " Clean the take first."
         )
     return legs

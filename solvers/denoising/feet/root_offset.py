@@ -1,4 +1,4 @@
-"""Move the hips a little where a leg would be too short for its footplant."""
+"""Offset the hips where a leg would be too short for its footplant."""
 
 from collections.abc import Sequence
 
@@ -14,7 +14,7 @@ Array = NDArray[np.float64]
 N_ROUNDS = 30
 MAX_MISSING_REACH_M = 5e-4
 BLEND_FACTOR = 2.0
-"""The body is heavier than a foot: its shift fades over this many times the blend."""
+"""The body is heavier than a foot: its offset fades over this many times the blend."""
 
 
 def compute_root_offset(
@@ -26,20 +26,20 @@ def compute_root_offset(
     softness: float,
     blend: float,
 ) -> Array:
-    """Return a smooth shift of the root, (n_frames, 3), that lets the legs reach their plants.
+    """Return a smooth root offset, (n_frames, 3), that lets the legs reach their targets.
 
-    Each round asks, in the frames in contact where a leg is still too short, for what is
-    missing along the leg, and joins all that was asked for so far with the smoothest curve
-    (the method of multipliers on `smooth_correction`).
+    Each round finds the frames in contact where a leg is still too short, and adds the missing
+    distance along the leg to the goals. The smoothest curve joins all goals so far (the method
+    of multipliers on `smooth_correction`).
 
     Parameters
     ----------
     skeleton : Skeleton
     poses : WorldPoses
-    plants : sequence of Plant
+    trajectories : sequence of FootTrajectory
     frame_rate : float, hertz
     softness : float
-        Part of a leg's length that it does not use, unless its pose already does.
+        Fraction of a leg's length that is not used, unless its pose already uses it.
     blend : float, seconds
         Time over which a foot's correction fades.
     """
@@ -68,7 +68,7 @@ def _missing_reach(
     offset: Array,
     softness: float,
 ) -> Array:
-    """Return how far, and in which direction, the root must come nearer to the foot."""
+    """Return the displacement by which the root must approach the foot, (n_frames, 3)."""
     hip, knee, ankle = (poses.positions[:, joint] for joint in trajectory.leg.chain)
     leg_length = np.linalg.norm(knee - hip, axis=1) + np.linalg.norm(ankle - knee, axis=1)
     usable_length = np.maximum(

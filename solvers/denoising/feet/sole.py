@@ -1,4 +1,4 @@
-"""Where a foot touches the floor: heel, ball and toe tip, and which of them carry it."""
+"""Estimate which points of a foot, heel, ball or toe tip, carry the load on the floor."""
 
 import numpy as np
 from numpy.typing import NDArray
@@ -11,25 +11,25 @@ from .legs import Leg
 Array = NDArray[np.float64]
 
 HEEL_FRACTION = 0.2
-"""How far the heel is behind the ankle, as part of the way from ankle to ball."""
+"""Distance of the heel behind the ankle, relative to the distance from ankle to ball."""
 LOAD_FALLOFF_M = 0.007
-"""Metres, for a leg of 0.9 m: a point this much above the lowest carries 1/e of its load."""
+"""Meters, for a leg of 0.9 m: a point this far above the lowest carries 1/e of its load."""
 TIP_HEIGHT_M = 0.012
-"""Metres, for a leg of 0.9 m, by which the ball is above the tip when both carry as much:
-captured toes tremble, and a trembling tip should not carry a resting foot."""
+"""Meters, for a leg of 0.9 m, between ball and tip when both carry the same load. Captured toes
+jitter, and a jittering tip should not carry a resting foot."""
 MAX_REST_SPEED = 0.15
-"""Metres per second below which all of the foot rests on the floor."""
+"""Meters per second below which the entire foot rests on the floor."""
 SMOOTHING_S = 0.03
-"""Seconds over which speeds and heights are smoothed before they are judged."""
+"""Seconds over which speeds and heights are smoothed before they are compared."""
 
 
 def sole_points(skeleton: Skeleton, poses: WorldPoses, leg: Leg) -> Array:
-    """Return heel, ball and toe tip in the world, shape (n_frames, 2 or 3, 3), metres.
+    """Return heel, ball and toe tip in the world, shape (n_frames, 2 or 3, 3), meters.
 
-    No rig has a heel: it is taken to be below and a little behind the ankle, as high in the
-    rest pose as the ball. The ball is the toe joint, or the end of a foot without toes; the
-    tip is the end of the toes, if the rig knows it. A foot that is a mere ankle touches the
-    floor with that.
+    No rig has a heel joint: the heel is assumed below and slightly behind the ankle, as high in
+    the rest pose as the ball. The ball is the toe joint, or the end of a foot without toes. The
+    tip is the end of the toes, if the rig has it. A foot without children touches the floor
+    with its ankle.
     """
     rest = skeleton.rest_positions
     ball = leg.toe if leg.toe is not None else _first_child(skeleton, leg.ankle)
@@ -45,10 +45,10 @@ def sole_points(skeleton: Skeleton, poses: WorldPoses, leg: Leg) -> Array:
 def measure_standing_heights(
     points: Array, contact: NDArray[np.bool_], frame_rate: float
 ) -> Array:
-    """Return how much higher than the ball each point is when the foot rests, (n_points,).
+    """Return the height of each point above the ball while the foot rests, (n_points,).
 
-    Rest poses are not always drawn with flat feet, so it is measured where all points stand
-    still in contact; a foot that never rests is taken to have a level sole.
+    Rest poses do not always have flat feet, so the heights are measured in contact where no
+    point moves. A foot that never rests is assumed to have a level sole.
     """
     level = np.zeros(points.shape[1])
     if len(points) > 1:
@@ -61,13 +61,14 @@ def measure_standing_heights(
 
 
 def estimate_loads(heights: Array, frame_rate: float, size: float) -> Array:
-    """Return which part of the load each point carries, (n_frames, n_points), summing to 1.
+    """Return the fraction of the load on each point, (n_frames, n_points), summing to 1.
 
-    The lowest carry it; as the foot rolls it passes smoothly from heel to ball to tip.
+    The lowest points carry it. As the foot rolls, the load moves smoothly from heel to ball to
+    tip.
 
     Parameters
     ----------
-    heights : shape (n_frames, n_points), metres
+    heights : shape (n_frames, n_points), meters
         Above the floor on which the foot rests.
     frame_rate : float, hertz
     size : float
@@ -82,5 +83,5 @@ def estimate_loads(heights: Array, frame_rate: float, size: float) -> Array:
 
 
 def _first_child(skeleton: Skeleton, joint: int) -> int:
-    """Return the joint's first child, or itself where it has none."""
+    """Return the joint's first child, or itself if it has none."""
     return next(iter(skeleton.children[joint]), joint)

@@ -1,4 +1,4 @@
-"""Joint limits: learned from clean motion, and enforced."""
+"""Joint limits: learn them from clean motion, and enforce them."""
 
 from .clamp_to_limits import clamp_to_limits, limit_excess
 from .impossible_rotations import find_impossible_rotations

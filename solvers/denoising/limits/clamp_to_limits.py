@@ -1,4 +1,4 @@
-"""Hold a motion within the limits of its joints."""
+"""Clamp a motion softly to the limits of its joints."""
 
 from collections.abc import Iterator
 from dataclasses import dataclass
@@ -31,21 +31,22 @@ def clamp_to_limits(
     softness: float = DEFAULT_SOFTNESS,
     humanoid_map: HumanoidMap | None = None,
 ) -> Motion:
-    """Return the motion with each joint drawn back to its limits.
+    """Return the motion with each joint softly clamped to its limits.
 
-    An angle within its limits stays as it is, bit for bit. One that is x beyond is let
-    through as softness * tanh(x / softness): a curve that leaves the limit with the same slope
-    and curvature, so that nothing kinks, and never exceeds the limit by more than `softness`.
+    An angle within its limits stays the same, bit for bit. An excess of x becomes
+    softness * tanh(x / softness). This curve leaves the limit with the same slope and
+    curvature, so the motion has no kink, and it never exceeds the limit by more than
+    `softness`.
 
     Parameters
     ----------
     motion : Motion
-        NaN stays NaN. Joints that the limits do not name stay as they are.
+        NaN stays NaN. Joints without limits stay the same.
     limits : JointLimits
     softness : float, radians
-        Greater is gentler; 0 stops at the limit.
+        Higher is smoother; 0 stops at the limit.
     humanoid_map : HumanoidMap
-        Who plays the roles that the limits name; found where it is not given.
+        Assigns joints to the roles of the limits; found if not given.
 
     Returns
     -------
@@ -75,10 +76,10 @@ def clamp_to_limits(
 def limit_excess(
     motion: Motion, limits: JointLimits, humanoid_map: HumanoidMap | None = None
 ) -> Array:
-    """Return how far each joint is beyond its limits, shape (n_frames, n_joints), radians.
+    """Return the excess of each joint over its limits, shape (n_frames, n_joints), radians.
 
-    The worst of the three angles; 0 within the limits, for joints without limits and where
-    nothing was observed.
+    It is the largest excess of the three angles; 0 within the limits, for joints without limits
+    and where not observed.
     """
     excess = np.zeros((motion.n_frames, motion.n_joints))
     for joint, limit in _limits_of_skeleton(limits, motion.skeleton, humanoid_map):
@@ -100,14 +101,14 @@ class _Limit:
     upper: Array
 
     def angles(self, rotations: Array) -> tuple[Array, Array]:
-        """Return the limited coordinates and how far they are beyond, each (n_frames, 3)."""
+        """Return the limited coordinates and their signed excess, each (n_frames, 3)."""
         in_limit_frame = multiply(multiply(inverse(self.left), rotations), self.right)
         if self.order == ROTATION_VECTOR:
             vectors = rotation_vector_from_quaternion(in_limit_frame)
             return vectors, self._signed_excess(vectors)
-        # Every rotation has two triples of Euler angles, each up to full turns. Take the one
-        # that breaks the limits least and turns least about the axes that are free: else a knee
-        # far beyond its limit could be read as half a turn about both other axes.
+        # Every rotation has two triples of Euler angles, each up to full turns. Choose the one
+        # with the least excess and the least rotation about free axes. Otherwise a knee far
+        # beyond its limit could be interpreted as half a turn about both other axes.
         first = euler_from_quaternion(in_limit_frame, self.order)
         forms = self._wrap_to_limits(np.stack([first, first * (1.0, -1.0, 1.0) + np.pi]))
         signed_excess = self._signed_excess(forms)
@@ -119,7 +120,7 @@ class _Limit:
         )
 
     def rotations(self, angles: Array) -> Array:
-        """Undo `angles`."""
+        """Invert `angles`."""
         if self.order == ROTATION_VECTOR:
             in_limit_frame = quaternion_from_rotation_vector(angles)
         else:
@@ -127,13 +128,13 @@ class _Limit:
         return multiply(multiply(self.left, in_limit_frame), inverse(self.right))
 
     def _wrap_to_limits(self, angles: Array) -> Array:
-        """Shift by full turns to the nearest of the middle of the limits, where both exist."""
+        """Shift by full turns to the angle nearest to the center of bounded limits."""
         bounded = np.isfinite(self.lower) & np.isfinite(self.upper)
         center = 0.5 * (np.where(bounded, self.lower, 0.0) + np.where(bounded, self.upper, 0.0))
         return np.asarray(angles - 2 * np.pi * np.round((angles - center) / (2 * np.pi)))
 
     def _signed_excess(self, angles: Array) -> Array:
-        """Signed distance from the box: 0 inside."""
+        """Return the signed distance from the box; 0 inside."""
         over = np.maximum(angles - self.upper, 0.0)
         return np.asarray(over + np.minimum(angles - self.lower, 0.0))
 
@@ -141,7 +142,7 @@ class _Limit:
 def _limits_of_skeleton(
     limits: JointLimits, skeleton: Skeleton, humanoid_map: HumanoidMap | None
 ) -> Iterator[tuple[int, _Limit]]:
-    """Yield the limits that this skeleton has a joint for, in terms of its own rest pose."""
+    """Yield the limits whose joints this skeleton has, relative to its own rest pose."""
     joints = {name: joint for joint, name in enumerate(skeleton.names)}
     roles: dict[str, int] = {}
     alignment = np.empty((0, 4))
@@ -156,7 +157,7 @@ def _limits_of_skeleton(
             continue
         left, right = limits.left[index], limits.right[index]
         if by_role:
-            # A canonical rotation is parent^-1 L own, see motion/canonical.py.
+            # A canonical rotation is parent^-1 L own, see `canonical_rotations`.
             parent = skeleton.parents[joint]
             left = multiply(alignment[parent], left) if parent >= 0 else left
             right = multiply(alignment[joint], right)

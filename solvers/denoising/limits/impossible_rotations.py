@@ -1,4 +1,4 @@
-"""Which recorded turns no joint can make, though the estimate believes them."""
+"""Find recorded rotations that no joint can reach although the estimate follows them."""
 
 import numpy as np
 from numpy.typing import NDArray
@@ -8,11 +8,11 @@ from ...signals import runs
 from .clamp_to_limits import limit_excess
 
 MIN_IMPOSSIBLE_EXCESS = np.radians(10.0)
-"""A joint this much beyond its limits was not observed, whatever the recording says."""
+"""Radians: a joint this far beyond its limits was not really observed."""
 MIN_FOLLOWED_EXCESS = np.radians(1.0)
-"""An estimate this much beyond the limits follows what is impossible."""
+"""Radians: an estimate this far beyond the limits follows an impossible rotation."""
 MAX_EXCESS_FRACTION = 0.5
-"""Limits that a joint is beyond in more than this share of the frames are not this body's."""
+"""Limits that a joint exceeds in a larger fraction of the frames belong to another body."""
 
 
 def find_impossible_rotations(
@@ -20,8 +20,8 @@ def find_impossible_rotations(
 ) -> NDArray[np.bool_]:
     """Return where a joint was recorded far beyond its limits and the estimate follows it.
 
-    What the estimate lays aside by itself is not worth a gap: a gap takes with it what the
-    joint's other angles may tell.
+    Samples that the estimate already rejects stay in the take: a gap would also remove the
+    information in the joint's other angles.
 
     Parameters
     ----------
@@ -31,7 +31,7 @@ def find_impossible_rotations(
     Returns
     -------
     NDArray of bool, shape (n_frames, n_joints)
-        Whole stretches of the recording.
+        Complete intervals of the recording.
     """
     impossible = limit_excess(recording, limits) > MIN_IMPOSSIBLE_EXCESS
     foreign = impossible.sum(axis=0) > MAX_EXCESS_FRACTION * recording.observed.sum(axis=0)

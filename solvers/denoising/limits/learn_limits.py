@@ -1,4 +1,4 @@
-"""Learn from clean motions how far each joint turns."""
+"""Learn the range of motion of each joint from clean motions."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -22,32 +22,32 @@ from ...settings import Settings, setting
 
 Array = NDArray[np.float64]
 Key = tuple[bool, str]
-"""Whether it is a humanoid role, and the role's or the joint's name."""
+"""Whether it is a humanoid role, and the name of the role or joint."""
 
 
 @dataclass(frozen=True, kw_only=True)
 class JointLimitsSettings(Settings):
-    """How tightly limits follow the examples."""
+    """Settings of `learn_joint_limits`."""
 
     percentile: float = setting(
         0.5,
-        "Share of the examples' extremes, in percent at each end, that may be faults and is"
-        " left out; higher gives tighter limits",
+        "Fraction of the examples' extremes at each end, in percent, that may be faults and is"
+        " ignored; higher gives tighter limits",
         unit="%",
         minimum=0.0,
         maximum=25.0,
     )
     margin: float = setting(
         np.radians(10.0),
-        "How far beyond the examples a joint may turn; higher gives wider limits",
+        "Angle by which a joint may exceed the examples; higher gives wider limits",
         unit="rad",
         minimum=0.0,
         maximum=np.pi,
     )
     stretch: float = setting(
         0.2,
-        "How far beyond the examples, as a part of their range, a joint may turn; higher gives"
-        " wider limits",
+        "Fraction of the examples' range by which a joint may exceed it; higher gives wider"
+        " limits",
         minimum=0.0,
         maximum=10.0,
     )
@@ -60,29 +60,28 @@ def learn_joint_limits(
     settings: JointLimitsSettings = JointLimitsSettings(),
     progress: Progress = unwatched,
 ) -> JointLimits:
-    """Learn how far joints turn from motions in which they turn as far as they may.
+    """Learn joint limits from motions that cover the range of motion.
 
-    Joints with a humanoid role are seen from the canonical T-pose, so that the motions, and
-    those that the limits will be used on, may be of different rigs; other joints count for
-    joints of the same name. Of each joint the mean rotation is taken, then the rotation
-    vectors from it, then the principal axes of those: along each axis the limits are
-    percentiles of the examples, widened. So a hinge gets one long and two narrow sides without
-    being told its axis. Combinations of angles that were never seen are not excluded. Rotation
-    vectors do not jump unless a joint is half a turn away from its mean. Hips are free.
+    Joints with a humanoid role are measured from the canonical T-pose, so the limits apply to
+    any rig; other joints match by name. For each joint the method takes the mean rotation, the
+    rotation vectors from it, and their principal axes. The limits along each axis are
+    percentiles of the examples, widened. A hinge therefore gets one long and two narrow sides
+    without knowing its axis. Unobserved combinations of angles are not excluded. Rotation
+    vectors do not jump unless a joint is half a turn away from its mean. Hips have no limits.
 
     Parameters
     ----------
     motions : sequence of Motion
-        NaN is left out.
+        NaN is skipped.
     humanoid_maps : sequence of HumanoidMap, one for each motion
-        Found where they are not given.
+        Found if not given.
     settings : JointLimitsSettings
     progress : Progress
 
     Returns
     -------
     JointLimits
-        One for each humanoid role, or else joint name, that any of the motions shows.
+        One for each humanoid role, or joint name, that any of the motions has.
 
     Raises
     ------
@@ -149,5 +148,5 @@ def _learn_limit(
     low, high = np.percentile(coordinates, percentiles, axis=0)
     widening = settings.margin + settings.stretch * (high - low)
     axes_rotation = quaternion_from_matrix(axes)
-    # left^-1 L right turns by axes^T vector where middle^-1 L turns by vector.
+    # left^-1 L right rotates by axes^T vector where mean^-1 L rotates by vector.
     return multiply(mean, axes_rotation), axes_rotation, low - widening, high + widening

@@ -1,4 +1,4 @@
-"""Missing markers predicted from the markers around them."""
+"""Predict missing markers from the markers around them."""
 
 from .fill_markers import FilledMarkers, fill_markers
 

@@ -1,4 +1,4 @@
-"""Average several estimates of one thing, weighted by what each got wrong when tried."""
+"""Average several estimates with weights from their held-out errors (stacking)."""
 
 from collections.abc import Sequence
 
@@ -9,24 +9,24 @@ from scipy.optimize import nnls
 Array = NDArray[np.float64]
 
 INDEPENDENT_FRACTION = 0.3
-"""Share of each estimate's own error that is held to be independent of all others, besides."""
+"""Fraction of each estimate's error variance, added as independent of all others."""
 MIN_SQUARED_ERROR = 1e-9
-"""Square metres: errors below 0.03 mm are the same."""
+"""Square meters: errors below 0.03 mm are the same."""
 SUM_WEIGHT = 100.0
-"""How much heavier than the errors it weighs that the weights add up to one."""
+"""Weight of the constraint that the weights sum to one, relative to that of the errors."""
 
 
 def blend_weights(trials: Sequence[Array]) -> Array:
-    """Return the weights, none below zero, whose average errs least where it was tried.
+    """Return non-negative weights whose average has the least held-out error.
 
-    Errors that estimates share do not average out; those that differ do. So the errors'
-    products count, not only their sizes [1]_, and no weight is negative [2]_. The products are
-    known from few frames: every estimate is doubted a little more than they say.
+    Errors common to all estimates do not average out; different errors do. Therefore the
+    products of the errors count, not only their sizes [1]_, and no weight is negative [2]_. The
+    products come from few frames, so the variance of each estimate is increased a little.
 
     Parameters
     ----------
-    trials : sequence of arrays, shape (n_frames, 3), metres
-        What each estimate got wrong in the same frames.
+    trials : sequence of arrays, shape (n_frames, 3), meters
+        Error of each estimate in the same frames.
 
     Returns
     -------

@@ -1,4 +1,4 @@
-"""Fill long gaps of points from the points that are seen, before the take is filtered."""
+"""Fill long gaps of markers from the observed markers, before the take is filtered."""
 
 from dataclasses import dataclass
 
@@ -24,51 +24,51 @@ Gap = tuple[int, int, int, int]
 """Length, point, first frame, frame after the last."""
 
 MAX_BRIEF_FRAMES = 4
-"""Frames: so short a gap is left to the filter; its neighbours tell enough."""
+"""Frames: the filter fills gaps this short, because their neighbors in time suffice."""
 MAX_RELATIVE_GAP = 0.25
-"""Of a gap's length: other points' gaps up to so long hardly matter, once filled."""
+"""Fraction of a gap's length: filled gaps of other points up to this length hardly matter."""
 MAX_GAPS_TOGETHER = 12
 """Gaps of one point that are filled together."""
 MIN_TRAINING_FRAMES = 12
 N_ROUNDS = 3
-"""Times that what is left of a gap is tried with other companions."""
+"""Number of attempts on the rest of a gap, with other reference markers."""
 
 
 @dataclass(frozen=True, eq=False)
 class FilledMarkers:
-    """A take without those gaps that its own points can fill."""
+    """A take whose gaps are filled from its own markers where possible."""
 
     tracks: Tracks
-    """NaN is left where gaps are brief, or where fewer than three other points are seen."""
+    """NaN remains in brief gaps, and where fewer than three other markers are observed."""
     filled: Flags
     """Shape (n_frames, n_points)."""
     deviation: Array
-    """Expected error of a coordinate where filled, metres, elsewhere 0; same shape."""
+    """Expected error of a coordinate where filled, meters, elsewhere 0; same shape."""
 
 
 @dataclass(frozen=True, eq=False)
 class _Take:
     positions: Array
     gap_length: NDArray[np.intp]
-    """Frames of the gap that each sample is in; 0 where seen, shape (n_frames, n_points)."""
+    """Length in frames of each sample's gap; 0 where observed, shape (n_frames, n_points)."""
     usable: Flags
     deviation: Array
     frame_rate: float
 
 
 def fill_markers(tracks: Tracks, progress: Progress = unwatched) -> FilledMarkers:
-    """Foretell lost points in the frame of those that keep their distance to them.
+    """Predict missing markers in the frame of those at a constant distance from them.
 
-    Everything is learned from the take itself: which points move along with the lost one, and
-    how its place among them depends on their pose and on time. What was foretold wrongly at
-    the borders of a gap is made up for within it. The expected error is that of frames in
-    which the point is seen, left out by stretches as long as the gap. In PMA's terms [1]_ it is
-    a local and nonlinear regression, averaged as in [2]_.
+    The take itself is the only training data. It shows which markers move with the missing one,
+    and how the missing one's position among them depends on their pose and on time. Errors at
+    the boundaries of a gap fade into it. The expected error is that of observed frames, held
+    out in blocks as long as the gap. In the terms of PMA [1]_ it is a local and nonlinear
+    regression, averaged as in [2]_.
 
     Parameters
     ----------
     tracks : Tracks
-        NaN where not observed. What was seen is returned as it is.
+        NaN where not observed. Observed positions are returned unchanged.
     progress : Progress
 
     Raises
@@ -99,7 +99,7 @@ def fill_markers(tracks: Tracks, progress: Progress = unwatched) -> FilledMarker
 
 
 def _prepare_take(tracks: Tracks) -> _Take:
-    """Take spikes for brief gaps, and bridge all gaps for as long as they are open."""
+    """Treat spikes as brief gaps, and bridge all gaps with lines until they are filled."""
     visible = tracks.visible & ~find_transient_outliers(tracks.positions)
     positions = np.where(visible[..., None], tracks.positions, np.nan)
     gap_length = np.zeros(visible.shape, dtype=np.intp)
@@ -126,7 +126,7 @@ def _list_open_gaps(take: _Take) -> list[Gap]:
 
 
 def _fill_point(take: _Take, point: int, length: int, gaps: list[Gap]) -> None:
-    """Fill the gaps of a point that are of this length or a little longer, all at once."""
+    """Fill all gaps of a point with this length or a little more at once."""
     similar_gaps = [
         (start, stop)
         for other_length, other, start, stop in gaps

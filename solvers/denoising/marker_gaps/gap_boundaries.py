@@ -1,4 +1,4 @@
-"""What happens where a gap begins and ends: learned densely, met without a step."""
+"""Handle the boundaries of a gap: dense training frames, and no step where the fill begins."""
 
 import numpy as np
 from numpy.typing import NDArray
@@ -10,21 +10,21 @@ Array = NDArray[np.float64]
 Flags = NDArray[np.bool_]
 
 MAX_TRAINING_FRAMES, MIN_TRAINING_FRAMES = 400, 100
-"""Frames learned from, besides those at the borders of gaps."""
+"""Number of training frames, in addition to those at the boundaries of gaps."""
 MANY_GAPS = 50
-"""From so many on, each is learned from fewer frames, so that it does not take for ever."""
+"""With more gaps, each has fewer training frames, which limits the run time."""
 MAX_TRAINING_RATE_HZ = 60.0
-"""Hertz: bodies move too slowly for more frames a second to tell more."""
+"""Hertz: bodies move too slowly for more frames per second to add information."""
 BOUNDARY_FRAMES = (1, 2, 3, 5, 8)
-"""Frames from a gap that are always learned from."""
+"""Distances in frames from a gap that are always training frames."""
 FADE_TIME_S = 0.2
-"""Seconds over which what was missed at a border is made up for."""
+"""Seconds over which the error at a boundary fades."""
 MIN_NOISE_M = 1e-5
-"""Metres."""
+"""Meters."""
 MEDIAN_NORM = 1.538
-"""Of vectors whose three coordinates are Gaussian with variance one."""
+"""Median length of 3D vectors with unit Gaussian coordinates."""
 N_DEPTHS = 5
-"""Depths into a gap at which the expected error is told apart."""
+"""Number of depths into a gap with separate expected errors."""
 
 
 def select_training_frames(
@@ -34,7 +34,7 @@ def select_training_frames(
     frame_rate: float,
     n_gaps: int,
 ) -> NDArray[np.intp]:
-    """Thin out the frames to learn from, but not near the gaps."""
+    """Subsample the training frames, except near the gaps."""
     fraction = min(MANY_GAPS / n_gaps, 1.0) ** 0.5
     n_rows = max(round(MAX_TRAINING_FRAMES * fraction), MIN_TRAINING_FRAMES)
     step = max(round(frame_rate / MAX_TRAINING_RATE_HZ), -(-len(training_frames) // n_rows), 1)
@@ -50,12 +50,12 @@ def select_training_frames(
 
 
 def estimate_jitter(trajectory: Array) -> float:
-    """Return the standard deviation of a coordinate's noise, the same from whatever side.
+    """Return the standard deviation of a coordinate's noise, independent of orientation.
 
     Parameters
     ----------
-    course : shape (n_frames, 3), metres
-        NaN where not seen.
+    trajectory : shape (n_frames, 3), meters
+        NaN where not observed.
     """
     sizes = np.linalg.norm(np.diff(trajectory, DIFFERENCE_ORDER, axis=0), axis=1)
     sizes = sizes[np.isfinite(sizes)]
@@ -69,10 +69,10 @@ def extrapolate_boundary_errors(
     noise: float,
     frame_rate: float,
 ) -> Array:
-    """Carry on into the gap what was missed around it, shape (n_foretold, 3), metres.
+    """Extrapolate the errors around a gap into it, shape (n_gap_frames, 3), meters.
 
-    The misses are taken for a random walk that is drawn back to zero (Ornstein, Uhlenbeck),
-    seen with the noise: a smooth process would carry on their slope, which is mere chance.
+    The model of the errors is an Ornstein-Uhlenbeck process, a random walk with a pull to zero,
+    observed with noise. A smooth process would extrapolate their slope, which is mere chance.
     """
     near_boundary = np.abs(training_frames[:, None] - gap_frames[None]).min(axis=1) <= max(
         BOUNDARY_FRAMES
@@ -89,7 +89,7 @@ def extrapolate_boundary_errors(
 
 
 def estimate_gap_error(prediction: Prediction, gap: Flags) -> Array:
-    """Return the usual error of a coordinate in all frames of the gaps, metres."""
+    """Return the expected error of a coordinate in all frames of the gaps, meters."""
     n_frames = len(gap)
     frames = np.arange(n_frames)
     before = np.maximum.accumulate(np.where(gap, -n_frames, frames))

@@ -1,4 +1,4 @@
-"""Foretell a lost point from its companions: Gaussian processes over pose and time."""
+"""Predict a missing marker from reference markers: Gaussian processes over pose and time."""
 
 from typing import NamedTuple
 
@@ -12,19 +12,19 @@ from .reference_markers import MIN_DEVIATION_M, ReferenceMarkers, fit_rigid_fram
 Array = NDArray[np.float64]
 
 VARIANTS = ((3, 8), (3, 16), (8, 24), (3, 5), (5, 12))
-"""Numbers of companions that span the frame, and that tell the pose."""
+"""Numbers of reference markers that span the frame, and that describe the pose."""
 
 
 class Kernel(NamedTuple):
-    """How alike two moments are; variances relative to that of the point in its frame."""
+    """Covariance of two frames; variances are relative to that of the marker in its frame."""
 
     linear_variance: float
     pose_variance: float
     pose_length_scale: float
-    """Of similar poses, relative to the usual distance of two poses."""
+    """Of similar poses, relative to the root mean square size of the poses."""
     time_variance: float
     time_scale: float
-    """For which the part that does not depend on the pose lasts."""
+    """Seconds over which the part that depends on time alone is correlated."""
     noise_variance: float
 
 
@@ -37,31 +37,31 @@ KERNELS = (
     Kernel(1.0, 1.0, 2.0, 0.1, 0.1, 1e-4),
 )
 MIN_SQUARED_ERROR = 1e-9
-"""Square metres: what is nearer than 0.03 mm is the same."""
+"""Square meters: positions closer than 0.03 mm are the same."""
 
 
 class Prediction(NamedTuple):
-    """A point foretold, metres."""
+    """A predicted marker, meters."""
 
     positions: Array
-    """Shape (n_frames, 3), learned frames first, then those of the gap."""
+    """Shape (n_frames, 3), training frames first, then those of the gap."""
     held_out_error: Array
-    """Error where frames that were learned are left out by stretches as long as the gap,
-    shape (n_learned, 3)."""
+    """Error of training frames, held out in blocks as long as the gap, shape (n_training,
+    3)."""
     held_out_depth: Array
-    """Frames that each of these was from the end of its stretch, shape (n_learned,)."""
+    """Frames from each of these to the nearest end of its block, shape (n_training,)."""
 
 
 class RegressionProblem(NamedTuple):
-    """One choice of frame and pose, ready for any kernel."""
+    """One choice of frame and pose, for any kernel."""
 
     targets: Array
-    """The point in the frame, relative to its mean, shape (n_learned, 3)."""
+    """The marker in the frame, relative to its mean, shape (n_training, 3)."""
     mean: Array
     rotations: Array
     origins: Array
     products: Array
-    """Of all poses with all learned ones, shape (n_frames, n_learned)."""
+    """Of all poses with all training poses, shape (n_frames, n_training)."""
     squared_distances: Array
     time_differences: Array
 
@@ -69,19 +69,20 @@ class RegressionProblem(NamedTuple):
 def predict_marker(
     positions: Array, point: int, references: ReferenceMarkers, frame_rate: float, length: int
 ) -> Prediction:
-    """Average what several frames and kernels foretell, by how they fare when tried.
+    """Average the predictions of several frames and kernels, weighted by held-out errors.
 
-    In a frame that travels with its companions, a point is a smooth function of their pose
-    (linear, and alike for similar poses), and of time. Averaging such estimates follows Tits,
-    Tilmanne and Dutoit [1]_; they are weighted by what they get wrong in whole stretches left
-    out, which is exact without solving again: K_BB^-1 (K^-1 y)_B, of the inverse's block [2]_.
+    In a frame that travels with its reference markers, a marker is a smooth function of their
+    pose (linear, and similar for similar poses) and of time. The average of such estimates
+    follows Tits, Tilmanne and Dutoit [1]_. Their weights come from the errors of held-out
+    blocks. These errors are exact without another solve: K_BB^-1 (K^-1 y)_B, from the block of
+    the inverse [2]_.
 
     Parameters
     ----------
-    positions : shape (n_frames, n_points, 3), metres
+    positions : shape (n_frames, n_points, 3), meters
     point : int
-    companions : Companions
-        Whose `learned` and `foretold` frames are used, all of them.
+    references : ReferenceMarkers
+        All of their `training_frames` and `gap_frames` are used.
     frame_rate : float, hertz
     length : int
         Frames of the gap.
@@ -113,7 +114,7 @@ def predict_marker(
 
 
 def _variants(n_companions: int) -> list[tuple[int, int]]:
-    """Return the variants that differ with so many companions."""
+    """Return the distinct variants for this number of reference markers."""
     possible = [
         (min(n_frame, n_companions), min(n_pose, n_companions)) for n_frame, n_pose in VARIANTS
     ]
@@ -143,7 +144,7 @@ def _build_problem(
 def _solve(
     problem: RegressionProblem, kernel: Kernel, blocks: list[NDArray[np.intp]]
 ) -> tuple[Array, Array]:
-    """Return what is foretold in all frames, and the errors of stretches left out."""
+    """Return the prediction in all frames, and the errors of held-out blocks."""
     targets, n_learned = problem.targets, len(problem.targets)
     covariance = kernel.linear_variance * problem.products
     if kernel.pose_variance:
@@ -163,8 +164,7 @@ def _solve(
 
 
 def matern(steps: Array) -> Array:
-    """Return the Matern covariance of smoothness 5/2, of which the square root of 5 is left out
-    of the unit of distance."""
+    """Return the Matern covariance of smoothness 5/2; the unit of distance contains sqrt(5)."""
     return np.asarray((1.0 + steps + steps**2 / 3.0) * np.exp(-steps))
 
 
@@ -177,7 +177,7 @@ def _inverse(matrix: Array) -> Array:
 def _split_into_blocks(
     frames: NDArray[np.intp], length: int
 ) -> tuple[list[NDArray[np.intp]], Array]:
-    """Sort learned frames into stretches of the gap's length, at least two of them."""
+    """Split training frames into blocks of the gap's length, at least two of them."""
     length = max(min(length, (int(np.ptp(frames)) + 1) // 2), 1)
     number, offset = np.divmod(frames - frames[0], length)
     held_out_depth = np.minimum(offset + 1, length - offset)

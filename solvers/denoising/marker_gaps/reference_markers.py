@@ -1,4 +1,4 @@
-"""The points that tell where a lost one is: which move along with it, and their frame."""
+"""Choose reference markers for a missing marker and fit their rigid frame."""
 
 from typing import NamedTuple
 
@@ -9,51 +9,52 @@ Array = NDArray[np.float64]
 Flags = NDArray[np.bool_]
 
 MAX_REFERENCES = 24
-"""Points that take part in foretelling one."""
+"""Reference markers that predict one marker."""
 MIN_REFERENCES = 3
-"""Points that span a frame."""
+"""Markers that span a frame."""
 MIN_GAP_COVERAGE, MIN_SHARED_FRACTION = 0.8, 0.6
-"""Shares of the gap, and of the frames in which the lost point is seen, that all companions
-together have to be seen in."""
+"""Minimum fraction of the gap, and of the frames with the missing marker observed, in which
+all reference markers together must be available."""
 MIN_DISTANCE_M, MIN_LINE_DISTANCE_M = 0.01, 0.03
-"""Metres that the second point is from the first, and the third from their line, at least."""
+"""Minimum distance, meters, of the second marker from the first, and of the third from their
+line."""
 MIN_DEVIATION_M = 0.001
-"""Metres that even a distance which never varied is held to be uncertain by."""
+"""Meters: minimum uncertainty of a distance, even if it never varied."""
 N_FITS = 3
 
 
 class ReferenceMarkers(NamedTuple):
-    """Points whose distance to a lost one varies least, the first three not on a line."""
+    """Markers whose distance to a missing one varies least, the first three not on a line."""
 
     points: NDArray[np.intp]
     deviation: Array
-    """Standard deviation of each one's distance to the lost point, metres."""
+    """Standard deviation of each one's distance to the missing marker, meters."""
     training_frames: NDArray[np.intp]
-    """Frames in which the lost point and all companions are seen."""
+    """Frames in which the missing marker and all reference markers are available."""
     gap_frames: NDArray[np.intp]
-    """Frames of the gap in which all companions are seen."""
+    """Frames of the gap in which all reference markers are available."""
 
 
 def find_reference_markers(
     positions: Array, observed: Flags, available: Flags, point: int, gap: Flags
 ) -> ReferenceMarkers | None:
-    """Choose the points that are nearest to being rigid with the lost one.
+    """Choose the markers that move most rigidly with the missing one.
 
     Parameters
     ----------
-    positions : shape (n_frames, n_points, 3), metres
-    seen : shape (n_frames,)
-        Where the lost point is seen.
-    there : shape (n_frames, n_points)
+    positions : shape (n_frames, n_points, 3), meters
+    observed : shape (n_frames,)
+        Where the missing marker is observed.
+    available : shape (n_frames, n_points)
         Where the others can be used.
     point : int
-        The lost one.
+        The missing marker.
     gap : shape (n_frames,)
-        Where it is to be foretold.
+        Frames to predict.
 
     Returns
     -------
-    Companions, or None where fewer than three points will do.
+    ReferenceMarkers, or None if fewer than three markers qualify.
     """
     deviation = _distance_deviations(positions, observed, available, point)
     coverage = available[gap].mean(axis=0)
@@ -87,7 +88,8 @@ def find_reference_markers(
 def _distance_deviations(
     positions: Array, observed: Flags, available: Flags, point: int
 ) -> Array:
-    """Return how much each distance to the point varies, metres; infinite where unknown."""
+    """Return the standard deviation of each distance to the point, meters; infinite if
+    unknown."""
     shared = observed[:, None] & available
     shared[:, point] = False
     count = shared.sum(axis=0)
@@ -99,11 +101,11 @@ def _distance_deviations(
 
 
 def _order_by_span(positions: Array) -> NDArray[np.intp]:
-    """Put three to the front that are not on one line; else the order is kept.
+    """Move three markers that are not on a line to the front; keep the order of the others.
 
     Parameters
     ----------
-    places : shape (n_frames, n_companions, 3)
+    positions : shape (n_frames, n_references, 3)
     """
     order = list(range(positions.shape[1]))
     distances_to_first = np.linalg.norm(positions - positions[:, :1], axis=2).mean(axis=0)
@@ -125,18 +127,18 @@ def _order_by_span(positions: Array) -> NDArray[np.intp]:
 def fit_rigid_frames(positions: Array, weights: Array) -> tuple[Array, Array]:
     """Fit a rigid shape to points in every frame (Kabsch 1976, doi:10.1107/S0567739476001873).
 
-    The shape is their mean, fitted in turn with the frames.
+    The shape is the mean of the points; shape and frames are fitted alternately.
 
     Parameters
     ----------
-    places : shape (n_frames, n_points, 3), metres
+    positions : shape (n_frames, n_points, 3), meters
     weights : shape (n_points,)
 
     Returns
     -------
-    turns : shape (n_frames, 3, 3)
+    rotations : shape (n_frames, 3, 3)
         From the frame of the shape to the world.
-    origins : shape (n_frames, 3), metres
+    origins : shape (n_frames, 3), meters
     """
     weights = weights / weights.sum()
     origins = np.einsum("p,fpi->fi", weights, positions)

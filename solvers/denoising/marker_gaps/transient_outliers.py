@@ -1,4 +1,4 @@
-"""Points that jump away for a few frames, found the same from whatever side they are seen."""
+"""Find points that jump away for a few frames, independent of orientation."""
 
 import numpy as np
 from numpy.typing import NDArray
@@ -7,25 +7,25 @@ from scipy.ndimage import median_filter
 Array = NDArray[np.float64]
 
 COMPARED_FRAMES = (1, 2)
-"""Frames to both sides that a point is compared with."""
+"""Distances in frames, to both sides, at which a point is compared."""
 NEIGHBORHOOD_FRAMES = 8
-"""Frames to both sides that say what is usual."""
+"""Half width in frames of the neighborhood that defines the typical distance."""
 MIN_SPIKE_RATIO = 6.0
-"""Times as far as usual is a jump."""
+"""Minimum distance of a spike, relative to the typical distance."""
 MIN_SPIKE_M = 0.02
-"""Metres: nothing nearer is one."""
+"""Meters: a shorter distance is no spike."""
 
 
 def find_transient_outliers(positions: Array) -> NDArray[np.bool_]:
-    """Return where points jump away, shape (n_frames, n_points).
+    """Return where points jump away and back, shape (n_frames, n_points).
 
-    A point is compared with the middles between where it was and where it will be; the
-    lesser of these distances is small for what moves, and beside a jump of one frame. Beside
-    one of two frames a good neighbour is called stray too, which costs next to nothing.
+    Each point is compared with the midpoint between its earlier and later positions. The
+    smaller of these distances is small for moving points, and next to a jump of one frame. Next
+    to a jump of two frames a good neighbor is classified as an outlier too, at almost no cost.
 
     Parameters
     ----------
-    positions : shape (n_frames, n_points, 3), metres
+    positions : shape (n_frames, n_points, 3), meters
         NaN where not observed.
     """
     n_frames = len(positions)
@@ -35,6 +35,6 @@ def find_transient_outliers(positions: Array) -> NDArray[np.bool_]:
             middle = 0.5 * (positions[: -2 * reach] + positions[2 * reach :])
             distance = np.linalg.norm(positions[reach:-reach] - middle, axis=2)
             distances[row, reach:-reach] = distance
-    jump = np.nan_to_num(np.fmin.reduce(distances))  # the lesser that is known
+    jump = np.nan_to_num(np.fmin.reduce(distances))  # the smaller one that is observed
     typical_jump = median_filter(jump, (2 * NEIGHBORHOOD_FRAMES + 1, 1), mode="nearest")
     return np.asarray(jump > np.maximum(MIN_SPIKE_M, MIN_SPIKE_RATIO * typical_jump))

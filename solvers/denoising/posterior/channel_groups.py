@@ -1,4 +1,4 @@
-"""The default method on whole takes: choose what moves, what to expect, and solve in groups."""
+"""Apply the default method to a complete take: select channels and prior, solve in groups."""
 
 from typing import NamedTuple
 
@@ -23,7 +23,7 @@ from .windows import Windows
 Array = NDArray[np.float64]
 
 MAX_GROUP_CHANNELS = 96
-"""Channels that are solved for together; rigs with more are cut between joints."""
+"""Channels solved together; rigs with more are split between joints."""
 MAX_CONSTANT_RANGE = 1e-7
 SPIKE_HALF_WIDTH = 4
 SPIKE_TOLERANCE = 3.5
@@ -31,16 +31,16 @@ FIRST_GUESS_EFFICIENCY = 0.2
 """Of the median of overlapping differences, relative to a standard deviation."""
 MIN_NOISE = 0.01
 POOR_FIT_FRACTION = 0.2
-"""Share of plain smoothness from which on the examples are said to fit badly."""
+"""Fraction of plain smoothness above which the examples are reported to fit badly."""
 
 
 class RoughTake(NamedTuple):
-    """A take before anything is known of it, long enough for one window."""
+    """A first estimate of a take, padded to at least one window."""
 
     noisy: Array
     """NaN where not observed, and beyond the end of a take shorter than a window."""
     values: Array
-    """Without spikes, bridged by straight lines: no NaN."""
+    """Without spikes, gaps bridged by straight lines: no NaN."""
     noise: Array
     n_observed: NDArray[np.intp]
     windows: Windows
@@ -111,13 +111,13 @@ def _build_examples_prior(
     columns: NDArray[np.intp],
     prior: WindowPrior,
 ) -> WindowPrior:
-    """Return what the examples tell of some channels, whose rough values are given."""
+    """Return the examples' prior of some channels of a rough take."""
     observed, density = np.isfinite(part.noisy[:n_frames]), part.windows.density
     observed_counts = observed.sum(axis=0)
     own = np.where(observed, part.values[:n_frames], 0.0).sum(axis=0) / np.maximum(
         observed_counts, 1
     )
-    # What spikes the rough values still hold is in their steps, though not in the noise.
+    # Spikes that remain in the rough values show in their steps, though not in the noise.
     steps = np.diff(part.values[:n_frames], axis=0, prepend=part.values[:1])
     spiky_noise = np.maximum(part.noise, np.sqrt((steps**2).mean(axis=0) / 2.0))
     return build_examples_prior(
@@ -141,7 +141,7 @@ def _estimate_roughly(
 
 
 def _find_example_channels(channels: Channels, bases: FilterBases | None) -> NDArray[np.bool_]:
-    """Return which channels the examples tell of."""
+    """Return which channels the examples contain."""
     moving = set()
     if bases is not None:
         moving = {(str(bases.keys[channel // 3]), channel % 3) for channel in bases.moving}
@@ -153,9 +153,9 @@ def _find_example_channels(channels: Channels, bases: FilterBases | None) -> NDA
 def group_channels(
     noisy: Array, rough: Array, in_examples: NDArray[np.bool_]
 ) -> list[NDArray[np.intp]]:
-    """Sort the channels that move: those of the examples first.
+    """Group the moving channels: those of the examples first.
 
-    The channels of a joint stay together, but for those that the examples know nothing of.
+    The channels of a joint stay together, except those that the examples lack.
     """
     missing = np.isnan(noisy)
     moves = (np.ptp(rough, axis=0) > MAX_CONSTANT_RANGE) | missing.all(axis=0)
@@ -181,12 +181,12 @@ def _describe_prior(
     n_clips = int(bases.n_clips)
     clips = f"{n_clips} example clip" + "s" * (n_clips != 1)
     if not smooth_fractions:
-        return f"The take's own patterns: no joint of it is in the {clips}."
+        return f"The take's own patterns: the {clips} share no joint with it."
     mean_fraction = float(np.mean(smooth_fractions))
     if mean_fraction >= 1.0:
         return f"The take's own patterns: the movement of {clips} is too different to help."
     if mean_fraction > POOR_FIT_FRACTION:
-        return f"Patterns of {clips}, at part weight: they fit the take only roughly."
+        return f"Patterns of {clips}, at reduced weight: they fit the take only roughly."
     if len(smooth_fractions) < n_channels / 3:
-        return f"Patterns of {clips} for the joints that they have; else the take's own."
+        return f"Patterns of {clips} for the joints that they have; otherwise the take's own."
     return f"Patterns of {clips}, adapted to the take."

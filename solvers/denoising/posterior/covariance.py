@@ -1,4 +1,4 @@
-"""How the waves of a window vary together: what the prior says, adapted to the take."""
+"""Covariance of a window's DCT coefficients: the prior's, adapted to the take."""
 
 from dataclasses import dataclass
 
@@ -12,18 +12,18 @@ Array = NDArray[np.float64]
 
 @dataclass(frozen=True, eq=False)
 class WindowCovariance:
-    """Of the waves of a window."""
+    """Covariance of the coefficients of a window."""
 
     slow: Array
-    """Of the slow waves, a square matrix, waves outermost."""
+    """Of the slow coefficients, a square matrix, coefficients outermost."""
     slow_in_gaps: Array
     """The same for windows with long gaps."""
     fast: Array
-    """Variances of the faster waves, shape (length - n_slow, n_channels)."""
+    """Variances of the fast coefficients, shape (length - n_slow, n_channels)."""
 
 
 def covariance_from_prior(prior: WindowPrior, length: int) -> WindowCovariance:
-    """Return what a prior says by itself of windows of so many frames."""
+    """Return the covariance of windows of this many frames under the prior alone."""
     return WindowCovariance(
         prior.matrix, prior.matrix, _extend_fast_variances(prior.fast, length - prior.n_slow)
     )
@@ -32,17 +32,17 @@ def covariance_from_prior(prior: WindowPrior, length: int) -> WindowCovariance:
 def adapt_covariance(
     prior: WindowPrior, slow: Array, power: Array, noise: Array
 ) -> WindowCovariance:
-    """Mix the prior's covariance with that of the take, as it is estimated so far.
+    """Mix the prior's covariance with the current estimate of the take's.
 
     Parameters
     ----------
-    prior : WavePrior
+    prior : WindowPrior
     slow : square matrix
-        Mean second moment of the take's slow waves.
+        Mean second moment of the take's slow coefficients.
     power : shape (length - n_slow, n_channels)
-        Mean square of the take's measured faster waves.
+        Mean square of the take's measured fast coefficients.
     noise : shape (n_channels,)
-        Standard deviation of a wave.
+        Standard deviation of a coefficient.
     """
     complete, in_gaps = (
         _mix_covariances(prior.matrix, slow, np.tile(own_weight, prior.n_slow))
@@ -63,7 +63,8 @@ def _mix_covariances(prior: Array, own: Array, own_weight: Array) -> Array:
 
 
 def _extend_fast_variances(fast: Array, n_coefficients: int) -> Array:
-    """Return the variances of more (or fewer) fast waves; those unheard of fade away."""
+    """Return variances of more (or fewer) fast coefficients; added ones decay with
+    frequency."""
     if len(fast) >= n_coefficients:
         return fast[:n_coefficients]
     last = fast[-1:] if len(fast) else np.zeros((1, fast.shape[1]))

@@ -1,4 +1,4 @@
-"""What every method says about channels."""
+"""The result of any method on channels."""
 
 from dataclasses import dataclass
 
@@ -18,6 +18,6 @@ class Estimate:
     deviation: Array
     """Standard deviation of the estimate's error."""
     leave_one_out_error: Array
-    """How far each sample is from what all others foretell; NaN where that is not known."""
+    """Error of each sample's prediction from all others; NaN where unknown."""
     iterations: int
     converged: bool

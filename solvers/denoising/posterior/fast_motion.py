@@ -1,4 +1,4 @@
-"""Tell quick but honest moves, such as a foot that strikes the floor, from spikes."""
+"""Separate fast but genuine motion, such as a foot strike, from spikes."""
 
 import numpy as np
 from numpy.typing import NDArray
@@ -8,45 +8,45 @@ Array = NDArray[np.float64]
 
 INLIER_THRESHOLD = 0.5
 LOW_NOISE = 0.5
-"""Noise, degrees or centimetres, below which single samples can be taken at their word."""
+"""Noise, degrees or centimeters, below which single samples are reliable."""
 LOW_OUTLIER_RATE = 0.02
-"""Share of outliers up to which neighbouring ones that form a hill by chance are rare."""
+"""Fraction of outliers up to which adjacent ones rarely form a gradual deviation by chance."""
 MAX_EDGE_FRACTION = 0.75
-"""Part of its height that a spike rises, or falls, from one frame to the next."""
+"""Maximum first and last step of a motion, relative to its height; a spike has larger ones."""
 MAX_STEP_FRACTION = 0.5
-"""The same, of the way from its lowest to its highest, that no step of a move makes up."""
+"""Maximum step within a motion, relative to its range from lowest to highest sample."""
 MIN_MOTION_FRAMES, MIN_MOTION_FRACTION = 3, 0.15
-"""Frames, and part of a window, from which on noise cannot give a spike gentle slopes."""
+"""Frames, and fraction of a window, beyond which noise cannot give a spike gradual slopes."""
 MIN_OUTLIER_FRACTION, MIN_LASTING_FRAMES = 0.6, 15
-"""Share of what is observed around a frame, over a window but at least so many frames, that
-cannot all be errors."""
+"""Fraction of the observed samples around a frame that cannot all be errors. It is measured
+over a window, but at least this many frames."""
 
 
 def find_fast_motion(
     error: Array, inlier: Array, noise: Array, rate: float, window: int
 ) -> NDArray[np.bool_]:
-    """Return which of the doubted samples belong to a move that the recording resolves.
+    """Return which outliers belong to a motion that the recording resolves.
 
-    A spike leaves the estimate with a step and comes back with a step; also one that a filter
-    softened a little. A hill that is climbed and descended gradually is a move that is quicker
-    than was expected. In takes of little noise and few outliers its first and last step tell,
-    elsewhere it must last and have no steep step at all. And where most of what was observed
-    around a frame is doubted, it is the estimate that is wrong.
+    A spike leaves the estimate with a step and comes back with a step, even if a filter
+    softened it a little. A deviation that rises and falls gradually is a motion faster than
+    expected. In takes with little noise and few outliers its first and last step decide.
+    Elsewhere it must last and have no steep step at all. If most observed samples around a
+    frame are outliers, the estimate is wrong.
 
     Parameters
     ----------
-    error : shape (n_frames, n_channels), degrees or centimetres
+    error : shape (n_frames, n_channels), degrees or centimeters
         From the estimate to the samples; NaN where not observed.
     inlier : same shape
-        Probability that the sample is none.
+        Probability that the sample is no outlier.
     noise : shape (n_channels,)
         Standard deviation.
     rate : float
-        Share of outliers in the take.
+        Fraction of outliers in the take.
     window : int, frames
     """
     nothing_found = np.zeros(error.shape, dtype=np.bool_)
-    # One long column, with a frame of nothing before and after each channel.
+    # One long column, with an empty frame before and after each channel.
     column_error = np.pad(error, ((1, 1), (0, 0)), constant_values=np.nan).T.ravel()
     outlier = np.pad(inlier < INLIER_THRESHOLD, ((1, 1), (0, 0))).T.ravel()
     outlier &= np.isfinite(column_error)
@@ -82,7 +82,7 @@ def find_fast_motion(
 def _find_lasting_outliers(
     outlier: NDArray[np.bool_], error: Array, window: int
 ) -> NDArray[np.bool_]:
-    """Return what is doubted where, over a window, most of what was observed is."""
+    """Return the outliers where, over a window, most observed samples are outliers."""
     observed = np.isfinite(error)
     outlier = observed & outlier
     observed_fraction, outlier_fraction = (

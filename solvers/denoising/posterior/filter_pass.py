@@ -1,4 +1,4 @@
-"""One pass of the filter over all windows, and what it tells of the take."""
+"""Apply the filters to all windows once, and collect statistics of the take."""
 
 from dataclasses import dataclass
 
@@ -11,25 +11,25 @@ from .windows import Windows
 Array = NDArray[np.float64]
 
 MAX_BLOCK_WINDOWS = 512
-"""Windows worked on at a time: this bounds the memory, however long the take."""
+"""Windows processed at a time: this bounds the memory, however long the take."""
 
 
 @dataclass(eq=False)
 class FilterPass:
-    """What one pass over all windows adds up."""
+    """Sums of one pass over all windows."""
 
     total: Array
     """Tapered posterior means, shape (n_frames, n_channels)."""
     slow_moment: Array
-    """Mean second moment of the slow waves, a square matrix."""
+    """Mean second moment of the slow coefficients, a square matrix."""
     fast_power: Array
-    """Mean square of the measured fast waves, shape (length - n_slow, n_channels)."""
+    """Mean square of the measured fast coefficients, shape (length - n_slow, n_channels)."""
 
 
 def filter_windows(
     blended: Array, filters: list[Filter], windows: Windows, with_moments: bool
 ) -> FilterPass:
-    """Filter every window; sum windows and, where asked for, second moments."""
+    """Filter every window; sum windows and, if requested, second moments."""
     n_channels = blended.shape[1]
     size, n_slow = len(filters[0].gains.slow), len(filters[0].gains.slow) // n_channels
     result = FilterPass(

@@ -1,4 +1,4 @@
-"""What the windows of a take are filtered with, complete or with gaps."""
+"""Filters for the windows of a take, complete or with gaps."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -16,27 +16,27 @@ Array = NDArray[np.float64]
 
 @dataclass(frozen=True, eq=False)
 class Gains:
-    """What one iteration needs: the filter in units of the noise."""
+    """Gains of one iteration, in units of the noise."""
 
     slow: Array
-    """Posterior from measured slow waves, both in units of the noise, a square matrix."""
+    """Posterior from measured slow coefficients in units of the noise, a square matrix."""
     fast: Array
-    """Factor of each faster wave, shape (length - n_slow, n_channels)."""
+    """Factor of each fast coefficient, shape (length - n_slow, n_channels)."""
     noise: Array
-    """Standard deviation of a wave, shape (n_channels,)."""
+    """Standard deviation of a coefficient, shape (n_channels,)."""
 
 
 @dataclass(frozen=True, eq=False)
 class Filter:
-    """What windows with the same gaps are filtered with."""
+    """The filter of all windows with the same gaps."""
 
     pattern: GapPattern
     gains: Gains
     gaps: GapSolution | None
-    """None where the windows are complete."""
+    """None for complete windows."""
 
     def add_covariance(self, total: Array) -> None:
-        """Add the posterior covariance of the slow waves of all these windows to a sum."""
+        """Add the posterior covariance of the slow coefficients of these windows to a sum."""
         scale = np.tile(self.gains.noise, len(total) // len(self.gains.noise))
         n_windows = len(self.pattern.starts)
         total += n_windows * self.gains.slow * np.outer(scale, scale)
@@ -55,10 +55,10 @@ def build_filters(
     *,
     reusable: Sequence[Filter] = (),
 ) -> list[Filter]:
-    """Return the filter of each pattern of gaps.
+    """Return the filter of each gap pattern.
 
-    Where filters of the same patterns are at hand that are nearly right, `stale`, those of
-    windows with gaps are taken from them: they are costly.
+    Filters of windows with gaps are expensive. They are taken from `reusable`, filters of the
+    same patterns that are nearly correct, if given.
     """
     filters, gains = [], dict[bool, Gains]()
     for index, pattern in enumerate(patterns):
@@ -81,10 +81,10 @@ def build_filters(
 def compute_variance(
     filters: list[Filter], windows: Windows, samples: Array
 ) -> tuple[Array, Array]:
-    """Return the posterior variance of every sample, and its leverage: its part in itself.
+    """Return the posterior variance and the leverage of every sample.
 
-    Both of shape (n_frames, n_channels). The leverage is relative to the noise that each filter
-    was made for; where nothing is observed it means nothing.
+    Both have shape (n_frames, n_channels). The leverage is relative to the noise of each
+    filter; it has no meaning where nothing is observed.
     """
     total, leverage = np.zeros_like(samples), np.zeros_like(samples)
     weight = sum_window_weights([window_filter.pattern for window_filter in filters], windows)
@@ -112,7 +112,7 @@ def compute_variance(
 
 
 def sum_window_weights(patterns: list[GapPattern], windows: Windows) -> Array:
-    """Return what all windows add up to where each is 1, shape (n_frames, 1)."""
+    """Return the sum of all window weights per frame, shape (n_frames, 1)."""
     weight = np.zeros((windows.n_frames, 1))
     for pattern in patterns:
         windows.add(weight, np.ones((windows.length, 1)), pattern.starts)
@@ -128,8 +128,8 @@ def _gapped_gains(
 ) -> Gains:
     """Return the filter of windows with gaps.
 
-    Through a gap, fast waves look like noise. What other channels say of a missing one is
-    believed less than the covariance has it: another body may hold its limbs differently.
+    Through a gap, fast coefficients look like noise. The covariance with other channels is
+    reduced, because another body may hold its limbs differently.
     """
     slow, fast = covariance.slow_in_gaps, covariance.fast
     n_slow, n_channels = len(slow) // len(noise), len(noise)
@@ -149,9 +149,9 @@ def compute_gains(slow: Array, fast: Array, noise: Array, density: float) -> Gai
     Parameters
     ----------
     slow : square matrix
-        Covariance of the slow waves, waves outermost.
+        Covariance of the slow coefficients, coefficients outermost.
     fast : shape (n_fast, n_channels)
-        Variances of the faster waves.
+        Variances of the fast coefficients.
     noise : shape (n_channels,)
         Standard deviation of a sample.
     density : float
@@ -162,8 +162,8 @@ def compute_gains(slow: Array, fast: Array, noise: Array, density: float) -> Gai
     size = len(scale)
     whitened = slow / np.outer(scale, scale)
     whitened[np.diag_indices(size)] += 1.0
-    # LAPACK's own inverse takes a third of the time that solving for the identity does. With
-    # `clean`, the triangles that it leaves alone are zero.
+    # LAPACK's inverse takes a third of the time of solving for the identity. With `clean`,
+    # the triangles that it does not compute are zero.
     lower, _ = dpotrf(whitened, lower=1, clean=1, overwrite_a=1)
     gain = -dpotri(lower, lower=1, overwrite_c=1)[0]
     gain += np.tril(gain, -1).T
@@ -174,7 +174,7 @@ def compute_gains(slow: Array, fast: Array, noise: Array, density: float) -> Gai
 def _window_variance(covariance: Array, noise: Array, windows: Windows) -> Array:
     """Return the variance of each frame of a window, shape (length, n_channels).
 
-    The covariance of the slow waves is in units of the noise.
+    The covariance of the slow coefficients is in units of the noise.
     """
     n_channels = len(noise)
     n_slow = len(covariance) // n_channels
@@ -185,7 +185,7 @@ def _window_variance(covariance: Array, noise: Array, windows: Windows) -> Array
 
 
 def _fast_variance(gains: Gains, windows: Windows) -> Array:
-    """Return what the faster waves add to the variance of each frame, as if without gaps."""
+    """Return the variance of each frame from the fast coefficients, as if without gaps."""
     n_fast = len(gains.fast)
     basis = windows.dct_basis(windows.length)[:, windows.length - n_fast :]
     return np.asarray(basis**2 @ gains.fast * gains.noise**2)

@@ -1,4 +1,4 @@
-"""Windows in which a channel is missing for long: one exact solve per pattern of gaps."""
+"""Windows with a long gap in a channel: one exact solve per gap pattern."""
 
 from dataclasses import dataclass, replace
 
@@ -10,25 +10,26 @@ from .windows import Windows
 Array = NDArray[np.float64]
 
 MAX_MATRIX_ENTRIES = 40_000_000
-"""In one matrix of each pattern of gaps, all together; three such are kept, some 1 GB."""
+"""Entries of one matrix per gap pattern, over all patterns; three such matrices are stored,
+about 1 GB."""
 
 
 @dataclass(frozen=True, eq=False)
 class GapPattern:
-    """Windows that have the same gaps."""
+    """Windows with the same gaps."""
 
     starts: NDArray[np.intp]
     channels: NDArray[np.intp]
-    """Channels with gaps; none for windows that are complete."""
+    """Channels with gaps; empty for complete windows."""
     observed_mask: NDArray[np.bool_]
     """Where these channels are observed, shape (length, n_gap_channels)."""
     indices: NDArray[np.intp]
-    """Of the slow waves of these channels among all, waves outermost."""
+    """Of the slow coefficients of these channels among all, coefficients outermost."""
     missing_projection: Array
-    """The part of the identity that is unobserved, at these places: a square matrix."""
+    """Projection on the missing frames, at these indices: a square matrix."""
 
     def mask_frames(self, frames: Array) -> Array:
-        """Return windows with zero for whatever stands in the gaps."""
+        """Return windows with zeros in the gaps."""
         frames = frames.copy()
         frames[:, :, self.channels] *= self.observed_mask
         return frames
@@ -38,18 +39,18 @@ class GapPattern:
 class GapSolution:
     """The filter of windows with the same gaps.
 
-    With the filter G for a window without gaps, and N the part of the identity that is
-    unobserved (in waves, zero but for the channels with gaps), the posterior mean a solves
-    a = G (b + N a), where b are the waves of what is observed. Only the channels with gaps
-    have to be solved for: a small system, by Woodbury's identity.
+    Let G be the filter of a window without gaps. Let N be the projection on the missing frames,
+    in DCT coefficients; it is zero except for the channels with gaps. The posterior mean a
+    solves a = G (b + N a), with b the coefficients of the observed samples. By Woodbury's
+    identity only the channels with gaps have to be solved for: a small system.
     """
 
     gain: Array
     """G, shape (size, size)."""
     lift: Array
-    """N (1 - G N)^-1 at the places of the gaps, a square matrix."""
+    """N (1 - G N)^-1 at the indices of the gaps, a square matrix."""
     added_covariance: Array
-    """What the gaps add to the posterior covariance there, in units of the noise."""
+    """Posterior covariance that the gaps add there, in units of the noise."""
 
     @classmethod
     def solve(cls, pattern: GapPattern, gain: Array) -> "GapSolution":
@@ -61,7 +62,7 @@ class GapSolution:
         return cls(gain, lift, solved[:, len(inner) :] - inner)
 
     def posterior_mean(self, coefficients: Array, indices: NDArray[np.intp]) -> Array:
-        """Return posterior waves from those of what is observed, shape (n_windows, size)."""
+        """Return posterior coefficients from the observed ones, shape (n_windows, size)."""
         mean = coefficients @ self.gain
         return np.asarray(mean + (mean[:, indices] @ self.lift.T) @ self.gain[indices])
 
@@ -69,13 +70,13 @@ class GapSolution:
 def find_gap_patterns(
     observed: NDArray[np.bool_], windows: Windows, n_slow: int
 ) -> list[GapPattern]:
-    """Sort the windows by the long gaps in them; of those with gaps, every second will do.
+    """Group the windows by their long gaps; of those with gaps, use every second window.
 
-    The short gaps of a channel that has a long one in the window belong to it: filled round by
-    round, from an estimate that leans on little, they would drift away without end.
+    Short gaps of a channel with a long one in the window belong to it. Filled iteratively, from
+    an estimate with little support, they would drift without end.
 
-    Gaps of so many patterns that their matrices would fill the memory are filled round by
-    round, like short ones.
+    If the matrices of all patterns would fill the memory, all gaps are filled iteratively, like
+    short ones.
     """
     gaps = find_long_gaps(observed, windows.long_gap)
     groups: dict[bytes, list[int]] = {}
@@ -118,13 +119,14 @@ def find_gap_patterns(
 def _missing_samples(
     observed: NDArray[np.bool_], gaps: NDArray[np.bool_], start: int, length: int
 ) -> NDArray[np.bool_]:
-    """Return what is missing in a window of channels with long gaps, (length, n_channels)."""
+    """Return the missing samples of a window's channels with long gaps, (length,
+    n_channels)."""
     window = slice(start, start + length)
     return np.asarray(~observed[window] & gaps[window].any(axis=0))
 
 
 def find_long_gaps(observed: NDArray[np.bool_], min_frames: int) -> NDArray[np.bool_]:
-    """Return where a channel is unobserved for at least so many frames on end."""
+    """Return where a channel is unobserved for at least this many consecutive frames."""
     n_frames = len(observed)
     frames = np.arange(n_frames)[:, None]
     before = np.maximum.accumulate(np.where(observed, frames, -1), axis=0)

@@ -1,4 +1,4 @@
-"""Joints that are wrong as a whole: one channel's outlier makes its fellows' likely."""
+"""Correlate outliers within a joint: one channel's outlier makes the others' likely."""
 
 from dataclasses import dataclass
 
@@ -8,38 +8,38 @@ from numpy.typing import NDArray
 Array = NDArray[np.float64]
 
 MAX_OUTLIER_PROBABILITY = 0.9
-"""Probability of being an outlier that no fellow can exceed."""
+"""Largest prior probability of being an outlier, whatever the joint's other channels."""
 MIN_OUTLIER_PROBABILITY = 1e-4
-"""Probability of being an outlier that every sample has."""
+"""Prior probability of being an outlier that every sample has."""
 MIN_OUTLIER_FRACTION = 0.01
-"""Share of a take that must be outliers to tell whether joints are wrong as a whole."""
+"""Fraction of a take that must be outliers to show whether joints are wrong as a unit."""
 
 
 @dataclass(frozen=True, eq=False)
 class JointOutlierPrior:
-    """Which channels belong to one joint, and how its channels outside this group fare.
+    """Outlier rates given the outliers of the joint's other channels.
 
-    A tracker that loses a limb turns the whole joint; a slip of the hand in a curve, or the
-    noise that methods are usually tested with, one channel. The take itself tells which it is.
+    A tracker that loses a limb rotates the entire joint. An accidental edit of a curve, or the
+    noise of typical tests, affects one channel. The take itself shows which of them it is.
     """
 
     joints: NDArray[np.intp]
-    """Of each channel of the group, ascending; a joint has at most three."""
+    """Joint of each channel of the group, ascending; a joint has at most three."""
     other_channels: Array
-    """Greatest outlier probability of its joint's channels that were solved for before."""
+    """Largest outlier probability of the joint's channels in groups solved earlier."""
 
     def outlier_rates(
         self, outlier_probability: Array, observed: NDArray[np.bool_], rate: float
     ) -> Array:
-        """Return how likely each sample is to be an outlier before it is looked at.
+        """Return each sample's prior probability of being an outlier.
 
         Parameters
         ----------
-        outside : shape (n_frames, n_channels)
-            Probability of being an outlier so far, 0 where not `known`.
-        known : same shape
+        outlier_probability : shape (n_frames, n_channels)
+            Current probability of being an outlier, 0 where not `observed`.
+        observed : same shape
         rate : float
-            Share of outliers.
+            Fraction of outliers.
         """
         joint_outliers = self.other_channels.copy()
         for step in (1, 2):
@@ -65,7 +65,7 @@ class JointOutlierPrior:
         )
         if rate_with_joint <= rate:
             return np.full(joint_outliers.shape, rate)
-        # So that all together are as likely as before.
+        # This keeps the total rate unchanged.
         rate_without_joint = (rate * n_observed - rate_with_joint * total_joint_outliers) / max(
             n_observed - total_joint_outliers, 1.0
         )

@@ -1,9 +1,9 @@
-"""Where a take's mean pose lies, told by the take itself and by the examples like it.
+"""Estimate the mean pose of a take from the take itself and from similar examples.
 
-How people hold themselves differs more from clip to clip than a pose varies within one (on
-walks, by 11 degrees at the arms against 4). So the mean pose of a take is a hidden quantity of
-its own: its prior is a Gaussian process over the examples' mean poses, which knows the person
-again if the examples hold clips of them, and says that it does not know where they do not.
+Posture differs more from clip to clip than a pose varies within one (on walks, by 11 degrees at
+the arms against 4). The mean pose of a take is therefore a hidden quantity of its own. Its
+prior is a Gaussian process over the examples' mean poses. It recognizes an actor whose clips
+are among the examples, and is uncertain for other actors.
 """
 
 import numpy as np
@@ -12,20 +12,20 @@ from numpy.typing import NDArray
 Array = NDArray[np.float64]
 
 KERNEL_WIDTH = 4.0
-"""Root mean square difference of two mean poses, degrees or centimetres per channel, over which
-one tells of the other."""
+"""Root mean square difference of two mean poses, degrees or centimeters per channel, at
+which their correlation falls to exp(-1/2)."""
 CLIP_VARIANCE_FRACTION = 0.1
-"""Variance that two clips of one person in one mood still have, as a share of all clips'."""
+"""Variance between clips of one actor in one mood, relative to that between all clips."""
 CORRELATION_FRAMES = 10.0
-"""Frames of the examples' patterns after which a pose tells something new of the mean pose."""
+"""Frames of the examples' patterns after which a pose is independent evidence of the mean."""
 MAX_NEIGHBORS = 300
-"""Clips, nearest first, that tell of the mean pose: others are too unlike to say anything."""
+"""Clips, nearest first, that predict the mean pose: others are too different to matter."""
 MIN_VARIANCE = 1e-3
-"""Variance below which no mean is known, square degrees or centimetres."""
+"""Smallest variance of a mean, square degrees or centimeters."""
 DEFAULT_DEVIATION = 8.0
-"""Standard deviation of mean poses, degrees or centimetres, which few examples cannot tell."""
+"""Standard deviation of mean poses, degrees or centimeters, if there are too few examples."""
 VARIANCE_INFLATION = 2.0
-"""Of the variance over the examples' mean poses, that a stranger's is expected to have."""
+"""Expected variance of an unknown actor's mean pose, relative to that of the examples."""
 
 
 def estimate_mean_pose(
@@ -39,14 +39,14 @@ def estimate_mean_pose(
         Mean poses of the examples.
     own : shape (n_channels,)
         Mean over the frames of the take in which the channel is observed.
-    n_seen : shape (n_channels,)
+    n_observed : shape (n_channels,)
         Number of these frames.
     n_frames : float
-        Of the whole take.
+        Of the complete take.
     variance : shape (n_channels,)
         Of a channel about its clip's mean.
     noise : shape (n_channels,)
-        Variance of what is added to each observation.
+        Variance of the noise of each observation.
     """
     predicted, prior_variance = _predict_mean_pose(means, own, n_observed > 0.5 * n_frames)
     inverse_count = 1.0 / np.maximum(n_observed, 1e-9)
@@ -64,7 +64,7 @@ def estimate_mean_pose(
 def _predict_mean_pose(
     means: Array, own: Array, observed: NDArray[np.bool_]
 ) -> tuple[Array, Array]:
-    """Return mean and variance that the examples' mean poses foretell from what is seen."""
+    """Return mean and variance of the prediction from the examples' mean poses."""
     overall_mean = means.mean(axis=0)
     n_distinct = len(np.unique(np.round(means), axis=0))
     prior_variance = (
@@ -89,7 +89,7 @@ def _predict_mean_pose(
 
 
 def _squared_distances(poses: Array, other_poses: Array) -> Array:
-    """Return the mean square difference per channel of each of some poses to each of others."""
+    """Return the mean squared difference per channel between all pairs of poses."""
     squared = (
         (poses**2).sum(axis=1)[:, None]
         + (other_poses**2).sum(axis=1)
@@ -99,5 +99,5 @@ def _squared_distances(poses: Array, other_poses: Array) -> Array:
 
 
 def _kernel(distances: Array) -> Array:
-    """Return how much poses tell of each other, 0 to 1."""
+    """Return the correlation of poses at these squared distances, 0 to 1."""
     return np.asarray(np.exp(-0.5 * distances / KERNEL_WIDTH**2))

@@ -1,4 +1,4 @@
-"""The default method: the posterior of all windows under a prior that adapts to the take."""
+"""Compute the posterior of all windows under a prior that adapts to the take."""
 
 from collections.abc import Sequence
 
@@ -21,26 +21,26 @@ from .windows import Windows
 Array = NDArray[np.float64]
 
 OUTLIER_DENSITY = 1.0 / 120.0
-"""Of an outlier's error, per degree or centimetre: anything within +-60 is as likely."""
+"""Density of an outlier's error, per degree or centimeter: uniform within +-60."""
 MIN_OUTLIER_ERROR = 0.5
-"""Degrees or centimetres: nothing so near to the estimate is called an outlier."""
+"""Degrees or centimeters: a sample closer to the estimate is hardly an outlier."""
 INITIAL_OUTLIER_RATE = 0.03
 MAX_OUTLIER_RATE = 0.6
 MAX_ITERATIONS = 30
 N_ADAPTATIONS = 5
 """Iterations in which the prior still adapts to the take."""
 MAX_SETTLED_CHANGE = 0.01
-"""Root mean square change, degrees or centimetres, below which the estimate is settled."""
+"""Root mean square change, degrees or centimeters, below which the estimate has converged."""
 NOISE_FACTORS = (8.0, 4.0, 2.0)
-"""Times the noise that the first rounds take it for."""
+"""Factors by which the first rounds inflate the noise."""
 MAX_CHEAP_PATTERNS = 4
-"""Patterns of gaps that are solved for again whenever the prior adapts."""
+"""Number of gap patterns up to which all are solved again whenever the prior adapts."""
 MAX_LEVERAGE = 0.98
 MAX_PRIOR_DEVIATIONS, MAX_RANGE_FRACTION = 4.0, 0.5
-"""How far an estimate may leave what was seen: in standard deviations of the prior, or in
-extents of what was seen."""
+"""Limit of an estimate beyond the observed range: in standard deviations of the prior, or as
+a fraction of that range."""
 NOISE_BOUNDS = (0.5, 1.1)
-"""Range, relative to the first guess, in which the noise is estimated."""
+"""Range of the estimated noise, relative to the first estimate."""
 
 
 def estimate_channels(
@@ -55,16 +55,16 @@ def estimate_channels(
     noise_factors: Sequence[float] = NOISE_FACTORS,
     max_iterations: int = MAX_ITERATIONS,
 ) -> Estimate:
-    """Alternate between outlier weights, the posterior of all windows, and what they tell.
+    """Alternate between outlier weights, the posterior of all windows, and their statistics.
 
-    Each round: every sample gets its probability of being no outlier; samples are drawn towards
-    the estimate by what is missing to certainty; every window takes its posterior mean given
-    its neighbours in time and all other channels; the noise of each channel, the share of
-    outliers and the covariance are estimated again (expectation maximisation).
+    Each round has three steps (expectation maximization). Every sample gets its probability of
+    being no outlier, and moves towards the estimate by the probability of being one. Every
+    window takes its posterior mean given its neighbors in time and all other channels. The
+    noise of each channel, the fraction of outliers and the covariance are estimated again.
 
-    The first rounds, the `looks`, take the noise for much greater than it is, ever less: they
-    lean on what is far in time and on the other channels. Else what is wrong for several frames
-    is followed before it can be known for an outlier.
+    The first rounds inflate the noise by the `noise_factors`, in descending order. They rely on
+    samples distant in time and on the other channels. Otherwise the estimate would follow an
+    error of several frames before it is recognized as an outlier.
 
     Parameters
     ----------
@@ -72,15 +72,15 @@ def estimate_channels(
         NaN where not observed.
     start : same shape, without NaN
     noise : shape (n_channels,)
-        First guess of the standard deviation.
-    prior : WavePrior
+        First estimate of the standard deviation.
+    prior : WindowPrior
     windows : Windows
     progress : Progress
-    joints : WholeJoints, optional
-        Which channels are apt to be wrong together.
-    looks : sequence of float
-        How many times greater the noise is taken in each.
-    at_most : int
+    joints : JointOutlierPrior, optional
+        Which channels tend to be wrong together.
+    noise_factors : sequence of float
+        Inflation of the noise, one for each of the first rounds.
+    max_iterations : int
         Iterations after them.
     """
     state = _PosteriorState(noisy, start, noise, prior, windows.with_less_overlap, joints)
@@ -94,7 +94,7 @@ def estimate_channels(
     while iteration < max_iterations and change > MAX_SETTLED_CHANGE:
         progress((n_first_rounds + iteration) / n_rounds, "Denoising")
         adapts = iteration < N_ADAPTATIONS
-        # Halfway, lest a sample that is judged by its own estimate goes in and out for ever.
+        # A half step: otherwise samples near the threshold oscillate.
         state.update_outliers(1.0 if iteration <= N_ADAPTATIONS else 0.5)
         if iteration == 0:
             state.update_smoothness()
@@ -109,7 +109,7 @@ def estimate_channels(
 
 
 class _PosteriorState:
-    """What is believed of a take, from round to round: `believe`, `tune`, `filter`."""
+    """The state of the alternation: weights, noise, covariance, filters and estimate."""
 
     def __init__(
         self,
@@ -131,16 +131,16 @@ class _PosteriorState:
         self.weight, self.rate = self.observed.astype(float), INITIAL_OUTLIER_RATE
         self.variance = np.zeros_like(noisy)
         self.leave_one_out_ratio = np.ones_like(noisy)
-        """Variance without the sample over that with it, `variance`."""
+        """Variance without the sample, relative to `variance`, the variance with it."""
 
     def set_windows(self, windows: Windows) -> None:
-        """Cut the take into these windows."""
+        """Split the take into these windows."""
         self.windows = windows
         self.patterns = find_gap_patterns(self.observed, windows, self.prior.n_slow)
         self.total_weight = sum_window_weights(self.patterns, windows)
 
     def update_outliers(self, step: float = 1.0) -> None:
-        """Go this part of the way to each sample's probability of being no outlier."""
+        """Move the weights by this step towards the probability of being no outlier."""
         error = self.samples - self.estimate
         prediction_error = error * (self.weight * self.leave_one_out_ratio + 1.0 - self.weight)
         spread = self.noise**2 + self.variance * self.leave_one_out_ratio + MIN_OUTLIER_ERROR**2
@@ -162,20 +162,24 @@ class _PosteriorState:
         self.rate = float(np.clip(outlier_fraction, 1e-4, MAX_OUTLIER_RATE))
 
     def update_filters(self, factor: float = 1.0, *, reuse_gapped: bool = False) -> None:
-        """Make the filters for the noise, taken so many times greater.
+        """Build the filters for the noise, inflated by this factor.
 
-        With `nearly`, filters of windows with gaps may stay as they are: they are costly.
+        With `reuse_gapped`, filters of windows with gaps may stay the same: they are expensive.
         """
         noise = factor * self.noise
         self.filters = build_filters(
             self.patterns, self.covariance, noise, self.prior.decoupling, self.windows,
-            reusable=self.filters if reuse_gapped and len(self.patterns) > MAX_CHEAP_PATTERNS else [],
+            reusable=(
+                self.filters
+                if reuse_gapped and len(self.patterns) > MAX_CHEAP_PATTERNS
+                else []
+            ),
         )  # fmt: skip
         self.variance, leverage = compute_variance(self.filters, self.windows, self.samples)
         self.leave_one_out_ratio = 1.0 / (1.0 - np.minimum(leverage, MAX_LEVERAGE))
 
     def update_smoothness(self) -> None:
-        """Fit how fast the channels move to what is believed of them."""
+        """Fit the correlation times of the channels to the current estimate."""
         blended = self.estimate + self.weight * (self.samples - self.estimate) - self.mean
         noise = self.noise * np.sqrt(self.weight.mean(axis=0))
         new_values = fit_smoothness(blended, noise, self.prior.smooth.kernels, self.windows)
@@ -188,10 +192,10 @@ class _PosteriorState:
         self.covariance = covariance_from_prior(self.prior, self.windows.length)
 
     def update_estimate(self, *, adapts: bool = False) -> float:
-        """Estimate again, and how noise and prior are; return the root mean square change."""
+        """Update the estimate, noise and prior; return the root mean square change."""
         blended = self.estimate + self.weight * (self.samples - self.estimate) - self.mean
         filtered = filter_windows(blended, self.filters, self.windows, with_moments=adapts)
-        # Where nearly all is missing, windows that lean on each other can drift without end.
+        # If nearly all samples are missing, windows that depend on each other can drift.
         new_values = filtered.total / self.total_weight + self.mean
         before, self.estimate = self.estimate, np.clip(new_values, *self.bounds)
         if adapts:
@@ -206,9 +210,9 @@ class _PosteriorState:
         return float(np.sqrt(np.mean((self.estimate - before) ** 2)))
 
     def result(self, iterations: int, converged: bool) -> Estimate:
-        """Return the estimate, and how sure it is."""
+        """Return the estimate with its standard deviation."""
         error = np.where(self.observed, self.samples - self.estimate, np.nan)
-        # In long gaps the variance is without the sample.
+        # In long gaps the variance already excludes the sample.
         leave_one_out_ratio = np.where(
             find_long_gaps(self.observed, self.windows.long_gap), 1.0, self.leave_one_out_ratio
         )
@@ -224,7 +228,7 @@ class _PosteriorState:
 
 
 def _bounds(start: Array, prior: WindowPrior) -> tuple[Array, Array]:
-    """Return how low and how high each channel may be estimated, shape (n_channels,)."""
+    """Return the lower and upper bound of each channel's estimate, shape (n_channels,)."""
     low = np.minimum(start.min(axis=0), prior.mean)
     high = np.maximum(start.max(axis=0), prior.mean)
     margin = np.maximum(
@@ -234,14 +238,14 @@ def _bounds(start: Array, prior: WindowPrior) -> tuple[Array, Array]:
 
 
 def _inlier_probability_of(error: Array, spread: Array, rate: float | Array) -> Array:
-    """Weigh noise around what all other samples foretell against an outlier."""
+    """Compare noise around the prediction from all other samples with an outlier."""
     inlier_probability = np.exp(-0.5 * error**2 / spread) / np.sqrt(2 * np.pi * spread)
     inlier_probability *= 1.0 - rate
     return np.asarray(inlier_probability / (inlier_probability + rate * OUTLIER_DENSITY))
 
 
 def _estimate_noise(error: Array, weight: Array, variance: Array, first_noise: Array) -> Array:
-    """Return the noise of each channel, from what the estimate leaves over."""
+    """Return the noise of each channel, from the residuals of the estimate."""
     total = weight.sum(axis=0)
     square = (weight * (error**2 + variance)).sum(axis=0) / np.maximum(total, 1e-9)
     noise = np.where(total > 0.0, np.sqrt(square), first_noise)

@@ -1,4 +1,4 @@
-"""Decide what to expect of a take: the examples' patterns, smoothness alone, or a mixture."""
+"""Select the prior of a take: the examples' patterns, smoothness alone, or a mixture."""
 
 from dataclasses import replace
 
@@ -16,26 +16,26 @@ from .windows import Windows
 Array = NDArray[np.float64]
 
 SMOOTH_FRACTIONS = (0.003, 0.05, 0.3)
-"""Shares of the prior that knows only smoothness, beside the examples'."""
+"""Weights of the smooth prior in its mixtures with the examples' prior."""
 N_TRIAL_ITERATIONS = 3
 IN_SAMPLE_PENALTY = 1.007
-"""What is learned from the take itself has seen the samples that it foretells, and so looks
-better than it is: with each larger share of it by so much."""
+"""The smooth prior learns from the samples that it predicts, so its error is too small. Each
+larger fraction of it multiplies the error by this factor."""
 MAX_NOISE_MULTIPLE = 4.0
-"""Errors beyond so many standard deviations of the noise all count the same."""
+"""Errors beyond this many standard deviations of the noise all count the same."""
 UNKNOWN_DEVIATION = 30.0
-"""Standard deviation, degrees or centimetres, of what nothing is known of."""
+"""Standard deviation, degrees or centimeters, of channels without any information."""
 MIN_OBSERVED_FRACTION = 0.5
-"""Share of a take in which a channel must be observed to judge of examples."""
+"""Fraction of a take in which a channel must be observed to score the examples."""
 UNMODELED_FRACTION = 0.1
-"""Standard deviation, relative to a channel's own, of what no pattern can say of it."""
+"""Standard deviation, relative to a channel's own, that no pattern can explain."""
 OWN_WEIGHT, OWN_WEIGHT_IN_GAPS = 0.05, 0.2
-"""Share of the take's own covariance beside that of examples, and where limbs are missing."""
+"""Weight of the take's own covariance relative to the examples', and in windows with gaps."""
 WINDOWS_FOR_HALF_WEIGHT = 300
-"""Windows that it takes to learn from a take by itself what goes together in it."""
+"""Windows of a take at which its own covariance would have half the weight."""
 MAX_OWN_WEIGHT = 0.3
 OWN_WEIGHT_WITHOUT_EXAMPLES = 0.5
-"""The same without examples: a missing limb is best told by the others of this body."""
+"""Weight in gaps without examples: a missing limb is best predicted from the same body."""
 
 
 def build_examples_prior(
@@ -48,7 +48,7 @@ def build_examples_prior(
     noise: Array,
     smooth: SmoothPrior,
 ) -> WindowPrior:
-    """Return the examples' prior of some channels of a take, of which all must tell.
+    """Return the examples' prior of some channels of a take, all of them in the examples.
 
     Parameters
     ----------
@@ -56,17 +56,17 @@ def build_examples_prior(
     keys : tuple of str
         Of the take's parts.
     columns : shape (n_channels,)
-        Channels of the take that are asked for; all are among those that move in the bases.
+        Requested channels of the take; all are among those that move in the bases.
     own : shape (n_channels,)
         Their mean over the frames in which they are observed.
-    n_seen : shape (n_channels,)
+    n_observed : shape (n_channels,)
         Number of these frames, at the frame rate of the bases.
     n_frames : float
-        Of the whole take, at that rate.
+        Of the complete take, at that rate.
     noise : shape (n_channels,)
-        Standard deviation of what is added to each observation.
-    smooth : Smoothness
-        What is known of the channels without examples: no part of the result yet.
+        Standard deviation of the noise of each observation.
+    smooth : SmoothPrior
+        The prior of the channels without examples: not yet part of the result.
     """
     scored_take = {str(key): index for index, key in enumerate(bases.keys)}
     moving = {int(channel): index for index, channel in enumerate(bases.moving)}
@@ -101,10 +101,10 @@ def build_take_prior(
     bases_window: int,
     frame_rate: float,
 ) -> WindowPrior:
-    """Return what is expected of a take by itself: to move as much as it does, as smoothly.
+    """Return the prior of a take alone: it moves as much as the take does, and as smoothly.
 
-    Channels that were never `seen` may be anywhere. What goes together in the take is learned
-    from it in the course of the solve, the more so the longer it is.
+    Channels that were never observed may have any value. The covariance between channels is
+    learned from the take during the solve, with more weight for longer takes.
     """
     kernels = build_smooth_kernels(bases_window, frame_rate)
     variance = np.maximum(rough.var(axis=0) - noise**2, 0.05 * noise**2 + 1e-6)
@@ -130,14 +130,14 @@ def select_prior(
     windows: Windows,
     progress: Progress,
 ) -> tuple[WindowPrior, float]:
-    """Return the mixture that foretells the take best, and its share of `own`.
+    """Return the mixture that predicts the take best, and its fraction of `own`.
 
-    Each candidate adapts to the take in a few rounds; then every sample is compared with what
-    all others foretell of it (leave one out). What most of them take for an outlier hardly
-    counts, else those that follow bursts of errors would foretell them best. Examples of
-    another movement lose against plain smoothness, and cannot do harm. Only channels that are
-    mostly observed take part. How far the others can be believed about a lost joint is judged
-    by whole `joints`.
+    Each candidate adapts to the take in a few rounds. Then every sample is compared with its
+    prediction from all others (leave one out). Samples that most candidates classify as
+    outliers hardly count; otherwise candidates that follow bursts of errors would win. Examples
+    of another movement lose against plain smoothness, and cannot do harm. Only channels that
+    are mostly observed take part. Leaving out complete `joints` measures how well the others
+    predict a missing joint.
     """
     candidates = {
         fraction: mix_priors(examples, own, fraction) for fraction in SMOOTH_FRACTIONS
@@ -175,16 +175,17 @@ def select_prior(
 def score_leave_one_out(
     leave_one_out_error: Array, inlier_probability: Array, noise: Array
 ) -> float:
-    """Return how badly samples are foretold by all others: their mean square.
+    """Return the mean squared error of predicting each sample from all others.
 
-    For a linear filter the error of what all others foretell is that of the estimate divided by
-    one less the leverage. In units of FAR times the noise, and never more than 1.
+    For a linear filter the leave-one-out error is the error of the estimate divided by one
+    minus the leverage. It is in units of MAX_NOISE_MULTIPLE times the noise, and never more
+    than 1.
 
     Parameters
     ----------
-    surprise : shape (n_frames, n_channels)
-        Error of what all others foretell; NaN where not observed.
-    inside : same shape
+    leave_one_out_error : shape (n_frames, n_channels)
+        NaN where not observed.
+    inlier_probability : same shape
         Probability that the sample is no outlier.
     noise : shape (n_channels,)
     """
@@ -197,11 +198,12 @@ def score_leave_one_out(
 def score_leave_joint_out(
     prior: WindowPrior, rough: Array, noise: Array, joints: NDArray[np.intp], windows: Windows
 ) -> float:
-    """Return how badly the other joints foretell a whole joint over a window.
+    """Return the relative squared error of predicting a complete joint from the others.
 
-    The mean square of what they leave over, relative to the joint's own; 1 where they know
-    nothing of each other, more where they mislead. In closed form: with K the covariance of the
-    observed waves y, the error of the waves J told by all others is (K^-1)_JJ^-1 (K^-1 y)_J.
+    It is the residual power over a window, relative to the joint's own: 1 if the joints are
+    independent, more if they mislead. In closed form: with K the covariance of the observed
+    coefficients y, the error of the coefficients J predicted by all others is (K^-1)_JJ^-1
+    (K^-1 y)_J.
     """
     prior = prior.truncated(windows.length)
     power = np.einsum("kckc->c", prior.slow) * windows.density / windows.length

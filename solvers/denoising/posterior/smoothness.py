@@ -1,4 +1,4 @@
-"""How fast the channels of a take move, told by the take itself."""
+"""Fit how fast the channels of a take move, from the take itself."""
 
 import numpy as np
 from numpy.typing import NDArray
@@ -9,15 +9,16 @@ from .windows import Windows
 Array = NDArray[np.float64]
 
 CORRELATION_TIMES_S = (0.08, 0.16, 0.32, 0.64, 1.28)
-"""Correlation times, seconds, of the smooth movements that a channel is a sum of."""
+"""Correlation times, seconds, of the smooth movements whose sum is a channel."""
 N_UPDATES = 30
 POOLED_WINDOWS = 1.0
-"""Windows' worth of belief that a channel moves as the take's channels do on average."""
+"""Weight, in windows, of the assumption that a channel moves like the take's average
+channel."""
 MIN_POWER = 1e-9
 
 
 def build_smooth_kernels(window: int, frame_rate: float) -> Array:
-    """Return covariances of the waves of a window, shape (n_lengths, window, window)."""
+    """Return covariances of the DCT coefficients, shape (n_times, window, window)."""
     steps = np.subtract.outer(np.arange(window), np.arange(window)) / frame_rate
     kernels = np.exp(-0.5 * (steps / np.array(CORRELATION_TIMES_S)[:, None, None]) ** 2)
     coefficients = idct(np.eye(window), axis=0, norm="ortho")
@@ -25,18 +26,18 @@ def build_smooth_kernels(window: int, frame_rate: float) -> Array:
 
 
 def fit_smoothness(rough: Array, noise: Array, kernels: Array, windows: Windows) -> Array:
-    """Return the variance at each correlation time, shape (n_lengths, n_channels).
+    """Return the variance at each correlation time, shape (n_times, n_channels).
 
-    The likeliest, given the power of each wave (Whittle's likelihood), by multiplicative
-    updates; first of all channels together, then of each.
+    It maximizes Whittle's likelihood of each coefficient's power by multiplicative updates,
+    first for all channels together, then for each.
 
     Parameters
     ----------
     rough : shape (n_frames, n_channels)
-        Without spikes or NaN, about the channels' middle.
+        Without spikes or NaN, about the channels' mean.
     noise : shape (n_channels,)
-        Standard deviation of what is added to each sample.
-    kernels : see `smooth_kernels`
+        Standard deviation of the noise of each sample.
+    kernels : see `build_smooth_kernels`
     windows : Windows
     """
     n_coefficients = min(windows.length, kernels.shape[1])
@@ -59,7 +60,7 @@ def fit_smoothness(rough: Array, noise: Array, kernels: Array, windows: Windows)
 
 
 def _fit_weights(power: Array, noise_power: Array, spectra: Array) -> Array:
-    """Return non-negative weights of shapes that explain the power beyond the white part."""
+    """Return non-negative weights of the spectra that explain the power beyond the noise."""
     weights = np.repeat(
         np.maximum(power - noise_power, 0.05 * power).mean(axis=0)[None] / len(spectra),
         len(spectra),

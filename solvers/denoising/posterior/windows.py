@@ -1,4 +1,4 @@
-"""A take cut into overlapping windows, each told by slow and fast waves of every channel."""
+"""Split a take into overlapping windows represented by DCT coefficients."""
 
 from dataclasses import dataclass, replace
 from functools import cached_property
@@ -11,41 +11,41 @@ from scipy.fft import dct, idct
 Array = NDArray[np.float64]
 
 N_OVERLAPS = 6
-"""Windows that start in the length of one."""
+"""Number of windows that start within the length of one."""
 N_FEW_OVERLAPS = 4
-"""The same where an estimate is not the last, and in long takes."""
+"""The same for preliminary estimates and for long takes."""
 LONG_TAKE_FRAMES = 20_000
-"""Frames from which on windows overlap less."""
+"""Frames above which windows overlap less."""
 
 LONG_GAP_FRACTION = 0.2
-"""Share of a window from which on a gap is solved for exactly. Shorter ones fill quickly."""
+"""Fraction of a window above which a gap is solved exactly. Shorter gaps converge quickly."""
 
 
 @dataclass(frozen=True)
 class Windows:
-    """The cutting of `n_frames` frames into windows of `length` frames, and its undoing.
+    """Split `n_frames` frames into windows of `length` frames, and add windows up again.
 
-    A window is the sum of cosine waves (the orthonormal discrete cosine transform, divided by
-    the root of `density`, so that the same movement has the same waves at any frame rate).
+    A window is a sum of cosines (the orthonormal discrete cosine transform, divided by the root
+    of `density`, so that the same movement has the same coefficients at any frame rate).
     """
 
     n_frames: int
     length: int
     density: float
-    """Frames of the take per frame of the patterns that it is compared with."""
+    """Frames of the take per frame of the patterns."""
     n_overlaps: int = N_OVERLAPS
-    """Windows that start in the length of one, as far as frames allow."""
+    """Number of windows that start within the length of one, as far as frames allow."""
     solve_gaps: bool = True
-    """Solve for long gaps exactly; otherwise fill them round by round, like short ones."""
+    """Solve long gaps exactly; otherwise fill them iteratively, like short ones."""
 
     @property
     def with_less_overlap(self) -> "Windows":
-        """The same with windows that overlap less."""
+        """The same take with windows that overlap less."""
         return replace(self, n_overlaps=N_FEW_OVERLAPS)
 
     @property
     def long_gap(self) -> int:
-        """Frames from which on a gap is solved for exactly."""
+        """Frames above which a gap is solved exactly."""
         if not self.solve_gaps:
             return self.n_frames
         return max(round(LONG_GAP_FRACTION * self.length), 2)
@@ -60,7 +60,8 @@ class Windows:
 
     @cached_property
     def _taper(self) -> Array:
-        """A window knows least at its ends, and counts least there."""
+        """Weight of each frame of a window: least at its ends, where it has the least
+        support."""
         phases = (np.arange(self.length) + 0.5) / self.length
         return np.asarray(0.1 + np.sin(np.pi * phases[:, None]))
 
@@ -70,20 +71,20 @@ class Windows:
         return np.asarray(extract.transpose(0, 2, 1))
 
     def coefficients_from_frames(self, frames: Array) -> Array:
-        """Return the waves of windows, both of shape (n_windows, length, n_channels)."""
+        """Return the DCT coefficients of windows, shape (n_windows, length, n_channels)."""
         return np.asarray(dct(frames, axis=1, norm="ortho") / np.sqrt(self.density))
 
     def frames_from_coefficients(self, coefficients: Array) -> Array:
-        """Undo `waves_of`."""
+        """Invert `coefficients_from_frames`."""
         return np.asarray(idct(coefficients, axis=1, norm="ortho") * np.sqrt(self.density))
 
     def add(self, total: Array, frames: Array, starts: NDArray[np.intp]) -> None:
-        """Add windows of frames, or the same one at all starts, to the sum of all."""
+        """Add windows of frames, or one window at all starts, to a sum over the take."""
         frames = np.broadcast_to(frames * self._taper, (len(starts), *frames.shape[-2:]))
         for start, window in zip(starts, frames, strict=True):
             total[start : start + self.length] += window
 
     def dct_basis(self, n_coefficients: int) -> Array:
-        """Return the slowest waves, shape (length, n_waves): frames = shapes @ waves."""
+        """Return the slowest cosines, (length, n_coefficients), whose sums are the frames."""
         identity = np.eye(self.length)[:, :n_coefficients]
         return np.asarray(idct(identity, axis=0, norm="ortho") * np.sqrt(self.density))

@@ -1,4 +1,4 @@
-"""What is expected of a window of motion: filter bases learned from examples, or smoothness."""
+"""Priors over a window of motion: filter bases learned from examples, or smoothness alone."""
 
 from .filter_bases import (
     FilterBases,

@@ -1,4 +1,4 @@
-"""Learn which movements over two thirds of a second belong together."""
+"""Learn the patterns of movement in windows of two thirds of a second."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass, fields
@@ -21,11 +21,11 @@ from .window_prior import count_slow_coefficients
 Array = NDArray[np.float64]
 
 KEPT_ENERGY = 0.99
-"""Share of the movement that the stored patterns hold, as in [LC10]."""
+"""Fraction of the movement that the stored patterns contain, as in [LC10]."""
 MIN_CHANNEL_DEVIATION = 0.05
-"""Standard deviation, degrees or centimetres, below which a channel does not move."""
+"""Standard deviation, degrees or centimeters, below which a channel does not move."""
 MIN_ANY_DEVIATION = 1e-6
-"""The same where no channel moves: what is below is rounding."""
+"""The same where no channel moves: smaller values are rounding errors."""
 N_REFERENCE = 12
 LAYOUT = ArchiveLayout(
     "filter bases",
@@ -51,14 +51,14 @@ LAYOUT = ArchiveLayout(
 
 @dataclass(frozen=True, kw_only=True)
 class FilterBasesSettings(Settings):
-    """How movement patterns are learned."""
+    """Settings of `learn_filter_bases`."""
 
     window: float = setting(
-        20 / 30, "Length of the patterns; longer ones know more of the course of a movement",
+        20 / 30, "Length of the patterns; longer ones capture more of a movement's progress",
         unit="s", minimum=0.1, maximum=3.0,
     )  # fmt: skip
     frame_rate: float = setting(
-        30.0, "Rate at which patterns are stored; higher keeps faster movements",
+        30.0, "Frame rate of the patterns; higher keeps faster movements",
         unit="Hz", minimum=5.0, maximum=240.0, advanced=True,
     )  # fmt: skip
 
@@ -70,31 +70,31 @@ class FilterBasesSettings(Settings):
 
 @dataclass(frozen=True, eq=False)
 class FilterBases:
-    """What was learned of clean recordings: their patterns over a short window.
+    """Patterns of clean recordings over a short window.
 
-    Channels are degrees or centimetres; each part (joint, point or the root's place) has three.
+    Channels are degrees or centimeters; each part (joint, point or root position) has three.
 
     Attributes
     ----------
     keys : shape (n_parts,), str
-        What the parts are called: humanoid roles or names.
+        Names of the parts: humanoid roles or names.
     references : shape (n_parts, 12)
-        What each part is told relative to (see `channels_motion`), filled up with 0.
+        Origin of each part's values (see `encode_motion`), padded with 0.
     mean : shape (n_parts * 3,)
     vectors : shape (n_bases, window, n_parts * 3)
-        The filter bases of [LC10]: orthonormal patterns, strongest first, that hold 99 % of
+        The filter bases of [LC10]: orthonormal patterns, strongest first, that contain 99 % of
         the movement.
     values : shape (n_bases,)
         Mean square of each pattern's weight.
     moving : shape (n_moving,), int
-        Channels that move; `slow` and `fast` tell of these.
+        Channels that move; the only ones in `slow` and `fast`.
     slow : shape (n_slow, n_moving, n_slow, n_moving)
-        Covariance of the slow cosine waves of a window about the mean of its clip: all
-        patterns, however weak.
+        Covariance of the low-frequency DCT coefficients of a window about the mean of its
+        clip: all patterns, however weak.
     fast : shape (window - n_slow, n_moving)
-        Variances of the faster waves.
+        Variances of the other coefficients.
     clip_means : shape (n_pieces, n_moving)
-        Mean pose of each piece of an example; the mean of all for what it lacks.
+        Mean pose of each segment of an example; the mean of all for channels that it lacks.
     frame_rate : shape (), hertz
     n_clips : shape (), int
     of_points : shape (), bool
@@ -130,12 +130,12 @@ class FilterBases:
 
 
 def load_filter_bases(path: Path | str) -> FilterBases:
-    """Read what `FilterBases.save` wrote.
+    """Read the archive that `FilterBases.save` wrote.
 
     Raises
     ------
     InvalidFileError
-        The file is missing, damaged, or holds something else.
+        The file is missing, damaged, or contains something else.
     """
     bases = FilterBases(**LAYOUT.read(path))
     if fault := _fault(bases):
@@ -144,14 +144,14 @@ def load_filter_bases(path: Path | str) -> FilterBases:
 
 
 def _fault(bases: FilterBases) -> str:
-    """Return what keeps bases from a file from being used, or nothing."""
+    """Return why bases from a file cannot be used, or nothing."""
     if not len(bases.clip_means) or not len(bases.slow):
         return "nothing was learned"
     n_slow = len(bases.slow)
     if not bases.vectors.size or len(bases.fast) != bases.window - n_slow:
         return "the shapes do not fit, first that of fast"
     if not np.isin(bases.moving, np.arange(len(bases.mean))).all():
-        return "they speak of channels that there are not"
+        return "they refer to channels that do not exist"
     rate = float(bases.frame_rate)
     return "" if rate > 0.0 else f"a frame rate of {rate:g} Hz"
 
@@ -165,18 +165,18 @@ def learn_filter_bases(
 ) -> FilterBases:
     """Learn filter bases from clean recordings by multichannel singular spectrum analysis.
 
-    The eigenvectors of the lag covariance of all channels [1]_. The covariance comes from a
-    recursion over lags, clip by clip, so the matrix of all windows is never built, and clips
-    are encoded a minute at a time: many frames take no more memory than few. Rigs may differ
-    where their joints have humanoid roles; clips that lack a joint tell nothing of it. Nothing
-    is learned across a cut.
+    The bases are the eigenvectors of the lag covariance of all channels [1]_. A recursion over
+    lags yields the covariance clip by clip, so the matrix of all windows is never built. Clips
+    are encoded a minute at a time: many frames need no more memory than few. Rigs may differ
+    if their joints have humanoid roles; clips without a joint do not affect it. No window spans
+    a cut.
 
     Parameters
     ----------
     examples : sequence of Motion or Tracks
-        Of one kind. Frame rates may differ; gaps are bridged by straight lines.
+        All of one kind. Frame rates may differ; gaps are bridged by straight lines.
     weights : sequence of float, optional
-        How much the frames of each example count, more than 0; all the same without.
+        Weight of each example's frames, more than 0; equal if not given.
     settings : FilterBasesSettings
     progress : Progress
 
@@ -243,7 +243,7 @@ def learn_filter_bases(
 def _normalize_weights(
     examples: Sequence[Motion | Tracks], weights: Sequence[float] | None
 ) -> tuple[float, ...]:
-    """Return the weights of the examples, on average 1."""
+    """Return the weights of the examples, scaled to a mean of 1."""
     if not examples:
         raise InvalidMotionError("There is no example to learn from; choose clean clips.")
     if len({isinstance(example, Motion) for example in examples}) > 1:
@@ -257,7 +257,7 @@ def _normalize_weights(
 
 
 def _dct_covariance(covariance: Array, window: int) -> tuple[Array, Array]:
-    """Return the covariance of the slow cosine waves, and the variances of the others."""
+    """Return the covariance of the slow DCT coefficients, and the variances of the others."""
     n_channels = len(covariance) // window
     blocks = covariance.reshape(window, n_channels, window, n_channels)
     coefficients = np.asarray(dct(dct(blocks, axis=0, norm="ortho"), axis=2, norm="ortho"))

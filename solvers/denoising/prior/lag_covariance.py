@@ -1,4 +1,4 @@
-"""The covariance of all windows of clips, without ever building the windows."""
+"""Compute the covariance of all windows of clips without building the windows."""
 
 import numpy as np
 from numpy.typing import NDArray
@@ -8,17 +8,17 @@ from scipy.sparse.linalg import eigsh
 Array = NDArray[np.float64]
 
 MAX_CLIP_ENDS = 64
-"""Clips whose first and last frames are kept until they are summed up."""
+"""Number of clips whose first and last frames are stored before they are summed."""
 N_FIRST_EIGENVECTORS = 160
-"""Number of eigenvectors asked for at first; doubled until they hold enough."""
+"""Number of eigenvectors requested first; doubled until they contain enough energy."""
 
 
 class LagProducts:
-    """The sum over the windows of all clips of their outer products with themselves.
+    """Sum the outer products of all windows of clips.
 
-    The block of lags (j + 1, k + 1) is that of (j, k) without the first frame and with one
-    more at the end, of every clip: only the first row of blocks costs a pass over the frames,
-    and only the ends of clips have to be kept.
+    The block of lags (j + 1, k + 1) equals that of (j, k) without the first frame and with one
+    more at the end, for every clip. Only the first row of blocks needs a pass over the frames,
+    and only the ends of clips have to be stored.
     """
 
     def __init__(self, n_channels: int, window: int) -> None:
@@ -48,7 +48,7 @@ class LagProducts:
         return self._sum
 
     def _flush(self) -> None:
-        """Add what came since the last time, and forget it."""
+        """Add the stored ends of clips to the sum, and discard them."""
         n_channels, window, _ = self._first.shape
         blocks = np.empty((window, n_channels, window, n_channels))
         blocks[0] = self._first
@@ -65,10 +65,11 @@ class LagProducts:
 
 
 class LagCovariance:
-    """The lag covariance of clips, each about a mean that is given with it.
+    """The lag covariance of clips, each about its given mean.
 
-    A channel that a clip lacks (NaN) is judged by the others. So that the result stays a
-    covariance, what two channels have in common weakens where they are seldom seen together.
+    A channel that a clip lacks (NaN) is estimated from the other clips. So that the result
+    stays a covariance, the covariance of two channels weakens if they are seldom observed
+    together.
     """
 
     def __init__(self, n_channels: int, window: int) -> None:
@@ -76,22 +77,22 @@ class LagCovariance:
         self._n_windows = np.zeros(n_channels)
 
     def add(self, clip: Array, mean: Array, weight: float = 1.0) -> None:
-        """Add a clip, shape (n_frames, n_channels), that counts as so many."""
+        """Add a clip, shape (n_frames, n_channels), with this weight."""
         self._products.add(np.sqrt(weight) * np.nan_to_num(clip - mean))
         self._n_windows += weight * (len(clip) - self._window + 1) * np.isfinite(clip[0])
 
     def total(self) -> Array:
-        """Return the covariance, as `LagProducts` does."""
+        """Return the covariance, with the shape of `LagProducts.total`."""
         scale = np.tile(np.sqrt(self._n_windows), self._window)
         total = self._products.total() / scale
         return np.asarray(total / scale[:, None])
 
 
 def find_leading_eigenpairs(covariance: Array, energy: float) -> tuple[Array, Array]:
-    """Return the largest eigenvalues that hold this share of the trace, and their vectors.
+    """Return the largest eigenvalues that sum to this fraction of the trace, and their vectors.
 
-    Implicitly restarted Lanczos iteration; small matrices are solved whole. Each vector's
-    largest entry is positive, so that the same clips give the same signs everywhere.
+    Uses implicitly restarted Lanczos iteration, and a full solve for small matrices. Each
+    vector's largest entry is positive, so that the same clips give the same signs everywhere.
     """
     size, n_wanted = len(covariance), N_FIRST_EIGENVECTORS
     total = float(np.trace(covariance))

@@ -1,4 +1,8 @@
-"""What is expected of a window before the take is seen: a Gaussian over its waves."""
+"""The prior of a window: a Gaussian over its DCT coefficients.
+
+A window is represented by the discrete cosine transform (DCT) of each channel. The low
+frequencies are called slow coefficients, the others fast.
+"""
 
 from dataclasses import dataclass, replace
 
@@ -8,52 +12,54 @@ from numpy.typing import NDArray
 Array = NDArray[np.float64]
 
 SLOW_FRACTION = 0.6
-"""Share of the waves, slowest first, that are told together; faster ones are independent."""
+"""Fraction of the coefficients, slowest first, with a joint covariance; faster ones are
+independent."""
 FAST_VARIANCE_FLOOR = 1e-4
-"""Variance, relative to a channel's own, that any fast wave may have."""
+"""Variance, relative to a channel's own, added to every fast coefficient."""
 
 
 @dataclass(frozen=True, eq=False)
 class SmoothPrior:
-    """What is expected of channels of which only variance and smoothness are known."""
+    """Prior of channels with known variance and smoothness only."""
 
     kernels: Array
-    """Covariances of waves at each correlation time, shape (n_kernels, n_waves, n_waves)."""
+    """Covariance of the coefficients at each correlation time, shape (n_kernels,
+    n_coefficients, n_coefficients)."""
     weights: Array
     """Variance of each channel at each correlation time, shape (n_kernels, n_channels)."""
     fraction: float = 1.0
-    """Of it in the prior that it is part of."""
+    """Weight of this prior in the mixture that contains it."""
 
     def slow(self, n_slow: int) -> Array:
-        """Return covariances of slow waves, shape (n_channels, n_slow, n_slow)."""
+        """Return covariances of slow coefficients, shape (n_channels, n_slow, n_slow)."""
         slow_kernels = self.kernels[:, :n_slow, :n_slow]
         return np.asarray(np.einsum("lc,lkj->ckj", self.weights, slow_kernels))
 
     def fast(self, n_slow: int) -> Array:
-        """Return variances of the other waves, shape (n_waves - n_slow, n_channels)."""
+        """Return variances of the fast coefficients, (n_coefficients - n_slow, n_channels)."""
         variances = np.einsum("lkk->kl", self.kernels)[n_slow:] + FAST_VARIANCE_FLOOR
         return np.asarray(variances @ self.weights)
 
 
 @dataclass(frozen=True, eq=False)
 class WindowPrior:
-    """A Gaussian over the waves of a window of all channels.
+    """A Gaussian over the DCT coefficients of a window of all channels.
 
     Attributes
     ----------
     mean : shape (n_channels,)
         Constant over the window.
     slow : shape (n_slow, n_channels, n_slow, n_channels)
-        Covariance of the slow waves.
-    fast : shape (n_waves - n_slow, n_channels)
-        Variances of the faster waves, independent of all else.
-    trust : shape (n_channels,)
-        Share of the take's own covariance in the estimate, 0 to 1: what is told by examples
-        needs less of it than what is not.
-    trust_in_gaps : shape (n_channels,)
-        The same where channels have long gaps, which other channels of this body fill best.
-    follows : shape (n_channels,)
-        Share of the take's own mean in the mean, as the estimate gets better.
+        Covariance of the slow coefficients.
+    fast : shape (n_coefficients - n_slow, n_channels)
+        Variances of the fast coefficients, independent of all others.
+    own_weight : shape (n_channels,)
+        Weight of the take's own covariance in the estimate, 0 to 1. Channels in the examples
+        need less of it than others.
+    own_weight_in_gaps : shape (n_channels,)
+        The same where channels have long gaps; other channels of the same body fill them best.
+    mean_adaptation : shape (n_channels,)
+        Weight of the take's own mean in the mean, as the estimate improves.
     """
 
     mean: Array
@@ -63,17 +69,17 @@ class WindowPrior:
     own_weight_in_gaps: Array
     mean_adaptation: Array
     smooth: SmoothPrior
-    """The part of the covariance that can be fitted to the take."""
+    """The part of the covariance that is fitted to the take."""
     decoupling: float = 0.5
-    """Share by which channels are taken as independent where one of them has a long gap."""
+    """Degree of independence of channels where one of them has a long gap, 0 to 1."""
 
     @property
     def n_slow(self) -> int:
-        """Number of slow waves."""
+        """Number of slow coefficients."""
         return len(self.slow)
 
     def truncated(self, n_coefficients: int) -> "WindowPrior":
-        """Return the prior of windows that have only so many waves."""
+        """Return the prior of windows with at most this many coefficients."""
         return replace(
             self,
             slow=self.slow[:n_coefficients, :, :n_coefficients],
@@ -112,20 +118,20 @@ class WindowPrior:
 
     @property
     def matrix(self) -> Array:
-        """The covariance of the slow waves as a square matrix, waves outermost."""
+        """Covariance of the slow coefficients as a square matrix, coefficients outermost."""
         size = self.n_slow * len(self.mean)
         return self.slow.reshape(size, size)
 
 
 def count_slow_coefficients(window: int) -> int:
-    """Return how many waves of a window are told together."""
+    """Return the number of slow coefficients of a window."""
     return max(round(SLOW_FRACTION * window), 1)
 
 
 def build_smooth_prior(
     mean: Array, smooth: SmoothPrior, own_weight: float, own_weight_in_gaps: float
 ) -> WindowPrior:
-    """Return the prior of channels of which only variance and smoothness are known."""
+    """Return the prior of channels with known variance and smoothness only."""
     n_slow, channels = count_slow_coefficients(smooth.kernels.shape[1]), np.arange(len(mean))
     slow = np.zeros((n_slow, len(mean), n_slow, len(mean)))
     slow[:, channels, :, channels] = smooth.slow(n_slow)
@@ -142,7 +148,7 @@ def build_smooth_prior(
 
 
 def mix_priors(examples: WindowPrior, own: WindowPrior, fraction: float) -> WindowPrior:
-    """Return the examples' prior with a share of the one that knows only smoothness."""
+    """Return the examples' prior mixed with a fraction of the smooth one."""
     return replace(
         examples,
         slow=(1.0 - fraction) * examples.slow + fraction * own.slow,

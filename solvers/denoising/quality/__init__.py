@@ -1,4 +1,4 @@
-"""What is wrong with a take: jitter, spikes, gaps, sliding feet, stretching bones."""
+"""Measure the quality of a take: jitter, spikes, gaps, foot slide, bone-length drift."""
 
 from .measure import Quality, QualitySettings, measure_quality
 from .report import compare_quality

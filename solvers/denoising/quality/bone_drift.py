@@ -1,4 +1,4 @@
-"""Lengths that should not change, and by how much they do."""
+"""Measure how much lengths that should be constant change."""
 
 from dataclasses import dataclass
 from itertools import pairwise
@@ -14,36 +14,36 @@ from ..feet import SIDES
 Array = NDArray[np.float64]
 
 MAX_SAMPLED_FRAMES = 1000
-"""Frames looked at to decide which points are rigidly connected; the drift uses them all."""
+"""Frames used to decide which points are rigidly connected; the drift uses all frames."""
 LENGTH_COST = 0.01
-"""Of two equally steady connections the shorter one is the likelier bone."""
+"""Cost per meter: of two equally constant connections the shorter one is preferred."""
 LOW_PERCENTILE, HIGH_PERCENTILE = 5.0, 95.0
 MAX_LENGTH_VARIATION = 0.1
-"""Part of its length by which a bone's middle half may vary."""
+"""Interquartile range of a bone's length, relative to its length."""
 MIN_NAMED_BONES = 6
-"""Fewer bones known by name are no body."""
+"""With fewer named bones, the names are not those of a body."""
 
 
 @dataclass(frozen=True)
 class BoneDrift:
-    """How much the distance of two points that should be rigidly connected changes."""
+    """Variation of the distance between two points that should be rigidly connected."""
 
     first: str
     second: str
     length: float
-    """Median distance, metres."""
+    """Median distance, meters."""
     drift: float
-    """Span that holds 90 % of all distances, metres."""
+    """Range that contains 90 % of all distances, meters."""
 
 
 def measure_bone_drifts(tracks: Tracks) -> tuple[BoneDrift, ...]:
-    """Find the points that are connected like a bone, and measure the drift of the lengths.
+    """Find rigidly connected points, and measure the drift of their distances.
 
-    Points that are called like the joints of a body are connected like its limbs and its neck.
-    Other points, such as markers, are connected by the minimum spanning tree of how much the
-    distances vary (Kirk, O'Brien and Forsyth 2005, doi:10.1109/CVPR.2005.326), of which the
-    connections that are steady most of the time are kept. Points that are never seen together
-    are not connected.
+    Points named like the joints of a body are connected like its limbs and its neck. Other
+    points, such as markers, are connected by the minimum spanning tree of how much their
+    distances vary (Kirk, O'Brien and Forsyth 2005, doi:10.1109/CVPR.2005.326). Only connections
+    with a nearly constant length are kept. Points without a common observed frame are not
+    connected.
     """
     pairs = _bones_from_names(tracks.names) or _bones_from_distances(tracks)
     drifts = [_drift(tracks, first, second) for first, second in pairs]
@@ -51,7 +51,7 @@ def measure_bone_drifts(tracks: Tracks) -> tuple[BoneDrift, ...]:
 
 
 def _bones_from_names(names: tuple[str, ...]) -> list[tuple[int, int]]:
-    """Return pairs of points whose names say that a bone is between them; none if few do."""
+    """Return pairs of points whose names imply a bone between them; none if few do."""
     roles = roles_by_name(names)
     index_of_role = {role: names.index(name) for role, name in roles.items()}
     chains = [["neck", "head"]]
@@ -81,7 +81,8 @@ def _bones_from_distances(tracks: Tracks) -> list[tuple[int, int]]:
 
 
 def _cost(lengths: Array) -> tuple[float, bool]:
-    """Unsteadiness plus a little for the length, 0 if never seen; and whether it is steady."""
+    """Return the variation plus a small cost of length (0 without data), and if it is
+    constant."""
     if not len(lengths):
         return 0.0, False
     low, quarter, median, three_quarters, high = np.percentile(

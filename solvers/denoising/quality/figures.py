@@ -1,4 +1,4 @@
-"""The figures of a quality measurement as plain numbers, for JSON."""
+"""Convert a quality measurement to plain numbers for JSON."""
 
 from typing import TYPE_CHECKING, Any
 
@@ -12,7 +12,7 @@ if TYPE_CHECKING:
 
 
 def quality_figures(quality: "Quality") -> dict[str, Any]:
-    """Return nested dicts and lists of numbers, with units in the names; None = unknown."""
+    """Return nested dicts and lists of numbers, with units in the names; None means unknown."""
     figures: dict[str, Any] = {
         "n_frames": quality.n_frames,
         "frame_rate_hz": quality.frame_rate,
@@ -53,7 +53,7 @@ def quality_figures(quality: "Quality") -> dict[str, Any]:
 
 
 def _signal_figures(signal: Signal) -> dict[str, Any]:
-    """Rotations and positions have names of their own: the root has both."""
+    """Return the figures of one signal; the root has both a rotation and a position."""
     spikes = runs(signal.spikes)
     kind, noise, factor = (
         ("turn", "deg", 180.0 / np.pi) if signal.turns else ("move", "mm", 1e3)

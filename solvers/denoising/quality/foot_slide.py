@@ -1,4 +1,4 @@
-"""How far planted feet slide."""
+"""Measure how far planted feet slide."""
 
 from dataclasses import dataclass
 
@@ -10,16 +10,17 @@ Array = NDArray[np.float64]
 
 @dataclass(frozen=True, eq=False)
 class FootSlide:
-    """How one foot moves over the ground while it should stand.
+    """Horizontal motion of one foot in contact.
 
     Attributes
     ----------
     side : "left" or "right"
     joint : str
-        The ankle's name.
+        Name of the ankle.
     contact : bool, shape (n_frames,)
-    steps : float array, shape (n_frames, 2), metres
-        Horizontal way from the frame before; NaN outside contact and where not observed.
+    steps : float array, shape (n_frames, 2), meters
+        Horizontal displacement since the previous frame; NaN outside contact and where not
+        observed.
     frame_rate : float, hertz
     """
 
@@ -37,12 +38,12 @@ class FootSlide:
     @property
     def mean_speed(self) -> float:
         """Mean horizontal speed in contact, m/s; NaN where the foot is never in contact."""
-        known = self.speed[np.isfinite(self.speed)]
-        return float(known.mean()) if len(known) else float("nan")
+        observed = self.speed[np.isfinite(self.speed)]
+        return float(observed.mean()) if len(observed) else float("nan")
 
     @property
     def distance(self) -> float:
-        """Way covered in contact over the whole take, metres."""
+        """Distance covered in contact over the entire take, meters."""
         return float(np.nansum(self.speed) / self.frame_rate)
 
 
@@ -54,19 +55,19 @@ def measure_foot_slide(
     frame_rate: float,
     cuts: tuple[int, ...] = (),
 ) -> FootSlide:
-    """Measure the horizontal speed of the part of the foot that stands still most.
+    """Measure the horizontal speed of the slowest part of the foot.
 
-    A foot that rolls turns about its heel, then its ball: what moves over the ground is only
-    what all its points share, so the slowest of them counts.
+    A rolling foot rotates about its heel, then its ball. The slide is the motion that all its
+    points share, so the slowest point counts.
 
     Parameters
     ----------
-    points : shape (n_frames, n_points, 3), metres
+    points : shape (n_frames, n_points, 3), meters
         Ankle and toe, or the ankle alone.
     contact : shape (n_frames,)
-        A step between two frames counts where both are in contact.
+        A step counts if both of its frames are in contact.
     cuts : tuple of int
-        Frames that have nothing to do with those before: no step leads to them.
+        First frames of later segments; no step spans a cut.
     """
     steps = np.full((len(points), 2), np.nan)
     displacements = np.diff(points[..., :2], axis=0)

@@ -1,4 +1,4 @@
-"""What each joint or point does over time, told apart from what disturbs it."""
+"""Separate each joint's or point's smooth motion from noise and spikes."""
 
 from collections.abc import Iterator
 from dataclasses import dataclass
@@ -15,29 +15,29 @@ from ...signals import disturbance
 Array = NDArray[np.float64]
 
 HALF_WINDOW_S = 0.12
-"""Seconds to either side that the smooth course of a signal is fitted to."""
+"""Seconds to either side over which the smooth trajectory is fitted."""
 MIN_HALF_WINDOW_FRAMES = 3
 NOISE_WINDOW_S = 0.5
-"""Seconds over which shaking is averaged."""
+"""Seconds over which the local noise is averaged."""
 
 
 @dataclass(frozen=True, eq=False)
 class Signal:
-    """How one joint turns or moves, seen as a course with disturbances.
+    """The noise and spikes of one joint's rotation or position.
 
     Attributes
     ----------
     joint : str
     turns : bool
-        True: rotation, in radians; False: position, in metres.
+        True: rotation, in radians; False: position, in meters.
     noise : float, rad or m
         Robust standard deviation of the jitter of one component.
     deviation : shape (n_frames,), rad or m
-        Distance from the smooth course; NaN where not observed.
+        Distance from the smooth trajectory; NaN where not observed.
     spike_threshold : float, rad or m
-        Spikes are higher than this.
+        Minimum height of a spike.
     spikes : bool, shape (n_frames,)
-    shake : shape (n_frames,), rad or m
+    local_noise : shape (n_frames,), rad or m
         Standard deviation of one component about each frame (`estimate_local_noise`).
     """
 
@@ -57,13 +57,13 @@ class Signal:
 
 @dataclass(frozen=True)
 class SpikeRule:
-    """What counts as a spike: both must be exceeded."""
+    """Thresholds of a spike; it must exceed both."""
 
     noise_factor: float
     min_rotation: float
     """Radians."""
     min_displacement: float
-    """Metres."""
+    """Meters."""
 
 
 def extract_signals(
@@ -74,7 +74,7 @@ def extract_signals(
 ) -> tuple[Signal, ...]:
     """Return one signal for each joint's rotation or point's position, and one for the root.
 
-    End sites, which never turn, have none. No course leads across a cut.
+    End sites have no rotation and no signal. No trajectory spans a cut.
     """
     half_window = max(MIN_HALF_WINDOW_FRAMES, round(HALF_WINDOW_S * recording.frame_rate))
     trajectories = list(_trajectories(recording))
@@ -94,8 +94,8 @@ def extract_signals(
         )
         signals.append(
             Signal(
-                joint, turns, disturbed.scale, deviation[padded_frames], threshold, spikes[padded_frames],
-                local_noise[padded_frames],
+                joint, turns, disturbed.scale, deviation[padded_frames], threshold,
+                spikes[padded_frames], local_noise[padded_frames],
             )
         )  # fmt: skip
         progress((index + 1) / len(trajectories), "Looking for spikes")
@@ -103,7 +103,7 @@ def extract_signals(
 
 
 def _spread_at_cuts(n_frames: int, cuts: tuple[int, ...], by: int) -> NDArray[np.intp]:
-    """Return where to put frames so that `by` empty ones are at each cut."""
+    """Return new frame indices that leave `by` empty frames at each cut."""
     padding = np.zeros(n_frames, dtype=np.intp)
     padding[list(cuts)] = by
     return np.asarray(np.arange(n_frames) + np.cumsum(padding))
@@ -112,13 +112,13 @@ def _spread_at_cuts(n_frames: int, cuts: tuple[int, ...], by: int) -> NDArray[np
 def estimate_local_noise(trajectory: Array, window: int) -> Array:
     """Return the standard deviation of one component of white noise about each frame.
 
-    Third differences d of white noise follow each other with opposite sign: their covariance
-    from one frame to the next is -(3 + 9 + 3) = -15 variances per component. Those of motion,
-    however quick, follow each other with the same sign, so that motion is not taken for noise.
+    Consecutive third differences d of white noise have opposite signs: their covariance is
+    -(3 + 9 + 3) = -15 variances per component. Those of motion, however fast, have the same
+    sign, so motion is not mistaken for noise.
 
     Parameters
     ----------
-    course : shape (n_frames, n_components), of three degrees of freedom; NaN is left out
+    trajectory : shape (n_frames, n_components), of three degrees of freedom; NaN is skipped
     window : int, frames to average over
     """
     local_noise = np.zeros(len(trajectory))
@@ -144,7 +144,7 @@ def _trajectories(recording: Motion | Tracks) -> Iterator[tuple[str, bool, Array
         return
     skeleton = recording.skeleton
     yield skeleton.names[0], False, recording.root_positions
-    # Twice the quaternion: neighbouring ones are then as far apart as their angle in radians.
+    # Twice the quaternion: the distance of neighbors is then their angle in radians.
     rotations = 2.0 * unroll(recording.rotations)
     for joint, name in enumerate(skeleton.names):
         if not skeleton.is_end_site(joint):
@@ -152,5 +152,5 @@ def _trajectories(recording: Motion | Tracks) -> Iterator[tuple[str, bool, Array
 
 
 def _angle_from_chord(chord: Array) -> Array:
-    """Angle in radians between rotations whose doubled quaternions are `chord` apart."""
+    """Return the angle in radians of rotations whose doubled quaternions differ by `chord`."""
     return np.asarray(4.0 * np.arcsin(np.minimum(chord / 4.0, 1.0)))

@@ -1,4 +1,4 @@
-"""Measure what is wrong with a take: jitter, spikes, gaps, sliding feet, stretching bones."""
+"""Measure the quality of a take: jitter, spikes, gaps, foot slide, bone-length drift."""
 
 from dataclasses import dataclass
 from functools import cached_property
@@ -27,25 +27,24 @@ Flags = NDArray[np.bool_]
 
 @dataclass(frozen=True, kw_only=True)
 class QualitySettings(Settings):
-    """What counts as a spike."""
+    """Thresholds of a spike."""
 
     spike_threshold: float = setting(
         5.0,
-        "How many times the take's own noise a jump must exceed to be called a spike;"
-        " higher finds fewer",
+        "Minimum height of a spike as a multiple of the take's own noise; higher finds fewer",
         minimum=2.0,
         maximum=50.0,
     )
     smallest_turn: float = setting(
         np.radians(8.0),
-        "Turns that jump by less are never called spikes; higher finds fewer",
+        "Smallest jump of a rotation that counts as a spike; higher finds fewer",
         unit="rad",
         minimum=0.0,
         maximum=np.pi,
     )
     smallest_move: float = setting(
         0.02,
-        "Positions that jump by less are never called spikes; higher finds fewer",
+        "Smallest jump of a position that counts as a spike; higher finds fewer",
         unit="m",
         minimum=0.0,
         maximum=10.0,
@@ -54,7 +53,7 @@ class QualitySettings(Settings):
 
 @dataclass(frozen=True, eq=False)
 class Quality:
-    """What is wrong with a take, per joint and frame.
+    """Quality of a take, per joint and frame.
 
     Attributes
     ----------
@@ -62,20 +61,20 @@ class Quality:
         The joints of the motion or the points of the tracks.
     n_frames, frame_rate : int, hertz
     jitter : shape (n_joints,), m/s^3
-        Mean absolute third difference of the position in the world; NaN where no four frames
-        in a row are observed.
+        Mean absolute third difference of the world position; NaN unless four consecutive
+        frames are observed.
     signals : tuple of Signal
-        Rotation of each joint (end sites have none) and position of the root; or position of
-        each point. Noise, spikes and gaps are theirs.
+        Rotation of each joint (except end sites) and position of the root; or position of each
+        point. Each signal has its noise, spikes and gaps.
     feet : tuple of FootSlide
-        Empty where no feet are known.
+        Empty if no feet are found.
     bones : tuple of BoneDrift
-        Of tracks; the bones of a motion cannot stretch.
+        Of tracks only; the bones of a motion cannot stretch.
     limit_excess : shape (n_frames, n_joints), radians, or None
-        How far each joint is beyond its limits, where limits were given.
+        Angle of each joint beyond its limits, if limits were given.
     cuts : tuple of int
-        First frames of the pieces of which the take was joined, but the first. What happens
-        there is no jitter, no spike and no slide of the body.
+        First frame of each segment of a joined take, except the first segment. Cuts do not
+        count as jitter, spikes or foot slide.
     """
 
     names: tuple[str, ...]
@@ -90,7 +89,7 @@ class Quality:
 
     @cached_property
     def spikes(self) -> Flags:
-        """Where a joint jumps away and back, shape (n_frames, n_joints)."""
+        """Where a joint has a spike, shape (n_frames, n_joints)."""
         return self._by_joint([signal.spikes for signal in self.signals])
 
     @cached_property
@@ -112,7 +111,7 @@ class Quality:
         return float(observed.mean()) if len(observed) else float("nan")
 
     def report(self) -> str:
-        """Return a table for the animator's eyes, in degrees and centimetres."""
+        """Return a table for animators, in degrees and centimeters."""
         return quality_report(self)
 
     def figures(self) -> dict[str, Any]:
@@ -136,23 +135,23 @@ def measure_quality(
     limits: JointLimits | None = None,
     progress: Progress = unwatched,
 ) -> Quality:
-    """Measure what is wrong with a take. Nothing is changed.
+    """Measure the quality of a take without changing it.
 
-    Spikes and noise are judged against the take itself: a robust smooth course is fitted to
-    each joint's rotation (or point's position), the fast jitter about it is the noise, and a
-    spike is a jump out and back of several times that noise that is also large for an eye.
+    The take itself sets the scale of noise and spikes. A robust smooth trajectory is fitted to
+    each joint's rotation (or point's position). The fast jitter about it is the noise. A spike
+    is a short jump of several times that noise that is also visible to the eye.
 
     Parameters
     ----------
     recording : Motion or Tracks; NaN = not observed
     settings : QualitySettings
     contacts : bool, shape (n_frames, 2), left and right
-        When each foot stands; detected where it is not given. Give the same contacts to
-        compare the foot slide of a take before and after.
+        When each foot is in contact; detected if not given. Give the same contacts to compare
+        the foot slide of a take before and after.
     humanoid_map : HumanoidMap
-        Says which joints are feet; found by name and structure where it is not given.
+        Identifies the feet; found by name and structure if not given.
     limits : JointLimits
-        Joints of a motion that are beyond them are reported.
+        Report the joints of a motion that exceed them.
     progress : Progress
 
     Returns
@@ -194,10 +193,10 @@ def measure_jitter(positions: Array, frame_rate: float, cuts: tuple[int, ...] = 
 
     Parameters
     ----------
-    positions : shape (n_frames, n_joints, 3), metres; NaN is left out
+    positions : shape (n_frames, n_joints, 3), meters; NaN is skipped
     frame_rate : float, hertz
     cuts : tuple of int
-        Frames that have nothing to do with those before; no difference is taken across.
+        First frames of later segments; no difference spans a cut.
     """
     if len(positions) < 4:
         return np.full(positions.shape[1], np.nan)

@@ -1,4 +1,4 @@
-"""A quality measurement as a table for the animator's eyes."""
+"""Format a quality measurement as a table for animators."""
 
 from typing import TYPE_CHECKING
 
@@ -78,7 +78,7 @@ def _row(signal: Signal, quality: "Quality", jitter: float) -> tuple[str, ...]:
     )
     missing = signal.gaps.mean()
     return (
-        f"{signal.joint} (place)" if root_moves else signal.joint,
+        f"{signal.joint} (position)" if root_moves else signal.joint,
         _number(jitter),
         noise,
         str(len(runs(signal.spikes)) or UNKNOWN),
@@ -127,7 +127,7 @@ def _number(value: float) -> str:
 
 
 def _aligned(rows: list[tuple[str, ...]]) -> list[str]:
-    """Pad to columns: names to the left, figures to the right."""
+    """Pad to columns: names left-aligned, figures right-aligned."""
     widths = [max(len(row[column]) for row in rows) for column in range(len(rows[0]))]
     return [
         "  ".join([

@@ -1,4 +1,4 @@
-"""The places of a take that need the animator's eye most."""
+"""List the issues of a take that need the animator's attention, worst first."""
 
 from collections.abc import Iterator
 from dataclasses import dataclass
@@ -16,34 +16,34 @@ from .measure import Quality, measure_quality
 LONG_GAP_S = 0.25
 """Seconds that an animator can still bridge by eye: severity 1."""
 CUT_SEVERITY = 10.0
-"""What is joined should be taken apart before anything else is done."""
+"""Joined recordings should be split before any other edit."""
 SEVERE_EXCESS = np.radians(10.0)
-"""Severity 1 of a joint beyond its limits; a fifth of it is not mentioned."""
+"""Angle beyond a joint limit with severity 1; a fifth of it is not reported."""
 
 
 @dataclass(frozen=True, kw_only=True)
 class IssueSettings(Settings):
-    """What is worth a look."""
+    """Thresholds of the issues to list."""
 
     n_spots: int = setting(
-        100, "Longest list of spots; more shows milder ones", minimum=1, maximum=10000
+        100, "Maximum number of issues; more shows milder ones", minimum=1, maximum=10000
     )
     smallest_slide: float = setting(
         0.02,
-        "Way that a planted foot may slide unmentioned; higher shows fewer spots",
+        "Smallest slide of a planted foot to report; higher shows fewer issues",
         unit="m",
         minimum=0.001,
         maximum=1.0,
     )
     shake_ratio: float = setting(
         3.0,
-        "How many times the usual noise of the take a joint must shake; higher shows fewer",
+        "Minimum jitter of a joint in multiples of the typical noise; higher shows fewer",
         minimum=1.0,
         maximum=100.0,
     )
     smallest_shake_turn: float = setting(
         np.radians(1.0),
-        "Shaking rotations below this are not mentioned",
+        "Smallest rotation jitter to report",
         unit="rad",
         minimum=0.0,
         maximum=np.pi,
@@ -51,7 +51,7 @@ class IssueSettings(Settings):
     )
     smallest_shake_move: float = setting(
         0.002,
-        "Shaking positions below this are not mentioned",
+        "Smallest position jitter to report",
         unit="m",
         minimum=0.0,
         maximum=1.0,
@@ -59,7 +59,7 @@ class IssueSettings(Settings):
     )
     pause: float = setting(
         0.2,
-        "Faults of one joint that are closer than this are one spot; higher merges more",
+        "Maximum time between faults of one joint that form one issue; higher merges more",
         unit="s",
         minimum=0.0,
         maximum=10.0,
@@ -78,7 +78,7 @@ class Issue:
     kind: str
     """"spike", "gap", "jitter", "foot slide", "limit" or "cut"."""
     severity: float
-    """1: just worth a look. Faults of all kinds are comparable."""
+    """1 just deserves a look. Severities of all kinds are comparable."""
     sentence: str
 
 
@@ -91,21 +91,21 @@ def find_worst_issues(
 ) -> tuple[Issue, ...]:
     """List the faults of a take, worst first.
 
-    Shaking is judged against the take itself: a joint is listed where its noise is several
-    times the median over all joints and frames, not where the whole take is noisy.
+    The take itself sets the scale of jitter: a joint is listed where its noise is several times
+    the median over all joints and frames, not where the entire take is noisy.
 
     Parameters
     ----------
     recording : Motion or Tracks
     quality : Quality
-        What `measure_quality` found in this recording; measured here where it is not given.
+        Result of `measure_quality` for this recording; measured here if not given.
     settings : IssueSettings
     progress : Progress
 
     Returns
     -------
     tuple of Issue
-        As many as the settings allow.
+        At most as many as the settings allow.
 
     Raises
     ------
@@ -124,7 +124,7 @@ def find_worst_issues(
         *_cuts(quality),
     ]
     issues.sort(key=lambda issue: (-issue.severity, issue.start_frame, issue.joint))
-    progress(1.0, "Found the worst spots")
+    progress(1.0, "Found the worst issues")
     return tuple(islice(issues, settings.n_spots))
 
 
@@ -210,12 +210,14 @@ def _beyond_limits(quality: Quality, pause: int) -> Iterator[Issue]:
 
 def _cuts(quality: Quality) -> Iterator[Issue]:
     for frame in quality.cuts:
-        sentence = "The whole body jumps: the take is cut here, or begins with a pose apart."
+        sentence = (
+            "The entire body jumps: the take is cut here, or it begins with a separate pose."
+        )
         yield Issue(quality.names[0], frame - 1, frame + 1, "cut", CUT_SEVERITY, sentence)
 
 
 def _merged(intervals: list[tuple[int, int]], pause: int) -> list[tuple[int, int]]:
-    """Join stretches that are at most `pause` frames apart."""
+    """Join intervals that are at most `pause` frames apart."""
     merged: list[tuple[int, int]] = []
     for start, stop in intervals:
         if merged and start - merged[-1][1] <= pause:
@@ -234,4 +236,4 @@ def _amount(signal: Signal, value: float) -> str:
 def _compared(level: float, typical_noise: float) -> str:
     if typical_noise <= 0.0:
         return ""
-    return f", {level / typical_noise:.0f} times as much as is usual here"
+    return f", {level / typical_noise:.0f} times the typical noise of the take"

@@ -2,11 +2,6 @@
 
 import numpy as np
 from numpy.testing import assert_allclose
-from solvers.denoising.posterior.gap_patterns import (
-    GapSolution,
-    find_gap_patterns,
-    find_long_gaps,
-)
 
 from solvers.denoising.posterior.covariance import WindowCovariance
 from solvers.denoising.posterior.filters import (
@@ -15,6 +10,11 @@ from solvers.denoising.posterior.filters import (
     compute_gains,
     compute_variance,
     sum_window_weights,
+)
+from solvers.denoising.posterior.gap_patterns import (
+    GapSolution,
+    find_gap_patterns,
+    find_long_gaps,
 )
 from solvers.denoising.posterior.windows import Windows
 
