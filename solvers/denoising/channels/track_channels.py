@@ -17,7 +17,7 @@ N_FITS = 4
 
 
 def encode_tracks(tracks: Tracks, references: Mapping[str, Array] | None = None) -> Channels:
-    """Encode every point, in centimeters, by its position in a frame that travels with the body.
+    """Encode every point by its position, in centimeters, in a frame that follows the body.
 
     The frame is fitted to the mean shape of the points by a rotation about Z and a translation
     over the ground, then smoothed. A walk in another direction or elsewhere therefore has the

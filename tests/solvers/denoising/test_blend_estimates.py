@@ -1,4 +1,4 @@
-"""Several estimates are averaged so that what they get wrong cancels."""
+"""Average several estimates so that their errors cancel."""
 
 import numpy as np
 from scipy.optimize import minimize
@@ -13,7 +13,7 @@ def errors(*sizes):
     return [size * rng.normal(size=(N_FRAMES, 3)) for size in sizes]
 
 
-def test_independent_estimates_weigh_as_the_inverse_of_their_square_errors():
+def test_independent_estimates_have_weights_of_inverse_squared_errors():
     weights = blend_weights(errors(0.01, 0.02, 0.04))
 
     expected = np.array([16.0, 4.0, 1.0]) / 21.0
@@ -21,7 +21,7 @@ def test_independent_estimates_weigh_as_the_inverse_of_their_square_errors():
     assert np.isclose(weights.sum(), 1.0)
 
 
-def test_the_weights_are_those_that_a_general_search_finds():
+def test_weights_equal_those_of_a_general_minimization():
     first, second, third = errors(0.01, 0.02, 0.005)
     trials = [first, first + second, third + 0.8 * first]
     flat = np.array(trials).reshape(3, -1)
@@ -47,12 +47,12 @@ def test_errors_of_opposite_sign_cancel():
     assert np.abs(blended).mean() < 0.1 * np.abs(shared).mean()
 
 
-def test_a_worse_copy_gets_nothing_and_equals_share():
-    (one,) = errors(0.01)
+def test_worse_copy_has_no_weight_and_equal_estimates_have_equal_weights():
+    (error,) = errors(0.01)
 
-    assert np.allclose(blend_weights([one, one]), 0.5)
-    assert np.allclose(blend_weights([one, 4.0 * one]), [1.0, 0.0], atol=1e-3)
+    assert np.allclose(blend_weights([error, error]), 0.5)
+    assert np.allclose(blend_weights([error, 4.0 * error]), [1.0, 0.0], atol=1e-3)
 
 
-def test_estimates_without_any_error_share():
+def test_estimates_without_error_have_equal_weights():
     assert np.allclose(blend_weights([np.zeros((5, 3))] * 3), 1.0 / 3.0)

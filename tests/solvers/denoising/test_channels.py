@@ -1,4 +1,4 @@
-"""Channels lose nothing, and say the same of the same movement elsewhere or on other rigs."""
+"""Channels lose nothing and are invariant to position, heading and rig."""
 
 import numpy as np
 import pytest
@@ -27,12 +27,12 @@ def walk() -> Motion:
 
 
 @pytest.fixture
-def dots(walk) -> Tracks:
+def tracks(walk) -> Tracks:
     positions = forward_kinematics(walk).positions
     return Tracks(walk.skeleton.names, positions, walk.frame_rate)
 
 
-def test_a_motion_comes_back_exactly(walk):
+def test_motion_is_decoded_exactly(walk):
     channels = encode(walk)
 
     back = decode(walk, channels, channels.values)
@@ -41,8 +41,8 @@ def test_a_motion_comes_back_exactly(walk):
     assert_allclose(back.root_positions, walk.root_positions, atol=1e-12)
 
 
-def test_a_joint_told_about_a_mean_half_a_turn_away_does_not_flip(walk):
-    """As between actors whose feet rest in other poses: the sign of a turn must not jump."""
+def test_joint_with_a_mean_half_a_turn_away_does_not_flip(walk):
+    """Actors may have feet with other rest poses: the sign of a rotation must not jump."""
     references = dict(encode(walk).references)
     key = "leftUpperLeg"
     opposite = multiply(references[key][:4], quaternion_from_rotation_vector([np.pi, 0.0, 0.0]))
@@ -57,28 +57,28 @@ def test_a_joint_told_about_a_mean_half_a_turn_away_does_not_flip(walk):
     assert angle_between(back.rotations, walk.rotations).max() < 1e-7
 
 
-def test_tracks_come_back_exactly(dots):
-    channels = encode(dots)
+def test_tracks_are_decoded_exactly(tracks):
+    channels = encode(tracks)
 
-    back = decode(dots, channels, channels.values)
+    back = decode(tracks, channels, channels.values)
 
-    assert_allclose(back.positions, dots.positions, atol=1e-12)
+    assert_allclose(back.positions, tracks.positions, atol=1e-12)
 
 
-def test_a_walk_elsewhere_in_another_direction_has_the_same_channels(walk, dots):
+def test_channels_are_invariant_to_position_and_heading(walk, tracks):
     angle, shift = 2.0, np.array([3.0, -1.0, 0.0])
-    turn = quaternion_from_rotation_vector([0.0, 0.0, angle])
+    rotation = quaternion_from_rotation_vector([0.0, 0.0, angle])
     rotations = walk.rotations.copy()
-    rotations[:, 0] = multiply(turn, rotations[:, 0])
-    moved = walk.with_poses(rotations, rotate(turn, walk.root_positions) + shift)
-    moved_dots = dots.with_positions(rotate(turn, dots.positions) + shift)
+    rotations[:, 0] = multiply(rotation, rotations[:, 0])
+    moved = walk.with_poses(rotations, rotate(rotation, walk.root_positions) + shift)
+    moved_tracks = tracks.with_positions(rotate(rotation, tracks.positions) + shift)
 
     assert_allclose(encode(moved).flat, encode(walk).flat, atol=1e-5)
-    assert_allclose(encode(moved_dots).flat, encode(dots).flat, atol=1e-5)
+    assert_allclose(encode(moved_tracks).flat, encode(tracks).flat, atol=1e-5)
 
 
-def test_the_same_walk_on_a_rig_with_another_rest_pose_has_the_same_channels(walk):
-    """Arms that rest lowered need less turning to hang: the movement is the same."""
+def test_channels_are_invariant_to_the_rest_pose(walk):
+    """Arms with a lowered rest pose need less rotation to hang: the movement is the same."""
     other = with_lowered_arms(walk)
     of_walk = encode(walk)
 
@@ -86,14 +86,14 @@ def test_the_same_walk_on_a_rig_with_another_rest_pose_has_the_same_channels(wal
 
     assert set(of_other.keys) == set(of_walk.keys)
     for key in ("leftUpperArm", "leftLowerArm", "rightUpperLeg", "head", "hips"):
-        one = of_walk.values[:, of_walk.keys.index(key)]
-        two = of_other.values[:, of_other.keys.index(key)]
-        assert_allclose(two, one, atol=0.5)
+        expected = of_walk.values[:, of_walk.keys.index(key)]
+        actual = of_other.values[:, of_other.keys.index(key)]
+        assert_allclose(actual, expected, atol=0.5)
     back = decode(other, of_other, of_other.values)
     assert angle_between(back.rotations, other.rotations).max() < 1e-7
 
 
-def test_what_is_not_observed_stays_unknown_and_disturbs_nothing_else(walk):
+def test_missing_samples_stay_missing_and_change_no_others(walk):
     rotations = walk.rotations.copy()
     rotations[10:20, 3] = np.nan
 
@@ -105,7 +105,7 @@ def test_what_is_not_observed_stays_unknown_and_disturbs_nothing_else(walk):
     assert_allclose(gapped.values[~missing], complete[~missing], atol=1e-9)
 
 
-def test_a_path_is_straight_where_the_walk_is_and_bridges_a_gap():
+def test_path_of_a_straight_walk_is_straight_across_a_gap():
     ground_positions = np.stack([np.zeros(120), -np.arange(120) / 30.0], axis=-1)
     observed = ground_positions.copy()
     observed[40:70] = np.nan
@@ -116,7 +116,7 @@ def test_a_path_is_straight_where_the_walk_is_and_bridges_a_gap():
     assert_allclose(path.headings, 0.4, atol=1e-9)
 
 
-def test_lines_are_their_own_regression(rng):
+def test_local_lines_of_a_line_are_the_line(rng):
     line = np.outer(np.arange(50.0), [1.0, -2.0]) + 3.0
 
     assert_allclose(fit_local_lines(line, 4.0), line, atol=1e-9)
@@ -124,7 +124,7 @@ def test_lines_are_their_own_regression(rng):
 
 
 def with_lowered_arms(walk: Motion) -> Motion:
-    """The same walk on the same body that rests with its upper arms 40 degrees lower."""
+    """Return the same walk on a body whose rest pose has the upper arms 40 degrees lower."""
     skeleton = walk.skeleton
     rest = np.tile([1.0, 0.0, 0.0, 0.0], (skeleton.n_joints, 1))
     for name, angle in (("LeftArm", 0.7), ("RightArm", -0.7)):

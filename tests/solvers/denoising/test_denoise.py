@@ -1,4 +1,4 @@
-"""A cleaned recording must be complete, close to the truth, and say what was done."""
+"""A cleaned recording must be complete, close to the truth, and report its prior."""
 
 from dataclasses import replace
 
@@ -20,6 +20,9 @@ from solvers.recordings import read_bvh
 from solvers.rotations import angle_between, multiply, quaternion_from_rotation_vector
 from solvers.samples import GaitSettings, walking_gait
 
+WALKS = ("32_01", "07_01", "07_02", "07_04", "10_04")
+"""The first is the take, the others are the examples."""
+
 
 @pytest.mark.parametrize("method", Method)
 @pytest.mark.parametrize("with_examples", [True, False])
@@ -31,12 +34,12 @@ def test_removes_most_of_the_noise(swinging_leg, rng, method, with_examples):
 
     before = angle_between(noisy.rotations, swinging_leg.rotations)[:, :3].mean()
     after = angle_between(result.recording.rotations, swinging_leg.rotations)[:, :3].mean()
-    # Without examples the published cut keeps what is 99 % of a noisy take: mostly its noise.
+    # Without examples the published method keeps 99 % of a noisy take: mostly its noise.
     assert after < (0.95 if method is Method.PUBLISHED and not with_examples else 0.6) * before
 
 
 @pytest.mark.parametrize("method", Method)
-def test_fills_every_gap_and_says_that_it_is_unsure_there(swinging_leg, rng, method):
+def test_fills_every_gap_with_low_confidence(swinging_leg, rng, method):
     noisy = shaken(swinging_leg, rng, np.radians(1))
     noisy.rotations[30:50, 1] = np.nan
     noisy.root_positions[70:80] = np.nan
@@ -47,7 +50,7 @@ def test_fills_every_gap_and_says_that_it_is_unsure_there(swinging_leg, rng, met
     assert result.confidence[40, 1] < result.confidence[10, 1]
 
 
-def test_bases_survive_the_file(swinging_leg, tmp_path):
+def test_bases_are_unchanged_after_saving_and_loading(swinging_leg, tmp_path):
     bases = learn_filter_bases([swinging_leg])
 
     bases.save(tmp_path / "walk.bases.npz")
@@ -56,13 +59,13 @@ def test_bases_survive_the_file(swinging_leg, tmp_path):
 
 
 @pytest.mark.parametrize("n_frames", [1, 2, 3, 7, 30])
-def test_the_shortest_takes_are_returned_whole(swinging_leg, n_frames):
+def test_shortest_takes_are_complete(swinging_leg, n_frames):
     short = swinging_leg.slice(0, n_frames)
 
     assert denoise(short).recording.observed.all()
 
 
-def test_cleans_points_too(swinging_leg, rng):
+def test_removes_noise_from_points(swinging_leg, rng):
     time = np.arange(90) / 30.0
     truth = np.stack([0.1 * np.sin(6 * time), -time, 1 + 0.05 * np.cos(6 * time)], axis=-1)
     truth = truth[:, None] + np.array([[0.0, 0, 0], [0.2, 0, 0.1], [0, 0.1, 0.3]])
@@ -80,15 +83,15 @@ def test_cleans_points_too(swinging_leg, rng):
 
 
 def shaken(motion: Motion, rng: np.random.Generator, scale: float, n_still: int = 1) -> Motion:
-    """The motion with rotation noise of this standard deviation, radians."""
+    """Return the motion with rotation noise of this standard deviation, radians."""
     vectors = rng.normal(scale=scale, size=(motion.n_frames, motion.n_joints, 3))
     vectors[:, motion.n_joints - n_still :] = 0.0
     noise = quaternion_from_rotation_vector(vectors)
     return motion.with_poses(multiply(motion.rotations, noise))
 
 
-def test_examples_of_another_movement_are_laid_aside(swinging_leg, rng):
-    """They must not cost more than a hair over having no examples."""
+def test_examples_of_another_movement_are_rejected(swinging_leg, rng):
+    """The error may be at most 5 % larger than without examples."""
     time = np.arange(240) / 60.0
     vectors = np.zeros((240, 4, 3))
     vectors[:, :3] = 1.2 * np.sin(time[:, None, None] * np.array([[11.0], [23.0], [17.0]]))
@@ -101,9 +104,9 @@ def test_examples_of_another_movement_are_laid_aside(swinging_leg, rng):
     noisy = shaken(swinging_leg, rng, np.radians(3))
 
     wrong = denoise(noisy, learn_filter_bases([frantic]))
-    alone = denoise(noisy)
+    without_limits = denoise(noisy)
 
-    assert error(wrong, swinging_leg) < 1.05 * error(alone, swinging_leg)
+    assert error(wrong, swinging_leg) < 1.05 * error(without_limits, swinging_leg)
 
 
 def test_strength_zero_fills_gaps_and_changes_nothing_else(swinging_leg, rng):
@@ -130,7 +133,7 @@ def test_finds_the_spikes(swinging_leg, rng):
 
 
 @pytest.mark.parametrize("frame_rate", [10.0, 24.0, 25.0, 50.0])
-def test_any_frame_rate_will_do(swinging_leg, rng, frame_rate):
+def test_removes_noise_at_any_frame_rate(swinging_leg, rng, frame_rate):
     take = Motion(
         swinging_leg.skeleton,
         swinging_leg.rotations,
@@ -145,9 +148,7 @@ def test_any_frame_rate_will_do(swinging_leg, rng, frame_rate):
 
 
 def test_beats_the_published_filter_on_a_real_walk(recordings, rng):
-    clips = [
-        real_walk(recordings, name) for name in ("32_01", "07_01", "07_02", "07_04", "10_04")
-    ]
+    clips = [real_walk(recordings, name) for name in WALKS]
     truth = clips[0]
     bases = learn_filter_bases(clips[1:])
     noisy = shaken(truth, rng, np.radians(3), n_still=0)
@@ -159,11 +160,9 @@ def test_beats_the_published_filter_on_a_real_walk(recordings, rng):
     assert ours < 0.6 * angle_between(noisy.rotations, truth.rotations)[:, moving(truth)].mean()
 
 
-def test_a_limb_off_for_a_fifth_of_a_second_is_put_back(recordings, rng):
-    """Its neighbours in time agree with it; other limbs and what lies further off do not."""
-    clips = [
-        real_walk(recordings, name) for name in ("32_01", "07_01", "07_02", "07_04", "10_04")
-    ]
+def test_limb_wrong_for_a_fifth_of_a_second_is_corrected(recordings, rng):
+    """Adjacent frames agree with the error; other limbs and distant frames do not."""
+    clips = [real_walk(recordings, name) for name in WALKS]
     truth, bases = clips[0], learn_filter_bases(clips[1:])
     noisy = shaken(truth, rng, np.radians(3), n_still=0)
     off = np.zeros(noisy.rotations.shape[:2], dtype=bool)
@@ -187,8 +186,8 @@ def test_a_limb_off_for_a_fifth_of_a_second_is_put_back(recordings, rng):
     assert after < 0.25 * before
 
 
-def test_the_other_limbs_tell_that_one_is_off(rng):
-    """The same on a body that has two things in mind, and seven limbs to show them with."""
+def test_wrong_limb_is_detected_from_the_other_limbs(rng):
+    """The same on a body of two independent rhythms and seven limbs."""
     mix = rng.normal(size=(2, 7, 3, 2))
     bases = learn_filter_bases([dancer(mix, seed) for seed in range(6)])
     truth = dancer(mix, 6)
@@ -207,7 +206,7 @@ def test_the_other_limbs_tell_that_one_is_off(rng):
 
 
 def dancer(mix, seed: int) -> Motion:
-    """Seven joints whose turns are mixed from two rhythms, with phases of their own."""
+    """Return seven joints whose rotations mix two rhythms, with phases of their own."""
     names = tuple(f"limb {index}" for index in range(7))
     offsets = np.tile([0.0, 0.0, 0.3], (7, 1))
     skeleton = Skeleton(names, (-1, 0, 1, 2, 0, 4, 5), offsets)
@@ -218,8 +217,8 @@ def dancer(mix, seed: int) -> Motion:
     return Motion(skeleton, quaternion_from_rotation_vector(vectors), np.zeros((120, 3)), 30.0)
 
 
-def test_what_is_quick_again_and_again_is_no_error(rng):
-    """Nobody has seen this body wave before, but it does."""
+def test_repeated_fast_motion_is_no_outlier(rng):
+    """The examples contain no waving."""
     mix = rng.normal(size=(2, 7, 3, 2))
     bases = learn_filter_bases([dancer(mix, seed) for seed in range(6)])
     plain = dancer(mix, 6)
@@ -237,21 +236,21 @@ def test_what_is_quick_again_and_again_is_no_error(rng):
     assert remaining_error.mean() < np.radians(2)
 
 
-def test_a_knee_bent_forwards_is_not_believed(swinging_leg, rng):
-    """The patterns of a swinging leg could follow it; its limits say that it cannot be."""
+def test_knee_bent_forwards_is_corrected_with_limits(swinging_leg, rng):
+    """The patterns of a swinging leg could follow it; its limits exclude it."""
     bases, limits = learn_filter_bases([swinging_leg]), learn_joint_limits([swinging_leg])
     noisy = shaken(swinging_leg, rng, np.radians(1))
     forwards = quaternion_from_rotation_vector(np.tile([1.2, 0.0, 0.0], (36, 1)))
     noisy.rotations[50:86, 1] = multiply(forwards, noisy.rotations[50:86, 1])
 
-    alone, limited = denoise(noisy, bases), denoise(noisy, bases, limits=limits)
+    without_limits, with_limits = denoise(noisy, bases), denoise(noisy, bases, limits=limits)
 
-    assert limit_excess(limited.recording, limits).max() < np.radians(5.0)
-    assert limited.outliers[50:86, 1].mean() > 2 * alone.outliers[50:86, 1].mean()
-    assert error(limited, swinging_leg) < 0.9 * error(alone, swinging_leg)
+    assert limit_excess(with_limits.recording, limits).max() < np.radians(5.0)
+    assert with_limits.outliers[50:86, 1].mean() > 2 * without_limits.outliers[50:86, 1].mean()
+    assert error(with_limits, swinging_leg) < 0.9 * error(without_limits, swinging_leg)
 
 
-def test_limits_of_another_body_do_not_take_the_take_away(swinging_leg, rng):
+def test_limits_of_another_body_remove_no_samples(swinging_leg, rng):
     limits = learn_joint_limits([swinging_leg])
     other = replace(limits, lower=limits.lower + 1.5, upper=limits.upper + 1.5)
     noisy = shaken(swinging_leg, rng, np.radians(1))
@@ -264,18 +263,18 @@ def moving(motion: Motion) -> list[int]:
 
 
 def error(result, truth: Motion) -> float:
-    """Mean angle to the truth, radians, over all joints that turn."""
+    """Return the mean angle to the truth, radians, over all joints that rotate."""
     angles = angle_between(result.recording.rotations, truth.rotations)
     return float(angles[:, moving(truth)].mean())
 
 
 def real_walk(recordings, name: str) -> Motion:
-    """A CMU walk at 30 Hz, without the T-pose of its first frame."""
+    """Return a CMU walk at 30 Hz, without the T-pose of its first frame."""
     walk = read_bvh(recordings / "mocap" / "cmu_walk" / f"{name}.bvh")
     return Motion(walk.skeleton, walk.rotations[1::4], walk.root_positions[1::4], 30.0)
 
 
-def test_a_limb_that_was_never_seen_is_a_guess():
+def test_limb_never_observed_has_low_confidence():
     walk = walking_gait(GaitSettings(duration=2.0, frame_rate=30.0))
     rotations = walk.rotations.copy()
     arm = walk.skeleton.subtree(walk.skeleton.index("LeftArm"))
@@ -288,7 +287,7 @@ def test_a_limb_that_was_never_seen_is_a_guess():
     assert result.confidence.mean() > 0.5
 
 
-def test_at_two_frames_a_second_no_frame_is_left_out(rng):
+def test_all_frames_are_filled_at_two_frames_per_second(rng):
     positions = rng.normal(size=(40, 3, 3))
     positions[10:20, 0] = np.nan
 

@@ -21,8 +21,8 @@ from solvers.denoising.posterior.windows import Windows
 LENGTH, N_SLOW, N_CHANNELS = 8, 5, 3
 
 
-def test_a_window_with_gaps_is_the_conditional_gaussian(rng):
-    """One dense system over the observed samples says the same as the small one per pattern."""
+def test_window_with_gaps_equals_the_conditional_gaussian(rng):
+    """The reference is one dense system over the observed samples."""
     windows = Windows(LENGTH, LENGTH, 1.0)
     slow = random_covariance(rng)
     noise = np.array([0.3, 0.5, 0.4])
@@ -37,21 +37,23 @@ def test_a_window_with_gaps_is_the_conditional_gaussian(rng):
         pattern.mask_frames(np.nan_to_num(noisy)[None])
     )[:, :N_SLOW]
 
-    found = solution.posterior_mean((observed / noise).reshape(1, -1), pattern.indices)[0]
-    estimate = frames_from(windows, found * np.tile(noise, N_SLOW))
+    coefficients = solution.posterior_mean((observed / noise).reshape(1, -1), pattern.indices)[
+        0
+    ]
+    estimate = frames_from(windows, coefficients * np.tile(noise, N_SLOW))
 
     mean, variance = dense_posterior(windows, slow, noise, noisy)
     assert_allclose(estimate, mean, atol=1e-9)
     filters = [Filter(pattern, gains, solution)]
-    found_variance, leverage = compute_variance(filters, windows, noisy)
-    assert_allclose(found_variance[:, 1:], variance[:, 1:], atol=1e-9)
+    actual_variance, leverage = compute_variance(filters, windows, noisy)
+    assert_allclose(actual_variance[:, 1:], variance[:, 1:], atol=1e-9)
     assert_allclose(leverage[:, 1:], variance[:, 1:] / noise[1:] ** 2, atol=1e-9)
     covariance = np.zeros_like(slow)
     filters[0].add_covariance(covariance)
     assert_allclose(frame_variance(windows, covariance)[:, 1:], variance[:, 1:], atol=1e-9)
 
 
-def test_gapped_windows_keep_their_filter_while_it_is_nearly_right(rng):
+def test_filters_of_windows_with_gaps_are_reused_if_given(rng):
     windows = Windows(30, LENGTH, 1.0)
     observed_mask = np.ones((30, N_CHANNELS), dtype=bool)
     observed_mask[12:20, 1] = False
@@ -66,8 +68,8 @@ def test_gapped_windows_keep_their_filter_while_it_is_nearly_right(rng):
     assert 0 < sum(reused) < len(reused)
 
 
-def test_only_channels_with_gaps_are_blurred(rng):
-    """A hand that is never seen must not smooth the arm that is."""
+def test_only_channels_with_gaps_have_more_noise(rng):
+    """A hand that is never observed must not smooth the observed arm."""
     windows = Windows(30, LENGTH, 1.0)
     observed_mask = np.ones((30, N_CHANNELS), dtype=bool)
     observed_mask[:, 1] = False
@@ -80,7 +82,7 @@ def test_only_channels_with_gaps_are_blurred(rng):
     assert gapped.gains.noise[1] > 0.4
 
 
-def test_waves_and_frames_undo_each_other(rng):
+def test_coefficients_and_frames_invert_each_other(rng):
     windows = Windows(30, 12, 2.0)
     frames = rng.normal(size=(4, 12, 3))
 
@@ -107,7 +109,7 @@ def test_overlapping_windows_add_up_to_the_take(rng):
     assert_allclose(total / sum_window_weights(patterns, windows), values, atol=1e-12)
 
 
-def test_all_frames_are_in_a_window_whatever_is_missing(rng):
+def test_every_frame_is_in_a_window_with_any_gaps(rng):
     observed_mask = rng.random((57, 2)) > 0.4
     observed_mask[:9] = False
     windows = Windows(57, 20, 1.0)
@@ -117,7 +119,7 @@ def test_all_frames_are_in_a_window_whatever_is_missing(rng):
     ).all()
 
 
-def test_only_long_gaps_are_long():
+def test_finds_only_long_gaps():
     observed_mask = np.ones((20, 2), dtype=bool)
     observed_mask[3:5, 0] = False
     observed_mask[10:16, 0] = False
@@ -145,7 +147,7 @@ def frames_from(windows, coefficients):
 
 
 def map_to_frames(windows):
-    """The matrix from slow waves (waves outermost) to frames (frames outermost)."""
+    """Return the matrix from slow coefficients to frames, frames outermost."""
     return np.kron(windows.dct_basis(N_SLOW), np.eye(N_CHANNELS))
 
 
@@ -167,7 +169,7 @@ def frame_variance(windows, covariance):
     return np.diag(basis @ covariance @ basis.T).reshape(LENGTH, N_CHANNELS)
 
 
-def test_gaps_of_endless_patterns_do_not_fill_the_memory(rng, monkeypatch):
+def test_too_many_gap_patterns_are_filled_iteratively(rng, monkeypatch):
     observed_mask = rng.random((57, N_CHANNELS)) > 0.1
     observed_mask[20:40, 0] = False
     windows = Windows(57, 20, 1.0)

@@ -1,4 +1,4 @@
-"""A hill that is climbed step by step is a move; a tower is a spike."""
+"""A gradual deviation is a motion; an abrupt one is a spike."""
 
 import numpy as np
 import pytest
@@ -15,7 +15,7 @@ def fast_motion(*columns, noise=0.05, rate=0.002, window=20):
     return find_fast_motion(error, inlier, np.full(len(columns), noise), rate, window)
 
 
-def test_each_channel_is_judged_for_itself():
+def test_channels_are_classified_independently():
     step_spike = [0.0, 0.0, 0.0, 14.0, 0.0, 0.0, 0.0, 0.0]
     burst = [0.0, 14.0, 14.0, 14.0, 14.0, 14.0, 0.0, 0.0]
 
@@ -26,19 +26,19 @@ def test_each_channel_is_judged_for_itself():
     assert (flagged[:, 1] == flagged[:, 3]).all()
 
 
-def test_what_has_one_steep_side_is_a_spike():
+def test_deviation_with_one_steep_side_is_a_spike():
     steep = [0.0, 14.0, 10.0, 7.0, 4.0, 2.0, 0.0, 0.0]
 
     assert not fast_motion(steep, steep[::-1]).any()
 
 
-def test_at_the_ends_and_beside_gaps_nothing_is_known_of_the_slope():
+def test_deviation_at_the_ends_or_next_to_gaps_is_a_spike():
     assert not fast_motion([4.0, 10.0, 4.0, 0.0, 0.0]).any()
     assert not fast_motion([0.0, np.nan, 14.0, 9.0, 4.0, 0.0]).any()
 
 
 @pytest.mark.parametrize(("noise", "rate"), [(0.6, 0.002), (0.05, 0.05), (3.0, 0.4)])
-def test_in_noisy_takes_and_among_many_outliers_only_long_hills_are_moves(noise, rate):
+def test_only_long_gradual_deviations_are_motion_with_noise_or_many_outliers(noise, rate):
     short = [0.0, 0.0, 8.0, 9.0, 0.5, 0.0, 0.0, 0.0]
     rough = [0.0, 8.0, -9.0, 12.0, 5.0, -7.0, 0.0, 0.0]
 
@@ -48,19 +48,19 @@ def test_in_noisy_takes_and_among_many_outliers_only_long_hills_are_moves(noise,
     assert not flagged[:, 1:].any()
 
 
-def test_a_softened_spike_is_none():
+def test_softened_spike_is_no_motion():
     soft = gaussian_filter1d(np.repeat([0.0, 30.0, 0.0], [20, 3, 20]), 0.6)
 
     assert not fast_motion(soft, noise=2.0, rate=0.1).any()
 
 
-def test_short_windows_do_not_make_spikes_of_two_frames_moves():
+def test_spike_of_two_frames_is_no_motion_with_short_windows():
     spikes = np.tile([0.0, 0.0, 0.0, 0.0, 30.0, 31.0, 0.0, 0.0], 8)
 
     assert not fast_motion(spikes, noise=2.0, rate=0.3, window=3).any()
 
 
-def test_what_swings_through_zero_is_one_move():
+def test_deviation_through_zero_is_one_motion():
     swing = np.concatenate([
         np.zeros(9),
         [12, 24, 28, 16, 2, -13, -25, -28, -17, -3],
@@ -72,7 +72,7 @@ def test_what_swings_through_zero_is_one_move():
     assert flagged[np.abs(swing) > 1.0].all()
 
 
-def test_a_wave_is_many_hills():
+def test_oscillation_is_motion():
     wave = 30.0 * np.sin(np.arange(100) * 2 * np.pi / 11.3)
 
     flagged = fast_motion(wave, noise=2.0, rate=0.4)[:, 0]
@@ -82,8 +82,8 @@ def test_a_wave_is_many_hills():
     assert not flagged[~deviating].any()
 
 
-def test_what_is_doubted_for_as_long_as_a_window_is_believed():
-    """Errors of either sign without a slope between them: only how long it lasts can tell."""
+def test_deviation_as_long_as_a_window_is_motion():
+    """The errors alternate in sign without a slope: only their duration decides."""
     lasting, brief = np.zeros(100), np.zeros(100)
     lasting[20:80] = 30.0 * (-1.0) ** np.arange(60)
     brief[20:28] = 30.0 * (-1.0) ** np.arange(8)

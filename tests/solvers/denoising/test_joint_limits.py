@@ -1,4 +1,4 @@
-"""Limits hold what is beyond them, softly, and touch nothing else."""
+"""Limits clamp any excess softly and change nothing else."""
 
 import numpy as np
 import pytest
@@ -24,14 +24,14 @@ INF = np.inf
 
 
 def motion_of_joint(skeleton: Skeleton, joint: int, rotations: np.ndarray) -> Motion:
-    """A motion in which one joint turns and the others rest."""
+    """Return a motion in which one joint rotates and the others rest."""
     all_rotations = np.tile(IDENTITY, (len(rotations), skeleton.n_joints, 1))
     all_rotations[:, joint] = rotations
     return Motion(skeleton, all_rotations, np.zeros((len(rotations), 3)), 30.0)
 
 
 def euler_limits(name: str, axes, lower, upper, order: str = "ZYX") -> JointLimits:
-    """As a limit constraint of Blender has them: about the bone's own rest axes."""
+    """Return limits like those of a Blender constraint: about the bone's own rest axes."""
     return JointLimits((name,), np.array([False]), axes, axes, (order,), lower, upper)
 
 
@@ -46,12 +46,12 @@ def bone_axes(rng):
 
 
 def about_bone_x(axes, degrees) -> np.ndarray:
-    """Local rotations that turn about the bone's own x axis."""
+    """Return local rotations about the bone's own x axis."""
     angles = np.radians(np.asarray(degrees, dtype=float))
     return quaternion_from_rotation_vector(angles[:, None] * rotate(axes, [1.0, 0.0, 0.0]))
 
 
-def test_a_turn_beyond_a_limit_of_the_bones_own_axis_stops_there(leg, bone_axes):
+def test_rotation_beyond_a_limit_stops_at_the_limit(leg, bone_axes):
     motion = motion_of_joint(leg, 1, about_bone_x(bone_axes, [-20.0, 30.0, 60.0]))
     limits = euler_limits("knee", bone_axes, [0, 0, 0], np.radians([0, 0, 45]))
 
@@ -64,7 +64,7 @@ def test_a_turn_beyond_a_limit_of_the_bones_own_axis_stops_there(leg, bone_axes)
     )
 
 
-def test_a_soft_limit_is_left_with_slope_one_and_never_exceeded_by_more_than_its_softness(leg):
+def test_soft_limit_starts_with_slope_one_and_is_bounded_by_its_softness(leg):
     degrees = np.arange(40.0, 150.0, 0.5)
     motion = motion_of_joint(leg, 1, about_bone_x(IDENTITY, degrees))
     limits = euler_limits("knee", IDENTITY, [-INF, -INF, 0], [INF, INF, np.radians(45)])
@@ -78,7 +78,7 @@ def test_a_soft_limit_is_left_with_slope_one_and_never_exceeded_by_more_than_its
     assert (slopes > -1e-9).all() and np.abs(np.diff(slopes)).max() < 0.06
 
 
-def test_what_is_within_or_has_no_limit_stays_bit_for_bit(walk):
+def test_rotations_within_limits_are_unchanged_bit_for_bit(walk):
     limits = euler_limits("LeftLeg", IDENTITY, [-INF] * 3, np.radians([5.0, 180.0, 180.0]))
 
     clamped = clamp_to_limits(walk, limits)
@@ -90,8 +90,8 @@ def test_what_is_within_or_has_no_limit_stays_bit_for_bit(walk):
     assert (clamped.root_positions == walk.root_positions).all()
 
 
-def test_limits_beyond_half_a_turn_are_understood(leg):
-    """150 to 210 degrees: 200 is within, though Euler angles call it -160."""
+def test_limits_may_exceed_half_a_turn(leg):
+    """150 to 210 degrees: 200 is within, though its Euler angle is -160."""
     motion = motion_of_joint(leg, 1, about_bone_x(IDENTITY, [200.0, 230.0]))
     limits = euler_limits(
         "knee", IDENTITY, np.radians([-30, -30, 150]), np.radians([30, 30, 210])
@@ -102,8 +102,8 @@ def test_limits_beyond_half_a_turn_are_understood(leg):
     assert_allclose(np.degrees(excess), [0.0, 20.0], atol=1e-6)
 
 
-def test_a_middle_angle_beyond_a_right_angle_is_understood(leg):
-    """120 degrees about y alone, which Euler angles may also call (180, 60, 180)."""
+def test_middle_angle_may_exceed_a_right_angle(leg):
+    """120 degrees about y alone, whose Euler angles may also be (180, 60, 180)."""
     motion = motion_of_joint(
         leg, 1, quaternion_from_euler(np.radians([[0.0, 120.0, 0.0]]), "ZYX")
     )
@@ -113,7 +113,7 @@ def test_a_middle_angle_beyond_a_right_angle_is_understood(leg):
 
 
 @pytest.mark.parametrize("order", ["XYZ", "ZXY", "YZX"])
-def test_angles_are_limited_in_the_order_that_lists_them(leg, order):
+def test_angles_are_limited_in_their_euler_order(leg, order):
     angles = np.radians([[10.0, 20.0, 30.0]])
     motion = motion_of_joint(leg, 1, quaternion_from_euler(angles, order))
     limits = euler_limits("knee", IDENTITY, [-INF] * 3, np.radians([15, 15, 40]), order)
@@ -134,7 +134,7 @@ def test_gaps_stay_gaps(walk):
     assert np.isfinite(limit_excess(gapped, limits)).all()
 
 
-def test_learned_limits_admit_their_examples_and_refuse_a_knee_bent_forwards(walk):
+def test_learned_limits_contain_their_examples_but_no_knee_bent_forwards(walk):
     limits = learn_joint_limits([walk])
     knee = walk.skeleton.index("LeftLeg")
     forwards = walk.rotations.copy()
@@ -144,7 +144,7 @@ def test_learned_limits_admit_their_examples_and_refuse_a_knee_bent_forwards(wal
     assert np.degrees(limit_excess(walk.with_poses(forwards), limits)[:, knee].max()) > 20.0
 
 
-def test_learned_limits_are_a_hinge_where_a_joint_is_one(walk):
+def test_learned_limits_of_a_hinge_have_one_axis(walk):
     settings = JointLimitsSettings(margin=0.0, stretch=0.0)
 
     limits = learn_joint_limits([walk], settings=settings)
@@ -155,23 +155,23 @@ def test_learned_limits_are_a_hinge_where_a_joint_is_one(walk):
     assert widths[0] > 30.0 and widths[1:].max() < 1.0
 
 
-def test_limits_learned_on_one_rig_hold_on_another(walk):
-    """The other rig rests with lowered arms, and calls its joints otherwise."""
-    lowered, names = rested_otherwise(walk)
+def test_limits_learned_on_one_rig_apply_to_another(walk):
+    """The other rig has lowered arms at rest and other joint names."""
+    lowered, names = with_other_rest_pose(walk)
     limits = learn_joint_limits([walk])
     reverse_limits = learn_joint_limits([lowered])
 
     assert limit_excess(lowered, limits).max() < 1e-6
     assert limit_excess(walk, reverse_limits).max() < 1e-6
     assert set(names).isdisjoint(walk.skeleton.names)
-    first_rig = limit_excess(bent_back(walk, "LeftForeArm"), limits)
-    other_rig = limit_excess(bent_back(lowered, "lowerarm_l"), limits)
+    first_rig = limit_excess(with_elbow_bent_back(walk, "LeftForeArm"), limits)
+    other_rig = limit_excess(with_elbow_bent_back(lowered, "lowerarm_l"), limits)
     assert first_rig.max() > 0.5
     assert_allclose(other_rig, first_rig, atol=1e-6)
 
 
-def rested_otherwise(motion: Motion) -> tuple[Motion, list[str]]:
-    """The same poses on a rig whose rest pose has its arms lowered by 50 degrees."""
+def with_other_rest_pose(motion: Motion) -> tuple[Motion, list[str]]:
+    """Return the same poses on a rig whose rest pose has its arms lowered by 50 degrees."""
     skeleton = motion.skeleton
     offsets = skeleton.offsets.copy()
     for side, sign in (("Left", 1.0), ("Right", -1.0)):
@@ -199,7 +199,7 @@ def unreal_name(name: str) -> str:
     return table[name.removesuffix("_end")] + end
 
 
-def bent_back(motion: Motion, name: str) -> Motion:
+def with_elbow_bent_back(motion: Motion, name: str) -> Motion:
     joint = motion.skeleton.index(name)
     humanoid = find_humanoid_map(motion.skeleton)
     canonical = canonical_rotations(motion, humanoid)
@@ -209,7 +209,7 @@ def bent_back(motion: Motion, name: str) -> Motion:
     return motion.with_poses(from_canonical(canonical, motion.skeleton, humanoid))
 
 
-def test_held_motions_are_within_their_limits(walk, rng):
+def test_clamped_motions_are_within_their_limits(walk, rng):
     limits = learn_joint_limits([walk])
     noise = quaternion_from_rotation_vector(rng.normal(scale=0.5, size=(90, walk.n_joints, 3)))
     noisy = walk.with_poses(multiply(walk.rotations, noise))
@@ -220,7 +220,7 @@ def test_held_motions_are_within_their_limits(walk, rng):
     assert np.degrees(limit_excess(clamped, limits).max()) < 3.0 + 1e-9
 
 
-def test_limits_survive_a_file(walk, tmp_path):
+def test_limits_are_unchanged_after_saving_and_loading(walk, tmp_path):
     limits = learn_joint_limits([walk])
     limits.save(tmp_path / "walk.limits.npz")
 
@@ -231,7 +231,7 @@ def test_limits_survive_a_file(walk, tmp_path):
         assert (getattr(loaded, name) == getattr(limits, name)).all()
 
 
-def test_what_is_no_limits_file_is_refused(tmp_path):
+def test_file_without_limits_is_refused(tmp_path):
     (tmp_path / "notes.npz").write_text("not an archive")
     with pytest.raises(InvalidFileError, match="not a readable archive"):
         load_joint_limits(tmp_path / "notes.npz")

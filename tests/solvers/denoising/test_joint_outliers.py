@@ -1,4 +1,4 @@
-"""Outliers of one channel make those of its joint likely, if the take shows it."""
+"""Outliers of one channel make those of its joint likely, if they correlate in the take."""
 
 import numpy as np
 from numpy.testing import assert_allclose
@@ -11,7 +11,7 @@ OBSERVED = np.ones((1000, len(JOINTS)), dtype=bool)
 NO_OUTLIERS = np.zeros(OBSERVED.shape)
 
 
-def test_joints_that_are_wrong_as_a_whole_are_known(rng):
+def test_correlated_outliers_raise_the_rates_of_their_joint(rng):
     outliers = (rng.random((1000, 3)) < RATE).astype(float)[:, JOINTS]
 
     outlier_rates = JointOutlierPrior(JOINTS, NO_OUTLIERS).outlier_rates(
@@ -28,7 +28,7 @@ def test_joints_that_are_wrong_as_a_whole_are_known(rng):
     assert_allclose(outlier_rates.mean(), RATE, rtol=0.3)
 
 
-def test_channels_that_are_wrong_by_themselves_say_nothing(rng):
+def test_independent_outliers_leave_the_rates_unchanged(rng):
     outliers = (rng.random((1000, 6)) < RATE).astype(float)
 
     outlier_rates = JointOutlierPrior(JOINTS, NO_OUTLIERS).outlier_rates(
@@ -38,7 +38,7 @@ def test_channels_that_are_wrong_by_themselves_say_nothing(rng):
     assert_allclose(outlier_rates, RATE, atol=0.03)
 
 
-def test_few_outliers_prove_nothing():
+def test_few_outliers_hardly_change_the_rates():
     outliers = np.zeros(OBSERVED.shape)
     outliers[500, :3] = 1.0
 
@@ -48,7 +48,7 @@ def test_few_outliers_prove_nothing():
     )
 
 
-def test_what_was_found_of_the_joint_before_counts(rng):
+def test_outliers_of_earlier_groups_raise_the_rates(rng):
     outliers = (rng.random((1000, 3)) < RATE).astype(float)[:, [0, 0, 1]]
     joints, observed = np.array([0, 1, 2]), OBSERVED[:, :3]
 
@@ -58,7 +58,7 @@ def test_what_was_found_of_the_joint_before_counts(rng):
     assert outlier_rates[outliers == 0.0].max() < 0.5 * RATE
 
 
-def test_the_first_and_the_last_channel_are_fellows_too(rng):
+def test_first_and_last_channel_of_a_joint_are_correlated(rng):
     outliers = (rng.random((1000, 1)) < RATE) * np.array([1.0, 0.0, 1.0])
 
     outlier_rates = JointOutlierPrior(np.zeros(3, dtype=int), NO_OUTLIERS[:, :3]).outlier_rates(
@@ -68,7 +68,7 @@ def test_the_first_and_the_last_channel_are_fellows_too(rng):
     assert outlier_rates[:, [0, 2]][outliers[:, [0, 2]] == 1.0].min() > 0.4
 
 
-def test_nothing_known_is_no_error():
+def test_rates_without_observations_are_unchanged():
     outlier_rates = JointOutlierPrior(JOINTS, NO_OUTLIERS).outlier_rates(
         NO_OUTLIERS, OBSERVED & False, RATE
     )

@@ -29,7 +29,7 @@ def test_equals_the_product_of_the_trajectory_matrix(rng, n_frames, window):
     assert_allclose(products.total(), matrix.T @ matrix, rtol=1e-10, atol=1e-9)
 
 
-def test_many_clips_are_summed_up_as_they_come(rng):
+def test_many_clips_are_summed_exactly(rng):
     clips = [rng.normal(size=(rng.integers(5, 12), 2)) for _ in range(2 * MAX_CLIP_ENDS + 3)]
     products = LagProducts(2, 5)
     for clip in clips:
@@ -40,7 +40,7 @@ def test_many_clips_are_summed_up_as_they_come(rng):
     assert_allclose(products.total(), matrix.T @ matrix, rtol=1e-10, atol=1e-9)
 
 
-def test_many_frames_take_no_more_memory_than_few():
+def test_many_frames_need_no_more_memory_than_few():
     few, many = (
         walking_gait(GaitSettings(duration=seconds, frame_rate=30.0)) for seconds in (60, 600)
     )
@@ -56,8 +56,8 @@ def peak_of_learning(example) -> int:
     return peak
 
 
-def test_a_long_example_is_learned_from_minute_by_minute():
-    """It has one mean pose for each, and the same patterns but for those across the minutes."""
+def test_long_example_is_learned_in_blocks():
+    """Each minute has its own mean pose; only the patterns across minutes are missing."""
     walk = walking_gait(GaitSettings(duration=130.0, frame_rate=30.0))
     halves = [walk.slice(0, 1950), walk.slice(1950, 3900)]
 
@@ -68,7 +68,7 @@ def test_a_long_example_is_learned_from_minute_by_minute():
     assert_allclose(complete.slow, parts.slow, rtol=1e-6, atol=1e-9)
 
 
-def test_patterns_hold_the_share_that_is_asked_for(rng):
+def test_patterns_contain_the_requested_energy(rng):
     factors = rng.normal(size=(300, 300)) * np.geomspace(1, 1e-4, 300)
     covariance = factors.T @ factors
 
@@ -80,8 +80,8 @@ def test_patterns_hold_the_share_that_is_asked_for(rng):
     assert_allclose(covariance @ vectors, vectors * values, atol=1e-6 * values[0])
 
 
-def test_a_clip_that_lacks_a_joint_tells_nothing_of_it(swinging_leg):
-    """As if it had not been given, for the joint's mean, spread and patterns."""
+def test_clip_without_a_joint_does_not_affect_it(swinging_leg):
+    """The joint's mean, standard deviation and patterns equal those without the clip."""
     without_knee = swinging_leg.with_poses(swinging_leg.rotations.copy())
     without_knee.rotations[:, 1] = np.nan
 
@@ -100,15 +100,15 @@ def test_a_clip_that_lacks_a_joint_tells_nothing_of_it(swinging_leg):
     assert_allclose(both.slow[knee_block], alone.slow[knee_block], rtol=1e-6, atol=1e-9)
 
 
-def test_an_example_has_one_mean_pose_at_any_frame_rate(swinging_leg):
-    """Takes at twice the rate of the patterns are split; the body is one."""
+def test_example_has_one_mean_pose_at_any_frame_rate(swinging_leg):
+    """Takes at twice the rate of the patterns are split, but show one body."""
     bases = learn_filter_bases([swinging_leg, swinging_leg.slice(0, 90)])
 
     assert swinging_leg.frame_rate == 2 * float(bases.frame_rate)
     assert len(bases.clip_means) == 2
 
 
-def test_an_example_of_twice_the_weight_counts_as_two():
+def test_example_of_twice_the_weight_counts_as_two():
     first, second = (
         walking_gait(GaitSettings(cadence=cadence, duration=3.0, frame_rate=30.0))
         for cadence in (100, 120)

@@ -1,4 +1,4 @@
-"""The mean pose of a take: its own where it was seen, else that of the examples like it."""
+"""The mean pose of a take is its own where observed, else that of similar examples."""
 
 import numpy as np
 import pytest
@@ -11,7 +11,7 @@ N_FRAMES = 100.0
 
 @pytest.fixture
 def means(rng):
-    """Three people, four clips of each: they hold lost and seen channels each in their way."""
+    """Three actors with four clips each; missing and observed channels differ by actor."""
     people = rng.normal(size=(3, 12)) * 12.0
     return np.repeat(people, 4, axis=0) + rng.normal(size=(12, 12)) * 0.5
 
@@ -28,7 +28,7 @@ def mean_pose(means, own_mean, observed, noise=0.0):
     )
 
 
-def test_what_was_seen_throughout_has_its_own_mean(means, rng):
+def test_observed_channels_have_their_own_mean(means, rng):
     own_mean = means[0] + rng.normal(size=12) * 6.0
 
     mean, variance = mean_pose(means, own_mean, np.ones(12))
@@ -37,7 +37,7 @@ def test_what_was_seen_throughout_has_its_own_mean(means, rng):
     assert (variance < 0.01).all()
 
 
-def test_a_lost_limb_is_held_as_the_same_person_holds_it(means):
+def test_missing_limb_has_the_mean_pose_of_the_same_actor(means):
     observed = np.ones(12)
     observed[8:] = 0.0
     own_mean = np.where(observed > 0.0, means[5] + 0.3, 0.0)
@@ -50,8 +50,8 @@ def test_a_lost_limb_is_held_as_the_same_person_holds_it(means):
     assert (stranger_variance[8:] > 5.0 * variance[8:]).all()
 
 
-def test_two_gaussians_are_weighed_by_their_precision():
-    """One example says nothing of the spread of others; with two, by hand."""
+def test_mean_is_the_product_of_two_gaussians():
+    """One example has no variance between clips; with two, by hand."""
     means = np.array([[-3.0, 1.0], [3.0, 1.0]])
     own_mean, observed = np.array([50.0, 1.0]), np.array([0.2, 0.2])
 
@@ -66,14 +66,14 @@ def test_two_gaussians_are_weighed_by_their_precision():
     assert_allclose(variance[0], posterior_variance, rtol=1e-9)
 
 
-def test_a_take_that_was_never_seen_has_the_examples_mean(means):
+def test_take_never_observed_has_the_mean_of_the_examples(means):
     mean, variance = mean_pose(means, np.zeros(12), np.zeros(12))
 
     assert_allclose(mean, means.mean(axis=0), atol=1e-6)
     assert_allclose(variance, 2.0 * np.maximum(means.var(axis=0), (8.0 / 12) ** 2) + 1e-3)
 
 
-def test_clips_that_are_unlike_say_nothing_however_many_they_are(means, rng):
+def test_many_different_clips_do_not_change_the_mean_pose(means, rng):
     observed = np.ones(12)
     observed[8:] = 0.0
     own_mean = np.where(observed > 0.0, means[5] + 0.3, 0.0)
@@ -84,7 +84,7 @@ def test_clips_that_are_unlike_say_nothing_however_many_they_are(means, rng):
     assert_allclose(mean[8:], means[4:8].mean(axis=0)[8:], atol=20.0)
 
 
-def test_one_example_does_not_know_how_everybody_holds_themselves(means):
+def test_single_example_leaves_a_large_variance(means):
     own_mean = means[0] + 8.0
 
     mean, variance = mean_pose(means[:1], own_mean, np.full(12, 0.3))

@@ -1,4 +1,4 @@
-"""Planted feet stand still, and all else stays as it was."""
+"""Planted feet do not move, and all else stays the same."""
 
 import numpy as np
 import pytest
@@ -28,20 +28,20 @@ def contacts(walk):
 
 
 def add_foot_slide(motion: Motion, fraction: float = 0.15) -> Motion:
-    """The same steps, but the body travels farther than the feet carry it."""
+    """Return the same steps with a body that travels farther than the feet carry it."""
     root_positions = motion.root_positions.copy()
     root_positions[:, :2] += fraction * (root_positions[:, :2] - root_positions[0, :2])
     return motion.with_poses(root_positions=root_positions)
 
 
 def ball_positions(motion: Motion) -> np.ndarray:
-    """Positions of the toe joints, (n_frames, left and right, 3)."""
+    """Return the positions of the toe joints, (n_frames, left and right, 3)."""
     toes = [leg.toe for leg in find_legs(motion.skeleton)]
     return forward_kinematics(motion).positions[:, toes]
 
 
 def inner_steps(contacts: np.ndarray, margin: int) -> np.ndarray:
-    """Steps between frames that are in contact and have been, and will be, for a while."""
+    """Return the steps between frames that are in contact for `margin` frames on both sides."""
     inner = contacts.copy()
     for shift in range(1, margin + 1):
         inner[shift:] &= contacts[:-shift]
@@ -49,7 +49,7 @@ def inner_steps(contacts: np.ndarray, margin: int) -> np.ndarray:
     return inner[1:] & inner[:-1]
 
 
-def test_a_skating_walk_stops_skating(walk, contacts):
+def test_skating_walk_stops_sliding(walk, contacts):
     planted = plant_feet(add_foot_slide(walk), contacts)
 
     assert planted.slide_before > 0.3
@@ -57,8 +57,8 @@ def test_a_skating_walk_stops_skating(walk, contacts):
     assert (planted.contacts == contacts).all()
 
 
-def test_a_ball_in_contact_moves_less_than_a_millimetre(walk, contacts):
-    """Once the foot has rolled onto it, for which the last third of a stance is time enough."""
+def test_ball_in_contact_moves_less_than_a_millimeter(walk, contacts):
+    """Only in the last third of a stance, after the foot has rolled onto the ball."""
     planted = plant_feet(add_foot_slide(walk), contacts).motion
 
     steps = np.linalg.norm(np.diff(ball_positions(planted)[..., :2], axis=0), axis=-1)
@@ -71,7 +71,7 @@ def test_a_ball_in_contact_moves_less_than_a_millimetre(walk, contacts):
     assert steps[inner_steps(contacts, 9)].max() < 0.001
 
 
-def test_nothing_above_the_hips_turns(walk, contacts):
+def test_joints_above_the_hips_are_unchanged(walk, contacts):
     source = add_foot_slide(walk)
 
     planted = plant_feet(source, contacts).motion
@@ -110,7 +110,7 @@ def test_feet_keep_their_own_roll(walk, contacts):
     assert np.degrees(angle_between(before, after).max()) < 8.0
 
 
-def test_a_foot_that_is_flung_about_does_not_fling_its_leg(walk, contacts):
+def test_wrong_foot_rotation_does_not_move_its_leg(walk, contacts):
     """For a tenth of a second in mid-stance the foot is captured upside down."""
     leg = find_legs(walk.skeleton)[0]
     middle = int(np.flatnonzero(inner_steps(contacts, 12)[:, 0])[0]) + 3
@@ -136,7 +136,7 @@ def test_no_contact_is_no_change(walk):
     assert planted.slide_after == 0.0
 
 
-def test_contact_throughout_holds_both_feet(walk):
+def test_permanent_contact_holds_both_feet(walk):
     """A jittering stand, in contact all the time."""
     rng = np.random.default_rng(3)
     stand = walk.with_poses(
@@ -153,7 +153,7 @@ def test_contact_throughout_holds_both_feet(walk):
     assert planted.slide_after < 0.05 * planted.slide_before
 
 
-def test_turns_and_moves_with_its_input(walk, contacts):
+def test_rotates_and_moves_with_its_input(walk, contacts):
     rotation = quaternion_from_rotation_vector([0.0, 0.0, 2.0])
     source = add_foot_slide(walk).slice(0, 90)
     rotations = source.rotations.copy()
@@ -161,15 +161,15 @@ def test_turns_and_moves_with_its_input(walk, contacts):
     c, s = np.cos(2.0), np.sin(2.0)
     root_positions = source.root_positions @ np.array([[c, -s, 0], [s, c, 0], [0, 0, 1]]).T
 
-    here = plant_feet(source, contacts[:90]).motion
-    there = plant_feet(
+    original = plant_feet(source, contacts[:90]).motion
+    moved = plant_feet(
         source.with_poses(rotations, np.add(root_positions, (5.0, -3.0, 0.0))), contacts[:90]
     ).motion
 
-    assert angle_between(here.rotations[:, 1:], there.rotations[:, 1:]).max() < 1e-5
+    assert angle_between(original.rotations[:, 1:], moved.rotations[:, 1:]).max() < 1e-5
 
 
-def test_at_twice_the_frame_rate_the_feet_go_the_same_way():
+def test_feet_have_the_same_trajectory_at_twice_the_frame_rate():
     fast = add_foot_slide(walking_gait(GaitSettings(duration=3.0, frame_rate=120.0)))
     contacts = detect_contacts(fast)
     slow = Motion(fast.skeleton, fast.rotations[::2], fast.root_positions[::2], 60.0)
@@ -182,8 +182,8 @@ def test_at_twice_the_frame_rate_the_feet_go_the_same_way():
     assert np.linalg.norm(at_120 - at_60, axis=-1).mean() < 0.002
 
 
-def test_hips_come_down_where_a_leg_is_too_short(walk, contacts):
-    """Strides of half a foot more than the legs can make."""
+def test_hips_are_lowered_if_a_leg_is_too_short(walk, contacts):
+    """The strides are half a foot longer than the legs can reach."""
     source = add_foot_slide(walk, 0.45)
 
     planted = plant_feet(source, contacts)
@@ -201,7 +201,7 @@ def test_knees_of_real_walks_do_not_pop(recordings):
 
     planted = plant_feet(walk)
 
-    # What is left is one frame in which the captured toes jump by 4 cm.
+    # The rest is one frame in which the captured toes jump by 4 cm.
     assert planted.slide_after < 0.07 * planted.slide_before
     for leg in find_legs(walk.skeleton):
         before, after = (
@@ -212,7 +212,7 @@ def test_knees_of_real_walks_do_not_pop(recordings):
 
 
 def test_uneven_ground_stays_uneven(walk, contacts):
-    """A walk up a ramp of 1 in 10: each plant keeps its height."""
+    """On a ramp of 1 in 10 each contact keeps its height."""
     root_positions = walk.root_positions.copy()
     root_positions[:, 2] -= 0.1 * root_positions[:, 1]
     uphill = walk.with_poses(root_positions=root_positions)
@@ -225,7 +225,7 @@ def test_uneven_ground_stays_uneven(walk, contacts):
     )
 
 
-def test_feet_on_a_level_floor_stand_at_one_height(walk, contacts):
+def test_contacts_on_a_level_floor_have_one_height(walk, contacts):
     root_positions = walk.root_positions.copy()
     root_positions[:, 2] += 0.008 * np.sin(np.arange(walk.n_frames) / 60.0)
     planted = plant_feet(walk.with_poses(root_positions=root_positions), contacts).motion
@@ -264,7 +264,7 @@ def test_contacts_of_another_clip_are_refused(walk):
         plant_feet(walk, np.ones((7, 2), dtype=bool))
 
 
-def test_rises_to_one_and_can_be_cancelled(walk):
+def test_progress_rises_to_one_and_can_cancel(walk):
     fractions = []
     plant_feet(walk, progress=lambda fraction, message="": fractions.append(fraction))
 

@@ -1,4 +1,4 @@
-"""How far joints are believed about each other, and which examples are used at all."""
+"""Select examples, and weight the joints, by their prediction error."""
 
 from dataclasses import replace
 
@@ -29,12 +29,12 @@ WINDOWS = Windows(200, LENGTH, 1.0)
 
 
 @pytest.mark.parametrize("density", [1.0, 2.0])
-def test_foresight_is_that_of_leaving_a_joint_out(rng, density):
-    """Against a dense conditional Gaussian, one window and one joint at a time."""
+def test_joint_score_equals_the_error_of_leaving_a_joint_out(rng, density):
+    """The reference is a dense conditional Gaussian, one window and one joint at a time."""
     prior, rough, noise = coupled_channels(rng), random_walk(rng), np.full(5, 0.2)
     windows = Windows(200, round(LENGTH * density), density)
 
-    found = score_leave_joint_out(prior, rough, noise, JOINTS, windows)
+    score = score_leave_joint_out(prior, rough, noise, JOINTS, windows)
 
     n_slow, n_channels = prior.n_slow, 5
     power = np.einsum("kckc->c", prior.slow) / LENGTH
@@ -55,30 +55,30 @@ def test_foresight_is_that_of_leaving_a_joint_out(rng, density):
             (coefficients[:, inlier_probability] - coefficients[:, others] @ gain) ** 2
         ).sum()
         total_power += (coefficients[:, inlier_probability] ** 2).sum()
-    assert_allclose(found, residual_power / total_power, rtol=1e-6)
+    assert_allclose(score, residual_power / total_power, rtol=1e-6)
 
 
-def test_foretelling_outliers_does_not_count():
+def test_score_ignores_outliers():
     noise, leave_one_out_error = (
         np.array([1.0, 2.0]),
         np.array([[1.0, 2.0], [50.0, np.nan], [0.0, 4.0]]),
     )
     inlier_probability = np.array([[1.0, 1.0], [0.0, 0.0], [1.0, 0.5]])
 
-    found = score_leave_one_out(leave_one_out_error, inlier_probability, noise)
+    score = score_leave_one_out(leave_one_out_error, inlier_probability, noise)
 
-    assert_allclose(found, (1.0 + 1.0 + 0.0 + 0.5 * 4.0) / 16.0 / 3.5)
+    assert_allclose(score, (1.0 + 1.0 + 0.0 + 0.5 * 4.0) / 16.0 / 3.5)
 
 
-def test_channels_that_know_nothing_of_each_other_foretell_nothing(rng):
+def test_joint_score_of_independent_channels_is_one(rng):
     prior = smooth_channels(np.ones(5))
 
-    found = score_leave_joint_out(prior, random_walk(rng), np.full(5, 0.2), JOINTS, WINDOWS)
+    score = score_leave_joint_out(prior, random_walk(rng), np.full(5, 0.2), JOINTS, WINDOWS)
 
-    assert_allclose(found, 1.0, atol=1e-9)
+    assert_allclose(score, 1.0, atol=1e-9)
 
 
-def test_a_mixture_lies_between_both(rng):
+def test_mixture_is_the_weighted_mean_of_both(rng):
     examples = coupled_channels(rng)
     plain = smooth_channels(np.ones(5))
 
@@ -89,8 +89,8 @@ def test_a_mixture_lies_between_both(rng):
     assert_allclose(mixture.mean, examples.mean)
 
 
-def test_only_the_smooth_share_is_fitted(rng):
-    """Twice the smoothness is a share of it more, on each channel by itself."""
+def test_only_the_smooth_fraction_is_fitted(rng):
+    """Doubled smoothness adds its fraction once more to each channel."""
     plain = smooth_channels(np.ones(5))
     mixture = mix_priors(coupled_channels(rng), plain, 0.25)
 
@@ -102,7 +102,7 @@ def test_only_the_smooth_share_is_fitted(rng):
     assert_allclose(again.slow, mixture.slow, atol=1e-12)
 
 
-def test_examples_of_the_movement_win_and_of_stillness_lose(rng):
+def test_selects_examples_of_the_movement_but_not_of_stillness(rng):
     prior = coupled_channels(rng)
     take = sample_take(prior, rng)
     noisy, noise = take + 0.5 * rng.normal(size=take.shape), np.full(5, 0.5)
@@ -118,8 +118,8 @@ def test_examples_of_the_movement_win_and_of_stillness_lose(rng):
     assert fractions[1] == 1.0
 
 
-def test_no_group_cuts_through_a_joint(rng):
-    """Of a hundred joints some turn about one axis, some about two, some about three."""
+def test_groups_keep_joints_together(rng):
+    """Of a hundred joints some rotate about one axis, some about two, some about three."""
     values = rng.normal(size=(20, 100, 3))
     values[:, ::3, 1:] = 0.0
     values[:, 1::3, 2] = 0.0
@@ -135,8 +135,8 @@ def test_no_group_cuts_through_a_joint(rng):
     assert np.concatenate(groups).tolist() == moving.tolist()
 
 
-def test_what_fits_into_one_group_is_one(rng):
-    """Thirty joints, of which most are hinges."""
+def test_channels_within_the_limit_are_one_group(rng):
+    """Thirty joints, most of them hinges."""
     values = np.zeros((20, 30, 3))
     values[:, :, 0] = rng.normal(size=(20, 30))
     values[:, :20, 1:] = rng.normal(size=(20, 20, 2))
@@ -148,14 +148,14 @@ def test_what_fits_into_one_group_is_one(rng):
 
 
 def smooth_channels(variance) -> WindowPrior:
-    """Five channels that move smoothly, each by itself."""
+    """Return the prior of five channels that move smoothly and independently."""
     kernels = build_smooth_kernels(LENGTH, RATE)
     weights = np.repeat(variance[None] / len(kernels), len(kernels), axis=0)
     return build_smooth_prior(np.zeros(5), SmoothPrior(kernels, weights), 0.05, 0.5)
 
 
 def coupled_channels(rng) -> WindowPrior:
-    """Five channels that move as two things do."""
+    """Return the prior of five channels driven by two sources."""
     plain = smooth_channels(np.ones(5))
     mix = rng.normal(size=(5, 2))
     together = mix @ mix.T + 0.05 * np.eye(5)
@@ -169,7 +169,7 @@ def coupled_channels(rng) -> WindowPrior:
 
 
 def sample_take(prior: WindowPrior, rng):
-    """A take of the prior's two things, smooth over time."""
+    """Sample a take of the prior's two sources, smooth over time."""
     times = np.arange(200) / RATE
     steps = np.subtract.outer(times, times)
     kernel = sum(np.exp(-0.5 * (steps / length) ** 2) for length in CORRELATION_TIMES_S) / len(

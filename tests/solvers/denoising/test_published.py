@@ -1,4 +1,4 @@
-"""The published filter must minimise the cost that its paper prints."""
+"""The published filter must minimize the cost in its paper."""
 
 from dataclasses import replace
 
@@ -32,8 +32,8 @@ def noisy(rng):
     return values
 
 
-def test_the_cost_is_that_of_the_best_pattern_weights(patterns, noisy, rng):
-    """Eq. 2.16 of [LOU12] by explicit least squares, window after window."""
+def test_cost_equals_that_of_the_best_pattern_weights(patterns, noisy, rng):
+    """Eq. 2.16 of [LOU12] by explicit least squares, one window at a time."""
     motion = rng.normal(size=noisy.shape)
     observed_mask = np.isfinite(noisy)
     residual = (motion - noisy)[observed_mask]
@@ -52,9 +52,7 @@ def test_the_cost_is_that_of_the_best_pattern_weights(patterns, noisy, rng):
     assert_allclose(cost, robust + PATTERN_WEIGHT * distance, rtol=1e-12)
 
 
-def test_the_alternation_finds_a_minimum_that_direct_descent_cannot_better(
-    patterns, noisy, monkeypatch
-):
+def test_alternation_reaches_the_minimum_of_direct_descent(patterns, noisy, monkeypatch):
     monkeypatch.setattr("solvers.denoising.published.MAX_ITERATIONS", 3000)
     monkeypatch.setattr("solvers.denoising.published.MAX_RELATIVE_CHANGE", 1e-12)
     observed_mask, observed = np.isfinite(noisy), np.nan_to_num(noisy)
@@ -81,7 +79,7 @@ def test_every_round_lowers_the_cost(patterns, noisy, monkeypatch):
     assert (np.diff(costs) <= 1e-9).all()
 
 
-def test_says_why_it_does_not_use_the_examples(swinging_leg, leg):
+def test_reports_why_it_does_not_use_the_examples(swinging_leg, leg):
     settings = DenoiseSettings(method=Method.PUBLISHED)
     names = dict(zip(leg.names, ("hip", "knee", "foot", "end"), strict=True))
     other = replace(leg, names=tuple(names.values()))

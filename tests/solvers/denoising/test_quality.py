@@ -1,4 +1,4 @@
-"""The figures must mean what they say."""
+"""Each quality figure must equal its definition."""
 
 import json
 
@@ -23,7 +23,7 @@ def test_jitter_of_a_cubic_is_its_third_derivative():
     assert_allclose(measure_jitter(positions, 120.0), 6.0 * 3.0, rtol=1e-6)
 
 
-def test_jitter_leaves_out_what_was_not_observed(rng):
+def test_jitter_skips_missing_samples(rng):
     positions = rng.normal(size=(40, 2, 3))
     gapped = positions.copy()
     gapped[20:, 0] = np.nan
@@ -35,7 +35,7 @@ def test_jitter_of_three_frames_is_unknown():
     assert np.isnan(measure_jitter(np.zeros((3, 2, 3)), 30.0)).all()
 
 
-def test_finds_spikes_and_gaps_where_they_are(swinging_leg):
+def test_finds_spikes_and_gaps(swinging_leg):
     rotations = swinging_leg.rotations.copy()
     jump = quaternion_from_rotation_vector([0.0, 0.7, 0.0])
     rotations[60, 1] = multiply(rotations[60, 1], jump)
@@ -49,7 +49,7 @@ def test_finds_spikes_and_gaps_where_they_are(swinging_leg):
     assert_allclose(knee.deviation[60], 0.7, atol=0.01)
 
 
-def test_a_root_that_jumps_is_a_spike_of_the_root(swinging_leg):
+def test_jump_of_the_root_is_a_spike_of_the_root(swinging_leg):
     root_positions = swinging_leg.root_positions.copy()
     root_positions[40] += [0.0, 0.0, 0.3]
 
@@ -58,7 +58,7 @@ def test_a_root_that_jumps_is_a_spike_of_the_root(swinging_leg):
     assert np.argwhere(quality.spikes).tolist() == [[40, 0]]
 
 
-def test_a_clean_take_has_none(swinging_leg):
+def test_clean_take_has_no_spikes_or_gaps(swinging_leg):
     quality = measure_quality(swinging_leg)
 
     assert not quality.spikes.any()
@@ -66,7 +66,7 @@ def test_a_clean_take_has_none(swinging_leg):
 
 
 @pytest.mark.parametrize("rate", [30.0, 60.0, 120.0])
-def test_noise_is_reported_in_its_own_size_at_any_frame_rate(rng, leg, rate):
+def test_noise_is_measured_at_any_frame_rate(rng, leg, rate):
     time = np.arange(int(4 * rate)) / rate
     vectors = np.zeros((len(time), 4, 3))
     vectors[:, 1, 0] = 0.5 * np.sin(2 * np.pi * time)
@@ -80,7 +80,7 @@ def test_noise_is_reported_in_its_own_size_at_any_frame_rate(rng, leg, rate):
     assert_allclose(noise, 0.05, rtol=0.3)
 
 
-def test_a_turned_and_moved_take_has_the_same_faults(swinging_leg, rng):
+def test_quality_is_invariant_to_position_and_heading(swinging_leg, rng):
     rotation = quaternion_from_rotation_vector([0.0, 0.0, 1.0])
     rotations = multiply(
         swinging_leg.rotations,
@@ -97,7 +97,7 @@ def test_a_turned_and_moved_take_has_the_same_faults(swinging_leg, rng):
     assert_allclose(a.jitter[1], b.jitter[1], rtol=1e-9)
 
 
-def test_slide_is_the_way_of_a_foot_that_stands():
+def test_slide_is_the_distance_in_contact():
     """A foot at 0.3 m/s to the side: 0.3 m/s, and 0.3 m in 100 steps at 100 Hz."""
     points = np.zeros((201, 2, 3))
     points[:, :, 0] = 0.003 * np.arange(201)[:, None]
@@ -109,7 +109,7 @@ def test_slide_is_the_way_of_a_foot_that_stands():
     assert_allclose(slide.distance, 0.3, rtol=1e-9)
 
 
-def test_a_foot_that_rolls_over_its_toe_does_not_slide():
+def test_foot_that_rolls_over_its_toe_does_not_slide():
     points = np.zeros((50, 2, 3))
     points[:, 0, 1] = -0.01 * np.arange(50)
 
@@ -118,7 +118,7 @@ def test_a_foot_that_rolls_over_its_toe_does_not_slide():
     assert slide.distance == 0.0
 
 
-def test_a_skating_walk_slides_and_a_planted_one_does_not():
+def test_skating_walk_slides_and_planted_walk_does_not():
     walk = walking_gait(GaitSettings(duration=3.0, frame_rate=60.0))
     root_positions = walk.root_positions.copy()
     root_positions[:, 1] -= (
@@ -135,7 +135,7 @@ def test_a_skating_walk_slides_and_a_planted_one_does_not():
     assert [foot.side for foot in skating.feet] == ["left", "right"]
 
 
-def test_points_called_like_joints_have_feet():
+def test_points_named_like_joints_have_feet():
     walk = walking_gait(GaitSettings(duration=3.0, frame_rate=60.0))
     points = Tracks(walk.skeleton.names, forward_kinematics(walk).positions, 60.0)
 
@@ -148,7 +148,7 @@ def test_points_called_like_joints_have_feet():
 
 
 def test_bones_are_found_and_their_drift_measured(rng):
-    """Two rigid rods that wander apart; one point creeps along its rod by 4 cm."""
+    """Two rigid rods drift away from each other; one point moves along its rod by 4 cm."""
     n_frames = 400
     origins = np.cumsum(rng.normal(scale=0.05, size=(n_frames, 2, 3)), axis=0)
     turns = quaternion_from_rotation_vector(rng.normal(size=(n_frames, 2, 3)))
@@ -166,11 +166,11 @@ def test_bones_are_found_and_their_drift_measured(rng):
     assert_allclose(bones["a", "b"].length, 0.3, rtol=1e-6)
     assert bones["a", "b"].drift < 1e-9
     assert_allclose(bones["c", "d"].drift, 0.9 * 0.04, rtol=0.02)
-    assert len(bones) == 2  # what wanders apart is no bone
+    assert len(bones) == 2  # points that drift away from each other are no bone
 
 
-def test_a_steady_bone_is_preferred_to_a_nearer_point_that_wobbles(rng):
-    """A point hovers halfway between the ends of a rod."""
+def test_bone_of_constant_length_is_preferred_to_a_nearer_point(rng):
+    """A point jitters halfway between the ends of a rod."""
     start = np.cumsum(rng.normal(scale=0.05, size=(300, 3)), axis=0)
     stop = start + rotate(
         quaternion_from_rotation_vector(rng.normal(size=(300, 3))), [0.3, 0, 0]
@@ -206,7 +206,7 @@ def test_the_report_names_every_joint_and_the_figures_fit_in_json(swinging_leg):
     assert set(figures["joints"]) == set(quality.names)
 
 
-def test_two_takes_stand_side_by_side(swinging_leg, rng):
+def test_comparison_lists_both_takes(swinging_leg, rng):
     noise = quaternion_from_rotation_vector(rng.normal(scale=0.05, size=(120, 4, 3)))
     noisy = swinging_leg.with_poses(multiply(swinging_leg.rotations, noise))
 
@@ -236,7 +236,7 @@ def test_a_threshold_below_the_noise_is_refused():
         QualitySettings(spike_threshold=0.0)
 
 
-def test_rises_to_one_and_can_be_cancelled(swinging_leg):
+def test_progress_rises_to_one_and_can_cancel(swinging_leg):
     fractions = []
     measure_quality(
         swinging_leg, progress=lambda fraction, message="": fractions.append(fraction)

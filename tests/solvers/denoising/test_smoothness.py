@@ -1,4 +1,4 @@
-"""How fast a channel moves must be read off a noisy take."""
+"""Correlation times are estimated from a noisy take."""
 
 import numpy as np
 import pytest
@@ -15,7 +15,7 @@ from solvers.denoising.posterior.windows import Windows
 WINDOW, RATE, N_FRAMES = 20, 30.0, 400
 
 
-def test_kernels_are_covariances_of_the_waves():
+def test_kernels_are_covariances_of_the_coefficients():
     steps = np.subtract.outer(np.arange(WINDOW), np.arange(WINDOW)) / RATE
     for kernel, length in zip(
         build_smooth_kernels(WINDOW, RATE), CORRELATION_TIMES_S, strict=True
@@ -27,7 +27,7 @@ def test_kernels_are_covariances_of_the_waves():
 
 @pytest.mark.parametrize("index", [0, 2, 3])
 @pytest.mark.parametrize("density", [1.0, 4.0])
-def test_finds_the_time_and_the_size_of_a_movement(rng, index, density):
+def test_finds_correlation_time_and_variance_of_a_movement(rng, index, density):
     rate, n_frames = RATE * density, round(N_FRAMES * density)
     steps = np.subtract.outer(np.arange(n_frames), np.arange(n_frames)) / rate
     kernel = np.exp(-0.5 * (steps / CORRELATION_TIMES_S[index]) ** 2)
@@ -45,7 +45,7 @@ def test_finds_the_time_and_the_size_of_a_movement(rng, index, density):
     assert weights[max(index - 1, 0) : index + 2].sum() > 0.85 * weights.sum()
 
 
-def test_noise_is_not_taken_for_movement(rng):
+def test_noise_is_not_classified_as_movement(rng):
     noise = 3.0 * rng.normal(size=(N_FRAMES, 30))
     windows = Windows(N_FRAMES, WINDOW, 1.0)
 
@@ -57,8 +57,8 @@ def test_noise_is_not_taken_for_movement(rng):
     assert weights.sum(axis=0).mean() < 0.1 * 9.0
 
 
-def test_few_frames_move_as_the_other_channels_do(rng):
-    """One window tells little of one channel: what all of them tell counts beside it."""
+def test_few_frames_are_pooled_with_the_other_channels(rng):
+    """One window has little information on one channel, so all channels count as well."""
     times = np.arange(WINDOW)[:, None] / RATE
     slow = 10.0 * np.sin(2 * np.pi * 0.5 * times + np.linspace(0, 6, 20))
     fast_channel = 5.0 * np.sin(2 * np.pi * 3.0 * times)
@@ -75,7 +75,7 @@ def test_few_frames_move_as_the_other_channels_do(rng):
     )
 
 
-def test_what_never_moves_is_no_error():
+def test_constant_channels_have_finite_weights():
     windows, kernels = Windows(WINDOW, WINDOW, 1.0), build_smooth_kernels(WINDOW, RATE)
 
     weights = fit_smoothness(np.zeros((WINDOW, 2)), np.full(2, 0.01), kernels, windows)

@@ -1,4 +1,4 @@
-"""Which part of the sole carries the foot."""
+"""Estimate which part of the sole carries the foot."""
 
 import numpy as np
 import pytest
@@ -34,8 +34,8 @@ def test_a_foot_without_toes_ends_in_its_end_site():
     assert_allclose(points[0], [[0.1, 0.03, 0.0], [0.1, -0.15, 0.0]], atol=1e-9)
 
 
-def test_how_high_a_resting_heel_is_drawn_is_measured():
-    """Still from frame 20 on, with the heel drawn 3 cm too high and the tip 1 cm too low."""
+def test_height_of_a_resting_heel_is_measured():
+    """From frame 20 on the foot rests; its heel is 3 cm too high and its tip 1 cm too low."""
     points = np.zeros((60, 3, 3))
     points[..., 2] = [0.03, 0.0, -0.01]
     points[:20, :, 0] = np.arange(20)[::-1, None] * 0.05
@@ -49,7 +49,7 @@ def test_how_high_a_resting_heel_is_drawn_is_measured():
     ("heights", "carries"),
     [((0.0, 0.06, 0.08), 0), ((0.06, 0.0, 0.0), 1), ((0.1, 0.05, 0.0), 2)],
 )
-def test_the_lowest_point_carries(heights, carries):
+def test_lowest_point_carries_the_load(heights, carries):
     load = estimate_loads(np.tile(np.array(heights), (10, 1)), 60.0, 1.0)
 
     assert_allclose(load.sum(axis=1), 1.0)
@@ -57,7 +57,7 @@ def test_the_lowest_point_carries(heights, carries):
     assert load[:, carries].min() > 0.8
 
 
-def test_a_level_foot_stands_on_heel_and_ball_rather_than_on_its_trembling_toes():
+def test_level_foot_rests_on_heel_and_ball_instead_of_jittering_toes():
     load = estimate_loads(np.zeros((10, 3)), 60.0, 1.0)
 
     assert_allclose(load[:, 0], load[:, 1])

@@ -1,4 +1,4 @@
-"""The list must lead the animator to what is wrong, worst first, and to nothing else."""
+"""The list must contain every issue, worst first, and nothing else."""
 
 import numpy as np
 import pytest
@@ -10,7 +10,7 @@ from solvers.recordings.skeleton_files.bvh import read_bvh
 from solvers.rotations.representations import multiply, quaternion_from_rotation_vector
 
 
-def shaken(motion: Motion, joint: int, frames: slice, scale: float, rng) -> Motion:
+def with_jitter(motion: Motion, joint: int, frames: slice, scale: float, rng) -> Motion:
     rotations = motion.rotations.copy()
     size = (*rotations[frames, joint].shape[:-1], 3)
     noise = quaternion_from_rotation_vector(rng.normal(scale=scale, size=size))
@@ -18,11 +18,11 @@ def shaken(motion: Motion, joint: int, frames: slice, scale: float, rng) -> Moti
     return motion.with_poses(rotations)
 
 
-def test_a_clean_take_has_no_spots(swinging_leg):
+def test_clean_take_has_no_issues(swinging_leg):
     assert find_worst_issues(swinging_leg) == ()
 
 
-def test_a_spike_is_named_with_its_place_and_size(swinging_leg):
+def test_spike_is_listed_with_its_frames_and_size(swinging_leg):
     rotations = swinging_leg.rotations.copy()
     jump = quaternion_from_rotation_vector([0.0, np.radians(40.0), 0.0])
     rotations[70:72, 1] = multiply(rotations[70:72, 1], jump)
@@ -39,7 +39,7 @@ def test_a_spike_is_named_with_its_place_and_size(swinging_leg):
     assert issue.severity > 3.0
 
 
-def test_spikes_in_quick_succession_are_one_spot(swinging_leg):
+def test_consecutive_spikes_are_one_issue(swinging_leg):
     rotations = swinging_leg.rotations.copy()
     jump = quaternion_from_rotation_vector([0.0, np.radians(40.0), 0.0])
     for frame in (60, 66):
@@ -51,7 +51,7 @@ def test_spikes_in_quick_succession_are_one_spot(swinging_leg):
     assert issue.sentence.startswith("knee jumps 2 times, by up to ")
 
 
-def test_a_gap_is_worse_the_longer_it_is(swinging_leg):
+def test_longer_gap_is_worse(swinging_leg):
     rotations = swinging_leg.rotations.copy()
     rotations[10:20, 2] = np.nan
     rotations[50:90, 1] = np.nan
@@ -65,8 +65,8 @@ def test_a_gap_is_worse_the_longer_it_is(swinging_leg):
     assert issues[0].sentence == "knee is missing for 0.67 s."
 
 
-def test_a_joint_that_shakes_for_a_while_is_found(swinging_leg, rng):
-    take = shaken(swinging_leg, 1, slice(60, 110), 0.05, rng)
+def test_jitter_of_one_joint_is_listed(swinging_leg, rng):
+    take = with_jitter(swinging_leg, 1, slice(60, 110), 0.05, rng)
 
     issues = [issue for issue in find_worst_issues(take) if issue.kind == "jitter"]
 
@@ -75,14 +75,14 @@ def test_a_joint_that_shakes_for_a_while_is_found(swinging_leg, rng):
 
 
 @pytest.mark.parametrize("scale", [0.005, 0.02, 0.08])
-def test_noise_all_over_the_take_is_no_spot(swinging_leg, rng, scale):
-    """It is the take's own standard; the report states its size."""
-    take = shaken(swinging_leg, slice(0, 3), slice(None), scale, rng)
+def test_noise_of_the_entire_take_is_no_issue(swinging_leg, rng, scale):
+    """It sets the scale of the take; the report states its size."""
+    take = with_jitter(swinging_leg, slice(0, 3), slice(None), scale, rng)
 
     assert not [issue for issue in find_worst_issues(take) if issue.kind == "jitter"]
 
 
-def test_a_foot_that_slides_while_it_stands_is_found(recordings):
+def test_foot_slide_is_listed(recordings):
     walk = read_bvh(recordings / "mocap" / "cmu_walk" / "07_01.bvh").slice(1, 120)
     contacts = np.zeros((walk.n_frames, 2), dtype=bool)
     contacts[20:60, 0] = True
@@ -93,7 +93,7 @@ def test_a_foot_that_slides_while_it_stands_is_found(recordings):
     assert all((issue.start_frame, issue.stop_frame) == (20, 60) for issue in issues)
 
 
-def test_worst_first_and_no_more_than_asked_for(swinging_leg, rng):
+def test_worst_issue_is_first_and_the_number_is_limited(swinging_leg, rng):
     rotations = swinging_leg.rotations.copy()
     for frame, angle in ((20, 0.3), (50, 0.9), (80, 0.6)):
         jump = quaternion_from_rotation_vector([0.0, angle, 0.0])
@@ -106,7 +106,7 @@ def test_worst_first_and_no_more_than_asked_for(swinging_leg, rng):
     assert [issue.start_frame for issue in issues] == [50, 80]
 
 
-def test_a_joint_never_observed_is_one_spot(swinging_leg):
+def test_joint_never_observed_is_one_issue(swinging_leg):
     rotations = swinging_leg.rotations.copy()
     rotations[:, 1] = np.nan
 
