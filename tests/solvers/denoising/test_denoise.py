@@ -20,8 +20,7 @@ from solvers.recordings import read_bvh
 from solvers.rotations import angle_between, multiply, quaternion_from_rotation_vector
 from solvers.samples import GaitSettings, walking_gait
 
-WALKS = ("32_01", "07_01", "07_02", "07_04", "10_04")
-"""The first is the take, the others are the examples."""
+WALKS = ("32_01", "07_01", "07_02", "07_04", "10_04")  # the take, then its examples
 
 
 @pytest.mark.parametrize("method", Method)
