@@ -15,6 +15,7 @@ from ..settings import Settings, setting
 from .channels import CENTIMETERS, Channels, decode, encode
 from .limits import clamp_to_limits, find_impossible_rotations
 from .marker_gaps import FilledMarkers, fill_markers
+from .observed_samples import max_per_joint, observed_mask, restore_observed
 from .posterior import Estimate, estimate_in_groups
 from .prior import FilterBases
 from .published import filter_as_published
@@ -123,7 +124,7 @@ def denoise(
         learned = "points" if bases.of_points else "joints"
         raise InvalidMotionError(f"The examples are of {learned}, the recording is not.")
     progress(0.0, "Reading")
-    if not _observed_mask(recording).any():
+    if not observed_mask(recording).any():
         raise InvalidMotionError(
             "Nothing was observed in this take; there is nothing to clean."
         )
@@ -136,7 +137,7 @@ def denoise(
             unchanged_settings = replace(settings, strength=0.0)
             results.append(
                 _unchanged(segment)
-                if _observed_mask(segment).all()
+                if observed_mask(segment).all()
                 else _denoise_segment(segment, bases, None, unchanged_settings, step)
             )
         else:
@@ -177,15 +178,15 @@ def _denoise_segment(
             estimate, prior_used = _estimate(
                 possible_channels, segment.frame_rate, bases, settings, second_progress
             )
-    noisy, observed_mask = channels.flat, np.isfinite(channels.flat)
+    noisy, observed = channels.flat, np.isfinite(channels.flat)
     spikes = (estimate.inliers < 0.5) & (np.abs(noisy - estimate.values) > MIN_OUTLIER_ERROR)
     blended = noisy + settings.strength * (estimate.values - noisy)
-    values = np.where(observed_mask, blended, estimate.values)
+    values = np.where(observed, blended, estimate.values)
     cleaned = decode(complete, channels, values.reshape(channels.values.shape))
-    cleaned = _restore_observed(segment, cleaned, settings)
+    cleaned = cleaned if settings.strength > 0.0 else restore_observed(segment, cleaned)
     if limits is not None and isinstance(cleaned, Motion):
         cleaned = clamp_to_limits(cleaned, limits)
-    confidence = _confidence(_max_per_joint(segment, channels, estimate.deviation), filled)
+    confidence = _confidence(max_per_joint(segment, channels, estimate.deviation), filled)
     if isinstance(cleaned, Tracks):
         unknown_mask = _unknown_points(cleaned.names, segment, bases)
         confidence[:, unknown_mask] = 0.0
@@ -194,7 +195,7 @@ def _denoise_segment(
         )
     return Denoised(
         cleaned,
-        (_max_per_joint(segment, channels, spikes) > 0.0) & _observed_mask(segment),
+        (max_per_joint(segment, channels, spikes) > 0.0) & observed_mask(segment),
         confidence,
         estimate.iterations,
         estimate.converged,
@@ -208,7 +209,7 @@ def _unknown_points(
     """Return which points neither this segment nor the examples show, shape (n_points,)."""
     known_means = bases.reference_of if bases else {}
     return np.asarray(
-        ~_observed_mask(segment).any(axis=0) & [name not in known_means for name in names]
+        ~observed_mask(segment).any(axis=0) & [name not in known_means for name in names]
     )
 
 
@@ -240,7 +241,7 @@ def _estimate(
 
 
 def _unchanged(segment: Motion | Tracks) -> Denoised:
-    shape = _observed_mask(segment).shape
+    shape = observed_mask(segment).shape
     return Denoised(segment, np.zeros(shape, dtype=np.bool_), np.ones(shape), 0, True, "")
 
 
@@ -271,39 +272,3 @@ def _join_segments(
         f"{longest_segment.prior_used} {tell_of_cuts(recording, cuts)}".strip(),
         cuts,
     )
-
-
-def _observed_mask(recording: Motion | Tracks) -> NDArray[np.bool_]:
-    """Return where each joint or point was observed, shape (n_frames, n_joints)."""
-    return recording.observed if isinstance(recording, Motion) else recording.visible
-
-
-def _restore_observed(
-    recording: Motion | Tracks, cleaned: Motion | Tracks, settings: DenoiseSettings
-) -> Motion | Tracks:
-    """Return the observed samples unchanged, to the last bit, at strength 0."""
-    if settings.strength > 0.0:
-        return cleaned
-    if isinstance(recording, Motion) and isinstance(cleaned, Motion):
-        rotations, roots = recording.rotations, recording.root_positions
-        return recording.with_poses(
-            np.where(np.isfinite(rotations), rotations, cleaned.rotations),
-            np.where(np.isfinite(roots), roots, cleaned.root_positions),
-        )
-    assert isinstance(recording, Tracks)
-    assert isinstance(cleaned, Tracks)
-    positions = recording.positions
-    return recording.with_positions(
-        np.where(np.isfinite(positions), positions, cleaned.positions)
-    )
-
-
-def _max_per_joint(
-    recording: Motion | Tracks, channels: Channels, values: NDArray[np.generic]
-) -> Array:
-    """Return the maximum over each joint's channels, shape (n_frames, n_joints)."""
-    per_part = values.reshape(channels.values.shape).max(axis=2)
-    result = np.zeros(_observed_mask(recording).shape)
-    for part, joint in enumerate(channels.joints):
-        result[:, joint] = np.maximum(result[:, joint], per_part[:, part])
-    return result
