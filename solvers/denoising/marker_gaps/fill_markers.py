@@ -126,7 +126,7 @@ def _list_open_gaps(take: _Take) -> list[Gap]:
 
 
 def _fill_point(take: _Take, point: int, length: int, gaps: list[Gap]) -> None:
-    """Fill all gaps of a point with this length or a little more at once."""
+    """Fill all gaps of a point of this length, and of up to four times it, at once."""
     similar_gaps = [
         (start, stop)
         for other_length, other, start, stop in gaps
