@@ -6,7 +6,7 @@ from numpy.testing import assert_allclose
 
 from solvers.motion import JointRecording, Sensor, Tracks, find_humanoid_map
 from solvers.motion.humanoid.posture_joints import POSTURE_JOINTS
-from solvers.physics.body import physics_body
+from solvers.physics.body import build_physics_body
 from solvers.samples import GaitSettings, walking_gait
 from tests.benchmarks.peers.one_euro import one_euro
 from tests.benchmarks.physics.physics_momentum import impossible_force, outside_cone
@@ -120,7 +120,7 @@ def test_only_forces_within_friction_can_come_from_the_ground():
 
 def test_who_falls_needs_no_force_and_who_hovers_needs_all_of_it():
     motion = walking_gait(GaitSettings(duration=1.0, frame_rate=100.0))
-    body = physics_body(motion, find_humanoid_map(motion.skeleton))
+    body = build_physics_body(motion, find_humanoid_map(motion.skeleton))
     still = np.tile(motion.rotations[:1], (100, 1, 1))
     high = np.tile(motion.root_positions[:1] + np.array([0.0, 0.0, 30.0]), (100, 1))
     time = np.arange(100) / 100.0

@@ -4,7 +4,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...solvers.motion.humanoid import PARENTS, POSTURE_JOINTS
-from ...solvers.pictures import SERIES, Canvas, View, paler, project
+from ...solvers.pictures import SERIES, Canvas, View, lighten_color, project_to_view
 
 Array = NDArray[np.float64]
 Pixels = NDArray[np.uint8]
@@ -31,14 +31,14 @@ def thumbnail(postures: Array) -> Pixels:
     canvas = Canvas(SIZE, SIZE)
     moments = np.linspace(0, len(postures) - 1, 2 * N_FIGURES + 1).round().astype(int)[1::2]
     scale = (SIZE - 2.0 * MARGIN) / TALL
-    seen = project(postures[moments], np.zeros(len(moments)), View.QUARTER)
+    seen = project_to_view(postures[moments], np.zeros(len(moments)), View.QUARTER)
     color = SERIES[1]
     for place, figure in enumerate(seen):
         middle = SIZE * (place + 0.5) / N_FIGURES
         spots = figure[:, :2] * (scale, -scale) + (middle, SIZE - MARGIN - FOOT * scale)
         for joint, parent in enumerate(PARENTS):
             if parent >= 0:
-                shade = paler(color, 0.5) if LEFT[joint] else color
+                shade = lighten_color(color, 0.5) if LEFT[joint] else color
                 canvas.line(spots[[parent, joint]], shade, 2.0)
         canvas.dot(spots[POSTURE_JOINTS.index("head")], color, 4.0)
     return canvas.picture().pixels

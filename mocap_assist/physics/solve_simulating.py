@@ -4,7 +4,7 @@ from dataclasses import replace
 from typing import NamedTuple
 
 from ...solvers.motion import Motion
-from ...solvers.physics import Simulated, SimulateSettings, simulate, with_strength
+from ...solvers.physics import Simulated, SimulateSettings, apply_strength, simulate
 from ...solvers.progress import Progress, unwatched
 from ..clean.solve_cleaning import differing
 
@@ -39,5 +39,5 @@ def simulate_take(
     """Simulate a take, unless that was done already, and take over so much of it."""
     if simulated is None:
         simulated = simulate(take.body, settings=take.settings, progress=progress)
-    body = with_strength(take.body, simulated, strength)
+    body = apply_strength(take.body, simulated, strength)
     return Resimulated(simulated, body, differing(take.body, body))

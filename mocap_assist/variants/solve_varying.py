@@ -14,7 +14,7 @@ from ...solvers.pictures import StickFigureSettings, draw_stick_figures, stack_p
 from ...solvers.progress import Progress, unwatched, within
 from ...solvers.retargeting import RetargetSettings
 from ...solvers.rotations import multiply, rotate
-from ...solvers.variation import VarySettings, loop_at_rate
+from ...solvers.variation import VarySettings, resample_loop
 from ...solvers.workflows import vary_motions
 from ..library.thumbnails import Pixels, thumbnail
 from ..retarget.solve_retargeting import Clip, Retargeted, RetargetProblem, retarget_clips
@@ -78,7 +78,7 @@ def vary(problem: VaryProblem, *, progress: Progress = unwatched) -> Varied:
         seen = normalise(motion_postures(motion), motion.frame_rate)
         turn = float(first.headings[0] - seen.headings[0])
         there = moved(motion, seen.places[0], turn, first.places[0])
-        seen_as = loop_at_rate if is_loop else resample
+        seen_as = resample_loop if is_loop else resample
         finer = motion.frame_rate > problem.frame_rate
         motions.append(seen_as(there, problem.frame_rate) if finer else there)
         pictures.append(thumbnail(seen.postures))

@@ -1,13 +1,13 @@
 """Commands by gesture: hands held still, strokes and waves, from a stream of postures."""
 
 from .events import Gesture, GestureEvent
-from .recognition import GestureRecogniser, Mode
+from .recognition import GestureRecognizer, Mode
 from .settings import GestureSettings
 
 __all__ = [
     "Gesture",
     "GestureEvent",
-    "GestureRecogniser",
+    "GestureRecognizer",
     "GestureSettings",
     "Mode",
 ]

@@ -27,7 +27,7 @@ class Mode(Enum):
     CAPTURING = "capturing"
 
 
-class GestureRecogniser:
+class GestureRecognizer:
     """Listens to one actor: right hand up, waves, claps, hands apart, right arm turning.
 
     The right hand, held up, shows the library; while it is shown, waves of that hand to the
@@ -133,7 +133,7 @@ class GestureRecogniser:
             detector.forget()
 
 
-def recognise(
+def recognize_gestures(
     times: Array,
     positions: Array,
     confidence: Array | None = None,
@@ -149,7 +149,7 @@ def recognise(
     confidence : shape (n_frames, 20), 0 to 1, optional
     settings : GestureSettings
     """
-    recogniser = GestureRecogniser(settings)
+    recogniser = GestureRecognizer(settings)
     sure = np.ones(positions.shape[:2]) if confidence is None else confidence
     events = [
         event

@@ -9,13 +9,13 @@
 
 from .engine import NoPhysicsError
 from .settings import Ground, SimulateSettings
-from .simulate import Simulated, simulate, with_strength
+from .simulate import Simulated, apply_strength, simulate
 
 __all__ = [
     "Ground",
     "NoPhysicsError",
     "SimulateSettings",
     "Simulated",
+    "apply_strength",
     "simulate",
-    "with_strength",
 ]

@@ -107,7 +107,7 @@ class PhysicsBody:
         return tuple(capsule for capsule in self.capsules if capsule.touches)
 
 
-def physics_body(motion: Motion, humanoid: HumanoidMap) -> PhysicsBody:
+def build_physics_body(motion: Motion, humanoid: HumanoidMap) -> PhysicsBody:
     """Build the body that is simulated, of a motion without gaps.
 
     Each joint of a role of `ROLES` begins a segment, and joints between two of them move too if

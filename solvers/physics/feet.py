@@ -61,7 +61,7 @@ def stands_for_long(motion: Motion, humanoid: HumanoidMap) -> bool:
     return bool(stands.sum() * motion.dt >= LONG)
 
 
-def with_soles(
+def add_soles(
     body: PhysicsBody, motion: Motion, humanoid: HumanoidMap, ground: float
 ) -> PhysicsBody:
     """Return the body with heels, balls and toes that touch the ground where the take stands.

@@ -18,7 +18,7 @@ from .foot_contacts import with_feet_on_ground
 from .plant_target import planted
 from .run import follow
 from .stance import from_frame_to_frame, in_contact, standing
-from .surface import clearance, end_joints, raising, sole_speeds, touching
+from .surface import end_joints, measure_clearance, raising, sole_speeds, touching
 from .target import away_from, blended, calmed_target
 from .world import build_world
 
@@ -139,7 +139,8 @@ def _planted(body: PhysicsBody, piece: Piece, ground: float) -> Piece:
     firm *= piece.followed[:, None]
     motion = planted(body, piece.motion, from_frame_to_frame(firm), ground)
     before, after = (
-        np.minimum(clearance(body, each, ground), 0.0) for each in (piece.motion, motion)
+        np.minimum(measure_clearance(body, each, ground), 0.0)
+        for each in (piece.motion, motion)
     )
     share = away_from(after < before - SUNK * body.size, EASE * motion.frame_rate)
     motion = blended(piece.motion, motion, body.joints, share)
@@ -161,7 +162,9 @@ def _tried(
     """
     ground, friction = conditions.ground, conditions.friction
     places, rotations = _of_moving_joints(body, motion)
-    places[:, 2] += raising(clearance(body, motion, ground), motion.frame_rate, body.size)
+    places[:, 2] += raising(
+        measure_clearance(body, motion, ground), motion.frame_rate, body.size
+    )
     target = calmed_target(places, rotations, motion.frame_rate, smoothing)
     calm = _with_moving_joints(body, motion, target.at_frames())
     speeds = sole_speeds(body, calm)

@@ -7,15 +7,15 @@ from numpy.typing import NDArray
 
 from ..motion import HumanoidMap, Motion, find_humanoid_map
 from ..progress import Progress, unwatched, within
-from .body import PhysicsBody, check_size, physics_body
+from .body import PhysicsBody, build_physics_body, check_size
 from .engine import load_engine
-from .feet import find_ground, stands_for_long, with_soles
+from .feet import add_soles, find_ground, stands_for_long
 from .measures import about_ground, mean_distance, stands_on, told
 from .segment import EASE, Conditions, Piece, find_pieces, simulated_piece
 from .settings import Ground, SimulateSettings
 from .stance import carried
-from .surface import penetration, slide
-from .target import away_from, blended, filled
+from .surface import measure_foot_slide, penetration
+from .target import away_from, blended, fill_gaps
 
 Array = NDArray[np.float64]
 Flags = NDArray[np.bool_]
@@ -137,12 +137,12 @@ def simulate(
     """
     engine = load_engine()
     humanoid = humanoid_map or find_humanoid_map(motion.skeleton)
-    whole = filled(motion)
-    bare = physics_body(whole, humanoid)
+    whole = fill_gaps(motion)
+    bare = build_physics_body(whole, humanoid)
     check_size(bare, motion.frame_rate)
     under_feet = find_ground(whole, humanoid, bare.size)
     ground = _height(settings, whole, humanoid, under_feet, bare.size)
-    body = with_soles(bare, whole, humanoid, ground)
+    body = add_soles(bare, whole, humanoid, ground)
     conditions = Conditions(
         ground,
         settings.response,
@@ -180,7 +180,7 @@ def _height(
     return given if leaps or stands_on(given, under_feet, size) else under_feet
 
 
-def with_strength(motion: Motion, simulated: Simulated, strength: float) -> Motion:
+def apply_strength(motion: Motion, simulated: Simulated, strength: float) -> Motion:
     """Return a motion gone by a share, 0 to 1, towards what was simulated of it in full.
 
     The same as `simulate` with that strength, to rounding, but at once.
@@ -188,7 +188,9 @@ def with_strength(motion: Motion, simulated: Simulated, strength: float) -> Moti
     if strength in {0.0, 1.0}:
         return (simulated.motion if strength else motion).with_poses()
     share = np.full(motion.n_frames, strength)
-    return blended(filled(motion), filled(simulated.motion), range(motion.n_joints), share)
+    return blended(
+        fill_gaps(motion), fill_gaps(simulated.motion), range(motion.n_joints), share
+    )
 
 
 def _put_together(
@@ -224,11 +226,11 @@ def _put_together(
         support=np.concatenate([piece.support for piece in pieces]),
         ground=ground,
         penetration_before=penetration(body, whole, ground),
-        penetration_after=penetration(body, filled(result), ground),
-        slide_before=slide(body, whole, contacts),
-        slide_after=slide(body, filled(result), contacts),
+        penetration_after=penetration(body, fill_gaps(result), ground),
+        slide_before=measure_foot_slide(body, whole, contacts),
+        slide_after=measure_foot_slide(body, fill_gaps(result), contacts),
         smoothing=smoothing,
-        distance=mean_distance(whole, filled(result), body.joints),
+        distance=mean_distance(whole, fill_gaps(result), body.joints),
         message=told(followed, given_up, smoothing if smoothing > settings.smoothing else 0.0)
         + about_ground(ground, under_feet, body.size, given),
     )

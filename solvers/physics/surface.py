@@ -42,14 +42,14 @@ def bottoms(body: PhysicsBody, motion: Motion) -> Array:
     return np.asarray(points)
 
 
-def clearance(body: PhysicsBody, motion: Motion, ground: float) -> Array:
+def measure_clearance(body: PhysicsBody, motion: Motion, ground: float) -> Array:
     """Return how high the lowest point of the body is over the ground, (n_frames,), metres."""
     return np.asarray(bottoms(body, motion)[..., 2].min(axis=1) - ground)
 
 
 def penetration(body: PhysicsBody, motion: Motion, ground: float) -> float:
     """Return how deep the body is under the ground where it is deepest, metres; 0 above."""
-    return float(max(0.0, -clearance(body, motion, ground).min()))
+    return float(max(0.0, -measure_clearance(body, motion, ground).min()))
 
 
 def raising(heights: Array, frame_rate: float, size: float) -> Array:
@@ -120,7 +120,7 @@ def leg_chain(body: PhysicsBody, side: str) -> tuple[int, int, int] | None:
     return (hip, knee, ankle) if follows else None
 
 
-def slide(body: PhysicsBody, motion: Motion, contacts: NDArray[np.bool_]) -> float:
+def measure_foot_slide(body: PhysicsBody, motion: Motion, contacts: NDArray[np.bool_]) -> float:
     """Return the way in metres that both feet cover over the ground while they touch it."""
     standing = contacts[1:] & contacts[:-1]
     return float(sole_speeds(body, motion)[1:][standing].sum() / motion.frame_rate)

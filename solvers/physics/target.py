@@ -144,7 +144,7 @@ def away_from(frames: NDArray[np.bool_], ease: float) -> Array:
     return np.asarray(np.minimum(1.0, away / ease))
 
 
-def filled(motion: Motion) -> Motion:
+def fill_gaps(motion: Motion) -> Motion:
     """Return the motion without gaps: turned evenly across them, and held at the take's ends.
 
     A joint that is never observed stays in its rest pose.

@@ -8,10 +8,10 @@
 (3, 'uint8')
 """
 
-from .canvas import SERIES, Canvas, paler
+from .canvas import SERIES, Canvas, lighten_color
 from .curves import CurveSettings, draw_curves
 from .picture import Picture, stack_pictures
-from .stick_figures import StickFigureSettings, View, draw_stick_figures, project
+from .stick_figures import StickFigureSettings, View, draw_stick_figures, project_to_view
 from .table import draw_table
 
 __all__ = [
@@ -24,7 +24,7 @@ __all__ = [
     "draw_curves",
     "draw_stick_figures",
     "draw_table",
-    "paler",
-    "project",
+    "lighten_color",
+    "project_to_view",
     "stack_pictures",
 ]

@@ -94,7 +94,7 @@ def series_colors(n_series: int) -> list[Color]:
     return [SERIES[index % len(SERIES)] for index in range(n_series)]
 
 
-def paler(color: Color, share: float) -> Color:
+def lighten_color(color: Color, share: float) -> Color:
     """Return the colour mixed with a share of white."""
     red, green, blue = (round(part + share * (255 - part)) for part in color)
     return red, green, blue

@@ -12,7 +12,7 @@ from ..errors import InvalidMotionError
 from ..motion import JointRecording, Motion, Skeleton, Tracks, forward_kinematics
 from ..rotations import rotate
 from ..settings import Settings, setting
-from .canvas import FAINT, INK, Canvas, Color, paler, series_colors
+from .canvas import FAINT, INK, Canvas, Color, lighten_color, series_colors
 from .picture import Picture
 
 Array = NDArray[np.float64]
@@ -101,7 +101,7 @@ def draw_stick_figures(
     last = list(recordings.values())[-1]
     center, heading = _onlooker(last, shown)
     figures = [_figure(recording, shown) for recording in recordings.values()]
-    spots = [project(each.points - center, heading, settings.view) for each in figures]
+    spots = [project_to_view(each.points - center, heading, settings.view) for each in figures]
     tall = max(figure.stature for figure in figures)
     scale = settings.height / tall
     half, top = _extent(spots[-1], tall)
@@ -120,7 +120,7 @@ def draw_stick_figures(
     return canvas.picture()
 
 
-def project(positions: Array, heading: Array, view: View) -> Array:
+def project_to_view(positions: Array, heading: Array, view: View) -> Array:
     """Return what the onlooker sees: to the right, up, and away, in metres.
 
     Parameters
@@ -248,7 +248,7 @@ def _draw_figure(
     width = max(height / 70.0, 1.5)
     depth = np.nan_to_num(spots[:, 2])
     for joint, parent in sorted(figure.bones, key=lambda bone: -depth[list(bone)].sum()):
-        shade = paler(color, 0.55) if figure.is_left[joint] else color
+        shade = lighten_color(color, 0.55) if figure.is_left[joint] else color
         canvas.line(spots[[parent, joint], :2], shade, width)
     if not figure.bones:
         for spot in spots[np.isfinite(spots).all(axis=1)]:

@@ -9,7 +9,7 @@
 
 from .corruption import CorruptionSettings, corrupt
 from .gait import GaitSettings, walking_gait
-from .performance import Performance, PerformanceSettings, perform
+from .performance import Performance, PerformanceSettings, perform_gestures
 from .walker import walker_skeleton
 
 __all__ = [
@@ -18,7 +18,7 @@ __all__ = [
     "Performance",
     "PerformanceSettings",
     "corrupt",
-    "perform",
+    "perform_gestures",
     "walker_skeleton",
     "walking_gait",
 ]

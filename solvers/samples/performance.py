@@ -124,7 +124,7 @@ class Performance:
         return JointRecording(tracks, None, Sensor.KINECT_V1)
 
 
-def perform(
+def perform_gestures(
     gestures: Sequence[str], settings: PerformanceSettings = PerformanceSettings()
 ) -> Performance:
     """Make gestures one after the other, with smooth ways between them.

@@ -10,7 +10,7 @@
 
 from .borrow_variation import borrow_variation
 from .learn_variation import learn_variation_model
-from .loops import loop_at_rate, middle_round, repeated
+from .loops import extract_middle_cycle, repeat_loop, resample_loop
 from .measure_variation import measure_variation
 from .partitions import Partition
 from .synthesize import Variant, draw_variants, synthesize
@@ -25,11 +25,11 @@ __all__ = [
     "VarySettings",
     "borrow_variation",
     "draw_variants",
+    "extract_middle_cycle",
     "learn_variation_model",
     "load_variation_model",
-    "loop_at_rate",
     "measure_variation",
-    "middle_round",
-    "repeated",
+    "repeat_loop",
+    "resample_loop",
     "synthesize",
 ]

@@ -8,11 +8,11 @@ from numpy.typing import NDArray
 from scipy.ndimage import gaussian_filter1d
 
 from ..motion import Motion, forward_kinematics, warp
-from .course import headings
+from .motion_curves import headings_from_motion
 
 Array = NDArray[np.float64]
 
-RATE = 20.0
+ALIGNMENT_RATE_HZ = 20.0
 """Hertz at which examples are lined up."""
 LONGEST = 1500
 """Steps of an example that are lined up at most; longer ones are seen less often."""
@@ -43,12 +43,12 @@ class Alignment:
     centre: int
 
 
-def body_positions(motion: Motion, turns: Array | None = None) -> Array:
+def positions_in_body_frame(motion: Motion, turns: Array | None = None) -> Array:
     """Return joints relative to the hips as the actor faces, shape (n_frames, n_joints, 3).
 
     The hips themselves are told by their height.
     """
-    turns = headings(motion) if turns is None else turns
+    turns = headings_from_motion(motion) if turns is None else turns
     places = forward_kinematics(motion).positions - motion.root_positions[:, None] * (1, 1, 0)
     cos, sin = np.cos(turns)[:, None], np.sin(turns)[:, None]
     x, y, z = np.moveaxis(places, -1, 0)
@@ -58,11 +58,11 @@ def body_positions(motion: Motion, turns: Array | None = None) -> Array:
 def align_examples(motions: Sequence[Motion], turns: Sequence[Array]) -> Alignment:
     """Line examples up in time by dynamic time warping, with the one in the middle of them."""
     steps = [
-        max(round(motion.frame_rate / RATE), motion.n_frames // LONGEST, 1)
+        max(round(motion.frame_rate / ALIGNMENT_RATE_HZ), motion.n_frames // LONGEST, 1)
         for motion in motions
     ]
     bodies = [
-        body_positions(motion, turn)[::step]
+        positions_in_body_frame(motion, turn)[::step]
         for motion, turn, step in zip(motions, turns, steps, strict=True)
     ]
     n = len(motions)

@@ -9,9 +9,9 @@ from scipy.ndimage import gaussian_filter1d
 
 from ..errors import InvalidMotionError
 from ..motion import Motion
-from .course import HEIGHT
 from .curve_sampling import sample_curves
 from .learn_variation import learn_variation_model
+from .motion_curves import HEIGHT
 from .partitions import partition_joints
 from .variation_model import VariationModel
 

@@ -20,8 +20,8 @@ from ..rotations import (
     rotation_vector_from_quaternion,
     unroll,
 )
-from .course import IMPOSSIBLE, continuous
 from .curve_sampling import sample_curves
+from .motion_curves import IMPOSSIBLE, continuous
 
 Array = NDArray[np.float64]
 

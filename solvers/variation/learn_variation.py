@@ -12,12 +12,19 @@ from ..motion import Motion, resample
 from ..progress import Progress, unwatched, within
 from ..rotations import inverse, mean_rotation, multiply, rotation_vector_from_quaternion
 from .align_examples import Alignment, align_examples
-from .course import HEIGHT, IMPOSSIBLE, Course, course_of, headings, without_heading
 from .curve_sampling import between_frames, sample_curves
 from .far_joints import CALM, tell_far_joints
 from .footing import footing_of
 from .loops import loops
 from .mixing_kernel import MixingKernel
+from .motion_curves import (
+    HEIGHT,
+    IMPOSSIBLE,
+    MotionCurves,
+    curves_from_motion,
+    headings_from_motion,
+    remove_heading,
+)
 from .stepwise_model import learn_stepwise
 from .variation_model import VariationModel
 from .vary_settings import USUAL, Method, VarySettings
@@ -56,14 +63,14 @@ def learn_variation_model(
         There is none, rigs differ, a clip has gaps or less than two frames, or no body.
     """
     motions = _of_one_rig(list(motions))
-    turns = [headings(motion) for motion in motions]
+    turns = [headings_from_motion(motion) for motion in motions]
     progress(0.1, "Lining up")
     alignment = align_examples(motions, turns)
     progress(0.6, "Learning")
-    plain = [without_heading(motion, turn) for motion, turn in zip(motions, turns, strict=True)]
+    plain = [remove_heading(motion, turn) for motion, turn in zip(motions, turns, strict=True)]
     usual = mean_rotation(np.concatenate(plain))
     courses = [
-        _in_common_time(course_of(motion, turn, usual), footing_of(motion), times)
+        _in_common_time(curves_from_motion(motion, turn, usual), footing_of(motion), times)
         for motion, turn, times in zip(motions, turns, alignment.times, strict=True)
     ]
     rate = motions[0].frame_rate
@@ -132,7 +139,7 @@ def _as_first(motion: Motion, first: Motion) -> Motion:
     return replace(motion, skeleton=first.skeleton, root_positions=places)
 
 
-def _in_common_time(course: Course, footing: Array, times: Array) -> Course:
+def _in_common_time(course: MotionCurves, footing: Array, times: Array) -> MotionCurves:
     """Return a course at its frames `times`; ways are those between them."""
     joints = sample_curves(course.joints, times)
     places = np.column_stack([
@@ -141,7 +148,7 @@ def _in_common_time(course: Course, footing: Array, times: Array) -> Course:
     ])
     root = sample_curves(places, times)
     root[:, :HEIGHT] = np.diff(root[:, :HEIGHT], axis=0, prepend=root[:1, :HEIGHT])
-    return Course(root, joints, between_frames(footing, times))
+    return MotionCurves(root, joints, between_frames(footing, times))
 
 
 def _same_turns(joints: Array, centre: int) -> Array:

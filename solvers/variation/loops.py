@@ -11,8 +11,8 @@ from numpy.typing import NDArray
 
 from ..motion import Motion, resample
 from ..rotations import inverse, multiply, rotate
-from .align_examples import body_positions
-from .course import HEIGHT, Course
+from .align_examples import positions_in_body_frame
+from .motion_curves import HEIGHT, MotionCurves
 
 Array = NDArray[np.float64]
 
@@ -35,7 +35,7 @@ def loops(motion: Motion, turns: Array) -> bool:
     """Whether a clip ends nearly as it begins, and goes on as it began; by its headings."""
     if motion.n_frames < FEWEST:
         return False
-    body = body_positions(motion, turns)
+    body = positions_in_body_frame(motion, turns)
     steps = np.diff(body, axis=0)
     usual = np.linalg.norm(steps, axis=-1).mean()
     gap, hurry = body[-1] - body[0], steps[-1] - steps[0]
@@ -44,7 +44,9 @@ def loops(motion: Motion, turns: Array) -> bool:
     return bool(near and unlike.mean() < HURRY * usual)
 
 
-def close_loop(course: Course, frame_rate: float, by_joint: Array, free: Array) -> Course:
+def close_loop(
+    course: MotionCurves, frame_rate: float, by_joint: Array, free: Array
+) -> MotionCurves:
     """Let a course end as it begins, in pose and velocity.
 
     What differs at the seam is taken back with cubic Hermite polynomials, half before and half
@@ -80,12 +82,12 @@ def close_loop(course: Course, frame_rate: float, by_joint: Array, free: Array) 
     return replace(course, root=root, joints=curves[:, 1:].reshape(course.joints.shape))
 
 
-def is_closed(course: Course) -> bool:
+def is_closed(course: MotionCurves) -> bool:
     """Whether the last pose is the first."""
     return bool(np.abs(course.joints[-1] - course.joints[0]).max() < SEAMLESS)
 
 
-def repeated(motion: Motion, rounds: int) -> Motion:
+def repeat_loop(motion: Motion, rounds: int) -> Motion:
     """Return several rounds of a loop, each from where the one before ends.
 
     Of `rounds` rounds of n frames there are rounds (n - 1) + 1.
@@ -103,7 +105,7 @@ def repeated(motion: Motion, rounds: int) -> Motion:
     return motion.with_poses(np.concatenate(rotations), np.concatenate(places))
 
 
-def middle_round(three: Motion, one: Motion) -> Motion:
+def extract_middle_cycle(three: Motion, one: Motion) -> Motion:
     """Return the second of three rounds, brought back to where the first is.
 
     Parameters
@@ -121,7 +123,7 @@ def middle_round(three: Motion, one: Motion) -> Motion:
     return middle.with_poses(rotations, places + one.root_positions[0] * LEVEL)
 
 
-def loop_at_rate(motion: Motion, frame_rate: float) -> Motion:
+def resample_loop(motion: Motion, frame_rate: float) -> Motion:
     """Return a loop at another frame rate, still a loop: as fast but for part of a frame.
 
     Parameters
@@ -131,8 +133,8 @@ def loop_at_rate(motion: Motion, frame_rate: float) -> Motion:
     """
     steps = motion.n_frames - 1
     wanted = max(round(steps * frame_rate / motion.frame_rate), 1)
-    even = replace(repeated(motion, 3), frame_rate=steps * frame_rate / wanted)
-    return middle_round(resample(even, frame_rate), motion)
+    even = replace(repeat_loop(motion, 3), frame_rate=steps * frame_rate / wanted)
+    return extract_middle_cycle(resample(even, frame_rate), motion)
 
 
 def _turn_of_round(motion: Motion) -> Array:

@@ -7,7 +7,7 @@ import numpy as np
 
 from ..errors import InvalidMotionError
 from ..motion import Motion, warp
-from .align_examples import RATE, body_positions
+from .align_examples import ALIGNMENT_RATE_HZ, positions_in_body_frame
 
 
 def measure_variation(motions: Sequence[Motion]) -> float:
@@ -28,6 +28,7 @@ def measure_variation(motions: Sequence[Motion]) -> float:
     if len(motions) < 2:
         raise InvalidMotionError("One motion has no variation; give at least two.")
     bodies = [
-        body_positions(motion)[:: max(round(motion.frame_rate / RATE), 1)] for motion in motions
+        positions_in_body_frame(motion)[:: max(round(motion.frame_rate / ALIGNMENT_RATE_HZ), 1)]
+        for motion in motions
     ]
     return float(np.mean([warp(one, other).cost for one, other in combinations(bodies, 2)]))

@@ -5,13 +5,13 @@ from numpy.typing import NDArray
 from scipy.interpolate import PchipInterpolator
 
 from ..rotations import normalize, unroll
-from .course import HEIGHT, Course
 from .curve_sampling import between_frames, sample_curves
+from .motion_curves import HEIGHT, MotionCurves
 
 Array = NDArray[np.float64]
 
 
-def in_own_time(course: Course, durations: Array) -> Course:
+def in_own_time(course: MotionCurves, durations: Array) -> MotionCurves:
     """Let each moment last for so many frames, and return what is seen at whole frames.
 
     Parameters
@@ -34,4 +34,4 @@ def in_own_time(course: Course, durations: Array) -> Course:
     carrier = course.carrier
     if carrier is not None:
         carrier = normalize(sample_curves(unroll(carrier), times))
-    return Course(np.column_stack([root, seen[:, HEIGHT]]), joints, footing, carrier)
+    return MotionCurves(np.column_stack([root, seen[:, HEIGHT]]), joints, footing, carrier)

@@ -11,8 +11,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..motion import Skeleton
-from .course import HEIGHT
 from .curve_sampling import sample_curves
+from .motion_curves import HEIGHT
 from .partitions import partition_joints
 
 Array = NDArray[np.float64]

@@ -9,10 +9,10 @@ from numpy.typing import NDArray
 from ..errors import InvalidMotionError
 from ..motion import Motion
 from ..progress import Progress, unwatched
-from .course import Course, motion_of
 from .footing import contacts_from
 from .loops import close_loop, is_closed
 from .mixtures import draw_shares, mixed_deviations
+from .motion_curves import MotionCurves, motion_from_curves
 from .own_time import in_own_time
 from .partitions import FEET, partition_joints
 from .soft_limits import softly_within
@@ -184,17 +184,19 @@ def _variant(
     haste = _free(given.haste, hasty, drawn[2], np.ones(len(pinned)))
     footing = _free(given.footing, amounts[FEET], drawn[3], pinned)
     course = in_own_time(
-        Course(root, joints, footing, model.carrier), np.exp(haste) * settings.length
+        MotionCurves(root, joints, footing, model.carrier), np.exp(haste) * settings.length
     )
     if settings.method is Method.PUBLISHED:
-        return Variant(motion_of(course, *known), None)
+        return Variant(motion_from_curves(course, *known), None)
     if model.loops:
         may_change = np.array([not settings.pin_start, not settings.pin_end], dtype=np.float64)
         parts = np.minimum(given.by_joint[:, 0], 1.0)
         course = close_loop(course, model.frame_rate, parts, may_change)
         course = replace(course, joints=_within_range(given.joints, course.joints))
     contacts = None if course.footing is None else contacts_from(course.footing)
-    return Variant(motion_of(course, *known), contacts, model.loops and is_closed(course))
+    return Variant(
+        motion_from_curves(course, *known), contacts, model.loops and is_closed(course)
+    )
 
 
 def _free(seen: _Range, amount: Array, beside: Array, pinned: Array) -> Array:

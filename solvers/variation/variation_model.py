@@ -9,8 +9,8 @@ from numpy.typing import NDArray
 from ..archives import ArchiveLayout
 from ..motion import Skeleton
 from ..npz_members import integers, numbers, words
-from .course import N_ROOT
 from .mixing_kernel import MixingKernel
+from .motion_curves import N_ROOT_CHANNELS
 from .stepwise_model import StepwiseModel, learn_stepwise
 from .stepwise_process import PACKED, Hyperparameters
 
@@ -26,7 +26,7 @@ LAYOUT = ArchiveLayout(
         "parents": integers("joints", minimum=-1),
         "offsets": numbers("joints", 3),
         "usual": numbers("joints", 4),
-        "root": numbers("examples", "moments", N_ROOT),
+        "root": numbers("examples", "moments", N_ROOT_CHANNELS),
         "joints": numbers("examples", "moments", "joints", 3),
         "haste": numbers("examples", "moments"),
         "footing": numbers("examples", "moments", 2, finite=False),

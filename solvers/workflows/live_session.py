@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..errors import InvalidFileError
-from ..gestures import Gesture, GestureEvent, GestureRecogniser, GestureSettings, Mode
+from ..gestures import Gesture, GestureEvent, GestureRecognizer, GestureSettings, Mode
 from ..motion import JointRecording
 from ..motion.humanoid import POSTURE_JOINTS, joints_of_names
 from ..recordings.live import Heard, LiveFrame, StreamReader, recording_of
@@ -48,7 +48,7 @@ class LiveSession:
     def __init__(self, settings: GestureSettings = USUAL) -> None:
         self._settings = settings
         self._stream = StreamReader()
-        self._recogniser = GestureRecogniser(settings)
+        self._recogniser = GestureRecognizer(settings)
         self._performed: list[LiveFrame] = []
         self._last: LiveFrame | None = None
 
@@ -86,7 +86,7 @@ class LiveSession:
         last, self._last = self._last, frame
         if last is None or (frame.body == last.body and frame.time > last.time):
             return ()
-        was, self._recogniser = self.mode, GestureRecogniser(self._settings)
+        was, self._recogniser = self.mode, GestureRecognizer(self._settings)
         if was is not Mode.CAPTURING:
             return ()
         return (GestureEvent(Gesture.CAPTURE_DROPPED, frame.time, frame.time),)

@@ -14,9 +14,9 @@ from ..variation import (
     VarySettings,
     borrow_variation,
     draw_variants,
+    extract_middle_cycle,
     learn_variation_model,
-    middle_round,
-    repeated,
+    repeat_loop,
 )
 from .try_to_plant import Footing, try_to_plant
 
@@ -99,12 +99,12 @@ def stand(variant: Variant, planting: PlantSettings | None = PLANTING) -> Footin
     if planting is None:
         return try_to_plant(motion, None)
     if is_loop:
-        motion = repeated(motion, ROUNDS)
+        motion = repeat_loop(motion, ROUNDS)
         if contacts is not None:
             contacts = np.concatenate([*[contacts[:-1]] * ROUNDS, contacts[-1:]])
     if contacts is not None:
         contacts = contacts | detect_contacts(motion)
     footing = try_to_plant(motion, planting, contacts)
     if is_loop:
-        return footing._replace(motion=middle_round(footing.motion, variant.motion))
+        return footing._replace(motion=extract_middle_cycle(footing.motion, variant.motion))
     return footing

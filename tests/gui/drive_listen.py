@@ -39,7 +39,7 @@ def unfold_perform_alone():
 def perform(*gestures):
     """Send the frames of the made actor at their times."""
     samples, frames = load("solvers.samples"), load("solvers.recordings.live.frames")
-    made = samples.perform(gestures, samples.PerformanceSettings(noise=0.004))
+    made = samples.perform_gestures(gestures, samples.PerformanceSettings(noise=0.004))
     start = time.monotonic()
     with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as sender:
         for frame in frames.frames_of(made.recording()):

@@ -33,11 +33,11 @@ from solvers.motion import (
     joint_parents,
     motion_from_points,
 )
-from solvers.physics import Ground, Simulated, SimulateSettings, simulate, with_strength
-from solvers.physics.body import physics_body
-from solvers.physics.feet import with_soles
-from solvers.physics.surface import clearance, slide
-from solvers.physics.target import filled
+from solvers.physics import Ground, Simulated, SimulateSettings, apply_strength, simulate
+from solvers.physics.body import build_physics_body
+from solvers.physics.feet import add_soles
+from solvers.physics.surface import measure_clearance, measure_foot_slide
+from solvers.physics.target import fill_gaps
 from solvers.recordings import read_recording
 from solvers.samples import CorruptionSettings, corrupt
 
@@ -115,7 +115,7 @@ def motion_of(path: Path) -> Motion:
     recording = read_recording(path)
     if isinstance(recording, Motion):
         return recording
-    return filled(motion_from_points(recording.tracks, joint_parents(recording.names)))
+    return fill_gaps(motion_from_points(recording.tracks, joint_parents(recording.names)))
 
 
 def means(title: str, motions: list[Motion]) -> str:
@@ -127,7 +127,7 @@ def means(title: str, motions: list[Motion]) -> str:
         speed = motion.n_frames * motion.dt / (process_time() - started)
         rows.setdefault("before", []).append(row(motion, motion, simulated))
         for strength in STRENGTHS:
-            result = with_strength(motion, simulated, strength)
+            result = apply_strength(motion, simulated, strength)
             rows.setdefault(f"strength {strength:g}", []).append(
                 row(motion, result, simulated, speed)
             )
@@ -150,16 +150,16 @@ def without_plant(motion: Motion) -> Row:
 def row(motion: Motion, result: Motion, simulated: Simulated, speed: float = np.nan) -> Row:
     """Measure one result."""
     humanoid = find_humanoid_map(motion.skeleton)
-    body = with_soles(physics_body(motion, humanoid), motion, humanoid, simulated.ground)
-    depths = np.maximum(-clearance(body, result, simulated.ground), 0.0)
+    body = add_soles(build_physics_body(motion, humanoid), motion, humanoid, simulated.ground)
+    depths = np.maximum(-measure_clearance(body, result, simulated.ground), 0.0)
     seconds = motion.n_frames * motion.dt
     before, after = (forward_kinematics(each).positions for each in (motion, result))
     apart = np.linalg.norm(after - before, axis=-1)[:, list(body.joints)]
     jerks = np.linalg.norm(np.diff(after, 3, axis=0) * motion.frame_rate**3, axis=-1)
     is_input = result is motion
     return Row((
-        100 * slide(body, result, detect_contacts(motion, humanoid)) / seconds,
-        100 * slide(body, result, simulated.carried > CARRIES) / seconds,
+        100 * measure_foot_slide(body, result, detect_contacts(motion, humanoid)) / seconds,
+        100 * measure_foot_slide(body, result, simulated.carried > CARRIES) / seconds,
         1000 * depths.max(),
         1000 * np.percentile(depths, 99),
         1000 * length_change(result, after),

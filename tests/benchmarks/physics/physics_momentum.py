@@ -6,7 +6,7 @@ from scipy.ndimage import gaussian_filter1d
 
 from solvers.motion import Motion, forward_kinematics
 from solvers.physics.body import PhysicsBody
-from solvers.physics.surface import clearance
+from solvers.physics.surface import measure_clearance
 from solvers.rotations.representations import rotate
 
 Array = NDArray[np.float64]
@@ -46,7 +46,7 @@ def impossible_force(body: PhysicsBody, motion: Motion, ground: float) -> float:
     )
     acceleration = np.diff(centre, 2, axis=0) * motion.frame_rate**2
     force = (acceleration - GRAVITY) / 9.81
-    touches = clearance(body, motion, ground)[1:-1] < TOUCHING
+    touches = measure_clearance(body, motion, ground)[1:-1] < TOUCHING
     left = np.where(touches, outside_cone(force), np.linalg.norm(force, axis=-1))
     border = min(round(4.0 * STEADY * motion.frame_rate), len(left) // 3)
     return float(left[border : len(left) - border].mean())

@@ -19,7 +19,7 @@ from threadpoolctl import threadpool_limits
 from solvers.gestures.events import Gesture, GestureEvent
 from solvers.gestures.settings import GestureSettings
 from solvers.recordings.live.frames import decode_frame, encode_frame, frames_of
-from solvers.samples import PerformanceSettings, perform
+from solvers.samples import PerformanceSettings, perform_gestures
 from solvers.workflows.live_session import LiveSession
 
 from ..shared.report import DOCS, Report
@@ -178,7 +178,7 @@ def made_streams() -> str:
     for name, sensor in SENSORS.items():
         told, extra, late = Counter[Gesture](), 0, {each: [] for each in DONE}
         for seed in range(N_SEEDS):
-            performance = perform(MADE, PerformanceSettings(**sensor, seed=seed))
+            performance = perform_gestures(MADE, PerformanceSettings(**sensor, seed=seed))
             stream = Stream(performance.times, performance.positions, performance.confidence)
             events = ours(stream, GestureSettings())
             found = Counter(counted(events))
@@ -212,7 +212,7 @@ def _note_delay(
 
 def speed() -> str:
     """Return what a frame costs from the socket to the events."""
-    recording = perform(MADE).recording()
+    recording = perform_gestures(MADE).recording()
     lines = [encode_frame(frame) for frame in frames_of(recording)]
     started = perf_counter()
     for line in lines:

@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 from scipy.io import loadmat
 
 from solvers.gestures.events import Gesture, GestureEvent
-from solvers.gestures.recognition import recognise
+from solvers.gestures.recognition import recognize_gestures
 from solvers.gestures.settings import GestureSettings
 from solvers.motion.humanoid.posture_joints import POSTURE_JOINTS
 from solvers.recordings import read_joints
@@ -36,7 +36,7 @@ MOVES = {Gesture.ZOOM, Gesture.TURN}
 
 @dataclass(frozen=True, eq=False)
 class Stream:
-    """Postures over time, as `recognise` takes them."""
+    """Postures over time, as `recognize_gestures` takes them."""
 
     times: Array
     positions: Array
@@ -71,7 +71,7 @@ def read_utd(path: Path) -> Stream:
 
 def ours(stream: Stream, settings: GestureSettings) -> tuple[GestureEvent, ...]:
     """Return what our recogniser tells."""
-    return recognise(stream.times, stream.positions, stream.confidence, settings)
+    return recognize_gestures(stream.times, stream.positions, stream.confidence, settings)
 
 
 def thresholds(stream: Stream, settings: GestureSettings) -> tuple[GestureEvent, ...]:

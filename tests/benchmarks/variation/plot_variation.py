@@ -8,7 +8,7 @@ from PIL import Image
 from solvers.motion import Motion
 from solvers.pictures import StickFigureSettings, draw_stick_figures
 from solvers.pictures.canvas import FAINT, INK, Canvas
-from solvers.variation.align_examples import body_positions
+from solvers.variation.align_examples import positions_in_body_frame
 
 from ..shared.report import PICTURES
 
@@ -57,7 +57,7 @@ def _component(examples: Sequence[Motion], motion: Motion) -> np.ndarray:
 
 
 def _flat(motion: Motion) -> np.ndarray:
-    body = body_positions(motion)[:: max(round(motion.frame_rate / 30.0), 1)]
+    body = positions_in_body_frame(motion)[:: max(round(motion.frame_rate / 30.0), 1)]
     return body.reshape(len(body), -1)
 
 

@@ -8,7 +8,7 @@ from sklearn.metrics import balanced_accuracy_score
 from sklearn.model_selection import StratifiedGroupKFold
 
 from solvers.motion import Motion
-from solvers.variation.align_examples import body_positions
+from solvers.variation.align_examples import positions_in_body_frame
 
 WINDOW, RATE, N_AXES = 15, 30.0, 20
 
@@ -35,7 +35,7 @@ def told_apart(captures: Sequence[Motion], others: Sequence[Motion]) -> float:
 
 
 def _windows(motion: Motion) -> tuple[np.ndarray, np.ndarray]:
-    body = body_positions(motion)[:: max(round(motion.frame_rate / RATE), 1)]
+    body = positions_in_body_frame(motion)[:: max(round(motion.frame_rate / RATE), 1)]
     rows, paces = [], []
     for start in range(0, max(len(body) - WINDOW, 0) + 1, 3):
         part = body[start : start + WINDOW]

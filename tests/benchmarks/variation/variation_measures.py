@@ -12,7 +12,7 @@ from solvers.denoising.quality.foot_slide import measure_foot_slide
 from solvers.motion import Motion, forward_kinematics, warp
 from solvers.motion.humanoid.contacts import detect_contacts
 from solvers.rotations.representations import inverse, multiply, rotation_vector_from_quaternion
-from solvers.variation.align_examples import RATE, body_positions
+from solvers.variation.align_examples import ALIGNMENT_RATE_HZ, positions_in_body_frame
 
 from ..shared.clips import every
 
@@ -76,7 +76,9 @@ class Judge:
 
 
 def _body(motion: Motion) -> np.ndarray:
-    return body_positions(motion)[:: max(round(motion.frame_rate / RATE), 1)]
+    return positions_in_body_frame(motion)[
+        :: max(round(motion.frame_rate / ALIGNMENT_RATE_HZ), 1)
+    ]
 
 
 def _variation(bodies: Sequence[np.ndarray]) -> tuple[float, np.ndarray]:
@@ -93,7 +95,7 @@ def _variation(bodies: Sequence[np.ndarray]) -> tuple[float, np.ndarray]:
 
 def _windows(motion: Motion) -> np.ndarray:
     """Return stretches of 11 frames at 30 Hz, shape (n, n_numbers), in metres of mean joint."""
-    body = body_positions(motion)[:: max(round(motion.frame_rate / WINDOW_RATE), 1)]
+    body = positions_in_body_frame(motion)[:: max(round(motion.frame_rate / WINDOW_RATE), 1)]
     body = body.reshape(len(body), -1) / np.sqrt(body.shape[1])
     starts = range(max(len(body) - WINDOW + 1, 1))
     held = [np.minimum(np.arange(start, start + WINDOW), len(body) - 1) for start in starts]

@@ -12,13 +12,13 @@ from scipy.spatial.distance import cdist
 from solvers.motion import Motion, resample
 from solvers.rotations.representations import mean_rotation
 from solvers.variation import Partition
-from solvers.variation.course import (
-    N_ROOT,
-    Course,
-    course_of,
-    headings,
-    motion_of,
-    without_heading,
+from solvers.variation.motion_curves import (
+    N_ROOT_CHANNELS,
+    MotionCurves,
+    curves_from_motion,
+    headings_from_motion,
+    motion_from_curves,
+    remove_heading,
 )
 from solvers.variation.partitions import partition_joints
 
@@ -42,20 +42,24 @@ class Flat:
     """Each (n_frames, 4 + 3 n_joints)."""
 
     def motion(self, rows: np.ndarray) -> Motion:
-        joints = rows[:, N_ROOT:].reshape(len(rows), -1, 3)
-        return motion_of(
-            Course(rows[:, :N_ROOT], joints), self.skeleton, self.usual, RATE, np.zeros(3)
+        joints = rows[:, N_ROOT_CHANNELS:].reshape(len(rows), -1, 3)
+        return motion_from_curves(
+            MotionCurves(rows[:, :N_ROOT_CHANNELS], joints),
+            self.skeleton,
+            self.usual,
+            RATE,
+            np.zeros(3),
         )
 
 
 def flatten(examples: Sequence[Motion]) -> Flat:
     motions = [resample(one, RATE) for one in examples]
-    turns = [headings(one) for one in motions]
-    plain = [without_heading(one, turn) for one, turn in zip(motions, turns, strict=True)]
+    turns = [headings_from_motion(one) for one in motions]
+    plain = [remove_heading(one, turn) for one, turn in zip(motions, turns, strict=True)]
     usual = mean_rotation(np.concatenate(plain))
     rows = []
     for motion, turn in zip(motions, turns, strict=True):
-        course = course_of(motion, turn, usual)
+        course = curves_from_motion(motion, turn, usual)
         rows.append(np.column_stack([course.root, course.joints.reshape(motion.n_frames, -1)]))
     return Flat(examples[0].skeleton, usual, rows)
 
@@ -97,7 +101,9 @@ def lau(examples: Sequence[Motion], n: int, rng: np.random.Generator) -> list[Mo
     """
     flat = flatten(examples)
     members = np.repeat(partition_joints(flat.skeleton), 3, axis=1)
-    nodes = [np.concatenate([[row == 0] * N_ROOT, one]) for row, one in enumerate(members)]
+    nodes = [
+        np.concatenate([[row == 0] * N_ROOT_CHANNELS, one]) for row, one in enumerate(members)
+    ]
     scale = np.concatenate(flat.rows).std(axis=0) + 1e-6
     before = np.concatenate([np.stack([r[1:-1], r[:-2]], axis=1) for r in flat.rows]) / scale
     change = np.concatenate([r[2:] - r[1:-1] for r in flat.rows])
@@ -128,7 +134,7 @@ def motion_matching(
     flat = flatten(examples)
     scale = np.concatenate(flat.rows).std(axis=0)
     scale = np.where(scale > 1e-3, scale, 1.0) * np.where(
-        np.arange(len(scale)) < N_ROOT, 0.3, 1
+        np.arange(len(scale)) < N_ROOT_CHANNELS, 0.3, 1
     )
     stages = [COARSEST]
     while stages[-1] * GROWTH < 1.0:

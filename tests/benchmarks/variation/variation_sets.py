@@ -8,7 +8,7 @@ from scipy.signal import find_peaks
 
 from solvers.motion import Motion, forward_kinematics
 from solvers.recordings import read_acclaim
-from solvers.variation.align_examples import body_positions
+from solvers.variation.align_examples import positions_in_body_frame
 
 from ..shared import clips
 
@@ -51,7 +51,7 @@ def walking_cycles(subject: str) -> list[Motion]:
     found = []
     for path in sorted(clips.WALKS.glob(f"{subject}_*.bvh")):
         motion = clips.read_cmu(path, 1)
-        body, names = body_positions(motion), motion.skeleton.names
+        body, names = positions_in_body_frame(motion), motion.skeleton.names
         apart = body[:, names.index("RightFoot"), 1] - body[:, names.index("LeftFoot"), 1]
         peaks, _ = find_peaks(apart, distance=round(CYCLE * motion.frame_rate), height=0.2)
         if len(peaks) > 2:

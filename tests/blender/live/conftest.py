@@ -80,7 +80,7 @@ def act(load, window, port):
     frames, samples = load("solvers.recordings.live.frames"), load("solvers.samples")
 
     def perform(button, *gestures):
-        recording = samples.perform(gestures, samples.PerformanceSettings(noise=0.003))
+        recording = samples.perform_gestures(gestures, samples.PerformanceSettings(noise=0.003))
         outcomes = set()
         with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as sender:
             for number, frame in enumerate(frames.frames_of(recording.recording())):

@@ -12,13 +12,13 @@ from solvers.motion import Tracks
 from solvers.motion.humanoid.posture_joints import motion_postures
 from solvers.recordings import write_bvh, write_joints, write_trc
 from solvers.recordings.live.frames import decode_frame, frames_of
-from solvers.samples import GaitSettings, PerformanceSettings, perform, walking_gait
+from solvers.samples import GaitSettings, PerformanceSettings, perform_gestures, walking_gait
 
 
 @pytest.fixture
 def wave(tmp_path):
     """A wave of one or two seconds, as a file."""
-    performance = perform(["wave right"], PerformanceSettings(frame_rate=15.0))
+    performance = perform_gestures(["wave right"], PerformanceSettings(frame_rate=15.0))
     write_joints(performance.recording(), tmp_path / "wave.json")
     return performance, tmp_path / "wave.json"
 

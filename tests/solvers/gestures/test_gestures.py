@@ -9,10 +9,10 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from solvers.gestures.events import Gesture
-from solvers.gestures.recognition import GestureRecogniser, Mode, recognise
+from solvers.gestures.recognition import GestureRecognizer, Mode, recognize_gestures
 from solvers.gestures.settings import GestureSettings
 from solvers.motion.humanoid.posture_joints import MIRROR_IMAGES
-from solvers.samples import PerformanceSettings, perform
+from solvers.samples import PerformanceSettings, perform_gestures
 from solvers.samples.performance import GESTURES
 
 MEANT = {
@@ -27,7 +27,7 @@ LATEST = {"hand up": 1.2, "wave right": 0.1, "wave left": 0.1, "clap": 0.1}
 
 
 def told(performance, wanted=None) -> list[Gesture]:
-    events = recognise(
+    events = recognize_gestures(
         performance.times,
         performance.positions,
         performance.confidence,
@@ -38,9 +38,11 @@ def told(performance, wanted=None) -> list[Gesture]:
 
 @pytest.mark.parametrize("frame_rate", [15.0, 30.0, 60.0])
 def test_each_gesture_is_told_once_and_in_time(frame_rate):
-    performance = perform([*BROWSING, "clap"], PerformanceSettings(frame_rate=frame_rate))
+    performance = perform_gestures(
+        [*BROWSING, "clap"], PerformanceSettings(frame_rate=frame_rate)
+    )
 
-    events = recognise(performance.times, performance.positions)
+    events = recognize_gestures(performance.times, performance.positions)
 
     assert [event.gesture for event in events] == [MEANT[name] for name, _ in performance.made]
     for event, (name, done) in zip(events, performance.made, strict=True):
@@ -52,7 +54,7 @@ def test_each_gesture_is_told_once_and_in_time(frame_rate):
 def test_noise_dropouts_and_late_frames_change_little(seed):
     spoilt = PerformanceSettings(noise=0.01, hidden=0.5, lost=0.1, lateness=0.005, seed=seed)
 
-    gestures = told(perform([*BROWSING, "clap", "rest", "clap"], spoilt))
+    gestures = told(perform_gestures([*BROWSING, "clap", "rest", "clap"], spoilt))
 
     assert gestures[0] is Gesture.HAND_UP
     assert gestures.count(Gesture.PAGE_NEXT) == 2 and gestures.count(Gesture.PAGE_BACK) == 1
@@ -63,7 +65,7 @@ def test_noise_dropouts_and_late_frames_change_little(seed):
 def test_standing_with_noise_says_nothing(seed):
     spoilt = PerformanceSettings(noise=0.02, hidden=1.0, lost=0.2, lateness=0.01, seed=seed)
 
-    assert told(perform(["rest"] * 30, spoilt)) == []
+    assert told(perform_gestures(["rest"] * 30, spoilt)) == []
 
 
 @settings(max_examples=15)
@@ -74,11 +76,11 @@ def test_standing_with_noise_says_nothing(seed):
 )
 def test_heading_size_and_place_of_the_actor_do_not_matter(heading, size, place):
     made = ["hand up", "wave right", "turn", "clap"]
-    plain = perform(made)
-    moved = perform(made, PerformanceSettings(heading=heading, size=size))
+    plain = perform_gestures(made)
+    moved = perform_gestures(made, PerformanceSettings(heading=heading, size=size))
 
-    expected = recognise(plain.times, plain.positions)
-    events = recognise(moved.times, moved.positions + place)
+    expected = recognize_gestures(plain.times, plain.positions)
+    events = recognize_gestures(moved.times, moved.positions + place)
 
     assert [event.gesture for event in events] == [event.gesture for event in expected]
     assert [event.amount for event in events] == pytest.approx([e.amount for e in expected])
@@ -86,9 +88,9 @@ def test_heading_size_and_place_of_the_actor_do_not_matter(heading, size, place)
 
 def test_zoom_is_the_factor_by_which_the_hands_moved_apart():
     for name, factor in (("zoom in", 1.27 / 0.57), ("zoom out", 0.57 / 1.27)):
-        performance = perform([name])
+        performance = perform_gestures([name])
 
-        events = recognise(performance.times, performance.positions)
+        events = recognize_gestures(performance.times, performance.positions)
 
         assert {event.gesture for event in events} == {Gesture.ZOOM}
         assert np.prod([event.amount for event in events]) == pytest.approx(factor, rel=0.2)
@@ -99,7 +101,7 @@ def test_hands_that_zoom_out_do_not_clap():
     for seed in range(10):
         spoilt = PerformanceSettings(noise=0.02, seed=seed)
 
-        assert Gesture.CAPTURE_START not in told(perform(["zoom out", "rest"], spoilt))
+        assert Gesture.CAPTURE_START not in told(perform_gestures(["zoom out", "rest"], spoilt))
 
 
 def test_an_arm_that_turns_the_view_does_not_wave(monkeypatch):
@@ -109,14 +111,14 @@ def test_an_arm_that_turns_the_view_does_not_wave(monkeypatch):
     monkeypatch.setitem(GESTURES, "turn", swung)
     always = GestureSettings(waves_need_hand_up=False)
 
-    assert set(told(perform(["turn", "rest"]), always)) == {Gesture.TURN}
+    assert set(told(perform_gestures(["turn", "rest"]), always)) == {Gesture.TURN}
 
 
 def test_turn_is_the_angle_of_the_stretched_arm():
     """From (0.7, 0.66) to straight ahead: counter-clockwise as seen from above."""
-    performance = perform(["turn"])
+    performance = perform_gestures(["turn"])
 
-    events = recognise(performance.times, performance.positions)
+    events = recognize_gestures(performance.times, performance.positions)
 
     assert {event.gesture for event in events} == {Gesture.TURN}
     swung = pi / 2 - np.arctan2(0.66, 0.7)
@@ -124,23 +126,23 @@ def test_turn_is_the_angle_of_the_stretched_arm():
 
 
 def test_nothing_counts_between_two_claps_but_the_second():
-    performance = perform(["clap", *BROWSING, "zoom in", "turn", "clap"])
+    performance = perform_gestures(["clap", *BROWSING, "zoom in", "turn", "clap"])
 
     assert told(performance) == [Gesture.CAPTURE_START, Gesture.CAPTURE_END]
 
 
 def test_a_performance_ends_before_the_hands_move_for_the_last_clap():
-    performance = perform(["clap", "rest", "clap"])
+    performance = perform_gestures(["clap", "rest", "clap"])
 
-    start, end = recognise(performance.times, performance.positions)
+    start, end = recognize_gestures(performance.times, performance.positions)
 
     opened = performance.made[1][1] - 0.3 - 0.1 - 0.25
     assert start.time < end.began <= opened + 0.15 < end.time
 
 
 def test_waves_count_only_while_the_library_is_shown():
-    alone = perform(["wave right", "rest"])
-    late = perform(["hand up", *["rest"] * 16, "wave right", "rest"])
+    alone = perform_gestures(["wave right", "rest"])
+    late = perform_gestures(["hand up", *["rest"] * 16, "wave right", "rest"])
 
     assert told(alone) == []
     assert told(late) == [Gesture.HAND_UP]
@@ -149,10 +151,10 @@ def test_waves_count_only_while_the_library_is_shown():
 
 
 def test_the_left_hand_says_nothing():
-    performance = perform([*BROWSING, "turn"])
+    performance = perform_gestures([*BROWSING, "turn"])
     mirrored = performance.positions[:, list(MIRROR_IMAGES)] * (-1.0, 1.0, 1.0)
 
-    assert recognise(performance.times, mirrored) == ()
+    assert recognize_gestures(performance.times, mirrored) == ()
 
 
 @pytest.mark.parametrize(("seconds", "expected"), [(0.3, [Gesture.CAPTURE_START]), (4.0, [])])
@@ -162,7 +164,9 @@ def test_hands_that_come_near_slowly_do_not_clap(monkeypatch, seconds, expected)
     slowed = (ready, (seconds, near, near), (0.15, *clapped[1:]), *rest)
     monkeypatch.setitem(GESTURES, "clap", slowed)
 
-    assert [each for each in told(perform(["clap"])) if each is not Gesture.ZOOM] == expected
+    assert [
+        each for each in told(perform_gestures(["clap"])) if each is not Gesture.ZOOM
+    ] == expected
 
 
 def test_a_clap_above_the_head_is_none(monkeypatch):
@@ -173,12 +177,12 @@ def test_a_clap_above_the_head_is_none(monkeypatch):
     )
     monkeypatch.setitem(GESTURES, "clap", over)
 
-    assert told(perform(["clap", "clap"])) == []
+    assert told(perform_gestures(["clap", "clap"])) == []
 
 
 @pytest.mark.parametrize("hidden_within", [0.15, 0.25, 0.35])
 def test_a_clap_whose_touch_is_hidden_is_told(hidden_within):
-    performance = perform(["clap"])
+    performance = perform_gestures(["clap"])
     arms = [6, 7, 10, 11]
     gap = np.linalg.norm(performance.positions[:, 10] - performance.positions[:, 6], axis=-1)
     performance.confidence[np.ix_(gap < hidden_within, arms)] = 0.0
@@ -194,7 +198,7 @@ def test_applause_counts_once(monkeypatch):
     )
     assert parted[1:] == clapped[1:]
 
-    assert told(perform(["clap", "rest", "clap"])) == [
+    assert told(perform_gestures(["clap", "rest", "clap"])) == [
         Gesture.CAPTURE_START, Gesture.CAPTURE_END,
     ]  # fmt: skip
 
@@ -205,8 +209,8 @@ def test_hands_that_drop_do_not_zoom(monkeypatch):
     fall = (0.6, (-0.1, 0.35, -0.9), (-0.1, 0.35, -0.9))
     monkeypatch.setitem(GESTURES, "zoom out", (near, held, fall))
 
-    performance = perform(["zoom out"])
-    events = recognise(performance.times, performance.positions)
+    performance = perform_gestures(["zoom out"])
+    events = recognize_gestures(performance.times, performance.positions)
 
     assert np.prod([event.amount for event in events]) == pytest.approx(1.0, abs=0.2)
 
@@ -222,20 +226,20 @@ def test_one_hand_that_comes_to_the_other_does_not_clap(monkeypatch, share, expe
     made = tuple((time, *key) for time, key in zip(seconds, keys, strict=False))
     monkeypatch.setitem(GESTURES, "clap", made)
 
-    assert told(perform(["clap"])) == expected
+    assert told(perform_gestures(["clap"])) == expected
 
 
 def test_both_hands_up_show_nothing(monkeypatch):
     both = tuple(step and (step[0], step[1], step[1]) for step in GESTURES["hand up"])
     monkeypatch.setitem(GESTURES, "hand up", both)
 
-    assert told(perform(["hand up"])) == []
+    assert told(perform_gestures(["hand up"])) == []
 
 
 def test_a_capture_that_nobody_ends_is_dropped():
     patient = GestureSettings(longest_capture=5.0)
 
-    gestures = told(perform(["clap", *["rest"] * 8, "clap"]), patient)
+    gestures = told(perform_gestures(["clap", *["rest"] * 8, "clap"]), patient)
 
     assert gestures == [
         Gesture.CAPTURE_START, Gesture.CAPTURE_DROPPED, Gesture.CAPTURE_START,
@@ -243,25 +247,25 @@ def test_a_capture_that_nobody_ends_is_dropped():
 
 
 def test_nothing_is_told_of_what_is_not_seen():
-    performance = perform([*BROWSING, "clap"])
+    performance = perform_gestures([*BROWSING, "clap"])
 
     assert told(replace(performance, confidence=0.0 * performance.confidence)) == []
     assert told(replace(performance, positions=np.nan * performance.positions)) == []
 
 
 def test_frames_out_of_order_and_twice_are_left_out():
-    performance = perform([*BROWSING, "clap"])
+    performance = perform_gestures([*BROWSING, "clap"])
     n = len(performance.times)
     order = np.stack([np.arange(n), np.maximum(np.arange(n) - 3, 0)], axis=1).ravel()
 
-    events = recognise(performance.times[order], performance.positions[order])
+    events = recognize_gestures(performance.times[order], performance.positions[order])
 
-    assert events == recognise(performance.times, performance.positions)
+    assert events == recognize_gestures(performance.times, performance.positions)
 
 
 def test_a_break_in_the_stream_ends_a_gesture_but_not_the_mode():
-    performance = perform(["clap", "rest"])
-    recogniser = GestureRecogniser()
+    performance = perform_gestures(["clap", "rest"])
+    recogniser = GestureRecognizer()
     for time, places in zip(performance.times, performance.positions, strict=True):
         recogniser.see(time, places, np.ones(20))
 
@@ -281,7 +285,7 @@ def test_a_break_in_the_stream_ends_a_gesture_but_not_the_mode():
     )
 )
 def test_no_frame_raises(frames):
-    recogniser = GestureRecogniser()
+    recogniser = GestureRecognizer()
     for time, size, sure in frames:
         places = size * np.sin(np.arange(60.0)).reshape(20, 3)
         recogniser.see(time, places, np.full(20, sure))

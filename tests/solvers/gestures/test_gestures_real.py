@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from solvers.gestures.events import Gesture
-from solvers.gestures.recognition import recognise
+from solvers.gestures.recognition import recognize_gestures
 from solvers.gestures.settings import GestureSettings
 from solvers.motion.humanoid.posture_joints import posture_positions
 from solvers.recordings import read_joints
@@ -22,7 +22,9 @@ def gestures_in(path, settings=USUAL):
     frames = [posture_of(frame) for frame in frames_of(recording)]
     positions, confidence = (np.stack(each) for each in zip(*frames, strict=True))
     times = np.arange(len(frames)) / recording.frame_rate
-    return {event.gesture for event in recognise(times, positions, confidence, settings)}
+    return {
+        event.gesture for event in recognize_gestures(times, positions, confidence, settings)
+    }
 
 
 def test_most_claps_and_all_waves_are_told(recordings):
@@ -44,7 +46,7 @@ def test_exercising_gives_no_command(recordings, subject):
     clips = [posture_positions(read_joints(path)) for path in paths]
     positions = np.concatenate(clips)
 
-    events = recognise(np.arange(len(positions)) / 30.0, positions)
+    events = recognize_gestures(np.arange(len(positions)) / 30.0, positions)
 
     assert len(positions) > 3 * 60 * 30
     assert events == ()

@@ -5,7 +5,7 @@ import pytest
 from numpy.testing import assert_allclose
 
 from solvers.motion import Motion, detect_contacts, forward_kinematics
-from solvers.physics import Ground, SimulateSettings, simulate, with_strength
+from solvers.physics import Ground, SimulateSettings, apply_strength, simulate
 from solvers.rotations.representations import multiply, quaternion_from_rotation_vector
 from solvers.samples import CorruptionSettings, GaitSettings, corrupt, walking_gait
 
@@ -194,12 +194,12 @@ def test_half_the_strength_goes_half_the_way(walk, simulated):
         (walk.root_positions + simulated.motion.root_positions) / 2,
         atol=1e-9,
     )
-    later = with_strength(walk, simulated, 0.5)
+    later = apply_strength(walk, simulated, 0.5)
     assert_allclose(np.abs((later.rotations * half.rotations).sum(axis=-1)), 1.0, atol=1e-9)
     assert np.array_equal(
-        with_strength(walk, simulated, 1.0).rotations, simulated.motion.rotations
+        apply_strength(walk, simulated, 1.0).rotations, simulated.motion.rotations
     )
-    assert np.array_equal(with_strength(walk, simulated, 0.0).rotations, walk.rotations)
+    assert np.array_equal(apply_strength(walk, simulated, 0.0).rotations, walk.rotations)
 
 
 def test_a_root_bone_on_the_floor_is_carried_along(walk, simulated):

@@ -6,8 +6,8 @@ from numpy.testing import assert_allclose
 
 from solvers.motion import Motion, find_humanoid_map, forward_kinematics
 from solvers.physics import SimulateSettings, simulate
-from solvers.physics.body import physics_body
-from solvers.physics.feet import with_soles
+from solvers.physics.body import build_physics_body
+from solvers.physics.feet import add_soles
 from solvers.physics.foot_contacts import CLEAR, PRESSED, with_feet_on_ground
 from solvers.physics.pelvis_offset import LegGoal, hips_shift
 from solvers.physics.plant_target import planted
@@ -33,7 +33,7 @@ def walk():
 @pytest.fixture(scope="module")
 def body(walk):
     humanoid = find_humanoid_map(walk.skeleton)
-    return with_soles(physics_body(walk, humanoid), walk, humanoid, 0.0)
+    return add_soles(build_physics_body(walk, humanoid), walk, humanoid, 0.0)
 
 
 @pytest.fixture(scope="module")
@@ -278,7 +278,7 @@ def chains(body):
 
 
 def result_body(motion):
-    return physics_body(motion, find_humanoid_map(motion.skeleton))
+    return build_physics_body(motion, find_humanoid_map(motion.skeleton))
 
 
 def in_contact_of(motion):

@@ -6,7 +6,7 @@ import numpy as np
 from numpy.testing import assert_allclose
 
 from solvers.motion import HumanoidMap, Motion, Skeleton
-from solvers.physics.body import Capsule, physics_body
+from solvers.physics.body import Capsule, build_physics_body
 from solvers.physics.engine import load_engine
 from solvers.physics.loads import add_loads
 from solvers.physics.world import build_world
@@ -23,7 +23,9 @@ def test_the_ground_carries_a_beam_at_the_end_that_is_heavier():
     weight = Capsule(0, np.tile([0.4, 0.0, 0.0], (2, 1)), RADIUS, 1.0, touches=False)
     skeleton = Skeleton(("beam",), (-1,), np.zeros((1, 3)))
     motion = Motion(skeleton, np.tile([1.0, 0, 0, 0], (1, 1, 1)), np.zeros((1, 3)), 30.0)
-    body = replace(physics_body(motion, HumanoidMap()), capsules=(weight, beam, keel), size=1.0)
+    body = replace(
+        build_physics_body(motion, HumanoidMap()), capsules=(weight, beam, keel), size=1.0
+    )
     world = build_world(engine, body, 0.0, 1.0, STEP)
     world.data.qpos[2] = RADIUS
     loads = np.zeros(4)

@@ -10,12 +10,12 @@ from numpy.testing import assert_allclose
 
 from solvers.motion import HumanoidMap, Motion, Skeleton, find_humanoid_map
 from solvers.physics import NoPhysicsError
-from solvers.physics.body import Capsule, PhysicsBody, physics_body
+from solvers.physics.body import Capsule, PhysicsBody, build_physics_body
 from solvers.physics.control import _in_cones
 from solvers.physics.engine import load_engine
-from solvers.physics.surface import bottoms, clearance, end_joints, penetration, raising
+from solvers.physics.surface import bottoms, end_joints, measure_clearance, penetration, raising
 from solvers.physics.tables import MASS_SHARES, ROLES, part_of
-from solvers.physics.target import blended, calmed_target, filled
+from solvers.physics.target import blended, calmed_target, fill_gaps
 from solvers.physics.world import build_world
 from solvers.rotations.representations import quaternion_from_rotation_vector, rotate
 from solvers.samples import GaitSettings, walking_gait
@@ -33,7 +33,7 @@ def body_of(*capsules: Capsule) -> PhysicsBody:
     """A body of one joint."""
     skeleton = Skeleton(("ball",), (-1,), np.zeros((1, 3)))
     motion = Motion(skeleton, np.tile([1.0, 0, 0, 0], (1, 1, 1)), np.zeros((1, 3)), 30.0)
-    return replace(physics_body(motion, HumanoidMap()), capsules=capsules, size=1.0)
+    return replace(build_physics_body(motion, HumanoidMap()), capsules=capsules, size=1.0)
 
 
 def ball(place=(0.0, 0.0, 0.0)) -> Capsule:
@@ -69,7 +69,7 @@ def test_friction_stops_a_sled_after_the_way_that_coulomb_says(engine, friction)
 
 
 def test_energy_does_not_grow_by_itself(engine, walk):
-    body = physics_body(walk, find_humanoid_map(walk.skeleton))
+    body = build_physics_body(walk, find_humanoid_map(walk.skeleton))
     world = build_world(engine, body, 0.0, 1.0, STEP)
     world.data.qpos[2] = 2.0
     world.data.qvel[:] = np.random.default_rng(1).normal(size=world.model.nv)
@@ -100,7 +100,7 @@ def test_a_segment_that_is_missing_is_borne_by_the_next_above(walk, missing):
     for role in missing:
         humanoid = humanoid.with_joint(role, None)
 
-    body = physics_body(walk, humanoid)
+    body = build_physics_body(walk, humanoid)
 
     assert_allclose(body.mass, 70.0 * body.size**3, rtol=0.01)
     lightest = min(capsule.mass for capsule in body.capsules)
@@ -111,8 +111,8 @@ def test_a_body_grows_with_its_skeleton(walk):
     humanoid, skeleton = find_humanoid_map(walk.skeleton), walk.skeleton
     tall = Skeleton(skeleton.names, skeleton.parents, 1.2 * skeleton.offsets)
 
-    body = physics_body(walk, humanoid)
-    taller = physics_body(
+    body = build_physics_body(walk, humanoid)
+    taller = build_physics_body(
         Motion(tall, walk.rotations, walk.root_positions, walk.frame_rate), humanoid
     )
 
@@ -136,7 +136,7 @@ def test_fingers_are_no_segments_and_what_never_turns_is_part_of_the_joint_above
     motion = Motion(skeleton, quaternion_from_rotation_vector(turns), np.zeros((9, 3)), 30.0)
     humanoid = HumanoidMap({name: name for name in names if name != "joint"})
 
-    body = physics_body(motion, humanoid)
+    body = build_physics_body(motion, humanoid)
 
     assert [skeleton.names[joint] for joint in body.joints] == [
         "hips", "leftUpperLeg", "leftLowerLeg", "rightUpperLeg", "rightLowerLeg",
@@ -204,7 +204,7 @@ def test_a_gap_is_turned_across_evenly_and_held_at_the_ends():
     rotations[[0, 2, 3, 5, 6], 0] = np.nan
     places[2] = np.nan
 
-    whole = filled(Motion(skeleton, rotations, places, 30.0))
+    whole = fill_gaps(Motion(skeleton, rotations, places, 30.0))
 
     angles = [0.0, 0.0, 0.3, 0.6, 0.9, 0.9, 0.9]
     turns[:, 0, 2] = angles
@@ -238,7 +238,7 @@ def test_the_skin_of_a_capsule_hangs_below_both_its_ends_by_its_radius():
     assert end_joints(body).tolist() == [0, 0]
     assert_allclose(points[:, 0], np.tile([5.0, 0.0, 1.9], (3, 1)), atol=1e-12)
     assert_allclose(points[:, 1], [[5, 1, 1.9], [5, 0, 0.9], [5, 0.75**0.5, 2.4]], atol=1e-12)
-    assert_allclose(clearance(body, motion, 0.5), [1.4, 0.4, 1.4], atol=1e-12)
+    assert_allclose(measure_clearance(body, motion, 0.5), [1.4, 0.4, 1.4], atol=1e-12)
     assert penetration(body, motion, 1.0) == pytest.approx(0.1)
 
 

@@ -19,7 +19,7 @@ from solvers.pictures import (
 )
 from solvers.pictures.canvas import SERIES, Canvas
 from solvers.pictures.curves import ticks
-from solvers.pictures.stick_figures import project
+from solvers.pictures.stick_figures import project_to_view
 from solvers.rotations.representations import quaternion_from_rotation_vector
 
 RAW, CLEAN = SERIES[:2]
@@ -64,7 +64,7 @@ def test_projects_what_is_left_ahead_and_up(view, expected):
     """A point one metre to the left, two ahead and three up, for two directions of facing."""
     points = np.array([[[1.0, -2.0, 3.0]], [[2.0, 1.0, 3.0]]])
 
-    seen = project(points, np.array([0.0, np.pi / 2]), view)
+    seen = project_to_view(points, np.array([0.0, np.pi / 2]), view)
 
     assert_allclose(seen[:, 0], [expected, expected], atol=1e-12)
 

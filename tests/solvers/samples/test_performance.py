@@ -8,7 +8,7 @@ from numpy.testing import assert_allclose
 
 from solvers.errors import InvalidSettingError
 from solvers.motion import JOINTS, Sensor
-from solvers.samples import PerformanceSettings, perform
+from solvers.samples import PerformanceSettings, perform_gestures
 
 NAMES = JOINTS[Sensor.KINECT_V1]
 
@@ -18,7 +18,7 @@ def joint(performance, name):
 
 
 def test_arms_keep_their_lengths():
-    performance = perform(["hand up", "wave left", "clap", "zoom in", "turn"])
+    performance = perform_gestures(["hand up", "wave left", "clap", "zoom in", "turn"])
 
     for side in ("Left", "Right"):
         chain = [joint(performance, part + side) for part in ("Shoulder", "Elbow", "Wrist")]
@@ -30,7 +30,7 @@ def test_arms_keep_their_lengths():
 
 
 def test_gestures_are_done_when_it_is_said():
-    performance = perform(["hand up", "clap"])
+    performance = perform_gestures(["hand up", "clap"])
     (_, up), (_, clapped) = performance.made
     frames = [int(np.argmin(np.abs(performance.times - time))) for time in (up, clapped - 0.35)]
 
@@ -41,7 +41,7 @@ def test_gestures_are_done_when_it_is_said():
 
 
 def test_faces_the_camera_with_the_right_hand_at_its_left():
-    performance = perform(["zoom in"])
+    performance = perform_gestures(["zoom in"])
 
     assert (joint(performance, "ShoulderRight")[:, 0] < 0).all()
     assert joint(performance, "WristRight")[:, 1].min() < -0.25
@@ -51,15 +51,15 @@ def test_faces_the_camera_with_the_right_hand_at_its_left():
 def test_noise_comes_again_with_its_seed():
     settings = PerformanceSettings(noise=0.01, hidden=1.0, lost=0.2, lateness=0.01, seed=3)
 
-    one, two = perform(["clap"], settings), perform(["clap"], settings)
+    one, two = perform_gestures(["clap"], settings), perform_gestures(["clap"], settings)
 
     for name in ("times", "positions", "confidence"):
         assert_allclose(getattr(one, name), getattr(two, name))
-    plain = perform(["clap"])
+    plain = perform_gestures(["clap"])
     assert 0.6 < len(one.times) / len(plain.times) < 1.0 and (one.confidence < 0.5).any()
     assert (np.diff(one.times) >= 0).all()
 
 
 def test_an_unknown_gesture_is_refused():
     with pytest.raises(InvalidSettingError, match="shrug: not a gesture of rest, hand up"):
-        perform(["shrug"])
+        perform_gestures(["shrug"])

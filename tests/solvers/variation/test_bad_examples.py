@@ -14,8 +14,8 @@ from solvers.variation import (
     learn_variation_model,
     measure_variation,
 )
-from solvers.variation.align_examples import body_positions
-from solvers.variation.course import headings
+from solvers.variation.align_examples import positions_in_body_frame
+from solvers.variation.motion_curves import headings_from_motion
 
 EVERY = [Method.MIXTURE, Method.COREGIONALISED]
 
@@ -41,7 +41,7 @@ def quickest(motions, joint):
     """Metres per second that a joint moves at most, as the actor faces."""
     place = motions[0].skeleton.names.index(joint)
     return max(
-        np.linalg.norm(np.diff(body_positions(one)[:, place], axis=0), axis=-1).max()
+        np.linalg.norm(np.diff(positions_in_body_frame(one)[:, place], axis=0), axis=-1).max()
         * one.frame_rate
         for one in motions
     )
@@ -64,7 +64,7 @@ def test_arms_that_go_round_twice_stay_whole(method, walks):
     place = walks[0].skeleton.names.index("LeftHand")
     shoulder = walks[0].skeleton.names.index("LeftArm")
     for motion in variants:
-        body = body_positions(motion)
+        body = positions_in_body_frame(motion)
         arm = body[:, place] - body[:, shoulder]
         turned = np.unwrap(np.arctan2(arm[:, 1], arm[:, 2]))
         assert abs(abs(turned[-1] - turned[0]) - 4 * np.pi) < 1.0
@@ -102,9 +102,9 @@ def test_turning_on_the_spot_several_times(method, walks):
 
     drawn = draw_variants(learn_variation_model(spun, settings=settings), 6, settings=settings)
 
-    wanted = np.mean([np.ptp(headings(one)) for one in spun])
+    wanted = np.mean([np.ptp(headings_from_motion(one)) for one in spun])
     for variant in drawn:
-        assert np.ptp(headings(variant.motion)) == pytest.approx(wanted, rel=0.1)
+        assert np.ptp(headings_from_motion(variant.motion)) == pytest.approx(wanted, rel=0.1)
 
 
 def test_two_flips_the_same_way_do_not_wind_a_joint_up(walks):

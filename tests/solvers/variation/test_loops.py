@@ -17,9 +17,20 @@ from solvers.variation import (
     draw_variants,
     learn_variation_model,
 )
-from solvers.variation.align_examples import body_positions
-from solvers.variation.course import Course, course_of, headings, motion_of
-from solvers.variation.loops import close_loop, loop_at_rate, loops, middle_round, repeated
+from solvers.variation.align_examples import positions_in_body_frame
+from solvers.variation.loops import (
+    close_loop,
+    extract_middle_cycle,
+    loops,
+    repeat_loop,
+    resample_loop,
+)
+from solvers.variation.motion_curves import (
+    MotionCurves,
+    curves_from_motion,
+    headings_from_motion,
+    motion_from_curves,
+)
 from solvers.workflows.vary_motions import stand
 
 CMU_METRES = 0.0254 / 0.45
@@ -28,7 +39,7 @@ FREE = np.ones(2)
 
 def seam_of(motion):
     """How far poses are apart at the seam, and its velocity step over the clip's largest."""
-    rounds, n = repeated(motion, 2), motion.n_frames
+    rounds, n = repeat_loop(motion, 2), motion.n_frames
     places = forward_kinematics(rounds).positions
     gap = np.abs(places[n - 1] - forward_kinematics(motion).positions[-1]).max()
     steps = np.linalg.norm(np.diff(places, n=2, axis=0), axis=-1).mean(axis=-1)
@@ -42,16 +53,19 @@ def cycles(recordings):
     for path in sorted((recordings / "mocap" / "cmu_walk").glob("35_*.bvh"))[:4]:
         motion = read_bvh(path, scale=CMU_METRES)
         motion = motion.slice(1, motion.n_frames)
-        names, body = motion.skeleton.names, body_positions(motion)
+        names, body = motion.skeleton.names, positions_in_body_frame(motion)
         apart = body[:, names.index("RightFoot"), 1] - body[:, names.index("LeftFoot"), 1]
         peaks, _ = find_peaks(apart, distance=round(0.8 * motion.frame_rate), height=0.2)
         cycle = motion.slice(int(peaks[0]), int(peaks[1]) + 1)
         assert seam_of(cycle)[0] > 0.02
-        turns, usual = headings(cycle), cycle.rotations[0] * 0.0 + (1.0, 0.0, 0.0, 0.0)
-        course = course_of(cycle, turns, usual)
+        turns, usual = (
+            headings_from_motion(cycle),
+            cycle.rotations[0] * 0.0 + (1.0, 0.0, 0.0, 0.0),
+        )
+        course = curves_from_motion(cycle, turns, usual)
         closed = close_loop(course, cycle.frame_rate, np.ones(len(names)), FREE)
         start = np.append(cycle.root_positions[0, :2], turns[0])
-        found.append(motion_of(closed, cycle.skeleton, usual, cycle.frame_rate, start))
+        found.append(motion_from_curves(closed, cycle.skeleton, usual, cycle.frame_rate, start))
     return found
 
 
@@ -78,7 +92,7 @@ def test_variants_of_a_looping_walk_loop(alone, planted, cycles):
 def test_variants_loop_at_the_rate_of_the_scene(cycles):
     variant = draw_variants(learn_variation_model(cycles), 1)[0].motion
 
-    slow = loop_at_rate(variant, 24.0)
+    slow = resample_loop(variant, 24.0)
 
     gap, step = seam_of(slow)
     assert gap < 1e-3
@@ -103,8 +117,8 @@ def test_pinned_at_both_ends_nothing_is_closed(cycles):
 
 def test_what_does_not_loop_is_not_called_so(walks):
     half = walks[0].slice(0, walks[0].n_frames // 2)
-    assert not loops(half, headings(half))
-    assert loops(walks[0], headings(walks[0]))
+    assert not loops(half, headings_from_motion(half))
+    assert loops(walks[0], headings_from_motion(walks[0]))
     assert not any(one.loops for one in draw_variants(learn_variation_model([half]), 1))
 
 
@@ -113,7 +127,7 @@ def test_a_straight_rise_is_bent_to_a_loop():
     rise = np.linspace(0.0, 1.0, 21)
     joints = np.zeros((21, 2, 3))
     joints[:, 0, 0] = joints[:, 1, 0] = rise
-    course = Course(np.zeros((21, 4)), joints)
+    course = MotionCurves(np.zeros((21, 4)), joints)
 
     closed = close_loop(course, 10.0, np.array([1.0, 0.0]), FREE).joints
     late = close_loop(course, 10.0, np.ones(2), np.array([0.0, 1.0])).joints
@@ -129,7 +143,7 @@ def test_slopes_that_differ_agree_after():
     frames = np.arange(41.0)
     joints = np.zeros((41, 1, 3))
     joints[:, 0, 0] = (frames / 20.0 - 1.0) ** 2  # ends as high as it begins, but rising
-    closed = close_loop(Course(np.zeros((41, 4)), joints), 40.0, np.ones(1), FREE).joints
+    closed = close_loop(MotionCurves(np.zeros((41, 4)), joints), 40.0, np.ones(1), FREE).joints
     slopes = np.diff(closed[:, 0, 0])
     assert abs(slopes[0] - slopes[-1]) < 0.25 * abs(2 * (joints[1, 0, 0] - joints[0, 0, 0]))
 
@@ -137,7 +151,7 @@ def test_slopes_that_differ_agree_after():
 def test_ways_go_on_as_fast():
     root = np.zeros((31, 4))
     root[1:, 1] = np.linspace(0.01, 0.03, 30)
-    closed = close_loop(Course(root, np.zeros((31, 1, 3))), 30.0, np.ones(1), FREE).root
+    closed = close_loop(MotionCurves(root, np.zeros((31, 1, 3))), 30.0, np.ones(1), FREE).root
     extrapolated = 1.5 * closed[[1, -1], 1] - 0.5 * closed[[2, -2], 1]
     assert abs(np.diff(extrapolated)[0]) < 0.25 * 0.02
 
@@ -152,7 +166,7 @@ def test_rounds_begin_where_the_one_before_ended():
     places = np.stack([np.sin(turn), 1 - np.cos(turn), 0 * turn + 0.9], axis=-1)
     quarter = walk.with_poses(rotations, places)
 
-    circle = repeated(quarter, 4)
+    circle = repeat_loop(quarter, 4)
 
     assert circle.n_frames == 4 * (walk.n_frames - 1) + 1
     assert_allclose(circle.root_positions[-1], places[0], atol=1e-9)
@@ -164,7 +178,7 @@ def test_rounds_begin_where_the_one_before_ended():
 
 
 def test_the_middle_of_three_rounds_is_the_round(walks):
-    again = middle_round(repeated(walks[1], 3), walks[1])
+    again = extract_middle_cycle(repeat_loop(walks[1], 3), walks[1])
     assert_allclose(again.root_positions[:-1], walks[1].root_positions[:-1], atol=1e-9)
     alike = np.abs(np.sum(again.rotations * walks[1].rotations, axis=-1))[:-1]
     assert_allclose(alike, 1.0, atol=1e-9)

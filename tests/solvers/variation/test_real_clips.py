@@ -14,7 +14,7 @@ from solvers.variation import (
     measure_variation,
     synthesize,
 )
-from solvers.variation.align_examples import body_positions
+from solvers.variation.align_examples import positions_in_body_frame
 
 KINDS = ("hopBothLegs1hops", "squat1Reps", "kickLFront1Reps")
 
@@ -31,7 +31,9 @@ def test_variants_are_like_the_examples_but_no_copies(clips):
     assert 0.65 < measure_variation(variants) / measure_variation(clips) < 1.4
     # Body positions jerk more than joint angles: .9 to 1.1 in docs/benchmarks_variation.md.
     assert 0.6 < jerk(variants) / jerk(clips) < 1.45
-    theirs, ours = ([body_positions(one)[::6] for one in group] for group in (clips, variants))
+    theirs, ours = (
+        [positions_in_body_frame(one)[::6] for one in group] for group in (clips, variants)
+    )
     apart = np.median([warp(a, b).cost for a, b in combinations(theirs, 2)])
     nearest = [min(warp(one, other).cost for other in theirs) for one in ours]
     assert min(nearest) > 0.05 * apart
@@ -51,5 +53,5 @@ def test_the_latent_factor_model_neither_drifts_nor_jerks(recordings):
 
 def jerk(motions):
     """Mean absolute third difference of where joints are, at 30 Hz, metres."""
-    bodies = (body_positions(one)[::4] for one in motions)
+    bodies = (positions_in_body_frame(one)[::4] for one in motions)
     return np.mean([np.abs(np.diff(body, 3, axis=0)).mean() for body in bodies])

@@ -17,8 +17,8 @@ from solvers.variation import (
     measure_variation,
     synthesize,
 )
-from solvers.variation.align_examples import body_positions
-from solvers.variation.course import course_of, headings
+from solvers.variation.align_examples import positions_in_body_frame
+from solvers.variation.motion_curves import curves_from_motion, headings_from_motion
 from solvers.variation.partitions import partition_joints
 from solvers.variation.synthesize import MARGIN
 
@@ -50,7 +50,7 @@ def test_no_amount_is_the_example_itself(learned, walks):
 
     assert copy.n_frames == centre.n_frames
     assert turn_between(copy.rotations[:, 1:], centre.rotations[:, 1:]).max() < 1e-5
-    assert_allclose(body_positions(copy), body_positions(centre), atol=1e-5)
+    assert_allclose(positions_in_body_frame(copy), positions_in_body_frame(centre), atol=1e-5)
 
 
 @pytest.mark.parametrize("method", [Method.MIXTURE, Method.COREGIONALISED])
@@ -93,18 +93,20 @@ def test_a_little_varies_a_little_around_the_base(learned, walks):
     little = replace(settings, amount=0.02, base=farthest + 1)
 
     for variant in synthesize(model, 3, settings=little):
-        apart = warp(body_positions(variant), body_positions(walks[farthest])).cost
+        apart = warp(
+            positions_in_body_frame(variant), positions_in_body_frame(walks[farthest])
+        ).cost
         assert 1e-5 < apart < 0.15 * measure_variation(walks)
 
 
 def test_pins_hold_whatever_the_timing(learned, walks):
     model, settings = learned
     pinned = replace(settings, pin_start=True, pin_end=True)
-    example = body_positions(walks[model.centre])
+    example = positions_in_body_frame(walks[model.centre])
 
     for variant in synthesize(model, 3, settings=pinned):
-        seen = body_positions(variant)
-        # Millimetres: the heading that `body_positions` takes out is averaged over frames.
+        seen = positions_in_body_frame(variant)
+        # Millimeters: `positions_in_body_frame` removes a heading averaged over frames.
         assert_allclose(seen[0], example[0], atol=3e-3)
         assert_allclose(seen[-1], example[-1], atol=3e-3)
         assert warp(seen, example).distances.max() > 0.005
@@ -119,7 +121,9 @@ def test_no_joint_goes_far_beyond_the_examples(amount, learned):
     slack = times * MARGIN * (high - low) + 1e-6
 
     for variant in synthesize(model, 5, settings=replace(settings, amount=amount)):
-        joints = course_of(variant, headings(variant), model.usual).joints[:, 1:]
+        joints = curves_from_motion(variant, headings_from_motion(variant), model.usual).joints[
+            :, 1:
+        ]
         assert (joints > (low - slack)[1:]).all()
         assert (joints < (high + slack)[1:]).all()
 
@@ -144,7 +148,7 @@ def test_timing_alone_changes_the_length_and_nothing_else(model):
 def test_variants_begin_above_the_origin_and_face_the_viewer(model):
     for variant in synthesize(model, 3):
         assert_allclose(variant.root_positions[0, :2], 0.0, atol=0.05)
-        assert abs(headings(variant)[0]) < 0.2
+        assert abs(headings_from_motion(variant)[0]) < 0.2
         assert np.isfinite(forward_kinematics(variant).positions).all()
 
 

@@ -12,12 +12,12 @@ from solvers.gestures.settings import GestureSettings
 from solvers.motion import JOINTS, JointRecording, Sensor
 from solvers.motion.humanoid.posture_joints import POSTURE_JOINTS
 from solvers.recordings.live.frames import LiveFrame, encode_frame, frames_of
-from solvers.samples import PerformanceSettings, perform
+from solvers.samples import PerformanceSettings, perform_gestures
 from solvers.workflows.live_session import DROPPED, TOO_SHORT, LiveSession, posture_of
 
 
 def lines_of(made, body=0, since=0.0, **settings):
-    recording = perform(made, PerformanceSettings(**settings)).recording()
+    recording = perform_gestures(made, PerformanceSettings(**settings)).recording()
     return [
         encode_frame(replace(frame, time=frame.time + since))
         for frame in frames_of(recording, body)
@@ -34,7 +34,7 @@ def heard(session, lines):
 
 def test_what_is_performed_between_claps_is_the_query():
     made = ["clap", "hand up", "wave left", "clap", "rest"]
-    performance = perform(made)
+    performance = perform_gestures(made)
     session = LiveSession()
 
     events, queries, messages = heard(session, lines_of(made))

@@ -13,7 +13,7 @@ from solvers.motion import Sensor
 from solvers.recordings.live.frames import LiveFrame, decode_frame, encode_frame
 from solvers.recordings.live.receiver import MOST_AT_ONCE, Receiver
 from solvers.recordings.live.stream import MOST_LINES, StreamReader, recording_of
-from solvers.samples import perform
+from solvers.samples import perform_gestures
 
 
 def frame(time, body=0, place=0.0):
@@ -96,7 +96,7 @@ def test_nothing_raises_and_all_is_counted(datagrams):
 
 
 def test_a_recording_of_uneven_frames_is_even(rng):
-    performed = perform(["wave right"])
+    performed = perform_gestures(["wave right"])
     times = np.linspace(5.0, 7.0, 61)
     late = times + rng.normal(scale=0.003, size=61)
     places = np.sin(late)[:, None, None] * np.ones((1, 20, 3))

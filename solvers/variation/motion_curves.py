@@ -16,7 +16,7 @@ from ..rotations import (
 
 Array = NDArray[np.float64]
 
-N_ROOT = 4
+N_ROOT_CHANNELS = 4
 """Columns of the root's way: to the left and backward as the actor faces, and turning, each
 from the frame before; and the height of the hips."""
 HEIGHT = 3
@@ -25,7 +25,7 @@ IMPOSSIBLE = 2.0
 
 
 @dataclass(frozen=True, eq=False)
-class Course:
+class MotionCurves:
     """Curves of a motion.
 
     Attributes
@@ -52,20 +52,20 @@ class Course:
     carrier: Array | None = None
 
 
-def headings(motion: Motion) -> Array:
+def headings_from_motion(motion: Motion) -> Array:
     """Return the turn about Z of each frame from facing -Y, shape (n_frames,), radians."""
     found = normalise(motion_postures(motion), motion.frame_rate)
     return np.asarray(np.unwrap(found.headings))
 
 
-def without_heading(motion: Motion, turns: Array) -> Array:
+def remove_heading(motion: Motion, turns: Array) -> Array:
     """Return local rotations, (n_frames, n_joints, 4), as if the actor always faced -Y."""
     rotations = motion.rotations.copy()
     rotations[:, 0] = multiply(_about_z(-turns), rotations[:, 0])
     return rotations
 
 
-def course_of(motion: Motion, turns: Array, usual: Array) -> Course:
+def curves_from_motion(motion: Motion, turns: Array, usual: Array) -> MotionCurves:
     """Take a motion apart.
 
     Parameters
@@ -85,12 +85,12 @@ def course_of(motion: Motion, turns: Array, usual: Array) -> Course:
         np.diff(turns, prepend=turns[:1]),
         motion.root_positions[:, 2],
     ])  # fmt: skip
-    told = multiply(inverse(usual), without_heading(motion, turns))
-    return Course(root, continuous(rotation_vector_from_quaternion(told)))
+    told = multiply(inverse(usual), remove_heading(motion, turns))
+    return MotionCurves(root, continuous(rotation_vector_from_quaternion(told)))
 
 
-def motion_of(
-    course: Course, skeleton: Skeleton, usual: Array, frame_rate: float, start: Array
+def motion_from_curves(
+    course: MotionCurves, skeleton: Skeleton, usual: Array, frame_rate: float, start: Array
 ) -> Motion:
     """Put a motion together again.
 
