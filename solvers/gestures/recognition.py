@@ -2,6 +2,7 @@
 
 from dataclasses import replace
 from enum import Enum
+from math import inf
 
 import numpy as np
 from numpy.typing import NDArray
@@ -63,7 +64,7 @@ class GestureRecognizer:
     def see(self, time: float, positions: Array, confidence: Array) -> tuple[GestureEvent, ...]:
         """Take one frame; return what it completed.
 
-        A frame that is not later than the one before is left out.
+        Skips a frame whose time is not finite, or not later than that of the frame before.
 
         Parameters
         ----------
@@ -77,7 +78,7 @@ class GestureRecognizer:
         tuple of GestureEvent
             None in most frames; a dropped capture first.
         """
-        if not time > self._time:
+        if not self._time < time < inf:
             return ()
         self._time = time
         events = self._outlast(time)
