@@ -1,4 +1,4 @@
-"""Commands by gesture: hands held still, strokes and waves, from a stream of postures."""
+"""Recognize gesture commands in a stream of poses: held hands, strokes and waves."""
 
 from .events import Gesture, GestureEvent
 from .recognition import GestureRecognizer, Mode

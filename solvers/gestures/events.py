@@ -1,11 +1,11 @@
-"""What gestures say."""
+"""Events of gesture recognition."""
 
 from dataclasses import dataclass
 from enum import Enum
 
 
 class Gesture(Enum):
-    """What the actor wants."""
+    """Command of the actor."""
 
     HAND_UP = "hand up"
     PAGE_NEXT = "page next"
@@ -19,13 +19,13 @@ class Gesture(Enum):
 
 @dataclass(frozen=True)
 class GestureEvent:
-    """One gesture."""
+    """One recognized gesture."""
 
     gesture: Gesture
     time: float
-    """Seconds, when it was recognised."""
+    """Seconds, at recognition."""
     began: float
-    """Seconds, when the movement began; a performance ends before its last clap begins."""
+    """Seconds, at the start of the movement; a performance ends before its last clap starts."""
     amount: float = 1.0
-    """ZOOM: factor by which the hands moved apart; TURN: radians, counter-clockwise as seen
-    from above; nothing for others."""
+    """ZOOM: factor of the hands' distance; TURN: radians, counter-clockwise seen from above; 1
+    for all others."""

@@ -1,4 +1,4 @@
-"""Commands by gesture, from a stream of postures, frame by frame [ZH14, section 3.5]."""
+"""Recognize gesture commands in a stream of poses, frame by frame [ZH14, section 3.5]."""
 
 from dataclasses import replace
 from enum import Enum
@@ -8,20 +8,20 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .events import Gesture, GestureEvent
-from .hand_signals import HandReader, Hands
-from .holds import HandUp, Turn, Zoom
+from .hand_tracking import HandEstimator, Hands
 from .settings import GestureSettings
-from .strokes import Clap, Wave
+from .still_gestures import HandUp, Turn, Zoom
+from .stroke_gestures import Clap, Wave
 
 Array = NDArray[np.float64]
 
-LONGEST_BREAK = 0.5
-"""Seconds without a frame, or without hands, after which no gesture goes on."""
-USUAL = GestureSettings()
+MAX_BREAK_S = 0.5
+"""Seconds without a frame, or without hands, after which all gestures are reset."""
+DEFAULT_SETTINGS = GestureSettings()
 
 
 class Mode(Enum):
-    """What the actor is doing."""
+    """Activity of the actor."""
 
     IDLE = "idle"
     BROWSING = "browsing"
@@ -29,15 +29,15 @@ class Mode(Enum):
 
 
 class GestureRecognizer:
-    """Listens to one actor: right hand up, waves, claps, hands apart, right arm turning.
+    """Recognize the gestures of one actor.
 
-    The right hand, held up, shows the library; while it is shown, waves of that hand to the
-    right and left page it. A clap starts a performance and the next one ends it; nothing else
-    counts between them. Both hands, held still before the chest, take hold of the view and
-    zoom by their distance; so does the stretched right arm, and turns it. All is judged in
-    arm lengths, in the actor's own right, forward and up, by what was seen so far.
+    The raised right hand shows the library. While it is shown, waves of that hand to the right
+    and left turn its pages. A clap starts a performance and the next one ends it; all other
+    gestures are ignored in between. Both hands, held still in front of the chest, grab the view
+    and zoom by their distance; the straight right arm grabs and turns it. All thresholds are in
+    arm lengths, in the actor's own right, forward and up directions, from past frames only.
 
-    The source names the gestures and leaves open how they are told; the rules here are ours.
+    The source names the gestures and leaves their recognition open; the rules here are ours.
 
     References
     ----------
@@ -46,19 +46,19 @@ class GestureRecognizer:
        section 3.5.
     """
 
-    def __init__(self, settings: GestureSettings = USUAL) -> None:
+    def __init__(self, settings: GestureSettings = DEFAULT_SETTINGS) -> None:
         self._settings = settings
-        self._reader = HandReader(settings)
+        self._reader = HandEstimator(settings)
         self._clap, self._wave = Clap(settings), Wave(settings)
         self._hand_up = HandUp(settings)
         self._zoom, self._turn = Zoom(settings), Turn(settings)
         self._mode = Mode.IDLE
-        self._mode_since = self._time = self._hands_at = float("-inf")
-        self._clapped_at = float("-inf")
+        self._mode_since = self._time = self._hands_time = float("-inf")
+        self._last_clap_time = float("-inf")
 
     @property
     def mode(self) -> Mode:
-        """What the actor is doing."""
+        """Current activity of the actor."""
         return self._mode
 
     def see(self, time: float, positions: Array, confidence: Array) -> tuple[GestureEvent, ...]:
@@ -81,18 +81,18 @@ class GestureRecognizer:
         if not self._time < time < inf:
             return ()
         self._time = time
-        events = self._outlast(time)
+        events = self._end_timeouts(time)
         hands = self._reader.read(time, positions, confidence)
-        if time - self._hands_at > LONGEST_BREAK:
-            self._forget()
+        if time - self._hands_time > MAX_BREAK_S:
+            self._reset()
         if hands is None:
-            self._clap.lose(time)
+            self._clap.mark_missing(time)
             return events
-        self._hands_at = time
+        self._hands_time = time
         return (*events, *self._react(hands))
 
-    def _outlast(self, time: float) -> tuple[GestureEvent, ...]:
-        """End what has gone on for too long."""
+    def _end_timeouts(self, time: float) -> tuple[GestureEvent, ...]:
+        """End the browsing or capture that has lasted too long."""
         since = time - self._mode_since
         if self._mode is Mode.BROWSING and since > self._settings.browse_for:
             self._enter(Mode.IDLE, time)
@@ -103,58 +103,60 @@ class GestureRecognizer:
         return ()
 
     def _react(self, hands: Hands) -> tuple[GestureEvent, ...]:
-        zoom, turn = self._zoom.see(hands), self._turn.see(hands)
-        clap = self._clap.see(hands, self._zoom.holds)
+        zoom, turn = self._zoom.update(hands), self._turn.update(hands)
+        clap = self._clap.update(hands, self._zoom.is_active)
         if clap is not None:
-            return self._clapped(clap)
+            return self._handle_clap(clap)
         if self._mode is Mode.CAPTURING:
             return ()
         browsing = self._mode is Mode.BROWSING or not self._settings.waves_need_hand_up
-        up, wave = self._hand_up.see(hands), self._wave.see(hands)
-        if not browsing or self._turn.holds:
+        up, wave = self._hand_up.update(hands), self._wave.update(hands)
+        if not browsing or self._turn.is_active:
             wave = None
         if up is not None or wave is not None:
             self._enter(Mode.BROWSING, hands.time)
         return tuple(event for event in (up, wave, zoom, turn) if event is not None)
 
-    def _clapped(self, clap: GestureEvent) -> tuple[GestureEvent, ...]:
-        since, self._clapped_at = clap.time - self._clapped_at, clap.time
+    def _handle_clap(self, clap: GestureEvent) -> tuple[GestureEvent, ...]:
+        since, self._last_clap_time = clap.time - self._last_clap_time, clap.time
         if since < self._settings.clap_pause:
             return ()
         ends = self._mode is Mode.CAPTURING
         self._enter(Mode.IDLE if ends else Mode.CAPTURING, clap.time)
-        self._forget()
+        self._reset()
         return (replace(clap, gesture=Gesture.CAPTURE_END) if ends else clap,)
 
     def _enter(self, mode: Mode, time: float) -> None:
         self._mode, self._mode_since = mode, time
 
-    def _forget(self) -> None:
+    def _reset(self) -> None:
         for detector in (self._clap, self._wave, self._hand_up, self._zoom, self._turn):
-            detector.forget()
+            detector.reset()
 
 
 def recognize_gestures(
     times: Array,
     positions: Array,
     confidence: Array | None = None,
-    settings: GestureSettings = USUAL,
+    settings: GestureSettings = DEFAULT_SETTINGS,
 ) -> tuple[GestureEvent, ...]:
-    """Return the gestures of a whole recording, as they would have been told while it ran.
+    """Return the gestures of a complete recording, exactly as a live stream reports them.
 
     Parameters
     ----------
     times : shape (n_frames,), seconds
-    positions : shape (n_frames, 20, 3), metres, Z up
+    positions : shape (n_frames, 20, 3), meters, Z up
         As `solvers.motion.humanoid.posture_joints.posture_positions` returns them.
     confidence : shape (n_frames, 20), 0 to 1, optional
     settings : GestureSettings
     """
-    recogniser = GestureRecognizer(settings)
-    sure = np.ones(positions.shape[:2]) if confidence is None else confidence
+    recognizer = GestureRecognizer(settings)
+    confidences = np.ones(positions.shape[:2]) if confidence is None else confidence
     events = [
         event
-        for time, places, trust in zip(times, positions, sure, strict=True)
-        for event in recogniser.see(float(time), places, trust)
+        for time, frame_positions, frame_confidence in zip(
+            times, positions, confidences, strict=True
+        )
+        for event in recognizer.see(float(time), frame_positions, frame_confidence)
     ]
     return tuple(events)

@@ -1,4 +1,4 @@
-"""What counts as a gesture; lengths are in arm lengths, from the shoulder to the wrist."""
+"""Settings of gesture recognition; lengths are in arm lengths, from shoulder to wrist."""
 
 from dataclasses import dataclass
 
@@ -19,44 +19,46 @@ def _time(default: float, help: str, maximum: float = 10.0) -> float:
 
 @dataclass(frozen=True, kw_only=True)
 class GestureSettings(Settings):
-    """Thresholds of the gestures. What more does is told for each."""
+    """Thresholds of the gestures."""
 
     least_confidence: float = setting(
         0.25,
-        "Confidence from which on a joint counts as seen; higher trusts the sensor less",
+        "Minimum confidence of an observed joint; higher ignores more of the sensor's data",
         minimum=0.0,
         maximum=1.0,
         advanced=True,
     )
-    patience: float = _time(0.25, "How long a lost hand is taken to be where it was", 2.0)
+    patience: float = _time(0.25, "How long a missing hand keeps its last position", 2.0)
     raised: float = _length(0.45, "Height of the raised wrist above its shoulder")
     raised_for: float = _time(1.0, "How long the raised hand must be held still")
-    still: float = _length(0.22, "How far a hand that is held still may stray")
-    wave: float = _length(0.5, "Way of the hand that is a wave; higher needs wider waves")
-    wave_within: float = _time(0.6, "Time in which the hand makes that way", 2.0)
-    wave_pause: float = _time(0.7, "Time after a wave in which no other counts")
+    still: float = _length(0.22, "Maximum movement of a hand held still")
+    wave: float = _length(0.5, "Minimum length of a wave; higher needs wider waves")
+    wave_within: float = _time(0.6, "Maximum duration of a wave", 2.0)
+    wave_pause: float = _time(0.7, "Pause after a wave in which others are ignored")
     browse_for: float = _time(
-        15.0, "How long after the hand was up, or the last wave, waves still count", 600.0
+        15.0, "How long waves count after the raised hand or the last wave", 600.0
     )
     waves_need_hand_up: bool = setting(
         True, "Count waves only while the library is shown", advanced=True
     )
     apart: float = _length(
-        0.85, "Sideways distance of the hands from which on a clap may start"
+        0.85, "Minimum sideways distance of the hands at the start of a clap"
     )
-    together: float = _length(0.4, "Distance of the hands from which on they touch")
-    clap_within: float = _time(0.8, "Time in which the hands come together in a clap", 2.0)
-    touch_for: float = _time(1.0, "How long the hands may touch in a clap", 3.0)
-    clap_pause: float = _time(0.8, "Time between claps of one applause, which counts once", 5.0)
+    together: float = _length(0.4, "Maximum distance of touching hands")
+    clap_within: float = _time(0.8, "Maximum time in which the hands close in a clap", 2.0)
+    touch_for: float = _time(1.0, "Maximum time that the hands touch in a clap", 3.0)
+    clap_pause: float = _time(
+        0.8, "Maximum time between claps of applause, which counts once", 5.0
+    )
     longest_capture: float = _time(
-        60.0, "Time after which a performance that no clap has ended is dropped", 600.0
+        60.0, "Time after which a performance without a second clap is dropped", 600.0
     )
     engage_for: float = _time(
-        0.7, "How long hands are held still before they zoom or turn the view", 5.0
+        0.7, "How long hands must be still before they zoom or turn the view", 5.0
     )
     dead_zone: float = setting(
         0.04,
-        "Change of zoom (as a share) or turn (rad) that is let pass as jitter",
+        "Change of zoom (fraction) or turn (rad) that is ignored as jitter",
         minimum=0.0,
         maximum=0.5,
         advanced=True,

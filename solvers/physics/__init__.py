@@ -4,7 +4,7 @@
 >>> from solvers.samples import GaitSettings, walking_gait
 >>> walk = walking_gait(GaitSettings(duration=1.0, frame_rate=30.0))
 >>> simulate(walk).message
-'The simulated body followed the whole take.'
+'The simulated body followed the complete take.'
 """
 
 from .engine import NoPhysicsError

@@ -1,4 +1,4 @@
-"""What drives a simulated body: bounded proportional-derivative control towards a target."""
+"""Drive a simulated body by bounded proportional-derivative control towards a target."""
 
 from dataclasses import dataclass
 from types import ModuleType
@@ -7,40 +7,41 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .body import PhysicsBody
-from .target import States
+from .target import BodyStates
 from .world import GRAVITY, World
 
 Array = NDArray[np.float64]
 BASE = slice(0, 6)
-HARDEST, HARDEST_TURN = 1.0, 30.0
-"""Of the base: at most so much acceleration corrects an error, in g and in 1/s^2."""
+MAX_CORRECTION_G, MAX_ANGULAR_CORRECTION = 1.0, 30.0
+"""Maximum acceleration of the base that corrects an error, in g and in 1/s^2."""
 
-SWEEPS = 8
-RIDGE = 1e-3
-"""Share by which a contact's force is held small, so that neighbours share the load."""
+N_ITERATIONS = 8
+REGULARIZATION = 1e-3
+"""Tikhonov regularization of contact forces, relative to their mean, so that neighbors share
+the load."""
 
-RELUCTANCE = 100.0
-"""How much smaller it is held for arms and head: legs carry the body where they can."""
+ARM_REGULARIZATION = 100.0
+"""Factor on the regularization for arms and head: legs carry the body where they can."""
 
-HELPING_LEVER = 1.0
-LEVER = 1.0
-"""Metres, for legs of 0.9 m: by it, torques on the base are weighed against forces."""
+HELP_LEVER_M = 1.0
+TORQUE_LEVER_M = 1.0
+"""Meters, for legs of 0.9 m: weighs torques on the base against forces."""
 
 
 @dataclass(frozen=True, eq=False)
 class Controller:
-    """How hard a body is pulled towards its target.
+    """Gains and bounds of the control.
 
     Attributes
     ----------
     stiffness, damping : float
-        Acceleration per error (1/s^2) and per error of velocity (1/s): critically damped, and
-        the same for all joints, for the mass that each moves is reckoned with.
+        Acceleration per error (1/s^2) and per velocity error (1/s). Critically damped, and the
+        same for all joints, since the control includes the mass that each joint moves.
     weight : float, newtons
-    force, torque : float, newtons and newton metres
-        At most so much helps the base from outside.
-    strengths : shape (n_joints - 1,), newton metres
-        At most so much turns each joint.
+    force, torque : float, newtons and newton meters
+        Maximum external force and torque on the base.
+    strengths : shape (n_joints - 1,), newton meters
+        Maximum torque of each joint.
     friction, size : float
     """
 
@@ -54,10 +55,10 @@ class Controller:
     size: float
 
 
-def controller(
+def build_controller(
     body: PhysicsBody, response: float, support: float, friction: float
 ) -> Controller:
-    """Return the control of `response` hertz, helped by a share `support` of the weight."""
+    """Return a control of `response` hertz, supported by a fraction of the weight."""
     omega = 2 * np.pi * response
     weight = body.mass * GRAVITY
     return Controller(
@@ -65,84 +66,85 @@ def controller(
         damping=2 * omega,
         weight=weight,
         force=support * weight,
-        torque=support * weight * HELPING_LEVER * body.size,
+        torque=support * weight * HELP_LEVER_M * body.size,
         strengths=body.strengths,
         friction=friction,
         size=body.size,
     )
 
 
-def drive(
+def apply_control(
     engine: ModuleType,
     world: World,
     control: Controller,
-    target: States,
+    target: BodyStates,
 ) -> float:
-    """Set the forces of one step; return that from outside as a share of the weight.
+    """Set the forces of one step; return the external force as a fraction of the weight.
 
-    The wanted acceleration follows equations 16 and 17 of [SHJT13], each error times a gain,
-    and that of the target itself. Where the paper pulls every part of the body by an outside
-    force, here joints turn by torques of their own, as muscles do; they are reckoned by inverse
-    dynamics of a body whose base nothing drives but the ground under its feet, and a bounded
-    help. What the help cannot give, the base does not get: the body falls, or tips.
+    The desired acceleration follows equations 16 and 17 of [SHJT13], each error times a gain,
+    plus the target's own acceleration. Where the paper pulls every part of the body by an
+    external force, here joint torques act, as muscles do. They come from inverse dynamics of a
+    body whose base is driven only by the ground under its feet and a bounded external force.
+    What that force cannot supply, the base does not get: the body falls, or tips.
     """
     model, data = world.model, world.data
-    error, slip = np.empty(model.nv), target.velocities - data.qvel
-    engine.mj_differentiatePos(model, error, 1.0, data.qpos, target.places)
-    correction = control.damping * slip + control.stiffness * error
-    correction[:3] = _at_most(correction[:3], HARDEST * GRAVITY)
-    correction[3:6] = _at_most(correction[3:6], HARDEST_TURN)
-    wanted = target.accelerations + correction
+    error, velocity_error = np.empty(model.nv), target.velocities - data.qvel
+    engine.mj_differentiatePos(model, error, 1.0, data.qpos, target.coordinates)
+    correction = control.damping * velocity_error + control.stiffness * error
+    correction[:3] = _limit_length(correction[:3], MAX_CORRECTION_G * GRAVITY)
+    correction[3:6] = _limit_length(correction[3:6], MAX_ANGULAR_CORRECTION)
+    desired_acceleration = target.accelerations + correction
     inertia = np.empty((model.nv, model.nv))
     engine.mj_fullM(model, inertia, data.qM)
-    contacts, burdens = _contacts(world)
-    on_base = inertia[BASE] @ wanted + data.qfrc_bias[BASE]
-    pushes = _ground_forces(contacts[:, BASE], burdens, on_base, control)
-    from_ground = contacts.T @ pushes
-    help_ = _bounded_help(on_base - from_ground[BASE], control)
-    given = help_ + from_ground[BASE] - data.qfrc_bias[BASE]
-    wanted[BASE] = np.linalg.solve(inertia[BASE, BASE], given - inertia[BASE, 6:] @ wanted[6:])
-    torques = (inertia @ wanted + data.qfrc_bias - from_ground)[6:].reshape(-1, 3)
+    contacts, penalties = _contacts(world)
+    required_force = inertia[BASE] @ desired_acceleration + data.qfrc_bias[BASE]
+    contact_forces = _ground_forces(contacts[:, BASE], penalties, required_force, control)
+    from_ground = contacts.T @ contact_forces
+    external_force = _limit_external_force(required_force - from_ground[BASE], control)
+    base_force = external_force + from_ground[BASE] - data.qfrc_bias[BASE]
+    desired_acceleration[BASE] = np.linalg.solve(
+        inertia[BASE, BASE], base_force - inertia[BASE, 6:] @ desired_acceleration[6:]
+    )
+    torques = (inertia @ desired_acceleration + data.qfrc_bias - from_ground)[6:].reshape(-1, 3)
     norms = np.linalg.norm(torques, axis=1)
     torques *= np.minimum(1.0, control.strengths / np.maximum(norms, 1e-9))[:, None]
-    data.qfrc_applied[BASE] = help_
+    data.qfrc_applied[BASE] = external_force
     data.qfrc_applied[6:] = torques.ravel()
-    return float(np.linalg.norm(help_[:3]) / control.weight)
+    return float(np.linalg.norm(external_force[:3]) / control.weight)
 
 
 def _contacts(world: World) -> tuple[Array, Array]:
     """Return Jacobians of the contacts, rows in threes, along the normal first, shape
-    (3 n_contacts, n_velocities); and how reluctantly each row bears the body.
-    """
+    (3 n_contacts, n_velocities); and the penalty on the force of each row."""
     data = world.data
     weak = world.weak[data.contact.geom[data.contact.efc_address >= 0]].any(axis=1)
-    burdens = np.repeat(np.where(weak, RELUCTANCE, 1.0), 3)
-    return data.efc_J.reshape(-1, world.model.nv), burdens
+    penalties = np.repeat(np.where(weak, ARM_REGULARIZATION, 1.0), 3)
+    return data.efc_J.reshape(-1, world.model.nv), penalties
 
 
 def _ground_forces(
-    contacts: Array, burdens: Array, wanted: Array, control: Controller
+    contacts: Array, penalties: Array, required_force: Array, control: Controller
 ) -> Array:
-    """Return the forces of contacts that would drive the base as wanted, as far as friction
-    and the ground, which does not pull, allow: the least ones, shape (3 n_contacts,).
+    """Return the smallest contact forces, (3 n_contacts,), that drive the base as required.
 
-    Projected gradient descent from the solution without bounds.
+    Friction bounds them, and the ground does not pull. Projected gradient descent from the
+    solution without bounds.
     """
     if not len(contacts):
         return np.zeros(0)
-    scale = np.repeat([1.0, 1.0 / (LEVER * control.size)], 3)
+    scale = np.repeat([1.0, 1.0 / (TORQUE_LEVER_M * control.size)], 3)
     A = (contacts * scale).T
-    gram, wish = A.T @ A, A.T @ (wanted * scale)
-    gram[np.diag_indices_from(gram)] += RIDGE * np.trace(gram) * burdens
-    forces = _in_cones(np.linalg.solve(gram, wish), control.friction)
+    gram, desired = A.T @ A, A.T @ (required_force * scale)
+    gram[np.diag_indices_from(gram)] += REGULARIZATION * np.trace(gram) * penalties
+    forces = _project_to_cones(np.linalg.solve(gram, desired), control.friction)
     step = 1.0 / np.sqrt((gram * gram).sum())
-    for _ in range(SWEEPS):
-        forces = _in_cones(forces - step * (gram @ forces - wish), control.friction)
+    for _ in range(N_ITERATIONS):
+        forces = _project_to_cones(forces - step * (gram @ forces - desired), control.friction)
     return forces
 
 
-def _in_cones(forces: Array, friction: float) -> Array:
-    """Return forces that neither pull nor hold sideways more than friction allows."""
+def _project_to_cones(forces: Array, friction: float) -> Array:
+    """Project forces into the friction cones: no pull, and bounded sideways force."""
     inside = forces.reshape(-1, 3).copy()
     normal = np.maximum(inside[:, 0], 0.0, out=inside[:, 0])
     sideways = np.hypot(inside[:, 1], inside[:, 2])
@@ -150,13 +152,13 @@ def _in_cones(forces: Array, friction: float) -> Array:
     return inside.ravel()
 
 
-def _at_most(vector: Array, bound: float) -> Array:
+def _limit_length(vector: Array, bound: float) -> Array:
     """Return a vector no longer than `bound`."""
     return vector * min(1.0, bound / max(float(np.linalg.norm(vector)), 1e-9))
 
 
-def _bounded_help(wanted: Array, control: Controller) -> Array:
+def _limit_external_force(required_force: Array, control: Controller) -> Array:
     return np.concatenate([
-        _at_most(wanted[:3], control.force),
-        _at_most(wanted[3:], control.torque),
+        _limit_length(required_force[:3], control.force),
+        _limit_length(required_force[3:], control.torque),
     ])

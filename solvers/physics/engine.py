@@ -1,11 +1,11 @@
-"""The physics engine MuJoCo, loaded when it is needed and without its windows."""
+"""Load the physics engine MuJoCo when it is needed, without its windows."""
 
 import os
 from types import ModuleType
 
 from ..errors import MocapAssistError
 
-DISPLAY = "MUJOCO_GL"
+RENDERER_VARIABLE = "MUJOCO_GL"
 
 
 class NoPhysicsError(MocapAssistError):
@@ -13,19 +13,19 @@ class NoPhysicsError(MocapAssistError):
 
 
 def load_engine() -> ModuleType:
-    """Return the module `mujoco`, which then shows nothing and writes no log.
+    """Return the module `mujoco`, without a renderer and without a log file.
 
-    Its renderer would ask for packages that physics needs not; the engine leaves it out where
-    an environment variable says so, which is put back afterwards. Its warnings would go to a
-    file in the current folder; `data.warning` tells of them all the same.
+    Its renderer would need packages that physics does not. An environment variable disables it
+    during the import and is restored afterwards. Engine warnings do not go to a file in the
+    current folder; `data.warning` still counts them.
 
     Raises
     ------
     NoPhysicsError
-        It is not there, or does not load on this machine.
+        The engine is not installed, or does not load on this machine.
     """
-    before = os.environ.get(DISPLAY)
-    os.environ[DISPLAY] = "disable"
+    previous = os.environ.get(RENDERER_VARIABLE)
+    os.environ[RENDERER_VARIABLE] = "disable"
     try:
         import mujoco
     except (ImportError, OSError) as error:
@@ -34,14 +34,14 @@ def load_engine() -> ModuleType:
             " with its wheels, or the package mujoco."
         ) from error
     finally:
-        if before is None:
-            del os.environ[DISPLAY]
+        if previous is None:
+            del os.environ[RENDERER_VARIABLE]
         else:
-            os.environ[DISPLAY] = before
+            os.environ[RENDERER_VARIABLE] = previous
     engine: ModuleType = mujoco
-    engine.set_mju_user_warning(_silent)
+    engine.set_mju_user_warning(_ignore_warning)
     return engine
 
 
-def _silent(message: str) -> None:
-    """Take note of no warning; they are counted in the simulation's data."""
+def _ignore_warning(message: str) -> None:
+    """Ignore a warning; the simulation's data counts them."""

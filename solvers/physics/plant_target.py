@@ -1,4 +1,4 @@
-"""Keep feet from creeping and slipping where they stand."""
+"""Keep standing feet from creeping and slipping."""
 
 from typing import NamedTuple
 
@@ -16,109 +16,123 @@ from ..rotations import (
 )
 from ..signals import smooth_correction
 from .body import PhysicsBody
-from .pelvis_offset import LegGoal, hips_shift
-from .stance import bearing
-from .surface import SIDES, bottoms, leg_chain, of_foot
+from .body_surface import SIDES, find_leg_chain, lowest_points, select_foot_ends
+from .foot_support import distribute_load
+from .pelvis_offset import LegGoal, solve_pelvis_offset
 
 Array = NDArray[np.float64]
-FEWEST = 4
-"""Frames in which a foot can stand."""
+MIN_FRAMES = 4
+"""Minimum frames in which a foot can stand."""
 
-BLEND = 0.3
-"""Seconds over which a foot that no longer stands eases into its own motion."""
+BLEND_S = 0.3
+"""Seconds over which a released foot blends to its own motion."""
 
-TURNING = 0.6
-"""Radians per second: a foot that turns faster on the ground means to."""
+MAX_TURN_RATE_RAD_S = 0.6
+"""Radians per second: a foot that rotates faster on the ground does so on purpose."""
 
-SOFTNESS = 0.01
-"""Part of a leg's length that is kept in reserve so that knees do not snap straight."""
+REACH_SOFTNESS = 0.01
+"""Fraction of a leg's length kept in reserve, so that knees do not snap straight."""
 
 
-class Foot(NamedTuple):
+class FootPlan(NamedTuple):
     """A leg, and the course that its foot should take."""
 
     goal: LegGoal
-    turn: Array
+    rotations: Array
     """World rotation about the vertical to add to the foot's own, shape (n_frames, 4)."""
 
 
-def planted(body: PhysicsBody, motion: Motion, held: Array, ground: float) -> Motion:
-    """Return the motion with feet that do not move over the ground where they are held.
+def plant_target_feet(
+    body: PhysicsBody, motion: Motion, hold_weights: Array, ground: float
+) -> Motion:
+    """Return the motion with feet that do not move over the ground while they are held.
 
-    The part of the sole that carries the foot, heel, ball or toes, stays where it is; the shift
-    and the turn that this takes fade while the foot is free. Feet are shifted and turned level
-    with the ground only, so that none sinks or rises; hips and knees turn after them, and the
-    hips give way a little where a knee would suffer.
+    The loaded part of the sole (heel, ball or toes) keeps its position. The displacement and
+    rotation that this requires fade while the foot is free. Corrections are horizontal and
+    about the vertical only, so that no foot sinks or rises. Inverse kinematics moves hips and
+    knees, and the pelvis is offset a little where a knee would overextend.
 
     Parameters
     ----------
     body : PhysicsBody
     motion : Motion
-    held : shape (n_frames - 1, 2), 0 to 1
+    hold_weights : shape (n_frames - 1, 2), 0 to 1
         How firmly each foot is held from each frame to the next.
-    ground : float, metres
+    ground : float, meters
     """
-    if motion.n_frames < FEWEST:
+    if motion.n_frames < MIN_FRAMES:
         return motion
-    poses, points, feet = forward_kinematics(motion), bottoms(body, motion), []
+    poses, points, feet = forward_kinematics(motion), lowest_points(body, motion), []
     for column, side in enumerate(SIDES):
-        chain = leg_chain(body, side)
-        if chain and held[:, column].any():
-            sole, rate = points[:, of_foot(body, side)], motion.frame_rate
-            share = bearing(sole[..., 2] - ground, rate, body.size)
-            feet.append(_foot(sole, share, poses, chain, held[:, column], rate))
+        chain = find_leg_chain(body, side)
+        if chain and hold_weights[:, column].any():
+            sole, frame_rate = points[:, select_foot_ends(body, side)], motion.frame_rate
+            load_fractions = distribute_load(sole[..., 2] - ground, frame_rate, body.size)
+            feet.append(
+                _plan_foot(
+                    sole, load_fractions, poses, chain, hold_weights[:, column], frame_rate
+                )
+            )
     if not feet:
         return motion
     goals = [foot.goal for foot in feet]
-    shift = hips_shift(poses, goals, motion.frame_rate, body.size)
+    shift = solve_pelvis_offset(poses, goals, motion.frame_rate, body.size)
     result = motion.with_poses(root_positions=motion.root_positions + shift)
     for foot in feet:
-        result = _followed(result, poses, foot)
+        result = _apply_foot_plan(result, poses, foot)
     return result
 
 
-def _foot(
+def _plan_foot(
     sole: Array,
-    share: Array,
+    load_fractions: Array,
     poses: WorldPoses,
     chain: tuple[int, int, int],
-    held: Array,
-    rate: float,
-) -> Foot:
-    """Plan the course of a foot that is `held` from frame to frame, shape (n_frames - 1,).
+    hold_weights: Array,
+    frame_rate: float,
+) -> FootPlan:
+    """Plan the course of a foot that is `hold_weights` from frame to frame, shape (n_frames -
+    1,).
 
-    `sole` are points, shape (n_frames, n_points, 3), each of which bears a `share` of the load.
+    `sole` are points, shape (n_frames, n_points, 3), each of which bears a `load_fractions` of
+    the load.
     """
     ankle = poses.positions[:, chain[-1]]
-    turn = _turn(poses.rotations[:, chain[-1]], held, rate)
-    points = ankle[:, None] + rotate(turn[:, None], sole - ankle[:, None])
-    both = 0.5 * (share[1:] + share[:-1])
-    steps = np.einsum("fp,fpi->fi", both, np.diff(points, axis=0))
-    shift = smooth_correction(-steps * rate, held, rate, BLEND) * (1.0, 1.0, 0.0)
-    return Foot(LegGoal(chain, ankle + shift), turn)
+    rotations = _counter_rotations(poses.rotations[:, chain[-1]], hold_weights, frame_rate)
+    points = ankle[:, None] + rotate(rotations[:, None], sole - ankle[:, None])
+    mean_fractions = 0.5 * (load_fractions[1:] + load_fractions[:-1])
+    steps = np.einsum("fp,fpi->fi", mean_fractions, np.diff(points, axis=0))
+    shift = smooth_correction(-steps * frame_rate, hold_weights, frame_rate, BLEND_S) * (
+        1.0,
+        1.0,
+        0.0,
+    )
+    return FootPlan(LegGoal(chain, ankle + shift), rotations)
 
 
-def _turn(rotations: Array, held: Array, rate: float) -> Array:
+def _counter_rotations(rotations: Array, hold_weights: Array, frame_rate: float) -> Array:
     """Return turns about the vertical, (n_frames, 4), by which a foot that hardly turns does
     not turn at all.
     """
     steps = rotation_vector_from_quaternion(multiply(rotations[1:], inverse(rotations[:-1])))
-    speeds = np.abs(steps[:, 2:]) * rate
-    slow = np.clip(2.0 - 2.0 * speeds[:, 0] / TURNING, 0.0, 1.0)
-    angles = smooth_correction(-steps[:, 2:] * rate, held * slow, rate, BLEND)
+    speeds = np.abs(steps[:, 2:]) * frame_rate
+    slow = np.clip(2.0 - 2.0 * speeds[:, 0] / MAX_TURN_RATE_RAD_S, 0.0, 1.0)
+    angles = smooth_correction(
+        -steps[:, 2:] * frame_rate, hold_weights * slow, frame_rate, BLEND_S
+    )
     return quaternion_from_rotation_vector(angles * UP)
 
 
-def _followed(motion: Motion, poses: WorldPoses, foot: Foot) -> Motion:
+def _apply_foot_plan(motion: Motion, poses: WorldPoses, foot: FootPlan) -> Motion:
     """Return the motion whose ankle follows its course, the foot turned as it should be.
 
     `poses` are those of the motion before anything was changed.
     """
     ankle = foot.goal.chain[-1]
-    settings = ReachSettings(softness=SOFTNESS)
+    settings = ReachSettings(softness=REACH_SOFTNESS)
     result = reach(motion, foot.goal.chain, foot.goal.ankle, settings)
-    above = forward_kinematics(result).rotations[:, motion.skeleton.parents[ankle]]
+    parent_rotations = forward_kinematics(result).rotations[:, motion.skeleton.parents[ankle]]
     rotations = result.rotations.copy()
-    wanted = multiply(foot.turn, poses.rotations[:, ankle])
-    rotations[:, ankle] = multiply(inverse(above), wanted)
+    foot_rotations = multiply(foot.rotations, poses.rotations[:, ankle])
+    rotations[:, ankle] = multiply(inverse(parent_rotations), foot_rotations)
     return result.with_poses(rotations)

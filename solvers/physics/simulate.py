@@ -1,4 +1,4 @@
-"""Let a body with mass and muscles make a captured motion: physics as a filter."""
+"""Simulate a body with mass and muscles that tracks a captured motion: physics as a filter."""
 
 from dataclasses import dataclass
 
@@ -8,57 +8,63 @@ from numpy.typing import NDArray
 from ..motion import HumanoidMap, Motion, find_humanoid_map
 from ..progress import Progress, unwatched, within
 from .body import PhysicsBody, build_physics_body, check_size
+from .body_surface import measure_foot_slide, measure_penetration
 from .engine import load_engine
-from .feet import add_soles, find_ground, stands_for_long
-from .measures import about_ground, mean_distance, stands_on, told
-from .segment import EASE, Conditions, Piece, find_pieces, simulated_piece
+from .feet import add_soles, find_ground, has_long_contact
+from .foot_support import sum_foot_loads
+from .report import describe_ground, describe_result, is_near_ground, mean_distance
 from .settings import Ground, SimulateSettings
-from .stance import carried
-from .surface import measure_foot_slide, penetration
-from .target import away_from, blended, fill_gaps
+from .simulate_segment import (
+    EASE_S,
+    SimulatedSegment,
+    SimulationConditions,
+    find_segments,
+    simulate_segment,
+)
+from .target import blend_motions, fade_around, fill_gaps
 
 Array = NDArray[np.float64]
 Flags = NDArray[np.bool_]
-USUAL = SimulateSettings()
-TOO_OFTEN = 1.0
-"""Seconds of a take for each time that its body may be lost before all is given up."""
+DEFAULT_SETTINGS = SimulateSettings()
+MIN_SECONDS_PER_LOSS = 1.0
+"""Seconds of a take per loss of the body; with more frequent losses the result is the input."""
 
-TOO_MANY = 0.3
-"""Share of the frames that may not be followed, likewise."""
+MAX_LOST_FRACTION = 0.3
+"""Fraction of frames that the body may fail to follow, likewise."""
 
 
 @dataclass(frozen=True, eq=False)
 class Simulated:
-    """A motion as a body with mass can make it.
+    """A motion that a body with mass can perform.
 
-    `contacts`, `carried` and `support` are the simulated body's also in frames that it did not
-    follow, and where all was given up, though the motion there is the input's. Of a single
-    frame, in which nothing moves, `carried` and `support` are 0.
+    `contacts`, `carried` and `support` describe the simulated body, also in frames that it did
+    not follow, and where the result is the input. For a single frame, `carried` and `support`
+    are 0.
 
     Attributes
     ----------
     motion : Motion
         Same skeleton and frames as the input.
     followed : bool, shape (n_frames,)
-        Where the body could follow; elsewhere the motion is the input's.
+        Frames in which the body followed its target; elsewhere the motion is the input's.
     contacts : bool, shape (n_frames, 2), left and right
-        Where the simulated feet touch the ground.
+        Frames in which the simulated feet touch the ground.
     carried : float array, shape (n_frames, 2), left and right
-        Share of the weight that each foot carries.
+        Fraction of the weight that each foot carries.
     support : float array, shape (n_frames,)
-        Force from outside that kept the body up, as a share of its weight.
-    ground : float, metres
+        External force that kept the body up, as a fraction of its weight.
+    ground : float, meters
         Height of the ground.
-    penetration_before, penetration_after : float, metres
-        How deep the body is under the ground where it is deepest.
-    slide_before, slide_after : float, metres
-        Way that both feet cover over the ground during `contacts`.
+    penetration_before, penetration_after : float, meters
+        Maximum depth of the body below the ground.
+    slide_before, slide_after : float, meters
+        Distance that both feet cover over the ground during `contacts`.
     smoothing : float, seconds
-        How much the target was calmed where it was calmed most.
-    distance : float, metres
-        Mean distance of the result's joints from where they were captured.
+        Maximum smoothing of the target over the segments.
+    distance : float, meters
+        Mean distance of the result's joints from the captured ones.
     message : str
-        What there is to say about it, in a sentence or two.
+        Summary in a sentence or two.
     """
 
     motion: Motion
@@ -80,44 +86,44 @@ def simulate(
     motion: Motion,
     *,
     humanoid_map: HumanoidMap | None = None,
-    settings: SimulateSettings = USUAL,
+    settings: SimulateSettings = DEFAULT_SETTINGS,
     progress: Progress = unwatched,
 ) -> Simulated:
-    """Return the motion that a body with mass and muscles makes when it tries to follow.
+    """Simulate a body with mass and muscles that tracks a motion, and return its motion.
 
     The skeleton becomes a body of capsules with a human's masses [2]_ on level ground, under
-    gravity, in the engine MuJoCo; its joints are pulled towards the captured rotations by
-    bounded proportional-derivative control, equations 16 and 17 of [1]_. So segments keep
-    their lengths, nothing sinks into the ground, feet that stand are held by friction, and
-    nothing moves faster than muscles can make it.
+    gravity, in the engine MuJoCo. Bounded proportional-derivative control, equations 16 and 17
+    of [1]_, pulls its joints towards the captured rotations. So segments keep their lengths,
+    nothing sinks into the ground, friction holds standing feet, and nothing moves faster than
+    muscles can move it.
 
-    Where it departs from the paper: there, an outside force pulls every part of the body to its
-    target. Here joints turn by torques of their own, reckoned by inverse dynamics, and only the
-    hips are helped from outside, by `support` times the weight at most; the rest must come from
-    the ground. There, the body lags behind its target; here the target is calmed over time in
-    both directions first, and its acceleration is known, so that it does not. Feet of the
-    target that stand are put onto the ground, and those that swing are drawn up over it; one
-    that touches it all the same slips instead of tripping. With `plant`, what friction lets
-    creep is kept at rest afterwards, where the simulation says that a foot carries weight.
+    Departures from the paper: there, an external force pulls every part of the body to its
+    target. Here joint torques from inverse dynamics move the joints. An external force helps
+    only the hips, by `support` times the weight at most; the rest comes from the ground. There,
+    the body lags behind its target. Here the target is smoothed in both directions of time
+    first and its acceleration is known, so there is no lag. Standing feet of the target are
+    placed on the ground, and swinging feet are lifted above it; one that touches the ground
+    slips instead of tripping. With `plant`, feet that carry weight in the simulation are
+    afterwards kept from creeping.
 
     Parameters
     ----------
     motion : Motion
         Gaps are bridged first.
     humanoid_map : HumanoidMap
-        Says which joints are which segments; found by name and structure where it is not given.
-        A skeleton without legs is simulated bone by bone.
+        Joints of the body's segments; found by name and structure by default. A skeleton
+        without legs is simulated bone by bone.
     settings : SimulateSettings
-        A take that shakes so that the body cannot follow is calmed more than they say.
+        A take that shakes too fast for the body to follow gets more smoothing than they say.
     progress : Progress
 
     Returns
     -------
     Simulated
-        Where the body is lost, for the engine gives up or it is far off its target, it is put
-        back there, and the result eases to the input and back. If that happens too often, the
-        motion is the input, bit for bit; so it is at strength 0. Joints that are not simulated,
-        such as fingers, are left as they are. The same input gives the same bits.
+        Where the body is lost, because the engine fails or it is far from its target, it is
+        reset to the target, and the result blends to the input and back. If that happens too
+        often, the motion is the input, bit for bit; likewise at strength 0. Joints that are not
+        simulated, such as fingers, stay unchanged. The same input gives the same bits.
 
     Raises
     ------
@@ -137,13 +143,13 @@ def simulate(
     """
     engine = load_engine()
     humanoid = humanoid_map or find_humanoid_map(motion.skeleton)
-    whole = fill_gaps(motion)
-    bare = build_physics_body(whole, humanoid)
+    complete = fill_gaps(motion)
+    bare = build_physics_body(complete, humanoid)
     check_size(bare, motion.frame_rate)
-    under_feet = find_ground(whole, humanoid, bare.size)
-    ground = _height(settings, whole, humanoid, under_feet, bare.size)
-    body = add_soles(bare, whole, humanoid, ground)
-    conditions = Conditions(
+    foot_height = find_ground(complete, humanoid, bare.size)
+    ground = _choose_ground_height(settings, complete, humanoid, foot_height, bare.size)
+    body = add_soles(bare, complete, humanoid, ground)
+    conditions = SimulationConditions(
         ground,
         settings.response,
         settings.smoothing,
@@ -151,91 +157,101 @@ def simulate(
         settings.support,
         settings.plant,
     )
-    pieces = []
-    for start, stop in find_pieces(body, whole):
+    segments = []
+    for start, stop in find_segments(body, complete):
         step = within(progress, start / motion.n_frames, stop / motion.n_frames)
-        piece = simulated_piece(engine, body, whole.slice(start, stop), conditions, step)
-        pieces.append(piece)
+        segment = simulate_segment(engine, body, complete.slice(start, stop), conditions, step)
+        segments.append(segment)
     progress(1.0, "Simulated")
-    return _put_together(motion, whole, body, pieces, settings, ground, under_feet)
+    return _assemble_result(motion, complete, body, segments, settings, ground, foot_height)
 
 
-def _height(
+def _choose_ground_height(
     settings: SimulateSettings,
-    take: Motion,
+    motion: Motion,
     humanoid: HumanoidMap,
-    under_feet: float,
+    foot_height: float,
     size: float,
 ) -> float:
-    """Return the height of the ground in metres.
+    """Return the height of the ground in meters.
 
-    Who is far above the given height may be in the middle of a leap; nobody is far below it.
+    A body far above the given height may be in the middle of a leap; none is far below it.
     """
-    given = settings.ground_height
+    given_height = settings.ground_height
     if settings.ground is Ground.HEIGHT:
-        return given
+        return given_height
     if settings.ground is Ground.FEET:
-        return under_feet
-    leaps = under_feet > given and not stands_for_long(take, humanoid)
-    return given if leaps or stands_on(given, under_feet, size) else under_feet
-
-
-def apply_strength(motion: Motion, simulated: Simulated, strength: float) -> Motion:
-    """Return a motion gone by a share, 0 to 1, towards what was simulated of it in full.
-
-    The same as `simulate` with that strength, to rounding, but at once.
-    """
-    if strength in {0.0, 1.0}:
-        return (simulated.motion if strength else motion).with_poses()
-    share = np.full(motion.n_frames, strength)
-    return blended(
-        fill_gaps(motion), fill_gaps(simulated.motion), range(motion.n_joints), share
+        return foot_height
+    is_leaping = foot_height > given_height and not has_long_contact(motion, humanoid)
+    return (
+        given_height
+        if is_leaping or is_near_ground(given_height, foot_height, size)
+        else foot_height
     )
 
 
-def _put_together(
+def apply_strength(motion: Motion, simulated: Simulated, strength: float) -> Motion:
+    """Blend a motion, by a strength from 0 to 1, with its simulation at full strength.
+
+    Equals `simulate` with that strength, to rounding, without a new simulation.
+    """
+    if strength in {0.0, 1.0}:
+        return (simulated.motion if strength else motion).with_poses()
+    weights = np.full(motion.n_frames, strength)
+    return blend_motions(
+        fill_gaps(motion), fill_gaps(simulated.motion), range(motion.n_joints), weights
+    )
+
+
+def _assemble_result(
     motion: Motion,
-    whole: Motion,
+    complete: Motion,
     body: PhysicsBody,
-    pieces: list[Piece],
+    segments: list[SimulatedSegment],
     settings: SimulateSettings,
     ground: float,
-    under_feet: float,
+    foot_height: float,
 ) -> Simulated:
-    """Blend what was simulated with the take, and measure the result."""
-    followed = np.concatenate([piece.followed for piece in pieces])
-    n_lost = sum(piece.n_lost for piece in pieces)
-    too_often = n_lost > 1 + motion.n_frames * motion.dt / TOO_OFTEN
-    given_up = too_often or float((~followed).mean()) > TOO_MANY
+    """Blend the simulated segments with the take, and measure the result."""
+    followed = np.concatenate([segment.followed for segment in segments])
+    n_lost = sum(segment.n_lost for segment in segments)
+    lost_too_often = n_lost > 1 + motion.n_frames * motion.dt / MIN_SECONDS_PER_LOSS
+    given_up = lost_too_often or float((~followed).mean()) > MAX_LOST_FRACTION
     if given_up:
         followed[:] = False
-    rotations = np.concatenate([piece.motion.rotations for piece in pieces])
-    roots = np.concatenate([piece.motion.root_positions for piece in pieces])
-    share = settings.strength * _ease(pieces, motion.frame_rate) * (not given_up)
+    rotations = np.concatenate([segment.motion.rotations for segment in segments])
+    roots = np.concatenate([segment.motion.root_positions for segment in segments])
+    weights = settings.strength * _fade_weights(segments, motion.frame_rate) * (not given_up)
     result = motion
-    if share.any():
-        result = blended(whole, whole.with_poses(rotations, roots), body.joints, share)
-    smoothing = max(piece.smoothing for piece in pieces)
-    given = settings.ground_height if settings.ground is Ground.LIKELY else None
-    contacts = np.concatenate([piece.contacts for piece in pieces])
+    if weights.any():
+        result = blend_motions(
+            complete, complete.with_poses(rotations, roots), body.joints, weights
+        )
+    smoothing = max(segment.smoothing for segment in segments)
+    given_height = settings.ground_height if settings.ground is Ground.LIKELY else None
+    contacts = np.concatenate([segment.contacts for segment in segments])
     return Simulated(
         motion=result.with_poses(),
         followed=followed,
         contacts=contacts,
-        carried=carried(body, np.concatenate([piece.loads for piece in pieces])),
-        support=np.concatenate([piece.support for piece in pieces]),
+        carried=sum_foot_loads(body, np.concatenate([segment.loads for segment in segments])),
+        support=np.concatenate([segment.support for segment in segments]),
         ground=ground,
-        penetration_before=penetration(body, whole, ground),
-        penetration_after=penetration(body, fill_gaps(result), ground),
-        slide_before=measure_foot_slide(body, whole, contacts),
+        penetration_before=measure_penetration(body, complete, ground),
+        penetration_after=measure_penetration(body, fill_gaps(result), ground),
+        slide_before=measure_foot_slide(body, complete, contacts),
         slide_after=measure_foot_slide(body, fill_gaps(result), contacts),
         smoothing=smoothing,
-        distance=mean_distance(whole, fill_gaps(result), body.joints),
-        message=told(followed, given_up, smoothing if smoothing > settings.smoothing else 0.0)
-        + about_ground(ground, under_feet, body.size, given),
+        distance=mean_distance(complete, fill_gaps(result), body.joints),
+        message=describe_result(
+            followed, given_up, smoothing if smoothing > settings.smoothing else 0.0
+        )
+        + describe_ground(ground, foot_height, body.size, given_height),
     )
 
 
-def _ease(pieces: list[Piece], frame_rate: float) -> Array:
-    """Return a share that rises from 0 where the body was lost to 1, shape (n_frames,)."""
-    return np.concatenate([away_from(~piece.followed, EASE * frame_rate) for piece in pieces])
+def _fade_weights(segments: list[SimulatedSegment], frame_rate: float) -> Array:
+    """Return weights that rise from 0, where the body was lost, to 1, shape (n_frames,)."""
+    return np.concatenate([
+        fade_around(~segment.followed, EASE_S * frame_rate) for segment in segments
+    ])

@@ -1,4 +1,4 @@
-"""How a human body's mass, size and strength are spread over its segments."""
+"""Tables of a human body's masses, sizes and strengths by segment."""
 
 CENTRAL = ("hips", "spine", "chest", "upperChest", "neck", "head")
 LEG = ("UpperLeg", "LowerLeg", "Foot", "Toes")
@@ -7,61 +7,61 @@ ROLES = (
     *CENTRAL,
     *(side + part for side in ("left", "right") for part in (*LEG, *ARM)),
 )
-"""Humanoid roles that are segments of their own, 22 at most; hands and feet are whole."""
+"""Humanoid roles with a segment of their own, 22 at most; hands and feet are one segment
+each."""
 
-HUMAN_MASS = 70.0
-"""Kilograms, of a body whose legs are 0.9 m long; it grows with the cube of that length."""
+HUMAN_MASS_KG = 70.0
+"""Mass of a body whose legs are 0.9 m long; it grows with the cube of that length."""
 
-MASS_SHARES = {
+MASS_FRACTIONS = {
     "hips": 0.1182, "spine": 0.1549, "chest": 0.0665, "upperChest": 0.0665,
     "neck": 0.0120, "head": 0.0561,
     "Shoulder": 0.0120, "UpperArm": 0.0263, "LowerArm": 0.0150, "Hand": 0.0059,
     "UpperLeg": 0.1447, "LowerLeg": 0.0457, "Foot": 0.0113, "Toes": 0.0020,
 }  # fmt: skip
-"""De Leva (1996), table 4, mean of women and men. His upper trunk is parted among chest and
+"""De Leva (1996), table 4, mean of women and men. His upper trunk is divided among chest and
 shoulders, his head among head and neck, his foot among foot and toes."""
 
-STRENGTHS = {
+STRENGTHS_NM = {
     "spine": 600.0, "chest": 550.0, "upperChest": 500.0, "neck": 110.0, "head": 70.0,
     "Shoulder": 200.0, "UpperArm": 160.0, "LowerArm": 110.0, "Hand": 30.0,
     "UpperLeg": 600.0, "LowerLeg": 550.0, "Foot": 400.0, "Toes": 120.0,
 }  # fmt: skip
-"""Newton metres that a joint gives at most, for legs of 0.9 m. It is about twice what strong
-adults were measured to give: with those, jumpers whose feet were captured a little out of place
-did not leave the ground."""
+"""Maximum torque of a joint, for legs of 0.9 m. About twice what was measured on strong adults:
+with those values, jumpers whose feet were captured slightly off did not leave the ground."""
 
-OTHER_STRENGTH = 400.0
-"""Newton metres of a joint without a role."""
+DEFAULT_STRENGTH_NM = 400.0
+"""Maximum torque of a joint without a role."""
 
-LENGTHS = {"head": 0.2, "Hand": 0.16, "Toes": 0.06, "Foot": 0.15}
-"""Metres of a segment at whose end there is no joint, for legs of 0.9 m."""
+SEGMENT_LENGTHS_M = {"head": 0.2, "Hand": 0.16, "Toes": 0.06, "Foot": 0.15}
+"""Length of a segment without a joint at its end, for legs of 0.9 m."""
 
-THICKEST = 0.105
-"""Metres, radius of the thickest capsule for legs of 0.9 m: trunks are not round."""
+MAX_RADIUS_M = 0.105
+"""Radius of the thickest capsule, for legs of 0.9 m: trunks are not round."""
 
-DENSITY = 1000.0
-"""Kilograms per cubic metre of a body."""
+DENSITY_KG_M3 = 1000.0
+"""Density of a body."""
 
 
-def part_of(role: str) -> str:
+def role_without_side(role: str) -> str:
     """Return the role without its side: UpperArm for leftUpperArm."""
     return role.removeprefix("left").removeprefix("right")
 
 
 def next_roles(role: str) -> tuple[str, ...]:
-    """Return the roles to whose joint a segment may reach, best first."""
+    """Return the roles at which a segment may end, best first."""
     if role in CENTRAL:
         return CENTRAL[CENTRAL.index(role) + 1 :]
-    part = part_of(role)
+    part = role_without_side(role)
     chain = LEG if part in LEG else ARM
     side = role.removesuffix(part)
     return tuple(side + below for below in chain[chain.index(part) + 1 :])
 
 
-def bearer(role: str, played: "set[str] | dict[str, int]") -> str:
-    """Return the role that carries a segment's mass: its own, or the next above it."""
+def find_mass_role(role: str, played: "set[str] | dict[str, int]") -> str:
+    """Return the role that carries a segment's mass: its own, or the nearest above it."""
     while role not in played:
-        part = part_of(role)
+        part = role_without_side(role)
         if role in CENTRAL:
             role = CENTRAL[CENTRAL.index(role) - 1] if role != "hips" else ""
         elif part in {"UpperLeg", "Shoulder"}:

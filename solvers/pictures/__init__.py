@@ -1,4 +1,4 @@
-"""Pictures for documents, tests and reports: stick figures, curves and tables as PNG files.
+"""Draw stick figures, curves and tables as PNG files, for documents, tests and reports.
 
 >>> from solvers.pictures import StickFigureSettings, draw_stick_figures
 >>> from solvers.samples import GaitSettings, walking_gait

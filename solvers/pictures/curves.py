@@ -1,4 +1,4 @@
-"""Rotation channels over time, before and after."""
+"""Plot rotation channels over time, before and after."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
@@ -18,8 +18,8 @@ Array = NDArray[np.float64]
 
 TOP, BOTTOM, LEFT, RIGHT, GAP = 64.0, 40.0, 64.0, 20.0, 30.0
 
-FLATTEST = 2.0
-"""Degrees from the bottom to the top of a plot, at least."""
+MIN_RANGE_DEG = 2.0
+"""Minimum range of a plot in degrees."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -37,11 +37,11 @@ def draw_curves(
     joints: Sequence[str],
     settings: CurveSettings = CurveSettings(),
 ) -> Picture:
-    """Plot for each joint the component of its rotation that moves most, in degrees.
+    """Plot for each joint the component of its rotation that varies most, in degrees.
 
-    It is one of the three of the rotation vector about the joint's mean, chosen by
-    the last motion, by which the mean is taken too. Where the first motion was not observed,
-    its curve breaks and the ground is shaded.
+    It is one component of the rotation vector relative to the joint's mean; the last motion
+    determines the component and the mean. Where the first motion is missing, its curve breaks
+    and the background is shaded.
 
     Parameters
     ----------
@@ -79,19 +79,21 @@ def draw_curves(
     return canvas.picture()
 
 
-def ticks(low: float, high: float, n_most: int = 10) -> list[float]:
-    """Return round numbers from `low` to `high`, at most `n_most`, evenly spaced."""
-    span = max(high - low, 1e-9)
-    power = 10.0 ** np.floor(np.log10(span / n_most))
+def ticks(low: float, high: float, max_ticks: int = 10) -> list[float]:
+    """Return round numbers from `low` to `high`, at most `max_ticks`, evenly spaced."""
+    width = max(high - low, 1e-9)
+    power = 10.0 ** np.floor(np.log10(width / max_ticks))
     step = next(
-        power * factor for factor in (1.0, 2.0, 5.0, 10.0) if span / (power * factor) < n_most
+        power * factor
+        for factor in (1.0, 2.0, 5.0, 10.0)
+        if width / (power * factor) < max_ticks
     )
     first, last = np.ceil(low / step - 1e-9), np.floor(high / step + 1e-9)
     return [float(round(step * count, 9)) + 0.0 for count in np.arange(first, last + 1)]
 
 
 class _Axes(NamedTuple):
-    """Where a plot stands on the sheet, and what it spans: seconds across, degrees up."""
+    """Position of a plot on the canvas, and its ranges: seconds across, degrees up."""
 
     left: float
     top: float
@@ -105,16 +107,16 @@ class _Axes(NamedTuple):
         return self.left + np.asarray(seconds) / self.longest * (self.right - self.left)
 
     def y(self, degrees: ArrayLike) -> Array:
-        share = (np.asarray(degrees) - self.low) / (self.high - self.low)
-        return np.asarray(self.bottom - share * (self.bottom - self.top))
+        fraction = (np.asarray(degrees) - self.low) / (self.high - self.low)
+        return np.asarray(self.bottom - fraction * (self.bottom - self.top))
 
 
 def _draw_plot(
     canvas: Canvas, axes: _Axes, steps: Sequence[float], curves: Sequence[Array]
 ) -> None:
     for frame in np.flatnonzero(np.isnan(curves[0])):
-        around = np.array([frame - 0.5, frame + 0.5]) * steps[0]
-        left, right = axes.x(np.clip(around, 0.0, axes.longest)).tolist()
+        frame_limits = np.array([frame - 0.5, frame + 0.5]) * steps[0]
+        left, right = axes.x(np.clip(frame_limits, 0.0, axes.longest)).tolist()
         canvas.box(left, axes.top, right, axes.bottom, SHADE)
     for level in ticks(axes.low, axes.high, 4):
         height = float(axes.y(level))
@@ -128,21 +130,24 @@ def _draw_plot(
 
 
 def _moving_component(motions: Mapping[str, Motion], joint: str) -> tuple[list[Array], str]:
-    """One component of a joint's rotation in all motions, degrees, and what to call it."""
-    turns = [motion.rotations[:, motion.skeleton.index(joint)] for motion in motions.values()]
-    back = inverse(mean_rotation(turns[-1]))
-    vectors = [
-        np.degrees(rotation_vector_from_quaternion(multiply(back, turn))) for turn in turns
+    """Return one component of a joint's rotation in all motions, degrees, and its label."""
+    rotations = [
+        motion.rotations[:, motion.skeleton.index(joint)] for motion in motions.values()
     ]
-    seen = vectors[-1][np.isfinite(vectors[-1]).all(axis=1)]
-    moving = int(np.argmax(seen.std(axis=0))) if len(seen) else 0
-    return [vector[:, moving] for vector in vectors], f"{joint}, {'xyz'[moving]}"
+    inverse_mean = inverse(mean_rotation(rotations[-1]))
+    vectors = [
+        np.degrees(rotation_vector_from_quaternion(multiply(inverse_mean, rotation)))
+        for rotation in rotations
+    ]
+    observed = vectors[-1][np.isfinite(vectors[-1]).all(axis=1)]
+    component = int(np.argmax(observed.std(axis=0))) if len(observed) else 0
+    return [vector[:, component] for vector in vectors], f"{joint}, {'xyz'[component]}"
 
 
 def _limits(curves: Sequence[Array]) -> tuple[float, float]:
-    known = np.concatenate([curve[np.isfinite(curve)] for curve in curves])
-    if not len(known):
-        return -FLATTEST / 2.0, FLATTEST / 2.0
-    low, high = float(known.min()), float(known.max())
-    spare = max(FLATTEST - (high - low), 0.0) / 2.0
-    return low - spare, high + spare
+    finite = np.concatenate([curve[np.isfinite(curve)] for curve in curves])
+    if not len(finite):
+        return -MIN_RANGE_DEG / 2.0, MIN_RANGE_DEG / 2.0
+    low, high = float(finite.min()), float(finite.max())
+    padding = max(MIN_RANGE_DEG - (high - low), 0.0) / 2.0
+    return low - padding, high + padding

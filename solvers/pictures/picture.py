@@ -1,4 +1,4 @@
-"""A finished picture, free of the library that drew it."""
+"""Hold a finished picture, independent of the library that drew it."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -22,7 +22,7 @@ class Picture:
     pixels: NDArray[np.uint8]
 
     def save(self, path: Path | str) -> None:
-        """Write a PNG file, whole or not at all."""
+        """Write a PNG file atomically."""
         from PIL import Image
 
         with written_whole(path) as part:
@@ -30,7 +30,7 @@ class Picture:
 
 
 def stack_pictures(pictures: Sequence[Picture]) -> Picture:
-    """Return the pictures one below the other, white beside the narrower ones."""
+    """Return the pictures one below the other, padded with white on the right."""
     width = max(picture.pixels.shape[1] for picture in pictures)
     rows = [
         np.pad(

@@ -1,4 +1,4 @@
-"""Strips of stick figures: several recordings over each other, moment after moment."""
+"""Draw strips of stick figures: several recordings over each other, at several times."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
@@ -19,20 +19,20 @@ Array = NDArray[np.float64]
 Recording = Motion | Tracks | JointRecording
 
 TOP, BOTTOM, MARGIN = 44.0, 34.0, 16.0
-NARROWEST = 0.35
-"""Width of the place of one figure, as a share of its height."""
-FARTHEST = 1.3
-"""Reach of a figure to either side and upwards for which there is place, in statures."""
-SIDEWAYS = 0.02
-"""Joints farther than this share of the stature from the middle plane belong to a side."""
-BODY = 15
-"""A skeleton with at least as many joints is taken for a body, and gets a head."""
-STILL = 0.5
-"""Seconds over which the direction that the figure faces is averaged."""
+MIN_WIDTH = 0.35
+"""Minimum width of the cell of one figure, as a fraction of its height."""
+MAX_EXTENT = 1.3
+"""Maximum extent of a figure to either side and upwards, in statures."""
+MIN_SIDE_OFFSET = 0.02
+"""Joints farther than this fraction of the stature from the median plane belong to a side."""
+MIN_BODY_JOINTS = 15
+"""A skeleton with at least as many joints counts as a body, and gets a head."""
+AVERAGING_S = 0.5
+"""Seconds over which the heading of the figure is averaged."""
 
 
 class View(Enum):
-    """Where the onlooker stands. The view turns with the body."""
+    """Direction of the view, which rotates with the body."""
 
     SIDE = "side"
     FRONT = "front"
@@ -44,26 +44,29 @@ AZIMUTH = {View.SIDE: 0.0, View.FRONT: np.pi / 2, View.QUARTER: np.pi / 4}
 
 @dataclass(frozen=True, kw_only=True)
 class StickFigureSettings(Settings):
-    """What of a motion is drawn, and how large."""
+    """Parameters of stick figures."""
 
-    n_figures: int = setting(8, "Moments drawn, evenly spaced", minimum=1, maximum=200)
-    view: View = setting(View.SIDE, "Where the onlooker stands")
+    n_figures: int = setting(
+        8, "Number of figures, evenly spaced in time", minimum=1, maximum=200
+    )
+    view: View = setting(View.SIDE, "Direction of the view")
     height: int = setting(
-        260, "Height of a figure; more shows more", unit="px", minimum=40, maximum=2000
+        260, "Height of a figure; higher shows more detail", unit="px", minimum=40, maximum=2000
     )
 
 
 class _Figure(NamedTuple):
-    """A recording as it is drawn."""
+    """Drawing data of a recording."""
 
     points: Array
-    """Shape (n_moments, n_points, 3), metres."""
+    """Shape (n_figures, n_points, 3), meters."""
     bones: tuple[tuple[int, int], ...]
-    """Joint and parent; none where the points have no skeleton."""
+    """Joint and parent; empty for points without a skeleton."""
     is_left: NDArray[np.bool_]
     stature: float
     head: tuple[int, int] | None
-    """The joint that rests highest, and its parent, of whoever has as many joints as a body."""
+    """The highest joint of the rest pose, and its parent, of a skeleton that counts as a
+    body."""
 
 
 def draw_stick_figures(
@@ -72,21 +75,20 @@ def draw_stick_figures(
     *,
     frames: range | None = None,
 ) -> Picture:
-    """Draw recordings over each other, the last one on top, at evenly spaced moments.
+    """Draw recordings over each other, the last one on top, at evenly spaced times.
 
-    Each moment stands in its own place from left to right, with the floor (z = 0) as a line.
-    The limbs of the left side (+X in the rest pose) are paler; points without a skeleton are
-    dots. A joint that is not observed, and what hangs on it, is not drawn. The onlooker moves
-    and turns with the last recording, for which there is place; figures of the others may reach
-    beyond theirs.
+    Each time has its own cell from left to right, with the floor (z = 0) as a line. The limbs
+    of the left side (+X in the rest pose) are lighter; points without a skeleton are dots. A
+    missing joint and its descendants are not drawn. The view moves and rotates with the last
+    recording, which fits into the cells; figures of the others may exceed them.
 
     Parameters
     ----------
     recordings : mapping from label to Motion, Tracks or JointRecording
-        All with the same number of frames; labels and colours go into the legend.
+        All with the same number of frames; labels and colors go into the legend.
     settings : StickFigureSettings
     frames : range, optional
-        The part to draw from; all by default.
+        The interval to draw from; all by default.
 
     Returns
     -------
@@ -97,47 +99,53 @@ def draw_stick_figures(
     InvalidMotionError
         There is nothing to draw, or the recordings do not have the same number of frames.
     """
-    shown = _shown_frames(recordings, settings.n_figures, frames)
+    frame_indices = _shown_frames(recordings, settings.n_figures, frames)
     last = list(recordings.values())[-1]
-    center, heading = _onlooker(last, shown)
-    figures = [_figure(recording, shown) for recording in recordings.values()]
-    spots = [project_to_view(each.points - center, heading, settings.view) for each in figures]
-    tall = max(figure.stature for figure in figures)
-    scale = settings.height / tall
-    half, top = _extent(spots[-1], tall)
-    place = max(2.0 * half * scale, NARROWEST * settings.height) + MARGIN
+    center, heading = _camera_target(last, frame_indices)
+    figures = [_figure(recording, frame_indices) for recording in recordings.values()]
+    screen_points = [
+        project_to_view(each.points - center, heading, settings.view) for each in figures
+    ]
+    stature = max(figure.stature for figure in figures)
+    scale = settings.height / stature
+    half, top = _extent(screen_points[-1], stature)
+    cell_width = max(2.0 * half * scale, MIN_WIDTH * settings.height) + MARGIN
     floor = TOP + MARGIN + top * scale
-    canvas = Canvas(max(place * len(shown), 360.0) + 2 * MARGIN, floor + BOTTOM + MARGIN)
+    canvas = Canvas(
+        max(cell_width * len(frame_indices), 360.0) + 2 * MARGIN, floor + BOTTOM + MARGIN
+    )
     canvas.legend(MARGIN, TOP / 2.0, list(recordings))
-    canvas.line([(MARGIN, floor), (MARGIN + place * len(shown), floor)], FAINT, 1.0)
-    for moment, frame in enumerate(shown):
-        middle = MARGIN + (moment + 0.5) * place
+    canvas.line(
+        [(MARGIN, floor), (MARGIN + cell_width * len(frame_indices), floor)], FAINT, 1.0
+    )
+    for index, frame in enumerate(frame_indices):
+        middle = MARGIN + (index + 0.5) * cell_width
         canvas.text(middle, floor + 18.0, f"{frame / last.frame_rate:.2f} s", INK, "mm")
         colors = series_colors(len(recordings))
-        for figure, seen, color in zip(figures, spots, colors, strict=True):
-            spot = seen[moment] * (scale, -scale, 1.0) + (middle, floor, 0.0)
-            _draw_figure(canvas, figure, spot, color, settings.height)
+        for figure, visible_points, color in zip(figures, screen_points, colors, strict=True):
+            screen_figure = visible_points[index] * (scale, -scale, 1.0) + (middle, floor, 0.0)
+            _draw_figure(canvas, figure, screen_figure, color, settings.height)
     return canvas.picture()
 
 
 def project_to_view(positions: Array, heading: Array, view: View) -> Array:
-    """Return what the onlooker sees: to the right, up, and away, in metres.
+    """Return coordinates in the view: to the right, up, and away, in meters.
 
     Parameters
     ----------
-    positions : shape (n_frames, n_joints, 3), metres
+    positions : shape (n_frames, n_joints, 3), meters
     heading : shape (n_frames,), radians
-        Direction that the body faces about Z; 0 is -Y. From the side it faces right; from the
-        front its left side (+X at heading 0) is on the right.
+        Heading of the body about Z; 0 is -Y. In the side view it faces right; in the front view
+        its left side (+X at heading 0) is on the right.
     view : View
     """
     forward = np.stack([np.sin(heading), -np.cos(heading), 0.0 * heading], axis=-1)
     left = np.stack([np.cos(heading), np.sin(heading), 0.0 * heading], axis=-1)
-    turn = AZIMUTH[view]
-    right = np.cos(turn) * forward + np.sin(turn) * left
-    away = np.cos(turn) * left - np.sin(turn) * forward
+    azimuth = AZIMUTH[view]
+    right = np.cos(azimuth) * forward + np.sin(azimuth) * left
+    depth_axis = np.cos(azimuth) * left - np.sin(azimuth) * forward
     across = np.einsum("fjk,fk->fj", positions, right)
-    depth = np.einsum("fjk,fk->fj", positions, away)
+    depth = np.einsum("fjk,fk->fj", positions, depth_axis)
     return np.stack([across, positions[..., 2], depth], axis=-1)
 
 
@@ -157,26 +165,28 @@ def _shown_frames(
     return np.array([within[round(step)] for step in steps], dtype=np.intp)
 
 
-def _figure(recording: Recording, shown: NDArray[np.intp]) -> _Figure:
+def _figure(recording: Recording, frame_indices: NDArray[np.intp]) -> _Figure:
     if isinstance(recording, JointRecording):
         is_left = np.array(["left" in name.lower() for name in recording.names])
         bones = _bones(recording.parents)
-        figure = _figure(recording.tracks, shown)
+        figure = _figure(recording.tracks, frame_indices)
         return figure._replace(bones=bones, is_left=is_left)
     if isinstance(recording, Tracks):
-        points = recording.positions[shown]
+        points = recording.positions[frame_indices]
         sides = np.zeros(recording.n_points, dtype=np.bool_)
         return _Figure(points, (), sides, _height_of_points(recording), None)
     skeleton = recording.skeleton
     top = int(np.argmax(skeleton.rest_positions[:, 2]))
-    moments = recording.with_poses(recording.rotations[shown], recording.root_positions[shown])
+    shown_poses = recording.with_poses(
+        recording.rotations[frame_indices], recording.root_positions[frame_indices]
+    )
     stature = _stature(skeleton)
     return _Figure(
-        forward_kinematics(moments).positions,
+        forward_kinematics(shown_poses).positions,
         _bones(skeleton.parents),
-        skeleton.rest_positions[:, 0] > SIDEWAYS * stature,
+        skeleton.rest_positions[:, 0] > MIN_SIDE_OFFSET * stature,
         stature,
-        (top, skeleton.parents[top]) if skeleton.n_joints >= BODY else None,
+        (top, skeleton.parents[top]) if skeleton.n_joints >= MIN_BODY_JOINTS else None,
     )
 
 
@@ -184,74 +194,81 @@ def _bones(parents: Sequence[int]) -> tuple[tuple[int, int], ...]:
     return tuple((joint, parent) for joint, parent in enumerate(parents) if parent >= 0)
 
 
-def _onlooker(recording: Recording, shown: NDArray[np.intp]) -> tuple[Array, Array]:
-    """Where the body is on the floor, shape (n, 1, 3), and which way it faces, shape (n,)."""
-    place, facing = _place_and_facing(recording)
-    reach = round(STILL / 2.0 * recording.frame_rate)
-    center, heading = np.zeros((len(shown), 1, 3)), np.zeros(len(shown))
-    for moment, frame in enumerate(shown):
-        near = slice(max(frame - reach, 0), frame + reach + 1)
-        known = place[near][np.isfinite(place[near]).all(axis=1)]
-        # A long gap in the root: keep to the last place that was known.
-        center[moment, 0, :2] = (
-            known.mean(axis=0)[:2] if len(known) else center[moment - 1, 0, :2]
+def _camera_target(
+    recording: Recording, frame_indices: NDArray[np.intp]
+) -> tuple[Array, Array]:
+    """Return the body's position on the floor, shape (n, 1, 3), and its heading, shape (n,)."""
+    position, facing = _position_and_facing(recording)
+    half_window = round(AVERAGING_S / 2.0 * recording.frame_rate)
+    center, heading = np.zeros((len(frame_indices), 1, 3)), np.zeros(len(frame_indices))
+    for index, frame in enumerate(frame_indices):
+        window = slice(max(frame - half_window, 0), frame + half_window + 1)
+        observed = position[window][np.isfinite(position[window]).all(axis=1)]
+        # In a long gap of the root, keep the last observed position.
+        center[index, 0, :2] = (
+            observed.mean(axis=0)[:2] if len(observed) else center[index - 1, 0, :2]
         )
-        sideways, back = np.nansum(facing[near], axis=0)
-        heading[moment] = np.arctan2(sideways, -back)
+        sideways, back = np.nansum(facing[window], axis=0)
+        heading[index] = np.arctan2(sideways, -back)
     return center, heading
 
 
-def _place_and_facing(recording: Recording) -> tuple[Array, Array]:
-    """Return the body's place, shape (n_frames, 3), and where it faces, (n_frames, 2).
+def _position_and_facing(recording: Recording) -> tuple[Array, Array]:
+    """Return the body's position, shape (n_frames, 3), and facing direction, (n_frames, 2).
 
-    Points without a skeleton face the way that they go from the first frame to the last; the
+    Points without a skeleton face their displacement from the first frame to the last; the
     joints of a depth camera face the camera.
     """
     if isinstance(recording, JointRecording):
-        place, _ = _place_and_facing(recording.tracks)
-        return place, np.tile((0.0, -1.0), (len(place), 1))
+        position, _ = _position_and_facing(recording.tracks)
+        return position, np.tile((0.0, -1.0), (len(position), 1))
     if isinstance(recording, Motion):
         facing = rotate(recording.rotations[:, 0], [0.0, -1.0, 0.0])
         return recording.root_positions, facing[:, :2]
-    seen = recording.visible[..., None]
-    counts = np.maximum(seen.sum(axis=1), 1)
-    place = np.where(seen, recording.positions, 0.0).sum(axis=1) / counts
-    place[~seen.any(axis=(1, 2))] = np.nan
-    known = place[np.isfinite(place[:, 0])]
-    way = known[-1] - known[0] if len(known) else np.zeros(3)
-    return place, np.tile(way[:2], (len(place), 1))
+    visible = recording.visible[..., None]
+    counts = np.maximum(visible.sum(axis=1), 1)
+    position = np.where(visible, recording.positions, 0.0).sum(axis=1) / counts
+    position[~visible.any(axis=(1, 2))] = np.nan
+    observed = position[np.isfinite(position[:, 0])]
+    displacement = observed[-1] - observed[0] if len(observed) else np.zeros(3)
+    return position, np.tile(displacement[:2], (len(position), 1))
 
 
 def _stature(skeleton: Skeleton) -> float:
-    """Greatest extent of the rest pose along an axis, metres; 1 for a single point."""
+    """Return the largest extent of the rest pose along an axis, meters; 1 for a single
+    point."""
     return float(np.ptp(skeleton.rest_positions, axis=0).max()) or 1.0
 
 
 def _height_of_points(tracks: Tracks) -> float:
-    """How high most points are spread, metres; 1 where they are all level."""
+    """Return the height range of most points, meters; 1 if all are level."""
     heights = tracks.positions[tracks.visible][:, 2]
     spread = np.quantile(heights, [0.01, 0.99]) if len(heights) else np.zeros(2)
     return float(np.ptp(spread)) or 1.0
 
 
-def _extent(points: Array, tall: float) -> tuple[float, float]:
-    """Greatest distance to a side and above the floor; a pose thrown far off does not count."""
-    seen = points[..., :2][np.isfinite(points[..., :2]).all(axis=-1)]
-    half, top = (np.abs(seen[:, 0]).max(), seen[:, 1].max()) if len(seen) else (0.0, tall)
-    return float(min(half, FARTHEST * tall)), float(np.clip(top, tall, FARTHEST * tall))
+def _extent(points: Array, stature: float) -> tuple[float, float]:
+    """Return the largest distance to a side and above the floor, without outlier poses."""
+    finite = points[..., :2][np.isfinite(points[..., :2]).all(axis=-1)]
+    half, top = (
+        (np.abs(finite[:, 0]).max(), finite[:, 1].max()) if len(finite) else (0.0, stature)
+    )
+    return float(min(half, MAX_EXTENT * stature)), float(
+        np.clip(top, stature, MAX_EXTENT * stature)
+    )
 
 
 def _draw_figure(
-    canvas: Canvas, figure: _Figure, spots: Array, color: Color, height: float
+    canvas: Canvas, figure: _Figure, screen_points: Array, color: Color, height: float
 ) -> None:
-    """Bones from the farthest to the nearest; points where there are none."""
+    """Draw bones from the farthest to the nearest; points if there are none."""
     width = max(height / 70.0, 1.5)
-    depth = np.nan_to_num(spots[:, 2])
+    depth = np.nan_to_num(screen_points[:, 2])
     for joint, parent in sorted(figure.bones, key=lambda bone: -depth[list(bone)].sum()):
         shade = lighten_color(color, 0.55) if figure.is_left[joint] else color
-        canvas.line(spots[[parent, joint], :2], shade, width)
+        canvas.line(screen_points[[parent, joint], :2], shade, width)
     if not figure.bones:
-        for spot in spots[np.isfinite(spots).all(axis=1)]:
-            canvas.dot(spot[:2], color, width)
+        for point in screen_points[np.isfinite(screen_points).all(axis=1)]:
+            canvas.dot(point[:2], color, width)
     if figure.head is not None:
-        canvas.dot(spots[list(figure.head), :2].mean(axis=0), color, height / 20.0)
+        canvas.dot(screen_points[list(figure.head), :2].mean(axis=0), color, height / 20.0)

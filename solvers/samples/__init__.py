@@ -1,9 +1,9 @@
-"""What the project itself makes: a walk, ways to spoil it, and gestures, for tests and demos.
+"""Synthetic samples for tests and demos: a walk, corruption of it, and gestures.
 
 >>> from solvers.samples import CorruptionSettings, GaitSettings, corrupt, walking_gait
 >>> walk = walking_gait(GaitSettings(duration=2.0, frame_rate=30.0))
->>> spoilt = corrupt(walk, CorruptionSettings(jitter=3.0), missing={"RightArm": range(20, 40)})
->>> bool(walk.observed.all()), int((~spoilt.observed).any(axis=1).sum())
+>>> noisy = corrupt(walk, CorruptionSettings(jitter=3.0), missing={"RightArm": range(20, 40)})
+>>> bool(walk.observed.all()), int((~noisy.observed).any(axis=1).sum())
 (True, 20)
 """
 

@@ -12,20 +12,20 @@ from ..motion import Motion, Skeleton
 from ..rotations import multiply, quaternion_from_rotation_vector
 from ..settings import Settings, setting
 
-SWAY_PERIOD = 1.5
+SWAY_PERIOD_S = 1.5
 """Seconds between the independent values of the root's sway: slower than a stride."""
 
 
 @dataclass(frozen=True, kw_only=True)
 class CorruptionSettings(Settings):
-    """What goes wrong, and how badly."""
+    """Kinds and magnitudes of corruption."""
 
     jitter: float = setting(
         3.0, "Standard deviation of the noise on each rotation channel",
         unit="deg", minimum=0.0, maximum=30.0,
     )  # fmt: skip
     spikes: float = setting(
-        0.0, "Share of the samples of each rotation channel that are thrown far off",
+        0.0, "Fraction of the samples of each rotation channel that become spikes",
         minimum=0.0, maximum=1.0,
     )  # fmt: skip
     spike_least: float = setting(
@@ -39,10 +39,12 @@ class CorruptionSettings(Settings):
         unit="m", minimum=0.0, maximum=1.0,
     )  # fmt: skip
     root_sway: float = setting(
-        0.0, "Standard deviation of a slow wander of the root, which makes the feet slide",
+        0.0, "Standard deviation of slow drift of the root, which makes the feet slide",
         unit="m", minimum=0.0, maximum=1.0,
     )  # fmt: skip
-    seed: int = setting(0, "Another seed gives other noise", minimum=0, maximum=2**31 - 1)
+    seed: int = setting(
+        0, "Random seed; another one gives other noise", minimum=0, maximum=2**31 - 1
+    )
 
 
 def corrupt(
@@ -51,12 +53,12 @@ def corrupt(
     *,
     missing: Mapping[str, range] | None = None,
 ) -> Motion:
-    """Return a spoilt copy of a motion.
+    """Return a corrupted copy of a motion.
 
-    Every joint but the end sites is turned, in its own frame, by a rotation vector of Gaussian
-    noise, to which spikes of random sign are added, evenly distributed between the least and
-    the greatest size, each channel by itself. The noise of one frame says nothing about the
-    next, so the same settings at twice the frame rate are worse per second.
+    Every joint except the end sites is rotated, in its own frame, by a rotation vector of
+    Gaussian noise. Spikes of random sign are added, with magnitudes uniform between the minimum
+    and the maximum, for each channel separately. Noise is independent between frames, so the
+    same settings at twice the frame rate give more jitter per second.
 
     Parameters
     ----------
@@ -64,7 +66,7 @@ def corrupt(
         NaN stays NaN.
     settings : CorruptionSettings
     missing : mapping from joint name to frames
-        There the joint and all below it become NaN. The root's position goes with the root.
+        In these frames the joint and all below it become NaN; for the root, its position too.
 
     Returns
     -------
@@ -73,17 +75,17 @@ def corrupt(
     Raises
     ------
     InvalidMotionError
-        `missing` names a joint that is not there, or frames outside the motion.
+        `missing` names a joint that does not exist, or frames outside the motion.
     """
     rng = np.random.default_rng(settings.seed)
     noise = rng.normal(0.0, 1.0, (motion.n_frames, motion.n_joints, 3)) * settings.jitter
-    size = rng.uniform(settings.spike_least, settings.spike_most, noise.shape)
+    magnitude = rng.uniform(settings.spike_least, settings.spike_most, noise.shape)
     sign = rng.choice((-1.0, 1.0), noise.shape)
-    noise += (rng.random(noise.shape) < settings.spikes) * sign * size
-    still = [motion.skeleton.is_end_site(joint) for joint in range(motion.n_joints)]
-    noise[:, still] = 0.0
-    turns = quaternion_from_rotation_vector(np.radians(noise))
-    rotations = multiply(motion.rotations, turns)
+    noise += (rng.random(noise.shape) < settings.spikes) * sign * magnitude
+    end_sites = [motion.skeleton.is_end_site(joint) for joint in range(motion.n_joints)]
+    noise[:, end_sites] = 0.0
+    noise_rotations = quaternion_from_rotation_vector(np.radians(noise))
+    rotations = multiply(motion.rotations, noise_rotations)
 
     positions = motion.root_positions + settings.root_jitter * rng.normal(
         size=(motion.n_frames, 3)
@@ -97,9 +99,9 @@ def corrupt(
 
 
 def _slow_noise(motion: Motion, rng: np.random.Generator) -> NDArray[np.float64]:
-    """Unit-variance curves, shape (n_frames, 2), smooth over about a second."""
+    """Return unit-variance curves, shape (n_frames, 2), smooth over about a second."""
     time = np.arange(motion.n_frames) * motion.dt
-    knots = np.arange(-1, int(time[-1] / SWAY_PERIOD) + 4) * SWAY_PERIOD
+    knots = np.arange(-1, int(time[-1] / SWAY_PERIOD_S) + 4) * SWAY_PERIOD_S
     return np.asarray(CubicSpline(knots, rng.normal(size=(len(knots), 2)))(time))
 
 

@@ -1,11 +1,11 @@
-"""The skeleton of the built-in sample: an adult of 1.79 m in T-pose, facing -Y."""
+"""Define the skeleton of the built-in sample: an adult of 1.79 m in T-pose, facing -Y."""
 
 import numpy as np
 
 from ..motion import Skeleton
 
 # Name, parent, offset in metres. The left side is +X; sides are added below.
-TRUNK = (
+TRUNK_JOINTS = (
     ("Hips", "", (0.0, 0.0, 0.96)),
     ("Spine", "Hips", (0.0, 0.01, 0.10)),
     ("Spine1", "Spine", (0.0, 0.01, 0.12)),
@@ -14,7 +14,7 @@ TRUNK = (
     ("Head", "Neck", (0.0, -0.02, 0.10)),
     ("Head_end", "Head", (0.0, 0.0, 0.18)),
 )
-SIDE = (
+SIDE_JOINTS = (
     ("Shoulder", "Spine2", (0.04, -0.01, 0.15)),
     ("Arm", "Shoulder", (0.14, 0.0, 0.0)),
     ("ForeArm", "Arm", (0.28, 0.0, 0.0)),
@@ -26,18 +26,18 @@ SIDE = (
     ("ToeBase", "Foot", (0.0, -0.14, -0.06)),
     ("ToeBase_end", "ToeBase", (0.0, -0.065, 0.0)),
 )
-ANKLE_HEIGHT = 0.08
-"""Of the T-pose, metres; the sole is this far below the ankle."""
+ANKLE_HEIGHT_M = 0.08
+"""Height of the ankle above the sole in the T-pose."""
 
 
 def walker_skeleton() -> Skeleton:
     """Return 22 joints and 5 end sites with the names that most capture software uses."""
-    trunk = {name for name, _, _ in TRUNK}
-    rows = list(TRUNK)
+    trunk = {name for name, _, _ in TRUNK_JOINTS}
+    rows = list(TRUNK_JOINTS)
     for side, sign in (("Left", 1.0), ("Right", -1.0)):
-        for name, parent, (x, y, z) in SIDE:
-            above = parent if parent in trunk else side + parent
-            rows.append((side + name, above, (sign * x, y, z)))
+        for name, parent, (x, y, z) in SIDE_JOINTS:
+            parent_name = parent if parent in trunk else side + parent
+            rows.append((side + name, parent_name, (sign * x, y, z)))
     names = tuple(name for name, _, _ in rows)
     parents = tuple(names.index(parent) if parent else -1 for _, parent, _ in rows)
     return Skeleton(names, parents, np.array([offset for _, _, offset in rows]))

@@ -1,4 +1,4 @@
-"""Learn from a few examples of one behaviour how it varies."""
+"""Learn from a few examples of one behavior how it varies."""
 
 from collections.abc import Sequence
 from dataclasses import replace
@@ -12,80 +12,98 @@ from ..motion import Motion, resample
 from ..progress import Progress, unwatched, within
 from ..rotations import inverse, mean_rotation, multiply, rotation_vector_from_quaternion
 from .align_examples import Alignment, align_examples
-from .curve_sampling import between_frames, sample_curves
-from .far_joints import CALM, tell_far_joints
-from .footing import footing_of
-from .loops import loops
+from .contact_state import measure_contact_state
+from .curve_sampling import sample_curves, sample_linearly
+from .loops import detect_loop
 from .mixing_kernel import MixingKernel
 from .motion_curves import (
-    HEIGHT,
-    IMPOSSIBLE,
+    HEIGHT_COLUMN,
+    MAX_FRAME_ROTATION_RAD,
     MotionCurves,
     curves_from_motion,
     headings_from_motion,
     remove_heading,
 )
+from .moving_references import REFERENCE_SMOOTHING_S, split_moving_references
 from .stepwise_model import learn_stepwise
 from .variation_model import VariationModel
-from .vary_settings import USUAL, Method, VarySettings
+from .vary_settings import DEFAULT_SETTINGS, Method, VarySettings
 
 Array = NDArray[np.float64]
 
-ODD = 2.0
-"""An example that is so many times farther from the others than usual is of another kind."""
-MEMORY = 600_000_000
-"""Numbers in all curves together; more would not fit."""
+MAX_DISTANCE_RATIO = 2.0
+"""Distance to the other examples, relative to the median, beyond which an example is reported
+as an outlier."""
+MAX_VALUES = 600_000_000
+"""Maximum count of values in all curves together, so that they fit in memory."""
 
 
 def learn_variation_model(
     motions: Sequence[Motion],
     *,
-    settings: VarySettings = USUAL,
+    settings: VarySettings = DEFAULT_SETTINGS,
     progress: Progress = unwatched,
 ) -> VariationModel:
-    """Learn from examples of one behaviour how it varies.
+    """Learn from examples of one behavior how it varies.
 
-    The examples are lined up in time; what varies are their curves in common time and how fast
-    that passes.
+    The examples are aligned in time. Their curves in common time vary, and so does the speed at
+    which the common time passes.
 
     Parameters
     ----------
     motions : Motion, one or more
-        Of one rig, without gaps; other bone lengths and frame rates are brought to those of
-        the first. One alone tells nothing of how it varies: see `borrow_variation`.
+        Of one rig, without gaps; bone lengths and frame rates are converted to those of the
+        first. A single example shows no variation: see `borrow_variation`.
     settings : VarySettings
-        Only the method counts: what it needs is learned.
+        Only the method is used: it decides which parameters are learned.
     progress : Progress
 
     Raises
     ------
     InvalidMotionError
-        There is none, rigs differ, a clip has gaps or less than two frames, or no body.
+        There is no example, rigs differ, a clip has gaps or fewer than two frames, or no body.
     """
-    motions = _of_one_rig(list(motions))
-    turns = [headings_from_motion(motion) for motion in motions]
-    progress(0.1, "Lining up")
-    alignment = align_examples(motions, turns)
+    motions = _validate_examples(list(motions))
+    headings = [headings_from_motion(motion) for motion in motions]
+    progress(0.1, "Aligning")
+    alignment = align_examples(motions, headings)
     progress(0.6, "Learning")
-    plain = [remove_heading(motion, turn) for motion, turn in zip(motions, turns, strict=True)]
-    usual = mean_rotation(np.concatenate(plain))
-    courses = [
-        _in_common_time(curves_from_motion(motion, turn, usual), footing_of(motion), times)
-        for motion, turn, times in zip(motions, turns, alignment.times, strict=True)
+    rotations = [
+        remove_heading(motion, heading)
+        for motion, heading in zip(motions, headings, strict=True)
     ]
-    rate = motions[0].frame_rate
-    root = np.stack([course.root for course in courses])
-    joints = np.stack([course.joints for course in courses])
-    is_loop = all(map(loops, motions, turns))
-    joints, usual, carrier = tell_far_joints(
-        joints, usual, plain, alignment.times, alignment.centre, CALM * rate, is_loop
+    reference_rotations = mean_rotation(np.concatenate(rotations))
+    curves = [
+        _sample_in_common_time(
+            curves_from_motion(motion, heading, reference_rotations),
+            measure_contact_state(motion),
+            times,
+        )
+        for motion, heading, times in zip(motions, headings, alignment.times, strict=True)
+    ]
+    frame_rate = motions[0].frame_rate
+    root = np.stack([one.root for one in curves])
+    joints = np.stack([one.joints for one in curves])
+    all_loop = all(map(detect_loop, motions, headings))
+    joints, reference_rotations, moving_references = split_moving_references(
+        joints,
+        reference_rotations,
+        rotations,
+        alignment.times,
+        alignment.center,
+        REFERENCE_SMOOTHING_S * frame_rate,
+        all_loop,
     )
-    joints = _same_turns(joints, alignment.centre)
-    footing = np.stack([course.footing for course in courses if course.footing is not None])
-    haste = (
+    joints = _choose_nearest_vectors(joints, alignment.center)
+    contact_states = np.stack([
+        one.contact_state for one in curves if one.contact_state is not None
+    ])
+    log_warp_rates = (
         np.log(np.gradient(alignment.times, axis=1)) if root.shape[1] > 1 else 0 * root[..., 0]
     )
-    warning = " ".join(filter(None, (*map(_flip, motions, count(1)), _odd_one(alignment))))
+    warning = " ".join(
+        filter(None, (*map(_describe_flip, motions, count(1)), _describe_outlier(alignment)))
+    )
     stepwise = None
     if settings.method is not Method.MIXTURE:
         published = settings.method is Method.PUBLISHED
@@ -93,80 +111,85 @@ def learn_variation_model(
             motions[0].skeleton,
             joints,
             root,
-            rate,
+            frame_rate,
             published,
             progress=within(progress, 0.6, 1.0),
         )
     progress(1.0)
     return VariationModel(
-        motions[0].skeleton, rate, usual, root, joints, haste, footing, carrier,
-        MixingKernel(), alignment.centre, is_loop, warning, stepwise,
+        motions[0].skeleton, frame_rate, reference_rotations, root, joints, log_warp_rates,
+        contact_states, moving_references, MixingKernel(), alignment.center, all_loop, warning,
+        stepwise,
     )  # fmt: skip
 
 
-def _of_one_rig(motions: list[Motion]) -> list[Motion]:
-    """Bring examples to the rate and the size of the first, or say why that cannot be."""
+def _validate_examples(motions: list[Motion]) -> list[Motion]:
+    """Convert examples to the rate and size of the first; raise if that is impossible."""
     if not motions:
         raise InvalidMotionError("There is no example to vary.")
     first = motions[0]
-    for place, motion in enumerate(motions):
+    for index, motion in enumerate(motions):
         if motion.skeleton.names != first.skeleton.names or (
             motion.skeleton.parents != first.skeleton.parents
         ):
             raise InvalidMotionError(
-                f"Example {place + 1} is of another rig than the first; retarget it first."
+                f"Example {index + 1} is of another rig than the first. Retarget it first."
             )
         if motion.n_frames < 2:
-            raise InvalidMotionError(f"Example {place + 1} has one frame; it shows no motion.")
+            raise InvalidMotionError(f"Example {index + 1} has one frame; it shows no motion.")
         observed = (
             np.isfinite(motion.rotations).all() and np.isfinite(motion.root_positions).all()
         )
         if not observed:
-            raise InvalidMotionError(f"Example {place + 1} has gaps; clean it first.")
+            raise InvalidMotionError(f"Example {index + 1} has gaps; clean it first.")
     if (
         sum(motion.n_frames for motion in motions) * len(motions) * first.skeleton.n_joints
-        > MEMORY
+        > MAX_VALUES
     ):
         raise InvalidMotionError("The examples are too long to vary; cut out what is to vary.")
-    return [_as_first(motion, first) for motion in motions]
+    return [_match_first(motion, first) for motion in motions]
 
 
-def _as_first(motion: Motion, first: Motion) -> Motion:
+def _match_first(motion: Motion, first: Motion) -> Motion:
     if motion.frame_rate != first.frame_rate:
         motion = resample(motion, first.frame_rate)
-    sizes = [np.linalg.norm(one.skeleton.offsets, axis=-1).sum() for one in (first, motion)]
-    places = motion.root_positions * (sizes[0] / max(sizes[1], 1e-9))
-    return replace(motion, skeleton=first.skeleton, root_positions=places)
+    sizes = [np.linalg.norm(each.skeleton.offsets, axis=-1).sum() for each in (first, motion)]
+    positions = motion.root_positions * (sizes[0] / max(sizes[1], 1e-9))
+    return replace(motion, skeleton=first.skeleton, root_positions=positions)
 
 
-def _in_common_time(course: MotionCurves, footing: Array, times: Array) -> MotionCurves:
-    """Return a course at its frames `times`; ways are those between them."""
-    joints = sample_curves(course.joints, times)
-    places = np.column_stack([
-        np.cumsum(course.root[:, :HEIGHT], axis=0),
-        course.root[:, HEIGHT:],
+def _sample_in_common_time(
+    curves: MotionCurves, contact_state: Array, times: Array
+) -> MotionCurves:
+    """Return curves at the frames `times`; displacements become those between the samples."""
+    joints = sample_curves(curves.joints, times)
+    positions = np.column_stack([
+        np.cumsum(curves.root[:, :HEIGHT_COLUMN], axis=0),
+        curves.root[:, HEIGHT_COLUMN:],
     ])
-    root = sample_curves(places, times)
-    root[:, :HEIGHT] = np.diff(root[:, :HEIGHT], axis=0, prepend=root[:1, :HEIGHT])
-    return MotionCurves(root, joints, between_frames(footing, times))
+    root = sample_curves(positions, times)
+    root[:, :HEIGHT_COLUMN] = np.diff(
+        root[:, :HEIGHT_COLUMN], axis=0, prepend=root[:1, :HEIGHT_COLUMN]
+    )
+    return MotionCurves(root, joints, sample_linearly(contact_state, times))
 
 
-def _same_turns(joints: Array, centre: int) -> Array:
-    """Tell rotation vectors that mean the same by the one nearer to the centre's."""
+def _choose_nearest_vectors(joints: Array, center: int) -> Array:
+    """Of the two rotation vectors of each rotation, choose the one nearer to the center's."""
     length = np.linalg.norm(joints, axis=-1, keepdims=True)
     other = joints * (1.0 - 2.0 * np.pi / np.where(length > 0.0, length, np.inf))
-    stay = np.linalg.norm(joints - joints[centre], axis=-1, keepdims=True).mean(axis=1)
-    turn = np.linalg.norm(other - joints[centre], axis=-1, keepdims=True).mean(axis=1)
-    return np.where((turn < stay)[:, None], other, joints)
+    distance_same = np.linalg.norm(joints - joints[center], axis=-1, keepdims=True).mean(axis=1)
+    distance_other = np.linalg.norm(other - joints[center], axis=-1, keepdims=True).mean(axis=1)
+    return np.where((distance_other < distance_same)[:, None], other, joints)
 
 
-def _flip(motion: Motion, number: int) -> str:
-    """Return a sentence about a joint that turns as none can; empty without one."""
+def _describe_flip(motion: Motion, number: int) -> str:
+    """Return a message about a joint that flips within a frame; empty without one."""
     steps = multiply(inverse(motion.rotations[:-1]), motion.rotations[1:])
     angles = np.linalg.norm(rotation_vector_from_quaternion(steps), axis=-1)
-    if not (angles > IMPOSSIBLE).any():
+    if not (angles > MAX_FRAME_ROTATION_RAD).any():
         return ""
-    frame, joint = divmod(int((angles > IMPOSSIBLE).argmax()), angles.shape[1])
+    frame, joint = divmod(int((angles > MAX_FRAME_ROTATION_RAD).argmax()), angles.shape[1])
     return (
         f"{motion.skeleton.names[joint]} of example {number} turns by"
         f" {np.degrees(angles[frame, joint]):.0f} degrees within a frame at"
@@ -174,16 +197,17 @@ def _flip(motion: Motion, number: int) -> str:
     )
 
 
-def _odd_one(alignment: Alignment) -> str:
-    """Return a sentence about the example that is not like the others; empty without one."""
+def _describe_outlier(alignment: Alignment) -> str:
+    """Return a message about an example that differs from the others; empty without one."""
     n = len(alignment.distances)
     if n < 3:
         return ""
-    apart = alignment.distances.sum(axis=0) / (n - 1)
-    worst = int(apart.argmax())
-    if apart[worst] <= ODD * np.median(apart):
+    distances = alignment.distances.sum(axis=0) / (n - 1)
+    farthest = int(distances.argmax())
+    if distances[farthest] <= MAX_DISTANCE_RATIO * np.median(distances):
         return ""
+    ratio = distances[farthest] / np.median(distances)
     return (
-        f"Example {worst + 1} is {apart[worst] / np.median(apart):.1f} times as far from the"
-        " others as they are from each other: it seems to be of another behaviour."
+        f"Example {farthest + 1} is {ratio:.1f} times as far from the others as they are from"
+        " each other: it seems to be of another behavior."
     )

@@ -1,7 +1,7 @@
-"""Clips that end as they begin, so that they can be played over and over.
+"""Detect, close and repeat cyclic clips.
 
-The last frame is the first of the next round: poses and velocities must agree there, as the
-actor sees them. Where he is and whither he faces may go on.
+The last frame of a cycle is the first of the next. Poses and velocities must agree there in the
+actor's own frame; position and heading may advance.
 """
 
 from dataclasses import replace
@@ -12,119 +12,126 @@ from numpy.typing import NDArray
 from ..motion import Motion, resample
 from ..rotations import inverse, multiply, rotate
 from .align_examples import positions_in_body_frame
-from .motion_curves import HEIGHT, MotionCurves
+from .motion_curves import HEIGHT_COLUMN, MotionCurves
 
 Array = NDArray[np.float64]
 
-FEWEST = 8
-"""Frames of a clip that may loop."""
-LOOP_GAP = 0.06
-"""Metres by which joints may be beside where they began, for a clip to loop."""
-FARTHEST = 0.25
-"""Metres by which any one joint may be."""
-HURRY = 2.5
-"""Times the usual speed by which the speed there may differ."""
-EASE = 0.3
-"""Seconds before and after the seam over which it is closed."""
-LEVEL = np.array([1.0, 1.0, 0.0])
-SEAMLESS = 0.02
-"""Radians by which joints may differ at the seam of what counts as closed."""
+MIN_LOOP_FRAMES = 8
+"""Minimum frames of a cyclic clip."""
+MAX_MEAN_GAP_M = 0.06
+"""Maximum mean joint distance in meters between the first and the last pose of a loop."""
+MAX_JOINT_GAP_M = 0.25
+"""Maximum distance in meters of any single joint."""
+MAX_SPEED_CHANGE = 2.5
+"""Maximum velocity difference at the seam, relative to the mean speed."""
+SEAM_S = 0.3
+"""Seconds before and after the seam over which it is blended."""
+HORIZONTAL = np.array([1.0, 1.0, 0.0])
+MAX_SEAM_RAD = 0.02
+"""Maximum joint difference in radians at the seam of a closed loop."""
 
 
-def loops(motion: Motion, turns: Array) -> bool:
-    """Whether a clip ends nearly as it begins, and goes on as it began; by its headings."""
-    if motion.n_frames < FEWEST:
+def detect_loop(motion: Motion, headings: Array) -> bool:
+    """Return whether a clip ends nearly in its first pose and at its first velocity."""
+    if motion.n_frames < MIN_LOOP_FRAMES:
         return False
-    body = positions_in_body_frame(motion, turns)
+    body = positions_in_body_frame(motion, headings)
     steps = np.diff(body, axis=0)
-    usual = np.linalg.norm(steps, axis=-1).mean()
-    gap, hurry = body[-1] - body[0], steps[-1] - steps[0]
-    apart, unlike = (np.linalg.norm(one, axis=-1) for one in (gap, hurry))
-    near = apart.mean() < LOOP_GAP + usual and apart.max() < FARTHEST + usual
-    return bool(near and unlike.mean() < HURRY * usual)
+    mean_step = np.linalg.norm(steps, axis=-1).mean()
+    gap, step_change = body[-1] - body[0], steps[-1] - steps[0]
+    gap_lengths, change_lengths = (np.linalg.norm(each, axis=-1) for each in (gap, step_change))
+    is_near = (
+        gap_lengths.mean() < MAX_MEAN_GAP_M + mean_step
+        and gap_lengths.max() < MAX_JOINT_GAP_M + mean_step
+    )
+    return bool(is_near and change_lengths.mean() < MAX_SPEED_CHANGE * mean_step)
 
 
 def close_loop(
-    course: MotionCurves, frame_rate: float, by_joint: Array, free: Array
+    curves: MotionCurves, frame_rate: float, by_joint: Array, free: Array
 ) -> MotionCurves:
-    """Let a course end as it begins, in pose and velocity.
+    """Blend a seam so that pose and velocity agree at the end and the start.
 
-    What differs at the seam is taken back with cubic Hermite polynomials, half before and half
-    after it.
+    Cubic Hermite polynomials remove the difference at the seam, half before and half after it.
 
     Parameters
     ----------
-    course : Course
+    curves : MotionCurves
     frame_rate : float, hertz
     by_joint : shape (n_joints,), 0 to 1
-        Which part of the difference is taken back; for the root's way and height as for the
-        first joint.
+        Fraction of the difference to remove; the root's displacements and height use the first.
     free : shape (2,), 0 or 1
-        Whether the beginning and the end may change.
+        Whether the start and the end may change.
     """
-    n, halves = len(course.root), free / max(free.sum(), 1.0)
-    if n < FEWEST or not free.any():
-        return course
-    reach = min(EASE * frame_rate, (n - 1) / 2.0)
-    curves = np.concatenate(
-        [course.root[:, None, HEIGHT:], course.joints.reshape(n, 1, -1)], axis=2
+    n, halves = len(curves.root), free / max(free.sum(), 1.0)
+    if n < MIN_LOOP_FRAMES or not free.any():
+        return curves
+    half_width = min(SEAM_S * frame_rate, (n - 1) / 2.0)
+    channels = np.concatenate(
+        [curves.root[:, None, HEIGHT_COLUMN:], curves.joints.reshape(n, 1, -1)], axis=2
     )[:, 0]
-    parts = np.concatenate([by_joint[:1], np.repeat(by_joint, 3)])
-    curves = curves + parts * _seam(curves, reach, halves)
-    root = course.root.copy()
-    root[:, HEIGHT] = curves[:, 0]
-    paces = root[1:, :HEIGHT]
-    ends = [1.5 * paces[0] - 0.5 * paces[1], 1.5 * paces[-1] - 0.5 * paces[-2]]
+    weights = np.concatenate([by_joint[:1], np.repeat(by_joint, 3)])
+    channels = channels + weights * _seam_correction(channels, half_width, halves)
+    root = curves.root.copy()
+    root[:, HEIGHT_COLUMN] = channels[:, 0]
+    steps = root[1:, :HEIGHT_COLUMN]
+    ends = [1.5 * steps[0] - 0.5 * steps[1], 1.5 * steps[-1] - 0.5 * steps[-2]]
     frames = np.arange(0.5, n - 1)
-    fade = halves[0] * _value(frames / reach)
-    fade -= halves[1] * _value((n - 1 - frames) / reach)
-    root[1:, :HEIGHT] += by_joint[0] * np.outer(fade, ends[1] - ends[0])
-    return replace(course, root=root, joints=curves[:, 1:].reshape(course.joints.shape))
+    fade = halves[0] * _hermite_value(frames / half_width)
+    fade -= halves[1] * _hermite_value((n - 1 - frames) / half_width)
+    root[1:, :HEIGHT_COLUMN] += by_joint[0] * np.outer(fade, ends[1] - ends[0])
+    return replace(curves, root=root, joints=channels[:, 1:].reshape(curves.joints.shape))
 
 
-def is_closed(course: MotionCurves) -> bool:
-    """Whether the last pose is the first."""
-    return bool(np.abs(course.joints[-1] - course.joints[0]).max() < SEAMLESS)
+def is_closed(curves: MotionCurves) -> bool:
+    """Return whether the last pose equals the first within `MAX_SEAM_RAD`."""
+    return bool(np.abs(curves.joints[-1] - curves.joints[0]).max() < MAX_SEAM_RAD)
 
 
-def repeat_loop(motion: Motion, rounds: int) -> Motion:
-    """Return several rounds of a loop, each from where the one before ends.
+def repeat_loop(motion: Motion, n_cycles: int) -> Motion:
+    """Return several cycles of a loop, each starting where the one before ends.
 
-    Of `rounds` rounds of n frames there are rounds (n - 1) + 1.
+    `n_cycles` cycles of n frames have n_cycles (n - 1) + 1 frames.
     """
-    turn = _turn_of_round(motion)
-    rotations, places = [motion.rotations], [motion.root_positions]
-    for _ in range(rounds - 1):
-        again = rotations[-1].copy()
-        again[:, 0] = multiply(turn, again[:, 0])
-        rotations.append(again)
-        before = places[-1]
-        places.append(rotate(turn, before - before[0] * LEVEL) + before[-1] * LEVEL)
-    rotations[:-1] = [one[:-1] for one in rotations[:-1]]
-    places[:-1] = [one[:-1] for one in places[:-1]]
-    return motion.with_poses(np.concatenate(rotations), np.concatenate(places))
+    rotation = _cycle_rotation(motion)
+    rotations, positions = [motion.rotations], [motion.root_positions]
+    for _ in range(n_cycles - 1):
+        next_rotations = rotations[-1].copy()
+        next_rotations[:, 0] = multiply(rotation, next_rotations[:, 0])
+        rotations.append(next_rotations)
+        previous = positions[-1]
+        positions.append(
+            rotate(rotation, previous - previous[0] * HORIZONTAL) + previous[-1] * HORIZONTAL
+        )
+    rotations[:-1] = [each[:-1] for each in rotations[:-1]]
+    positions[:-1] = [each[:-1] for each in positions[:-1]]
+    return motion.with_poses(np.concatenate(rotations), np.concatenate(positions))
 
 
-def extract_middle_cycle(three: Motion, one: Motion) -> Motion:
-    """Return the second of three rounds, brought back to where the first is.
+def extract_middle_cycle(cycles: Motion, cycle: Motion) -> Motion:
+    """Return the second of three cycles, moved back to the position of the first.
 
     Parameters
     ----------
-    three : Motion
-        Three rounds that were changed since `repeated` made them of `one`, or resampled.
-    one : Motion
+    cycles : Motion
+        Three cycles that `repeat_loop` made of `cycle`, possibly edited or resampled.
+    cycle : Motion
     """
-    n = (three.n_frames - 1) // 3
-    middle = three.slice(n, 2 * n + 1)
-    back = inverse(_turn_of_round(one))
-    rotations = middle.rotations.copy()
-    rotations[:, 0] = multiply(back, rotations[:, 0])
-    places = rotate(back, middle.root_positions - one.root_positions[-1] * LEVEL)
-    return middle.with_poses(rotations, places + one.root_positions[0] * LEVEL)
+    n = (cycles.n_frames - 1) // 3
+    second = cycles.slice(n, 2 * n + 1)
+    inverse_rotation = inverse(_cycle_rotation(cycle))
+    rotations = second.rotations.copy()
+    rotations[:, 0] = multiply(inverse_rotation, rotations[:, 0])
+    positions = rotate(
+        inverse_rotation, second.root_positions - cycle.root_positions[-1] * HORIZONTAL
+    )
+    return second.with_poses(rotations, positions + cycle.root_positions[0] * HORIZONTAL)
 
 
 def resample_loop(motion: Motion, frame_rate: float) -> Motion:
-    """Return a loop at another frame rate, still a loop: as fast but for part of a frame.
+    """Return a loop at another frame rate that still loops.
+
+    Its duration is rounded to whole frames.
 
     Parameters
     ----------
@@ -132,39 +139,43 @@ def resample_loop(motion: Motion, frame_rate: float) -> Motion:
     frame_rate : float, hertz
     """
     steps = motion.n_frames - 1
-    wanted = max(round(steps * frame_rate / motion.frame_rate), 1)
-    even = replace(repeat_loop(motion, 3), frame_rate=steps * frame_rate / wanted)
-    return extract_middle_cycle(resample(even, frame_rate), motion)
+    n_steps = max(round(steps * frame_rate / motion.frame_rate), 1)
+    scaled = replace(repeat_loop(motion, 3), frame_rate=steps * frame_rate / n_steps)
+    return extract_middle_cycle(resample(scaled, frame_rate), motion)
 
 
-def _turn_of_round(motion: Motion) -> Array:
-    """Return the turn about Z from the first pose to the last."""
-    turn = multiply(motion.rotations[-1, 0], inverse(motion.rotations[0, 0]))
-    turn = turn * np.array([1.0, 0.0, 0.0, 1.0])
-    return np.asarray(turn / max(np.linalg.norm(turn), 1e-12))
+def _cycle_rotation(motion: Motion) -> Array:
+    """Return the rotation about Z from the first pose to the last."""
+    rotation = multiply(motion.rotations[-1, 0], inverse(motion.rotations[0, 0]))
+    rotation = rotation * np.array([1.0, 0.0, 0.0, 1.0])
+    return np.asarray(rotation / max(np.linalg.norm(rotation), 1e-12))
 
 
-def _seam(curves: Array, reach: float, halves: Array) -> Array:
-    """Return what to add to curves, (n_frames, n), for the last to go on as the first."""
+def _seam_correction(curves: Array, half_width: float, halves: Array) -> Array:
+    """Return what to add to curves, (n_frames, n), so that the last frame joins the first."""
     n = len(curves)
     gap = curves[-1] - curves[0]
     begin = 2.0 * curves[1] - 1.5 * curves[0] - 0.5 * curves[2]
     end = 1.5 * curves[-1] + 0.5 * curves[-3] - 2.0 * curves[-2]
-    hurry = end - begin
+    velocity_gap = end - begin
     frames = np.arange(n, dtype=np.float64)
-    after, before = frames / reach, (n - 1 - frames) / reach
-    first = np.outer(_value(after), gap) + reach * np.outer(_slope(after), hurry)
-    last = np.outer(_value(before), gap) - reach * np.outer(_slope(before), hurry)
+    after, before = frames / half_width, (n - 1 - frames) / half_width
+    first = np.outer(_hermite_value(after), gap) + half_width * np.outer(
+        _hermite_slope(after), velocity_gap
+    )
+    last = np.outer(_hermite_value(before), gap) - half_width * np.outer(
+        _hermite_slope(before), velocity_gap
+    )
     return np.asarray(halves[0] * first - halves[1] * last)
 
 
-def _value(part: Array) -> Array:
-    """Return the Hermite polynomial that leaves 1 with slope 0 and ends at 0 with slope 0."""
-    part = np.clip(part, 0.0, 1.0)
-    return np.asarray((1.0 + 2.0 * part) * (1.0 - part) ** 2)
+def _hermite_value(fraction: Array) -> Array:
+    """Return the Hermite polynomial from 1 to 0 with slope 0 at both ends."""
+    fraction = np.clip(fraction, 0.0, 1.0)
+    return np.asarray((1.0 + 2.0 * fraction) * (1.0 - fraction) ** 2)
 
 
-def _slope(part: Array) -> Array:
-    """Return the Hermite polynomial that leaves 0 with slope 1 and ends at 0 with slope 0."""
-    part = np.clip(part, 0.0, 1.0)
-    return np.asarray(part * (1.0 - part) ** 2)
+def _hermite_slope(fraction: Array) -> Array:
+    """Return the Hermite polynomial from 0 to 0 with slope 1 at the start and 0 at the end."""
+    fraction = np.clip(fraction, 0.0, 1.0)
+    return np.asarray(fraction * (1.0 - fraction) ** 2)

@@ -1,4 +1,4 @@
-"""How different motions are from each other [ZH14, eq. 4.5]."""
+"""Measure how different motions are from each other [ZH14, eq. 4.5]."""
 
 from collections.abc import Sequence
 from itertools import combinations
@@ -11,10 +11,10 @@ from .align_examples import ALIGNMENT_RATE_HZ, positions_in_body_frame
 
 
 def measure_variation(motions: Sequence[Motion]) -> float:
-    """Return the mean distance of pairs of motions after dynamic time warping, in metres.
+    """Return the mean distance of pairs of motions after dynamic time warping, in meters.
 
-    Per step of the path and joint; joints are told as the actor faces, relative to the hips,
-    20 times a second.
+    The mean is over path steps and joints. Joint positions are in the actor's body frame, at 20
+    frames a second.
 
     Parameters
     ----------
@@ -23,7 +23,7 @@ def measure_variation(motions: Sequence[Motion]) -> float:
     Raises
     ------
     InvalidMotionError
-        There are fewer than two, or rigs differ.
+        There are fewer than two motions, or rigs differ.
     """
     if len(motions) < 2:
         raise InvalidMotionError("One motion has no variation; give at least two.")
@@ -31,4 +31,6 @@ def measure_variation(motions: Sequence[Motion]) -> float:
         positions_in_body_frame(motion)[:: max(round(motion.frame_rate / ALIGNMENT_RATE_HZ), 1)]
         for motion in motions
     ]
-    return float(np.mean([warp(one, other).cost for one, other in combinations(bodies, 2)]))
+    return float(
+        np.mean([warp(first, second).cost for first, second in combinations(bodies, 2)])
+    )

@@ -1,9 +1,9 @@
-"""Deviations drawn as mixtures of the examples' own, with shares that change in time.
+"""Draw deviations as mixtures of the examples' own, with weights that change over time.
 
-A share vector is mostly drawn around one example and partly Gaussian: the first is a smoothed
-bootstrap (Silverman 1986, Density estimation, 6.4.1), which keeps variants where examples are
-dense, the second reaches between them. The first sums to 1: while one example gives way to
-another a variant lies between the two, and what both have in common is not exaggerated.
+A weight vector is partly a smoothed bootstrap around one example (Silverman 1986, Density
+estimation, 6.4.1) and partly Gaussian. The bootstrap keeps variants where examples are dense;
+the Gaussian part reaches between them. Bootstrap weights sum to 1, so a transition from one
+example to another stays between them and does not exaggerate what both share.
 """
 
 import numpy as np
@@ -11,92 +11,107 @@ from numpy.typing import NDArray
 from scipy.ndimage import gaussian_filter1d
 
 from .curve_sampling import sample_curves
-from .partitions import FEET, Partition, partition_joints
+from .partitions import LEG_ROWS, Partition, partition_joints
 from .variation_model import VariationModel
 
 Array = NDArray[np.float64]
 
-NEAR = 0.9
-"""Part of the variance of shares that is drawn around one example at a time, of many; of n
-examples it is less by 1 / n, since two variants are often drawn around the same."""
-SHARP = 8.0
-"""How clearly one example prevails over others there; higher is closer to copying it."""
-TOGETHER = np.array([0.95, 0.7, 0.7, 0.95, 0.95])
-"""Part of the variance that each partition has in common with the others: limbs go with each
-other, and legs with the hips that they carry."""
-FARTHEST = 1.6
-"""Times the usual length of a mixture's shares, beyond which it is drawn back: variants stay
-near the examples."""
-CALM = 0.1
-"""Seconds: what changes more slowly is each partition's own."""
-RATE = 30.0
-"""Hertz at which shares are drawn; they change slowly."""
-LONGEST = 2000
-"""Moments at which shares are drawn at most; in clips over a minute they change more slowly."""
+BOOTSTRAP_VARIANCE = 0.9
+"""Fraction of the weights' variance in the bootstrap, for many examples. Of n examples it is
+less by 1 / n, since two variants often draw the same example."""
+SOFTMAX_GAIN = 8.0
+"""Gain of the softmax over examples; higher values copy a single example more closely."""
+SHARED_VARIANCE = np.array([0.95, 0.7, 0.7, 0.95, 0.95])
+"""Fraction of the variance that each partition shares with the others. Limbs move together, and
+legs move with the hips that they carry."""
+MAX_WEIGHT_RATIO = 1.6
+"""Maximum length of a weight vector, relative to the typical one; longer ones are scaled back,
+so that variants stay near the examples."""
+SMOOTHING_S = 0.1
+"""Standard deviation in seconds of the Gaussian that separates slow changes, with weights of
+each partition, from fast ones."""
+DRAW_RATE_HZ = 30.0
+"""Rate at which weights are drawn; they change slowly."""
+MAX_DRAWN_SAMPLES = 2000
+"""Maximum count of drawn samples; in clips of more than a minute weights change more slowly."""
 JITTER = 1e-9
-COMMON = len(Partition)
-"""Row of the shares that the way of the root and the time have, after those of partitions."""
+ROOT_ROW = len(Partition)
+"""Row of the weights of the root and the time warp, after those of the partitions."""
 
 
-def draw_shares(model: VariationModel, n_variants: int, rng: np.random.Generator) -> Array:
-    """Return shares of the examples, shape (6, n_variants, n_moments, n_examples).
+def draw_mixing_weights(
+    model: VariationModel, n_variants: int, rng: np.random.Generator
+) -> Array:
+    """Draw weights of the examples, shape (6, n_variants, n_samples, n_examples).
 
-    For each partition and, last, for the root and the time.
+    One row for each partition and, last, one for the root and the time warp.
     """
-    n, moments = model.n_examples, model.n_moments
-    seconds = (moments - 1) / model.frame_rate
-    few = max(min(moments, round(seconds * RATE) + 1, LONGEST), 2)
-    times = np.linspace(0.0, seconds, few)
+    n, n_samples = model.n_examples, model.n_samples
+    seconds = (n_samples - 1) / model.frame_rate
+    n_drawn = max(min(n_samples, round(seconds * DRAW_RATE_HZ) + 1, MAX_DRAWN_SAMPLES), 2)
+    times = np.linspace(0.0, seconds, n_drawn)
     covariance = model.kernel.covariance(times, seconds if model.loops else None)
-    root = np.linalg.cholesky(covariance + JITTER * few * np.eye(few))
-    drawn = rng.normal(size=(2, COMMON + 1, n_variants, few, n))
-    drawn = np.einsum("st,kpvtn->kpvsn", root, drawn)
-    common = np.append(TOGETHER, 1.0)[:, None, None, None]
-    mixed = np.sqrt(common) * drawn[:, -1:] + np.sqrt(1.0 - common) * drawn
-    usual = 1.0 / np.sqrt(max(n - 1, 1))
-    around = np.exp(SHARP * mixed[0])
-    around /= around.sum(axis=-1, keepdims=True)
-    near = max(NEAR - 1.0 / n, 0.0)
-    shares = np.sqrt(near * n / max(n - 1, 1)) * around + np.sqrt(1.0 - near) * usual * mixed[1]
-    length = np.linalg.norm(shares, axis=-1, keepdims=True)
-    farthest = FARTHEST * np.sqrt(n) * usual
-    shares *= np.where(length > farthest, farthest / np.maximum(length, 1e-12), 1.0)
-    seen = np.linspace(0.0, few - 1.0, moments)
-    return np.asarray(np.moveaxis(sample_curves(np.moveaxis(shares, 2, 0), seen), 0, 2))
+    factor = np.linalg.cholesky(covariance + JITTER * n_drawn * np.eye(n_drawn))
+    drawn = rng.normal(size=(2, ROOT_ROW + 1, n_variants, n_drawn, n))
+    drawn = np.einsum("st,kpvtn->kpvsn", factor, drawn)
+    shared = np.append(SHARED_VARIANCE, 1.0)[:, None, None, None]
+    mixed = np.sqrt(shared) * drawn[:, -1:] + np.sqrt(1.0 - shared) * drawn
+    typical_weight = 1.0 / np.sqrt(max(n - 1, 1))
+    bootstrap = np.exp(SOFTMAX_GAIN * mixed[0])
+    bootstrap /= bootstrap.sum(axis=-1, keepdims=True)
+    bootstrap_variance = max(BOOTSTRAP_VARIANCE - 1.0 / n, 0.0)
+    weights = (
+        np.sqrt(bootstrap_variance * n / max(n - 1, 1)) * bootstrap
+        + np.sqrt(1.0 - bootstrap_variance) * typical_weight * mixed[1]
+    )
+    lengths = np.linalg.norm(weights, axis=-1, keepdims=True)
+    max_length = MAX_WEIGHT_RATIO * np.sqrt(n) * typical_weight
+    weights *= np.where(lengths > max_length, max_length / np.maximum(lengths, 1e-12), 1.0)
+    sample_times = np.linspace(0.0, n_drawn - 1.0, n_samples)
+    return np.asarray(
+        np.moveaxis(sample_curves(np.moveaxis(weights, 2, 0), sample_times), 0, 2)
+    )
 
 
-def mixed_deviations(model: VariationModel, shares: Array) -> tuple[Array, Array, Array, Array]:
-    """Return by how much variants deviate from the mean of the examples in common time.
+def mix_deviations(model: VariationModel, weights: Array) -> tuple[Array, Array, Array, Array]:
+    """Return the deviations of variants from the mean of the examples, in common time.
 
-    What changes quickly is mixed with the same shares everywhere: in captures the jitter of one
-    joint makes up for that of another, and feet and hands shook if limbs had it from different
-    examples.
+    Fast changes use the same weights for the complete body. In captures the jitter of one joint
+    compensates that of another; limbs mixed from different examples would shake hands and feet.
 
     Returns
     -------
-    joints : shape (n_variants, n_moments, n_joints, 3), radians
-    root : shape (n_variants, n_moments, 4)
-    haste : shape (n_variants, n_moments)
-    footing : shape (n_variants, n_moments, 2), seconds
+    joints : shape (n_variants, n_samples, n_joints, 3), radians
+    root : shape (n_variants, n_samples, 4)
+    log_warp_rates : shape (n_variants, n_samples)
+    contact_state : shape (n_variants, n_samples, 2), seconds
     """
-    n, moments = model.n_examples, model.n_moments
-    joints = _mixed(model.joints, shares[COMMON])
-    calm = gaussian_filter1d(model.joints, CALM * model.frame_rate, axis=1, mode="nearest")
-    for members, share in zip(partition_joints(model.skeleton), shares[:COMMON], strict=True):
-        joints[:, :, members] += _mixed(calm[:, :, members], share - shares[COMMON])
-    rest = np.concatenate([model.root, model.haste.reshape(n, moments, 1)], axis=-1)
-    root = _mixed(rest, shares[COMMON])
+    n, n_samples = model.n_examples, model.n_samples
+    joints = _mix_curves(model.joints, weights[ROOT_ROW])
+    smooth = gaussian_filter1d(
+        model.joints, SMOOTHING_S * model.frame_rate, axis=1, mode="nearest"
+    )
+    for members, partition_weights in zip(
+        partition_joints(model.skeleton), weights[:ROOT_ROW], strict=True
+    ):
+        joints[:, :, members] += _mix_curves(
+            smooth[:, :, members], partition_weights - weights[ROOT_ROW]
+        )
+    root_curves = np.concatenate(
+        [model.root, model.log_warp_rates.reshape(n, n_samples, 1)], axis=-1
+    )
+    root = _mix_curves(root_curves, weights[ROOT_ROW])
     feet = [
-        _mixed(model.footing[..., side : side + 1], shares[leg])
-        for side, leg in enumerate(FEET)
+        _mix_curves(model.contact_state[..., side : side + 1], weights[leg])
+        for side, leg in enumerate(LEG_ROWS)
     ]
     return joints, root[..., :-1], root[..., -1], np.concatenate(feet, axis=-1)
 
 
-def _mixed(curves: Array, shares: Array) -> Array:
-    """Return sums of deviations of curves, (n_examples, n_moments, ...), by shares."""
-    n, moments = curves.shape[:2]
-    beside = (curves - curves.mean(axis=0)).reshape(n, moments, -1)
-    sums = np.matmul(shares.transpose(1, 0, 2), beside.transpose(1, 0, 2))
-    shape = (shares.shape[0], moments, *curves.shape[2:])
+def _mix_curves(curves: Array, weights: Array) -> Array:
+    """Return weighted sums of the deviations of curves, (n_examples, n_samples, ...)."""
+    n, n_samples = curves.shape[:2]
+    deviations = (curves - curves.mean(axis=0)).reshape(n, n_samples, -1)
+    sums = np.matmul(weights.transpose(1, 0, 2), deviations.transpose(1, 0, 2))
+    shape = (weights.shape[0], n_samples, *curves.shape[2:])
     return np.asarray(sums.transpose(1, 0, 2).reshape(shape))

@@ -1,4 +1,4 @@
-"""A motion as curves that can be blended: where it happens and whither it faces taken out."""
+"""Represent a motion as curves that can be blended, without position and heading."""
 
 from dataclasses import dataclass
 
@@ -17,11 +17,11 @@ from ..rotations import (
 Array = NDArray[np.float64]
 
 N_ROOT_CHANNELS = 4
-"""Columns of the root's way: to the left and backward as the actor faces, and turning, each
-from the frame before; and the height of the hips."""
-HEIGHT = 3
-IMPOSSIBLE = 2.0
-"""Radians that no joint turns within a frame."""
+"""Columns of the root: displacement to the left and backward in the actor's frame, and rotation
+about Z, each since the frame before; then the height of the hips."""
+HEIGHT_COLUMN = 3
+MAX_FRAME_ROTATION_RAD = 2.0
+"""Maximum plausible rotation of a joint within one frame, radians."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -30,15 +30,15 @@ class MotionCurves:
 
     Attributes
     ----------
-    root : shape (n_frames, 4), metres and radians
-        See `N_ROOT`; the first frame has come from nowhere.
+    root : shape (n_frames, 4), meters and radians
+        See `N_ROOT_CHANNELS`; displacements of the first frame are 0.
     joints : shape (n_frames, n_joints, 3), radians
-        Rotation vectors (exponential map [1]_) about each joint's usual rotation; that of the
-        root without its heading.
-    footing : shape (n_frames, 2), seconds, or None
-        By how much feet stand (`footing_of`), where that is known.
-    carrier : shape (n_frames, n_joints, 4), or None
-        What comes before each joint's usual rotation; see `tell_far_joints`.
+        Rotation vectors (exponential map [1]_) relative to each joint's reference rotation; the
+        root's without heading.
+    contact_state : shape (n_frames, 2), seconds, or None
+        Signed time to the nearest contact change (`measure_contact_state`), where known.
+    moving_references : shape (n_frames, n_joints, 4), or None
+        Rotations to apply before each joint's reference rotation: `split_moving_references`.
 
     References
     ----------
@@ -48,75 +48,82 @@ class MotionCurves:
 
     root: Array
     joints: Array
-    footing: Array | None = None
-    carrier: Array | None = None
+    contact_state: Array | None = None
+    moving_references: Array | None = None
 
 
 def headings_from_motion(motion: Motion) -> Array:
-    """Return the turn about Z of each frame from facing -Y, shape (n_frames,), radians."""
-    found = normalise(motion_postures(motion), motion.frame_rate)
-    return np.asarray(np.unwrap(found.headings))
+    """Return the heading of each frame: radians about Z from -Y, shape (n_frames,)."""
+    normalized = normalise(motion_postures(motion), motion.frame_rate)
+    return np.asarray(np.unwrap(normalized.headings))
 
 
-def remove_heading(motion: Motion, turns: Array) -> Array:
-    """Return local rotations, (n_frames, n_joints, 4), as if the actor always faced -Y."""
+def remove_heading(motion: Motion, headings: Array) -> Array:
+    """Return local rotations, (n_frames, n_joints, 4), of an actor who always faces -Y."""
     rotations = motion.rotations.copy()
-    rotations[:, 0] = multiply(_about_z(-turns), rotations[:, 0])
+    rotations[:, 0] = multiply(_about_z(-headings), rotations[:, 0])
     return rotations
 
 
-def curves_from_motion(motion: Motion, turns: Array, usual: Array) -> MotionCurves:
-    """Take a motion apart.
+def curves_from_motion(
+    motion: Motion, headings: Array, reference_rotations: Array
+) -> MotionCurves:
+    """Split a motion into curves of the root and of the joints.
 
     Parameters
     ----------
     motion : Motion
-    turns : shape (n_frames,), radians
-        Its headings.
-    usual : shape (n_joints, 4)
-        About which rotation each joint's are told.
+    headings : shape (n_frames,), radians
+    reference_rotations : shape (n_joints, 4)
+        Each joint's rotations become rotation vectors relative to its reference.
     """
     steps = np.diff(motion.root_positions, axis=0, prepend=motion.root_positions[:1])
-    before = np.concatenate([turns[:1], turns[:-1]])
+    before = np.concatenate([headings[:1], headings[:-1]])
     cos, sin = np.cos(before), np.sin(before)
     root = np.column_stack([
         cos * steps[:, 0] + sin * steps[:, 1],
         cos * steps[:, 1] - sin * steps[:, 0],
-        np.diff(turns, prepend=turns[:1]),
+        np.diff(headings, prepend=headings[:1]),
         motion.root_positions[:, 2],
     ])  # fmt: skip
-    told = multiply(inverse(usual), remove_heading(motion, turns))
-    return MotionCurves(root, continuous(rotation_vector_from_quaternion(told)))
+    relative = multiply(inverse(reference_rotations), remove_heading(motion, headings))
+    return MotionCurves(
+        root, unwrap_rotation_vectors(rotation_vector_from_quaternion(relative))
+    )
 
 
 def motion_from_curves(
-    course: MotionCurves, skeleton: Skeleton, usual: Array, frame_rate: float, start: Array
+    curves: MotionCurves,
+    skeleton: Skeleton,
+    reference_rotations: Array,
+    frame_rate: float,
+    start: Array,
 ) -> Motion:
-    """Put a motion together again.
+    """Rebuild a motion from its curves: the inverse of `curves_from_motion`.
 
     Parameters
     ----------
-    course : Course
+    curves : MotionCurves
     skeleton : Skeleton
-    usual : shape (n_joints, 4)
+    reference_rotations : shape (n_joints, 4)
     frame_rate : float, hertz
     start : shape (3,)
-        Where the hips are on the ground at first, in metres, and their heading in radians.
+        Initial x and y of the hips in meters, and initial heading in radians.
     """
-    turns = start[2] + np.cumsum(course.root[:, 2])
-    before = np.concatenate([[start[2]], turns[:-1]])
+    headings = start[2] + np.cumsum(curves.root[:, 2])
+    before = np.concatenate([[start[2]], headings[:-1]])
     cos, sin = np.cos(before), np.sin(before)
-    left, back = course.root[:, 0], course.root[:, 1]
-    places = np.column_stack([
+    left, back = curves.root[:, 0], curves.root[:, 1]
+    positions = np.column_stack([
         start[0] + np.cumsum(cos * left - sin * back),
         start[1] + np.cumsum(sin * left + cos * back),
-        course.root[:, HEIGHT],
+        curves.root[:, HEIGHT_COLUMN],
     ])  # fmt: skip
-    rotations = multiply(usual, quaternion_from_rotation_vector(course.joints))
-    if course.carrier is not None:
-        rotations = multiply(course.carrier, rotations)
-    rotations[:, 0] = multiply(_about_z(turns), rotations[:, 0])
-    return Motion(skeleton, rotations, places, frame_rate)
+    rotations = multiply(reference_rotations, quaternion_from_rotation_vector(curves.joints))
+    if curves.moving_references is not None:
+        rotations = multiply(curves.moving_references, rotations)
+    rotations[:, 0] = multiply(_about_z(headings), rotations[:, 0])
+    return Motion(skeleton, rotations, positions, frame_rate)
 
 
 def _about_z(angles: Array) -> Array:
@@ -124,19 +131,21 @@ def _about_z(angles: Array) -> Array:
     return np.stack([np.cos(angles / 2.0), zero, zero, np.sin(angles / 2.0)], axis=-1)
 
 
-def continuous(vectors: Array) -> Array:
-    """Let no rotation vector jump by a whole turn: of two that mean the same, the nearer.
+def unwrap_rotation_vectors(vectors: Array) -> Array:
+    """Choose equivalent rotation vectors so that no joint jumps by a full rotation.
 
-    After a turn that nobody makes within a frame, as where a capture flips a thigh to and fro,
-    neither is nearer, and two flips the same way would wind the joint up for good: there the
-    shorter vector is taken.
+    Of the two vectors of a rotation, it takes the one nearer to the frame before. A capture may
+    flip a joint by more than `MAX_FRAME_ROTATION_RAD`; neither vector is near then. Repeated
+    flips would wind the joint up without bound, so it takes the shorter vector there.
     """
     result = vectors.copy()
     for frame in range(1, len(result)):
         length = np.linalg.norm(result[frame], axis=-1, keepdims=True)
         other = result[frame] * (1.0 - 2.0 * np.pi / np.where(length > 0.0, length, np.inf))
-        stay = np.linalg.norm(result[frame] - result[frame - 1], axis=-1, keepdims=True)
-        turn = np.linalg.norm(other - result[frame - 1], axis=-1, keepdims=True)
-        near = (turn < stay) & (turn < IMPOSSIBLE)
-        result[frame] = np.where(near, other, result[frame])
+        distance_same = np.linalg.norm(
+            result[frame] - result[frame - 1], axis=-1, keepdims=True
+        )
+        distance_other = np.linalg.norm(other - result[frame - 1], axis=-1, keepdims=True)
+        is_nearer = (distance_other < distance_same) & (distance_other < MAX_FRAME_ROTATION_RAD)
+        result[frame] = np.where(is_nearer, other, result[frame])
     return result

@@ -1,4 +1,4 @@
-"""The five partitions of the body that vary each in its own way [ZH14, 4.1, figure 4.1]."""
+"""Define the five partitions of the body that vary separately [ZH14, 4.1, figure 4.1]."""
 
 from enum import Enum
 
@@ -9,7 +9,7 @@ from ..motion import Skeleton, find_humanoid_map
 
 
 class Partition(Enum):
-    """A part of the body; the order is that of the rows of `partition_joints`."""
+    """A part of the body, in the order of the rows of `partition_joints`."""
 
     TRUNK = "trunk and head"
     LEFT_ARM = "left arm"
@@ -18,8 +18,8 @@ class Partition(Enum):
     RIGHT_LEG = "right leg"
 
 
-FEET = [list(Partition).index(leg) for leg in (Partition.LEFT_LEG, Partition.RIGHT_LEG)]
-"""Rows of the partitions that stand on the ground, left and right."""
+LEG_ROWS = [list(Partition).index(leg) for leg in (Partition.LEFT_LEG, Partition.RIGHT_LEG)]
+"""Rows of the left and the right leg."""
 
 FIRST_ROLES = {
     Partition.LEFT_ARM: ("leftShoulder", "leftUpperArm"),
@@ -27,18 +27,18 @@ FIRST_ROLES = {
     Partition.LEFT_LEG: ("leftUpperLeg",),
     Partition.RIGHT_LEG: ("rightUpperLeg",),
 }
-"""Roles at which each limb begins, the first that the skeleton has."""
+"""Humanoid roles at which each limb begins; the first that the skeleton has."""
 
 
 def partition_joints(skeleton: Skeleton) -> NDArray[np.bool_]:
-    """Return which joints each partition has, shape (5, n_joints); every joint is in one.
+    """Return the joints of each partition, shape (5, n_joints); every joint is in exactly one.
 
-    What hangs on no limb belongs to the trunk, the root too.
+    Joints outside the limbs, the root included, belong to the trunk.
     """
-    places = find_humanoid_map(skeleton).indices(skeleton)
+    joints = find_humanoid_map(skeleton).indices(skeleton)
     members = np.zeros((len(Partition), skeleton.n_joints), dtype=bool)
     for row, partition in enumerate(Partition):
-        first = [places[role] for role in FIRST_ROLES.get(partition, ()) if role in places]
+        first = [joints[role] for role in FIRST_ROLES.get(partition, ()) if role in joints]
         if first:
             members[row, skeleton.subtree(first[0])] = True
     members[0] = ~members.any(axis=0)

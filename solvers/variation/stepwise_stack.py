@@ -1,9 +1,9 @@
-"""The sparse Gaussian processes of all joints for one kind of step, evaluated together.
+"""Sparse Gaussian processes of all joints for one kind of step, evaluated together.
 
-Each channel is told by its values at inducing points, a subset of the examples (the projected
-process, or DTC, of Quinonero-Candela, Rasmussen 2005, JMLR 6, section 4): its function is
-K(x, Z) v with v ~ N(A^-1 K(Z, X) y, n A^-1), A = n K(Z, Z) + K(Z, X) K(X, Z). One draw of v is
-one draw of the whole function, which returns to the mean of the outputs far from all examples.
+Inducing points, a subset of the examples, represent each channel (the projected process, or
+DTC, of Quinonero-Candela, Rasmussen 2005, JMLR 6, section 4): its function is K(x, Z) v with
+v ~ N(A^-1 K(Z, X) y, n A^-1), A = n K(Z, Z) + K(Z, X) K(X, Z). One draw of v is one draw of the
+complete function, which returns to the mean of the outputs far from all examples.
 """
 
 from dataclasses import dataclass
@@ -14,19 +14,25 @@ from scipy.linalg import cho_solve, solve_triangular
 from scipy.spatial.distance import cdist
 
 from ..progress import Progress, unwatched
-from .stepwise_process import JITTER, Hyperparameters, N, kernel_of, learn_hyperparameters
+from .stepwise_process import (
+    JITTER,
+    N_CHANNELS,
+    Hyperparameters,
+    compute_kernels,
+    learn_hyperparameters,
+)
 
 Array = NDArray[np.float64]
 Indices = NDArray[np.int64]
 
 N_INDUCING = 150
 N_LEARNING = 120
-"""Examples that hyper-parameters are learned on."""
-TINY = 1e-6
-EXTRA = (0.0, 1e-12, 1e-10, 1e-8)
-"""Parts of the mean of a diagonal that are added to it where they have to be."""
-AT_ONCE = 500
-"""Steps whose kernels are held in memory together."""
+"""Number of examples that hyperparameters are learned from."""
+MIN_STD = 1e-6
+JITTER_STEPS = (0.0, 1e-12, 1e-10, 1e-8)
+"""Fractions of the mean diagonal to add to it, tried in this order."""
+BATCH_SIZE = 500
+"""Number of steps whose kernels are in memory together."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -36,10 +42,10 @@ class ProcessStack:
     Attributes
     ----------
     columns : shape (n_triples, n_features)
-        Which features each sees; -1 is none.
+        Feature columns of each triple; -1 is none.
     center, scale : shape (n_triples, n_features)
     middle, spread : shape (n_triples, 3)
-        Of outputs.
+        Mean and standard deviation of outputs.
     points : shape (n_triples, n_inducing, n_features)
     lengths, biases : shape (n_triples, 3)
     weights, mixing : shape (n_triples, 3, 3)
@@ -48,9 +54,9 @@ class ProcessStack:
         Variance of channels.
     mean : shape (n_triples, 3, n_inducing)
         Of v.
-    root : shape (n_triples, 3, n_inducing, n_inducing)
-        With R R^T the covariance of v.
-    known : shape (n_triples, 3, n_inducing, n_inducing)
+    posterior_factor : shape (n_triples, 3, n_inducing, n_inducing)
+        R, with R R^T the covariance of v.
+    inducing_inverse : shape (n_triples, 3, n_inducing, n_inducing)
         K(Z, Z)^-1.
     """
 
@@ -66,8 +72,8 @@ class ProcessStack:
     mixing: Array
     noises: Array
     mean: Array
-    root: Array
-    known: Array
+    posterior_factor: Array
+    inducing_inverse: Array
 
     def kernels(self, features: Array) -> Array:
         """Return K(x, Z) of all channels, shape (n_triples, 3, n, n_inducing).
@@ -76,51 +82,55 @@ class ProcessStack:
         ----------
         features : shape (n, n_all_features)
         """
-        seen = self._scaled(features)
-        far = (seen**2).sum(axis=-1)[..., None] + (self.points**2).sum(axis=-1)[:, None]
-        far -= 2.0 * seen @ self.points.transpose(0, 2, 1)
-        np.maximum(far, 0.0, out=far)
-        each = np.exp(far[:, None] * (-0.5 / self.lengths**2)[..., None, None])
-        each += self.biases[..., None, None]
-        if (self.weights == np.eye(N)).all():
-            return np.asarray(each)
-        return np.asarray(np.einsum("gcp,gpnm->gcnm", self.weights, each))
+        scaled = self._scale_features(features)
+        squared_distances = (scaled**2).sum(axis=-1)[..., None] + (self.points**2).sum(axis=-1)[
+            :, None
+        ]
+        squared_distances -= 2.0 * scaled @ self.points.transpose(0, 2, 1)
+        np.maximum(squared_distances, 0.0, out=squared_distances)
+        kernels = np.exp(squared_distances[:, None] * (-0.5 / self.lengths**2)[..., None, None])
+        kernels += self.biases[..., None, None]
+        if (self.weights == np.eye(N_CHANNELS)).all():
+            return np.asarray(kernels)
+        return np.asarray(np.einsum("gcp,gpnm->gcnm", self.weights, kernels))
 
-    def _scaled(self, features: Array) -> Array:
-        """Return what each triple sees, shape (n_triples, n, n_features)."""
-        seen = np.where(self.columns >= 0, features[:, self.columns], 0.0).transpose(1, 0, 2)
-        return np.asarray((seen - self.center[:, None]) * self.scale[:, None])
+    def _scale_features(self, features: Array) -> Array:
+        """Return the scaled features of each triple, shape (n_triples, n, n_features)."""
+        used = np.where(self.columns >= 0, features[:, self.columns], 0.0).transpose(1, 0, 2)
+        return np.asarray((used - self.center[:, None]) * self.scale[:, None])
 
     def outputs(self, channels: Array) -> Array:
-        """Return outputs, shape (n, n_triples, 3), of channels, (n_triples, 3, n)."""
+        """Return outputs, shape (n, n_triples, 3), from channels, (n_triples, 3, n)."""
         mixed = np.matmul(self.mixing, channels).transpose(2, 0, 1)
         return np.asarray(mixed * self.spread + self.middle)
 
-    def expected(self, features: Array) -> Array:
-        """Return the mean of the outputs, shape (n, n_triples, 3)."""
+    def predict(self, features: Array) -> Array:
+        """Return the predictive mean of the outputs, shape (n, n_triples, 3)."""
         parts = []
-        for start in range(0, len(features), AT_ONCE):
-            kernels = self.kernels(features[start : start + AT_ONCE])
+        for start in range(0, len(features), BATCH_SIZE):
+            kernels = self.kernels(features[start : start + BATCH_SIZE])
             parts.append(self.outputs(np.einsum("gcnm,gcm->gcn", kernels, self.mean)))
         return np.concatenate(parts)
 
-    def sampled(self, features: Array, rng: np.random.Generator) -> Array:
-        """Return outputs drawn from the predictive distribution, shape (n, n_triples, 3)."""
+    def draw_outputs(self, features: Array, rng: np.random.Generator) -> Array:
+        """Draw outputs from the predictive distribution, shape (n, n_triples, 3)."""
         kernels = self.kernels(features)
         prior = np.einsum("gcp,gp->gc", self.weights, 1.0 + self.biases)[..., None]
-        open_part = (np.matmul(kernels, self.known) * kernels).sum(axis=-1)
-        told = (np.matmul(kernels, self.root) ** 2).sum(axis=-1)
-        variance = np.maximum(prior - open_part, 0.0) + told + self.noises[..., None]
+        explained = (np.matmul(kernels, self.inducing_inverse) * kernels).sum(axis=-1)
+        posterior = (np.matmul(kernels, self.posterior_factor) ** 2).sum(axis=-1)
+        variance = np.maximum(prior - explained, 0.0) + posterior + self.noises[..., None]
         mean = np.einsum("gcnm,gcm->gcn", kernels, self.mean)
         return self.outputs(mean + np.sqrt(variance) * rng.normal(size=mean.shape))
 
     def draw_functions(self, n: int, rng: np.random.Generator) -> Array:
-        """Return v of n functions, shape (n_triples, 3, n, n_inducing)."""
+        """Draw v of n functions, shape (n_triples, 3, n, n_inducing)."""
         white = rng.normal(size=(*self.mean.shape[:2], n, self.mean.shape[2]))
-        return np.asarray(self.mean[:, :, None] + np.matmul(white, self.root.swapaxes(-1, -2)))
+        return np.asarray(
+            self.mean[:, :, None] + np.matmul(white, self.posterior_factor.swapaxes(-1, -2))
+        )
 
-    def followed(self, features: Array, functions: Array) -> Array:
-        """Return outputs by functions drawn, one for each row, shape (n, n_triples, 3)."""
+    def evaluate_functions(self, features: Array, functions: Array) -> Array:
+        """Return outputs of drawn functions, one per row, shape (n, n_triples, 3)."""
         return self.outputs((self.kernels(features) * functions).sum(axis=-1))
 
 
@@ -130,10 +140,10 @@ def learn_stack(
     columns: Indices,
     weights: Array,
     published: bool,
-    found: list[Hyperparameters] | None = None,
+    hyperparameters: list[Hyperparameters] | None = None,
     progress: Progress = unwatched,
 ) -> tuple[ProcessStack, list[Hyperparameters]]:
-    """Learn the processes of all triples, or only fit them to hyper-parameters known before.
+    """Learn the processes of all triples, or only fit them to known hyperparameters.
 
     Parameters
     ----------
@@ -141,66 +151,83 @@ def learn_stack(
     outputs : shape (n, n_triples, 3)
     columns : shape (n_triples, n_features)
     weights : shape (n_all_features,)
-        How much each feature counts once it is scaled.
+        Weight of each scaled feature.
     published : bool
-    found : list of Hyperparameters, optional
+    hyperparameters : list of Hyperparameters, optional
     progress : Progress
     """
     rng = np.random.default_rng(0)
     order = rng.permutation(len(features))
     inducing, learning = np.sort(order[:N_INDUCING]), np.sort(order[:N_LEARNING])
-    spread = np.maximum(features.std(axis=0), TINY)
+    spread = np.maximum(features.std(axis=0), MIN_STD)
     parts, learned = [], []
-    for place, row in enumerate(columns):
-        progress(place / len(columns), "Learning joints")
-        there = row >= 0
-        center = np.where(there, features.mean(axis=0)[row], 0.0)
-        scale = np.where(there, (weights / spread)[row], 0.0)
-        seen = (np.where(there, features[:, row], 0.0) - center) * scale
-        middle = outputs[:, place].mean(axis=0)
-        largest = max(float(outputs[:, place].std(axis=0).max()), TINY)
-        wanted = (outputs[:, place] - middle) / largest
-        known = found[place] if found else learn_hyperparameters(
-            seen[learning], wanted[learning], published
+    for index, row in enumerate(columns):
+        progress(index / len(columns), "Learning joints")
+        is_used = row >= 0
+        center = np.where(is_used, features.mean(axis=0)[row], 0.0)
+        scale = np.where(is_used, (weights / spread)[row], 0.0)
+        scaled = (np.where(is_used, features[:, row], 0.0) - center) * scale
+        middle = outputs[:, index].mean(axis=0)
+        largest = max(float(outputs[:, index].std(axis=0).max()), MIN_STD)
+        targets = (outputs[:, index] - middle) / largest
+        parameters = hyperparameters[index] if hyperparameters else learn_hyperparameters(
+            scaled[learning], targets[learning], published
         )  # fmt: skip
-        learned.append(known)
-        fitted = _fitted(seen, wanted, seen[inducing], known, published)
-        parts.append((row, center, scale, middle, np.full(N, largest), seen[inducing], *fitted))
+        learned.append(parameters)
+        fitted = _fit_processes(scaled, targets, scaled[inducing], parameters, published)
+        parts.append((
+            row,
+            center,
+            scale,
+            middle,
+            np.full(N_CHANNELS, largest),
+            scaled[inducing],
+            *fitted,
+        ))
     return ProcessStack(*(np.stack(part) for part in zip(*parts, strict=True))), learned
 
 
-def _cholesky(matrix: Array) -> Array:
+def _robust_cholesky(matrix: Array) -> Array:
     """Return the lower factor of a matrix that rounding may have made indefinite.
 
-    Of clips in which the same frames come again and again, the kernels' rows are the same too.
+    Clips that repeat the same frames produce kernels with repeated rows.
     """
-    usual = np.trace(matrix) / len(matrix)
-    for part in EXTRA:
+    mean_diagonal = np.trace(matrix) / len(matrix)
+    for fraction in JITTER_STEPS:
         try:
-            return np.linalg.cholesky(matrix + part * usual * np.eye(len(matrix)))
+            return np.linalg.cholesky(matrix + fraction * mean_diagonal * np.eye(len(matrix)))
         except np.linalg.LinAlgError:
             continue
-    return np.linalg.cholesky(matrix + JITTER * usual * np.eye(len(matrix)))
+    return np.linalg.cholesky(matrix + JITTER * mean_diagonal * np.eye(len(matrix)))
 
 
-def _fitted(
-    seen: Array, wanted: Array, points: Array, found: Hyperparameters, published: bool
+def _fit_processes(
+    scaled: Array,
+    targets: Array,
+    points: Array,
+    hyperparameters: Hyperparameters,
+    published: bool,
 ) -> tuple[Array, ...]:
-    """Return lengths, biases, weights, mixing, noises, mean, root and K(Z, Z)^-1."""
-    weights, mixing = found.weights(published), found.from_channels(published)
-    noises = weights @ found.noises + JITTER
-    channels = np.linalg.solve(mixing, wanted.T)
-    among = kernel_of(cdist(points, points, "sqeuclidean"), found, weights)
-    across = kernel_of(cdist(points, seen, "sqeuclidean"), found, weights)
-    means, roots, knowns = [], [], []
+    """Return lengths, biases, weights, mixing, noises, mean, R and K(Z, Z)^-1."""
+    weights, mixing = (
+        hyperparameters.weights(published),
+        hyperparameters.from_channels(published),
+    )
+    noises = weights @ hyperparameters.noises + JITTER
+    channels = np.linalg.solve(mixing, targets.T)
+    among = compute_kernels(cdist(points, points, "sqeuclidean"), hyperparameters, weights)
+    across = compute_kernels(cdist(points, scaled, "sqeuclidean"), hyperparameters, weights)
+    means, roots, inverses = [], [], []
     eye = np.eye(len(points))
-    for own, other, noise, told in zip(among, across, noises, channels, strict=True):
-        steady = own + JITTER * np.trace(own) / len(own) * eye
-        lower = _cholesky(noise * steady + other @ other.T)
-        means.append(cho_solve((lower, True), other @ told))
+    for own_kernel, cross_kernel, noise, targets_of_channel in zip(
+        among, across, noises, channels, strict=True
+    ):
+        regularized = own_kernel + JITTER * np.trace(own_kernel) / len(own_kernel) * eye
+        lower = _robust_cholesky(noise * regularized + cross_kernel @ cross_kernel.T)
+        means.append(cho_solve((lower, True), cross_kernel @ targets_of_channel))
         roots.append(np.sqrt(noise) * solve_triangular(lower, eye, lower=True).T)
-        knowns.append(np.linalg.inv(steady))
+        inverses.append(np.linalg.inv(regularized))
     return (
-        found.lengths, found.biases, weights, mixing, noises,
-        np.stack(means), np.stack(roots), np.stack(knowns),
+        hyperparameters.lengths, hyperparameters.biases, weights, mixing, noises,
+        np.stack(means), np.stack(roots), np.stack(inverses),
     )  # fmt: skip

@@ -1,4 +1,4 @@
-"""New motions like the examples: different in space and in time, and none like another."""
+"""Synthesize new motions like the examples, different in pose and timing."""
 
 from dataclasses import replace
 from typing import NamedTuple
@@ -9,46 +9,46 @@ from numpy.typing import NDArray
 from ..errors import InvalidMotionError
 from ..motion import Motion
 from ..progress import Progress, unwatched
-from .footing import contacts_from
+from .contact_state import contacts_from_state
 from .loops import close_loop, is_closed
-from .mixtures import draw_shares, mixed_deviations
+from .mixtures import draw_mixing_weights, mix_deviations
 from .motion_curves import MotionCurves, motion_from_curves
-from .own_time import in_own_time
-from .partitions import FEET, partition_joints
-from .soft_limits import softly_within
-from .stepwise_draw import stepwise_deviations
+from .partitions import LEG_ROWS, partition_joints
+from .soft_clamp import clamp_softly
+from .stepwise_draw import draw_stepwise_deviations
+from .time_warp import apply_time_warp
 from .variation_model import VariationModel
-from .vary_settings import USUAL, Method, VarySettings
+from .vary_settings import DEFAULT_SETTINGS, Method, VarySettings
 
 Array = NDArray[np.float64]
 
-MARGIN = 0.15
-"""Part of a channel's range in the examples by which a variant may go beyond it."""
-PIN = 0.4
-"""Seconds over which a variant leaves a pinned pose and comes to it."""
-BATCH = 20_000_000
-"""Numbers in the curves of all variants that are drawn at once."""
+RANGE_MARGIN = 0.15
+"""Fraction of a channel's range in the examples by which a variant may exceed it."""
+PIN_S = 0.4
+"""Seconds over which a variant leaves or reaches a pinned pose."""
+MAX_BATCH_VALUES = 20_000_000
+"""Maximum count of values in the curves of the variants that are drawn together."""
 
 
 class Variant(NamedTuple):
-    """A new motion, and when its feet should stand."""
+    """A new motion, and the contacts of its feet."""
 
     motion: Motion
     contacts: NDArray[np.bool_] | None
-    """Left and right, shape (n_frames, 2), as in the examples that were mixed there; None for
-    rigs without feet, and as published, where no examples are mixed."""
+    """Left and right, shape (n_frames, 2), as in the mixed examples; None for rigs without feet
+    and for the published method, which mixes no examples."""
     loops: bool = False
-    """Whether it ends as it begins, because the examples do."""
+    """Whether the variant is cyclic, because the examples are."""
 
 
 def synthesize(
     model: VariationModel,
     n_variants: int,
     *,
-    settings: VarySettings = USUAL,
+    settings: VarySettings = DEFAULT_SETTINGS,
     progress: Progress = unwatched,
 ) -> tuple[Motion, ...]:
-    """Draw variants from what was learned of the examples; see `draw_variants`.
+    """Draw variants from a model of the examples; see `draw_variants`.
 
     Returns
     -------
@@ -63,15 +63,14 @@ def draw_variants(
     model: VariationModel,
     n_variants: int,
     *,
-    settings: VarySettings = USUAL,
+    settings: VarySettings = DEFAULT_SETTINGS,
     progress: Progress = unwatched,
 ) -> tuple[Variant, ...]:
-    """Draw variants from what was learned of the examples, and when their feet should stand.
+    """Draw variants from a model of the examples, with the contacts of their feet.
 
-    A variant deviates from the mean of the examples, in common time, by curves that are drawn
-    as `settings.method` says: as a mixture of the examples' deviations (`mixtures`), or step by
-    step (`stepwise_draw`). How fast the common time passes is drawn likewise. Variants are
-    drawn many at once.
+    A variant deviates from the mean of the examples, in common time. `settings.method` decides
+    how its curves are drawn: as a mixture of the examples' deviations (`mixtures`), or frame by
+    frame (`stepwise_draw`). The time-warp rate is drawn likewise.
 
     Parameters
     ----------
@@ -83,142 +82,160 @@ def draw_variants(
     Returns
     -------
     tuple of Variant
-        The same for the same seed. They begin where the examples' first frame of the base
-        does, above the origin and facing -Y.
+        The same for the same seed. They start at the height of the base example's first frame,
+        above the origin and facing -Y.
 
     Raises
     ------
     InvalidMotionError
-        No variants are asked for, there is no such example, or the model was learned for
-        another method.
+        Fewer than one variant is requested, there is no such example, or the model was learned
+        for another method.
     """
     if n_variants < 1:
-        raise InvalidMotionError(f"{n_variants} variants cannot be made; ask for at least one.")
+        raise InvalidMotionError(f"{n_variants} variants cannot be made; request at least one.")
     if settings.base > model.n_examples:
         raise InvalidMotionError(
             f"There is no example {settings.base}; the model has {model.n_examples}."
         )
     stepwise = model.stepwise
-    wanted = settings.method is Method.PUBLISHED
+    needs_published = settings.method is Method.PUBLISHED
     if settings.method is not Method.MIXTURE and (
-        stepwise is None or stepwise.published != wanted
+        stepwise is None or stepwise.published != needs_published
     ):
         raise InvalidMotionError(
             f"The model was not learned for the method {settings.method.value}; learn it with"
             " the same settings."
         )
     rng = np.random.default_rng(settings.seed)
-    given = _given(model, settings)
-    at_once = max(BATCH // (model.n_moments * (model.skeleton.n_joints + 2) * 3), 1)
+    inputs = _prepare_inputs(model, settings)
+    batch_size = max(
+        MAX_BATCH_VALUES // (model.n_samples * (model.skeleton.n_joints + 2) * 3), 1
+    )
     variants: list[Variant] = []
     while len(variants) < n_variants:
-        n = min(at_once, n_variants - len(variants))
-        for drawn in zip(*_deviations(model, settings.method, n, rng), strict=True):
-            variants.append(_variant(model, settings, given, drawn))
+        n = min(batch_size, n_variants - len(variants))
+        for drawn in zip(*_draw_deviations(model, settings.method, n, rng), strict=True):
+            variants.append(_build_variant(model, settings, inputs, drawn))
             progress(len(variants) / n_variants, f"Variant {len(variants)}")
     return tuple(variants)
 
 
-def _deviations(
+def _draw_deviations(
     model: VariationModel, method: Method, n_variants: int, rng: np.random.Generator
 ) -> tuple[Array, Array, Array, Array]:
-    """Return by how much n variants deviate from the mean: joints, root, haste, footing."""
-    shares = draw_shares(model, n_variants, rng)
-    joints, root, haste, footing = mixed_deviations(model, shares)
+    """Return deviations of n variants: joints, root, log warp rates and contact state."""
+    weights = draw_mixing_weights(model, n_variants, rng)
+    joints, root, log_warp_rates, contact_state = mix_deviations(model, weights)
     if method is not Method.MIXTURE and model.stepwise:
-        own = stepwise_deviations(model.stepwise, shares, model.skeleton.n_joints, rng)
+        deviations = draw_stepwise_deviations(
+            model.stepwise, weights, model.skeleton.n_joints, rng
+        )
         if model.stepwise.published:
-            return *own, haste, np.full_like(footing, np.nan)
-        return joints + own[0], root + own[1], haste, footing
-    return joints, root, haste, footing
+            return *deviations, log_warp_rates, np.full_like(contact_state, np.nan)
+        return joints + deviations[0], root + deviations[1], log_warp_rates, contact_state
+    return joints, root, log_warp_rates, contact_state
 
 
-class _Range(NamedTuple):
-    """What examples do: the one that is varied, their mean, and how far they go."""
+class _ExampleRange(NamedTuple):
+    """Curves of the base example, the mean of all, and the range of each channel."""
 
-    own: Array
-    middle: Array
+    base_curve: Array
+    mean: Array
     low: Array
     high: Array
 
 
-class _Given(NamedTuple):
-    """What all variants have in common."""
+class _SharedInputs(NamedTuple):
+    """Inputs that all variants share."""
 
-    joints: _Range
-    root: _Range
-    haste: _Range
-    footing: _Range
+    joints: _ExampleRange
+    root: _ExampleRange
+    log_warp_rates: _ExampleRange
+    contact_state: _ExampleRange
     by_joint: Array
     """Amount of each joint, shape (n_joints, 1)."""
-    pinned: Array
+    pin_weights: Array
 
 
-def _given(model: VariationModel, settings: VarySettings) -> _Given:
-    base = settings.base - 1 if settings.base else model.centre
+def _prepare_inputs(model: VariationModel, settings: VarySettings) -> _SharedInputs:
+    base = settings.base - 1 if settings.base else model.center
     by_joint = (settings.amounts()[:, None] * partition_joints(model.skeleton)).sum(axis=0)
-    return _Given(
-        joints=_range(model.joints, base),
-        root=_range(model.root, base),
-        haste=_range(model.haste, base),
-        footing=_range(model.footing, base),
+    return _SharedInputs(
+        joints=_range_from_curves(model.joints, base),
+        root=_range_from_curves(model.root, base),
+        log_warp_rates=_range_from_curves(model.log_warp_rates, base),
+        contact_state=_range_from_curves(model.contact_state, base),
         by_joint=by_joint[:, None],
-        pinned=_pinned(model, settings),
+        pin_weights=_pin_weights(model, settings),
     )
 
 
-def _range(curves: Array, base: int) -> _Range:
+def _range_from_curves(curves: Array, base: int) -> _ExampleRange:
     low, high = curves.min(axis=(0, 1)), curves.max(axis=(0, 1))
-    return _Range(curves[base], curves.mean(axis=0), low, high)
+    return _ExampleRange(curves[base], curves.mean(axis=0), low, high)
 
 
-def _variant(
-    model: VariationModel, settings: VarySettings, given: _Given, drawn: tuple[Array, ...]
+def _build_variant(
+    model: VariationModel,
+    settings: VarySettings,
+    inputs: _SharedInputs,
+    drawn: tuple[Array, ...],
 ) -> Variant:
-    """Return one variant that deviates so from the mean: joints, root, haste, footing."""
-    amounts, pinned = settings.amounts(), given.pinned
-    known = model.skeleton, model.usual, model.frame_rate, np.zeros(3)
-    joints = _free(given.joints, given.by_joint, drawn[0], pinned)
-    root = _free(given.root, amounts[[0, 3, 4]].mean(), drawn[1], pinned)
-    hasty = np.asarray(settings.amount * settings.timing)
-    haste = _free(given.haste, hasty, drawn[2], np.ones(len(pinned)))
-    footing = _free(given.footing, amounts[FEET], drawn[3], pinned)
-    course = in_own_time(
-        MotionCurves(root, joints, footing, model.carrier), np.exp(haste) * settings.length
+    """Return one variant from its deviations: joints, root, log warp rates, contact state."""
+    amounts, pin_weights = settings.amounts(), inputs.pin_weights
+    rig = model.skeleton, model.reference_rotations, model.frame_rate, np.zeros(3)
+    joints = _apply_deviations(inputs.joints, inputs.by_joint, drawn[0], pin_weights)
+    root = _apply_deviations(inputs.root, amounts[[0, 3, 4]].mean(), drawn[1], pin_weights)
+    timing = np.asarray(settings.amount * settings.timing)
+    log_warp_rates = _apply_deviations(
+        inputs.log_warp_rates, timing, drawn[2], np.ones(len(pin_weights))
+    )
+    contact_state = _apply_deviations(
+        inputs.contact_state, amounts[LEG_ROWS], drawn[3], pin_weights
+    )
+    curves = apply_time_warp(
+        MotionCurves(root, joints, contact_state, model.moving_references),
+        np.exp(log_warp_rates) * settings.length,
     )
     if settings.method is Method.PUBLISHED:
-        return Variant(motion_from_curves(course, *known), None)
+        return Variant(motion_from_curves(curves, *rig), None)
     if model.loops:
         may_change = np.array([not settings.pin_start, not settings.pin_end], dtype=np.float64)
-        parts = np.minimum(given.by_joint[:, 0], 1.0)
-        course = close_loop(course, model.frame_rate, parts, may_change)
-        course = replace(course, joints=_within_range(given.joints, course.joints))
-    contacts = None if course.footing is None else contacts_from(course.footing)
+        fractions = np.minimum(inputs.by_joint[:, 0], 1.0)
+        curves = close_loop(curves, model.frame_rate, fractions, may_change)
+        curves = replace(curves, joints=_clamp_to_range(inputs.joints, curves.joints))
+    contacts = (
+        None if curves.contact_state is None else contacts_from_state(curves.contact_state)
+    )
     return Variant(
-        motion_from_curves(course, *known), contacts, model.loops and is_closed(course)
+        motion_from_curves(curves, *rig), contacts, model.loops and is_closed(curves)
     )
 
 
-def _free(seen: _Range, amount: Array, beside: Array, pinned: Array) -> Array:
-    """Return curves, (n_moments, ...), that deviate so far as an amount and pins allow.
+def _apply_deviations(
+    examples: _ExampleRange, amount: Array, deviations: Array, pin_weights: Array
+) -> Array:
+    """Return curves, (n_samples, ...), that deviate as far as the amount and the pins allow.
 
-    Within the examples' range and a little beyond; the base's curve where nothing may vary.
+    They stay within the examples' range and a margin. Amount 0 gives the base example's curves.
     """
-    centre = seen.own + np.minimum(amount, 1.0) * (seen.middle - seen.own)
-    free = _within_range(seen, centre + amount * beside)
-    weight = pinned.reshape(-1, *(1,) * (seen.own.ndim - 1))
-    return np.asarray(seen.own + weight * (free - seen.own))
+    centered = examples.base_curve + np.minimum(amount, 1.0) * (
+        examples.mean - examples.base_curve
+    )
+    varied = _clamp_to_range(examples, centered + amount * deviations)
+    weight = pin_weights.reshape(-1, *(1,) * (examples.base_curve.ndim - 1))
+    return np.asarray(examples.base_curve + weight * (varied - examples.base_curve))
 
 
-def _within_range(seen: _Range, curves: Array) -> Array:
-    beyond = MARGIN * (seen.high - seen.low)
-    return softly_within(curves, seen.low - beyond, seen.high + beyond, beyond)
+def _clamp_to_range(examples: _ExampleRange, curves: Array) -> Array:
+    margin = RANGE_MARGIN * (examples.high - examples.low)
+    return clamp_softly(curves, examples.low - margin, examples.high + margin, margin)
 
 
-def _pinned(model: VariationModel, settings: VarySettings) -> Array:
-    """Return how free each moment is, shape (n_moments,), 0 where a pose is pinned."""
-    free = np.ones(model.n_moments)
-    ramp = np.arange(model.n_moments) / max(PIN * model.frame_rate, 1.0)
+def _pin_weights(model: VariationModel, settings: VarySettings) -> Array:
+    """Return the weight of each sample's deviation, shape (n_samples,): 0 at a pinned pose."""
+    free = np.ones(model.n_samples)
+    ramp = np.arange(model.n_samples) / max(PIN_S * model.frame_rate, 1.0)
     ease = np.clip(ramp, 0.0, 1.0) ** 2 * (3.0 - 2.0 * np.clip(ramp, 0.0, 1.0))
     if settings.pin_start:
         free = np.minimum(free, ease)

@@ -1,4 +1,4 @@
-"""What a few examples of one behaviour tell of all the ways in which it is done."""
+"""Hold what a few examples of one behavior show about its variation."""
 
 from dataclasses import dataclass
 from pathlib import Path
@@ -12,12 +12,12 @@ from ..npz_members import integers, numbers, words
 from .mixing_kernel import MixingKernel
 from .motion_curves import N_ROOT_CHANNELS
 from .stepwise_model import StepwiseModel, learn_stepwise
-from .stepwise_process import PACKED, Hyperparameters
+from .stepwise_process import N_PACKED, Hyperparameters
 
 Array = NDArray[np.float64]
 
-SLOWEST, FASTEST = 1e-3, 1e6
-"""Hertz."""
+MIN_FRAME_RATE_HZ, MAX_FRAME_RATE_HZ = 1e-3, 1e6
+"""Bounds of a plausible frame rate."""
 LAYOUT = ArchiveLayout(
     "a variation model",
     2,
@@ -33,7 +33,7 @@ LAYOUT = ArchiveLayout(
         "carrier": numbers("moments", "joints", 4, or_empty=True),
         "warning": words(),
         "numbers": numbers(5),
-        "stepwise": numbers("stacks", "triples", PACKED, or_empty=True),
+        "stepwise": numbers("stacks", "triples", N_PACKED, or_empty=True),
     },
     holds="a damaged variation model",
     remedy="Learn it again.",
@@ -42,109 +42,117 @@ LAYOUT = ArchiveLayout(
 
 @dataclass(frozen=True, eq=False)
 class VariationModel:
-    """Examples in common time, and how their shares in a mixture may change.
+    """Examples in common time, and the kernel of their weights in a mixture.
 
     Attributes
     ----------
     skeleton : Skeleton
-        That of the first example.
+        Of the first example.
     frame_rate : float, hertz
-    usual : shape (n_joints, 4)
-        About which rotation each joint's are told.
-    root : shape (n_examples, n_moments, 4)
-        The ways of the root from each moment to the next (`Course`).
-    joints : shape (n_examples, n_moments, n_joints, 3), radians
-    haste : shape (n_examples, n_moments)
-        Logarithm of how many frames a moment lasts.
-    footing : shape (n_examples, n_moments, 2), seconds
-        By how much feet stand (`footing_of`); NaN where the rig has no feet.
-    carrier : shape (n_moments, n_joints, 4), or None
-        What comes before `usual`: the centre's rotation, of joints that turn far.
+    reference_rotations : shape (n_joints, 4)
+        Rotation of each joint that its rotation vectors are relative to.
+    root : shape (n_examples, n_samples, 4)
+        Displacements of the root since the sample before, and height (`MotionCurves`).
+    joints : shape (n_examples, n_samples, n_joints, 3), radians
+    log_warp_rates : shape (n_examples, n_samples)
+        Logarithm of the time-warp rate: frames of the example per sample.
+    contact_state : shape (n_examples, n_samples, 2), seconds
+        Signed time to the nearest contact change (`measure_contact_state`); NaN without feet.
+    moving_references : shape (n_samples, n_joints, 4), or None
+        Rotations before the reference rotations: the center's, for wide-ranging joints.
     kernel : MixingKernel
-    centre : int
-        The example that is nearest to all others.
+    center : int
+        The example nearest to all others.
     loops : bool
-        Whether the examples end as they begin.
+        Whether the examples are cyclic.
     warning : str
-        What seems wrong with the examples; empty if nothing does.
+        Suspected errors in the examples; empty if there are none.
     stepwise : StepwiseModel or None
-        For the methods that draw frame after frame.
+        For the methods that draw frame by frame.
     """
 
     skeleton: Skeleton
     frame_rate: float
-    usual: Array
+    reference_rotations: Array
     root: Array
     joints: Array
-    haste: Array
-    footing: Array
-    carrier: Array | None
+    log_warp_rates: Array
+    contact_state: Array
+    moving_references: Array | None
     kernel: MixingKernel
-    centre: int
+    center: int
     loops: bool
     warning: str = ""
     stepwise: StepwiseModel | None = None
 
     @property
     def n_examples(self) -> int:
-        """How many clips it was learned of."""
+        """Number of clips the model was learned from."""
         return len(self.root)
 
     @property
-    def n_moments(self) -> int:
-        """Length of the common time."""
+    def n_samples(self) -> int:
+        """Number of samples of the common time."""
         return self.root.shape[1]
 
     def save(self, path: Path | str) -> None:
         """Write the model to a file that `load_variation_model` reads."""
+        moving = self.moving_references
         LAYOUT.write(path, {
             "names": np.array(self.skeleton.names), "parents": np.array(self.skeleton.parents),
-            "offsets": self.skeleton.offsets, "usual": self.usual, "root": self.root,
-            "joints": self.joints, "haste": self.haste, "footing": self.footing,
-            "carrier": np.zeros(0) if self.carrier is None else self.carrier,
+            "offsets": self.skeleton.offsets,
+            "usual": self.reference_rotations, "root": self.root,
+            "joints": self.joints, "haste": self.log_warp_rates, "footing": self.contact_state,
+            "carrier": np.zeros(0) if moving is None else moving,
             "warning": np.array(self.warning),
             "numbers": np.array([
-                self.frame_rate, self.kernel.scale, self.kernel.bias, self.centre, self.loops,
+                self.frame_rate, self.kernel.scale, self.kernel.bias, self.center, self.loops,
             ]),
-            "stepwise": _packed(self.stepwise),
+            "stepwise": _pack_hyperparameters(self.stepwise),
         })  # fmt: skip
 
 
 def load_variation_model(path: Path | str) -> VariationModel:
-    """Read a model that was saved; nothing in the file is executed.
+    """Read a saved model; nothing in the file is executed.
 
     Raises
     ------
     InvalidFileError
-        There is no such file, it holds something else, or does not fit itself.
+        There is no such file, it holds something else, or its arrays are inconsistent.
     """
     arrays = LAYOUT.read(path)
-    rate, scale, bias, centre, loops = arrays["numbers"].tolist()
-    n_examples, n_moments = arrays["haste"].shape
-    in_range = 0 <= centre < n_examples and scale > 0.0 and 0.0 <= bias <= 1.0
-    if not (n_moments and in_range and SLOWEST <= rate <= FASTEST):
+    frame_rate, scale, bias, center, loops = arrays["numbers"].tolist()
+    n_examples, n_samples = arrays["haste"].shape
+    in_range = 0 <= center < n_examples and scale > 0.0 and 0.0 <= bias <= 1.0
+    if not (n_samples and in_range and MIN_FRAME_RATE_HZ <= frame_rate <= MAX_FRAME_RATE_HZ):
         raise LAYOUT.damaged(path, "its numbers are out of range")
     names, parents = arrays["names"].tolist(), arrays["parents"].tolist()
     try:
         skeleton = Skeleton(tuple(names), tuple(parents), arrays["offsets"])
-        found = _unpacked(arrays["stepwise"])
-        learned = skeleton, arrays["joints"], arrays["root"], rate
-        stepwise = learn_stepwise(*learned, len(found) > 1, found) if found else None
+        hyperparameters = _unpack_hyperparameters(arrays["stepwise"])
+        data = skeleton, arrays["joints"], arrays["root"], frame_rate
+        stepwise = (
+            learn_stepwise(*data, len(hyperparameters) > 1, hyperparameters)
+            if hyperparameters
+            else None
+        )
     except (ValueError, IndexError) as error:
         raise LAYOUT.damaged(path, str(error).removesuffix(".")) from None
-    carrier = arrays["carrier"] if arrays["carrier"].size else None
+    moving_references = arrays["carrier"] if arrays["carrier"].size else None
     return VariationModel(
-        skeleton, rate, arrays["usual"], arrays["root"], arrays["joints"], arrays["haste"],
-        arrays["footing"], carrier, MixingKernel(scale, bias), int(centre), bool(loops),
-        str(arrays["warning"]), stepwise,
+        skeleton, frame_rate, arrays["usual"], arrays["root"], arrays["joints"],
+        arrays["haste"], arrays["footing"], moving_references, MixingKernel(scale, bias),
+        int(center), bool(loops), str(arrays["warning"]), stepwise,
     )  # fmt: skip
 
 
-def _packed(stepwise: StepwiseModel | None) -> Array:
-    """Return all hyper-parameters, shape (n_stacks, n_triples, 18); the rest follows."""
+def _pack_hyperparameters(stepwise: StepwiseModel | None) -> Array:
+    """Return all hyperparameters, shape (n_stacks, n_triples, 18); all else follows."""
     stacks = stepwise.hyperparameters if stepwise else ()
-    return np.array([[one.packed() for one in stack] for stack in stacks])
+    return np.array([[each.to_vector() for each in stack] for stack in stacks])
 
 
-def _unpacked(packed: Array) -> tuple[tuple[Hyperparameters, ...], ...]:
-    return tuple(tuple(Hyperparameters.unpacked(one) for one in stack) for stack in packed)
+def _unpack_hyperparameters(to_vector: Array) -> tuple[tuple[Hyperparameters, ...], ...]:
+    return tuple(
+        tuple(Hyperparameters.from_vector(each) for each in stack) for stack in to_vector
+    )

@@ -1,4 +1,4 @@
-"""What an animator may choose about variants."""
+"""Settings of Vary."""
 
 from dataclasses import dataclass
 from enum import Enum
@@ -13,63 +13,65 @@ Array = NDArray[np.float64]
 
 
 class Method(Enum):
-    """How variants are drawn."""
+    """Method that draws variants."""
 
     MIXTURE = "mixture"
-    """Examples in common time are mixed; shares are Gaussian processes (`mixtures`)."""
+    """Mix the examples in common time, with Gaussian-process weights (`mixtures`)."""
     COREGIONALISED = "coregionalised"
-    """Frame after frame, with a latent factor model of each joint (`stepwise_draw`)."""
+    """Draw frame by frame from a latent factor model of each joint (`stepwise_draw`)."""
     PUBLISHED = "published"
-    """Frame after frame, as written in [ZH14, chapter 4]."""
+    """Draw frame by frame, as written in [ZH14, chapter 4]."""
 
 
 @dataclass(frozen=True, kw_only=True)
 class VarySettings(Settings):
-    """How strongly and in what variants differ."""
+    """How strongly variants differ, and in which respects."""
 
     method: Method = setting(
-        Method.MIXTURE, "How variants are drawn; mixtures of the examples measured best",
+        Method.MIXTURE, "Method that draws variants; mixtures of the examples measured best",
         advanced=True,
     )  # fmt: skip
     amount: float = setting(
-        1.0, "0 copies an example, 1 varies as much as the examples do, 2 boldly",
+        1.0, "0 copies an example, 1 varies as much as the examples do, 2 more strongly",
         minimum=0.0, maximum=2.0,
     )  # fmt: skip
     timing: float = setting(
-        1.0, "Share of the amount for how fast it goes; 0 keeps the time of the example",
+        1.0, "Factor on the amount for timing; 0 keeps the timing of the example",
         minimum=0.0, maximum=2.0,
     )  # fmt: skip
     trunk: float = setting(
-        1.0, "Share of the amount for trunk and head", minimum=0.0, maximum=2.0
+        1.0, "Factor on the amount for trunk and head", minimum=0.0, maximum=2.0
     )
     left_arm: float = setting(
-        1.0, "Share of the amount for the left arm", minimum=0.0, maximum=2.0
+        1.0, "Factor on the amount for the left arm", minimum=0.0, maximum=2.0
     )
     right_arm: float = setting(
-        1.0, "Share of the amount for the right arm", minimum=0.0, maximum=2.0
+        1.0, "Factor on the amount for the right arm", minimum=0.0, maximum=2.0
     )
     left_leg: float = setting(
-        1.0, "Share of the amount for the left leg", minimum=0.0, maximum=2.0
+        1.0, "Factor on the amount for the left leg", minimum=0.0, maximum=2.0
     )
     right_leg: float = setting(
-        1.0, "Share of the amount for the right leg", minimum=0.0, maximum=2.0
+        1.0, "Factor on the amount for the right leg", minimum=0.0, maximum=2.0
     )
     length: float = setting(
-        1.0, "Length of the variants by that of the examples; 2 is twice as slow",
+        1.0, "Duration of the variants relative to the examples; 2 is twice as slow",
         minimum=0.25, maximum=4.0,
     )  # fmt: skip
-    pin_start: bool = setting(False, "Begin in the pose in which the example begins")
-    pin_end: bool = setting(False, "End in the pose in which the example ends")
+    pin_start: bool = setting(False, "Keep the first pose of the example")
+    pin_end: bool = setting(False, "Keep the last pose of the example")
     base: int = setting(
-        0, "Example that is copied where the amount is less than 1, counted from 1; 0 takes the"
-        " one that is nearest to all others",
+        0, "Number of the example that an amount below 1 approaches, from 1; 0 takes the"
+        " example nearest to all others",
         minimum=0, maximum=10_000, advanced=True,
     )  # fmt: skip
-    seed: int = setting(0, "Another seed makes other variants", minimum=0, maximum=2**31 - 1)
+    seed: int = setting(
+        0, "Random seed; another one makes other variants", minimum=0, maximum=2**31 - 1
+    )
 
     def amounts(self) -> Array:
         """Return the amount of each partition, shape (5,)."""
         return self.amount * np.array([getattr(self, part.name.lower()) for part in Partition])
 
 
-USUAL = VarySettings()
+DEFAULT_SETTINGS = VarySettings()

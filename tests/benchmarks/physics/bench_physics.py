@@ -35,8 +35,8 @@ from solvers.motion import (
 )
 from solvers.physics import Ground, Simulated, SimulateSettings, apply_strength, simulate
 from solvers.physics.body import build_physics_body
+from solvers.physics.body_surface import measure_clearance, measure_foot_slide
 from solvers.physics.feet import add_soles
-from solvers.physics.surface import measure_clearance, measure_foot_slide
 from solvers.physics.target import fill_gaps
 from solvers.recordings import read_recording
 from solvers.samples import CorruptionSettings, corrupt

@@ -6,7 +6,7 @@ from scipy.ndimage import gaussian_filter1d
 
 from solvers.motion import Motion, forward_kinematics
 from solvers.physics.body import PhysicsBody
-from solvers.physics.surface import measure_clearance
+from solvers.physics.body_surface import measure_clearance
 from solvers.rotations.representations import rotate
 
 Array = NDArray[np.float64]

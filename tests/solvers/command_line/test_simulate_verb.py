@@ -26,7 +26,7 @@ def test_writes_a_motion_on_the_ground_and_tells_the_figures(call, sunk, tmp_pat
     figures = json.loads(out)
     assert figures["penetration_before_m"] > 0.09 and figures["penetration_after_m"] < 0.005
     assert figures["frames_not_followed"] == 0 and figures["n_frames"] == 30
-    assert figures["message"] == "The simulated body followed the whole take."
+    assert figures["message"] == "The simulated body followed the complete take."
     before, after = (
         forward_kinematics(read_bvh(tmp_path / name)).positions[..., 2].min()
         for name in ("sunk.bvh", "stands.bvh")
@@ -40,7 +40,7 @@ def test_takes_the_settings_and_says_it_in_words(call, sunk, tmp_path):
     )
 
     assert status == 0
-    assert "The simulated body followed the whole take." in out
+    assert "The simulated body followed the complete take." in out
     assert "Joints moved by" in out
 
 

@@ -1,4 +1,4 @@
-"""Gestures of an actor whose every move is known, and moves that are no gestures."""
+"""Recognition of simulated gestures, and of movements that are no gestures."""
 
 from dataclasses import replace
 from math import pi
@@ -15,46 +15,50 @@ from solvers.motion.humanoid.posture_joints import MIRROR_IMAGES
 from solvers.samples import PerformanceSettings, perform_gestures
 from solvers.samples.performance import GESTURES
 
-MEANT = {
+EXPECTED = {
     "hand up": Gesture.HAND_UP,
     "wave right": Gesture.PAGE_NEXT,
     "wave left": Gesture.PAGE_BACK,
     "clap": Gesture.CAPTURE_START,
 }
 BROWSING = ["hand up", "rest", "wave right", "wave right", "wave left", "rest"]
-LATEST = {"hand up": 1.2, "wave right": 0.1, "wave left": 0.1, "clap": 0.1}
-"""Seconds after a gesture is done, in which it must be told; a raised hand is to be held."""
+MAX_DELAY_S = {"hand up": 1.2, "wave right": 0.1, "wave left": 0.1, "clap": 0.1}
+"""Maximum seconds from the end of a gesture to its event; a raised hand must be held."""
 
 
-def told(performance, wanted=None) -> list[Gesture]:
+def recognized_gestures(performance, settings_used=None) -> list[Gesture]:
     events = recognize_gestures(
         performance.times,
         performance.positions,
         performance.confidence,
-        wanted or GestureSettings(),
+        settings_used or GestureSettings(),
     )
     return [event.gesture for event in events]
 
 
 @pytest.mark.parametrize("frame_rate", [15.0, 30.0, 60.0])
-def test_each_gesture_is_told_once_and_in_time(frame_rate):
+def test_each_gesture_is_reported_once_and_in_time(frame_rate):
     performance = perform_gestures(
         [*BROWSING, "clap"], PerformanceSettings(frame_rate=frame_rate)
     )
 
     events = recognize_gestures(performance.times, performance.positions)
 
-    assert [event.gesture for event in events] == [MEANT[name] for name, _ in performance.made]
+    assert [event.gesture for event in events] == [
+        EXPECTED[name] for name, _ in performance.made
+    ]
     for event, (name, done) in zip(events, performance.made, strict=True):
         assert event.began < event.time
-        assert done - 0.25 <= event.time <= done + LATEST[name] + 2.0 / frame_rate
+        assert done - 0.25 <= event.time <= done + MAX_DELAY_S[name] + 2.0 / frame_rate
 
 
 @pytest.mark.parametrize("seed", range(5))
-def test_noise_dropouts_and_late_frames_change_little(seed):
-    spoilt = PerformanceSettings(noise=0.01, hidden=0.5, lost=0.1, lateness=0.005, seed=seed)
+def test_recognition_tolerates_noise_dropouts_and_late_frames(seed):
+    corrupted = PerformanceSettings(noise=0.01, hidden=0.5, lost=0.1, lateness=0.005, seed=seed)
 
-    gestures = told(perform_gestures([*BROWSING, "clap", "rest", "clap"], spoilt))
+    gestures = recognized_gestures(
+        perform_gestures([*BROWSING, "clap", "rest", "clap"], corrupted)
+    )
 
     assert gestures[0] is Gesture.HAND_UP
     assert gestures.count(Gesture.PAGE_NEXT) == 2 and gestures.count(Gesture.PAGE_BACK) == 1
@@ -62,10 +66,10 @@ def test_noise_dropouts_and_late_frames_change_little(seed):
 
 
 @pytest.mark.parametrize("seed", range(20))
-def test_standing_with_noise_says_nothing(seed):
-    spoilt = PerformanceSettings(noise=0.02, hidden=1.0, lost=0.2, lateness=0.01, seed=seed)
+def test_standing_with_noise_gives_no_gesture(seed):
+    corrupted = PerformanceSettings(noise=0.02, hidden=1.0, lost=0.2, lateness=0.01, seed=seed)
 
-    assert told(perform_gestures(["rest"] * 30, spoilt)) == []
+    assert recognized_gestures(perform_gestures(["rest"] * 30, corrupted)) == []
 
 
 @settings(max_examples=15)
@@ -74,7 +78,7 @@ def test_standing_with_noise_says_nothing(seed):
     size=st.floats(0.5, 1.5),
     place=st.tuples(*[st.floats(-3.0, 3.0)] * 3),
 )
-def test_heading_size_and_place_of_the_actor_do_not_matter(heading, size, place):
+def test_recognition_ignores_heading_size_and_position(heading, size, place):
     made = ["hand up", "wave right", "turn", "clap"]
     plain = perform_gestures(made)
     moved = perform_gestures(made, PerformanceSettings(heading=heading, size=size))
@@ -86,7 +90,7 @@ def test_heading_size_and_place_of_the_actor_do_not_matter(heading, size, place)
     assert [event.amount for event in events] == pytest.approx([e.amount for e in expected])
 
 
-def test_zoom_is_the_factor_by_which_the_hands_moved_apart():
+def test_zoom_is_the_factor_of_the_hands_distance():
     for name, factor in (("zoom in", 1.27 / 0.57), ("zoom out", 0.57 / 1.27)):
         performance = perform_gestures([name])
 
@@ -99,22 +103,26 @@ def test_zoom_is_the_factor_by_which_the_hands_moved_apart():
 def test_hands_that_zoom_out_do_not_clap():
     """Though they end as near each other as hands that touch, and quickly enough."""
     for seed in range(10):
-        spoilt = PerformanceSettings(noise=0.02, seed=seed)
+        corrupted = PerformanceSettings(noise=0.02, seed=seed)
 
-        assert Gesture.CAPTURE_START not in told(perform_gestures(["zoom out", "rest"], spoilt))
+        assert Gesture.CAPTURE_START not in recognized_gestures(
+            perform_gestures(["zoom out", "rest"], corrupted)
+        )
 
 
-def test_an_arm_that_turns_the_view_does_not_wave(monkeypatch):
+def test_arm_that_turns_the_view_does_not_wave(monkeypatch):
     raised, held, (_, _, left), *rest = GESTURES["turn"]
     across = (-0.3, 0.9, 0.0)
     swung = (raised, held, (0.8, across, left), (0.3, across, left), *rest[2:])
     monkeypatch.setitem(GESTURES, "turn", swung)
     always = GestureSettings(waves_need_hand_up=False)
 
-    assert set(told(perform_gestures(["turn", "rest"]), always)) == {Gesture.TURN}
+    assert set(recognized_gestures(perform_gestures(["turn", "rest"]), always)) == {
+        Gesture.TURN
+    }
 
 
-def test_turn_is_the_angle_of_the_stretched_arm():
+def test_turn_is_the_angle_of_the_straight_arm():
     """From (0.7, 0.66) to straight ahead: counter-clockwise as seen from above."""
     performance = perform_gestures(["turn"])
 
@@ -125,13 +133,13 @@ def test_turn_is_the_angle_of_the_stretched_arm():
     assert sum(event.amount for event in events) == pytest.approx(swung, abs=0.06)
 
 
-def test_nothing_counts_between_two_claps_but_the_second():
+def test_gestures_between_two_claps_are_ignored():
     performance = perform_gestures(["clap", *BROWSING, "zoom in", "turn", "clap"])
 
-    assert told(performance) == [Gesture.CAPTURE_START, Gesture.CAPTURE_END]
+    assert recognized_gestures(performance) == [Gesture.CAPTURE_START, Gesture.CAPTURE_END]
 
 
-def test_a_performance_ends_before_the_hands_move_for_the_last_clap():
+def test_performance_ends_before_the_last_clap_starts():
     performance = perform_gestures(["clap", "rest", "clap"])
 
     start, end = recognize_gestures(performance.times, performance.positions)
@@ -144,13 +152,13 @@ def test_waves_count_only_while_the_library_is_shown():
     alone = perform_gestures(["wave right", "rest"])
     late = perform_gestures(["hand up", *["rest"] * 16, "wave right", "rest"])
 
-    assert told(alone) == []
-    assert told(late) == [Gesture.HAND_UP]
+    assert recognized_gestures(alone) == []
+    assert recognized_gestures(late) == [Gesture.HAND_UP]
     always = GestureSettings(waves_need_hand_up=False)
-    assert told(alone, always) == [Gesture.PAGE_NEXT]
+    assert recognized_gestures(alone, always) == [Gesture.PAGE_NEXT]
 
 
-def test_the_left_hand_says_nothing():
+def test_left_hand_gives_no_gesture():
     performance = perform_gestures([*BROWSING, "turn"])
     mirrored = performance.positions[:, list(MIRROR_IMAGES)] * (-1.0, 1.0, 1.0)
 
@@ -158,18 +166,20 @@ def test_the_left_hand_says_nothing():
 
 
 @pytest.mark.parametrize(("seconds", "expected"), [(0.3, [Gesture.CAPTURE_START]), (4.0, [])])
-def test_hands_that_come_near_slowly_do_not_clap(monkeypatch, seconds, expected):
+def test_slowly_closing_hands_do_not_clap(monkeypatch, seconds, expected):
     ready, clapped, *rest = GESTURES["clap"]
     near = (-0.03, 0.65, -0.35)
     slowed = (ready, (seconds, near, near), (0.15, *clapped[1:]), *rest)
     monkeypatch.setitem(GESTURES, "clap", slowed)
 
     assert [
-        each for each in told(perform_gestures(["clap"])) if each is not Gesture.ZOOM
+        each
+        for each in recognized_gestures(perform_gestures(["clap"]))
+        if each is not Gesture.ZOOM
     ] == expected
 
 
-def test_a_clap_above_the_head_is_none(monkeypatch):
+def test_clap_above_the_head_is_ignored(monkeypatch):
     """As in a jumping jack, which must fit between two claps."""
     over = tuple(
         step and (step[0], *((hand[0], hand[1] * 0.3, 0.9) for hand in step[1:]))
@@ -177,17 +187,17 @@ def test_a_clap_above_the_head_is_none(monkeypatch):
     )
     monkeypatch.setitem(GESTURES, "clap", over)
 
-    assert told(perform_gestures(["clap", "clap"])) == []
+    assert recognized_gestures(perform_gestures(["clap", "clap"])) == []
 
 
 @pytest.mark.parametrize("hidden_within", [0.15, 0.25, 0.35])
-def test_a_clap_whose_touch_is_hidden_is_told(hidden_within):
+def test_clap_with_an_occluded_touch_is_reported(hidden_within):
     performance = perform_gestures(["clap"])
     arms = [6, 7, 10, 11]
     gap = np.linalg.norm(performance.positions[:, 10] - performance.positions[:, 6], axis=-1)
     performance.confidence[np.ix_(gap < hidden_within, arms)] = 0.0
 
-    assert told(performance) == [Gesture.CAPTURE_START]
+    assert recognized_gestures(performance) == [Gesture.CAPTURE_START]
 
 
 def test_applause_counts_once(monkeypatch):
@@ -198,12 +208,12 @@ def test_applause_counts_once(monkeypatch):
     )
     assert parted[1:] == clapped[1:]
 
-    assert told(perform_gestures(["clap", "rest", "clap"])) == [
+    assert recognized_gestures(perform_gestures(["clap", "rest", "clap"])) == [
         Gesture.CAPTURE_START, Gesture.CAPTURE_END,
     ]  # fmt: skip
 
 
-def test_hands_that_drop_do_not_zoom(monkeypatch):
+def test_dropping_hands_do_not_zoom(monkeypatch):
     """They come together as they fall, after they have had hold of the view."""
     near, held, *_ = GESTURES["zoom out"]
     fall = (0.6, (-0.1, 0.35, -0.9), (-0.1, 0.35, -0.9))
@@ -215,45 +225,50 @@ def test_hands_that_drop_do_not_zoom(monkeypatch):
     assert np.prod([event.amount for event in events]) == pytest.approx(1.0, abs=0.2)
 
 
-@pytest.mark.parametrize(("share", "expected"), [(0.5, [Gesture.CAPTURE_START]), (1.0, [])])
-def test_one_hand_that_comes_to_the_other_does_not_clap(monkeypatch, share, expected):
+@pytest.mark.parametrize(("fraction", "expected"), [(0.5, [Gesture.CAPTURE_START]), (1.0, [])])
+def test_single_moving_hand_does_not_clap(monkeypatch, fraction, expected):
     """From 0.98 arm lengths between the hands to 0.08, by the right one alone or by both."""
     seconds = [key[0] for key in GESTURES["clap"] if key]
     apart = (0.3, 0.6, -0.4), (0.0, 0.6, -0.4)
-    way = 0.9 * share, 0.9 * (1.0 - share)
+    way = 0.9 * fraction, 0.9 * (1.0 - fraction)
     near = tuple((x - far, y, z) for (x, y, z), far in zip(apart, way, strict=True))
     keys = (apart, near, near, apart, ((0.05, 0.05, -0.96),) * 2)
     made = tuple((time, *key) for time, key in zip(seconds, keys, strict=False))
     monkeypatch.setitem(GESTURES, "clap", made)
 
-    assert told(perform_gestures(["clap"])) == expected
+    assert recognized_gestures(perform_gestures(["clap"])) == expected
 
 
-def test_both_hands_up_show_nothing(monkeypatch):
+def test_both_hands_up_give_no_gesture(monkeypatch):
     both = tuple(step and (step[0], step[1], step[1]) for step in GESTURES["hand up"])
     monkeypatch.setitem(GESTURES, "hand up", both)
 
-    assert told(perform_gestures(["hand up"])) == []
+    assert recognized_gestures(perform_gestures(["hand up"])) == []
 
 
-def test_a_capture_that_nobody_ends_is_dropped():
+def test_capture_without_an_end_is_dropped():
     patient = GestureSettings(longest_capture=5.0)
 
-    gestures = told(perform_gestures(["clap", *["rest"] * 8, "clap"]), patient)
+    gestures = recognized_gestures(perform_gestures(["clap", *["rest"] * 8, "clap"]), patient)
 
     assert gestures == [
         Gesture.CAPTURE_START, Gesture.CAPTURE_DROPPED, Gesture.CAPTURE_START,
     ]  # fmt: skip
 
 
-def test_nothing_is_told_of_what_is_not_seen():
+def test_missing_joints_give_no_gesture():
     performance = perform_gestures([*BROWSING, "clap"])
 
-    assert told(replace(performance, confidence=0.0 * performance.confidence)) == []
-    assert told(replace(performance, positions=np.nan * performance.positions)) == []
+    assert (
+        recognized_gestures(replace(performance, confidence=0.0 * performance.confidence)) == []
+    )
+    assert (
+        recognized_gestures(replace(performance, positions=np.nan * performance.positions))
+        == []
+    )
 
 
-def test_frames_out_of_order_and_twice_are_left_out():
+def test_late_and_duplicate_frames_are_skipped():
     performance = perform_gestures([*BROWSING, "clap"])
     n = len(performance.times)
     order = np.stack([np.arange(n), np.maximum(np.arange(n) - 3, 0)], axis=1).ravel()
@@ -263,15 +278,15 @@ def test_frames_out_of_order_and_twice_are_left_out():
     assert events == recognize_gestures(performance.times, performance.positions)
 
 
-def test_a_break_in_the_stream_ends_a_gesture_but_not_the_mode():
+def test_break_in_the_stream_resets_gestures_but_not_the_mode():
     performance = perform_gestures(["clap", "rest"])
-    recogniser = GestureRecognizer()
-    for time, places in zip(performance.times, performance.positions, strict=True):
-        recogniser.see(time, places, np.ones(20))
+    recognizer = GestureRecognizer()
+    for time, positions in zip(performance.times, performance.positions, strict=True):
+        recognizer.see(time, positions, np.ones(20))
 
-    recogniser.see(performance.times[-1] + 10.0, performance.positions[0], np.ones(20))
+    recognizer.see(performance.times[-1] + 10.0, performance.positions[0], np.ones(20))
 
-    assert recogniser.mode is Mode.CAPTURING
+    assert recognizer.mode is Mode.CAPTURING
 
 
 @given(
@@ -285,7 +300,7 @@ def test_a_break_in_the_stream_ends_a_gesture_but_not_the_mode():
     )
 )
 def test_no_frame_raises(frames):
-    recogniser = GestureRecognizer()
-    for time, size, sure in frames:
-        places = size * np.sin(np.arange(60.0)).reshape(20, 3)
-        recogniser.see(time, places, np.full(20, sure))
+    recognizer = GestureRecognizer()
+    for time, size, confidence in frames:
+        positions = size * np.sin(np.arange(60.0)).reshape(20, 3)
+        recognizer.see(time, positions, np.full(20, confidence))

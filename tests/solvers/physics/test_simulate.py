@@ -9,7 +9,7 @@ from solvers.physics import Ground, SimulateSettings, apply_strength, simulate
 from solvers.rotations.representations import multiply, quaternion_from_rotation_vector
 from solvers.samples import CorruptionSettings, GaitSettings, corrupt, walking_gait
 
-CENTIMETRE = 0.01
+CENTIMETER = 0.01
 AT_ZERO = SimulateSettings(ground=Ground.HEIGHT)
 
 
@@ -35,15 +35,15 @@ def standing(walk):
     )
 
 
-def test_stays_near_a_good_walk_and_sinks_nowhere(walk, simulated):
+def test_simulation_stays_near_a_good_walk_above_the_ground(walk, simulated):
     assert simulated.followed.all()
-    assert simulated.message == "The simulated body followed the whole take."
-    assert simulated.distance < 3 * CENTIMETRE
+    assert simulated.message == "The simulated body followed the complete take."
+    assert simulated.distance < 3 * CENTIMETER
     assert_allclose(simulated.distance, distance(walk, simulated.motion), atol=0.005)
-    assert simulated.penetration_after < 0.5 * CENTIMETRE
+    assert simulated.penetration_after < 0.5 * CENTIMETER
 
 
-def test_keeps_the_skeleton_the_frames_and_every_length(walk, simulated):
+def test_simulation_keeps_skeleton_frames_and_bone_lengths(walk, simulated):
     result = simulated.motion
 
     assert result.skeleton is walk.skeleton
@@ -55,18 +55,18 @@ def test_keeps_the_skeleton_the_frames_and_every_length(walk, simulated):
         assert_allclose(np.linalg.norm(bones, axis=-1), np.tile(lengths, (60, 1)), atol=1e-12)
 
 
-def test_who_stands_goes_on_standing_on_own_feet(standing):
+def test_standing_body_keeps_standing(standing):
     result = simulate(standing)
 
     assert result.followed.all()
-    assert distance(standing, result.motion) < 2 * CENTIMETRE
+    assert distance(standing, result.motion) < 2 * CENTIMETER
     late = forward_kinematics(result.motion).positions[45:]
-    assert np.ptp(late, axis=0).max() < 1 * CENTIMETRE
+    assert np.ptp(late, axis=0).max() < 1 * CENTIMETER
     assert result.contacts[45:].all()
     assert result.support[45:].mean() < 0.15
 
 
-def test_who_is_held_by_nothing_falls_as_stones_do(standing):
+def test_unsupported_body_falls_freely(standing):
     """In the air a body without help from outside has the acceleration of gravity."""
     high = raised(standing, 1.5).slice(0, 9)
 
@@ -78,23 +78,23 @@ def test_who_is_held_by_nothing_falls_as_stones_do(standing):
 
 
 @pytest.mark.parametrize("depth", [0.05, 1.0])
-def test_who_is_under_the_floor_comes_up(walk, simulated, depth):
+def test_body_below_the_floor_is_raised(walk, simulated, depth):
     result = simulate(raised(walk, -depth), settings=AT_ZERO)
 
     assert result.penetration_before > 0.9 * depth
-    assert result.penetration_after < 0.5 * CENTIMETRE
+    assert result.penetration_after < 0.5 * CENTIMETER
     shift = result.motion.root_positions - simulated.motion.root_positions
-    assert np.abs(shift).mean() < 1.5 * CENTIMETRE
+    assert np.abs(shift).mean() < 1.5 * CENTIMETER
 
 
-def test_who_hovers_a_little_comes_down(walk, simulated):
+def test_hovering_body_is_lowered(walk, simulated):
     result = simulate(raised(walk, 0.08))
 
     shift = result.motion.root_positions - simulated.motion.root_positions
-    assert np.abs(shift).mean() < 1.5 * CENTIMETRE
+    assert np.abs(shift).mean() < 1.5 * CENTIMETER
 
 
-def test_the_ground_is_where_it_is_said_to_be_or_under_the_feet(walk, simulated):
+def test_ground_is_at_the_given_height_or_under_the_feet(walk, simulated):
     up = raised(walk, 3.0)
     given = SimulateSettings(ground_height=3.0)
     found = SimulateSettings(ground=Ground.FEET)
@@ -105,21 +105,21 @@ def test_the_ground_is_where_it_is_said_to_be_or_under_the_feet(walk, simulated)
     assert_allclose(under_feet.ground, 3.0, atol=0.02)
     for each in (at_height, under_feet):
         assert each.followed.all()
-        assert distance(raised(simulated.motion, 3.0), each.motion) < 2.5 * CENTIMETRE
+        assert distance(raised(simulated.motion, 3.0), each.motion) < 2.5 * CENTIMETER
 
 
 @pytest.mark.parametrize("height", [-0.73, 1.2])
-def test_a_take_that_is_measured_from_the_camera_stays_where_it_stands(walk, simulated, height):
+def test_take_in_camera_space_keeps_its_height(walk, simulated, height):
     result = simulate(raised(walk, height))
 
     assert_allclose(result.ground, height, atol=0.02)
-    assert "far from 0.00 m: the ground is taken to be under its feet" in result.message
-    assert distance(raised(simulated.motion, height), result.motion) < 2.5 * CENTIMETRE
+    assert "far from 0.00 m: the ground is assumed under its feet" in result.message
+    assert distance(raised(simulated.motion, height), result.motion) < 2.5 * CENTIMETER
     assert "far from" not in simulated.message
     assert simulated.ground == simulate(raised(walk, 0.1)).ground == 0.0
 
 
-def test_friction_holds_feet_that_the_take_drags_about(standing):
+def test_friction_holds_dragged_feet(standing):
     sway = 0.02 * np.sin(2 * np.pi * 1.0 * np.arange(90) / 30.0)
     dragged = standing.with_poses(
         root_positions=standing.root_positions + np.outer(sway, [1.0, 0.5, 0.0])
@@ -133,7 +133,7 @@ def test_friction_holds_feet_that_the_take_drags_about(standing):
     assert icy.slide_after > 0.9 * icy.slide_before
 
 
-def test_mass_takes_the_shaking_out(walk):
+def test_simulation_reduces_shaking(walk):
     shaking = corrupt(walk, CorruptionSettings(jitter=1.0, root_jitter=0.005))
 
     result = simulate(shaking)
@@ -143,28 +143,28 @@ def test_mass_takes_the_shaking_out(walk):
     assert distance(walk, result.motion) < 0.8 * distance(walk, shaking)
 
 
-def test_a_take_that_shakes_too_much_to_follow_is_calmed_until_it_does_not(walk):
+def test_shaking_take_is_smoothed_until_the_body_follows(walk):
     shaking = corrupt(walk, CorruptionSettings(jitter=2.0, root_jitter=0.005))
 
     result = simulate(shaking)
 
     assert result.smoothing > SimulateSettings().smoothing
-    assert result.message.endswith(f"It had to be calmed by {result.smoothing:.2g} s for that.")
+    assert result.message.endswith(f"That required smoothing by {result.smoothing:.2g} s.")
     assert result.followed.all()
 
 
-def test_more_smoothing_is_calmer(walk):
+def test_more_smoothing_reduces_jerk(walk):
     shaking = corrupt(walk, CorruptionSettings(jitter=0.7))
 
-    usual, calm = (
+    usual, smooth = (
         simulate(shaking, settings=SimulateSettings(smoothing=smoothing))
         for smoothing in (0.04, 0.08)
     )
 
-    assert jerk(calm.motion) < 0.7 * jerk(usual.motion)
+    assert jerk(smooth.motion) < 0.7 * jerk(usual.motion)
 
 
-def test_a_higher_response_is_nearer(walk):
+def test_higher_response_follows_closer(walk):
     shaking = corrupt(walk, CorruptionSettings(jitter=0.7))
 
     soft, stiff = (
@@ -175,7 +175,7 @@ def test_a_higher_response_is_nearer(walk):
     assert stiff.distance < soft.distance
 
 
-def test_strength_nought_gives_the_same_bits_gaps_and_all(walk):
+def test_strength_zero_returns_the_input_bits_with_gaps(walk):
     rotations = walk.rotations.copy()
     rotations[10:20, 3] = np.nan
     gapped = walk.with_poses(rotations)
@@ -186,7 +186,7 @@ def test_strength_nought_gives_the_same_bits_gaps_and_all(walk):
     assert np.array_equal(result.motion.root_positions, gapped.root_positions)
 
 
-def test_half_the_strength_goes_half_the_way(walk, simulated):
+def test_half_strength_is_halfway(walk, simulated):
     half = simulate(walk, settings=SimulateSettings(strength=0.5)).motion
 
     assert_allclose(
@@ -202,7 +202,7 @@ def test_half_the_strength_goes_half_the_way(walk, simulated):
     assert np.array_equal(apply_strength(walk, simulated, 0.0).rotations, walk.rotations)
 
 
-def test_a_root_bone_on_the_floor_is_carried_along(walk, simulated):
+def test_root_bone_on_the_floor_moves_with_the_body(walk, simulated):
     """Hips that hang on another joint are simulated as hips; the joint above only moves."""
     floor = np.array([0.0, 0.0, 0.0])
     skeleton, hips = walk.skeleton, walk.rotations[:, :1]

@@ -10,16 +10,15 @@ from numpy.testing import assert_allclose
 
 from solvers.errors import InvalidMotionError
 from solvers.motion import Motion, Skeleton, forward_kinematics
-from solvers.physics import Ground, SimulateSettings, simulate
-from solvers.physics import run as physics_run
-from solvers.physics.control import drive
+from solvers.physics import Ground, SimulateSettings, follow_target, simulate
+from solvers.physics.control import apply_control
 from solvers.samples import GaitSettings, walking_gait
 
 WALK = walking_gait(GaitSettings(duration=1.0, frame_rate=30.0))
 STILL = [1.0, 0.0, 0.0, 0.0]
 
 
-def test_who_is_in_the_sky_is_left_there_and_told_why():
+def test_body_far_above_the_ground_is_unchanged_and_reported():
     sky = WALK.with_poses(root_positions=WALK.root_positions + np.array([0, 0, 10.0]))
 
     result = simulate(sky, settings=SimulateSettings(ground=Ground.HEIGHT))
@@ -29,10 +28,10 @@ def test_who_is_in_the_sky_is_left_there_and_told_why():
     assert not result.followed.any()
     assert result.message.startswith("The simulated body could not follow the take, which is")
     assert "The take stands at a height of 10.0" in result.message
-    assert "the ground is at 0.00 m: choose the ground under the feet" in result.message
+    assert "If that is wrong, set the ground to be under the feet" in result.message
 
 
-def test_the_frames_that_cannot_be_followed_are_the_takes_own():
+def test_frames_not_followed_are_those_of_the_take():
     """A walker who is lifted by more than a metre, for a second and a half of eight."""
     long = walking_gait(GaitSettings(duration=8.0, frame_rate=30.0))
     lift = np.interp(np.arange(240), [100, 108, 145, 153], [0.0, 1.2, 1.2, 0.0])
@@ -49,7 +48,7 @@ def test_the_frames_that_cannot_be_followed_are_the_takes_own():
     assert steps < 2 * np.abs(np.diff(roots, axis=0)).max(), "it eases over"
 
 
-def test_who_jumps_from_place_to_place_is_simulated_at_each():
+def test_segments_between_jumps_are_simulated_separately():
     roots = WALK.root_positions.copy()
     roots[12:] += [5.0, -3.0, 0.0]
 
@@ -61,7 +60,7 @@ def test_who_jumps_from_place_to_place_is_simulated_at_each():
     assert_allclose(result.motion.root_positions[:12], alone.root_positions, atol=0.01)
 
 
-def test_gaps_are_filled_where_the_body_is_simulated():
+def test_gaps_are_filled_in_simulated_joints():
     rotations, roots = WALK.rotations.copy(), WALK.root_positions.copy()
     rotations[5:10], rotations[:, 3], roots[20:] = np.nan, np.nan, np.nan
 
@@ -71,28 +70,30 @@ def test_gaps_are_filled_where_the_body_is_simulated():
     assert np.isfinite(result.motion.root_positions).all()
 
 
-def test_a_root_that_was_never_seen_is_refused():
+def test_simulate_raises_when_the_root_is_never_observed():
     roots = np.full_like(WALK.root_positions, np.nan)
 
-    with pytest.raises(InvalidMotionError, match="place of the root is never observed"):
+    with pytest.raises(InvalidMotionError, match="position of the root is never observed"):
         simulate(WALK.with_poses(root_positions=roots))
 
 
-def test_a_wrong_unit_is_refused():
+def test_simulate_raises_for_a_wrong_unit():
     skeleton = WALK.skeleton
     ant = Skeleton(skeleton.names, skeleton.parents, 0.01 * skeleton.offsets)
 
-    with pytest.raises(InvalidMotionError, match="no size for physics; give the scale of the"):
+    with pytest.raises(InvalidMotionError, match="no plausible size; set the scale of the"):
         simulate(Motion(ant, WALK.rotations, 0.01 * WALK.root_positions, 30.0))
 
 
-def test_a_frame_rate_that_tells_nothing_is_refused():
-    with pytest.raises(InvalidMotionError, match="At 2 frames a second nothing tells how"):
+def test_simulate_raises_for_a_low_frame_rate():
+    with pytest.raises(
+        InvalidMotionError, match="At 2 frames a second the movement between frames is unknown"
+    ):
         simulate(replace(WALK, frame_rate=2.0))
 
 
 @pytest.mark.parametrize("n_frames", [1, 2, 3])
-def test_few_frames_are_enough(n_frames):
+def test_simulate_accepts_few_frames(n_frames):
     result = simulate(WALK.slice(0, n_frames))
 
     assert result.motion.n_frames == n_frames and result.followed.all()
@@ -100,18 +101,18 @@ def test_few_frames_are_enough(n_frames):
 
 
 @pytest.mark.parametrize("plant", [True, False])
-def test_an_engine_that_explodes_in_every_try_ends_in_the_take(monkeypatch, plant):
+def test_unstable_engine_returns_the_take(monkeypatch, plant):
     """Where muscles pull beyond all bounds in one step, forces of the ground are no numbers."""
     calls = []
 
     def exploding(engine, world, *others):
-        used = drive(engine, world, *others)
+        used = apply_control(engine, world, *others)
         calls.append(used)
         if len(calls) % 100 == 50:
             world.data.qfrc_applied[:] = 1e300
         return used
 
-    monkeypatch.setattr(physics_run, "drive", exploding)
+    monkeypatch.setattr(follow_target, "apply_control", exploding)
 
     result = simulate(WALK, settings=SimulateSettings(plant=plant))
 
@@ -123,7 +124,7 @@ def test_an_engine_that_explodes_in_every_try_ends_in_the_take(monkeypatch, plan
 
 
 @pytest.mark.parametrize("n_joints", [1, 2, 5])
-def test_what_is_no_human_is_a_chain_of_bones(n_joints):
+def test_other_skeleton_is_simulated_bone_by_bone(n_joints):
     """A stick that starts upright above the ground falls onto it and keeps its length."""
     names = tuple(f"joint{n}" for n in range(n_joints))
     offsets = np.tile([0.0, 0.0, 0.2], (n_joints, 1))
@@ -141,7 +142,7 @@ def test_what_is_no_human_is_a_chain_of_bones(n_joints):
 
 
 @pytest.mark.parametrize("bones", ["all in one place", "one tiny bone"])
-def test_bones_without_length_do_not_explode(bones):
+def test_bones_of_zero_length_are_stable(bones):
     offsets = np.zeros((3, 3))
     if bones == "one tiny bone":
         offsets[1:] = [[0, 0, 1e-7], [0, 0, 0.5]]
@@ -167,7 +168,7 @@ def test_bones_without_length_do_not_explode(bones):
         "smoothing": some.floats(0.0, 0.5),
     }),
 )
-def test_nonsense_ends_in_finite_numbers(seed, turns, travel, options):
+def test_random_motion_gives_finite_results(seed, turns, travel, options):
     rng = np.random.default_rng(seed)
     shaken = WALK.rotations + turns * rng.normal(size=WALK.rotations.shape)
     shaken /= np.linalg.norm(shaken, axis=-1, keepdims=True)

@@ -7,12 +7,16 @@ from numpy.testing import assert_allclose
 from solvers.motion import Motion, find_humanoid_map, forward_kinematics
 from solvers.physics import SimulateSettings, simulate
 from solvers.physics.body import build_physics_body
+from solvers.physics.body_surface import SIDES, find_leg_chain, lowest_points, select_foot_ends
 from solvers.physics.feet import add_soles
-from solvers.physics.foot_contacts import CLEAR, PRESSED, with_feet_on_ground
-from solvers.physics.pelvis_offset import LegGoal, hips_shift
-from solvers.physics.plant_target import planted
-from solvers.physics.stance import bearing, in_contact
-from solvers.physics.surface import SIDES, bottoms, leg_chain, of_foot
+from solvers.physics.foot_contacts import (
+    MIN_SWING_CLEARANCE_M,
+    STANCE_DEPTH_M,
+    place_feet_on_ground,
+)
+from solvers.physics.foot_support import detect_target_contacts, distribute_load
+from solvers.physics.pelvis_offset import LegGoal, solve_pelvis_offset
+from solvers.physics.plant_target import plant_target_feet
 from solvers.rotations.representations import (
     multiply,
     quaternion_from_rotation_vector,
@@ -51,9 +55,7 @@ def kept(shaking):
     return simulate(shaking)
 
 
-def test_a_foot_that_carries_the_body_rests_on_a_point_that_does_not_move(
-    body, by_friction, kept
-):
+def test_loaded_foot_rests_on_a_fixed_point(body, by_friction, kept):
     assert np.array_equal(kept.carried, by_friction.carried)
     loaded = kept.carried[:-1] > LOADED
     assert loaded.mean() > 0.3
@@ -65,21 +67,21 @@ def test_a_foot_that_carries_the_body_rests_on_a_point_that_does_not_move(
     assert np.percentile(rest, 95) < 0.5 * MILLIMETRE
 
 
-def test_it_is_kept_level_so_nothing_sinks_or_rises(body, by_friction, kept):
-    before, after = (bottoms(body, each.motion)[..., 2] for each in (by_friction, kept))
+def test_planting_is_horizontal(body, by_friction, kept):
+    before, after = (lowest_points(body, each.motion)[..., 2] for each in (by_friction, kept))
 
-    own = of_foot(body, "left") | of_foot(body, "right")
+    own = select_foot_ends(body, "left") | select_foot_ends(body, "right")
     assert_allclose(after[:, own], before[:, own], atol=1.5 * MILLIMETRE)
     assert kept.penetration_after < by_friction.penetration_after + MILLIMETRE
     assert np.abs(kept.motion.root_positions - by_friction.motion.root_positions).max() < 0.01
 
 
-def test_it_stays_calm_and_near_the_take(shaking, by_friction, kept):
+def test_planting_stays_smooth_and_near_the_take(shaking, by_friction, kept):
     assert jerk(kept.motion) < 1.03 * jerk(by_friction.motion)
     assert kept.distance < by_friction.distance + MILLIMETRE
 
 
-def test_bones_keep_their_lengths_and_the_input_its_bits(shaking, kept):
+def test_planting_keeps_bone_lengths_and_the_input(shaking, kept):
     before = shaking.rotations.copy(), shaking.root_positions.copy()
 
     again = simulate(shaking)
@@ -93,7 +95,7 @@ def test_bones_keep_their_lengths_and_the_input_its_bits(shaking, kept):
     assert_allclose(np.linalg.norm(bones, axis=-1) - lengths, 0.0, atol=1e-12)
 
 
-def test_the_ground_carries_the_weight_of_who_stands(walk):
+def test_ground_carries_the_weight_in_stance(walk):
     """Newton's third law, on average over the steps of a walk that comes back to its height."""
     result = simulate(walk)
 
@@ -102,7 +104,7 @@ def test_the_ground_carries_the_weight_of_who_stands(walk):
     assert abs(carried - 1.0) < 0.05 + helped
 
 
-def test_who_hops_flies_and_lands(walk):
+def test_hop_has_a_flight_phase(walk):
     """Half a second of standing, a hop of 0.4 s, and standing again."""
     frame = in_contact_of(walk).all(axis=1).argmax()
     n_frames, rate = 90, 60.0
@@ -126,7 +128,7 @@ def test_who_hops_flies_and_lands(walk):
     assert 0.4 * flight.max() < rise < 1.3 * flight.max()
 
 
-def test_a_foot_that_means_to_slide_is_let_slide(walk):
+def test_fast_sliding_foot_is_not_held(walk):
     """Who is carried sideways at 2 m/s in a stiff pose, feet on the ground, slides."""
     frame = in_contact_of(walk).all(axis=1).argmax()
     n_frames, rate = 60, 60.0
@@ -149,7 +151,7 @@ def test_a_foot_that_means_to_slide_is_let_slide(walk):
     assert_allclose(ways, way[-1], atol=0.1)
 
 
-def test_held_feet_do_not_move_whatever_the_body_did(walk, body, rng):
+def test_held_feet_do_not_move(walk, body, rng):
     """Planting alone: the part of the sole that bears the foot rests to a tenth of a mm."""
     sway = np.cumsum(rng.normal(scale=0.0008, size=(walk.n_frames, 2)), axis=0)
     turn = np.cumsum(rng.normal(scale=0.001, size=walk.n_frames))
@@ -158,77 +160,80 @@ def test_held_feet_do_not_move_whatever_the_body_did(walk, body, rng):
     rotations[:, 0] = multiply(turn, rotations[:, 0])
     roots = walk.root_positions + np.pad(sway, ((0, 0), (0, 1)))
     swaying = walk.with_poses(rotations, roots)
-    stands = in_contact(body, walk)
+    stands = detect_target_contacts(body, walk)
     held = stands[1:] & stands[:-1]
 
-    result = planted(body, swaying, held.astype(np.float64), 0.0)
+    result = plant_target_feet(body, swaying, held.astype(np.float64), 0.0)
 
     assert loaded_steps(body, swaying)[held].mean() > 0.5 * MILLIMETRE
     assert np.percentile(loaded_steps(body, result)[held], 99) < 0.1 * MILLIMETRE
-    assert turning(body, result)[held].mean() < 0.5 * turning(body, swaying)[held].mean()
+    assert (
+        measure_turning(body, result)[held].mean()
+        < 0.5 * measure_turning(body, swaying)[held].mean()
+    )
 
 
-def test_nothing_is_moved_where_nothing_is_held(walk, body):
-    result = planted(body, walk, np.zeros((walk.n_frames - 1, 2)), 0.0)
+def test_planting_changes_nothing_without_held_feet(walk, body):
+    result = plant_target_feet(body, walk, np.zeros((walk.n_frames - 1, 2)), 0.0)
 
     assert result is walk
 
 
-def test_the_lowest_part_of_the_sole_bears_the_foot():
+def test_lowest_part_of_the_sole_bears_the_load():
     heights = np.tile([0.0, 0.03, 0.06], (30, 1))
 
-    shares = bearing(heights, 60.0, 1.0)
+    weights = distribute_load(heights, 60.0, 1.0)
 
-    assert_allclose(shares[15], [1.0, 0.0, 0.0], atol=1e-6)
-    assert_allclose(bearing(0.0 * heights, 60.0, 1.0)[15], 1 / 3)
+    assert_allclose(weights[15], [1.0, 0.0, 0.0], atol=1e-6)
+    assert_allclose(distribute_load(0.0 * heights, 60.0, 1.0)[15], 1 / 3)
     (
-        assert_allclose(bearing(heights - 0.06, 60.0, 1.0)[15], 1 / 3),
+        assert_allclose(distribute_load(heights - 0.06, 60.0, 1.0)[15], 1 / 3),
         "what is under presses no more",
     )
 
 
-def test_feet_of_the_target_meet_the_ground(walk, body):
+def test_target_feet_are_placed_on_the_ground(walk, body):
     low = walk.with_poses(root_positions=walk.root_positions - (0.0, 0.0, 0.02))
-    stands = in_contact(body, walk).astype(np.float64)
+    stands = detect_target_contacts(body, walk).astype(np.float64)
 
-    result = with_feet_on_ground(body, low, stands, stands, 0.0)
+    result = place_feet_on_ground(body, low, stands, stands, 0.0)
 
-    points = bottoms(body, result)
+    points = lowest_points(body, result)
     inner = slice(15, -15)
     for column, side in enumerate(SIDES):
-        lowest = points[:, of_foot(body, side), 2].min(axis=1)[inner] / body.size
+        lowest = points[:, select_foot_ends(body, side), 2].min(axis=1)[inner] / body.size
         always = moving_minimum(stands[inner, column]) == 1.0
         never = moving_minimum(1.0 - stands[inner, column]) == 1.0
         assert always.any() and never.any()
-        assert_allclose(lowest[always], -PRESSED, atol=MILLIMETRE)
-        assert lowest[never].min() > 0.5 * CLEAR
+        assert_allclose(lowest[always], -STANCE_DEPTH_M, atol=MILLIMETRE)
+        assert lowest[never].min() > 0.5 * MIN_SWING_CLEARANCE_M
 
 
-def test_hips_go_where_straight_legs_would_have_to_stretch(walk, body):
+def test_pelvis_moves_where_straight_legs_would_stretch(walk, body):
     """A goal that is farther along a straight leg is reached by the hips, not by the knee."""
     straight = quaternion_from_rotation_vector(np.zeros((40, walk.n_joints, 3)))
     upright = walk.slice(0, 40).with_poses(straight)
     poses = forward_kinematics(upright)
     goals = []
     for side in SIDES:
-        chain = leg_chain(body, side)
+        chain = find_leg_chain(body, side)
         down = poses.positions[:, chain[-1]] - (0.0, 0.0, 0.01)
         goals.append(LegGoal(chain, down))
 
-    shift = hips_shift(poses, goals, 60.0, body.size)
+    shift = solve_pelvis_offset(poses, goals, 60.0, body.size)
 
     assert_allclose(shift[:, 2], -0.01, atol=0.002)
     assert np.abs(shift[:, :2]).max() < 0.002
 
 
-def test_hips_stay_where_no_leg_changes(walk, body):
+def test_pelvis_stays_where_no_leg_changes(walk, body):
     poses = forward_kinematics(walk)
     goals = [LegGoal(chain, poses.positions[:, chain[-1]]) for chain in chains(body)]
 
-    assert_allclose(hips_shift(poses, goals, 60.0, body.size), 0.0, atol=1e-12)
+    assert_allclose(solve_pelvis_offset(poses, goals, 60.0, body.size), 0.0, atol=1e-12)
 
 
-def test_a_turned_take_is_planted_turned(shaking, kept):
+def test_planting_is_equivariant_to_heading(shaking, kept):
     turn = quaternion_from_rotation_vector([0.0, 0.0, 1.0])
     rotations = shaking.rotations.copy()
     rotations[:, 0] = multiply(turn, rotations[:, 0])
@@ -243,27 +248,27 @@ def test_a_turned_take_is_planted_turned(shaking, kept):
 
 def steps(body, motion):
     """Way of the slowest point of each sole to the next frame, (n_frames - 1, 2), metres."""
-    points = bottoms(body, motion)
+    points = lowest_points(body, motion)
     ways = np.linalg.norm(np.diff(points[..., :2], axis=0), axis=-1)
-    return np.stack([ways[:, of_foot(body, side)].min(axis=1) for side in SIDES], -1)
+    return np.stack([ways[:, select_foot_ends(body, side)].min(axis=1) for side in SIDES], -1)
 
 
 def loaded_steps(body, motion):
     """Way of what bears each sole, (n_frames - 1, 2), metres."""
-    points = bottoms(body, motion)
+    points = lowest_points(body, motion)
     found = []
     for side in SIDES:
-        own = points[:, of_foot(body, side)]
-        share = bearing(own[..., 2], motion.frame_rate, body.size)
-        share = 0.5 * (share[1:] + share[:-1])
-        way = (share[..., None] * np.diff(own[..., :2], axis=0)).sum(axis=1)
+        own = points[:, select_foot_ends(body, side)]
+        weights = distribute_load(own[..., 2], motion.frame_rate, body.size)
+        weights = 0.5 * (weights[1:] + weights[:-1])
+        way = (weights[..., None] * np.diff(own[..., :2], axis=0)).sum(axis=1)
         found.append(np.linalg.norm(way, axis=-1))
     return np.stack(found, axis=-1)
 
 
-def turning(body, motion):
+def measure_turning(body, motion):
     """Angle about the vertical by which feet turn to the next frame, (n_frames - 1, 2)."""
-    ankles = [leg_chain(body, side)[-1] for side in SIDES]
+    ankles = [find_leg_chain(body, side)[-1] for side in SIDES]
     turns = forward_kinematics(motion).rotations[:, ankles]
     steps = multiply(turns[1:], turns[:-1] * (1, -1, -1, -1))
     return np.abs(rotation_vector_from_quaternion(steps)[..., 2])
@@ -274,7 +279,7 @@ def moving_minimum(values):
 
 
 def chains(body):
-    return [leg_chain(body, side) for side in SIDES]
+    return [find_leg_chain(body, side) for side in SIDES]
 
 
 def result_body(motion):
@@ -282,7 +287,7 @@ def result_body(motion):
 
 
 def in_contact_of(motion):
-    return in_contact(result_body(motion), motion)
+    return detect_target_contacts(result_body(motion), motion)
 
 
 def jerk(motion):

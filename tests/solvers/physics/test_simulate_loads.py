@@ -7,15 +7,15 @@ from numpy.testing import assert_allclose
 
 from solvers.motion import HumanoidMap, Motion, Skeleton
 from solvers.physics.body import Capsule, build_physics_body
+from solvers.physics.contact_loads import add_loads
 from solvers.physics.engine import load_engine
-from solvers.physics.loads import add_loads
 from solvers.physics.world import build_world
 
 STEP = 1.0 / 240.0
 RADIUS = 0.1
 
 
-def test_the_ground_carries_a_beam_at_the_end_that_is_heavier():
+def test_ground_load_is_greater_at_the_heavier_end_of_a_beam():
     """A light beam that bears a ball over its second end: the lever of the first is nought."""
     engine = load_engine()
     beam = Capsule(0, np.array([[-0.5, 0.0, 0.0], [0.5, 0.0, 0.0]]), RADIUS, 1e-6)

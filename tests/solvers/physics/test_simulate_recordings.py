@@ -35,7 +35,7 @@ def good_takes(recordings):
 
 
 @pytest.mark.parametrize("clip", GOOD)
-def test_a_good_take_changes_little_and_shakes_less(good_takes, clip):
+def test_good_take_changes_little_and_shakes_less(good_takes, clip):
     motion, result = good_takes[clip]
 
     assert result.followed.all()
@@ -44,7 +44,7 @@ def test_a_good_take_changes_little_and_shakes_less(good_takes, clip):
     assert jerk(result.motion) < 0.7 * jerk(motion)
 
 
-def test_feet_of_good_takes_slide_less_by_another_familys_measure(good_takes):
+def test_feet_slide_less_by_an_independent_measure(good_takes):
     before, after = 0.0, 0.0
     for motion, result in good_takes.values():
         contacts = detect_contacts(motion)
@@ -54,7 +54,7 @@ def test_feet_of_good_takes_slide_less_by_another_familys_measure(good_takes):
     assert after < 0.8 * before
 
 
-def test_feet_of_good_takes_rest_while_they_carry(good_takes):
+def test_feet_rest_while_loaded(good_takes):
     """Against friction alone, by contacts that the take has no say in."""
     for motion, kept in good_takes.values():
         settings = SimulateSettings(ground=Ground.FEET, plant=False)
@@ -70,7 +70,7 @@ def test_feet_of_good_takes_rest_while_they_carry(good_takes):
         assert jerk(kept.motion) < 1.1 * jerk(free.motion)
 
 
-def test_no_knee_sinks_for_a_planted_foot(recordings):
+def test_planting_does_not_sink_knees(recordings):
     """Squatting low, the foot that carries nothing wanders, and its knee is near the ground."""
     path = recordings / "mocap" / "hdm05" / "HDM_bd_squat1Reps_006_120.amc"
 
@@ -80,7 +80,7 @@ def test_no_knee_sinks_for_a_planted_foot(recordings):
 
 
 @pytest.mark.parametrize("folder", ["irds", "msr_action3d"])
-def test_a_depth_cameras_take_stands_still_on_the_ground(recordings, folder):
+def test_depth_camera_take_stands_still_on_the_ground(recordings, folder):
     path = sorted((recordings / "kinect" / folder).glob("*"))[0]
     joints = read_recording(path).tracks
     motion = motion_from_points(joints, joint_parents(joints.names))

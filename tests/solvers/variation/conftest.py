@@ -1,4 +1,4 @@
-"""Examples that a test can make: walks that differ, and one that loops."""
+"""Fixtures: walks that differ, and a model of them."""
 
 import pytest
 

@@ -9,13 +9,13 @@ from solvers.variation.curve_sampling import sample_curves
 
 
 @pytest.mark.parametrize("n_frames", [2, 3, 8, 100])
-def test_passes_through_the_frames(n_frames, rng):
+def test_sampling_interpolates_the_frames(n_frames, rng):
     curves = rng.normal(size=(n_frames, 2, 3))
 
     assert_allclose(sample_curves(curves, np.arange(n_frames)), curves, atol=1e-6)
 
 
-def test_is_the_cubic_spline_away_from_the_ends(rng):
+def test_sampling_equals_the_cubic_spline_away_from_the_ends(rng):
     curves, times = rng.normal(size=(80, 4)), np.linspace(20.0, 60.0, 333)
 
     assert_allclose(
@@ -23,11 +23,11 @@ def test_is_the_cubic_spline_away_from_the_ends(rng):
     )
 
 
-def test_straight_lines_stay_straight_to_the_ends():
+def test_sampling_keeps_straight_lines_up_to_the_ends():
     line, times = np.outer(np.arange(9.0), [1.0, -2.0]), np.linspace(0.0, 8.0, 50)
 
     assert_allclose(sample_curves(line, times), np.outer(times, [1.0, -2.0]), atol=1e-5)
 
 
-def test_one_frame_is_held():
+def test_sampling_repeats_a_single_frame():
     assert_allclose(sample_curves(np.ones((1, 3)), np.zeros(4)), np.ones((4, 3)))

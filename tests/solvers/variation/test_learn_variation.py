@@ -18,7 +18,7 @@ from solvers.variation import (
     measure_variation,
     synthesize,
 )
-from solvers.variation.learn_variation import MEMORY
+from solvers.variation.learn_variation import MAX_VALUES
 
 
 def turned_about_z(motion, angle):
@@ -34,18 +34,20 @@ def turned_about_z(motion, angle):
     )
 
 
-def test_where_an_example_happens_and_whither_it_faces_is_all_one(walks):
+def test_model_ignores_position_and_heading_of_examples(walks):
     there = [turned_about_z(walk, 0.7 * place) for place, walk in enumerate(walks)]
 
-    usual, turned = (synthesize(learn_variation_model(one), 2) for one in (walks, there))
+    reference_rotations, turned = (
+        synthesize(learn_variation_model(one), 2) for one in (walks, there)
+    )
 
-    for one, other in zip(usual, turned, strict=True):
+    for one, other in zip(reference_rotations, turned, strict=True):
         assert one.n_frames == other.n_frames
         assert_allclose(one.root_positions, other.root_positions, atol=1e-5)
         assert_allclose(np.abs(np.sum(one.rotations * other.rotations, axis=-1)), 1, atol=1e-7)
 
 
-def test_the_odd_one_out_is_named(walks):
+def test_warning_names_the_outlier(walks):
     swung = walks[3].rotations.copy()
     arm = walks[3].skeleton.names.index("LeftArm")
     swung[:, arm] = multiply([np.cos(1.2), np.sin(1.2), 0, 0], swung[:, arm])
@@ -58,7 +60,7 @@ def test_the_odd_one_out_is_named(walks):
     assert not learn_variation_model(walks).warning
 
 
-def test_other_frame_rates_are_brought_to_that_of_the_first(walks):
+def test_examples_are_resampled_to_the_first_frame_rate(walks):
     model = learn_variation_model([walks[0], resample(walks[1], 120.0), walks[2]])
 
     assert model.frame_rate == 60.0
@@ -66,7 +68,7 @@ def test_other_frame_rates_are_brought_to_that_of_the_first(walks):
     assert {one.frame_rate for one in synthesize(model, 2)} == {60.0}
 
 
-def test_other_sizes_are_brought_to_that_of_the_first(walks):
+def test_examples_are_scaled_to_the_size_of_the_first(walks):
     skeleton = walks[1].skeleton
     child = replace(
         walks[1],
@@ -74,12 +76,14 @@ def test_other_sizes_are_brought_to_that_of_the_first(walks):
         root_positions=0.6 * walks[1].root_positions,
     )
 
-    grown, usual = (learn_variation_model([walks[0], one]) for one in (child, walks[1]))
+    grown, reference_rotations = (
+        learn_variation_model([walks[0], one]) for one in (child, walks[1])
+    )
 
-    assert_allclose(grown.root, usual.root, atol=0.01)
+    assert_allclose(grown.root, reference_rotations.root, atol=0.01)
 
 
-def test_refusals_say_which_example_and_what_to_do(walks, leg):
+def test_errors_name_the_example_and_the_remedy(walks, leg):
     hole = walks[1].rotations.copy()
     hole[5] = np.nan
     with pytest.raises(InvalidMotionError, match="There is no example"):
@@ -95,13 +99,13 @@ def test_refusals_say_which_example_and_what_to_do(walks, leg):
         measure_variation(walks[:1])
 
 
-def test_examples_that_would_not_fit_into_memory_are_refused(walks):
-    size = int(np.sqrt(MEMORY / walks[0].n_frames / walks[0].skeleton.n_joints)) + 1
+def test_learning_raises_when_examples_exceed_memory(walks):
+    size = int(np.sqrt(MAX_VALUES / walks[0].n_frames / walks[0].skeleton.n_joints)) + 1
     with pytest.raises(InvalidMotionError, match="too long to vary"):
         learn_variation_model([walks[0]] * size)
 
 
-def test_what_is_no_body_is_refused(leg):
+def test_learning_raises_without_a_body(leg):
     still = Motion(leg, np.tile(IDENTITY, (9, 4, 1)), np.zeros((9, 3)), 60.0)
     with pytest.raises(InvalidMotionError, match=r"no joint for .*leftUpperLeg"):
         learn_variation_model([still, still])
@@ -127,7 +131,7 @@ def test_clips_of_a_few_frames(walks, n_frames, method):
         assert variant.n_frames >= 2
 
 
-def test_one_clip_alone_varies_only_by_what_is_borrowed(walks):
+def test_single_clip_varies_only_by_borrowed_variation(walks):
     alone, generic = learn_variation_model(walks[:1]), borrow_variation(walks[0])
     others = borrow_variation(walks[0], [learn_variation_model(walks[1:])])
 
@@ -140,7 +144,7 @@ def test_one_clip_alone_varies_only_by_what_is_borrowed(walks):
     assert_allclose(generic.joints.mean(axis=0), alone.joints[0], atol=1e-12)
 
 
-def test_joints_that_stand_still_are_not_moved_by_the_generic_model(walks):
+def test_generic_model_does_not_move_joints_at_rest(walks):
     still = walks[0].skeleton.names.index("Spine2")
     rotations = walks[0].rotations.copy()
     rotations[:, still] = IDENTITY
@@ -150,7 +154,7 @@ def test_joints_that_stand_still_are_not_moved_by_the_generic_model(walks):
     assert np.ptp(model.joints[:, :, still], axis=(0, 1)).max() < 1e-9
 
 
-def test_borrowing_from_another_rig_is_refused(walks):
+def test_borrowing_raises_for_another_rig(walks):
     skeleton = walks[0].skeleton
     names = tuple(name.replace("Spine2", "Ribs") for name in skeleton.names)
     other = replace(walks[1], skeleton=Skeleton(names, skeleton.parents, skeleton.offsets))
@@ -158,7 +162,7 @@ def test_borrowing_from_another_rig_is_refused(walks):
         borrow_variation(walks[0], [learn_variation_model([other])])
 
 
-def test_a_saved_model_gives_the_same_variants(learned, tmp_path):
+def test_saved_model_gives_the_same_variants(learned, tmp_path):
     model, settings = learned
     model.save(tmp_path / "walks.npz")
 
@@ -169,9 +173,9 @@ def test_a_saved_model_gives_the_same_variants(learned, tmp_path):
         assert_allclose(one.rotations, other.rotations, atol=1e-9)
 
 
-def test_a_damaged_file_is_refused(model, tmp_path):
+def test_loading_raises_for_a_damaged_file(model, tmp_path):
     path = tmp_path / "walks.npz"
-    replace(model, haste=model.haste * np.nan).save(path)
+    replace(model, log_warp_rates=model.log_warp_rates * np.nan).save(path)
     with pytest.raises(
         InvalidFileError,
         match=r"damaged variation model .* first of haste",

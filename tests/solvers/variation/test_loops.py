@@ -1,4 +1,4 @@
-"""Loops stay loops: pose and velocity at the seam."""
+"""Loops keep their pose and velocity at the seam."""
 
 from dataclasses import replace
 
@@ -20,8 +20,8 @@ from solvers.variation import (
 from solvers.variation.align_examples import positions_in_body_frame
 from solvers.variation.loops import (
     close_loop,
+    detect_loop,
     extract_middle_cycle,
-    loops,
     repeat_loop,
     resample_loop,
 )
@@ -37,8 +37,8 @@ CMU_METRES = 0.0254 / 0.45
 FREE = np.ones(2)
 
 
-def seam_of(motion):
-    """How far poses are apart at the seam, and its velocity step over the clip's largest."""
+def measure_seam(motion):
+    """Return the pose gap at the seam, and its velocity step relative to the clip's largest."""
     rounds, n = repeat_loop(motion, 2), motion.n_frames
     places = forward_kinematics(rounds).positions
     gap = np.abs(places[n - 1] - forward_kinematics(motion).positions[-1]).max()
@@ -48,30 +48,34 @@ def seam_of(motion):
 
 @pytest.fixture(scope="module")
 def cycles(recordings):
-    """Return cycles of CMU walks, from the left foot in front to that again, and closed."""
+    """Return closed cycles of CMU walks, from one extreme of the left foot to the next."""
     found = []
     for path in sorted((recordings / "mocap" / "cmu_walk").glob("35_*.bvh"))[:4]:
         motion = read_bvh(path, scale=CMU_METRES)
         motion = motion.slice(1, motion.n_frames)
         names, body = motion.skeleton.names, positions_in_body_frame(motion)
-        apart = body[:, names.index("RightFoot"), 1] - body[:, names.index("LeftFoot"), 1]
-        peaks, _ = find_peaks(apart, distance=round(0.8 * motion.frame_rate), height=0.2)
+        distance = body[:, names.index("RightFoot"), 1] - body[:, names.index("LeftFoot"), 1]
+        peaks, _ = find_peaks(distance, distance=round(0.8 * motion.frame_rate), height=0.2)
         cycle = motion.slice(int(peaks[0]), int(peaks[1]) + 1)
-        assert seam_of(cycle)[0] > 0.02
-        turns, usual = (
+        assert measure_seam(cycle)[0] > 0.02
+        headings, reference_rotations = (
             headings_from_motion(cycle),
             cycle.rotations[0] * 0.0 + (1.0, 0.0, 0.0, 0.0),
         )
-        course = curves_from_motion(cycle, turns, usual)
-        closed = close_loop(course, cycle.frame_rate, np.ones(len(names)), FREE)
-        start = np.append(cycle.root_positions[0, :2], turns[0])
-        found.append(motion_from_curves(closed, cycle.skeleton, usual, cycle.frame_rate, start))
+        curves = curves_from_motion(cycle, headings, reference_rotations)
+        closed = close_loop(curves, cycle.frame_rate, np.ones(len(names)), FREE)
+        start = np.append(cycle.root_positions[0, :2], headings[0])
+        found.append(
+            motion_from_curves(
+                closed, cycle.skeleton, reference_rotations, cycle.frame_rate, start
+            )
+        )
     return found
 
 
-def test_a_cut_cycle_is_closed(cycles):
+def test_close_loop_closes_a_cut_cycle(cycles):
     for cycle in cycles:
-        gap, step = seam_of(cycle)
+        gap, step = measure_seam(cycle)
         assert gap < 1e-6
         assert step < 1.0
 
@@ -84,7 +88,7 @@ def test_variants_of_a_looping_walk_loop(alone, planted, cycles):
 
     for variant in draw_variants(model, 4):
         assert variant.loops
-        gap, step = seam_of(stand(variant).motion if planted else variant.motion)
+        gap, step = measure_seam(stand(variant).motion if planted else variant.motion)
         assert gap < 2e-3
         assert step < 1.0
 
@@ -94,7 +98,7 @@ def test_variants_loop_at_the_rate_of_the_scene(cycles):
 
     slow = resample_loop(variant, 24.0)
 
-    gap, step = seam_of(slow)
+    gap, step = measure_seam(slow)
     assert gap < 1e-3
     assert step < 1.0
     assert slow.frame_rate == 24.0
@@ -102,10 +106,10 @@ def test_variants_loop_at_the_rate_of_the_scene(cycles):
     assert_allclose(slow.root_positions[0], variant.root_positions[0], atol=5e-3)
 
 
-def test_pinned_at_both_ends_nothing_is_closed(cycles):
+def test_loop_stays_open_when_both_ends_are_pinned(cycles):
     model = learn_variation_model(cycles)
     shifted = replace(
-        model, joints=model.joints + 0.1 * np.eye(1, model.n_moments)[0, :, None, None]
+        model, joints=model.joints + 0.1 * np.eye(1, model.n_samples)[0, :, None, None]
     )
 
     pinned = draw_variants(shifted, 1, settings=VarySettings(pin_start=True, pin_end=True))[0]
@@ -115,22 +119,22 @@ def test_pinned_at_both_ends_nothing_is_closed(cycles):
     assert free.loops
 
 
-def test_what_does_not_loop_is_not_called_so(walks):
+def test_detect_loop_rejects_half_a_cycle(walks):
     half = walks[0].slice(0, walks[0].n_frames // 2)
-    assert not loops(half, headings_from_motion(half))
-    assert loops(walks[0], headings_from_motion(walks[0]))
+    assert not detect_loop(half, headings_from_motion(half))
+    assert detect_loop(walks[0], headings_from_motion(walks[0]))
     assert not any(one.loops for one in draw_variants(learn_variation_model([half]), 1))
 
 
-def test_a_straight_rise_is_bent_to_a_loop():
-    """From 0 to 1: half of the gap is taken at each end, slopes agree already."""
+def test_close_loop_splits_the_gap_of_a_ramp():
+    """A ramp from 0 to 1: each end takes half of the gap; the slopes agree already."""
     rise = np.linspace(0.0, 1.0, 21)
     joints = np.zeros((21, 2, 3))
     joints[:, 0, 0] = joints[:, 1, 0] = rise
-    course = MotionCurves(np.zeros((21, 4)), joints)
+    curves = MotionCurves(np.zeros((21, 4)), joints)
 
-    closed = close_loop(course, 10.0, np.array([1.0, 0.0]), FREE).joints
-    late = close_loop(course, 10.0, np.ones(2), np.array([0.0, 1.0])).joints
+    closed = close_loop(curves, 10.0, np.array([1.0, 0.0]), FREE).joints
+    late = close_loop(curves, 10.0, np.ones(2), np.array([0.0, 1.0])).joints
 
     assert_allclose(closed[[0, -1], 0, 0], 0.5)
     assert_allclose(closed[:, 1], joints[:, 1])
@@ -139,7 +143,7 @@ def test_a_straight_rise_is_bent_to_a_loop():
     assert_allclose(late[-1], 0.0, atol=1e-12)
 
 
-def test_slopes_that_differ_agree_after():
+def test_close_loop_matches_slopes():
     frames = np.arange(41.0)
     joints = np.zeros((41, 1, 3))
     joints[:, 0, 0] = (frames / 20.0 - 1.0) ** 2  # ends as high as it begins, but rising
@@ -148,7 +152,7 @@ def test_slopes_that_differ_agree_after():
     assert abs(slopes[0] - slopes[-1]) < 0.25 * abs(2 * (joints[1, 0, 0] - joints[0, 0, 0]))
 
 
-def test_ways_go_on_as_fast():
+def test_close_loop_matches_root_speeds():
     root = np.zeros((31, 4))
     root[1:, 1] = np.linspace(0.01, 0.03, 30)
     closed = close_loop(MotionCurves(root, np.zeros((31, 1, 3))), 30.0, np.ones(1), FREE).root
@@ -156,8 +160,8 @@ def test_ways_go_on_as_fast():
     assert abs(np.diff(extrapolated)[0]) < 0.25 * 0.02
 
 
-def test_rounds_begin_where_the_one_before_ended():
-    """Four rounds of a walk that turns by a right angle each come back to where it began."""
+def test_repeated_cycles_start_where_the_previous_ended():
+    """Four cycles of a walk through a right angle each return to the start."""
     walk = walking_gait(GaitSettings(duration=1.0, frame_rate=30.0))
     turn = np.linspace(0.0, np.pi / 2, walk.n_frames)
     about = np.stack([np.cos(turn / 2), 0 * turn, 0 * turn, np.sin(turn / 2)], axis=-1)
@@ -177,8 +181,8 @@ def test_rounds_begin_where_the_one_before_ended():
     assert_allclose(np.linalg.norm(back) % (2 * np.pi), 0.0, atol=1e-9)
 
 
-def test_the_middle_of_three_rounds_is_the_round(walks):
+def test_middle_cycle_equals_the_cycle(walks):
     again = extract_middle_cycle(repeat_loop(walks[1], 3), walks[1])
     assert_allclose(again.root_positions[:-1], walks[1].root_positions[:-1], atol=1e-9)
-    alike = np.abs(np.sum(again.rotations * walks[1].rotations, axis=-1))[:-1]
-    assert_allclose(alike, 1.0, atol=1e-9)
+    similarity = np.abs(np.sum(again.rotations * walks[1].rotations, axis=-1))[:-1]
+    assert_allclose(similarity, 1.0, atol=1e-9)

@@ -25,7 +25,7 @@ def clips(request, recordings):
     return [read_recording(file) for file in files[:6]]
 
 
-def test_variants_are_like_the_examples_but_no_copies(clips):
+def test_variants_are_near_the_examples_but_not_copies(clips):
     variants = synthesize(learn_variation_model(clips), 20)
 
     assert 0.65 < measure_variation(variants) / measure_variation(clips) < 1.4

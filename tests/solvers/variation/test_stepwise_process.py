@@ -17,7 +17,7 @@ from solvers.variation.stepwise_stack import learn_stack
 
 
 @pytest.fixture
-def found(rng) -> Hyperparameters:
+def hyperparameters(rng) -> Hyperparameters:
     mixing = np.eye(3) + 0.4 * rng.normal(size=(3, 3))
     return Hyperparameters(
         np.array([0.7, 1.1, 2.0]), np.array([0.3, 0.6, 0.2]), np.array([0.1, 0.2, 0.05]), mixing
@@ -29,17 +29,23 @@ def data(rng):
     return rng.normal(size=(9, 4)), rng.normal(size=(9, 3))
 
 
-def processes(one, other, found):
+def processes(one, other, hyperparameters):
     far = cdist(one, other, "sqeuclidean")
     return [
         np.exp(-0.5 * far / length**2) + bias
-        for length, bias in zip(found.lengths, found.biases, strict=True)
+        for length, bias in zip(hyperparameters.lengths, hyperparameters.biases, strict=True)
     ]
 
 
-def point(found):
-    logs = np.log(np.concatenate([found.lengths, found.biases, found.noises]))
-    return np.concatenate([logs, found.mixing.ravel()])
+def point(hyperparameters):
+    logs = np.log(
+        np.concatenate([
+            hyperparameters.lengths,
+            hyperparameters.biases,
+            hyperparameters.noises,
+        ])
+    )
+    return np.concatenate([logs, hyperparameters.mixing.ravel()])
 
 
 def gaussian_cost(covariance, values):
@@ -48,49 +54,58 @@ def gaussian_cost(covariance, values):
     )
 
 
-def test_the_latent_factor_likelihood_is_that_of_all_outputs_together(data, found):
+def test_latent_factor_likelihood_equals_the_joint_likelihood(data, hyperparameters):
     features, outputs = data
-    weights = np.linalg.inv(found.mixing)
+    weights = np.linalg.inv(hyperparameters.mixing)
     covariance = sum(
         np.kron(kernel + (noise + JITTER) * np.eye(9), np.outer(column, column))
         for kernel, noise, column in zip(
-            processes(features, features, found), found.noises, weights.T, strict=True
+            processes(features, features, hyperparameters),
+            hyperparameters.noises,
+            weights.T,
+            strict=True,
         )
     )
 
-    cost, _ = _latent_cost(point(found), cdist(features, features, "sqeuclidean"), outputs)
+    cost, _ = _latent_cost(
+        point(hyperparameters), cdist(features, features, "sqeuclidean"), outputs
+    )
 
     assert_allclose(cost, gaussian_cost(covariance, outputs.ravel()), rtol=1e-8)
 
 
-def test_the_published_likelihood_is_that_of_three_outputs_that_share_kernels(data, found):
+def test_published_likelihood_equals_that_of_three_outputs(data, hyperparameters):
     features, outputs = data
-    kernels = processes(features, features, found)
+    kernels = processes(features, features, hyperparameters)
     dense = 0.0
-    for row, values in zip(found.mixing**2, outputs.T, strict=True):
+    for row, values in zip(hyperparameters.mixing**2, outputs.T, strict=True):
         covariance = JITTER * np.eye(9) + sum(
             weight * (kernel + noise * np.eye(9))
-            for weight, kernel, noise in zip(row, kernels, found.noises, strict=True)
+            for weight, kernel, noise in zip(row, kernels, hyperparameters.noises, strict=True)
         )
         dense += gaussian_cost(covariance, values)
 
-    cost, _ = _published_cost(point(found), cdist(features, features, "sqeuclidean"), outputs)
+    cost, _ = _published_cost(
+        point(hyperparameters), cdist(features, features, "sqeuclidean"), outputs
+    )
 
     assert_allclose(cost, dense, rtol=1e-8)
 
 
 @pytest.mark.parametrize("cost", [_latent_cost, _published_cost])
-def test_gradients_are_those_of_differences(cost, data, found):
+def test_gradients_equal_finite_differences(cost, data, hyperparameters):
     far = cdist(data[0], data[0], "sqeuclidean")
 
-    slope = cost(point(found), far, data[1])[1]
+    slope = cost(point(hyperparameters), far, data[1])[1]
 
-    differences = approx_fprime(point(found), lambda x: cost(x, far, data[1])[0], 1e-6)
+    differences = approx_fprime(
+        point(hyperparameters), lambda x: cost(x, far, data[1])[0], 1e-6
+    )
     assert_allclose(slope, differences, atol=2e-4)
 
 
 @pytest.mark.parametrize("published", [True, False])
-def test_learning_raises_the_likelihood(published, rng):
+def test_learning_increases_the_likelihood(published, rng):
     features = rng.normal(size=(40, 2))
     outputs = np.sin(features @ rng.normal(size=(2, 3))) + 0.05 * rng.normal(size=(40, 3))
     far = cdist(features, features, "sqeuclidean")
@@ -107,34 +122,36 @@ def test_learning_raises_the_likelihood(published, rng):
 
 
 @pytest.mark.parametrize("published", [True, False])
-def test_with_all_examples_inducing_the_prediction_is_exact(published, data, found, rng):
+def test_prediction_is_exact_when_all_examples_are_inducing(
+    published, data, hyperparameters, rng
+):
     features, outputs = data
-    stack, _ = one_stack(features, outputs, found, published)
+    stack, _ = one_stack(features, outputs, hyperparameters, published)
     new = rng.normal(size=(5, 4))
     seen, there = ((x - features.mean(0)) / features.std(0) for x in (features, new))
     scale, middle = outputs.std(axis=0).max(), outputs.mean(axis=0)
-    weights = found.mixing**2 if published else np.eye(3)
-    mixing = np.eye(3) if published else np.linalg.inv(found.mixing)
+    weights = hyperparameters.mixing**2 if published else np.eye(3)
+    mixing = np.eye(3) if published else np.linalg.inv(hyperparameters.mixing)
     channels = np.linalg.solve(mixing, ((outputs - middle) / scale).T)
-    expected = []
+    predict = []
     for row, told in zip(weights, channels, strict=True):
         own, other = (
-            np.tensordot(row, np.stack(processes(x, seen, found)), axes=1)
+            np.tensordot(row, np.stack(processes(x, seen, hyperparameters)), axes=1)
             for x in (seen, there)
         )
-        noise = row @ found.noises
-        expected.append(other @ np.linalg.solve(own + noise * np.eye(9), told))
+        noise = row @ hyperparameters.noises
+        predict.append(other @ np.linalg.solve(own + noise * np.eye(9), told))
 
-    got = stack.expected(new)[:, 0]
+    got = stack.predict(new)[:, 0]
 
-    assert_allclose(got, scale * (mixing @ expected).T + middle, atol=1e-4)
+    assert_allclose(got, scale * (mixing @ predict).T + middle, atol=1e-4)
 
 
-def test_drawn_functions_have_the_exact_covariance(data, found, rng):
+def test_drawn_functions_have_the_exact_covariance(data, hyperparameters, rng):
     features, outputs = data
-    stack, _ = one_stack(features, outputs, found, published=False)
+    stack, _ = one_stack(features, outputs, hyperparameters, published=False)
     seen = (features - features.mean(0)) / features.std(0)
-    kernel, noise = processes(seen, seen, found)[0], found.noises[0]
+    kernel, noise = processes(seen, seen, hyperparameters)[0], hyperparameters.noises[0]
     exact = kernel - kernel @ np.linalg.solve(kernel + noise * np.eye(9), kernel)
 
     functions = stack.draw_functions(20_000, rng)[0, 0]
@@ -146,22 +163,22 @@ def test_drawn_functions_have_the_exact_covariance(data, found, rng):
 def test_outputs_covary_only_in_the_latent_factor_model(rng):
     """Two outputs that are one and the same up to a factor: what is drawn must be so too."""
     features = rng.normal(size=(60, 3))
-    course = np.sin(2.0 * features[:, 0]) + 0.3 * rng.normal(size=60)
-    outputs = np.column_stack([course, 2.0 * course, 0.1 * rng.normal(size=60)])
+    curves = np.sin(2.0 * features[:, 0]) + 0.3 * rng.normal(size=60)
+    outputs = np.column_stack([curves, 2.0 * curves, 0.1 * rng.normal(size=60)])
     far_away = np.full((4000, 3), 4.0) + rng.normal(size=(4000, 3))
     together = {}
     for published in (True, False):
         stack, _ = one_stack(features, outputs, None, published)
-        drawn = stack.sampled(far_away, rng)[:, 0]
+        drawn = stack.draw_outputs(far_away, rng)[:, 0]
         together[published] = np.corrcoef(drawn[:, 0], drawn[:, 1])[0, 1]
 
     assert together[False] > 0.95
     assert abs(together[True]) < 0.3
 
 
-def one_stack(features, outputs, found, published):
+def one_stack(features, outputs, hyperparameters, published):
     columns = np.arange(features.shape[1])[None]
     return learn_stack(
         features, outputs[:, None], columns, np.ones(features.shape[1]), published,
-        [found] if found else None,
+        [hyperparameters] if hyperparameters else None,
     )  # fmt: skip

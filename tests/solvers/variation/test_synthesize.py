@@ -20,10 +20,10 @@ from solvers.variation import (
 from solvers.variation.align_examples import positions_in_body_frame
 from solvers.variation.motion_curves import curves_from_motion, headings_from_motion
 from solvers.variation.partitions import partition_joints
-from solvers.variation.synthesize import MARGIN
+from solvers.variation.synthesize import RANGE_MARGIN
 
 
-def turn_between(one, other):
+def rotation_between(one, other):
     return np.linalg.norm(
         rotation_vector_from_quaternion(multiply(inverse(one), other)), axis=-1
     )
@@ -42,15 +42,15 @@ def test_the_same_seed_gives_the_same_bits(learned):
     )
 
 
-def test_no_amount_is_the_example_itself(learned, walks):
+def test_variant_is_the_example_at_zero_amount(learned, walks):
     model, settings = learned
-    centre = walks[model.centre]
+    center = walks[model.center]
 
     copy = synthesize(model, 2, settings=replace(settings, amount=0.0))[1]
 
-    assert copy.n_frames == centre.n_frames
-    assert turn_between(copy.rotations[:, 1:], centre.rotations[:, 1:]).max() < 1e-5
-    assert_allclose(positions_in_body_frame(copy), positions_in_body_frame(centre), atol=1e-5)
+    assert copy.n_frames == center.n_frames
+    assert rotation_between(copy.rotations[:, 1:], center.rotations[:, 1:]).max() < 1e-5
+    assert_allclose(positions_in_body_frame(copy), positions_in_body_frame(center), atol=1e-5)
 
 
 @pytest.mark.parametrize("method", [Method.MIXTURE, Method.COREGIONALISED])
@@ -67,14 +67,14 @@ def test_variation_grows_with_the_amount(method, walks):
     assert found[3] > 1.3 * found[2]
 
 
-def test_variants_are_as_varied_as_the_examples(walks, model):
+def test_variants_vary_as_much_as_the_examples(walks, model):
     ratio = measure_variation(synthesize(model, 12)) / measure_variation(walks)
 
     assert 0.7 < ratio < 1.4
 
 
 @pytest.mark.parametrize("partition", Partition)
-def test_a_frozen_partition_is_that_of_the_base(partition, learned, walks):
+def test_frozen_partition_equals_that_of_the_base(partition, learned, walks):
     model, settings = learned
     frozen = replace(settings, timing=0.0, **{partition.name.lower(): 0.0})
     members = partition_joints(model.skeleton)[list(Partition).index(partition)]
@@ -82,14 +82,14 @@ def test_a_frozen_partition_is_that_of_the_base(partition, learned, walks):
 
     variant = synthesize(model, 1, settings=frozen)[0]
 
-    apart = turn_between(variant.rotations, walks[model.centre].rotations)
+    apart = rotation_between(variant.rotations, walks[model.center].rotations)
     assert apart[:, members].max() < 1e-5
     assert apart[:, ~members].max() > 0.01
 
 
-def test_a_little_varies_a_little_around_the_base(learned, walks):
+def test_small_amount_stays_near_the_base(learned, walks):
     model, settings = learned
-    farthest = (model.centre + 1) % len(walks)
+    farthest = (model.center + 1) % len(walks)
     little = replace(settings, amount=0.02, base=farthest + 1)
 
     for variant in synthesize(model, 3, settings=little):
@@ -99,10 +99,10 @@ def test_a_little_varies_a_little_around_the_base(learned, walks):
         assert 1e-5 < apart < 0.15 * measure_variation(walks)
 
 
-def test_pins_hold_whatever_the_timing(learned, walks):
+def test_pins_hold_with_any_timing(learned, walks):
     model, settings = learned
     pinned = replace(settings, pin_start=True, pin_end=True)
-    example = positions_in_body_frame(walks[model.centre])
+    example = positions_in_body_frame(walks[model.center])
 
     for variant in synthesize(model, 3, settings=pinned):
         seen = positions_in_body_frame(variant)
@@ -113,46 +113,46 @@ def test_pins_hold_whatever_the_timing(learned, walks):
 
 
 @pytest.mark.parametrize("amount", [1.0, 2.0])
-def test_no_joint_goes_far_beyond_the_examples(amount, learned):
+def test_joints_stay_near_the_range_of_the_examples(amount, learned):
     model, settings = learned
     low, high = model.joints.min(axis=(0, 1)), model.joints.max(axis=(0, 1))
     # Between moments splines overshoot a little; those through white noise, as published, far.
     times = 6.0 if settings.method is Method.PUBLISHED else 1.2
-    slack = times * MARGIN * (high - low) + 1e-6
+    slack = times * RANGE_MARGIN * (high - low) + 1e-6
 
     for variant in synthesize(model, 5, settings=replace(settings, amount=amount)):
-        joints = curves_from_motion(variant, headings_from_motion(variant), model.usual).joints[
-            :, 1:
-        ]
+        joints = curves_from_motion(
+            variant, headings_from_motion(variant), model.reference_rotations
+        ).joints[:, 1:]
         assert (joints > (low - slack)[1:]).all()
         assert (joints < (high + slack)[1:]).all()
 
 
-def test_length_is_kept(model, walks):
-    usual, slow = (
+def test_variant_has_the_requested_length(model, walks):
+    reference_rotations, slow = (
         synthesize(model, 1, settings=VarySettings(length=length))[0] for length in (1.0, 2.0)
     )
 
-    assert abs(slow.n_frames - 2 * usual.n_frames) <= 2
+    assert abs(slow.n_frames - 2 * reference_rotations.n_frames) <= 2
 
 
-def test_timing_alone_changes_the_length_and_nothing_else(model):
+def test_timing_changes_only_the_length(model):
     """Without timing all variants take the base's time."""
     same = {one.n_frames for one in synthesize(model, 6, settings=VarySettings(timing=0.0))}
     different = {one.n_frames for one in synthesize(model, 6)}
 
-    assert same == {model.n_moments}
+    assert same == {model.n_samples}
     assert len(different) > 2
 
 
-def test_variants_begin_above_the_origin_and_face_the_viewer(model):
+def test_variants_start_above_the_origin_facing_minus_y(model):
     for variant in synthesize(model, 3):
         assert_allclose(variant.root_positions[0, :2], 0.0, atol=0.05)
         assert abs(headings_from_motion(variant)[0]) < 0.2
         assert np.isfinite(forward_kinematics(variant).positions).all()
 
 
-def test_more_variants_do_not_change_the_first_of_a_batch_in_size(learned):
+def test_first_variants_keep_their_size_when_more_are_drawn(learned):
     model, settings = learned
     many = synthesize(model, 7, settings=settings)
 
@@ -160,8 +160,8 @@ def test_more_variants_do_not_change_the_first_of_a_batch_in_size(learned):
     assert len({one.rotations.tobytes() for one in many}) == 7
 
 
-def test_refusals_say_what_to_do(model):
-    with pytest.raises(InvalidMotionError, match="ask for at least one"):
+def test_errors_say_what_to_do(model):
+    with pytest.raises(InvalidMotionError, match="request at least one"):
         synthesize(model, 0)
     with pytest.raises(InvalidMotionError, match="There is no example 9; the model has 4"):
         synthesize(model, 1, settings=VarySettings(base=9))
@@ -169,7 +169,7 @@ def test_refusals_say_what_to_do(model):
         synthesize(model, 1, settings=VarySettings(method=Method.PUBLISHED))
 
 
-def test_progress_rises_to_one_and_may_cancel(model):
+def test_progress_reaches_one_and_can_cancel(model):
     told = []
     synthesize(model, 4, progress=lambda fraction, message="": told.append(fraction))
 

@@ -1,11 +1,10 @@
-"""Who cannot follow tries again with a calmer target, and only then."""
+"""Simulation retries with more smoothing if the body cannot follow, and only then."""
 
 import numpy as np
 import pytest
 from numpy.testing import assert_allclose
 
-from solvers.physics import Ground, SimulateSettings, simulate
-from solvers.physics import segment as physics_piece
+from solvers.physics import Ground, SimulateSettings, simulate, simulate_segment
 from solvers.rotations.representations import multiply, quaternion_from_rotation_vector
 from solvers.samples import GaitSettings, walking_gait
 
@@ -23,7 +22,7 @@ SHAKEN = SHAKEN.with_poses(
 
 
 @pytest.mark.parametrize(
-    ("asked", "tried"),
+    ("requested", "attempts"),
     [
         (0.02, [0.02, 0.04, 0.08, 0.16]),
         (0.1, [0.1, 0.16]),
@@ -31,17 +30,17 @@ SHAKEN = SHAKEN.with_poses(
         (0.0, [0.0, 0.01, 0.02, 0.04]),
     ],
 )
-def test_who_cannot_be_followed_is_calmed_more_each_time(monkeypatch, asked, tried):
-    found = tries(monkeypatch)
-    monkeypatch.setattr(physics_piece, "HANGING", -1.0)
+def test_each_attempt_smooths_more(monkeypatch, requested, attempts):
+    found = record_smoothing(monkeypatch)
+    monkeypatch.setattr(simulate_segment, "MAX_SUPPORT_FRACTION", -1.0)
 
-    result = simulate(WALK, settings=SimulateSettings(smoothing=asked))
+    result = simulate(WALK, settings=SimulateSettings(smoothing=requested))
 
-    assert_allclose(found, tried)
+    assert_allclose(found, attempts)
     assert result.smoothing in found
 
 
-def test_a_take_is_calmed_as_much_as_is_asked_for():
+def test_smoothing_is_as_requested():
     less, more = (
         simulate(SHAKEN, settings=SimulateSettings(smoothing=each)) for each in (0.16, 0.5)
     )
@@ -53,12 +52,12 @@ def test_a_take_is_calmed_as_much_as_is_asked_for():
     assert speeds[1] < speeds[0]
 
 
-def test_a_shaken_take_that_is_not_to_be_calmed_is_calmed_where_it_is_lost():
+def test_shaken_take_is_smoothed_where_the_body_is_lost():
     assert simulate(SHAKEN, settings=SimulateSettings(smoothing=0.0)).followed.all()
 
 
-def test_who_goes_without_any_help_is_simulated_once(monkeypatch):
-    found = tries(monkeypatch)
+def test_body_in_balance_is_simulated_once(monkeypatch):
+    found = record_smoothing(monkeypatch)
 
     result = simulate(WALK, settings=SimulateSettings(support=0.0))
 
@@ -66,20 +65,20 @@ def test_who_goes_without_any_help_is_simulated_once(monkeypatch):
     assert len(found) == 1
 
 
-def tries(monkeypatch) -> list[float]:
+def record_smoothing(monkeypatch) -> list[float]:
     """Return a list that fills with the smoothing of each try."""
-    tried, found = physics_piece._tried, []
+    attempts, found = simulate_segment._attempt, []
 
     def noted(engine, body, motion, conditions, smoothing, progress):
         found.append(smoothing)
-        return tried(engine, body, motion, conditions, smoothing, progress)
+        return attempts(engine, body, motion, conditions, smoothing, progress)
 
-    monkeypatch.setattr(physics_piece, "_tried", noted)
+    monkeypatch.setattr(simulate_segment, "_attempt", noted)
     return found
 
 
 @pytest.mark.parametrize("n_frames", [5, 2])
-def test_help_is_told_of_all_frames_of_a_body_that_hangs(n_frames):
+def test_support_covers_all_frames_of_a_hanging_body(n_frames):
     """One that hovers over the ground has nothing to stand on."""
     sky = WALK.slice(0, n_frames)
     sky = sky.with_poses(root_positions=sky.root_positions + np.array([0, 0, 0.9]))

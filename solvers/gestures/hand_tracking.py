@@ -1,4 +1,4 @@
-"""Where the hands are, as the actor sees it, frame by frame as the frames come in."""
+"""Estimate the hands in the actor's own frame, frame by frame."""
 
 from collections import deque
 from dataclasses import dataclass
@@ -18,86 +18,90 @@ LEFT = tuple(
     POSTURE_JOINTS.index(f"left{part}") for part in ("UpperArm", "LowerArm", "Hand", "HandEnd")
 )
 HEAD, HIPS = POSTURE_JOINTS.index("head"), POSTURE_JOINTS.index("hips")
-NEEDED = (*RIGHT[:3], *LEFT[:3])
-SAMPLES = 3
-"""Seen samples of each joint whose median counts: one wild sample moves nothing."""
+REQUIRED_JOINTS = (*RIGHT[:3], *LEFT[:3])
+MEDIAN_SAMPLES = 3
+"""Observed samples of each joint whose median is used: a single outlier has no effect."""
 N_LENGTHS = 60
-"""Frames whose median tells how long the arms are."""
-TURNED_WITHIN = 0.3
-"""Seconds within which the actor's heading follows the shoulders."""
-SHORTEST_ARM = 0.1
-"""Metres. No actor has shorter ones; a tracker that says so sees none."""
+"""Frames whose median gives the arm length."""
+HEADING_TIME_S = 0.3
+"""Time constant in seconds at which the actor's heading follows the shoulders."""
+MIN_ARM_M = 0.1
+"""Minimum arm length in meters; shorter arms are tracking errors."""
 
 
 @dataclass(frozen=True, eq=False)
 class Hands:
-    """Both hands at one moment: to the actor's right, forward, up; in arm lengths."""
+    """Both hands at one time: to the actor's right, forward, up; in arm lengths."""
 
     time: float
     """Seconds."""
     right: Array
-    """The right wrist from its shoulder, shape (3,)."""
+    """Position of the right wrist from its shoulder, shape (3,)."""
     left: Array
     between: Array
-    """The middle of the wrists from the middle of the shoulders."""
+    """Midpoint of the wrists from the midpoint of the shoulders."""
     gap: float
-    """From hand to hand."""
+    """Distance of the hands."""
     sideways: float
-    """How far the right wrist is to the right of the left one."""
-    newest_gap: float
-    """From wrist to wrist as last seen, unsteadied; NaN while either is not seen."""
+    """Distance of the right wrist to the right of the left one."""
+    latest_gap: float
+    """Latest distance of the wrists, unfiltered; NaN while either is missing."""
 
     @property
     def reach(self) -> float:
-        """How far the right wrist is from its shoulder: 1 with a straight arm."""
+        """Distance of the right wrist from its shoulder: 1 for a straight arm."""
         return float(np.linalg.norm(self.right))
 
 
-class HandReader:
-    """Turns joints into `Hands`: steadied, and free of the actor's place, heading and size."""
+class HandEstimator:
+    """Convert joints to `Hands`: filtered, without the actor's position, heading and size."""
 
     def __init__(self, settings: GestureSettings) -> None:
         self._settings = settings
-        self._samples: list[deque[Array]] = [deque(maxlen=SAMPLES) for _ in POSTURE_JOINTS]
-        self._seen_at = np.full(len(POSTURE_JOINTS), -np.inf)
+        self._samples: list[deque[Array]] = [
+            deque(maxlen=MEDIAN_SAMPLES) for _ in POSTURE_JOINTS
+        ]
+        self._observed_at = np.full(len(POSTURE_JOINTS), -np.inf)
         self._lengths: deque[float] = deque(maxlen=N_LENGTHS)
         self._across = np.zeros(2)
         self._time = -np.inf
 
     def read(self, time: float, positions: Array, confidence: Array) -> Hands | None:
-        """Return where the hands are, or None while shoulders or arms are not seen.
+        """Return the hands, or None while shoulders or arms are missing.
 
         Parameters
         ----------
         time : float, seconds
             Later than that of all frames before.
-        positions : shape (20, 3), metres, Z up
-            In the order of `POSTURE_JOINTS`; NaN: not tracked.
+        positions : shape (20, 3), meters, Z up
+            In the order of `POSTURE_JOINTS`; NaN is missing.
         confidence : shape (20,), 0 to 1
         """
-        seen = np.isfinite(positions).all(axis=-1)
-        seen &= confidence >= self._settings.least_confidence
-        for joint in np.flatnonzero(seen):
-            if time - self._seen_at[joint] > self._settings.patience:
+        observed = np.isfinite(positions).all(axis=-1)
+        observed &= confidence >= self._settings.least_confidence
+        for joint in np.flatnonzero(observed):
+            if time - self._observed_at[joint] > self._settings.patience:
                 self._samples[joint].clear()
             self._samples[joint].append(positions[joint])
-        self._seen_at[seen] = time
-        known = time - self._seen_at <= self._settings.patience
+        self._observed_at[observed] = time
+        available = time - self._observed_at <= self._settings.patience
         elapsed, self._time = time - self._time, time
-        if not known[list(NEEDED)].all():
+        if not available[list(REQUIRED_JOINTS)].all():
             return None
-        joints = {joint: self._steady(joint) for joint in (*RIGHT, *LEFT) if known[joint]}
+        joints = {
+            joint: self._median_position(joint) for joint in (*RIGHT, *LEFT) if available[joint]
+        }
         length = self._arm_length(joints)
-        if length < SHORTEST_ARM or not self._turn(joints, elapsed):
+        if length < MIN_ARM_M or not self._update_heading(joints, elapsed):
             return None
         return self._hands(time, joints, length)
 
-    def _steady(self, joint: int) -> Array:
+    def _median_position(self, joint: int) -> Array:
         return np.asarray(np.median(np.stack(self._samples[joint]), axis=0))
 
     def _newest_gap(self, time: float) -> float:
         right, left = RIGHT[2], LEFT[2]
-        if min(self._seen_at[right], self._seen_at[left]) < time:
+        if min(self._observed_at[right], self._observed_at[left]) < time:
             return float("nan")
         return float(np.linalg.norm(self._samples[right][-1] - self._samples[left][-1]))
 
@@ -107,12 +111,12 @@ class HandReader:
             self._lengths.append(float(upper + np.linalg.norm(joints[wrist] - joints[elbow])))
         return float(np.median(self._lengths))
 
-    def _turn(self, joints: dict[int, Array], elapsed: float) -> bool:
-        """Follow the shoulders with the heading; tell whether there is one."""
+    def _update_heading(self, joints: dict[int, Array], elapsed: float) -> bool:
+        """Filter the heading towards the shoulders'; return whether there is one."""
         across = (joints[RIGHT[0]] - joints[LEFT[0]])[:2]
-        share = 1.0 if not self._across.any() else 1.0 - np.exp(-elapsed / TURNED_WITHIN)
-        self._across = self._across + share * (across - self._across)
-        return bool(np.linalg.norm(self._across) > 0.2 * SHORTEST_ARM)
+        gain = 1.0 if not self._across.any() else 1.0 - np.exp(-elapsed / HEADING_TIME_S)
+        self._across = self._across + gain * (across - self._across)
+        return bool(np.linalg.norm(self._across) > 0.2 * MIN_ARM_M)
 
     def _hands(self, time: float, joints: dict[int, Array], length: float) -> Hands:
         x, y = self._across / np.linalg.norm(self._across)

@@ -1,4 +1,4 @@
-"""Which parts of a simulated body the ground carries."""
+"""Sum the ground's forces on the parts of a simulated body."""
 
 import numpy as np
 from numpy.typing import NDArray
@@ -9,16 +9,15 @@ Array = NDArray[np.float64]
 
 
 def add_loads(world: World, loads: Array, factor: float) -> None:
-    """Add to `loads`, shape (n_ends,), the forces by which the ground pushes up at each end of
-    `PhysicsBody.grounded` in this moment, times a factor.
-    """
+    """Add the current upward ground force at each end of `PhysicsBody.ground_capsules`, times a
+    factor, to `loads`, shape (n_ends,)."""
     data = world.data
     active = data.contact.efc_address >= 0
     addresses = data.contact.efc_address[active]
     if not len(addresses):
         return
     geometries = data.contact.geom[active].max(axis=1)
-    out = data.contact.pos[active] - data.geom_xpos[geometries]
-    along = np.einsum("ci,ci->c", out, data.geom_xmat[geometries][:, 2::3])
+    offsets = data.contact.pos[active] - data.geom_xpos[geometries]
+    along = np.einsum("ci,ci->c", offsets, data.geom_xmat[geometries][:, 2::3])
     ends = world.first_ends[geometries] + (along < 0.0)
     np.add.at(loads, ends, factor * data.efc_force[addresses])

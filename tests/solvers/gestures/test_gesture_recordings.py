@@ -14,10 +14,10 @@ from solvers.recordings.live.frames import frames_of
 from solvers.workflows.live_session import posture_of
 
 CLAP, WAVE = "a10", "a02"
-USUAL = GestureSettings()
+DEFAULT_SETTINGS = GestureSettings()
 
 
-def gestures_in(path, settings=USUAL):
+def gestures_in(path, settings=DEFAULT_SETTINGS):
     recording = read_joints(path)
     frames = [posture_of(frame) for frame in frames_of(recording)]
     positions, confidence = (np.stack(each) for each in zip(*frames, strict=True))
@@ -27,7 +27,7 @@ def gestures_in(path, settings=USUAL):
     }
 
 
-def test_most_claps_and_all_waves_are_told(recordings):
+def test_most_claps_and_all_waves_are_reported(recordings):
     folder = recordings / "kinect" / "msr_action3d"
     always = GestureSettings(waves_need_hand_up=False)
 
@@ -35,12 +35,17 @@ def test_most_claps_and_all_waves_are_told(recordings):
     waves = [gestures_in(path, always) for path in sorted(folder.glob(f"{WAVE}_s0[34]_*"))]
 
     assert len(claps) >= 6 and len(waves) >= 3
-    assert sum(Gesture.CAPTURE_START in told for told in claps) >= 4
-    assert all({Gesture.PAGE_BACK, Gesture.PAGE_NEXT} & told for told in waves)
+    assert (
+        sum(Gesture.CAPTURE_START in recognized_gestures for recognized_gestures in claps) >= 4
+    )
+    assert all(
+        {Gesture.PAGE_BACK, Gesture.PAGE_NEXT} & recognized_gestures
+        for recognized_gestures in waves
+    )
 
 
 @pytest.mark.parametrize("subject", ["03", "04"])
-def test_exercising_gives_no_command(recordings, subject):
+def test_exercises_give_no_command(recordings, subject):
     """Four minutes of squats, lunges and arm raises, as one stream."""
     paths = sorted((recordings / "kinect" / "ui_prmd").glob(f"*_s{subject}_*"))
     clips = [posture_positions(read_joints(path)) for path in paths]
@@ -52,7 +57,7 @@ def test_exercising_gives_no_command(recordings, subject):
     assert events == ()
 
 
-def test_a_confident_joint_is_what_the_recording_says(recordings):
+def test_confidence_is_that_of_the_recording(recordings):
     path = next((recordings / "kinect" / "msr_action3d").glob("a10_s03_*"))
     recording = read_joints(path)
 

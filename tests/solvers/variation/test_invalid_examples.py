@@ -24,7 +24,7 @@ def about(axis, angles):
     return quaternion_from_rotation_vector(np.asarray(angles)[:, None] * np.array(axis))
 
 
-def with_turn(motion, joint, axis, angles):
+def with_rotation(motion, joint, axis, angles):
     """Turn a joint further, by an angle in each frame, about an axis of its parent."""
     rotations = motion.rotations.copy()
     place = motion.skeleton.names.index(joint)
@@ -37,7 +37,7 @@ def passing(motion, exponent):
     return np.linspace(0.0, 1.0, motion.n_frames) ** exponent
 
 
-def quickest(motions, joint):
+def fastest(motions, joint):
     """Metres per second that a joint moves at most, as the actor faces."""
     place = motions[0].skeleton.names.index(joint)
     return max(
@@ -48,10 +48,10 @@ def quickest(motions, joint):
 
 
 @pytest.mark.parametrize("method", EVERY)
-def test_arms_that_go_round_twice_stay_whole(method, walks):
+def test_variants_keep_arms_that_rotate_twice(method, walks):
     """Their rotation vectors pass pi again and again."""
     mills = [
-        with_turn(walk, "LeftArm", (1, 0, 0), 4 * np.pi * passing(walk, power))
+        with_rotation(walk, "LeftArm", (1, 0, 0), 4 * np.pi * passing(walk, power))
         for walk, power in zip(walks, (1.0, 1.1, 0.95, 1.05), strict=True)
     ]
     settings = VarySettings(method=method)
@@ -59,7 +59,7 @@ def test_arms_that_go_round_twice_stay_whole(method, walks):
     drawn = draw_variants(learn_variation_model(mills, settings=settings), 6, settings=settings)
 
     variants = [one.motion for one in drawn]
-    assert quickest(variants, "LeftHand") < 2.0 * quickest(mills, "LeftHand")
+    assert fastest(variants, "LeftHand") < 2.0 * fastest(mills, "LeftHand")
     assert 0.4 < measure_variation(variants) / measure_variation(mills) < 1.6
     place = walks[0].skeleton.names.index("LeftHand")
     shoulder = walks[0].skeleton.names.index("LeftArm")
@@ -71,10 +71,10 @@ def test_arms_that_go_round_twice_stay_whole(method, walks):
 
 
 @pytest.mark.parametrize("method", EVERY)
-def test_arms_straight_up_do_not_flip(method, walks):
+def test_variants_do_not_flip_arms_that_point_up(method, walks):
     """Beyond straight up in some examples, short of it in others: half a turn from rest."""
     raised = [
-        with_turn(walk, "LeftArm", (0, 1, 0), -np.pi / 2 - lift * passing(walk, 1.0))
+        with_rotation(walk, "LeftArm", (0, 1, 0), -np.pi / 2 - lift * passing(walk, 1.0))
         for walk, lift in zip(walks, (1.4, 1.75, 1.5, 1.65), strict=True)
     ]
     settings = VarySettings(method=method)
@@ -86,11 +86,11 @@ def test_arms_straight_up_do_not_flip(method, walks):
     variants = [one.motion for one in drawn]
     # The latent factor model is quicker where a clip begins; a flip would be ten times so.
     times = 1.3 if method is Method.MIXTURE else 3.0
-    assert quickest(variants, "LeftHand") < times * quickest(raised, "LeftHand")
+    assert fastest(variants, "LeftHand") < times * fastest(raised, "LeftHand")
 
 
 @pytest.mark.parametrize("method", EVERY)
-def test_turning_on_the_spot_several_times(method, walks):
+def test_variants_keep_several_rotations_on_the_spot(method, walks):
     spun = []
     for walk, power in zip(walks, (1.0, 1.1, 0.95, 1.05), strict=True):
         turn = about((0, 0, 1), 6 * np.pi * passing(walk, power))
@@ -107,11 +107,11 @@ def test_turning_on_the_spot_several_times(method, walks):
         assert np.ptp(headings_from_motion(variant.motion)) == pytest.approx(wanted, rel=0.1)
 
 
-def test_two_flips_the_same_way_do_not_wind_a_joint_up(walks):
+def test_two_flips_in_one_direction_do_not_wind_up_a_joint(walks):
     """A thigh that is half a turn off for five frames: before and after all is as without."""
     angles = np.zeros(walks[1].n_frames)
     angles[25:30], angles[30:] = np.pi, 2.0 * np.pi
-    broken = with_turn(walks[1], "LeftUpLeg", (0.0, 0.0, 1.0), angles)
+    broken = with_rotation(walks[1], "LeftUpLeg", (0.0, 0.0, 1.0), angles)
     plain, odd = (
         learn_variation_model([walks[0], one, *walks[2:]]) for one in (walks[1], broken)
     )
@@ -126,19 +126,20 @@ def test_two_flips_the_same_way_do_not_wind_a_joint_up(walks):
     assert not plain.warning
 
 
-def test_twice_the_frame_rate_is_the_same_example(walks):
+def test_model_is_the_same_at_twice_the_frame_rate(walks):
     """Of another rate and length: variants go as fast and as far."""
     quick = [walks[0], *(resample(walk, 150.0) for walk in walks[1:])]
-    usual, mixed = (
+    reference_rotations, mixed = (
         [one.motion for one in draw_variants(learn_variation_model(some), 8)]
         for some in (walks, quick)
     )
 
     assert {one.frame_rate for one in mixed} == {60.0}
-    lengths = [np.mean([one.n_frames for one in some]) for some in (usual, mixed)]
+    lengths = [np.mean([one.n_frames for one in some]) for some in (reference_rotations, mixed)]
     assert lengths[1] == pytest.approx(lengths[0], rel=0.05)
     ways = [
-        np.mean([np.ptp(one.root_positions[:, 1]) for one in some]) for some in (usual, mixed)
+        np.mean([np.ptp(one.root_positions[:, 1]) for one in some])
+        for some in (reference_rotations, mixed)
     ]
     assert ways[1] == pytest.approx(ways[0], rel=0.05)
 

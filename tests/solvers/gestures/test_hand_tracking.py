@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from numpy.testing import assert_allclose
 
-from solvers.gestures.hand_signals import HandReader
+from solvers.gestures.hand_tracking import HandEstimator
 from solvers.gestures.settings import GestureSettings
 from solvers.motion.humanoid.posture_joints import POSTURE_JOINTS
 
@@ -14,34 +14,34 @@ SURE = np.ones(20)
 @pytest.fixture
 def t_pose():
     """An actor who faces -Y: the right is at -X. Arms of half a metre, wrists 1.3 m apart."""
-    places = np.full((20, 3), np.nan)
+    positions = np.full((20, 3), np.nan)
     for side, sign in (("left", 1.0), ("right", -1.0)):
         for part, x in (("UpperArm", 0.15), ("LowerArm", 0.40), ("Hand", 0.65)):
-            places[POSTURE_JOINTS.index(side + part)] = (sign * x, 2.0, 1.4)
-    return places
+            positions[POSTURE_JOINTS.index(side + part)] = (sign * x, 2.0, 1.4)
+    return positions
 
 
-def test_known_places(t_pose):
-    hands = HandReader(GestureSettings()).read(0.0, t_pose, SURE)
+def test_hands_of_a_t_pose(t_pose):
+    hands = HandEstimator(GestureSettings()).read(0.0, t_pose, SURE)
 
     assert_allclose(hands.right, (1, 0, 0), atol=1e-12)
     assert_allclose(hands.left, (-1, 0, 0), atol=1e-12)
     assert_allclose(hands.between, (0, 0, 0), atol=1e-12)
-    assert hands.gap == hands.sideways == hands.newest_gap == pytest.approx(1.3 / 0.5)
+    assert hands.gap == hands.sideways == hands.latest_gap == pytest.approx(1.3 / 0.5)
     assert hands.reach == pytest.approx(1.0)
 
 
-def test_forward_is_where_the_actor_faces(t_pose):
+def test_forward_follows_the_heading(t_pose):
     t_pose[POSTURE_JOINTS.index("rightHand")] += (0.25, -0.25, 0.1)
 
-    hands = HandReader(GestureSettings()).read(0.0, t_pose, SURE)
+    hands = HandEstimator(GestureSettings()).read(0.0, t_pose, SURE)
 
     arm = (0.5 + 0.25 + np.hypot(0.25, 0.1)) / 2  # median of both arms' lengths
     assert_allclose(hands.right * arm, (0.25, 0.25, 0.1), atol=1e-12)
 
 
-def test_one_wild_sample_moves_nothing(t_pose):
-    reader = HandReader(GestureSettings())
+def test_single_outlier_has_no_effect(t_pose):
+    reader = HandEstimator(GestureSettings())
     for frame in range(3):
         usual = reader.read(frame / 30, t_pose, SURE)
     wild = t_pose.copy()
@@ -52,8 +52,8 @@ def test_one_wild_sample_moves_nothing(t_pose):
     assert_allclose(hands.right, usual.right, atol=1e-12)
 
 
-def test_a_lost_hand_stays_for_a_moment_and_is_gone_then(t_pose):
-    reader = HandReader(GestureSettings(patience=0.2))
+def test_missing_hand_is_held_briefly(t_pose):
+    reader = HandEstimator(GestureSettings(patience=0.2))
     usual = reader.read(0.0, t_pose, SURE)
     unsure = SURE.copy()
     unsure[POSTURE_JOINTS.index("rightHand")] = 0.1
@@ -61,18 +61,18 @@ def test_a_lost_hand_stays_for_a_moment_and_is_gone_then(t_pose):
     soon, late = reader.read(0.19, t_pose, unsure), reader.read(0.21, t_pose, unsure)
 
     assert_allclose(soon.right, usual.right)
-    assert np.isnan(soon.newest_gap)
+    assert np.isnan(soon.latest_gap)
     assert late is None
 
 
-def test_hips_and_head_are_not_needed_but_both_arms_are(t_pose):
+def test_both_arms_are_required_but_not_hips_and_head(t_pose):
     for joint in ("rightUpperArm", "rightLowerArm", "rightHand", "leftHand", "leftUpperArm"):
         lost = t_pose.copy()
         lost[POSTURE_JOINTS.index(joint)] = np.nan
 
-        assert HandReader(GestureSettings()).read(0.0, lost, SURE) is None
+        assert HandEstimator(GestureSettings()).read(0.0, lost, SURE) is None
 
 
-def test_nobody_is_seen_in_one_point(t_pose):
-    assert HandReader(GestureSettings()).read(0.0, 0.0 * t_pose, SURE) is None
-    assert HandReader(GestureSettings()).read(0.0, np.zeros((20, 3)), SURE) is None
+def test_joints_in_one_point_give_no_hands(t_pose):
+    assert HandEstimator(GestureSettings()).read(0.0, 0.0 * t_pose, SURE) is None
+    assert HandEstimator(GestureSettings()).read(0.0, np.zeros((20, 3)), SURE) is None

@@ -11,11 +11,17 @@ from numpy.testing import assert_allclose
 from solvers.motion import HumanoidMap, Motion, Skeleton, find_humanoid_map
 from solvers.physics import NoPhysicsError
 from solvers.physics.body import Capsule, PhysicsBody, build_physics_body
-from solvers.physics.control import _in_cones
+from solvers.physics.body_surface import (
+    height_correction,
+    joints_of_ends,
+    lowest_points,
+    measure_clearance,
+    measure_penetration,
+)
+from solvers.physics.control import _project_to_cones
 from solvers.physics.engine import load_engine
-from solvers.physics.surface import bottoms, end_joints, measure_clearance, penetration, raising
-from solvers.physics.tables import MASS_SHARES, ROLES, part_of
-from solvers.physics.target import blended, calmed_target, fill_gaps
+from solvers.physics.tables import MASS_FRACTIONS, ROLES, role_without_side
+from solvers.physics.target import blend_motions, fill_gaps, smooth_target
 from solvers.physics.world import build_world
 from solvers.rotations.representations import quaternion_from_rotation_vector, rotate
 from solvers.samples import GaitSettings, walking_gait
@@ -36,11 +42,11 @@ def body_of(*capsules: Capsule) -> PhysicsBody:
     return replace(build_physics_body(motion, HumanoidMap()), capsules=capsules, size=1.0)
 
 
-def ball(place=(0.0, 0.0, 0.0)) -> Capsule:
-    return Capsule(0, np.tile(np.array(place), (2, 1)), RADIUS, 1.0)
+def ball(position=(0.0, 0.0, 0.0)) -> Capsule:
+    return Capsule(0, np.tile(np.array(position), (2, 1)), RADIUS, 1.0)
 
 
-def test_a_dropped_ball_falls_as_galileo_says_and_comes_to_rest_on_the_ground(engine):
+def test_dropped_ball_falls_freely_and_comes_to_rest(engine):
     world = build_world(engine, body_of(ball()), 0.5, 1.0, STEP)
     world.data.qpos[:3] = 0.0, 0.0, 0.5 + RADIUS + HEIGHT
     n_fall = int(np.sqrt(2 * HEIGHT / 9.81) / STEP)
@@ -56,8 +62,8 @@ def test_a_dropped_ball_falls_as_galileo_says_and_comes_to_rest_on_the_ground(en
 
 
 @pytest.mark.parametrize("friction", [0.3, 0.8])
-def test_friction_stops_a_sled_after_the_way_that_coulomb_says(engine, friction):
-    runners = [ball(place) for place in ((0.5, 0.5, 0), (0.5, -0.5, 0), (-0.8, 0, 0))]
+def test_friction_stops_a_sled_after_the_coulomb_distance(engine, friction):
+    runners = [ball(position) for position in ((0.5, 0.5, 0), (0.5, -0.5, 0), (-0.8, 0, 0))]
     world = build_world(engine, body_of(*runners), 0.0, friction, STEP)
     world.data.qpos[2], world.data.qvel[0] = RADIUS, 2.0
 
@@ -68,7 +74,7 @@ def test_friction_stops_a_sled_after_the_way_that_coulomb_says(engine, friction)
     assert_allclose(world.data.qvel, 0.0, atol=0.005)
 
 
-def test_energy_does_not_grow_by_itself(engine, walk):
+def test_energy_does_not_grow(engine, walk):
     body = build_physics_body(walk, find_humanoid_map(walk.skeleton))
     world = build_world(engine, body, 0.0, 1.0, STEP)
     world.data.qpos[2] = 2.0
@@ -86,16 +92,18 @@ def test_energy_does_not_grow_by_itself(engine, walk):
     assert energies[-1] < 0.7 * energies[0], "and the ground took some"
 
 
-def test_shares_of_mass_are_those_of_a_whole_body():
+def test_mass_fractions_sum_to_one():
     assert len(ROLES) == 22
-    assert_allclose(sum(MASS_SHARES[part_of(role)] for role in ROLES), 1.0, atol=0.001)
+    assert_allclose(
+        sum(MASS_FRACTIONS[role_without_side(role)] for role in ROLES), 1.0, atol=0.001
+    )
 
 
 @pytest.mark.parametrize(
     "missing",
     [(), ("spine", "upperChest"), ("leftToes", "rightFoot", "rightToes"), ("head", "neck")],
 )
-def test_a_segment_that_is_missing_is_borne_by_the_next_above(walk, missing):
+def test_mass_of_a_missing_segment_moves_to_the_one_above(walk, missing):
     humanoid = find_humanoid_map(walk.skeleton)
     for role in missing:
         humanoid = humanoid.with_joint(role, None)
@@ -107,7 +115,7 @@ def test_a_segment_that_is_missing_is_borne_by_the_next_above(walk, missing):
     assert lightest > 0.0
 
 
-def test_a_body_grows_with_its_skeleton(walk):
+def test_body_scales_with_the_skeleton(walk):
     humanoid, skeleton = find_humanoid_map(walk.skeleton), walk.skeleton
     tall = Skeleton(skeleton.names, skeleton.parents, 1.2 * skeleton.offsets)
 
@@ -124,7 +132,7 @@ def test_a_body_grows_with_its_skeleton(walk):
     )
 
 
-def test_fingers_are_no_segments_and_what_never_turns_is_part_of_the_joint_above():
+def test_fingers_and_rigid_joints_are_no_segments():
     names = ("hips", "joint", "leftUpperLeg", "rightUpperLeg", "leftLowerLeg", "rightLowerLeg")
     offsets = [[0, 0, 1], [0.1, 0, 0], [0, 0, 0], [-0.1, 0, 0], [0, 0, -0.4], [0, 0, -0.4]]
     skeleton = Skeleton(
@@ -143,22 +151,22 @@ def test_fingers_are_no_segments_and_what_never_turns_is_part_of_the_joint_above
     ]  # fmt: skip
     frame = body.frames[2]
     assert frame.above == 0
-    assert_allclose(frame.place, [0.1, 0.0, 0.0])
+    assert_allclose(frame.position, [0.1, 0.0, 0.0])
     assert_allclose(frame.rotation, quaternion_from_rotation_vector([0.0, 0.0, 0.5]))
 
 
-def test_the_target_moves_as_fast_as_it_says(rng):
+def test_target_velocities_equal_finite_differences(rng):
     """Velocities and accelerations, against differences of the places."""
-    places = rng.normal(size=(8, 3))
+    coordinates = rng.normal(size=(8, 3))
     rotations = quaternion_from_rotation_vector(rng.normal(scale=0.3, size=(8, 2, 3)))
-    target = calmed_target(places, rotations, 30.0, 0.05)
+    target = smooth_target(coordinates, rotations, 30.0, 0.05)
     n_steps = 2000
     dt = 1.0 / 30.0 / n_steps
 
     states = target.between(3, n_steps)
 
     assert_allclose(
-        np.gradient(states.places[:, :3], dt, axis=0)[5:-5],
+        np.gradient(states.coordinates[:, :3], dt, axis=0)[5:-5],
         states.velocities[5:-5, :3],
         atol=1e-3,
     )
@@ -167,27 +175,29 @@ def test_the_target_moves_as_fast_as_it_says(rng):
         (states.velocities[:, 3:], states.accelerations[:, 3:]),
     ):
         assert_allclose(np.gradient(kind, dt, axis=0)[5:-5], faster[5:-5], atol=0.1)
-    assert_allclose(spins_of(states.places, dt)[5:-5], states.velocities[5:-5, 3:], atol=1e-3)
+    assert_allclose(
+        angular_velocities(states.coordinates, dt)[5:-5], states.velocities[5:-5, 3:], atol=1e-3
+    )
 
 
-def spins_of(places, dt):
+def angular_velocities(coordinates, dt):
     """Angular velocity in the joint's own frame, from how two of its axes move."""
-    turns = places[:, 3:].reshape(len(places), -1, 4)
+    turns = coordinates[:, 3:].reshape(len(coordinates), -1, 4)
     x, y = (rotate(turns, axis) for axis in np.eye(3)[:2])
     z = np.cross(x, y)
     dx, dy, dz = (np.gradient(axis, dt, axis=0) for axis in (x, y, z))
     own = np.stack([(z * dy).sum(-1), (x * dz).sum(-1), (y * dx).sum(-1)], axis=-1)
-    return own.reshape(len(places), -1)
+    return own.reshape(len(coordinates), -1)
 
 
 @pytest.mark.parametrize("frame_rate", [30.0, 120.0])
-def test_the_target_is_calmed_as_by_a_gaussian_whatever_the_frame_rate(frame_rate):
+def test_target_smoothing_equals_a_gaussian_at_any_frame_rate(frame_rate):
     time = np.arange(int(4 * frame_rate)) / frame_rate
     wave = np.sin(2 * np.pi * 4.0 * time)
-    places = np.stack([wave, 0 * wave, 3.0 * time], axis=-1)
+    coordinates = np.stack([wave, 0 * wave, 3.0 * time], axis=-1)
     still = np.tile([1.0, 0.0, 0.0, 0.0], (len(time), 1, 1))
 
-    target = calmed_target(places, still, frame_rate, 0.03).at_frames()
+    target = smooth_target(coordinates, still, frame_rate, 0.03).at_frames()
 
     inner = slice(len(time) // 4, -len(time) // 4)
     kept = np.exp(-0.5 * (2 * np.pi * 4.0 * 0.03) ** 2)
@@ -195,16 +205,16 @@ def test_the_target_is_calmed_as_by_a_gaussian_whatever_the_frame_rate(frame_rat
     assert_allclose(target[:, 2], 3.0 * time, atol=1e-9)  # a straight way is not changed
 
 
-def test_a_gap_is_turned_across_evenly_and_held_at_the_ends():
+def test_fill_gaps_interpolates_and_holds_the_ends():
     skeleton = Skeleton(("a", "b"), (-1, 0), np.zeros((2, 3)))
     turns = np.zeros((7, 2, 3))
     turns[:, 0, 2] = [9.0, 0.0, 9.0, 9.0, 0.9, 9.0, 9.0]
     rotations = quaternion_from_rotation_vector(turns)
-    places = np.arange(21.0).reshape(7, 3)
+    coordinates = np.arange(21.0).reshape(7, 3)
     rotations[[0, 2, 3, 5, 6], 0] = np.nan
-    places[2] = np.nan
+    coordinates[2] = np.nan
 
-    whole = fill_gaps(Motion(skeleton, rotations, places, 30.0))
+    whole = fill_gaps(Motion(skeleton, rotations, coordinates, 30.0))
 
     angles = [0.0, 0.0, 0.3, 0.6, 0.9, 0.9, 0.9]
     turns[:, 0, 2] = angles
@@ -212,15 +222,15 @@ def test_a_gap_is_turned_across_evenly_and_held_at_the_ends():
     assert_allclose(whole.root_positions, np.arange(21.0).reshape(7, 3))
 
 
-def test_forces_of_the_ground_do_not_pull_and_friction_bounds_them():
+def test_ground_forces_stay_in_the_friction_cone():
     given = np.array([-5.0, 1.0, 1.0, 10.0, 3.0, 4.0, 10.0, 30.0, 40.0])
 
-    inside = _in_cones(given, friction=0.6)
+    inside = _project_to_cones(given, friction=0.6)
 
     assert_allclose(inside, [0, 0, 0, 10, 3, 4, 10, 3.6, 4.8])
 
 
-def test_the_skin_of_a_capsule_hangs_below_both_its_ends_by_its_radius():
+def test_lowest_points_are_a_radius_below_the_ends():
     """A rod of 1 m with a skin of 10 cm, turned about X from level to upright and back."""
     rod = Capsule(0, np.array([[0.0, 0.0, 0.0], [0.0, 1.0, 0.0]]), 0.1, 1.0)
     body = body_of(rod, replace(rod, touches=False))
@@ -233,41 +243,43 @@ def test_the_skin_of_a_capsule_hangs_below_both_its_ends_by_its_radius():
         30.0,
     )
 
-    points = bottoms(body, motion)
+    points = lowest_points(body, motion)
 
-    assert end_joints(body).tolist() == [0, 0]
+    assert joints_of_ends(body).tolist() == [0, 0]
     assert_allclose(points[:, 0], np.tile([5.0, 0.0, 1.9], (3, 1)), atol=1e-12)
     assert_allclose(points[:, 1], [[5, 1, 1.9], [5, 0, 0.9], [5, 0.75**0.5, 2.4]], atol=1e-12)
     assert_allclose(measure_clearance(body, motion, 0.5), [1.4, 0.4, 1.4], atol=1e-12)
-    assert penetration(body, motion, 1.0) == pytest.approx(0.1)
+    assert measure_penetration(body, motion, 1.0) == pytest.approx(0.1)
 
 
-def test_a_body_that_is_sunk_for_long_is_raised_and_one_that_jumps_is_not_lowered():
+def test_height_correction_raises_sunk_bodies_and_keeps_jumps():
     heights = np.zeros(300)
     heights[:100] = -0.2
     heights[150:165] = 0.4
     heights[165:170] = -0.3
 
-    lift = raising(heights, frame_rate=30.0, size=1.0)
+    lift = height_correction(heights, frame_rate=30.0, size=1.0)
 
     assert_allclose(lift[:70], 0.2 - 0.02, atol=1e-3)  # two may be pressed into the ground
     assert_allclose(lift[130:], 0.0, atol=1e-3)
-    assert_allclose(raising(np.full(90, 0.1), 30.0, 1.0), -0.1)
-    assert_allclose(raising(np.full(90, 2.0), 30.0, 1.0), 0.0)
+    assert_allclose(height_correction(np.full(90, 0.1), 30.0, 1.0), -0.1)
+    assert_allclose(height_correction(np.full(90, 2.0), 30.0, 1.0), 0.0)
 
 
-def test_blending_goes_all_the_way_or_not_at_all(walk):
+def test_blend_motions_is_exact_at_weights_zero_and_one(walk):
     turned = walk.with_poses(np.roll(walk.rotations, 5, axis=0), walk.root_positions + 1.0)
-    share = np.linspace(0.0, 1.0, walk.n_frames)
+    weights = np.linspace(0.0, 1.0, walk.n_frames)
 
-    between = blended(walk, turned, range(walk.n_joints), share)
+    between = blend_motions(walk, turned, range(walk.n_joints), weights)
 
     assert np.array_equal(between.rotations[0], walk.rotations[0])
     assert np.array_equal(between.rotations[-1], turned.rotations[-1])
-    assert_allclose(between.root_positions - walk.root_positions, share[:, None] + np.zeros(3))
+    assert_allclose(
+        between.root_positions - walk.root_positions, weights[:, None] + np.zeros(3)
+    )
 
 
-def test_a_missing_engine_is_said_in_a_sentence(monkeypatch):
+def test_missing_engine_raises_a_readable_error(monkeypatch):
     monkeypatch.setitem(sys.modules, "mujoco", None)
 
     with pytest.raises(NoPhysicsError, match="Physics needs MuJoCo, which does not load here"):
@@ -275,7 +287,7 @@ def test_a_missing_engine_is_said_in_a_sentence(monkeypatch):
 
 
 @pytest.mark.parametrize("before", [None, "egl"])
-def test_the_environment_is_left_as_it_was(monkeypatch, before):
+def test_environment_is_restored(monkeypatch, before):
     if before is None:
         monkeypatch.delenv("MUJOCO_GL", raising=False)
     else:

@@ -1,0 +1,214 @@
+"""Detect hands held still: the right hand up, or hands that drag the view."""
+
+from math import atan2, exp, pi
+
+import numpy as np
+from numpy.typing import NDArray
+
+from .events import Gesture, GestureEvent
+from .hand_tracking import Hands
+from .settings import GestureSettings
+
+Array = NDArray[np.float64]
+
+
+LOWERED_HEIGHT = 0.0
+"""Height of the right wrist above its shoulder below which the hand counts as lowered."""
+MAX_HANGING_HEIGHT = -0.45
+"""Height of a wrist below which its arm hangs."""
+MIN_FORWARD = 0.3
+"""Minimum distance of zooming hands in front of the shoulders."""
+MIN_ZOOM_HEIGHT, MAX_ZOOM_HEIGHT = -0.75, 0.35
+"""Range of heights of zooming hands."""
+MAX_ZOOM_DIFFERENCE = 0.45
+"""Maximum difference in height, and in forward reach, of zooming hands."""
+MIN_ZOOM_GAP, MAX_ZOOM_GAP = 0.25, 2.2
+"""Range of distances of zooming hands."""
+STRAIGHT_REACH = 0.85
+"""Reach at which an arm counts as straight; it turns the view until it is below
+`BENT_REACH`."""
+BENT_REACH = 0.7
+MAX_TILT = 0.4
+"""Maximum height above or below the shoulder of a level arm."""
+MAX_HEIGHT_CHANGE = 0.3
+"""Height change that ends a drag: lowering the hands moves nothing."""
+FILTER_TIME_S = 0.12
+"""Time constant in seconds of the filter of dragged values."""
+MAX_ZOOM_RATE = 4.0
+"""Maximum change of the logarithm of the gap per second; faster hands clap."""
+MAX_TURN_RATE_RAD_S = 4.0
+"""Radians per second; a faster arm waves."""
+
+
+class StillnessTimer:
+    """Measure how long a position has been still."""
+
+    def __init__(self, radius: float) -> None:
+        self._radius = radius
+        self._position: Array | None = None
+        self._since = 0.0
+
+    def update(self, time: float, position: Array | None) -> float:
+        """Return the seconds since the position last moved; None resets the timer."""
+        if position is None:
+            self._position = None
+            return 0.0
+        if self._position is None or np.linalg.norm(position - self._position) > self._radius:
+            self._position, self._since = position, time
+        return time - self._since
+
+    @property
+    def since(self) -> float:
+        """Time at which it came to rest, seconds."""
+        return self._since
+
+
+class HandUp:
+    """Detect the raised right hand, once until it is lowered, with the left arm hanging."""
+
+    def __init__(self, settings: GestureSettings) -> None:
+        self._settings = settings
+        self.reset()
+
+    def reset(self) -> None:
+        """Reset the detector."""
+        self._hold = StillnessTimer(self._settings.still)
+        self._reported = False
+
+    def update(self, hands: Hands) -> GestureEvent | None:
+        """Return an event once the hand has been up for long enough."""
+        self._reported = self._reported and hands.right[2] > LOWERED_HEIGHT
+        up = hands.right[2] >= self._settings.raised and hands.left[2] < MAX_HANGING_HEIGHT
+        duration = self._hold.update(hands.time, hands.right if up else None)
+        if self._reported or duration < self._settings.raised_for:
+            return None
+        self._reported = True
+        return GestureEvent(Gesture.HAND_UP, hands.time, self._hold.since)
+
+
+class DragGesture:
+    """Detect hands that grab the view by being still, and track the value that they drag."""
+
+    def __init__(self, settings: GestureSettings, max_rate: float) -> None:
+        self._settings, self._max_rate = settings, max_rate
+        self.reset()
+
+    def reset(self) -> None:
+        """Release the view."""
+        self._hold = StillnessTimer(self._settings.still)
+        self._reported_value: float | None = None
+        self._filtered = self._time = 0.0
+        self._heights = np.zeros(1)
+
+    @property
+    def is_active(self) -> bool:
+        """Whether the hands hold the view."""
+        return self._reported_value is not None
+
+    def update(self, time: float, position: Array | None, value: float) -> float:
+        """Return the change of the value since the last report; mostly 0.
+
+        Parameters
+        ----------
+        time : float, seconds
+        position : shape (3,) or (6,), arm lengths, or None
+            Of the hand or hands; None if they cannot grab the view.
+        value : float
+            An angle, or the logarithm of a distance.
+        """
+        if position is None:
+            self.reset()
+        elif self._reported_value is None:
+            if self._hold.update(time, position) >= self._settings.engage_for:
+                self._reported_value, self._filtered, self._time = value, value, time
+                self._heights = position[2::3]
+        elif self._is_released(position, value):
+            self.reset()
+        else:
+            gain = 1.0 - exp((self._time - time) / FILTER_TIME_S)
+            self._filtered += gain * _wrap_angle(value - self._filtered)
+            self._time = time
+            return self._change(self._filtered)
+        return 0.0
+
+    def _is_released(self, position: Array, value: float) -> bool:
+        """Return whether the hands move too fast, measured by the filter lag, or up or down."""
+        speed = abs(_wrap_angle(value - self._filtered)) / FILTER_TIME_S
+        height_change = np.abs(position[2::3] - self._heights).max()
+        return bool(speed > self._max_rate or height_change > MAX_HEIGHT_CHANGE)
+
+    def _change(self, value: float) -> float:
+        assert self._reported_value is not None
+        change = _wrap_angle(value - self._reported_value)
+        if abs(change) < self._settings.dead_zone:
+            return 0.0
+        self._reported_value = value
+        return change
+
+
+def _wrap_angle(angle: float) -> float:
+    """Return the same angle between -pi and pi. Logarithms of zoom are never that large."""
+    return (angle + pi) % (2.0 * pi) - pi
+
+
+class Zoom:
+    """Detect both hands in front of the chest, and zoom by their distance."""
+
+    def __init__(self, settings: GestureSettings) -> None:
+        self._drag = DragGesture(settings, MAX_ZOOM_RATE)
+
+    def reset(self) -> None:
+        """Release the view."""
+        self._drag.reset()
+
+    @property
+    def is_active(self) -> bool:
+        """Whether it holds the view."""
+        return self._drag.is_active
+
+    def update(self, hands: Hands) -> GestureEvent | None:
+        """Return the factor of the hands' distance since the last report, while active."""
+        position = np.concatenate([hands.right, hands.left]) if _is_zoom_pose(hands) else None
+        change = self._drag.update(hands.time, position, float(np.log(max(hands.gap, 1e-3))))
+        if not change:
+            return None
+        return GestureEvent(Gesture.ZOOM, hands.time, hands.time, float(np.exp(change)))
+
+
+def _is_zoom_pose(hands: Hands) -> bool:
+    """Return whether both hands are in front of the chest, next to each other."""
+    for hand in (hands.right, hands.left):
+        if hand[1] < MIN_FORWARD or not MIN_ZOOM_HEIGHT <= hand[2] <= MAX_ZOOM_HEIGHT:
+            return False
+    differences = np.abs(hands.right - hands.left)[1:]
+    return (
+        bool((differences <= MAX_ZOOM_DIFFERENCE).all())
+        and MIN_ZOOM_GAP <= hands.gap <= MAX_ZOOM_GAP
+    )
+
+
+class Turn:
+    """Detect the straight right arm, and turn the view as it swings about the body."""
+
+    def __init__(self, settings: GestureSettings) -> None:
+        self._drag = DragGesture(settings, MAX_TURN_RATE_RAD_S)
+
+    def reset(self) -> None:
+        """Release the view."""
+        self._drag.reset()
+
+    @property
+    def is_active(self) -> bool:
+        """Whether it holds the view."""
+        return self._drag.is_active
+
+    def update(self, hands: Hands) -> GestureEvent | None:
+        """Return the angle of the arm's rotation since the last report, while active."""
+        right, forward, up = hands.right
+        straight = hands.reach >= (BENT_REACH if self._drag.is_active else STRAIGHT_REACH)
+        level = abs(up) <= MAX_TILT and hands.left[2] < MAX_HANGING_HEIGHT
+        position = hands.right if straight and level else None
+        change = self._drag.update(hands.time, position, atan2(forward, right))
+        if not change:
+            return None
+        return GestureEvent(Gesture.TURN, hands.time, hands.time, change)

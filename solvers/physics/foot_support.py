@@ -1,0 +1,129 @@
+"""Estimate when the feet of a simulated body stand, and on which part of their soles."""
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.ndimage import gaussian_filter1d
+
+from ..motion import HumanoidMap, Motion, detect_contacts
+from .body import PhysicsBody
+from .body_surface import SIDES, lowest_points, measure_sole_speeds, select_foot_ends
+
+Array = NDArray[np.float64]
+Flags = NDArray[np.bool_]
+SMOOTHING_S = 0.02
+"""Standard deviation in seconds of the Gaussian that smooths loads, heights and speeds."""
+
+MIN_LOAD, FULL_LOAD = 0.05, 0.15
+"""Fractions of the weight: a foot with the first starts to stand; with the second it stands."""
+
+HOLD_SPEED_M_S, RELEASE_SPEED_M_S = 0.3, 0.5
+"""Meters per second, for legs of 0.9 m: a loaded sole is held below the first speed and slips
+above the second."""
+
+HOLD_HEIGHT_M, RELEASE_HEIGHT_M = 0.02, 0.03
+"""Meters above the ground, for legs of 0.9 m: a foot that stands in the target is held below
+the first height and free above the second."""
+
+LOAD_DECAY_M = 0.002
+"""Meters, for legs of 0.9 m: a part of the sole higher by this bears 1/e of the load."""
+
+
+def detect_target_contacts(body: PhysicsBody, motion: Motion) -> Flags:
+    """Return the contacts of a motion's feet, shape (n_frames, 2); none for a body without
+    feet."""
+    humanoid = HumanoidMap({
+        role: body.skeleton.names[joint] for joint, role in body.roles.items()
+    })
+    if not humanoid.has(*(f"{side}Foot" for side in SIDES)):
+        return np.zeros((motion.n_frames, len(SIDES)), dtype=np.bool_)
+    return detect_contacts(motion, humanoid)
+
+
+def compute_support_weights(
+    body: PhysicsBody,
+    motion: Motion,
+    loads: Array,
+    target_weights: Array,
+    ground: float,
+) -> Array:
+    """Return how firmly each simulated foot should be held in position, 0 to 1.
+
+    A foot stands if it carries weight and hardly moves in the simulation; no height threshold
+    is needed for that. It also stands where the target's does, if it is near the ground,
+    although the other foot may bear all the weight here.
+
+    Parameters
+    ----------
+    body : PhysicsBody
+    motion : Motion
+        As simulated.
+    loads : shape (n_frames, n_ends)
+        Upward ground force at each end of `PhysicsBody.ground_capsules`, as a fraction of the
+        weight.
+    target_weights : shape (n_frames, 2), 0 to 1
+        How firmly the feet of the target stand.
+    ground : float, meters
+
+    Returns
+    -------
+    Array
+        Shape (n_frames, 2), left and right.
+    """
+    points = lowest_points(body, motion)
+    speeds = _smooth(measure_sole_speeds(body, motion), motion.frame_rate) / body.size
+    slow = np.clip(
+        (RELEASE_SPEED_M_S - speeds) / (RELEASE_SPEED_M_S - HOLD_SPEED_M_S), 0.0, 1.0
+    )
+    weights = np.zeros((motion.n_frames, 2))
+    for column, side in enumerate(SIDES):
+        ends = select_foot_ends(body, side)
+        if ends.any():
+            load = _smooth(loads[:, ends].sum(axis=1), motion.frame_rate)
+            carries = np.clip((load - MIN_LOAD) / (FULL_LOAD - MIN_LOAD), 0.0, 1.0)
+            height = (points[:, ends, 2].min(axis=1) - ground) / body.size
+            near = np.clip(
+                (RELEASE_HEIGHT_M - height) / (RELEASE_HEIGHT_M - HOLD_HEIGHT_M), 0.0, 1.0
+            )
+            weights[:, column] = np.maximum(
+                carries * slow[:, column], target_weights[:, column] * near
+            )
+    return weights
+
+
+def weights_between_frames(weights: Array) -> Array:
+    """Return how firmly feet are held between frames, shape (n_frames - 1, 2)."""
+    return np.minimum(weights[1:], weights[:-1])
+
+
+def distribute_load(heights: Array, frame_rate: float, size: float) -> Array:
+    """Return the fraction of the load on each point of a sole; fractions sum to 1.
+
+    The lowest points bear most. As a foot rolls, the load passes from the heel to the ball and
+    on to the toes.
+
+    Parameters
+    ----------
+    heights : shape (n_frames, n_points), meters
+        Above the ground; points below it bear no more than points on it.
+    frame_rate : float, hertz
+    size : float
+        Of the body: its legs over 0.9 m.
+    """
+    heights_above = _smooth(np.maximum(heights, 0.0), frame_rate)
+    fractions = np.exp(
+        (heights_above.min(axis=1, keepdims=True) - heights_above) / (LOAD_DECAY_M * size)
+    )
+    return np.asarray(fractions / fractions.sum(axis=1, keepdims=True))
+
+
+def sum_foot_loads(body: PhysicsBody, loads: Array) -> Array:
+    """Return the fraction of the weight that each foot carries, shape (n_frames, 2)."""
+    return np.stack(
+        [loads[:, select_foot_ends(body, side)].sum(axis=1) for side in SIDES], axis=-1
+    )
+
+
+def _smooth(values: Array, frame_rate: float) -> Array:
+    return np.asarray(
+        gaussian_filter1d(values, SMOOTHING_S * frame_rate, axis=0, mode="nearest")
+    )
