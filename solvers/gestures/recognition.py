@@ -62,21 +62,21 @@ class GestureRecognizer:
         return self._mode
 
     def see(self, time: float, positions: Array, confidence: Array) -> tuple[GestureEvent, ...]:
-        """Take one frame; return what it completed.
+        """Process one frame; return the events that it completes.
 
         Skips a frame whose time is not finite, or not later than that of the frame before.
 
         Parameters
         ----------
         time : float, seconds
-        positions : shape (20, 3), metres, Z up
-            In the order of `POSTURE_JOINTS`; NaN: not tracked.
+        positions : shape (20, 3), meters, Z up
+            In the order of `POSTURE_JOINTS`; NaN is missing.
         confidence : shape (20,), 0 to 1
 
         Returns
         -------
         tuple of GestureEvent
-            None in most frames; a dropped capture first.
+            Empty in most frames; a dropped capture comes first.
         """
         if not self._time < time < inf:
             return ()

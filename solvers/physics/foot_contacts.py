@@ -62,7 +62,7 @@ def place_feet_on_ground(
 
 
 def _foot_corrections(heights: Array, slow_weights: Array, stance_weights: Array) -> Array:
-    """Return how far to raise a foot, shape (n_frames,), for legs of 0.9 m."""
+    """Return height corrections of a foot, shape (n_frames,), for legs of 0.9 m."""
     closeness = np.clip(2.0 - 2.0 * np.abs(heights) / MAX_STANCE_DISTANCE_M, 0.0, 1.0)
     lifted = (1.0 - slow_weights) * np.maximum(MIN_SWING_CLEARANCE_M - heights, 0.0)
     return np.asarray(lifted - stance_weights * closeness * (heights + STANCE_DEPTH_M))

@@ -46,7 +46,7 @@ def compute_support_weights(
     target_weights: Array,
     ground: float,
 ) -> Array:
-    """Return how firmly each simulated foot should be held in position, 0 to 1.
+    """Return weights, 0 to 1, that hold each simulated foot in position.
 
     A foot stands if it carries weight and hardly moves in the simulation; no height threshold
     is needed for that. It also stands where the target's does, if it is near the ground,
@@ -61,7 +61,7 @@ def compute_support_weights(
         Upward ground force at each end of `PhysicsBody.ground_capsules`, as a fraction of the
         weight.
     target_weights : shape (n_frames, 2), 0 to 1
-        How firmly the feet of the target stand.
+        1 where a foot of the target stands.
     ground : float, meters
 
     Returns
@@ -91,7 +91,7 @@ def compute_support_weights(
 
 
 def weights_between_frames(weights: Array) -> Array:
-    """Return how firmly feet are held between frames, shape (n_frames - 1, 2)."""
+    """Return the weights that hold feet between frames, shape (n_frames - 1, 2)."""
     return np.minimum(weights[1:], weights[:-1])
 
 

@@ -35,7 +35,7 @@ REACH_SOFTNESS = 0.01
 
 
 class FootPlan(NamedTuple):
-    """A leg, and the course that its foot should take."""
+    """A leg's goal, and the rotation of its foot."""
 
     goal: LegGoal
     rotations: Array
@@ -91,10 +91,9 @@ def _plan_foot(
     hold_weights: Array,
     frame_rate: float,
 ) -> FootPlan:
-    """Plan the course of a foot that is `hold_weights` from frame to frame, shape (n_frames -
-    1,).
+    """Plan the trajectory of a foot from its hold weights, shape (n_frames - 1,).
 
-    `sole` are points, shape (n_frames, n_points, 3), each of which bears a `load_fractions` of
+    `sole` are points, shape (n_frames, n_points, 3), and `load_fractions` their fractions of
     the load.
     """
     ankle = poses.positions[:, chain[-1]]
@@ -111,9 +110,8 @@ def _plan_foot(
 
 
 def _counter_rotations(rotations: Array, hold_weights: Array, frame_rate: float) -> Array:
-    """Return turns about the vertical, (n_frames, 4), by which a foot that hardly turns does
-    not turn at all.
-    """
+    """Return rotations about the vertical, (n_frames, 4), that cancel slow rotation of a
+    foot."""
     steps = rotation_vector_from_quaternion(multiply(rotations[1:], inverse(rotations[:-1])))
     speeds = np.abs(steps[:, 2:]) * frame_rate
     slow = np.clip(2.0 - 2.0 * speeds[:, 0] / MAX_TURN_RATE_RAD_S, 0.0, 1.0)
@@ -124,9 +122,9 @@ def _counter_rotations(rotations: Array, hold_weights: Array, frame_rate: float)
 
 
 def _apply_foot_plan(motion: Motion, poses: WorldPoses, foot: FootPlan) -> Motion:
-    """Return the motion whose ankle follows its course, the foot turned as it should be.
+    """Return the motion with the ankle on its trajectory and the foot rotated as planned.
 
-    `poses` are those of the motion before anything was changed.
+    `poses` are those of the motion before any correction.
     """
     ankle = foot.goal.chain[-1]
     settings = ReachSettings(softness=REACH_SOFTNESS)

@@ -12,7 +12,7 @@ MAX_GROUND_DIFFERENCE_M = 0.25
 
 
 def mean_distance(motion: Motion, other: Motion, joints: Sequence[int]) -> float:
-    """Return the mean distance in metres between the same joints of two motions."""
+    """Return the mean distance in meters between the same joints of two motions."""
     positions, other_positions = (
         forward_kinematics(each).positions[:, list(joints)] for each in (motion, other)
     )

@@ -1,4 +1,4 @@
-"""Spoil a clean motion the way capture does: jitter, spikes, missing limbs, a drifting root."""
+"""Corrupt a clean motion as capture does: jitter, spikes, missing limbs, a drifting root."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass

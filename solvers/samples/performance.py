@@ -18,7 +18,7 @@ ARM_LENGTHS_M = (0.28, 0.25)
 HAND_LENGTH_M = 0.09
 SHOULDER_M = 0.18
 """Distance from the middle to each shoulder."""
-BODY_POSITIONS = {  # metres from the hips to the actor's right, forward, up
+BODY_POSITIONS = {  # meters from the hips to the actor's right, forward, up
     "HipCenter": (0.0, 0.0, 0.0), "Spine": (0.0, 0.0, 0.22), "ShoulderCenter": (0.0, 0.0, 0.48),
     "Head": (0.0, 0.0, 0.70),
     "ShoulderLeft": (-SHOULDER_M, 0.0, 0.44), "ShoulderRight": (SHOULDER_M, 0.0, 0.44),
@@ -179,8 +179,8 @@ def _body(keys: Sequence[tuple[float, Position, Position]], times: Array) -> Arr
     """Return joints relative to the hips, shape (n_frames, 20, 3), facing -Y."""
     names = JOINTS[Sensor.KINECT_V1]
     positions = np.zeros((len(times), len(names), 3))
-    for name, place in BODY_POSITIONS.items():
-        positions[:, names.index(name)] = place
+    for name, position in BODY_POSITIONS.items():
+        positions[:, names.index(name)] = position
     for side, sign, column in (("Right", 1.0, 0), ("Left", -1.0, 1)):
         wrists = _minimum_jerk_path(
             [key[0] for key in keys], [key[1:][column] for key in keys], times

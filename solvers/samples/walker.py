@@ -4,7 +4,7 @@ import numpy as np
 
 from ..motion import Skeleton
 
-# Name, parent, offset in metres. The left side is +X; sides are added below.
+# Name, parent, offset in meters. The left side is +X; sides are added below.
 TRUNK_JOINTS = (
     ("Hips", "", (0.0, 0.0, 0.96)),
     ("Spine", "Hips", (0.0, 0.01, 0.10)),

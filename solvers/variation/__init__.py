@@ -1,4 +1,4 @@
-"""Variants of a few motions of one behaviour.
+"""Synthesize variants of a few motions of one behavior.
 
 >>> from solvers.samples import GaitSettings, walking_gait
 >>> from solvers.variation import learn_variation_model, synthesize

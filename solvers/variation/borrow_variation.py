@@ -105,7 +105,7 @@ def _borrow_deviations(
 
 
 def _movement_range(curves: Array) -> Array:
-    """Return how far curves, (n_examples, n_samples, ...), move: a standard deviation."""
+    """Return the standard deviation over time of curves, (n_examples, n_samples, ...)."""
     spread = curves.std(axis=1).mean(axis=0)
     if spread.ndim > 1:
         spread = np.linalg.norm(spread, axis=-1, keepdims=True)

@@ -175,7 +175,7 @@ def _sample_in_common_time(
 
 
 def _choose_nearest_vectors(joints: Array, center: int) -> Array:
-    """Of the two rotation vectors of each rotation, choose the one nearer to the center's."""
+    """Choose, of the two vectors of each rotation, the one nearer to the center's."""
     length = np.linalg.norm(joints, axis=-1, keepdims=True)
     other = joints * (1.0 - 2.0 * np.pi / np.where(length > 0.0, length, np.inf))
     distance_same = np.linalg.norm(joints - joints[center], axis=-1, keepdims=True).mean(axis=1)

@@ -28,8 +28,10 @@ PULL_FRACTION = 0.2
 def draw_stepwise_deviations(
     model: StepwiseModel, weights: Array, n_joints: int, rng: np.random.Generator
 ) -> tuple[Array, Array]:
-    """Return by how much joints and root deviate: as published, from the mean of the examples,
-    otherwise from their mixture with the same shares, which goes on between the steps too.
+    """Draw deviations of joints and root.
+
+    As published, they are from the mean of the examples. Otherwise they are from the mixture
+    with the same weights, which also determines the motion between the steps.
 
     Parameters
     ----------
@@ -107,7 +109,7 @@ def _draw_coregionalized(
 def _weights_at_steps(model: StepwiseModel, weights: Array, n_steps: int) -> Array:
     """Return the weights of each triple, shape (n_triples, n_variants, n_steps, n_examples)."""
     rows = np.round(np.linspace(0, weights.shape[2] - 1, n_steps)).astype(int)
-    places = np.where(
+    partition_rows = np.where(
         np.arange(model.body.n_triples) == ROOT_TRIPLE, ROOT_ROW, model.body.partition
     )
-    return np.asarray(weights[:, :, rows][places])
+    return np.asarray(weights[:, :, rows][partition_rows])

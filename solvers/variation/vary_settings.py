@@ -25,7 +25,7 @@ class Method(Enum):
 
 @dataclass(frozen=True, kw_only=True)
 class VarySettings(Settings):
-    """How strongly variants differ, and in which respects."""
+    """Strength and kind of variation."""
 
     method: Method = setting(
         Method.MIXTURE, "Method that draws variants; mixtures of the examples measured best",

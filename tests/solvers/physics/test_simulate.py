@@ -237,7 +237,7 @@ def raised(motion, height):
 
 
 def distance(one, other):
-    """Mean distance of the joints, metres."""
+    """Mean distance of the joints, meters."""
     here, there = (forward_kinematics(each).positions for each in (one, other))
     return float(np.linalg.norm(here - there, axis=-1).mean())
 

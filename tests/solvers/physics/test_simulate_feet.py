@@ -247,14 +247,14 @@ def test_planting_is_equivariant_to_heading(shaking, kept):
 
 
 def steps(body, motion):
-    """Way of the slowest point of each sole to the next frame, (n_frames - 1, 2), metres."""
+    """Way of the slowest point of each sole to the next frame, (n_frames - 1, 2), meters."""
     points = lowest_points(body, motion)
     ways = np.linalg.norm(np.diff(points[..., :2], axis=0), axis=-1)
     return np.stack([ways[:, select_foot_ends(body, side)].min(axis=1) for side in SIDES], -1)
 
 
 def loaded_steps(body, motion):
-    """Way of what bears each sole, (n_frames - 1, 2), metres."""
+    """Way of what bears each sole, (n_frames - 1, 2), meters."""
     points = lowest_points(body, motion)
     found = []
     for side in SIDES:

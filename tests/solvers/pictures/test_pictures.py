@@ -25,8 +25,8 @@ from solvers.rotations.representations import quaternion_from_rotation_vector
 RAW, CLEAN = SERIES[:2]
 
 
-def test_a_segment_lands_on_the_predicted_pixels():
-    """Three pixels wide and horizontal: rows 19, 20 and 21 are full, their neighbours white."""
+def test_line_covers_the_predicted_pixels():
+    """Three pixels wide and horizontal: rows 19, 20 and 21 are full, their neighbors white."""
     canvas = Canvas(60, 40)
     canvas.line([(10.0, 20.5), (50.0, 20.5)], CLEAN, 3.0)
 
@@ -37,7 +37,7 @@ def test_a_segment_lands_on_the_predicted_pixels():
     assert (pixels[:, :8] == 255).all() and (pixels[:, 53:] == 255).all()
 
 
-def test_a_slanted_line_is_smooth():
+def test_slanted_line_is_antialiased():
     canvas = Canvas(60, 60)
     canvas.line([(5.0, 5.0), (55.0, 40.0)], CLEAN, 2.0)
 
@@ -46,7 +46,7 @@ def test_a_slanted_line_is_smooth():
     assert len(shades) > 5
 
 
-def test_a_line_breaks_where_a_point_is_unknown():
+def test_line_breaks_at_nan():
     canvas = Canvas(90, 20)
     canvas.line([(5, 10), (30, 10), (np.nan, 10), (60, 10), (85, 10)], RAW, 2.0)
 
@@ -60,7 +60,7 @@ def test_a_line_breaks_where_a_point_is_unknown():
     ("view", "expected"),
     [(View.SIDE, (2.0, 3.0, 1.0)), (View.FRONT, (1.0, 3.0, -2.0))],
 )
-def test_projects_what_is_left_ahead_and_up(view, expected):
+def test_project_to_view_maps_left_forward_and_up(view, expected):
     """A point one metre to the left, two ahead and three up, for two directions of facing."""
     points = np.array([[[1.0, -2.0, 3.0]], [[2.0, 1.0, 3.0]]])
 
@@ -69,7 +69,7 @@ def test_projects_what_is_left_ahead_and_up(view, expected):
     assert_allclose(seen[:, 0], [expected, expected], atol=1e-12)
 
 
-def test_a_figure_is_as_tall_as_asked(swinging_leg):
+def test_figure_has_the_requested_height(swinging_leg):
     still = swinging_leg.with_poses(*rest_pose(swinging_leg))
 
     pixels = draw_stick_figures(
@@ -80,7 +80,7 @@ def test_a_figure_is_as_tall_as_asked(swinging_leg):
     assert rows[-1] - rows[0] == pytest.approx(180, abs=6)
 
 
-def test_a_joint_that_is_not_observed_leaves_no_line(swinging_leg):
+def test_missing_joint_is_not_drawn(swinging_leg):
     rotations = swinging_leg.rotations.copy()
     rotations[:, 1] = np.nan
     settings = StickFigureSettings(n_figures=3)
@@ -92,7 +92,7 @@ def test_a_joint_that_is_not_observed_leaves_no_line(swinging_leg):
     assert is_color(thigh[44:], CLEAN).any()
 
 
-def test_the_last_motion_is_on_top(swinging_leg):
+def test_last_motion_is_on_top(swinging_leg):
     pixels = draw_stick_figures({"raw": swinging_leg, "clean": swinging_leg}).pixels
 
     figures = pixels[44:]
@@ -100,7 +100,7 @@ def test_the_last_motion_is_on_top(swinging_leg):
     assert is_color(figures, CLEAN).any()
 
 
-def test_the_left_side_is_paler():
+def test_left_side_is_lighter():
     """Seen from the front, the left (+X) stands on the right of the picture."""
     skeleton = Skeleton(
         ("root", "left", "right"),
@@ -118,7 +118,7 @@ def test_the_left_side_is_paler():
     assert columns.min() < middle - 50
 
 
-def test_draws_though_the_root_is_lost_for_a_while(swinging_leg):
+def test_figures_are_drawn_across_a_gap_of_the_root(swinging_leg):
     root = swinging_leg.root_positions.copy()
     root[30:] = np.nan
 
@@ -127,27 +127,27 @@ def test_draws_though_the_root_is_lost_for_a_while(swinging_leg):
     assert is_color(picture.pixels[44:], CLEAN).any()
 
 
-def test_nothing_observed_still_gives_a_picture(swinging_leg):
+def test_empty_motion_gives_a_picture(swinging_leg):
     lost = swinging_leg.with_poses(np.full_like(swinging_leg.rotations, np.nan))
 
     assert draw_stick_figures({"leg": lost}).pixels.size
     assert draw_curves({"leg": lost}, ["hip"]).pixels.size
 
 
-def test_refuses_motions_of_different_length(swinging_leg):
+def test_drawing_raises_for_different_lengths(swinging_leg):
     with pytest.raises(InvalidMotionError, match=r"as long as each other, not \[60, 120\]"):
         draw_stick_figures({"a": swinging_leg, "b": swinging_leg.slice(0, 60)})
 
 
 @pytest.mark.parametrize("frames", [range(0), range(5, 5)])
-def test_says_when_there_is_nothing_to_draw(swinging_leg, frames):
+def test_drawing_raises_without_frames(swinging_leg, frames):
     with pytest.raises(InvalidMotionError, match="no frame to draw"):
         draw_stick_figures({"a": swinging_leg}, frames=frames)
     with pytest.raises(InvalidMotionError, match="at least one motion and one joint"):
         draw_curves({"a": swinging_leg}, [])
 
 
-def test_a_curve_passes_through_its_values(leg):
+def test_curve_passes_through_its_values(leg):
     """The hip turns by a straight ramp of 40 degrees, so the plot is its own diagonal."""
     vectors = np.zeros((101, 4, 3))
     vectors[:, 0, 0] = np.radians(np.linspace(-20.0, 20.0, 101))
@@ -161,7 +161,7 @@ def test_a_curve_passes_through_its_values(leg):
     assert_allclose(offset + slope * 64, 264, atol=2)
 
 
-def test_a_gap_is_shaded_and_its_curve_broken(swinging_leg):
+def test_gap_is_shaded_and_breaks_the_curve(swinging_leg):
     rotations = swinging_leg.rotations.copy()
     rotations[40:80, 1] = np.nan
     gapped = swinging_leg.with_poses(rotations)
@@ -174,7 +174,7 @@ def test_a_gap_is_shaded_and_its_curve_broken(swinging_leg):
     assert (pixels[70:200, middle] == (246, 238, 226)).all(axis=-1).mean() > 0.5
 
 
-def test_one_frame_has_a_curve_too(swinging_leg):
+def test_single_frame_has_a_curve(swinging_leg):
     assert draw_curves({"a": swinging_leg.slice(0, 1)}, ["hip", "knee"]).pixels.size
 
 
@@ -190,7 +190,7 @@ def test_ticks_are_round_numbers(low, high, expected):
     assert_allclose(ticks(low, high, 6), expected)
 
 
-def test_a_table_lines_up_its_figures_on_the_right():
+def test_table_right_aligns_figures():
     pixels = draw_table(["", "after"], [["slide", "1"], ["jitter", "1234"]]).pixels
     rows = [pixels[16 + 26 * n + 2 : 16 + 26 * (n + 1) - 2] for n in (1, 2)]
 
@@ -199,12 +199,12 @@ def test_a_table_lines_up_its_figures_on_the_right():
     assert abs(rightmost[0] - rightmost[1]) <= 2
 
 
-def test_a_table_refuses_rows_that_do_not_fit():
+def test_table_raises_for_rows_of_another_length():
     with pytest.raises(InvalidMotionError, match="needs 2 columns"):
         draw_table(["a", "b"], [["only one"]])
 
 
-def test_saves_what_it_shows_and_leaves_nothing_half_written(tmp_path):
+def test_picture_is_saved_atomically(tmp_path):
     picture = Picture(np.arange(2 * 3 * 3, dtype=np.uint8).reshape(2, 3, 3))
     picture.save(tmp_path / "small.png")
 
@@ -215,7 +215,7 @@ def test_saves_what_it_shows_and_leaves_nothing_half_written(tmp_path):
     assert [file.name for file in tmp_path.iterdir()] == ["small.png"]
 
 
-def test_stacks_pictures_of_different_width():
+def test_stack_pads_narrow_pictures():
     both = stack_pictures([
         Picture(np.zeros((2, 5, 3), np.uint8)),
         Picture(np.zeros((3, 2, 3), np.uint8)),

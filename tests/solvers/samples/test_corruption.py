@@ -25,7 +25,7 @@ def test_jitter_has_the_stated_deviation_on_every_channel(walk):
     assert_allclose(error[:, np.invert(turning)], 0.0, atol=1e-9)
 
 
-def test_spikes_have_the_stated_share_and_size(walk):
+def test_spikes_have_the_stated_fraction_and_size(walk):
     """One channel at a time, so that the size can be read off the rotation vector."""
     settings = CorruptionSettings(jitter=0.0, spikes=0.01)
 
@@ -40,24 +40,24 @@ def test_spikes_have_the_stated_share_and_size(walk):
     assert abs(np.sign(alone.sum(axis=1)).mean()) < 0.2
 
 
-def test_a_missing_joint_takes_along_what_hangs_on_it(walk):
-    spoilt = corrupt(walk, CLEAN, missing={"RightArm": range(100, 160)})
+def test_missing_joint_removes_its_descendants(walk):
+    corrupted = corrupt(walk, CLEAN, missing={"RightArm": range(100, 160)})
 
-    names = np.array(walk.skeleton.names)[~spoilt.observed[120]]
+    names = np.array(walk.skeleton.names)[~corrupted.observed[120]]
     assert set(names) == {"RightArm", "RightForeArm", "RightHand", "RightHand_end"}
-    frames = np.flatnonzero((~spoilt.observed).any(axis=1))
+    frames = np.flatnonzero((~corrupted.observed).any(axis=1))
     assert (frames[0], frames[-1]) == (100, 159)
 
 
-def test_without_the_root_nothing_is_known(walk):
-    spoilt = corrupt(walk, CLEAN, missing={"Hips": range(5, 6)})
+def test_missing_root_removes_everything(walk):
+    corrupted = corrupt(walk, CLEAN, missing={"Hips": range(5, 6)})
 
-    assert not spoilt.observed[5].any()
-    assert np.isnan(spoilt.root_positions[5]).all()
-    assert spoilt.observed[6].all()
+    assert not corrupted.observed[5].any()
+    assert np.isnan(corrupted.root_positions[5]).all()
+    assert corrupted.observed[6].all()
 
 
-def test_the_root_jitters_and_sways_as_stated(walk):
+def test_root_has_the_stated_jitter_and_sway(walk):
     jitter = corrupt(walk, CorruptionSettings(jitter=0.0, root_jitter=0.02))
     sway = corrupt(walk, CorruptionSettings(jitter=0.0, root_sway=0.02))
 
@@ -68,14 +68,14 @@ def test_the_root_jitters_and_sways_as_stated(walk):
     assert_allclose(moved[:, 2], 0.0, atol=1e-12)
 
 
-def test_nothing_wrong_leaves_the_motion_as_it_was(walk):
+def test_corrupt_changes_nothing_at_zero_settings(walk):
     same = corrupt(walk, CLEAN)
 
     assert_allclose(same.rotations, walk.rotations, atol=1e-12)
     assert_allclose(same.root_positions, walk.root_positions)
 
 
-def test_the_seed_decides_and_the_input_is_left_alone(walk):
+def test_corrupt_depends_on_the_seed_and_keeps_the_input(walk):
     before = walk.rotations.copy()
 
     first, again, other = (corrupt(walk, CorruptionSettings(seed=seed)) for seed in (1, 1, 2))
@@ -86,22 +86,22 @@ def test_the_seed_decides_and_the_input_is_left_alone(walk):
 
 
 @pytest.mark.parametrize("frames", [range(590, 601), range(-1, 4), range(0, 10, 2)])
-def test_names_the_joint_whose_missing_frames_make_no_sense(walk, frames):
+def test_corrupt_names_the_joint_with_invalid_frames(walk, frames):
     with pytest.raises(InvalidMotionError, match="frames of Hips must be a plain range within"):
         corrupt(walk, CLEAN, missing={"Hips": frames})
 
 
-def test_says_when_a_missing_joint_is_not_there(walk):
+def test_corrupt_raises_for_an_unknown_joint(walk):
     with pytest.raises(InvalidMotionError, match="There is no joint Tail"):
         corrupt(walk, CLEAN, missing={"Tail": range(2)})
 
 
-def test_refuses_a_share_above_one():
+def test_settings_raise_for_a_fraction_above_one():
     with pytest.raises(InvalidSettingError, match="spikes is 2; it must lie between 0 and 1"):
         CorruptionSettings(spikes=2.0)
 
 
-def noise(spoilt, clean):
+def noise(corrupted, clean):
     """Rotation vectors from the clean to the spoilt pose, degrees."""
-    turn = multiply(inverse(clean.rotations), spoilt.rotations)
+    turn = multiply(inverse(clean.rotations), corrupted.rotations)
     return np.degrees(rotation_vector_from_quaternion(turn))

@@ -10,7 +10,7 @@ from solvers.rotations.representations import angle_between
 from solvers.samples import GaitSettings, walker_skeleton, walking_gait
 
 TOE_HEIGHT = 0.02
-"""Of the toe joint of a standing foot, metres."""
+"""Of the toe joint of a standing foot, meters."""
 
 
 @pytest.fixture(scope="module")
@@ -18,7 +18,7 @@ def walk():
     return walking_gait()
 
 
-def test_has_the_stature_of_an_adult_in_a_t_pose():
+def test_walker_is_an_adult_in_t_pose():
     skeleton = walker_skeleton()
     place = dict(zip(skeleton.names, skeleton.rest_positions, strict=True))
 
@@ -30,7 +30,7 @@ def test_has_the_stature_of_an_adult_in_a_t_pose():
 
 
 @pytest.mark.parametrize("side", ["Left", "Right"])
-def test_toes_stay_exactly_where_the_foot_stands(walk, side):
+def test_toes_are_fixed_in_stance(walk, side):
     """About half of the time the toe joint is at standing height, and then it is at rest."""
     toes = positions(walk, f"{side}ToeBase")
     standing = np.abs(toes[:, 2] - TOE_HEIGHT) < 1e-9
@@ -42,18 +42,18 @@ def test_toes_stay_exactly_where_the_foot_stands(walk, side):
     assert speed[both].max() < 1e-9
 
 
-def test_one_foot_or_both_bear_the_body_at_all_times(walk):
+def test_walk_always_has_a_foot_on_the_ground(walk):
     low = [positions(walk, f"{side}ToeBase")[:, 2] < 0.05 for side in ("Left", "Right")]
 
     assert (low[0] | low[1]).all()
     assert 0.05 < (low[0] & low[1]).mean() < 0.5
 
 
-def test_nothing_goes_through_the_floor(walk):
+def test_walk_stays_above_the_floor(walk):
     assert forward_kinematics(walk).positions[..., 2].min() > 0.01
 
 
-def test_walks_towards_minus_y_as_fast_and_with_as_many_steps_as_asked():
+def test_walk_has_the_requested_speed_and_cadence():
     walk = walking_gait(GaitSettings(duration=20.0, speed=1.1, cadence=100.0))
 
     travelled = np.diff(walk.root_positions[:, :2], axis=0)
@@ -74,7 +74,7 @@ def test_arms_swing_against_the_legs(walk, side):
 
 
 @pytest.mark.parametrize("side", ["Left", "Right"])
-def test_knees_bend_forward_and_never_lock(walk, side):
+def test_knees_flex_forward_and_never_lock(walk, side):
     hip, knee, ankle = (positions(walk, side + part) for part in ("UpLeg", "Leg", "Foot"))
     thigh, shin = knee - hip, ankle - knee
     cosine = (
@@ -88,22 +88,22 @@ def test_knees_bend_forward_and_never_lock(walk, side):
     assert (along(walk, f"{side}Leg", f"{side}UpLeg") > 0.5 * from_hip_to_ankle).all()
 
 
-def test_hips_go_down_and_up_twice_a_stride_and_to_either_side_once(walk):
+def test_hips_rise_twice_and_sway_once_per_stride(walk):
     height = walk.root_positions[:, 2]
 
     assert 0.02 < np.ptp(height) < 0.06
-    assert n_turns(height) == pytest.approx(8.0 * 116 / 60, abs=2)
+    assert count_extrema(height) == pytest.approx(8.0 * 116 / 60, abs=2)
 
 
-def test_no_joint_jumps(walk):
+def test_joints_do_not_jump(walk):
     turns = np.degrees(angle_between(walk.rotations[1:], walk.rotations[:-1]))
 
     assert turns.max() < 15.0
 
 
 @pytest.mark.parametrize("part", ["Foot", "Hand", "ToeBase_end"])
-def test_no_foot_or_hand_is_thrown(part):
-    """Looked at closely enough, a jump of a millimetre would be 1,000 m/s^2 and more."""
+def test_feet_and_hands_have_plausible_acceleration(part):
+    """Looked at closely enough, a jump of a millimeter would be 1,000 m/s^2 and more."""
     walk = walking_gait(GaitSettings(duration=3.0, frame_rate=480.0))
 
     acceleration = np.diff(positions(walk, f"Left{part}"), n=2, axis=0) * walk.frame_rate**2
@@ -111,7 +111,7 @@ def test_no_foot_or_hand_is_thrown(part):
     assert np.linalg.norm(acceleration, axis=1).max() < 100.0
 
 
-def test_walks_the_same_way_at_every_frame_rate():
+def test_walk_is_the_same_at_every_frame_rate():
     slow = walking_gait(GaitSettings(duration=3.0, frame_rate=60.0, seed=4))
     fast = walking_gait(GaitSettings(duration=3.0, frame_rate=120.0, seed=4))
 
@@ -119,27 +119,27 @@ def test_walks_the_same_way_at_every_frame_rate():
     assert angle_between(fast.rotations[::2], slow.rotations).max() < np.radians(0.5)
 
 
-def test_every_seed_is_another_walker_and_no_stride_is_the_same():
+def test_seeds_and_strides_differ():
     first, again, other = (walking_gait(GaitSettings(seed=seed)) for seed in (1, 1, 2))
 
     assert np.array_equal(first.rotations, again.rotations)
     assert np.degrees(angle_between(first.rotations, other.rotations)).mean() > 1.0
 
 
-def test_refuses_steps_that_the_legs_cannot_make():
+def test_walk_raises_for_steps_beyond_the_legs():
     with pytest.raises(InvalidSettingError, match=r"steps of 1\.80 m, and .* raise cadence"):
         walking_gait(GaitSettings(speed=1.8, cadence=60.0))
 
 
 @pytest.mark.parametrize(("speed", "cadence"), [(0.4, 60), (0.4, 160), (0.8, 60), (1.8, 130)])
-def test_walks_at_the_corners_of_the_settings(speed, cadence):
+def test_walk_exists_at_the_limits_of_the_settings(speed, cadence):
     walk = walking_gait(GaitSettings(duration=3.0, speed=speed, cadence=cadence))
 
     assert walk.observed.all()
     assert forward_kinematics(walk).positions[..., 2].min() > 0.0
 
 
-def test_can_be_a_single_frame():
+def test_walk_can_be_a_single_frame():
     assert walking_gait(GaitSettings(duration=0.1, frame_rate=10.0)).n_frames == 1
 
 
@@ -148,12 +148,12 @@ def positions(motion, name):
 
 
 def along(motion, name, origin="Hips"):
-    """How far a joint is ahead of another one in the direction of walking, metres."""
+    """How far a joint is ahead of another one in the direction of walking, meters."""
     step = np.gradient(motion.root_positions[:, :2], axis=0)
     step /= np.linalg.norm(step, axis=1, keepdims=True)
     return ((positions(motion, name) - positions(motion, origin))[:, :2] * step).sum(axis=1)
 
 
-def n_turns(curve):
+def count_extrema(curve):
     """Number of times that a curve crosses its mean, halved: rises and falls."""
     return np.count_nonzero(np.diff(np.sign(curve - curve.mean()))) / 2

@@ -29,7 +29,7 @@ def test_arms_keep_their_lengths():
         assert_allclose(fore, 0.25, atol=1e-9)
 
 
-def test_gestures_are_done_when_it_is_said():
+def test_gestures_end_at_the_stated_times():
     performance = perform_gestures(["hand up", "clap"])
     (_, up), (_, clapped) = performance.made
     frames = [int(np.argmin(np.abs(performance.times - time))) for time in (up, clapped - 0.35)]
@@ -40,7 +40,7 @@ def test_gestures_are_done_when_it_is_said():
     assert np.linalg.norm(hands[frames[1]]) < 0.08
 
 
-def test_faces_the_camera_with_the_right_hand_at_its_left():
+def test_actor_faces_the_camera():
     performance = perform_gestures(["zoom in"])
 
     assert (joint(performance, "ShoulderRight")[:, 0] < 0).all()
@@ -48,7 +48,7 @@ def test_faces_the_camera_with_the_right_hand_at_its_left():
     assert joint(performance, "FootLeft")[0, 2] == pytest.approx(0.03)
 
 
-def test_noise_comes_again_with_its_seed():
+def test_noise_is_reproducible():
     settings = PerformanceSettings(noise=0.01, hidden=1.0, lost=0.2, lateness=0.01, seed=3)
 
     one, two = perform_gestures(["clap"], settings), perform_gestures(["clap"], settings)
@@ -60,6 +60,6 @@ def test_noise_comes_again_with_its_seed():
     assert (np.diff(one.times) >= 0).all()
 
 
-def test_an_unknown_gesture_is_refused():
+def test_unknown_gesture_raises():
     with pytest.raises(InvalidSettingError, match="shrug: not a gesture of rest, hand up"):
         perform_gestures(["shrug"])

@@ -38,7 +38,7 @@ def passing(motion, exponent):
 
 
 def fastest(motions, joint):
-    """Metres per second that a joint moves at most, as the actor faces."""
+    """Meters per second that a joint moves at most, as the actor faces."""
     place = motions[0].skeleton.names.index(joint)
     return max(
         np.linalg.norm(np.diff(positions_in_body_frame(one)[:, place], axis=0), axis=-1).max()

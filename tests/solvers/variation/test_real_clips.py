@@ -52,6 +52,6 @@ def test_the_latent_factor_model_neither_drifts_nor_jerks(recordings):
 
 
 def jerk(motions):
-    """Mean absolute third difference of where joints are, at 30 Hz, metres."""
+    """Mean absolute third difference of where joints are, at 30 Hz, meters."""
     bodies = (positions_in_body_frame(one)[::4] for one in motions)
     return np.mean([np.abs(np.diff(body, 3, axis=0)).mean() for body in bodies])
