@@ -116,13 +116,13 @@ def _hips(plan: WalkPlan, size: float) -> Array:
     """World rotation of the hips: the forward hip leads, the swinging side drops."""
     tilt = 5.0 + plan.random_curve(0.5) + 1.2 * _cycle(plan, 0.05, 2)
     drop = -3.5 * _cycle(plan, 0.12) * (1.0 + plan.random_curve(0.1)) + plan.random_curve(0.4)
-    turn = -5.0 * size * _cycle(plan, 0.0) * (1.0 + plan.random_curve(0.1)) + plan.random_curve(
-        0.5
-    )
+    hip_rotation = -5.0 * size * _cycle(plan, 0.0) * (
+        1.0 + plan.random_curve(0.1)
+    ) + plan.random_curve(0.5)
     heading = quaternion_from_rotation_vector(plan.heading[:, None] * [0.0, 0.0, 1.0])
     return _compose(
         heading,
-        _rotation_from_degrees(z=turn),
+        _rotation_from_degrees(z=hip_rotation),
         _rotation_from_degrees(y=drop),
         _rotation_from_degrees(x=tilt),
     )

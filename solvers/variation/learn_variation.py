@@ -191,9 +191,9 @@ def _describe_flip(motion: Motion, number: int) -> str:
         return ""
     frame, joint = divmod(int((angles > MAX_FRAME_ROTATION_RAD).argmax()), angles.shape[1])
     return (
-        f"{motion.skeleton.names[joint]} of example {number} turns by"
+        f"{motion.skeleton.names[joint]} of example {number} rotates by"
         f" {np.degrees(angles[frame, joint]):.0f} degrees within a frame at"
-        f" {(frame + 1) / motion.frame_rate:.2f} s: clean it first, or variants jump too."
+        f" {(frame + 1) / motion.frame_rate:.2f} s. Clean it first, or variants jump too."
     )
 
 

@@ -1,4 +1,4 @@
-"""People before a Kinect: subjects 3 and 4, whom nobody looked at while thresholds were set."""
+"""Recognition on a Kinect: subjects 3 and 4, who were not used to set thresholds."""
 
 from itertools import pairwise
 

@@ -1,4 +1,4 @@
-"""Hands as the actor sees them, against places that were written down by hand."""
+"""Hands in the actor's frame equal positions computed by hand."""
 
 import numpy as np
 import pytest

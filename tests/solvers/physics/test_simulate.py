@@ -1,4 +1,4 @@
-"""A simulated motion has weight, stands on the ground, and stays near the one it follows."""
+"""A simulated motion stands on the ground and stays near its target."""
 
 import numpy as np
 import pytest

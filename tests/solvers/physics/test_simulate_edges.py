@@ -1,4 +1,4 @@
-"""Whatever it is given, a simulation ends, with finite numbers or one clear sentence."""
+"""Any input gives finite numbers or a clear error."""
 
 from dataclasses import replace
 
@@ -32,7 +32,7 @@ def test_body_far_above_the_ground_is_unchanged_and_reported():
 
 
 def test_frames_not_followed_are_those_of_the_take():
-    """A walker who is lifted by more than a metre, for a second and a half of eight."""
+    """A walker is lifted by more than a meter, for a second and a half of eight."""
     long = walking_gait(GaitSettings(duration=8.0, frame_rate=30.0))
     lift = np.interp(np.arange(240), [100, 108, 145, 153], [0.0, 1.2, 1.2, 0.0])
     roots = long.root_positions + np.outer(lift, [0.0, 0.0, 1.0])
@@ -43,7 +43,7 @@ def test_frames_not_followed_are_those_of_the_take():
     assert len(lost) and set(lost) <= set(range(100, 190))
     assert np.array_equal(result.motion.root_positions[lost], roots[lost])
     assert not np.array_equal(result.motion.root_positions[10:50], roots[10:50])
-    assert f"in {len(lost)} of 240 frames, the first of them {lost[0]}" in result.message
+    assert f"in {len(lost)} of 240 frames, first in frame {lost[0]}" in result.message
     steps = np.abs(np.diff(result.motion.root_positions, axis=0)).max()
     assert steps < 2 * np.abs(np.diff(roots, axis=0)).max(), "it eases over"
 

@@ -1,4 +1,4 @@
-"""Feet that carry the body stay where they are; feet that do not are left alone."""
+"""Loaded feet keep their position; unloaded feet stay free."""
 
 import numpy as np
 import pytest

@@ -1,4 +1,4 @@
-"""By how much the ground carries the parts of a body."""
+"""Ground forces on the parts of a body."""
 
 from dataclasses import replace
 

@@ -1,4 +1,4 @@
-"""Of real takes, the good ones hardly change, and the bad ones come to stand on the ground."""
+"""Good takes hardly change, and bad ones come to stand on the ground."""
 
 import numpy as np
 import pytest

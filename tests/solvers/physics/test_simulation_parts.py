@@ -1,4 +1,4 @@
-"""The parts of the simulation equal what can be worked out by hand."""
+"""The parts of the simulation equal closed forms."""
 
 import os
 import sys

@@ -92,13 +92,13 @@ def test_hips_rise_twice_and_sway_once_per_stride(walk):
     height = walk.root_positions[:, 2]
 
     assert 0.02 < np.ptp(height) < 0.06
-    assert count_extrema(height) == pytest.approx(8.0 * 116 / 60, abs=2)
+    assert count_cycles(height) == pytest.approx(8.0 * 116 / 60, abs=2)
 
 
 def test_joints_do_not_jump(walk):
-    turns = np.degrees(angle_between(walk.rotations[1:], walk.rotations[:-1]))
+    angles = np.degrees(angle_between(walk.rotations[1:], walk.rotations[:-1]))
 
-    assert turns.max() < 15.0
+    assert angles.max() < 15.0
 
 
 @pytest.mark.parametrize("part", ["Foot", "Hand", "ToeBase_end"])
@@ -154,6 +154,6 @@ def along(motion, name, origin="Hips"):
     return ((positions(motion, name) - positions(motion, origin))[:, :2] * step).sum(axis=1)
 
 
-def count_extrema(curve):
+def count_cycles(curve):
     """Number of times that a curve crosses its mean, halved: rises and falls."""
     return np.count_nonzero(np.diff(np.sign(curve - curve.mean()))) / 2

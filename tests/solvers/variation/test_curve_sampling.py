@@ -1,4 +1,4 @@
-"""Curves between frames, against SciPy's spline and closed forms."""
+"""Sampling of curves equals SciPy's spline and closed forms."""
 
 import numpy as np
 import pytest

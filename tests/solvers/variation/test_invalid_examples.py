@@ -1,4 +1,4 @@
-"""Examples that rotation vectors, kernels and alignments could stumble over."""
+"""Learning from examples that are hard for rotation vectors, kernels and alignment."""
 
 from dataclasses import replace
 

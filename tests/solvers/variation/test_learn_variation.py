@@ -1,4 +1,4 @@
-"""What is learned of examples, and of odd ones."""
+"""Models of examples, and errors for invalid ones."""
 
 from dataclasses import replace
 

@@ -1,4 +1,4 @@
-"""Laws of variants, for every method."""
+"""Properties of variants, for every method."""
 
 from dataclasses import replace
 

@@ -63,7 +63,7 @@ def test_an_example_of_another_behaviour_is_named(walks):
     remarks = vary_motions([*walks, standing], 1, planting=None).remarks
     assert len(remarks) == 1
     assert "Example 4" in remarks[0]
-    assert "another behaviour" in remarks[0]
+    assert "another behavior" in remarks[0]
 
 
 def test_progress_goes_from_nothing_to_all(walks):
