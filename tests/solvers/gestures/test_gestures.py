@@ -26,12 +26,12 @@ MAX_DELAY_S = {"hand up": 1.2, "wave right": 0.1, "wave left": 0.1, "clap": 0.1}
 """Maximum seconds from the end of a gesture to its event; a raised hand must be held."""
 
 
-def recognized_gestures(performance, settings_used=None) -> list[Gesture]:
+def recognized(performance, chosen=None) -> list[Gesture]:
     events = recognize_gestures(
         performance.times,
         performance.positions,
         performance.confidence,
-        settings_used or GestureSettings(),
+        chosen or GestureSettings(),
     )
     return [event.gesture for event in events]
 
@@ -56,9 +56,7 @@ def test_each_gesture_is_reported_once_and_in_time(frame_rate):
 def test_recognition_tolerates_noise_dropouts_and_late_frames(seed):
     corrupted = PerformanceSettings(noise=0.01, hidden=0.5, lost=0.1, lateness=0.005, seed=seed)
 
-    gestures = recognized_gestures(
-        perform_gestures([*BROWSING, "clap", "rest", "clap"], corrupted)
-    )
+    gestures = recognized(perform_gestures([*BROWSING, "clap", "rest", "clap"], corrupted))
 
     assert gestures[0] is Gesture.HAND_UP
     assert gestures.count(Gesture.PAGE_NEXT) == 2 and gestures.count(Gesture.PAGE_BACK) == 1
@@ -69,7 +67,7 @@ def test_recognition_tolerates_noise_dropouts_and_late_frames(seed):
 def test_standing_with_noise_gives_no_gesture(seed):
     corrupted = PerformanceSettings(noise=0.02, hidden=1.0, lost=0.2, lateness=0.01, seed=seed)
 
-    assert recognized_gestures(perform_gestures(["rest"] * 30, corrupted)) == []
+    assert recognized(perform_gestures(["rest"] * 30, corrupted)) == []
 
 
 @settings(max_examples=15)
@@ -105,7 +103,7 @@ def test_hands_that_zoom_out_do_not_clap():
     for seed in range(10):
         corrupted = PerformanceSettings(noise=0.02, seed=seed)
 
-        assert Gesture.CAPTURE_START not in recognized_gestures(
+        assert Gesture.CAPTURE_START not in recognized(
             perform_gestures(["zoom out", "rest"], corrupted)
         )
 
@@ -117,9 +115,7 @@ def test_arm_that_turns_the_view_does_not_wave(monkeypatch):
     monkeypatch.setitem(GESTURES, "turn", swung)
     always = GestureSettings(waves_need_hand_up=False)
 
-    assert set(recognized_gestures(perform_gestures(["turn", "rest"]), always)) == {
-        Gesture.TURN
-    }
+    assert set(recognized(perform_gestures(["turn", "rest"]), always)) == {Gesture.TURN}
 
 
 def test_turn_is_the_angle_of_the_straight_arm():
@@ -136,7 +132,7 @@ def test_turn_is_the_angle_of_the_straight_arm():
 def test_gestures_between_two_claps_are_ignored():
     performance = perform_gestures(["clap", *BROWSING, "zoom in", "turn", "clap"])
 
-    assert recognized_gestures(performance) == [Gesture.CAPTURE_START, Gesture.CAPTURE_END]
+    assert recognized(performance) == [Gesture.CAPTURE_START, Gesture.CAPTURE_END]
 
 
 def test_performance_ends_before_the_last_clap_starts():
@@ -152,10 +148,10 @@ def test_waves_count_only_while_the_library_is_shown():
     alone = perform_gestures(["wave right", "rest"])
     late = perform_gestures(["hand up", *["rest"] * 16, "wave right", "rest"])
 
-    assert recognized_gestures(alone) == []
-    assert recognized_gestures(late) == [Gesture.HAND_UP]
+    assert recognized(alone) == []
+    assert recognized(late) == [Gesture.HAND_UP]
     always = GestureSettings(waves_need_hand_up=False)
-    assert recognized_gestures(alone, always) == [Gesture.PAGE_NEXT]
+    assert recognized(alone, always) == [Gesture.PAGE_NEXT]
 
 
 def test_left_hand_gives_no_gesture():
@@ -173,9 +169,7 @@ def test_slowly_closing_hands_do_not_clap(monkeypatch, seconds, expected):
     monkeypatch.setitem(GESTURES, "clap", slowed)
 
     assert [
-        each
-        for each in recognized_gestures(perform_gestures(["clap"]))
-        if each is not Gesture.ZOOM
+        each for each in recognized(perform_gestures(["clap"])) if each is not Gesture.ZOOM
     ] == expected
 
 
@@ -187,7 +181,7 @@ def test_clap_above_the_head_is_ignored(monkeypatch):
     )
     monkeypatch.setitem(GESTURES, "clap", over)
 
-    assert recognized_gestures(perform_gestures(["clap", "clap"])) == []
+    assert recognized(perform_gestures(["clap", "clap"])) == []
 
 
 @pytest.mark.parametrize("hidden_within", [0.15, 0.25, 0.35])
@@ -197,7 +191,7 @@ def test_clap_with_an_occluded_touch_is_reported(hidden_within):
     gap = np.linalg.norm(performance.positions[:, 10] - performance.positions[:, 6], axis=-1)
     performance.confidence[np.ix_(gap < hidden_within, arms)] = 0.0
 
-    assert recognized_gestures(performance) == [Gesture.CAPTURE_START]
+    assert recognized(performance) == [Gesture.CAPTURE_START]
 
 
 def test_applause_counts_once(monkeypatch):
@@ -208,7 +202,7 @@ def test_applause_counts_once(monkeypatch):
     )
     assert parted[1:] == clapped[1:]
 
-    assert recognized_gestures(perform_gestures(["clap", "rest", "clap"])) == [
+    assert recognized(perform_gestures(["clap", "rest", "clap"])) == [
         Gesture.CAPTURE_START, Gesture.CAPTURE_END,
     ]  # fmt: skip
 
@@ -236,20 +230,20 @@ def test_single_moving_hand_does_not_clap(monkeypatch, fraction, expected):
     made = tuple((time, *key) for time, key in zip(seconds, keys, strict=False))
     monkeypatch.setitem(GESTURES, "clap", made)
 
-    assert recognized_gestures(perform_gestures(["clap"])) == expected
+    assert recognized(perform_gestures(["clap"])) == expected
 
 
 def test_both_hands_up_give_no_gesture(monkeypatch):
     both = tuple(step and (step[0], step[1], step[1]) for step in GESTURES["hand up"])
     monkeypatch.setitem(GESTURES, "hand up", both)
 
-    assert recognized_gestures(perform_gestures(["hand up"])) == []
+    assert recognized(perform_gestures(["hand up"])) == []
 
 
 def test_capture_without_an_end_is_dropped():
     patient = GestureSettings(longest_capture=5.0)
 
-    gestures = recognized_gestures(perform_gestures(["clap", *["rest"] * 8, "clap"]), patient)
+    gestures = recognized(perform_gestures(["clap", *["rest"] * 8, "clap"]), patient)
 
     assert gestures == [
         Gesture.CAPTURE_START, Gesture.CAPTURE_DROPPED, Gesture.CAPTURE_START,
@@ -259,13 +253,8 @@ def test_capture_without_an_end_is_dropped():
 def test_missing_joints_give_no_gesture():
     performance = perform_gestures([*BROWSING, "clap"])
 
-    assert (
-        recognized_gestures(replace(performance, confidence=0.0 * performance.confidence)) == []
-    )
-    assert (
-        recognized_gestures(replace(performance, positions=np.nan * performance.positions))
-        == []
-    )
+    assert recognized(replace(performance, confidence=0.0 * performance.confidence)) == []
+    assert recognized(replace(performance, positions=np.nan * performance.positions)) == []
 
 
 def test_late_and_duplicate_frames_are_skipped():

@@ -43,34 +43,34 @@ def test_forward_follows_the_heading(t_pose):
 def test_single_outlier_has_no_effect(t_pose):
     reader = HandEstimator(GestureSettings())
     for frame in range(3):
-        usual = reader.read(frame / 30, t_pose, SURE)
+        unchanged = reader.read(frame / 30, t_pose, SURE)
     wild = t_pose.copy()
     wild[POSTURE_JOINTS.index("rightHand")] += 2.0
 
     hands = reader.read(0.1, wild, SURE)
 
-    assert_allclose(hands.right, usual.right, atol=1e-12)
+    assert_allclose(hands.right, unchanged.right, atol=1e-12)
 
 
 def test_missing_hand_is_held_briefly(t_pose):
     reader = HandEstimator(GestureSettings(patience=0.2))
-    usual = reader.read(0.0, t_pose, SURE)
+    unchanged = reader.read(0.0, t_pose, SURE)
     unsure = SURE.copy()
     unsure[POSTURE_JOINTS.index("rightHand")] = 0.1
 
     soon, late = reader.read(0.19, t_pose, unsure), reader.read(0.21, t_pose, unsure)
 
-    assert_allclose(soon.right, usual.right)
+    assert_allclose(soon.right, unchanged.right)
     assert np.isnan(soon.latest_gap)
     assert late is None
 
 
 def test_both_arms_are_required_but_not_hips_and_head(t_pose):
     for joint in ("rightUpperArm", "rightLowerArm", "rightHand", "leftHand", "leftUpperArm"):
-        lost = t_pose.copy()
-        lost[POSTURE_JOINTS.index(joint)] = np.nan
+        gapped = t_pose.copy()
+        gapped[POSTURE_JOINTS.index(joint)] = np.nan
 
-        assert HandEstimator(GestureSettings()).read(0.0, lost, SURE) is None
+        assert HandEstimator(GestureSettings()).read(0.0, gapped, SURE) is None
 
 
 def test_joints_in_one_point_give_no_hands(t_pose):

@@ -156,12 +156,12 @@ def test_shaking_take_is_smoothed_until_the_body_follows(walk):
 def test_more_smoothing_reduces_jerk(walk):
     shaking = corrupt(walk, CorruptionSettings(jitter=0.7))
 
-    usual, smooth = (
+    default, smooth = (
         simulate(shaking, settings=SimulateSettings(smoothing=smoothing))
         for smoothing in (0.04, 0.08)
     )
 
-    assert jerk(smooth.motion) < 0.7 * jerk(usual.motion)
+    assert jerk(smooth.motion) < 0.7 * jerk(default.motion)
 
 
 def test_higher_response_follows_closer(walk):
@@ -228,8 +228,8 @@ def test_root_bone_on_the_floor_moves_with_the_body(walk, simulated):
 
     assert np.array_equal(result.rotations[:, 0], motion.rotations[:, 0])
     after = forward_kinematics(result).positions[:, 1:]
-    apart = np.abs(after - forward_kinematics(simulated.motion).positions)
-    assert apart.mean() < 0.002, "rounding may decide when a foot touches"
+    differences = np.abs(after - forward_kinematics(simulated.motion).positions)
+    assert differences.mean() < 0.002, "rounding may decide when a foot touches"
 
 
 def raised(motion, height):

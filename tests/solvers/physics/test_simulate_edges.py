@@ -39,11 +39,11 @@ def test_frames_not_followed_are_those_of_the_take():
 
     result = simulate(long.with_poses(root_positions=roots))
 
-    lost = np.flatnonzero(~result.followed)
-    assert len(lost) and set(lost) <= set(range(100, 190))
-    assert np.array_equal(result.motion.root_positions[lost], roots[lost])
+    failed = np.flatnonzero(~result.followed)
+    assert len(failed) and set(failed) <= set(range(100, 190))
+    assert np.array_equal(result.motion.root_positions[failed], roots[failed])
     assert not np.array_equal(result.motion.root_positions[10:50], roots[10:50])
-    assert f"in {len(lost)} of 240 frames, first in frame {lost[0]}" in result.message
+    assert f"in {len(failed)} of 240 frames, first in frame {failed[0]}" in result.message
     steps = np.abs(np.diff(result.motion.root_positions, axis=0)).max()
     assert steps < 2 * np.abs(np.diff(roots, axis=0)).max(), "it eases over"
 
@@ -117,9 +117,9 @@ def test_unstable_engine_returns_the_take(monkeypatch, plant):
     result = simulate(WALK, settings=SimulateSettings(plant=plant))
 
     assert np.isfinite(result.carried).all() and np.isfinite(result.support).all()
-    lost = ~result.followed
-    assert lost.any()
-    assert np.array_equal(result.motion.rotations[lost], WALK.rotations[lost])
+    failed = ~result.followed
+    assert failed.any()
+    assert np.array_equal(result.motion.rotations[failed], WALK.rotations[failed])
     assert np.isfinite(result.motion.rotations).all()
 
 
@@ -136,8 +136,8 @@ def test_other_skeleton_is_simulated_bone_by_bone(n_joints):
 
     assert np.isfinite(result.motion.rotations).all()
     assert result.penetration_after <= max(result.penetration_before, 0.005)
-    places = forward_kinematics(result.motion).positions
-    lengths = np.linalg.norm(np.diff(places, axis=1), axis=-1)
+    positions = forward_kinematics(result.motion).positions
+    lengths = np.linalg.norm(np.diff(positions, axis=1), axis=-1)
     assert_allclose(lengths, 0.2, atol=1e-12)
 
 

@@ -132,11 +132,11 @@ def test_fast_sliding_foot_is_not_held(walk):
     """Who is carried sideways at 2 m/s in a stiff pose, feet on the ground, slides."""
     frame = in_contact_of(walk).all(axis=1).argmax()
     n_frames, rate = 60, 60.0
-    way = np.outer(np.arange(n_frames) / rate * 2.0, [1.0, 0.0, 0.0])
+    displacement = np.outer(np.arange(n_frames) / rate * 2.0, [1.0, 0.0, 0.0])
     sliding = Motion(
         walk.skeleton,
         np.repeat(walk.rotations[frame : frame + 1], n_frames, axis=0),
-        walk.root_positions[frame] + way,
+        walk.root_positions[frame] + displacement,
         rate,
     )
 
@@ -147,8 +147,8 @@ def test_fast_sliding_foot_is_not_held(walk):
 
     assert np.array_equal(kept.rotations, free.rotations)
     assert np.array_equal(kept.root_positions, free.root_positions)
-    ways = kept.root_positions[-1] - kept.root_positions[0]
-    assert_allclose(ways, way[-1], atol=0.1)
+    displacements = kept.root_positions[-1] - kept.root_positions[0]
+    assert_allclose(displacements, displacement[-1], atol=0.1)
 
 
 def test_held_feet_do_not_move(walk, body, rng):
@@ -242,15 +242,17 @@ def test_planting_is_equivariant_to_heading(shaking, kept):
 
     result = simulate(shaking.with_poses(rotations, shaking.root_positions @ about))
 
-    apart = result.motion.root_positions - kept.motion.root_positions @ about
-    assert np.abs(apart).mean() < MILLIMETRE
+    differences = result.motion.root_positions - kept.motion.root_positions @ about
+    assert np.abs(differences).mean() < MILLIMETRE
 
 
 def steps(body, motion):
     """Way of the slowest point of each sole to the next frame, (n_frames - 1, 2), meters."""
     points = lowest_points(body, motion)
-    ways = np.linalg.norm(np.diff(points[..., :2], axis=0), axis=-1)
-    return np.stack([ways[:, select_foot_ends(body, side)].min(axis=1) for side in SIDES], -1)
+    displacements = np.linalg.norm(np.diff(points[..., :2], axis=0), axis=-1)
+    return np.stack(
+        [displacements[:, select_foot_ends(body, side)].min(axis=1) for side in SIDES], -1
+    )
 
 
 def loaded_steps(body, motion):
@@ -261,8 +263,8 @@ def loaded_steps(body, motion):
         own = points[:, select_foot_ends(body, side)]
         weights = distribute_load(own[..., 2], motion.frame_rate, body.size)
         weights = 0.5 * (weights[1:] + weights[:-1])
-        way = (weights[..., None] * np.diff(own[..., :2], axis=0)).sum(axis=1)
-        found.append(np.linalg.norm(way, axis=-1))
+        displacement = (weights[..., None] * np.diff(own[..., :2], axis=0)).sum(axis=1)
+        found.append(np.linalg.norm(displacement, axis=-1))
     return np.stack(found, axis=-1)
 
 

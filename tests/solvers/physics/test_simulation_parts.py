@@ -94,9 +94,8 @@ def test_energy_does_not_grow(engine, walk):
 
 def test_mass_fractions_sum_to_one():
     assert len(ROLES) == 22
-    assert_allclose(
-        sum(MASS_FRACTIONS[role_without_side(role)] for role in ROLES), 1.0, atol=0.001
-    )
+    total = sum(MASS_FRACTIONS[role_without_side(role)] for role in ROLES)
+    assert_allclose(total, 1.0, atol=0.001)
 
 
 @pytest.mark.parametrize(
@@ -175,9 +174,8 @@ def test_target_velocities_equal_finite_differences(rng):
         (states.velocities[:, 3:], states.accelerations[:, 3:]),
     ):
         assert_allclose(np.gradient(kind, dt, axis=0)[5:-5], faster[5:-5], atol=0.1)
-    assert_allclose(
-        angular_velocities(states.coordinates, dt)[5:-5], states.velocities[5:-5, 3:], atol=1e-3
-    )
+    differences = angular_velocities(states.coordinates, dt)
+    assert_allclose(differences[5:-5], states.velocities[5:-5, 3:], atol=1e-3)
 
 
 def angular_velocities(coordinates, dt):
@@ -214,12 +212,12 @@ def test_fill_gaps_interpolates_and_holds_the_ends():
     rotations[[0, 2, 3, 5, 6], 0] = np.nan
     coordinates[2] = np.nan
 
-    whole = fill_gaps(Motion(skeleton, rotations, coordinates, 30.0))
+    filled = fill_gaps(Motion(skeleton, rotations, coordinates, 30.0))
 
     angles = [0.0, 0.0, 0.3, 0.6, 0.9, 0.9, 0.9]
     turns[:, 0, 2] = angles
-    assert_allclose(whole.rotations, quaternion_from_rotation_vector(turns), atol=1e-12)
-    assert_allclose(whole.root_positions, np.arange(21.0).reshape(7, 3))
+    assert_allclose(filled.rotations, quaternion_from_rotation_vector(turns), atol=1e-12)
+    assert_allclose(filled.root_positions, np.arange(21.0).reshape(7, 3))
 
 
 def test_ground_forces_stay_in_the_friction_cone():
@@ -274,9 +272,8 @@ def test_blend_motions_is_exact_at_weights_zero_and_one(walk):
 
     assert np.array_equal(between.rotations[0], walk.rotations[0])
     assert np.array_equal(between.rotations[-1], turned.rotations[-1])
-    assert_allclose(
-        between.root_positions - walk.root_positions, weights[:, None] + np.zeros(3)
-    )
+    offsets = between.root_positions - walk.root_positions
+    assert_allclose(offsets, weights[:, None] + np.zeros(3))
 
 
 def test_missing_engine_raises_a_readable_error(monkeypatch):

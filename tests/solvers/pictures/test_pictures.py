@@ -64,9 +64,9 @@ def test_project_to_view_maps_left_forward_and_up(view, expected):
     """A point one metre to the left, two ahead and three up, for two directions of facing."""
     points = np.array([[[1.0, -2.0, 3.0]], [[2.0, 1.0, 3.0]]])
 
-    seen = project_to_view(points, np.array([0.0, np.pi / 2]), view)
+    projected = project_to_view(points, np.array([0.0, np.pi / 2]), view)
 
-    assert_allclose(seen[:, 0], [expected, expected], atol=1e-12)
+    assert_allclose(projected[:, 0], [expected, expected], atol=1e-12)
 
 
 def test_figure_has_the_requested_height(swinging_leg):
@@ -85,10 +85,10 @@ def test_missing_joint_is_not_drawn(swinging_leg):
     rotations[:, 1] = np.nan
     settings = StickFigureSettings(n_figures=3)
 
-    whole = draw_stick_figures({"leg": swinging_leg}, settings).pixels
+    complete = draw_stick_figures({"leg": swinging_leg}, settings).pixels
     thigh = draw_stick_figures({"leg": swinging_leg.with_poses(rotations)}, settings).pixels
 
-    assert lowest_row(thigh) < lowest_row(whole) - 60
+    assert lowest_row(thigh) < lowest_row(complete) - 60
     assert is_color(thigh[44:], CLEAN).any()
 
 
@@ -128,10 +128,10 @@ def test_figures_are_drawn_across_a_gap_of_the_root(swinging_leg):
 
 
 def test_empty_motion_gives_a_picture(swinging_leg):
-    lost = swinging_leg.with_poses(np.full_like(swinging_leg.rotations, np.nan))
+    missing = swinging_leg.with_poses(np.full_like(swinging_leg.rotations, np.nan))
 
-    assert draw_stick_figures({"leg": lost}).pixels.size
-    assert draw_curves({"leg": lost}, ["hip"]).pixels.size
+    assert draw_stick_figures({"leg": missing}).pixels.size
+    assert draw_curves({"leg": missing}, ["hip"]).pixels.size
 
 
 def test_drawing_raises_for_different_lengths(swinging_leg):

@@ -34,8 +34,8 @@ def test_spikes_have_the_stated_fraction_and_size(walk):
     size = np.abs(alone).max(axis=1)
 
     rotating = sum(not walk.skeleton.is_end_site(joint) for joint in range(walk.n_joints))
-    share = np.count_nonzero(np.abs(error) > 1e-6) / (walk.n_frames * rotating * 3)
-    assert share == pytest.approx(0.01, rel=0.1)
+    fraction = np.count_nonzero(np.abs(error) > 1e-6) / (walk.n_frames * rotating * 3)
+    assert fraction == pytest.approx(0.01, rel=0.1)
     assert 20.0 <= size.min() < 23.0 and 57.0 < size.max() <= 60.0
     assert abs(np.sign(alone.sum(axis=1)).mean()) < 0.2
 

@@ -20,13 +20,13 @@ def walk():
 
 def test_walker_is_an_adult_in_t_pose():
     skeleton = walker_skeleton()
-    place = dict(zip(skeleton.names, skeleton.rest_positions, strict=True))
+    rest_positions = dict(zip(skeleton.names, skeleton.rest_positions, strict=True))
 
     assert 1.7 < skeleton.height < 1.9
-    assert place["LeftHand"][0] > 0.6 and place["RightHand"][0] < -0.6
-    assert_allclose(place["LeftHand"][2], place["LeftShoulder"][2], atol=0.01)
-    assert place["LeftToeBase"][1] < place["LeftFoot"][1], "toes point to -Y"
-    assert place["LeftToeBase_end"][2] == pytest.approx(TOE_HEIGHT)
+    assert rest_positions["LeftHand"][0] > 0.6 and rest_positions["RightHand"][0] < -0.6
+    assert_allclose(rest_positions["LeftHand"][2], rest_positions["LeftShoulder"][2], atol=0.01)
+    assert rest_positions["LeftToeBase"][1] < rest_positions["LeftFoot"][1], "toes point to -Y"
+    assert rest_positions["LeftToeBase_end"][2] == pytest.approx(TOE_HEIGHT)
 
 
 @pytest.mark.parametrize("side", ["Left", "Right"])
@@ -57,8 +57,8 @@ def test_walk_has_the_requested_speed_and_cadence():
     walk = walking_gait(GaitSettings(duration=20.0, speed=1.1, cadence=100.0))
 
     travelled = np.diff(walk.root_positions[:, :2], axis=0)
-    apart = along(walk, "LeftFoot") - along(walk, "RightFoot")
-    n_steps = np.count_nonzero(np.diff(np.sign(apart)))
+    separation = along(walk, "LeftFoot") - along(walk, "RightFoot")
+    n_steps = np.count_nonzero(np.diff(np.sign(separation)))
 
     assert np.linalg.norm(travelled, axis=1).sum() == pytest.approx(22.0, rel=0.05)
     assert travelled[:, 1].sum() < -15.0

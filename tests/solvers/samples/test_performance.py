@@ -1,4 +1,4 @@
-"""The made actor keeps the lengths of his bones, and does what he is told when he says."""
+"""The simulated actor keeps bone lengths and performs gestures at the stated times."""
 
 import itertools
 

@@ -27,8 +27,8 @@ def about(axis, angles):
 def with_rotation(motion, joint, axis, angles):
     """Turn a joint further, by an angle in each frame, about an axis of its parent."""
     rotations = motion.rotations.copy()
-    place = motion.skeleton.names.index(joint)
-    rotations[:, place] = multiply(about(axis, angles), rotations[:, place])
+    index = motion.skeleton.names.index(joint)
+    rotations[:, index] = multiply(about(axis, angles), rotations[:, index])
     return motion.with_poses(rotations)
 
 
@@ -39,9 +39,9 @@ def passing(motion, exponent):
 
 def fastest(motions, joint):
     """Meters per second that a joint moves at most, as the actor faces."""
-    place = motions[0].skeleton.names.index(joint)
+    index = motions[0].skeleton.names.index(joint)
     return max(
-        np.linalg.norm(np.diff(positions_in_body_frame(one)[:, place], axis=0), axis=-1).max()
+        np.linalg.norm(np.diff(positions_in_body_frame(one)[:, index], axis=0), axis=-1).max()
         * one.frame_rate
         for one in motions
     )
@@ -61,11 +61,11 @@ def test_variants_keep_arms_that_rotate_twice(method, walks):
     variants = [one.motion for one in drawn]
     assert fastest(variants, "LeftHand") < 2.0 * fastest(mills, "LeftHand")
     assert 0.4 < measure_variation(variants) / measure_variation(mills) < 1.6
-    place = walks[0].skeleton.names.index("LeftHand")
+    index = walks[0].skeleton.names.index("LeftHand")
     shoulder = walks[0].skeleton.names.index("LeftArm")
     for motion in variants:
         body = positions_in_body_frame(motion)
-        arm = body[:, place] - body[:, shoulder]
+        arm = body[:, index] - body[:, shoulder]
         turned = np.unwrap(np.arctan2(arm[:, 1], arm[:, 2]))
         assert abs(abs(turned[-1] - turned[0]) - 4 * np.pi) < 1.0
 
@@ -116,10 +116,10 @@ def test_two_flips_in_one_direction_do_not_wind_up_a_joint(walks):
         learn_variation_model([walks[0], one, *walks[2:]]) for one in (walks[1], broken)
     )
 
-    apart = np.abs(odd.joints[1] - plain.joints[1]).max(axis=(1, 2))
+    differences = np.abs(odd.joints[1] - plain.joints[1]).max(axis=(1, 2))
 
-    assert apart[:15].max() < 0.6
-    assert apart[45:].max() < 0.6
+    assert differences[:15].max() < 0.6
+    assert differences[45:].max() < 0.6
     assert odd.warning.startswith(
         "LeftUpLeg of example 2 turns by 180 degrees within a frame at 0.42 s"
     )
@@ -128,20 +128,20 @@ def test_two_flips_in_one_direction_do_not_wind_up_a_joint(walks):
 
 def test_model_is_the_same_at_twice_the_frame_rate(walks):
     """Of another rate and length: variants go as fast and as far."""
-    quick = [walks[0], *(resample(walk, 150.0) for walk in walks[1:])]
+    resampled = [walks[0], *(resample(walk, 150.0) for walk in walks[1:])]
     reference_rotations, mixed = (
         [one.motion for one in draw_variants(learn_variation_model(some), 8)]
-        for some in (walks, quick)
+        for some in (walks, resampled)
     )
 
     assert {one.frame_rate for one in mixed} == {60.0}
     lengths = [np.mean([one.n_frames for one in some]) for some in (reference_rotations, mixed)]
     assert lengths[1] == pytest.approx(lengths[0], rel=0.05)
-    ways = [
+    path_lengths = [
         np.mean([np.ptp(one.root_positions[:, 1]) for one in some])
         for some in (reference_rotations, mixed)
     ]
-    assert ways[1] == pytest.approx(ways[0], rel=0.05)
+    assert path_lengths[1] == pytest.approx(path_lengths[0], rel=0.05)
 
 
 @pytest.mark.parametrize("method", Method)

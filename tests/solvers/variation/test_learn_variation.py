@@ -35,7 +35,7 @@ def turned_about_z(motion, angle):
 
 
 def test_model_ignores_position_and_heading_of_examples(walks):
-    there = [turned_about_z(walk, 0.7 * place) for place, walk in enumerate(walks)]
+    there = [turned_about_z(walk, 0.7 * index) for index, walk in enumerate(walks)]
 
     reference_rotations, turned = (
         synthesize(learn_variation_model(one), 2) for one in (walks, there)

@@ -40,9 +40,9 @@ FREE = np.ones(2)
 def measure_seam(motion):
     """Return the pose gap at the seam, and its velocity step relative to the clip's largest."""
     rounds, n = repeat_loop(motion, 2), motion.n_frames
-    places = forward_kinematics(rounds).positions
-    gap = np.abs(places[n - 1] - forward_kinematics(motion).positions[-1]).max()
-    steps = np.linalg.norm(np.diff(places, n=2, axis=0), axis=-1).mean(axis=-1)
+    positions = forward_kinematics(rounds).positions
+    gap = np.abs(positions[n - 1] - forward_kinematics(motion).positions[-1]).max()
+    steps = np.linalg.norm(np.diff(positions, n=2, axis=0), axis=-1).mean(axis=-1)
     return gap, steps[n - 2] / np.delete(steps, n - 2).max()
 
 
@@ -167,13 +167,13 @@ def test_repeated_cycles_start_where_the_previous_ended():
     about = np.stack([np.cos(turn / 2), 0 * turn, 0 * turn, np.sin(turn / 2)], axis=-1)
     rotations = walk.rotations.copy()
     rotations[:, 0] = multiply(about, walk.rotations[:1, 0])
-    places = np.stack([np.sin(turn), 1 - np.cos(turn), 0 * turn + 0.9], axis=-1)
-    quarter = walk.with_poses(rotations, places)
+    positions = np.stack([np.sin(turn), 1 - np.cos(turn), 0 * turn + 0.9], axis=-1)
+    quarter = walk.with_poses(rotations, positions)
 
     circle = repeat_loop(quarter, 4)
 
     assert circle.n_frames == 4 * (walk.n_frames - 1) + 1
-    assert_allclose(circle.root_positions[-1], places[0], atol=1e-9)
+    assert_allclose(circle.root_positions[-1], positions[0], atol=1e-9)
     assert np.linalg.norm(np.diff(circle.root_positions, axis=0), axis=-1).max() < 0.06
     back = rotation_vector_from_quaternion(
         multiply(circle.rotations[-1, 0], quarter.rotations[0, 0] * (1, -1, -1, -1))
