@@ -121,7 +121,7 @@ def test_two_flips_in_one_direction_do_not_wind_up_a_joint(walks):
     assert differences[:15].max() < 0.6
     assert differences[45:].max() < 0.6
     assert odd.warning.startswith(
-        "LeftUpLeg of example 2 turns by 180 degrees within a frame at 0.42 s"
+        "LeftUpLeg of example 2 rotates by 180 degrees within a frame at 0.42 s"
     )
     assert not plain.warning
 
