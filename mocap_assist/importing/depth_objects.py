@@ -4,7 +4,7 @@ from pathlib import Path
 
 import bpy
 
-from ...solvers.depth_scene import LEVEL, DepthRecording, camera_doubts, find_floor
+from ...solvers.depth_scene import LEVEL, DepthRecording, check_intrinsics, find_floor
 from ...solvers.progress import Progress, unwatched
 from ..blender.permissions import allow_recording
 from ..depth.depth_preview import Shown, build_preview, cheap_step
@@ -35,6 +35,6 @@ def make_preview(
     camera = recording.camera
     what = f"depth of {camera.width} x {camera.height} pixels"
     what += ", on the floor" if floor else ", without a floor"
-    if doubts := camera_doubts(camera):
+    if doubts := check_intrinsics(camera):
         what += f". {' '.join(doubts).removesuffix('.')}"
     return Made(made, None, float(samples.frames(recording.n_frames)[-1]), what)

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...solvers.depth_tracking.body import CAPSULE_SEGMENTS, capsule_surface, segment_frames
-from ...solvers.depth_tracking.tracking import FoundPose
+from ...solvers.depth_tracking.tracking import PosePreview
 from ..depth.depth_preview import Shown, shown_by
 from ..drawing.body_drawing import Solid, draw_solid, solid
 from ..drawing.heat import shade
@@ -73,7 +73,7 @@ class LiveBody:
         self.drawn = self.solid_of(poses[-1], stage.scene_from_camera)
         self._not_before = monotonic() + (monotonic() - began) * (1.0 / AT_MOST - 1.0)
 
-    def solid_of(self, found: FoundPose, scene_from_camera: Array) -> Solid:
+    def solid_of(self, found: PosePreview, scene_from_camera: Array) -> Solid:
         """Return a pose as capsules, in the colours of how sure their joints are."""
         if found.body is not self._body:
             self._body, self._surface = found.body, capsule_surface(found.body)

@@ -4,7 +4,7 @@ from typing import ClassVar
 
 import bpy
 
-from ...solvers.depth_scene import ForegroundWay
+from ...solvers.depth_scene import ForegroundMethod
 from ..panels.drawing import draw_job, draw_sentence, exists
 from .retracking import why_not_retrack
 from .tracked_body import is_tracked
@@ -41,7 +41,7 @@ def _draw_tracking(layout: bpy.types.UILayout, context: bpy.types.Context) -> No
     track = context.scene.mocap_assist.track
     column = _settings(layout)
     column.prop(track, "way")
-    if track.way == ForegroundWay.CUT.name:
+    if track.way == ForegroundMethod.CUT.name:
         for name in CUT:
             column.prop(track, name)
     for name in SHOWN:

@@ -5,7 +5,7 @@ from typing import Any, NamedTuple
 
 from ...solvers.depth_scene import Floor
 from ...solvers.depth_tracking.body import BodyModel
-from ...solvers.depth_tracking.tracking import FoundPose
+from ...solvers.depth_tracking.tracking import PosePreview
 
 Show = Callable[[Any], None]
 
@@ -27,7 +27,7 @@ class Glimpses:
         self._show = show
         self._body: BodyModel | None = None
 
-    def __call__(self, found: FoundPose) -> None:
+    def __call__(self, found: PosePreview) -> None:
         """Show a pose."""
         if found.body is not self._body:
             self._show(found.body)
@@ -42,7 +42,7 @@ class Onlooker:
         self.floor: Floor | None = None
         self._body: BodyModel | None = None
 
-    def poses(self, shown: Iterable[Any]) -> Iterator[FoundPose]:
+    def poses(self, shown: Iterable[Any]) -> Iterator[PosePreview]:
         """Return the poses in what was shown since the last time; their body is shared."""
         for thing in shown:
             if isinstance(thing, Place):
@@ -50,4 +50,4 @@ class Onlooker:
             elif isinstance(thing, BodyModel):
                 self._body = thing
             elif self._body is not None:
-                yield FoundPose(self._body, *thing)
+                yield PosePreview(self._body, *thing)

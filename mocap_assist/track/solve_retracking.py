@@ -7,7 +7,7 @@ import numpy as np
 
 from ...solvers.depth_scene import DepthRecording, Floor, ForegroundSettings, find_actor
 from ...solvers.depth_tracking import BodyModel, Retracked, RetrackSettings, retrack
-from ...solvers.depth_tracking.tracking import shifted
+from ...solvers.depth_tracking.tracking import offset_frames
 from ...solvers.motion import Motion
 from ...solvers.progress import Progress, unwatched, within
 from .pose_previews import Glimpses, Place, Show, unseen
@@ -64,7 +64,7 @@ def retrack_recording(
         floor=played.floor,
         fixed=correction.fixed,
         settings=settings,
-        on_pose=shifted(Glimpses(show), first),
+        on_pose=offset_frames(Glimpses(show), first),
         progress=within(progress, FOUND, 1.0),
     )
 

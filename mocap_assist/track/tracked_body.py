@@ -8,7 +8,7 @@ import bpy
 import numpy as np
 from numpy.typing import NDArray
 
-from ...solvers.depth_scene import Floor, ForegroundSettings, ForegroundWay
+from ...solvers.depth_scene import Floor, ForegroundMethod, ForegroundSettings
 from ...solvers.depth_tracking.body import CAPSULES, LENGTHS, SEGMENTS, BodyModel, rest_frames
 from ...solvers.errors import InvalidMotionError, MocapAssistError
 from ..blender.stored_json import parsed, store
@@ -73,7 +73,7 @@ def _parsed(text: str) -> TrackedBody:
         ),
         Shown.of(told["shown"]),
         None if floor is None else Floor(np.array(floor[:3]), float(floor[3])),
-        ForegroundSettings(**actor | {"way": ForegroundWay[actor["way"]]}),
+        ForegroundSettings(**actor | {"way": ForegroundMethod[actor["way"]]}),
     )
 
 

@@ -2,22 +2,22 @@
 
 from .actor import Actor, find_actor
 from .camera import Camera
-from .camera_checks import camera_doubts
+from .camera_checks import check_intrinsics
 from .floor import LEVEL, Floor, find_floor
-from .foreground import ForegroundSettings, ForegroundWay
-from .recording import ColorPicture, DepthPicture, DepthRecording
+from .foreground import ForegroundMethod, ForegroundSettings
+from .recording import ColorImage, DepthImage, DepthRecording
 
 __all__ = [
     "LEVEL",
     "Actor",
     "Camera",
-    "ColorPicture",
-    "DepthPicture",
+    "ColorImage",
+    "DepthImage",
     "DepthRecording",
     "Floor",
+    "ForegroundMethod",
     "ForegroundSettings",
-    "ForegroundWay",
-    "camera_doubts",
+    "check_intrinsics",
     "find_actor",
     "find_floor",
 ]

@@ -9,13 +9,13 @@ from numpy.typing import NDArray
 from ..errors import InvalidMotionError
 from ..progress import Progress, unwatched, within
 from .bodies import Bodies, find_bodies
-from .camera_checks import camera_doubts
+from .camera_checks import check_intrinsics
 from .floor import LEVEL, Floor, find_floor
 from .foreground import (
-    ActorPictures,
+    ActorImages,
     Background,
+    ForegroundMethod,
     ForegroundSettings,
-    ForegroundWay,
     cut_out_actor,
     in_front_of,
     learn_background,
@@ -47,7 +47,7 @@ class Actor:
         With nothing but the actor in it; still read frame by frame.
     floor : Floor, or None
         None where none is seen.
-    way : ForegroundWay
+    way : ForegroundMethod
         How the actor was told from the room.
     seen : bool array, shape (n_frames,)
         Whether the actor is there.
@@ -59,7 +59,7 @@ class Actor:
 
     recording: DepthRecording
     floor: Floor | None
-    way: ForegroundWay
+    way: ForegroundMethod
     seen: NDArray[np.bool_]
     feet_seen: bool
     remarks: tuple[str, ...]
@@ -103,14 +103,14 @@ def find_actor(
     way = _way(recording, settings, empty, frames)
     settings = replace(settings, way=way)
     floor, background = None, None
-    if way is not ForegroundWay.RECORDED:
+    if way is not ForegroundMethod.RECORDED:
         floor = find_floor(recording, progress=within(progress, 0.0, 0.1))
-    if way is ForegroundWay.BACKGROUND:
+    if way is ForegroundMethod.BACKGROUND:
         background = learn_background(recording, empty, progress=within(progress, 0.1, 0.2))
     room = None
-    if way is ForegroundWay.AUTOMATIC:
+    if way is ForegroundMethod.AUTOMATIC:
         room = uncovered_background(recording, progress=within(progress, 0.1, 0.2))
-    survey = _Survey(ActorPictures(recording, settings, background, floor), room)
+    survey = _Survey(ActorImages(recording, settings, background, floor), room)
     people = _followed(survey, frames, recording, within(progress, 0.2, 1.0))
     seen = np.isfinite(people.course).all(axis=-1)
     if not seen.any():
@@ -119,7 +119,7 @@ def find_actor(
         recording, settings, background=background, floor=floor, course=people.course
     )
     remarks = (
-        *camera_doubts(recording.camera),
+        *check_intrinsics(recording.camera),
         *_remarks(people, seen, recording),
         *survey.remarks(),
     )
@@ -144,12 +144,12 @@ def _way(
     settings: ForegroundSettings,
     empty: Sequence[int],
     frames: NDArray[np.intp],
-) -> ForegroundWay:
+) -> ForegroundMethod:
     """Choose: as recorded, if little of the picture is filled, and that is one body."""
-    if settings.way is not ForegroundWay.AUTOMATIC:
+    if settings.way is not ForegroundMethod.AUTOMATIC:
         return settings.way
     if len(empty):
-        return ForegroundWay.BACKGROUND
+        return ForegroundMethod.BACKGROUND
     alone, step = [], _coarse_step(recording)
     for frame in frames[:: max(1, len(frames) // 12)].tolist():
         depth = recording.frame(frame)[::step, ::step]
@@ -159,7 +159,7 @@ def _way(
         shares = np.bincount(found.labels[depth > 0.0], minlength=2) / (depth > 0.0).sum()
         alone.append((depth > 0.0).mean() < FULL and 1.0 - shares[0] >= WHOLE)
     recorded = bool(alone) and np.mean(alone) > 0.5 and find_floor(recording) is None
-    return ForegroundWay.RECORDED if recorded else ForegroundWay.AUTOMATIC
+    return ForegroundMethod.RECORDED if recorded else ForegroundMethod.AUTOMATIC
 
 
 def _coarse_step(recording: DepthRecording) -> int:
@@ -170,7 +170,7 @@ def _coarse_step(recording: DepthRecording) -> int:
 class _Survey:
     """Looks at single frames for people, in coarse pictures."""
 
-    def __init__(self, actor: ActorPictures, room: Background | None) -> None:
+    def __init__(self, actor: ActorImages, room: Background | None) -> None:
         self._actor, self._room = actor, room
         self._step = _coarse_step(actor.recording)
         self._camera = actor.recording.camera.every(self._step)
@@ -184,7 +184,7 @@ class _Survey:
         depth = self._actor.stands_out(depth, step)
         found = find_bodies(depth, self._camera, settings.smallest_body)
         kept = np.ones(len(found.areas), dtype=bool)
-        if settings.way is not ForegroundWay.RECORDED:
+        if settings.way is not ForegroundMethod.RECORDED:
             kept &= found.areas <= settings.largest_body
         if self._room is not None:
             room = Background(

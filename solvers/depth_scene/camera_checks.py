@@ -23,7 +23,7 @@ def field_of_view(camera: Camera) -> float:
     return float(np.degrees(before + after))
 
 
-def camera_doubts(camera: Camera) -> tuple[str, ...]:
+def check_intrinsics(camera: Camera) -> tuple[str, ...]:
     """Return a sentence for each thing in which a camera differs from those that there are.
 
     Numbers for pictures of another size, such as those of the full picture for one of half the

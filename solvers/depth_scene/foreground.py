@@ -14,7 +14,7 @@ from ..settings import Settings, setting
 from .bodies import Bodies, find_bodies
 from .camera import Camera
 from .floor import Floor
-from .recording import DepthPicture, DepthRecording
+from .recording import DepthImage, DepthRecording
 
 Array = NDArray[np.float64]
 
@@ -31,7 +31,7 @@ ASTRAY = 1.2
 """Metres from where the actor was expected, beyond which a body is someone else."""
 
 
-class ForegroundWay(Enum):
+class ForegroundMethod(Enum):
     """How the actor is told from the room."""
 
     AUTOMATIC = "automatic"
@@ -48,7 +48,9 @@ class ForegroundWay(Enum):
 class ForegroundSettings(Settings):
     """What may belong to the actor."""
 
-    way: ForegroundWay = setting(ForegroundWay.AUTOMATIC, "How the actor is told from the room")
+    way: ForegroundMethod = setting(
+        ForegroundMethod.AUTOMATIC, "How the actor is told from the room"
+    )
     nearest: float = setting(
         0.3, "What is nearer to the camera is cut away", unit="m", minimum=0.0, maximum=50.0
     )
@@ -85,8 +87,8 @@ class Background:
         Standard deviation of one reading.
     """
 
-    depth: DepthPicture
-    spread: DepthPicture
+    depth: DepthImage
+    spread: DepthImage
 
 
 def learn_background(
@@ -132,7 +134,7 @@ def _usual_room(
     return Background(np.nan_to_num(depth), np.nan_to_num(spread))
 
 
-def _quantile_seen(values: DepthPicture, quantile: float) -> DepthPicture:
+def _quantile_seen(values: DepthImage, quantile: float) -> DepthImage:
     """Return a quantile along the first axis of what is not NaN; NaN where all is."""
     ordered = np.sort(values, axis=0)
     last = np.maximum(np.isfinite(values).sum(axis=0) - 1, 0)
@@ -140,12 +142,12 @@ def _quantile_seen(values: DepthPicture, quantile: float) -> DepthPicture:
     below = np.floor(at).astype(np.intp)[np.newaxis]
     above = np.minimum(below + 1, last)
     one, other = (np.take_along_axis(ordered, each, axis=0)[0] for each in (below, above))
-    mixed: DepthPicture = (one + (at - below[0]) * (other - one)).astype(np.float32)
+    mixed: DepthImage = (one + (at - below[0]) * (other - one)).astype(np.float32)
     return mixed
 
 
 @dataclass(frozen=True, eq=False)
-class ActorPictures:
+class ActorImages:
     """Reads pictures of the actor alone; to be `DepthRecording.read_depth`.
 
     Attributes
@@ -167,7 +169,7 @@ class ActorPictures:
     floor: Floor | None = None
     course: Array | None = None
 
-    def __call__(self, index: int) -> DepthPicture:
+    def __call__(self, index: int) -> DepthImage:
         """Return the depth of the actor in a frame, metres; 0 elsewhere."""
         if self.course is not None and np.isnan(self.course[index]).any():
             return np.zeros((self.recording.camera.height, self.recording.camera.width), "f4")
@@ -189,13 +191,13 @@ class ActorPictures:
 
     @property
     def _largest(self) -> float:
-        recorded = self.settings.way is ForegroundWay.RECORDED
+        recorded = self.settings.way is ForegroundMethod.RECORDED
         return np.inf if recorded else self.settings.largest_body
 
-    def stands_out(self, depth: DepthPicture, step: int = 1) -> DepthPicture:
+    def stands_out(self, depth: DepthImage, step: int = 1) -> DepthImage:
         """Return a picture without what is no actor; of every `step`-th column and row."""
         settings = self.settings
-        if settings.way is ForegroundWay.RECORDED:
+        if settings.way is ForegroundMethod.RECORDED:
             return depth
         kept = (depth >= settings.nearest) & (depth <= settings.farthest)
         if self.background is not None:
@@ -211,7 +213,7 @@ class ActorPictures:
 
 def cut_out_actor(
     recording: DepthRecording,
-    settings: ForegroundSettings = ForegroundSettings(way=ForegroundWay.CUT),
+    settings: ForegroundSettings = ForegroundSettings(way=ForegroundMethod.CUT),
     *,
     background: Background | None = None,
     floor: Floor | None = None,
@@ -222,7 +224,7 @@ def cut_out_actor(
     A frame in which there is no body large enough becomes empty. `find_actor` chooses what is
     given here, and tells what it saw.
 
-    Parameters are the attributes of `ActorPictures`.
+    Parameters are the attributes of `ActorImages`.
 
     Raises
     ------
@@ -230,7 +232,7 @@ def cut_out_actor(
         The background is missing, or of another size.
     """
     size = (recording.camera.height, recording.camera.width)
-    wanted = settings.way is ForegroundWay.BACKGROUND
+    wanted = settings.way is ForegroundMethod.BACKGROUND
     if (wanted and background is None) or (
         background is not None and background.depth.shape != size
     ):
@@ -239,13 +241,11 @@ def cut_out_actor(
             f" {size[0]} pixels. Name frames without the actor."
         )
     return replace(
-        recording, read_depth=ActorPictures(recording, settings, background, floor, course)
+        recording, read_depth=ActorImages(recording, settings, background, floor, course)
     )
 
 
-def in_front_of(
-    depth: DepthPicture, background: Background, margin: float
-) -> NDArray[np.bool_]:
+def in_front_of(depth: DepthImage, background: Background, margin: float) -> NDArray[np.bool_]:
     """Tell which pixels see something in front of the empty room, by more than its noise."""
     spread = SPREADS * np.maximum(background.spread, LEAST_SPREAD)
     unknown = background.depth == 0.0
@@ -253,13 +253,13 @@ def in_front_of(
     return np.asarray((depth > 0.0) & (unknown | nearer))
 
 
-def above(depth: DepthPicture, camera: Camera, floor: Floor, least: float) -> NDArray[np.bool_]:
+def above(depth: DepthImage, camera: Camera, floor: Floor, least: float) -> NDArray[np.bool_]:
     """Tell which pixels see something at least so high above the floor, in metres."""
     return np.asarray(depth * _rise(camera, tuple(floor.up)) + floor.height > least)
 
 
 @lru_cache(maxsize=4)
-def _rise(camera: Camera, up: tuple[float, ...]) -> DepthPicture:
+def _rise(camera: Camera, up: tuple[float, ...]) -> DepthImage:
     """Return how far each pixel's ray goes up in a metre of depth, metres."""
-    rise: DepthPicture = (camera.rays() @ np.array(up)).astype(np.float32)
+    rise: DepthImage = (camera.rays() @ np.array(up)).astype(np.float32)
     return rise

@@ -10,8 +10,8 @@ from ..errors import InvalidMotionError
 from ..motion.skeletons import check_frame_rate
 from .camera import Camera
 
-DepthPicture = NDArray[np.float32]
-ColorPicture = NDArray[np.uint8]
+DepthImage = NDArray[np.float32]
+ColorImage = NDArray[np.uint8]
 
 
 @dataclass(frozen=True, eq=False)
@@ -34,15 +34,15 @@ class DepthRecording:
     camera: Camera
     n_frames: int
     frame_rate: float
-    read_depth: Callable[[int], DepthPicture]
-    read_color: Callable[[int], ColorPicture] | None = None
+    read_depth: Callable[[int], DepthImage]
+    read_color: Callable[[int], ColorImage] | None = None
 
     def __post_init__(self) -> None:
         if self.n_frames < 1:
             raise InvalidMotionError("A depth recording needs at least one frame.")
         check_frame_rate(self.frame_rate)
 
-    def frame(self, index: int) -> DepthPicture:
+    def frame(self, index: int) -> DepthImage:
         """Return the depth of a frame, shape (height, width), metres; 0: no reading."""
         self._check(index)
         depth = np.asarray(self.read_depth(index), dtype=np.float32)
@@ -53,7 +53,7 @@ class DepthRecording:
             )
         return np.where(np.isfinite(depth) & (depth > 0.0), depth, np.float32(0.0))
 
-    def color(self, index: int) -> ColorPicture | None:
+    def color(self, index: int) -> ColorImage | None:
         """Return the colours (height, width, 3) of a frame, 0 to 255, or None if unknown."""
         self._check(index)
         return None if self.read_color is None else self.read_color(index)

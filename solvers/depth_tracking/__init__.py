@@ -1,6 +1,6 @@
 """From depth pictures to motion: body model, tracker, detector, and both together.
 
->>> from solvers.depth_tracking import track_pose, usual_body
+>>> from solvers.depth_tracking import track_pose, default_body
 >>> from solvers.depth_scene.camera import Camera
 >>> from solvers.depth_scene.recording import DepthRecording
 >>> import numpy as np
@@ -8,17 +8,17 @@
 >>> wall = np.full((120, 160), 3.0, dtype=np.float32)
 >>> depth = DepthRecording(camera, 2, 30.0, lambda frame: wall)
 >>> before_the_camera = 2.8 * np.eye(36)[2]
->>> track_pose(depth, usual_body(), before_the_camera).joints.n_frames
+>>> track_pose(depth, default_body(), before_the_camera).joints.n_frames
 2
 """
 
 from .body import (
     BodyModel,
     MotionPrior,
+    default_body,
     learn_motion_prior,
     load_body_model,
     load_motion_prior,
-    usual_body,
 )
 from .capturing import (
     CalibrationSettings,
@@ -63,6 +63,7 @@ __all__ = [
     "TrackerSettings",
     "calibrate_body",
     "capture",
+    "default_body",
     "detect_pose",
     "learn_motion_prior",
     "load_body_model",
@@ -73,5 +74,4 @@ __all__ = [
     "retrack",
     "track_pose",
     "train_pixel_forest",
-    "usual_body",
 ]

@@ -7,7 +7,7 @@ from ..denoising import Planted, PlantSettings
 from ..depth_scene import Actor, DepthRecording, ForegroundSettings, find_actor
 from ..depth_tracking.body import BodyModel, MotionPrior
 from ..depth_tracking.capturing import Capture, CaptureSettings, capture
-from ..depth_tracking.tracking import OnPose, unobserved
+from ..depth_tracking.tracking import PoseCallback, ignore_pose
 from ..motion import Motion
 from ..progress import Progress, unwatched, within
 from .capture_remarks import capture_remarks
@@ -93,7 +93,7 @@ def capture_actor(
     motion_prior: MotionPrior | None = None,
     settings: CaptureSettings = CAPTURING,
     planting: PlantSettings | None = PLANTING,
-    on_pose: OnPose = unobserved,
+    on_pose: PoseCallback = ignore_pose,
     progress: Progress = unwatched,
 ) -> CapturedMotion:
     """Capture the motion of an actor who was told from the room, and plant the feet.

@@ -3,7 +3,7 @@
 import numpy as np
 
 from ..depth_scene import Actor
-from ..depth_tracking.body import usual_body
+from ..depth_tracking.body import default_body
 from ..depth_tracking.capturing import Capture
 
 MANY = 0.2
@@ -62,6 +62,6 @@ def _unlike(agreeing: float, beside: float) -> list[str]:
 
 def thickness(found: Capture) -> float:
     """Return how thick the body is for its length, compared with the usual one."""
-    usual = usual_body()
+    usual = default_body()
     radii = np.median(found.body.radii / usual.radii)
     return float(radii / np.median(found.body.lengths / usual.lengths))

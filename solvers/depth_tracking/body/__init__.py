@@ -4,7 +4,7 @@ from .capsule_surface import BodySurface, capsule_surface
 from .coordinates import COORDINATES, N_COORDINATES, N_ROOT
 from .kinematics import N_SEGMENTS, joint_positions, segment_frames, segment_twists
 from .learn_motion_prior import learn_motion_prior
-from .model import BodyModel, load_body_model, usual_body
+from .model import BodyModel, default_body, load_body_model
 from .motion import body_motion, body_skeleton, motion_frames, rest_frames, scene_from_camera
 from .motion_prior import LocalPca, MotionPrior, load_motion_prior, local_pca
 from .normal_equations import (
@@ -13,35 +13,36 @@ from .normal_equations import (
     PoseEquations,
     SegmentEquations,
     SurfaceRows,
-    added,
-    in_coordinates,
-    joined,
-    move_along,
-    move_toward,
-    screws,
+    concatenate_rows,
+    equations_along_directions,
+    equations_in_coordinates,
+    equations_toward_targets,
+    rows_toward_targets,
+    screw_rows,
     segment_equations,
-    step,
-    toward,
+    solve_step,
+    sum_equations,
 )
 from .pose_from_joints import pose_from_frames
-from .pose_priors import foretell, joint_limits, natural_stance, stay_near
-from .ray_capsules import BodyPicture, cast_rays
-from .shape import MEASURES, N_LENGTHS, resized, shape_jacobian
+from .pose_priors import joint_limits, natural_stance, predict_pose, stay_near
+from .ray_capsules import BodyImage, cast_rays
+from .shape import MEASURES, N_LENGTHS, resize_body, shape_jacobian
 from .tables import (
     CAPSULE_SEGMENTS,
     CAPSULES,
+    DEFAULT_STATURE_M,
     END_SEGMENTS,
     JOINTS,
     LENGTHS,
     SEGMENTS,
     SIDES,
-    USUAL_STATURE,
 )
 
 __all__ = [
     "CAPSULES",
     "CAPSULE_SEGMENTS",
     "COORDINATES",
+    "DEFAULT_STATURE_M",
     "END_SEGMENTS",
     "JOINTS",
     "LENGTHS",
@@ -53,9 +54,8 @@ __all__ = [
     "N_SEGMENTS",
     "SEGMENTS",
     "SIDES",
-    "USUAL_STATURE",
+    "BodyImage",
     "BodyModel",
-    "BodyPicture",
     "BodySurface",
     "Integers",
     "LocalPca",
@@ -63,14 +63,15 @@ __all__ = [
     "PoseEquations",
     "SegmentEquations",
     "SurfaceRows",
-    "added",
     "body_motion",
     "body_skeleton",
     "capsule_surface",
     "cast_rays",
-    "foretell",
-    "in_coordinates",
-    "joined",
+    "concatenate_rows",
+    "default_body",
+    "equations_along_directions",
+    "equations_in_coordinates",
+    "equations_toward_targets",
     "joint_limits",
     "joint_positions",
     "learn_motion_prior",
@@ -78,20 +79,19 @@ __all__ = [
     "load_motion_prior",
     "local_pca",
     "motion_frames",
-    "move_along",
-    "move_toward",
     "natural_stance",
     "pose_from_frames",
-    "resized",
+    "predict_pose",
+    "resize_body",
     "rest_frames",
+    "rows_toward_targets",
     "scene_from_camera",
-    "screws",
+    "screw_rows",
     "segment_equations",
     "segment_frames",
     "segment_twists",
     "shape_jacobian",
+    "solve_step",
     "stay_near",
-    "step",
-    "toward",
-    "usual_body",
+    "sum_equations",
 ]

@@ -69,14 +69,15 @@ _ROWS = (*_trunk(), *_limbs("left"), *_limbs("right"))
 COORDINATES = (*ROOT, *(row.name for row in _ROWS))
 N_COORDINATES = len(COORDINATES)
 
-TURNS = np.zeros((len(SEGMENTS), 3, N_COORDINATES))
-"""(n_segments, 3, 36): rotation vector of a segment in its parent = TURNS @ coordinates."""
+ROTATION_AXES = np.zeros((len(SEGMENTS), 3, N_COORDINATES))
+"""(n_segments, 3, 36): rotation vector of a segment in its parent's frame =
+ROTATION_AXES @ coordinates."""
 for _place, _row in enumerate(_ROWS):
     for _segment, _axis in _row.segments.items():
-        TURNS[SEGMENTS.index(_segment), :, N_ROOT + _place] = _axis
+        ROTATION_AXES[SEGMENTS.index(_segment), :, N_ROOT + _place] = _axis
 
-LEAST = np.array([*[-np.inf] * N_ROOT, *(row.least for row in _ROWS)])
-MOST = np.array([*[np.inf] * N_ROOT, *(row.most for row in _ROWS)])
+LOWER_LIMITS = np.array([*[-np.inf] * N_ROOT, *(row.least for row in _ROWS)])
+UPPER_LIMITS = np.array([*[np.inf] * N_ROOT, *(row.most for row in _ROWS)])
 
 
 def mirrored_coordinates() -> tuple[NDArray[np.intp], Array]:

@@ -3,7 +3,7 @@
 import numpy as np
 from numpy.typing import NDArray
 
-from .coordinates import N_COORDINATES, N_ROOT, TURNS
+from .coordinates import N_COORDINATES, N_ROOT, ROTATION_AXES
 from .model import BodyModel
 from .tables import END_SEGMENTS, PARENTS, SEGMENTS
 
@@ -24,7 +24,7 @@ def _axis_tables() -> tuple[NDArray[np.intp], Array, Array, Array]:
     Returns the segment of each such axis (n_axes,), its rotation vector (n_axes, 3), which
     segments it moves (n_segments, n_axes), and its coordinate as (n_axes, 36) of 0 and 1.
     """
-    segments, coordinates = np.nonzero(np.any(TURNS != 0.0, axis=1))
+    segments, coordinates = np.nonzero(np.any(ROTATION_AXES != 0.0, axis=1))
     moves = np.zeros((N_SEGMENTS, len(segments)))
     for segment in range(N_SEGMENTS):
         above = segment
@@ -33,7 +33,7 @@ def _axis_tables() -> tuple[NDArray[np.intp], Array, Array, Array]:
             above = PARENTS[above]
     return (
         segments,
-        TURNS[segments, :, coordinates],
+        ROTATION_AXES[segments, :, coordinates],
         moves,
         np.eye(N_COORDINATES)[coordinates],
     )
@@ -57,7 +57,7 @@ def segment_frames(body: BodyModel, poses: Array) -> Array:
         camera_from_segment of each of the `SEGMENTS`; its translation is the joint.
     """
     poses = np.asarray(poses, dtype=np.float64)
-    turned = turns(np.einsum("sik,...k->...si", TURNS, poses))
+    turned = matrix_from_rotation_vector(np.einsum("sik,...k->...si", ROTATION_AXES, poses))
     rotations = np.empty((*poses.shape[:-1], N_SEGMENTS, 3, 3))
     origins = np.empty((*poses.shape[:-1], N_SEGMENTS, 3))
     rotations[..., 0, :, :] = _root_rotation(poses)
@@ -99,7 +99,7 @@ def segment_twists(pose: Array, frames: Array) -> Array:
         coordinate does not move a segment.
     """
     rotations = frames[:, :3, :3]
-    vectors = (TURNS @ pose)[_AXIS_SEGMENT]
+    vectors = (ROTATION_AXES @ pose)[_AXIS_SEGMENT]
     local = np.einsum("nij,nj->ni", _left_jacobians(vectors), _AXES)
     axes = np.einsum("nij,nj->ni", rotations[_PARENT[_AXIS_SEGMENT]], local)
     centres = frames[_AXIS_SEGMENT, :3, 3]
@@ -110,7 +110,7 @@ def segment_twists(pose: Array, frames: Array) -> Array:
     return twists
 
 
-def turns(vectors: Array) -> Array:
+def matrix_from_rotation_vector(vectors: Array) -> Array:
     """Return the rotation matrices (..., 3, 3) of rotation vectors (..., 3), radians."""
     angles, crosses = _angles_and_crosses(vectors)
     first, second = np.sinc(angles / np.pi), 0.5 * np.sinc(0.5 * angles / np.pi) ** 2
@@ -142,7 +142,7 @@ def _root_rotation(poses: Array) -> Array:
     yaw, roll, pitch = np.moveaxis(poses[..., 3:N_ROOT], -1, 0)
     unit = np.eye(3)
     about_y, about_z, about_x = (
-        turns(angle[..., np.newaxis] * unit[axis])
+        matrix_from_rotation_vector(angle[..., np.newaxis] * unit[axis])
         for angle, axis in ((yaw, 1), (roll, 2), (pitch, 0))
     )
     rotation: Array = about_y @ about_z @ about_x
@@ -153,8 +153,8 @@ def _root_twists(pose: Array) -> Array:
     """Return how the root's coordinates move everything, shape (6, 6)."""
     twists = np.zeros((6, N_ROOT))
     twists[3:, :3] = np.eye(3)
-    about_y = turns(np.array([0.0, pose[3], 0.0]))
-    about_z = turns(np.array([0.0, 0.0, pose[4]]))
+    about_y = matrix_from_rotation_vector(np.array([0.0, pose[3], 0.0]))
+    about_z = matrix_from_rotation_vector(np.array([0.0, 0.0, pose[4]]))
     axes = np.array([[0.0, 1.0, 0.0], about_y[:, 2], (about_y @ about_z)[:, 0]])
     twists[:3, 3:], twists[3:, 3:] = axes.T, np.cross(pose[:3], axes).T
     return twists

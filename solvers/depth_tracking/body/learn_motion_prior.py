@@ -8,10 +8,10 @@ from numpy.typing import NDArray
 from ...errors import InvalidMotionError
 from ...motion import Motion, find_humanoid_map, forward_kinematics, resample
 from ...progress import Progress, unwatched, within
-from .model import usual_body
+from .model import default_body
 from .motion import SCENE_FROM_CAMERA
-from .motion_prior import MotionPrior, motion_prior_of
-from .pose_from_joints import body_of_joints, pose_from_joints
+from .motion_prior import MotionPrior, motion_prior_from_poses
+from .pose_from_joints import body_from_joints, pose_from_joints
 from .tables import JOINTS
 
 Array = NDArray[np.float64]
@@ -54,11 +54,11 @@ def learn_motion_prior(
     sequences = []
     for place, motion in enumerate(motions):
         done = within(progress, place / len(motions), (place + 1) / len(motions))
-        sequences.append(poses_of_motion(motion, done))
-    return motion_prior_of(sequences, trained_on)
+        sequences.append(poses_from_motion(motion, done))
+    return motion_prior_from_poses(sequences, trained_on)
 
 
-def poses_of_motion(motion: Motion, progress: Progress = unwatched) -> Array:
+def poses_from_motion(motion: Motion, progress: Progress = unwatched) -> Array:
     """Return the poses (n_frames, 36) of a body model that moves like this motion, at 30 Hz.
 
     Frames that were not wholly observed are left out.
@@ -69,7 +69,7 @@ def poses_of_motion(motion: Motion, progress: Progress = unwatched) -> Array:
     joints = joints[(known == known.any(axis=0)).all(axis=1)]
     if not len(joints):
         raise InvalidMotionError("No frame of a motion is complete; fill its gaps first.")
-    body = body_of_joints(usual_body(), joints)
+    body = body_from_joints(default_body(), joints)
     poses: list[Array] = []
     for frame, places in enumerate(joints):
         start = poses[-1] if poses else None

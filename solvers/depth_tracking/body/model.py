@@ -13,12 +13,12 @@ from ...npz_members import numbers, words
 from .tables import (
     CAPSULE_ENDS,
     CAPSULES,
+    DEFAULT_LENGTHS_M,
+    DEFAULT_RADII_M,
+    DEFAULT_STATURE_M,
     LENGTHS,
     OFFSETS,
     SIDES,
-    USUAL_LENGTHS,
-    USUAL_RADII,
-    USUAL_STATURE,
 )
 
 Array = NDArray[np.float64]
@@ -122,11 +122,11 @@ class BodyModel:
         LAYOUT.write(path, arrays | names)
 
 
-def usual_body(stature: float = USUAL_STATURE) -> BodyModel:
+def default_body(stature: float = DEFAULT_STATURE_M) -> BodyModel:
     """Return an adult of usual proportions, `stature` metres tall."""
     if not 0.5 <= stature <= 2.5:
         raise InvalidMotionError(f"Nobody is {stature:g} m tall; give between 0.5 and 2.5 m.")
-    return BodyModel(USUAL_LENGTHS, USUAL_RADII).scaled(stature / USUAL_STATURE)
+    return BodyModel(DEFAULT_LENGTHS_M, DEFAULT_RADII_M).scaled(stature / DEFAULT_STATURE_M)
 
 
 def load_body_model(path: Path | str) -> BodyModel:

@@ -12,7 +12,7 @@ from ...rotations import (
     quaternion_from_matrix,
     unroll,
 )
-from .kinematics import N_SEGMENTS, segment_frames, turns
+from .kinematics import N_SEGMENTS, matrix_from_rotation_vector, segment_frames
 from .model import BodyModel
 from .tables import END_SEGMENTS, JOINTS, PARENTS, SEGMENTS
 
@@ -29,7 +29,9 @@ def _t_pose_turns() -> Array:
     for segment in SEGMENTS:
         arm = segment.endswith(("UpperArm", "LowerArm"))
         out = -1.0 if segment.startswith("left") else 1.0
-        turned.append(turns(np.array([0.0, 0.0, out * arm * np.pi / 2.0])))
+        turned.append(
+            matrix_from_rotation_vector(np.array([0.0, 0.0, out * arm * np.pi / 2.0]))
+        )
     return np.stack(turned)
 
 
@@ -129,7 +131,7 @@ def scene_from_camera(floor: Floor | None) -> Array:
     axis = np.cross(up, [0.0, 0.0, 1.0])
     sine = np.linalg.norm(axis)
     if sine > 0.0:
-        level = turns(axis / sine * np.arctan2(sine, up[2]))
+        level = matrix_from_rotation_vector(axis / sine * np.arctan2(sine, up[2]))
         scene[:3, :3] = level @ SCENE_FROM_CAMERA
     scene[2, 3] = float(floor.heights(np.zeros(3)))
     return scene

@@ -31,7 +31,7 @@ LAYOUT = ArchiveLayout(
     remedy="Learn it again.",
 )
 SHIPPED = Path(__file__).parent / "motions.npz"
-NEIGHBOURS, FOLLOWING, ENERGY = 50, 3, 0.95
+N_NEIGHBORS, N_FOLLOWING, EXPLAINED_VARIANCE = 50, 3, 0.95
 """K, w and the share of the variance kept, of [LOU12] section 3.5."""
 
 
@@ -85,7 +85,7 @@ def load_motion_prior(path: Path | str = SHIPPED) -> MotionPrior:
     return MotionPrior(poses.astype(np.float64), clips, str(arrays.get("trained_on", "")))
 
 
-def motion_prior_of(sequences: Sequence[Array], trained_on: str = "") -> MotionPrior:
+def motion_prior_from_poses(sequences: Sequence[Array], trained_on: str = "") -> MotionPrior:
     """Return the prior of sequences of poses, each of shape (n_frames, 36).
 
     Raises
@@ -125,26 +125,26 @@ class LocalPca:
 def local_pca(prior: MotionPrior, pose: Array) -> LocalPca:
     """Return the plane of the poses that followed the most similar recorded ones.
 
-    The `FOLLOWING` poses after each of the `NEIGHBOURS` nearest to `pose` (36,), the pose of
-    the frame before, are analysed by principal components; as many are kept as hold `ENERGY`
-    of the variance [LOU12]_.
+    `pose` (36,) is the pose of the previous frame. The method collects the `N_FOLLOWING` poses
+    after each of its `N_NEIGHBORS` nearest poses. It keeps the principal components that hold
+    the fraction `EXPLAINED_VARIANCE` of their variance [LOU12]_.
 
     References
     ----------
     .. [LOU12] Lou (2012). Acquiring 3D full-body motion from noisy and ambiguous input. PhD
        dissertation, Texas A&M University, section 3.5.
     """
-    n_neighbours = min(NEIGHBOURS, len(prior.poses))
+    n_neighbours = min(N_NEIGHBORS, len(prior.poses))
     _, nearest = prior.tree.query(pose[N_ROOT:], k=n_neighbours)
-    chosen = followers(prior, np.atleast_1d(nearest), FOLLOWING)
+    chosen = following_poses(prior, np.atleast_1d(nearest), N_FOLLOWING)
     mean = chosen.mean(axis=0)
     values, vectors = np.linalg.eigh(np.cov(chosen.T, bias=True))
     shares = np.cumsum(values[::-1]) / max(values.sum(), 1e-300)
-    n_components = int(np.searchsorted(shares, ENERGY)) + 1
+    n_components = int(np.searchsorted(shares, EXPLAINED_VARIANCE)) + 1
     return LocalPca(mean, vectors[:, ::-1][:, :n_components])
 
 
-def followers(prior: MotionPrior, places: NDArray[np.intp], ahead: int) -> Array:
+def following_poses(prior: MotionPrior, places: NDArray[np.intp], ahead: int) -> Array:
     """Return the `ahead` poses (n, 30) after each of these in its clip.
 
     The poses themselves, if none follows or none is asked for.

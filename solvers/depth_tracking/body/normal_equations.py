@@ -60,7 +60,9 @@ class SurfaceRows(NamedTuple):
     """Which capsule each point is on, shape (n,)."""
 
 
-def toward(points: Array, targets: Array, weights: Array, capsules: Integers) -> SurfaceRows:
+def rows_toward_targets(
+    points: Array, targets: Array, weights: Array, capsules: Integers
+) -> SurfaceRows:
     """Return the rows that ask points (n, 3) to move to targets (n, 3), three for each."""
     return SurfaceRows(
         np.repeat(points, 3, axis=0), np.tile(np.eye(3), (len(points), 1)),
@@ -68,11 +70,13 @@ def toward(points: Array, targets: Array, weights: Array, capsules: Integers) ->
     )  # fmt: skip
 
 
-NO_ROWS = toward(np.zeros((0, 3)), np.zeros((0, 3)), np.zeros(0), np.zeros(0, dtype=np.intp))
+NO_ROWS = rows_toward_targets(
+    np.zeros((0, 3)), np.zeros((0, 3)), np.zeros(0), np.zeros(0, dtype=np.intp)
+)
 """Of a term that has nothing to say."""
 
 
-def joined(rows: Sequence[SurfaceRows]) -> SurfaceRows:
+def concatenate_rows(rows: Sequence[SurfaceRows]) -> SurfaceRows:
     """Return the rows of several terms as one."""
     parts = zip(NO_ROWS, *rows, strict=True)
     return SurfaceRows(*(np.concatenate(part) for part in parts))
@@ -81,15 +85,17 @@ def joined(rows: Sequence[SurfaceRows]) -> SurfaceRows:
 def segment_equations(rows: SurfaceRows) -> SegmentEquations:
     """Sum rows up, per segment."""
     segments = CAPSULE_SEGMENTS[rows.capsules]
-    return move_along(rows.points, rows.directions, rows.residuals, rows.weights, segments)
+    return equations_along_directions(
+        rows.points, rows.directions, rows.residuals, rows.weights, segments
+    )
 
 
-def move_along(
+def equations_along_directions(
     points: Array, directions: Array, residuals: Array, weights: Array, segments: Integers
 ) -> SegmentEquations:
     """Ask points on segments to move along directions; arrays as those of `SurfaceRows`."""
     lines = np.empty((len(points), 7))
-    screws(points, directions, out=lines[:, :6])
+    screw_rows(points, directions, out=lines[:, :6])
     lines[:, 6] = residuals
     lines *= np.sqrt(weights)[:, np.newaxis]
     # Sorted by segment, each one's sums are a product of two small matrices.
@@ -106,15 +112,15 @@ def move_along(
     return SegmentEquations(sums[:, :6, :6], sums[:, :6, 6], 0.5 * float(sums[:, 6, 6].sum()))
 
 
-def move_toward(
+def equations_toward_targets(
     points: Array, targets: Array, weights: Array, segments: Integers
 ) -> SegmentEquations:
     """Ask points (n, 3) on segments to move to targets (n, 3); `weights` are of the squares."""
-    rows = toward(points, targets, weights, segments)
-    return move_along(*rows)
+    rows = rows_toward_targets(points, targets, weights, segments)
+    return equations_along_directions(*rows)
 
 
-def screws(points: Array, directions: Array, out: Array | None = None) -> Array:
+def screw_rows(points: Array, directions: Array, out: Array | None = None) -> Array:
     """Return (point x direction, direction) (n, 6): what a twist is multiplied with."""
     found = np.empty((len(points), 6)) if out is None else out
     x, y, z = points.T
@@ -124,7 +130,9 @@ def screws(points: Array, directions: Array, out: Array | None = None) -> Array:
     return found
 
 
-def in_coordinates(equations: Iterable[SegmentEquations], twists: Array) -> PoseEquations:
+def equations_in_coordinates(
+    equations: Iterable[SegmentEquations], twists: Array
+) -> PoseEquations:
     """Add equations of segments up, and express them in the coordinates.
 
     Parameters
@@ -143,7 +151,7 @@ def in_coordinates(equations: Iterable[SegmentEquations], twists: Array) -> Pose
     )
 
 
-def added(equations: Iterable[PoseEquations]) -> PoseEquations:
+def sum_equations(equations: Iterable[PoseEquations]) -> PoseEquations:
     """Return the sum of equations in the coordinates."""
     found = list(equations)
     return PoseEquations(
@@ -153,7 +161,7 @@ def added(equations: Iterable[PoseEquations]) -> PoseEquations:
     )
 
 
-def step(equations: PoseEquations, damping: Array) -> Array:
+def solve_step(equations: PoseEquations, damping: Array) -> Array:
     """Return the change of the coordinates, with `damping` (36,) added to the diagonal."""
     change: Array = np.linalg.solve(equations.matrix + np.diag(damping), equations.vector)
     return change

@@ -6,7 +6,12 @@ from numpy.typing import NDArray
 from .coordinates import COORDINATES, N_COORDINATES, N_ROOT
 from .kinematics import segment_frames, segment_twists
 from .model import BodyModel
-from .normal_equations import added, in_coordinates, move_toward, step
+from .normal_equations import (
+    equations_in_coordinates,
+    equations_toward_targets,
+    solve_step,
+    sum_equations,
+)
 from .pose_priors import joint_limits, stay_near
 from .tables import END_SEGMENTS, JOINTS, SEGMENTS
 
@@ -132,16 +137,16 @@ def _descend(
         frames = segment_frames(body, pose)
         carrier = frames[segments]
         places = np.einsum("nij,nj->ni", carrier[:, :3, :3], local) + carrier[:, :3, 3]
-        pulls = move_toward(places, targets, weights, segments)
-        found = added([
-            in_coordinates([pulls], segment_twists(pose, frames)),
+        pulls = equations_toward_targets(places, targets, weights, segments)
+        found = sum_equations([
+            equations_in_coordinates([pulls], segment_twists(pose, frames)),
             joint_limits(pose, _LIMIT_WEIGHT), stay_near(pose, _rest(pose), _REST_WEIGHTS),
         ])  # fmt: skip
         if equations is None or found.cost < best[1]:
             equations, best, damping = found, (pose, found.cost), 0.3 * damping
         else:
             damping = 10.0 * damping
-        change = step(equations, np.full(N_COORDINATES, max(damping, 1e-9)))
+        change = solve_step(equations, np.full(N_COORDINATES, max(damping, 1e-9)))
         pose = best[0] + change * min(1.0, _LONGEST_STEP / np.abs(change).max())
         if np.abs(change).max() < 1e-7:
             break
@@ -157,7 +162,7 @@ def _rest(pose: Array) -> Array:
     return rest
 
 
-def body_of_joints(body: BodyModel, joints: Array) -> BodyModel:
+def body_from_joints(body: BodyModel, joints: Array) -> BodyModel:
     """Return the body with limbs as long as recorded joints are apart.
 
     Parameters

@@ -5,7 +5,7 @@ import re
 import numpy as np
 from numpy.typing import NDArray
 
-from .coordinates import COORDINATES, LEAST, MOST, ROOT
+from .coordinates import COORDINATES, LOWER_LIMITS, ROOT, UPPER_LIMITS
 from .normal_equations import PoseEquations
 
 Array = NDArray[np.float64]
@@ -30,7 +30,7 @@ def stay_near(pose: Array, expected: Array, weights: Array) -> PoseEquations:
     return PoseEquations(np.diag(weights), weights * change, 0.5 * float(weights @ change**2))
 
 
-def foretell(poses: list[Array], trust: float) -> Array:
+def predict_pose(poses: list[Array], trust: float) -> Array:
     """Return the pose that goes on from the last ones as they went.
 
     Parameters
@@ -48,7 +48,7 @@ def foretell(poses: list[Array], trust: float) -> Array:
 
 def joint_limits(pose: Array, weight: float) -> PoseEquations:
     """Ask coordinates beyond the soft limits to come back, the more the farther beyond."""
-    back = np.clip(pose, LEAST, MOST) - pose
+    back = np.clip(pose, LOWER_LIMITS, UPPER_LIMITS) - pose
     weights = np.where(back != 0.0, weight, 0.0)
     return PoseEquations(np.diag(weights), weights * back, 0.5 * float(weights @ back**2))
 

@@ -19,7 +19,7 @@ _ALMOST_NOTHING = 1e-12
 
 
 @dataclass(frozen=True, eq=False)
-class BodyPicture:
+class BodyImage:
     """The pixels that see a body, in the order of its capsules.
 
     Attributes
@@ -57,7 +57,7 @@ class BodyPicture:
         return picture.reshape(self.camera.height, self.camera.width)
 
 
-def cast_rays(body: BodyModel, frames: Array, camera: Camera) -> BodyPicture:
+def cast_rays(body: BodyModel, frames: Array, camera: Camera) -> BodyImage:
     """Draw a body exactly, without triangles.
 
     The ray of each pixel inside a capsule's bounding box on the picture meets the capsule
@@ -73,7 +73,7 @@ def cast_rays(body: BodyModel, frames: Array, camera: Camera) -> BodyPicture:
 
     Returns
     -------
-    BodyPicture
+    BodyImage
     """
     stretched = _stretched(body, frames)
     capsules, columns, rows = _boxes(body, frames, camera)
@@ -197,7 +197,7 @@ def _span(
     )
 
 
-def _front(camera: Camera, pixels: Integers, depths: Array, capsules: Integers) -> BodyPicture:
+def _front(camera: Camera, pixels: Integers, depths: Array, capsules: Integers) -> BodyImage:
     """Keep what is nearest in each pixel; of the equally near the first capsule."""
     nearest = np.full(camera.width * camera.height, np.inf)
     np.minimum.at(nearest, pixels, depths)
@@ -206,4 +206,4 @@ def _front(camera: Camera, pixels: Integers, depths: Array, capsules: Integers) 
     first = np.full(len(nearest), NOTHING)
     first[pixels[::-1]] = np.arange(len(pixels))[::-1]
     once = first[pixels] == np.arange(len(pixels))
-    return BodyPicture(camera, pixels[once], depths[once], capsules[once])
+    return BodyImage(camera, pixels[once], depths[once], capsules[once])

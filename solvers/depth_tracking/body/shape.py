@@ -49,7 +49,7 @@ MEASURES = (*_LENGTHS, *_RADII)
 N_LENGTHS = len(_LENGTHS)
 
 
-def resized(body: BodyModel, change: Array) -> BodyModel:
+def resize_body(body: BodyModel, change: Array) -> BodyModel:
     """Return the body with each of its `MEASURES` made larger by a factor exp(change)."""
     lengths = body.lengths * np.exp(_LENGTH_SHARES @ change[:N_LENGTHS])
     factors = np.exp(_RADIUS_SHARES @ change[N_LENGTHS:])

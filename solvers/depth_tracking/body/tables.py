@@ -46,10 +46,10 @@ LENGTHS = (
 """Lengths that make a body: hipWidth from the middle to a hip joint, hand from wrist to
 finger tips, foot from ankle to toes, the others from joint to joint."""
 
-USUAL_LENGTHS = np.array([0.09, 0.10, 0.14, 0.325, 0.075, 0.08]
+DEFAULT_LENGTHS_M = np.array([0.09, 0.10, 0.14, 0.325, 0.075, 0.08]
     + 2 * [0.165, 0.26, 0.255, 0.17, 0.43, 0.435, 0.17])  # fmt: skip
 """Of an adult of 1.75 m, metres."""
-USUAL_STATURE = 1.75
+DEFAULT_STATURE_M = 1.75
 
 
 class CapsuleRow(NamedTuple):
@@ -110,7 +110,7 @@ CAPSULE_ROWS = (*_trunk_capsules(), *_limb_capsules("left"), *_limb_capsules("ri
 CAPSULES = tuple(row.name for row in CAPSULE_ROWS)
 CAPSULE_SEGMENTS = np.array([SEGMENTS.index(row.segment) for row in CAPSULE_ROWS])
 """Index of the segment that each capsule belongs to."""
-USUAL_RADII = np.array([row.radii for row in CAPSULE_ROWS])
+DEFAULT_RADII_M = np.array([row.radii for row in CAPSULE_ROWS])
 
 
 def _offset_rows() -> list[dict[str, Vector]]:

@@ -9,8 +9,8 @@ from ...depth_scene import Camera, DepthRecording
 from ...errors import InvalidMotionError
 from ...progress import Progress, unwatched, within
 from ...settings import setting
-from ..body import CAPSULES, SIDES, USUAL_STATURE, BodyModel, usual_body
-from ..detection import detect_pose, thinned
+from ..body import CAPSULES, DEFAULT_STATURE_M, SIDES, BodyModel, default_body
+from ..detection import detect_pose, subsample_image
 from ..forest import PARTS, PixelForest, classify_pixels
 from .refine_body import refine_body
 from .sample_cylinders import Cylinder, CylinderSettings, sample_cylinder
@@ -87,7 +87,7 @@ def calibrate_body(
     ----------
     .. [1] Wei, Zhang, Chai (2012), section 6.
     """
-    observation, _ = thinned(depth.frame(frame), depth.camera, PIXELS)
+    observation, _ = subsample_image(depth.frame(frame), depth.camera, PIXELS)
     picture, camera = observation.depth, observation.camera
     pixels = classify_pixels(picture.astype(np.float32), camera, forest)
     labels = np.full(picture.shape, -1)
@@ -120,7 +120,7 @@ def _usual_body_found(
     picture = depth.frame(frame)
     found = {}
     for tried, stature in enumerate(TRIED):
-        body = usual_body(stature)
+        body = default_body(stature)
         found[stature] = detect_pose(picture, depth.camera, body, forest)
         progress((tried + 1) / len(TRIED), "Finding the stature")
     best = max(found, key=lambda stature: found[stature].score)
@@ -130,7 +130,7 @@ def _usual_body_found(
         below, top, above = (found[one].score for one in near)
         bend = below - 2.0 * top + above
         stature = best + STEP * 0.5 * (below - above) / min(bend, -1e-9)
-    return usual_body(stature), found[best].pose
+    return default_body(stature), found[best].pose
 
 
 def body_of_cylinders(cylinders: dict[str, Cylinder], trunk: float) -> BodyModel:
@@ -146,7 +146,7 @@ def body_of_cylinders(cylinders: dict[str, Cylinder], trunk: float) -> BodyModel
     trunk : float, metres
         From the middle of the hips to the lower end of the neck; NaN: unknown.
     """
-    usual = usual_body()
+    usual = default_body()
     lengths = _both_sides({
         part: float(np.linalg.norm(_joint(cylinders, part, 1) - _joint(cylinders, part, 0)))
         for part in cylinders
@@ -155,8 +155,8 @@ def body_of_cylinders(cylinders: dict[str, Cylinder], trunk: float) -> BodyModel
     if np.isfinite(trunk):
         lengths |= {name: usual.length(name) * trunk / usual_trunk for name in TRUNK}
     ratios = [length / usual.length(name) for name, length in lengths.items()]
-    stature = float(np.clip(USUAL_STATURE * np.median(ratios), *STATURES))
-    return _with_radii(usual_body(stature).with_lengths(**lengths), cylinders).symmetric()
+    stature = float(np.clip(DEFAULT_STATURE_M * np.median(ratios), *STATURES))
+    return _with_radii(default_body(stature).with_lengths(**lengths), cylinders).symmetric()
 
 
 def _with_radii(body: BodyModel, cylinders: dict[str, Cylinder]) -> BodyModel:
@@ -202,7 +202,7 @@ def _cylinders(
     settings: CalibrationSettings,
 ) -> dict[str, Cylinder]:
     """Return the cylinders of limbs seen well, each from its inner to its outer end."""
-    usual = usual_body()
+    usual = default_body()
     found: dict[str, Cylinder] = {}
     for part in MEASURED:
         places = [PARTS.index(name) for name in (part, f"{part}End") if name in PARTS]
@@ -244,7 +244,7 @@ def _trunk_length(
     neck = _middle("neck", picture, labels, camera)
     if len(hips) < len(SIDES) or neck is None:
         return float("nan")
-    usual = usual_body()
+    usual = default_body()
     # The middle of the neck's pixels is half a neck above its joint.
     return float(np.linalg.norm(neck - np.mean(hips, axis=0)) - 0.5 * usual.length("neck"))
 

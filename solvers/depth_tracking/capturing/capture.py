@@ -20,11 +20,11 @@ from ..body import (
     segment_frames,
 )
 from ..forest import PixelForest, load_pixel_forest
-from ..terms import USUAL, TrackerSettings
-from ..tracking import OnPose, TrackedMotion, tracked_motion, unobserved
+from ..terms import DEFAULT_TRACKER, TrackerSettings
+from ..tracking import PoseCallback, TrackedMotion, assemble_motion, ignore_pose
 from .choose_poses import choose_poses, nearest_known
 from .find_body import find_body
-from .passes import Actor, Pass, RecoverySettings, track_with_restarts
+from .passes import Pass, RecoverySettings, TrackingContext, track_with_restarts
 from .smooth_pass import smoothed_poses
 
 Array = NDArray[np.float64]
@@ -100,8 +100,8 @@ def capture(
     *,
     floor: Floor | None = None,
     settings: CaptureSettings = USUAL_CAPTURE,
-    tracker: TrackerSettings = USUAL,
-    on_pose: OnPose = unobserved,
+    tracker: TrackerSettings = DEFAULT_TRACKER,
+    on_pose: PoseCallback = ignore_pose,
     progress: Progress = unwatched,
 ) -> Capture:
     """Capture the motion of the actor whom a depth recording shows.
@@ -127,7 +127,7 @@ def capture(
         Becomes z = 0; without it the camera is taken to be level.
     settings : CaptureSettings
     tracker : TrackerSettings
-    on_pose : OnPose
+    on_pose : PoseCallback
         Is shown each pose that is found, as soon as it is.
     progress : Progress
 
@@ -153,18 +153,20 @@ def capture(
             depth, forest, refine=settings.refine, tracker=tracker,
             on_pose=on_pose, progress=within(progress, 0.0, share),
         )  # fmt: skip
-    actor = Actor(depth, body, forest, tracker, settings, motion_prior, on_pose)
+    actor = TrackingContext(depth, body, forest, tracker, settings, motion_prior, on_pose)
     passes = _passes(actor, settings, within(progress, share, 0.9))
     frames, which = best_of_passes(body, passes)
     poses = np.stack([one.poses for one in passes])[which, frames]
     poses, figures = smoothed_poses(
         actor, poses, settings.smoothing, within(progress, 0.9, 1.0)
     )
-    tracked = tracked_motion(body, poses, figures, depth.frame_rate)
-    return put_together(body, tracked, passes[0].restarts, floor, settings)
+    tracked = assemble_motion(body, poses, figures, depth.frame_rate)
+    return assemble_capture(body, tracked, passes[0].restarts, floor, settings)
 
 
-def _passes(actor: Actor, settings: CaptureSettings, progress: Progress) -> list[Pass]:
+def _passes(
+    actor: TrackingContext, settings: CaptureSettings, progress: Progress
+) -> list[Pass]:
     n_frames = actor.depth.n_frames
     middle = 0.5 if settings.backward else 1.0
     forward = track_with_restarts(actor, range(n_frames), None, within(progress, 0.0, middle))
@@ -198,7 +200,7 @@ def best_of_passes(body: BodyModel, passes: Sequence[Pass]) -> tuple[Integers, I
     return nearest, chosen[np.searchsorted(some, nearest)]
 
 
-def put_together(
+def assemble_capture(
     body: BodyModel,
     tracked: TrackedMotion,
     restarts: tuple[int, ...],

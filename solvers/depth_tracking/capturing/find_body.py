@@ -6,12 +6,12 @@ from numpy.typing import NDArray
 from ...depth_scene import DepthRecording
 from ...errors import InvalidMotionError
 from ...progress import Progress, unwatched, within
-from ..body import BodyModel, usual_body
+from ..body import BodyModel, default_body
 from ..detection import detect_pose
 from ..forest import PixelForest
-from ..terms import USUAL, TrackerSettings
-from ..tracking import OnPose, shifted, unobserved
-from .passes import Actor, RecoverySettings, track_with_restarts
+from ..terms import DEFAULT_TRACKER, TrackerSettings
+from ..tracking import PoseCallback, ignore_pose, offset_frames
+from .passes import RecoverySettings, TrackingContext, track_with_restarts
 from .refine_body import refine_body
 
 Array = NDArray[np.float64]
@@ -28,8 +28,8 @@ def find_body(
     forest: PixelForest,
     *,
     refine: bool = True,
-    tracker: TrackerSettings = USUAL,
-    on_pose: OnPose = unobserved,
+    tracker: TrackerSettings = DEFAULT_TRACKER,
+    on_pose: PoseCallback = ignore_pose,
     progress: Progress = unwatched,
 ) -> BodyModel:
     """Return the usual adult of the stature that fits best, refined by tracking.
@@ -44,7 +44,7 @@ def find_body(
     refine : bool
         Without, only the stature is found.
     tracker : TrackerSettings
-    on_pose : OnPose
+    on_pose : PoseCallback
         Is shown each pose that is found, as soon as it is.
     progress : Progress
 
@@ -61,8 +61,8 @@ def find_body(
     clip = _part(depth, first, min(CLIP, depth.n_frames - first))
     start, seen_from = None, 0
     for turn in range(2):
-        actor = Actor(clip, body, forest, tracker, RecoverySettings(check_every=CLIP),
-                      on_pose=shifted(on_pose, first))  # fmt: skip
+        actor = TrackingContext(clip, body, forest, tracker, RecoverySettings(check_every=CLIP),
+                      on_pose=offset_frames(on_pose, first))  # fmt: skip
         done = within(progress, 0.3 + 0.35 * turn, 0.65 + 0.35 * turn)
         tracked = track_with_restarts(actor, range(seen_from, clip.n_frames), start, done)
         good = np.flatnonzero(np.isfinite(tracked.scores))
@@ -94,7 +94,7 @@ def _best_stature(
         for stature in scores:
             try:
                 pose = detect_pose(
-                    depth.frame(frame), depth.camera, usual_body(stature), forest
+                    depth.frame(frame), depth.camera, default_body(stature), forest
                 )
             except InvalidMotionError as error:
                 problem = str(error)
@@ -106,7 +106,7 @@ def _best_stature(
         progress((place + 1) / len(frames), "Trying statures")
     if not any(scores.values()):
         raise InvalidMotionError(problem)
-    return usual_body(max(scores, key=lambda stature: scores[stature]))
+    return default_body(max(scores, key=lambda stature: scores[stature]))
 
 
 def _part(depth: DepthRecording, first: int, n_frames: int) -> DepthRecording:

@@ -18,14 +18,14 @@ from ..terms import TrackerSettings, observe
 from ..tracking import (
     FailureTest,
     FitQuality,
-    FoundPose,
     NextPose,
-    OnPose,
-    follow,
+    PoseCallback,
+    PosePreview,
     has_failed,
+    ignore_pose,
     next_pose_prior,
-    unobserved,
-    unseen,
+    quality_without_actor,
+    track_frame,
 )
 
 Array = NDArray[np.float64]
@@ -85,7 +85,7 @@ class Pass:
 
 
 @dataclass(frozen=True, eq=False)
-class Actor:
+class TrackingContext:
     """Who is tracked, by which means.
 
     Attributes
@@ -96,7 +96,7 @@ class Actor:
     tracker : TrackerSettings
     recovery : RecoverySettings
     motion_prior : MotionPrior or None
-    on_pose : OnPose
+    on_pose : PoseCallback
         Looks on.
     """
 
@@ -106,7 +106,7 @@ class Actor:
     tracker: TrackerSettings
     recovery: RecoverySettings
     motion_prior: MotionPrior | None = None
-    on_pose: OnPose = unobserved
+    on_pose: PoseCallback = ignore_pose
 
     def detected(self, frame: int) -> tuple[Array, FitQuality] | None:
         """Return the pose that the detector finds, refined by the tracker, or None."""
@@ -121,12 +121,12 @@ class Actor:
         weights[:6] = 0.0
         prior = NextPose(found.pose, weights, found.pose)
         observation = observe(self.depth, frame, self.tracker.picture_width)
-        pose, quality, _ = follow(self.body, prior, observation, self.tracker)
+        pose, quality, _ = track_frame(self.body, prior, observation, self.tracker)
         return pose, quality
 
 
 def track_with_restarts(
-    actor: Actor,
+    actor: TrackingContext,
     order: Iterable[int],
     start: Array | None,
     progress: Progress,
@@ -140,7 +140,7 @@ def track_with_restarts(
 
     Parameters
     ----------
-    actor : Actor
+    actor : TrackingContext
     order : iterable of int
         Frames, ascending or descending.
     start : shape (36,), optional
@@ -155,10 +155,10 @@ def track_with_restarts(
     restarts, memory = [], None
     for done, frame in enumerate(frames):
         observation = observe(actor.depth, frame, actor.tracker.picture_width)
-        score, quality = np.nan, unseen()
+        score, quality = np.nan, quality_without_actor()
         if course and not observation.empty:
             prior = next_pose_prior(course[-2:], actor.tracker, actor.motion_prior)
-            pose, quality, memory = follow(
+            pose, quality, memory = track_frame(
                 actor.body, prior, observation, actor.tracker, memory
             )
             score = quality.score
@@ -176,7 +176,7 @@ def track_with_restarts(
         if course or np.isfinite(score):
             course.append(pose)
             poses[frame], scores[frame] = pose, score
-            actor.on_pose(FoundPose(actor.body, frame, pose, quality))
+            actor.on_pose(PosePreview(actor.body, frame, pose, quality))
         watch.note(score)
         progress((done + 1) / len(frames), "Tracking")
     return Pass(poses, scores, tuple(restarts))

@@ -16,25 +16,25 @@ from ..body import (
     N_LENGTHS,
     BodyModel,
     SurfaceRows,
-    joined,
+    concatenate_rows,
     joint_limits,
-    resized,
-    screws,
+    resize_body,
+    screw_rows,
     shape_jacobian,
 )
 from ..terms import (
-    USUAL,
-    USUAL_AREA,
+    DEFAULT_TRACKER,
+    REFERENCE_AREA_M2,
     Hypothesis,
     Observation,
     TrackerSettings,
     closest_surface_term,
     depth_image_term,
     group_pixels,
-    imagine,
     observe,
     off_actor_term,
     pixel_area,
+    render_hypothesis,
 )
 
 Array = NDArray[np.float64]
@@ -76,7 +76,7 @@ def refine_body(
     *,
     frames: NDArray[np.intp] | None = None,
     settings: RefineBodySettings = USUAL_REFINING,
-    tracker: TrackerSettings = USUAL,
+    tracker: TrackerSettings = DEFAULT_TRACKER,
     progress: Progress = unwatched,
 ) -> BodyModel:
     """Return the body whose pictures fit best, and which is the same left and right.
@@ -90,7 +90,7 @@ def refine_body(
     ----------
     depth : DepthRecording
     body : BodyModel
-        To start from, such as `usual_body` of about the right stature.
+        To start from, such as `default_body` of about the right stature.
     poses : shape (n_frames, 36)
         Of every frame, as tracked with this body.
     frames : int array, optional
@@ -121,12 +121,12 @@ def refine_body(
     body = body.symmetric()
     change = np.zeros(len(MEASURES))
     for turn in range(settings.rounds):
-        growth, steps = _correction(resized(body, change), current, seen, change, settings,
+        growth, steps = _correction(resize_body(body, change), current, seen, change, settings,
                                     tracker)  # fmt: skip
         change = change + growth
         current = [pose + step for pose, step in zip(current, steps, strict=True)]
         progress((turn + 1) / settings.rounds, "Refining the body")
-    return resized(body, change)
+    return resize_body(body, change)
 
 
 def _spread(n_frames: int, wanted: int) -> NDArray[np.intp]:
@@ -166,7 +166,7 @@ def _frame_equations(
     body: BodyModel, pose: Array, observation: Observation, tracker: TrackerSettings
 ) -> tuple[Array, Array, Array, Array, Array]:
     """Return blocks of a frame's normal equations: pose, body, both, and right-hand sides."""
-    hypothesis = imagine(body, pose, observation.camera)
+    hypothesis = render_hypothesis(body, pose, observation.camera)
     limits = joint_limits(pose, tracker.limit_weight)
     of_pose: Array = limits.matrix + _POSE_DAMPING * np.eye(N_COORDINATES)
     rows = _rows(hypothesis, observation, tracker)
@@ -184,8 +184,8 @@ def _rows(
     hypothesis: Hypothesis, observation: Observation, tracker: TrackerSettings
 ) -> SurfaceRows:
     groups = group_pixels(hypothesis, observation, tracker.limit)
-    area, scale = pixel_area(observation) / USUAL_AREA, tracker.robust_scale
-    return joined([
+    area, scale = pixel_area(observation) / REFERENCE_AREA_M2, tracker.robust_scale
+    return concatenate_rows([
         depth_image_term(hypothesis, observation, groups, area * tracker.depth_weight),
         closest_surface_term(
             hypothesis, observation.points, area * tracker.closest_weight, scale
@@ -196,7 +196,7 @@ def _rows(
 
 def pose_jacobian(hypothesis: Hypothesis, rows: SurfaceRows) -> Array:
     """Return how each row's point moves along its direction with each coordinate, (n, 36)."""
-    lines = screws(rows.points, rows.directions)
+    lines = screw_rows(rows.points, rows.directions)
     segments = CAPSULE_SEGMENTS[rows.capsules]
     moved = np.empty((len(lines), N_COORDINATES))
     for segment in np.unique(segments):

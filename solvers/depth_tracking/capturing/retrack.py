@@ -13,11 +13,11 @@ from ...progress import Progress, unwatched, within
 from ...rotations import IDENTITY, inverse, multiply, slerp
 from ..body import JOINTS, N_SEGMENTS, BodyModel, body_motion, motion_frames, pose_from_frames
 from ..forest import load_pixel_forest
-from ..terms import USUAL, TrackerSettings
-from ..tracking import FitQuality, FoundPose, OnPose, tracked_motion, unobserved
-from .passes import Actor, RecoverySettings
-from .retracked_path import RetrackSettings, course_from
-from .smooth_pass import judged, smoothed_piece
+from ..terms import DEFAULT_TRACKER, TrackerSettings
+from ..tracking import FitQuality, PoseCallback, PosePreview, assemble_motion, ignore_pose
+from .passes import RecoverySettings, TrackingContext
+from .retracked_path import RetrackSettings, track_from_correction
+from .smooth_pass import measure_fit, smoothed_piece
 
 Array = NDArray[np.float64]
 USUAL_RETRACK = RetrackSettings()
@@ -62,8 +62,8 @@ def retrack(
     floor: Floor | None = None,
     fixed: Collection[int] = (),
     settings: RetrackSettings = USUAL_RETRACK,
-    tracker: TrackerSettings = USUAL,
-    on_pose: OnPose = unobserved,
+    tracker: TrackerSettings = DEFAULT_TRACKER,
+    on_pose: PoseCallback = ignore_pose,
     progress: Progress = unwatched,
 ) -> Retracked:
     """Track again from a frame that was corrected by hand, forwards and backwards.
@@ -89,7 +89,7 @@ def retrack(
         Other frames that are right, such as those that were corrected before.
     settings : RetrackSettings
     tracker : TrackerSettings
-    on_pose : OnPose
+    on_pose : PoseCallback
         Is shown each pose that is found, as soon as it is.
     progress : Progress
 
@@ -106,7 +106,7 @@ def retrack(
         Raised by `progress`.
     """
     _check(depth, motion, frame)
-    actor = Actor(
+    actor = TrackingContext(
         depth, body, load_pixel_forest(), tracker, RecoverySettings(), on_pose=on_pose
     )
     frames = motion_frames(body, motion, floor)
@@ -117,14 +117,14 @@ def retrack(
         ahead = _way(frame, way, most, depth.n_frames, fixed)
         share = within(progress, 0.4 * turn, 0.4 * (turn + 1))
         before = _OldPoses(body, frames, start)
-        courses.append(course_from(actor, start, ahead, before, settings, share))
+        courses.append(track_from_correction(actor, start, ahead, before, settings, share))
     back, forth = courses
     first, last = frame - len(back.poses), frame + len(forth.poses)
     poses = np.concatenate([back.poses[::-1], start[np.newaxis], forth.poses])
     if settings.smoothing > 0.0:
         poses = _smoothed(actor, poses, first, frame, settings.smoothing, frames)
     figures = _figures(actor, poses, first, within(progress, 0.8, 1.0))
-    tracked = tracked_motion(body, poses, figures, depth.frame_rate)
+    tracked = assemble_motion(body, poses, figures, depth.frame_rate)
     new = body_motion(body, poses, motion.frame_rate, floor)
     n_blend = round(settings.blend * depth.frame_rate)
     blended = _blended(motion, new, first, frame, n_blend)
@@ -169,7 +169,7 @@ class _OldPoses:
 
 
 def _smoothed(
-    actor: Actor, poses: Array, first: int, frame: int, smoothing: float, old: Array
+    actor: TrackingContext, poses: Array, first: int, frame: int, smoothing: float, old: Array
 ) -> Array:
     """Smooth what was tracked, between the corrected pose and what was there before.
 
@@ -191,12 +191,14 @@ def _smoothed(
     return smoothed_piece(actor, piece, first - len(around), smoothing, held)[inside]
 
 
-def _figures(actor: Actor, poses: Array, first: int, progress: Progress) -> list[FitQuality]:
+def _figures(
+    actor: TrackingContext, poses: Array, first: int, progress: Progress
+) -> list[FitQuality]:
     figures = []
     for place, pose in enumerate(poses):
-        quality = judged(actor, pose, first + place)
+        quality = measure_fit(actor, pose, first + place)
         figures.append(quality)
-        actor.on_pose(FoundPose(actor.body, first + place, pose, quality))
+        actor.on_pose(PosePreview(actor.body, first + place, pose, quality))
         progress((place + 1) / len(poses), "Judging")
     return figures
 

@@ -10,9 +10,9 @@ from ...progress import Progress
 from ...settings import Settings, setting
 from ..body import joint_positions, segment_frames
 from ..terms import observe
-from ..tracking import FitQuality, FoundPose, follow, next_pose_prior
-from .passes import Actor
-from .smooth_pass import judged
+from ..tracking import FitQuality, PosePreview, next_pose_prior, track_frame
+from .passes import TrackingContext
+from .smooth_pass import measure_fit
 
 Array = NDArray[np.float64]
 
@@ -47,7 +47,7 @@ class RetrackSettings(Settings):
 
 
 @dataclass(frozen=True, eq=False)
-class Course:
+class RetrackedPath:
     """Poses after a corrected frame, in the order of tracking.
 
     Attributes
@@ -62,14 +62,14 @@ class Course:
     met: bool
 
 
-def course_from(
-    actor: Actor,
+def track_from_correction(
+    actor: TrackingContext,
     start: Array,
     frames: Sequence[int],
     old_pose: Callable[[int], Array],
     settings: RetrackSettings,
     progress: Progress,
-) -> Course:
+) -> RetrackedPath:
     """Track the frames from a pose until the old course is met, and drop what got lost.
 
     The courses have met where for some frames every joint is nearly where it was; of joints
@@ -78,7 +78,7 @@ def course_from(
 
     Parameters
     ----------
-    actor : Actor
+    actor : TrackingContext
     start : shape (36,)
         The pose before the first of the frames.
     frames : sequence of int
@@ -93,22 +93,26 @@ def course_from(
     for done, frame in enumerate(frames, start=1):
         observation = observe(actor.depth, frame, actor.tracker.picture_width)
         prior = next_pose_prior(course[-2:], actor.tracker, actor.motion_prior)
-        pose, quality, memory = follow(actor.body, prior, observation, actor.tracker, memory)
+        pose, quality, memory = track_frame(
+            actor.body, prior, observation, actor.tracker, memory
+        )
         old = old_pose(frame)
-        gain = quality.score - judged(actor, old, frame).score + _PATIENCE
+        gain = quality.score - measure_fit(actor, old, frame).score + _PATIENCE
         course.append(pose)
         gains.append(gains[-1] + gain)
-        actor.on_pose(FoundPose(actor.body, frame, pose, quality))
+        actor.on_pose(PosePreview(actor.body, frame, pose, quality))
         progress(done / len(frames), "Tracking")
         same = _largest_distance(actor, pose, old, quality) < settings.agreement
         meeting = meeting + 1 if same else 0
         if meeting == needed:
-            return Course(np.array(course[1:]), met=True)
+            return RetrackedPath(np.array(course[1:]), met=True)
     kept = int(np.argmax(gains)) + needed
-    return Course(np.array(course[1 : kept + 1]).reshape(-1, len(start)), met=False)
+    return RetrackedPath(np.array(course[1 : kept + 1]).reshape(-1, len(start)), met=False)
 
 
-def _largest_distance(actor: Actor, pose: Array, old: Array, quality: FitQuality) -> float:
+def _largest_distance(
+    actor: TrackingContext, pose: Array, old: Array, quality: FitQuality
+) -> float:
     """Return how far the joint that differs most has moved, less if it is unsure, metres."""
     both = joint_positions(actor.body, segment_frames(actor.body, np.stack([pose, old])))
     moved = np.linalg.norm(both[1] - both[0], axis=-1)

@@ -9,15 +9,15 @@ from ...progress import Progress
 from ..body import (
     N_COORDINATES,
     PoseEquations,
-    added,
-    in_coordinates,
+    equations_in_coordinates,
     joint_limits,
     natural_stance,
     segment_equations,
+    sum_equations,
 )
-from ..terms import Observation, imagine, likelihood_rows, observe
-from ..tracking import FitQuality, FoundPose, Registered, fit_quality, unseen
-from .passes import Actor
+from ..terms import Observation, likelihood_rows, observe, render_hypothesis
+from ..tracking import FitQuality, PosePreview, Registered, fit_quality, quality_without_actor
+from .passes import TrackingContext
 from .smooth_take import smooth_take
 
 Array = NDArray[np.float64]
@@ -30,7 +30,7 @@ _PIECE, _BORDER = 600, 60
 
 
 def smoothed_poses(
-    actor: Actor, poses: Array, smoothing: float, progress: Progress
+    actor: TrackingContext, poses: Array, smoothing: float, progress: Progress
 ) -> tuple[Array, list[FitQuality]]:
     """Return smoothed poses (n_frames, 36), and the figures of each frame."""
     found, figures = poses.copy(), []
@@ -43,20 +43,24 @@ def smoothed_poses(
             found[first:last] = smooth[first - start : last - start]
             progress(0.5 * last / n_frames, "Smoothing")
     for frame in range(n_frames):
-        figures.append(judged(actor, found[frame], frame))
-        actor.on_pose(FoundPose(actor.body, frame, found[frame], figures[-1]))
+        figures.append(measure_fit(actor, found[frame], frame))
+        actor.on_pose(PosePreview(actor.body, frame, found[frame], figures[-1]))
         progress(0.5 + 0.5 * (frame + 1) / n_frames, "Judging")
     return found, figures
 
 
 def smoothed_piece(
-    actor: Actor, poses: Array, first: int, smoothing: float, held: Collection[int] = ()
+    actor: TrackingContext,
+    poses: Array,
+    first: int,
+    smoothing: float,
+    held: Collection[int] = (),
 ) -> Array:
     """Return smoothed poses (n_frames, 36) of a piece of a take.
 
     Parameters
     ----------
-    actor : Actor
+    actor : TrackingContext
     poses : shape (n_frames, 36)
     first : int
         Frame of the recording that is the first of these.
@@ -81,24 +85,24 @@ def smoothed_piece(
     return smooth_take(poses, equations, stiffness)
 
 
-def _asked(actor: Actor, pose: Array, observation: Observation) -> Registered:
+def _asked(actor: TrackingContext, pose: Array, observation: Observation) -> Registered:
     """Return what a picture asks of a pose, without what the frames before say."""
-    hypothesis = imagine(actor.body, pose, observation.camera)
-    limits = added([
+    hypothesis = render_hypothesis(actor.body, pose, observation.camera)
+    limits = sum_equations([
         joint_limits(pose, actor.tracker.limit_weight),
         natural_stance(pose, 0.0, actor.tracker.ankle_weight),
     ])
     if observation.empty:
         return Registered(hypothesis, limits, 1)
     rows = likelihood_rows(hypothesis, observation, actor.tracker)
-    seen: PoseEquations = in_coordinates([segment_equations(rows)], hypothesis.twists)
-    return Registered(hypothesis, added([seen, limits]), 1)
+    seen: PoseEquations = equations_in_coordinates([segment_equations(rows)], hypothesis.twists)
+    return Registered(hypothesis, sum_equations([seen, limits]), 1)
 
 
-def judged(actor: Actor, pose: Array, frame: int) -> FitQuality:
+def measure_fit(actor: TrackingContext, pose: Array, frame: int) -> FitQuality:
     """Return how well a pose explains a frame."""
     observation = observe(actor.depth, frame, actor.tracker.picture_width)
     if observation.empty:
-        return unseen()
+        return quality_without_actor()
     found = _asked(actor, pose, observation)
     return fit_quality(actor.body, found, observation, actor.tracker.limit)

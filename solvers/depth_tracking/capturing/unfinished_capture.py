@@ -7,13 +7,13 @@ import numpy as np
 from ...depth_scene import Floor
 from ...errors import InvalidMotionError
 from ..body import N_COORDINATES
-from ..tracking import FoundPose, tracked_motion
-from .capture import USUAL_CAPTURE, Capture, CaptureSettings, best_of_passes, put_together
+from ..tracking import PosePreview, assemble_motion
+from .capture import USUAL_CAPTURE, Capture, CaptureSettings, assemble_capture, best_of_passes
 from .passes import Pass
 
 
 def unfinished_capture(
-    found: Sequence[FoundPose],
+    found: Sequence[PosePreview],
     frame_rate: float,
     *,
     floor: Floor | None = None,
@@ -26,7 +26,7 @@ def unfinished_capture(
 
     Parameters
     ----------
-    found : sequence of FoundPose
+    found : sequence of PosePreview
         All that `capture` had shown, in that order; those of one body share it.
     frame_rate : float, hertz
     floor : Floor, optional
@@ -50,7 +50,7 @@ def unfinished_capture(
     found = [one for one in found if one.body is body]
     frames = np.array([one.frame for one in found])
     first, n_frames = int(frames.min()), int(np.ptp(frames)) + 1
-    rounds: list[dict[int, FoundPose]] = []
+    rounds: list[dict[int, PosePreview]] = []
     for one in found:
         place = one.frame - first
         times = sum(place in known for known in rounds)
@@ -59,16 +59,16 @@ def unfinished_capture(
         rounds[times][place] = one
     chosen = best_of_passes(body, [_pass_of(known, n_frames) for known in rounds])
     kept = [rounds[which][frame] for frame, which in zip(*chosen, strict=True)]
-    tracked = tracked_motion(
+    tracked = assemble_motion(
         body,
         np.array([one.pose for one in kept]),
         [one.quality for one in kept],
         frame_rate,
     )
-    return first, put_together(body, tracked, (), floor, settings)
+    return first, assemble_capture(body, tracked, (), floor, settings)
 
 
-def _pass_of(known: dict[int, FoundPose], n_frames: int) -> Pass:
+def _pass_of(known: dict[int, PosePreview], n_frames: int) -> Pass:
     poses = np.full((n_frames, N_COORDINATES), np.nan)
     scores = np.full(n_frames, np.nan)
     for frame, one in known.items():

@@ -1,10 +1,10 @@
 """The pose in a single depth image, from its classified pixels."""
 
-from .detect_pose import DetectedPose, DetectorSettings, detect_pose, thinned
+from .detect_pose import DetectedPose, DetectorSettings, detect_pose, subsample_image
 
 __all__ = [
     "DetectedPose",
     "DetectorSettings",
     "detect_pose",
-    "thinned",
+    "subsample_image",
 ]

@@ -5,12 +5,12 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from ...depth_scene import Camera, DepthPicture
+from ...depth_scene import Camera, DepthImage
 from ...errors import InvalidMotionError
 from ...settings import setting
 from ..body import N_COORDINATES, N_ROOT, BodyModel, PoseEquations, joint_positions, stay_near
 from ..forest import PARTS, PixelForest, PixelParts, classify_pixels
-from ..terms import USUAL, Hypothesis, Observation, imagine
+from ..terms import DEFAULT_TRACKER, Hypothesis, Observation, render_hypothesis
 from ..tracking import register_pose
 from .pose_score import pose_score
 from .pose_trials import trial_poses
@@ -81,7 +81,7 @@ class DetectedPose:
 
 
 def detect_pose(
-    depth_frame: DepthPicture,
+    depth_frame: DepthImage,
     camera: Camera,
     body: BodyModel,
     forest: PixelForest,
@@ -113,7 +113,7 @@ def detect_pose(
     ----------
     .. [1] Wei, Zhang, Chai (2012), section 4.
     """
-    observation, step = thinned(depth_frame, camera, settings.most_pixels)
+    observation, step = subsample_image(depth_frame, camera, settings.most_pixels)
     pixels = classify_pixels(observation.depth.astype(np.float32), observation.camera, forest)
     if len(pixels.rows) < settings.fewest_pixels:
         raise InvalidMotionError(
@@ -130,7 +130,9 @@ def detect_pose(
     each = -(-len(observation.points) // settings.n_pixels)
     trials = trial_poses(body, parts, observation.points[::each], pixels.shares[::each])
     found = [
-        _judged(imagine(body, pose, observation.camera), pixels, observation, settings)
+        _judged(
+            render_hypothesis(body, pose, observation.camera), pixels, observation, settings
+        )
         for pose in trials
     ]
     found.sort(key=lambda one: one.score, reverse=True)
@@ -153,7 +155,9 @@ class _Found:
     overlap: float
 
 
-def thinned(depth: DepthPicture, camera: Camera, most_pixels: int) -> tuple[Observation, int]:
+def subsample_image(
+    depth: DepthImage, camera: Camera, most_pixels: int
+) -> tuple[Observation, int]:
     """Return every so manieth column and row of a picture, so that few enough see the body."""
     step = max(1, int(np.ceil(np.sqrt(np.count_nonzero(depth) / most_pixels))))
     return Observation(camera, np.asarray(depth, dtype=np.float64)).every(step), step
@@ -185,7 +189,7 @@ def _refined(
         start,
         observation,
         prior,
-        replace(USUAL, iterations=settings.iterations),
+        replace(DEFAULT_TRACKER, iterations=settings.iterations),
     )
     return _judged(better.hypothesis, pixels, observation, settings)
 

@@ -13,15 +13,15 @@ from ..body import (
     BodyModel,
     PoseEquations,
     SegmentEquations,
-    added,
-    in_coordinates,
+    equations_along_directions,
+    equations_in_coordinates,
+    equations_toward_targets,
     joint_limits,
-    move_along,
-    move_toward,
     segment_frames,
     segment_twists,
+    solve_step,
     stay_near,
-    step,
+    sum_equations,
 )
 from ..forest import PARTS
 from ..terms import capsule_offsets
@@ -164,8 +164,8 @@ def _descended(
     for _ in range(iterations):
         frames = segment_frames(body, pose)
         rest[:N_ROOT] = pose[:N_ROOT]
-        found = added([
-            in_coordinates(asked(frames), segment_twists(pose, frames)),
+        found = sum_equations([
+            equations_in_coordinates(asked(frames), segment_twists(pose, frames)),
             joint_limits(pose, LIMIT_WEIGHT),
             stay_near(pose, rest, _REST_WEIGHTS),
         ])  # fmt: skip
@@ -173,7 +173,7 @@ def _descended(
             equations, best, lowest, damping = found, pose, found.cost, 0.3 * damping
         else:
             damping = max(10.0 * damping, 1e-3)
-        change = step(equations, np.full(N_COORDINATES, max(damping, 1e-6)))
+        change = solve_step(equations, np.full(N_COORDINATES, max(damping, 1e-6)))
         pose = best + change * min(1.0, LONGEST_STEP / max(float(np.abs(change).max()), 1e-9))
     return best
 
@@ -185,7 +185,7 @@ def _middles_term(
     body: BodyModel, frames: Array, parts: FoundParts, weight: float
 ) -> SegmentEquations:
     seen = np.flatnonzero(parts.weights)
-    return move_toward(
+    return equations_toward_targets(
         _middles(body, frames)[seen],
         parts.centres[seen],
         weight * parts.weights[seen],
@@ -202,7 +202,7 @@ def _surface_term(
     outside = (size - 1.0) / steep
     counts = np.bincount(capsules, minlength=len(CAPSULE_SEGMENTS))[capsules]
     robust = 1.0 / np.maximum(1.0, np.abs(outside) / FARTHEST)
-    return move_along(
+    return equations_along_directions(
         points,
         slope / steep[:, np.newaxis],
         outside,

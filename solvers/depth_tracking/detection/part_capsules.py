@@ -4,7 +4,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..body import CAPSULE_SEGMENTS, CAPSULES, BodyModel
-from ..forest import HALVED, N_PARTS, PARTS
+from ..forest import N_PARTS, PARTS, SPLIT_SEGMENTS
 
 Array = NDArray[np.float64]
 
@@ -17,7 +17,7 @@ def _spans() -> tuple[NDArray[np.intp], Array]:
         capsules[place] = CAPSULES.index(part.removesuffix("End"))
         if part.endswith("End"):
             spans[place] = 0.5, 1.0
-        elif part.endswith(HALVED):
+        elif part.endswith(SPLIT_SEGMENTS):
             spans[place] = 0.0, 0.5
     return capsules, spans
 

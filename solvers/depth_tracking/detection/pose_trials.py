@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..body import COORDINATES, BodyModel
-from ..forest import MIRRORED, PARTS
+from ..forest import MIRRORED_PARTS, PARTS
 from .labeled_fit import first_pose, fit_parts, fit_pixels
 from .robust_parts import FoundParts
 
@@ -44,7 +44,7 @@ def trial_poses(
         meant = parts.exchanged(order)
         pose = fit_parts(body, meant, first_pose(body, meant))
         yield fit_pixels(body, points, shares[:, order], pose)
-    blind = 0.5 * (shares + shares[:, MIRRORED])
+    blind = 0.5 * (shares + shares[:, MIRRORED_PARTS])
     told = first_pose(body, parts)
     for heading in HEADINGS:
         for stride in STRIDES:
@@ -66,5 +66,5 @@ def exchange_orders() -> list[NDArray[np.intp]]:
             for end in together
         )
         turned = np.array([part.endswith(ends) for part in PARTS])
-        orders.append(np.where(turned, MIRRORED, np.arange(len(PARTS))))
+        orders.append(np.where(turned, MIRRORED_PARTS, np.arange(len(PARTS))))
     return orders

@@ -2,7 +2,7 @@
 
 The places are given in metres and divided by the pixel's depth, so that a feature sees the same
 part of a body from near and far, and with any camera. Where nothing is seen, and outside of the
-picture, the depth is `FAR`.
+picture, the depth is `BACKGROUND_MM`.
 """
 
 from typing import NamedTuple
@@ -12,17 +12,17 @@ from numpy.typing import NDArray
 
 from ...depth_scene import Camera
 
-Picture = NDArray[np.float32]
-FAR = 10_000
+DepthImage = NDArray[np.float32]
+BACKGROUND_MM = 10_000
 """Millimetres: how far away nothing is."""
-MILLIMETRES = 1000.0
+MM_PER_M = 1000.0
 
 
-class PixelViews(NamedTuple):
+class PixelFeatures(NamedTuple):
     """Pixels to be told, with what their features need."""
 
     pictures: NDArray[np.uint16]
-    """Depth in millimetres of all pictures behind each other, each with a margin of `FAR`."""
+    """Depth of all images, concatenated, millimetres; each has a border of `BACKGROUND_MM`."""
     place: NDArray[np.int32]
     """Index of each pixel in `pictures`, shape (n,)."""
     column: NDArray[np.float32]
@@ -34,36 +34,36 @@ class PixelViews(NamedTuple):
     """Of the pictures without their margin, pixels."""
     height: int
 
-    def part(self, chosen: slice | NDArray[np.intp]) -> "PixelViews":
+    def part(self, chosen: slice | NDArray[np.intp]) -> "PixelFeatures":
         """Return some of the pixels."""
         names = ("place", "column", "row", "across", "down")
         return self._replace(**{name: getattr(self, name)[chosen] for name in names})
 
 
-def with_margin(depth: Picture) -> NDArray[np.uint16]:
-    """Return a depth picture (height, width), metres, in millimetres with a margin of `FAR`."""
-    told = np.full((depth.shape[0] + 2, depth.shape[1] + 2), FAR, dtype=np.uint16)
-    near = np.minimum(np.rint(depth * np.float32(MILLIMETRES)), FAR)
-    told[1:-1, 1:-1] = np.where(depth > 0.0, near, FAR)
+def pad_depth_image(depth: DepthImage) -> NDArray[np.uint16]:
+    """Return a depth image (height, width), metres, in millimetres with a background border."""
+    told = np.full((depth.shape[0] + 2, depth.shape[1] + 2), BACKGROUND_MM, dtype=np.uint16)
+    near = np.minimum(np.rint(depth * np.float32(MM_PER_M)), BACKGROUND_MM)
+    told[1:-1, 1:-1] = np.where(depth > 0.0, near, BACKGROUND_MM)
     return told
 
 
-def pixel_views(
+def pixel_features(
     pictures: NDArray[np.uint16],
     number: NDArray[np.intp],
     rows: NDArray[np.intp],
     columns: NDArray[np.intp],
     camera: Camera,
-) -> PixelViews:
-    """Prepare pixels of pictures (n_pictures, height + 2, width + 2) of `with_margin`.
+) -> PixelFeatures:
+    """Prepare pixels of pictures (n_pictures, height + 2, width + 2) of `pad_depth_image`.
 
     `number` tells in which picture each pixel is.
     """
     _, height, width = pictures.shape
     place = (number * height + rows + 1) * width + columns + 1
     flat = pictures.reshape(-1)
-    depth = flat[place].astype(np.float32) / np.float32(MILLIMETRES)
-    return PixelViews(
+    depth = flat[place].astype(np.float32) / np.float32(MM_PER_M)
+    return PixelFeatures(
         flat,
         place.astype(np.int32),
         columns.astype(np.float32),
@@ -75,7 +75,7 @@ def pixel_views(
     )
 
 
-def differences(views: PixelViews, offsets: NDArray[np.float32]) -> NDArray[np.int32]:
+def depth_differences(views: PixelFeatures, offsets: NDArray[np.float32]) -> NDArray[np.int32]:
     """Return depth at the first offset less that at the second, millimetres, shape (n,).
 
     Parameters
@@ -89,7 +89,7 @@ def differences(views: PixelViews, offsets: NDArray[np.float32]) -> NDArray[np.i
 
 
 def _probed(
-    views: PixelViews, right: NDArray[np.float32], down: NDArray[np.float32]
+    views: PixelFeatures, right: NDArray[np.float32], down: NDArray[np.float32]
 ) -> NDArray[np.int32]:
     """Depth, millimetres, this far from each pixel."""
     column = views.across * right

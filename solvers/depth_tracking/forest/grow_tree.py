@@ -8,23 +8,27 @@ from numpy.typing import NDArray
 
 from ...progress import Progress, unwatched
 from ...settings import Settings, setting
-from .depth_differences import PixelViews, differences
+from .depth_differences import PixelFeatures, depth_differences
 from .parts import N_PARTS
 
 Floats = NDArray[np.float32]
 Nodes = NDArray[np.int32]
 
-CENTIMETRES = 100.0
+CM_PER_M = 100.0
 _ABOVE_ZERO = (15, 30, 50, 80, 120, 180, 260, 380, 550, 1000)
-EDGES = np.array([*(-edge for edge in reversed(_ABOVE_ZERO)), 0, *_ABOVE_ZERO], dtype=np.int16)
+THRESHOLDS_MM = np.array(
+    [*(-edge for edge in reversed(_ABOVE_ZERO)), 0, *_ABOVE_ZERO], dtype=np.int16
+)
 """Thresholds that are tried, millimetres. Beyond the outermost, one place saw nothing."""
-N_BINS = len(EDGES) + 1
+N_BINS = len(THRESHOLDS_MM) + 1
 _OUTERMOST = _ABOVE_ZERO[-1] + 1
-_BIN_OF = np.searchsorted(EDGES, np.arange(-_OUTERMOST, _OUTERMOST + 1)).astype(np.int32)
-AT_ONCE = 1 << 15
+_BIN_OF = np.searchsorted(THRESHOLDS_MM, np.arange(-_OUTERMOST, _OUTERMOST + 1)).astype(
+    np.int32
+)
+PIXELS_PER_BLOCK = 1 << 15
 """Pixels of which a feature is computed at a time: few enough for the processor's cache."""
-NODES_AT_ONCE = 2048
-STOPPED = -1
+NODES_PER_BLOCK = 2048
+AT_LEAF = -1
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -80,7 +84,7 @@ class _Level(NamedTuple):
 
 
 def grow_tree(
-    views: PixelViews,
+    views: PixelFeatures,
     parts: NDArray[np.uint8],
     settings: TreeSettings,
     rng: np.random.Generator,
@@ -107,7 +111,7 @@ def grow_tree(
         split = open_nodes & (best.gain > 0.0)
         splits.append(split)
         offsets.append(features[best.feature[split]])
-        thresholds.append(EDGES[best.edge[split]])
+        thresholds.append(THRESHOLDS_MM[best.edge[split]])
         shares.append(_told_shares(counts[~split]))
         node = _moved_on(views, node, split, features, best)
         n_nodes = 2 * int(split.sum())
@@ -128,12 +132,12 @@ def random_offsets(n: int, reach: float, rng: np.random.Generator) -> NDArray[np
     way = np.exp(rng.uniform(np.log(0.02), np.log(reach), (n, 2)))
     way[rng.random(n) < 0.25, 1] = 0.0
     places = np.stack([way * np.cos(angle), way * np.sin(angle)], axis=2).reshape(n, 4)
-    rounded: NDArray[np.int8] = np.rint(places * CENTIMETRES).astype(np.int8)
+    rounded: NDArray[np.int8] = np.rint(places * CM_PER_M).astype(np.int8)
     return rounded
 
 
 def _best_tests(
-    views: PixelViews,
+    views: PixelFeatures,
     parts: NDArray[np.uint8],
     node: Nodes,
     open_nodes: NDArray[np.bool_],
@@ -149,7 +153,7 @@ def _best_tests(
         np.zeros(n_nodes, dtype=np.int32),
         np.zeros(n_nodes, dtype=np.int32),
     )
-    rank = np.where(open_nodes, np.cumsum(open_nodes) - 1, STOPPED).astype(np.int32)
+    rank = np.where(open_nodes, np.cumsum(open_nodes) - 1, AT_LEAF).astype(np.int32)
     chosen = np.flatnonzero((node >= 0) & open_nodes[node])
     wanted = settings.first_pixels * 2 ** (level // 2)
     if len(chosen) > wanted:
@@ -168,19 +172,19 @@ def _best_tests(
 
 
 def _histograms(
-    views: PixelViews, key: NDArray[np.int32], feature: NDArray[np.int8], n_nodes: int
+    views: PixelFeatures, key: NDArray[np.int32], feature: NDArray[np.int8], n_nodes: int
 ) -> NDArray[np.int64]:
     """Count pixels by node, bin of the feature and part: (n_nodes, N_BINS, N_PARTS)."""
     spots = np.empty(len(key), dtype=np.int32)
-    for start in range(0, len(key), AT_ONCE):
-        block = slice(start, start + AT_ONCE)
+    for start in range(0, len(key), PIXELS_PER_BLOCK):
+        block = slice(start, start + PIXELS_PER_BLOCK)
         spots[block] = key[block] + N_PARTS * _bins(views.part(block), feature)
     counts = np.bincount(spots, minlength=n_nodes * N_BINS * N_PARTS)
     return counts.reshape(n_nodes, N_BINS, N_PARTS)
 
 
-def _bins(views: PixelViews, feature: NDArray[np.int8]) -> NDArray[np.int32]:
-    told = differences(views, feature.astype(np.float32) / np.float32(CENTIMETRES))
+def _bins(views: PixelFeatures, feature: NDArray[np.int8]) -> NDArray[np.int32]:
+    told = depth_differences(views, feature.astype(np.float32) / np.float32(CM_PER_M))
     return np.asarray(_BIN_OF[np.clip(told, -_OUTERMOST, _OUTERMOST) + _OUTERMOST])
 
 
@@ -192,8 +196,8 @@ def _gains(counts: NDArray[np.int64]) -> tuple[Floats, Nodes]:
     """
     gain = np.empty(len(counts), dtype=np.float32)
     edge = np.empty(len(counts), dtype=np.int32)
-    for start in range(0, len(counts), NODES_AT_ONCE):
-        block = slice(start, start + NODES_AT_ONCE)
+    for start in range(0, len(counts), NODES_PER_BLOCK):
+        block = slice(start, start + NODES_PER_BLOCK)
         below = np.cumsum(counts[block], axis=1, dtype=np.float32)
         whole = below[:, -1:]
         order = _order(below[:, :-1]) + _order(whole - below[:, :-1]) - _order(whole)
@@ -223,21 +227,21 @@ def _told_shares(counts: NDArray[np.int64]) -> NDArray[np.uint8]:
 
 
 def _moved_on(
-    views: PixelViews,
+    views: PixelFeatures,
     node: Nodes,
     split: NDArray[np.bool_],
     features: NDArray[np.int8],
     best: _Level,
 ) -> Nodes:
-    """Return the node of each pixel on the next level, or STOPPED in a leaf."""
-    moved = np.full(len(node), STOPPED, dtype=np.int32)
+    """Return the node of each pixel on the next level, or AT_LEAF in a leaf."""
+    moved = np.full(len(node), AT_LEAF, dtype=np.int32)
     first_child = (2 * (np.cumsum(split) - 1)).astype(np.int32)
-    metres = features.astype(np.float32).T / np.float32(CENTIMETRES)
-    for start in range(0, len(node), AT_ONCE):
-        block = np.arange(start, min(start + AT_ONCE, len(node)))
+    metres = features.astype(np.float32).T / np.float32(CM_PER_M)
+    for start in range(0, len(node), PIXELS_PER_BLOCK):
+        block = np.arange(start, min(start + PIXELS_PER_BLOCK, len(node)))
         block = block[node[block] >= 0]
         block = block[split[node[block]]]
         at = node[block]
-        told = differences(views.part(block), metres[:, best.feature[at]])
-        moved[block] = first_child[at] + (told > EDGES[best.edge[at]])
+        told = depth_differences(views.part(block), metres[:, best.feature[at]])
+        moved[block] = first_child[at] + (told > THRESHOLDS_MM[best.edge[at]])
     return moved

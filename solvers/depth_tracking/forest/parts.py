@@ -25,7 +25,7 @@ knee. Hands and feet are parts too, since they tell where the limb points."""
 
 N_PARTS = len(PARTS)
 
-HALVED = ("UpperLeg", "LowerLeg")
+SPLIT_SEGMENTS = ("UpperLeg", "LowerLeg")
 """Segments whose outer half is a part of its own, `<role>End`."""
 
 
@@ -54,7 +54,7 @@ def parts_of_joints(roles: Mapping[int, str], parents: tuple[int, ...]) -> NDArr
     return parts
 
 
-def other_side(part: str) -> str:
+def mirrored_part(part: str) -> str:
     """Return the part on the other side of the body; itself for those in the middle."""
     if part.startswith("left"):
         return "right" + part.removeprefix("left")
@@ -63,5 +63,5 @@ def other_side(part: str) -> str:
     return part
 
 
-MIRRORED = np.array([PARTS.index(other_side(part)) for part in PARTS])
+MIRRORED_PARTS = np.array([PARTS.index(mirrored_part(part)) for part in PARTS])
 """Place of each part's counterpart on the other side."""

@@ -10,14 +10,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...archives import ArchiveLayout
-from ...depth_scene import Camera, DepthPicture
+from ...depth_scene import Camera, DepthImage
 from ...errors import InvalidMotionError
 from ...npz_members import Values, integers, words
-from .depth_differences import differences, pixel_views, with_margin
-from .grow_tree import CENTIMETRES, Tree
+from .depth_differences import depth_differences, pad_depth_image, pixel_features
+from .grow_tree import CM_PER_M, Tree
 from .parts import N_PARTS, PARTS
 
-FARTHEST = 2**15 - 1
+MAX_INT16 = 2**15 - 1
 """Centimetres or millimetres that a node may compare: those of 16-bit numbers."""
 LAYOUT = ArchiveLayout(
     "pixel forest",
@@ -26,8 +26,8 @@ LAYOUT = ArchiveLayout(
         "parts": words("parts"),
         "n_nodes": integers("trees", minimum=1),
         "splits": Values("u", ("bytes",), maximum=255),
-        "offsets": integers("splits", 4, minimum=-FARTHEST, maximum=FARTHEST),
-        "thresholds": integers("splits", minimum=-FARTHEST, maximum=FARTHEST),
+        "offsets": integers("splits", 4, minimum=-MAX_INT16, maximum=MAX_INT16),
+        "thresholds": integers("splits", minimum=-MAX_INT16, maximum=MAX_INT16),
         "shares": integers("leaves", N_PARTS, minimum=0, maximum=255),
         "trained_on": words(),
     },
@@ -109,7 +109,7 @@ class PixelParts:
         return np.asarray(self.shares.argmax(axis=1))
 
 
-def classify_pixels(depth: DepthPicture, camera: Camera, forest: PixelForest) -> PixelParts:
+def classify_pixels(depth: DepthImage, camera: Camera, forest: PixelForest) -> PixelParts:
     """Tell the part that each pixel sees which sees anything.
 
     Parameters
@@ -121,16 +121,16 @@ def classify_pixels(depth: DepthPicture, camera: Camera, forest: PixelForest) ->
         Its trees' answers are averaged: Wei, Zhang, Chai 2012, eq. 13.
     """
     rows, columns = np.nonzero(depth)
-    pictures = with_margin(depth)[np.newaxis]
+    pictures = pad_depth_image(depth)[np.newaxis]
     nodes = forest._nodes
     n_trees = len(forest.trees)
-    views = pixel_views(pictures, np.zeros(len(rows), dtype=np.intp), rows, columns, camera)
+    views = pixel_features(pictures, np.zeros(len(rows), dtype=np.intp), rows, columns, camera)
     views = views.part(np.tile(np.arange(len(rows)), n_trees))
     at = np.repeat(nodes.roots, len(rows))
     going = np.arange(len(at))
     while len(going):
         here = at[going]
-        told = differences(views, nodes.offsets[:, here])
+        told = depth_differences(views, nodes.offsets[:, here])
         at[going] = here = nodes.children[here] + (told > nodes.thresholds[here])
         on = np.flatnonzero(nodes.children[here] >= 0)
         if len(on) < len(going):
@@ -202,7 +202,7 @@ def _laid_out(trees: Sequence[Tree]) -> _Nodes:
     for tree, start, leaf_start in zip(trees, starts, leaf_starts, strict=False):
         split = start + np.flatnonzero(tree.splits)
         leaf = start + np.flatnonzero(~tree.splits)
-        offsets[:, split] = tree.offsets.T / CENTIMETRES
+        offsets[:, split] = tree.offsets.T / CM_PER_M
         thresholds[split] = tree.thresholds
         children[split] = start + 1 + 2 * np.arange(len(split))
         children[leaf] = -1 - (leaf_start + np.arange(len(leaf)))

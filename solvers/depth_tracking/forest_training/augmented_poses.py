@@ -23,7 +23,7 @@ SOLES = 0.35
 """Of a reach: how far an arm may go back, or across the chest, from straight to its side."""
 
 
-def without_heading(rotations: Array) -> Array:
+def remove_heading(rotations: Array) -> Array:
     """Return poses (F, n_joints, 4) of which the root has no turn about the vertical."""
     upright = rotations.copy()
     heading = twist_about(rotations[:, 0], UP)
@@ -31,7 +31,9 @@ def without_heading(rotations: Array) -> Array:
     return upright
 
 
-def most_different(body: SkinnedBody, rotations: Array, spacing: float, most: int) -> Array:
+def select_diverse_poses(
+    body: SkinnedBody, rotations: Array, spacing: float, most: int
+) -> Array:
     """Return those poses (n, n_joints, 4) that differ most, by farthest-point sampling.
 
     Poses have no heading. The difference of two is the largest distance between the same joint

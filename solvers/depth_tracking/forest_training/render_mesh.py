@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 from ...depth_scene import Camera
 
 Array = NDArray[np.float64]
-NOTHING = 255
+NO_PART = 255
 """Label of pixels that see no body."""
 NEAR = 0.05
 """Metres. Triangles with a corner nearer than this to the camera's plane are not drawn."""
@@ -20,7 +20,7 @@ class RenderedMesh(NamedTuple):
     depth: NDArray[np.float32]
     """Shape (height, width), metres along the optical axis; 0: nothing."""
     labels: NDArray[np.uint8]
-    """Label of the nearest corner of the triangle that each pixel sees, or `NOTHING`."""
+    """Label of the nearest corner of the triangle that each pixel sees, or `NO_PART`."""
 
 
 def render_mesh(
@@ -39,7 +39,7 @@ def render_mesh(
     """
     shape = (camera.height, camera.width)
     depth = np.zeros(shape[0] * shape[1], dtype=np.float32)
-    parts = np.full(shape[0] * shape[1], NOTHING, dtype=np.uint8)
+    parts = np.full(shape[0] * shape[1], NO_PART, dtype=np.uint8)
     ahead = vertices[:, 2] > NEAR
     drawn = triangles if ahead.all() else triangles[ahead[triangles].all(axis=1)]
     places = camera.project(vertices)

@@ -7,7 +7,7 @@ from numpy.typing import NDArray
 
 from ...depth_scene import Camera
 from ...settings import Settings, setting
-from .render_mesh import NOTHING, RenderedMesh
+from .render_mesh import NO_PART, RenderedMesh
 
 Array = NDArray[np.float64]
 DISPARITY = 351.3
@@ -43,14 +43,14 @@ class SensorNoiseSettings(Settings):
     )  # fmt: skip
 
 
-CLEAN = SensorNoiseSettings(
+NO_NOISE = SensorNoiseSettings(
     jitter=0.0, disparity=0.0, step=0.0, baseline=0.0, edge_holes=0.0, holes=0.0
 )
-EDGE = 0.05
+EDGE_STEP_M = 0.05
 """Metres between neighbours beyond which one of them occludes the other."""
 
 
-def with_sensor_noise(
+def add_sensor_noise(
     picture: RenderedMesh,
     camera: Camera,
     rng: np.random.Generator,
@@ -74,7 +74,7 @@ def with_sensor_noise(
     depth = _told(depth, settings, rng)
     unseen |= depth <= 0.0
     return RenderedMesh(
-        np.where(unseen, np.float32(0.0), depth), np.where(unseen, np.uint8(NOTHING), labels)
+        np.where(unseen, np.float32(0.0), depth), np.where(unseen, np.uint8(NO_PART), labels)
     )
 
 
@@ -123,15 +123,15 @@ def _in_shadow(
     nearest = np.full(camera.height * (camera.width + widest) + 1, np.inf, dtype=np.float32)
     np.minimum.at(nearest, beam, z)
     unlit = np.zeros(depth.shape, dtype=np.bool_)
-    unlit[rows, columns] = z > nearest[beam] + EDGE
+    unlit[rows, columns] = z > nearest[beam] + EDGE_STEP_M
     return unlit
 
 
 def _at_edge(depth: NDArray[np.float32]) -> NDArray[np.bool_]:
     """Tell which pixels have a neighbour in their row or column at quite another depth."""
     edge = np.zeros(depth.shape, dtype=np.bool_)
-    across = np.abs(np.diff(depth, axis=1)) > EDGE
-    down = np.abs(np.diff(depth, axis=0)) > EDGE
+    across = np.abs(np.diff(depth, axis=1)) > EDGE_STEP_M
+    down = np.abs(np.diff(depth, axis=0)) > EDGE_STEP_M
     edge[:, 1:] |= across
     edge[:, :-1] |= across
     edge[1:] |= down

@@ -21,7 +21,7 @@ from ...motion import (
 )
 from ...npz_members import READABLE, integers, numbers, read_members, words
 from ...rotations import IDENTITY, matrix_from_quaternion
-from ..forest import HALVED, PARTS, parts_of_joints
+from ..forest import PARTS, SPLIT_SEGMENTS, parts_of_joints
 
 Array = NDArray[np.float64]
 
@@ -91,7 +91,7 @@ class SkinnedBody:
         found: NDArray[np.uint8] = parts[self.weights.argmax(axis=1)]
         rest = self.skeleton.rest_positions
         for side in ("left", "right"):
-            for segment, end in zip(HALVED, ("LowerLeg", "Foot"), strict=True):
+            for segment, end in zip(SPLIT_SEGMENTS, ("LowerLeg", "Foot"), strict=True):
                 if f"{side}{segment}" not in joints or f"{side}{end}" not in joints:
                     continue
                 head, tail = rest[joints[f"{side}{segment}"]], rest[joints[f"{side}{end}"]]

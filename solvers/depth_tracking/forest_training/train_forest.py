@@ -13,26 +13,26 @@ from ...progress import Progress, unwatched, within
 from ...settings import setting
 from ..forest import (
     N_PARTS,
+    PixelFeatures,
     PixelForest,
-    PixelViews,
     TreeSettings,
     grow_tree,
-    pixel_views,
-    with_margin,
+    pad_depth_image,
+    pixel_features,
 )
-from .render_mesh import NOTHING, RenderedMesh
+from .render_mesh import NO_PART, RenderedMesh
 from .skinned_body import SkinnedBody
 from .training_images import (
     CAMERA,
-    SHAPE_LASTS,
-    PictureSource,
-    TrainingPicturesSettings,
-    picture_source,
+    IMAGES_PER_BODY,
+    ImageSource,
+    TrainingImagesSettings,
+    image_source,
 )
 
 
 @dataclass(frozen=True, kw_only=True)
-class PixelForestSettings(TrainingPicturesSettings, TreeSettings):
+class PixelForestSettings(TrainingImagesSettings, TreeSettings):
     """How large the forest is, and what it learns from."""
 
     n_trees: int = setting(3, "Trees; more is surer and slower", minimum=1, maximum=100)
@@ -42,11 +42,11 @@ class PixelForestSettings(TrainingPicturesSettings, TreeSettings):
     seed: int = setting(0, "Another seed draws other pictures and tests", minimum=0)
 
 
-class LearnedPixels(NamedTuple):
+class LabeledImages(NamedTuple):
     """Pictures, and every pixel of them that sees a body."""
 
     pictures: NDArray[np.uint16]
-    """Of `with_margin`, (n_pictures, height + 2, width + 2)."""
+    """Of `pad_depth_image`, (n_pictures, height + 2, width + 2)."""
     labels: NDArray[np.uint8]
     """(n_pictures, height, width)."""
 
@@ -87,8 +87,8 @@ def train_pixel_forest(
        depth camera. ACM Transactions on Graphics 31(6), section 4.1.
        doi:10.1145/2366145.2366207
     """
-    source = picture_source(poses, bodies, settings, settings.seed)
-    seen = draw_pictures(source, range(-(-settings.n_pictures // SHAPE_LASTS)))
+    source = image_source(poses, bodies, settings, settings.seed)
+    seen = draw_images(source, range(-(-settings.n_pictures // IMAGES_PER_BODY)))
     progress(0.2, "Growing trees")
     grown = []
     for number in range(settings.n_trees):
@@ -101,18 +101,18 @@ def train_pixel_forest(
     return PixelForest(tuple(grown), trained_on)
 
 
-def draw_pictures(source: PictureSource, blocks: Sequence[int]) -> LearnedPixels:
+def draw_images(source: ImageSource, blocks: Sequence[int]) -> LabeledImages:
     """Draw some blocks of pictures."""
     drawn: list[RenderedMesh] = [one for block in blocks for one in source.pictures(block)]
-    return LearnedPixels(
-        np.stack([with_margin(picture.depth) for picture in drawn]),
+    return LabeledImages(
+        np.stack([pad_depth_image(picture.depth) for picture in drawn]),
         np.stack([picture.labels for picture in drawn]),
     )
 
 
 def draw_pixels(
-    seen: LearnedPixels, n_pixels: int, rng: np.random.Generator
-) -> tuple[PixelViews, NDArray[np.uint8]]:
+    seen: LabeledImages, n_pixels: int, rng: np.random.Generator
+) -> tuple[PixelFeatures, NDArray[np.uint8]]:
     """Draw pixels from each picture, rather more of small parts, with the parts they see.
 
     A part that fills k pixels is drawn from as often as the square root of k tells.
@@ -120,7 +120,7 @@ def draw_pixels(
     places = []
     area = seen.labels.shape[1] * seen.labels.shape[2]
     for number, labels in enumerate(seen.labels.reshape(len(seen.labels), -1)):
-        body = np.flatnonzero(labels != NOTHING)
+        body = np.flatnonzero(labels != NO_PART)
         if not len(body):
             continue
         sizes = np.bincount(labels[body], minlength=N_PARTS)
@@ -133,5 +133,5 @@ def draw_pixels(
     spots = np.concatenate(places)
     number, rest = np.divmod(spots, area)
     rows, columns = np.divmod(rest, seen.labels.shape[2])
-    views = pixel_views(seen.pictures, number, rows, columns, CAMERA)
+    views = pixel_features(seen.pictures, number, rows, columns, CAMERA)
     return views, seen.labels.reshape(-1)[spots]

@@ -11,10 +11,10 @@ from ...errors import InvalidMotionError
 from ...motion import Motion, Skeleton, from_canonical
 from ...motion.humanoid import canonical_rotations
 from ...settings import Settings, setting
-from ..forest import MIRRORED, N_PARTS, PARTS
-from .augmented_poses import PoseMixer, most_different, without_heading
+from ..forest import MIRRORED_PARTS, N_PARTS, PARTS
+from .augmented_poses import PoseMixer, remove_heading, select_diverse_poses
 from .render_mesh import RenderedMesh, render_mesh
-from .sensor_noise import SensorNoiseSettings, with_sensor_noise
+from .sensor_noise import SensorNoiseSettings, add_sensor_noise
 from .skinned_body import SkinnedBody
 
 Array = NDArray[np.float64]
@@ -25,14 +25,14 @@ CLOTHED = np.array([0.3 if part.endswith(("Hand", "neck")) else 1.0 for part in 
 """How much of the thickness of clothes each part may have; hair counts as such."""
 FLOOR = 0.12
 """Metres above the lowest point that may be taken for the floor."""
-SHAPE_LASTS = 10
+IMAGES_PER_BODY = 10
 """Pictures of a block, which show the same body."""
 AHEAD = 1.1
 """Radians to either side. Half of the bodies face the camera so nearly, the others anyhow."""
 
 
 @dataclass(frozen=True, kw_only=True)
-class TrainingPicturesSettings(Settings):
+class TrainingImagesSettings(Settings):
     """Which poses, shapes and views there are."""
 
     n_pictures: int = setting(
@@ -75,19 +75,19 @@ class TrainingPicturesSettings(Settings):
 
 
 @dataclass(frozen=True, eq=False)
-class PictureSource:
+class ImageSource:
     """Draws pictures, block by block, each a pure function of its number and the seed."""
 
     mixer: PoseMixer
     bodies: tuple[SkinnedBody, ...]
-    settings: TrainingPicturesSettings
+    settings: TrainingImagesSettings
     seed: int
 
     def pictures(self, block: int) -> list[RenderedMesh]:
         """Return pictures by `CAMERA`, (120, 160), of one shape of body in random poses."""
         rng = np.random.default_rng((self.seed, block))
-        body = reshaped(self.bodies, rng, self.settings)
-        drawn = [self.mixer.draw(rng, self.settings.loose) for _ in range(SHAPE_LASTS)]
+        body = vary_body(self.bodies, rng, self.settings)
+        drawn = [self.mixer.draw(rng, self.settings.loose) for _ in range(IMAGES_PER_BODY)]
         poses = from_canonical(np.stack(drawn), body.skeleton, body.humanoid)
         return [self._picture(body, pose, rng) for pose in poses]
 
@@ -110,15 +110,15 @@ class PictureSource:
             disparity=usual.disparity * strength,
             edge_holes=usual.edge_holes * strength,
         )
-        return with_sensor_noise(picture, CAMERA, rng, noise)
+        return add_sensor_noise(picture, CAMERA, rng, noise)
 
 
-def picture_source(
+def image_source(
     poses: Sequence[Motion],
     bodies: Sequence[SkinnedBody],
-    settings: TrainingPicturesSettings,
+    settings: TrainingImagesSettings,
     seed: int,
-) -> PictureSource:
+) -> ImageSource:
     """Gather the different poses of some motions for bodies of the same joints.
 
     Raises
@@ -132,15 +132,15 @@ def picture_source(
     if any(not first.skeleton.same_joints(body.skeleton) for body in bodies):
         raise InvalidMotionError("Bodies to learn pixels from must have the same joints.")
     rotations = np.concatenate([first.rotations_of(motion) for motion in poses])
-    upright = without_heading(rotations)
-    kept = most_different(first, upright, settings.spacing, settings.n_poses)
+    upright = remove_heading(rotations)
+    kept = select_diverse_poses(first, upright, settings.spacing, settings.n_poses)
     still = Motion(first.skeleton, kept, np.zeros((len(kept), 3)), 1.0)
     mixer = PoseMixer(first, canonical_rotations(still, first.humanoid))
-    return PictureSource(mixer, tuple(bodies), settings, seed)
+    return ImageSource(mixer, tuple(bodies), settings, seed)
 
 
-def reshaped(
-    bodies: Sequence[SkinnedBody], rng: np.random.Generator, settings: TrainingPicturesSettings
+def vary_body(
+    bodies: Sequence[SkinnedBody], rng: np.random.Generator, settings: TrainingImagesSettings
 ) -> SkinnedBody:
     """Return a body between two of these where their meshes are alike, resized and dressed."""
     body = bodies[rng.integers(len(bodies))]
@@ -153,7 +153,7 @@ def reshaped(
         vertices = (1.0 - share) * vertices + share * other.vertices
         offsets = (1.0 - share) * offsets + share * other.skeleton.offsets
     dressed = CLOTHED * rng.uniform(0.0, settings.clothes, N_PARTS)
-    dressed = np.minimum(dressed, dressed[MIRRORED])
+    dressed = np.minimum(dressed, dressed[MIRRORED_PARTS])
     vertices = vertices + dressed[body.vertex_parts, np.newaxis] * body.vertex_normals
     skeleton = Skeleton(body.skeleton.names, body.skeleton.parents, offsets * scale)
     made = replace(body, skeleton=skeleton, vertices=vertices * scale)
@@ -163,7 +163,7 @@ def reshaped(
 
 
 def _before_camera(
-    vertices: Array, rng: np.random.Generator, settings: TrainingPicturesSettings
+    vertices: Array, rng: np.random.Generator, settings: TrainingImagesSettings
 ) -> Array:
     """Turn a body about the vertical and put it before a camera, x right, y down, z ahead.
 

@@ -3,29 +3,29 @@
 from .closest_surface import closest_surface_term
 from .depth_image import depth_image_term
 from .free_space import off_actor_term
-from .hypothesis import Hypothesis, capsule_offsets, imagine
-from .likelihood import USUAL_AREA, likelihood_rows, pixel_area
+from .hypothesis import Hypothesis, capsule_offsets, render_hypothesis
+from .likelihood import REFERENCE_AREA_M2, likelihood_rows, pixel_area
 from .observation import Observation, observe
 from .pixel_groups import group_pixels
-from .surface import Memory
-from .tracker_settings import LOU12, USUAL, WZC12, TrackerSettings
+from .surface import PreviousFrame
+from .tracker_settings import DEFAULT_TRACKER, LOU12, WZC12, TrackerSettings
 
 __all__ = [
+    "DEFAULT_TRACKER",
     "LOU12",
-    "USUAL",
-    "USUAL_AREA",
+    "REFERENCE_AREA_M2",
     "WZC12",
     "Hypothesis",
-    "Memory",
     "Observation",
+    "PreviousFrame",
     "TrackerSettings",
     "capsule_offsets",
     "closest_surface_term",
     "depth_image_term",
     "group_pixels",
-    "imagine",
     "likelihood_rows",
     "observe",
     "off_actor_term",
     "pixel_area",
+    "render_hypothesis",
 ]

@@ -3,7 +3,7 @@
 import numpy as np
 from numpy.typing import NDArray
 
-from ..body import NO_ROWS, SurfaceRows, toward
+from ..body import NO_ROWS, SurfaceRows, rows_toward_targets
 from .depth_edges import edge_pixels
 from .hypothesis import Hypothesis
 from .observation import Observation
@@ -48,7 +48,7 @@ def edge_term(hypothesis: Hypothesis, observation: Observation, weight: float) -
     best = squares.argmin(axis=1)
     found = np.isfinite(squares[np.arange(len(there)), best])
     moved = drawn[best[found]]
-    return toward(
+    return rows_toward_targets(
         hypothesis.points[moved], targets[found], np.full(len(moved), weight),
         hypothesis.picture.capsules[moved],
     )  # fmt: skip

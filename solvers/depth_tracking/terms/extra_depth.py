@@ -4,7 +4,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.spatial import cKDTree
 
-from ..body import NO_ROWS, SurfaceRows, toward
+from ..body import NO_ROWS, SurfaceRows, rows_toward_targets
 from .hypothesis import Hypothesis
 from .observation import Observation
 from .pixel_groups import PixelGroups
@@ -49,7 +49,7 @@ def extra_depth_term(
     targets = observation.points[np.concatenate([pushes[1], pulls[0]])]
     near = np.abs(hypothesis.points[moved, 2] - targets[:, 2]) <= limit
     moved, targets = moved[near], targets[near]
-    return toward(
+    return rows_toward_targets(
         hypothesis.points[moved], targets, np.full(len(moved), weight),
         hypothesis.picture.capsules[moved],
     )  # fmt: skip

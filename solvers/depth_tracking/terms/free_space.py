@@ -3,9 +3,9 @@
 import numpy as np
 from numpy.typing import NDArray
 
-from ..body import SurfaceRows, toward
+from ..body import SurfaceRows, rows_toward_targets
 from .hypothesis import Hypothesis
-from .observation import Observation, rays_of
+from .observation import Observation, rays_through_pixels
 from .pixel_groups import PixelGroups
 
 Array = NDArray[np.float64]
@@ -37,7 +37,7 @@ def off_actor_term(
     chosen = groups.off_actor
     points = hypothesis.points[chosen]
     nearest = observation.nearest_pixel[hypothesis.picture.pixels[chosen]]
-    aside = points[:, 2:] * rays_of(observation.camera, nearest) - points
+    aside = points[:, 2:] * rays_through_pixels(observation.camera, nearest) - points
     squares = aside[:, 0] ** 2 + aside[:, 1] ** 2
     weights = weight / (1.0 + squares / scale**2) ** 2
     return SurfaceRows(
@@ -69,6 +69,6 @@ def too_near_term(
     points = hypothesis.points[chosen]
     distances, nearest = observation.tree.query(points)
     weights = weight / (1.0 + (distances / scale) ** 2) ** 2
-    return toward(
+    return rows_toward_targets(
         points, observation.points[nearest], weights, hypothesis.picture.capsules[chosen]
     )

@@ -9,13 +9,13 @@ from numpy.typing import NDArray
 from ...depth_scene import Camera
 from ..body import (
     CAPSULE_SEGMENTS,
+    BodyImage,
     BodyModel,
-    BodyPicture,
     cast_rays,
     segment_frames,
     segment_twists,
 )
-from .observation import rays_of
+from .observation import rays_through_pixels
 
 Array = NDArray[np.float64]
 Integers = NDArray[np.intp]
@@ -31,13 +31,13 @@ class Hypothesis:
     pose : shape (36,)
     frames : shape (17, 4, 4)
         Segments in this pose.
-    picture : BodyPicture
+    picture : BodyImage
     """
 
     body: BodyModel
     pose: Array
     frames: Array
-    picture: BodyPicture
+    picture: BodyImage
 
     @cached_property
     def segments(self) -> Integers:
@@ -47,7 +47,7 @@ class Hypothesis:
     @cached_property
     def rays(self) -> Array:
         """Where the pixels of visible points look, one metre forward, shape (n, 3)."""
-        return rays_of(self.picture.camera, self.picture.pixels)
+        return rays_through_pixels(self.picture.camera, self.picture.pixels)
 
     @cached_property
     def points(self) -> Array:
@@ -73,7 +73,7 @@ class Hypothesis:
         return found
 
 
-def imagine(body: BodyModel, pose: Array, camera: Camera) -> Hypothesis:
+def render_hypothesis(body: BodyModel, pose: Array, camera: Camera) -> Hypothesis:
     """Return what `camera` would see of `body` in `pose` (36,)."""
     frames = segment_frames(body, pose)
     return Hypothesis(body, pose, frames, cast_rays(body, frames, camera))

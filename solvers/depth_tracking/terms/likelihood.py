@@ -2,7 +2,7 @@
 
 from collections.abc import Callable
 
-from ..body import SurfaceRows, joined
+from ..body import SurfaceRows, concatenate_rows
 from .closest_surface import closest_surface_term
 from .depth_image import depth_image_term
 from .edges import edge_term
@@ -10,15 +10,15 @@ from .extra_depth import extra_depth_term
 from .free_space import off_actor_term, too_near_term
 from .hypothesis import Hypothesis
 from .observation import Observation
-from .overlap import apart_term
+from .overlap import separation_term
 from .pixel_groups import group_pixels
 from .silhouette import silhouette_term
-from .surface import Memory, surface_term
+from .surface import PreviousFrame, surface_term
 from .tracker_settings import TrackerSettings
 
-EVERY = 2
+POINT_STEP = 2
 """Every so many observed points are asked for their closest surface, and weigh as much more."""
-USUAL_AREA = 4e-4
+REFERENCE_AREA_M2 = 4e-4
 """Square metres that a pixel sees for which the weights are given."""
 
 
@@ -26,7 +26,7 @@ def likelihood_rows(
     hypothesis: Hypothesis,
     observation: Observation,
     settings: TrackerSettings,
-    memory: Memory | None = None,
+    memory: PreviousFrame | None = None,
 ) -> SurfaceRows:
     """Return the rows of every term that has a weight.
 
@@ -35,11 +35,11 @@ def likelihood_rows(
     hypothesis : Hypothesis
     observation : Observation
     settings : TrackerSettings
-    memory : Memory, optional
+    memory : PreviousFrame, optional
         The frame before, for the colours of `surface_term`.
     """
     groups = group_pixels(hypothesis, observation, settings.limit)
-    area = pixel_area(observation) / USUAL_AREA
+    area = pixel_area(observation) / REFERENCE_AREA_M2
     scale, limit = settings.robust_scale, settings.limit
     both = (hypothesis, observation)
     terms: tuple[tuple[float, Callable[[float], SurfaceRows]], ...] = (
@@ -48,7 +48,7 @@ def likelihood_rows(
         (settings.silhouette_weight, lambda w: silhouette_term(*both, w)),
         (settings.closest_weight,
          lambda w: closest_surface_term(
-             hypothesis, observation.points[::EVERY], EVERY * w, scale)),
+             hypothesis, observation.points[::POINT_STEP], POINT_STEP * w, scale)),
         (settings.surface_weight, lambda w: surface_term(*both, memory, w)),
         (settings.edge_weight, lambda w: edge_term(*both, w)),
         (settings.off_actor_weight, lambda w: off_actor_term(*both, groups, w, scale)),
@@ -56,8 +56,8 @@ def likelihood_rows(
     )  # fmt: skip
     rows = [term(area * weight) for weight, term in terms if weight > 0.0]
     if settings.apart_weight > 0.0:
-        rows.append(apart_term(hypothesis, settings.apart_weight))
-    return joined(rows)
+        rows.append(separation_term(hypothesis, settings.apart_weight))
+    return concatenate_rows(rows)
 
 
 def pixel_area(observation: Observation) -> float:

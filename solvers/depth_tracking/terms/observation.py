@@ -104,7 +104,7 @@ class Observation:
 
     def points_at(self, pixels: Integers) -> Array:
         """Return where these pixels (n,) see the actor, shape (n, 3), metres."""
-        rays = rays_of(self.camera, pixels)
+        rays = rays_through_pixels(self.camera, pixels)
         return rays * self.flat[pixels][:, np.newaxis]
 
     def every(self, step: int) -> "Observation":
@@ -129,7 +129,7 @@ def observe(depth: DepthRecording, frame: int, picture_width: int) -> Observatio
     return whole.every(max(1, round(depth.camera.width / picture_width)))
 
 
-def rays_of(camera: Camera, pixels: Integers) -> Array:
+def rays_through_pixels(camera: Camera, pixels: Integers) -> Array:
     """Return where pixels (n,) look, as far as one metre forward, shape (n, 3)."""
     rows, columns = np.divmod(pixels, camera.width)
     rays = np.ones((len(pixels), 3))

@@ -8,7 +8,7 @@ from .hypothesis import Hypothesis
 
 Array = NDArray[np.float64]
 
-SOFTNESS = 0.85
+RADIUS_FRACTION = 0.85
 """Share of the radii that counts: clothes and flesh give way."""
 
 
@@ -29,7 +29,7 @@ def _pairs() -> tuple[Integers, Integers]:
 _FIRST, _SECOND = _pairs()
 
 
-def apart_term(hypothesis: Hypothesis, weight: float) -> SurfaceRows:
+def separation_term(hypothesis: Hypothesis, weight: float) -> SurfaceRows:
     """Return rows that push overlapping limbs apart, half the way each.
 
     Elliptic capsules count as round ones of their smaller radius.
@@ -43,7 +43,7 @@ def apart_term(hypothesis: Hypothesis, weight: float) -> SurfaceRows:
     body, frames = hypothesis.body, hypothesis.frames[CAPSULE_SEGMENTS]
     ends = np.einsum("nij,nej->nei", frames[:, :3, :3], body.capsule_ends)
     ends += frames[:, np.newaxis, :3, 3]
-    radii = SOFTNESS * body.radii.min(axis=1)
+    radii = RADIUS_FRACTION * body.radii.min(axis=1)
     near, far = _closest(ends[_FIRST], ends[_SECOND])
     between = near - far
     distances = np.sqrt(np.einsum("ni,ni->n", between, between))

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from ..body import CAPSULE_SEGMENTS, Integers, SurfaceRows, toward
+from ..body import CAPSULE_SEGMENTS, Integers, SurfaceRows, rows_toward_targets
 from .hypothesis import Hypothesis
 from .observation import Observation
 
@@ -20,7 +20,7 @@ COLOR_WEIGHT = 1e-4
 
 
 @dataclass(frozen=True, eq=False)
-class Memory:
+class PreviousFrame:
     """The frame before: where the body was, and which colours the camera saw.
 
     Attributes
@@ -36,7 +36,10 @@ class Memory:
 
 
 def surface_term(
-    hypothesis: Hypothesis, observation: Observation, memory: Memory | None, weight: float
+    hypothesis: Hypothesis,
+    observation: Observation,
+    memory: PreviousFrame | None,
+    weight: float,
 ) -> SurfaceRows:
     """Return the rows of the surface term of [LOU12]_, eq. 3.4 to 3.7.
 
@@ -49,7 +52,7 @@ def surface_term(
     ----------
     hypothesis : Hypothesis
     observation : Observation
-    memory : Memory or None
+    memory : PreviousFrame or None
     weight : float, per square metre
 
     References
@@ -75,7 +78,7 @@ def surface_term(
     each = np.arange(len(chosen))
     found = np.isfinite(costs[each, best])
     targets = points + apart[each, best]
-    return toward(
+    return rows_toward_targets(
         points[found], targets[found], np.full(int(found.sum()), weight),
         hypothesis.picture.capsules[chosen[found]],
     )  # fmt: skip
@@ -99,7 +102,7 @@ def _color_differences(
     chosen: Integers,
     pixels: Integers,
     observation: Observation,
-    memory: Memory,
+    memory: PreviousFrame,
 ) -> Array:
     """Return how far intensities of pixels (n, k) are from those remembered; 0 if unknown."""
     remembered = remembered_intensities(hypothesis, chosen, memory)
@@ -108,7 +111,9 @@ def _color_differences(
     return np.nan_to_num(differences)
 
 
-def remembered_intensities(hypothesis: Hypothesis, chosen: Integers, memory: Memory) -> Array:
+def remembered_intensities(
+    hypothesis: Hypothesis, chosen: Integers, memory: PreviousFrame
+) -> Array:
     """Return which intensity visible points had in the frame before, NaN if out of sight."""
     segments = CAPSULE_SEGMENTS[hypothesis.picture.capsules[chosen]]
     now, then = hypothesis.frames[segments], memory.frames[segments]

@@ -121,5 +121,5 @@ The paper tells no units. Angles are taken to be in degrees, as in the recorded 
 learns from: with weights per square radian neither prior nor smoothness weighs anything, and
 the actor is lost within a second."""
 
-USUAL = TrackerSettings()
+DEFAULT_TRACKER = TrackerSettings()
 """What measured best."""

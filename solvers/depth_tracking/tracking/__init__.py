@@ -1,34 +1,34 @@
 """A body followed from image to image: registration, quality of fit and failures."""
 
 from .failure_test import FailureTest, has_failed
-from .fit_quality import FitQuality, fit_quality, unseen
-from .pose_preview import FoundPose, OnPose, shifted, unobserved
+from .fit_quality import FitQuality, fit_quality, quality_without_actor
+from .pose_preview import PoseCallback, PosePreview, ignore_pose, offset_frames
 from .register_pose import Registered, register_pose
 from .track_pose import (
     NextPose,
     TrackedMotion,
-    follow,
+    assemble_motion,
     next_pose_prior,
+    track_frame,
     track_pose,
-    tracked_motion,
 )
 
 __all__ = [
     "FailureTest",
     "FitQuality",
-    "FoundPose",
     "NextPose",
-    "OnPose",
+    "PoseCallback",
+    "PosePreview",
     "Registered",
     "TrackedMotion",
+    "assemble_motion",
     "fit_quality",
-    "follow",
     "has_failed",
+    "ignore_pose",
     "next_pose_prior",
+    "offset_frames",
+    "quality_without_actor",
     "register_pose",
-    "shifted",
+    "track_frame",
     "track_pose",
-    "tracked_motion",
-    "unobserved",
-    "unseen",
 ]

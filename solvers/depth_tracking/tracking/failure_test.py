@@ -5,14 +5,14 @@ from enum import Enum
 import numpy as np
 from numpy.typing import NDArray
 
-from .fit_quality import FITTING, FitQuality
+from .fit_quality import MAX_DEPTH_ERROR_M, FitQuality
 
 Array = NDArray[np.float64]
 
-PUBLISHED_RESIDUAL, PUBLISHED_OVERLAP = 0.025, 0.9
+PUBLISHED_MAX_RESIDUAL_M, PUBLISHED_MIN_OVERLAP = 0.025, 0.9
 """Metres and share of [WZC12] section 5: above or below them, a pose has failed."""
 FEATURES = ("residual", "overlap", "score", "off actor", "too near", "unexplained")
-LEARNED = (1.32, -6.22, -6.01, 2.72, 0.59, 5.65)
+LEARNED_WEIGHTS = (1.32, -6.22, -6.01, 2.72, 0.59, 5.65)
 LEARNED_BIAS = 5.77
 """Weights of `FEATURES` in the log-odds that joints are off by more than 10 cm on average."""
 
@@ -26,19 +26,19 @@ class FailureTest(Enum):
 
 def failure_features(quality: FitQuality) -> Array:
     """Return the `FEATURES` of a pose, shape (6,)."""
-    residual = quality.residual if np.isfinite(quality.residual) else FITTING
+    residual = quality.residual if np.isfinite(quality.residual) else MAX_DEPTH_ERROR_M
     return np.array([
-        residual / FITTING, quality.coverage, quality.score, quality.off_actor,
+        residual / MAX_DEPTH_ERROR_M, quality.coverage, quality.score, quality.off_actor,
         quality.too_near, quality.unexplained,
     ])  # fmt: skip
 
 
-def failure_chance(quality: FitQuality) -> float:
+def failure_probability(quality: FitQuality) -> float:
     """Return the chance, 0 to 1, that the joints of a pose are off by more than 10 cm.
 
     A logistic regression; `.ci/learn_failures.py` learned it from trackers of known errors.
     """
-    odds = float(failure_features(quality) @ LEARNED) + LEARNED_BIAS
+    odds = float(failure_features(quality) @ LEARNED_WEIGHTS) + LEARNED_BIAS
     return float(1.0 / (1.0 + np.exp(-odds)))
 
 
@@ -60,6 +60,9 @@ def has_failed(quality: FitQuality, test: FailureTest, chance: float = 0.5) -> b
        single depth camera. ACM Transactions on Graphics 31(6).
     """
     if test is FailureTest.LEARNED:
-        return failure_chance(quality) >= chance
-    fits = quality.residual <= PUBLISHED_RESIDUAL and quality.coverage >= PUBLISHED_OVERLAP
+        return failure_probability(quality) >= chance
+    fits = (
+        quality.residual <= PUBLISHED_MAX_RESIDUAL_M
+        and quality.coverage >= PUBLISHED_MIN_OVERLAP
+    )
     return not fits

@@ -13,7 +13,7 @@ Array = NDArray[np.float64]
 
 JOINT_SEGMENTS: Integers = np.array([*range(N_SEGMENTS), *END_SEGMENTS])
 """Segment that carries each of `JOINTS`."""
-FITTING = 0.1
+MAX_DEPTH_ERROR_M = 0.1
 """Metres in depth from which on a pixel does not fit at all."""
 _UNSURE = 0.06
 """Standard deviation, metres, at which a joint's confidence is halved twice."""
@@ -41,7 +41,7 @@ class FitQuality(NamedTuple):
     """Of each of `JOINTS`, 0 to 1, shape (21,)."""
 
 
-def unseen() -> FitQuality:
+def quality_without_actor() -> FitQuality:
     """Return the figures of a frame without an actor."""
     return FitQuality(np.nan, 0.0, 0.0, 1.0, 0.0, 1.0, np.zeros(len(JOINT_SEGMENTS)))
 
@@ -66,11 +66,11 @@ def fit_quality(
     both = observed > 0.0
     overlap = int(both.sum())
     if not overlap:
-        return unseen()
+        return quality_without_actor()
     behind = observed[both] - picture.depths[both]
     apart = np.abs(behind)
     either = len(picture.pixels) + len(observation.pixels) - overlap
-    score = float(np.maximum(0.0, 1.0 - apart / FITTING).sum()) / either
+    score = float(np.maximum(0.0, 1.0 - apart / MAX_DEPTH_ERROR_M).sum()) / either
     agreeing = _agreement(found, observation, limit)[JOINT_SEGMENTS]
     room = np.sqrt(_joint_variances(body, found))
     confidence = agreeing / (1.0 + (room / _UNSURE) ** 2)

@@ -12,7 +12,7 @@ from .fit_quality import FitQuality
 Array = NDArray[np.float64]
 
 
-class FoundPose(NamedTuple):
+class PosePreview(NamedTuple):
     """One frame of a body that is being tracked; later ones of the same frame are better."""
 
     body: BodyModel
@@ -22,18 +22,18 @@ class FoundPose(NamedTuple):
     quality: FitQuality
 
 
-OnPose = Callable[[FoundPose], None]
+PoseCallback = Callable[[PosePreview], None]
 """Called with each pose that is found, in the order of solving: frames come again."""
 
 
-def unobserved(found: FoundPose) -> None:
-    """The `OnPose` of scripts and tests: nobody looks on."""
+def ignore_pose(found: PosePreview) -> None:
+    """The `PoseCallback` of scripts and tests: nobody looks on."""
 
 
-def shifted(on_pose: OnPose, first: int) -> OnPose:
-    """Return an `OnPose` for a callee whose frame 0 is the caller's frame `first`."""
+def offset_frames(on_pose: PoseCallback, first: int) -> PoseCallback:
+    """Return an `PoseCallback` for a callee whose frame 0 is the caller's frame `first`."""
 
-    def tell(found: FoundPose) -> None:
+    def tell(found: PosePreview) -> None:
         on_pose(found._replace(frame=first + found.frame))
 
     return tell

@@ -10,21 +10,21 @@ from ..body import (
     N_COORDINATES,
     BodyModel,
     PoseEquations,
-    added,
-    in_coordinates,
+    equations_in_coordinates,
     joint_limits,
     natural_stance,
     segment_equations,
-    step,
+    solve_step,
+    sum_equations,
 )
 from ..terms import (
-    USUAL,
+    DEFAULT_TRACKER,
     Hypothesis,
-    Memory,
     Observation,
+    PreviousFrame,
     TrackerSettings,
-    imagine,
     likelihood_rows,
+    render_hypothesis,
 )
 
 Array = NDArray[np.float64]
@@ -65,8 +65,8 @@ def register_pose(
     pose: Array,
     observation: Observation,
     prior: Prior,
-    settings: TrackerSettings = USUAL,
-    memory: Memory | None = None,
+    settings: TrackerSettings = DEFAULT_TRACKER,
+    memory: PreviousFrame | None = None,
 ) -> Registered:
     """Return the most probable pose near `pose`.
 
@@ -84,7 +84,7 @@ def register_pose(
     prior : callable
         Takes a pose and returns what is asked of it.
     settings : TrackerSettings
-    memory : Memory, optional
+    memory : PreviousFrame, optional
         The frame before, with its colours.
 
     References
@@ -110,19 +110,19 @@ class _Scene:
     observation: Observation
     prior: Prior
     settings: TrackerSettings
-    memory: Memory | None
+    memory: PreviousFrame | None
 
     def evaluate(self, pose: Array) -> Registered:
         """Return what likelihood, prior and joint limits ask of this pose."""
-        hypothesis = imagine(self.body, pose, self.observation.camera)
+        hypothesis = render_hypothesis(self.body, pose, self.observation.camera)
         rows = likelihood_rows(hypothesis, self.observation, self.settings, self.memory)
         asked = [
-            in_coordinates([segment_equations(rows)], hypothesis.twists),
+            equations_in_coordinates([segment_equations(rows)], hypothesis.twists),
             self.prior(pose),
             joint_limits(pose, self.settings.limit_weight),
             natural_stance(pose, self.settings.natural_weight, self.settings.ankle_weight),
         ]
-        return Registered(hypothesis, added(asked), 1)
+        return Registered(hypothesis, sum_equations(asked), 1)
 
 
 def _descend(scene: _Scene, pose: Array, iterations: int) -> Registered:
@@ -130,7 +130,7 @@ def _descend(scene: _Scene, pose: Array, iterations: int) -> Registered:
     damping = settings.damping
     best = scene.evaluate(pose)
     for iteration in range(1, iterations):
-        change = step(best.equations, np.full(N_COORDINATES, damping))
+        change = solve_step(best.equations, np.full(N_COORDINATES, damping))
         if np.abs(change).max() < _CLOSE_ENOUGH:
             break
         trial = scene.evaluate(best.pose + _limited(change, settings))

@@ -16,15 +16,15 @@ from ..body import (
     LocalPca,
     MotionPrior,
     PoseEquations,
-    added,
-    foretell,
     joint_positions,
     local_pca,
+    predict_pose,
     segment_frames,
     stay_near,
+    sum_equations,
 )
-from ..terms import USUAL, Memory, Observation, TrackerSettings, observe
-from .fit_quality import FitQuality, fit_quality, unseen
+from ..terms import DEFAULT_TRACKER, Observation, PreviousFrame, TrackerSettings, observe
+from .fit_quality import FitQuality, fit_quality, quality_without_actor
 from .register_pose import register_pose
 
 Array = NDArray[np.float64]
@@ -59,7 +59,7 @@ def track_pose(
     initial_pose: Array,
     motion_prior: MotionPrior | None = None,
     *,
-    settings: TrackerSettings = USUAL,
+    settings: TrackerSettings = DEFAULT_TRACKER,
     progress: Progress = unwatched,
 ) -> TrackedMotion:
     """Follow a body from its pose in the first frame.
@@ -98,11 +98,11 @@ def track_pose(
     for frame in range(depth.n_frames):
         observation = observe(depth, frame, settings.picture_width)
         prior = next_pose_prior(poses[1:] or poses, settings, motion_prior)
-        pose, quality, memory = follow(body, prior, observation, settings, memory)
+        pose, quality, memory = track_frame(body, prior, observation, settings, memory)
         poses.append(pose)
         figures.append(quality)
         progress((frame + 1) / depth.n_frames, "Tracking")
-    return tracked_motion(body, np.array(poses[1:]), figures, depth.frame_rate)
+    return assemble_motion(body, np.array(poses[1:]), figures, depth.frame_rate)
 
 
 @dataclass(frozen=True, eq=False)
@@ -132,7 +132,7 @@ class NextPose:
         near = stay_near(pose, self.expected, self.weights)
         if self.similar is None:
             return near
-        return added([near, self.similar.equations(pose, self.similar_weight)])
+        return sum_equations([near, self.similar.equations(pose, self.similar_weight)])
 
 
 def next_pose_prior(
@@ -142,30 +142,30 @@ def next_pose_prior(
     weights = np.full(N_COORDINATES, settings.turn_weight)
     weights[:3] = settings.shift_weight
     similar = None if motion_prior is None else local_pca(motion_prior, poses[-1])
-    expected = foretell(poses, settings.trust)
+    expected = predict_pose(poses, settings.trust)
     return NextPose(expected, weights, poses[-1], similar, settings.similar_weight)
 
 
-def follow(
+def track_frame(
     body: BodyModel,
     prior: NextPose,
     observation: Observation,
     settings: TrackerSettings,
-    memory: Memory | None = None,
-) -> tuple[Array, FitQuality, Memory | None]:
+    memory: PreviousFrame | None = None,
+) -> tuple[Array, FitQuality, PreviousFrame | None]:
     """Find the pose (36,) of one frame, near the one expected.
 
     Returns it, its figures, and what the next frame should remember of this one.
     """
     if observation.empty:
-        return prior.expected, unseen(), None
+        return prior.expected, quality_without_actor(), None
     start = prior.expected if settings.start_ahead else prior.last
     found = register_pose(body, start, observation, prior, settings, memory)
     quality = fit_quality(body, found, observation, settings.limit)
-    return found.pose, quality, Memory(found.hypothesis.frames, observation)
+    return found.pose, quality, PreviousFrame(found.hypothesis.frames, observation)
 
 
-def tracked_motion(
+def assemble_motion(
     body: BodyModel, poses: Array, figures: list[FitQuality], frame_rate: float
 ) -> TrackedMotion:
     """Put the poses and figures of all frames together."""

@@ -6,7 +6,7 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from ...depth_scene import ColorPicture, DepthPicture
+from ...depth_scene import ColorImage, DepthImage
 from ...errors import InvalidFileError
 from ..containers import is_listed, largest_color, listed_image
 
@@ -43,7 +43,7 @@ class DepthPictures:
     confidence: tuple[str, ...] | None = None
     least: int = 0
 
-    def __call__(self, index: int) -> DepthPicture:
+    def __call__(self, index: int) -> DepthImage:
         """Return the depth of a frame, metres; 0: no reading."""
         number = self.frames[index]
         if number == NONE:
@@ -69,7 +69,7 @@ class ColorPictures:
     frames: NDArray[np.intp]
     shape: tuple[int, int]
 
-    def __call__(self, index: int) -> ColorPicture:
+    def __call__(self, index: int) -> ColorImage:
         """Return the colours (height, width, 3) of a frame, 0 to 255."""
         number = self.frames[index]
         if number == NONE or not is_listed(self.folder, self.names[number]):

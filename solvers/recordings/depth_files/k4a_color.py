@@ -9,7 +9,7 @@ from typing import Protocol
 import numpy as np
 from numpy.typing import NDArray
 
-from ...depth_scene import ColorPicture, DepthPicture
+from ...depth_scene import ColorImage, DepthImage
 from ...errors import InvalidFileError
 from ...files import DAMAGE
 from ..containers import PlainBytes, Track, bounded_image, largest_color
@@ -20,7 +20,7 @@ JPEG, BGRA = b"MJPG", b"BGRA"
 
 
 class _ReadDepth(Protocol):
-    def __call__(self, index: int) -> DepthPicture: ...
+    def __call__(self, index: int) -> DepthImage: ...
 
 
 @dataclass(frozen=True, eq=False)
@@ -48,7 +48,7 @@ class ColorBlocks:
     eye: K4aCamera
     read_depth: _ReadDepth
 
-    def __call__(self, index: int) -> ColorPicture:
+    def __call__(self, index: int) -> ColorImage:
         """Return the colours (height, width, 3) of a frame; black where depth is not known."""
         depth = self.read_depth(index)
         colors = np.zeros((*depth.shape, 3), np.uint8)
@@ -65,7 +65,7 @@ class ColorBlocks:
         colors[inside] = picture[row[inside].astype(int), column[inside].astype(int)]
         return colors
 
-    def _picture(self, content: bytes) -> ColorPicture:
+    def _picture(self, content: bytes) -> ColorImage:
         camera = self.eye.camera
         if self.kind == BGRA:
             pixels = np.frombuffer(content, np.uint8)

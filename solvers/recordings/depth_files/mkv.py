@@ -7,7 +7,7 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from ...depth_scene import DepthPicture, DepthRecording
+from ...depth_scene import DepthImage, DepthRecording
 from ...errors import InvalidFileError
 from ...progress import Progress, unwatched, within
 from ..containers import Matroska, PlainBytes, Track, index_matroska, is_matroska
@@ -55,7 +55,7 @@ class DepthBlocks:
     metres: float
     straight: NDArray[np.int32] | None
 
-    def __call__(self, index: int) -> DepthPicture:
+    def __call__(self, index: int) -> DepthImage:
         """Return the depth of a frame, metres; 0: no reading."""
         place = int(self.places[index])
         if place == NONE:

@@ -6,7 +6,7 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from ...depth_scene import ColorPicture, DepthPicture
+from ...depth_scene import ColorImage, DepthImage
 from ...errors import InvalidFileError
 from ..containers import StoredBytes
 
@@ -47,7 +47,7 @@ class DepthStack:
         """Bytes of one picture."""
         return self.shape[0] * self.shape[1] * np.dtype(self.kind).itemsize
 
-    def __call__(self, index: int) -> DepthPicture:
+    def __call__(self, index: int) -> DepthImage:
         """Return the depth of a frame, metres; 0: no reading."""
         size = self.frame_bytes
         pixels = np.frombuffer(self.content.read(index * size, size), self.kind)
@@ -65,7 +65,7 @@ class ColorStack:
     content: StoredBytes
     shape: tuple[int, int]
 
-    def __call__(self, index: int) -> ColorPicture:
+    def __call__(self, index: int) -> ColorImage:
         """Return the colours (height, width, 3) of a frame."""
         size = self.shape[0] * self.shape[1] * 3
         pixels = np.frombuffer(self.content.read(index * size, size), np.uint8)

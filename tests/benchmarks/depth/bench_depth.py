@@ -16,7 +16,12 @@ from threadpoolctl import threadpool_limits
 from solvers.depth_tracking.body.model import BodyModel
 from solvers.depth_tracking.body.tables import JOINTS
 from solvers.depth_tracking.capturing.refine_body import refine_body
-from solvers.depth_tracking.terms.tracker_settings import LOU12, USUAL, WZC12, TrackerSettings
+from solvers.depth_tracking.terms.tracker_settings import (
+    DEFAULT_TRACKER,
+    LOU12,
+    WZC12,
+    TrackerSettings,
+)
 from solvers.depth_tracking.tracking.track_pose import track_pose
 
 from ..peers.icp_trackers import articulated_icp, ray_constrained_icp
@@ -138,7 +143,7 @@ def measured(track: Track, one: Sequence, body: BodyModel) -> tuple[Errors, floa
 def trackers() -> list[str]:
     """Compare trackers, started from the true first pose, bodies of the true lengths."""
     methods: dict[str, Track] = {
-        "ours (default)": partial(ours, USUAL),
+        "ours (default)": partial(ours, DEFAULT_TRACKER),
         "WZC12 preset": partial(ours, WZC12),
         "WZC12 terms, damped, with limits": partial(ours, DAMPED_WZC12),
         "LOU12 preset, colour and clips": lou12,
@@ -167,7 +172,7 @@ def trackers() -> list[str]:
 
 
 DAMPED_WZC12 = replace(
-    USUAL, closest_weight=0.0, off_actor_weight=0.0, too_near_weight=0.0,
+    DEFAULT_TRACKER, closest_weight=0.0, off_actor_weight=0.0, too_near_weight=0.0,
     depth_weight=1000.0, extra_weight=10000.0, silhouette_weight=0.1,
 )  # fmt: skip
 
@@ -189,7 +194,7 @@ def tuning() -> list[str]:
 def _without(sequences: list[Sequence], title: str) -> Scores:
     scores = Scores(title, f"{len(sequences)} sequences as clips", "")
     for label, changes in WITHOUT.items():
-        settings = replace(USUAL, **changes)
+        settings = replace(DEFAULT_TRACKER, **changes)
         for one in sequences:
             found, speed = measured(partial(ours, settings), one, one.body)
             for column, figure in (found.figures() | {FPS: speed}).items():
@@ -213,7 +218,7 @@ def bodies() -> list[str]:
         for label in ("usual body", "usual body 5 % too tall"):
             cases[f"{label}, refined"] = _refined(one, cases[label])
         for label, body in cases.items():
-            found, _ = measured(partial(ours, USUAL), one, body)
+            found, _ = measured(partial(ours, DEFAULT_TRACKER), one, body)
             figures = found.figures() | {"% off in length": length_error(body, true)}
             for column, figure in figures.items():
                 scores.add(label, column, name, figure)
@@ -233,7 +238,7 @@ def noise() -> list[str]:
     cases = [sequence("walk_front_clean"), sequence("walk_front")]
     cases += [noisier(cases[0], sigma) for sigma in (0.01, 0.02, 0.04, 0.08)]
     for one in cases:
-        found, _ = measured(partial(ours, USUAL), one, one.body)
+        found, _ = measured(partial(ours, DEFAULT_TRACKER), one, one.body)
         for column, figure in found.figures().items():
             scores.add(one.name, column, one.name, figure)
     return [_single(scores)]
@@ -243,7 +248,7 @@ def resolution() -> list[str]:
     """Look at fewer or more columns."""
     scores = Scores("Columns looked at", UNIT, "")
     for width in (80, 160, 320):
-        settings = replace(USUAL, picture_width=width)
+        settings = replace(DEFAULT_TRACKER, picture_width=width)
         for name in HARD:
             one = sequence(name)
             found, speed = measured(partial(ours, settings), one, one.body)

@@ -12,14 +12,14 @@ from numpy.typing import NDArray
 
 from solvers.depth_scene.camera import Camera
 from solvers.depth_tracking.body.tables import JOINTS
-from solvers.depth_tracking.forest.depth_differences import FAR, MILLIMETRES
-from solvers.depth_tracking.forest_training.render_mesh import NOTHING, render_mesh
+from solvers.depth_tracking.forest.depth_differences import BACKGROUND_MM, MM_PER_M
+from solvers.depth_tracking.forest_training.render_mesh import NO_PART, render_mesh
 from solvers.depth_tracking.forest_training.skinned_body import SkinnedBody, load_skinned_body
-from solvers.depth_tracking.forest_training.train_forest import draw_pictures
+from solvers.depth_tracking.forest_training.train_forest import draw_images
 from solvers.depth_tracking.forest_training.training_images import (
     CAMERA,
-    TrainingPicturesSettings,
-    picture_source,
+    TrainingImagesSettings,
+    image_source,
 )
 from solvers.recordings import read_bvh
 
@@ -58,11 +58,11 @@ def truth_frames(take: str, every: int = 1, step: int = 2) -> Iterator[LabelledF
     focal = [float(truth[name]) for name in ("fx", "fy", "cx", "cy")]
     camera = Camera(*focal, n_columns, n_rows).every(step)
     for frame, vertices in laid:
-        depth = (truth["depth"][frame, ::step, ::step] / MILLIMETRES).astype(np.float32)
+        depth = (truth["depth"][frame, ::step, ::step] / MM_PER_M).astype(np.float32)
         joints = truth["joints"][frame].astype(float)
         seen = render_mesh(vertices, body.triangles, body.vertex_parts, camera)
         same = (seen.depth > 0.0) & (np.abs(seen.depth - depth) < SAME_DEPTH)
-        labels = np.where(same, seen.labels, np.uint8(NOTHING))
+        labels = np.where(same, seen.labels, np.uint8(NO_PART))
         yield LabelledFrame(
             take, frame, camera, depth, labels, _ours(truth["joint_names"].tolist(), joints)
         )
@@ -87,12 +87,12 @@ def truth_bodies(take: str, every: int = 1) -> tuple[SkinnedBody, Iterator[tuple
 
 def unseen_frames(n_blocks: int = 30, loose: float = 0.0) -> Iterator[LabelledFrame]:
     """Yield pictures of HDM05's actors, whom no forest here has learned from."""
-    settings = TrainingPicturesSettings(loose=loose, nearest=2.0, farthest=4.0)
-    source = picture_source(unseen_motions(), all_bodies(), settings, 5)
-    seen = draw_pictures(source, range(n_blocks))
+    settings = TrainingImagesSettings(loose=loose, nearest=2.0, farthest=4.0)
+    source = image_source(unseen_motions(), all_bodies(), settings, 5)
+    seen = draw_images(source, range(n_blocks))
     for number, (picture, labels) in enumerate(zip(*seen, strict=True)):
         inner = picture[1:-1, 1:-1]
-        depth = (np.where(inner == FAR, 0, inner) / MILLIMETRES).astype(np.float32)
+        depth = (np.where(inner == BACKGROUND_MM, 0, inner) / MM_PER_M).astype(np.float32)
         unknown = np.full((len(JOINTS), 3), np.nan)
         yield LabelledFrame("HDM05", number, CAMERA, depth, labels, unknown)
 

@@ -16,11 +16,11 @@ import numpy as np
 
 from solvers.depth_scene.camera import Camera
 from solvers.depth_tracking.forest_training.render_mesh import render_mesh
-from solvers.depth_tracking.forest_training.sensor_noise import with_sensor_noise
+from solvers.depth_tracking.forest_training.sensor_noise import add_sensor_noise
 from solvers.depth_tracking.forest_training.skinned_body import SkinnedBody
 from solvers.depth_tracking.forest_training.training_images import (
-    TrainingPicturesSettings,
-    reshaped,
+    TrainingImagesSettings,
+    vary_body,
 )
 from solvers.motion import Motion, Skeleton, find_humanoid_map, forward_kinematics, resample
 from solvers.motion.skeletons.limb_ik import reach
@@ -30,7 +30,7 @@ from .depth_sequences import Sequence, sequence
 from .forest_sources import CMU_METRES, DATA, all_bodies
 
 KINECT = Camera(285.63, 285.63, 159.5, 119.5, 320, 240)
-SHAPES = TrainingPicturesSettings(shape=0.05, clothes=0.02)
+SHAPES = TrainingImagesSettings(shape=0.05, clothes=0.02)
 RATE = 30.0
 BUILD = Path(__file__).resolve().parents[3] / "build" / "depth_more"
 SEAT, BEHIND = 0.5, 0.4
@@ -130,7 +130,7 @@ def place(take: Take) -> np.ndarray:
 def body_of(name: str) -> SkinnedBody:
     """Return the body of a take: between and beside the four of data/body."""
     rng = np.random.default_rng((7, list(TAKES).index(name)))
-    return reshaped(all_bodies(), rng, SHAPES)
+    return vary_body(all_bodies(), rng, SHAPES)
 
 
 def _drawn(name: str) -> dict[str, object]:
@@ -138,7 +138,7 @@ def _drawn(name: str) -> dict[str, object]:
     pictures, joints = [], []
     for vertices, places in posed(body, TAKES[name]):
         exact = render_mesh(vertices, body.triangles, body.vertex_parts, KINECT)
-        seen = with_sensor_noise(exact, KINECT, rng)
+        seen = add_sensor_noise(exact, KINECT, rng)
         pictures.append((1000.0 * seen.depth).round().astype(np.uint16))
         joints.append(places)
     return {

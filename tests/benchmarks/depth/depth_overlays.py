@@ -13,7 +13,7 @@ from PIL import Image, ImageDraw
 from solvers.depth_scene.recording import DepthRecording
 from solvers.depth_tracking.body.motion import JOINT_PARENTS
 from solvers.depth_tracking.capturing.capture import Capture
-from solvers.depth_tracking.terms.hypothesis import imagine
+from solvers.depth_tracking.terms.hypothesis import render_hypothesis
 
 SURE, DOUBTFUL, OTHERS = (40, 220, 60), (230, 30, 30), (80, 160, 255)
 ENLARGED = 2.0
@@ -26,7 +26,7 @@ def overlay(
 ) -> Image.Image:
     """Draw one frame, and joints (n, 3) of somebody else, 240 pixels about the actor."""
     seen, camera = depth.frame(frame), depth.camera
-    drawn = imagine(found.body, found.poses[frame], camera).picture.depth_picture()
+    drawn = render_hypothesis(found.body, found.poses[frame], camera).picture.depth_picture()
     image = Image.fromarray(_tinted(seen, drawn))
     image = image.resize((int(ENLARGED * camera.width), int(ENLARGED * camera.height)))
     pen = ImageDraw.Draw(image)

@@ -8,8 +8,8 @@ import numpy as np
 
 from solvers.depth_scene.camera import Camera
 from solvers.depth_scene.recording import DepthRecording
-from solvers.depth_tracking.body.model import BodyModel, usual_body
-from solvers.depth_tracking.body.pose_from_joints import body_of_joints, pose_from_joints
+from solvers.depth_tracking.body.model import BodyModel, default_body
+from solvers.depth_tracking.body.pose_from_joints import body_from_joints, pose_from_joints
 from solvers.depth_tracking.body.tables import JOINTS, LENGTHS
 
 TRUTH = Path(__file__).resolve().parents[4] / "shared" / "data" / "depth" / "truth"
@@ -43,15 +43,15 @@ class Sequence:
     @property
     def body(self) -> BodyModel:
         """Lengths from the true joints, other proportions and radii usual."""
-        usual = usual_body()
-        told = body_of_joints(usual, self.joints)
+        usual = default_body()
+        told = body_from_joints(usual, self.joints)
         factor = float(np.median(told.lengths / usual.lengths))
-        return body_of_joints(usual.scaled(factor), self.joints)
+        return body_from_joints(usual.scaled(factor), self.joints)
 
     @property
     def usual(self) -> BodyModel:
         """A body of usual proportions of about the right stature: nothing else is known."""
-        usual = usual_body()
+        usual = default_body()
         return usual.scaled(float(np.median(self.body.lengths / usual.lengths)))
 
     def first_pose(self, body: BodyModel) -> np.ndarray:

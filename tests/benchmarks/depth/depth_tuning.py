@@ -13,11 +13,11 @@ from solvers.depth_scene.camera import Camera
 from solvers.depth_scene.recording import DepthRecording
 from solvers.depth_tracking.body.tables import JOINTS
 from solvers.depth_tracking.forest_training.render_mesh import RenderedMesh
-from solvers.depth_tracking.forest_training.sensor_noise import with_sensor_noise
+from solvers.depth_tracking.forest_training.sensor_noise import add_sensor_noise
 from solvers.depth_tracking.forest_training.skinned_body import SkinnedBody
 from solvers.depth_tracking.forest_training.training_images import (
-    TrainingPicturesSettings,
-    reshaped,
+    TrainingImagesSettings,
+    vary_body,
 )
 from solvers.motion import Motion
 from solvers.recordings import read_acclaim, read_bvh
@@ -27,7 +27,7 @@ from .forest_sources import CMU_METRES, DATA, all_bodies
 from .painted_bodies import ColoredPicture, colored_picture, vertex_materials
 
 KINECT = Camera(285.63, 285.63, 159.5, 119.5, 320, 240)
-SHAPES = TrainingPicturesSettings(shape=0.05, clothes=0.02)
+SHAPES = TrainingImagesSettings(shape=0.05, clothes=0.02)
 
 
 class Take(NamedTuple):
@@ -74,7 +74,7 @@ def tuning_sequence(name: str, columns: int = 160) -> Sequence:
     """Draw one of `TAKES`, with the noise of a Kinect, and with colours."""
     take = TAKES[name]
     rng = np.random.default_rng((11, list(TAKES).index(name)))
-    body = reshaped(all_bodies(), rng, SHAPES)
+    body = vary_body(all_bodies(), rng, SHAPES)
     camera = KINECT.every(KINECT.width // columns)
     materials = vertex_materials(body)
     pictures: list[ColoredPicture] = []
@@ -83,7 +83,7 @@ def tuning_sequence(name: str, columns: int = 160) -> Sequence:
     for vertices, bones in posed(body, take):
         seen = colored_picture(body, materials, vertices, camera, rng)
         labels = np.zeros(seen.depth.shape, dtype=np.uint8)
-        noisy = with_sensor_noise(RenderedMesh(seen.depth, labels), camera, rng)
+        noisy = add_sensor_noise(RenderedMesh(seen.depth, labels), camera, rng)
         pictures.append(ColoredPicture(noisy.depth, seen.color))
         joints.append(bones[places])
     recording = DepthRecording(

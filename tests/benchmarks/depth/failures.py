@@ -10,13 +10,17 @@ from numpy.typing import NDArray
 from solvers.depth_tracking.body.kinematics import joint_positions, segment_frames
 from solvers.depth_tracking.body.model import BodyModel
 from solvers.depth_tracking.terms.observation import observe
-from solvers.depth_tracking.terms.tracker_settings import USUAL, WZC12, TrackerSettings
+from solvers.depth_tracking.terms.tracker_settings import (
+    DEFAULT_TRACKER,
+    WZC12,
+    TrackerSettings,
+)
 from solvers.depth_tracking.tracking.failure_test import (
-    PUBLISHED_OVERLAP,
-    PUBLISHED_RESIDUAL,
+    PUBLISHED_MAX_RESIDUAL_M,
+    PUBLISHED_MIN_OVERLAP,
     failure_features,
 )
-from solvers.depth_tracking.tracking.track_pose import follow, next_pose_prior
+from solvers.depth_tracking.tracking.track_pose import next_pose_prior, track_frame
 
 from .depth_sequences import Sequence
 
@@ -24,9 +28,9 @@ Array = NDArray[np.float64]
 WRONG = 0.1
 """Metres that the joints of a failed pose are off, on average."""
 TRACKERS: dict[str, tuple[TrackerSettings, int]] = {
-    "ours": (USUAL, 1),
-    "ours, every third frame": (USUAL, 3),
-    "ours, no prediction": (replace(USUAL, trust=0.0), 2),
+    "ours": (DEFAULT_TRACKER, 1),
+    "ours, every third frame": (DEFAULT_TRACKER, 3),
+    "ours, no prediction": (replace(DEFAULT_TRACKER, trust=0.0), 2),
     "WZC12 preset": (WZC12, 1),
 }
 """Settings, and every how manieth frame is looked at: some of them fail often."""
@@ -52,8 +56,8 @@ def judged(sequences: Iterable[Sequence]) -> Judged:
                 features.append(feature)
                 errors.append(error)
     table = np.array(features)
-    far = table[:, 0] > PUBLISHED_RESIDUAL / RESIDUAL_UNIT
-    return Judged(table, np.array(errors), far | (table[:, 1] < PUBLISHED_OVERLAP))
+    far = table[:, 0] > PUBLISHED_MAX_RESIDUAL_M / RESIDUAL_UNIT
+    return Judged(table, np.array(errors), far | (table[:, 1] < PUBLISHED_MIN_OVERLAP))
 
 
 RESIDUAL_UNIT = 0.1
@@ -67,7 +71,7 @@ def _tracked(
         observation = observe(one.depth, frame, settings.picture_width)
         prior = next_pose_prior(poses[1:] or poses, settings)
         with np.errstate(all="ignore"):
-            pose, quality, memory = follow(body, prior, observation, settings, memory)
+            pose, quality, memory = track_frame(body, prior, observation, settings, memory)
         poses.append(pose)
         found = joint_positions(body, segment_frames(body, pose))
         error = float(np.linalg.norm(found - one.joints[frame], axis=1).mean())

@@ -6,8 +6,8 @@ from functools import cache
 import numpy as np
 from scipy.ndimage import distance_transform_edt
 
-from solvers.depth_tracking.body.learn_motion_prior import poses_of_motion
-from solvers.depth_tracking.body.motion_prior import MotionPrior, motion_prior_of
+from solvers.depth_tracking.body.learn_motion_prior import poses_from_motion
+from solvers.depth_tracking.body.motion_prior import MotionPrior, motion_prior_from_poses
 
 from .depth_labels import truth_bodies
 from .depth_sequences import Sequence, sequence
@@ -46,6 +46,6 @@ def others_motions() -> MotionPrior:
     names = [f"cmu_walk/{walk}.bvh" for walk in WALKS]
     names += sorted(f"hdm05/{path.name}" for path in (DATA / "mocap" / "hdm05").glob(HOPS))
     motions = [clip(name) for name in names]
-    return motion_prior_of([
-        poses_of_motion(motion.slice(1, motion.n_frames)) for motion in motions
+    return motion_prior_from_poses([
+        poses_from_motion(motion.slice(1, motion.n_frames)) for motion in motions
     ])

@@ -7,7 +7,7 @@ from numpy.typing import NDArray
 
 from solvers.depth_scene.camera import Camera
 from solvers.depth_tracking.forest.parts import PARTS
-from solvers.depth_tracking.forest_training.render_mesh import NOTHING, render_mesh
+from solvers.depth_tracking.forest_training.render_mesh import NO_PART, render_mesh
 from solvers.depth_tracking.forest_training.skinned_body import SkinnedBody
 
 Array = NDArray[np.float64]
@@ -71,7 +71,7 @@ def colored_picture(
     seen = render_mesh(vertices, body.triangles, labels, camera)
     material, shade = np.divmod(seen.labels.astype(int), SHADES)
     color = MATERIALS[material % len(MATERIALS)] * (shade / (SHADES - 1.0))[..., np.newaxis]
-    color[seen.labels == NOTHING] = 0.0
+    color[seen.labels == NO_PART] = 0.0
     color += NOISE * rng.standard_normal(color.shape)
     return ColoredPicture(seen.depth, color.clip(0.0, 255.0).astype(np.uint8))
 

@@ -9,10 +9,10 @@ from solvers.depth_tracking.body.kinematics import joint_positions, segment_fram
 from solvers.depth_tracking.body.model import BodyModel
 from solvers.depth_tracking.body.tables import JOINTS
 from solvers.depth_tracking.capturing.capture import Capture, CaptureSettings, capture
-from solvers.depth_tracking.capturing.passes import Actor, RecoverySettings
+from solvers.depth_tracking.capturing.passes import RecoverySettings, TrackingContext
 from solvers.depth_tracking.detection.detect_pose import detect_pose
 from solvers.depth_tracking.forest.pixel_forest import load_pixel_forest
-from solvers.depth_tracking.terms.tracker_settings import USUAL
+from solvers.depth_tracking.terms.tracker_settings import DEFAULT_TRACKER
 from solvers.depth_tracking.tracking.track_pose import track_pose
 from solvers.errors import InvalidMotionError
 
@@ -151,13 +151,15 @@ def _detector_alone(one: Sequence) -> Found:
 
 
 def _detector_refined(one: Sequence) -> Found:
-    actor = Actor(one.depth, one.body, load_pixel_forest(), USUAL, RecoverySettings())
+    actor = TrackingContext(
+        one.depth, one.body, load_pixel_forest(), DEFAULT_TRACKER, RecoverySettings()
+    )
     frames = np.arange(0, one.depth.n_frames, EVERY)
     poses = np.array([_refined(actor, frame) for frame in frames.tolist()])
     return joint_positions(one.body, segment_frames(one.body, poses)), frames, 0
 
 
-def _refined(actor: Actor, frame: int) -> np.ndarray:
+def _refined(actor: TrackingContext, frame: int) -> np.ndarray:
     found = actor.detected(frame)
     if found is None:
         raise InvalidMotionError(f"Nobody was detected in frame {frame}.")
@@ -170,7 +172,9 @@ def _tracker_alone(one: Sequence) -> Found:
 
 
 def _tracker_from_detector(one: Sequence) -> Found:
-    actor = Actor(one.depth, one.body, load_pixel_forest(), USUAL, RecoverySettings())
+    actor = TrackingContext(
+        one.depth, one.body, load_pixel_forest(), DEFAULT_TRACKER, RecoverySettings()
+    )
     tracked = track_pose(one.depth, one.body, _refined(actor, 0))
     return tracked.joints.positions, np.arange(one.depth.n_frames), 0
 

@@ -15,30 +15,30 @@ from time import process_time
 import numpy as np
 from numpy.typing import NDArray
 
-from solvers.depth_tracking.body.model import BodyModel, usual_body
-from solvers.depth_tracking.body.pose_from_joints import body_of_joints
+from solvers.depth_tracking.body.model import BodyModel, default_body
+from solvers.depth_tracking.body.pose_from_joints import body_from_joints
 from solvers.depth_tracking.detection.detect_pose import DetectorSettings, detect_pose
 from solvers.depth_tracking.forest.depth_differences import (
-    differences,
-    pixel_views,
-    with_margin,
+    depth_differences,
+    pad_depth_image,
+    pixel_features,
 )
 from solvers.depth_tracking.forest.grow_tree import grow_tree, random_offsets
-from solvers.depth_tracking.forest.parts import MIRRORED, N_PARTS, PARTS
+from solvers.depth_tracking.forest.parts import MIRRORED_PARTS, N_PARTS, PARTS
 from solvers.depth_tracking.forest.pixel_forest import (
     SHIPPED,
     PixelForest,
     classify_pixels,
     load_pixel_forest,
 )
-from solvers.depth_tracking.forest_training.render_mesh import NOTHING
+from solvers.depth_tracking.forest_training.render_mesh import NO_PART
 from solvers.depth_tracking.forest_training.train_forest import (
     PixelForestSettings,
-    draw_pictures,
+    draw_images,
     draw_pixels,
     train_pixel_forest,
 )
-from solvers.depth_tracking.forest_training.training_images import SHAPE_LASTS, picture_source
+from solvers.depth_tracking.forest_training.training_images import IMAGES_PER_BODY, image_source
 
 from .depth_labels import LabelledFrame, truth_frames, unseen_frames
 from .forest_sources import TRUTH, all_bodies, taught_motions
@@ -78,7 +78,7 @@ def confusion(frames: Iterable[LabelledFrame], forest: PixelForest) -> tuple[Arr
         found = classify_pixels(frame.depth, frame.camera, forest)
         times.append(process_time() - start)
         true = frame.labels[found.rows, found.columns]
-        known = true != NOTHING
+        known = true != NO_PART
         np.add.at(counts, (true[known], found.labels[known]), 1)
     return counts, 1e3 * float(np.median(times))
 
@@ -101,8 +101,8 @@ def accuracy_rows(forest: PixelForest, every: int) -> list[str]:
 def _accuracy_row(name: str, counts: Array, milliseconds: float) -> str:
     seen = counts.sum(axis=1) > 0
     right = np.diag(counts)
-    sides = np.arange(N_PARTS) != MIRRORED
-    mirrored = counts[np.arange(N_PARTS), MIRRORED][sides].sum()
+    sides = np.arange(N_PARTS) != MIRRORED_PARTS
+    mirrored = counts[np.arange(N_PARTS), MIRRORED_PARTS][sides].sum()
     parts = right[seen] / counts.sum(axis=1)[seen]
     figures = right.sum() / counts.sum(), parts.mean(), mirrored / counts.sum()
     return f"| {name} | " + " | ".join(f"{x:.3f}" for x in figures) + f" | {milliseconds:.1f} |"
@@ -123,7 +123,7 @@ def pose_rows(
     for take in TRUTH:
         frames = list(truth_frames(take, every))
         true = np.stack([frame.joints for frame in frames])
-        body = body_of_joints(usual_body(), true) if calibrated else usual_body()
+        body = body_from_joints(default_body(), true) if calibrated else default_body()
         found, milliseconds = found_joints(frames, body, forest, settings)
         apart = (found - true)[:, np.isfinite(true).all(axis=(0, 2))]
         errors.append((apart, apart - np.median(apart, axis=0)))
@@ -163,12 +163,14 @@ def peer_rows(every: int) -> list[str]:
     from sklearn.ensemble import RandomForestClassifier
 
     settings = PixelForestSettings(n_pictures=PEER_PICTURES, n_pixels=PEER_PIXELS)
-    source = picture_source(taught_motions(), all_bodies(), settings, 0)
-    seen = draw_pictures(source, range(PEER_PICTURES // SHAPE_LASTS))
+    source = image_source(taught_motions(), all_bodies(), settings, 0)
+    seen = draw_images(source, range(PEER_PICTURES // IMAGES_PER_BODY))
     views, parts = draw_pixels(seen, PEER_PIXELS, np.random.default_rng(0))
     features = random_offsets(PEER_FEATURES, settings.reach, np.random.default_rng(1))
     offsets = features.astype(np.float32) / np.float32(100.0)
-    table = np.stack([differences(views, one).clip(-1001, 1001) for one in offsets], axis=1)
+    table = np.stack(
+        [depth_differences(views, one).clip(-1001, 1001) for one in offsets], axis=1
+    )
     peer = RandomForestClassifier(
         3, max_depth=18, min_samples_split=40, max_features=100, criterion="entropy",
         random_state=0,
@@ -183,12 +185,14 @@ def peer_rows(every: int) -> list[str]:
         for frame in truth_frames(take, every):
             found = classify_pixels(frame.depth, frame.camera, ours)
             true = frame.labels[found.rows, found.columns]
-            known = true != NOTHING
-            here = pixel_views(
-                with_margin(frame.depth)[np.newaxis], np.zeros(len(true), dtype=np.intp),
+            known = true != NO_PART
+            here = pixel_features(
+                pad_depth_image(frame.depth)[np.newaxis], np.zeros(len(true), dtype=np.intp),
                 found.rows, found.columns, frame.camera,
             )  # fmt: skip
-            told = np.stack([differences(here, one).clip(-1001, 1001) for one in offsets], 1)
+            told = np.stack(
+                [depth_differences(here, one).clip(-1001, 1001) for one in offsets], 1
+            )
             labels = peer.predict(told.astype(np.float32))
             right["ours"] += int((found.labels == true)[known].sum())
             right["scikit-learn"] += int((labels == true)[known].sum())

@@ -23,7 +23,7 @@ from solvers.depth_tracking.capturing.calibrate_body import calibrate_body
 from solvers.depth_tracking.detection.detect_pose import DetectedPose, detect_pose
 from solvers.depth_tracking.forest.parts import N_PARTS, PARTS
 from solvers.depth_tracking.forest.pixel_forest import SHIPPED, PixelForest, load_pixel_forest
-from solvers.depth_tracking.terms.hypothesis import imagine
+from solvers.depth_tracking.terms.hypothesis import render_hypothesis
 from solvers.recordings import read_depth
 
 from .forest_sources import DATA
@@ -128,7 +128,7 @@ def draw(take: KinectTake, body: BodyModel, number: int) -> NDArray[np.uint8]:
     pictures = [np.repeat(grey[..., None], 3, axis=2)]
     told = pictures[0].copy()
     told[pose.pixels.rows, pose.pixels.columns] = COLORS[pose.pixels.labels]
-    picture = imagine(body, pose.pose, take.depth.camera.every(pose.step)).picture
+    picture = render_hypothesis(body, pose.pose, take.depth.camera.every(pose.step)).picture
     fitted = pictures[0].copy()
     spots = np.divmod(picture.pixels, picture.camera.width)
     fitted[spots] = 0.5 * fitted[spots] + 0.5 * COLORS[_capsule_parts()[picture.capsules]]

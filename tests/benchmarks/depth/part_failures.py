@@ -5,10 +5,10 @@ from numpy.typing import NDArray
 
 from solvers.depth_tracking.tracking.failure_test import (
     FEATURES,
-    LEARNED,
     LEARNED_BIAS,
-    PUBLISHED_OVERLAP,
-    PUBLISHED_RESIDUAL,
+    LEARNED_WEIGHTS,
+    PUBLISHED_MAX_RESIDUAL_M,
+    PUBLISHED_MIN_OVERLAP,
 )
 
 from ..shared.tables import number, table
@@ -23,12 +23,16 @@ def failures() -> list[str]:
     found = judged(sequence(name) for name in SCORED)
     failed = found.errors > WRONG
     columns = dict(zip(FEATURES, found.features.T, strict=True))
-    chance = found.features @ LEARNED + LEARNED_BIAS
+    chance = found.features @ LEARNED_WEIGHTS + LEARNED_BIAS
     residual, overlap = columns["residual"] * RESIDUAL_UNIT, columns["overlap"]
     rows = {
         "learned, chance over 50 %": _row(chance, chance >= 0.0, failed),
-        "depth, published: over 2.5 cm": _row(residual, residual > PUBLISHED_RESIDUAL, failed),
-        "overlap, published: under 90 %": _row(-overlap, overlap < PUBLISHED_OVERLAP, failed),
+        "depth, published: over 2.5 cm": _row(
+            residual, residual > PUBLISHED_MAX_RESIDUAL_M, failed
+        ),
+        "overlap, published: under 90 %": _row(
+            -overlap, overlap < PUBLISHED_MIN_OVERLAP, failed
+        ),
         "either of both, published": ["-", *_shares(found.published, failed)],
         "score under 0.5": _row(-columns["score"], columns["score"] < 0.5, failed),
     }

@@ -14,16 +14,16 @@ from solvers.depth_tracking.body.kinematics import joint_positions, segment_fram
 from solvers.depth_tracking.body.model import BodyModel
 from solvers.depth_tracking.body.normal_equations import (
     SurfaceRows,
-    added,
-    in_coordinates,
-    joined,
+    concatenate_rows,
+    equations_in_coordinates,
+    rows_toward_targets,
     segment_equations,
-    step,
-    toward,
+    solve_step,
+    sum_equations,
 )
-from solvers.depth_tracking.body.pose_priors import foretell, joint_limits, stay_near
-from solvers.depth_tracking.terms.hypothesis import Hypothesis, imagine
-from solvers.depth_tracking.terms.observation import Observation, observe, rays_of
+from solvers.depth_tracking.body.pose_priors import joint_limits, predict_pose, stay_near
+from solvers.depth_tracking.terms.hypothesis import Hypothesis, render_hypothesis
+from solvers.depth_tracking.terms.observation import Observation, observe, rays_through_pixels
 
 ITERATIONS = 10
 FARTHEST = 0.2
@@ -57,7 +57,7 @@ def _closest_points(hypothesis: Hypothesis, observation: Observation) -> Surface
     distances, nearest = cKDTree(hypothesis.points).query(observation.points)
     near = distances < FARTHEST
     moved = nearest[near]
-    return toward(
+    return rows_toward_targets(
         hypothesis.points[moved], observation.points[near], np.full(len(moved), 1.0),
         hypothesis.picture.capsules[moved],
     )  # fmt: skip
@@ -69,15 +69,17 @@ def _with_rays(hypothesis: Hypothesis, observation: Observation) -> SurfaceRows:
     nearest = observation.nearest_pixel[pixels]
     off = seen == 0.0
     targets = points.copy()
-    targets[off] = points[off, 2:] * rays_of(observation.camera, nearest[off])
+    targets[off] = points[off, 2:] * rays_through_pixels(observation.camera, nearest[off])
     before = ~off & (hypothesis.picture.depths < seen)
     targets[before] = hypothesis.rays[before] * seen[before][:, np.newaxis]
     broken = np.flatnonzero(off | before)
     weights = np.full(len(broken), 1.0)
     far = np.linalg.norm(targets[broken] - points[broken], axis=1) > FARTHEST
     weights[far] = 0.0
-    rays = toward(points[broken], targets[broken], weights, hypothesis.picture.capsules[broken])
-    return joined([_closest_points(hypothesis, observation), rays])
+    rays = rows_toward_targets(
+        points[broken], targets[broken], weights, hypothesis.picture.capsules[broken]
+    )
+    return concatenate_rows([_closest_points(hypothesis, observation), rays])
 
 
 def _track(
@@ -86,7 +88,7 @@ def _track(
     poses = [pose]
     for frame in range(depth.n_frames):
         observation = observe(depth, frame, 160)
-        expected = foretell(poses[1:] or poses, TRUST)
+        expected = predict_pose(poses[1:] or poses, TRUST)
         poses.append(_registered(body, expected, observation, pairs))
     return joint_positions(body, segment_frames(body, np.array(poses[1:])))
 
@@ -98,16 +100,16 @@ def _registered(
     if not len(observation.points):
         return pose
     for _ in range(ITERATIONS):
-        hypothesis = imagine(body, pose, observation.camera)
+        hypothesis = render_hypothesis(body, pose, observation.camera)
         if not len(hypothesis.points):
             return pose
         rows = segment_equations(pairs(hypothesis, observation))
-        equations = added([
-            in_coordinates([rows], hypothesis.twists),
+        equations = sum_equations([
+            equations_in_coordinates([rows], hypothesis.twists),
             joint_limits(pose, LIMIT_WEIGHT),
             stay_near(pose, expected, np.full(36, TURN_WEIGHT)),
         ])
-        change = step(equations, np.full(36, DAMPING))
+        change = solve_step(equations, np.full(36, DAMPING))
         pose = pose + change * min(1.0, 0.35 / np.abs(change).max())
         if np.abs(change).max() < 1e-3:
             break

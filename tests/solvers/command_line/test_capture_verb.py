@@ -9,7 +9,7 @@ from depth_folders import open3d, save_png
 from drawn_bodies import CAMERA, NATURAL
 
 from solvers.depth_tracking.body.kinematics import segment_frames
-from solvers.depth_tracking.body.model import load_body_model, usual_body
+from solvers.depth_tracking.body.model import default_body, load_body_model
 from solvers.depth_tracking.body.ray_capsules import cast_rays
 from solvers.recordings import read_bvh, read_recording
 
@@ -19,7 +19,7 @@ QUICK = ("--no-backward", "--no-refine", "--no-feet", "--check-every", "1000")
 @pytest.fixture(scope="module")
 def take(tmp_path_factory):
     """Four frames of our own body, standing three metres away."""
-    body = usual_body()
+    body = default_body()
     depth = cast_rays(body, segment_frames(body, NATURAL), CAMERA).depth_picture()
     path = tmp_path_factory.mktemp("depth") / "standing.npz"
     pictures = np.repeat(np.round(1000 * depth)[None], 4, axis=0).astype(np.uint16)
@@ -45,7 +45,7 @@ def test_a_standing_body_is_written_as_a_skeleton_with_its_figures(call, take, t
     assert again[0] == 0
     found = read_recording(next(joints.glob("*.csv")))
     assert found.tracks.confidence is not None
-    assert load_body_model(kept).lengths.shape == usual_body().lengths.shape
+    assert load_body_model(kept).lengths.shape == default_body().lengths.shape
 
 
 def test_what_is_no_depth_and_who_is_not_there_are_said_in_a_sentence(call, take, tmp_path):
@@ -81,7 +81,7 @@ def takes(take, tmp_path):
 @pytest.fixture
 def known(tmp_path):
     """The options by which a body need not be looked for."""
-    usual_body().save(tmp_path / "known.npz")
+    default_body().save(tmp_path / "known.npz")
     return ("--body", tmp_path / "known.npz", *QUICK)
 
 

@@ -3,7 +3,7 @@
 import pytest
 
 from solvers.depth_scene.camera import Camera
-from solvers.depth_scene.camera_checks import camera_doubts, field_of_view
+from solvers.depth_scene.camera_checks import check_intrinsics, field_of_view
 
 KINECT = Camera(285.63, 285.63, 159.5, 119.5, 320, 240)
 USUAL = (
@@ -29,8 +29,8 @@ def test_a_picture_as_wide_as_it_is_far_shows_a_right_angle():
 
 @pytest.mark.parametrize("camera", USUAL)
 def test_cameras_that_there_are_are_not_doubted(camera):
-    assert camera_doubts(camera) == ()
-    assert camera_doubts(camera.every(2)) == ()
+    assert check_intrinsics(camera) == ()
+    assert check_intrinsics(camera.every(2)) == ()
 
 
 @pytest.mark.parametrize(
@@ -45,7 +45,7 @@ def test_cameras_that_there_are_are_not_doubted(camera):
     ],
 )
 def test_numbers_of_another_picture_are_told_in_a_sentence(camera, words):
-    said = camera_doubts(camera)
+    said = check_intrinsics(camera)
 
     assert any(words in sentence for sentence in said)
     assert all("check" in sentence and sentence.endswith(".") for sentence in said)

@@ -9,7 +9,7 @@ from depth_rooms import in_room, room, tilted
 from solvers.depth_scene.actor import find_actor
 from solvers.depth_scene.bodies import find_bodies
 from solvers.depth_scene.camera import Camera
-from solvers.depth_scene.foreground import ForegroundSettings, ForegroundWay
+from solvers.depth_scene.foreground import ForegroundMethod, ForegroundSettings
 from solvers.depth_scene.recording import DepthRecording
 from solvers.errors import InvalidMotionError, SolveCancelled
 from solvers.recordings import read_depth
@@ -59,7 +59,7 @@ def test_in_a_room_without_being_told_anything(takes, name):
 
     actor = find_actor(taken)
 
-    assert actor.way is ForegroundWay.AUTOMATIC
+    assert actor.way is ForegroundMethod.AUTOMATIC
     assert actor.floor.height == pytest.approx(floor_of(take), abs=0.03)
     assert actor.seen.all()
     assert actor.remarks == ()
@@ -97,14 +97,14 @@ def test_frames_of_the_empty_room_help(takes):
 
     actor = find_actor(taken, empty=range(30))
 
-    assert actor.way is ForegroundWay.BACKGROUND
+    assert actor.way is ForegroundMethod.BACKGROUND
     assert not actor.seen[:25].any()
     assert actor.seen[31:].all()
     assert any("Nobody is seen in" in remark for remark in actor.remarks)
     found = agreement(actor.recording.frame(70) > 0.0, take.frame(40) > 0.0)
     assert found > 0.8
     with pytest.raises(InvalidMotionError, match="Name frames without the actor"):
-        find_actor(taken, ForegroundSettings(way=ForegroundWay.BACKGROUND), empty=[])
+        find_actor(taken, ForegroundSettings(way=ForegroundMethod.BACKGROUND), empty=[])
 
 
 def test_a_recording_of_nothing_else_is_taken_as_it_is(recordings):
@@ -112,7 +112,7 @@ def test_a_recording_of_nothing_else_is_taken_as_it_is(recordings):
     for path in sorted(folder.glob("a*_s7_t1_depth.mat"))[::4]:
         taken = read_depth(path)
         actor = find_actor(taken)
-        assert actor.way is ForegroundWay.RECORDED, path
+        assert actor.way is ForegroundMethod.RECORDED, path
         assert actor.floor is None
         assert (actor.seen.all(), actor.feet_seen, actor.remarks) == (True, True, ()), path
         assert min(agreements(actor.recording, taken)) > 0.98
@@ -121,7 +121,7 @@ def test_a_recording_of_nothing_else_is_taken_as_it_is(recordings):
 def test_of_an_actor_close_by_it_is_said_that_there_are_no_feet(recordings):
     for path in sorted((recordings / "depth" / "skeltrack").iterdir()):
         actor = find_actor(read_depth(path))
-        assert actor.way is ForegroundWay.RECORDED
+        assert actor.way is ForegroundMethod.RECORDED
         assert not actor.feet_seen
         assert "The picture ends above the feet" in actor.remarks[0]
 

@@ -10,8 +10,8 @@ from solvers.depth_scene.bodies import find_bodies
 from solvers.depth_scene.camera import Camera
 from solvers.depth_scene.floor import find_floor
 from solvers.depth_scene.foreground import (
+    ForegroundMethod,
     ForegroundSettings,
-    ForegroundWay,
     cut_out_actor,
     learn_background,
 )
@@ -21,8 +21,8 @@ from solvers.recordings import read_depth
 
 KINECT = Camera(285.63, 285.63, 159.5, 119.5, 320, 240)
 UP = tilted(0.0)
-SUBTRACTED = ForegroundSettings(way=ForegroundWay.BACKGROUND)
-AS_RECORDED = ForegroundSettings(way=ForegroundWay.RECORDED)
+SUBTRACTED = ForegroundSettings(way=ForegroundMethod.BACKGROUND)
+AS_RECORDED = ForegroundSettings(way=ForegroundMethod.RECORDED)
 
 
 @pytest.fixture
@@ -50,7 +50,9 @@ def test_cut_by_distance_and_floor(actor):
     taken = in_room(actor, room(KINECT, UP, 0.95, 4.5), 0.0015)
 
     alone = cut_out_actor(
-        taken, ForegroundSettings(way=ForegroundWay.CUT, farthest=4.2), floor=find_floor(taken)
+        taken,
+        ForegroundSettings(way=ForegroundMethod.CUT, farthest=4.2),
+        floor=find_floor(taken),
     )
 
     for frame in range(0, actor.n_frames, 15):

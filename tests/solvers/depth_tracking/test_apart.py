@@ -5,14 +5,18 @@ from drawn_bodies import CAMERA, posed
 from numpy.testing import assert_allclose
 
 from solvers.depth_tracking.body.coordinates import COORDINATES
-from solvers.depth_tracking.body.model import usual_body
-from solvers.depth_tracking.body.normal_equations import in_coordinates, segment_equations, step
+from solvers.depth_tracking.body.model import default_body
+from solvers.depth_tracking.body.normal_equations import (
+    equations_in_coordinates,
+    segment_equations,
+    solve_step,
+)
 from solvers.depth_tracking.body.pose_priors import natural_stance
 from solvers.depth_tracking.body.tables import CAPSULE_SEGMENTS
-from solvers.depth_tracking.terms.hypothesis import imagine
-from solvers.depth_tracking.terms.overlap import SOFTNESS, _closest, apart_term
+from solvers.depth_tracking.terms.hypothesis import render_hypothesis
+from solvers.depth_tracking.terms.overlap import RADIUS_FRACTION, _closest, separation_term
 
-BODY = usual_body()
+BODY = default_body()
 
 
 def test_closest_points_of_segments_equal_a_fine_search(rng):
@@ -30,7 +34,7 @@ def test_closest_points_of_segments_equal_a_fine_search(rng):
 
 def test_legs_beside_each_other_are_left_alone():
     pose = posed(leftFemurZ=0.15, rightFemurZ=0.15, leftHumerusZ=0.5, rightHumerusZ=0.5)
-    rows = apart_term(imagine(BODY, pose, CAMERA), 1.0)
+    rows = separation_term(render_hypothesis(BODY, pose, CAMERA), 1.0)
     assert not len(rows.residuals)
 
 
@@ -38,18 +42,20 @@ def test_crossed_legs_are_pushed_apart_until_they_touch():
     pose = posed(leftFemurZ=-0.25, rightFemurZ=-0.25)
     overlaps = []
     for _ in range(15):
-        hypothesis = imagine(BODY, pose, CAMERA)
-        rows = apart_term(hypothesis, 1e4)
+        hypothesis = render_hypothesis(BODY, pose, CAMERA)
+        rows = separation_term(hypothesis, 1e4)
         overlaps.append(rows.residuals.max(initial=0.0))
-        equations = in_coordinates([segment_equations(rows)], hypothesis.twists)
-        pose = pose + step(equations, np.full(36, 10.0))
+        equations = equations_in_coordinates([segment_equations(rows)], hypothesis.twists)
+        pose = pose + solve_step(equations, np.full(36, 10.0))
     assert overlaps[0] > 0.02
     assert overlaps[-1] < 0.1 * overlaps[0]
-    assert SOFTNESS < 1.0
+    assert RADIUS_FRACTION < 1.0
 
 
 def test_both_limbs_are_pushed_equally():
-    rows = apart_term(imagine(BODY, posed(leftFemurZ=-0.3, rightFemurZ=-0.3), CAMERA), 1.0)
+    rows = separation_term(
+        render_hypothesis(BODY, posed(leftFemurZ=-0.3, rightFemurZ=-0.3), CAMERA), 1.0
+    )
     n_pairs = len(rows.residuals) // 2
     assert n_pairs > 0
     assert_allclose(rows.directions[:n_pairs], -rows.directions[n_pairs:])

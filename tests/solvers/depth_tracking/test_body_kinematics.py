@@ -5,13 +5,13 @@ import pytest
 from numpy.testing import assert_allclose
 from scipy.spatial.transform import Rotation
 
-from solvers.depth_tracking.body.coordinates import COORDINATES, TURNS
+from solvers.depth_tracking.body.coordinates import COORDINATES, ROTATION_AXES
 from solvers.depth_tracking.body.kinematics import (
     joint_positions,
     segment_frames,
     segment_twists,
 )
-from solvers.depth_tracking.body.model import usual_body
+from solvers.depth_tracking.body.model import default_body
 from solvers.depth_tracking.body.tables import JOINTS, PARENTS, SEGMENTS
 
 
@@ -23,12 +23,12 @@ def posed(**coordinates):
 
 
 def at(pose, name, body=None):
-    body = body or usual_body()
+    body = body or default_body()
     return joint_positions(body, segment_frames(body, pose))[JOINTS.index(name)]
 
 
 def test_the_pose_of_zeros_stands_upright():
-    body, zeros = usual_body(), np.zeros(36)
+    body, zeros = default_body(), np.zeros(36)
     assert_allclose(segment_frames(body, zeros)[:, :3, :3], np.tile(np.eye(3), (17, 1, 1)))
     assert at(zeros, "leftHand")[0] > 0.1 > -0.1 > at(zeros, "rightHand")[0]
     assert at(zeros, "head")[1] < at(zeros, "leftHand")[1] < at(zeros, "leftFoot")[1]
@@ -58,12 +58,12 @@ def test_coordinates_turn_the_way_their_limits_assume(coordinate, joint, axis, s
 
 
 def test_equals_the_chain_by_hand(rng):
-    body, pose = usual_body(), rng.normal(scale=0.7, size=36)
+    body, pose = default_body(), rng.normal(scale=0.7, size=36)
     frames = segment_frames(body, pose)
     rotations = [Rotation.from_euler("YZX", pose[3:6])]
     origins = [pose[:3]]
     for segment, parent in list(enumerate(PARENTS))[1:]:
-        turned = Rotation.from_rotvec(TURNS[segment] @ pose)
+        turned = Rotation.from_rotvec(ROTATION_AXES[segment] @ pose)
         origins.append(origins[parent] + rotations[parent].apply(body.offsets[segment]))
         rotations.append(rotations[parent] * turned)
 
@@ -72,7 +72,7 @@ def test_equals_the_chain_by_hand(rng):
 
 
 def test_many_poses_at_once_equal_each_alone(rng):
-    body, poses = usual_body(), rng.normal(size=(2, 3, 36))
+    body, poses = default_body(), rng.normal(size=(2, 3, 36))
     alone = [[segment_frames(body, pose) for pose in row] for row in poses]
 
     together = segment_frames(body, poses)
@@ -84,7 +84,7 @@ def test_many_poses_at_once_equal_each_alone(rng):
 @pytest.mark.parametrize("scale", [0.0, 1e-5, 0.6, 2.0])
 def test_the_derivative_equals_central_differences(rng, scale):
     """A point fixed to each segment moves as the twists say, for every coordinate."""
-    body, step = usual_body(), 1e-6
+    body, step = default_body(), 1e-6
     pose = rng.normal(scale=scale, size=36) if scale else np.zeros(36)
     pose[:3] = (0.3, -0.2, 3.0)
     local = rng.normal(scale=0.2, size=(17, 3))
@@ -104,7 +104,7 @@ def test_the_derivative_equals_central_differences(rng, scale):
 
 
 def test_a_full_turn_brings_everything_back(rng):
-    body, pose = usual_body(), rng.normal(scale=0.4, size=36)
+    body, pose = default_body(), rng.normal(scale=0.4, size=36)
     turned = pose.copy()
     turned[COORDINATES.index("yaw")] += 2 * np.pi
 
@@ -112,7 +112,7 @@ def test_a_full_turn_brings_everything_back(rng):
 
 
 def test_the_lower_back_bends_spine_and_chest_by_half_each():
-    body = usual_body()
+    body = default_body()
     frames = segment_frames(body, posed(lowerBackY=0.8))
     angles = Rotation.from_matrix(frames[:3, :3, :3]).magnitude()
 

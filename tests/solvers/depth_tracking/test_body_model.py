@@ -8,7 +8,7 @@ from numpy.testing import assert_allclose, assert_array_equal
 
 from solvers.depth_tracking.body.coordinates import COORDINATES, mirrored_coordinates
 from solvers.depth_tracking.body.kinematics import joint_positions, segment_frames
-from solvers.depth_tracking.body.model import BodyModel, load_body_model, usual_body
+from solvers.depth_tracking.body.model import BodyModel, default_body, load_body_model
 from solvers.depth_tracking.body.tables import CAPSULES, JOINTS, LENGTHS, PARENTS, SEGMENTS
 from solvers.errors import InvalidFileError, InvalidMotionError
 from solvers.motion.humanoid.roles import HUMANOID_ROLES
@@ -33,13 +33,13 @@ def test_the_parts_are_those_of_the_paper():
 
 
 def test_a_usual_body_is_as_tall_as_asked_for():
-    body = usual_body(1.75)
+    body = default_body(1.75)
     frames = segment_frames(body, np.zeros(36))
     crown = crown_height(body, frames)
     sole = joint(body, np.zeros(36), "leftFoot")[1] + 0.25 * body.length("leftFoot") + 0.038
 
     assert_allclose(sole - crown, 1.75, atol=0.03)
-    assert_allclose(usual_body(1.4).lengths / usual_body(1.75).lengths, 1.4 / 1.75)
+    assert_allclose(default_body(1.4).lengths / default_body(1.75).lengths, 1.4 / 1.75)
 
 
 def crown_height(body, frames):
@@ -49,7 +49,7 @@ def crown_height(body, frames):
 
 
 def test_joints_are_as_far_apart_as_the_lengths_say(rng):
-    body, pose = usual_body(), rng.normal(scale=0.5, size=36)
+    body, pose = default_body(), rng.normal(scale=0.5, size=36)
     for upper, lower, length in (
         ("leftUpperArm", "leftLowerArm", "leftUpperArm"),
         ("rightLowerArm", "rightHand", "rightLowerArm"),
@@ -63,7 +63,7 @@ def test_joints_are_as_far_apart_as_the_lengths_say(rng):
 
 
 def test_exchanging_left_and_right_mirrors_the_joints(rng):
-    body, pose = usual_body(), rng.normal(scale=0.4, size=36)
+    body, pose = default_body(), rng.normal(scale=0.4, size=36)
     order, signs = mirrored_coordinates()
     sides = {"left": "right", "right": "left"}
     names = [
@@ -79,7 +79,7 @@ def test_exchanging_left_and_right_mirrors_the_joints(rng):
 
 
 def test_symmetric_takes_the_mean_of_both_sides():
-    body = usual_body().with_lengths(leftUpperArm=0.20, rightUpperArm=0.30, chest=0.33)
+    body = default_body().with_lengths(leftUpperArm=0.20, rightUpperArm=0.30, chest=0.33)
 
     even = body.symmetric()
 
@@ -89,7 +89,7 @@ def test_symmetric_takes_the_mean_of_both_sides():
 
 
 def test_saving_and_loading_changes_nothing(tmp_path):
-    body = usual_body(1.62).with_lengths(hipWidth=0.11)
+    body = default_body(1.62).with_lengths(hipWidth=0.11)
     body.save(tmp_path / "body.npz")
 
     loaded = load_body_model(tmp_path / "body.npz")
@@ -99,7 +99,7 @@ def test_saving_and_loading_changes_nothing(tmp_path):
 
 
 def test_damaged_or_foreign_files_are_refused(tmp_path):
-    body, path = usual_body(), tmp_path / "body.npz"
+    body, path = default_body(), tmp_path / "body.npz"
     with pytest.raises(InvalidFileError, match="no file"):
         load_body_model(path)
     body.save(path)
@@ -131,12 +131,12 @@ def test_impossible_bodies_are_refused(lengths, radii, words):
     with pytest.raises(InvalidMotionError, match=words):
         BodyModel(lengths, radii)
     with pytest.raises(InvalidMotionError, match=r"Nobody is 3 m tall"):
-        usual_body(3.0)
+        default_body(3.0)
 
 
 def test_a_pickle_does_not_tell_what_was_asked_of_a_body():
     """Whoever compares pickles to see whether a body was changed depends on that."""
-    body = usual_body()
+    body = default_body()
     before = pickle.dumps(body)
     assert body.offsets.shape == (len(JOINTS), 3) and body.capsule_ends.shape[0] == 19
 

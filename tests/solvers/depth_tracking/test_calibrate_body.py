@@ -8,7 +8,7 @@ import pytest
 from solvers.depth_scene.camera import Camera
 from solvers.depth_scene.recording import DepthRecording
 from solvers.depth_tracking.body.coordinates import COORDINATES, N_COORDINATES
-from solvers.depth_tracking.body.model import usual_body
+from solvers.depth_tracking.body.model import default_body
 from solvers.depth_tracking.body.tables import CAPSULES
 from solvers.depth_tracking.capturing.calibrate_body import (
     CalibrationSettings,
@@ -17,7 +17,7 @@ from solvers.depth_tracking.capturing.calibrate_body import (
 )
 from solvers.depth_tracking.capturing.sample_cylinders import Cylinder, sample_cylinder
 from solvers.depth_tracking.forest.pixel_forest import load_pixel_forest
-from solvers.depth_tracking.terms.hypothesis import imagine
+from solvers.depth_tracking.terms.hypothesis import render_hypothesis
 from solvers.errors import InvalidMotionError
 
 CAMERA = Camera(285.63, 285.63, 159.5, 119.5, 320, 240)
@@ -38,7 +38,7 @@ def arms_away(body, arms=0.7):
         ("leftFemurZ", 0.15), ("rightFemurZ", 0.15),
     ):  # fmt: skip
         pose[COORDINATES.index(name)] = angle
-    depth = imagine(body, pose, CAMERA).picture.depth_picture().astype(np.float32)
+    depth = render_hypothesis(body, pose, CAMERA).picture.depth_picture().astype(np.float32)
     return DepthRecording(CAMERA, 1, 30.0, lambda frame: depth)
 
 
@@ -103,7 +103,7 @@ def test_joints_lie_between_cylinders_and_sides_are_averaged():
 
 @pytest.mark.parametrize("stature", [1.55, 1.9])
 def test_bodies_of_capsules_are_measured(forest, stature):
-    true = usual_body(stature)
+    true = default_body(stature)
     found = calibrate_body(arms_away(true), 0, forest)
     for limb in LIMBS:
         for side in ("left", "right"):
@@ -113,7 +113,7 @@ def test_bodies_of_capsules_are_measured(forest, stature):
 
 
 def test_what_was_published_measures_coarser(forest):
-    true = usual_body(1.75)
+    true = default_body(1.75)
     plain = calibrate_body(
         arms_away(true), 0, forest, settings=CalibrationSettings(refine=False)
     )
@@ -123,7 +123,7 @@ def test_what_was_published_measures_coarser(forest):
 
 
 def test_the_same_frame_gives_the_same_body(forest):
-    depth = arms_away(usual_body())
+    depth = arms_away(default_body())
     settings = CalibrationSettings(refine=False, n_samples=60)
     one, other = (calibrate_body(depth, 0, forest, settings=settings) for _ in range(2))
     np.testing.assert_array_equal(one.lengths, other.lengths)
@@ -131,7 +131,7 @@ def test_the_same_frame_gives_the_same_body(forest):
 
 
 def test_frames_that_show_too_little_are_refused(forest):
-    whole = arms_away(usual_body())
+    whole = arms_away(default_body())
     with pytest.raises(InvalidMotionError, match="no frame 3"):
         calibrate_body(whole, 3, forest)
     empty = replace(whole, read_depth=lambda frame: np.zeros((240, 320), np.float32))

@@ -13,7 +13,7 @@ from solvers.depth_scene.floor import Floor
 from solvers.depth_scene.recording import DepthRecording
 from solvers.depth_tracking.body.coordinates import COORDINATES
 from solvers.depth_tracking.body.kinematics import joint_positions, segment_frames
-from solvers.depth_tracking.body.model import usual_body
+from solvers.depth_tracking.body.model import default_body
 from solvers.depth_tracking.body.motion import SCENE_FROM_CAMERA, body_motion, body_skeleton
 from solvers.depth_tracking.body.motion_prior import load_motion_prior
 from solvers.depth_tracking.body.tables import JOINTS
@@ -23,7 +23,7 @@ from solvers.depth_tracking.capturing.smooth_take import smooth_take
 from solvers.errors import InvalidMotionError, SolveCancelled
 from solvers.motion import find_humanoid_map, forward_kinematics
 
-BODY = usual_body()
+BODY = default_body()
 
 
 def joints_of(poses):

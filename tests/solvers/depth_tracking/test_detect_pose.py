@@ -6,15 +6,15 @@ import pytest
 from solvers.depth_scene.camera import Camera
 from solvers.depth_tracking.body.coordinates import COORDINATES, N_COORDINATES
 from solvers.depth_tracking.body.kinematics import joint_positions, segment_frames
-from solvers.depth_tracking.body.model import usual_body
+from solvers.depth_tracking.body.model import default_body
 from solvers.depth_tracking.body.tables import JOINTS
 from solvers.depth_tracking.detection.detect_pose import DetectorSettings, detect_pose
 from solvers.depth_tracking.forest.pixel_forest import classify_pixels, load_pixel_forest
-from solvers.depth_tracking.terms.hypothesis import imagine
+from solvers.depth_tracking.terms.hypothesis import render_hypothesis
 from solvers.errors import InvalidMotionError
 
 CAMERA = Camera(142.8, 142.8, 79.5, 59.5, 160, 120)
-BODY = usual_body()
+BODY = default_body()
 CMU = {
     "head": "Head", "leftHand": "LeftHand", "rightHand": "RightHand",
     "leftLowerLeg": "LeftLeg", "rightLowerLeg": "RightLeg", "leftFoot": "LeftFoot",
@@ -32,7 +32,9 @@ def capsule_person(**angles):
     pose[:3] = 0.05, -0.1, 2.6
     for name, angle in angles.items():
         pose[COORDINATES.index(name)] = angle
-    return pose, imagine(BODY, pose, CAMERA).picture.depth_picture().astype(np.float32)
+    return pose, render_hypothesis(BODY, pose, CAMERA).picture.depth_picture().astype(
+        np.float32
+    )
 
 
 @pytest.mark.parametrize(

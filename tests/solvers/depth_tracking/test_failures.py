@@ -5,27 +5,27 @@ import pytest
 from drawn_bodies import CAMERA, NATURAL, drawn, recorded, waving
 
 from solvers.depth_tracking.body.coordinates import COORDINATES
-from solvers.depth_tracking.body.model import usual_body
+from solvers.depth_tracking.body.model import default_body
 from solvers.depth_tracking.body.normal_equations import PoseEquations
-from solvers.depth_tracking.terms.hypothesis import imagine
+from solvers.depth_tracking.terms.hypothesis import render_hypothesis
 from solvers.depth_tracking.terms.observation import Observation
 from solvers.depth_tracking.tracking.failure_test import (
     FEATURES,
     FailureTest,
-    failure_chance,
     failure_features,
+    failure_probability,
     has_failed,
 )
-from solvers.depth_tracking.tracking.fit_quality import fit_quality, unseen
+from solvers.depth_tracking.tracking.fit_quality import fit_quality, quality_without_actor
 from solvers.depth_tracking.tracking.register_pose import Registered
 
-BODY = usual_body()
+BODY = default_body()
 LIMIT = 0.08
 
 
 def judged(pose, picture):
     free = PoseEquations(np.eye(36), np.zeros(36), 0.0)
-    found = Registered(imagine(BODY, pose, CAMERA), free, 1)
+    found = Registered(render_hypothesis(BODY, pose, CAMERA), free, 1)
     return fit_quality(BODY, found, Observation(CAMERA, picture), LIMIT)
 
 
@@ -43,13 +43,14 @@ def test_the_true_pose_has_not_failed_and_one_aside_has(test):
     assert not has_failed(judged(NATURAL, picture), test)
     assert has_failed(judged(moved(rootX=0.3), picture), test)
     assert has_failed(judged(moved(rootZ=0.3), picture), test)
-    assert has_failed(unseen(), test)
+    assert has_failed(quality_without_actor(), test)
 
 
 def test_the_chance_grows_as_the_body_leaves_the_actor():
     picture = drawn(NATURAL)
     chances = [
-        failure_chance(judged(moved(rootX=aside), picture)) for aside in np.arange(7) * 0.05
+        failure_probability(judged(moved(rootX=aside), picture))
+        for aside in np.arange(7) * 0.05
     ]
     assert np.all(np.diff(chances) > 0.0) and 0.0 < chances[0] < chances[-1] < 1.0
 

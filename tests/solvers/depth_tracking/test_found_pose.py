@@ -6,17 +6,17 @@ from drawn_bodies import CAMERA, recorded, waving
 from numpy.testing import assert_allclose, assert_array_equal
 
 from solvers.depth_scene.recording import DepthRecording
-from solvers.depth_tracking.body.model import usual_body
+from solvers.depth_tracking.body.model import default_body
 from solvers.depth_tracking.capturing import find_body
 from solvers.depth_tracking.capturing.capture import CaptureSettings, capture
 from solvers.depth_tracking.capturing.unfinished_capture import unfinished_capture
-from solvers.depth_tracking.tracking.pose_preview import shifted
+from solvers.depth_tracking.tracking.pose_preview import offset_frames
 from solvers.errors import InvalidMotionError
 
 
 def test_every_pass_is_shown_and_the_last_poses_are_the_result():
     seen = []
-    found = capture(recorded(waving(6)), usual_body(), on_pose=seen.append)
+    found = capture(recorded(waving(6)), default_body(), on_pose=seen.append)
 
     frames = [one.frame for one in seen]
     assert frames == [*range(6), *range(5, -1, -1), *range(6)]
@@ -50,8 +50,8 @@ def test_while_the_body_is_looked_for_poses_are_shown_where_they_are_in_the_take
 def test_shifted():
     seen = []
     one = capture(
-        recorded(waving(2)), usual_body(),
-        settings=CaptureSettings(backward=False), on_pose=shifted(seen.append, 7),
+        recorded(waving(2)), default_body(),
+        settings=CaptureSettings(backward=False), on_pose=offset_frames(seen.append, 7),
     )  # fmt: skip
     assert [each.frame for each in seen] == [7, 8, 7, 8] and len(one.poses) == 2
 
@@ -60,7 +60,7 @@ def test_what_was_found_before_esc_is_kept():
     """Of 10 frames there and back the last 7 were found twice."""
     truth = waving(10)
     seen = []
-    whole = capture(recorded(truth), usual_body(), on_pose=seen.append,
+    whole = capture(recorded(truth), default_body(), on_pose=seen.append,
                     settings=CaptureSettings(smoothing=0.0))  # fmt: skip
 
     first, some = unfinished_capture(seen[:6], 30.0)
@@ -76,9 +76,9 @@ def test_what_was_found_before_esc_is_kept():
 
 def test_a_body_that_was_given_up_is_left_out_and_nothing_is_refused():
     seen = []
-    capture(recorded(waving(4)), usual_body(), on_pose=seen.append,
+    capture(recorded(waving(4)), default_body(), on_pose=seen.append,
             settings=CaptureSettings(backward=False, smoothing=0.0))  # fmt: skip
-    other = usual_body(1.6)
+    other = default_body(1.6)
     before = [one._replace(body=other, frame=one.frame + 20) for one in seen]
 
     first, kept = unfinished_capture([*before, *(one._replace(frame=7) for one in seen[:1])],

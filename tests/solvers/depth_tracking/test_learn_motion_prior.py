@@ -8,11 +8,11 @@ from solvers.depth_tracking.body.kinematics import joint_positions, segment_fram
 from solvers.depth_tracking.body.learn_motion_prior import (
     camera_joints,
     learn_motion_prior,
-    poses_of_motion,
+    poses_from_motion,
 )
-from solvers.depth_tracking.body.model import usual_body
+from solvers.depth_tracking.body.model import default_body
 from solvers.depth_tracking.body.motion import body_motion
-from solvers.depth_tracking.body.pose_from_joints import body_of_joints, pose_from_joints
+from solvers.depth_tracking.body.pose_from_joints import body_from_joints, pose_from_joints
 from solvers.depth_tracking.body.tables import JOINTS
 from solvers.errors import InvalidMotionError
 from solvers.samples import GaitSettings, walking_gait
@@ -23,9 +23,9 @@ ENDS = ("leftHand", "rightHand", "leftFoot", "rightFoot", "leftLowerLeg", "right
 def test_the_body_walks_like_the_walker():
     gait = walking_gait(GaitSettings(duration=1.0, seed=2))
     joints = camera_joints(gait)
-    body = body_of_joints(usual_body(), joints)
+    body = body_from_joints(default_body(), joints)
 
-    poses = poses_of_motion(gait)
+    poses = poses_from_motion(gait)
 
     found = joint_positions(body, segment_frames(body, poses))
     places = [JOINTS.index(name) for name in ENDS]
@@ -35,7 +35,7 @@ def test_the_body_walks_like_the_walker():
 
 
 def test_joints_of_a_known_pose_give_the_pose_back(rng):
-    body = usual_body()
+    body = default_body()
     pose = np.zeros(36)
     pose[:6] = (0.2, -0.1, 3.0, 2.5, 0.1, -0.2)
     pose[14:] = rng.uniform(0.05, 0.5, size=22)
@@ -48,23 +48,23 @@ def test_joints_of_a_known_pose_give_the_pose_back(rng):
 
 
 def test_lengths_are_measured_between_joints():
-    body = usual_body(1.6).with_lengths(leftUpperArm=0.3)
+    body = default_body(1.6).with_lengths(leftUpperArm=0.3)
     pose = np.linspace(-0.2, 0.2, 36)
     joints = joint_positions(body, segment_frames(body, np.stack([pose, 0.5 * pose])))
 
-    measured = body_of_joints(usual_body(), joints)
+    measured = body_from_joints(default_body(), joints)
 
     for name in ("leftUpperArm", "rightLowerArm", "leftUpperLeg", "hipWidth"):
         assert_allclose(measured.length(name), body.length(name), atol=1e-9)
 
 
 def test_a_motion_of_the_body_becomes_its_poses_again(rng):
-    body = usual_body()
+    body = default_body()
     poses = np.zeros((5, 36))
     poses[:, 2] = 3.0
     poses[:, 14:] = rng.uniform(0.1, 0.4, size=22) + 0.02 * np.arange(5)[:, np.newaxis]
 
-    again = poses_of_motion(body_motion(body, poses, 30.0))
+    again = poses_from_motion(body_motion(body, poses, 30.0))
 
     joints = [joint_positions(body, segment_frames(body, one)) for one in (poses, again)]
     places = [JOINTS.index(name) for name in ENDS]

@@ -8,26 +8,34 @@ from drawn_bodies import CAMERA, NATURAL, drawn, observed, recorded, waving
 from numpy.testing import assert_allclose, assert_array_equal
 
 from solvers.depth_tracking.body.coordinates import COORDINATES, N_ROOT
-from solvers.depth_tracking.body.model import usual_body
+from solvers.depth_tracking.body.model import default_body
 from solvers.depth_tracking.body.motion_prior import (
     LAYOUT,
     LocalPca,
     load_motion_prior,
     local_pca,
-    motion_prior_of,
+    motion_prior_from_poses,
 )
-from solvers.depth_tracking.body.normal_equations import in_coordinates, segment_equations, step
+from solvers.depth_tracking.body.normal_equations import (
+    equations_in_coordinates,
+    segment_equations,
+    solve_step,
+)
 from solvers.depth_tracking.capturing.capture import CaptureSettings, capture
 from solvers.depth_tracking.terms.depth_edges import canny, edge_pixels
 from solvers.depth_tracking.terms.edges import edge_term
-from solvers.depth_tracking.terms.hypothesis import imagine
+from solvers.depth_tracking.terms.hypothesis import render_hypothesis
 from solvers.depth_tracking.terms.observation import Observation
-from solvers.depth_tracking.terms.surface import Memory, remembered_intensities, surface_term
-from solvers.depth_tracking.terms.tracker_settings import LOU12, USUAL, WZC12
+from solvers.depth_tracking.terms.surface import (
+    PreviousFrame,
+    remembered_intensities,
+    surface_term,
+)
+from solvers.depth_tracking.terms.tracker_settings import DEFAULT_TRACKER, LOU12, WZC12
 from solvers.depth_tracking.tracking.track_pose import track_pose
 from solvers.errors import InvalidFileError, InvalidMotionError
 
-BODY = usual_body()
+BODY = default_body()
 
 
 def test_canny_finds_a_step_as_one_line_in_its_place():
@@ -64,19 +72,20 @@ def test_edges_of_an_actor_are_its_own_pixels_near_the_outline():
 def test_a_step_of_each_term_brings_the_body_back(term):
     there = NATURAL.copy()
     there[:2] += (0.03, -0.02)
-    hypothesis = imagine(BODY, there, CAMERA)
+    hypothesis = render_hypothesis(BODY, there, CAMERA)
     extra = (None,) if term is surface_term else ()
 
     equations = term(hypothesis, observed(NATURAL), *extra, 1.0)
-    change = step(
-        in_coordinates([segment_equations(equations)], hypothesis.twists), np.full(36, 0.5)
+    change = solve_step(
+        equations_in_coordinates([segment_equations(equations)], hypothesis.twists),
+        np.full(36, 0.5),
     )
 
     assert change[:2] @ [0.03, -0.02] < 0.0
 
 
 def test_a_perfect_pose_is_left_alone():
-    hypothesis, observation = imagine(BODY, NATURAL, CAMERA), observed(NATURAL)
+    hypothesis, observation = render_hypothesis(BODY, NATURAL, CAMERA), observed(NATURAL)
     for equations in (
         surface_term(hypothesis, observation, None, 1.0),
         edge_term(hypothesis, observation, 1.0),
@@ -86,7 +95,7 @@ def test_a_perfect_pose_is_left_alone():
 
 def striped(pose):
     """A body whose colours are painted on its skin: each point's place along its segment."""
-    hypothesis = imagine(BODY, pose, CAMERA)
+    hypothesis = render_hypothesis(BODY, pose, CAMERA)
     frame = hypothesis.frames[hypothesis.segments]
     local = np.einsum("nji,nj->ni", frame[:, :3, :3], hypothesis.points - frame[:, :3, 3])
     color = np.zeros((120 * 160, 3))
@@ -102,7 +111,7 @@ def test_colours_are_remembered_where_the_skin_moved():
     now, after = striped(moved)
     chosen = np.arange(len(now.points))
 
-    remembered = remembered_intensities(now, chosen, Memory(then.frames, before))
+    remembered = remembered_intensities(now, chosen, PreviousFrame(then.frames, before))
 
     actual = after.intensities[now.picture.pixels]
     known = np.isfinite(remembered)
@@ -118,15 +127,17 @@ def test_colour_tells_how_far_a_limb_slid_along_itself():
     risen[1] -= 0.03
     _, after = striped(risen)
     change = []
-    for memory in (None, Memory(then.frames, before)):
+    for memory in (None, PreviousFrame(then.frames, before)):
         asked = segment_equations(surface_term(then, after, memory, 1.0))
-        change.append(step(in_coordinates([asked], then.twists), np.full(36, 0.5))[1])
+        change.append(
+            solve_step(equations_in_coordinates([asked], then.twists), np.full(36, 0.5))[1]
+        )
     assert abs(change[1] + 0.03) < abs(change[0] + 0.03)
 
 
 def test_the_published_tracker_follows_a_slow_actor():
     truth = waving(6)
-    prior = motion_prior_of([waving(60)])
+    prior = motion_prior_from_poses([waving(60)])
 
     tracked = track_pose(recorded(truth), BODY, truth[0], prior, settings=LOU12)
 
@@ -137,7 +148,7 @@ def test_the_published_tracker_follows_a_slow_actor():
 def test_the_local_plane_holds_what_followed():
     """Poses on a line in pose space: one component, and poses off it are asked back."""
     line = np.linspace(0.0, 1.0, 200)[:, np.newaxis] * np.eye(36)[10] + 0.1 * np.eye(36)[20]
-    prior = motion_prior_of([line])
+    prior = motion_prior_from_poses([line])
 
     plane = local_pca(prior, line[100])
     asked = plane.equations(line[100] + 0.5 * np.eye(36)[15], 2.0)
@@ -151,7 +162,7 @@ def test_the_local_plane_holds_what_followed():
 def test_planes_do_not_run_from_one_motion_into_the_next():
     low, high = np.zeros((60, 36)), np.ones((60, 36))
     low[:, 10] = np.linspace(0.0, 0.1, 60)
-    plane = local_pca(motion_prior_of([low, high]), low[-1])
+    plane = local_pca(motion_prior_from_poses([low, high]), low[-1])
     assert (plane.mean < 0.2).all()
 
 
@@ -171,7 +182,7 @@ def test_equations_equal_the_dense_ones(rng):
 
 
 def test_saving_and_loading_a_prior(tmp_path):
-    prior = motion_prior_of([waving(5), waving(3)], "two waves")
+    prior = motion_prior_from_poses([waving(5), waving(3)], "two waves")
     prior.save(tmp_path / "prior.npz")
 
     loaded = load_motion_prior(tmp_path / "prior.npz")
@@ -184,7 +195,7 @@ def test_saving_and_loading_a_prior(tmp_path):
     with pytest.raises(InvalidFileError, match="other parts"):
         load_motion_prior(tmp_path / "bad.npz")
     with pytest.raises(InvalidMotionError, match="no pose to learn"):
-        motion_prior_of([])
+        motion_prior_from_poses([])
 
 
 def test_the_shipped_prior_knows_walking_and_its_licence():
@@ -211,7 +222,7 @@ def test_colors_are_read_only_where_a_term_compares_them():
     depth = replace(recorded(truth), read_color=read_color)
 
     found = capture(depth, BODY, settings=CaptureSettings())
-    for settings in (USUAL, WZC12, replace(LOU12, surface_weight=0.0)):
+    for settings in (DEFAULT_TRACKER, WZC12, replace(LOU12, surface_weight=0.0)):
         track_pose(depth, BODY, truth[0], settings=settings)
 
     assert (found.motion.n_frames, asked) == (4, [])

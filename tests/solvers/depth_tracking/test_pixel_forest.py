@@ -10,14 +10,14 @@ from hypothesis import strategies as st
 
 from solvers.depth_scene.camera import Camera
 from solvers.depth_tracking.forest.depth_differences import (
-    FAR,
-    differences,
-    pixel_views,
-    with_margin,
+    BACKGROUND_MM,
+    depth_differences,
+    pad_depth_image,
+    pixel_features,
 )
 from solvers.depth_tracking.forest.grow_tree import (
-    EDGES,
     N_BINS,
+    THRESHOLDS_MM,
     Tree,
     TreeSettings,
     _gains,
@@ -31,14 +31,14 @@ from solvers.depth_tracking.forest.pixel_forest import (
     classify_pixels,
     load_pixel_forest,
 )
-from solvers.depth_tracking.forest_training.render_mesh import NOTHING
+from solvers.depth_tracking.forest_training.render_mesh import NO_PART
 from solvers.depth_tracking.forest_training.train_forest import (
     PixelForestSettings,
-    draw_pictures,
+    draw_images,
     draw_pixels,
     train_pixel_forest,
 )
-from solvers.depth_tracking.forest_training.training_images import CAMERA, picture_source
+from solvers.depth_tracking.forest_training.training_images import CAMERA, image_source
 from solvers.errors import InvalidFileError, InvalidMotionError
 from solvers.samples import GaitSettings, walking_gait
 
@@ -71,9 +71,9 @@ def forest(gait, bodies):
 @pytest.fixture(scope="module")
 def unseen(gait, bodies):
     """Pictures of another seed."""
-    source = picture_source([gait], bodies, SMALL, 99)
-    seen = draw_pictures(source, range(1))
-    depth = np.where(seen.pictures == FAR, 0, seen.pictures)[:, 1:-1, 1:-1] / 1000.0
+    source = image_source([gait], bodies, SMALL, 99)
+    seen = draw_images(source, range(1))
+    depth = np.where(seen.pictures == BACKGROUND_MM, 0, seen.pictures)[:, 1:-1, 1:-1] / 1000.0
     return depth.astype(np.float32), seen.labels
 
 
@@ -83,7 +83,7 @@ def probed(depth, camera, row, column, right, down):
     u = int(np.rint(column + camera.fx * right / z))
     v = int(np.rint(row + camera.fy * down / z))
     inside = 0 <= u < camera.width and 0 <= v < camera.height
-    return round(1000 * float(depth[v, u])) if inside and depth[v, u] > 0 else FAR
+    return round(1000 * float(depth[v, u])) if inside and depth[v, u] > 0 else BACKGROUND_MM
 
 
 @settings(max_examples=30)
@@ -94,10 +94,10 @@ def test_features_are_differences_at_places_in_metres(seed):
     depth = (rng.uniform(0.5, 3, (16, 20)) * (rng.random((16, 20)) < 0.7)).astype(np.float32)
     rows, columns = np.nonzero(depth)
     offsets = rng.uniform(-1, 1, 4).astype(np.float32)
-    views = pixel_views(
-        with_margin(depth)[None], np.zeros(len(rows), int), rows, columns, camera
+    views = pixel_features(
+        pad_depth_image(depth)[None], np.zeros(len(rows), int), rows, columns, camera
     )
-    told = differences(views, offsets)
+    told = depth_differences(views, offsets)
     exact = [
         probed(depth, camera, row, column, *offsets[:2])
         - probed(depth, camera, row, column, *offsets[2:])
@@ -131,8 +131,8 @@ def test_a_tree_learns_what_one_feature_tells(rng):
     depth = np.full((40, 60), 2.0, dtype=np.float32)
     depth[:, 30:] = 0.0
     rows, columns = np.nonzero(depth)
-    views = pixel_views(
-        with_margin(depth)[None], np.zeros(len(rows), int), rows, columns, CAMERA
+    views = pixel_features(
+        pad_depth_image(depth)[None], np.zeros(len(rows), int), rows, columns, CAMERA
     )
     views = views._replace(width=60, height=40)
     parts = np.where(columns >= 25, 4, 9).astype(np.uint8)
@@ -192,11 +192,11 @@ def test_the_same_seed_grows_the_same_forest(gait, bodies, forest):
 
 
 def test_pixels_to_learn_from_are_of_bodies_and_none_twice(gait, bodies, rng):
-    seen = draw_pictures(picture_source([gait], bodies, SMALL, 0), range(1))
+    seen = draw_images(image_source([gait], bodies, SMALL, 0), range(1))
     views, parts = draw_pixels(seen, 50, rng)
     assert len(np.unique(views.place)) == len(views.place)
     assert parts.max() < N_PARTS
-    assert (seen.labels != NOTHING).sum(axis=(1, 2)).clip(max=50).sum() == len(parts)
+    assert (seen.labels != NO_PART).sum(axis=(1, 2)).clip(max=50).sum() == len(parts)
 
 
 def test_an_empty_picture_has_no_parts(forest):
@@ -257,8 +257,8 @@ def test_training_needs_poses_and_bodies(gait, bodies):
 
 
 def test_edges_are_in_order():
-    assert (np.diff(EDGES) > 0).all()
-    np.testing.assert_array_equal(EDGES, -EDGES[::-1])
+    assert (np.diff(THRESHOLDS_MM) > 0).all()
+    np.testing.assert_array_equal(THRESHOLDS_MM, -THRESHOLDS_MM[::-1])
 
 
 def test_the_shipped_forest_is_small_and_says_what_it_learned_from():

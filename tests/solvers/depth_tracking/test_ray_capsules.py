@@ -5,7 +5,7 @@ from numpy.testing import assert_allclose, assert_array_equal
 
 from solvers.depth_scene.camera import Camera
 from solvers.depth_tracking.body.kinematics import segment_frames
-from solvers.depth_tracking.body.model import usual_body
+from solvers.depth_tracking.body.model import default_body
 from solvers.depth_tracking.body.ray_capsules import cast_rays
 from solvers.depth_tracking.body.tables import CAPSULE_SEGMENTS, CAPSULES, SEGMENTS
 
@@ -55,7 +55,7 @@ def distances(body, frames, points):
 
 
 def test_equals_marching_along_every_ray(rng):
-    body, pose = usual_body(), rng.normal(scale=0.5, size=36)
+    body, pose = default_body(), rng.normal(scale=0.5, size=36)
     pose[:3] = (0.1, 0.1, 2.9)
     frames = segment_frames(body, pose)
 
@@ -77,7 +77,7 @@ def test_equals_marching_along_every_ray(rng):
 
 def test_a_ball_on_the_axis_is_its_radius_nearer_than_its_centre():
     """The head, shrunk to a ball, seen by the pixel that looks straight at its centre."""
-    body = usual_body().with_lengths(head=1e-6)
+    body = default_body().with_lengths(head=1e-6)
     radii = body.radii.copy()
     radii[CAPSULES.index("head")] = 0.1
     body = type(body)(body.lengths, radii)
@@ -97,7 +97,7 @@ def test_a_ball_on_the_axis_is_its_radius_nearer_than_its_centre():
 
 def test_a_straight_limb_is_its_radius_nearer_than_its_axis():
     """The upper leg is parallel to the picture: in its middle column depth = axis - radius."""
-    body, pose = usual_body(), standing()
+    body, pose = default_body(), standing()
     frames = segment_frames(body, pose)
     knee = frames[SEGMENTS.index("leftLowerLeg"), :3, 3]
     hip = frames[SEGMENTS.index("leftUpperLeg"), :3, 3]
@@ -111,7 +111,7 @@ def test_a_straight_limb_is_its_radius_nearer_than_its_axis():
 
 
 def test_an_elliptic_chest_is_wider_than_deep():
-    body = usual_body()
+    body = default_body()
     front, side = (
         (
             cast_rays(body, segment_frames(body, standing(yaw=yaw)), CAMERA).segment_picture()
@@ -124,7 +124,7 @@ def test_an_elliptic_chest_is_wider_than_deep():
 
 
 def test_pixels_come_once_and_fewer_pixels_see_the_same():
-    body, frames = usual_body(), segment_frames(usual_body(), standing(yaw=0.5))
+    body, frames = default_body(), segment_frames(default_body(), standing(yaw=0.5))
     fine, coarse = (cast_rays(body, frames, camera) for camera in (CAMERA, CAMERA.every(2)))
 
     assert len(np.unique(fine.pixels)) == len(fine.pixels)
@@ -133,7 +133,7 @@ def test_pixels_come_once_and_fewer_pixels_see_the_same():
 
 
 def test_who_leaves_the_picture_is_not_seen():
-    body = usual_body()
+    body = default_body()
     for place in ((30.0, 0.0, 3.0), (0.0, 0.0, -3.0), (0.0, 0.0, 0.1)):
         pose = standing()
         pose[:3] = place

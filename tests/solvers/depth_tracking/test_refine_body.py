@@ -6,8 +6,8 @@ from drawn_bodies import CAMERA, NATURAL, recorded, waving
 from numpy.testing import assert_allclose
 
 from solvers.depth_scene.recording import DepthRecording
-from solvers.depth_tracking.body.model import usual_body
-from solvers.depth_tracking.body.shape import MEASURES, resized, shape_jacobian
+from solvers.depth_tracking.body.model import default_body
+from solvers.depth_tracking.body.shape import MEASURES, resize_body, shape_jacobian
 from solvers.depth_tracking.body.tables import LENGTHS
 from solvers.depth_tracking.capturing.refine_body import (
     RefineBodySettings,
@@ -15,17 +15,17 @@ from solvers.depth_tracking.capturing.refine_body import (
     refine_body,
 )
 from solvers.depth_tracking.terms.depth_image import depth_image_term
-from solvers.depth_tracking.terms.hypothesis import imagine
+from solvers.depth_tracking.terms.hypothesis import render_hypothesis
 from solvers.depth_tracking.terms.observation import Observation
 from solvers.depth_tracking.terms.pixel_groups import group_pixels
 from solvers.depth_tracking.tracking.track_pose import track_pose
 from solvers.errors import InvalidMotionError
 
-BODY = usual_body()
+BODY = default_body()
 
 
 def depth_rows(body, pose):
-    hypothesis = imagine(body, pose, CAMERA)
+    hypothesis = render_hypothesis(body, pose, CAMERA)
     observation = Observation(CAMERA, hypothesis.picture.depth_picture())
     groups = group_pixels(hypothesis, observation, 0.08)
     return hypothesis, depth_image_term(hypothesis, observation, groups, 1.0)
@@ -37,7 +37,9 @@ def test_pixels_change_with_each_measure_as_the_jacobian_says(measure):
     place, size = MEASURES.index(measure), 1e-5
     exact = shape_jacobian(BODY, hypothesis.frames, rows)[:, place]
     pictures = [
-        imagine(resized(BODY, sign * size * np.eye(len(MEASURES))[place]), NATURAL, CAMERA)
+        render_hypothesis(
+            resize_body(BODY, sign * size * np.eye(len(MEASURES))[place]), NATURAL, CAMERA
+        )
         for sign in (1.0, -1.0)
     ]
     pixels = hypothesis.picture.pixels
@@ -62,7 +64,7 @@ def test_the_pose_jacobian_is_that_of_the_tracker():
 
 
 def test_resizing_keeps_both_sides_alike():
-    body = resized(BODY, 0.1 * np.arange(len(MEASURES)) / len(MEASURES))
+    body = resize_body(BODY, 0.1 * np.arange(len(MEASURES)) / len(MEASURES))
     assert_allclose(body.symmetric().lengths, body.lengths)
     assert_allclose(body.symmetric().radii, body.radii)
 

@@ -7,7 +7,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from solvers.depth_scene.camera import Camera
-from solvers.depth_tracking.forest_training.render_mesh import NOTHING, render_mesh
+from solvers.depth_tracking.forest_training.render_mesh import NO_PART, render_mesh
 
 CAMERA = Camera(30.0, 32.0, 14.5, 11.5, 31, 24)
 
@@ -15,7 +15,7 @@ CAMERA = Camera(30.0, 32.0, 14.5, 11.5, 31, 24)
 def by_rays(vertices, triangles, labels, camera):
     """Meet every ray with every triangle (Möller and Trumbore 1997)."""
     depth = np.zeros((camera.height, camera.width))
-    seen = np.full(depth.shape, NOTHING, dtype=np.uint8)
+    seen = np.full(depth.shape, NO_PART, dtype=np.uint8)
     for spot, ray in zip(np.ndindex(depth.shape), camera.rays().reshape(-1, 3), strict=True):
         for corners in triangles:
             a, b, c = vertices[corners]
@@ -64,7 +64,7 @@ def test_a_fine_ball_has_the_depth_of_a_sphere():
     well_inside = inside > 0.02
     np.testing.assert_allclose(picture.depth[well_inside], exact[well_inside], atol=3e-4)
     assert (picture.depth[inside < 0] == 0).all()
-    np.testing.assert_array_equal(picture.labels == NOTHING, picture.depth == 0)
+    np.testing.assert_array_equal(picture.labels == NO_PART, picture.depth == 0)
 
 
 def test_what_is_behind_or_aside_is_not_drawn():

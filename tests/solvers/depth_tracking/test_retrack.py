@@ -10,7 +10,7 @@ from numpy.testing import assert_allclose, assert_array_equal
 from solvers.depth_scene.floor import Floor
 from solvers.depth_tracking.body.coordinates import COORDINATES
 from solvers.depth_tracking.body.kinematics import joint_positions, segment_frames
-from solvers.depth_tracking.body.model import usual_body
+from solvers.depth_tracking.body.model import default_body
 from solvers.depth_tracking.body.motion import body_motion, motion_frames
 from solvers.depth_tracking.body.pose_from_joints import pose_from_frames
 from solvers.depth_tracking.body.tables import JOINTS
@@ -22,7 +22,7 @@ from solvers.rotations.representations import (
     quaternion_from_rotation_vector,
 )
 
-BODY = usual_body()
+BODY = default_body()
 FLOOR = Floor(np.array([0.1, -0.99, -0.1]) / np.linalg.norm([0.1, -0.99, -0.1]), 0.9)
 N_FRAMES, CORRECTED, WRONG = 40, 20, slice(10, 30)
 ARM = [JOINTS.index(name) for name in ("rightLowerArm", "rightHand")]

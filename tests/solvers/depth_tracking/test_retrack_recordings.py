@@ -7,9 +7,9 @@ from solvers.depth_scene.camera import Camera
 from solvers.depth_scene.recording import DepthRecording
 from solvers.depth_tracking.body.coordinates import COORDINATES
 from solvers.depth_tracking.body.kinematics import joint_positions
-from solvers.depth_tracking.body.model import usual_body
+from solvers.depth_tracking.body.model import default_body
 from solvers.depth_tracking.body.motion import body_motion, motion_frames
-from solvers.depth_tracking.body.pose_from_joints import body_of_joints, pose_from_joints
+from solvers.depth_tracking.body.pose_from_joints import body_from_joints, pose_from_joints
 from solvers.depth_tracking.body.tables import JOINTS
 from solvers.depth_tracking.capturing.retrack import retrack
 
@@ -38,7 +38,7 @@ def known(recordings, take, first):
     recording = DepthRecording(
         Camera(*focal, 320, 240), N_FRAMES, 30.0, lambda frame: depth[frame] / np.float32(1e3)
     )
-    body = body_of_joints(usual_body(), joints)
+    body = body_from_joints(default_body(), joints)
     poses, pose = [], None
     for frame in joints:
         pose = pose_from_joints(body, frame, start=pose)

@@ -6,7 +6,7 @@ import pytest
 from solvers.depth_scene.camera import Camera
 from solvers.depth_tracking.body.coordinates import COORDINATES, N_COORDINATES
 from solvers.depth_tracking.body.kinematics import joint_positions, segment_frames
-from solvers.depth_tracking.body.model import usual_body
+from solvers.depth_tracking.body.model import default_body
 from solvers.depth_tracking.body.tables import CAPSULE_SEGMENTS, CAPSULES, JOINTS
 from solvers.depth_tracking.detection.labeled_fit import (
     capsule_distances,
@@ -23,13 +23,13 @@ from solvers.depth_tracking.detection.part_capsules import (
 from solvers.depth_tracking.detection.pose_score import pose_score
 from solvers.depth_tracking.detection.pose_trials import exchange_orders, trial_poses
 from solvers.depth_tracking.detection.robust_parts import FoundParts, find_parts
-from solvers.depth_tracking.forest.parts import MIRRORED, N_PARTS, PARTS
+from solvers.depth_tracking.forest.parts import MIRRORED_PARTS, N_PARTS, PARTS
 from solvers.depth_tracking.forest.pixel_forest import PixelParts
-from solvers.depth_tracking.terms.hypothesis import imagine
+from solvers.depth_tracking.terms.hypothesis import render_hypothesis
 from solvers.depth_tracking.terms.observation import Observation
 
 CAMERA = Camera(142.8, 142.8, 79.5, 59.5, 160, 120)
-BODY = usual_body()
+BODY = default_body()
 
 
 def standing(**angles: float):
@@ -44,7 +44,7 @@ def standing(**angles: float):
 
 def seen_parts(pose):
     """What the camera sees of the body: points, parts, rows and columns."""
-    picture = imagine(BODY, pose, CAMERA).picture
+    picture = render_hypothesis(BODY, pose, CAMERA).picture
     rows, columns = np.divmod(picture.pixels, CAMERA.width)
     points = CAMERA.rays()[rows, columns] * picture.depths[:, None]
     frames = segment_frames(BODY, pose)
@@ -140,7 +140,7 @@ def test_distances_to_round_capsules_are_exact(rng):
 
 def test_the_true_pose_scores_best(rng):
     true = standing()
-    hypothesis = imagine(BODY, true, CAMERA)
+    hypothesis = render_hypothesis(BODY, true, CAMERA)
     observation = Observation(CAMERA, hypothesis.picture.depth_picture())
     _, parts, rows, columns = seen_parts(true)
     order = np.argsort(rows * CAMERA.width + columns)
@@ -152,18 +152,18 @@ def test_the_true_pose_scores_best(rng):
     for name, change in (("rootX", 0.05), ("leftRadius", -0.8), ("yaw", 0.4), ("rootZ", 0.05)):
         other = true.copy()
         other[COORDINATES.index(name)] += change
-        worse, _ = pose_score(imagine(BODY, other, CAMERA), observation, pixels, 0.3)
+        worse, _ = pose_score(render_hypothesis(BODY, other, CAMERA), observation, pixels, 0.3)
         assert worse < score - 0.01
     away = true.copy()
     away[0] += 3.0
-    assert pose_score(imagine(BODY, away, CAMERA), observation, pixels, 0.3)[1] == 0.0
+    assert pose_score(render_hypothesis(BODY, away, CAMERA), observation, pixels, 0.3)[1] == 0.0
 
 
 def test_trials_exchange_sides_in_every_way():
     orders = exchange_orders()
     assert len({tuple(order) for order in orders}) == 4
     np.testing.assert_array_equal(orders[0], np.arange(N_PARTS))
-    np.testing.assert_array_equal(orders[-1], MIRRORED)
+    np.testing.assert_array_equal(orders[-1], MIRRORED_PARTS)
     for order in orders:
         np.testing.assert_array_equal(order[order], np.arange(N_PARTS))
 
@@ -172,7 +172,7 @@ def test_one_of_the_trials_finds_a_pose_whose_legs_were_told_wrong(rng):
     true = standing(yaw=-1.3, leftFemurX=-0.3)
     points, parts, _, _ = seen_parts(true)
     legs = np.array([part.endswith(("Leg", "LegEnd", "Foot")) for part in PARTS])
-    told = np.where(legs[parts], MIRRORED[parts], parts)
+    told = np.where(legs[parts], MIRRORED_PARTS[parts], parts)
     shares = np.eye(N_PARTS, dtype=np.float32)[told]
     found = find_parts(points, told, BODY, rng)
     errors = [
@@ -184,7 +184,7 @@ def test_one_of_the_trials_finds_a_pose_whose_legs_were_told_wrong(rng):
 def test_exchanged_parts_carry_their_places(rng):
     centres = rng.normal(size=(N_PARTS, 3))
     parts = FoundParts(centres, np.arange(N_PARTS) / N_PARTS, centres, np.arange(N_PARTS))
-    other = parts.exchanged(MIRRORED)
+    other = parts.exchanged(MIRRORED_PARTS)
     left, right = PARTS.index("leftFoot"), PARTS.index("rightFoot")
     np.testing.assert_array_equal(other.centres[left], centres[right])
     np.testing.assert_array_equal(other.labels[left], right)
@@ -197,7 +197,7 @@ def test_pixels_told_wrong_go_to_the_part_they_lie_on(rng):
     told = parts.copy()
     for end in ("", "End"):
         shin = PARTS.index(f"leftLowerLeg{end}")
-        told[parts == shin] = MIRRORED[shin]
+        told[parts == shin] = MIRRORED_PARTS[shin]
     one_hot = np.eye(N_PARTS, dtype=np.float32)
     shares = 0.7 * one_hot[told] + 0.3 * one_hot[parts]
     pose = fit_pixels(BODY, points, shares, true)

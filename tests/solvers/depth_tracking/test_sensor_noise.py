@@ -5,11 +5,11 @@ from dataclasses import replace
 import numpy as np
 
 from solvers.depth_scene.camera import Camera
-from solvers.depth_tracking.forest_training.render_mesh import NOTHING, RenderedMesh
+from solvers.depth_tracking.forest_training.render_mesh import NO_PART, RenderedMesh
 from solvers.depth_tracking.forest_training.sensor_noise import (
-    CLEAN,
     DISPARITY,
-    with_sensor_noise,
+    NO_NOISE,
+    add_sensor_noise,
 )
 
 CAMERA = Camera(280.0, 280.0, 79.5, 59.5, 160, 120)
@@ -23,8 +23,8 @@ def wall(distance=3.0):
 def test_a_clean_sensor_changes_nothing(rng):
     depth = rng.uniform(1.0, 4.0, (120, 160)).astype(np.float32)
     depth[:30] = 0.0
-    labels = np.where(depth > 0, 3, NOTHING).astype(np.uint8)
-    seen = with_sensor_noise(RenderedMesh(depth, labels), CAMERA, rng, CLEAN)
+    labels = np.where(depth > 0, 3, NO_PART).astype(np.uint8)
+    seen = add_sensor_noise(RenderedMesh(depth, labels), CAMERA, rng, NO_NOISE)
     np.testing.assert_array_equal(seen.depth, depth)
     np.testing.assert_array_equal(seen.labels, labels)
 
@@ -32,7 +32,7 @@ def test_a_clean_sensor_changes_nothing(rng):
 def test_steps_grow_with_the_square_of_distance(rng):
     ramp = wall()
     ramp.depth[:] = np.linspace(1.0, 4.0, ramp.depth.size).reshape(ramp.depth.shape)
-    told = with_sensor_noise(ramp, CAMERA, rng, replace(CLEAN, step=1.0)).depth
+    told = add_sensor_noise(ramp, CAMERA, rng, replace(NO_NOISE, step=1.0)).depth
     steps = DISPARITY / told
     np.testing.assert_allclose(steps, np.rint(steps), atol=1e-3)
     levels = np.unique(told)
@@ -43,7 +43,7 @@ def test_steps_grow_with_the_square_of_distance(rng):
 
 def test_rough_disparity_is_rough_by_the_square_of_distance(rng):
     for z in (1.0, 3.0):
-        told = with_sensor_noise(wall(z), CAMERA, rng, replace(CLEAN, disparity=0.2)).depth
+        told = add_sensor_noise(wall(z), CAMERA, rng, replace(NO_NOISE, disparity=0.2)).depth
         np.testing.assert_allclose(told.std(), 0.2 * z**2 / DISPARITY, rtol=0.05)
 
 
@@ -51,18 +51,18 @@ def test_a_bar_casts_a_shadow_to_its_left_as_wide_as_the_disparity(rng):
     """The projector is to the right: from there, the bar hides what lies left of it."""
     scene = wall()
     scene.depth[:, 80:100] = 1.5
-    seen = with_sensor_noise(scene, CAMERA, rng, replace(CLEAN, baseline=0.075))
+    seen = add_sensor_noise(scene, CAMERA, rng, replace(NO_NOISE, baseline=0.075))
     unseen = np.flatnonzero(seen.depth[60] == 0)
     width = 280.0 * 0.075 * (1 / 1.5 - 1 / 3.0)
     assert unseen.max() == 79
     assert abs(len(unseen) - width) <= 1
-    assert (seen.labels[60, unseen] == NOTHING).all()
+    assert (seen.labels[60, unseen] == NO_PART).all()
 
 
 def test_holes_come_as_often_as_asked_and_more_at_edges(rng):
     scene = wall()
     scene.depth[:, 80:] = 1.5
-    seen = with_sensor_noise(scene, CAMERA, rng, replace(CLEAN, holes=0.1, edge_holes=0.6))
+    seen = add_sensor_noise(scene, CAMERA, rng, replace(NO_NOISE, holes=0.1, edge_holes=0.6))
     hole = seen.depth == 0
     assert abs(hole[:, [79, 80]].mean() - 0.6) < 0.1
     assert abs(hole[:, :79].mean() - 0.1) < 0.01
@@ -71,6 +71,6 @@ def test_holes_come_as_often_as_asked_and_more_at_edges(rng):
 def test_labels_move_with_their_depth(rng):
     scene = wall()
     scene.depth[:, 80:], scene.labels[:, 80:] = 1.5, 7
-    seen = with_sensor_noise(scene, CAMERA, rng, replace(CLEAN, jitter=1.0))
+    seen = add_sensor_noise(scene, CAMERA, rng, replace(NO_NOISE, jitter=1.0))
     np.testing.assert_array_equal(seen.labels == 7, seen.depth == 1.5)
     assert (seen.depth[:, 80] == 3.0).any()

@@ -5,10 +5,10 @@ import pytest
 from box_person import box_person
 
 from solvers.depth_tracking.forest.parts import (
-    MIRRORED,
+    MIRRORED_PARTS,
     N_PARTS,
     PARTS,
-    other_side,
+    mirrored_part,
     part_of_role,
 )
 from solvers.depth_tracking.forest_training.skinned_body import load_skinned_body
@@ -34,9 +34,9 @@ def person():
 
 def test_every_part_has_its_counterpart():
     assert len(set(PARTS)) == N_PARTS == 23
-    np.testing.assert_array_equal(MIRRORED[MIRRORED], np.arange(N_PARTS))
-    assert other_side("leftUpperLegEnd") == "rightUpperLegEnd"
-    assert other_side("chest") == "chest"
+    np.testing.assert_array_equal(MIRRORED_PARTS[MIRRORED_PARTS], np.arange(N_PARTS))
+    assert mirrored_part("leftUpperLegEnd") == "rightUpperLegEnd"
+    assert mirrored_part("chest") == "chest"
 
 
 def test_every_role_but_fingers_jaw_and_eyes_is_of_a_part():

@@ -5,25 +5,25 @@ import pytest
 from drawn_bodies import CAMERA, NATURAL, observed, posed
 from numpy.testing import assert_allclose
 
-from solvers.depth_tracking.body.model import usual_body
+from solvers.depth_tracking.body.model import default_body
 from solvers.depth_tracking.body.normal_equations import (
     SurfaceRows,
-    in_coordinates,
+    equations_in_coordinates,
+    rows_toward_targets,
     segment_equations,
-    step,
-    toward,
+    solve_step,
 )
 from solvers.depth_tracking.body.tables import CAPSULES, SEGMENTS
 from solvers.depth_tracking.terms.closest_surface import closest_surface, closest_surface_term
 from solvers.depth_tracking.terms.depth_image import depth_gradients, depth_image_term
 from solvers.depth_tracking.terms.extra_depth import extra_depth_term
 from solvers.depth_tracking.terms.free_space import off_actor_term, too_near_term
-from solvers.depth_tracking.terms.hypothesis import imagine
+from solvers.depth_tracking.terms.hypothesis import render_hypothesis
 from solvers.depth_tracking.terms.observation import Observation
 from solvers.depth_tracking.terms.pixel_groups import group_pixels
 from solvers.depth_tracking.terms.silhouette import silhouette_term
 
-BODY = usual_body()
+BODY = default_body()
 
 
 def moved(hypothesis, directions):
@@ -35,7 +35,7 @@ def moved(hypothesis, directions):
 
 def test_equations_of_segments_equal_the_dense_ones(rng):
     """One 6 x 6 matrix per segment holds what a Jacobian with a row per pixel holds."""
-    hypothesis = imagine(BODY, NATURAL, CAMERA)
+    hypothesis = render_hypothesis(BODY, NATURAL, CAMERA)
     n = len(hypothesis.points)
     directions, residuals = rng.normal(size=(n, 3)), rng.normal(size=n)
     weights = rng.uniform(0.5, 2.0, size=n)
@@ -44,7 +44,7 @@ def test_equations_of_segments_equal_the_dense_ones(rng):
         hypothesis.points, directions, residuals, weights, hypothesis.picture.capsules
     )
 
-    found = in_coordinates([segment_equations(rows)], hypothesis.twists)
+    found = equations_in_coordinates([segment_equations(rows)], hypothesis.twists)
 
     jacobian = moved(hypothesis, directions)
     assert_allclose(found.matrix, jacobian.T @ (weights[:, None] * jacobian), atol=1e-8)
@@ -56,7 +56,7 @@ def test_moving_toward_is_moving_along_three_axes(rng):
     points, targets = rng.normal(size=(2, 7, 3))
     weights, capsules = rng.uniform(size=7), rng.integers(0, 19, size=7)
 
-    found = segment_equations(toward(points, targets, weights, capsules))
+    found = segment_equations(rows_toward_targets(points, targets, weights, capsules))
 
     parts = [
         segment_equations(SurfaceRows(
@@ -69,13 +69,15 @@ def test_moving_toward_is_moving_along_three_axes(rng):
 
 def test_depth_of_a_pixel_changes_as_its_gradient_says():
     """Central differences of drawn pictures, where neither outline nor other part is near."""
-    hypothesis, size = imagine(BODY, NATURAL, CAMERA), 1e-5
+    hypothesis, size = render_hypothesis(BODY, NATURAL, CAMERA), 1e-5
     exact = moved(hypothesis, depth_gradients(hypothesis))
     pixels = hypothesis.picture.pixels
     facing = -np.einsum("ni,ni->n", hypothesis.normals, hypothesis.rays) > 0.4
     for coordinate in (0, 2, 3, 5, 8, 11, 14, 16, 18, 20, 21, 23, 29, 33):
         pictures = [
-            imagine(BODY, NATURAL + sign * size * np.eye(36)[coordinate], CAMERA).picture
+            render_hypothesis(
+                BODY, NATURAL + sign * size * np.eye(36)[coordinate], CAMERA
+            ).picture
             for sign in (1.0, -1.0)
         ]
         high, low = (picture.depth_picture().ravel()[pixels] for picture in pictures)
@@ -92,9 +94,9 @@ def test_depth_of_a_pixel_changes_as_its_gradient_says():
 def test_the_silhouette_term_asks_back_where_the_outline_is(aside):
     there = NATURAL.copy()
     there[:2] += aside
-    hypothesis = imagine(BODY, there, CAMERA)
+    hypothesis = render_hypothesis(BODY, there, CAMERA)
 
-    asked = in_coordinates(
+    asked = equations_in_coordinates(
         [segment_equations(silhouette_term(hypothesis, observed(NATURAL), 1.0))],
         hypothesis.twists,
     ).vector[:2]
@@ -104,7 +106,7 @@ def test_the_silhouette_term_asks_back_where_the_outline_is(aside):
 
 
 def test_a_perfect_pose_is_asked_for_nothing():
-    hypothesis, observation = imagine(BODY, NATURAL, CAMERA), observed(NATURAL)
+    hypothesis, observation = render_hypothesis(BODY, NATURAL, CAMERA), observed(NATURAL)
     groups = group_pixels(hypothesis, observation, 0.08)
 
     for term in (
@@ -121,7 +123,7 @@ def test_a_perfect_pose_is_asked_for_nothing():
 def test_pixels_fall_into_the_groups_of_the_paper():
     """An arm before the chest hides it; a raised arm is not where it was expected."""
     acted = posed(leftHumerusX=1.0, leftHumerusY=1.0, leftRadius=1.6, rightHumerusZ=1.4)
-    hypothesis, observation = imagine(BODY, posed(), CAMERA), observed(acted)
+    hypothesis, observation = render_hypothesis(BODY, posed(), CAMERA), observed(acted)
 
     groups = group_pixels(hypothesis, observation, 0.08)
 
@@ -132,13 +134,13 @@ def test_pixels_fall_into_the_groups_of_the_paper():
     assert arm[groups.off_actor].sum() > 0.7 * arm.sum()
     assert len(groups.uncovered) > 30
     assert set(observation.pixels) <= set(hypothesis.picture.pixels) | set(groups.uncovered)
-    back = group_pixels(imagine(BODY, acted, CAMERA), observed(posed()), 0.08)
+    back = group_pixels(render_hypothesis(BODY, acted, CAMERA), observed(posed()), 0.08)
     assert len(back.too_near) > 10
 
 
 @pytest.mark.parametrize("away", [-0.02, 0.03])
 def test_the_closest_surface_of_a_round_limb_is_its_radius_from_the_axis(away):
-    hypothesis = imagine(BODY, posed(leftHumerusZ=1.2), CAMERA)
+    hypothesis = render_hypothesis(BODY, posed(leftHumerusZ=1.2), CAMERA)
     limb = CAPSULES.index("leftLowerArm")
     frame = hypothesis.frames[SEGMENTS.index("leftLowerArm")]
     middle = frame[:3, :3] @ BODY.capsule_ends[limb].mean(axis=0) + frame[:3, 3]
@@ -158,22 +160,23 @@ def test_every_depth_term_moves_the_body_nearer():
     """A step of each term alone from 4 cm too near shortens the way to the truth."""
     there = NATURAL.copy()
     there[2] -= 0.04
-    hypothesis, observation = imagine(BODY, there, CAMERA), observed(NATURAL)
+    hypothesis, observation = render_hypothesis(BODY, there, CAMERA), observed(NATURAL)
     groups = group_pixels(hypothesis, observation, 0.08)
     for term in (
         depth_image_term(hypothesis, observation, groups, 1.0),
         closest_surface_term(hypothesis, observation.points, 1.0, 0.2),
     ):
-        change = step(
-            in_coordinates([segment_equations(term)], hypothesis.twists), np.full(36, 0.1)
+        change = solve_step(
+            equations_in_coordinates([segment_equations(term)], hypothesis.twists),
+            np.full(36, 0.1),
         )
-        nearer = imagine(BODY, there + change, CAMERA).points[:, 2].mean()
+        nearer = render_hypothesis(BODY, there + change, CAMERA).points[:, 2].mean()
         assert abs(nearer - observation.points[:, 2].mean()) < 0.03
 
 
 def test_depths_of_nobody_are_grouped_as_nothing():
     empty = Observation(CAMERA, np.zeros((120, 160)))
-    hypothesis = imagine(BODY, NATURAL, CAMERA)
+    hypothesis = render_hypothesis(BODY, NATURAL, CAMERA)
     groups = group_pixels(hypothesis, empty, 0.08)
 
     assert len(groups.off_actor) == len(hypothesis.points)

@@ -6,17 +6,21 @@ from drawn_bodies import CAMERA, NATURAL, observed, recorded, waving
 from numpy.testing import assert_allclose, assert_array_equal
 
 from solvers.depth_scene.recording import DepthRecording
-from solvers.depth_tracking.body.coordinates import LEAST, MOST
+from solvers.depth_tracking.body.coordinates import LOWER_LIMITS, UPPER_LIMITS
 from solvers.depth_tracking.body.kinematics import joint_positions, segment_frames
-from solvers.depth_tracking.body.model import usual_body
-from solvers.depth_tracking.body.pose_priors import foretell, joint_limits, stay_near
+from solvers.depth_tracking.body.model import default_body
+from solvers.depth_tracking.body.pose_priors import joint_limits, predict_pose, stay_near
 from solvers.depth_tracking.body.tables import JOINTS
-from solvers.depth_tracking.terms.tracker_settings import USUAL, WZC12, TrackerSettings
+from solvers.depth_tracking.terms.tracker_settings import (
+    DEFAULT_TRACKER,
+    WZC12,
+    TrackerSettings,
+)
 from solvers.depth_tracking.tracking.register_pose import register_pose
 from solvers.depth_tracking.tracking.track_pose import track_pose
 from solvers.errors import InvalidMotionError, SolveCancelled
 
-BODY = usual_body()
+BODY = default_body()
 
 
 def joints_of(poses, body=BODY):
@@ -60,7 +64,7 @@ def test_costs_only_fall_where_only_better_is_accepted(rng):
     assert costs[-1] < 0.2 * costs[0]
 
 
-@pytest.mark.parametrize(("settings", "worst"), [(USUAL, 0.02), (WZC12, 0.08)])
+@pytest.mark.parametrize(("settings", "worst"), [(DEFAULT_TRACKER, 0.02), (WZC12, 0.08)])
 def test_follows_someone_who_waves(settings, worst):
     truth = waving(30)
 
@@ -150,19 +154,21 @@ def test_no_pose_is_refused(pose):
 
 
 def test_limits_ask_back_only_what_is_beyond():
-    inside = np.clip(np.zeros(36), LEAST, MOST) + 0.01 * np.isfinite(LEAST)
+    inside = np.clip(np.zeros(36), LOWER_LIMITS, UPPER_LIMITS) + 0.01 * np.isfinite(
+        LOWER_LIMITS
+    )
     assert joint_limits(inside, 1.0).cost == 0.0
     beyond = inside.copy()
-    beyond[10] = MOST[10] + 0.2
+    beyond[10] = UPPER_LIMITS[10] + 0.2
     asked = joint_limits(beyond, 3.0)
     assert_allclose(asked.vector, -0.6 * np.eye(36)[10], atol=1e-12)
 
 
 def test_foretells_constant_velocity():
     poses = [np.full(36, 1.0), np.full(36, 1.5)]
-    assert_allclose(foretell(poses, 1.0), 2.0)
-    assert_allclose(foretell(poses, 0.0), 1.5)
-    assert_allclose(foretell(poses[:1], 1.0), 1.0)
+    assert_allclose(predict_pose(poses, 1.0), 2.0)
+    assert_allclose(predict_pose(poses, 0.0), 1.5)
+    assert_allclose(predict_pose(poses[:1], 1.0), 1.0)
 
 
 def test_a_few_stray_pixels_are_nobody():

@@ -6,19 +6,19 @@ import numpy as np
 import pytest
 from box_person import box_person
 
-from solvers.depth_tracking.forest.parts import MIRRORED, PARTS
+from solvers.depth_tracking.forest.parts import MIRRORED_PARTS, PARTS
 from solvers.depth_tracking.forest_training.augmented_poses import (
     PoseMixer,
-    most_different,
-    without_heading,
+    remove_heading,
+    select_diverse_poses,
 )
-from solvers.depth_tracking.forest_training.render_mesh import NOTHING
+from solvers.depth_tracking.forest_training.render_mesh import NO_PART
 from solvers.depth_tracking.forest_training.training_images import (
     CAMERA,
-    SHAPE_LASTS,
-    TrainingPicturesSettings,
-    picture_source,
-    reshaped,
+    IMAGES_PER_BODY,
+    TrainingImagesSettings,
+    image_source,
+    vary_body,
 )
 from solvers.errors import InvalidMotionError, InvalidSettingError
 from solvers.motion import Skeleton, world_poses
@@ -30,7 +30,7 @@ from solvers.rotations.representations import (
 )
 from solvers.samples import GaitSettings, walking_gait
 
-PLAIN = TrainingPicturesSettings(
+PLAIN = TrainingImagesSettings(
     loose=0.0, noise=0.0, shape=0.0, clothes=0.0, lost_feet=0.0, nearest=2.5, farthest=3.0
 )
 
@@ -47,19 +47,19 @@ def gait():
 
 def test_poses_without_heading_stand_as_they_did(person, rng):
     turns = quaternion_from_rotation_vector(rng.normal(size=(20, person.skeleton.n_joints, 3)))
-    upright = without_heading(turns)
+    upright = remove_heading(turns)
     np.testing.assert_array_equal(upright[:, 1:], turns[:, 1:])
     up = rotate(turns[:, 0], [0.0, 0.0, 1.0])
     np.testing.assert_allclose(rotate(upright[:, 0], [0.0, 0.0, 1.0])[:, 2], up[:, 2])
     spun = turns.copy()
     spun[:, 0] = multiply(quaternion_from_rotation_vector([0.0, 0.0, 1.3]), turns[:, 0])
-    same = np.abs(np.einsum("fi,fi->f", without_heading(spun)[:, 0], upright[:, 0]))
+    same = np.abs(np.einsum("fi,fi->f", remove_heading(spun)[:, 0], upright[:, 0]))
     np.testing.assert_allclose(same, 1.0)
 
 
 def test_kept_poses_differ_and_stand_for_the_others(person, gait):
-    poses = without_heading(person.rotations_of(gait))
-    kept = most_different(person, poses, 0.15, 1000)
+    poses = remove_heading(person.rotations_of(gait))
+    kept = select_diverse_poses(person, poses, 0.15, 1000)
     assert 3 < len(kept) < len(poses)
 
     def joints(turns):
@@ -69,7 +69,7 @@ def test_kept_poses_differ_and_stand_for_the_others(person, gait):
     assert apart[~np.eye(len(kept), dtype=bool)].min() > 0.15
     to_kept = np.linalg.norm(joints(poses)[:, None] - joints(kept), axis=-1).max(axis=-1)
     assert to_kept.min(axis=1).max() <= 0.15 + 1e-6
-    assert len(most_different(person, poses, 0.0, 7)) == 7
+    assert len(select_diverse_poses(person, poses, 0.0, 7)) == 7
 
 
 def test_loosened_arms_stay_out_of_the_back_and_bend_forward(person, rng):
@@ -98,22 +98,22 @@ def test_poses_that_are_not_loosened_are_those_of_the_clip(person, rng):
 
 
 def test_pictures_are_those_of_their_number(person, gait):
-    settings = TrainingPicturesSettings()
-    one, again = (picture_source([gait], [person], settings, 3) for _ in range(2))
-    other = picture_source([gait], [person], settings, 4)
+    settings = TrainingImagesSettings()
+    one, again = (image_source([gait], [person], settings, 3) for _ in range(2))
+    other = image_source([gait], [person], settings, 4)
     first, second, third = (source.pictures(2) for source in (one, again, other))
-    assert len(first) == SHAPE_LASTS
+    assert len(first) == IMAGES_PER_BODY
     np.testing.assert_array_equal(first[4].depth, second[4].depth)
     assert not np.array_equal(first[4].depth, third[4].depth)
     assert not np.array_equal(first[4].depth, one.pictures(3)[4].depth)
 
 
 def test_bodies_are_where_the_settings_say(person, gait):
-    source = picture_source([gait], [person], PLAIN, 0)
+    source = image_source([gait], [person], PLAIN, 0)
     for picture in source.pictures(0) + source.pictures(1):
         seen = picture.depth > 0
         assert seen.sum() > 300
-        np.testing.assert_array_equal(seen, picture.labels != NOTHING)
+        np.testing.assert_array_equal(seen, picture.labels != NO_PART)
         assert 2.0 < np.median(picture.depth[seen]) < 3.5
         assert picture.depth.shape == (CAMERA.height, CAMERA.width)
 
@@ -122,7 +122,7 @@ def test_feet_are_lost_as_often_as_asked(person, gait):
     foot = [PARTS.index("leftFoot"), PARTS.index("rightFoot")]
 
     def feet(lost):
-        source = picture_source([gait], [person], replace(PLAIN, lost_feet=lost), 0)
+        source = image_source([gait], [person], replace(PLAIN, lost_feet=lost), 0)
         pictures = source.pictures(0) + source.pictures(1)
         return sum(np.isin(picture.labels, foot).sum() for picture in pictures)
 
@@ -130,15 +130,15 @@ def test_feet_are_lost_as_often_as_asked(person, gait):
 
 
 def test_clothes_only_add_and_are_alike_left_and_right(person, rng):
-    naked = reshaped([person], rng, PLAIN)
+    naked = vary_body([person], rng, PLAIN)
     np.testing.assert_allclose(naked.vertices, person.vertices)
-    dressed = reshaped([person], rng, replace(PLAIN, clothes=0.04))
+    dressed = vary_body([person], rng, replace(PLAIN, clothes=0.04))
     moved = dressed.vertices - person.vertices
     out = np.einsum("vi,vi->v", moved, person.vertex_normals)
     assert out.min() >= -1e-9
     assert out.max() <= 0.04 + 1e-9
     thickness = np.array([np.median(out[person.vertex_parts == p]) for p in range(len(PARTS))])
-    np.testing.assert_allclose(thickness, thickness[MIRRORED], atol=1e-9)
+    np.testing.assert_allclose(thickness, thickness[MIRRORED_PARTS], atol=1e-9)
 
 
 def test_bodies_between_two_have_bones_between_theirs(person, rng):
@@ -149,7 +149,7 @@ def test_bodies_between_two_have_bones_between_theirs(person, rng):
             person.skeleton.names, person.skeleton.parents, 1.2 * person.skeleton.offsets
         ),
     )
-    heights = [reshaped([person, tall], rng, PLAIN).skeleton.offsets[0, 2] for _ in range(40)]
+    heights = [vary_body([person, tall], rng, PLAIN).skeleton.offsets[0, 2] for _ in range(40)]
     assert min(heights) >= 0.95 - 1e-9
     assert max(heights) <= 1.2 * 0.95 + 1e-9
     assert len(np.unique(np.round(heights, 6))) > 10
@@ -168,6 +168,6 @@ def test_bodies_of_other_joints_cannot_be_mixed(person, gait):
     skeleton = Skeleton(names, person.skeleton.parents, person.skeleton.offsets)
     other = replace(person, skeleton=skeleton)
     with pytest.raises(InvalidMotionError, match="the same joints"):
-        picture_source([gait], [person, other], PLAIN, 0)
+        image_source([gait], [person, other], PLAIN, 0)
     with pytest.raises(InvalidSettingError, match="loose"):
-        TrainingPicturesSettings(loose=2.0)
+        TrainingImagesSettings(loose=2.0)

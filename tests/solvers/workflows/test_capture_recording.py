@@ -11,7 +11,7 @@ from drawn_bodies import CAMERA, drawn, recorded, waving
 from solvers.depth_scene.camera import Camera
 from solvers.depth_scene.recording import DepthRecording
 from solvers.depth_tracking.body.kinematics import joint_positions, segment_frames
-from solvers.depth_tracking.body.model import BodyModel, usual_body
+from solvers.depth_tracking.body.model import BodyModel, default_body
 from solvers.depth_tracking.body.tables import JOINTS
 from solvers.depth_tracking.capturing.capture import CaptureSettings
 from solvers.errors import InvalidMotionError
@@ -19,7 +19,7 @@ from solvers.recordings import read_depth
 from solvers.workflows import capture_recording
 from solvers.workflows.capture_remarks import thickness
 
-BODY = usual_body()
+BODY = default_body()
 QUICK = CaptureSettings(backward=False, refine=False, check_every=1000)
 LEVEL = "No floor is seen: the camera is taken to have been level."
 N_FRAMES = 12
