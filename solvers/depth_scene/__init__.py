@@ -1,4 +1,4 @@
-"""What a depth camera saw: camera, recording, floor, foreground and the actor in it."""
+"""The scene of a depth recording: camera, floor, foreground and actor."""
 
 from .actor import Actor, find_actor
 from .camera import Camera

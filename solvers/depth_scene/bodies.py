@@ -1,4 +1,4 @@
-"""Bodies in a picture of depth: what hangs together in space, and not only in the picture."""
+"""Bodies in a depth image: pixels connected in space, not only in the image plane."""
 
 from dataclasses import dataclass
 from typing import Any
@@ -14,192 +14,204 @@ Mask = NDArray[np.bool_]
 Depth = NDArray[np.floating[Any]]
 Points = NDArray[np.float64]
 
-STEP, STEP_SQUARED = 0.05, 0.005
-"""Metres in depth, and metres per square metre of distance, between pixels of one surface."""
-REACH = 0.5
-"""Metres up to which smaller pieces, such as a hand held forward, belong to a body."""
-LIMB, BESIDE = 0.4, 0.3
-"""Share of a body up to which a piece is a limb of it, such as a leg behind the other, and
-metres between the two."""
-SMALLEST_PIECE = 1e-3
-"""Square metres; what is smaller is noise."""
-MOST_SEEN, COARSE_WIDTH = 20_000, 200
-"""Pixels that are all connected; of more, every second or third, of a picture so wide."""
-FEW = 12
-"""Of the points of a body, every so many stands for it."""
+MAX_STEP_M, MAX_STEP_PER_M2 = 0.05, 0.005
+"""Maximum depth step between pixels of one surface: metres, and growth with squared depth."""
+MAX_PIECE_DISTANCE_M = 0.5
+"""A small piece, such as a hand held forward, belongs to a body within this distance."""
+MAX_LIMB_FRACTION, MAX_LIMB_GAP_M = 0.4, 0.3
+"""A piece counts as a limb of a body, such as a leg behind the other, up to this fraction of
+its area and this gap."""
+MIN_PIECE_M2 = 1e-3
+"""Smaller pieces count as noise."""
+MAX_FULL_PIXELS, COARSE_WIDTH = 20_000, 200
+"""Above this many pixels, the image is subsampled to about this width."""
+POINT_STEP = 12
+"""Every n-th point represents a body in distance tests."""
 
 
 @dataclass(frozen=True, eq=False)
 class Bodies:
-    """What stands in a picture.
+    """The bodies in a depth image.
 
     Attributes
     ----------
     depth : float array, shape (height, width), metres
-        The picture.
+        The depth image.
     step : int
-        Of the columns and rows, every so many were looked at.
+        Step of the sampled columns and rows.
     labels : int array, shape (-(-height // step), -(-width // step))
-        0 nothing, 1 the body with the largest surface, 2 the next, and so on.
+        0: none; 1: the body with the largest surface; 2: the next, and so on.
     areas : float array, shape (n,), square metres
-        Seen surface of each, as if it faced the camera.
-    middles : float array, shape (n, 3), metres
-        Middle of each in the camera's frame.
+        Visible surface of each body, as if it faced the camera.
+    centers : float array, shape (n, 3), metres
+        Median point of each body, camera frame.
     """
 
     depth: Depth
     step: int
     labels: NDArray[np.intp]
     areas: NDArray[np.float64]
-    middles: NDArray[np.float64]
+    centers: NDArray[np.float64]
 
     def mask(self, label: int) -> Mask:
-        """Return the pixels (height, width) of a body."""
+        """Return the pixel mask (height, width) of a body."""
         own = self.labels == label
         mask = np.zeros(self.depth.shape, dtype=bool)
         if self.step == 1 or not own.any():
             return own if self.step == 1 else mask
-        rows, columns = (_around(own.any(axis=axis)) for axis in (1, 0))
+        rows, columns = (_padded_range(own.any(axis=axis)) for axis in (1, 0))
         coarse = self.depth[:: self.step, :: self.step]
-        place = tuple(
-            slice(span.start * self.step, span.stop * self.step) for span in (rows, columns)
+        block = tuple(
+            slice(range_.start * self.step, range_.stop * self.step)
+            for range_ in (rows, columns)
         )
-        kept = np.where(own, coarse, 0.0)[rows, columns]
-        mask[place] = _refined(self.depth[place], kept, self.step)
+        coarse_body = np.where(own, coarse, 0.0)[rows, columns]
+        mask[block] = _refine_mask(self.depth[block], coarse_body, self.step)
         return mask
 
 
-def find_bodies(depth: Depth, camera: Camera, smallest: float) -> Bodies:
-    """Divide what is seen into bodies of at least `smallest` square metres of surface.
+def find_bodies(depth: Depth, camera: Camera, min_area: float) -> Bodies:
+    """Segment a depth image into bodies of at least `min_area` square metres of surface.
 
-    Neighbouring pixels belong together where their depths differ by no more than the noise of
-    a camera. Smaller pieces come to the body that they are nearest to, or to none. Where much
-    is seen, every second or third pixel is looked at, and the others follow.
+    Neighboring pixels are connected if their depths differ by no more than the sensor noise.
+    Smaller pieces join the nearest body within reach, or none. Large images are subsampled,
+    and the remaining pixels follow their neighbors.
     """
-    few = int((depth > 0.0).sum()) <= MOST_SEEN
-    step = 1 if few else -(-camera.width // COARSE_WIDTH)
+    is_small = int((depth > 0.0).sum()) <= MAX_FULL_PIXELS
+    step = 1 if is_small else -(-camera.width // COARSE_WIDTH)
     coarse, camera = depth[::step, ::step], camera.every(step)
     pieces, areas = _pieces(coarse, camera)
-    points = _grouped(pieces, camera.back_project(coarse))
-    large = np.flatnonzero(areas >= smallest)
+    points = _group_points(pieces, camera.back_project(coarse))
+    large = np.flatnonzero(areas >= min_area)
     large = large[np.argsort(-areas[large], kind="stable")]
-    places = np.zeros(len(areas) + 1, dtype=np.intp)
+    body_of_piece = np.zeros(len(areas) + 1, dtype=np.intp)
     for piece in large + 1:
-        places[piece] = _whose_limb(piece, places, areas, points) or places.max() + 1
-    _join_small_pieces(places, areas, points)
-    n_bodies = int(places.max())
+        body_of_piece[piece] = (
+            _limb_owner(piece, body_of_piece, areas, points) or body_of_piece.max() + 1
+        )
+    _join_small_pieces(body_of_piece, areas, points)
+    n_bodies = int(body_of_piece.max())
     surfaces = np.zeros(n_bodies + 1)
-    np.add.at(surfaces, places[1:], areas)
-    middles = [np.median(each, axis=0) for each in _bodies(places, points)]
-    return Bodies(depth, step, places[pieces], surfaces[1:], np.array(middles).reshape(-1, 3))
+    np.add.at(surfaces, body_of_piece[1:], areas)
+    centers = [np.median(each, axis=0) for each in _bodies(body_of_piece, points)]
+    return Bodies(
+        depth, step, body_of_piece[pieces], surfaces[1:], np.array(centers).reshape(-1, 3)
+    )
 
 
-def _grouped(pieces: NDArray[np.intp], points: Points) -> list[Points]:
-    """Return the points of each piece, shape (n, 3), the first those of none."""
+def _group_points(pieces: NDArray[np.intp], points: Points) -> list[Points]:
+    """Return the points of each piece, shape (n, 3); the first entry holds unlabeled points."""
     order = np.argsort(pieces, axis=None, kind="stable")
     ends = np.cumsum(np.bincount(pieces.ravel()))[:-1]
     return np.split(points.reshape(-1, 3)[order], ends)
 
 
-def _bodies(places: NDArray[np.intp], points: list[Points]) -> list[Points]:
+def _bodies(body_of_piece: NDArray[np.intp], points: list[Points]) -> list[Points]:
     """Return the points of each body."""
     return [
-        np.concatenate([points[piece] for piece in np.flatnonzero(places == place)])
-        for place in range(1, int(places.max(initial=0)) + 1)
+        np.concatenate([points[piece] for piece in np.flatnonzero(body_of_piece == body)])
+        for body in range(1, int(body_of_piece.max(initial=0)) + 1)
     ]
 
 
-def _around(any_there: Mask) -> slice:
-    """Return the span of what is there, and one more on both sides."""
-    there = np.flatnonzero(any_there)
-    return slice(max(int(there[0]) - 1, 0), min(int(there[-1]) + 2, len(any_there)))
+def _padded_range(occupied: Mask) -> slice:
+    """Return the range of occupied indices, padded by one on both sides."""
+    indices = np.flatnonzero(occupied)
+    return slice(max(int(indices[0]) - 1, 0), min(int(indices[-1]) + 2, len(occupied)))
 
 
-def _refined(depth: Depth, coarse: Depth, step: int) -> Mask:
-    """Return the pixels as far as those of a coarse body around them."""
+def _refine_mask(depth: Depth, coarse_depth: Depth, step: int) -> Mask:
+    """Return the full-resolution pixels at the depth of the coarse body around them."""
     height, width = depth.shape
     mask = np.zeros(depth.shape, dtype=bool)
-    around = np.pad(coarse, 1)
-    rows, columns = coarse.shape
+    around = np.pad(coarse_depth, 1)
+    rows, columns = coarse_depth.shape
     for down in range(3):
         for right in range(3):
             shifted = around[down : down + rows, right : right + columns]
             near = shifted.repeat(step, axis=0).repeat(step, axis=1)[:height, :width]
-            mask |= (near > 0.0) & (np.abs(depth - near) <= STEP + STEP_SQUARED * near**2)
+            mask |= (near > 0.0) & (
+                np.abs(depth - near) <= MAX_STEP_M + MAX_STEP_PER_M2 * near**2
+            )
     return mask & (depth > 0.0)
 
 
 def _pieces(depth: Depth, camera: Camera) -> tuple[NDArray[np.intp], NDArray[np.float64]]:
-    """Label connected pixels from 1 on (0: nothing seen), and measure each piece's surface."""
-    seen = depth > 0.0
+    """Label connected pixels from 1 (0: no reading) and return the surface of each piece."""
+    visible = depth > 0.0
     numbers = np.full(depth.shape, -1)
-    numbers[seen] = np.arange(seen.sum())
+    numbers[visible] = np.arange(visible.sum())
     links = [_links(numbers, depth, axis) for axis in (0, 1)]
-    one, other = np.concatenate(links, axis=1)
-    n = int(seen.sum())
-    graph = coo_array((np.ones(len(one), dtype=bool), (one, other)), shape=(n, n))
+    first, second = np.concatenate(links, axis=1)
+    n = int(visible.sum())
+    graph = coo_array((np.ones(len(first), dtype=bool), (first, second)), shape=(n, n))
     n_pieces, labels = connected_components(graph, directed=False)
     pieces = np.zeros(depth.shape, dtype=np.intp)
-    pieces[seen] = labels + 1
-    surfaces = _surface(depth, camera)[seen]
+    pieces[visible] = labels + 1
+    surfaces = _surface(depth, camera)[visible]
     areas = np.bincount(labels, weights=surfaces, minlength=n_pieces)
     return pieces, areas.astype(np.float64)
 
 
 def _links(numbers: NDArray[Any], depth: Depth, axis: int) -> NDArray[Any]:
-    """Return the numbers of neighbours on one surface, shape (2, n)."""
+    """Return the index pairs of connected neighbors, shape (2, n)."""
     length = depth.shape[axis]
     first, second = (
         np.take(depth, range(start, start + length - 1), axis=axis) for start in (0, 1)
     )
-    near = np.minimum(first, second)
-    linked = (near > 0.0) & (np.abs(first - second) <= STEP + STEP_SQUARED * near**2)
+    nearer_depth = np.minimum(first, second)
+    linked = (nearer_depth > 0.0) & (
+        np.abs(first - second) <= MAX_STEP_M + MAX_STEP_PER_M2 * nearer_depth**2
+    )
     ends = (np.take(numbers, range(start, start + length - 1), axis=axis) for start in (0, 1))
     return np.stack([end[linked] for end in ends])
 
 
 def _surface(depth: Depth, camera: Camera) -> NDArray[np.float64]:
-    """Return the square metres of each pixel, as if they faced the camera."""
+    """Return the surface of each pixel, square metres, as if it faced the camera."""
     return np.asarray(depth, dtype=np.float64) ** 2 / (camera.fx * camera.fy)
 
 
-def _whose_limb(
-    piece: int, places: NDArray[np.intp], areas: NDArray[np.float64], points: list[Points]
+def _limb_owner(
+    piece: int,
+    body_of_piece: NDArray[np.intp],
+    areas: NDArray[np.float64],
+    points: list[Points],
 ) -> int:
-    """Return which of the bodies so far a large piece is a limb of, 0 for none."""
-    for other in np.flatnonzero(places):
-        small = areas[piece - 1] <= LIMB * areas[other - 1]
-        if small and _gap(points[piece], points[other][::FEW]) <= 0.0:
-            return int(places[other])
+    """Return the existing body that a large piece is a limb of, 0 for none."""
+    for other in np.flatnonzero(body_of_piece):
+        is_smaller = areas[piece - 1] <= MAX_LIMB_FRACTION * areas[other - 1]
+        if is_smaller and _excess_gap(points[piece], points[other][::POINT_STEP]) <= 0.0:
+            return int(body_of_piece[other])
     return 0
 
 
 def _join_small_pieces(
-    places: NDArray[np.intp], areas: NDArray[np.float64], points: list[Points]
+    body_of_piece: NDArray[np.intp], areas: NDArray[np.float64], points: list[Points]
 ) -> None:
-    """Give small pieces to the body that they are beside, or that their middle is in reach of.
+    """Assign small pieces to the body next to them or within reach of their center.
 
-    `places` is which body each piece is, 0 for none, and is changed.
+    `body_of_piece` holds the body of each piece, 0 for none. It is modified.
     """
-    bodies = [body[::FEW] for body in _bodies(places, points)]
-    for piece in np.flatnonzero(areas >= SMALLEST_PIECE) + 1:
-        if places[piece] or not bodies:
+    bodies = [body[::POINT_STEP] for body in _bodies(body_of_piece, points)]
+    for piece in np.flatnonzero(areas >= MIN_PIECE_M2) + 1:
+        if body_of_piece[piece] or not bodies:
             continue
-        apart = [_out_of_reach(points[piece], body) for body in bodies]
-        if min(apart) <= 0.0:
-            places[piece] = int(np.argmin(apart)) + 1
+        distances = [_excess_distance(points[piece], body) for body in bodies]
+        if min(distances) <= 0.0:
+            body_of_piece[piece] = int(np.argmin(distances)) + 1
 
 
-def _out_of_reach(own: Points, body: Points) -> float:
-    """Return how many metres a piece is out of reach of a body; it belongs to it below 0."""
+def _excess_distance(own: Points, body: Points) -> float:
+    """Return the distance beyond reach, metres; at or below 0 the piece belongs to the body."""
     box = np.maximum(body.min(axis=0) - own.max(axis=0), own.min(axis=0) - body.max(axis=0))
-    if box.max() > REACH:
+    if box.max() > MAX_PIECE_DISTANCE_M:
         return float(box.max())
-    to_middle = float(np.linalg.norm(body - np.median(own, axis=0), axis=-1).min())
-    return min(to_middle - REACH, _gap(own, body))
+    to_center = float(np.linalg.norm(body - np.median(own, axis=0), axis=-1).min())
+    return min(to_center - MAX_PIECE_DISTANCE_M, _excess_gap(own, body))
 
 
-def _gap(own: Points, body: Points) -> float:
-    """Return how many metres more than `BESIDE` are between two sets of points."""
-    few = own[:: max(1, len(own) // FEW)]
-    return float(np.linalg.norm(few[:, np.newaxis] - body, axis=-1).min()) - BESIDE
+def _excess_gap(own: Points, body: Points) -> float:
+    """Return the gap between two point sets minus `MAX_LIMB_GAP_M`, metres."""
+    subset = own[:: max(1, len(own) // POINT_STEP)]
+    return float(np.linalg.norm(subset[:, np.newaxis] - body, axis=-1).min()) - MAX_LIMB_GAP_M

@@ -1,4 +1,4 @@
-"""A pinhole camera: where points of the scene fall on its picture, and the way back."""
+"""A pinhole camera: projection of points into the image, and back-projection."""
 
 from dataclasses import dataclass
 from typing import Any
@@ -16,7 +16,7 @@ class Camera:
     """A pinhole camera without distortion.
 
     In its own frame x points to the right, y down and z forward, in metres. Column u and row v
-    of the picture see along x / z = (u - cx) / fx and y / z = (v - cy) / fy; the middle of the
+    of the image look along x / z = (u - cx) / fx and y / z = (v - cy) / fy; the center of the
     first pixel is (0, 0).
 
     Attributes
@@ -24,7 +24,7 @@ class Camera:
     fx, fy : float, pixels
         Focal lengths.
     cx, cy : float, pixels
-        Where the optical axis meets the picture.
+        Principal point.
     width, height : int, pixels
     """
 
@@ -39,27 +39,28 @@ class Camera:
         focal = (self.fx, self.fy, self.cx, self.cy)
         if not (np.isfinite(focal).all() and min(self.fx, self.fy) > 0.0):
             raise InvalidMotionError(
-                f"A camera with focal lengths {self.fx:g} and {self.fy:g} and its centre at"
-                f" {self.cx:g}, {self.cy:g} sees nothing; focal lengths are positive."
+                f"The focal lengths {self.fx:g} and {self.fy:g} and the principal point"
+                f" {self.cx:g}, {self.cy:g} are invalid. Give positive focal lengths."
             )
         if min(self.width, self.height) < 1:
             raise InvalidMotionError(
-                f"A picture of {self.width} x {self.height} pixels holds nothing."
+                f"An image of {self.width} x {self.height} pixels is empty. Give a width and"
+                " height of at least 1."
             )
 
     def project(self, points: Array) -> Array:
-        """Return columns and rows (..., 2) where these points (..., 3) fall; NaN if behind."""
+        """Return the columns and rows (..., 2) of points (..., 3); NaN behind the camera."""
         x, y, z = np.moveaxis(np.asarray(points, dtype=np.float64), -1, 0)
         z = np.where(z > 0.0, z, np.nan)
         return np.stack([self.fx * x / z + self.cx, self.fy * y / z + self.cy], axis=-1)
 
     def back_project(self, depth: NDArray[np.floating[Any]]) -> Array:
-        """Return the points (height, width, 3), metres, of a depth picture (height, width)."""
+        """Return the points (height, width, 3), metres, of a depth image (height, width)."""
         depth = np.asarray(depth, dtype=np.float64)
         return self.rays() * depth[..., np.newaxis]
 
     def rays(self) -> Array:
-        """Return where each pixel sees (height, width, 3), as far as one metre forward."""
+        """Return the ray of each pixel, shape (height, width, 3), at a depth of one metre."""
         x = (np.arange(self.width) - self.cx) / self.fx
         y = (np.arange(self.height) - self.cy) / self.fy
         rays = np.ones((self.height, self.width, 3))
@@ -67,7 +68,7 @@ class Camera:
         return rays
 
     def every(self, step: int) -> "Camera":
-        """Return the camera of every `step`-th column and row, from the first on."""
+        """Return the camera of every `step`-th column and row, starting with the first."""
         return Camera(
             self.fx / step,
             self.fy / step,

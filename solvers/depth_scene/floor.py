@@ -1,4 +1,4 @@
-"""Find the floor in pictures of depth, and with it where down is."""
+"""Find the floor plane in depth images, and the vertical direction with it."""
 
 from dataclasses import dataclass
 
@@ -11,38 +11,39 @@ from .recording import DepthRecording
 
 Array = NDArray[np.float64]
 
-UP = np.array([0.0, -1.0, 0.0])
-"""Of a camera that stands level, in its own frame."""
-N_PICTURES, MOST_POINTS = 12, 6000
-BESIDE, BESIDE_SQUARED = 0.015, 0.003
-"""Metres from the plane, and metres per square metre of distance, as the noise grows."""
-CLOSER = (1.0, 0.7, 0.5, 0.5)
-"""Shares of the tolerance for each fit: first near, then without the feet of walls."""
-BELOW = 3.0
-"""Tolerances under the plane from which on a point speaks against it."""
+LEVEL_UP = np.array([0.0, -1.0, 0.0])
+"""Up direction in the frame of a level camera."""
+MAX_IMAGES, MAX_POINTS = 12, 6000
+TOLERANCE_M, TOLERANCE_PER_M2 = 0.015, 0.003
+"""Inlier distance from the plane: metres, and its growth with squared depth (sensor noise)."""
+FIT_TOLERANCES = (1.0, 0.7, 0.5, 0.5)
+"""Fraction of the tolerance for each refit; the last ones exclude the base of walls."""
+BELOW_TOLERANCES = 3.0
+"""Points more than this many tolerances below a plane vote against it."""
 
 
 @dataclass(frozen=True, kw_only=True)
 class FloorSettings(Settings):
-    """How the floor is looked for."""
+    """Settings of the floor detection."""
 
     tilt: float = setting(
-        40.0, "How far the camera may be tilted; more also takes slopes for floors",
+        40.0, "Maximum tilt of the camera; higher values also accept slopes as floors",
         unit="degrees", minimum=1.0, maximum=80.0,
     )  # fmt: skip
     extent: float = setting(
-        0.25, "Standard deviation of the floor's seen part in its narrower direction; more"
-        " refuses small patches", unit="m", minimum=0.01, maximum=10.0,
+        0.25, "Minimum extent of the visible floor (standard deviation along its narrower"
+        " direction); higher values reject small patches", unit="m", minimum=0.01, maximum=10.0,
     )  # fmt: skip
     share: float = setting(
-        0.03, "Share of what is seen that the floor must have; more refuses small patches",
+        0.03, "Minimum fraction of the visible points on the floor; higher values reject small"
+        " patches",
         minimum=0.0, maximum=1.0,
     )  # fmt: skip
     n_trials: int = setting(
-        600, "Planes that are tried; more finds floors of which little is seen",
+        600, "Number of RANSAC trials; more trials find floors that are mostly hidden",
         minimum=1, maximum=100_000, advanced=True,
     )  # fmt: skip
-    seed: int = setting(0, "Which random points are tried", minimum=0, maximum=2**31 - 1)
+    seed: int = setting(0, "Seed of the random samples", minimum=0, maximum=2**31 - 1)
 
 
 @dataclass(frozen=True, eq=False)
@@ -61,24 +62,24 @@ class Floor:
     height: float
 
     def heights(self, points: Array) -> Array:
-        """Return how high points (..., 3) of the camera's frame are above the floor, metres."""
+        """Return the heights above the floor, metres, of camera-frame points (..., 3)."""
         return points @ self.up + self.height
 
     def world_from_camera(self) -> tuple[Array, Array]:
-        """Return the turn (3, 3) and shift (3,) from the camera's frame to the world's.
+        """Return the rotation (3, 3) and translation (3,) from the camera to the world frame.
 
-        Z is up and 0 on the floor, below the camera is the origin, and the camera looks along
-        +Y, so that an actor who faces it faces -Y.
+        Z is up and 0 on the floor. The origin is below the camera, which looks along +Y: an
+        actor who faces the camera faces -Y.
         """
         forward = np.array([0.0, 0.0, 1.0])
         forward -= (forward @ self.up) * self.up
         forward /= np.linalg.norm(forward)
-        turn = np.stack([np.cross(forward, self.up), forward, self.up])
-        return turn, np.array([0.0, 0.0, self.height])
+        rotation = np.stack([np.cross(forward, self.up), forward, self.up])
+        return rotation, np.array([0.0, 0.0, self.height])
 
 
-LEVEL = Floor(UP, 0.0)
-"""Where no floor is seen: the camera is taken to stand level, and at height 0."""
+LEVEL = Floor(LEVEL_UP, 0.0)
+"""Default without a visible floor: a level camera at height 0."""
 
 
 def find_floor(
@@ -87,11 +88,11 @@ def find_floor(
     *,
     progress: Progress = unwatched,
 ) -> Floor | None:
-    """Find the floor in a recording: the largest plane that faces up with little beneath it.
+    """Find the floor of a recording: the largest upward plane with few points below it.
 
-    Planes through three random points [1]_ of pictures spread over the recording are tried.
-    Those beside a plane, within the noise of a depth camera, speak for it; those beneath
-    against it, as beneath a table. The plane of most votes is fitted to those beside it.
+    RANSAC [1]_ tests planes through three random points of images spread over the recording.
+    Points within the sensor noise vote for a plane. Points below it vote against it, as
+    below a table. A least-squares fit to the inliers refines the best plane.
 
     Parameters
     ----------
@@ -103,7 +104,7 @@ def find_floor(
     Returns
     -------
     Floor or None
-        None where no floor is seen, as in pictures cut out around the actor.
+        None without a visible floor, as in images that contain only the actor.
 
     References
     ----------
@@ -118,60 +119,61 @@ def find_floor(
     if plane is None:
         return None
     up, height = plane
-    for share in CLOSER:
-        beside = points[np.abs(points @ up + height) <= share * _tolerance(points)]
-        if len(beside) < 3:
+    for fraction in FIT_TOLERANCES:
+        inliers = points[np.abs(points @ up + height) <= fraction * _tolerance(points)]
+        if len(inliers) < 3:
             return None
-        up, height, spread = _fitted(beside)
-    steep = float(up @ UP) < np.cos(np.radians(settings.tilt))
-    if steep or spread < settings.extent or len(beside) < settings.share * len(points):
+        up, height, extent = _fitted(inliers)
+    steep = float(up @ LEVEL_UP) < np.cos(np.radians(settings.tilt))
+    if steep or extent < settings.extent or len(inliers) < settings.share * len(points):
         return None
     return Floor(up, height)
 
 
 def _points(recording: DepthRecording, rng: np.random.Generator, progress: Progress) -> Array:
-    """Return points of some pictures, spread over the recording, shape (n, 3)."""
-    n_pictures = min(N_PICTURES, recording.n_frames)
-    frames = np.linspace(0, recording.n_frames - 1, n_pictures).round().astype(int)
+    """Return points of images spread over the recording, shape (n, 3)."""
+    n_images = min(MAX_IMAGES, recording.n_frames)
+    frames = np.linspace(0, recording.n_frames - 1, n_images).round().astype(int)
     rays = recording.camera.rays()
-    found = []
-    for place, frame in enumerate(frames.tolist()):
+    sampled = []
+    for index, frame in enumerate(frames.tolist()):
         depth = recording.frame(frame)
         rows, columns = np.nonzero(depth)
-        chosen = rng.permutation(len(rows))[: MOST_POINTS // n_pictures]
+        chosen = rng.permutation(len(rows))[: MAX_POINTS // n_images]
         rows, columns = rows[chosen], columns[chosen]
-        found.append(rays[rows, columns] * depth[rows, columns, np.newaxis])
-        progress((place + 1) / n_pictures, "Finding the floor")
-    return np.concatenate(found)
+        sampled.append(rays[rows, columns] * depth[rows, columns, np.newaxis])
+        progress((index + 1) / n_images, "Finding the floor")
+    return np.concatenate(sampled)
 
 
 def _best_plane(
     points: Array, settings: FloorSettings, rng: np.random.Generator
 ) -> tuple[Array, float] | None:
-    one, two, three = points[rng.integers(len(points), size=(3, settings.n_trials))]
-    normals = np.cross(two - one, three - one)
+    first, second, third = points[rng.integers(len(points), size=(3, settings.n_trials))]
+    normals = np.cross(second - first, third - first)
     lengths = np.linalg.norm(normals, axis=-1, keepdims=True)
-    normals = np.where(normals @ UP < 0.0, -1.0, 1.0)[:, np.newaxis] * normals
+    normals = np.where(normals @ LEVEL_UP < 0.0, -1.0, 1.0)[:, np.newaxis] * normals
     normals /= np.where(lengths > 0.0, lengths, np.inf)
-    upright = normals @ UP > np.cos(np.radians(settings.tilt))
-    normals, one = normals[upright], one[upright]
+    upright = normals @ LEVEL_UP > np.cos(np.radians(settings.tilt))
+    normals, first = normals[upright], first[upright]
     if not len(normals):
         return None
-    heights = -(normals * one).sum(axis=-1)
-    above = (normals @ points.T + heights[:, np.newaxis]) / _tolerance(points)
-    votes = (np.abs(above) <= 1.0).sum(axis=-1) - (above < -BELOW).sum(axis=-1)
+    heights = -(normals * first).sum(axis=-1)
+    distances = (normals @ points.T + heights[:, np.newaxis]) / _tolerance(points)
+    votes = (np.abs(distances) <= 1.0).sum(axis=-1)
+    votes = votes - (distances < -BELOW_TOLERANCES).sum(axis=-1)
     best = int(np.argmax(votes))
     return normals[best], float(heights[best])
 
 
 def _tolerance(points: Array) -> Array:
-    return np.asarray(BESIDE + BESIDE_SQUARED * points[..., 2] ** 2)
+    return np.asarray(TOLERANCE_M + TOLERANCE_PER_M2 * points[..., 2] ** 2)
 
 
 def _fitted(points: Array) -> tuple[Array, float, float]:
-    """Return normal, height and narrower extent of the plane of least squares."""
+    """Return normal, height and narrower extent of the least-squares plane."""
     weights = _tolerance(points) ** -2
-    middle = np.average(points, axis=0, weights=weights)
-    spreads, axes = np.linalg.eigh(np.cov(points.T, aweights=weights))
-    up = axes[:, 0] if axes[:, 0] @ UP > 0.0 else -axes[:, 0]
-    return up, float(-up @ middle), float(np.sqrt(max(spreads[1], 0.0)))
+    center = np.average(points, axis=0, weights=weights)
+    variances, axes = np.linalg.eigh(np.cov(points.T, aweights=weights))
+    up = axes[:, 0] if axes[:, 0] @ LEVEL_UP > 0.0 else -axes[:, 0]
+    return up, float(-up @ center), float(np.sqrt(max(variances[1], 0.0)))

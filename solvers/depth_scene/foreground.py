@@ -1,4 +1,4 @@
-"""Cut the actor out of pictures of depth."""
+"""Segment the actor in depth images."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
@@ -18,59 +18,67 @@ from .recording import DepthImage, DepthRecording
 
 Array = NDArray[np.float64]
 
-MOST_EMPTY_FRAMES = 60
-LEAST_SPREAD, SPREADS = 0.01, 4.0
-"""Metres by which every sensor trembles, and how many spreads are no coincidence."""
-FROM_DEVIATION = 1.4826
-"""Of the median absolute deviation to the standard deviation, for Gaussian noise."""
-AROUND = 0.5
-"""Metres around the usual depth in which a reading trembles; farther off it is another one."""
-FARTHER = 0.9
-"""Quantile of a pixel's depths at which it usually saw the room behind a moving actor."""
-ASTRAY = 1.2
-"""Metres from where the actor was expected, beyond which a body is someone else."""
+MAX_BACKGROUND_FRAMES = 60
+MIN_NOISE_M, NOISE_FACTOR = 0.01, 4.0
+"""Minimum sensor noise, and the multiple of the noise that counts as significant."""
+STD_FROM_MAD = 1.4826
+"""Standard deviation divided by median absolute deviation, for Gaussian noise."""
+NOISE_WINDOW_M = 0.5
+"""Readings within this distance of the background depth count as its noise."""
+BACKGROUND_QUANTILE = 0.9
+"""Quantile of a pixel's depths that shows the room behind a moving actor."""
+MAX_ACTOR_DISTANCE_M = 1.2
+"""A body farther from the expected position of the actor is another person."""
 
 
 class ForegroundMethod(Enum):
-    """How the actor is told from the room."""
+    """Method that separates the actor from the room."""
 
     AUTOMATIC = "automatic"
-    """As recorded where nothing else is in the picture; else what moves, without the floor."""
+    """`RECORDED` if the image holds nothing else; otherwise moving pixels above the floor."""
     RECORDED = "recorded"
-    """All that the pictures hold is the actor."""
+    """The images contain only the actor."""
     CUT = "cut"
     """Between two distances and above the floor."""
     BACKGROUND = "background"
-    """Nearer than the empty room."""
+    """In front of the empty room."""
 
 
 @dataclass(frozen=True, kw_only=True)
 class ForegroundSettings(Settings):
-    """What may belong to the actor."""
+    """Settings of the segmentation of the actor."""
 
     way: ForegroundMethod = setting(
-        ForegroundMethod.AUTOMATIC, "How the actor is told from the room"
+        ForegroundMethod.AUTOMATIC, "Method that separates the actor from the room"
     )
     nearest: float = setting(
-        0.3, "What is nearer to the camera is cut away", unit="m", minimum=0.0, maximum=50.0
+        0.3,
+        "Minimum distance from the camera; nearer pixels are removed",
+        unit="m",
+        minimum=0.0,
+        maximum=50.0,
     )
     farthest: float = setting(
-        6.0, "What is farther from the camera is cut away", unit="m", minimum=0.1, maximum=50.0
+        6.0,
+        "Maximum distance from the camera; farther pixels are removed",
+        unit="m",
+        minimum=0.1,
+        maximum=50.0,
     )
     above_floor: float = setting(
-        0.03, "What is lower above the floor is cut away; more cuts off feet",
+        0.03, "Minimum height above the floor; higher values cut off feet",
         unit="m", minimum=0.0, maximum=1.0,
     )  # fmt: skip
     before_background: float = setting(
-        0.05, "What is less in front of the empty room is cut away; more cuts off feet",
+        0.05, "Minimum distance in front of the empty room; higher values cut off feet",
         unit="m", minimum=0.0, maximum=1.0,
     )  # fmt: skip
     smallest_body: float = setting(
-        0.08, "Seen surface of the smallest body that is taken for a person; more overlooks"
-        " persons of whom little is seen", unit="m²", minimum=0.001, maximum=5.0,
+        0.08, "Minimum visible surface of a person; higher values miss persons who are mostly"
+        " hidden", unit="m²", minimum=0.001, maximum=5.0,
     )  # fmt: skip
     largest_body: float = setting(
-        2.0, "Seen surface of the largest body that is taken for a person, and not for a wall",
+        2.0, "Maximum visible surface of a person; larger bodies count as walls",
         unit="m²", minimum=0.1, maximum=50.0,
     )  # fmt: skip
 
@@ -82,7 +90,7 @@ class Background:
     Attributes
     ----------
     depth : float32 array, shape (height, width), metres
-        0 where nothing was seen.
+        0: no reading.
     spread : float32 array, shape (height, width), metres
         Standard deviation of one reading.
     """
@@ -94,121 +102,122 @@ class Background:
 def learn_background(
     recording: DepthRecording, frames: Sequence[int], *, progress: Progress = unwatched
 ) -> Background:
-    """Learn the empty room from frames without the actor: per pixel the median and the spread.
+    """Learn the empty room from frames without the actor: median and noise of each pixel.
 
     Raises InvalidMotionError without a frame.
     """
     if not len(frames):
         raise InvalidMotionError(
-            "The empty room cannot be learned from no frame at all. Name frames without the"
-            " actor."
+            "The empty room needs at least one frame. Select frames without the actor."
         )
-    return _usual_room(recording, frames, 0.5, progress)
+    return _background_depth(recording, frames, 0.5, progress)
 
 
 def uncovered_background(
     recording: DepthRecording, *, progress: Progress = unwatched
 ) -> Background:
-    """Guess the room from frames with the actor: each pixel as far as it was in some of them.
+    """Estimate the room from frames with the actor, by a high depth quantile of each pixel.
 
-    Where the actor never leaves, the actor is taken for the room.
+    Pixels that the actor never uncovers are misclassified as room.
     """
-    return _usual_room(recording, range(recording.n_frames), FARTHER, progress)
+    return _background_depth(
+        recording, range(recording.n_frames), BACKGROUND_QUANTILE, progress
+    )
 
 
-def _usual_room(
+def _background_depth(
     recording: DepthRecording, frames: Sequence[int], quantile: float, progress: Progress
 ) -> Background:
-    chosen = np.linspace(0, len(frames) - 1, min(len(frames), MOST_EMPTY_FRAMES)).round()
-    pictures = []
-    for place, index in enumerate(chosen.astype(int).tolist()):
-        pictures.append(recording.frame(frames[index]))
-        progress((place + 1) / len(chosen), "Learning the empty room")
-    seen = np.stack(pictures)
-    often = (seen > 0.0).sum(axis=0) > (1.0 - quantile) * len(pictures)
-    seen = np.where(often & (seen > 0.0), seen, np.nan)
-    depth = _quantile_seen(seen, quantile)
-    around = np.where(np.abs(seen - depth) < AROUND, seen, np.nan)
-    off = np.abs(around - _quantile_seen(around, 0.5))
-    spread = FROM_DEVIATION * _quantile_seen(off, 0.5)
+    chosen = np.linspace(0, len(frames) - 1, min(len(frames), MAX_BACKGROUND_FRAMES)).round()
+    images = []
+    for count, index in enumerate(chosen.astype(int).tolist()):
+        images.append(recording.frame(frames[index]))
+        progress((count + 1) / len(chosen), "Learning the empty room")
+    readings = np.stack(images)
+    is_frequent = (readings > 0.0).sum(axis=0) > (1.0 - quantile) * len(images)
+    readings = np.where(is_frequent & (readings > 0.0), readings, np.nan)
+    depth = _nan_quantile(readings, quantile)
+    near = np.where(np.abs(readings - depth) < NOISE_WINDOW_M, readings, np.nan)
+    deviations = np.abs(near - _nan_quantile(near, 0.5))
+    spread = STD_FROM_MAD * _nan_quantile(deviations, 0.5)
     return Background(np.nan_to_num(depth), np.nan_to_num(spread))
 
 
-def _quantile_seen(values: DepthImage, quantile: float) -> DepthImage:
-    """Return a quantile along the first axis of what is not NaN; NaN where all is."""
+def _nan_quantile(values: DepthImage, quantile: float) -> DepthImage:
+    """Return a quantile along the first axis, ignoring NaN; NaN if all values are NaN."""
     ordered = np.sort(values, axis=0)
     last = np.maximum(np.isfinite(values).sum(axis=0) - 1, 0)
-    at = quantile * last
-    below = np.floor(at).astype(np.intp)[np.newaxis]
+    position = quantile * last
+    below = np.floor(position).astype(np.intp)[np.newaxis]
     above = np.minimum(below + 1, last)
-    one, other = (np.take_along_axis(ordered, each, axis=0)[0] for each in (below, above))
-    mixed: DepthImage = (one + (at - below[0]) * (other - one)).astype(np.float32)
-    return mixed
+    lower, upper = (np.take_along_axis(ordered, each, axis=0)[0] for each in (below, above))
+    result: DepthImage = (lower + (position - below[0]) * (upper - lower)).astype(np.float32)
+    return result
 
 
 @dataclass(frozen=True, eq=False)
 class ActorImages:
-    """Reads pictures of the actor alone; to be `DepthRecording.read_depth`.
+    """Reader of depth images of the actor alone, for `DepthRecording.read_depth`.
 
     Attributes
     ----------
     recording : DepthRecording
     settings : ForegroundSettings
     background : Background, or None
-        What is not in front of it is cut away.
+        Pixels that are not in front of it are removed.
     floor : Floor, or None
-        What is not above it is cut away.
-    course : float array, shape (n_frames, 3), metres, or None
-        Where the actor is expected; NaN where the actor has left. Without it the body with the
-        largest surface is the actor.
+        Pixels that are not above it are removed.
+    trajectory : float array, shape (n_frames, 3), metres, or None
+        Expected position of the actor; NaN while the actor is missing. Without it the body
+        with the largest surface is the actor.
     """
 
     recording: DepthRecording
     settings: ForegroundSettings
     background: Background | None = None
     floor: Floor | None = None
-    course: Array | None = None
+    trajectory: Array | None = None
 
     def __call__(self, index: int) -> DepthImage:
         """Return the depth of the actor in a frame, metres; 0 elsewhere."""
-        if self.course is not None and np.isnan(self.course[index]).any():
+        if self.trajectory is not None and np.isnan(self.trajectory[index]).any():
             return np.zeros((self.recording.camera.height, self.recording.camera.width), "f4")
-        depth = self.stands_out(self.recording.frame(index))
-        found = find_bodies(depth, self.recording.camera, self.settings.smallest_body)
-        label = self._label(found, index)
-        return np.where(found.mask(label), depth, np.float32(0.0)) if label else 0.0 * depth
+        depth = self.foreground(self.recording.frame(index))
+        bodies = find_bodies(depth, self.recording.camera, self.settings.smallest_body)
+        label = self._label(bodies, index)
+        return np.where(bodies.mask(label), depth, np.float32(0.0)) if label else 0.0 * depth
 
-    def _label(self, found: Bodies, index: int) -> int:
-        """Return which of the bodies is the actor, 0 for none."""
-        fitting = np.flatnonzero(found.areas <= self._largest)
-        if not len(fitting):
+    def _label(self, bodies: Bodies, index: int) -> int:
+        """Return the label of the actor's body, 0 for none."""
+        candidates = np.flatnonzero(bodies.areas <= self._max_area)
+        if not len(candidates):
             return 0
-        if self.course is None:
-            return int(fitting[0]) + 1
-        apart = np.linalg.norm(found.middles[fitting] - self.course[index], axis=-1)
-        nearest = int(np.argmin(apart))
-        return int(fitting[nearest]) + 1 if apart[nearest] <= ASTRAY else 0
+        if self.trajectory is None:
+            return int(candidates[0]) + 1
+        distances = np.linalg.norm(bodies.centers[candidates] - self.trajectory[index], axis=-1)
+        nearest = int(np.argmin(distances))
+        return int(candidates[nearest]) + 1 if distances[nearest] <= MAX_ACTOR_DISTANCE_M else 0
 
     @property
-    def _largest(self) -> float:
+    def _max_area(self) -> float:
         recorded = self.settings.way is ForegroundMethod.RECORDED
         return np.inf if recorded else self.settings.largest_body
 
-    def stands_out(self, depth: DepthImage, step: int = 1) -> DepthImage:
-        """Return a picture without what is no actor; of every `step`-th column and row."""
+    def foreground(self, depth: DepthImage, step: int = 1) -> DepthImage:
+        """Return the depth image without background; every `step`-th column and row."""
         settings = self.settings
         if settings.way is ForegroundMethod.RECORDED:
             return depth
-        kept = (depth >= settings.nearest) & (depth <= settings.farthest)
+        mask = (depth >= settings.nearest) & (depth <= settings.farthest)
         if self.background is not None:
             room = Background(
                 self.background.depth[::step, ::step], self.background.spread[::step, ::step]
             )
-            kept &= in_front_of(depth, room, settings.before_background)
+            mask &= is_in_front(depth, room, settings.before_background)
         if self.floor is not None:
             camera = self.recording.camera.every(step)
-            kept &= above(depth, camera, self.floor, settings.above_floor)
-        return np.where(kept, depth, np.float32(0.0))
+            mask &= above_floor_mask(depth, camera, self.floor, settings.above_floor)
+        return np.where(mask, depth, np.float32(0.0))
 
 
 def cut_out_actor(
@@ -217,14 +226,14 @@ def cut_out_actor(
     *,
     background: Background | None = None,
     floor: Floor | None = None,
-    course: Array | None = None,
+    trajectory: Array | None = None,
 ) -> DepthRecording:
-    """Return the recording with nothing but the actor in it; still read frame by frame.
+    """Return the recording with only the actor in it, still read frame by frame.
 
-    A frame in which there is no body large enough becomes empty. `find_actor` chooses what is
-    given here, and tells what it saw.
+    Frames without a sufficiently large body become empty. `find_actor` chooses the arguments
+    automatically and reports its observations.
 
-    Parameters are the attributes of `ActorImages`.
+    The parameters are the attributes of `ActorImages`.
 
     Raises
     ------
@@ -232,34 +241,36 @@ def cut_out_actor(
         The background is missing, or of another size.
     """
     size = (recording.camera.height, recording.camera.width)
-    wanted = settings.way is ForegroundMethod.BACKGROUND
-    if (wanted and background is None) or (
+    needs_background = settings.way is ForegroundMethod.BACKGROUND
+    if (needs_background and background is None) or (
         background is not None and background.depth.shape != size
     ):
         raise InvalidMotionError(
-            f"The actor cannot be told from the empty room without its picture of {size[1]} x"
-            f" {size[0]} pixels. Name frames without the actor."
+            f"The background method needs an image of the empty room of {size[1]} x {size[0]}"
+            " pixels. Select frames without the actor."
         )
     return replace(
-        recording, read_depth=ActorImages(recording, settings, background, floor, course)
+        recording, read_depth=ActorImages(recording, settings, background, floor, trajectory)
     )
 
 
-def in_front_of(depth: DepthImage, background: Background, margin: float) -> NDArray[np.bool_]:
-    """Tell which pixels see something in front of the empty room, by more than its noise."""
-    spread = SPREADS * np.maximum(background.spread, LEAST_SPREAD)
-    unknown = background.depth == 0.0
-    nearer = depth < background.depth - np.maximum(margin, spread)
-    return np.asarray((depth > 0.0) & (unknown | nearer))
+def is_in_front(depth: DepthImage, background: Background, margin: float) -> NDArray[np.bool_]:
+    """Return the mask of pixels in front of the empty room by more than its noise."""
+    spread = NOISE_FACTOR * np.maximum(background.spread, MIN_NOISE_M)
+    is_unknown = background.depth == 0.0
+    is_nearer = depth < background.depth - np.maximum(margin, spread)
+    return np.asarray((depth > 0.0) & (is_unknown | is_nearer))
 
 
-def above(depth: DepthImage, camera: Camera, floor: Floor, least: float) -> NDArray[np.bool_]:
-    """Tell which pixels see something at least so high above the floor, in metres."""
-    return np.asarray(depth * _rise(camera, tuple(floor.up)) + floor.height > least)
+def above_floor_mask(
+    depth: DepthImage, camera: Camera, floor: Floor, min_height: float
+) -> NDArray[np.bool_]:
+    """Return the mask of pixels more than `min_height` metres above the floor."""
+    return np.asarray(depth * _upward_rays(camera, tuple(floor.up)) + floor.height > min_height)
 
 
 @lru_cache(maxsize=4)
-def _rise(camera: Camera, up: tuple[float, ...]) -> DepthImage:
-    """Return how far each pixel's ray goes up in a metre of depth, metres."""
-    rise: DepthImage = (camera.rays() @ np.array(up)).astype(np.float32)
-    return rise
+def _upward_rays(camera: Camera, up: tuple[float, ...]) -> DepthImage:
+    """Return the rise of each pixel's ray per metre of depth, metres."""
+    upward: DepthImage = (camera.rays() @ np.array(up)).astype(np.float32)
+    return upward

@@ -1,4 +1,4 @@
-"""Follow the people in a recording of depth, and choose the actor."""
+"""Track the people in a depth recording and select the actor."""
 
 from collections.abc import Callable
 from dataclasses import dataclass, field
@@ -10,128 +10,127 @@ from .bodies import Bodies
 
 Array = NDArray[np.float64]
 
-FASTEST = 4.0
-"""Metres per second that a body's middle moves at most."""
-LONGEST_UNSEEN = 1.0
-"""Seconds after which a body that comes again counts as another one."""
-SLACK = 0.3
-"""Metres by which the middle of what is seen may jump."""
+MAX_SPEED_M_S = 4.0
+"""Maximum speed of a body's center."""
+MAX_GAP_S = 1.0
+"""A body that reappears after a longer gap counts as another person."""
+MAX_JUMP_M = 0.3
+"""Maximum jump of the center of the visible surface between two samples."""
 
 
 @dataclass
-class _Person:
-    """Somebody who was seen, at which of the looks, where, and how large."""
+class _PersonTrack:
+    """One tracked person: samples, center positions and summed visible surface."""
 
-    looks: list[int] = field(default_factory=list)
-    middles: list[Array] = field(default_factory=list)
+    samples: list[int] = field(default_factory=list)
+    centers: list[Array] = field(default_factory=list)
     area: float = 0.0
 
-    def add(self, look: int, middle: Array, area: float) -> None:
-        self.looks.append(look)
-        self.middles.append(middle)
+    def add(self, sample: int, center: Array, area: float) -> None:
+        self.samples.append(sample)
+        self.centers.append(center)
         self.area += area
 
 
 @dataclass(frozen=True, eq=False)
 class People:
-    """Who was seen in frames spread over a recording.
+    """The people in sampled frames of a recording.
 
     Attributes
     ----------
-    frames : int array, shape (n_looks,)
-        The frames that were looked at.
-    n_bodies : int array, shape (n_looks,)
-        How many people were in each.
-    course : float array, shape (n_frames, 3), metres
-        Where the actor is in the camera's frame, in every frame of the recording; NaN where
-        the actor is not.
+    frames : int array, shape (n_samples,)
+        The sampled frames.
+    n_bodies : int array, shape (n_samples,)
+        Number of people in each sampled frame.
+    trajectory : float array, shape (n_frames, 3), metres
+        Position of the actor in the camera frame, for every frame; NaN without the actor.
     """
 
     frames: NDArray[np.intp]
     n_bodies: NDArray[np.intp]
-    course: Array
+    trajectory: Array
 
 
 def follow_people(
-    look: Callable[[int], Bodies],
+    observe: Callable[[int], Bodies],
     frames: NDArray[np.intp],
     n_frames: int,
     frame_rate: float,
 ) -> People:
-    """Look at some frames, follow who is seen there, and take for the actor who is seen most.
+    """Track people through sampled frames and select the most visible one as the actor.
 
-    That is the person with the largest sum of seen surfaces. Whoever is seen only when the
-    actor is not is the same actor, who has come back.
+    The actor is the person with the largest summed visible surface. A person who is visible
+    only while the actor is missing counts as the same actor, who has returned.
 
     Parameters
     ----------
-    look : callable
-        Takes a frame and returns the people in it.
-    frames : int array, shape (n_looks,)
-        Always increasing.
+    observe : callable
+        Maps a frame to the people in it.
+    frames : int array, shape (n_samples,)
+        Strictly increasing.
     n_frames : int
     frame_rate : float, hertz
     """
-    people: list[_Person] = []
-    counts = []
-    for number, frame in enumerate(frames.tolist()):
-        found = look(frame)
-        counts.append(len(found.areas))
-        _assign(people, found, number, frames, frame_rate)
+    people: list[_PersonTrack] = []
+    n_bodies = []
+    for sample, frame in enumerate(frames.tolist()):
+        bodies = observe(frame)
+        n_bodies.append(len(bodies.areas))
+        _assign(people, bodies, sample, frames, frame_rate)
     actor: dict[int, Array] = {}
     for person in sorted(people, key=lambda person: -person.area):
-        span = range(person.looks[0], person.looks[-1] + 1)
-        if not any(look in actor for look in span):
-            actor.update(zip(person.looks, person.middles, strict=True))
-    course = _course(actor, frames, n_frames, frame_rate)
-    return People(frames, np.array(counts, dtype=np.intp), course)
+        interval = range(person.samples[0], person.samples[-1] + 1)
+        if not any(sample in actor for sample in interval):
+            actor.update(zip(person.samples, person.centers, strict=True))
+    trajectory = _interpolate_trajectory(actor, frames, n_frames, frame_rate)
+    return People(frames, np.array(n_bodies, dtype=np.intp), trajectory)
 
 
 def _assign(
-    people: list[_Person],
-    found: Bodies,
-    number: int,
+    people: list[_PersonTrack],
+    bodies: Bodies,
+    sample: int,
     frames: NDArray[np.intp],
     frame_rate: float,
 ) -> None:
-    """Give each body to the person nearest to it, the nearest pair first."""
+    """Assign each body to the nearest person, starting with the nearest pair."""
     pairs = []
-    for body, middle in enumerate(found.middles):
+    for body, center in enumerate(bodies.centers):
         for index, person in enumerate(people):
-            passed = (frames[number] - frames[person.looks[-1]]) / frame_rate
-            apart = float(np.linalg.norm(middle - person.middles[-1]))
-            if passed <= LONGEST_UNSEEN and apart <= SLACK + FASTEST * passed:
-                pairs.append((apart, body, index))
-    bodies, taken = set(range(len(found.areas))), set()
+            elapsed = (frames[sample] - frames[person.samples[-1]]) / frame_rate
+            distance = float(np.linalg.norm(center - person.centers[-1]))
+            if elapsed <= MAX_GAP_S and distance <= MAX_JUMP_M + MAX_SPEED_M_S * elapsed:
+                pairs.append((distance, body, index))
+    unassigned, assigned = set(range(len(bodies.areas))), set()
     for _, body, index in sorted(pairs):
-        if body in bodies and index not in taken:
-            bodies.remove(body)
-            taken.add(index)
-            people[index].add(number, found.middles[body], float(found.areas[body]))
-    for body in sorted(bodies):
-        people.append(_Person())
-        people[-1].add(number, found.middles[body], float(found.areas[body]))
+        if body in unassigned and index not in assigned:
+            unassigned.remove(body)
+            assigned.add(index)
+            people[index].add(sample, bodies.centers[body], float(bodies.areas[body]))
+    for body in sorted(unassigned):
+        people.append(_PersonTrack())
+        people[-1].add(sample, bodies.centers[body], float(bodies.areas[body]))
 
 
-def _course(
+def _interpolate_trajectory(
     actor: dict[int, Array], frames: NDArray[np.intp], n_frames: int, frame_rate: float
 ) -> Array:
-    """Interpolate between looks; before, after and far from them the actor is not there."""
-    course = np.full((n_frames, 3), np.nan)
+    """Interpolate between samples; far from all samples the actor counts as missing."""
+    trajectory = np.full((n_frames, 3), np.nan)
     if not actor:
-        return course
-    looks = sorted(actor)
-    seen = frames[looks]
-    middles = np.stack([actor[look] for look in looks])
-    every = np.arange(n_frames)
+        return trajectory
+    samples = sorted(actor)
+    observed = frames[samples]
+    centers = np.stack([actor[sample] for sample in samples])
+    all_frames = np.arange(n_frames)
     for axis in range(3):
-        course[:, axis] = np.interp(every, seen, middles[:, axis])
-    place = np.searchsorted(seen, every)
-    before = seen[np.clip(place - 1, 0, len(seen) - 1)]
-    after = seen[np.clip(place, 0, len(seen) - 1)]
+        trajectory[:, axis] = np.interp(all_frames, observed, centers[:, axis])
+    position = np.searchsorted(observed, all_frames)
+    before = observed[np.clip(position - 1, 0, len(observed) - 1)]
+    after = observed[np.clip(position, 0, len(observed) - 1)]
     step = int(np.diff(frames).max(initial=1))
-    near = np.minimum(np.abs(every - before), np.abs(every - after)) < step
-    joined = (before <= every) & (every <= after)
-    joined &= after - before <= LONGEST_UNSEEN * frame_rate
-    course[~(near | joined)] = np.nan
-    return course
+    near = np.minimum(np.abs(all_frames - before), np.abs(all_frames - after)) < step
+    joined = (before <= all_frames) & (all_frames <= after)
+    joined &= after - before <= MAX_GAP_S * frame_rate
+    trajectory[~(near | joined)] = np.nan
+    return trajectory

@@ -1,4 +1,4 @@
-"""What a depth camera recorded: a picture of distances per frame, read when asked for."""
+"""A depth recording: one depth image per frame, read on demand."""
 
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -16,7 +16,7 @@ ColorImage = NDArray[np.uint8]
 
 @dataclass(frozen=True, eq=False)
 class DepthRecording:
-    """Depth pictures of one camera, of which only those that are asked for are in memory.
+    """Depth images of one camera, read from storage on demand.
 
     Attributes
     ----------
@@ -24,11 +24,11 @@ class DepthRecording:
     n_frames : int
     frame_rate : float, hertz
     read_depth : callable
-        Takes a frame and returns its depth, shape (height, width), metres along the optical
-        axis; 0: no reading.
+        Maps a frame to its depth, shape (height, width), metres along the optical axis.
+        0 means no reading.
     read_color : callable, or None
-        Takes a frame and returns the colours that each pixel of depth sees, shape
-        (height, width, 3), 0 to 255; None where no aligned colour was recorded.
+        Maps a frame to the colors aligned with the depth pixels, shape (height, width, 3),
+        0 to 255. None if no aligned color was recorded.
     """
 
     camera: Camera
@@ -54,7 +54,7 @@ class DepthRecording:
         return np.where(np.isfinite(depth) & (depth > 0.0), depth, np.float32(0.0))
 
     def color(self, index: int) -> ColorImage | None:
-        """Return the colours (height, width, 3) of a frame, 0 to 255, or None if unknown."""
+        """Return the colors (height, width, 3) of a frame, 0 to 255, or None without color."""
         self._check(index)
         return None if self.read_color is None else self.read_color(index)
 

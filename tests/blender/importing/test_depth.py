@@ -209,7 +209,7 @@ def test_a_camera_that_cannot_be_right_is_doubted(archive, blank, load):
     told = load("mocap_assist.importing.importing").import_files(
         blank.context, [archive], choices
     )
-    assert "The pictures would show 5 degrees of the scene" in told.sentence
+    assert "The field of view would be 5 degrees" in told.sentence
 
 
 def test_points_in_edit_mode_wait_and_let_others_play(archive, bring, blank):

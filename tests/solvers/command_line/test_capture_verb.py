@@ -50,7 +50,10 @@ def test_a_standing_body_is_written_as_a_skeleton_with_its_figures(call, take, t
 
 def test_what_is_no_depth_and_who_is_not_there_are_said_in_a_sentence(call, take, tmp_path):
     (tmp_path / "no.bvh").write_text("HIERARCHY\n")
-    for source, words in ((tmp_path / "no.bvh", "holds no depth"), (None, "Nobody is seen")):
+    for source, words in (
+        (tmp_path / "no.bvh", "holds no depth"),
+        (None, "No person is visible"),
+    ):
         empty = tmp_path / "empty.npz"
         if source is None:
             with np.load(take) as archive:

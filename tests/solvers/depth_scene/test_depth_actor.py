@@ -1,4 +1,4 @@
-"""The actor among floors, walls, furniture and other people, where it is known who it is."""
+"""Detection of the actor among floors, walls, furniture and other people, with ground truth."""
 
 from dataclasses import replace
 
@@ -34,9 +34,9 @@ def agreement(found: np.ndarray, true: np.ndarray) -> float:
     return float((found & true).sum() / max((found | true).sum(), 1))
 
 
-def agreements(alone: DepthRecording, true: DepthRecording) -> list[float]:
+def agreements(actor_only: DepthRecording, true: DepthRecording) -> list[float]:
     frames = range(0, true.n_frames, 12)
-    return [agreement(alone.frame(frame) > 0, true.frame(frame) > 0) for frame in frames]
+    return [agreement(actor_only.frame(frame) > 0, true.frame(frame) > 0) for frame in frames]
 
 
 def changed(take: DepthRecording, change) -> DepthRecording:
@@ -53,11 +53,11 @@ def floor_of(take: DepthRecording) -> float:
 
 
 @pytest.mark.parametrize("name", ["walk_front", "walk_side", "walk_diagonal", "jump"])
-def test_in_a_room_without_being_told_anything(takes, name):
+def test_find_actor_works_in_a_room_with_default_settings(takes, name):
     take = takes[name]
-    taken = in_room(take, room(KINECT, UP, floor_of(take) + 0.01, 5.5), 0.0015)
+    recording = in_room(take, room(KINECT, UP, floor_of(take) + 0.01, 5.5), 0.0015)
 
-    actor = find_actor(taken)
+    actor = find_actor(recording)
 
     assert actor.way is ForegroundMethod.AUTOMATIC
     assert actor.floor.height == pytest.approx(floor_of(take), abs=0.03)
@@ -66,7 +66,7 @@ def test_in_a_room_without_being_told_anything(takes, name):
     assert np.mean(agreements(actor.recording, take)) > 0.85
 
 
-def test_furniture_is_nobody(takes):
+def test_find_actor_ignores_furniture(takes):
     """A cupboard that shows more surface than the actor, and a stool."""
     take = takes["walk_side"]
     empty = room(KINECT, UP, floor_of(take) + 0.01, 5.5)
@@ -79,55 +79,58 @@ def test_furniture_is_nobody(takes):
     assert np.mean(agreements(actor.recording, take)) > 0.85
 
 
-def test_frames_of_the_empty_room_help(takes):
-    """The actor stands at the cupboard, and still the two are told apart."""
+def test_find_actor_uses_frames_of_the_empty_room(takes):
+    """The actor stands at the cupboard, and still the two are separated."""
     take = takes["walk_front"]
     empty = room(KINECT, UP, floor_of(take) + 0.01, 5.0)
-    beside = np.nonzero((take.frame(40) > 0.0).any(axis=0))[0].max()
+    column = np.nonzero((take.frame(40) > 0.0).any(axis=0))[0].max()
     depth = float(np.median(take.frame(40)[take.frame(40) > 0.0])) + 0.1
-    empty[30:220, beside - 5 : beside + 60] = depth
-    nobody = np.zeros((240, 320), np.float32)
-    taken = in_room(
+    empty[30:220, column - 5 : column + 60] = depth
+    empty_images = np.zeros((240, 320), np.float32)
+    recording = in_room(
         DepthRecording(
-            KINECT, 106, 30.0, lambda frame: nobody if frame < 30 else take.frame(frame - 30)
+            KINECT,
+            106,
+            30.0,
+            lambda frame: empty_images if frame < 30 else take.frame(frame - 30),
         ),
         empty,
         0.001,
     )
 
-    actor = find_actor(taken, empty=range(30))
+    actor = find_actor(recording, empty=range(30))
 
     assert actor.way is ForegroundMethod.BACKGROUND
     assert not actor.seen[:25].any()
     assert actor.seen[31:].all()
-    assert any("Nobody is seen in" in remark for remark in actor.remarks)
+    assert any("No person is visible in" in remark for remark in actor.remarks)
     found = agreement(actor.recording.frame(70) > 0.0, take.frame(40) > 0.0)
     assert found > 0.8
-    with pytest.raises(InvalidMotionError, match="Name frames without the actor"):
-        find_actor(taken, ForegroundSettings(way=ForegroundMethod.BACKGROUND), empty=[])
+    with pytest.raises(InvalidMotionError, match="Select frames without the actor"):
+        find_actor(recording, ForegroundSettings(way=ForegroundMethod.BACKGROUND), empty=[])
 
 
-def test_a_recording_of_nothing_else_is_taken_as_it_is(recordings):
+def test_find_actor_keeps_a_recording_of_the_actor_alone(recordings):
     folder = recordings / "depth" / "utd_mhad"
     for path in sorted(folder.glob("a*_s7_t1_depth.mat"))[::4]:
-        taken = read_depth(path)
-        actor = find_actor(taken)
+        recording = read_depth(path)
+        actor = find_actor(recording)
         assert actor.way is ForegroundMethod.RECORDED, path
         assert actor.floor is None
         assert (actor.seen.all(), actor.feet_seen, actor.remarks) == (True, True, ()), path
-        assert min(agreements(actor.recording, taken)) > 0.98
+        assert min(agreements(actor.recording, recording)) > 0.98
 
 
-def test_of_an_actor_close_by_it_is_said_that_there_are_no_feet(recordings):
+def test_find_actor_reports_missing_feet_of_a_close_actor(recordings):
     for path in sorted((recordings / "depth" / "skeltrack").iterdir()):
         actor = find_actor(read_depth(path))
         assert actor.way is ForegroundMethod.RECORDED
         assert not actor.feet_seen
-        assert "The picture ends above the feet" in actor.remarks[0]
+        assert "The image ends above the feet" in actor.remarks[0]
 
 
 @pytest.mark.parametrize("in_a_room", [False, True])
-def test_of_two_people_the_same_is_kept_though_they_pass_each_other(takes, in_a_room):
+def test_find_actor_follows_the_same_person_when_two_pass(takes, in_a_room):
     """A smaller one comes from the right edge and leaves at the left, behind the actor."""
     take, other = takes["walk_front"], takes["walk_side"]
 
@@ -135,10 +138,10 @@ def test_of_two_people_the_same_is_kept_though_they_pass_each_other(takes, in_a_
         small = np.where(
             other.frame(frame)[::2, ::2] > 0.0, other.frame(frame)[::2, ::2] + 1.3, 0
         )
-        picture = np.zeros((240, 640), np.float32)
+        image = np.zeros((240, 640), np.float32)
         left = 160 + 290 - 6 * frame
-        picture[60:180, left : left + 160] = small
-        behind = picture[:, 160:480]
+        image[60:180, left : left + 160] = small
+        behind = image[:, 160:480]
         return np.where(depth > 0.0, depth, behind)
 
     both = changed(take, with_another)
@@ -147,37 +150,39 @@ def test_of_two_people_the_same_is_kept_though_they_pass_each_other(takes, in_a_
 
     actor = find_actor(both, ForegroundSettings(farthest=7.0))
 
-    assert "2 people are seen" in actor.remarks[0]
+    assert "2 people are visible" in actor.remarks[0]
     assert actor.seen.all()
     assert min(agreements(actor.recording, take)) > 0.8
 
 
-def test_an_actor_who_leaves_and_comes_back(takes):
+def test_find_actor_handles_an_actor_who_leaves_and_returns(takes):
     take = takes["walk_diagonal"]
-    away = range(30, 60)
-    taken = changed(take, lambda frame, depth: depth * (frame not in away))
+    missing_frames = range(30, 60)
+    recording = changed(take, lambda frame, depth: depth * (frame not in missing_frames))
 
-    actor = find_actor(taken)
+    actor = find_actor(recording)
 
     assert (~actor.seen).sum() == pytest.approx(30, abs=6)
     assert not actor.seen[36:54].any()
-    assert all(actor.recording.frame(frame).max() == 0.0 for frame in away)
-    assert min(agreements(actor.recording, taken)[:2]) > 0.98
+    assert all(actor.recording.frame(frame).max() == 0.0 for frame in missing_frames)
+    assert min(agreements(actor.recording, recording)[:2]) > 0.98
     assert agreement(actor.recording.frame(80) > 0, take.frame(80) > 0) > 0.98
-    assert "Nobody is seen in" in actor.remarks[0]
+    assert "No person is visible in" in actor.remarks[0]
 
 
 @pytest.mark.parametrize("in_a_room", [False, True])
-def test_without_anybody_it_is_said(in_a_room):
-    nobody = DepthRecording(KINECT, 20, 30.0, lambda _: np.zeros((240, 320), np.float32))
-    taken = in_room(nobody, room(KINECT, UP, 0.9, 4.0), 0.001) if in_a_room else nobody
+def test_find_actor_raises_without_a_person(in_a_room):
+    empty_images = DepthRecording(KINECT, 20, 30.0, lambda _: np.zeros((240, 320), np.float32))
+    recording = (
+        in_room(empty_images, room(KINECT, UP, 0.9, 4.0), 0.001) if in_a_room else empty_images
+    )
 
-    with pytest.raises(InvalidMotionError, match="Nobody is seen in this recording"):
-        find_actor(taken)
+    with pytest.raises(InvalidMotionError, match="No person is visible in this recording"):
+        find_actor(recording)
 
 
-def test_many_pixels_are_divided_as_few_are(takes):
-    """At four times the pixels, bodies are found in a coarse picture and then refined."""
+def test_find_bodies_is_consistent_across_resolutions(takes):
+    """At four times the width, bodies are detected in a coarse image and then refined."""
     depth = takes["walk_front"].frame(40)
     large = depth.repeat(4, axis=0).repeat(4, axis=1)
     camera = Camera(4 * 285.63, 4 * 285.63, 639.5, 479.5, 1280, 960)
@@ -186,11 +191,11 @@ def test_many_pixels_are_divided_as_few_are(takes):
 
     assert len(small.areas) == len(found.areas) == 1
     np.testing.assert_allclose(found.areas, small.areas, rtol=0.05)
-    np.testing.assert_allclose(found.middles, small.middles, atol=0.02)
+    np.testing.assert_allclose(found.centers, small.centers, atol=0.02)
     assert agreement(found.mask(1), large > 0.0) > 0.97
 
 
-def test_looking_can_be_stopped(takes):
+def test_find_actor_can_be_cancelled(takes):
     def cancel(fraction: float, message: str = "") -> None:
         raise SolveCancelled("Cancelled.")
 
@@ -199,7 +204,7 @@ def test_looking_can_be_stopped(takes):
 
 
 @pytest.mark.parametrize("factor", [0.25, 2.0])
-def test_a_wrong_focal_length_is_noticed_by_the_size_of_the_actor(takes, factor):
+def test_find_actor_reports_the_height_from_a_wrong_focal_length(takes, factor):
     take = takes["walk_front"]
     wrong = Camera(285.63 / factor, 285.63 / factor, 159.5, 119.5, 320, 240)
 

@@ -1,4 +1,4 @@
-"""The floor, found in rooms of which it is known where it is."""
+"""Detection of the floor in rooms with ground truth."""
 
 import numpy as np
 import pytest
@@ -13,28 +13,28 @@ from solvers.recordings import read_depth
 KINECT = Camera(285.63, 285.63, 159.5, 119.5, 320, 240)
 
 
-def nobody(camera: Camera = KINECT) -> DepthRecording:
+def empty_recording(camera: Camera = KINECT) -> DepthRecording:
     shape = (camera.height, camera.width)
     return DepthRecording(camera, 5, 30.0, lambda _: np.zeros(shape, np.float32))
 
 
-def apart(floor: Floor, up: np.ndarray) -> float:
+def angle_between(floor: Floor, up: np.ndarray) -> float:
     return float(np.degrees(np.arccos(np.clip(floor.up @ up, -1.0, 1.0))))
 
 
 @pytest.mark.parametrize(
     ("down", "roll", "height"), [(0.0, 0.0, 0.6), (12.0, 5.0, 1.4), (30.0, -8.0, 2.2)]
 )
-def test_found_in_an_empty_room(down, roll, height):
+def test_find_floor_matches_an_empty_room(down, roll, height):
     up = tilted(down, roll)
 
-    floor = find_floor(in_room(nobody(), room(KINECT, up, height, 4.0), noise=0.0015))
+    floor = find_floor(in_room(empty_recording(), room(KINECT, up, height, 4.0), noise=0.0015))
 
-    assert apart(floor, up) < 0.5
+    assert angle_between(floor, up) < 0.5
     assert floor.height == pytest.approx(height, abs=0.01)
 
 
-def test_found_behind_a_real_shape_of_a_human(recordings):
+def test_find_floor_works_behind_a_real_human(recordings):
     actor = read_depth(recordings / "depth" / "truth" / "walk_front.npz")
     with np.load(recordings / "depth" / "truth" / "walk_front.npz") as archive:
         joints = archive["joints"].astype(np.float64)
@@ -43,24 +43,24 @@ def test_found_behind_a_real_shape_of_a_human(recordings):
 
     floor = find_floor(in_room(actor, room(KINECT, up, height, 5.0), noise=0.0015))
 
-    assert apart(floor, up) < 0.5
+    assert angle_between(floor, up) < 0.5
     assert floor.height == pytest.approx(height, abs=0.01)
     assert np.quantile(floor.heights(joints), 0.01) == pytest.approx(0.03, abs=0.02)
 
 
-def test_a_table_is_no_floor():
-    """It takes more of the picture than the floor beside it."""
+def test_find_floor_rejects_a_table():
+    """The table covers more of the image than the floor next to it."""
     up = tilted(20.0)
     floor, table = room(KINECT, up, 1.5, 4.0), room(KINECT, up, 0.8, 2.2)
     table[:, 220:] = np.inf
     empty = np.where(KINECT.back_project(table)[..., 2] < 2.0, table, floor)
 
-    found = find_floor(in_room(nobody(), np.minimum(empty, floor), noise=0.001))
+    detected = find_floor(in_room(empty_recording(), np.minimum(empty, floor), noise=0.001))
 
-    assert found.height == pytest.approx(1.5, abs=0.02)
+    assert detected.height == pytest.approx(1.5, abs=0.02)
 
 
-def test_where_only_the_actor_was_recorded_there_is_none(recordings):
+def test_find_floor_returns_none_for_the_actor_alone(recordings):
     paths = sorted((recordings / "depth" / "utd_mhad").glob("*_s3_t1_depth.mat"))
     paths += sorted((recordings / "depth" / "truth").iterdir())
     paths += sorted((recordings / "depth" / "skeltrack").iterdir())
@@ -68,30 +68,35 @@ def test_where_only_the_actor_was_recorded_there_is_none(recordings):
     assert [path for path in paths if find_floor(read_depth(path)) is not None] == []
 
 
-def test_an_empty_recording_and_a_wall_have_none():
+def test_find_floor_returns_none_for_an_empty_recording_and_a_wall():
     up = tilted(0.0)
 
-    assert find_floor(nobody()) is None
-    assert find_floor(in_room(nobody(), room(KINECT, up, 50.0, 3.0), noise=0.0015)) is None
+    assert find_floor(empty_recording()) is None
+    assert (
+        find_floor(in_room(empty_recording(), room(KINECT, up, 50.0, 3.0), noise=0.0015))
+        is None
+    )
 
 
-def test_with_the_floor_the_camera_stands_where_it_stood(rng):
+def test_world_from_camera_matches_the_camera_pose(rng):
     floor = Floor(tilted(25.0, 10.0), 1.3)
 
-    turn, shift = floor.world_from_camera()
+    rotation, translation = floor.world_from_camera()
 
     points = rng.normal(size=(20, 3))
-    world = points @ turn.T + shift
-    assert_allclose(turn @ turn.T, np.eye(3), atol=1e-12)
-    assert np.linalg.det(turn) == pytest.approx(1.0)
+    world = points @ rotation.T + translation
+    assert_allclose(rotation @ rotation.T, np.eye(3), atol=1e-12)
+    assert np.linalg.det(rotation) == pytest.approx(1.0)
     assert_allclose(world[:, 2], floor.heights(points))
-    ahead = turn @ (0.0, 0.0, 1.0)
+    ahead = rotation @ (0.0, 0.0, 1.0)
     assert ahead[0] == pytest.approx(0.0, abs=1e-12)
     assert ahead[1] > 0.0
-    assert_allclose(shift, (0.0, 0.0, 1.3))
+    assert_allclose(translation, (0.0, 0.0, 1.3))
 
 
-def test_a_level_camera_sees_right_forward_and_up():
-    turn, _ = LEVEL.world_from_camera()
+def test_level_camera_looks_along_y():
+    rotation, _ = LEVEL.world_from_camera()
 
-    assert_allclose(turn @ np.eye(3), np.array([[1, 0, 0], [0, 0, 1], [0, -1, 0]]), atol=1e-12)
+    assert_allclose(
+        rotation @ np.eye(3), np.array([[1, 0, 0], [0, 0, 1], [0, -1, 0]]), atol=1e-12
+    )

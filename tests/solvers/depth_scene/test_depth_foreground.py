@@ -1,4 +1,4 @@
-"""The actor, cut out of rooms that were put behind a recording of nothing else."""
+"""Segmentation of the actor from synthetic rooms behind a recording of the actor alone."""
 
 from dataclasses import replace
 
@@ -35,39 +35,39 @@ def agreement(found: np.ndarray, true: np.ndarray) -> float:
     return float((found & true).sum() / (found | true).sum())
 
 
-def test_background_from_empty_frames(actor):
+def test_cut_out_actor_uses_the_learned_background(actor):
     empty = room(KINECT, UP, 0.95, 4.5)
-    nobody = DepthRecording(KINECT, 30, 30.0, lambda _: np.zeros((240, 320), np.float32))
-    background = learn_background(in_room(nobody, empty, 0.0015), range(30))
+    empty_images = DepthRecording(KINECT, 30, 30.0, lambda _: np.zeros((240, 320), np.float32))
+    background = learn_background(in_room(empty_images, empty, 0.0015), range(30))
 
-    alone = cut_out_actor(in_room(actor, empty, 0.0015), SUBTRACTED, background=background)
+    actor_only = cut_out_actor(in_room(actor, empty, 0.0015), SUBTRACTED, background=background)
 
     for frame in range(0, actor.n_frames, 15):
-        assert agreement(alone.frame(frame) > 0.0, actor.frame(frame) > 0.0) > 0.9
+        assert agreement(actor_only.frame(frame) > 0.0, actor.frame(frame) > 0.0) > 0.9
 
 
-def test_cut_by_distance_and_floor(actor):
-    taken = in_room(actor, room(KINECT, UP, 0.95, 4.5), 0.0015)
+def test_cut_out_actor_uses_distance_and_floor(actor):
+    recording = in_room(actor, room(KINECT, UP, 0.95, 4.5), 0.0015)
 
-    alone = cut_out_actor(
-        taken,
+    actor_only = cut_out_actor(
+        recording,
         ForegroundSettings(way=ForegroundMethod.CUT, farthest=4.2),
-        floor=find_floor(taken),
+        floor=find_floor(recording),
     )
 
     for frame in range(0, actor.n_frames, 15):
-        assert agreement(alone.frame(frame) > 0.0, actor.frame(frame) > 0.0) > 0.88
+        assert agreement(actor_only.frame(frame) > 0.0, actor.frame(frame) > 0.0) > 0.88
 
 
-def test_as_recorded_only_noise_goes(recordings):
+def test_recorded_method_removes_only_noise(recordings):
     for path in sorted((recordings / "depth" / "utd_mhad").glob("*_s5_t1_depth.mat")):
-        taken = read_depth(path)
-        alone = cut_out_actor(taken, AS_RECORDED)
-        frame = taken.n_frames // 2
-        assert agreement(alone.frame(frame) > 0.0, taken.frame(frame) > 0.0) > 0.99
+        recording = read_depth(path)
+        actor_only = cut_out_actor(recording, AS_RECORDED)
+        frame = recording.n_frames // 2
+        assert agreement(actor_only.frame(frame) > 0.0, recording.frame(frame) > 0.0) > 0.99
 
 
-def test_of_two_people_the_one_of_whom_more_is_seen_stays(actor):
+def test_cut_out_actor_keeps_the_more_visible_person(actor):
     def with_another(frame):
         first = actor.frame(frame)
         second = np.roll(first[::2, ::2], 0)
@@ -75,28 +75,28 @@ def test_of_two_people_the_one_of_whom_more_is_seen_stays(actor):
         behind[120:, :160] = 2.0 * second  # A child: half the size, seen at the same scale.
         return np.where(first > 0.0, first, behind)
 
-    taken = replace(actor, read_depth=with_another)
-    alone = cut_out_actor(taken, AS_RECORDED)
+    recording = replace(actor, read_depth=with_another)
+    actor_only = cut_out_actor(recording, AS_RECORDED)
 
-    bodies = find_bodies(taken.frame(40), taken.camera, 0.08)
+    bodies = find_bodies(recording.frame(40), recording.camera, 0.08)
     assert len(bodies.areas) == 2
-    assert agreement(alone.frame(40) > 0.0, actor.frame(40) > 0.0) > 0.98
+    assert agreement(actor_only.frame(40) > 0.0, actor.frame(40) > 0.0) > 0.98
 
 
-def test_where_nobody_is_nothing_is_left():
+def test_cut_out_actor_returns_empty_images_without_a_person():
     empty = DepthRecording(KINECT, 2, 30.0, lambda _: np.zeros((240, 320), np.float32))
 
     assert cut_out_actor(empty).frame(1).max() == 0.0
 
 
-def test_the_empty_room_must_be_known_and_fit(actor):
-    with pytest.raises(InvalidMotionError, match="Name frames without the actor"):
+def test_background_method_raises_without_frames_of_the_empty_room(actor):
+    with pytest.raises(InvalidMotionError, match="Select frames without the actor"):
         cut_out_actor(actor, SUBTRACTED)
-    with pytest.raises(InvalidMotionError, match="from no frame at all"):
+    with pytest.raises(InvalidMotionError, match="needs at least one frame"):
         learn_background(actor, [])
 
 
-def test_the_empty_room_is_median_and_spread(rng):
+def test_learn_background_returns_median_and_noise(rng):
     depth = (2.0 + 0.02 * rng.normal(size=(50, 240, 320))).astype(np.float32)
     depth[:30, 0, 0] = 0.0
     depth[:10, 0, 1] = 0.0

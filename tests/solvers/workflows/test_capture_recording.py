@@ -62,7 +62,7 @@ def test_of_two_people_the_larger_is_followed_and_the_other_told_of():
 
     found = caught(changed(recorded(poses), lambda _, seen: np.where(seen > 0.0, seen, behind)))
 
-    assert "Up to 2 people are seen, from 0.0 s on; the one of" in found.remarks[0]
+    assert "Up to 2 people are visible, from 0.0 s on; the most visible one" in found.remarks[0]
     assert off(found, poses).mean() < 0.04
 
 
@@ -75,7 +75,9 @@ def test_who_leaves_the_picture_is_guessed_flagged_and_told_of():
     gone = np.array([not seen.any() for seen in map(drawn, poses)])
     assert 3 < gone.sum() < 20
     assert found.captured.doubtful[gone].all() and found.captured.doubtful[:8].mean() < 0.1
-    assert re.match(r"Nobody is seen in 1\d of 30 frames, from 0\.\d s on\.", found.remarks[0])
+    assert re.match(
+        r"No person is visible in 1\d of 30 frames, from 0\.\d s on\.", found.remarks[0]
+    )
     assert off(found, poses)[:8].mean() < 0.04
     assert np.isfinite(found.motion.root_positions).all()
 
@@ -89,7 +91,7 @@ def test_of_an_upper_body_the_arms_are_told_and_the_legs_are_not_trusted():
 
     found = caught(recording)
 
-    assert "The picture ends above the feet: legs are guessed or left out." in found.remarks
+    assert "The image ends above the feet: legs are estimated or omitted." in found.remarks
     assert found.captured.doubtful[:, LEGS].all()
     assert off(found, poses)[:, ARMS].mean() < 0.05
     assert not found.captured.doubtful[:, ARMS].any()

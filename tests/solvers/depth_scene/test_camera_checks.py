@@ -1,4 +1,4 @@
-"""Numbers of a camera that cannot be right are told."""
+"""Implausible camera intrinsics give warnings."""
 
 import pytest
 
@@ -6,7 +6,7 @@ from solvers.depth_scene.camera import Camera
 from solvers.depth_scene.camera_checks import check_intrinsics, field_of_view
 
 KINECT = Camera(285.63, 285.63, 159.5, 119.5, 320, 240)
-USUAL = (
+REAL_CAMERAS = (
     KINECT,
     Camera(285.63, 285.63, 159.0, 120.0, 320, 240),
     Camera(571.26, 571.26, 319.5, 239.5, 640, 480),
@@ -20,15 +20,15 @@ USUAL = (
 )
 
 
-def test_a_picture_as_wide_as_it_is_far_shows_a_right_angle():
+def test_field_of_view_is_a_right_angle_when_width_is_twice_the_distance():
     square = Camera(50.0, 50.0, 49.5, 49.5, 100, 100)
     assert field_of_view(square) == pytest.approx(90.0)
     assert field_of_view(Camera(50.0, 50.0, -0.5, 49.5, 100, 100)) == pytest.approx(63.4349488)
     assert field_of_view(KINECT) == pytest.approx(58.5, abs=0.1)
 
 
-@pytest.mark.parametrize("camera", USUAL)
-def test_cameras_that_there_are_are_not_doubted(camera):
+@pytest.mark.parametrize("camera", REAL_CAMERAS)
+def test_check_intrinsics_accepts_real_cameras(camera):
     assert check_intrinsics(camera) == ()
     assert check_intrinsics(camera.every(2)) == ()
 
@@ -36,17 +36,17 @@ def test_cameras_that_there_are_are_not_doubted(camera):
 @pytest.mark.parametrize(
     ("camera", "words"),
     [
-        (Camera(571.26, 571.26, 159.5, 119.5, 320, 240), "show 31 degrees"),
-        (Camera(70.0, 70.0, 159.5, 119.5, 320, 240), "show 133 degrees"),
-        (Camera(2.0, 2.0, 159.5, 119.5, 320, 240), "show 179 degrees"),
+        (Camera(571.26, 571.26, 159.5, 119.5, 320, 240), "be 31 degrees"),
+        (Camera(70.0, 70.0, 159.5, 119.5, 320, 240), "be 133 degrees"),
+        (Camera(2.0, 2.0, 159.5, 119.5, 320, 240), "be 179 degrees"),
         (Camera(285.63, 365.0, 159.5, 119.5, 320, 240), "285.63 and 365 differ"),
-        (Camera(285.63, 285.63, 319.5, 239.5, 320, 240), "far from the middle"),
+        (Camera(285.63, 285.63, 319.5, 239.5, 320, 240), "far from the center"),
         (Camera(285.0, 285.0, 159.5, 119.5, 640, 480), "of 640 x 480 pixels: check cx and cy"),
     ],
 )
-def test_numbers_of_another_picture_are_told_in_a_sentence(camera, words):
-    said = check_intrinsics(camera)
+def test_check_intrinsics_warns_about_another_image_size(camera, words):
+    warnings = check_intrinsics(camera)
 
-    assert any(words in sentence for sentence in said)
-    assert all("check" in sentence and sentence.endswith(".") for sentence in said)
-    assert len(said) == len(set(said))
+    assert any(words in sentence for sentence in warnings)
+    assert all("check" in sentence and sentence.endswith(".") for sentence in warnings)
+    assert len(warnings) == len(set(warnings))
