@@ -1,4 +1,4 @@
-"""From depth pictures to motion: body model, tracker, detector, and both together.
+"""Motion capture from depth images: body model, tracker, detector and complete capture.
 
 >>> from solvers.depth_tracking import track_pose, default_body
 >>> from solvers.depth_scene.camera import Camera
@@ -7,8 +7,8 @@
 >>> camera = Camera(142.8, 142.8, 79.5, 59.5, 160, 120)
 >>> wall = np.full((120, 160), 3.0, dtype=np.float32)
 >>> depth = DepthRecording(camera, 2, 30.0, lambda frame: wall)
->>> before_the_camera = 2.8 * np.eye(36)[2]
->>> track_pose(depth, default_body(), before_the_camera).joints.n_frames
+>>> initial_pose = 2.8 * np.eye(36)[2]
+>>> track_pose(depth, default_body(), initial_pose).joints.n_frames
 2
 """
 

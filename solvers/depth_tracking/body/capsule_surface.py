@@ -1,4 +1,4 @@
-"""The surface of a body as triangles, to be drawn."""
+"""Triangle mesh of the body surface, for display."""
 
 from typing import NamedTuple
 
@@ -12,12 +12,12 @@ Array = NDArray[np.float64]
 
 
 class BodySurface(NamedTuple):
-    """Triangles that lie on the capsules of a body, each in the frame of its segment.
+    """Triangles on the capsules of a body, each in the frame of its segment.
 
     Attributes
     ----------
     vertices : shape (19, n_vertices, 3), metres
-        Of each capsule.
+        Vertices of each capsule.
     normals : shape (19, n_vertices, 3)
         Outward unit normals.
     triangles : int, shape (n_triangles, 3)
@@ -29,10 +29,10 @@ class BodySurface(NamedTuple):
     triangles: NDArray[np.intp]
 
     def placed(self, frames: Array) -> tuple[Array, Array]:
-        """Return vertices and normals (19, n_vertices, 3) where the segments (17, 4, 4) are."""
-        turns = frames[CAPSULE_SEGMENTS, :3, :3].swapaxes(1, 2)
+        """Return vertices and normals (19, n_vertices, 3) for segment transforms (17, 4, 4)."""
+        rotations = frames[CAPSULE_SEGMENTS, :3, :3].swapaxes(1, 2)
         origins = frames[CAPSULE_SEGMENTS, np.newaxis, :3, 3]
-        return self.vertices @ turns + origins, self.normals @ turns
+        return self.vertices @ rotations + origins, self.normals @ rotations
 
 
 def capsule_surface(body: BodyModel, n_around: int = 14, n_rings: int = 4) -> BodySurface:
@@ -51,22 +51,25 @@ def capsule_surface(body: BodyModel, n_around: int = 14, n_rings: int = 4) -> Bo
     """
     scales = body.radii[:, np.newaxis, [0, 1, 1]]
     starts, stops = np.swapaxes(body.capsule_ends / scales, 0, 1)[:, :, np.newaxis]
-    sphere, far = _two_half_spheres(n_around, n_rings)
+    sphere, is_upper = _two_half_spheres(n_around, n_rings)
     out = sphere @ _bases((stops - starts)[:, 0])
-    vertices = (np.where(far[:, np.newaxis], stops, starts) + out) * scales
+    vertices = (np.where(is_upper[:, np.newaxis], stops, starts) + out) * scales
     normals = out / scales
     normals /= np.linalg.norm(normals, axis=-1, keepdims=True)
     return BodySurface(vertices, normals, _triangles(n_around, 2 * n_rings))
 
 
 def _two_half_spheres(n_around: int, n_rings: int) -> tuple[Array, NDArray[np.bool_]]:
-    """Return unit vectors, ring by ring from -Z to Z, and which are of the upper half."""
+    """Return unit vectors, ring by ring from -Z to Z, and the mask of the upper half."""
     down = np.linspace(-np.pi / 2.0, 0.0, n_rings)
     heights = np.concatenate([down, -down[::-1]])
     around = np.arange(n_around) * (2.0 * np.pi / n_around)
     height, angle = (one.ravel() for one in np.meshgrid(heights, around, indexing="ij"))
-    wide = np.cos(height)
-    unit = np.stack([wide * np.cos(angle), wide * np.sin(angle), np.sin(height)], axis=-1)
+    radius_at_height = np.cos(height)
+    unit = np.stack(
+        [radius_at_height * np.cos(angle), radius_at_height * np.sin(angle), np.sin(height)],
+        axis=-1,
+    )
     return unit, np.repeat(np.arange(2 * n_rings) >= n_rings, n_around)
 
 
@@ -80,11 +83,11 @@ def _bases(axes: Array) -> Array:
 
 def _triangles(n_around: int, n_rings: int) -> NDArray[np.intp]:
     """Return the triangles between neighbouring rings; those at the poles are flat."""
-    ring, place = np.meshgrid(np.arange(n_rings - 1), np.arange(n_around), indexing="ij")
-    here = ring * n_around + place
-    beside = ring * n_around + (place + 1) % n_around
+    row, column = np.meshgrid(np.arange(n_rings - 1), np.arange(n_around), indexing="ij")
+    current = row * n_around + column
+    next_column = row * n_around + (column + 1) % n_around
     pairs = [
-        np.stack([here, beside, beside + n_around], axis=-1),
-        np.stack([here, beside + n_around, here + n_around], axis=-1),
+        np.stack([current, next_column, next_column + n_around], axis=-1),
+        np.stack([current, next_column + n_around, current + n_around], axis=-1),
     ]
     return np.concatenate([pair.reshape(-1, 3) for pair in pairs])

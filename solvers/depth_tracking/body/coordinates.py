@@ -1,4 +1,4 @@
-"""The joint coordinates, the 34 of [WZC12] and two ankles: what each turns, and how far."""
+"""The joint coordinates: the 34 of [WZC12] and two ankles, with axes and soft limits."""
 
 from typing import NamedTuple
 
@@ -11,20 +11,20 @@ Array = NDArray[np.float64]
 
 
 class CoordinateRow(NamedTuple):
-    """One coordinate: a component of the rotation vector of the segments that it turns."""
+    """One coordinate: a component of the rotation vectors of its segments."""
 
     name: str
     segments: dict[str, tuple[float, float, float]]
-    """Rotation vector per unit, in the frame of the segment above; x left, y down, z back."""
-    least: float
-    most: float
+    """Rotation vector per unit, in the frame of the parent segment; x left, y down, z back."""
+    lower: float
+    upper: float
     """Soft limits, radians."""
 
 
 def _trunk() -> list[CoordinateRow]:
     return [
-        *(CoordinateRow(f"lowerBack{name}", {"spine": half, "chest": half}, least, most)
-          for name, half, least, most in (("X", (0.5, 0.0, 0.0), -0.7, 1.6),
+        *(CoordinateRow(f"lowerBack{name}", {"spine": axis, "chest": axis}, lower, upper)
+          for name, axis, lower, upper in (("X", (0.5, 0.0, 0.0), -0.7, 1.6),
                                           ("Y", (0.0, 0.5, 0.0), -0.9, 0.9),
                                           ("Z", (0.0, 0.0, 0.5), -0.7, 0.7))),
         CoordinateRow("lowerNeckX", {"neck": (1.0, 0.0, 0.0)}, -0.6, 0.8),
@@ -36,13 +36,13 @@ def _trunk() -> list[CoordinateRow]:
 
 
 def _limbs(side: str) -> list[CoordinateRow]:
-    """Return the coordinates of one side; turns about y and z are mirrored on the right."""
+    """Return the coordinates of one side; rotations about y and z are mirrored on the right."""
     out = 1.0 if side == "left" else -1.0
 
     def row(
-        name: str, segment: str, axis: tuple[float, float, float], least: float, most: float
+        name: str, segment: str, axis: tuple[float, float, float], lower: float, upper: float
     ) -> CoordinateRow:
-        return CoordinateRow(f"{side}{name}", {f"{side}{segment}": axis}, least, most)
+        return CoordinateRow(f"{side}{name}", {f"{side}{segment}": axis}, lower, upper)
 
     x, y, z = (-1.0, 0.0, 0.0), (0.0, out, 0.0), (0.0, 0.0, -out)
     return [
@@ -61,9 +61,9 @@ def _limbs(side: str) -> list[CoordinateRow]:
 
 
 ROOT = ("rootX", "rootY", "rootZ", "yaw", "roll", "pitch")
-"""Where the hips are (metres, camera frame), and how they are turned: first pitch about their
-x, then roll about z, then yaw about the camera's y. Yaw and pitch may go round and round;
-only lying exactly on the side is singular."""
+"""Position (metres) and rotation of the hips in the camera frame: first pitch about their x,
+then roll about z, then yaw about the camera's y. Yaw and pitch are unbounded; only lying
+exactly on the side is singular."""
 N_ROOT = len(ROOT)
 _ROWS = (*_trunk(), *_limbs("left"), *_limbs("right"))
 COORDINATES = (*ROOT, *(row.name for row in _ROWS))
@@ -72,25 +72,27 @@ N_COORDINATES = len(COORDINATES)
 ROTATION_AXES = np.zeros((len(SEGMENTS), 3, N_COORDINATES))
 """(n_segments, 3, 36): rotation vector of a segment in its parent's frame =
 ROTATION_AXES @ coordinates."""
-for _place, _row in enumerate(_ROWS):
+for _index, _row in enumerate(_ROWS):
     for _segment, _axis in _row.segments.items():
-        ROTATION_AXES[SEGMENTS.index(_segment), :, N_ROOT + _place] = _axis
+        ROTATION_AXES[SEGMENTS.index(_segment), :, N_ROOT + _index] = _axis
 
-LOWER_LIMITS = np.array([*[-np.inf] * N_ROOT, *(row.least for row in _ROWS)])
-UPPER_LIMITS = np.array([*[np.inf] * N_ROOT, *(row.most for row in _ROWS)])
+LOWER_LIMITS = np.array([*[-np.inf] * N_ROOT, *(row.lower for row in _ROWS)])
+UPPER_LIMITS = np.array([*[np.inf] * N_ROOT, *(row.upper for row in _ROWS)])
 
 
 def mirrored_coordinates() -> tuple[NDArray[np.intp], Array]:
-    """Return which coordinates to take, and with which sign, to exchange left and right.
+    """Return the source index and sign of each coordinate of the mirrored pose.
 
-    The mirror is the camera's plane x = 0.
+    The mirror plane is x = 0 of the camera.
     """
-    exchanged = dict(zip(SIDES, reversed(SIDES), strict=True))
+    opposite = dict(zip(SIDES, reversed(SIDES), strict=True))
     order, signs = [], []
     for name in COORDINATES:
         side = next((side for side in SIDES if name.startswith(side)), None)
-        other = name if side is None else exchanged[side] + name.removeprefix(side)
-        order.append(COORDINATES.index(other))
-        middle_turns = side is None and (name[-1] in "YZ" or name in {"yaw", "roll"})
-        signs.append(-1.0 if name == "rootX" or (middle_turns and name[:4] != "root") else 1.0)
+        mirrored = name if side is None else opposite[side] + name.removeprefix(side)
+        order.append(COORDINATES.index(mirrored))
+        is_mirrored_axis = side is None and (name[-1] in "YZ" or name in {"yaw", "roll"})
+        signs.append(
+            -1.0 if name == "rootX" or (is_mirrored_axis and name[:4] != "root") else 1.0
+        )
     return np.array(order), np.array(signs)

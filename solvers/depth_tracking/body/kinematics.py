@@ -1,4 +1,4 @@
-"""Where a pose puts the segments and joints of a body, and how each coordinate moves them."""
+"""Forward kinematics of the body model, with exact derivatives."""
 
 import numpy as np
 from numpy.typing import NDArray
@@ -11,7 +11,7 @@ Array = NDArray[np.float64]
 
 N_SEGMENTS = len(SEGMENTS)
 _PARENT = np.array(PARENTS)
-_ALMOST_STILL = 1e-4
+_SMALL_ANGLE = 1e-4
 _CROSS_FLAT = np.zeros((3, 9))
 """v @ _CROSS_FLAT is the matrix [v]x, flat: [v]x @ u = v x u."""
 for _i, _j, _k in ((0, 1, 2), (1, 2, 0), (2, 0, 1)):
@@ -19,18 +19,18 @@ for _i, _j, _k in ((0, 1, 2), (1, 2, 0), (2, 0, 1)):
 
 
 def _axis_tables() -> tuple[NDArray[np.intp], Array, Array, Array]:
-    """List every pair of a segment and a coordinate that turns it about its own joint.
+    """List all pairs of a segment and a coordinate that rotates it about its own joint.
 
-    Returns the segment of each such axis (n_axes,), its rotation vector (n_axes, 3), which
-    segments it moves (n_segments, n_axes), and its coordinate as (n_axes, 36) of 0 and 1.
+    Returns the segment of each axis (n_axes,), its rotation vector (n_axes, 3), the segments
+    it moves (n_segments, n_axes), and its coordinate as a one-hot row (n_axes, 36).
     """
     segments, coordinates = np.nonzero(np.any(ROTATION_AXES != 0.0, axis=1))
     moves = np.zeros((N_SEGMENTS, len(segments)))
     for segment in range(N_SEGMENTS):
-        above = segment
-        while above >= 0:
-            moves[segment, segments == above] = 1.0
-            above = PARENTS[above]
+        ancestor = segment
+        while ancestor >= 0:
+            moves[segment, segments == ancestor] = 1.0
+            ancestor = PARENTS[ancestor]
     return (
         segments,
         ROTATION_AXES[segments, :, coordinates],
@@ -43,7 +43,7 @@ _AXIS_SEGMENT, _AXES, _MOVES, _AXIS_COORDINATE = _axis_tables()
 
 
 def segment_frames(body: BodyModel, poses: Array) -> Array:
-    """Return where the segments of a body are.
+    """Return the transforms of the segments of a body.
 
     Parameters
     ----------
@@ -57,15 +57,19 @@ def segment_frames(body: BodyModel, poses: Array) -> Array:
         camera_from_segment of each of the `SEGMENTS`; its translation is the joint.
     """
     poses = np.asarray(poses, dtype=np.float64)
-    turned = matrix_from_rotation_vector(np.einsum("sik,...k->...si", ROTATION_AXES, poses))
+    local_rotations = matrix_from_rotation_vector(
+        np.einsum("sik,...k->...si", ROTATION_AXES, poses)
+    )
     rotations = np.empty((*poses.shape[:-1], N_SEGMENTS, 3, 3))
     origins = np.empty((*poses.shape[:-1], N_SEGMENTS, 3))
     rotations[..., 0, :, :] = _root_rotation(poses)
     origins[..., 0, :] = poses[..., :3]
     for segment, parent in enumerate(PARENTS[1:], start=1):
-        above = rotations[..., parent, :, :]
-        rotations[..., segment, :, :] = above @ turned[..., segment, :, :]
-        origins[..., segment, :] = origins[..., parent, :] + above @ body.offsets[segment]
+        parent_rotation = rotations[..., parent, :, :]
+        rotations[..., segment, :, :] = parent_rotation @ local_rotations[..., segment, :, :]
+        origins[..., segment, :] = (
+            origins[..., parent, :] + parent_rotation @ body.offsets[segment]
+        )
     frames = np.zeros((*poses.shape[:-1], N_SEGMENTS, 4, 4))
     frames[..., :3, :3], frames[..., :3, 3] = rotations, origins
     frames[..., 3, 3] = 1.0
@@ -73,39 +77,39 @@ def segment_frames(body: BodyModel, poses: Array) -> Array:
 
 
 def joint_positions(body: BodyModel, frames: Array) -> Array:
-    """Return the `JOINTS` (..., 21, 3), metres, of segments (..., 17, 4, 4) in their places."""
-    carrier = frames[..., list(END_SEGMENTS), :, :]
-    ends = carrier[..., :3, 3] + np.einsum(
-        "...sij,sj->...si", carrier[..., :3, :3], body.offsets[N_SEGMENTS:]
+    """Return the `JOINTS` (..., 21, 3), metres, from segment transforms (..., 17, 4, 4)."""
+    carriers = frames[..., list(END_SEGMENTS), :, :]
+    ends = carriers[..., :3, 3] + np.einsum(
+        "...sij,sj->...si", carriers[..., :3, :3], body.offsets[N_SEGMENTS:]
     )
     return np.concatenate([frames[..., :3, 3], ends], axis=-2)
 
 
 def segment_twists(pose: Array, frames: Array) -> Array:
-    """Return how each coordinate moves each segment: the exact derivative of `segment_frames`.
+    """Return the exact derivative of `segment_frames` as spatial twists.
 
     Parameters
     ----------
     pose : shape (36,)
     frames : shape (17, 4, 4)
-        The segments in this pose.
+        The segment transforms in this pose.
 
     Returns
     -------
     array, shape (17, 6, 36)
-        Spatial twists: a coordinate that grows by a small e turns a segment by e times the
-        first three components, about an axis through the camera, and then shifts it by e times
-        the last three; a point p on it moves by e (twist[:3] x p + twist[3:]). Zero where a
-        coordinate does not move a segment.
+        Spatial twists. A small change e of a coordinate rotates a segment by e times the first
+        three components about an axis through the camera, and translates it by e times the
+        last three. A point p on it moves by e (twist[:3] x p + twist[3:]). Zero if a coordinate
+        does not move a segment.
     """
     rotations = frames[:, :3, :3]
     vectors = (ROTATION_AXES @ pose)[_AXIS_SEGMENT]
     local = np.einsum("nij,nj->ni", _left_jacobians(vectors), _AXES)
     axes = np.einsum("nij,nj->ni", rotations[_PARENT[_AXIS_SEGMENT]], local)
-    centres = frames[_AXIS_SEGMENT, :3, 3]
-    screws = np.concatenate([axes, np.cross(centres, axes)], axis=1)
-    moved = _MOVES[:, np.newaxis, :] * screws.T
-    twists: Array = moved @ _AXIS_COORDINATE
+    centers = frames[_AXIS_SEGMENT, :3, 3]
+    screws = np.concatenate([axes, np.cross(centers, axes)], axis=1)
+    segment_screws = _MOVES[:, np.newaxis, :] * screws.T
+    twists: Array = segment_screws @ _AXIS_COORDINATE
     twists[:, :, :N_ROOT] = _root_twists(pose)
     return twists
 
@@ -118,11 +122,11 @@ def matrix_from_rotation_vector(vectors: Array) -> Array:
 
 
 def _left_jacobians(vectors: Array) -> Array:
-    """Return how rotation vectors' changes turn: exp(w + dw) = exp(J dw) exp(w)."""
+    """Return the left Jacobians J of rotation vectors: exp(w + dw) = exp(J dw) exp(w)."""
     angles, crosses = _angles_and_crosses(vectors)
-    squares = np.maximum(angles, _ALMOST_STILL) ** 2
+    squares = np.maximum(angles, _SMALL_ANGLE) ** 2
     third = np.where(
-        angles < _ALMOST_STILL, 1.0 / 6.0, (1.0 - np.sinc(angles / np.pi)) / squares
+        angles < _SMALL_ANGLE, 1.0 / 6.0, (1.0 - np.sinc(angles / np.pi)) / squares
     )
     return _series(0.5 * np.sinc(0.5 * angles / np.pi) ** 2, third, crosses)
 
@@ -133,9 +137,9 @@ def _angles_and_crosses(vectors: Array) -> tuple[Array, Array]:
 
 
 def _series(first: Array, second: Array, crosses: Array) -> Array:
-    series: Array = np.eye(3) + first[..., np.newaxis, np.newaxis] * crosses
-    series += second[..., np.newaxis, np.newaxis] * (crosses @ crosses)
-    return series
+    rotation: Array = np.eye(3) + first[..., np.newaxis, np.newaxis] * crosses
+    rotation += second[..., np.newaxis, np.newaxis] * (crosses @ crosses)
+    return rotation
 
 
 def _root_rotation(poses: Array) -> Array:
@@ -150,7 +154,7 @@ def _root_rotation(poses: Array) -> Array:
 
 
 def _root_twists(pose: Array) -> Array:
-    """Return how the root's coordinates move everything, shape (6, 6)."""
+    """Return the twists of the root coordinates, shape (6, 6)."""
     twists = np.zeros((6, N_ROOT))
     twists[3:, :3] = np.eye(3)
     about_y = matrix_from_rotation_vector(np.array([0.0, pose[3], 0.0]))

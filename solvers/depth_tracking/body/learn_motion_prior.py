@@ -1,4 +1,4 @@
-"""Learn from recorded motions which poses follow which."""
+"""Learn the motion prior from recorded motions."""
 
 from collections.abc import Sequence
 
@@ -16,27 +16,27 @@ from .tables import JOINTS
 
 Array = NDArray[np.float64]
 
-FRAME_RATE = 30.0
-"""Poses per second that are learned: that of depth cameras."""
-_NEEDED = ("hips", "leftUpperLeg", "rightUpperLeg", "leftUpperArm", "rightUpperArm")
-_TURNS, _FIRST_TURNS = 8, 40
-"""Steps of the search from the frame before, and in the first frame."""
+FRAME_RATE_HZ = 30.0
+"""Frame rate of the learned poses: that of depth cameras."""
+_REQUIRED_ROLES = ("hips", "leftUpperLeg", "rightUpperLeg", "leftUpperArm", "rightUpperArm")
+_ITERATIONS, _FIRST_ITERATIONS = 8, 40
+"""Solver iterations from the previous pose, and in the first frame."""
 
 
 def learn_motion_prior(
     motions: Sequence[Motion], *, trained_on: str = "", progress: Progress = unwatched
 ) -> MotionPrior:
-    """Return a prior of the poses of recorded motions, for `track_pose` and `capture`.
+    """Learn a motion prior from recorded motions, for `track_pose` and `capture`.
 
-    The body model is posed after the joints of each frame, at 30 Hz, so that any humanoid
-    skeleton will do [LOU12]_, section 3.5.
+    The body model is fitted to the joints of each frame at 30 Hz, so any humanoid skeleton
+    works [LOU12]_, section 3.5.
 
     Parameters
     ----------
     motions : sequence of Motion
         Clean humanoid motions.
     trained_on : str
-        Kept with the prior: which motions these are.
+        Description of the motions, stored with the prior.
     progress : Progress
 
     Raises
@@ -52,51 +52,51 @@ def learn_motion_prior(
        dissertation, Texas A&M University.
     """
     sequences = []
-    for place, motion in enumerate(motions):
-        done = within(progress, place / len(motions), (place + 1) / len(motions))
-        sequences.append(poses_from_motion(motion, done))
+    for index, motion in enumerate(motions):
+        motion_progress = within(progress, index / len(motions), (index + 1) / len(motions))
+        sequences.append(poses_from_motion(motion, motion_progress))
     return motion_prior_from_poses(sequences, trained_on)
 
 
 def poses_from_motion(motion: Motion, progress: Progress = unwatched) -> Array:
-    """Return the poses (n_frames, 36) of a body model that moves like this motion, at 30 Hz.
+    """Return the poses (n_frames, 36) of a body model fitted to a motion, at 30 Hz.
 
-    Frames that were not wholly observed are left out.
+    Incomplete frames are skipped.
     """
     joints = camera_joints(motion)
     joints = joints[np.isfinite(joints).any(axis=(1, 2))]
-    known = np.isfinite(joints).all(axis=2)
-    joints = joints[(known == known.any(axis=0)).all(axis=1)]
+    observed = np.isfinite(joints).all(axis=2)
+    joints = joints[(observed == observed.any(axis=0)).all(axis=1)]
     if not len(joints):
         raise InvalidMotionError("No frame of a motion is complete; fill its gaps first.")
     body = body_from_joints(default_body(), joints)
     poses: list[Array] = []
-    for frame, places in enumerate(joints):
+    for frame, positions in enumerate(joints):
         start = poses[-1] if poses else None
-        turns = _TURNS if poses else _FIRST_TURNS
-        poses.append(pose_from_joints(body, places, start=start, iterations=turns))
+        iterations = _ITERATIONS if poses else _FIRST_ITERATIONS
+        poses.append(pose_from_joints(body, positions, start=start, iterations=iterations))
         progress((frame + 1) / len(joints), "Learning poses")
     return np.array(poses)
 
 
 def camera_joints(motion: Motion) -> Array:
-    """Return the `JOINTS` (n_frames, 21, 3) of a motion before a level camera, at 30 Hz."""
+    """Return the `JOINTS` (n_frames, 21, 3) of a motion in front of a level camera, 30 Hz."""
     roles = find_humanoid_map(motion.skeleton)
-    missing = [role for role in _NEEDED if not roles.has(role)]
+    missing = [role for role in _REQUIRED_ROLES if not roles.has(role)]
     if missing:
         raise InvalidMotionError(
             f"A skeleton has no joint for: {', '.join(missing)}. Choose humanoid motions."
         )
     if motion.n_frames > 1:
-        motion = resample(motion, FRAME_RATE)
+        motion = resample(motion, FRAME_RATE_HZ)
     world = forward_kinematics(motion).positions @ SCENE_FROM_CAMERA
-    places = roles.indices(motion.skeleton)
+    joint_of_role = roles.indices(motion.skeleton)
     joints = np.full((motion.n_frames, len(JOINTS), 3), np.nan)
     for joint, role in enumerate(JOINTS):
-        if role in places and role not in _VAGUE:
-            joints[:, joint] = world[:, places[role]]
+        if role in joint_of_role and role not in _INCONSISTENT_ROLES:
+            joints[:, joint] = world[:, joint_of_role[role]]
     return joints
 
 
-_VAGUE = frozenset({"spine", "chest", "leftShoulder", "rightShoulder"})
-"""Skeletons disagree where these are."""
+_INCONSISTENT_ROLES = frozenset({"spine", "chest", "leftShoulder", "rightShoulder"})
+"""Skeletons define the positions of these joints inconsistently."""

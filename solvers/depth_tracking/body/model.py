@@ -1,4 +1,4 @@
-"""A body of 17 rigid segments in capsules: how long and how thick its parts are."""
+"""The body model: 17 rigid segments with capsules, defined by lengths and radii."""
 
 from dataclasses import dataclass, replace
 from functools import cached_property
@@ -23,14 +23,14 @@ from .tables import (
 
 Array = NDArray[np.float64]
 
-LONGEST = 100.0
-"""Metres, of any part of a body."""
+MAX_LENGTH_M = 100.0
+"""Maximum length or radius of a body part."""
 LAYOUT = ArchiveLayout(
     "body model",
     1,
     {
-        "lengths": numbers(len(LENGTHS), minimum=0.0, maximum=LONGEST),
-        "radii": numbers(len(CAPSULES), 2, minimum=0.0, maximum=LONGEST),
+        "lengths": numbers(len(LENGTHS), minimum=0.0, maximum=MAX_LENGTH_M),
+        "radii": numbers(len(CAPSULES), 2, minimum=0.0, maximum=MAX_LENGTH_M),
         "length_names": words("lengths"),
         "capsule_names": words("capsules"),
     },
@@ -41,13 +41,12 @@ LAYOUT = ArchiveLayout(
 
 @dataclass(frozen=True, eq=False)
 class BodyModel:
-    """The full-body geometry of [WZC12]_, section 2: segments, each a cylinder or two.
+    """The full-body geometry of [WZC12]_, section 2: segments of one or two capsules.
 
-    Cylinders have round ends (capsules), those of the trunk and the head are elliptic; hands
-    do not turn by themselves. Feet bend at the ankles, which the paper's do not
-    (`TrackerSettings.ankle_weight`). In the pose of zeros the body stands upright before the
-    camera and looks at it, arms hanging, and the frames of all segments are the camera's: x to
-    the body's left, y down, z to its back.
+    Capsules of trunk and head are elliptic. Hands have no rotation of their own. Feet flex at
+    the ankles, unlike in the paper (`TrackerSettings.ankle_weight`). In the zero pose the body
+    stands upright, faces the camera, and its arms hang down. All segment frames then equal the
+    camera frame: x to the body's left, y down, z to its back.
 
     Attributes
     ----------
@@ -78,12 +77,12 @@ class BodyModel:
             object.__setattr__(self, name, values)
 
     def __reduce__(self) -> tuple[type["BodyModel"], tuple[Array, Array]]:
-        """Pickle lengths and radii alone, not what is derived of them."""
+        """Pickle only lengths and radii, without cached properties."""
         return BodyModel, (self.lengths, self.radii)
 
     @cached_property
     def offsets(self) -> Array:
-        """Each of the `JOINTS` in the frame of the segment above, shape (21, 3), metres."""
+        """Each of the `JOINTS` in the frame of its parent segment, shape (21, 3), metres."""
         offsets: Array = OFFSETS @ self.lengths
         return offsets
 
@@ -98,21 +97,21 @@ class BodyModel:
         return float(self.lengths[LENGTHS.index(name)])
 
     def with_lengths(self, **lengths: float) -> "BodyModel":
-        """Return the body with these of its `LENGTHS` changed, metres."""
+        """Return the body with some of its `LENGTHS` replaced, metres."""
         changed = self.lengths.copy()
         for name, length in lengths.items():
             changed[LENGTHS.index(name)] = length
         return replace(self, lengths=changed)
 
     def scaled(self, factor: float) -> "BodyModel":
-        """Return the body made larger by this factor."""
+        """Return the body scaled by this factor."""
         return BodyModel(self.lengths * factor, self.radii * factor)
 
     def symmetric(self) -> "BodyModel":
-        """Return the body whose left and right are both the mean of its left and right."""
+        """Return the body with left and right averaged."""
         return BodyModel(
-            0.5 * (self.lengths + self.lengths[_other_side(LENGTHS)]),
-            0.5 * (self.radii + self.radii[_other_side(CAPSULES)]),
+            0.5 * (self.lengths + self.lengths[_mirrored_indices(LENGTHS)]),
+            0.5 * (self.radii + self.radii[_mirrored_indices(CAPSULES)]),
         )
 
     def save(self, path: Path | str) -> None:
@@ -123,9 +122,11 @@ class BodyModel:
 
 
 def default_body(stature: float = DEFAULT_STATURE_M) -> BodyModel:
-    """Return an adult of usual proportions, `stature` metres tall."""
+    """Return an adult of default proportions, `stature` metres tall."""
     if not 0.5 <= stature <= 2.5:
-        raise InvalidMotionError(f"Nobody is {stature:g} m tall; give between 0.5 and 2.5 m.")
+        raise InvalidMotionError(
+            f"The stature {stature:g} m is invalid. Give between 0.5 and 2.5 m."
+        )
     return BodyModel(DEFAULT_LENGTHS_M, DEFAULT_RADII_M).scaled(stature / DEFAULT_STATURE_M)
 
 
@@ -147,11 +148,11 @@ def load_body_model(path: Path | str) -> BodyModel:
         raise LAYOUT.damaged(path, str(error).removesuffix(".")) from None
 
 
-def _other_side(names: tuple[str, ...]) -> list[int]:
-    exchanged = dict(zip(SIDES, reversed(SIDES), strict=True))
+def _mirrored_indices(names: tuple[str, ...]) -> list[int]:
+    opposite = dict(zip(SIDES, reversed(SIDES), strict=True))
     order = []
     for name in names:
         side = next((side for side in SIDES if name.startswith(side)), None)
-        other = name if side is None else exchanged[side] + name.removeprefix(side)
-        order.append(names.index(other))
+        mirrored = name if side is None else opposite[side] + name.removeprefix(side)
+        order.append(names.index(mirrored))
     return order

@@ -19,34 +19,34 @@ from .tables import END_SEGMENTS, JOINTS, PARENTS, SEGMENTS
 Array = NDArray[np.float64]
 
 SCENE_FROM_CAMERA = np.array([[1.0, 0.0, 0.0], [0.0, 0.0, 1.0], [0.0, -1.0, 0.0]])
-"""Of a level camera that looks along +Y: who faces it faces -Y."""
+"""Level camera that looks along +Y: an actor who faces it faces -Y."""
 JOINT_PARENTS = (*PARENTS, *END_SEGMENTS)
 
 
-def _t_pose_turns() -> Array:
-    """Return how each segment is turned in the T-pose, camera frame: arms out to the sides."""
-    turned = []
+def _t_pose_rotations() -> Array:
+    """Return the rotation of each segment in the T-pose, camera frame."""
+    rotations = []
     for segment in SEGMENTS:
         arm = segment.endswith(("UpperArm", "LowerArm"))
         out = -1.0 if segment.startswith("left") else 1.0
-        turned.append(
+        rotations.append(
             matrix_from_rotation_vector(np.array([0.0, 0.0, out * arm * np.pi / 2.0]))
         )
-    return np.stack(turned)
+    return np.stack(rotations)
 
 
-_T_POSE = _t_pose_turns()
+_T_POSE = _t_pose_rotations()
 _REST = SCENE_FROM_CAMERA @ _T_POSE
-"""How each segment is turned in the rest pose, (17, 3, 3)."""
+"""Rotation of each segment in the rest pose, (17, 3, 3)."""
 
 
 def body_skeleton(body: BodyModel) -> Skeleton:
     """Return the skeleton of a body in the T-pose, its soles on the floor, facing -Y."""
-    turned = _T_POSE
+    rotations = _T_POSE
     offsets = np.empty((len(JOINTS), 3))
     for joint, parent in enumerate(JOINT_PARENTS):
-        carried = np.eye(3) if parent < 0 else turned[parent]
-        offsets[joint] = SCENE_FROM_CAMERA @ carried @ body.offsets[joint]
+        parent_rotation = np.eye(3) if parent < 0 else rotations[parent]
+        offsets[joint] = SCENE_FROM_CAMERA @ parent_rotation @ body.offsets[joint]
     legs = [body.length(f"left{part}") for part in ("UpperLeg", "LowerLeg")]
     offsets[0] = (0.0, 0.0, sum(legs) + 0.25 * body.length("leftFoot"))
     return Skeleton(JOINTS, JOINT_PARENTS, offsets)
@@ -63,8 +63,7 @@ def body_motion(
     poses : shape (n_frames, 36)
     frame_rate : float, hertz
     floor : Floor, optional
-        It becomes the plane z = 0, and its normal Z. Without it the camera is taken to be
-        level, at the origin.
+        Becomes the plane z = 0, and its normal Z. Default: a level camera at the origin.
     """
     frames = segment_frames(body, poses)
     scene = scene_from_camera(floor)
@@ -72,14 +71,14 @@ def body_motion(
     rotations = quaternion_from_matrix(world)
     local = np.tile([1.0, 0.0, 0.0, 0.0], (len(poses), len(JOINTS), 1))
     local[:, 0] = rotations[:, 0]
-    above = list(PARENTS[1:])
-    local[:, 1:N_SEGMENTS] = multiply(inverse(rotations[:, above]), rotations[:, 1:])
-    places = frames[:, 0, :3, 3] @ scene[:3, :3].T + scene[:3, 3]
-    return Motion(body_skeleton(body), unroll(local), places, frame_rate)
+    parents = list(PARENTS[1:])
+    local[:, 1:N_SEGMENTS] = multiply(inverse(rotations[:, parents]), rotations[:, 1:])
+    positions = frames[:, 0, :3, 3] @ scene[:3, :3].T + scene[:3, 3]
+    return Motion(body_skeleton(body), unroll(local), positions, frame_rate)
 
 
 def rest_frames(body: BodyModel) -> Array:
-    """Return where the segments (17, 4, 4) are in the rest pose of `body_skeleton`."""
+    """Return the segment transforms (17, 4, 4) in the rest pose of `body_skeleton`."""
     frames = np.zeros((N_SEGMENTS, 4, 4))
     frames[:, :3, :3] = _REST
     frames[:, :3, 3] = body_skeleton(body).rest_positions[:N_SEGMENTS]
@@ -88,20 +87,20 @@ def rest_frames(body: BodyModel) -> Array:
 
 
 def motion_frames(body: BodyModel, motion: Motion, floor: Floor | None = None) -> Array:
-    """Undo `body_motion`: return where the segments of a body are in a motion of it.
+    """Invert `body_motion`: return the segment transforms of a body in a motion.
 
     Parameters
     ----------
     body : BodyModel
     motion : Motion
-        On the skeleton of the body; poses that no coordinates can reach are fine.
+        On the skeleton of the body; coordinates need not reach its poses.
     floor : Floor, optional
-        The one that is z = 0.
+        The plane z = 0.
 
     Returns
     -------
     array, shape (n_frames, 17, 4, 4)
-        camera_from_segment of each of the `SEGMENTS`; joints are as far apart as in the body.
+        camera_from_segment of each of the `SEGMENTS`; joint distances equal those of the body.
     """
     camera = np.linalg.inv(scene_from_camera(floor))
     world = motion.rotations[:, :N_SEGMENTS].copy()
@@ -112,16 +111,16 @@ def motion_frames(body: BodyModel, motion: Motion, floor: Floor | None = None) -
     frames[..., :3, :3] = camera[:3, :3] @ matrix_from_quaternion(world) @ _REST
     frames[:, 0, :3, 3] = motion.root_positions @ camera[:3, :3].T + camera[:3, 3]
     for segment, parent in enumerate(PARENTS[1:], start=1):
-        way = frames[:, parent, :3, :3] @ body.offsets[segment]
-        frames[:, segment, :3, 3] = frames[:, parent, :3, 3] + way
+        offset = frames[:, parent, :3, :3] @ body.offsets[segment]
+        frames[:, segment, :3, 3] = frames[:, parent, :3, 3] + offset
     return frames
 
 
 def scene_from_camera(floor: Floor | None) -> Array:
     """Return the transform (4, 4) from the camera's frame to a scene with Z up.
 
-    A camera that is rolled does not look exactly along +Y then, as it does for
-    `Floor.world_from_camera`: who mixes the two goes through the camera's frame.
+    A rolled camera does not look exactly along +Y, unlike in `Floor.world_from_camera`. Convert
+    between the two through the camera frame.
     """
     scene = np.eye(4)
     scene[:3, :3] = SCENE_FROM_CAMERA

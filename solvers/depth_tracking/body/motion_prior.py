@@ -1,4 +1,4 @@
-"""What recorded motions say about the next pose: principal components of similar moments."""
+"""Motion prior: local principal components of the successors of similar recorded poses."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -32,21 +32,21 @@ LAYOUT = ArchiveLayout(
 )
 SHIPPED = Path(__file__).parent / "motions.npz"
 N_NEIGHBORS, N_FOLLOWING, EXPLAINED_VARIANCE = 50, 3, 0.95
-"""K, w and the share of the variance kept, of [LOU12] section 3.5."""
+"""K, w and the fraction of variance kept, of [LOU12] section 3.5."""
 
 
 @dataclass(frozen=True, eq=False)
 class MotionPrior:
-    """Poses of recorded motions, in order, without where the bodies were.
+    """Poses of recorded motions, in order, without root position and rotation.
 
     Attributes
     ----------
     poses : shape (n_poses, 30)
         The joint coordinates of every frame.
     clips : int, shape (n_poses,)
-        Which motion each belongs to, in ascending order.
+        Motion index of each pose, ascending.
     trained_on : str
-        Which motions, in words.
+        Description of the motions.
     """
 
     poses: Array
@@ -55,7 +55,7 @@ class MotionPrior:
 
     @cached_property
     def tree(self) -> Any:
-        """The poses, ready to be asked for the nearest."""
+        """Search tree of the poses."""
         return cKDTree(self.poses)
 
     def save(self, path: Path | str) -> None:
@@ -81,7 +81,7 @@ def load_motion_prior(path: Path | str = SHIPPED) -> MotionPrior:
         raise InvalidFileError(f"{path} holds a prior of other parts. Learn it again.")
     poses, clips = arrays["poses"], arrays["clips"].astype(np.intp)
     if not len(poses) or (np.diff(clips) < 0).any():
-        raise LAYOUT.damaged(path, "its clips are not one after the other")
+        raise LAYOUT.damaged(path, "its clips are not in ascending order")
     return MotionPrior(poses.astype(np.float64), clips, str(arrays.get("trained_on", "")))
 
 
@@ -91,7 +91,7 @@ def motion_prior_from_poses(sequences: Sequence[Array], trained_on: str = "") ->
     Raises
     ------
     InvalidMotionError
-        There is no pose.
+        The sequences have no pose.
     """
     if not sum(len(sequence) for sequence in sequences):
         raise InvalidMotionError("There is no pose to learn from; choose recorded motions.")
@@ -101,7 +101,7 @@ def motion_prior_from_poses(sequences: Sequence[Array], trained_on: str = "") ->
 
 @dataclass(frozen=True, eq=False)
 class LocalPca:
-    """A plane of poses near what is likely to come.
+    """A linear subspace of likely next poses.
 
     Attributes
     ----------
@@ -114,16 +114,16 @@ class LocalPca:
     basis: Array
 
     def equations(self, pose: Array, weight: float) -> PoseEquations:
-        """Ask a pose (36,) to come back to the plane, eq. 3.12 and 3.13 of [LOU12]."""
-        across = np.eye(len(self.mean)) - self.basis @ self.basis.T
-        off = across @ (pose[N_ROOT:] - self.mean)
+        """Return equations that pull a pose (36,) to the subspace [LOU12] eq. 3.12, 3.13."""
+        projection = np.eye(len(self.mean)) - self.basis @ self.basis.T
+        deviation = projection @ (pose[N_ROOT:] - self.mean)
         matrix, vector = np.zeros((N_COORDINATES, N_COORDINATES)), np.zeros(N_COORDINATES)
-        matrix[N_ROOT:, N_ROOT:], vector[N_ROOT:] = weight * across, -weight * off
-        return PoseEquations(matrix, vector, 0.5 * weight * float(off @ off))
+        matrix[N_ROOT:, N_ROOT:], vector[N_ROOT:] = weight * projection, -weight * deviation
+        return PoseEquations(matrix, vector, 0.5 * weight * float(deviation @ deviation))
 
 
 def local_pca(prior: MotionPrior, pose: Array) -> LocalPca:
-    """Return the plane of the poses that followed the most similar recorded ones.
+    """Return the subspace of the poses that followed the most similar recorded ones.
 
     `pose` (36,) is the pose of the previous frame. The method collects the `N_FOLLOWING` poses
     after each of its `N_NEIGHBORS` nearest poses. It keeps the principal components that hold
@@ -136,22 +136,22 @@ def local_pca(prior: MotionPrior, pose: Array) -> LocalPca:
     """
     n_neighbours = min(N_NEIGHBORS, len(prior.poses))
     _, nearest = prior.tree.query(pose[N_ROOT:], k=n_neighbours)
-    chosen = following_poses(prior, np.atleast_1d(nearest), N_FOLLOWING)
-    mean = chosen.mean(axis=0)
-    values, vectors = np.linalg.eigh(np.cov(chosen.T, bias=True))
-    shares = np.cumsum(values[::-1]) / max(values.sum(), 1e-300)
-    n_components = int(np.searchsorted(shares, EXPLAINED_VARIANCE)) + 1
+    successors = following_poses(prior, np.atleast_1d(nearest), N_FOLLOWING)
+    mean = successors.mean(axis=0)
+    values, vectors = np.linalg.eigh(np.cov(successors.T, bias=True))
+    explained = np.cumsum(values[::-1]) / max(values.sum(), 1e-300)
+    n_components = int(np.searchsorted(explained, EXPLAINED_VARIANCE)) + 1
     return LocalPca(mean, vectors[:, ::-1][:, :n_components])
 
 
-def following_poses(prior: MotionPrior, places: NDArray[np.intp], ahead: int) -> Array:
-    """Return the `ahead` poses (n, 30) after each of these in its clip.
+def following_poses(prior: MotionPrior, indices: NDArray[np.intp], ahead: int) -> Array:
+    """Return the next `ahead` poses (n, 30) after each index within its clip.
 
-    The poses themselves, if none follows or none is asked for.
+    If none follows, or `ahead` is 0, return the poses themselves.
     """
-    following = (places[:, np.newaxis] + np.arange(1, ahead + 1)).ravel()
-    clips = np.repeat(prior.clips[places], ahead)
+    following = (indices[:, np.newaxis] + np.arange(1, ahead + 1)).ravel()
+    clips = np.repeat(prior.clips[indices], ahead)
     inside = following < len(prior.poses)
     inside[inside] = prior.clips[following[inside]] == clips[inside]
-    found: Array = prior.poses[following[inside]] if inside.any() else prior.poses[places]
-    return found
+    successors: Array = prior.poses[following[inside]] if inside.any() else prior.poses[indices]
+    return successors

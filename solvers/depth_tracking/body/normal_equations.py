@@ -1,4 +1,4 @@
-"""Sum up what terms ask of segments, and solve for the step of the coordinates."""
+"""Assemble the normal equations of segments and coordinates, and solve for the step."""
 
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
@@ -16,10 +16,10 @@ Integers = NDArray[np.intp]
 
 @dataclass(frozen=True, eq=False)
 class SegmentEquations:
-    """What a term asks of the twists of segments: minimise t'Mt/2 - m't, for each segment.
+    """Normal equations of segment twists: minimize t'Mt/2 - m't for each segment.
 
     Every row of a least-squares term about the surface of a segment has the form g'(w x p + v)
-    with the segment's twist (w, v), so that a 6 x 6 matrix per segment holds all rows.
+    with the segment's twist (w, v), so a 6 x 6 matrix per segment represents all rows.
 
     Attributes
     ----------
@@ -36,7 +36,7 @@ class SegmentEquations:
 
 @dataclass(frozen=True, eq=False)
 class PoseEquations:
-    """What a prior asks of the coordinates: minimise d'Ad/2 - b'd for their change d."""
+    """Normal equations of the coordinates: minimize d'Ad/2 - b'd for their change d."""
 
     matrix: Array
     """Shape (36, 36)."""
@@ -46,7 +46,7 @@ class PoseEquations:
 
 
 class SurfaceRows(NamedTuple):
-    """Rows of a least-squares term: how far points of the surface should move which way."""
+    """Rows of a least-squares term: displacements of surface points along directions."""
 
     points: Array
     """Camera frame, shape (n, 3), metres."""
@@ -55,15 +55,15 @@ class SurfaceRows(NamedTuple):
     residuals: Array
     """What direction . (movement of the point) should be, shape (n,)."""
     weights: Array
-    """Of the squares, shape (n,)."""
+    """Weights of the squares, shape (n,)."""
     capsules: Integers
-    """Which capsule each point is on, shape (n,)."""
+    """Capsule of each point, shape (n,)."""
 
 
 def rows_toward_targets(
     points: Array, targets: Array, weights: Array, capsules: Integers
 ) -> SurfaceRows:
-    """Return the rows that ask points (n, 3) to move to targets (n, 3), three for each."""
+    """Return rows that pull points (n, 3) to targets (n, 3), three for each point."""
     return SurfaceRows(
         np.repeat(points, 3, axis=0), np.tile(np.eye(3), (len(points), 1)),
         (targets - points).ravel(), np.repeat(weights, 3), np.repeat(capsules, 3),
@@ -73,17 +73,17 @@ def rows_toward_targets(
 NO_ROWS = rows_toward_targets(
     np.zeros((0, 3)), np.zeros((0, 3)), np.zeros(0), np.zeros(0, dtype=np.intp)
 )
-"""Of a term that has nothing to say."""
+"""Rows of a term without residuals."""
 
 
 def concatenate_rows(rows: Sequence[SurfaceRows]) -> SurfaceRows:
-    """Return the rows of several terms as one."""
-    parts = zip(NO_ROWS, *rows, strict=True)
-    return SurfaceRows(*(np.concatenate(part) for part in parts))
+    """Concatenate the rows of several terms."""
+    columns = zip(NO_ROWS, *rows, strict=True)
+    return SurfaceRows(*(np.concatenate(column) for column in columns))
 
 
 def segment_equations(rows: SurfaceRows) -> SegmentEquations:
-    """Sum rows up, per segment."""
+    """Return the normal equations of rows, summed per segment."""
     segments = CAPSULE_SEGMENTS[rows.capsules]
     return equations_along_directions(
         rows.points, rows.directions, rows.residuals, rows.weights, segments
@@ -93,12 +93,12 @@ def segment_equations(rows: SurfaceRows) -> SegmentEquations:
 def equations_along_directions(
     points: Array, directions: Array, residuals: Array, weights: Array, segments: Integers
 ) -> SegmentEquations:
-    """Ask points on segments to move along directions; arrays as those of `SurfaceRows`."""
+    """Return equations that move points along directions; arrays as in `SurfaceRows`."""
     lines = np.empty((len(points), 7))
     screw_rows(points, directions, out=lines[:, :6])
     lines[:, 6] = residuals
     lines *= np.sqrt(weights)[:, np.newaxis]
-    # Sorted by segment, each one's sums are a product of two small matrices.
+    # After sorting by segment, each sum is a product of two small matrices.
     order = np.argsort(segments.astype(np.int16), kind="stable")
     lines = lines[order]
     ends = np.cumsum(np.bincount(segments, minlength=N_SEGMENTS))
@@ -115,49 +115,49 @@ def equations_along_directions(
 def equations_toward_targets(
     points: Array, targets: Array, weights: Array, segments: Integers
 ) -> SegmentEquations:
-    """Ask points (n, 3) on segments to move to targets (n, 3); `weights` are of the squares."""
+    """Return equations that pull points (n, 3) to targets (n, 3); weights of the squares."""
     rows = rows_toward_targets(points, targets, weights, segments)
     return equations_along_directions(*rows)
 
 
 def screw_rows(points: Array, directions: Array, out: Array | None = None) -> Array:
-    """Return (point x direction, direction) (n, 6): what a twist is multiplied with."""
-    found = np.empty((len(points), 6)) if out is None else out
+    """Return (point x direction, direction), shape (n, 6), the factors of a twist."""
+    rows = np.empty((len(points), 6)) if out is None else out
     x, y, z = points.T
     u, v, w = directions.T
-    found[:, 0], found[:, 1], found[:, 2] = y * w - z * v, z * u - x * w, x * v - y * u
-    found[:, 3:] = directions
-    return found
+    rows[:, 0], rows[:, 1], rows[:, 2] = y * w - z * v, z * u - x * w, x * v - y * u
+    rows[:, 3:] = directions
+    return rows
 
 
 def equations_in_coordinates(
     equations: Iterable[SegmentEquations], twists: Array
 ) -> PoseEquations:
-    """Add equations of segments up, and express them in the coordinates.
+    """Sum equations of segments and transform them to the coordinates.
 
     Parameters
     ----------
     equations : iterable of SegmentEquations
     twists : shape (17, 6, 36)
-        How the coordinates move the segments.
+        Derivatives of the segments by the coordinates.
     """
-    found = list(equations)
-    matrices = np.sum([one.matrices for one in found], axis=0)
-    vectors = np.sum([one.vectors for one in found], axis=0)
+    terms = list(equations)
+    matrices = np.sum([term.matrices for term in terms], axis=0)
+    vectors = np.sum([term.vectors for term in terms], axis=0)
     flat = twists.reshape(6 * N_SEGMENTS, -1)
-    pressed = (matrices @ twists).reshape(6 * N_SEGMENTS, -1)
+    weighted = (matrices @ twists).reshape(6 * N_SEGMENTS, -1)
     return PoseEquations(
-        flat.T @ pressed, flat.T @ vectors.ravel(), sum(one.cost for one in found)
+        flat.T @ weighted, flat.T @ vectors.ravel(), sum(term.cost for term in terms)
     )
 
 
 def sum_equations(equations: Iterable[PoseEquations]) -> PoseEquations:
     """Return the sum of equations in the coordinates."""
-    found = list(equations)
+    terms = list(equations)
     return PoseEquations(
-        np.sum([one.matrix for one in found], axis=0),
-        np.sum([one.vector for one in found], axis=0),
-        sum(one.cost for one in found),
+        np.sum([term.matrix for term in terms], axis=0),
+        np.sum([term.vector for term in terms], axis=0),
+        sum(term.cost for term in terms),
     )
 
 

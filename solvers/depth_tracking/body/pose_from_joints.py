@@ -1,4 +1,4 @@
-"""Pose a body so that its joints, or points on its segments, lie where they were found."""
+"""Fit a pose to joints, segment transforms, or points on segments."""
 
 import numpy as np
 from numpy.typing import NDArray
@@ -22,56 +22,56 @@ _CARRIERS = np.array([*range(len(SEGMENTS)), *END_SEGMENTS])
 _YAW = COORDINATES.index("yaw")
 _REST_WEIGHT = 1e-3
 _LIMIT_WEIGHT = 1.0
-_LONGEST_STEP = 0.5
-_SURE = 100.0
-_CORNERS = 0.05 * np.array([*np.eye(3), *-np.eye(3)])
-"""Points of a segment, metres, that tell how it is turned; farther ones would tell more."""
+_MAX_STEP = 0.5
+_FRAME_WEIGHT = 100.0
+_ROTATION_POINTS = 0.05 * np.array([*np.eye(3), *-np.eye(3)])
+"""Points of a segment, metres, that constrain its rotation; larger offsets weigh more."""
 
 
 def pose_from_joints(
     body: BodyModel, joints: Array, *, start: Array | None = None, iterations: int = 40
 ) -> Array:
-    """Return the pose (36,) of the body whose joints are nearest to these.
+    """Return the pose (36,) that minimizes the distances to joint positions.
 
     Parameters
     ----------
     body : BodyModel
     joints : shape (21, 3), metres
-        The `JOINTS` in the camera's frame; NaN: unknown.
+        The `JOINTS` in the camera frame; NaN: missing.
     start : shape (36,), optional
-        A pose near it, such as that of the frame before; without, four headings are tried.
+        Initial pose, such as the previous frame. Default: four headings are tested.
     iterations : int
     """
-    known = np.flatnonzero(np.isfinite(joints).all(axis=1))
+    observed = np.flatnonzero(np.isfinite(joints).all(axis=1))
     local = _joints_on_segments(body)
     return pose_from_points(
-        body, _CARRIERS[known], local[known], joints[known],
-        np.ones(len(known)), start=start, iterations=iterations,
+        body, _CARRIERS[observed], local[observed], joints[observed],
+        np.ones(len(observed)), start=start, iterations=iterations,
     )  # fmt: skip
 
 
 def pose_from_frames(
     body: BodyModel, frames: Array, *, start: Array | None = None, iterations: int = 40
 ) -> Array:
-    """Return the pose (36,) of the body whose segments are nearest to where these are.
+    """Return the pose (36,) that best matches segment transforms.
 
-    Where its coordinates cannot turn them so, joints are rather in their places.
+    If the coordinates cannot reach a rotation, joint positions take precedence.
 
     Parameters
     ----------
     body : BodyModel
     frames : shape (17, 4, 4)
-        camera_from_segment of the `SEGMENTS`; turns that a joint cannot make are not followed.
+        camera_from_segment of the `SEGMENTS`; unreachable rotations are approximated.
     start : shape (36,), optional
     iterations : int
     """
-    corners = np.tile(_CORNERS, (len(SEGMENTS), 1))
-    local = np.concatenate([_joints_on_segments(body), corners])
-    segments = np.repeat(np.arange(len(SEGMENTS)), len(_CORNERS))
+    points = np.tile(_ROTATION_POINTS, (len(SEGMENTS), 1))
+    local = np.concatenate([_joints_on_segments(body), points])
+    segments = np.repeat(np.arange(len(SEGMENTS)), len(_ROTATION_POINTS))
     segments = np.concatenate([_CARRIERS, segments])
     carriers = frames[segments]
     targets = np.einsum("nij,nj->ni", carriers[:, :3, :3], local) + carriers[:, :3, 3]
-    weights = np.full(len(segments), _SURE)
+    weights = np.full(len(segments), _FRAME_WEIGHT)
     return pose_from_points(
         body, segments, local, targets, weights, start=start, iterations=iterations
     )
@@ -87,10 +87,10 @@ def pose_from_points(
     start: Array | None = None,
     iterations: int = 40,
 ) -> Array:
-    """Return the pose (36,) that brings points on segments nearest to targets.
+    """Return the pose (36,) that moves points on segments to their targets.
 
-    Joint limits hold softly, and what no point tells stays near the pose of zeros.
-    Without a start, four headings are tried.
+    Joint limits are soft, and unobserved coordinates stay near the zero pose.
+    Without a start, four headings are tested.
 
     Parameters
     ----------
@@ -100,17 +100,18 @@ def pose_from_points(
     local : shape (n, 3), metres
         The points in the frames of their segments.
     targets : shape (n, 3), metres
-        Where they should be, camera frame.
+        Target positions, camera frame.
     weights : shape (n,)
-        Of the squares; 1 for a point that is sure.
+        Weights of the squares; 1 for a reliable point.
     start : shape (36,), optional
     iterations : int
     """
-    starts = [start] if start is not None else _starts(targets)
-    found = [
-        _descend(body, pose, (segments, local, targets, weights), iterations) for pose in starts
+    initial_poses = [start] if start is not None else _initial_poses(targets)
+    solutions = [
+        _minimize(body, pose, (segments, local, targets, weights), iterations)
+        for pose in initial_poses
     ]
-    return min(found, key=lambda one: one[1])[0]
+    return min(solutions, key=lambda solution: solution[1])[0]
 
 
 def _joints_on_segments(body: BodyModel) -> Array:
@@ -118,16 +119,16 @@ def _joints_on_segments(body: BodyModel) -> Array:
     return np.concatenate([np.zeros((len(SEGMENTS), 3)), body.offsets[len(SEGMENTS) :]])
 
 
-def _starts(targets: Array) -> list[Array]:
-    starts = []
+def _initial_poses(targets: Array) -> list[Array]:
+    initial_poses = []
     for yaw in np.arange(4) * np.pi / 2:
         pose = np.zeros(N_COORDINATES)
         pose[:3], pose[_YAW] = targets.mean(axis=0), yaw
-        starts.append(pose)
-    return starts
+        initial_poses.append(pose)
+    return initial_poses
 
 
-def _descend(
+def _minimize(
     body: BodyModel, pose: Array, points: tuple[Integers, Array, Array, Array], iterations: int
 ) -> tuple[Array, float]:
     segments, local, targets, weights = points
@@ -136,18 +137,18 @@ def _descend(
     for _ in range(iterations):
         frames = segment_frames(body, pose)
         carrier = frames[segments]
-        places = np.einsum("nij,nj->ni", carrier[:, :3, :3], local) + carrier[:, :3, 3]
-        pulls = equations_toward_targets(places, targets, weights, segments)
-        found = sum_equations([
-            equations_in_coordinates([pulls], segment_twists(pose, frames)),
-            joint_limits(pose, _LIMIT_WEIGHT), stay_near(pose, _rest(pose), _REST_WEIGHTS),
+        positions = np.einsum("nij,nj->ni", carrier[:, :3, :3], local) + carrier[:, :3, 3]
+        residual_equations = equations_toward_targets(positions, targets, weights, segments)
+        total = sum_equations([
+            equations_in_coordinates([residual_equations], segment_twists(pose, frames)),
+            joint_limits(pose, _LIMIT_WEIGHT), stay_near(pose, _rest_pose(pose), _REST_WEIGHTS),
         ])  # fmt: skip
-        if equations is None or found.cost < best[1]:
-            equations, best, damping = found, (pose, found.cost), 0.3 * damping
+        if equations is None or total.cost < best[1]:
+            equations, best, damping = total, (pose, total.cost), 0.3 * damping
         else:
             damping = 10.0 * damping
         change = solve_step(equations, np.full(N_COORDINATES, max(damping, 1e-9)))
-        pose = best[0] + change * min(1.0, _LONGEST_STEP / np.abs(change).max())
+        pose = best[0] + change * min(1.0, _MAX_STEP / np.abs(change).max())
         if np.abs(change).max() < 1e-7:
             break
     return best
@@ -156,21 +157,21 @@ def _descend(
 _REST_WEIGHTS = np.array([0.0] * N_ROOT + [_REST_WEIGHT] * (N_COORDINATES - N_ROOT))
 
 
-def _rest(pose: Array) -> Array:
+def _rest_pose(pose: Array) -> Array:
     rest = np.zeros(N_COORDINATES)
     rest[:N_ROOT] = pose[:N_ROOT]
     return rest
 
 
 def body_from_joints(body: BodyModel, joints: Array) -> BodyModel:
-    """Return the body with limbs as long as recorded joints are apart.
+    """Return the body with limb lengths measured from joint distances.
 
     Parameters
     ----------
     body : BodyModel
-        Its radii and what joints do not tell (hands, feet, head) are kept.
+        Its radii and unmeasured lengths (hands, feet, head) are kept.
     joints : shape (n_frames, 21, 3), metres
-        The `JOINTS`; NaN: unknown.
+        The `JOINTS`; NaN: missing.
     """
     lengths = {}
     for side in ("left", "right"):
@@ -178,20 +179,22 @@ def body_from_joints(body: BodyModel, joints: Array) -> BodyModel:
             ("UpperArm", "LowerArm"), ("LowerArm", "Hand"),
             ("UpperLeg", "LowerLeg"), ("LowerLeg", "Foot"),
         ):  # fmt: skip
-            lengths[f"{side}{length}"] = _apart(joints, f"{side}{length}", f"{side}{below}")
-    lengths["hipWidth"] = 0.5 * _apart(joints, "leftUpperLeg", "rightUpperLeg")
-    width = 0.5 * _apart(joints, "leftUpperArm", "rightUpperArm")
+            lengths[f"{side}{length}"] = _median_distance(
+                joints, f"{side}{length}", f"{side}{below}"
+            )
+    lengths["hipWidth"] = 0.5 * _median_distance(joints, "leftUpperLeg", "rightUpperLeg")
+    width = 0.5 * _median_distance(joints, "leftUpperArm", "rightUpperArm")
     lengths["leftShoulder"] = lengths["rightShoulder"] = width / 1.1
-    trunk = _apart(joints, "hips", "neck")
-    usual = sum(body.length(name) for name in ("hips", "spine", "chest"))
+    trunk = _median_distance(joints, "hips", "neck")
+    default_trunk = sum(body.length(name) for name in ("hips", "spine", "chest"))
     for name in ("hips", "spine", "chest"):
-        lengths[name] = body.length(name) * trunk / usual
-    told = {name: length for name, length in lengths.items() if np.isfinite(length)}
-    return body.with_lengths(**told)
+        lengths[name] = body.length(name) * trunk / default_trunk
+    measured = {name: length for name, length in lengths.items() if np.isfinite(length)}
+    return body.with_lengths(**measured)
 
 
-def _apart(joints: Array, first: str, second: str) -> float:
-    between = joints[:, JOINTS.index(first)] - joints[:, JOINTS.index(second)]
-    distances = np.linalg.norm(between, axis=-1)
+def _median_distance(joints: Array, first: str, second: str) -> float:
+    offsets = joints[:, JOINTS.index(first)] - joints[:, JOINTS.index(second)]
+    distances = np.linalg.norm(offsets, axis=-1)
     distances = distances[np.isfinite(distances)]
     return float(np.median(distances)) if len(distances) else np.nan

@@ -1,4 +1,4 @@
-"""Pictures of a body: which of its capsules each pixel sees, and how far away."""
+"""Ray casting of the body model: capsule and depth of each pixel."""
 
 from dataclasses import dataclass
 
@@ -12,15 +12,15 @@ from .tables import CAPSULE_SEGMENTS
 Array = NDArray[np.float64]
 Integers = NDArray[np.intp]
 
-NOTHING = -1
-_NEAREST = 0.05
-"""Metres before the camera; what comes nearer is not drawn."""
-_ALMOST_NOTHING = 1e-12
+NO_SEGMENT = -1
+_MIN_DEPTH_M = 0.05
+"""Nearer surfaces are not rendered."""
+_EPSILON = 1e-12
 
 
 @dataclass(frozen=True, eq=False)
 class BodyImage:
-    """The pixels that see a body, in the order of its capsules.
+    """The pixels of a body, in the order of its capsules.
 
     Attributes
     ----------
@@ -30,7 +30,7 @@ class BodyImage:
     depths : shape (n,), metres
         Along the optical axis.
     capsules : int, shape (n,)
-        Index of the capsule seen.
+        Index of the visible capsule.
     """
 
     camera: Camera
@@ -40,29 +40,29 @@ class BodyImage:
 
     @property
     def segments(self) -> Integers:
-        """Index of the segment that each pixel sees, shape (n,)."""
+        """Index of the visible segment of each pixel, shape (n,)."""
         return CAPSULE_SEGMENTS[self.capsules]
 
     def depth_picture(self) -> Array:
-        """Return the depths as a picture (height, width), metres; 0 where nothing is seen."""
-        return self._picture(self.depths, 0.0)
+        """Return the depth image (height, width), metres; 0 off the body."""
+        return self._image(self.depths, 0.0)
 
     def segment_picture(self) -> Array:
-        """Return the segments as a picture (height, width), -1 where nothing is seen."""
-        return self._picture(self.segments, NOTHING)
+        """Return the segment image (height, width), -1 off the body."""
+        return self._image(self.segments, NO_SEGMENT)
 
-    def _picture(self, values: NDArray[np.generic], nothing: float) -> Array:
-        picture = np.full(self.camera.width * self.camera.height, nothing)
-        picture[self.pixels] = values
-        return picture.reshape(self.camera.height, self.camera.width)
+    def _image(self, values: NDArray[np.generic], fill: float) -> Array:
+        image = np.full(self.camera.width * self.camera.height, fill)
+        image[self.pixels] = values
+        return image.reshape(self.camera.height, self.camera.width)
 
 
 def cast_rays(body: BodyModel, frames: Array, camera: Camera) -> BodyImage:
-    """Draw a body exactly, without triangles.
+    """Render a body exactly, without triangles.
 
-    The ray of each pixel inside a capsule's bounding box on the picture meets the capsule
-    where a quadratic equation says; all boxes are solved together as one list. Elliptic
-    capsules are round ones in a frame that is stretched, which keeps what is linear linear.
+    A quadratic equation intersects each capsule with the pixel rays inside its bounding box.
+    All boxes are solved together as one list. Elliptic capsules are round in a scaled frame;
+    scaling preserves linear relations.
 
     Parameters
     ----------
@@ -75,18 +75,18 @@ def cast_rays(body: BodyModel, frames: Array, camera: Camera) -> BodyImage:
     -------
     BodyImage
     """
-    stretched = _stretched(body, frames)
+    scaled = _scale_capsules(body, frames)
     capsules, columns, rows = _boxes(body, frames, camera)
     x = (columns - camera.cx) / camera.fx
     y = (rows - camera.cy) / camera.fy
     rays = np.stack([x * x, x * y, y * y, x, y, np.ones_like(x)], axis=1)
-    hit, depths = _meet(stretched, capsules, rays)
+    hit, depths = _intersect(scaled, capsules, rays)
     return _front(camera, (rows * camera.width + columns)[hit], depths, capsules[hit])
 
 
 @dataclass(frozen=True, eq=False)
-class _Stretched:
-    """What the quadratic equations of capsules consist of, in their stretched frames.
+class _ScaledCapsules:
+    """Coefficients of the quadratic equations of capsules, in their scaled frames.
 
     With d the ray and o the camera, seen from an end of the axis: 6 coefficients give d.d from
     x^2, xy, y^2, x, y, 1, and 3 give a product with d from x, y, 1.
@@ -103,7 +103,7 @@ class _Stretched:
     """axis.axis, axis.o, o.o - 1 from the start, o.o - 1 from the stop, shape (n, 4)."""
 
 
-def _stretched(body: BodyModel, frames: Array) -> _Stretched:
+def _scale_capsules(body: BodyModel, frames: Array) -> _ScaledCapsules:
     frame = frames[CAPSULE_SEGMENTS]
     scales = 1.0 / body.radii[:, [0, 1, 1]]
     to_stretched = scales[:, :, np.newaxis] * frame[:, :3, :3].swapaxes(1, 2)
@@ -113,7 +113,7 @@ def _stretched(body: BodyModel, frames: Array) -> _Stretched:
     square = to_stretched.swapaxes(1, 2) @ to_stretched
     with_ray = np.stack([axis, from_start, from_stop], axis=1) @ to_stretched
     products = np.einsum("kni,kni->kn", *_pairs(axis, from_start, from_stop))
-    return _Stretched(
+    return _ScaledCapsules(
         np.stack(
             [square[:, 0, 0], 2 * square[:, 0, 1], square[:, 1, 1],
              2 * square[:, 0, 2], 2 * square[:, 1, 2], square[:, 2, 2]], axis=1,
@@ -130,15 +130,15 @@ def _pairs(axis: Array, from_start: Array, from_stop: Array) -> tuple[Array, Arr
     )
 
 
-def _meet(
-    stretched: _Stretched, capsules: Integers, rays: Array
+def _intersect(
+    scaled: _ScaledCapsules, capsules: Integers, rays: Array
 ) -> tuple[NDArray[np.bool_], Array]:
-    """Return which rays meet their capsule, and the depths where those do."""
+    """Return the mask of rays that hit their capsule, and the depths of these hits."""
     linear = rays[:, 3:]
-    square = np.einsum("nk,nk->n", stretched.square[capsules], rays)
-    along = np.einsum("nk,nk->n", stretched.along[capsules], linear)
-    toward = np.einsum("nk,nk->n", stretched.from_start[capsules], linear)
-    axis, axis_camera, start, stop = stretched.numbers[capsules].T
+    square = np.einsum("nk,nk->n", scaled.square[capsules], rays)
+    along = np.einsum("nk,nk->n", scaled.along[capsules], linear)
+    toward = np.einsum("nk,nk->n", scaled.from_start[capsules], linear)
+    axis, axis_camera, start, stop = scaled.numbers[capsules].T
     a = axis * square - along * along
     b = axis * toward - axis_camera * along
     c = axis * start - axis_camera * axis_camera
@@ -146,19 +146,19 @@ def _meet(
     hit = inside >= 0.0
     a, b, square, along = a[hit], b[hit], square[hit], along[hit]
     axis, axis_camera, start, stop = axis[hit], axis_camera[hit], start[hit], stop[hit]
-    depths = -(b + np.sqrt(inside[hit])) / np.maximum(a, _ALMOST_NOTHING)
-    place = axis_camera + depths * along
-    before, behind = place < 0.0, place > axis
+    depths = -(b + np.sqrt(inside[hit])) / np.maximum(a, _EPSILON)
+    axis_position = axis_camera + depths * along
+    before, behind = axis_position < 0.0, axis_position > axis
     round_end = before | behind
-    of_stop = np.einsum("nk,nk->n", stretched.from_stop[capsules[hit]], linear[hit])
+    of_stop = np.einsum("nk,nk->n", scaled.from_stop[capsules[hit]], linear[hit])
     b = np.where(before, toward[hit], of_stop)
     c = np.where(before, start, stop)
     inside = b * b - square * c
     ends = -(b + np.sqrt(np.maximum(inside, 0.0))) / square
     depths = np.where(round_end, ends, depths)
-    met = (~round_end | (inside >= 0.0)) & (depths > _NEAREST)
-    hit[hit] = met
-    return hit, depths[met]
+    valid = (~round_end | (inside >= 0.0)) & (depths > _MIN_DEPTH_M)
+    hit[hit] = valid
+    return hit, depths[valid]
 
 
 def _boxes(
@@ -169,7 +169,7 @@ def _boxes(
     ends = np.einsum("nij,nej->nei", frame[:, :3, :3], body.capsule_ends)
     ends += frame[:, np.newaxis, :3, 3]
     radii = body.radii.max(axis=1)[:, np.newaxis]
-    before = (ends[..., 2] > radii + _NEAREST).all(axis=1)
+    before = (ends[..., 2] > radii + _MIN_DEPTH_M).all(axis=1)
     columns = _span(ends[..., 0], ends[..., 2], radii, camera.fx, camera.cx, camera.width)
     rows = _span(ends[..., 1], ends[..., 2], radii, camera.fy, camera.cy, camera.height)
     widths, heights = (np.maximum(span[1] - span[0] + 1, 0) for span in (columns, rows))
@@ -182,15 +182,15 @@ def _boxes(
 
 
 def _span(
-    sideways: Array, forward: Array, radii: Array, focal: float, centre: float, size: int
+    sideways: Array, forward: Array, radii: Array, focal: float, center: float, size: int
 ) -> tuple[Integers, Integers]:
     """Return the first and last pixel between the tangents to the balls at both ends."""
-    safe = np.maximum(forward, radii + _NEAREST)
+    safe = np.maximum(forward, radii + _MIN_DEPTH_M)
     root = radii * np.sqrt(sideways**2 + safe**2 - radii**2)
     low = (sideways * safe - root) / (safe**2 - radii**2)
     high = (sideways * safe + root) / (safe**2 - radii**2)
-    first = np.ceil(focal * low.min(axis=1) + centre)
-    last = np.floor(focal * high.max(axis=1) + centre)
+    first = np.ceil(focal * low.min(axis=1) + center)
+    last = np.floor(focal * high.max(axis=1) + center)
     return (
         np.clip(first, 0, size).astype(np.intp),
         np.clip(last, -1, size - 1).astype(np.intp),
@@ -198,12 +198,12 @@ def _span(
 
 
 def _front(camera: Camera, pixels: Integers, depths: Array, capsules: Integers) -> BodyImage:
-    """Keep what is nearest in each pixel; of the equally near the first capsule."""
+    """Keep the nearest hit of each pixel; of equal depths the first capsule."""
     nearest = np.full(camera.width * camera.height, np.inf)
     np.minimum.at(nearest, pixels, depths)
     front = depths == nearest[pixels]
     pixels, depths, capsules = pixels[front], depths[front], capsules[front]
-    first = np.full(len(nearest), NOTHING)
+    first = np.full(len(nearest), NO_SEGMENT)
     first[pixels[::-1]] = np.arange(len(pixels))[::-1]
     once = first[pixels] == np.arange(len(pixels))
     return BodyImage(camera, pixels[once], depths[once], capsules[once])

@@ -1,4 +1,4 @@
-"""How the surface of a body moves when its lengths and radii change."""
+"""Derivatives of the body surface by its lengths and radii."""
 
 import numpy as np
 from numpy.typing import NDArray
@@ -27,45 +27,45 @@ def _without_side(name: str) -> str:
     return name
 
 
-def _shared(names: list[str]) -> tuple[tuple[str, ...], Array]:
-    """Return the different names, and which of them each one is, as rows of 0 and 1."""
-    different = tuple(dict.fromkeys(names))
-    return different, np.eye(len(different))[[different.index(name) for name in names]]
+def _unique_names(names: list[str]) -> tuple[tuple[str, ...], Array]:
+    """Return the unique names, and the one-hot rows that select them."""
+    unique = tuple(dict.fromkeys(names))
+    return unique, np.eye(len(unique))[[unique.index(name) for name in names]]
 
 
 def _radius_names() -> list[str]:
     names = []
     for row in CAPSULE_ROWS:
         name = _without_side(row.name)
-        round_one = row.radii[0] == row.radii[1]
-        names += [f"{name}Radius"] * 2 if round_one else [f"{name}Width", f"{name}Depth"]
+        is_round = row.radii[0] == row.radii[1]
+        names += [f"{name}Radius"] * 2 if is_round else [f"{name}Width", f"{name}Depth"]
     return names
 
 
-_LENGTHS, _LENGTH_SHARES = _shared([_without_side(name) for name in LENGTHS])
-_RADII, _RADIUS_SHARES = _shared(_radius_names())
+_LENGTHS, _LENGTH_MAP = _unique_names([_without_side(name) for name in LENGTHS])
+_RADII, _RADIUS_MAP = _unique_names(_radius_names())
 MEASURES = (*_LENGTHS, *_RADII)
-"""Lengths and radii of a body whose left and right are the same: what may be refined."""
+"""Lengths and radii of a symmetric body: the refined parameters."""
 N_LENGTHS = len(_LENGTHS)
 
 
 def resize_body(body: BodyModel, change: Array) -> BodyModel:
-    """Return the body with each of its `MEASURES` made larger by a factor exp(change)."""
-    lengths = body.lengths * np.exp(_LENGTH_SHARES @ change[:N_LENGTHS])
-    factors = np.exp(_RADIUS_SHARES @ change[N_LENGTHS:])
-    return BodyModel(lengths, body.radii * factors.reshape(len(CAPSULES), 2))
+    """Return the body with each of its `MEASURES` scaled by exp(change)."""
+    lengths = body.lengths * np.exp(_LENGTH_MAP @ change[:N_LENGTHS])
+    radius_factors = np.exp(_RADIUS_MAP @ change[N_LENGTHS:])
+    return BodyModel(lengths, body.radii * radius_factors.reshape(len(CAPSULES), 2))
 
 
 def shape_jacobian(body: BodyModel, frames: Array, rows: SurfaceRows) -> Array:
-    """Return how each row's point moves along its direction when a measure grows.
+    """Return the derivative of each row's point along its direction by the measures.
 
-    To first order, and with the directions of capsules kept.
+    First order, with constant capsule directions.
 
     Parameters
     ----------
     body : BodyModel
     frames : shape (17, 4, 4)
-        Its segments in the pose of the rows.
+        Segment transforms in the pose of the rows.
     rows : SurfaceRows
 
     Returns
@@ -76,9 +76,9 @@ def shape_jacobian(body: BodyModel, frames: Array, rows: SurfaceRows) -> Array:
     segments = CAPSULE_SEGMENTS[rows.capsules]
     rotations = frames[segments, :3, :3]
     directions = np.einsum("nji,nj->ni", rotations, rows.directions)
-    along, out = _places(body, frames, rows.points, rows.capsules)
+    along, out = _surface_coordinates(body, frames, rows.points, rows.capsules)
     starts, stops = CAPSULE_ENDS[rows.capsules].swapaxes(0, 1)
-    by_length = np.einsum("ni,nil->nl", rows.directions, _origin_slopes(frames)[segments])
+    by_length = np.einsum("ni,nil->nl", rows.directions, _origin_derivatives(frames)[segments])
     by_length += (1.0 - along)[:, np.newaxis] * np.einsum("ni,nil->nl", directions, starts)
     by_length += along[:, np.newaxis] * np.einsum("ni,nil->nl", directions, stops)
     outward = directions * out
@@ -86,25 +86,25 @@ def shape_jacobian(body: BodyModel, frames: Array, rows: SurfaceRows) -> Array:
     each = np.arange(len(along))
     by_radius[each, rows.capsules, 0] = outward[:, 0]
     by_radius[each, rows.capsules, 1] = outward[:, 1] + outward[:, 2]
-    lengths = (by_length * body.lengths) @ _LENGTH_SHARES
-    radii = (by_radius * body.radii).reshape(len(along), 2 * len(CAPSULES)) @ _RADIUS_SHARES
+    lengths = (by_length * body.lengths) @ _LENGTH_MAP
+    radii = (by_radius * body.radii).reshape(len(along), 2 * len(CAPSULES)) @ _RADIUS_MAP
     return np.concatenate([lengths, radii], axis=1)
 
 
-def _origin_slopes(frames: Array) -> Array:
-    """Return how joints move when lengths grow, shape (17, 3, n_lengths), camera frame."""
-    slopes = np.zeros((N_SEGMENTS, 3, len(LENGTHS)))
+def _origin_derivatives(frames: Array) -> Array:
+    """Return the derivatives of joints by lengths, (17, 3, n_lengths), camera frame."""
+    derivatives = np.zeros((N_SEGMENTS, 3, len(LENGTHS)))
     for segment, parent in enumerate(PARENTS[1:], start=1):
-        slopes[segment] = slopes[parent] + frames[parent, :3, :3] @ OFFSETS[segment]
-    return slopes
+        derivatives[segment] = derivatives[parent] + frames[parent, :3, :3] @ OFFSETS[segment]
+    return derivatives
 
 
-def _places(
+def _surface_coordinates(
     body: BodyModel, frames: Array, points: Array, capsules: Integers
 ) -> tuple[Array, Array]:
-    """Return where points are on capsules: how far along (0 to 1), and which way out.
+    """Return axis position (0 to 1) and outward direction of points on capsules.
 
-    The second is of length 1 in the capsule's stretched frame, shape (n, 3).
+    Directions (n, 3) are unit vectors in the capsule's scaled frame.
     """
     frame = frames[CAPSULE_SEGMENTS[capsules]]
     scales = 1.0 / body.radii[capsules][:, [0, 1, 1]]

@@ -1,4 +1,4 @@
-"""What the segments, joints, coordinates and capsules of the body model are called and are."""
+"""Tables of the body model: segments, joints, lengths and capsules."""
 
 from typing import NamedTuple
 
@@ -15,45 +15,45 @@ _LIMB_PARENTS = {
 }  # fmt: skip
 _LIMBS = tuple(f"{side}{limb}" for side in SIDES for limb in _LIMB_PARENTS)
 SEGMENTS = ("hips", "spine", "chest", "neck", "head", *_LIMBS)
-"""The rigid segments, named by the humanoid role of the joint they turn about: the 15 of
-[WZC12], whose feet are of one piece with the shanks, and two feet."""
+"""The rigid segments, named by the humanoid role of their joint: the 15 of [WZC12], where feet
+are rigid with the shanks, and two feet."""
 
 
 def _parent(segment: str) -> int:
     for side in SIDES:
         if segment.startswith(side):
-            above = _LIMB_PARENTS[segment.removeprefix(side)]
-            return SEGMENTS.index(above if above in SEGMENTS else f"{side}{above}")
+            parent = _LIMB_PARENTS[segment.removeprefix(side)]
+            return SEGMENTS.index(parent if parent in SEGMENTS else f"{side}{parent}")
     return SEGMENTS.index(segment) - 1
 
 
 PARENTS = tuple(_parent(segment) for segment in SEGMENTS)
-"""Index of the segment above each one, -1 for the hips; parents precede children."""
+"""Index of each segment's parent, -1 for the hips; parents precede children."""
 
-ENDS = ("leftHand", "leftToes", "rightHand", "rightToes")
-"""Joints at the ends of segments, which do not turn by themselves."""
-JOINTS = (*SEGMENTS, *ENDS)
+END_JOINTS = ("leftHand", "leftToes", "rightHand", "rightToes")
+"""End joints of segments, without rotation of their own."""
+JOINTS = (*SEGMENTS, *END_JOINTS)
 END_SEGMENTS = tuple(
     SEGMENTS.index(f"{side}{limb}") for side in SIDES for limb in ("LowerArm", "Foot")
 )
-"""Index of the segment that carries each of `ENDS`."""
+"""Index of the segment that carries each of `END_JOINTS`."""
 
 _SIDED_LENGTHS = ("Shoulder", "UpperArm", "LowerArm", "Hand", "UpperLeg", "LowerLeg", "Foot")
 LENGTHS = (
     "hips", "hipWidth", "spine", "chest", "neck", "head",
     *(f"{side}{length}" for side in SIDES for length in _SIDED_LENGTHS),
 )  # fmt: skip
-"""Lengths that make a body: hipWidth from the middle to a hip joint, hand from wrist to
-finger tips, foot from ankle to toes, the others from joint to joint."""
+"""Lengths of a body: hipWidth from hip center to hip joint, hand from wrist to finger tips,
+foot from ankle to toes, the others from joint to joint."""
 
 DEFAULT_LENGTHS_M = np.array([0.09, 0.10, 0.14, 0.325, 0.075, 0.08]
     + 2 * [0.165, 0.26, 0.255, 0.17, 0.43, 0.435, 0.17])  # fmt: skip
-"""Of an adult of 1.75 m, metres."""
+"""Lengths of an adult of 1.75 m."""
 DEFAULT_STATURE_M = 1.75
 
 
 class CapsuleRow(NamedTuple):
-    """A capsule: on which segment, between which points, and how thick it usually is."""
+    """A capsule: its segment, end points and default radii."""
 
     name: str
     segment: str
@@ -87,19 +87,19 @@ def _limb_capsules(side: str) -> list[CapsuleRow]:
     ) -> CapsuleRow:
         return CapsuleRow(
             f"{side}{name}", f"{side}{segment}",
-            {f"{side}{length}": at for length, at in start.items()},
-            {f"{side}{length}": at for length, at in stop.items()}, (r, r),
+            {f"{side}{length}": point for length, point in start.items()},
+            {f"{side}{length}": point for length, point in stop.items()}, (r, r),
         )  # fmt: skip
 
-    ahead = (0.0, 1.0, 0.0)
+    along = (0.0, 1.0, 0.0)
     return [
         row("Shoulder", "Shoulder", {"Shoulder": (0.35 * out, 0.0, 0.0)},
             {"Shoulder": (0.90 * out, 0.12, 0.0)}, 0.065),
-        row("UpperArm", "UpperArm", {}, {"UpperArm": ahead}, 0.050),
-        row("LowerArm", "LowerArm", {}, {"LowerArm": ahead}, 0.038),
-        row("Hand", "LowerArm", {"LowerArm": ahead, "Hand": (0.0, 0.25, 0.0)},
-            {"LowerArm": ahead, "Hand": (0.0, 0.75, 0.0)}, 0.035),
-        row("UpperLeg", "UpperLeg", {"UpperLeg": (0.0, 0.05, 0.0)}, {"UpperLeg": ahead},
+        row("UpperArm", "UpperArm", {}, {"UpperArm": along}, 0.050),
+        row("LowerArm", "LowerArm", {}, {"LowerArm": along}, 0.038),
+        row("Hand", "LowerArm", {"LowerArm": along, "Hand": (0.0, 0.25, 0.0)},
+            {"LowerArm": along, "Hand": (0.0, 0.75, 0.0)}, 0.035),
+        row("UpperLeg", "UpperLeg", {"UpperLeg": (0.0, 0.05, 0.0)}, {"UpperLeg": along},
             0.078),
         row("LowerLeg", "LowerLeg", {}, {"LowerLeg": (0.0, 0.97, 0.0)}, 0.052),
         row("Foot", "Foot", {"Foot": (0.0, 0.20, 0.10)}, {"Foot": (0.0, 0.23, -0.80)}, 0.038),
@@ -114,7 +114,7 @@ DEFAULT_RADII_M = np.array([row.radii for row in CAPSULE_ROWS])
 
 
 def _offset_rows() -> list[dict[str, Vector]]:
-    """Return where each joint of `JOINTS` is from the one above, as vectors times lengths."""
+    """Return the offset of each of the `JOINTS` from its parent, as vectors times lengths."""
     rows: dict[str, dict[str, Vector]] = {
         "hips": {}, "spine": {"hips": (0.0, -1.0, 0.1)}, "chest": {"spine": (0.0, -1.0, 0.1)},
         "neck": {"chest": (0.0, -1.0, -0.1)}, "head": {"neck": (0.0, -1.0, -0.2)},
@@ -135,16 +135,16 @@ def _offset_rows() -> list[dict[str, Vector]]:
 
 
 def _tensor(rows: list[dict[str, Vector]]) -> Array:
-    """Return the matrices (n, 3, n_lengths) that turn lengths into points."""
+    """Return the matrices (n, 3, n_lengths) that map lengths to points."""
     tensor = np.zeros((len(rows), 3, len(LENGTHS)))
     for matrix, row in zip(tensor, rows, strict=True):
-        for length, at in row.items():
-            matrix[:, LENGTHS.index(length)] = at
+        for length, point in row.items():
+            matrix[:, LENGTHS.index(length)] = point
     return tensor
 
 
 OFFSETS = _tensor(_offset_rows())
-"""(n_joints, 3, n_lengths): joint in the frame of the segment above = OFFSETS @ lengths."""
+"""(n_joints, 3, n_lengths): joint in the frame of the parent segment = OFFSETS @ lengths."""
 CAPSULE_ENDS = np.stack(
     [_tensor([row.start for row in CAPSULE_ROWS]), _tensor([row.stop for row in CAPSULE_ROWS])],
     axis=1,

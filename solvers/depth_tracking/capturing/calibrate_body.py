@@ -1,4 +1,4 @@
-"""Measure a body in one frame in which it stands still: lengths and thickness of its parts."""
+"""Measure the lengths and thickness of body parts in one frame of a standing actor."""
 
 from dataclasses import dataclass
 
@@ -17,37 +17,37 @@ from .sample_cylinders import Cylinder, CylinderSettings, sample_cylinder
 
 Array = NDArray[np.float64]
 
-MEASURED = tuple(
+MEASURED_PARTS = tuple(
     f"{side}{part}"
     for side in SIDES
     for part in ("UpperArm", "LowerArm", "Hand", "UpperLeg", "LowerLeg")
 )
-"""Limbs whose cylinders are sampled; those of the trunk are too short and wide for that."""
-ABOVE = {"LowerArm": "UpperArm", "Hand": "LowerArm", "LowerLeg": "UpperLeg"}
-THINNEST, THICKEST = 0.6, 1.7
-"""Radii tried, as shares of the usual."""
-INNER = {"UpperArm": "chest", "UpperLeg": "hips"}
+"""Limbs with cylinder fits; the trunk is too short and wide for them."""
+PARENT_LIMBS = {"LowerArm": "UpperArm", "Hand": "LowerArm", "LowerLeg": "UpperLeg"}
+MIN_RADIUS_RATIO, MAX_RADIUS_RATIO = 0.6, 1.7
+"""Range of radii relative to the default."""
+PARENT_PARTS = {"UpperArm": "chest", "UpperLeg": "hips"}
 TRUNK = ("hips", "spine", "chest")
-SURE = 0.25
-"""Cylinders of less quality tell nothing."""
-LEAST_LIMBS = 4
-PIXELS = 6000
-STATURES = 1.2, 2.2
-STEP = 0.15
-TRIED = tuple(1.3 + STEP * step for step in range(6))
-"""Statures tried, metres."""
+MIN_QUALITY = 0.25
+"""Cylinders below this quality are ignored."""
+MIN_LIMBS = 4
+MAX_PIXELS = 6000
+STATURE_RANGE_M = 1.2, 2.2
+STATURE_STEP_M = 0.15
+TESTED_STATURES_M = tuple(1.3 + STATURE_STEP_M * step for step in range(6))
+"""Statures tested by the detector."""
 
 
 @dataclass(frozen=True, kw_only=True)
 class CalibrationSettings(CylinderSettings):
-    """How a body is measured."""
+    """Settings of the body calibration."""
 
     refine: bool = setting(
-        True, "Take lengths from how well whole bodies fit rather than from single limbs"
+        True, "Estimate lengths from the fit of the complete body instead of single limbs"
     )
 
 
-USUAL = CalibrationSettings()
+DEFAULT_CALIBRATION = CalibrationSettings()
 
 
 def calibrate_body(
@@ -55,22 +55,21 @@ def calibrate_body(
     frame: int,
     forest: PixelForest,
     *,
-    settings: CalibrationSettings = USUAL,
+    settings: CalibrationSettings = DEFAULT_CALIBRATION,
     progress: Progress = unwatched,
 ) -> BodyModel:
-    """Measure the body that stands before the camera in one frame.
+    """Measure the body of the actor in one frame.
 
-    It should face the camera, upright, arms and legs straight and away from the trunk. Pixels
-    are told apart by the forest; a cylinder is fitted to each limb by random sampling; what the
-    cylinders of left and right tell is averaged [1]_. With `refine` only their radii are used:
-    stature is that of the usual adult whose pose is detected best, and the lengths then follow
-    from a joint fit of pose and shape to the frame (`refine_body`, which measures better still
-    over many tracked frames).
+    The actor should stand upright and face the camera, arms and legs straight and away from
+    the trunk. The forest classifies the pixels. Random sampling fits a cylinder to each limb,
+    and left and right are averaged [1]_. With `refine` only the radii come from cylinders. The
+    stature is then that of the default body with the best detection score. The lengths follow
+    from a joint fit of pose and shape (`refine_body`, more accurate over many frames).
 
     Parameters
     ----------
     depth : DepthRecording
-        Of nothing but one body.
+        Contains only one body.
     frame : int
     forest : PixelForest
     settings : CalibrationSettings
@@ -87,21 +86,21 @@ def calibrate_body(
     ----------
     .. [1] Wei, Zhang, Chai (2012), section 6.
     """
-    observation, _ = subsample_image(depth.frame(frame), depth.camera, PIXELS)
-    picture, camera = observation.depth, observation.camera
-    pixels = classify_pixels(picture.astype(np.float32), camera, forest)
-    labels = np.full(picture.shape, -1)
+    observation, _ = subsample_image(depth.frame(frame), depth.camera, MAX_PIXELS)
+    image, camera = observation.depth, observation.camera
+    pixels = classify_pixels(image.astype(np.float32), camera, forest)
+    labels = np.full(image.shape, -1)
     labels[pixels.rows, pixels.columns] = pixels.labels
     rng = np.random.default_rng(settings.seed)
-    cylinders = _cylinders(picture, labels, camera, rng, settings)
-    if len(cylinders) < LEAST_LIMBS:
+    cylinders = _cylinders(image, labels, camera, rng, settings)
+    if len(cylinders) < MIN_LIMBS:
         raise InvalidMotionError(
-            f"Frame {frame} shows {len(cylinders)} arms and legs well enough to measure;"
-            " choose one where the actor faces the camera, arms and legs away from the body."
+            f"Frame {frame} shows only {len(cylinders)} arms and legs well enough to measure."
+            " Choose a frame where the actor faces the camera, limbs away from the body."
         )
     if not settings.refine:
-        return body_of_cylinders(cylinders, _trunk_length(picture, labels, camera, cylinders))
-    body, pose = _usual_body_found(depth, frame, forest, within(progress, 0.0, 0.8))
+        return body_from_cylinders(cylinders, _trunk_length(image, labels, camera, cylinders))
+    body, pose = _detect_stature(depth, frame, forest, within(progress, 0.0, 0.8))
     body = _with_radii(body, cylinders)
     poses = np.tile(pose, (depth.n_frames, 1))
     return refine_body(
@@ -113,56 +112,58 @@ def calibrate_body(
     )
 
 
-def _usual_body_found(
+def _detect_stature(
     depth: DepthRecording, frame: int, forest: PixelForest, progress: Progress
 ) -> tuple[BodyModel, Array]:
-    """Return the usual adult of the stature whose pose is detected best, and that pose."""
-    picture = depth.frame(frame)
-    found = {}
-    for tried, stature in enumerate(TRIED):
+    """Return the default body with the best detection score, and its pose."""
+    image = depth.frame(frame)
+    detections = {}
+    for count, stature in enumerate(TESTED_STATURES_M):
         body = default_body(stature)
-        found[stature] = detect_pose(picture, depth.camera, body, forest)
-        progress((tried + 1) / len(TRIED), "Finding the stature")
-    best = max(found, key=lambda stature: found[stature].score)
-    near = [stature for stature in TRIED if abs(stature - best) < 1.5 * STEP]
+        detections[stature] = detect_pose(image, depth.camera, body, forest)
+        progress((count + 1) / len(TESTED_STATURES_M), "Estimating the stature")
+    best = max(detections, key=lambda stature: detections[stature].score)
+    neighbors = [
+        stature for stature in TESTED_STATURES_M if abs(stature - best) < 1.5 * STATURE_STEP_M
+    ]
     stature = best
-    if len(near) == 3:
-        below, top, above = (found[one].score for one in near)
-        bend = below - 2.0 * top + above
-        stature = best + STEP * 0.5 * (below - above) / min(bend, -1e-9)
-    return default_body(stature), found[best].pose
+    if len(neighbors) == 3:
+        below, top, above = (detections[one].score for one in neighbors)
+        curvature = below - 2.0 * top + above
+        stature = best + STATURE_STEP_M * 0.5 * (below - above) / min(curvature, -1e-9)
+    return default_body(stature), detections[best].pose
 
 
-def body_of_cylinders(cylinders: dict[str, Cylinder], trunk: float) -> BodyModel:
-    """Return the body of these limbs; all else is as usual for the stature that they tell.
+def body_from_cylinders(cylinders: dict[str, Cylinder], trunk: float) -> BodyModel:
+    """Return the body with these limbs; other parts have default proportions.
 
-    Joints are midway between the ends of the cylinders that meet there. Left and right are
-    averaged; what one side tells alone holds for both.
+    Joints are midway between the ends of adjacent cylinders. Left and right are averaged; a
+    limb measured on one side only applies to both.
 
     Parameters
     ----------
     cylinders : dict of part name to Cylinder
-        Of some of `MEASURED`, each from its inner to its outer end.
+        Some of `MEASURED_PARTS`, each from its inner to its outer end.
     trunk : float, metres
-        From the middle of the hips to the lower end of the neck; NaN: unknown.
+        From hip center to the base of the neck; NaN: unknown.
     """
-    usual = default_body()
-    lengths = _both_sides({
+    default = default_body()
+    lengths = _average_sides({
         part: float(np.linalg.norm(_joint(cylinders, part, 1) - _joint(cylinders, part, 0)))
         for part in cylinders
     })  # fmt: skip
-    usual_trunk = sum(usual.length(name) for name in TRUNK)
+    default_trunk = sum(default.length(name) for name in TRUNK)
     if np.isfinite(trunk):
-        lengths |= {name: usual.length(name) * trunk / usual_trunk for name in TRUNK}
-    ratios = [length / usual.length(name) for name, length in lengths.items()]
-    stature = float(np.clip(DEFAULT_STATURE_M * np.median(ratios), *STATURES))
+        lengths |= {name: default.length(name) * trunk / default_trunk for name in TRUNK}
+    ratios = [length / default.length(name) for name, length in lengths.items()]
+    stature = float(np.clip(DEFAULT_STATURE_M * np.median(ratios), *STATURE_RANGE_M))
     return _with_radii(default_body(stature).with_lengths(**lengths), cylinders).symmetric()
 
 
 def _with_radii(body: BodyModel, cylinders: dict[str, Cylinder]) -> BodyModel:
-    """Return the body with limbs as thick as their cylinders, the same left and right."""
+    """Return the body with the radii of the cylinders, averaged over both sides."""
     radii = body.radii.copy()
-    for part, radius in _both_sides({
+    for part, radius in _average_sides({
         part: cylinder.radius for part, cylinder in cylinders.items()
     }).items():  # fmt: skip
         radii[CAPSULES.index(part)] = radius
@@ -170,90 +171,96 @@ def _with_radii(body: BodyModel, cylinders: dict[str, Cylinder]) -> BodyModel:
 
 
 def _joint(cylinders: dict[str, Cylinder], part: str, end: int) -> Array:
-    """Return where a limb begins (0) or ends (1): between its cylinder and the next one."""
+    """Return the start (0) or end (1) of a limb, midway to the adjacent cylinder."""
     side = next(side for side in SIDES if part.startswith(side))
     limb = part.removeprefix(side)
     if end == 0:
-        other = f"{side}{ABOVE.get(limb, '')}"
+        neighbor = f"{side}{PARENT_LIMBS.get(limb, '')}"
     else:
-        below = [one for one, above in ABOVE.items() if above == limb]
-        other = f"{side}{below[0] if below else ''}"
-    place: Array = cylinders[part].ends[end]
-    if other not in cylinders:
-        return place
-    joint: Array = np.asarray(0.5 * (place + cylinders[other].ends[1 - end]))
+        children = [one for one, above in PARENT_LIMBS.items() if above == limb]
+        neighbor = f"{side}{children[0] if children else ''}"
+    end_point: Array = cylinders[part].ends[end]
+    if neighbor not in cylinders:
+        return end_point
+    joint: Array = np.asarray(0.5 * (end_point + cylinders[neighbor].ends[1 - end]))
     return joint
 
 
-def _both_sides(told: dict[str, float]) -> dict[str, float]:
-    """Return the mean of left and right for both; the one that is told where only one is."""
-    both: dict[str, float] = {}
-    for limb in {part.removeprefix("left").removeprefix("right") for part in told}:
-        values = [told[f"{side}{limb}"] for side in SIDES if f"{side}{limb}" in told]
-        both |= {f"{side}{limb}": float(np.mean(values)) for side in SIDES}
-    return both
+def _average_sides(values_of_part: dict[str, float]) -> dict[str, float]:
+    """Return the mean of both sides for each side; a single measurement applies to both."""
+    mirrored: dict[str, float] = {}
+    for limb in {part.removeprefix("left").removeprefix("right") for part in values_of_part}:
+        values = [
+            values_of_part[f"{side}{limb}"]
+            for side in SIDES
+            if f"{side}{limb}" in values_of_part
+        ]
+        mirrored |= {f"{side}{limb}": float(np.mean(values)) for side in SIDES}
+    return mirrored
 
 
 def _cylinders(
-    picture: Array,
+    image: Array,
     labels: NDArray[np.intp],
     camera: Camera,
     rng: np.random.Generator,
     settings: CalibrationSettings,
 ) -> dict[str, Cylinder]:
-    """Return the cylinders of limbs seen well, each from its inner to its outer end."""
-    usual = default_body()
-    found: dict[str, Cylinder] = {}
-    for part in MEASURED:
-        places = [PARTS.index(name) for name in (part, f"{part}End") if name in PARTS]
-        radius = float(usual.radii[CAPSULES.index(part)].mean())
+    """Return the cylinders of well-observed limbs, each from its inner to its outer end."""
+    default = default_body()
+    cylinders: dict[str, Cylinder] = {}
+    for part in MEASURED_PARTS:
+        part_indices = [PARTS.index(name) for name in (part, f"{part}End") if name in PARTS]
+        radius = float(default.radii[CAPSULES.index(part)].mean())
         cylinder = sample_cylinder(
-            picture,
-            np.isin(labels, places),
+            image,
+            np.isin(labels, part_indices),
             camera,
-            (THINNEST * radius, THICKEST * radius),
+            (MIN_RADIUS_RATIO * radius, MAX_RADIUS_RATIO * radius),
             rng,
             settings,
         )
-        inner = _inner_place(part, picture, labels, camera)
-        if cylinder is None or cylinder.quality < SURE or inner is None:
+        inner_point = _inner_point(part, image, labels, camera)
+        if cylinder is None or cylinder.quality < MIN_QUALITY or inner_point is None:
             continue
-        order = np.argsort(np.linalg.norm(cylinder.ends - inner, axis=1))
-        found[part] = Cylinder(cylinder.ends[order], cylinder.radius, cylinder.quality)
-    return found
+        order = np.argsort(np.linalg.norm(cylinder.ends - inner_point, axis=1))
+        cylinders[part] = Cylinder(cylinder.ends[order], cylinder.radius, cylinder.quality)
+    return cylinders
 
 
-def _inner_place(
-    part: str, picture: Array, labels: NDArray[np.intp], camera: Camera
+def _inner_point(
+    part: str, image: Array, labels: NDArray[np.intp], camera: Camera
 ) -> Array | None:
-    """Return the middle of what a limb hangs on, or None where that is not seen."""
+    """Return the median point of a limb's parent part, or None if it is hidden."""
     side = next(side for side in SIDES if part.startswith(side))
     limb = part.removeprefix(side)
-    return _middle(INNER.get(limb, f"{side}{ABOVE.get(limb)}"), picture, labels, camera)
+    return _median_point(
+        PARENT_PARTS.get(limb, f"{side}{PARENT_LIMBS.get(limb)}"), image, labels, camera
+    )
 
 
 def _trunk_length(
-    picture: Array,
+    image: Array,
     labels: NDArray[np.intp],
     camera: Camera,
     cylinders: dict[str, Cylinder],
 ) -> float:
-    """Return how far the neck's lower end is above the middle of both hip joints, metres."""
+    """Return the distance from hip center to the base of the neck, metres."""
     legs = [f"{side}UpperLeg" for side in SIDES]
     hips = [cylinders[leg].ends[0] for leg in legs if leg in cylinders]
-    neck = _middle("neck", picture, labels, camera)
+    neck = _median_point("neck", image, labels, camera)
     if len(hips) < len(SIDES) or neck is None:
         return float("nan")
-    usual = default_body()
-    # The middle of the neck's pixels is half a neck above its joint.
-    return float(np.linalg.norm(neck - np.mean(hips, axis=0)) - 0.5 * usual.length("neck"))
+    default = default_body()
+    # The median of the neck's pixels is half a neck above its joint.
+    return float(np.linalg.norm(neck - np.mean(hips, axis=0)) - 0.5 * default.length("neck"))
 
 
-def _middle(
-    part: str, picture: Array, labels: NDArray[np.intp], camera: Camera
+def _median_point(
+    part: str, image: Array, labels: NDArray[np.intp], camera: Camera
 ) -> Array | None:
-    own = labels == PARTS.index(part)
-    if np.count_nonzero(own) < 4:
+    part_mask = labels == PARTS.index(part)
+    if np.count_nonzero(part_mask) < 4:
         return None
-    middle: Array = np.median(camera.back_project(picture)[own], axis=0)
-    return middle
+    point: Array = np.median(camera.back_project(image)[part_mask], axis=0)
+    return point

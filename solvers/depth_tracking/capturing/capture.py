@@ -1,4 +1,4 @@
-"""From a depth recording to motion, with nothing asked of the animator."""
+"""Capture motion from a depth recording automatically."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -22,10 +22,10 @@ from ..body import (
 from ..forest import PixelForest, load_pixel_forest
 from ..terms import DEFAULT_TRACKER, TrackerSettings
 from ..tracking import PoseCallback, TrackedMotion, assemble_motion, ignore_pose
-from .choose_poses import choose_poses, nearest_known
+from .choose_poses import choose_poses, nearest_tracked
 from .find_body import find_body
 from .passes import Pass, RecoverySettings, TrackingContext, track_with_restarts
-from .smooth_pass import smoothed_poses
+from .smooth_pass import smooth_poses
 
 Array = NDArray[np.float64]
 Integers = NDArray[np.intp]
@@ -33,53 +33,53 @@ Integers = NDArray[np.intp]
 
 @dataclass(frozen=True, kw_only=True)
 class CaptureSettings(RecoverySettings):
-    """How a whole take is captured."""
+    """Settings of the capture of a take."""
 
     backward: bool = setting(
-        True, "Also track from the end to the start, and take what fits better; takes longer"
+        True, "Also track from the end to the start and keep the better fit; takes longer"
     )
     smoothing: float = setting(
-        1.0, "How smooth the take is made; 0 leaves every frame as tracked",
+        1.0, "Strength of the smoothing; 0 keeps every frame as tracked",
         minimum=0.0, maximum=1000.0,
     )  # fmt: skip
     refine: bool = setting(True, "Fit lengths and thickness of the body to the recording")
     recorded: bool = setting(
-        False, "Pull poses towards those of recorded walks, exercises and dances: limbs out of"
-        " sight follow those in sight; switch off for jumps and other quick motions",
+        False, "Pull poses toward recorded walks, exercises and dances, so that occluded limbs"
+        " follow visible ones; switch off for jumps and other fast motions",
         label="Like Recorded Motions",
     )  # fmt: skip
     doubtful: float = setting(
-        0.3, "Confidence below which a joint is flagged; more flags more",
+        0.3, "Confidence below which a joint is flagged; higher values flag more joints",
         minimum=0.0, maximum=1.0,
     )  # fmt: skip
 
 
-USUAL_CAPTURE = CaptureSettings()
-_SHARPNESS, _REACH = 40.0, 0.04
-"""A score 0.025 worse costs as much as joints that move by 4 cm more within a frame."""
+DEFAULT_CAPTURE = CaptureSettings()
+_SCORE_WEIGHT, _MOVEMENT_SCALE_M = 40.0, 0.04
+"""A score lower by 0.025 costs as much as a mean joint movement of 4 cm in one frame."""
 
 
 @dataclass(frozen=True, eq=False)
 class Capture:
-    """What was captured.
+    """The captured motion.
 
     Attributes
     ----------
     motion : Motion
         Z up, on the skeleton of `body`; joints have humanoid roles as their names.
     joints : Tracks
-        The same joints in the camera's frame, with the confidence of each joint and frame.
+        The same joints in the camera frame, with the confidence of each joint and frame.
     residual : shape (n_frames,), metres
-        Mean distance in depth where body and actor overlap; NaN where nobody was seen.
+        Mean distance in depth where body and actor overlap; NaN without a visible actor.
     coverage : shape (n_frames,)
-        Share of the pixels of body or actor that show both.
+        Intersection over union of the pixels of body and actor.
     restarts : tuple of int
-        Frames in which the detector had to help the tracker, after the first.
+        Frames where the detector restarted the tracker, after the first.
     body : BodyModel
     poses : shape (n_frames, 36)
     doubtful : bool, shape (n_frames, n_joints)
-        Joints out of sight or badly explained; where they are was filled in from the frames
-        before and after.
+        Joints with low confidence: occluded or poorly fitted. Their positions are interpolated
+        from the frames before and after.
     """
 
     motion: Motion
@@ -99,42 +99,42 @@ def capture(
     motion_prior: MotionPrior | None = None,
     *,
     floor: Floor | None = None,
-    settings: CaptureSettings = USUAL_CAPTURE,
+    settings: CaptureSettings = DEFAULT_CAPTURE,
     tracker: TrackerSettings = DEFAULT_TRACKER,
     on_pose: PoseCallback = ignore_pose,
     progress: Progress = unwatched,
 ) -> Capture:
-    """Capture the motion of the actor whom a depth recording shows.
+    """Capture the motion of the actor in a depth recording.
 
-    The detector finds the first pose, the tracker follows, and the detector helps where the
-    tracker fails [WZC12]_, section 5. Since all frames are at hand, the take is also tracked
-    backward from its end, each frame takes the pose that fits and goes on smoothly, and the
-    whole take is smoothed by how surely each picture tells each joint, so that limbs out of
-    sight go on from where they were last seen to where they are seen next.
+    The detector finds the first pose, and the tracker follows the body. The detector restarts
+    the tracker after failures [WZC12]_, section 5. A second pass tracks the take backward from
+    its end. Each frame keeps the pose with the best fit and the smoothest continuation.
+    Finally the take is smoothed, weighted by the information of each image about each joint.
+    Occluded limbs are interpolated between their observations before and after.
 
     Parameters
     ----------
     depth : DepthRecording
-        Of nothing but the actor (see `solvers.depth_scene.foreground`).
+        Contains only the actor (see `solvers.depth_scene.foreground`).
     body : BodyModel, optional
-        Without it, a usual adult is fitted to the recording.
+        Default: an adult of default proportions, fitted to the recording.
     forest : PixelForest, optional
-        Without it, the one that is shipped.
+        Default: the shipped forest.
     motion_prior : MotionPrior, optional
-        Recorded motions that this one is like, to which the tracker draws poses; without
-        it, those that are shipped if `settings.recorded`.
+        Recorded motions similar to this one; the tracker pulls poses toward them. Default:
+        the shipped motions if `settings.recorded`, otherwise none.
     floor : Floor, optional
-        Becomes z = 0; without it the camera is taken to be level.
+        Becomes z = 0. Default: a level camera.
     settings : CaptureSettings
     tracker : TrackerSettings
     on_pose : PoseCallback
-        Is shown each pose that is found, as soon as it is.
+        Called with each pose as soon as it is tracked.
     progress : Progress
 
     Raises
     ------
     InvalidMotionError
-        No frame shows anybody.
+        No person is detected in any frame.
     SolveCancelled
         Raised by `progress`.
 
@@ -146,21 +146,21 @@ def capture(
     forest = load_pixel_forest() if forest is None else forest
     if motion_prior is None and settings.recorded:
         motion_prior = load_motion_prior()
-    share = 0.0
+    body_fraction = 0.0
     if body is None:
-        share = 0.4
+        body_fraction = 0.4
         body = find_body(
             depth, forest, refine=settings.refine, tracker=tracker,
-            on_pose=on_pose, progress=within(progress, 0.0, share),
+            on_pose=on_pose, progress=within(progress, 0.0, body_fraction),
         )  # fmt: skip
     actor = TrackingContext(depth, body, forest, tracker, settings, motion_prior, on_pose)
-    passes = _passes(actor, settings, within(progress, share, 0.9))
-    frames, which = best_of_passes(body, passes)
-    poses = np.stack([one.poses for one in passes])[which, frames]
-    poses, figures = smoothed_poses(
+    passes = _passes(actor, settings, within(progress, body_fraction, 0.9))
+    frames, pass_indices = best_of_passes(body, passes)
+    poses = np.stack([one.poses for one in passes])[pass_indices, frames]
+    poses, qualities = smooth_poses(
         actor, poses, settings.smoothing, within(progress, 0.9, 1.0)
     )
-    tracked = assemble_motion(body, poses, figures, depth.frame_rate)
+    tracked = assemble_motion(body, poses, qualities, depth.frame_rate)
     return assemble_capture(body, tracked, passes[0].restarts, floor, settings)
 
 
@@ -168,36 +168,36 @@ def _passes(
     actor: TrackingContext, settings: CaptureSettings, progress: Progress
 ) -> list[Pass]:
     n_frames = actor.depth.n_frames
-    middle = 0.5 if settings.backward else 1.0
-    forward = track_with_restarts(actor, range(n_frames), None, within(progress, 0.0, middle))
+    split = 0.5 if settings.backward else 1.0
+    forward = track_with_restarts(actor, range(n_frames), None, within(progress, 0.0, split))
     if not np.isfinite(forward.scores).any():
         raise InvalidMotionError(
-            "Nobody was found in any frame; check what is taken for background, and that the"
+            "No person was detected in any frame. Check the background settings, and that the"
             " depth is in metres."
         )
     if not settings.backward:
         return [forward]
     start = forward.poses[np.flatnonzero(np.isfinite(forward.scores))[-1]]
     backward = track_with_restarts(
-        actor, range(n_frames - 1, -1, -1), start, within(progress, middle, 1.0)
+        actor, range(n_frames - 1, -1, -1), start, within(progress, split, 1.0)
     )
     return [forward, backward]
 
 
 def best_of_passes(body: BodyModel, passes: Sequence[Pass]) -> tuple[Integers, Integers]:
-    """Return which frame of which pass to take for every frame, two of shape (n_frames,).
+    """Return the source frame and the best pass of every frame, two arrays (n_frames,).
 
-    It is the frame itself, or the nearest one in which somebody was found.
+    The source is the frame itself, or the nearest frame with a tracked pose.
     """
     poses = np.stack([one.poses for one in passes], axis=1)
     scores = np.stack([one.scores for one in passes], axis=1)
-    known = np.isfinite(poses).all(axis=-1)
-    scores = np.where(known, np.nan_to_num(scores), np.nan)
-    some = np.flatnonzero(known.any(axis=1))
-    joints = joint_positions(body, segment_frames(body, np.nan_to_num(poses[some])))
-    chosen = choose_poses(scores[some], joints, _SHARPNESS, _REACH)
-    nearest = nearest_known(some, len(poses))
-    return nearest, chosen[np.searchsorted(some, nearest)]
+    is_tracked = np.isfinite(poses).all(axis=-1)
+    scores = np.where(is_tracked, np.nan_to_num(scores), np.nan)
+    tracked_frames = np.flatnonzero(is_tracked.any(axis=1))
+    joints = joint_positions(body, segment_frames(body, np.nan_to_num(poses[tracked_frames])))
+    chosen = choose_poses(scores[tracked_frames], joints, _SCORE_WEIGHT, _MOVEMENT_SCALE_M)
+    nearest = nearest_tracked(tracked_frames, len(poses))
+    return nearest, chosen[np.searchsorted(tracked_frames, nearest)]
 
 
 def assemble_capture(
@@ -207,7 +207,7 @@ def assemble_capture(
     floor: Floor | None,
     settings: CaptureSettings,
 ) -> Capture:
-    """Return the capture that a body's poses make."""
+    """Assemble the result from tracked poses."""
     confidence = tracked.joints.confidence
     doubtful = np.zeros(tracked.joints.positions.shape[:2], dtype=bool)
     if confidence is not None:

@@ -1,4 +1,4 @@
-"""Find out how large the actor of a recording is: no reference pose is asked for."""
+"""Estimate the body size of an actor without a reference pose."""
 
 import numpy as np
 from numpy.typing import NDArray
@@ -16,11 +16,11 @@ from .refine_body import refine_body
 
 Array = NDArray[np.float64]
 
-STATURES = (1.45, 1.6, 1.75, 1.9)
-LOOKED_AT, TRIED = 12, 3
-"""Frames whose size is compared, and frames in which statures are tried."""
-CLIP = 90
-"""Frames that are tracked to refine the body."""
+STATURES_M = (1.45, 1.6, 1.75, 1.9)
+N_SIZE_FRAMES, N_STATURE_FRAMES = 12, 3
+"""Number of frames compared by visible surface, and of frames used to test statures."""
+CLIP_FRAMES = 90
+"""Number of frames tracked to refine the body."""
 
 
 def find_body(
@@ -32,84 +32,92 @@ def find_body(
     on_pose: PoseCallback = ignore_pose,
     progress: Progress = unwatched,
 ) -> BodyModel:
-    """Return the usual adult of the stature that fits best, refined by tracking.
+    """Return a body of the best stature, refined by tracking.
 
-    Statures are tried on frames that show most of the actor; the best one is tracked through
-    a part of the recording, and its lengths and radii are refined on those poses.
+    Statures are tested on the frames with the largest visible surface. The best body is
+    tracked through a clip of the recording, and its lengths and radii are refined on those
+    poses.
 
     Parameters
     ----------
     depth : DepthRecording
     forest : PixelForest
     refine : bool
-        Without, only the stature is found.
+        False estimates only the stature.
     tracker : TrackerSettings
     on_pose : PoseCallback
-        Is shown each pose that is found, as soon as it is.
+        Called with each pose as soon as it is tracked.
     progress : Progress
 
     Raises
     ------
     InvalidMotionError
-        No frame shows anybody.
+        No person is detected in any frame.
     """
-    frames = _telling_frames(depth)
+    frames = _largest_frames(depth)
     body = _best_stature(depth, forest, frames, within(progress, 0.0, 0.3))
     if not refine:
         return body
-    first = int(np.clip(frames[0] - CLIP // 2, 0, max(0, depth.n_frames - CLIP)))
-    clip = _part(depth, first, min(CLIP, depth.n_frames - first))
-    start, seen_from = None, 0
-    for turn in range(2):
-        actor = TrackingContext(clip, body, forest, tracker, RecoverySettings(check_every=CLIP),
+    first = int(np.clip(frames[0] - CLIP_FRAMES // 2, 0, max(0, depth.n_frames - CLIP_FRAMES)))
+    clip = _clip_recording(depth, first, min(CLIP_FRAMES, depth.n_frames - first))
+    start, first_visible = None, 0
+    for pass_ in range(2):
+        recovery = RecoverySettings(check_every=CLIP_FRAMES)
+        actor = TrackingContext(clip, body, forest, tracker, recovery,
                       on_pose=offset_frames(on_pose, first))  # fmt: skip
-        done = within(progress, 0.3 + 0.35 * turn, 0.65 + 0.35 * turn)
-        tracked = track_with_restarts(actor, range(seen_from, clip.n_frames), start, done)
-        good = np.flatnonzero(np.isfinite(tracked.scores))
-        if not len(good):
+        part_progress = within(progress, 0.3 + 0.35 * pass_, 0.65 + 0.35 * pass_)
+        tracked = track_with_restarts(
+            actor, range(first_visible, clip.n_frames), start, part_progress
+        )
+        good_frames = np.flatnonzero(np.isfinite(tracked.scores))
+        if not len(good_frames):
             return body
-        start, seen_from = tracked.poses[good[0]], int(good[0])
-        good = good[tracked.scores[good] >= np.median(tracked.scores[good])]
-        chosen = good[np.linspace(0, len(good) - 1, min(24, len(good))).round().astype(int)]
+        start, first_visible = tracked.poses[good_frames[0]], int(good_frames[0])
+        good_frames = good_frames[
+            tracked.scores[good_frames] >= np.median(tracked.scores[good_frames])
+        ]
+        chosen = good_frames[
+            np.linspace(0, len(good_frames) - 1, min(24, len(good_frames))).round().astype(int)
+        ]
         body = refine_body(clip, body, tracked.poses, frames=chosen, tracker=tracker)
     return body
 
 
-def _telling_frames(depth: DepthRecording) -> list[int]:
-    """Return the frames, of some spread over the recording, that show most surface."""
-    places = np.linspace(0, depth.n_frames - 1, min(LOOKED_AT, depth.n_frames))
-    frames = np.unique(places.round().astype(int))
+def _largest_frames(depth: DepthRecording) -> list[int]:
+    """Return the frames with the largest visible surface, of samples over the recording."""
+    positions = np.linspace(0, depth.n_frames - 1, min(N_SIZE_FRAMES, depth.n_frames))
+    frames = np.unique(positions.round().astype(int))
     areas = [float(np.square(depth.frame(frame), dtype=np.float64).sum()) for frame in frames]
-    best = np.argsort(areas)[::-1][:TRIED]
-    return [int(frames[place]) for place in best if areas[place] > 0.0]
+    best = np.argsort(areas)[::-1][:N_STATURE_FRAMES]
+    return [int(frames[index]) for index in best if areas[index] > 0.0]
 
 
 def _best_stature(
     depth: DepthRecording, forest: PixelForest, frames: list[int], progress: Progress
 ) -> BodyModel:
-    """Return the usual body that fits best; after one frame the worse half is left out."""
-    scores = dict.fromkeys(STATURES, 0.0)
-    problem = "No frame shows anybody; check what is taken for background."
-    for place, frame in enumerate(frames):
+    """Return the best default body; the first frame eliminates the worse half."""
+    scores = dict.fromkeys(STATURES_M, 0.0)
+    message = "No person is detected in any frame. Check the background settings."
+    for index, frame in enumerate(frames):
         for stature in scores:
             try:
                 pose = detect_pose(
                     depth.frame(frame), depth.camera, default_body(stature), forest
                 )
             except InvalidMotionError as error:
-                problem = str(error)
+                message = str(error)
                 continue
             scores[stature] += pose.score
-        if len(scores) == len(STATURES) and any(scores.values()):
-            best = sorted(scores, key=lambda stature: scores[stature])[len(STATURES) // 2 :]
+        if len(scores) == len(STATURES_M) and any(scores.values()):
+            best = sorted(scores, key=lambda stature: scores[stature])[len(STATURES_M) // 2 :]
             scores = {stature: scores[stature] for stature in best}
-        progress((place + 1) / len(frames), "Trying statures")
+        progress((index + 1) / len(frames), "Trying statures")
     if not any(scores.values()):
-        raise InvalidMotionError(problem)
+        raise InvalidMotionError(message)
     return default_body(max(scores, key=lambda stature: scores[stature]))
 
 
-def _part(depth: DepthRecording, first: int, n_frames: int) -> DepthRecording:
+def _clip_recording(depth: DepthRecording, first: int, n_frames: int) -> DepthRecording:
     return DepthRecording(
         depth.camera, n_frames, depth.frame_rate, lambda frame: depth.frame(first + frame)
     )

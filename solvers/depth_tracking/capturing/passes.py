@@ -1,7 +1,7 @@
-"""Track a take in one direction, and start again from the detector where the tracker fails."""
+"""Track a take in one direction, and restart with the detector after failures."""
 
 from collections import deque
-from collections.abc import Callable, Iterable
+from collections.abc import Iterable
 from dataclasses import dataclass
 
 import numpy as np
@@ -29,54 +29,55 @@ from ..tracking import (
 )
 
 Array = NDArray[np.float64]
-Seen = Callable[[int, Array], None]
 
 _YAW = COORDINATES.index("yaw")
-_MEMORY = 30
-_FREE_WEIGHT = 1.0
-"""What little a detected pose holds back its own refinement."""
+_N_PREVIOUS_SCORES = 30
+_DETECTION_WEIGHT = 1.0
+"""Weak weight that keeps the refinement near the detected pose."""
 
 
 @dataclass(frozen=True, kw_only=True)
 class RecoverySettings(Settings):
-    """When the tracker is held to have failed, and what is done."""
+    """Settings of the failure test and of the restarts."""
 
     failure_test: FailureTest = setting(
-        FailureTest.LEARNED, "How a pose is held to be wrong: by a learned chance and by what"
-        " usually fits, or by the thresholds of [WZC12] (2.5 cm, 90 % overlap)",
+        FailureTest.LEARNED, "Test for a wrong pose: learned probability and drop of the score,"
+        " or the thresholds of [WZC12] (2.5 cm, 90 % overlap)",
     )  # fmt: skip
     failing_chance: float = setting(
-        0.5, "Learned chance of a wrong pose from which on the tracker has failed; less asks"
-        " the detector more often", minimum=0.0, maximum=1.0,
+        0.5, "Failure probability at which the tracker has failed; lower values run the"
+        " detector more often", minimum=0.0, maximum=1.0,
     )  # fmt: skip
     failing_drop: float = setting(
-        0.9, "Share of what usually fits below which it has failed", minimum=0.0, maximum=1.0
-    )
+        0.9, "Fraction of the typical score below which the tracker has failed",
+        minimum=0.0, maximum=1.0,
+    )  # fmt: skip
     gain: float = setting(
-        0.03, "How much better a detected pose must fit to be taken; more trusts the tracker",
+        0.03, "Score gain required to accept a detected pose; higher values keep the tracker's"
+        " pose more often",
         minimum=0.0, maximum=1.0,
     )  # fmt: skip
     patience: int = setting(
-        5, "Frames until the detector is asked again while the tracker fails; more is faster",
+        5, "Frames between runs of the detector while the tracker fails; higher is faster",
         minimum=1, maximum=1000,
     )  # fmt: skip
     check_every: int = setting(
-        15, "Frames after which the detector is asked in any case; more is faster",
+        15, "Frames between runs of the detector without failure; higher is faster",
         minimum=1, maximum=100_000,
     )  # fmt: skip
 
 
 @dataclass(frozen=True, eq=False)
 class Pass:
-    """What one direction found.
+    """Result of tracking in one direction.
 
     Attributes
     ----------
     poses : shape (n_frames, 36)
     scores : shape (n_frames,)
-        Share of pixels that fit; NaN where nobody was seen.
+        Fraction of pixels that fit; NaN without a visible actor.
     restarts : tuple of int
-        Frames in which a detected pose was taken.
+        Frames where a detected pose replaced the tracked one.
     """
 
     poses: Array
@@ -86,7 +87,7 @@ class Pass:
 
 @dataclass(frozen=True, eq=False)
 class TrackingContext:
-    """Who is tracked, by which means.
+    """The recording, body and settings of the tracker.
 
     Attributes
     ----------
@@ -97,7 +98,7 @@ class TrackingContext:
     recovery : RecoverySettings
     motion_prior : MotionPrior or None
     on_pose : PoseCallback
-        Looks on.
+        Called with each tracked pose.
     """
 
     depth: DepthRecording
@@ -109,17 +110,17 @@ class TrackingContext:
     on_pose: PoseCallback = ignore_pose
 
     def detected(self, frame: int) -> tuple[Array, FitQuality] | None:
-        """Return the pose that the detector finds, refined by the tracker, or None."""
+        """Return the detected pose, refined by the tracker, or None."""
         try:
-            found = detect_pose(
+            detection = detect_pose(
                 self.depth.frame(frame), self.depth.camera, self.body, self.forest,
                 DetectorSettings(),
             )  # fmt: skip
         except InvalidMotionError:
             return None
-        weights = np.full(N_COORDINATES, _FREE_WEIGHT)
+        weights = np.full(N_COORDINATES, _DETECTION_WEIGHT)
         weights[:6] = 0.0
-        prior = NextPose(found.pose, weights, found.pose)
+        prior = NextPose(detection.pose, weights, detection.pose)
         observation = observe(self.depth, frame, self.tracker.picture_width)
         pose, quality, _ = track_frame(self.body, prior, observation, self.tracker)
         return pose, quality
@@ -131,12 +132,12 @@ def track_with_restarts(
     start: Array | None,
     progress: Progress,
 ) -> Pass:
-    """Track the frames of a take in this order.
+    """Track the frames of a take in the given order.
 
-    The tracker has failed where a test says so that was learned, or fewer pixels fit than in
-    the frames before (or by the thresholds of [WZC12]_ section 5, which depend on the sensor
-    and the body: `FailureTest`); then, and every now and again, the detector is asked, and its
-    pose is taken if it fits clearly better.
+    The tracker has failed if the learned test reports it, or if the score drops relative to
+    the previous frames. Alternatively the thresholds of [WZC12]_ section 5 apply, which depend
+    on the sensor and the body (`FailureTest`). After a failure, and at regular intervals, the
+    detector runs. Its pose replaces the tracked one if the score is clearly better.
 
     Parameters
     ----------
@@ -144,79 +145,83 @@ def track_with_restarts(
     order : iterable of int
         Frames, ascending or descending.
     start : shape (36,), optional
-        Near the pose in the first of them; without it the detector starts.
+        Near the pose in the first of them. Default: the detector starts.
     progress : Progress
     """
     frames = list(order)
     poses = np.full((actor.depth.n_frames, N_COORDINATES), np.nan)
     scores = np.full(actor.depth.n_frames, np.nan)
-    watch = _Watch(actor.recovery)
-    course: list[Array] = [] if start is None else [start]
-    restarts, memory = [], None
+    policy = _RestartPolicy(actor.recovery)
+    trajectory: list[Array] = [] if start is None else [start]
+    restarts, previous = [], None
     for done, frame in enumerate(frames):
         observation = observe(actor.depth, frame, actor.tracker.picture_width)
         score, quality = np.nan, quality_without_actor()
-        if course and not observation.empty:
-            prior = next_pose_prior(course[-2:], actor.tracker, actor.motion_prior)
-            pose, quality, memory = track_frame(
-                actor.body, prior, observation, actor.tracker, memory
+        if trajectory and not observation.empty:
+            prior = next_pose_prior(trajectory[-2:], actor.tracker, actor.motion_prior)
+            pose, quality, previous = track_frame(
+                actor.body, prior, observation, actor.tracker, previous
             )
             score = quality.score
-        elif course:
-            pose = course[-1]
-        if not observation.empty and watch.wants_detection(quality):
-            found = actor.detected(frame)
-            if found is not None and not found[1].score <= score + actor.recovery.gain:
-                turned = _near_turn(found[0], course[-1] if course else found[0])
-                if course:
+        elif trajectory:
+            pose = trajectory[-1]
+        if not observation.empty and policy.should_detect(quality):
+            detected = actor.detected(frame)
+            if detected is not None and not detected[1].score <= score + actor.recovery.gain:
+                unwrapped = _unwrap_rotation(
+                    detected[0], trajectory[-1] if trajectory else detected[0]
+                )
+                if trajectory:
                     restarts.append(frame)
-                pose, quality, course, memory = turned, found[1], [], None
+                pose, quality, trajectory, previous = unwrapped, detected[1], [], None
                 score = quality.score
-                watch.recovered()
-        if course or np.isfinite(score):
-            course.append(pose)
+                policy.reset()
+        if trajectory or np.isfinite(score):
+            trajectory.append(pose)
             poses[frame], scores[frame] = pose, score
             actor.on_pose(PosePreview(actor.body, frame, pose, quality))
-        watch.note(score)
+        policy.add_score(score)
         progress((done + 1) / len(frames), "Tracking")
     return Pass(poses, scores, tuple(restarts))
 
 
-class _Watch:
-    """Counts frames, and knows how well pixels usually fit."""
+class _RestartPolicy:
+    """Decides when the detector runs, from the previous scores."""
 
     def __init__(self, settings: RecoverySettings) -> None:
         self._settings = settings
-        self._usual: deque[float] = deque(maxlen=_MEMORY)
-        self._since = settings.check_every
+        self._previous_scores: deque[float] = deque(maxlen=_N_PREVIOUS_SCORES)
+        self._frames_since_detection = settings.check_every
 
-    def wants_detection(self, quality: FitQuality) -> bool:
-        """Tell whether it is time to ask the detector."""
-        self._since += 1
+    def should_detect(self, quality: FitQuality) -> bool:
+        """Return whether to run the detector now."""
+        self._frames_since_detection += 1
         settings = self._settings
         failing = has_failed(quality, settings.failure_test, settings.failing_chance)
-        if settings.failure_test is FailureTest.LEARNED and self._usual:
-            usual = float(np.median(self._usual))
-            failing = failing or quality.score < settings.failing_drop * usual
-        due = settings.patience if failing else settings.check_every
-        if self._since < due:
+        if settings.failure_test is FailureTest.LEARNED and self._previous_scores:
+            typical = float(np.median(self._previous_scores))
+            failing = failing or quality.score < settings.failing_drop * typical
+        interval = settings.patience if failing else settings.check_every
+        if self._frames_since_detection < interval:
             return False
-        self._since = 0
+        self._frames_since_detection = 0
         return True
 
-    def recovered(self) -> None:
-        """Forget how well pixels fitted before."""
-        self._usual.clear()
+    def reset(self) -> None:
+        """Discard the previous scores."""
+        self._previous_scores.clear()
 
-    def note(self, score: float) -> None:
-        """Remember the score of a frame."""
+    def add_score(self, score: float) -> None:
+        """Store the score of a frame."""
         if np.isfinite(score):
-            self._usual.append(score)
+            self._previous_scores.append(score)
 
 
-def _near_turn(pose: Array, before: Array) -> Array:
-    """Return the pose with whole turns added so that it goes on from the frame before."""
-    turned = pose.copy()
-    for place in (_YAW, _YAW + 2):
-        turned[place] += 2.0 * np.pi * np.round((before[place] - pose[place]) / (2.0 * np.pi))
-    return turned
+def _unwrap_rotation(pose: Array, before: Array) -> Array:
+    """Return the pose with multiples of 360 degrees added, continuous with the frame before."""
+    unwrapped = pose.copy()
+    for index in (_YAW, _YAW + 2):
+        unwrapped[index] += (
+            2.0 * np.pi * np.round((before[index] - pose[index]) / (2.0 * np.pi))
+        )
+    return unwrapped

@@ -1,4 +1,4 @@
-"""Fit the lengths and radii of a body to many frames at once; no reference pose is needed."""
+"""Fit lengths and radii of a body to many frames jointly, without a reference pose."""
 
 from dataclasses import dataclass
 
@@ -40,33 +40,33 @@ from ..terms import (
 Array = NDArray[np.float64]
 
 _POSE_DAMPING = 5.0
-_PRIOR_PIXELS = 100.0
-"""How many pixels a prior counts as much as."""
-_LONGEST_TURN, _LONGEST_GROWTH = 0.2, 0.1
+_PRIOR_WEIGHT_PIXELS = 100.0
+"""Number of pixels that weigh as much as the prior."""
+_MAX_POSE_STEP, _MAX_SHAPE_STEP = 0.2, 0.1
 
 
 @dataclass(frozen=True, kw_only=True)
 class RefineBodySettings(Settings):
-    """How a body is fitted to a recording."""
+    """Settings of the body fit."""
 
     n_frames: int = setting(
-        24, "Frames looked at, spread over the recording; more is surer and slower",
+        24, "Frames sampled over the recording; higher is more robust and slower",
         minimum=1, maximum=1000,
     )  # fmt: skip
     rounds: int = setting(
-        6, "Times that body and poses are corrected; more is slower", minimum=1, maximum=100
+        6, "Gauss-Newton steps of body and poses; higher is slower", minimum=1, maximum=100
     )
     length_spread: float = setting(
-        0.08, "How much lengths may differ from those given, as a share; more trusts the"
-        " pictures more", minimum=1e-3, maximum=1.0,
+        0.08, "Relative standard deviation of lengths from the initial body; higher values"
+        " follow the images more", minimum=1e-3, maximum=1.0,
     )  # fmt: skip
     radius_spread: float = setting(
-        0.2, "How much radii may differ from those given, as a share",
+        0.2, "Relative standard deviation of radii from the initial body",
         minimum=1e-3, maximum=1.0,
     )  # fmt: skip
 
 
-USUAL_REFINING = RefineBodySettings()
+DEFAULT_REFINING = RefineBodySettings()
 
 
 def refine_body(
@@ -75,26 +75,26 @@ def refine_body(
     poses: Array,
     *,
     frames: NDArray[np.intp] | None = None,
-    settings: RefineBodySettings = USUAL_REFINING,
+    settings: RefineBodySettings = DEFAULT_REFINING,
     tracker: TrackerSettings = DEFAULT_TRACKER,
     progress: Progress = unwatched,
 ) -> BodyModel:
-    """Return the body whose pictures fit best, and which is the same left and right.
+    """Return the symmetric body with the best fit to the images.
 
-    Lengths, radii and the poses of many frames are solved for together by damped Gauss-Newton
-    steps over the depth image, closest surface and off-actor terms of the tracker; the poses
-    are eliminated frame by frame (Schur complement), so that the cost grows linearly with the
-    frames. Lengths and radii stay near those given as far as the pictures leave it open.
+    Damped Gauss-Newton steps solve jointly for lengths, radii and the poses of many frames.
+    They use the depth image, closest surface and off-actor terms of the tracker. The poses are
+    eliminated frame by frame (Schur complement), so that the cost grows linearly with the
+    frames. A prior keeps unobserved lengths and radii near the initial body.
 
     Parameters
     ----------
     depth : DepthRecording
     body : BodyModel
-        To start from, such as `default_body` of about the right stature.
+        Initial body, such as `default_body` of about the right stature.
     poses : shape (n_frames, 36)
-        Of every frame, as tracked with this body.
+        Poses of all frames, tracked with this body.
     frames : int array, optional
-        Which frames to look at; without them, evenly spread ones.
+        Frames to use. Default: evenly spaced frames.
     settings : RefineBodySettings
     tracker : TrackerSettings
         Weights of the terms.
@@ -103,7 +103,7 @@ def refine_body(
     Raises
     ------
     InvalidMotionError
-        The poses do not fit the recording, or no frame shows an actor.
+        The poses do not match the recording, or no frame shows an actor.
     SolveCancelled
         Raised by `progress`.
     """
@@ -111,30 +111,33 @@ def refine_body(
         raise InvalidMotionError(
             f"The poses have shape {np.shape(poses)}, not {(depth.n_frames, N_COORDINATES)}."
         )
-    chosen = _spread(depth.n_frames, settings.n_frames) if frames is None else frames
-    observations = [observe(depth, int(frame), tracker.picture_width) for frame in chosen]
-    shown = [i for i, one in enumerate(observations) if not one.empty]
-    if not shown:
-        raise InvalidMotionError("No frame shows an actor; check how depth was cut out.")
-    seen = [observations[i] for i in shown]
-    current = [np.array(poses[chosen[i]], dtype=np.float64) for i in shown]
+    sampled = _evenly_spaced(depth.n_frames, settings.n_frames) if frames is None else frames
+    observations = [observe(depth, int(frame), tracker.picture_width) for frame in sampled]
+    non_empty = [i for i, one in enumerate(observations) if not one.empty]
+    if not non_empty:
+        raise InvalidMotionError(
+            "No frame shows an actor. Check the segmentation of the depth images."
+        )
+    visible_observations = [observations[i] for i in non_empty]
+    current = [np.array(poses[sampled[i]], dtype=np.float64) for i in non_empty]
     body = body.symmetric()
     change = np.zeros(len(MEASURES))
-    for turn in range(settings.rounds):
-        growth, steps = _correction(resize_body(body, change), current, seen, change, settings,
-                                    tracker)  # fmt: skip
-        change = change + growth
+    for round_index in range(settings.rounds):
+        shape_step, steps = _gauss_newton_step(
+            resize_body(body, change), current, visible_observations, change, settings, tracker
+        )
+        change = change + shape_step
         current = [pose + step for pose, step in zip(current, steps, strict=True)]
-        progress((turn + 1) / settings.rounds, "Refining the body")
+        progress((round_index + 1) / settings.rounds, "Refining the body")
     return resize_body(body, change)
 
 
-def _spread(n_frames: int, wanted: int) -> NDArray[np.intp]:
-    places = np.linspace(0, n_frames - 1, min(wanted, n_frames))
-    return np.unique(places.round().astype(np.intp)).astype(np.intp)
+def _evenly_spaced(n_frames: int, n_samples: int) -> NDArray[np.intp]:
+    positions = np.linspace(0, n_frames - 1, min(n_samples, n_frames))
+    return np.unique(positions.round().astype(np.intp)).astype(np.intp)
 
 
-def _correction(
+def _gauss_newton_step(
     body: BodyModel,
     poses: list[Array],
     observations: list[Observation],
@@ -142,41 +145,44 @@ def _correction(
     settings: RefineBodySettings,
     tracker: TrackerSettings,
 ) -> tuple[Array, list[Array]]:
-    """Return the step of the logarithms of measures, and of each pose."""
-    spread = np.full(len(MEASURES), settings.radius_spread)
-    spread[:N_LENGTHS] = settings.length_spread
-    rigidity = _PRIOR_PIXELS * tracker.depth_weight * 1e-4 / spread**2
+    """Return the step of the log measures, and of each pose."""
+    relative_spread = np.full(len(MEASURES), settings.radius_spread)
+    relative_spread[:N_LENGTHS] = settings.length_spread
+    rigidity = _PRIOR_WEIGHT_PIXELS * tracker.depth_weight * 1e-4 / relative_spread**2
     matrix, vector = np.diag(rigidity), -rigidity * change
-    back = []
+    eliminated = []
     for pose, observation in zip(poses, observations, strict=True):
-        of_pose, of_body, both, asked, grown = _frame_equations(
+        pose_matrix, shape_matrix, coupling, pose_vector, shape_vector = _frame_equations(
             body, pose, observation, tracker
         )
-        solved = np.linalg.solve(of_pose, np.concatenate([both, asked[:, np.newaxis]], axis=1))
-        matrix = matrix + (of_body - both.T @ solved[:, :-1]) / len(poses)
-        vector = vector + (grown - both.T @ solved[:, -1]) / len(poses)
-        back.append(solved)
-    growth = np.linalg.solve(matrix, vector)
-    growth *= min(1.0, _LONGEST_GROWTH / np.abs(growth).max())
-    steps: list[Array] = [solved[:, -1] - solved[:, :-1] @ growth for solved in back]
-    return growth, [one * min(1.0, _LONGEST_TURN / np.abs(one).max()) for one in steps]
+        solved = np.linalg.solve(
+            pose_matrix, np.concatenate([coupling, pose_vector[:, np.newaxis]], axis=1)
+        )
+        matrix = matrix + (shape_matrix - coupling.T @ solved[:, :-1]) / len(poses)
+        vector = vector + (shape_vector - coupling.T @ solved[:, -1]) / len(poses)
+        eliminated.append(solved)
+    shape_step = np.linalg.solve(matrix, vector)
+    shape_step *= min(1.0, _MAX_SHAPE_STEP / np.abs(shape_step).max())
+    steps: list[Array] = [solved[:, -1] - solved[:, :-1] @ shape_step for solved in eliminated]
+    return shape_step, [one * min(1.0, _MAX_POSE_STEP / np.abs(one).max()) for one in steps]
 
 
 def _frame_equations(
     body: BodyModel, pose: Array, observation: Observation, tracker: TrackerSettings
 ) -> tuple[Array, Array, Array, Array, Array]:
-    """Return blocks of a frame's normal equations: pose, body, both, and right-hand sides."""
+    """Return blocks of a frame's normal equations: pose, shape, coupling, right-hand sides."""
     hypothesis = render_hypothesis(body, pose, observation.camera)
     limits = joint_limits(pose, tracker.limit_weight)
-    of_pose: Array = limits.matrix + _POSE_DAMPING * np.eye(N_COORDINATES)
+    pose_matrix: Array = limits.matrix + _POSE_DAMPING * np.eye(N_COORDINATES)
     rows = _rows(hypothesis, observation, tracker)
     by_pose = pose_jacobian(hypothesis, rows)
     by_shape = shape_jacobian(body, hypothesis.frames, rows)
-    heavy = rows.weights[:, np.newaxis] * by_pose
-    heavy_shape = rows.weights[:, np.newaxis] * by_shape
+    weighted_pose = rows.weights[:, np.newaxis] * by_pose
+    weighted_shape = rows.weights[:, np.newaxis] * by_shape
     return (
-        np.add(of_pose, by_pose.T @ heavy), by_shape.T @ heavy_shape, heavy.T @ by_shape,
-        limits.vector + heavy.T @ rows.residuals, heavy_shape.T @ rows.residuals,
+        np.add(pose_matrix, by_pose.T @ weighted_pose),
+        by_shape.T @ weighted_shape, weighted_pose.T @ by_shape,
+        limits.vector + weighted_pose.T @ rows.residuals, weighted_shape.T @ rows.residuals,
     )  # fmt: skip
 
 
@@ -195,11 +201,11 @@ def _rows(
 
 
 def pose_jacobian(hypothesis: Hypothesis, rows: SurfaceRows) -> Array:
-    """Return how each row's point moves along its direction with each coordinate, (n, 36)."""
+    """Return the derivatives (n, 36) of the rows' residuals by the coordinates."""
     lines = screw_rows(rows.points, rows.directions)
     segments = CAPSULE_SEGMENTS[rows.capsules]
-    moved = np.empty((len(lines), N_COORDINATES))
+    jacobian = np.empty((len(lines), N_COORDINATES))
     for segment in np.unique(segments):
         these = segments == segment
-        moved[these] = lines[these] @ hypothesis.twists[segment]
-    return moved
+        jacobian[these] = lines[these] @ hypothesis.twists[segment]
+    return jacobian

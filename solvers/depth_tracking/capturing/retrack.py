@@ -1,4 +1,4 @@
-"""Track again from a frame that an animator has corrected, in both directions."""
+"""Track again in both directions from a frame that an animator corrected."""
 
 from collections.abc import Collection
 from dataclasses import dataclass, replace
@@ -17,12 +17,12 @@ from ..terms import DEFAULT_TRACKER, TrackerSettings
 from ..tracking import FitQuality, PoseCallback, PosePreview, assemble_motion, ignore_pose
 from .passes import RecoverySettings, TrackingContext
 from .retracked_path import RetrackSettings, track_from_correction
-from .smooth_pass import measure_fit, smoothed_piece
+from .smooth_pass import measure_fit, smooth_window
 
 Array = NDArray[np.float64]
-USUAL_RETRACK = RetrackSettings()
-_BORDER = 2
-"""Frames on both sides that tell where the old motion is, and how fast."""
+DEFAULT_RETRACK = RetrackSettings()
+_N_CONTEXT_FRAMES = 2
+"""Frames on both sides that give position and velocity of the previous motion."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -32,13 +32,13 @@ class Retracked:
     Attributes
     ----------
     motion : Motion
-        All frames; outside of `first` to `last` it is what it was.
+        All frames; unchanged outside of `first` to `last`.
     frame : int
-        The one that was corrected.
+        The corrected frame.
     first, last : int
-        Frames between which something has changed; both count.
+        First and last changed frame, inclusive.
     met : tuple of bool
-        Whether the old course was met again before, and after, the corrected frame.
+        Whether the path rejoined the previous motion before and after the corrected frame.
     joints : Tracks
         Of the changed frames, in the camera's frame, with the confidence of each joint.
     residual : shape (last - first + 1,), metres
@@ -61,47 +61,47 @@ def retrack(
     *,
     floor: Floor | None = None,
     fixed: Collection[int] = (),
-    settings: RetrackSettings = USUAL_RETRACK,
+    settings: RetrackSettings = DEFAULT_RETRACK,
     tracker: TrackerSettings = DEFAULT_TRACKER,
     on_pose: PoseCallback = ignore_pose,
     progress: Progress = unwatched,
 ) -> Retracked:
-    """Track again from a frame that was corrected by hand, forwards and backwards.
+    """Track again forward and backward from a manually corrected frame.
 
-    From the corrected pose the tracker follows the pictures in both directions until it meets
-    the motion that was there before, another frame that is fixed, or the end of its reach. The
-    detector is not asked: the animator knows better. What was tracked is smoothed with the
-    corrected pose held, and goes over into the old motion.
+    The tracker follows the images from the corrected pose in both directions. It stops when it
+    rejoins the previous motion, at another fixed frame, or at the end of its reach. The
+    detector does not run, because the animator's pose takes precedence. The new path is
+    smoothed with the corrected pose as a constraint, and blends into the previous motion.
 
     Parameters
     ----------
     depth : DepthRecording
-        Of nothing but the actor.
+        Contains only the actor.
     body : BodyModel
-        The one that was tracked.
+        The tracked body.
     motion : Motion
         On the skeleton of the body, one frame for each of the recording; the pose of `frame`
         is the corrected one.
     frame : int
     floor : Floor, optional
-        The one that is z = 0 in the motion.
+        The plane z = 0 of the motion.
     fixed : collection of int
-        Other frames that are right, such as those that were corrected before.
+        Other frames to keep, such as frames corrected earlier.
     settings : RetrackSettings
     tracker : TrackerSettings
     on_pose : PoseCallback
-        Is shown each pose that is found, as soon as it is.
+        Called with each pose as soon as it is tracked.
     progress : Progress
 
     Returns
     -------
     Retracked
-        The pose of `frame` is unchanged, whether the body's coordinates can reach it or not.
+        The pose of `frame` is unchanged, even if the body's coordinates cannot reach it.
 
     Raises
     ------
     InvalidMotionError
-        Motion and recording do not fit, or there is no such frame.
+        Motion and recording do not match, or there is no such frame.
     SolveCancelled
         Raised by `progress`.
     """
@@ -111,24 +111,28 @@ def retrack(
     )
     frames = motion_frames(body, motion, floor)
     start = pose_from_frames(body, frames[frame])
-    most = round(settings.reach * depth.frame_rate)
-    courses = []
-    for turn, way in enumerate((-1, 1)):
-        ahead = _way(frame, way, most, depth.n_frames, fixed)
-        share = within(progress, 0.4 * turn, 0.4 * (turn + 1))
-        before = _OldPoses(body, frames, start)
-        courses.append(track_from_correction(actor, start, ahead, before, settings, share))
-    back, forth = courses
-    first, last = frame - len(back.poses), frame + len(forth.poses)
-    poses = np.concatenate([back.poses[::-1], start[np.newaxis], forth.poses])
+    max_frames = round(settings.reach * depth.frame_rate)
+    paths = []
+    for index, direction in enumerate((-1, 1)):
+        path_frames = _path_frames(frame, direction, max_frames, depth.n_frames, fixed)
+        path_progress = within(progress, 0.4 * index, 0.4 * (index + 1))
+        previous_poses = _PreviousPoses(body, frames, start)
+        paths.append(
+            track_from_correction(
+                actor, start, path_frames, previous_poses, settings, path_progress
+            )
+        )
+    backward, forward = paths
+    first, last = frame - len(backward.poses), frame + len(forward.poses)
+    poses = np.concatenate([backward.poses[::-1], start[np.newaxis], forward.poses])
     if settings.smoothing > 0.0:
-        poses = _smoothed(actor, poses, first, frame, settings.smoothing, frames)
-    figures = _figures(actor, poses, first, within(progress, 0.8, 1.0))
-    tracked = assemble_motion(body, poses, figures, depth.frame_rate)
+        poses = _smooth_path(actor, poses, first, frame, settings.smoothing, frames)
+    qualities = _measure_quality(actor, poses, first, within(progress, 0.8, 1.0))
+    tracked = assemble_motion(body, poses, qualities, depth.frame_rate)
     new = body_motion(body, poses, motion.frame_rate, floor)
     n_blend = round(settings.blend * depth.frame_rate)
-    blended = _blended(motion, new, first, frame, n_blend)
-    met = back.met, forth.met
+    blended = _blend_motion(motion, new, first, frame, n_blend)
+    met = backward.met, forward.met
     return Retracked(blended, frame, first, last, met, tracked.joints, tracked.residual)
 
 
@@ -136,8 +140,8 @@ def _check(depth: DepthRecording, motion: Motion, frame: int) -> None:
     if motion.skeleton.names != JOINTS or motion.n_frames != depth.n_frames:
         raise InvalidMotionError(
             f"The motion has {motion.n_frames} frames and {motion.skeleton.n_joints} joints;"
-            f" to track it again it needs the recording's {depth.n_frames} frames, and the"
-            f" {len(JOINTS)} joints of the body that was tracked."
+            f" tracking again needs the recording's {depth.n_frames} frames and the"
+            f" {len(JOINTS)} joints of the tracked body."
         )
     if not 0 <= frame < motion.n_frames:
         raise InvalidMotionError(
@@ -148,16 +152,22 @@ def _check(depth: DepthRecording, motion: Motion, frame: int) -> None:
         raise InvalidMotionError("The motion has gaps. Fill them, then track again.")
 
 
-def _way(frame: int, way: int, most: int, n_frames: int, fixed: Collection[int]) -> range:
-    """Return the frames to be tracked in one direction."""
-    stops = [other for other in fixed if (other - frame) * way > 0]
-    stop = min([n_frames if way > 0 else -1, *stops], key=lambda one: (one - frame) * way)
-    reach = frame + way * (most + 1)
-    return range(frame + way, min(stop, reach) if way > 0 else max(stop, reach), way)
+def _path_frames(
+    frame: int, direction: int, max_frames: int, n_frames: int, fixed: Collection[int]
+) -> range:
+    """Return the frames to track in one direction."""
+    stops = [other for other in fixed if (other - frame) * direction > 0]
+    stop = min(
+        [n_frames if direction > 0 else -1, *stops], key=lambda one: (one - frame) * direction
+    )
+    reach = frame + direction * (max_frames + 1)
+    return range(
+        frame + direction, min(stop, reach) if direction > 0 else max(stop, reach), direction
+    )
 
 
-class _OldPoses:
-    """The poses of before, each found from the one that was asked for last."""
+class _PreviousPoses:
+    """The poses of the previous motion, each fitted from the pose requested last."""
 
     def __init__(self, body: BodyModel, frames: Array, start: Array) -> None:
         self._body, self._frames, self._last = body, frames, start
@@ -168,77 +178,83 @@ class _OldPoses:
         return self._last
 
 
-def _smoothed(
+def _smooth_path(
     actor: TrackingContext, poses: Array, first: int, frame: int, smoothing: float, old: Array
 ) -> Array:
-    """Smooth what was tracked, between the corrected pose and what was there before.
+    """Smooth the new path between the corrected pose and the previous motion.
 
-    So limbs out of sight go on to where they were seen before and after.
+    Occluded limbs are interpolated between their observations before and after.
     """
     stop, n_frames = first + len(poses), len(old)
-    before = _OldPoses(actor.body, old, poses[0])
-    around = [before(one) for one in range(first - 1, max(0, first - _BORDER) - 1, -1)][::-1]
-    after = _OldPoses(actor.body, old, poses[-1])
-    piece = np.array([
-        *around,
+    previous_poses = _PreviousPoses(actor.body, old, poses[0])
+    context = [
+        previous_poses(one)
+        for one in range(first - 1, max(0, first - _N_CONTEXT_FRAMES) - 1, -1)
+    ][::-1]
+    after = _PreviousPoses(actor.body, old, poses[-1])
+    window = np.array([
+        *context,
         *poses,
-        *(after(one) for one in range(stop, min(n_frames, stop + _BORDER))),
+        *(after(one) for one in range(stop, min(n_frames, stop + _N_CONTEXT_FRAMES))),
     ])
-    inside = slice(len(around), len(around) + len(poses))
-    held = {*range(len(piece))} - {*range(len(piece))[inside]} | {frame - first + len(around)}
-    if len(piece) < 3:
+    inside = slice(len(context), len(context) + len(poses))
+    constrained = {*range(len(window))} - {*range(len(window))[inside]} | {
+        frame - first + len(context)
+    }
+    if len(window) < 3:
         return poses
-    return smoothed_piece(actor, piece, first - len(around), smoothing, held)[inside]
+    return smooth_window(actor, window, first - len(context), smoothing, constrained)[inside]
 
 
-def _figures(
+def _measure_quality(
     actor: TrackingContext, poses: Array, first: int, progress: Progress
 ) -> list[FitQuality]:
-    figures = []
-    for place, pose in enumerate(poses):
-        quality = measure_fit(actor, pose, first + place)
-        figures.append(quality)
-        actor.on_pose(PosePreview(actor.body, first + place, pose, quality))
-        progress((place + 1) / len(poses), "Judging")
-    return figures
+    qualities = []
+    for index, pose in enumerate(poses):
+        quality = measure_fit(actor, pose, first + index)
+        qualities.append(quality)
+        actor.on_pose(PosePreview(actor.body, first + index, pose, quality))
+        progress((index + 1) / len(poses), "Measuring the fit")
+    return qualities
 
 
-def _blended(old: Motion, new: Motion, first: int, frame: int, n_blend: int) -> Motion:
-    """Return the old motion with the new one in it, which goes over into the old.
+def _blend_motion(old: Motion, new: Motion, first: int, frame: int, n_blend: int) -> Motion:
+    """Return the previous motion with the new path blended in.
 
-    What the corrected pose has and no coordinates can reach fades out around it.
+    The part of the corrected pose that no coordinates can reach fades out around it.
     """
     stop = first + new.n_frames
-    places = np.arange(float(first), stop)
-    share = np.minimum(
-        _ramp(places - first, frame - first, n_blend, first > 0),
-        _ramp(stop - 1 - places, stop - 1 - frame, n_blend, stop < old.n_frames),
+    frames = np.arange(float(first), stop)
+    weight = np.minimum(
+        _ramp_weight(frames - first, frame - first, n_blend, first > 0),
+        _ramp_weight(stop - 1 - frames, stop - 1 - frame, n_blend, stop < old.n_frames),
     )
-    near = _smooth(1.0 - np.abs(places - frame) / (n_blend + 1.0))
+    proximity = _smoothstep(1.0 - np.abs(frames - frame) / (n_blend + 1.0))
     fitted = new.rotations[frame - first, :N_SEGMENTS]
-    rest = multiply(inverse(fitted), old.rotations[frame, :N_SEGMENTS])
-    turned = multiply(
-        new.rotations[:, :N_SEGMENTS], slerp(np.array(IDENTITY), rest, near[:, np.newaxis])
+    residual_rotation = multiply(inverse(fitted), old.rotations[frame, :N_SEGMENTS])
+    rotated = multiply(
+        new.rotations[:, :N_SEGMENTS],
+        slerp(np.array(IDENTITY), residual_rotation, proximity[:, np.newaxis]),
     )
-    shift = old.root_positions[frame] - new.root_positions[frame - first]
-    shifted = new.root_positions + near[:, np.newaxis] * shift
+    offset = old.root_positions[frame] - new.root_positions[frame - first]
+    shifted = new.root_positions + proximity[:, np.newaxis] * offset
     rotations, roots = old.rotations.copy(), old.root_positions.copy()
     rotations[first:stop, :N_SEGMENTS] = slerp(
-        rotations[first:stop, :N_SEGMENTS], turned, share[:, np.newaxis]
+        rotations[first:stop, :N_SEGMENTS], rotated, weight[:, np.newaxis]
     )
-    roots[first:stop] += share[:, np.newaxis] * (shifted - roots[first:stop])
+    roots[first:stop] += weight[:, np.newaxis] * (shifted - roots[first:stop])
     rotations[frame], roots[frame] = old.rotations[frame], old.root_positions[frame]
     return replace(old, rotations=rotations, root_positions=roots)
 
 
-def _ramp(from_end: Array, length: int, n_blend: int, joins: bool) -> Array:
-    """Return the share of the new course: little at its end, if it joins the old one there."""
+def _ramp_weight(from_end: Array, length: int, n_blend: int, joins: bool) -> Array:
+    """Return the weight of the new path: small at its end if it joins the previous motion."""
     if not joins:
         return np.ones(len(from_end))
-    return _smooth((from_end + 1.0) / (min(n_blend, length) + 1.0))
+    return _smoothstep((from_end + 1.0) / (min(n_blend, length) + 1.0))
 
 
-def _smooth(share: Array) -> Array:
-    share = np.clip(share, 0.0, 1.0)
-    smooth: Array = share * share * (3.0 - 2.0 * share)
+def _smoothstep(fraction: Array) -> Array:
+    fraction = np.clip(fraction, 0.0, 1.0)
+    smooth: Array = fraction * fraction * (3.0 - 2.0 * fraction)
     return smooth

@@ -1,4 +1,4 @@
-"""Follow a body from a corrected frame in one direction, until the old course is met again."""
+"""Track in one direction from a corrected frame, until the path rejoins the motion."""
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
@@ -16,32 +16,32 @@ from .smooth_pass import measure_fit
 
 Array = NDArray[np.float64]
 
-_LEAST_SURE = 0.2
-"""Confidence that no joint is taken to fall below: else what is hidden would never matter."""
-_MEETING = 4
-"""Frames on end in which both courses must be the same, and more to blend them."""
-_PATIENCE = 0.015
-"""How much worse than the old course the new one may fit and still be followed."""
+_MIN_CONFIDENCE = 0.2
+"""Minimum confidence of a joint in the comparison, so that occluded joints still count."""
+_MIN_AGREEING_FRAMES = 4
+"""Minimum number of consecutive frames where both motions agree."""
+_SCORE_TOLERANCE = 0.015
+"""Score tolerance: the new path may fit worse than the previous motion by this much."""
 
 
 @dataclass(frozen=True, kw_only=True)
 class RetrackSettings(Settings):
-    """How far a correction reaches."""
+    """Settings of the extent of a correction."""
 
     reach: float = setting(
-        5.0, "How long before and after the corrected frame anything may be changed; more"
-        " takes longer", unit="s", minimum=0.0, maximum=3600.0,
+        5.0, "Maximum time changed before and after the corrected frame; higher takes longer",
+        unit="s", minimum=0.0, maximum=3600.0,
     )  # fmt: skip
     agreement: float = setting(
-        0.03, "Distance of a joint, surely seen, at which it is where it was before; more stops"
-        " sooner", unit="m", minimum=1e-3, maximum=1.0,
+        0.03, "Distance at which a visible joint agrees with the previous motion; higher values"
+        " stop sooner", unit="m", minimum=1e-3, maximum=1.0,
     )  # fmt: skip
     blend: float = setting(
-        0.25, "How long the new course takes to go over into the old one", unit="s",
+        0.25, "Duration of the blend from the new path into the previous motion", unit="s",
         minimum=0.0, maximum=10.0,
     )  # fmt: skip
     smoothing: float = setting(
-        1.0, "How smooth the new course is made; 0 leaves every frame as tracked",
+        1.0, "Strength of the smoothing of the new path; 0 keeps every frame as tracked",
         minimum=0.0, maximum=1000.0,
     )  # fmt: skip
 
@@ -53,9 +53,9 @@ class RetrackedPath:
     Attributes
     ----------
     poses : shape (n_frames, 36)
-        Without the corrected frame's.
+        Without the corrected frame.
     met : bool
-        Whether the last ones are those of before.
+        Whether the path rejoined the previous motion.
     """
 
     poses: Array
@@ -66,15 +66,15 @@ def track_from_correction(
     actor: TrackingContext,
     start: Array,
     frames: Sequence[int],
-    old_pose: Callable[[int], Array],
+    previous_pose: Callable[[int], Array],
     settings: RetrackSettings,
     progress: Progress,
 ) -> RetrackedPath:
-    """Track the frames from a pose until the old course is met, and drop what got lost.
+    """Track frames from a pose until the path rejoins the previous motion.
 
-    The courses have met where for some frames every joint is nearly where it was; of joints
-    out of sight less is asked. Where they never meet, the new course is kept up to the frame
-    to which it fits best, compared with the old one, and as long again as blending takes.
+    The motions agree if every joint is close to its previous position for several frames;
+    occluded joints count less. If they never agree, the new path ends where its cumulative
+    score gain over the previous motion is largest, plus the duration of the blend.
 
     Parameters
     ----------
@@ -83,37 +83,39 @@ def track_from_correction(
         The pose before the first of the frames.
     frames : sequence of int
         Ascending or descending.
-    old_pose : callable
-        Gives the pose (36,) of before, frame after frame.
+    previous_pose : callable
+        Maps a frame to the pose (36,) of the previous motion.
     settings : RetrackSettings
     progress : Progress
     """
-    needed = max(_MEETING, round(settings.blend * actor.depth.frame_rate))
-    course, gains, meeting, memory = [start], [0.0], 0, None
+    n_required = max(_MIN_AGREEING_FRAMES, round(settings.blend * actor.depth.frame_rate))
+    trajectory, cumulative_gains, n_agreeing, memory = [start], [0.0], 0, None
     for done, frame in enumerate(frames, start=1):
         observation = observe(actor.depth, frame, actor.tracker.picture_width)
-        prior = next_pose_prior(course[-2:], actor.tracker, actor.motion_prior)
+        prior = next_pose_prior(trajectory[-2:], actor.tracker, actor.motion_prior)
         pose, quality, memory = track_frame(
             actor.body, prior, observation, actor.tracker, memory
         )
-        old = old_pose(frame)
-        gain = quality.score - measure_fit(actor, old, frame).score + _PATIENCE
-        course.append(pose)
-        gains.append(gains[-1] + gain)
+        previous = previous_pose(frame)
+        gain = quality.score - measure_fit(actor, previous, frame).score + _SCORE_TOLERANCE
+        trajectory.append(pose)
+        cumulative_gains.append(cumulative_gains[-1] + gain)
         actor.on_pose(PosePreview(actor.body, frame, pose, quality))
         progress(done / len(frames), "Tracking")
-        same = _largest_distance(actor, pose, old, quality) < settings.agreement
-        meeting = meeting + 1 if same else 0
-        if meeting == needed:
-            return RetrackedPath(np.array(course[1:]), met=True)
-    kept = int(np.argmax(gains)) + needed
-    return RetrackedPath(np.array(course[1 : kept + 1]).reshape(-1, len(start)), met=False)
+        agrees = _largest_distance(actor, pose, previous, quality) < settings.agreement
+        n_agreeing = n_agreeing + 1 if agrees else 0
+        if n_agreeing == n_required:
+            return RetrackedPath(np.array(trajectory[1:]), met=True)
+    n_kept = int(np.argmax(cumulative_gains)) + n_required
+    return RetrackedPath(
+        np.array(trajectory[1 : n_kept + 1]).reshape(-1, len(start)), met=False
+    )
 
 
 def _largest_distance(
-    actor: TrackingContext, pose: Array, old: Array, quality: FitQuality
+    actor: TrackingContext, pose: Array, previous: Array, quality: FitQuality
 ) -> float:
-    """Return how far the joint that differs most has moved, less if it is unsure, metres."""
-    both = joint_positions(actor.body, segment_frames(actor.body, np.stack([pose, old])))
-    moved = np.linalg.norm(both[1] - both[0], axis=-1)
-    return float((moved * np.maximum(quality.confidence, _LEAST_SURE)).max())
+    """Return the largest joint distance, weighted by confidence, metres."""
+    joints = joint_positions(actor.body, segment_frames(actor.body, np.stack([pose, previous])))
+    distances = np.linalg.norm(joints[1] - joints[0], axis=-1)
+    return float((distances * np.maximum(quality.confidence, _MIN_CONFIDENCE)).max())

@@ -1,4 +1,4 @@
-"""Make the best of what was found before somebody lost patience."""
+"""Assemble a result from a cancelled capture."""
 
 from collections.abc import Sequence
 
@@ -8,26 +8,27 @@ from ...depth_scene import Floor
 from ...errors import InvalidMotionError
 from ..body import N_COORDINATES
 from ..tracking import PosePreview, assemble_motion
-from .capture import USUAL_CAPTURE, Capture, CaptureSettings, assemble_capture, best_of_passes
+from .capture import DEFAULT_CAPTURE, Capture, CaptureSettings, assemble_capture, best_of_passes
 from .passes import Pass
 
 
 def unfinished_capture(
-    found: Sequence[PosePreview],
+    previews: Sequence[PosePreview],
     frame_rate: float,
     *,
     floor: Floor | None = None,
-    settings: CaptureSettings = USUAL_CAPTURE,
+    settings: CaptureSettings = DEFAULT_CAPTURE,
 ) -> tuple[int, Capture]:
-    """Return what a capture had found when it was given up.
+    """Return the part of a capture that was tracked before it was cancelled.
 
-    Poses of an earlier guess of the body are left out. Where frames were found more than once,
-    as on the way back, those are taken that fit and go on smoothly; nothing is smoothed.
+    Poses of earlier body estimates are ignored. For frames that were tracked repeatedly, as
+    by the backward pass, the best fit with the smoothest continuation is selected. The result
+    is not smoothed.
 
     Parameters
     ----------
-    found : sequence of PosePreview
-        All that `capture` had shown, in that order; those of one body share it.
+    previews : sequence of PosePreview
+        All previews of `capture`, in order; previews of one body share the object.
     frame_rate : float, hertz
     floor : Floor, optional
     settings : CaptureSettings
@@ -37,40 +38,42 @@ def unfinished_capture(
     first : int
         Frame of the recording that is the first of the capture.
     capture : Capture
-        Without restarts, which are not known.
+        Without restarts, which are unknown.
 
     Raises
     ------
     InvalidMotionError
-        Nothing was found yet.
+        No pose was tracked yet.
     """
-    if not found:
-        raise InvalidMotionError("No pose was found yet: there is nothing to keep.")
-    body = found[-1].body
-    found = [one for one in found if one.body is body]
-    frames = np.array([one.frame for one in found])
+    if not previews:
+        raise InvalidMotionError("No pose was tracked yet. Cancel later to keep a result.")
+    body = previews[-1].body
+    previews = [preview for preview in previews if preview.body is body]
+    frames = np.array([preview.frame for preview in previews])
     first, n_frames = int(frames.min()), int(np.ptp(frames)) + 1
-    rounds: list[dict[int, PosePreview]] = []
-    for one in found:
-        place = one.frame - first
-        times = sum(place in known for known in rounds)
-        if times == len(rounds):
-            rounds.append({})
-        rounds[times][place] = one
-    chosen = best_of_passes(body, [_pass_of(known, n_frames) for known in rounds])
-    kept = [rounds[which][frame] for frame, which in zip(*chosen, strict=True)]
+    passes: list[dict[int, PosePreview]] = []
+    for preview in previews:
+        index = preview.frame - first
+        n_previous = sum(index in poses_of_frame for poses_of_frame in passes)
+        if n_previous == len(passes):
+            passes.append({})
+        passes[n_previous][index] = preview
+    selected = best_of_passes(
+        body, [_pass_from_previews(poses_of_frame, n_frames) for poses_of_frame in passes]
+    )
+    best = [passes[pass_index][frame] for frame, pass_index in zip(*selected, strict=True)]
     tracked = assemble_motion(
         body,
-        np.array([one.pose for one in kept]),
-        [one.quality for one in kept],
+        np.array([preview.pose for preview in best]),
+        [preview.quality for preview in best],
         frame_rate,
     )
     return first, assemble_capture(body, tracked, (), floor, settings)
 
 
-def _pass_of(known: dict[int, PosePreview], n_frames: int) -> Pass:
+def _pass_from_previews(poses_of_frame: dict[int, PosePreview], n_frames: int) -> Pass:
     poses = np.full((n_frames, N_COORDINATES), np.nan)
     scores = np.full(n_frames, np.nan)
-    for frame, one in known.items():
-        poses[frame], scores[frame] = one.pose, one.quality.score
+    for frame, preview in poses_of_frame.items():
+        poses[frame], scores[frame] = preview.pose, preview.quality.score
     return Pass(poses, scores, ())

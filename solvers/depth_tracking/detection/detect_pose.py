@@ -1,4 +1,4 @@
-"""Find the pose of a body in one depth picture, without knowing any pose before it."""
+"""Detect the pose of a body in one depth image, without a previous pose."""
 
 from dataclasses import dataclass, replace
 
@@ -21,30 +21,30 @@ Array = NDArray[np.float64]
 
 @dataclass(frozen=True, kw_only=True)
 class DetectorSettings(RobustPartsSettings):
-    """How a pose is looked for in one picture."""
+    """Settings of the pose detector."""
 
     most_pixels: int = setting(
-        2500, "The picture is thinned until a body has no more pixels; more is slower",
+        2500, "Maximum pixels of the body after subsampling; higher is slower",
         minimum=100, maximum=1_000_000,
     )  # fmt: skip
     fewest_pixels: int = setting(
-        60, "A picture of fewer pixels shows nobody", minimum=10, maximum=1_000_000
+        60, "Minimum pixels of a person", minimum=10, maximum=1_000_000
     )
     n_refined: int = setting(
-        3, "How many of the poses found are refined by the tracker; more is surer and slower",
+        3, "Number of candidate poses refined by the tracker; higher is more robust and slower",
         minimum=1, maximum=8,
     )  # fmt: skip
     iterations: int = setting(10, "Steps of the tracker's refinement", minimum=0, maximum=200)
     label_weight: float = setting(
-        1.0, "How much the parts told by the forest count in choosing among poses",
+        1.0, "Weight of the classified parts in the pose score; depth has weight 1",
         minimum=0.0, maximum=10.0,
     )  # fmt: skip
-    seed: int = setting(0, "Another seed draws other samples", minimum=0)
+    seed: int = setting(0, "Seed of the random samples", minimum=0)
 
 
 @dataclass(frozen=True, eq=False)
 class DetectedPose:
-    """A pose found in one picture.
+    """A pose detected in one image.
 
     Attributes
     ----------
@@ -53,15 +53,15 @@ class DetectedPose:
     joints : shape (21, 3), metres
         The `JOINTS` of the body model.
     score : float
-        0 to 1: how well the body in this pose explains the picture.
+        Fit of the body in this pose to the image, 0 to 1.
     overlap : float
-        Share of the pixels of body or picture that both cover within 10 cm.
+        Fraction of the union of pixels where depths agree within 10 cm.
     pixels : PixelParts
-        What the forest told, in the thinned picture.
+        Classified pixels of the subsampled image.
     parts : FoundParts
-        What was left of it.
+        Parts after outlier rejection.
     step : int
-        Every so manieth column and row was looked at.
+        Subsampling step of columns and rows.
     """
 
     pose: Array
@@ -74,7 +74,7 @@ class DetectedPose:
 
     @property
     def unseen(self) -> tuple[str, ...]:
-        """The `PARTS` of which no pixels were found; their pose is a guess."""
+        """The `PARTS` without pixels; their pose is a guess."""
         return tuple(
             part for part, weight in zip(PARTS, self.parts.weights, strict=True) if weight == 0
         )
@@ -87,18 +87,17 @@ def detect_pose(
     forest: PixelForest,
     settings: DetectorSettings = DetectorSettings(),
 ) -> DetectedPose:
-    """Find the pose of a body in a depth picture.
+    """Detect the pose of a body in a depth image.
 
-    The forest tells the part that each pixel sees; random sampling leaves out what it told
-    wrong; the body is fitted to the rest from several starts, since left and right are often
-    told wrong (`trial_poses`).
-    The poses that explain the picture best are refined by the tracker, and the best one is
-    returned [1]_.
+    The forest classifies the part of each pixel. Random sampling rejects misclassified pixels.
+    The body is fitted to the rest from several initial poses, because left and right are often
+    confused (`trial_poses`). The tracker refines the poses with the best scores, and the best
+    one is returned [1]_.
 
     Parameters
     ----------
     depth_frame : float32, shape (height, width), metres
-        Of nothing but one body; 0: no reading.
+        Contains only one body; 0: no reading.
     camera : Camera
     body : BodyModel
     forest : PixelForest
@@ -107,7 +106,7 @@ def detect_pose(
     Raises
     ------
     InvalidMotionError
-        The picture shows nobody.
+        The image shows no person.
 
     References
     ----------
@@ -117,29 +116,32 @@ def detect_pose(
     pixels = classify_pixels(observation.depth.astype(np.float32), observation.camera, forest)
     if len(pixels.rows) < settings.fewest_pixels:
         raise InvalidMotionError(
-            f"Nobody is seen: {len(pixels.rows)} pixels have a depth. Go to a frame with a"
-            " person, or mend what is taken for background."
+            f"No person is detected: {len(pixels.rows)} pixels have a depth. Go to a frame with"
+            " a person, or correct the background settings."
         )
     rng = np.random.default_rng(settings.seed)
     parts = find_parts(observation.points, pixels.labels, body, rng, settings)
     if not parts.weights.any():
         raise InvalidMotionError(
-            f"Nobody is seen: no part of a body is told apart in {len(pixels.rows)} pixels. Go"
-            " to a frame with a person, or mend what is taken for background."
+            f"No person is detected: the {len(pixels.rows)} pixels show no body part. Go to a"
+            " frame with a person, or correct the background settings."
         )
-    each = -(-len(observation.points) // settings.n_pixels)
-    trials = trial_poses(body, parts, observation.points[::each], pixels.shares[::each])
-    found = [
-        _judged(
+    step_between = -(-len(observation.points) // settings.n_pixels)
+    trials = trial_poses(
+        body, parts, observation.points[::step_between], pixels.shares[::step_between]
+    )
+    candidates = [
+        _score_candidate(
             render_hypothesis(body, pose, observation.camera), pixels, observation, settings
         )
         for pose in trials
     ]
-    found.sort(key=lambda one: one.score, reverse=True)
+    candidates.sort(key=lambda candidate: candidate.score, reverse=True)
     refined = [
-        _refined(one, pixels, observation, settings) for one in found[: settings.n_refined]
+        _refine_candidate(candidate, pixels, observation, settings)
+        for candidate in candidates[: settings.n_refined]
     ]
-    best = max(refined, key=lambda one: one.score)
+    best = max(refined, key=lambda candidate: candidate.score)
     joints = joint_positions(body, best.hypothesis.frames)
     return DetectedPose(
         best.hypothesis.pose, joints, best.score, best.overlap, pixels, parts, step
@@ -147,8 +149,8 @@ def detect_pose(
 
 
 @dataclass(frozen=True, eq=False)
-class _Found:
-    """One pose that may be it."""
+class _Candidate:
+    """A candidate pose with its score."""
 
     hypothesis: Hypothesis
     score: float
@@ -158,42 +160,45 @@ class _Found:
 def subsample_image(
     depth: DepthImage, camera: Camera, most_pixels: int
 ) -> tuple[Observation, int]:
-    """Return every so manieth column and row of a picture, so that few enough see the body."""
+    """Subsample an image to at most about `most_pixels` pixels of the body; return the step."""
     step = max(1, int(np.ceil(np.sqrt(np.count_nonzero(depth) / most_pixels))))
     return Observation(camera, np.asarray(depth, dtype=np.float64)).every(step), step
 
 
-def _judged(
+def _score_candidate(
     hypothesis: Hypothesis,
     pixels: PixelParts,
     observation: Observation,
     settings: DetectorSettings,
-) -> _Found:
+) -> _Candidate:
     score, overlap = pose_score(hypothesis, observation, pixels, settings.label_weight)
-    return _Found(hypothesis, score, overlap)
+    return _Candidate(hypothesis, score, overlap)
 
 
-def _refined(
-    found: _Found, pixels: PixelParts, observation: Observation, settings: DetectorSettings
-) -> _Found:
-    """Let the tracker refine a pose; what it cannot see stays as it was."""
+def _refine_candidate(
+    candidate: _Candidate,
+    pixels: PixelParts,
+    observation: Observation,
+    settings: DetectorSettings,
+) -> _Candidate:
+    """Refine a pose with the tracker; unobserved coordinates stay unchanged."""
     if not settings.iterations:
-        return found
-    start = found.hypothesis.pose
+        return candidate
+    start = candidate.hypothesis.pose
 
     def prior(pose: Array) -> PoseEquations:
-        return stay_near(pose, start, _STAY_WEIGHTS)
+        return stay_near(pose, start, _START_WEIGHTS)
 
-    better = register_pose(
-        found.hypothesis.body,
+    registered = register_pose(
+        candidate.hypothesis.body,
         start,
         observation,
         prior,
         replace(DEFAULT_TRACKER, iterations=settings.iterations),
     )
-    return _judged(better.hypothesis, pixels, observation, settings)
+    return _score_candidate(registered.hypothesis, pixels, observation, settings)
 
 
-STAY_WEIGHT = 2.0
-"""Per square radian: as much as a few pixels."""
-_STAY_WEIGHTS = np.array([0.0] * N_ROOT + [STAY_WEIGHT] * (N_COORDINATES - N_ROOT))
+START_WEIGHT = 2.0
+"""Weight per square radian: as much as a few pixels."""
+_START_WEIGHTS = np.array([0.0] * N_ROOT + [START_WEIGHT] * (N_COORDINATES - N_ROOT))

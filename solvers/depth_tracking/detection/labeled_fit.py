@@ -1,4 +1,4 @@
-"""Fit a body to pixels of which it is told, more or less surely, what part they see."""
+"""Fit a body to depth pixels with soft part labels."""
 
 from collections.abc import Callable
 
@@ -30,42 +30,47 @@ from .robust_parts import FoundParts
 
 Array = NDArray[np.float64]
 Integers = NDArray[np.intp]
-Asked = list[SegmentEquations]
+EquationList = list[SegmentEquations]
 
 LIMIT_WEIGHT = 1.0
 REST_WEIGHT = 2e-3
-"""Per square radian, where a part that is wholly seen weighs 1 per square metre."""
-FARTHEST = 0.08
-"""Metres. Pixels farther from their part's surface pull as if they were so far."""
-ROUGHNESS = 0.06
-"""Metres: standard deviation of pixels from the surface of their part."""
-UNTOLD = 0.02
-"""How likely a part is at least of which the forest tells nothing."""
-LONGEST_STEP = 0.5
-TRUNK = ("hips", "spine", "chest", "neck", "head", "Shoulder", "UpperArm")
-"""Parts that tell where the body is and which way it faces; upper legs where these lack."""
+"""Weight per square radian; a fully observed part weighs 1 per square metre."""
+MAX_RESIDUAL_M = 0.08
+"""Pixels farther from the surface of their part have a limited pull."""
+SURFACE_STD_M = 0.06
+"""Standard deviation of pixels from the surface of their part."""
+MIN_PROBABILITY = 0.02
+"""Minimum probability of a part."""
+MAX_STEP = 0.5
+TRUNK_PARTS = ("hips", "spine", "chest", "neck", "head", "Shoulder", "UpperArm")
+"""Parts that determine position and heading; all parts if fewer than four are observed."""
 
 
 def first_pose(body: BodyModel, parts: FoundParts) -> Array:
-    """Return the pose (36,) at rest, moved and turned as the trunk's parts tell [1]_.
+    """Return the pose (36,) at rest, aligned to the trunk parts by the Kabsch algorithm [1]_.
 
     References
     ----------
     .. [1] Kabsch (1976). A solution for the best rotation to relate two sets of vectors.
     """
-    trunk = np.array([part.endswith(TRUNK) for part in PARTS])
-    seen = np.flatnonzero(trunk & (parts.weights > 0.0))
-    if len(seen) < 4:
-        seen = np.flatnonzero(parts.weights)
+    trunk = np.array([part.endswith(TRUNK_PARTS) for part in PARTS])
+    observed = np.flatnonzero(trunk & (parts.weights > 0.0))
+    if len(observed) < 4:
+        observed = np.flatnonzero(parts.weights)
     pose = np.zeros(N_COORDINATES)
-    rest = _middles(body, segment_frames(body, pose))[seen]
-    found, share = parts.centres[seen], parts.weights[seen] / parts.weights[seen].sum()
-    start, stop = share @ rest, share @ found
-    left, _, right = np.linalg.svd((rest - start).T @ ((found - stop) * share[:, np.newaxis]))
-    mirror = np.sign(np.linalg.det(left @ right))
-    turn = (left * [1.0, 1.0, mirror] @ right).T
-    pose[:3] = stop - turn @ start
-    for name, angle in zip(("yaw", "roll", "pitch"), _root_angles(turn), strict=True):
+    rest = _part_centers(body, segment_frames(body, pose))[observed]
+    targets, weights = (
+        parts.centers[observed],
+        parts.weights[observed] / parts.weights[observed].sum(),
+    )
+    start, stop = weights @ rest, weights @ targets
+    left, _, right = np.linalg.svd(
+        (rest - start).T @ ((targets - stop) * weights[:, np.newaxis])
+    )
+    determinant_sign = np.sign(np.linalg.det(left @ right))
+    rotation = (left * [1.0, 1.0, determinant_sign] @ right).T
+    pose[:3] = stop - rotation @ start
+    for name, angle in zip(("yaw", "roll", "pitch"), _root_angles(rotation), strict=True):
         pose[COORDINATES.index(name)] = angle
     return pose
 
@@ -73,24 +78,24 @@ def first_pose(body: BodyModel, parts: FoundParts) -> Array:
 def fit_parts(
     body: BodyModel, parts: FoundParts, start: Array, *, iterations: int = 14
 ) -> Array:
-    """Return the pose (36,) whose parts lie where they were found.
+    """Return the pose (36,) fitted to detected parts.
 
-    First the middles of parts are met, as in Wei, Zhang, Chai 2012 (4.2); then, since middles
-    of parts half hidden are wrong, the surface of each part goes through its own pixels too.
+    First the part centers are aligned, as in Wei, Zhang, Chai 2012 (4.2). Centers of partly
+    hidden parts are biased, so a second stage also fits the surface of each part to its pixels.
     """
     capsules = PART_CAPSULES[parts.labels]
 
-    def middles(frames: Array) -> Asked:
-        return [_middles_term(body, frames, parts, 1.0)]
+    def middles(frames: Array) -> EquationList:
+        return [_centers_term(body, frames, parts, 1.0)]
 
-    def surfaces(frames: Array) -> Asked:
+    def surfaces(frames: Array) -> EquationList:
         return [
-            _middles_term(body, frames, parts, 0.3),
+            _centers_term(body, frames, parts, 0.3),
             _surface_term(body, frames, parts.points, capsules),
         ]
 
-    near = _descended(body, start, middles, iterations - iterations // 2)
-    return _descended(body, near, surfaces, iterations // 2)
+    near = _minimize(body, start, middles, iterations - iterations // 2)
+    return _minimize(body, near, surfaces, iterations // 2)
 
 
 def fit_pixels(
@@ -102,42 +107,43 @@ def fit_pixels(
     rounds: int = 2,
     iterations: int = 4,
 ) -> Array:
-    """Return the pose (36,) whose surface goes through the pixels, each on its likeliest part.
+    """Return the pose (36,) fitted to pixels, each assigned to its most probable part.
 
-    In turn, each pixel is given to the part that is likely by the forest and near by the pose,
-    and the body is fitted to what its parts were given. So what the forest took for the wrong
-    leg comes to the right one.
+    Two steps alternate: assign each pixel to the part that is likely by the forest and near by
+    the pose, and fit the body to the assignment. This corrects legs that the forest confused.
 
     Parameters
     ----------
     body : BodyModel
     points : shape (n, 3), metres
     shares : shape (n, N_PARTS)
-        How likely each point is of each part.
+        Probability of each part for each point.
     start : shape (36,)
     rounds : int
-        How often pixels are given to parts.
+        Number of assignments.
     iterations : int
         Steps of each round.
     """
-    told = -np.log(shares @ CAPSULE_OF_PART + UNTOLD)
+    label_costs = -np.log(shares @ CAPSULE_OF_PART + MIN_PROBABILITY)
     pose = start
     for _ in range(rounds):
-        far = capsule_distances(body, segment_frames(body, pose), points)
-        capsules = np.argmin(0.5 * (far / ROUGHNESS) ** 2 + told, axis=1)
-        given = np.abs(far[np.arange(len(points)), capsules]) < 2.0 * FARTHEST
+        distances = capsule_distances(body, segment_frames(body, pose), points)
+        capsules = np.argmin(0.5 * (distances / SURFACE_STD_M) ** 2 + label_costs, axis=1)
+        is_near = np.abs(distances[np.arange(len(points)), capsules]) < 2.0 * MAX_RESIDUAL_M
 
-        def surfaces(frames: Array, of: Integers = capsules, kept: Integers = given) -> Asked:
+        def surfaces(
+            frames: Array, of: Integers = capsules, kept: Integers = is_near
+        ) -> EquationList:
             return [_surface_term(body, frames, points[kept], of[kept])]
 
-        pose = _descended(body, pose, surfaces, iterations)
+        pose = _minimize(body, pose, surfaces, iterations)
     return pose
 
 
 def capsule_distances(body: BodyModel, frames: Array, points: Array) -> Array:
-    """Return how far points (n, 3) are outside each capsule, (n, 19), metres.
+    """Return the signed distances (n, 19), metres, of points (n, 3) to the capsules.
 
-    Where a capsule is elliptic, to first order.
+    First order for elliptic capsules.
     """
     frame = frames[CAPSULE_SEGMENTS]
     scales = 1.0 / body.radii[:, [0, 1, 1]]
@@ -148,15 +154,20 @@ def capsule_distances(body: BodyModel, frames: Array, points: Array) -> Array:
     along = np.einsum("pni,ni->pn", out, axes / (axes**2).sum(axis=1, keepdims=True))
     out -= np.clip(along, 0.0, 1.0)[..., np.newaxis] * axes
     size = np.sqrt(np.einsum("pni,pni->pn", out, out)) + 1e-12
-    steep = np.sqrt(np.einsum("pni,pni->pn", out * scales, out * scales)) / size + 1e-12
-    distances: Array = (size - 1.0) / steep
+    gradient_norms = (
+        np.sqrt(np.einsum("pni,pni->pn", out * scales, out * scales)) / size + 1e-12
+    )
+    distances: Array = (size - 1.0) / gradient_norms
     return distances
 
 
-def _descended(
-    body: BodyModel, start: Array, asked: Callable[[Array], Asked], iterations: int
+def _minimize(
+    body: BodyModel,
+    start: Array,
+    equations_at: Callable[[Array], EquationList],
+    iterations: int,
 ) -> Array:
-    """Take damped least-squares steps within soft joint limits; what nothing tells rests."""
+    """Minimize by damped steps with soft joint limits; unobserved coordinates stay at rest."""
     rest = np.zeros(N_COORDINATES)
     damping, best, lowest = 1e-2, start, np.inf
     equations: PoseEquations | None = None
@@ -165,7 +176,7 @@ def _descended(
         frames = segment_frames(body, pose)
         rest[:N_ROOT] = pose[:N_ROOT]
         found = sum_equations([
-            equations_in_coordinates(asked(frames), segment_twists(pose, frames)),
+            equations_in_coordinates(equations_at(frames), segment_twists(pose, frames)),
             joint_limits(pose, LIMIT_WEIGHT),
             stay_near(pose, rest, _REST_WEIGHTS),
         ])  # fmt: skip
@@ -174,53 +185,53 @@ def _descended(
         else:
             damping = max(10.0 * damping, 1e-3)
         change = solve_step(equations, np.full(N_COORDINATES, max(damping, 1e-6)))
-        pose = best + change * min(1.0, LONGEST_STEP / max(float(np.abs(change).max()), 1e-9))
+        pose = best + change * min(1.0, MAX_STEP / max(float(np.abs(change).max()), 1e-9))
     return best
 
 
 _REST_WEIGHTS = np.array([0.0] * N_ROOT + [REST_WEIGHT] * (N_COORDINATES - N_ROOT))
 
 
-def _middles_term(
+def _centers_term(
     body: BodyModel, frames: Array, parts: FoundParts, weight: float
 ) -> SegmentEquations:
-    seen = np.flatnonzero(parts.weights)
+    observed = np.flatnonzero(parts.weights)
     return equations_toward_targets(
-        _middles(body, frames)[seen],
-        parts.centres[seen],
-        weight * parts.weights[seen],
-        PART_SEGMENTS[seen],
+        _part_centers(body, frames)[observed],
+        parts.centers[observed],
+        weight * parts.weights[observed],
+        PART_SEGMENTS[observed],
     )
 
 
 def _surface_term(
     body: BodyModel, frames: Array, points: Array, capsules: Integers
 ) -> SegmentEquations:
-    """Ask the surface of each capsule to go through its points; each capsule weighs alike."""
+    """Return equations that fit capsule surfaces to points, with equal capsule weights."""
     size, slope = capsule_offsets(body, frames, points, capsules)
-    steep = np.maximum(np.linalg.norm(slope, axis=1), 1e-9)
-    outside = (size - 1.0) / steep
+    gradient_norms = np.maximum(np.linalg.norm(slope, axis=1), 1e-9)
+    outside = (size - 1.0) / gradient_norms
     counts = np.bincount(capsules, minlength=len(CAPSULE_SEGMENTS))[capsules]
-    robust = 1.0 / np.maximum(1.0, np.abs(outside) / FARTHEST)
+    robust = 1.0 / np.maximum(1.0, np.abs(outside) / MAX_RESIDUAL_M)
     return equations_along_directions(
         points,
-        slope / steep[:, np.newaxis],
+        slope / gradient_norms[:, np.newaxis],
         outside,
         robust / np.maximum(counts, 10),
         CAPSULE_SEGMENTS[capsules],
     )
 
 
-def _middles(body: BodyModel, frames: Array) -> Array:
-    carrier = frames[PART_SEGMENTS]
+def _part_centers(body: BodyModel, frames: Array) -> Array:
+    carriers = frames[PART_SEGMENTS]
     middles = part_axes(body).mean(axis=1)
-    placed: Array = np.einsum("nij,nj->ni", carrier[:, :3, :3], middles) + carrier[:, :3, 3]
-    return placed
+    centers: Array = np.einsum("nij,nj->ni", carriers[:, :3, :3], middles) + carriers[:, :3, 3]
+    return centers
 
 
-def _root_angles(turn: Array) -> tuple[float, float, float]:
+def _root_angles(rotation: Array) -> tuple[float, float, float]:
     """Return yaw, roll and pitch of a rotation matrix: about y, then z, then x."""
-    roll = np.arcsin(np.clip(turn[1, 0], -1.0, 1.0))
-    yaw = np.arctan2(-turn[2, 0], turn[0, 0])
-    pitch = np.arctan2(-turn[1, 2], turn[1, 1])
+    roll = np.arcsin(np.clip(rotation[1, 0], -1.0, 1.0))
+    yaw = np.arctan2(-rotation[2, 0], rotation[0, 0])
+    pitch = np.arctan2(-rotation[1, 2], rotation[1, 1])
     return float(yaw), float(roll), float(pitch)

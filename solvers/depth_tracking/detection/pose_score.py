@@ -1,4 +1,4 @@
-"""How well a body in a pose explains a depth picture and what a forest told of its pixels."""
+"""Score of a pose, from depth and from the classified parts of the pixels."""
 
 import numpy as np
 from numpy.typing import NDArray
@@ -9,36 +9,40 @@ from .part_capsules import CAPSULE_OF_PART
 
 Array = NDArray[np.float64]
 
-FARTHEST = 0.1
-"""Metres: depths farther apart do not fit at all."""
+MAX_DEPTH_ERROR_M = 0.1
+"""Larger depth errors score 0."""
 
 
 def pose_score(
     hypothesis: Hypothesis, observation: Observation, pixels: PixelParts, label_weight: float
 ) -> tuple[float, float]:
-    """Return the score of a pose, 0 to 1, and the share of pixels that overlap.
+    """Return the score of a pose, 0 to 1, and the fraction of overlapping pixels.
 
-    Over pixels that see the body or should see it, each fits by how near the depths are, and
-    by how likely the forest holds the part that should be seen there.
+    The score averages over the union of observed and rendered pixels. Each pixel scores by its
+    depth error, and by the forest's probability of the rendered part.
 
     Parameters
     ----------
     hypothesis : Hypothesis
-        The body in its pose.
+        The rendered body.
     observation : Observation
     pixels : PixelParts
-        What the forest told of the observed pixels, in their order.
+        Classified parts of the observed pixels, in their order.
     label_weight : float
-        How much the forest counts; depth counts 1.
+        Weight of the forest; depth has weight 1.
     """
-    picture = hypothesis.picture
-    seen = observation.flat[picture.pixels]
-    both = seen > 0.0
-    union = len(observation.pixels) + len(picture.pixels) - int(both.sum())
-    apart = np.abs(seen[both] - picture.depths[both])
-    near = np.maximum(0.0, 1.0 - apart / FARTHEST)
-    likely = pixels.shares @ CAPSULE_OF_PART
-    told = likely[observation.index_picture[picture.pixels[both]], picture.capsules[both]]
-    told = np.where(near > 0.0, told, 0.0)
-    score = (near.sum() + label_weight * told.sum()) / ((1.0 + label_weight) * max(union, 1))
-    return float(score), float((near > 0.0).sum() / max(union, 1))
+    image = hypothesis.picture
+    observed = observation.flat[image.pixels]
+    both = observed > 0.0
+    union = len(observation.pixels) + len(image.pixels) - int(both.sum())
+    depth_errors = np.abs(observed[both] - image.depths[both])
+    closeness = np.maximum(0.0, 1.0 - depth_errors / MAX_DEPTH_ERROR_M)
+    capsule_probabilities = pixels.shares @ CAPSULE_OF_PART
+    label_scores = capsule_probabilities[
+        observation.index_picture[image.pixels[both]], image.capsules[both]
+    ]
+    label_scores = np.where(closeness > 0.0, label_scores, 0.0)
+    score = (closeness.sum() + label_weight * label_scores.sum()) / (
+        (1.0 + label_weight) * max(union, 1)
+    )
+    return float(score), float((closeness > 0.0).sum() / max(union, 1))

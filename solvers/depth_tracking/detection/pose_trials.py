@@ -1,4 +1,4 @@
-"""Poses that one picture may show: as its pixels were told, and as they may have been meant."""
+"""Pose hypotheses for one depth image: as classified, and with left and right swapped."""
 
 from collections.abc import Iterator
 
@@ -12,59 +12,58 @@ from .robust_parts import FoundParts
 
 Array = NDArray[np.float64]
 
-TOGETHER = ("Leg", "LegEnd", "Foot"), ("Shoulder", "UpperArm", "LowerArm", "Hand")
-"""Ends of the names of parts whose left and right are exchanged together in a trial."""
-HEADINGS = (0.0, np.pi / 3.0, -np.pi / 3.0, np.pi)
-"""Radians by which the body may face elsewhere than was told."""
+SWAP_GROUPS = ("Leg", "LegEnd", "Foot"), ("Shoulder", "UpperArm", "LowerArm", "Hand")
+"""Name suffixes of parts that are swapped together in a trial."""
+HEADING_OFFSETS = (0.0, np.pi / 3.0, -np.pi / 3.0, np.pi)
+"""Heading offsets from the detected heading, radians."""
 STRIDES = (0.35, -0.35)
-"""Radians by which the left leg swings forward, and the right one back."""
-BLIND_ROUNDS = 3
+"""Forward rotation of the left thigh and backward rotation of the right one, radians."""
+UNSIDED_ROUNDS = 3
 
 
 def trial_poses(
-    body: BodyModel, parts: FoundParts, points: Array, shares: NDArray[np.float32]
+    body: BodyModel, parts: FoundParts, points: Array, probabilities: NDArray[np.float32]
 ) -> Iterator[Array]:
-    """Yield poses (36,) that may be it.
+    """Yield pose hypotheses (36,).
 
-    Parts of the left and of the right look alike, above all from the side, and are told apart
-    worst. So the body is fitted to the parts as told, with left and right of legs and of arms
-    exchanged, and then from several headings and strides to pixels of which nobody knows the
-    side.
+    Left and right parts look similar, mainly from the side, and are the most confused classes.
+    So the body is fitted to the parts as classified, and with left and right of legs and arms
+    swapped. Then it is fitted from several headings and strides to pixels without side labels.
 
     Parameters
     ----------
     body : BodyModel
     parts : FoundParts
     points : shape (n, 3), metres
-        Pixels to fit to.
-    shares : shape (n, N_PARTS)
-        How likely each is of each of the `PARTS`.
+        Observed points.
+    probabilities : shape (n, N_PARTS)
+        Probability of each of the `PARTS` for each point.
     """
-    for order in exchange_orders():
-        meant = parts.exchanged(order)
-        pose = fit_parts(body, meant, first_pose(body, meant))
-        yield fit_pixels(body, points, shares[:, order], pose)
-    blind = 0.5 * (shares + shares[:, MIRRORED_PARTS])
-    told = first_pose(body, parts)
-    for heading in HEADINGS:
+    for order in swap_orders():
+        swapped = parts.swap_parts(order)
+        pose = fit_parts(body, swapped, first_pose(body, swapped))
+        yield fit_pixels(body, points, probabilities[:, order], pose)
+    unsided = 0.5 * (probabilities + probabilities[:, MIRRORED_PARTS])
+    detected = first_pose(body, parts)
+    for heading in HEADING_OFFSETS:
         for stride in STRIDES:
-            start = told.copy()
+            start = detected.copy()
             start[COORDINATES.index("yaw")] += heading
             start[COORDINATES.index("leftFemurX")] = stride
             start[COORDINATES.index("rightFemurX")] = -stride
-            yield fit_pixels(body, points, blind, start, rounds=BLIND_ROUNDS)
+            yield fit_pixels(body, points, unsided, start, rounds=UNSIDED_ROUNDS)
 
 
-def exchange_orders() -> list[NDArray[np.intp]]:
-    """Return, for each trial, which part each of the `PARTS` is taken for."""
+def swap_orders() -> list[NDArray[np.intp]]:
+    """Return the part indices of each trial, with some groups swapped."""
     orders = []
-    for trial in range(2 ** len(TOGETHER)):
+    for trial in range(2 ** len(SWAP_GROUPS)):
         ends = tuple(
             end
-            for place, together in enumerate(TOGETHER)
-            if trial >> place & 1
-            for end in together
+            for index, group in enumerate(SWAP_GROUPS)
+            if trial >> index & 1
+            for end in group
         )
-        turned = np.array([part.endswith(ends) for part in PARTS])
-        orders.append(np.where(turned, MIRRORED_PARTS, np.arange(len(PARTS))))
+        is_swapped = np.array([part.endswith(ends) for part in PARTS])
+        orders.append(np.where(is_swapped, MIRRORED_PARTS, np.arange(len(PARTS))))
     return orders

@@ -1,4 +1,4 @@
-"""Find the parts of a body among classified pixels, and leave out misclassified ones."""
+"""Detect body parts among classified pixels, and reject misclassified ones."""
 
 from dataclasses import dataclass
 
@@ -11,56 +11,56 @@ from ..forest import N_PARTS
 from .part_capsules import part_axes, part_radii
 
 Array = NDArray[np.float64]
-MEAN_DEPTH = np.pi / 4.0
-"""Of the radius: how far the visible side of a cylinder is before its axis, on average."""
+MEAN_SURFACE_DEPTH = np.pi / 4.0
+"""Mean distance of a cylinder's visible surface in front of its axis, in radii."""
 
 
 @dataclass(frozen=True, kw_only=True)
 class RobustPartsSettings(Settings):
-    """How parts are looked for."""
+    """Settings of the part detection."""
 
     n_samples: int = setting(
-        60, "Pairs of pixels tried for each part; more is surer and slower",
+        60, "Pairs of pixels sampled per part; higher is more robust and slower",
         minimum=1, maximum=10_000,
     )  # fmt: skip
     n_pixels: int = setting(
-        700, "Pixels looked at; more is surer and slower", minimum=50, maximum=1_000_000
+        700, "Pixels used; higher is more robust and slower", minimum=50, maximum=1_000_000
     )
     looseness: float = setting(
-        1.3, "How far from the axis, in radii, a pixel still belongs to the part",
+        1.3, "Maximum distance of a pixel from the part's axis, in radii",
         minimum=1.0, maximum=5.0,
     )  # fmt: skip
     least_pixels: int = setting(
-        4, "Parts of fewer pixels are not seen; more is surer of those that are",
+        4, "Minimum pixels of a part; higher rejects more false detections",
         minimum=2, maximum=1000,
     )  # fmt: skip
 
 
 @dataclass(frozen=True, eq=False)
 class FoundParts:
-    """Where parts are.
+    """Detected body parts.
 
     Attributes
     ----------
-    centres : shape (N_PARTS, 3), metres
-        Middle of the axis of what is seen of each part, camera frame; NaN: not seen.
+    centers : shape (N_PARTS, 3), metres
+        Axis center of the visible section of each part, camera frame; NaN: missing.
     weights : shape (N_PARTS,)
-        0 to 1: how much of a part is seen; 0: nothing.
+        Visible fraction of each part, 0 to 1.
     points : shape (n, 3), metres
-        Pixels that are left, on the surface.
+        Inlier points on the surface.
     labels : int, shape (n,)
-        The part of each of them, as its place in `PARTS`.
+        Part of each point, as index in `PARTS`.
     """
 
-    centres: Array
+    centers: Array
     weights: Array
     points: Array
     labels: NDArray[np.intp]
 
-    def exchanged(self, order: NDArray[np.intp]) -> "FoundParts":
-        """Return the same with each part taken for the part at its place in `order`."""
+    def swap_parts(self, order: NDArray[np.intp]) -> "FoundParts":
+        """Return the parts with labels permuted by `order`."""
         return FoundParts(
-            self.centres[order], self.weights[order], self.points, order[self.labels]
+            self.centers[order], self.weights[order], self.points, order[self.labels]
         )
 
 
@@ -71,18 +71,18 @@ def find_parts(
     rng: np.random.Generator,
     settings: RobustPartsSettings = RobustPartsSettings(),
 ) -> FoundParts:
-    """Find each part by random sampling [1]_.
+    """Detect each part by random sampling [1]_.
 
-    Two pixels of a part, moved inside by its radius, span the axis of a capsule as long and
-    thick as the body has it. Of many such pairs that one is taken whose capsule holds most
-    pixels of the part less those of others, and the part's pixels outside of it are left out.
+    Two pixels of a part, moved inward by its radius, define the axis of a capsule with the
+    part's length and radius. The best pair maximizes the number of the part's pixels inside
+    its capsule minus those of other parts. The part's pixels outside are rejected.
 
     Parameters
     ----------
     points : shape (n, 3), metres
-        What the pixels of a body see, camera frame.
+        Observed points of a body, camera frame.
     labels : int, shape (n,)
-        Place of each one's likeliest part in `PARTS`.
+        Most probable part of each point, as index in `PARTS`.
     body : BodyModel
     rng : Generator
     settings : RobustPartsSettings
@@ -96,50 +96,58 @@ def find_parts(
         points, labels = points[chosen], labels[chosen]
     rays = points / np.linalg.norm(points, axis=1, keepdims=True)
     axes, radii = part_axes(body), part_radii(body)
-    centres = np.full((N_PARTS, 3), np.nan)
+    centers = np.full((N_PARTS, 3), np.nan)
     weights = np.zeros(N_PARTS)
-    kept = np.zeros(len(points), dtype=np.bool_)
+    is_inlier = np.zeros(len(points), dtype=np.bool_)
     for part in range(N_PARTS):
-        own = np.flatnonzero(labels == part)
-        if len(own) < settings.least_pixels:
+        part_pixels = np.flatnonzero(labels == part)
+        if len(part_pixels) < settings.least_pixels:
             continue
         length = float(np.linalg.norm(axes[part, 1] - axes[part, 0]))
-        inside = _best_capsule(points, rays, own, length, radii[part], rng, settings)
+        inside = _best_capsule(points, rays, part_pixels, length, radii[part], rng, settings)
         if inside.sum() < settings.least_pixels:
             continue
-        mine = own[inside[own]]
-        kept[mine] = True
-        thick = MEAN_DEPTH * radii[part].mean()
-        centres[part] = points[mine].mean(axis=0) + thick * rays[mine].mean(axis=0)
-        weights[part] = min(1.0, len(mine) / (5.0 * settings.least_pixels))
-    return FoundParts(centres, weights, points[kept], labels[kept])
+        part_inliers = part_pixels[inside[part_pixels]]
+        is_inlier[part_inliers] = True
+        surface_depth = MEAN_SURFACE_DEPTH * radii[part].mean()
+        centers[part] = points[part_inliers].mean(axis=0) + surface_depth * rays[
+            part_inliers
+        ].mean(axis=0)
+        weights[part] = min(1.0, len(part_inliers) / (5.0 * settings.least_pixels))
+    return FoundParts(centers, weights, points[is_inlier], labels[is_inlier])
 
 
 def _best_capsule(
     points: Array,
     rays: Array,
-    own: NDArray[np.intp],
+    part_pixels: NDArray[np.intp],
     length: float,
     radii: Array,
     rng: np.random.Generator,
     settings: RobustPartsSettings,
 ) -> NDArray[np.bool_]:
-    """Tell which of all points lie in the best capsule of a part that has the points `own`."""
-    first, second = rng.choice(own, (2, settings.n_samples))
+    """Return the mask of points in the best capsule of the part with pixels `part_pixels`."""
+    first, second = rng.choice(part_pixels, (2, settings.n_samples))
     starts = points[first] + radii.mean() * rays[first]
-    ways = points[second] + radii.mean() * rays[second] - starts
-    apart = np.linalg.norm(ways, axis=1)
-    whole = length + radii.max()
-    usable = (apart <= whole) & (apart >= 0.2 * length) & (apart > 0.0)
+    directions = points[second] + radii.mean() * rays[second] - starts
+    distances = np.linalg.norm(directions, axis=1)
+    max_distance = length + radii.max()
+    usable = (distances <= max_distance) & (distances >= 0.2 * length) & (distances > 0.0)
     if not usable.any():
-        usable = np.arange(len(apart)) == apart.argmin()
-    starts, ways, apart = starts[usable], ways[usable], np.maximum(apart[usable], 1e-6)
-    middles, axes = starts + 0.5 * ways, ways / apart[:, np.newaxis]
-    from_middle = points - middles[:, np.newaxis]
-    along = np.einsum("snk,sk->sn", from_middle, axes)
-    beyond = np.maximum(np.abs(along) - 0.5 * length, 0.0)
-    square = np.einsum("snk,snk->sn", from_middle, from_middle) - along**2 + beyond**2
-    inside = square <= (settings.looseness * radii.max()) ** 2
+        usable = np.arange(len(distances)) == distances.argmin()
+    starts, directions, distances = (
+        starts[usable],
+        directions[usable],
+        np.maximum(distances[usable], 1e-6),
+    )
+    midpoints, axes = starts + 0.5 * directions, directions / distances[:, np.newaxis]
+    from_midpoint = points - midpoints[:, np.newaxis]
+    along = np.einsum("snk,sk->sn", from_midpoint, axes)
+    beyond_ends = np.maximum(np.abs(along) - 0.5 * length, 0.0)
+    squared_distances = (
+        np.einsum("snk,snk->sn", from_midpoint, from_midpoint) - along**2 + beyond_ends**2
+    )
+    inside = squared_distances <= (settings.looseness * radii.max()) ** 2
     n_inside = inside.sum(axis=1)
-    n_own = inside[:, own].sum(axis=1)
+    n_own = inside[:, part_pixels].sum(axis=1)
     return np.asarray(inside[(2 * n_own - n_inside).argmax()])

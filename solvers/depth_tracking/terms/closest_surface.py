@@ -1,4 +1,4 @@
-"""Every observed point pulls the closest part of the body's surface that faces the camera."""
+"""The closest surface term: observed points pull the closest visible body surface."""
 
 import numpy as np
 from numpy.typing import NDArray
@@ -9,24 +9,24 @@ from .hypothesis import Hypothesis
 Array = NDArray[np.float64]
 Integers = NDArray[np.intp]
 
-_FAR, _NOTHING = 1e3, 1e-12
+_NO_SURFACE, _EPSILON = 1e3, 1e-12
 
 
 def closest_surface_term(
     hypothesis: Hypothesis, points: Array, weight: float, scale: float
 ) -> SurfaceRows:
-    """Return the rows with which observed points pull the surface along its normal.
+    """Return rows that pull the surface along its normal to observed points.
 
-    The closest point of a capsule is known in closed form, so that no points of the body need
-    be searched. A surface that faces away from the camera cannot have been seen and does not
-    attract. Distances are to first order in elliptic capsules. Far points count less
-    [GM87]_: the weight falls by (1 + (distance / scale)^2)^2.
+    The closest point of a capsule has a closed form, so no search over surface points is
+    needed. Surfaces that face away from the camera are invisible and excluded. Distances to
+    elliptic capsules are first-order approximations. Distant points have lower weight
+    [GM87]_: it falls by (1 + (distance / scale)^2)^2.
 
     Parameters
     ----------
     hypothesis : Hypothesis
     points : shape (n, 3), metres
-        Observed, camera frame.
+        Observed points, camera frame.
     weight : float, per square metre
     scale : float, metres
 
@@ -36,10 +36,10 @@ def closest_surface_term(
        Bulletin of the International Statistical Institute 52(4).
     """
     distances, directions, capsules = closest_surface(hypothesis, points)
-    known = np.abs(distances) < _FAR
-    distances, directions, capsules = distances[known], directions[known], capsules[known]
+    valid = np.abs(distances) < _NO_SURFACE
+    distances, directions, capsules = distances[valid], directions[valid], capsules[valid]
     weights = weight / (1.0 + (distances / scale) ** 2) ** 2
-    return SurfaceRows(points[known], directions, distances, weights, capsules)
+    return SurfaceRows(points[valid], directions, distances, weights, capsules)
 
 
 def closest_surface(hypothesis: Hypothesis, points: Array) -> tuple[Array, Array, Integers]:
@@ -48,7 +48,7 @@ def closest_surface(hypothesis: Hypothesis, points: Array) -> tuple[Array, Array
     Returns
     -------
     (n,) array
-        How far outside it each point is, metres; beyond all measure where none faces it.
+        Signed distance of each point, positive outside, metres; huge without a visible surface.
     (n, 3) array
         Unit normals of the surface.
     (n,) array of int
@@ -59,28 +59,46 @@ def closest_surface(hypothesis: Hypothesis, points: Array) -> tuple[Array, Array
     starts, stops = body.capsule_ends.swapaxes(0, 1) * scales
     axes = stops - starts
     # One array (n_points, n_capsules) per component: all steps run over whole arrays.
-    rays, out = [], []
+    rays, outward_components = [], []
     along = 0.0
     lengths = (axes**2).sum(axis=1)
     for i in range(3):
         column = frames[:, :3, i]
         ray = points @ column.T
         origin = np.einsum("ni,ni->n", column, frames[:, :3, 3])
-        part = ray * scales[:, i] - (origin * scales[:, i] + starts[:, i])
-        along = along + part * (axes[:, i] / lengths)
+        component = ray * scales[:, i] - (origin * scales[:, i] + starts[:, i])
+        along = along + component * (axes[:, i] / lengths)
         rays.append(ray)
-        out.append(part)
+        outward_components.append(component)
     along = np.clip(along, 0.0, 1.0)
-    out = [part - along * axes[:, i] for i, part in enumerate(out)]
-    size = np.sqrt(out[0] ** 2 + out[1] ** 2 + out[2] ** 2) + _NOTHING
-    out = [part * scales[:, i] for i, part in enumerate(out)]
-    slope = np.sqrt(out[0] ** 2 + out[1] ** 2 + out[2] ** 2) + _NOTHING
+    outward_components = [
+        component - along * axes[:, i] for i, component in enumerate(outward_components)
+    ]
+    size = (
+        np.sqrt(
+            outward_components[0] ** 2 + outward_components[1] ** 2 + outward_components[2] ** 2
+        )
+        + _EPSILON
+    )
+    outward_components = [
+        component * scales[:, i] for i, component in enumerate(outward_components)
+    ]
+    slope = (
+        np.sqrt(
+            outward_components[0] ** 2 + outward_components[1] ** 2 + outward_components[2] ** 2
+        )
+        + _EPSILON
+    )
     distances = (size - 1.0) * size / slope
-    facing = out[0] * rays[0] + out[1] * rays[1] + out[2] * rays[2]
-    distances[facing >= 0.0] = _FAR
+    facing = (
+        outward_components[0] * rays[0]
+        + outward_components[1] * rays[1]
+        + outward_components[2] * rays[2]
+    )
+    distances[facing >= 0.0] = _NO_SURFACE
     capsules = np.abs(distances).argmin(axis=1)
     each = np.arange(len(points))
-    normals = np.stack([part[each, capsules] for part in out], axis=1)
+    normals = np.stack([component[each, capsules] for component in outward_components], axis=1)
     normals /= slope[each, capsules, np.newaxis]
-    outward = np.einsum("pij,pj->pi", frames[capsules, :3, :3], normals)
-    return distances[each, capsules], outward, capsules
+    outward_normals = np.einsum("pij,pj->pi", frames[capsules, :3, :3], normals)
+    return distances[each, capsules], outward_normals, capsules

@@ -1,4 +1,4 @@
-"""Edges of a picture of depth, by Canny's method."""
+"""Canny edges of a depth image."""
 
 import numpy as np
 from numpy.typing import NDArray
@@ -7,25 +7,25 @@ from scipy.ndimage import distance_transform_edt, gaussian_filter, label, sobel
 Array = NDArray[np.float64]
 Integers = NDArray[np.intp]
 
-SMOOTHING = 1.0
+SMOOTHING_PX = 1.0
 """Standard deviation, pixels."""
-STRONG, WEAK = 0.10, 0.04
-"""Metres per pixel: edges start where depth changes by the first, and go on by the second."""
-_BEHIND = 1.0
-"""How far behind the actor the background is taken to be, metres."""
-_SOBEL = 8.0
-"""What Sobel's operator answers to a slope of 1."""
+STRONG_STEP_M, WEAK_STEP_M = 0.10, 0.04
+"""Hysteresis thresholds of the depth step, metres per pixel."""
+_BACKGROUND_OFFSET_M = 1.0
+"""Assumed distance of the background behind the actor."""
+_SOBEL_GAIN = 8.0
+"""Response of the Sobel operator to a slope of 1."""
 
 
-def canny(picture: Array, strong: float, weak: float) -> NDArray[np.bool_]:
-    """Return the edges of a picture (height, width) [CAN86]_.
+def canny(image: Array, strong: float, weak: float) -> NDArray[np.bool_]:
+    """Return the edges of an image (height, width) [CAN86]_.
 
-    Smoothed slopes are thinned to where they are steepest across the edge; weak edges are kept
-    where they touch strong ones.
+    Non-maximum suppression thins the smoothed gradients. Hysteresis keeps weak edges that
+    touch strong ones.
 
     Parameters
     ----------
-    picture : shape (height, width)
+    image : shape (height, width)
     strong, weak : float
         Thresholds of the slope, per pixel.
 
@@ -34,38 +34,38 @@ def canny(picture: Array, strong: float, weak: float) -> NDArray[np.bool_]:
     .. [CAN86] Canny (1986). A computational approach to edge detection. IEEE Transactions on
        Pattern Analysis and Machine Intelligence 8(6).
     """
-    smooth = gaussian_filter(picture, SMOOTHING)
-    across, down = sobel(smooth, axis=1) / _SOBEL, sobel(smooth, axis=0) / _SOBEL
+    smooth = gaussian_filter(image, SMOOTHING_PX)
+    across, down = sobel(smooth, axis=1) / _SOBEL_GAIN, sobel(smooth, axis=0) / _SOBEL_GAIN
     slope = np.hypot(across, down)
-    thin = (slope >= weak) & _steepest(slope, across, down)
-    groups, n_groups = label(thin, structure=np.ones((3, 3)))
-    kept = np.zeros(n_groups + 1, dtype=bool)
-    kept[groups[thin & (slope >= strong)]] = True
-    kept[0] = False
-    edges: NDArray[np.bool_] = kept[groups]
+    thinned_mask = (slope >= weak) & _is_local_maximum(slope, across, down)
+    groups, n_groups = label(thinned_mask, structure=np.ones((3, 3)))
+    is_edge_group = np.zeros(n_groups + 1, dtype=bool)
+    is_edge_group[groups[thinned_mask & (slope >= strong)]] = True
+    is_edge_group[0] = False
+    edges: NDArray[np.bool_] = is_edge_group[groups]
     return edges
 
 
-def _steepest(slope: Array, across: Array, down: Array) -> NDArray[np.bool_]:
-    """Tell where no neighbour across the edge is steeper."""
+def _is_local_maximum(slope: Array, across: Array, down: Array) -> NDArray[np.bool_]:
+    """Return the mask of pixels without a steeper neighbor across the edge."""
     padded = np.pad(slope, 1)
     sector = np.rint(np.arctan2(down, across) / (np.pi / 4.0)).astype(int) % 4
-    steepest = np.zeros(slope.shape, dtype=bool)
+    is_maximum = np.zeros(slope.shape, dtype=bool)
     for number, (row, column) in enumerate(((0, 1), (1, 1), (1, 0), (1, -1))):
         after = padded[1 + row: padded.shape[0] - 1 + row,
                        1 + column: padded.shape[1] - 1 + column]  # fmt: skip
         before = padded[1 - row: padded.shape[0] - 1 - row,
                         1 - column: padded.shape[1] - 1 - column]  # fmt: skip
         # On a plateau of two equal slopes one of them stays.
-        steepest |= (sector == number) & (slope > after) & (slope >= before)
-    return steepest
+        is_maximum |= (sector == number) & (slope > after) & (slope >= before)
+    return is_maximum
 
 
 def edge_pixels(depth: Array, nearest: Integers | None = None) -> Integers:
-    """Return the pixels of an actor that lie at edges of depth, shape (n,).
+    """Return the pixels of an actor at depth edges, shape (n,).
 
-    As in [LOU12] section 3.4.2: where an edge falls on the background, the actor's pixel right
-    beside it is taken, if there is one.
+    As in [LOU12] section 3.4.2, an edge pixel on the background is replaced by the adjacent
+    pixel of the actor, if there is one.
 
     Parameters
     ----------
@@ -77,15 +77,21 @@ def edge_pixels(depth: Array, nearest: Integers | None = None) -> Integers:
     actor = depth > 0.0
     if not actor.any():
         return np.zeros(0, dtype=np.intp)
-    edges = np.flatnonzero(canny(np.where(actor, depth, depth.max() + _BEHIND), STRONG, WEAK))
+    edges = np.flatnonzero(
+        canny(
+            np.where(actor, depth, depth.max() + _BACKGROUND_OFFSET_M),
+            STRONG_STEP_M,
+            WEAK_STEP_M,
+        )
+    )
     width = depth.shape[1]
     if nearest is None:
         rows, columns = distance_transform_edt(
             ~actor, return_distances=False, return_indices=True
         )
         nearest = (rows * width + columns).ravel().astype(np.intp)
-    found: Integers = nearest[edges]
-    beside = np.maximum(np.abs(found // width - edges // width),
-                        np.abs(found % width - edges % width)) <= 1  # fmt: skip
-    unique: Integers = np.unique(found[beside])
+    nearest_pixels: Integers = nearest[edges]
+    is_adjacent = np.maximum(np.abs(nearest_pixels // width - edges // width),
+                        np.abs(nearest_pixels % width - edges % width)) <= 1  # fmt: skip
+    unique: Integers = np.unique(nearest_pixels[is_adjacent])
     return unique

@@ -1,4 +1,4 @@
-"""The depth image term: drawn and observed depth should agree, pixel by pixel."""
+"""The depth image term: difference of rendered and observed depth per pixel."""
 
 import numpy as np
 from numpy.typing import NDArray
@@ -10,8 +10,8 @@ from .pixel_groups import PixelGroups
 
 Array = NDArray[np.float64]
 
-_GRAZING = 0.25
-"""Least cosine between normal and ray; nearer the outline, depth changes without bound."""
+_MIN_COSINE = 0.25
+"""Minimum cosine between normal and ray; the gradient diverges at the outline."""
 
 
 def depth_image_term(
@@ -19,13 +19,12 @@ def depth_image_term(
 ) -> SurfaceRows:
     """Return the rows of the depth image term of [WZC12]_, eq. 4 and 15.
 
-    Only pixels that show the same part in both pictures count: those off the actor (B1) and
-    those whose depths are far apart (B2, occlusions) are left to other terms. The image
-    gradient of a drawn capsule is known exactly from its normal, and is not taken by
-    differences: a point that moves by m changes the depth that its pixel sees by
-    (normal . m) / (normal . ray). Written with gradients that is
-    (dD/dp - grad D dx/dp) m; the plus sign of eq. 15 does not agree with differences of
-    drawn pictures.
+    Only pixels that show the same part in both images count. Other terms handle pixels off
+    the actor (B1) and pixels with a large depth difference (B2, occlusions). The image gradient
+    of a rendered capsule follows exactly from its normal. A point that moves by m changes the
+    depth of its pixel by (normal . m) / (normal . ray). With gradients this is
+    (dD/dp - grad D dx/dp) m; the plus sign of eq. 15 disagrees with differences of rendered
+    images.
 
     Parameters
     ----------
@@ -51,9 +50,9 @@ def depth_image_term(
 
 
 def depth_gradients(hypothesis: Hypothesis) -> Array:
-    """Return how the depth that a pixel sees changes when its visible point moves, (n, 3)."""
+    """Return the derivative of each pixel's depth by its visible point, (n, 3)."""
     normals, rays = hypothesis.normals, hypothesis.rays
-    along = np.einsum("ni,ni->n", normals, rays)
-    size = np.sqrt(np.einsum("ni,ni->n", rays, rays))
-    gradients: Array = normals / np.minimum(along, -_GRAZING * size)[:, np.newaxis]
+    cosines = np.einsum("ni,ni->n", normals, rays)
+    ray_lengths = np.sqrt(np.einsum("ni,ni->n", rays, rays))
+    gradients: Array = normals / np.minimum(cosines, -_MIN_COSINE * ray_lengths)[:, np.newaxis]
     return gradients

@@ -1,4 +1,4 @@
-"""The edge term of [LOU12]: edges of the drawn depth go to edges of the observed one."""
+"""The edge term of [LOU12]: rendered depth edges match observed ones."""
 
 import numpy as np
 from numpy.typing import NDArray
@@ -10,16 +10,15 @@ from .observation import Observation
 
 Array = NDArray[np.float64]
 
-WINDOW = 10
-"""Pixels to each side that are searched, in a picture of 320 columns: 21 x 21."""
+WINDOW_RADIUS_PX = 10
+"""Half size of the search window at 320 columns: 21 x 21 pixels."""
 
 
 def edge_term(hypothesis: Hypothesis, observation: Observation, weight: float) -> SurfaceRows:
     """Return the rows of the edge term of [LOU12]_, eq. 3.8 and 3.9.
 
-    Canny's edges of both pictures are lifted to points in space by the depth of their pixels;
-    each observed edge point pulls the closest drawn one within a window of 21 x 21 pixels (of
-    320 columns).
+    Canny edges of both images are back-projected to points. Each observed edge point pulls
+    the closest rendered one within a window of 21 x 21 pixels (at 320 columns).
 
     Parameters
     ----------
@@ -33,22 +32,22 @@ def edge_term(hypothesis: Hypothesis, observation: Observation, weight: float) -
        dissertation, Texas A&M University, section 3.4.2.
     """
     width = observation.camera.width
-    reach = max(1, round(WINDOW * width / 320.0))
-    there = observation.edges
-    drawn = hypothesis.index_picture[edge_pixels(hypothesis.picture.depth_picture())]
-    if not (len(there) and len(drawn)):
+    reach = max(1, round(WINDOW_RADIUS_PX * width / 320.0))
+    observed_pixels = observation.edges
+    rendered = hypothesis.index_picture[edge_pixels(hypothesis.picture.depth_picture())]
+    if not (len(observed_pixels) and len(rendered)):
         return NO_ROWS
-    pixels = hypothesis.picture.pixels[drawn]
-    rows = np.abs(there[:, np.newaxis] // width - pixels // width)
-    columns = np.abs(there[:, np.newaxis] % width - pixels % width)
-    targets, points = observation.points_at(there), hypothesis.points[drawn]
-    apart = targets[:, np.newaxis] - points
-    squares = np.einsum("nki,nki->nk", apart, apart)
+    pixels = hypothesis.picture.pixels[rendered]
+    rows = np.abs(observed_pixels[:, np.newaxis] // width - pixels // width)
+    columns = np.abs(observed_pixels[:, np.newaxis] % width - pixels % width)
+    targets, points = observation.points_at(observed_pixels), hypothesis.points[rendered]
+    offsets = targets[:, np.newaxis] - points
+    squares = np.einsum("nki,nki->nk", offsets, offsets)
     squares[np.maximum(rows, columns) > reach] = np.inf
     best = squares.argmin(axis=1)
-    found = np.isfinite(squares[np.arange(len(there)), best])
-    moved = drawn[best[found]]
+    has_match = np.isfinite(squares[np.arange(len(observed_pixels)), best])
+    moved = rendered[best[has_match]]
     return rows_toward_targets(
-        hypothesis.points[moved], targets[found], np.full(len(moved), weight),
+        hypothesis.points[moved], targets[has_match], np.full(len(moved), weight),
         hypothesis.picture.capsules[moved],
     )  # fmt: skip

@@ -1,4 +1,4 @@
-"""The extra depth term: pixels that cannot be compared pull on the closest points instead."""
+"""The extra depth term: closest-point pairs for pixels that cannot be compared."""
 
 import numpy as np
 from numpy.typing import NDArray
@@ -39,12 +39,14 @@ def extra_depth_term(
     """
     if not (len(hypothesis.points) and len(observation.points)):
         return NO_ROWS
-    pushed = np.concatenate([groups.off_actor, groups.too_near])
+    pushed_points = np.concatenate([groups.off_actor, groups.too_near])
     behind = hypothesis.picture.pixels[groups.too_far]
     pulling = observation.index_picture[np.concatenate([groups.uncovered, behind])]
-    drawn = cKDTree(hypothesis.points, balanced_tree=False, compact_nodes=False)
-    pushes = _one_to_one(pushed, *observation.tree.query(hypothesis.points[pushed]))
-    pulls = _one_to_one(pulling, *drawn.query(observation.points[pulling]))
+    rendered_tree = cKDTree(hypothesis.points, balanced_tree=False, compact_nodes=False)
+    pushes = _one_to_one(
+        pushed_points, *observation.tree.query(hypothesis.points[pushed_points])
+    )
+    pulls = _one_to_one(pulling, *rendered_tree.query(observation.points[pulling]))
     moved = np.concatenate([pushes[0], pulls[1]])
     targets = observation.points[np.concatenate([pushes[1], pulls[0]])]
     near = np.abs(hypothesis.points[moved, 2] - targets[:, 2]) <= limit
@@ -56,11 +58,11 @@ def extra_depth_term(
 
 
 def _one_to_one(
-    asking: Integers, distances: Array, found: Integers
+    sources: Integers, distances: Array, targets: Integers
 ) -> tuple[Integers, Integers]:
-    """Keep the shortest of the pairs that share the point found."""
-    order = np.lexsort((distances, found))
+    """Keep the shortest of the pairs that share a target."""
+    order = np.lexsort((distances, targets))
     first = np.ones(len(order), dtype=bool)
-    first[1:] = found[order][1:] != found[order][:-1]
-    kept = order[first]
-    return asking[kept], found[kept]
+    first[1:] = targets[order][1:] != targets[order][:-1]
+    shortest = order[first]
+    return sources[shortest], targets[shortest]

@@ -1,4 +1,4 @@
-"""Where the camera looked through, there is no body."""
+"""Free-space terms: the body stays out of space that the camera observed as empty."""
 
 import numpy as np
 from numpy.typing import NDArray
@@ -10,7 +10,7 @@ from .pixel_groups import PixelGroups
 
 Array = NDArray[np.float64]
 
-_SIDEWAYS = np.eye(3)[:2]
+_IMAGE_AXES = np.eye(3)[:2]
 
 
 def off_actor_term(
@@ -20,11 +20,11 @@ def off_actor_term(
     weight: float,
     scale: float,
 ) -> SurfaceRows:
-    """Ask visible points that no pixel of the actor shows to move sideways onto the actor.
+    """Return rows that move visible points off the actor sideways onto it.
 
-    The target is the pixel of the actor nearest in the picture, at the point's own depth.
-    Weights fall by (1 + (distance / scale)^2)^2, so that what is far outside, as when a part of
-    the picture is missing, does not tear.
+    The target is the nearest pixel of the actor, at the depth of the point. Weights fall by
+    (1 + (distance / scale)^2)^2, so that distant points, as when a part of the image is
+    missing, have little effect.
 
     Parameters
     ----------
@@ -37,12 +37,12 @@ def off_actor_term(
     chosen = groups.off_actor
     points = hypothesis.points[chosen]
     nearest = observation.nearest_pixel[hypothesis.picture.pixels[chosen]]
-    aside = points[:, 2:] * rays_through_pixels(observation.camera, nearest) - points
-    squares = aside[:, 0] ** 2 + aside[:, 1] ** 2
-    weights = weight / (1.0 + squares / scale**2) ** 2
+    lateral_offsets = points[:, 2:] * rays_through_pixels(observation.camera, nearest) - points
+    squared_distances = lateral_offsets[:, 0] ** 2 + lateral_offsets[:, 1] ** 2
+    weights = weight / (1.0 + squared_distances / scale**2) ** 2
     return SurfaceRows(
-        np.repeat(points, 2, axis=0), np.tile(_SIDEWAYS, (len(points), 1)),
-        aside[:, :2].ravel(), np.repeat(weights, 2),
+        np.repeat(points, 2, axis=0), np.tile(_IMAGE_AXES, (len(points), 1)),
+        lateral_offsets[:, :2].ravel(), np.repeat(weights, 2),
         np.repeat(hypothesis.picture.capsules[chosen], 2),
     )  # fmt: skip
 
@@ -54,7 +54,7 @@ def too_near_term(
     weight: float,
     scale: float,
 ) -> SurfaceRows:
-    """Ask visible points far in front of what was observed to move to the closest observed one.
+    """Return rows that move points far in front of the observation to the closest point.
 
     Parameters
     ----------

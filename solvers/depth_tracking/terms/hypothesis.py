@@ -1,4 +1,4 @@
-"""A body in a pose as the camera would see it: every visible point, and its normal."""
+"""A rendered pose hypothesis: visible surface points and normals."""
 
 from dataclasses import dataclass
 from functools import cached_property
@@ -30,7 +30,7 @@ class Hypothesis:
     body : BodyModel
     pose : shape (36,)
     frames : shape (17, 4, 4)
-        Segments in this pose.
+        Segment transforms in this pose.
     picture : BodyImage
     """
 
@@ -46,7 +46,7 @@ class Hypothesis:
 
     @cached_property
     def rays(self) -> Array:
-        """Where the pixels of visible points look, one metre forward, shape (n, 3)."""
+        """Rays of the visible points at a depth of one metre, shape (n, 3)."""
         return rays_through_pixels(self.picture.camera, self.picture.pixels)
 
     @cached_property
@@ -66,15 +66,15 @@ class Hypothesis:
 
     @cached_property
     def index_picture(self) -> Integers:
-        """Which visible point each pixel sees, -1 for none, shape (height * width,)."""
+        """Index of the visible point of each pixel, -1 for none, shape (height * width,)."""
         camera = self.picture.camera
-        found = np.full(camera.width * camera.height, -1)
-        found[self.picture.pixels] = np.arange(len(self.picture.pixels))
-        return found
+        indices = np.full(camera.width * camera.height, -1)
+        indices[self.picture.pixels] = np.arange(len(self.picture.pixels))
+        return indices
 
 
 def render_hypothesis(body: BodyModel, pose: Array, camera: Camera) -> Hypothesis:
-    """Return what `camera` would see of `body` in `pose` (36,)."""
+    """Render `body` in `pose` (36,) as seen by `camera`."""
     frames = segment_frames(body, pose)
     return Hypothesis(body, pose, frames, cast_rays(body, frames, camera))
 
@@ -82,18 +82,18 @@ def render_hypothesis(body: BodyModel, pose: Array, camera: Camera) -> Hypothesi
 def capsule_normals(body: BodyModel, frames: Array, points: Array, capsules: Integers) -> Array:
     """Return outward unit normals (n, 3) at points (n, 3) on these capsules (n,)."""
     scales = 1.0 / body.radii[:, [0, 1, 1]]
-    placed = frames[CAPSULE_SEGMENTS]
-    # In frames that are stretched to radius 1, out is straight away from the axis.
-    stretch = scales[:, :, np.newaxis] * placed[:, :3, :3].swapaxes(1, 2)
+    capsule_frames = frames[CAPSULE_SEGMENTS]
+    # In frames scaled to radius 1, the normal is perpendicular to the axis.
+    stretch = scales[:, :, np.newaxis] * capsule_frames[:, :3, :3].swapaxes(1, 2)
     starts, stops = (body.capsule_ends * scales[:, np.newaxis]).swapaxes(0, 1)
     axes = stops - starts
-    starts = starts + np.einsum("cij,cj->ci", stretch, placed[:, :3, 3])
+    starts = starts + np.einsum("cij,cj->ci", stretch, capsule_frames[:, :3, 3])
     slopes = axes / (axes**2).sum(axis=1)[:, np.newaxis]
     stretch, axes = stretch[capsules], axes[capsules]
-    out = np.einsum("nij,nj->ni", stretch, points) - starts[capsules]
-    along = np.einsum("ni,ni->n", out, slopes[capsules])
-    out -= np.clip(along, 0.0, 1.0)[:, np.newaxis] * axes
-    normals: Array = np.einsum("nji,nj->ni", stretch, out)
+    outward = np.einsum("nij,nj->ni", stretch, points) - starts[capsules]
+    along = np.einsum("ni,ni->n", outward, slopes[capsules])
+    outward -= np.clip(along, 0.0, 1.0)[:, np.newaxis] * axes
+    normals: Array = np.einsum("nji,nj->ni", stretch, outward)
     normals /= np.sqrt(np.einsum("ni,ni->n", normals, normals) + 1e-24)[:, np.newaxis]
     return normals
 
@@ -101,7 +101,7 @@ def capsule_normals(body: BodyModel, frames: Array, points: Array, capsules: Int
 def capsule_offsets(
     body: BodyModel, frames: Array, points: Array, capsules: Integers
 ) -> tuple[Array, Array]:
-    """Return how far points are outside their capsules, and which way is out.
+    """Return the relative radius of points at their capsules, and its gradient.
 
     Returns
     -------
@@ -117,7 +117,7 @@ def capsule_offsets(
     axis = ends[:, 1] - ends[:, 0]
     from_start = local * scales - ends[:, 0]
     along = np.einsum("ni,ni->n", from_start, axis) / np.einsum("ni,ni->n", axis, axis)
-    out = from_start - np.clip(along, 0.0, 1.0)[:, np.newaxis] * axis
-    size = np.sqrt(np.einsum("ni,ni->n", out, out))
-    slope = scales * out / np.maximum(size, 1e-12)[:, np.newaxis]
+    outward = from_start - np.clip(along, 0.0, 1.0)[:, np.newaxis] * axis
+    size = np.sqrt(np.einsum("ni,ni->n", outward, outward))
+    slope = scales * outward / np.maximum(size, 1e-12)[:, np.newaxis]
     return size, np.einsum("nij,nj->ni", frame[:, :3, :3], slope)

@@ -1,4 +1,4 @@
-"""Everything that a picture of depth asks of a pose: the terms of a tracker, by weight."""
+"""The likelihood of a pose: all weighted image terms of the tracker."""
 
 from collections.abc import Callable
 
@@ -17,9 +17,9 @@ from .surface import PreviousFrame, surface_term
 from .tracker_settings import TrackerSettings
 
 POINT_STEP = 2
-"""Every so many observed points are asked for their closest surface, and weigh as much more."""
+"""Every n-th observed point enters the closest surface term, with n times the weight."""
 REFERENCE_AREA_M2 = 4e-4
-"""Square metres that a pixel sees for which the weights are given."""
+"""Surface of a pixel for which the weights are specified."""
 
 
 def likelihood_rows(
@@ -28,7 +28,7 @@ def likelihood_rows(
     settings: TrackerSettings,
     memory: PreviousFrame | None = None,
 ) -> SurfaceRows:
-    """Return the rows of every term that has a weight.
+    """Return the rows of all terms with a positive weight.
 
     Parameters
     ----------
@@ -36,7 +36,7 @@ def likelihood_rows(
     observation : Observation
     settings : TrackerSettings
     memory : PreviousFrame, optional
-        The frame before, for the colours of `surface_term`.
+        The previous frame, for the colors of `surface_term`.
     """
     groups = group_pixels(hypothesis, observation, settings.limit)
     area = pixel_area(observation) / REFERENCE_AREA_M2
@@ -61,5 +61,5 @@ def likelihood_rows(
 
 
 def pixel_area(observation: Observation) -> float:
-    """Return how much surface a pixel sees where the actor is, square metres."""
+    """Return the surface of a pixel at the actor's distance, square metres."""
     return observation.pixel_area

@@ -1,4 +1,4 @@
-"""What the camera saw of an actor in one frame, at one resolution."""
+"""The observed actor in one frame, at one resolution."""
 
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -16,21 +16,21 @@ from .depth_edges import edge_pixels
 Array = NDArray[np.float64]
 Integers = NDArray[np.intp]
 
-LEAST_AREA = 0.02
-"""Square metres: half a forearm. Who shows less is not there."""
+MIN_AREA_M2 = 0.02
+"""Minimum visible surface of an actor: half a forearm."""
 
 
 @dataclass(frozen=True, eq=False)
 class Observation:
-    """Depths of an actor; everything else in the picture is 0.
+    """Depth image of an actor; 0 elsewhere.
 
     Attributes
     ----------
     camera : Camera
     depth : shape (height, width), metres
     read_color : callable, or None
-        Returns the colors of the pixels, as `color` has them. Only terms that compare colors
-        ask for them, so that nobody else waits for them, or fails where they are damaged.
+        Returns the colors of the pixels, as in `color`. Only terms that compare colors read
+        them, so other terms do not depend on damaged or slow color files.
     """
 
     camera: Camera
@@ -49,40 +49,40 @@ class Observation:
 
     @cached_property
     def pixels(self) -> Integers:
-        """Which pixels see the actor, shape (n,): row * width + column."""
+        """Pixels of the actor, shape (n,): row * width + column."""
         return np.flatnonzero(self.flat)
 
     @cached_property
     def empty(self) -> bool:
-        """Whether too little of an actor is seen to tell anything."""
-        return not len(self.pixels) or len(self.pixels) * self.pixel_area < LEAST_AREA
+        """Whether too little of the actor is visible."""
+        return not len(self.pixels) or len(self.pixels) * self.pixel_area < MIN_AREA_M2
 
     @cached_property
     def points(self) -> Array:
-        """Where they see the actor, shape (n, 3), metres."""
+        """Observed points of the actor, shape (n, 3), metres."""
         return self.points_at(self.pixels)
 
     @cached_property
     def index_picture(self) -> Integers:
-        """Which of `points` each pixel sees, -1 for none, shape (height * width,)."""
-        found = np.full(self.flat.shape, -1)
-        found[self.pixels] = np.arange(len(self.pixels))
-        return found
+        """Index in `points` of each pixel, -1 for none, shape (height * width,)."""
+        indices = np.full(self.flat.shape, -1)
+        indices[self.pixels] = np.arange(len(self.pixels))
+        return indices
 
     @cached_property
     def pixel_area(self) -> float:
-        """How much surface a pixel sees where the actor is, square metres."""
+        """Surface of a pixel at the actor's distance, square metres."""
         distance = float(np.median(self.points[:, 2]))
         return distance**2 / (self.camera.fx * self.camera.fy)
 
     @cached_property
     def tree(self) -> Any:
-        """The points, ready to be asked for the nearest."""
+        """Search tree of the points."""
         return cKDTree(self.points)
 
     @cached_property
     def nearest_pixel(self) -> Integers:
-        """Which pixel that sees the actor is nearest to each pixel, shape (height * width,)."""
+        """Pixel of the actor nearest to each pixel, shape (height * width,)."""
         rows, columns = distance_transform_edt(
             self.depth == 0.0, return_distances=False, return_indices=True
         )
@@ -91,19 +91,19 @@ class Observation:
 
     @cached_property
     def intensities(self) -> Array:
-        """Brightness of all pixels, 0 to 255, shape (height * width,); NaN without colours."""
+        """Brightness of all pixels, 0 to 255, shape (height * width,); NaN without color."""
         if self.color is None:
             return np.full(self.flat.shape, np.nan)
-        grey: Array = self.color.mean(axis=2).ravel()
-        return grey
+        gray: Array = self.color.mean(axis=2).ravel()
+        return gray
 
     @cached_property
     def edges(self) -> Integers:
-        """Pixels of the actor at edges of depth, shape (n,)."""
+        """Pixels of the actor at depth edges, shape (n,)."""
         return edge_pixels(self.depth, self.nearest_pixel)
 
     def points_at(self, pixels: Integers) -> Array:
-        """Return where these pixels (n,) see the actor, shape (n, 3), metres."""
+        """Return the observed points (n, 3), metres, at pixels (n,)."""
         rays = rays_through_pixels(self.camera, pixels)
         return rays * self.flat[pixels][:, np.newaxis]
 
@@ -119,18 +119,18 @@ class Observation:
 
 
 def observe(depth: DepthRecording, frame: int, picture_width: int) -> Observation:
-    """Return what a frame shows, thinned out to about this many columns."""
+    """Return the observation of a frame, subsampled to about `picture_width` columns."""
 
     def read_color() -> Array | None:
         color = depth.color(frame)
         return None if color is None else color.astype(np.float64)
 
-    whole = Observation(depth.camera, depth.frame(frame).astype(np.float64), read_color)
-    return whole.every(max(1, round(depth.camera.width / picture_width)))
+    full = Observation(depth.camera, depth.frame(frame).astype(np.float64), read_color)
+    return full.every(max(1, round(depth.camera.width / picture_width)))
 
 
 def rays_through_pixels(camera: Camera, pixels: Integers) -> Array:
-    """Return where pixels (n,) look, as far as one metre forward, shape (n, 3)."""
+    """Return the rays (n, 3) of pixels (n,) at a depth of one metre."""
     rows, columns = np.divmod(pixels, camera.width)
     rays = np.ones((len(pixels), 3))
     rays[:, 0] = (columns - camera.cx) / camera.fx

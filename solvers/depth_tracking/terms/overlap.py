@@ -1,4 +1,4 @@
-"""Limbs cannot be inside each other: capsules that overlap push each other apart."""
+"""The separation term: overlapping capsules push each other out."""
 
 import numpy as np
 from numpy.typing import NDArray
@@ -9,10 +9,10 @@ from .hypothesis import Hypothesis
 Array = NDArray[np.float64]
 
 RADIUS_FRACTION = 0.85
-"""Share of the radii that counts: clothes and flesh give way."""
+"""Fraction of the radii used, because clothes and flesh are soft."""
 
 
-def _pairs() -> tuple[Integers, Integers]:
+def _capsule_pairs() -> tuple[Integers, Integers]:
     legs = [f"{side}{part}" for side in SIDES for part in ("UpperLeg", "LowerLeg", "Foot")]
     arms = [f"{side}{part}" for side in SIDES for part in ("LowerArm", "Hand")]
     left = [name for name in legs if name.startswith("left")]
@@ -22,42 +22,43 @@ def _pairs() -> tuple[Integers, Integers]:
     pairs += [
         (f"left{a}", f"right{b}") for a in ("LowerArm", "Hand") for b in ("LowerArm", "Hand")
     ]
-    places = np.array([[CAPSULES.index(a), CAPSULES.index(b)] for a, b in pairs])
-    return places[:, 0].astype(np.intp), places[:, 1].astype(np.intp)
+    indices = np.array([[CAPSULES.index(a), CAPSULES.index(b)] for a, b in pairs])
+    return indices[:, 0].astype(np.intp), indices[:, 1].astype(np.intp)
 
 
-_FIRST, _SECOND = _pairs()
+_FIRST, _SECOND = _capsule_pairs()
 
 
 def separation_term(hypothesis: Hypothesis, weight: float) -> SurfaceRows:
-    """Return rows that push overlapping limbs apart, half the way each.
+    """Return rows that separate overlapping limbs, each by half the overlap.
 
-    Elliptic capsules count as round ones of their smaller radius.
+    Elliptic capsules count as round, with their smaller radius.
 
     Parameters
     ----------
     hypothesis : Hypothesis
     weight : float, per square metre
-        Of one pair.
+        Weight of one pair.
     """
     body, frames = hypothesis.body, hypothesis.frames[CAPSULE_SEGMENTS]
     ends = np.einsum("nij,nej->nei", frames[:, :3, :3], body.capsule_ends)
     ends += frames[:, np.newaxis, :3, 3]
     radii = RADIUS_FRACTION * body.radii.min(axis=1)
-    near, far = _closest(ends[_FIRST], ends[_SECOND])
-    between = near - far
-    distances = np.sqrt(np.einsum("ni,ni->n", between, between))
+    first_points, second_points = _closest_points(ends[_FIRST], ends[_SECOND])
+    offsets = first_points - second_points
+    distances = np.sqrt(np.einsum("ni,ni->n", offsets, offsets))
     overlap = radii[_FIRST] + radii[_SECOND] - distances
-    deep = np.flatnonzero(overlap > 0.0)
-    away = between[deep] / np.maximum(distances[deep], 1e-6)[:, np.newaxis]
+    overlapping = np.flatnonzero(overlap > 0.0)
+    directions = offsets[overlapping] / np.maximum(distances[overlapping], 1e-6)[:, np.newaxis]
     return SurfaceRows(
-        np.concatenate([near[deep], far[deep]]), np.concatenate([away, -away]),
-        0.5 * np.tile(overlap[deep], 2), np.full(2 * len(deep), weight),
-        np.concatenate([_FIRST[deep], _SECOND[deep]]),
+        np.concatenate([first_points[overlapping], second_points[overlapping]]),
+        np.concatenate([directions, -directions]),
+        0.5 * np.tile(overlap[overlapping], 2), np.full(2 * len(overlapping), weight),
+        np.concatenate([_FIRST[overlapping], _SECOND[overlapping]]),
     )  # fmt: skip
 
 
-def _closest(first: Array, second: Array) -> tuple[Array, Array]:
+def _closest_points(first: Array, second: Array) -> tuple[Array, Array]:
     """Return the closest points of line segments (n, 2, 3), pair by pair [ERI04]_.
 
     References
@@ -69,8 +70,8 @@ def _closest(first: Array, second: Array) -> tuple[Array, Array]:
     a, e = (along**2).sum(axis=1), (across**2).sum(axis=1)
     b, c = (along * across).sum(axis=1), (along * offset).sum(axis=1)
     f = (across * offset).sum(axis=1)
-    slant = np.maximum(a * e - b * b, 1e-12)
-    s = np.clip((b * f - c * e) / slant, 0.0, 1.0)
+    denominator = np.maximum(a * e - b * b, 1e-12)
+    s = np.clip((b * f - c * e) / denominator, 0.0, 1.0)
     t = np.clip((b * s + f) / e, 0.0, 1.0)
     s = np.clip((b * t - c) / a, 0.0, 1.0)
     return first[:, 0] + s[:, np.newaxis] * along, second[:, 0] + t[:, np.newaxis] * across

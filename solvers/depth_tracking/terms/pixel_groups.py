@@ -1,4 +1,4 @@
-"""Which pixels of a drawn body and of an observed actor can be compared, and which cannot."""
+"""Groups of pixels by agreement of rendered and observed depth."""
 
 from dataclasses import dataclass
 
@@ -19,16 +19,16 @@ class PixelGroups:
     Attributes
     ----------
     comparable : int, shape (n,)
-        G: visible points of the body (by index) whose pixel sees the actor at nearly the same
+        G: visible points of the body (by index) whose pixel shows the actor at a similar
         depth.
     off_actor : int
-        B1: visible points whose pixel does not see the actor.
+        B1: visible points whose pixel does not show the actor.
     too_near : int
-        B2, type 3: visible points much nearer than what their pixel observed.
+        B2, type 3: visible points much nearer than the observed depth.
     too_far : int
-        B2, type 4: visible points much farther than what their pixel observed.
+        B2, type 4: visible points much farther than the observed depth.
     uncovered : int
-        B3: pixels that see the actor but not the body.
+        B3: pixels of the actor without the body.
     """
 
     comparable: Integers
@@ -39,9 +39,9 @@ class PixelGroups:
 
 
 def group_pixels(hypothesis: Hypothesis, observation: Observation, limit: float) -> PixelGroups:
-    """Tell pixels apart; depths farther apart than `limit`, metres, show different parts."""
-    drawn = hypothesis.picture.pixels
-    observed = observation.flat[drawn]
+    """Group pixels; depths that differ by more than `limit`, metres, show different parts."""
+    rendered = hypothesis.picture.pixels
+    observed = observation.flat[rendered]
     on_actor = observed > 0.0
     difference = hypothesis.picture.depths - observed
     uncovered = observation.pixels[hypothesis.index_picture[observation.pixels] < 0]

@@ -1,4 +1,4 @@
-"""The surface term of [LOU12]: visible points follow the closest observed ones, colour too."""
+"""The surface term of [LOU12]: visible points match close points of similar color."""
 
 from dataclasses import dataclass
 
@@ -11,24 +11,24 @@ from .observation import Observation
 
 Array = NDArray[np.float64]
 
-WINDOW = 7
-"""Pixels to each side that are searched, in a picture of 320 columns: 15 x 15."""
-THINNING = 4
-"""In a picture of 320 columns every so many columns and rows have a point that is matched."""
-COLOR_WEIGHT = 1e-4
-"""Metres that a difference of 1 in intensity (0 to 255) counts as much as."""
+WINDOW_RADIUS_PX = 7
+"""Half size of the search window at 320 columns: 15 x 15 pixels."""
+GRID_STEP_PX = 4
+"""Spacing of the matched points at 320 columns."""
+COLOR_WEIGHT_M = 1e-4
+"""Distance equivalent to an intensity difference of 1 (of 255)."""
 
 
 @dataclass(frozen=True, eq=False)
 class PreviousFrame:
-    """The frame before: where the body was, and which colours the camera saw.
+    """The previous frame: segment transforms and colors.
 
     Attributes
     ----------
     frames : shape (17, 4, 4)
         camera_from_segment of each segment.
     observation : Observation
-        With colours.
+        With colors.
     """
 
     frames: Array
@@ -38,21 +38,21 @@ class PreviousFrame:
 def surface_term(
     hypothesis: Hypothesis,
     observation: Observation,
-    memory: PreviousFrame | None,
+    previous: PreviousFrame | None,
     weight: float,
 ) -> SurfaceRows:
     """Return the rows of the surface term of [LOU12]_, eq. 3.4 to 3.7.
 
-    For points on a grid of pixels, the closest observed point is searched in a window of
-    15 x 15 pixels (of 320 columns), where closeness is distance plus 0.0001 times the
-    difference in intensity. A point's own intensity is what the camera saw there in the frame
-    before; without colours, and where the point was out of sight, distance alone decides.
+    Points on a grid of pixels match the closest observed point in a window of 15 x 15 pixels
+    (at 320 columns). The cost is the distance plus 0.0001 times the difference in intensity. A
+    point takes its intensity from the previous frame. Without color, or if the point was
+    occluded, only the distance counts.
 
     Parameters
     ----------
     hypothesis : Hypothesis
     observation : Observation
-    memory : PreviousFrame or None
+    previous : PreviousFrame or None
     weight : float, per square metre
 
     References
@@ -63,33 +63,35 @@ def surface_term(
     camera = observation.camera
     scale = camera.width / 320.0
     rows, columns = np.divmod(hypothesis.picture.pixels, camera.width)
-    thin = max(1, round(THINNING * scale))
-    chosen = np.flatnonzero((rows % thin == 0) & (columns % thin == 0))
-    pixels = neighbours(rows[chosen], columns[chosen], observation, round(WINDOW * scale))
+    step = max(1, round(GRID_STEP_PX * scale))
+    chosen = np.flatnonzero((rows % step == 0) & (columns % step == 0))
+    pixels = window_pixels(
+        rows[chosen], columns[chosen], observation, round(WINDOW_RADIUS_PX * scale)
+    )
     points = hypothesis.points[chosen]
-    apart = observation.points_at(pixels.ravel()).reshape(*pixels.shape, 3)
-    apart -= points[:, np.newaxis]
-    costs = np.sqrt(np.einsum("nki,nki->nk", apart, apart))
-    if memory is not None and memory.observation.color is not None:
-        costs += COLOR_WEIGHT * _color_differences(hypothesis, chosen, pixels, observation,
-                                                   memory)  # fmt: skip
+    offsets = observation.points_at(pixels.ravel()).reshape(*pixels.shape, 3)
+    offsets -= points[:, np.newaxis]
+    costs = np.sqrt(np.einsum("nki,nki->nk", offsets, offsets))
+    if previous is not None and previous.observation.color is not None:
+        costs += COLOR_WEIGHT_M * _color_differences(hypothesis, chosen, pixels, observation,
+                                                   previous)  # fmt: skip
     costs[observation.flat[pixels] == 0.0] = np.inf
     best = costs.argmin(axis=1)
     each = np.arange(len(chosen))
-    found = np.isfinite(costs[each, best])
-    targets = points + apart[each, best]
+    has_match = np.isfinite(costs[each, best])
+    targets = points + offsets[each, best]
     return rows_toward_targets(
-        points[found], targets[found], np.full(int(found.sum()), weight),
-        hypothesis.picture.capsules[chosen[found]],
+        points[has_match], targets[has_match], np.full(int(has_match.sum()), weight),
+        hypothesis.picture.capsules[chosen[has_match]],
     )  # fmt: skip
 
 
-def neighbours(
-    rows: Integers, columns: Integers, observation: Observation, reach: int
+def window_pixels(
+    rows: Integers, columns: Integers, observation: Observation, radius: int
 ) -> Integers:
-    """Return the pixels (n, k) of the square windows around these, cut off at the border."""
+    """Return the pixels (n, k) of square windows around positions, clipped at the border."""
     camera = observation.camera
-    offsets = np.arange(-reach, reach + 1)
+    offsets = np.arange(-radius, radius + 1)
     down = np.clip(rows[:, np.newaxis] + offsets, 0, camera.height - 1)
     across = np.clip(columns[:, np.newaxis] + offsets, 0, camera.width - 1)
     pixels = down[:, :, np.newaxis] * camera.width + across[:, np.newaxis, :]
@@ -102,26 +104,30 @@ def _color_differences(
     chosen: Integers,
     pixels: Integers,
     observation: Observation,
-    memory: PreviousFrame,
+    previous: PreviousFrame,
 ) -> Array:
-    """Return how far intensities of pixels (n, k) are from those remembered; 0 if unknown."""
-    remembered = remembered_intensities(hypothesis, chosen, memory)
-    now = observation.intensities[pixels]
-    differences: Array = np.abs(now - remembered[:, np.newaxis])
+    """Return the intensity differences (n, k) to the previous frame; 0 if unknown."""
+    previous_values = previous_intensities(hypothesis, chosen, previous)
+    current = observation.intensities[pixels]
+    differences: Array = np.abs(current - previous_values[:, np.newaxis])
     return np.nan_to_num(differences)
 
 
-def remembered_intensities(
-    hypothesis: Hypothesis, chosen: Integers, memory: PreviousFrame
+def previous_intensities(
+    hypothesis: Hypothesis, chosen: Integers, previous: PreviousFrame
 ) -> Array:
-    """Return which intensity visible points had in the frame before, NaN if out of sight."""
+    """Return the intensities of points in the previous frame, NaN if occluded."""
     segments = CAPSULE_SEGMENTS[hypothesis.picture.capsules[chosen]]
-    now, then = hypothesis.frames[segments], memory.frames[segments]
-    local = np.einsum("nji,nj->ni", now[:, :3, :3], hypothesis.points[chosen] - now[:, :3, 3])
-    before = np.einsum("nij,nj->ni", then[:, :3, :3], local) + then[:, :3, 3]
-    camera = memory.observation.camera
+    current, previous_frames = hypothesis.frames[segments], previous.frames[segments]
+    local = np.einsum(
+        "nji,nj->ni", current[:, :3, :3], hypothesis.points[chosen] - current[:, :3, 3]
+    )
+    before = (
+        np.einsum("nij,nj->ni", previous_frames[:, :3, :3], local) + previous_frames[:, :3, 3]
+    )
+    camera = previous.observation.camera
     columns, rows = np.nan_to_num(np.rint(camera.project(before)), nan=-1.0).astype(int).T
     inside = (columns >= 0) & (rows >= 0) & (columns < camera.width) & (rows < camera.height)
     pixels = np.where(inside, rows * camera.width + columns, 0)
-    seen = inside & (memory.observation.flat[pixels] > 0.0)
-    return np.where(seen, memory.observation.intensities[pixels], np.nan)
+    visible = inside & (previous.observation.flat[pixels] > 0.0)
+    return np.where(visible, previous.observation.intensities[pixels], np.nan)

@@ -1,4 +1,4 @@
-"""How the tracker weighs what it sees, and the presets of the papers."""
+"""Settings of the tracker: weights of its terms, and the presets of the papers."""
 
 from dataclasses import dataclass
 
@@ -14,81 +14,88 @@ def _weight(default: float, help: str, unit: str = "1/m2") -> float:
 
 @dataclass(frozen=True, kw_only=True)
 class TrackerSettings(Settings):
-    """Weights of the terms of the tracker, and how it solves. A weight of 0 leaves a term out.
+    """Weights of the terms of the tracker, and its solver. A weight of 0 disables a term.
 
-    Weights of pixels are those of pixels that see 4 square centimetres, and follow from there
-    with distance and resolution.
+    Pixel weights apply to pixels that cover 4 square centimetres. They scale with distance and
+    resolution.
     """
 
     picture_width: int = setting(
-        160, "Columns of the picture that are looked at; more is finer and slower",
+        160, "Columns of the subsampled depth image; higher is finer and slower",
         minimum=20, maximum=4096,
     )  # fmt: skip
     iterations: int = setting(
-        6, "Most steps per frame; more follows quick movements farther", minimum=1, maximum=100
+        6, "Maximum steps per frame; higher follows faster motion", minimum=1, maximum=100
     )
     coarse_iterations: int = setting(
-        2, "How many of them look at a quarter of the pixels only; more is faster",
+        2, "Number of these steps that use a quarter of the pixels; higher is faster",
         minimum=0, maximum=100, advanced=True,
     )  # fmt: skip
     limit: float = setting(
-        0.08, "Depths farther apart belong to different parts of the body; more compares more",
+        0.08, "Depth difference between different body parts; higher compares more pixels",
         unit="m", minimum=0.005, maximum=1.0, advanced=True,
     )  # fmt: skip
     robust_scale: float = setting(
-        0.06, "Distance from which on points count less; more trusts far points",
+        0.06, "Distance above which points lose weight; higher weighs distant points more",
         unit="m", minimum=0.005, maximum=10.0, advanced=True,
     )  # fmt: skip
-    closest_weight: float = _weight(4000.0, "How much observed points pull the surface")
-    off_actor_weight: float = _weight(300.0, "How much the body must stay inside the outline")
-    too_near_weight: float = _weight(300.0, "How much the body must leave free space free")
+    closest_weight: float = _weight(
+        4000.0, "Weight of the pull of observed points on the surface"
+    )
+    off_actor_weight: float = _weight(300.0, "Weight of the body staying inside the outline")
+    too_near_weight: float = _weight(
+        300.0, "Weight of the body staying out of observed free space"
+    )
     depth_weight: float = _weight(2000.0, "Weight of the depth image term of [WZC12]")
     extra_weight: float = _weight(1000.0, "Weight of the extra depth term of [WZC12]")
     silhouette_weight: float = _weight(0.1, "Weight of the silhouette term of [WZC12]", "")
     surface_weight: float = _weight(0.0, "Weight of the surface term of [LOU12]")
     edge_weight: float = _weight(0.0, "Weight of the edge term of [LOU12]")
     similar_weight: float = _weight(
-        30.0, "How much poses must be like those of the motion prior, if there is one", "1/rad2"
+        30.0, "Weight of the similarity to poses of the motion prior, if any", "1/rad2"
     )
     shift_weight: float = _weight(
-        400.0, "How smoothly the hips move; more is steadier and follows slower"
+        400.0, "Smoothness of the hip translation; higher is smoother and follows slower"
     )
     turn_weight: float = _weight(
-        60.0, "How smoothly joints turn; more is steadier and follows slower", "1/rad2"
+        60.0,
+        "Smoothness of the joint rotations; higher is smoother and follows slower",
+        "1/rad2",
     )
     trust: float = setting(
-        0.7, "How much of a movement is expected to go on; more follows quick movements",
+        0.7, "Fraction of the last movement used for prediction; higher follows faster motion",
         minimum=0.0, maximum=1.0, advanced=True,
     )  # fmt: skip
     start_ahead: bool = setting(
-        True, "Start each frame where it is expected rather than at the frame before",
+        True, "Start each frame at the predicted pose instead of the previous pose",
         advanced=True,
     )  # fmt: skip
-    apart_weight: float = _weight(0.0, "How much limbs push each other apart")
+    apart_weight: float = _weight(0.0, "Weight of the separation of overlapping limbs")
     natural_weight: float = _weight(
-        2.0, "How much joints are drawn to upright standing; more is calmer where little shows",
+        2.0, "Weight of the pull toward upright standing; higher is smoother for hidden"
+        " limbs",
         "1/rad2",
     )  # fmt: skip
     ankle_weight: float = _weight(
-        30.0, "How much feet are held square to the shanks; 1e6 leaves them no ankles, as the"
-        " 34 coordinates of [WZC12]", "1/rad2",
+        30.0, "Weight that keeps feet perpendicular to the shanks; 1e6 locks the ankles, as in"
+        " the 34 coordinates of [WZC12]", "1/rad2",
     )  # fmt: skip
-    limit_weight: float = _weight(2000.0, "How hard the joint limits are", "1/rad2")
+    limit_weight: float = _weight(2000.0, "Weight of the joint limits", "1/rad2")
     damping: float = setting(
-        1.0, "Least resistance to each step; more is safer and slower",
+        1.0, "Minimum damping of each step; higher is more stable and slower",
         minimum=0.0, maximum=1e6, advanced=True,
     )  # fmt: skip
     longest_step: float = setting(
-        0.35, "Most that a joint turns within one step; more is quicker and riskier",
+        0.35, "Maximum joint rotation in one step; higher is faster and less stable",
         unit="rad", minimum=0.01, maximum=10.0, advanced=True,
     )  # fmt: skip
     accept_only_better: bool = setting(
-        True, "Take back steps that make the fit worse", advanced=True
+        True, "Reject steps that increase the cost", advanced=True
     )
 
 
 NO_ANKLES = 1e6
-"""`ankle_weight` that makes feet one with the shanks."""
+"""`ankle_weight` that locks the ankles."""
 
 PER_DEGREE = (180.0 / np.pi) ** 2
 """Squared degrees in a squared radian."""
@@ -102,8 +109,8 @@ WZC12 = TrackerSettings(
     limit_weight=0.0, natural_weight=0.0, ankle_weight=NO_ANKLES, damping=1e-6,
     longest_step=10.0, accept_only_better=False,
 )  # fmt: skip
-"""Terms and standard deviations of [WZC12] appendix A, in metres and radians; each pixel of
-ours counts as four of their 320 columns."""
+"""Terms and standard deviations of [WZC12] appendix A, in metres and radians; each pixel
+here counts as four of their pixels (320 columns)."""
 
 LOU12 = TrackerSettings(
     picture_width=320, iterations=10, coarse_iterations=0,
@@ -115,11 +122,11 @@ LOU12 = TrackerSettings(
     longest_step=10.0, accept_only_better=False,
 )  # fmt: skip
 """Terms and weights of [LOU12] sections 3.4 to 3.6: surface 1, edges 10, motion prior 0.001,
-smoothness 0.00001 (a pixel of 320 columns sees about a quarter of what weights are for).
+smoothness 0.00001 (a pixel of 320 columns covers about a quarter of the reference area).
 
-The paper tells no units. Angles are taken to be in degrees, as in the recorded motions that it
-learns from: with weights per square radian neither prior nor smoothness weighs anything, and
-the actor is lost within a second."""
+The paper gives no units. Angles are interpreted in degrees, as in its training motions. With
+weights per square radian, prior and smoothness have no effect, and tracking fails within a
+second."""
 
 DEFAULT_TRACKER = TrackerSettings()
-"""What measured best."""
+"""Settings with the best benchmark results."""

@@ -1,4 +1,4 @@
-"""Whether a tracked pose is wrong: a learned chance, or the thresholds of the paper."""
+"""Failure test of a tracked pose: learned probability, or the thresholds of the paper."""
 
 from enum import Enum
 
@@ -10,7 +10,7 @@ from .fit_quality import MAX_DEPTH_ERROR_M, FitQuality
 Array = NDArray[np.float64]
 
 PUBLISHED_MAX_RESIDUAL_M, PUBLISHED_MIN_OVERLAP = 0.025, 0.9
-"""Metres and share of [WZC12] section 5: above or below them, a pose has failed."""
+"""Thresholds of [WZC12] section 5 for residual (above) and overlap (below)."""
 FEATURES = ("residual", "overlap", "score", "off actor", "too near", "unexplained")
 LEARNED_WEIGHTS = (1.32, -6.22, -6.01, 2.72, 0.59, 5.65)
 LEARNED_BIAS = 5.77
@@ -18,7 +18,7 @@ LEARNED_BIAS = 5.77
 
 
 class FailureTest(Enum):
-    """How a failed pose is told."""
+    """Method of the failure test."""
 
     LEARNED = "learned"
     PUBLISHED = "published"
@@ -34,25 +34,24 @@ def failure_features(quality: FitQuality) -> Array:
 
 
 def failure_probability(quality: FitQuality) -> float:
-    """Return the chance, 0 to 1, that the joints of a pose are off by more than 10 cm.
+    """Return the probability that the mean joint error of a pose exceeds 10 cm.
 
-    A logistic regression; `.ci/learn_failures.py` learned it from trackers of known errors.
+    A logistic regression; `.ci/learn_failures.py` fits the weights, with ground truth.
     """
     odds = float(failure_features(quality) @ LEARNED_WEIGHTS) + LEARNED_BIAS
     return float(1.0 / (1.0 + np.exp(-odds)))
 
 
 def has_failed(quality: FitQuality, test: FailureTest, chance: float = 0.5) -> bool:
-    """Tell whether a pose has failed.
+    """Return whether a pose has failed.
 
     Parameters
     ----------
     quality : FitQuality
     test : FailureTest
-        `PUBLISHED` is that of [WZC12]_, section 5: depths 2.5 cm apart, or less than 90 %
-        overlap.
+        `PUBLISHED` uses [WZC12]_, section 5: residual above 2.5 cm or overlap below 90 %.
     chance : float
-        Of having failed, from which on `LEARNED` says so.
+        Probability threshold of `LEARNED`.
 
     References
     ----------

@@ -1,4 +1,4 @@
-"""Let somebody look on: each pose as soon as it is found."""
+"""Previews of poses during tracking: a callback per tracked pose."""
 
 from collections.abc import Callable
 from typing import NamedTuple
@@ -13,7 +13,7 @@ Array = NDArray[np.float64]
 
 
 class PosePreview(NamedTuple):
-    """One frame of a body that is being tracked; later ones of the same frame are better."""
+    """One frame of a body during tracking; later previews of the same frame supersede it."""
 
     body: BodyModel
     frame: int
@@ -23,17 +23,17 @@ class PosePreview(NamedTuple):
 
 
 PoseCallback = Callable[[PosePreview], None]
-"""Called with each pose that is found, in the order of solving: frames come again."""
+"""Called with each tracked pose, in solving order; frames can repeat."""
 
 
-def ignore_pose(found: PosePreview) -> None:
-    """The `PoseCallback` of scripts and tests: nobody looks on."""
+def ignore_pose(preview: PosePreview) -> None:
+    """Ignore a pose: the default `PoseCallback`."""
 
 
 def offset_frames(on_pose: PoseCallback, first: int) -> PoseCallback:
-    """Return an `PoseCallback` for a callee whose frame 0 is the caller's frame `first`."""
+    """Return a `PoseCallback` for a callee whose frame 0 is the caller's frame `first`."""
 
-    def tell(found: PosePreview) -> None:
-        on_pose(found._replace(frame=first + found.frame))
+    def callback(preview: PosePreview) -> None:
+        on_pose(preview._replace(frame=first + preview.frame))
 
-    return tell
+    return callback

@@ -1,4 +1,4 @@
-"""Find the pose whose picture fits what was observed: damped Gauss-Newton steps over terms."""
+"""Register a pose to an observation by damped Gauss-Newton steps over the terms."""
 
 from collections.abc import Callable
 from dataclasses import dataclass, replace
@@ -30,24 +30,24 @@ from ..terms import (
 Array = NDArray[np.float64]
 Prior = Callable[[Array], PoseEquations]
 
-_CLOSE_ENOUGH = 1e-3
-"""Radians or metres; a shorter step ends the search."""
-_HARDER, _EASIER = 5.0, 0.3
+_MIN_STEP = 1e-3
+"""A shorter step, radians or metres, ends the search."""
+_DAMPING_INCREASE, _DAMPING_DECREASE = 5.0, 0.3
 _METRES_PER_RADIAN = 0.5
-"""Shifts of the hips are limited to this times what turns are limited to."""
+"""Ratio of the translation limit of the hips to the rotation limit."""
 
 
 @dataclass(frozen=True, eq=False)
 class Registered:
-    """A pose, and what is asked of it.
+    """A registered pose and its normal equations.
 
     Attributes
     ----------
     hypothesis : Hypothesis
     equations : PoseEquations
-        Of likelihood and priors, at this pose.
+        Equations of likelihood and priors at this pose.
     iterations : int
-        Pictures drawn to find it.
+        Number of rendered hypotheses.
     """
 
     hypothesis: Hypothesis
@@ -70,22 +70,22 @@ def register_pose(
 ) -> Registered:
     """Return the most probable pose near `pose`.
 
-    Terms tell how the surface should move, and are summed as one 6 x 6 matrix per segment;
-    the coordinates see them once per step [WZC12]_, section 3.1. Steps are damped
-    (Levenberg-Marquardt) and limited; with `accept_only_better` a step that raises the cost is
-    taken back and tried shorter. The first steps look at a quarter of the pixels.
+    The terms are summed into one 6 x 6 matrix per segment, and transformed to the coordinates
+    once per step [WZC12]_, section 3.1. Steps are damped (Levenberg-Marquardt) and limited.
+    With `accept_only_better` a step that raises the cost is rejected and repeated with more
+    damping. The first steps use a quarter of the pixels.
 
     Parameters
     ----------
     body : BodyModel
     pose : shape (36,)
     observation : Observation
-        It must show something of the actor.
+        Not empty.
     prior : callable
-        Takes a pose and returns what is asked of it.
+        Maps a pose to its prior equations.
     settings : TrackerSettings
     memory : PreviousFrame, optional
-        The frame before, with its colours.
+        The previous frame with its colors.
 
     References
     ----------
@@ -95,16 +95,16 @@ def register_pose(
     coarse = min(settings.coarse_iterations, settings.iterations - 1)
     half = observation.every(2)
     if coarse and not half.empty:
-        scene = _Scene(body, half, prior, settings, memory)
-        pose = _descend(scene, pose, coarse).pose
-    scene = _Scene(body, observation, prior, settings, memory)
-    found = _descend(scene, pose, settings.iterations - coarse)
-    return replace(found, iterations=found.iterations + coarse)
+        objective = _Objective(body, half, prior, settings, memory)
+        pose = _descend(objective, pose, coarse).pose
+    objective = _Objective(body, observation, prior, settings, memory)
+    registered = _descend(objective, pose, settings.iterations - coarse)
+    return replace(registered, iterations=registered.iterations + coarse)
 
 
 @dataclass(frozen=True, eq=False)
-class _Scene:
-    """What stays the same while a pose is searched."""
+class _Objective:
+    """The constant inputs of one registration."""
 
     body: BodyModel
     observation: Observation
@@ -113,36 +113,36 @@ class _Scene:
     memory: PreviousFrame | None
 
     def evaluate(self, pose: Array) -> Registered:
-        """Return what likelihood, prior and joint limits ask of this pose."""
+        """Return the equations of likelihood, prior and joint limits at a pose."""
         hypothesis = render_hypothesis(self.body, pose, self.observation.camera)
         rows = likelihood_rows(hypothesis, self.observation, self.settings, self.memory)
-        asked = [
+        equations = [
             equations_in_coordinates([segment_equations(rows)], hypothesis.twists),
             self.prior(pose),
             joint_limits(pose, self.settings.limit_weight),
             natural_stance(pose, self.settings.natural_weight, self.settings.ankle_weight),
         ]
-        return Registered(hypothesis, sum_equations(asked), 1)
+        return Registered(hypothesis, sum_equations(equations), 1)
 
 
-def _descend(scene: _Scene, pose: Array, iterations: int) -> Registered:
-    settings = scene.settings
+def _descend(objective: _Objective, pose: Array, iterations: int) -> Registered:
+    settings = objective.settings
     damping = settings.damping
-    best = scene.evaluate(pose)
+    best = objective.evaluate(pose)
     for iteration in range(1, iterations):
         change = solve_step(best.equations, np.full(N_COORDINATES, damping))
-        if np.abs(change).max() < _CLOSE_ENOUGH:
+        if np.abs(change).max() < _MIN_STEP:
             break
-        trial = scene.evaluate(best.pose + _limited(change, settings))
+        trial = objective.evaluate(best.pose + _limited(change, settings))
         if not settings.accept_only_better or trial.equations.cost <= best.equations.cost:
-            best, damping = trial, max(damping * _EASIER, settings.damping)
+            best, damping = trial, max(damping * _DAMPING_DECREASE, settings.damping)
         else:
-            damping = max(damping, 1.0) * _HARDER
+            damping = max(damping, 1.0) * _DAMPING_INCREASE
         best = replace(best, iterations=iteration + 1)
     return best
 
 
 def _limited(change: Array, settings: TrackerSettings) -> Array:
-    longest = max(np.abs(change[3:]).max(), np.abs(change[:3]).max() / _METRES_PER_RADIAN)
-    limited: Array = change * min(1.0, settings.longest_step / max(longest, 1e-12))
+    largest_step = max(np.abs(change[3:]).max(), np.abs(change[:3]).max() / _METRES_PER_RADIAN)
+    limited: Array = change * min(1.0, settings.longest_step / max(largest_step, 1e-12))
     return limited

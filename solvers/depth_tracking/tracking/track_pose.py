@@ -1,4 +1,4 @@
-"""Follow a body through a depth recording, frame by frame, from a first pose."""
+"""Track a body through a depth recording, frame by frame, from an initial pose."""
 
 from dataclasses import dataclass
 
@@ -32,19 +32,19 @@ Array = NDArray[np.float64]
 
 @dataclass(frozen=True, eq=False)
 class TrackedMotion:
-    """Where the body was in every frame.
+    """The tracked pose of every frame.
 
     Attributes
     ----------
     poses : shape (n_frames, 36)
         Coordinates in the order of `COORDINATES`; metres and radians, camera frame.
     joints : Tracks
-        The `JOINTS`, named by humanoid roles, in the camera's frame (x right, y down,
+        The `JOINTS`, named by humanoid roles, in the camera frame (x right, y down,
         z forward), with the confidence of each joint and frame.
     residual : shape (n_frames,), metres
-        Mean distance in depth where body and actor overlap; NaN where nothing was seen.
+        Mean distance in depth where body and actor overlap; NaN without an actor.
     coverage : shape (n_frames,)
-        Share of the pixels of body or actor that show both.
+        Intersection over union of the pixels of body and actor.
     """
 
     poses: Array
@@ -62,11 +62,11 @@ def track_pose(
     settings: TrackerSettings = DEFAULT_TRACKER,
     progress: Progress = unwatched,
 ) -> TrackedMotion:
-    """Follow a body from its pose in the first frame.
+    """Track a body from its pose in the first frame.
 
-    Each frame starts where the frames before foretell it to be, and is registered by
-    `register_pose`. There is no recovery from failures here; `capture` adds it. Depth other
-    than the actor's must have been removed.
+    `register_pose` registers each frame, starting from the pose predicted from the previous
+    frames. This function does not recover from failures; `capture` does. The depth images
+    must contain only the actor.
 
     Parameters
     ----------
@@ -75,49 +75,49 @@ def track_pose(
     initial_pose : shape (36,)
         Near the pose in frame 0.
     motion_prior : MotionPrior, optional
-        Recorded motions; each pose is drawn to what followed the most similar moments.
+        Recorded motions; each pose is pulled toward the successors of similar poses.
     settings : TrackerSettings
     progress : Progress
 
     Returns
     -------
     TrackedMotion
-        A frame without an actor keeps the pose foretold, with confidence 0.
+        A frame without an actor keeps the predicted pose, with confidence 0.
 
     Raises
     ------
     InvalidMotionError
-        The pose is none.
+        The initial pose has a wrong shape or NaN.
     SolveCancelled
         Raised by `progress`.
     """
     pose = np.asarray(initial_pose, dtype=np.float64)
     if pose.shape != (N_COORDINATES,) or not np.isfinite(pose).all():
-        raise InvalidMotionError(f"A pose has {N_COORDINATES} coordinates, none of them NaN.")
-    poses, figures, memory = [pose], [], None
+        raise InvalidMotionError(f"A pose needs {N_COORDINATES} finite coordinates.")
+    poses, qualities, memory = [pose], [], None
     for frame in range(depth.n_frames):
         observation = observe(depth, frame, settings.picture_width)
         prior = next_pose_prior(poses[1:] or poses, settings, motion_prior)
         pose, quality, memory = track_frame(body, prior, observation, settings, memory)
         poses.append(pose)
-        figures.append(quality)
+        qualities.append(quality)
         progress((frame + 1) / depth.n_frames, "Tracking")
-    return assemble_motion(body, np.array(poses[1:]), figures, depth.frame_rate)
+    return assemble_motion(body, np.array(poses[1:]), qualities, depth.frame_rate)
 
 
 @dataclass(frozen=True, eq=False)
 class NextPose:
-    """What the frames before say about the next pose.
+    """The prior of the next pose, from the previous frames.
 
     Attributes
     ----------
     expected : shape (36,)
     weights : shape (36,)
-        How much the pose must be as expected.
+        Weights of the deviation from `expected`.
     last : shape (36,)
-        The frame before.
+        The pose of the previous frame.
     similar : LocalPca or None
-        What followed similar moments.
+        Local model of the successors of similar poses.
     similar_weight : float
     """
 
@@ -128,17 +128,17 @@ class NextPose:
     similar_weight: float = 0.0
 
     def __call__(self, pose: Array) -> PoseEquations:
-        """Return what is asked of a pose."""
-        near = stay_near(pose, self.expected, self.weights)
+        """Return the prior equations at a pose."""
+        temporal = stay_near(pose, self.expected, self.weights)
         if self.similar is None:
-            return near
-        return sum_equations([near, self.similar.equations(pose, self.similar_weight)])
+            return temporal
+        return sum_equations([temporal, self.similar.equations(pose, self.similar_weight)])
 
 
 def next_pose_prior(
     poses: list[Array], settings: TrackerSettings, motion_prior: MotionPrior | None = None
 ) -> NextPose:
-    """Return what the poses (36,) of the frames before say about the next one."""
+    """Return the prior of the next pose from the poses (36,) of the previous frames."""
     weights = np.full(N_COORDINATES, settings.turn_weight)
     weights[:3] = settings.shift_weight
     similar = None if motion_prior is None else local_pca(motion_prior, poses[-1])
@@ -153,27 +153,27 @@ def track_frame(
     settings: TrackerSettings,
     memory: PreviousFrame | None = None,
 ) -> tuple[Array, FitQuality, PreviousFrame | None]:
-    """Find the pose (36,) of one frame, near the one expected.
+    """Track one frame, starting near the expected pose.
 
-    Returns it, its figures, and what the next frame should remember of this one.
+    Returns the pose (36,), its fit quality, and the data that the next frame needs.
     """
     if observation.empty:
         return prior.expected, quality_without_actor(), None
     start = prior.expected if settings.start_ahead else prior.last
-    found = register_pose(body, start, observation, prior, settings, memory)
-    quality = fit_quality(body, found, observation, settings.limit)
-    return found.pose, quality, PreviousFrame(found.hypothesis.frames, observation)
+    registered = register_pose(body, start, observation, prior, settings, memory)
+    quality = fit_quality(body, registered, observation, settings.limit)
+    return registered.pose, quality, PreviousFrame(registered.hypothesis.frames, observation)
 
 
 def assemble_motion(
-    body: BodyModel, poses: Array, figures: list[FitQuality], frame_rate: float
+    body: BodyModel, poses: Array, qualities: list[FitQuality], frame_rate: float
 ) -> TrackedMotion:
-    """Put the poses and figures of all frames together."""
+    """Assemble the poses and fit qualities of all frames."""
     positions = joint_positions(body, segment_frames(body, poses))
-    confidence = np.array([quality.confidence for quality in figures])
+    confidence = np.array([quality.confidence for quality in qualities])
     return TrackedMotion(
         poses,
         Tracks(JOINTS, positions, frame_rate, confidence),
-        np.array([quality.residual for quality in figures]),
-        np.array([quality.coverage for quality in figures]),
+        np.array([quality.residual for quality in qualities]),
+        np.array([quality.coverage for quality in qualities]),
     )

@@ -100,7 +100,9 @@ def test_esc_before_the_first_pose_keeps_nothing_and_says_so(press, window, blan
 
     assert button.modal(window.context, event("ESC", "PRESS")) == {"CANCELLED"}
 
-    assert window.reports == [({"ERROR"}, "No pose was found yet: there is nothing to keep.")]
+    assert window.reports == [
+        ({"ERROR"}, "No pose was tracked yet. Cancel later to keep a result.")
+    ]
     assert not blank.data.armatures and nothing_is_left(window)
 
 

@@ -19,7 +19,7 @@ def track(*people, n_frames=151):
         visible = sorted(
             ((area, at) for area, at in visible if at is not None), key=lambda one: -one[0]
         )
-        centers = np.array([at for _, at in seen], dtype=np.float64).reshape(-1, 3)
+        centers = np.array([at for _, at in visible], dtype=np.float64).reshape(-1, 3)
         areas = np.array([area for area, _ in visible])
         return Bodies(np.zeros((1, 1)), 1, np.zeros((1, 1), np.intp), areas, centers)
 

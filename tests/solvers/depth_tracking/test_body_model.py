@@ -130,7 +130,7 @@ def test_impossible_bodies_are_refused(lengths, radii, words):
     assert (len(LENGTHS), len(CAPSULES)) == (20, 19)
     with pytest.raises(InvalidMotionError, match=words):
         BodyModel(lengths, radii)
-    with pytest.raises(InvalidMotionError, match=r"Nobody is 3 m tall"):
+    with pytest.raises(InvalidMotionError, match=r"The stature 3 m is invalid"):
         default_body(3.0)
 
 

@@ -12,7 +12,7 @@ from solvers.depth_tracking.body.model import default_body
 from solvers.depth_tracking.body.tables import CAPSULES
 from solvers.depth_tracking.capturing.calibrate_body import (
     CalibrationSettings,
-    body_of_cylinders,
+    body_from_cylinders,
     calibrate_body,
 )
 from solvers.depth_tracking.capturing.sample_cylinders import Cylinder, sample_cylinder
@@ -90,13 +90,13 @@ def test_joints_lie_between_cylinders_and_sides_are_averaged():
         "leftLowerArm": Cylinder(np.array([[0, 0.32, 2], [0, 0.56, 2.0]]), 0.04, 1.0),
         "rightUpperArm": Cylinder(np.array([[1, 0, 2], [1, 0.36, 2.0]]), 0.06, 1.0),
     }
-    body = body_of_cylinders(arm, np.nan)
+    body = body_from_cylinders(arm, np.nan)
     np.testing.assert_allclose(body.length("leftUpperArm"), (0.30 + 0.36) / 2)
     np.testing.assert_allclose(body.length("leftLowerArm"), 0.26)
     np.testing.assert_allclose(body.length("rightLowerArm"), 0.26)
     for part, radius in (("leftUpperArm", 0.055), ("rightLowerArm", 0.04)):
         np.testing.assert_allclose(body.radii[CAPSULES.index(part)], radius)
-    longer = body_of_cylinders(arm, 0.7)
+    longer = body_from_cylinders(arm, 0.7)
     trunk = sum(longer.length(name) for name in ("hips", "spine", "chest"))
     np.testing.assert_allclose(trunk, 0.7)
 
@@ -135,7 +135,7 @@ def test_frames_that_show_too_little_are_refused(forest):
     with pytest.raises(InvalidMotionError, match="no frame 3"):
         calibrate_body(whole, 3, forest)
     empty = replace(whole, read_depth=lambda frame: np.zeros((240, 320), np.float32))
-    with pytest.raises(InvalidMotionError, match="Frame 0 shows 0 arms and legs"):
+    with pytest.raises(InvalidMotionError, match="Frame 0 shows only 0 arms and legs"):
         calibrate_body(empty, 0, forest)
     head = whole.frame(0).copy()
     head[50:] = 0.0

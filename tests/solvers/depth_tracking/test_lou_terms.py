@@ -28,7 +28,7 @@ from solvers.depth_tracking.terms.hypothesis import render_hypothesis
 from solvers.depth_tracking.terms.observation import Observation
 from solvers.depth_tracking.terms.surface import (
     PreviousFrame,
-    remembered_intensities,
+    previous_intensities,
     surface_term,
 )
 from solvers.depth_tracking.terms.tracker_settings import DEFAULT_TRACKER, LOU12, WZC12
@@ -111,7 +111,7 @@ def test_colours_are_remembered_where_the_skin_moved():
     now, after = striped(moved)
     chosen = np.arange(len(now.points))
 
-    remembered = remembered_intensities(now, chosen, PreviousFrame(then.frames, before))
+    remembered = previous_intensities(now, chosen, PreviousFrame(then.frames, before))
 
     actual = after.intensities[now.picture.pixels]
     known = np.isfinite(remembered)

@@ -21,7 +21,7 @@ from solvers.depth_tracking.detection.part_capsules import (
     part_axes,
 )
 from solvers.depth_tracking.detection.pose_score import pose_score
-from solvers.depth_tracking.detection.pose_trials import exchange_orders, trial_poses
+from solvers.depth_tracking.detection.pose_trials import swap_orders, trial_poses
 from solvers.depth_tracking.detection.robust_parts import FoundParts, find_parts
 from solvers.depth_tracking.forest.parts import MIRRORED_PARTS, N_PARTS, PARTS
 from solvers.depth_tracking.forest.pixel_forest import PixelParts
@@ -93,7 +93,7 @@ def test_centres_are_found_among_wrong_pixels(rng, wrong):
         place = PARTS.index(part)
         assert found.weights[place] >= 0.4
         capsule = PART_CAPSULES[place]
-        far = capsule_distances(BODY, frames, found.centres[place][None])[0, capsule]
+        far = capsule_distances(BODY, frames, found.centers[place][None])[0, capsule]
         assert far < 0.03
     true_part = {point.tobytes(): part for point, part in zip(points, parts, strict=True)}
     right = [
@@ -108,7 +108,7 @@ def test_parts_that_are_not_there_are_not_found(rng):
     left = np.char.startswith(np.array(PARTS), "left")[parts]
     found = find_parts(points[~left], parts[~left], BODY, rng)
     assert not found.weights[np.char.startswith(np.array(PARTS), "left")].any()
-    assert np.isnan(found.centres[PARTS.index("leftFoot")]).all()
+    assert np.isnan(found.centers[PARTS.index("leftFoot")]).all()
 
 
 @pytest.mark.parametrize("yaw", [0.0, 1.2, 3.0])
@@ -160,7 +160,7 @@ def test_the_true_pose_scores_best(rng):
 
 
 def test_trials_exchange_sides_in_every_way():
-    orders = exchange_orders()
+    orders = swap_orders()
     assert len({tuple(order) for order in orders}) == 4
     np.testing.assert_array_equal(orders[0], np.arange(N_PARTS))
     np.testing.assert_array_equal(orders[-1], MIRRORED_PARTS)
@@ -184,9 +184,9 @@ def test_one_of_the_trials_finds_a_pose_whose_legs_were_told_wrong(rng):
 def test_exchanged_parts_carry_their_places(rng):
     centres = rng.normal(size=(N_PARTS, 3))
     parts = FoundParts(centres, np.arange(N_PARTS) / N_PARTS, centres, np.arange(N_PARTS))
-    other = parts.exchanged(MIRRORED_PARTS)
+    other = parts.swap_parts(MIRRORED_PARTS)
     left, right = PARTS.index("leftFoot"), PARTS.index("rightFoot")
-    np.testing.assert_array_equal(other.centres[left], centres[right])
+    np.testing.assert_array_equal(other.centers[left], centres[right])
     np.testing.assert_array_equal(other.labels[left], right)
 
 

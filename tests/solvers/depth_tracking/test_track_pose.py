@@ -149,7 +149,7 @@ def test_tells_progress_and_can_be_cancelled():
 
 @pytest.mark.parametrize("pose", [np.zeros(33), np.full(36, np.nan)])
 def test_no_pose_is_refused(pose):
-    with pytest.raises(InvalidMotionError, match="36 coordinates"):
+    with pytest.raises(InvalidMotionError, match="36 finite coordinates"):
         track_pose(recorded(waving(1)), BODY, pose)
 
 

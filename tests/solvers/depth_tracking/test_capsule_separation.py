@@ -14,7 +14,11 @@ from solvers.depth_tracking.body.normal_equations import (
 from solvers.depth_tracking.body.pose_priors import natural_stance
 from solvers.depth_tracking.body.tables import CAPSULE_SEGMENTS
 from solvers.depth_tracking.terms.hypothesis import render_hypothesis
-from solvers.depth_tracking.terms.overlap import RADIUS_FRACTION, _closest, separation_term
+from solvers.depth_tracking.terms.overlap import (
+    RADIUS_FRACTION,
+    _closest_points,
+    separation_term,
+)
 
 BODY = default_body()
 
@@ -22,7 +26,7 @@ BODY = default_body()
 def test_closest_points_of_segments_equal_a_fine_search(rng):
     first, second = rng.normal(size=(2, 20, 2, 3))
 
-    near, far = _closest(first, second)
+    near, far = _closest_points(first, second)
 
     shares = np.linspace(0.0, 1.0, 401)
     for pair in range(20):

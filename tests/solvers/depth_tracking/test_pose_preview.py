@@ -28,7 +28,7 @@ def test_every_pass_is_shown_and_the_last_poses_are_the_result():
 
 def test_while_the_body_is_looked_for_poses_are_shown_where_they_are_in_the_take(monkeypatch):
     """The actor comes nearer, and is seen from frame 4 on."""
-    monkeypatch.setattr(find_body, "CLIP", 4)
+    monkeypatch.setattr(find_body, "CLIP_FRAMES", 4)
     truth = waving(8)
     truth[:, 2] = np.linspace(3.2, 2.8, 8)
     drawn = recorded(truth)
@@ -85,5 +85,5 @@ def test_a_body_that_was_given_up_is_left_out_and_nothing_is_refused():
                                      30.0)  # fmt: skip
 
     assert first == 7 and kept.motion.n_frames == 1 and kept.body is seen[0].body
-    with pytest.raises(InvalidMotionError, match="nothing to keep"):
+    with pytest.raises(InvalidMotionError, match="No pose was tracked yet"):
         unfinished_capture([], 30.0)
