@@ -1,4 +1,4 @@
-"""Grow one randomised tree, level by level, over all of its pixels at once."""
+"""Grow one randomized tree, level by level, over all pixels at once."""
 
 from dataclasses import dataclass
 from typing import NamedTuple
@@ -15,42 +15,43 @@ Floats = NDArray[np.float32]
 Nodes = NDArray[np.int32]
 
 CM_PER_M = 100.0
-_ABOVE_ZERO = (15, 30, 50, 80, 120, 180, 260, 380, 550, 1000)
+_POSITIVE_THRESHOLDS = (15, 30, 50, 80, 120, 180, 260, 380, 550, 1000)
 THRESHOLDS_MM = np.array(
-    [*(-edge for edge in reversed(_ABOVE_ZERO)), 0, *_ABOVE_ZERO], dtype=np.int16
+    [*(-edge for edge in reversed(_POSITIVE_THRESHOLDS)), 0, *_POSITIVE_THRESHOLDS],
+    dtype=np.int16,
 )
-"""Thresholds that are tried, millimetres. Beyond the outermost, one place saw nothing."""
+"""Tested thresholds. Differences beyond the outermost involve the background."""
 N_BINS = len(THRESHOLDS_MM) + 1
-_OUTERMOST = _ABOVE_ZERO[-1] + 1
-_BIN_OF = np.searchsorted(THRESHOLDS_MM, np.arange(-_OUTERMOST, _OUTERMOST + 1)).astype(
+_CLIP_VALUE = _POSITIVE_THRESHOLDS[-1] + 1
+_BIN_OF_VALUE = np.searchsorted(THRESHOLDS_MM, np.arange(-_CLIP_VALUE, _CLIP_VALUE + 1)).astype(
     np.int32
 )
 PIXELS_PER_BLOCK = 1 << 15
-"""Pixels of which a feature is computed at a time: few enough for the processor's cache."""
+"""Pixels per feature computation, chosen to fit the processor's cache."""
 NODES_PER_BLOCK = 2048
 AT_LEAF = -1
 
 
 @dataclass(frozen=True, kw_only=True)
 class TreeSettings(Settings):
-    """How large a tree becomes, and how hard each of its tests is looked for."""
+    """Size of a tree, and number of tested features."""
 
     levels: int = setting(
-        16, "Most tests on the way to a leaf; more is finer and larger", minimum=1, maximum=24
+        16, "Maximum depth of the tree; higher is finer and larger", minimum=1, maximum=24
     )
     n_candidates: int = setting(
-        100, "Features tried at each level; more finds better ones and takes longer",
+        100, "Features tested per level; more give better splits and take longer",
         minimum=1, maximum=100_000,
     )  # fmt: skip
     least_pixels: int = setting(
-        40, "Nodes of fewer pixels are not split; more makes a smaller tree",
+        40, "Minimum pixels of a split node; higher gives a smaller tree",
         minimum=2, maximum=1_000_000,
     )  # fmt: skip
     reach: float = setting(
-        1.0, "How far from a pixel a feature looks", unit="m", minimum=0.05, maximum=1.27
+        1.0, "Maximum offset of a feature from its pixel", unit="m", minimum=0.05, maximum=1.27
     )
     first_pixels: int = setting(
-        300_000, "Pixels that the first levels look at; all are looked at further down",
+        300_000, "Pixels used by the first levels; deeper levels use all",
         minimum=100, maximum=1_000_000_000,
     )  # fmt: skip
 
@@ -64,9 +65,9 @@ class Tree:
     splits : bool, shape (n_nodes,)
     offsets : int8, shape (n_splits, 4), centimetres
     thresholds : int16, shape (n_splits,), millimetres
-        A pixel whose difference is not above it goes to the first child.
+        Pixels at or below the threshold go to the first child.
     shares : uint8, shape (n_leaves, N_PARTS)
-        How often pixels of each part reach the leaf, the sum being about 255.
+        Part histogram of each leaf, with a sum of about 255.
     """
 
     splits: NDArray[np.bool_]
@@ -75,8 +76,8 @@ class Tree:
     shares: NDArray[np.uint8]
 
 
-class _Level(NamedTuple):
-    """What is known of the nodes of one level while features are tried."""
+class _BestTests(NamedTuple):
+    """Best test of each node of one level."""
 
     gain: Floats
     feature: Nodes
@@ -91,10 +92,10 @@ def grow_tree(
     *,
     progress: Progress = unwatched,
 ) -> Tree:
-    """Grow a tree that tells the parts (n,) of pixels, in any order of theirs.
+    """Grow a tree that classifies the parts (n,) of pixels, independent of their order.
 
-    At each level the same random features are tried in all nodes, and each node takes the
-    feature and threshold that gain it most information.
+    At each level the same random features are tested in all nodes. Each node takes the feature
+    and threshold with the largest information gain.
     """
     node = np.zeros(len(parts), dtype=np.int32)
     n_nodes, splits, offsets, thresholds = 1, [], [], []
@@ -112,8 +113,8 @@ def grow_tree(
         splits.append(split)
         offsets.append(features[best.feature[split]])
         thresholds.append(THRESHOLDS_MM[best.edge[split]])
-        shares.append(_told_shares(counts[~split]))
-        node = _moved_on(views, node, split, features, best)
+        shares.append(_leaf_shares(counts[~split]))
+        node = _next_nodes(views, node, split, features, best)
         n_nodes = 2 * int(split.sum())
         progress((level + 1) / (settings.levels + 1), "Growing a tree")
         if not n_nodes:
@@ -127,12 +128,12 @@ def grow_tree(
 
 
 def random_offsets(n: int, reach: float, rng: np.random.Generator) -> NDArray[np.int8]:
-    """Return n features (n, 4), centimetres: places near and far alike, or one at the pixel."""
+    """Return n features (n, 4), centimetres: log-uniform offsets, or one at the pixel."""
     angle = rng.uniform(0.0, 2.0 * np.pi, (n, 2))
-    way = np.exp(rng.uniform(np.log(0.02), np.log(reach), (n, 2)))
-    way[rng.random(n) < 0.25, 1] = 0.0
-    places = np.stack([way * np.cos(angle), way * np.sin(angle)], axis=2).reshape(n, 4)
-    rounded: NDArray[np.int8] = np.rint(places * CM_PER_M).astype(np.int8)
+    radius = np.exp(rng.uniform(np.log(0.02), np.log(reach), (n, 2)))
+    radius[rng.random(n) < 0.25, 1] = 0.0
+    offsets = np.stack([radius * np.cos(angle), radius * np.sin(angle)], axis=2).reshape(n, 4)
+    rounded: NDArray[np.int8] = np.rint(offsets * CM_PER_M).astype(np.int8)
     return rounded
 
 
@@ -145,29 +146,32 @@ def _best_tests(
     settings: TreeSettings,
     level: int,
     rng: np.random.Generator,
-) -> _Level:
+) -> _BestTests:
     """Return the feature, the edge and the gain of the best test of each node."""
     n_nodes = len(open_nodes)
-    best = _Level(
+    best = _BestTests(
         np.zeros(n_nodes, dtype=np.float32),
         np.zeros(n_nodes, dtype=np.int32),
         np.zeros(n_nodes, dtype=np.int32),
     )
     rank = np.where(open_nodes, np.cumsum(open_nodes) - 1, AT_LEAF).astype(np.int32)
     chosen = np.flatnonzero((node >= 0) & open_nodes[node])
-    wanted = settings.first_pixels * 2 ** (level // 2)
-    if len(chosen) > wanted:
-        chosen = np.sort(rng.choice(chosen, wanted, replace=False))
+    max_pixels = settings.first_pixels * 2 ** (level // 2)
+    if len(chosen) > max_pixels:
+        chosen = np.sort(rng.choice(chosen, max_pixels, replace=False))
     if not len(chosen):
         return best
-    looked, key = views.part(chosen), rank[node[chosen]] * (N_BINS * N_PARTS) + parts[chosen]
-    which = np.flatnonzero(open_nodes)
-    for number, feature in enumerate(features):
-        gain, edge = _gains(_histograms(looked, key, feature, len(which)))
-        better = which[gain > best.gain[which]]
-        told = rank[better]
-        best.gain[better], best.edge[better] = gain[told], edge[told]
-        best.feature[better] = number
+    selected_views, key = (
+        views.select(chosen),
+        rank[node[chosen]] * (N_BINS * N_PARTS) + parts[chosen],
+    )
+    open_indices = np.flatnonzero(open_nodes)
+    for feature_index, feature in enumerate(features):
+        gain, edge = _gains(_histograms(selected_views, key, feature, len(open_indices)))
+        better = open_indices[gain > best.gain[open_indices]]
+        ranks = rank[better]
+        best.gain[better], best.edge[better] = gain[ranks], edge[ranks]
+        best.feature[better] = feature_index
     return best
 
 
@@ -175,38 +179,41 @@ def _histograms(
     views: PixelFeatures, key: NDArray[np.int32], feature: NDArray[np.int8], n_nodes: int
 ) -> NDArray[np.int64]:
     """Count pixels by node, bin of the feature and part: (n_nodes, N_BINS, N_PARTS)."""
-    spots = np.empty(len(key), dtype=np.int32)
+    keys = np.empty(len(key), dtype=np.int32)
     for start in range(0, len(key), PIXELS_PER_BLOCK):
         block = slice(start, start + PIXELS_PER_BLOCK)
-        spots[block] = key[block] + N_PARTS * _bins(views.part(block), feature)
-    counts = np.bincount(spots, minlength=n_nodes * N_BINS * N_PARTS)
+        keys[block] = key[block] + N_PARTS * _bins(views.select(block), feature)
+    counts = np.bincount(keys, minlength=n_nodes * N_BINS * N_PARTS)
     return counts.reshape(n_nodes, N_BINS, N_PARTS)
 
 
 def _bins(views: PixelFeatures, feature: NDArray[np.int8]) -> NDArray[np.int32]:
-    told = depth_differences(views, feature.astype(np.float32) / np.float32(CM_PER_M))
-    return np.asarray(_BIN_OF[np.clip(told, -_OUTERMOST, _OUTERMOST) + _OUTERMOST])
+    values = depth_differences(views, feature.astype(np.float32) / np.float32(CM_PER_M))
+    return np.asarray(_BIN_OF_VALUE[np.clip(values, -_CLIP_VALUE, _CLIP_VALUE) + _CLIP_VALUE])
 
 
 def _gains(counts: NDArray[np.int64]) -> tuple[Floats, Nodes]:
-    """Return the most information that a threshold gains each node, and which edge does.
+    """Return the largest information gain of each node, and the index of its threshold.
 
-    Information is in nats times pixels: what the entropies of both children are less than
-    the node's own.
+    The gain is in nats times pixels: the entropy of the node minus that of both children.
     """
     gain = np.empty(len(counts), dtype=np.float32)
     edge = np.empty(len(counts), dtype=np.int32)
     for start in range(0, len(counts), NODES_PER_BLOCK):
         block = slice(start, start + NODES_PER_BLOCK)
         below = np.cumsum(counts[block], axis=1, dtype=np.float32)
-        whole = below[:, -1:]
-        order = _order(below[:, :-1]) + _order(whole - below[:, :-1]) - _order(whole)
-        edge[block] = order.argmax(axis=1)
-        gain[block] = order.max(axis=1)
+        total = below[:, -1:]
+        gains = (
+            _negative_entropy(below[:, :-1])
+            + _negative_entropy(total - below[:, :-1])
+            - _negative_entropy(total)
+        )
+        edge[block] = gains.argmax(axis=1)
+        gain[block] = gains.max(axis=1)
     return gain, edge
 
 
-def _order(counts: Floats) -> Floats:
+def _negative_entropy(counts: Floats) -> Floats:
     """Return minus the entropy times the number of pixels, over the last axis."""
     each = counts * np.log(np.maximum(counts, 1.0))
     total = counts.sum(axis=-1)
@@ -214,34 +221,34 @@ def _order(counts: Floats) -> Floats:
 
 
 def _counts(node: Nodes, parts: NDArray[np.uint8], n_nodes: int) -> NDArray[np.int64]:
-    """Count pixels by node and part; those that have reached a leaf are left out."""
-    going = node >= 0
-    key = node[going] * N_PARTS + parts[going]
+    """Count pixels by node and part; pixels in leaves are excluded."""
+    is_active = node >= 0
+    key = node[is_active] * N_PARTS + parts[is_active]
     return np.bincount(key, minlength=n_nodes * N_PARTS).reshape(n_nodes, N_PARTS)
 
 
-def _told_shares(counts: NDArray[np.int64]) -> NDArray[np.uint8]:
+def _leaf_shares(counts: NDArray[np.int64]) -> NDArray[np.uint8]:
     total = np.maximum(counts.sum(axis=1, keepdims=True), 1)
     shares: NDArray[np.uint8] = np.rint(255.0 * counts / total).astype(np.uint8)
     return shares
 
 
-def _moved_on(
+def _next_nodes(
     views: PixelFeatures,
     node: Nodes,
     split: NDArray[np.bool_],
     features: NDArray[np.int8],
-    best: _Level,
+    best: _BestTests,
 ) -> Nodes:
     """Return the node of each pixel on the next level, or AT_LEAF in a leaf."""
-    moved = np.full(len(node), AT_LEAF, dtype=np.int32)
+    next_nodes = np.full(len(node), AT_LEAF, dtype=np.int32)
     first_child = (2 * (np.cumsum(split) - 1)).astype(np.int32)
     metres = features.astype(np.float32).T / np.float32(CM_PER_M)
     for start in range(0, len(node), PIXELS_PER_BLOCK):
         block = np.arange(start, min(start + PIXELS_PER_BLOCK, len(node)))
         block = block[node[block] >= 0]
         block = block[split[node[block]]]
-        at = node[block]
-        told = depth_differences(views.part(block), metres[:, best.feature[at]])
-        moved[block] = first_child[at] + (told > THRESHOLDS_MM[best.edge[at]])
-    return moved
+        current = node[block]
+        values = depth_differences(views.select(block), metres[:, best.feature[current]])
+        next_nodes[block] = first_child[current] + (values > THRESHOLDS_MM[best.edge[current]])
+    return next_nodes

@@ -1,4 +1,4 @@
-"""The parts of a body that pixels are told apart by: one per segment, halves of the legs."""
+"""The body parts that pixels are classified as: one per segment, two per leg segment."""
 
 from collections.abc import Mapping
 
@@ -21,7 +21,7 @@ PARTS = (
 )
 """Classes of pixels. Each segment of the body is one, as in Wei, Zhang, Chai 2012 (4), and each
 upper and lower leg is two: `leftUpperLeg` is the half at the hip, `leftUpperLegEnd` that at the
-knee. Hands and feet are parts too, since they tell where the limb points."""
+knee. Hands and feet are parts too, because they show the direction of the limb."""
 
 N_PARTS = len(PARTS)
 
@@ -35,14 +35,14 @@ def part_of_role(role: str) -> str:
 
 
 def parts_of_joints(roles: Mapping[int, str], parents: tuple[int, ...]) -> NDArray[np.uint8]:
-    """Return the part, as its place in `PARTS`, of each joint's bone.
+    """Return the part of each joint's bone, as index in `PARTS`.
 
     Parameters
     ----------
     roles : mapping of joint to humanoid role
     parents : tuple of int
         As in a `Skeleton`. A joint without a role, such as a finger, belongs to the part of the
-        nearest joint above that has one; the root's is the hips.
+        nearest ancestor that has one; the root's is the hips.
     """
     parts = np.zeros(len(parents), dtype=np.uint8)
     for joint, parent in enumerate(parents):
@@ -55,7 +55,7 @@ def parts_of_joints(roles: Mapping[int, str], parents: tuple[int, ...]) -> NDArr
 
 
 def mirrored_part(part: str) -> str:
-    """Return the part on the other side of the body; itself for those in the middle."""
+    """Return the part on the other side of the body; central parts are unchanged."""
     if part.startswith("left"):
         return "right" + part.removeprefix("left")
     if part.startswith("right"):
@@ -64,4 +64,4 @@ def mirrored_part(part: str) -> str:
 
 
 MIRRORED_PARTS = np.array([PARTS.index(mirrored_part(part)) for part in PARTS])
-"""Place of each part's counterpart on the other side."""
+"""Index of each part's counterpart on the other side."""

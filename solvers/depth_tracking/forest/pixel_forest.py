@@ -1,4 +1,4 @@
-"""A forest of randomised trees that tells which part of a body each depth pixel sees."""
+"""Random forest that classifies the body part of each depth pixel."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -18,7 +18,7 @@ from .grow_tree import CM_PER_M, Tree
 from .parts import N_PARTS, PARTS
 
 MAX_INT16 = 2**15 - 1
-"""Centimetres or millimetres that a node may compare: those of 16-bit numbers."""
+"""Largest offset or threshold: the range of 16-bit integers."""
 LAYOUT = ArchiveLayout(
     "pixel forest",
     1,
@@ -39,13 +39,13 @@ SHIPPED = Path(__file__).parent / "forest.npz"
 
 @dataclass(frozen=True, eq=False)
 class PixelForest:
-    """Trees whose leaves tell how likely each of the `PARTS` is.
+    """Trees with part probabilities in their leaves.
 
     Attributes
     ----------
     trees : tuple of Tree
     trained_on : str
-        In words.
+        Description of the training data.
     """
 
     trees: tuple[Tree, ...]
@@ -69,11 +69,11 @@ class PixelForest:
 
     @cached_property
     def _nodes(self) -> "_Nodes":
-        return _laid_out(self.trees)
+        return _flatten_trees(self.trees)
 
 
 class _Nodes:
-    """All nodes of all trees behind each other."""
+    """All nodes of all trees, concatenated."""
 
     def __init__(
         self,
@@ -89,14 +89,14 @@ class _Nodes:
 
 @dataclass(frozen=True, eq=False)
 class PixelParts:
-    """Which part each pixel of a body sees.
+    """The classified pixels of a body.
 
     Attributes
     ----------
     rows, columns : int arrays, shape (n,)
-        Pixels that see anything.
+        Pixels with a reading.
     shares : float32, shape (n, N_PARTS)
-        How likely each of the `PARTS` is; sums to one.
+        Probability of each of the `PARTS`; sums to one.
     """
 
     rows: NDArray[np.intp]
@@ -105,40 +105,42 @@ class PixelParts:
 
     @cached_property
     def labels(self) -> NDArray[np.intp]:
-        """The likeliest part of each pixel, as its place in `PARTS`."""
+        """Most probable part of each pixel, as index in `PARTS`."""
         return np.asarray(self.shares.argmax(axis=1))
 
 
 def classify_pixels(depth: DepthImage, camera: Camera, forest: PixelForest) -> PixelParts:
-    """Tell the part that each pixel sees which sees anything.
+    """Classify the body part of each pixel with a reading.
 
     Parameters
     ----------
     depth : float32, shape (height, width), metres
-        Of nothing but the body; 0: no reading.
+        Contains only the body; 0: no reading.
     camera : Camera
     forest : PixelForest
-        Its trees' answers are averaged: Wei, Zhang, Chai 2012, eq. 13.
+        The probabilities of its trees are averaged: Wei, Zhang, Chai 2012, eq. 13.
     """
     rows, columns = np.nonzero(depth)
-    pictures = pad_depth_image(depth)[np.newaxis]
+    images = pad_depth_image(depth)[np.newaxis]
     nodes = forest._nodes
     n_trees = len(forest.trees)
-    views = pixel_features(pictures, np.zeros(len(rows), dtype=np.intp), rows, columns, camera)
-    views = views.part(np.tile(np.arange(len(rows)), n_trees))
-    at = np.repeat(nodes.roots, len(rows))
-    going = np.arange(len(at))
-    while len(going):
-        here = at[going]
-        told = depth_differences(views, nodes.offsets[:, here])
-        at[going] = here = nodes.children[here] + (told > nodes.thresholds[here])
-        on = np.flatnonzero(nodes.children[here] >= 0)
-        if len(on) < len(going):
-            going, views = going[on], views.part(on)
-    leaves = (-1 - nodes.children[at]).reshape(n_trees, len(rows))
+    views = pixel_features(images, np.zeros(len(rows), dtype=np.intp), rows, columns, camera)
+    views = views.select(np.tile(np.arange(len(rows)), n_trees))
+    current = np.repeat(nodes.roots, len(rows))
+    active = np.arange(len(current))
+    while len(active):
+        current_nodes = current[active]
+        values = depth_differences(views, nodes.offsets[:, current_nodes])
+        current[active] = current_nodes = nodes.children[current_nodes] + (
+            values > nodes.thresholds[current_nodes]
+        )
+        still_active = np.flatnonzero(nodes.children[current_nodes] >= 0)
+        if len(still_active) < len(active):
+            active, views = active[still_active], views.select(still_active)
+    leaves = (-1 - nodes.children[current]).reshape(n_trees, len(rows))
     shares = nodes.shares[leaves[0]]
-    for others in leaves[1:]:
-        shares += nodes.shares[others]
+    for leaf in leaves[1:]:
+        shares += nodes.shares[leaf]
     return PixelParts(rows, columns, shares / np.float32(n_trees))
 
 
@@ -152,7 +154,7 @@ def load_pixel_forest(path: Path | str = SHIPPED) -> PixelForest:
     """
     arrays = LAYOUT.read(path)
     arrays["splits"] = arrays["splits"].astype(np.uint8)
-    if fault := _fault(arrays):
+    if fault := _find_fault(arrays):
         raise LAYOUT.damaged(path, fault)
     ends = np.cumsum(arrays["n_nodes"])
     splits = np.unpackbits(arrays["splits"], count=int(ends[-1])).astype(np.bool_)
@@ -169,12 +171,12 @@ def load_pixel_forest(path: Path | str = SHIPPED) -> PixelForest:
     )
 
 
-def _fault(arrays: dict[str, NDArray[Any]]) -> str:
-    """Return what keeps a forest from a file from being used, or nothing."""
+def _find_fault(arrays: dict[str, NDArray[Any]]) -> str:
+    """Return the reason that the arrays of a file are invalid, or an empty string."""
     if tuple(arrays["parts"].tolist()) != PARTS:
-        return "it tells other parts"
+        return "it has other parts"
     n_nodes = arrays["n_nodes"]
-    total = sum(n_nodes.tolist())  # Of Python's integers: NumPy's would wrap around.
+    total = sum(n_nodes.tolist())  # Python integers: NumPy integers would overflow.
     if not len(n_nodes) or len(arrays["splits"]) != -(-total // 8):
         return "its nodes do not fit"
     splits = np.unpackbits(arrays["splits"], count=total)
@@ -186,13 +188,13 @@ def _fault(arrays: dict[str, NDArray[Any]]) -> str:
     }  # fmt: skip
     if wrong := [name for name, size in sizes.items() if len(arrays[name]) != size]:
         return f"the shapes do not fit, first that of {wrong[0]}"
-    return "" if (arrays["shares"].sum(axis=1) > 0).all() else "a leaf tells nothing"
+    return "" if (arrays["shares"].sum(axis=1) > 0).all() else "a leaf is empty"
 
 
-def _laid_out(trees: Sequence[Tree]) -> _Nodes:
-    """Put the nodes of all trees behind each other, each with the place of its first child.
+def _flatten_trees(trees: Sequence[Tree]) -> _Nodes:
+    """Concatenate the nodes of all trees, each with the index of its first child.
 
-    A leaf's child is minus one less its place among the leaves.
+    The child of a leaf is minus one minus its index among the leaves.
     """
     starts = np.cumsum([0, *(len(tree.splits) for tree in trees)])
     leaf_starts = np.cumsum([0, *(len(tree.shares) for tree in trees)])

@@ -1,4 +1,4 @@
-"""Poses for learning: thinned out to different ones, mixed, and with arms that go anywhere."""
+"""Training poses: diverse recorded poses, mixed and with random limbs."""
 
 from dataclasses import dataclass
 
@@ -19,12 +19,12 @@ Array = NDArray[np.float64]
 UP = np.array([0.0, 0.0, 1.0])
 LEG_ROLES = ("UpperLeg", "LowerLeg", "Foot", "Toes")
 ARM_ROLES = ("Shoulder", "UpperArm", "LowerArm", "Hand")
-SOLES = 0.35
-"""Of a reach: how far an arm may go back, or across the chest, from straight to its side."""
+MAX_ARM_BACK = 0.35
+"""Maximum component of the arm direction backward or across the chest."""
 
 
 def remove_heading(rotations: Array) -> Array:
-    """Return poses (F, n_joints, 4) of which the root has no turn about the vertical."""
+    """Return poses (F, n_joints, 4) without rotation of the root about the vertical."""
     upright = rotations.copy()
     heading = twist_about(rotations[:, 0], UP)
     upright[:, 0] = multiply(inverse(heading), rotations[:, 0])
@@ -32,35 +32,35 @@ def remove_heading(rotations: Array) -> Array:
 
 
 def select_diverse_poses(
-    body: SkinnedBody, rotations: Array, spacing: float, most: int
+    body: SkinnedBody, rotations: Array, spacing: float, max_poses: int
 ) -> Array:
-    """Return those poses (n, n_joints, 4) that differ most, by farthest-point sampling.
+    """Return diverse poses (n, n_joints, 4) by farthest-point sampling.
 
-    Poses have no heading. The difference of two is the largest distance between the same joint
-    in both; none that is kept is nearer than `spacing`, metres, to another one.
+    Poses have no heading. The distance of two poses is the largest distance of a joint. No two
+    selected poses are closer than `spacing`, metres.
     """
-    nowhere = np.zeros((len(rotations), 3))
-    joints = world_poses(body.skeleton, rotations, nowhere).positions.astype(np.float32)
-    kept = [0]
-    gaps = np.full(len(rotations), np.inf, dtype=np.float32)
-    while len(kept) < min(most, len(rotations)):
-        far = np.square(joints - joints[kept[-1]]).sum(axis=-1).max(axis=1)
-        gaps = np.minimum(gaps, far)
-        farthest = int(gaps.argmax())
-        if gaps[farthest] <= spacing**2:
+    roots = np.zeros((len(rotations), 3))
+    joints = world_poses(body.skeleton, rotations, roots).positions.astype(np.float32)
+    selected = [0]
+    min_distances = np.full(len(rotations), np.inf, dtype=np.float32)
+    while len(selected) < min(max_poses, len(rotations)):
+        distances = np.square(joints - joints[selected[-1]]).sum(axis=-1).max(axis=1)
+        min_distances = np.minimum(min_distances, distances)
+        farthest = int(min_distances.argmax())
+        if min_distances[farthest] <= spacing**2:
             break
-        kept.append(farthest)
-    return rotations[kept]
+        selected.append(farthest)
+    return rotations[selected]
 
 
 @dataclass(frozen=True, eq=False)
 class PoseMixer:
-    """Draws poses that no clip holds: parts of different poses, and limbs at random.
+    """Sampler of new poses: legs of another pose, and random limbs.
 
     Attributes
     ----------
     body : SkinnedBody
-        Whose joints the poses are of.
+        Body with the joints of the poses.
     poses : shape (n, n_joints, 4)
         T-pose rotations by joint, without heading.
     """
@@ -69,7 +69,7 @@ class PoseMixer:
     poses: Array
 
     def draw(self, rng: np.random.Generator, loose: float) -> Array:
-        """Return one pose (n_joints, 4); `loose` is how often a limb is not the clip's."""
+        """Return one pose (n_joints, 4); `loose` is the probability of changed limbs."""
         joints = self.body.humanoid.indices(self.body.skeleton)
         pose: Array = self.poses[rng.integers(len(self.poses))].copy()
         if rng.random() < loose:
@@ -92,7 +92,7 @@ class PoseMixer:
 
     @staticmethod
     def _stand(pose: Array, joints: dict[str, int], rng: np.random.Generator) -> None:
-        """Let the legs stand side by side, as most people before a camera mostly do."""
+        """Place the legs side by side, the most frequent stance in front of a camera."""
         pose[joints["hips"]] = quaternion_from_rotation_vector(0.05 * rng.standard_normal(3))
         for sign, side in ((1.0, "left"), (-1.0, "right")):
             hip = [0.06 * rng.standard_normal(), -sign * rng.uniform(-0.06, 0.15), 0.0]
@@ -105,17 +105,17 @@ class PoseMixer:
     def _loosen_arm(
         pose: Array, joints: dict[str, int], side: str, sign: float, rng: np.random.Generator
     ) -> None:
-        """Point an arm anywhere but back and through the chest, and bend it forward."""
+        """Point an arm in a random feasible direction, and flex the elbow."""
         straight = np.array([sign, 0.0, 0.0])
-        way = np.array([-sign, 0.0, 0.0])
-        while way[0] * sign < -SOLES or way[1] > SOLES:
-            way = rng.standard_normal(3)
-            way /= np.linalg.norm(way)
+        direction = np.array([-sign, 0.0, 0.0])
+        while direction[0] * sign < -MAX_ARM_BACK or direction[1] > MAX_ARM_BACK:
+            direction = rng.standard_normal(3)
+            direction /= np.linalg.norm(direction)
         twist = quaternion_from_rotation_vector(straight * rng.uniform(-1.6, 1.6))
-        bend = rng.uniform(0.0, 2.5) * rng.choice([0.2, 1.0])
-        hinge = quaternion_from_rotation_vector([0.0, 0.0, -sign * bend])
+        flexion = rng.uniform(0.0, 2.5) * rng.choice([0.2, 1.0])
+        hinge = quaternion_from_rotation_vector([0.0, 0.0, -sign * flexion])
         for role, turn in (
-            ("UpperArm", multiply(rotation_between(straight, way), twist)),
+            ("UpperArm", multiply(rotation_between(straight, direction), twist)),
             ("LowerArm", hinge),
         ):
             if f"{side}{role}" in joints:
@@ -125,7 +125,7 @@ class PoseMixer:
     def _loosen_leg(
         pose: Array, joints: dict[str, int], side: str, sign: float, rng: np.random.Generator
     ) -> None:
-        """Lift a leg forward or aside, and bend it backward."""
+        """Flex or abduct a hip, and flex the knee."""
         forward, aside = rng.uniform(-0.4, 1.9), rng.uniform(-0.2, 0.8)
         lift = quaternion_from_rotation_vector([-forward, 0.0, 0.0])
         spread = quaternion_from_rotation_vector([0.0, -sign * aside, 0.0])

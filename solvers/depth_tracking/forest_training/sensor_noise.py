@@ -1,4 +1,4 @@
-"""What a Kinect of the first kind makes of exact depth: steps, jitter, shadows and holes."""
+"""Noise model of a Kinect v1: disparity steps, jitter, shadows and holes."""
 
 from dataclasses import dataclass
 
@@ -10,36 +10,36 @@ from ...settings import Settings, setting
 from .render_mesh import NO_PART, RenderedMesh
 
 Array = NDArray[np.float64]
-DISPARITY = 351.3
+DISPARITY_STEPS_M = 351.3
 """Steps of disparity times metres [1]_: a step is z^2 / 351.3, 2.6 cm at 3 m."""
 
 
 @dataclass(frozen=True, kw_only=True)
 class SensorNoiseSettings(Settings):
-    """How bad the sensor is; all zero leaves depth as it is."""
+    """Strength of the sensor noise; all zero keeps the exact depth."""
 
     jitter: float = setting(
-        0.5, "Standard deviation of where a pixel looks; more frays edges",
+        0.5, "Standard deviation of the pixel position; higher frays edges",
         unit="pixels", minimum=0.0, maximum=10.0,
     )  # fmt: skip
     disparity: float = setting(
-        1.0 / 6.0, "Standard deviation of disparity; more makes surfaces rough",
+        1.0 / 6.0, "Standard deviation of disparity; higher makes surfaces rough",
         unit="steps", minimum=0.0, maximum=10.0,
     )  # fmt: skip
     step: float = setting(
-        1.0, "Step in which disparity is told; more makes stairs, as z squared",
+        1.0, "Quantization step of disparity; higher gives larger depth steps",
         unit="steps", minimum=0.0, maximum=10.0,
     )  # fmt: skip
     baseline: float = setting(
-        0.075, "Way from the projector to the camera; more widens the shadows beside arms",
+        0.075, "Distance of projector and camera; higher widens the shadows next to arms",
         unit="m", minimum=0.0, maximum=1.0,
     )  # fmt: skip
     edge_holes: float = setting(
-        0.15, "Share of the pixels at edges that see nothing; more frays outlines",
+        0.15, "Fraction of edge pixels without reading; higher frays outlines",
         minimum=0.0, maximum=1.0,
     )  # fmt: skip
     holes: float = setting(
-        0.002, "Share of the other pixels that see nothing", minimum=0.0, maximum=1.0,
+        0.002, "Fraction of other pixels without reading", minimum=0.0, maximum=1.0,
     )  # fmt: skip
 
 
@@ -47,88 +47,92 @@ NO_NOISE = SensorNoiseSettings(
     jitter=0.0, disparity=0.0, step=0.0, baseline=0.0, edge_holes=0.0, holes=0.0
 )
 EDGE_STEP_M = 0.05
-"""Metres between neighbours beyond which one of them occludes the other."""
+"""Depth step between neighbors at an occlusion."""
 
 
 def add_sensor_noise(
-    picture: RenderedMesh,
+    image: RenderedMesh,
     camera: Camera,
     rng: np.random.Generator,
     settings: SensorNoiseSettings = SensorNoiseSettings(),
 ) -> RenderedMesh:
-    """Return the picture as a structured-light sensor would tell it.
+    """Return the image with the noise of a structured-light sensor.
 
-    Pixels look a little aside, disparity is rough and told in steps [1]_, what the projector to
-    the right of the camera does not light is unseen, and so are pixels here and there, more of
-    them at edges. Labels move along.
+    Pixel positions jitter, and disparity is noisy and quantized [1]_. Pixels in the shadow of
+    the projector, to the right of the camera, have no reading. Neither do random pixels, more
+    of them at edges. Labels move with their pixels.
 
     References
     ----------
     .. [1] Handa, Whelan, McDonald, Davison (2014). A benchmark for RGB-D visual odometry, 3D
        reconstruction and SLAM. ICRA, section IV. doi:10.1109/ICRA.2014.6907054
     """
-    depth, labels = _looked_aside(picture, settings.jitter, rng)
-    unseen = _in_shadow(depth, camera, settings.baseline)
-    draw = rng.random(depth.shape, dtype=np.float32)
-    unseen |= draw < np.where(_at_edge(depth), settings.edge_holes, settings.holes)
-    depth = _told(depth, settings, rng)
-    unseen |= depth <= 0.0
+    depth, labels = _jitter_pixels(image, settings.jitter, rng)
+    invalid = _projector_shadow(depth, camera, settings.baseline)
+    random_values = rng.random(depth.shape, dtype=np.float32)
+    invalid |= random_values < np.where(_edge_mask(depth), settings.edge_holes, settings.holes)
+    depth = _quantize_depth(depth, settings, rng)
+    invalid |= depth <= 0.0
     return RenderedMesh(
-        np.where(unseen, np.float32(0.0), depth), np.where(unseen, np.uint8(NO_PART), labels)
+        np.where(invalid, np.float32(0.0), depth), np.where(invalid, np.uint8(NO_PART), labels)
     )
 
 
-def _looked_aside(
-    picture: RenderedMesh, jitter: float, rng: np.random.Generator
+def _jitter_pixels(
+    image: RenderedMesh, jitter: float, rng: np.random.Generator
 ) -> tuple[NDArray[np.float32], NDArray[np.uint8]]:
-    height, width = picture.depth.shape
+    height, width = image.depth.shape
     if not jitter:
-        return picture.depth, picture.labels
-    aside = np.rint(jitter * rng.standard_normal((2, height, width), dtype=np.float32))
-    rows = np.arange(height)[:, None] + aside[0].astype(np.int64)
-    columns = np.arange(width) + aside[1].astype(np.int64)
-    spots = np.clip(rows, 0, height - 1), np.clip(columns, 0, width - 1)
-    return picture.depth[spots], picture.labels[spots]
+        return image.depth, image.labels
+    offsets = np.rint(jitter * rng.standard_normal((2, height, width), dtype=np.float32))
+    rows = np.arange(height)[:, None] + offsets[0].astype(np.int64)
+    columns = np.arange(width) + offsets[1].astype(np.int64)
+    pixels = np.clip(rows, 0, height - 1), np.clip(columns, 0, width - 1)
+    return image.depth[pixels], image.labels[pixels]
 
 
-def _told(
+def _quantize_depth(
     depth: NDArray[np.float32], settings: SensorNoiseSettings, rng: np.random.Generator
 ) -> NDArray[np.float32]:
-    """Return depth from disparity that is rough and stepped."""
+    """Return depth from noisy, quantized disparity."""
     if not (settings.disparity or settings.step):
         return depth
-    seen = depth > 0.0
-    disparity = DISPARITY / np.where(seen, depth, np.float32(1.0))
+    valid = depth > 0.0
+    disparity = DISPARITY_STEPS_M / np.where(valid, depth, np.float32(1.0))
     disparity += settings.disparity * rng.standard_normal(depth.shape, dtype=np.float32)
     if settings.step:
         disparity = np.rint(disparity / settings.step) * settings.step
-    told = DISPARITY / np.maximum(disparity, 1.0)
-    return np.where(seen, told, 0.0).astype(np.float32)
+    noisy_depth = DISPARITY_STEPS_M / np.maximum(disparity, 1.0)
+    return np.where(valid, noisy_depth, 0.0).astype(np.float32)
 
 
-def _in_shadow(
+def _projector_shadow(
     depth: NDArray[np.float32], camera: Camera, baseline: float
 ) -> NDArray[np.bool_]:
-    """Tell which pixels see what the projector does not light, for something is nearer to it.
+    """Return the mask of pixels in the shadow of the projector.
 
-    Light of one direction falls on all points of a row with equal u - f b / z.
+    A light ray hits all points of a row with equal u - f b / z.
     """
     if not baseline:
         return np.zeros(depth.shape, dtype=np.bool_)
     rows, columns = np.nonzero(depth)
     z = depth[rows, columns]
     shift = camera.fx * baseline / z
-    widest = int(shift.max(initial=0.0)) + 2
-    beam = rows * (camera.width + widest) + np.rint(columns - shift).astype(np.int64) + widest
-    nearest = np.full(camera.height * (camera.width + widest) + 1, np.inf, dtype=np.float32)
+    max_shift = int(shift.max(initial=0.0)) + 2
+    beam = (
+        rows * (camera.width + max_shift)
+        + np.rint(columns - shift).astype(np.int64)
+        + max_shift
+    )
+    nearest = np.full(camera.height * (camera.width + max_shift) + 1, np.inf, dtype=np.float32)
     np.minimum.at(nearest, beam, z)
-    unlit = np.zeros(depth.shape, dtype=np.bool_)
-    unlit[rows, columns] = z > nearest[beam] + EDGE_STEP_M
-    return unlit
+    shadow = np.zeros(depth.shape, dtype=np.bool_)
+    shadow[rows, columns] = z > nearest[beam] + EDGE_STEP_M
+    return shadow
 
 
-def _at_edge(depth: NDArray[np.float32]) -> NDArray[np.bool_]:
-    """Tell which pixels have a neighbour in their row or column at quite another depth."""
+def _edge_mask(depth: NDArray[np.float32]) -> NDArray[np.bool_]:
+    """Return the mask of pixels with a depth step to a neighbor in their row or column."""
     edge = np.zeros(depth.shape, dtype=np.bool_)
     across = np.abs(np.diff(depth, axis=1)) > EDGE_STEP_M
     down = np.abs(np.diff(depth, axis=0)) > EDGE_STEP_M

@@ -1,4 +1,4 @@
-"""Skinned humans: a mesh that follows the joints of a skeleton, each vertex by its weights."""
+"""Skinned bodies: a mesh that follows a skeleton by linear blend skinning."""
 
 import zipfile
 from dataclasses import dataclass
@@ -33,7 +33,7 @@ MEMBERS = {
     "parents": integers("joints", minimum=-1),
     "joint_heads": numbers("joints", 3),
 }
-"""Of an archive with a skinned body."""
+"""Members of an archive with a skinned body."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -47,7 +47,7 @@ class SkinnedBody:
     triangles : int array, shape (n_triangles, 3)
         Counter-clockwise as seen from outside.
     weights : shape (n_vertices, n_joints)
-        How much each vertex follows each joint; sums to one.
+        Skinning weight of each vertex and joint; sums to one per vertex.
     name : str
     """
 
@@ -79,12 +79,12 @@ class SkinnedBody:
 
     @cached_property
     def humanoid(self) -> HumanoidMap:
-        """Which joints play which roles."""
+        """Humanoid roles of the joints."""
         return find_humanoid_map(self.skeleton)
 
     @cached_property
     def vertex_parts(self) -> NDArray[np.uint8]:
-        """Part of each vertex as its place in `PARTS`, shape (n_vertices,)."""
+        """Part of each vertex as index in `PARTS`, shape (n_vertices,)."""
         joints = self.humanoid.indices(self.skeleton)
         roles = {joint: role for role, joint in joints.items()}
         parts = parts_of_joints(roles, self.skeleton.parents)
@@ -102,7 +102,7 @@ class SkinnedBody:
 
     @cached_property
     def vertex_normals(self) -> Array:
-        """Which way is out at each vertex, shape (n_vertices, 3), unit length."""
+        """Outward unit normal of each vertex, shape (n_vertices, 3)."""
         a, b, c = self.vertices[self.triangles.T]
         faces = np.cross(b - a, c - a)
         normals = np.zeros_like(self.vertices)
@@ -112,10 +112,10 @@ class SkinnedBody:
         return np.asarray(normals / np.maximum(lengths, 1e-12))
 
     def pose(self, rotations: Array, root: Array) -> tuple[Array, Array]:
-        """Return where vertices and joints are in one pose, (n_vertices, 3) and (n_joints, 3).
+        """Return vertices (n_vertices, 3) and joints (n_joints, 3) in one pose.
 
-        Linear blend skinning: each vertex moves as the weighted mean of its joints would move
-        it. `rotations` are local, shape (n_joints, 4); `root` is where the root is, metres.
+        Linear blend skinning moves each vertex by the weighted mean of its joint transforms.
+        `rotations` are local, shape (n_joints, 4); `root` is the root position, metres.
         """
         turns, places = world_poses(self.skeleton, rotations, root)
         matrices = matrix_from_quaternion(turns)

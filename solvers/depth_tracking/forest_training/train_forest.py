@@ -1,4 +1,4 @@
-"""Learn to tell the parts of bodies in depth pictures, from motions and skinned bodies."""
+"""Train the pixel forest on motions and skinned bodies."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -33,17 +33,19 @@ from .training_images import (
 
 @dataclass(frozen=True, kw_only=True)
 class PixelForestSettings(TrainingImagesSettings, TreeSettings):
-    """How large the forest is, and what it learns from."""
+    """Settings of the forest and its training data."""
 
-    n_trees: int = setting(3, "Trees; more is surer and slower", minimum=1, maximum=100)
-    n_pixels: int = setting(
-        120, "Pixels of each picture that a tree learns from", minimum=1, maximum=20_000
+    n_trees: int = setting(
+        3, "Number of trees; more are more accurate and slower", minimum=1, maximum=100
     )
-    seed: int = setting(0, "Another seed draws other pictures and tests", minimum=0)
+    n_pixels: int = setting(
+        120, "Training pixels per image and tree", minimum=1, maximum=20_000
+    )
+    seed: int = setting(0, "Seed of the random images and tests", minimum=0)
 
 
 class LabeledImages(NamedTuple):
-    """Pictures, and every pixel of them that sees a body."""
+    """Training images with part labels."""
 
     pictures: NDArray[np.uint16]
     """Of `pad_depth_image`, (n_pictures, height + 2, width + 2)."""
@@ -59,21 +61,20 @@ def train_pixel_forest(
     trained_on: str = "",
     progress: Progress = unwatched,
 ) -> PixelForest:
-    """Learn which part of a body a depth pixel sees.
+    """Train a forest that classifies the body part of depth pixels.
 
-    The poses of the clips are thinned out and mixed, the bodies pose and are seen from all
-    around, with and without the noise of a sensor; then randomised trees over differences of
-    depth are grown [1]_.
+    Diverse poses of the clips are mixed. The posed bodies are rendered from all around, with
+    and without sensor noise. Randomized trees over depth differences are grown on them [1]_.
 
     Parameters
     ----------
     poses : sequence of Motion
         Any humanoids.
     bodies : sequence of SkinnedBody
-        Of the same joints.
+        Bodies with the same joints.
     settings : PixelForestSettings
     trained_on : str
-        What the poses and bodies are, in words; it is kept in the forest.
+        Description of the poses and bodies, stored in the forest.
     progress : Progress
 
     Raises
@@ -102,7 +103,7 @@ def train_pixel_forest(
 
 
 def draw_images(source: ImageSource, blocks: Sequence[int]) -> LabeledImages:
-    """Draw some blocks of pictures."""
+    """Render some blocks of training images."""
     drawn: list[RenderedMesh] = [one for block in blocks for one in source.pictures(block)]
     return LabeledImages(
         np.stack([pad_depth_image(picture.depth) for picture in drawn]),
@@ -113,9 +114,9 @@ def draw_images(source: ImageSource, blocks: Sequence[int]) -> LabeledImages:
 def draw_pixels(
     seen: LabeledImages, n_pixels: int, rng: np.random.Generator
 ) -> tuple[PixelFeatures, NDArray[np.uint8]]:
-    """Draw pixels from each picture, rather more of small parts, with the parts they see.
+    """Sample pixels and their parts from each image, with more weight on small parts.
 
-    A part that fills k pixels is drawn from as often as the square root of k tells.
+    A part of k pixels is sampled in proportion to the square root of k.
     """
     places = []
     area = seen.labels.shape[1] * seen.labels.shape[2]
@@ -124,12 +125,12 @@ def draw_pixels(
         if not len(body):
             continue
         sizes = np.bincount(labels[body], minlength=N_PARTS)
-        # Exponential races: the n first are a weighted draw without replacement.
+        # Exponential races: the first n are a weighted sample without replacement.
         races = rng.standard_exponential(len(body)) * np.sqrt(sizes[labels[body]])
         first = min(n_pixels, len(body)) - 1
         places.append(number * area + body[np.argpartition(races, first)[: first + 1]])
     if not places:
-        raise InvalidMotionError("No picture to learn from shows a body.")
+        raise InvalidMotionError("No training image shows a body.")
     spots = np.concatenate(places)
     number, rest = np.divmod(spots, area)
     rows, columns = np.divmod(rest, seen.labels.shape[2])

@@ -1,4 +1,4 @@
-"""Depth pictures with known parts: posed bodies of many shapes before cameras all around."""
+"""Synthetic training images: posed bodies of many shapes, viewed from all around."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
@@ -20,34 +20,34 @@ from .skinned_body import SkinnedBody
 Array = NDArray[np.float64]
 
 CAMERA = Camera(142.8, 142.8, 79.5, 59.5, 160, 120)
-"""Half the resolution of a Kinect of the first kind."""
+"""Half the resolution of a Kinect v1."""
 CLOTHED = np.array([0.3 if part.endswith(("Hand", "neck")) else 1.0 for part in PARTS])
-"""How much of the thickness of clothes each part may have; hair counts as such."""
+"""Relative thickness of clothes (or hair) on each part."""
 FLOOR = 0.12
-"""Metres above the lowest point that may be taken for the floor."""
+"""Maximum height removed with the floor."""
 IMAGES_PER_BODY = 10
-"""Pictures of a block, which show the same body."""
+"""Number of images per random body."""
 AHEAD = 1.1
-"""Radians to either side. Half of the bodies face the camera so nearly, the others anyhow."""
+"""Maximum heading offset, radians, for half of the bodies; the others have any heading."""
 
 
 @dataclass(frozen=True, kw_only=True)
 class TrainingImagesSettings(Settings):
-    """Which poses, shapes and views there are."""
+    """Settings of poses, shapes and views of the training images."""
 
     n_pictures: int = setting(
-        4000, "Pictures to learn from; more learns more poses and views, and takes longer",
+        4000, "Number of training images; more cover more poses and views, and take longer",
         minimum=10, maximum=1_000_000,
     )  # fmt: skip
     spacing: float = setting(
-        0.1, "Least difference of two poses, of the joint that differs most; more keeps fewer",
+        0.1, "Minimum distance of two poses (largest joint distance); higher keeps fewer",
         unit="m", minimum=0.0, maximum=2.0,
     )  # fmt: skip
     n_poses: int = setting(
-        3000, "Most poses kept, the most different ones", minimum=1, maximum=1_000_000
+        3000, "Maximum number of poses; the most diverse are kept", minimum=1, maximum=1_000_000
     )
     loose: float = setting(
-        0.35, "How often an arm goes anywhere, or legs are those of another pose",
+        0.35, "Probability of a random arm, or of the legs of another pose",
         minimum=0.0, maximum=1.0,
     )  # fmt: skip
     shape: float = setting(
@@ -55,28 +55,28 @@ class TrainingImagesSettings(Settings):
         minimum=0.0, maximum=0.3,
     )  # fmt: skip
     clothes: float = setting(
-        0.035, "How far clothes may hang off a body; more knows looser clothes",
+        0.035, "Maximum thickness of clothes; higher covers looser clothes",
         unit="m", minimum=0.0, maximum=0.2,
     )  # fmt: skip
     lost_feet: float = setting(
-        0.3, "Share of pictures in which the lowest 12 cm or less went with the floor",
+        0.3, "Fraction of images where up to 12 cm above the floor is removed",
         minimum=0.0, maximum=1.0,
     )  # fmt: skip
     nearest: float = setting(
-        1.3, "Least distance of the camera", unit="m", minimum=0.3, maximum=20.0
+        1.3, "Minimum distance of the camera", unit="m", minimum=0.3, maximum=20.0
     )
     farthest: float = setting(
-        4.5, "Largest distance of the camera", unit="m", minimum=0.3, maximum=20.0
+        4.5, "Maximum distance of the camera", unit="m", minimum=0.3, maximum=20.0
     )
     noise: float = setting(
-        0.7, "Share of pictures as a noisy sensor sees them; the others are exact",
+        0.7, "Fraction of images with sensor noise; the others are exact",
         minimum=0.0, maximum=1.0,
     )  # fmt: skip
 
 
 @dataclass(frozen=True, eq=False)
 class ImageSource:
-    """Draws pictures, block by block, each a pure function of its number and the seed."""
+    """Renders images in blocks, each a pure function of its number and the seed."""
 
     mixer: PoseMixer
     bodies: tuple[SkinnedBody, ...]
@@ -119,7 +119,7 @@ def image_source(
     settings: TrainingImagesSettings,
     seed: int,
 ) -> ImageSource:
-    """Gather the different poses of some motions for bodies of the same joints.
+    """Collect diverse poses of motions for bodies with the same joints.
 
     Raises
     ------
@@ -142,7 +142,7 @@ def image_source(
 def vary_body(
     bodies: Sequence[SkinnedBody], rng: np.random.Generator, settings: TrainingImagesSettings
 ) -> SkinnedBody:
-    """Return a body between two of these where their meshes are alike, resized and dressed."""
+    """Return a random blend of two compatible bodies, scaled and clothed."""
     body = bodies[rng.integers(len(bodies))]
     other = bodies[rng.integers(len(bodies))]
     share = rng.random()
@@ -165,10 +165,10 @@ def vary_body(
 def _before_camera(
     vertices: Array, rng: np.random.Generator, settings: TrainingImagesSettings
 ) -> Array:
-    """Turn a body about the vertical and put it before a camera, x right, y down, z ahead.
+    """Place a body with random heading in a camera frame, x right, y down, z forward.
 
-    The camera is at any height of a person's, and looks at a point near the middle of the body,
-    tilted and rolled as that takes and a little besides.
+    The camera has a random height and looks near the center of the body, with a small random
+    tilt and roll.
     """
     yaw = rng.uniform(-AHEAD, AHEAD) if rng.random() < 0.5 else rng.uniform(-np.pi, np.pi)
     turn = _turn(yaw, 2)
@@ -187,7 +187,7 @@ def _before_camera(
 
 
 def _turn(angle: float, axis: int) -> Array:
-    """Return the matrix of a turn about a coordinate axis."""
+    """Return the rotation matrix about a coordinate axis."""
     first, second = (axis + 1) % 3, (axis + 2) % 3
     turn = np.eye(3)
     turn[[first, second], [first, second]] = np.cos(angle)

@@ -7,7 +7,7 @@ import numpy as np
 from solvers.depth_scene.camera import Camera
 from solvers.depth_tracking.forest_training.render_mesh import NO_PART, RenderedMesh
 from solvers.depth_tracking.forest_training.sensor_noise import (
-    DISPARITY,
+    DISPARITY_STEPS_M,
     NO_NOISE,
     add_sensor_noise,
 )
@@ -33,18 +33,18 @@ def test_steps_grow_with_the_square_of_distance(rng):
     ramp = wall()
     ramp.depth[:] = np.linspace(1.0, 4.0, ramp.depth.size).reshape(ramp.depth.shape)
     told = add_sensor_noise(ramp, CAMERA, rng, replace(NO_NOISE, step=1.0)).depth
-    steps = DISPARITY / told
+    steps = DISPARITY_STEPS_M / told
     np.testing.assert_allclose(steps, np.rint(steps), atol=1e-3)
     levels = np.unique(told)
     for z in (1.5, 3.0, 3.9):
         step = np.diff(levels)[np.searchsorted(levels, z)]
-        np.testing.assert_allclose(step, z**2 / DISPARITY, rtol=0.03)
+        np.testing.assert_allclose(step, z**2 / DISPARITY_STEPS_M, rtol=0.03)
 
 
 def test_rough_disparity_is_rough_by_the_square_of_distance(rng):
     for z in (1.0, 3.0):
         told = add_sensor_noise(wall(z), CAMERA, rng, replace(NO_NOISE, disparity=0.2)).depth
-        np.testing.assert_allclose(told.std(), 0.2 * z**2 / DISPARITY, rtol=0.05)
+        np.testing.assert_allclose(told.std(), 0.2 * z**2 / DISPARITY_STEPS_M, rtol=0.05)
 
 
 def test_a_bar_casts_a_shadow_to_its_left_as_wide_as_the_disparity(rng):
