@@ -27,7 +27,7 @@ def at(pose, name, body=None):
     return joint_positions(body, segment_frames(body, pose))[JOINTS.index(name)]
 
 
-def test_the_pose_of_zeros_stands_upright():
+def test_zero_pose_stands_upright():
     body, zeros = default_body(), np.zeros(36)
     assert_allclose(segment_frames(body, zeros)[:, :3, :3], np.tile(np.eye(3), (17, 1, 1)))
     assert at(zeros, "leftHand")[0] > 0.1 > -0.1 > at(zeros, "rightHand")[0]
@@ -51,13 +51,13 @@ def test_the_pose_of_zeros_stands_upright():
         ("headX", "head", 2, 0),
     ],
 )
-def test_coordinates_turn_the_way_their_limits_assume(coordinate, joint, axis, sign):
+def test_coordinates_rotate_in_the_direction_of_their_limits(coordinate, joint, axis, sign):
     moved = at(posed(**{coordinate: 0.3}), joint) - at(np.zeros(36), joint)
 
     assert np.sign(np.round(moved[axis], 9)) == sign
 
 
-def test_equals_the_chain_by_hand(rng):
+def test_segment_frames_match_an_explicit_chain(rng):
     body, pose = default_body(), rng.normal(scale=0.7, size=36)
     frames = segment_frames(body, pose)
     rotations = [Rotation.from_euler("YZX", pose[3:6])]
@@ -103,7 +103,7 @@ def test_the_derivative_equals_central_differences(rng, scale):
     assert_allclose(moved, differences, atol=2e-8)
 
 
-def test_a_full_turn_brings_everything_back(rng):
+def test_segment_frames_are_periodic_in_yaw(rng):
     body, pose = default_body(), rng.normal(scale=0.4, size=36)
     turned = pose.copy()
     turned[COORDINATES.index("yaw")] += 2 * np.pi

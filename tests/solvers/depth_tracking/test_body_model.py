@@ -32,7 +32,7 @@ def test_the_parts_are_those_of_the_paper():
     assert all(parent < child for child, parent in enumerate(PARENTS))
 
 
-def test_a_usual_body_is_as_tall_as_asked_for():
+def test_default_body_has_the_requested_stature():
     body = default_body(1.75)
     frames = segment_frames(body, np.zeros(36))
     crown = crown_height(body, frames)
@@ -48,7 +48,7 @@ def crown_height(body, frames):
     return top[1] - body.radii[head, 1]
 
 
-def test_joints_are_as_far_apart_as_the_lengths_say(rng):
+def test_joint_distances_equal_the_lengths(rng):
     body, pose = default_body(), rng.normal(scale=0.5, size=36)
     for upper, lower, length in (
         ("leftUpperArm", "leftLowerArm", "leftUpperArm"),
@@ -62,7 +62,7 @@ def test_joints_are_as_far_apart_as_the_lengths_say(rng):
     assert_allclose(np.linalg.norm(hips), 2 * body.length("hipWidth"), atol=1e-12)
 
 
-def test_exchanging_left_and_right_mirrors_the_joints(rng):
+def test_mirrored_coordinates_mirror_the_joints(rng):
     body, pose = default_body(), rng.normal(scale=0.4, size=36)
     order, signs = mirrored_coordinates()
     sides = {"left": "right", "right": "left"}
@@ -88,7 +88,7 @@ def test_symmetric_takes_the_mean_of_both_sides():
     assert_allclose(even.symmetric().lengths, even.lengths)
 
 
-def test_saving_and_loading_changes_nothing(tmp_path):
+def test_load_body_model_restores_a_saved_body(tmp_path):
     body = default_body(1.62).with_lengths(hipWidth=0.11)
     body.save(tmp_path / "body.npz")
 
@@ -98,7 +98,7 @@ def test_saving_and_loading_changes_nothing(tmp_path):
     assert_array_equal(loaded.radii, body.radii)
 
 
-def test_damaged_or_foreign_files_are_refused(tmp_path):
+def test_load_body_model_raises_for_damaged_or_foreign_files(tmp_path):
     body, path = default_body(), tmp_path / "body.npz"
     with pytest.raises(InvalidFileError, match="no file"):
         load_body_model(path)
@@ -126,7 +126,7 @@ def test_damaged_or_foreign_files_are_refused(tmp_path):
         (np.ones(20), -np.ones((19, 2)), "radii of a body must all be above 0"),
     ],
 )
-def test_impossible_bodies_are_refused(lengths, radii, words):
+def test_body_model_raises_for_invalid_values(lengths, radii, words):
     assert (len(LENGTHS), len(CAPSULES)) == (20, 19)
     with pytest.raises(InvalidMotionError, match=words):
         BodyModel(lengths, radii)
@@ -134,7 +134,7 @@ def test_impossible_bodies_are_refused(lengths, radii, words):
         default_body(3.0)
 
 
-def test_a_pickle_does_not_tell_what_was_asked_of_a_body():
+def test_pickle_excludes_cached_properties():
     """Whoever compares pickles to see whether a body was changed depends on that."""
     body = default_body()
     before = pickle.dumps(body)

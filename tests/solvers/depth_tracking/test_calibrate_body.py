@@ -58,7 +58,7 @@ def bar(start, stop, radius):
 
 
 @pytest.mark.parametrize("radius", [0.04, 0.07])
-def test_a_cylinder_is_measured(rng, radius):
+def test_sample_cylinder_measures_a_cylinder(rng, radius):
     start, stop = np.array([-0.2, -0.1, 2.0]), np.array([0.15, 0.1, 2.05])
     depth = bar(start, stop, radius)
     found = sample_cylinder(depth, depth > 0, CAMERA, (0.02, 0.12), rng)
@@ -67,7 +67,7 @@ def test_a_cylinder_is_measured(rng, radius):
     np.testing.assert_allclose(found.length, np.linalg.norm(stop - start), rtol=0.08)
 
 
-def test_pixels_of_others_are_outliers(rng):
+def test_sample_cylinder_counts_other_parts_as_outliers(rng):
     """Half as long, when the other half of the bar is told to be another part."""
     start, stop = np.array([-0.2, 0.0, 2.0]), np.array([0.2, 0.0, 2.0])
     depth = bar(start, stop, 0.05)
@@ -78,7 +78,7 @@ def test_pixels_of_others_are_outliers(rng):
     assert found.ends[:, 0].min() > -0.02
 
 
-def test_a_cylinder_of_three_pixels_is_none(rng):
+def test_sample_cylinder_returns_none_for_three_pixels(rng):
     depth = np.zeros((240, 320))
     depth[10, 10:13] = 2.0
     assert sample_cylinder(depth, depth > 0, CAMERA, (0.02, 0.1), rng) is None
@@ -112,7 +112,7 @@ def test_bodies_of_capsules_are_measured(forest, stature):
     assert found.length("leftUpperArm") == found.length("rightUpperArm")
 
 
-def test_what_was_published_measures_coarser(forest):
+def test_published_calibration_is_less_accurate(forest):
     true = default_body(1.75)
     plain = calibrate_body(
         arms_away(true), 0, forest, settings=CalibrationSettings(refine=False)
@@ -130,7 +130,7 @@ def test_the_same_frame_gives_the_same_body(forest):
     np.testing.assert_array_equal(one.radii, other.radii)
 
 
-def test_frames_that_show_too_little_are_refused(forest):
+def test_calibrate_body_raises_for_frames_with_few_limbs(forest):
     whole = arms_away(default_body())
     with pytest.raises(InvalidMotionError, match="no frame 3"):
         calibrate_body(whole, 3, forest)

@@ -36,13 +36,13 @@ def test_closest_points_of_segments_equal_a_fine_search(rng):
         assert_allclose(np.linalg.norm(near[pair] - far[pair]), least, atol=0.01)
 
 
-def test_legs_beside_each_other_are_left_alone():
+def test_separation_term_ignores_adjacent_legs():
     pose = posed(leftFemurZ=0.15, rightFemurZ=0.15, leftHumerusZ=0.5, rightHumerusZ=0.5)
     rows = separation_term(render_hypothesis(BODY, pose, CAMERA), 1.0)
     assert not len(rows.residuals)
 
 
-def test_crossed_legs_are_pushed_apart_until_they_touch():
+def test_separation_term_separates_crossed_legs():
     pose = posed(leftFemurZ=-0.25, rightFemurZ=-0.25)
     overlaps = []
     for _ in range(15):
@@ -67,7 +67,7 @@ def test_both_limbs_are_pushed_equally():
             != CAPSULE_SEGMENTS[rows.capsules[n_pairs:]]).all()  # fmt: skip
 
 
-def test_a_natural_stance_is_asked_of_the_trunk_more_than_of_limbs():
+def test_natural_stance_weighs_the_trunk_more_than_limbs():
     asked = natural_stance(np.ones(36), 2.0, 5.0)
     assert_allclose(asked.vector[:6], 0.0)
     trunk, limb = (COORDINATES.index(name) for name in ("lowerBackZ", "leftFemurX"))

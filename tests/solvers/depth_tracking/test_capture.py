@@ -69,7 +69,7 @@ def test_a_swap_in_the_middle_is_undone():
     assert off[:8].mean() < 0.04
 
 
-def test_frames_without_anybody_are_bridged_and_flagged():
+def test_capture_bridges_and_flags_empty_frames():
     truth = waving(20)
     recording = recorded(truth)
 
@@ -87,7 +87,7 @@ def test_frames_without_anybody_are_bridged_and_flagged():
     assert off[9:12].mean() < 0.06
 
 
-def test_recorded_motions_are_asked_when_wanted():
+def test_capture_uses_the_motion_prior_when_requested():
     """They draw an arm that nothing shows to what arms do; one of them can be given."""
     truth = waving(4)
     found = [
@@ -99,14 +99,14 @@ def test_recorded_motions_are_asked_when_wanted():
     assert_allclose(found[1], found[2], atol=1e-12)
 
 
-def test_nobody_is_refused():
+def test_capture_raises_for_an_empty_recording():
     empty = DepthRecording(CAMERA, 3, 30.0, lambda _: np.zeros((120, 160), np.float32))
     for body in (BODY, None):
         with pytest.raises(InvalidMotionError, match=r"No person (is|was) detected"):
             capture(empty, body)
 
 
-def test_tells_progress_and_can_be_cancelled():
+def test_reports_progress_and_can_be_cancelled():
     fractions = []
     settings = CaptureSettings(backward=False)
     capture(recorded(waving(3)), BODY, settings=settings,
@@ -149,7 +149,7 @@ def test_a_tilted_camera_is_levelled_by_the_floor():
     assert_allclose(forward_kinematics(motion).positions[0, :, 2], heights, atol=1e-9)
 
 
-def test_a_take_without_pictures_becomes_a_straight_line(rng):
+def test_smooth_take_is_linear_without_observations(rng):
     """Two known frames, nothing between: second differences vanish on a line."""
     start, stop = rng.normal(size=(2, 36))
     poses = rng.normal(size=(9, 36))
@@ -183,7 +183,7 @@ def test_smoothing_solves_the_dense_system(rng):
     assert_allclose(smooth.ravel(), np.linalg.solve(dense, wanted), atol=1e-8)
 
 
-def test_a_short_mistake_is_not_chosen_though_it_scores_a_little_better():
+def test_choose_poses_rejects_a_brief_swap_with_a_higher_score():
     """Candidate 1 jumps away for three frames: its joints have to come and go."""
     joints = np.zeros((10, 2, 4, 3))
     joints[4:7, 1] += 0.3
@@ -208,7 +208,7 @@ def test_nearest_tracked_matches_a_brute_force_search(known, n_frames):
     assert_array_equal(found, slowly)
 
 
-def test_an_hour_of_frames_has_no_table_of_all_pairs():
+def test_nearest_tracked_handles_an_hour_of_frames():
     known = np.arange(0, 108_000, 2)
     tracemalloc.start()
     found = nearest_tracked(known, 108_000)
@@ -225,6 +225,6 @@ def test_a_missing_candidate_is_never_chosen():
     assert choose_poses(scores, np.zeros((5, 2, 3, 3)), 40.0, 0.04)[2] == 1
 
 
-def test_a_still_natural_pose_is_sure_where_it_is_seen():
+def test_capture_has_high_confidence_for_a_visible_static_pose():
     found = capture(recorded(np.tile(NATURAL, (4, 1))), BODY)
     assert not found.doubtful[:, JOINTS.index("leftLowerArm")].any()

@@ -74,7 +74,7 @@ def test_a_finer_camera_is_thinned_to_the_same(forest):
     np.testing.assert_allclose(small.joints, large.joints, atol=1e-6)
 
 
-def test_what_is_not_in_the_picture_is_told(forest):
+def test_detect_pose_reports_parts_outside_of_the_image(forest):
     _, depth = capsule_person(leftHumerusZ=1.2, rightHumerusZ=1.2)
     depth[62:] = 0.0
     found = detect_pose(depth, CAMERA, BODY, forest)
@@ -84,28 +84,28 @@ def test_what_is_not_in_the_picture_is_told(forest):
 
 
 @pytest.mark.parametrize("n_pixels", [0, 1, 30])
-def test_nobody_is_found_in_a_few_pixels(forest, n_pixels):
+def test_detect_pose_raises_for_few_pixels(forest, n_pixels):
     depth = np.zeros((120, 160), dtype=np.float32)
     depth.reshape(-1)[5000 : 5000 + n_pixels] = 2.0
     with pytest.raises(InvalidMotionError, match=r"No person is detected: \d+ pixels"):
         detect_pose(depth, CAMERA, BODY, forest)
 
 
-def test_nobody_is_found_in_pixels_that_are_far_apart(forest, rng):
+def test_detect_pose_raises_for_scattered_pixels(forest, rng):
     depth = np.zeros((120, 160), dtype=np.float32)
     depth[::14, ::14] = rng.uniform(1.0, 9.0, depth[::14, ::14].shape)
     with pytest.raises(InvalidMotionError, match="show no body part"):
         detect_pose(depth, CAMERA, BODY, forest)
 
 
-def test_a_picture_full_of_noise_shows_nobody(forest, rng):
+def test_detect_pose_rejects_noise(forest, rng):
     depth = rng.uniform(1.0, 4.0, (120, 160)).astype(np.float32)
     depth[rng.random(depth.shape) < 0.7] = 0.0
     with pytest.raises(InvalidMotionError, match="No person is detected"):
         detect_pose(depth, CAMERA, BODY, forest)
 
 
-def test_a_wall_is_no_person(forest):
+def test_detect_pose_scores_a_wall_low(forest):
     """A flat wall has parts, as far as the forest can tell, but no pose explains it."""
     wall = np.full((120, 160), 2.5, dtype=np.float32)
     assert detect_pose(wall, CAMERA, BODY, forest).overlap < 0.4
@@ -126,7 +126,7 @@ def test_frames_with_known_joints(recordings, forest, take, most):
         assert np.linalg.norm(apart, axis=1).mean() < most
 
 
-def test_raw_frames_of_an_upper_body_say_that_legs_are_unseen(recordings, forest):
+def test_detect_pose_reports_missing_legs_of_an_upper_body(recordings, forest):
     """skeltrack's frames: raw Kinect depth, somebody close up, cut off by the picture."""
     path = sorted((recordings / "depth" / "skeltrack").iterdir())[0]
     depth = np.fromfile(path, dtype="<u2").reshape(480, 640) / 1000.0

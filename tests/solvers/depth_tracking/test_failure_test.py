@@ -46,7 +46,7 @@ def test_the_true_pose_has_not_failed_and_one_aside_has(test):
     assert has_failed(quality_without_actor(), test)
 
 
-def test_the_chance_grows_as_the_body_leaves_the_actor():
+def test_failure_probability_grows_with_the_offset():
     picture = drawn(NATURAL)
     chances = [
         failure_probability(judged(moved(rootX=aside), picture))

@@ -72,7 +72,7 @@ def test_a_motion_of_the_body_becomes_its_poses_again(rng):
     assert off.mean() < 0.02
 
 
-def test_the_prior_knows_its_clips():
+def test_learn_motion_prior_stores_clip_indices():
     gaits = [walking_gait(GaitSettings(duration=0.5, seed=seed)) for seed in (1, 2)]
 
     prior = learn_motion_prior(gaits, trained_on="two walks")
@@ -81,6 +81,6 @@ def test_the_prior_knows_its_clips():
     assert prior.trained_on == "two walks"
 
 
-def test_a_leg_is_no_body(swinging_leg):
+def test_learn_motion_prior_raises_for_an_incomplete_skeleton(swinging_leg):
     with pytest.raises(InvalidMotionError, match="no joint for"):
         learn_motion_prior([swinging_leg])

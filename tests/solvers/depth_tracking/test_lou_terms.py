@@ -104,7 +104,7 @@ def striped(pose):
     return hypothesis, Observation(CAMERA, depth, lambda: color.reshape(120, 160, 3))
 
 
-def test_colours_are_remembered_where_the_skin_moved():
+def test_previous_intensities_move_with_the_surface():
     then, before = striped(NATURAL)
     moved = NATURAL.copy()
     moved[:3] += (0.05, 0.02, 0.0)
@@ -120,7 +120,7 @@ def test_colours_are_remembered_where_the_skin_moved():
     assert np.median(off) < 25.0 < np.abs(127.0 - actual).mean()
 
 
-def test_colour_tells_how_far_a_limb_slid_along_itself():
+def test_color_constrains_motion_along_a_limb():
     """Depth alone hardly sees a body that rises a little; painted stripes do."""
     then, before = striped(NATURAL)
     risen = NATURAL.copy()
@@ -145,7 +145,7 @@ def test_the_published_tracker_follows_a_slow_actor():
     assert tracked.residual.max() < 0.03
 
 
-def test_the_local_plane_holds_what_followed():
+def test_local_pca_contains_the_successors():
     """Poses on a line in pose space: one component, and poses off it are asked back."""
     line = np.linspace(0.0, 1.0, 200)[:, np.newaxis] * np.eye(36)[10] + 0.1 * np.eye(36)[20]
     prior = motion_prior_from_poses([line])
@@ -159,7 +159,7 @@ def test_the_local_plane_holds_what_followed():
     assert_allclose(asked.cost, 0.25)
 
 
-def test_planes_do_not_run_from_one_motion_into_the_next():
+def test_local_pca_does_not_cross_clips():
     low, high = np.zeros((60, 36)), np.ones((60, 36))
     low[:, 10] = np.linspace(0.0, 0.1, 60)
     plane = local_pca(motion_prior_from_poses([low, high]), low[-1])

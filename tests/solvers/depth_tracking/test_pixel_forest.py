@@ -126,7 +126,7 @@ def test_gains_are_those_of_entropies(rng):
         assert each[edge[node]] == pytest.approx(max(each), rel=1e-3)
 
 
-def test_a_tree_learns_what_one_feature_tells(rng):
+def test_grow_tree_learns_a_single_feature(rng):
     """Half of the pixels have nothing to their right: one test must tell them apart."""
     depth = np.full((40, 60), 2.0, dtype=np.float32)
     depth[:, 30:] = 0.0
@@ -142,7 +142,7 @@ def test_a_tree_learns_what_one_feature_tells(rng):
     assert len(tree.splits) == 2 * tree.splits.sum() + 1
 
 
-def test_walking_down_the_trees_pixel_by_pixel_tells_the_same(forest, unseen):
+def test_classify_pixels_matches_a_scalar_traversal(forest, unseen):
     depth = unseen[0][3]
     found = classify_pixels(depth, CAMERA, forest)
     for pixel in range(0, len(found.rows), 41):
@@ -163,7 +163,7 @@ def leaf(tree, depth, row, column):
     return shares / shares.sum()
 
 
-def test_unseen_pictures_are_told_far_better_than_by_chance(forest, unseen):
+def test_classify_pixels_beats_chance_on_held_out_images(forest, unseen):
     right, total = 0, 0
     for depth, labels in zip(*unseen, strict=True):
         found = classify_pixels(depth, CAMERA, forest)
@@ -172,7 +172,7 @@ def test_unseen_pictures_are_told_far_better_than_by_chance(forest, unseen):
     assert right / total > 0.35  # The commonest part is a sixth of all pixels.
 
 
-def test_a_camera_of_twice_the_pixels_is_told_the_same(forest, unseen):
+def test_classify_pixels_is_independent_of_resolution(forest, unseen):
     depth = unseen[0][5]
     fine = np.repeat(np.repeat(depth, 2, axis=0), 2, axis=1)
     camera = Camera(2 * 142.8, 2 * 142.8, 159.5, 119.5, 320, 240)
@@ -239,7 +239,7 @@ def test_damaged_forests_are_refused(forest, tmp_path, name, value, fault):
         load_pixel_forest(path)
 
 
-def test_leaves_that_tell_nothing_are_refused(forest, tmp_path):
+def test_load_pixel_forest_raises_for_empty_leaves(forest, tmp_path):
     shares = np.zeros_like(forest.trees[0].shares)
     empty = PixelForest((Tree(*vars(replace(forest.trees[0], shares=shares)).values()),))
     empty.save(tmp_path / "forest.npz")

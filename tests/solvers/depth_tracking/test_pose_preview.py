@@ -14,7 +14,7 @@ from solvers.depth_tracking.tracking.pose_preview import offset_frames
 from solvers.errors import InvalidMotionError
 
 
-def test_every_pass_is_shown_and_the_last_poses_are_the_result():
+def test_previews_cover_every_pass_and_end_with_the_result():
     seen = []
     found = capture(recorded(waving(6)), default_body(), on_pose=seen.append)
 
@@ -26,7 +26,7 @@ def test_every_pass_is_shown_and_the_last_poses_are_the_result():
     assert all(one.quality.confidence.shape == (21,) for one in seen)
 
 
-def test_while_the_body_is_looked_for_poses_are_shown_where_they_are_in_the_take(monkeypatch):
+def test_previews_have_recording_frames_during_body_estimation(monkeypatch):
     """The actor comes nearer, and is seen from frame 4 on."""
     monkeypatch.setattr(find_body, "CLIP_FRAMES", 4)
     truth = waving(8)
@@ -47,7 +47,7 @@ def test_while_the_body_is_looked_for_poses_are_shown_where_they_are_in_the_take
     assert_allclose([one.pose[2] for one in looked_for], truth[frames, 2], atol=0.04)
 
 
-def test_shifted():
+def test_offset_frames_shifts_previews():
     seen = []
     one = capture(
         recorded(waving(2)), default_body(),
@@ -56,7 +56,7 @@ def test_shifted():
     assert [each.frame for each in seen] == [7, 8, 7, 8] and len(one.poses) == 2
 
 
-def test_what_was_found_before_esc_is_kept():
+def test_unfinished_capture_keeps_tracked_frames():
     """Of 10 frames there and back the last 7 were found twice."""
     truth = waving(10)
     seen = []
@@ -74,7 +74,7 @@ def test_what_was_found_before_esc_is_kept():
     assert_allclose(all_of_it.motion.rotations, whole.motion.rotations, atol=1e-12)
 
 
-def test_a_body_that_was_given_up_is_left_out_and_nothing_is_refused():
+def test_unfinished_capture_ignores_earlier_bodies_and_raises_without_poses():
     seen = []
     capture(recorded(waving(4)), default_body(), on_pose=seen.append,
             settings=CaptureSettings(backward=False, smoothing=0.0))  # fmt: skip

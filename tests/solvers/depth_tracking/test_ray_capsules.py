@@ -132,7 +132,7 @@ def test_pixels_come_once_and_fewer_pixels_see_the_same():
     assert_allclose(coarse.depth_picture(), fine.depth_picture()[::2, ::2], atol=1e-12)
 
 
-def test_who_leaves_the_picture_is_not_seen():
+def test_cast_rays_is_empty_outside_of_the_image():
     body = default_body()
     for place in ((30.0, 0.0, 3.0), (0.0, 0.0, -3.0), (0.0, 0.0, 0.1)):
         pose = standing()

@@ -53,7 +53,7 @@ def found(take):
     return retrack(depth, BODY, motion, CORRECTED, floor=FLOOR)
 
 
-def test_motion_and_frames_are_two_words_for_the_same():
+def test_motion_frames_invert_body_motion():
     poses = waving(9)
     motion = body_motion(BODY, poses, 30.0, FLOOR)
     assert_allclose(motion_frames(BODY, motion, FLOOR), segment_frames(BODY, poses), atol=1e-9)
@@ -67,7 +67,7 @@ def test_a_pose_is_found_from_its_frames_without_a_start():
         assert_allclose(again[:, :3, :3], frames[:, :3, :3], atol=0.02)
 
 
-def test_what_was_wrong_is_right_and_the_rest_stays(take, found):
+def test_retrack_corrects_the_error_and_keeps_other_frames(take, found):
     _, truth, motion = take
     right = joint_positions(BODY, segment_frames(BODY, truth))
 
@@ -85,14 +85,14 @@ def test_what_was_wrong_is_right_and_the_rest_stays(take, found):
     assert len(found.residual) == found.last - found.first + 1 == found.joints.n_frames
 
 
-def test_there_is_no_jump_where_courses_meet(take, found):
+def test_retrack_is_continuous_at_the_joins(take, found):
     _, truth, _ = take
     right = joint_positions(BODY, segment_frames(BODY, truth))
     step = np.linalg.norm(np.diff(joints_of(found.motion), axis=0), axis=-1).max()
     assert step < np.linalg.norm(np.diff(right, axis=0), axis=-1).max() + 0.02
 
 
-def test_what_no_coordinates_can_reach_is_kept_and_fades(take):
+def test_retrack_fades_out_unreachable_rotations(take):
     """The animator twists the forearm, about which pictures and coordinates say nothing."""
     depth, truth, _ = take
     motion = body_motion(BODY, truth, 30.0, FLOOR)
@@ -152,7 +152,7 @@ def test_poses_are_shown_and_it_can_be_cancelled(take):
         retrack(depth, BODY, motion, CORRECTED, progress=stop)
 
 
-def test_what_does_not_fit_is_refused(take):
+def test_retrack_raises_for_mismatched_inputs(take):
     depth, truth, motion = take
     with pytest.raises(InvalidMotionError, match="no frame 40"):
         retrack(depth, BODY, motion, 40)

@@ -49,7 +49,7 @@ def known(recordings, take, first):
 @pytest.mark.parametrize(
     ("take", "first", "most"), [("walk_diagonal", 20, 0.13), ("hop", 60, 0.04)]
 )
-def test_arms_that_were_lost_are_found_again(recordings, take, first, most):
+def test_retrack_recovers_lost_arms(recordings, take, first, most):
     """Both arms hang stiffly forward for 25 frames, but for the one that is corrected.
 
     In the diagonal walk one arm is hidden behind the body for most of them.

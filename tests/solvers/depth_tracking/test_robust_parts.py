@@ -80,7 +80,7 @@ def test_every_part_has_a_capsule_and_halves_make_a_whole():
 
 
 @pytest.mark.parametrize("wrong", [0.0, 0.35])
-def test_centres_are_found_among_wrong_pixels(rng, wrong):
+def test_find_parts_is_robust_to_wrong_labels(rng, wrong):
     """A third of the pixels is told at random; middles stay within some centimetres."""
     true = standing()
     points, parts, _, _ = seen_parts(true)
@@ -103,7 +103,7 @@ def test_centres_are_found_among_wrong_pixels(rng, wrong):
     assert 1.0 - np.mean(right) <= 0.6 * (1.0 - (labels == parts).mean())
 
 
-def test_parts_that_are_not_there_are_not_found(rng):
+def test_find_parts_returns_nan_for_missing_parts(rng):
     points, parts, _, _ = seen_parts(standing())
     left = np.char.startswith(np.array(PARTS), "left")[parts]
     found = find_parts(points[~left], parts[~left], BODY, rng)
@@ -159,7 +159,7 @@ def test_the_true_pose_scores_best(rng):
     assert pose_score(render_hypothesis(BODY, away, CAMERA), observation, pixels, 0.3)[1] == 0.0
 
 
-def test_trials_exchange_sides_in_every_way():
+def test_swap_orders_cover_all_combinations():
     orders = swap_orders()
     assert len({tuple(order) for order in orders}) == 4
     np.testing.assert_array_equal(orders[0], np.arange(N_PARTS))
@@ -168,7 +168,7 @@ def test_trials_exchange_sides_in_every_way():
         np.testing.assert_array_equal(order[order], np.arange(N_PARTS))
 
 
-def test_one_of_the_trials_finds_a_pose_whose_legs_were_told_wrong(rng):
+def test_trial_poses_recover_swapped_legs(rng):
     true = standing(yaw=-1.3, leftFemurX=-0.3)
     points, parts, _, _ = seen_parts(true)
     legs = np.array([part.endswith(("Leg", "LegEnd", "Foot")) for part in PARTS])
@@ -181,7 +181,7 @@ def test_one_of_the_trials_finds_a_pose_whose_legs_were_told_wrong(rng):
     assert min(errors) < 0.06
 
 
-def test_exchanged_parts_carry_their_places(rng):
+def test_swap_parts_permutes_centers_and_labels(rng):
     centres = rng.normal(size=(N_PARTS, 3))
     parts = FoundParts(centres, np.arange(N_PARTS) / N_PARTS, centres, np.arange(N_PARTS))
     other = parts.swap_parts(MIRRORED_PARTS)
@@ -190,7 +190,7 @@ def test_exchanged_parts_carry_their_places(rng):
     np.testing.assert_array_equal(other.labels[left], right)
 
 
-def test_pixels_told_wrong_go_to_the_part_they_lie_on(rng):
+def test_fit_pixels_reassigns_wrong_labels(rng):
     """The left shin is told to be rather the right one, and the start is the truth."""
     true = standing(rightFemurX=0.0)
     points, parts, _, _ = seen_parts(true)

@@ -59,7 +59,7 @@ def test_a_bar_casts_a_shadow_to_its_left_as_wide_as_the_disparity(rng):
     assert (seen.labels[60, unseen] == NO_PART).all()
 
 
-def test_holes_come_as_often_as_asked_and_more_at_edges(rng):
+def test_holes_have_the_requested_fraction_and_more_at_edges(rng):
     scene = wall()
     scene.depth[:, 80:] = 1.5
     seen = add_sensor_noise(scene, CAMERA, rng, replace(NO_NOISE, holes=0.1, edge_holes=0.6))

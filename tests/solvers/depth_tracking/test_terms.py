@@ -91,7 +91,7 @@ def test_depth_of_a_pixel_changes_as_its_gradient_says():
 
 
 @pytest.mark.parametrize("aside", [(0.03, 0.0), (0.0, -0.03)])
-def test_the_silhouette_term_asks_back_where_the_outline_is(aside):
+def test_silhouette_term_pulls_back_to_the_outline(aside):
     there = NATURAL.copy()
     there[:2] += aside
     hypothesis = render_hypothesis(BODY, there, CAMERA)
@@ -105,7 +105,7 @@ def test_the_silhouette_term_asks_back_where_the_outline_is(aside):
     assert abs(asked @ np.array(aside)) > 0.9 * np.linalg.norm(asked) * np.linalg.norm(aside)
 
 
-def test_a_perfect_pose_is_asked_for_nothing():
+def test_terms_have_zero_residuals_at_the_true_pose():
     hypothesis, observation = render_hypothesis(BODY, NATURAL, CAMERA), observed(NATURAL)
     groups = group_pixels(hypothesis, observation, 0.08)
 
@@ -174,7 +174,7 @@ def test_every_depth_term_moves_the_body_nearer():
         assert abs(nearer - observation.points[:, 2].mean()) < 0.03
 
 
-def test_depths_of_nobody_are_grouped_as_nothing():
+def test_group_pixels_is_empty_for_an_empty_observation():
     empty = Observation(CAMERA, np.zeros((120, 160)))
     hypothesis = render_hypothesis(BODY, NATURAL, CAMERA)
     groups = group_pixels(hypothesis, empty, 0.08)

@@ -65,7 +65,7 @@ def test_costs_only_fall_where_only_better_is_accepted(rng):
 
 
 @pytest.mark.parametrize(("settings", "worst"), [(DEFAULT_TRACKER, 0.02), (WZC12, 0.08)])
-def test_follows_someone_who_waves(settings, worst):
+def test_track_pose_follows_a_waving_actor(settings, worst):
     truth = waving(30)
 
     tracked = track_pose(recorded(truth), BODY, truth[0], settings=settings)
@@ -120,7 +120,7 @@ def test_confidence_falls_where_a_limb_is_out_of_sight():
     assert from_front < 0.7 * from_behind
 
 
-def test_a_frame_without_anybody_is_bridged_and_told():
+def test_track_pose_bridges_an_empty_frame_with_zero_confidence():
     truth = waving(6)
     recording = recorded(truth)
 
@@ -135,7 +135,7 @@ def test_a_frame_without_anybody_is_bridged_and_told():
     assert mean_error(tracked.poses, truth) < 0.03
 
 
-def test_tells_progress_and_can_be_cancelled():
+def test_reports_progress_and_can_be_cancelled():
     fractions = []
     track_pose(recorded(waving(3)), BODY, NATURAL, progress=lambda f, _="": fractions.append(f))
     assert_allclose(fractions, [1 / 3, 2 / 3, 1.0])
@@ -148,12 +148,12 @@ def test_tells_progress_and_can_be_cancelled():
 
 
 @pytest.mark.parametrize("pose", [np.zeros(33), np.full(36, np.nan)])
-def test_no_pose_is_refused(pose):
+def test_track_pose_raises_for_an_invalid_pose(pose):
     with pytest.raises(InvalidMotionError, match="36 finite coordinates"):
         track_pose(recorded(waving(1)), BODY, pose)
 
 
-def test_limits_ask_back_only_what_is_beyond():
+def test_joint_limits_affect_only_exceeded_coordinates():
     inside = np.clip(np.zeros(36), LOWER_LIMITS, UPPER_LIMITS) + 0.01 * np.isfinite(
         LOWER_LIMITS
     )
@@ -164,14 +164,14 @@ def test_limits_ask_back_only_what_is_beyond():
     assert_allclose(asked.vector, -0.6 * np.eye(36)[10], atol=1e-12)
 
 
-def test_foretells_constant_velocity():
+def test_predict_pose_extrapolates_constant_velocity():
     poses = [np.full(36, 1.0), np.full(36, 1.5)]
     assert_allclose(predict_pose(poses, 1.0), 2.0)
     assert_allclose(predict_pose(poses, 0.0), 1.5)
     assert_allclose(predict_pose(poses[:1], 1.0), 1.0)
 
 
-def test_a_few_stray_pixels_are_nobody():
+def test_observation_of_a_few_pixels_is_empty():
     truth = waving(4)
     recording = recorded(truth)
 

@@ -97,7 +97,7 @@ def test_poses_that_are_not_loosened_are_those_of_the_clip(person, rng):
         assert (np.abs(turns - pose).max(axis=(1, 2)) == 0.0).any()
 
 
-def test_pictures_are_those_of_their_number(person, gait):
+def test_images_are_determined_by_their_block(person, gait):
     settings = TrainingImagesSettings()
     one, again = (image_source([gait], [person], settings, 3) for _ in range(2))
     other = image_source([gait], [person], settings, 4)
@@ -118,7 +118,7 @@ def test_bodies_are_where_the_settings_say(person, gait):
         assert picture.depth.shape == (CAMERA.height, CAMERA.width)
 
 
-def test_feet_are_lost_as_often_as_asked(person, gait):
+def test_feet_are_removed_with_the_requested_frequency(person, gait):
     foot = [PARTS.index("leftFoot"), PARTS.index("rightFoot")]
 
     def feet(lost):
@@ -129,7 +129,7 @@ def test_feet_are_lost_as_often_as_asked(person, gait):
     assert feet(1.0) < 0.7 * feet(0.0)
 
 
-def test_clothes_only_add_and_are_alike_left_and_right(person, rng):
+def test_clothes_expand_the_body_symmetrically(person, rng):
     naked = vary_body([person], rng, PLAIN)
     np.testing.assert_allclose(naked.vertices, person.vertices)
     dressed = vary_body([person], rng, replace(PLAIN, clothes=0.04))
