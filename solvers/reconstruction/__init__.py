@@ -13,7 +13,6 @@ from .reliability import (
     Reliability,
     ReliabilityMethod,
     ReliabilitySettings,
-    measure_marker_reliability,
     measure_reliability,
 )
 from .residual_correction import (
@@ -48,7 +47,6 @@ __all__ = [
     "learn_residual_prior",
     "load_posture_library",
     "load_residual_prior",
-    "measure_marker_reliability",
     "measure_reliability",
     "reconstruct",
     "reconstruct_postures",

@@ -19,7 +19,7 @@ from ..joint_rotations import (
 )
 from ..pose_library import PostureIndex, PostureLibrary, Query, index_postures, nearest_postures
 from ..pose_space import Demands, PostureSpaces, local_pca
-from ..published import search_in_turn, solve_in_turn, solve_postures
+from ..published import search_in_turn
 from .cross_validation import Errors, leave_out
 from .keep_lengths import keep_lengths
 from .probable_posture import probable_postures
@@ -235,10 +235,6 @@ def _chosen(
 ) -> Array:
     if settings.method is PostureMethod.PUBLISHED:
         return search_in_turn(spaces, asked, settings.seed, last)[0]
-    if settings.method is PostureMethod.ENERGY and settings.causal:
-        return solve_in_turn(spaces, asked, before=last)[0]
-    if settings.method is PostureMethod.ENERGY:
-        return spaces.postures(solve_postures(spaces, asked))
     return probable
 
 

@@ -154,7 +154,6 @@ def _most(seen: NDArray[np.bool_]) -> int:
 def _words(settings: PostureSettings, library: PostureLibrary) -> str:
     ways = {
         PostureMethod.PROBABLE: "most probable postures",
-        PostureMethod.ENERGY: "postures of least energy",
         PostureMethod.PUBLISHED: "postures by stochastic search",
     }
     when = ", causal" if settings.causal else ""

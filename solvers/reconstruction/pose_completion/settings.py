@@ -11,11 +11,9 @@ class PostureMethod(Enum):
 
     PROBABLE = "probable"
     """The most probable one, if the neighbours are a sample of a normal distribution."""
-    ENERGY = "energy"
-    """That of least energy [SHJT13, eq. 15], by Gauss-Newton steps."""
     PUBLISHED = "published"
-    """The same by the stochastic search of [SHJT13], frame after frame; nothing else is done,
-    and `smoothing`, `memory`, `pace` and `rounds` are not looked at."""
+    """The one of least energy by the stochastic search of [SHJT13], frame by frame. Nothing else
+    is done: `smoothing`, `memory`, `pace` and `rounds` have no effect."""
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -18,7 +18,7 @@ from solvers.reconstruction.pose_library.neighbors import (
 )
 from solvers.reconstruction.pose_space.posture_energy import Demands, EnergyWeights
 from solvers.reconstruction.pose_space.posture_space import PostureSpaces, local_pca
-from solvers.reconstruction.published.posture_synthesis import solve_in_turn
+from tests.benchmarks.reconstruction.posture_synthesis import solve_in_turn
 
 from ..peers.gap_fillers import linear
 from ..shared.tables import number, table

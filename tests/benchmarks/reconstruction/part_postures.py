@@ -29,9 +29,9 @@ from solvers.reconstruction.pose_library.posture_library import (
 from solvers.reconstruction.pose_space.posture_energy import Demands
 from solvers.reconstruction.pose_space.posture_space import local_pca
 from solvers.reconstruction.published.posture_search import search_in_turn
-from solvers.reconstruction.published.posture_synthesis import solve_in_turn
 from solvers.reconstruction.reliability.scores import Reliability
 from solvers.recordings import read_recording
+from tests.benchmarks.reconstruction.posture_synthesis import solve_in_turn
 
 from ..shared import clips
 from ..shared.tables import Scores

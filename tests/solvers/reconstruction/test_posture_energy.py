@@ -26,7 +26,7 @@ from solvers.reconstruction.pose_space.posture_energy import (
 )
 from solvers.reconstruction.pose_space.posture_space import local_pca
 from solvers.reconstruction.published.posture_search import search_in_turn, search_postures
-from solvers.reconstruction.published.posture_synthesis import solve_in_turn, solve_postures
+from tests.benchmarks.reconstruction.posture_synthesis import solve_in_turn, solve_postures
 
 N_FRAMES = 6
 UP = np.array([0.0, 0.0, 2.0])

@@ -3,9 +3,15 @@
 import numpy as np
 from numpy.typing import NDArray
 
-from ...motion.humanoid import ABOVE, N_JOINTS
-from ..pose_space import N_BONES, Demands, PostureSpaces, posture_energy, style_distances
-from .sequential import in_turn
+from solvers.motion.humanoid import ABOVE, N_JOINTS
+from solvers.reconstruction.pose_space import (
+    N_BONES,
+    Demands,
+    PostureSpaces,
+    posture_energy,
+    style_distances,
+)
+from solvers.reconstruction.published.sequential import in_turn
 
 Array = NDArray[np.float64]
 
