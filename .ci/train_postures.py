@@ -9,7 +9,7 @@ UI-PRMD (Vakanski, Jun, Paul, Baker 2018, published as ODC-PDDL).
 import argparse
 from pathlib import Path
 
-from solvers.reconstruction.pose_library.posture_library import SHIPPED
+from solvers.reconstruction.pose_library.posture_library import SHIPPED_LIBRARY
 from tests.benchmarks.reconstruction.kinect_pairs import read_pairs
 from tests.benchmarks.reconstruction.posture_sources import (
     cmu_library,
@@ -23,7 +23,7 @@ def main() -> None:
     parser = argparse.ArgumentParser(
         description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
     )
-    parser.add_argument("--out", type=Path, default=SHIPPED)
+    parser.add_argument("--out", type=Path, default=SHIPPED_LIBRARY)
     given = parser.parse_args()
     library = joined(cmu_library(), exercise_library(read_pairs()))
     given.out.parent.mkdir(exist_ok=True)

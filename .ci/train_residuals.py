@@ -19,8 +19,8 @@ from solvers.reconstruction import (
     learn_residual_prior,
     load_residual_prior,
 )
-from solvers.reconstruction.reconstruct import SHIPPED
-from solvers.reconstruction.residual_correction.learn_confidence import calibrated
+from solvers.reconstruction.reconstruct import SHIPPED_PRIOR
+from solvers.reconstruction.residual_correction.learn_confidence import calibrate_confidence
 from tests.benchmarks.reconstruction.kinect_pairs import read_pairs
 
 SETTINGS = ResidualPriorSettings(local_points=30, whole_points=60)
@@ -35,17 +35,17 @@ def main() -> None:
     parser = argparse.ArgumentParser(
         description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
     )
-    parser.add_argument("--out", type=Path, default=SHIPPED)
+    parser.add_argument("--out", type=Path, default=SHIPPED_PRIOR)
     parser.add_argument("--confidence", action="store_true")
     given = parser.parse_args()
     taken = [pair for pair in read_pairs() if pair.matched]
     pairs = [(pair.kinect, pair.truth) for pair in taken]
     actors = [pair.subject for pair in taken]
     if given.confidence:
-        prior = load_residual_prior(SHIPPED)
+        prior = load_residual_prior(SHIPPED_PRIOR)
     else:
         prior = learn_residual_prior(pairs, actors=actors, settings=SETTINGS, progress=told)
-    prior = calibrated(prior, pairs, actors, progress=told)
+    prior = calibrate_confidence(prior, pairs, actors, progress=told)
     given.out.parent.mkdir(exist_ok=True)
     small(prior).save(given.out)
     print(f"{len(prior.joints)} joints, {given.out.stat().st_size} bytes: {given.out}")

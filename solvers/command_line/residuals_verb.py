@@ -10,7 +10,7 @@ from ..motion import JointRecording, Motion, Tracks, resample
 from ..motion.humanoid import POSTURE_JOINTS, motion_postures
 from ..progress import Progress, within
 from ..reconstruction import ResidualPriorSettings, learn_residual_prior
-from ..reconstruction.residual_correction import calibrated
+from ..reconstruction.residual_correction import calibrate_confidence
 from ..recordings import read_tracked, recordings_in
 from .options import arguments_from, settings_from_arguments
 from .verb import Outcome, Task
@@ -62,7 +62,7 @@ def perform_residuals(task: Task, prepared: None, progress: Progress) -> Outcome
         pairs, actors=actors, settings=settings, progress=within(progress, 0.4, 0.6)
     )
     if arguments.confidence:
-        prior = calibrated(
+        prior = calibrate_confidence(
             prior, pairs, actors, settings=settings, progress=within(progress, 0.6, 1.0)
         )
     assert task.target is not None

@@ -16,16 +16,16 @@ from .joint_rotations import Reconstruction
 from .pose_completion import (
     PostureMethod,
     PostureSettings,
-    bridged_losses,
-    rebuilt_joints,
+    blend_short_gaps,
+    complete_joints,
     reconstruct_postures,
 )
 from .pose_library import PostureLibrary
 from .reliability import (
     ReliabilityMethod,
     ReliabilitySettings,
+    fix_left_right_swaps,
     measure_reliability,
-    undo_exchanges,
 )
 from .residual_correction import (
     CorrectionMethod,
@@ -37,18 +37,18 @@ from .residual_correction import (
 
 Array = NDArray[np.float64]
 
-SHIPPED = Path(__file__).parent / "residual_correction" / "residuals.npz"
+SHIPPED_PRIOR = Path(__file__).parent / "residual_correction" / "residuals.npz"
 
-DOUBTED, LOST = 0.5, 0.2
+OBSERVED_RELIABILITY, REPLACED_RELIABILITY = 0.5, 0.2
 """Joints that are trusted more than the first stay where they were seen; those trusted less
 than the second are where the postures say."""
-FAR = 0.15
+HALF_WEIGHT_M = 0.15
 """Metres from its calmed path beyond which postures count for less than what was seen of a
 joint: sensors that err by more are hardly trusted at all."""
-WRONG, DOUBTFUL = 0.02, 0.07
+WRONG_RELIABILITY, UNCERTAIN_RELIABILITY = 0.02, 0.07
 """Trust up to which that is so, and from which on it is not. On intact takes of UI-PRMD joints
 that are trusted by 0.1 to 0.5 are 10 cm off, those below 0.05 by 40 cm."""
-CALM = 0.1
+SMOOTHING_S = 0.1
 """Seconds of the Gaussian that calms what was seen."""
 
 
@@ -98,9 +98,12 @@ class ReconstructSettings(Settings):
     )  # fmt: skip
 
 
-USUAL = ReconstructSettings()
-PUBLISHED = (ReconstructMethod.PUBLISHED_POSTURES, ReconstructMethod.PUBLISHED_RESIDUALS)
-RESIDUALS = (ReconstructMethod.RESIDUALS, ReconstructMethod.PUBLISHED_RESIDUALS)
+DEFAULT_SETTINGS = ReconstructSettings()
+PUBLISHED_METHODS = (
+    ReconstructMethod.PUBLISHED_POSTURES,
+    ReconstructMethod.PUBLISHED_RESIDUALS,
+)
+RESIDUAL_METHODS = (ReconstructMethod.RESIDUALS, ReconstructMethod.PUBLISHED_RESIDUALS)
 
 
 def reconstruct(
@@ -108,7 +111,7 @@ def reconstruct(
     postures: PostureLibrary | None = None,
     prior: ResidualPrior | None = None,
     *,
-    settings: ReconstructSettings = USUAL,
+    settings: ReconstructSettings = DEFAULT_SETTINGS,
     progress: Progress = unwatched,
 ) -> Reconstruction:
     """Rebuild clean poses from what a depth camera's tracker saw.
@@ -142,49 +145,55 @@ def reconstruct(
     SolveCancelled
         Raised by `progress`.
     """
-    if not (settings.causal or settings.method in PUBLISHED):
-        recording = undo_exchanges(recording)
+    if not (settings.causal or settings.method in PUBLISHED_METHODS):
+        recording = fix_left_right_swaps(recording)
     trust = measure_reliability(
         recording,
-        settings=_signs(settings),
+        settings=_reliability_settings(settings),
         progress=within(progress, 0.0, 0.1),
     )
     known = prior is not None or recording.sensor is Sensor.KINECT_V2
-    if settings.method in RESIDUALS:
+    if settings.method in RESIDUAL_METHODS:
         return correct_postures(
             recording,
             prior or shipped_residual_prior(),
             reliability=trust,
-            settings=_correction(settings, known),
+            settings=_correction_settings(settings, known),
             progress=within(progress, 0.1, 1.0),
         )
     if settings.method is not ReconstructMethod.BOTH:
         return reconstruct_postures(
             recording,
             postures,
-            settings=_synthesis(settings),
+            settings=_posture_settings(settings),
             reliability=trust,
             progress=within(progress, 0.1, 1.0),
         )
-    rebuilt = rebuilt_joints(
-        recording, postures, trust.combined, _synthesis(settings), within(progress, 0.1, 0.7)
+    rebuilt = complete_joints(
+        recording,
+        postures,
+        trust.combined,
+        _posture_settings(settings),
+        within(progress, 0.1, 0.7),
     )
-    lost = _lost(recording.tracks, trust.combined, rebuilt.tracks, not settings.causal)
+    lost = _replacement_weights(
+        recording.tracks, trust.combined, rebuilt.tracks, not settings.causal
+    )
     sure = np.maximum(trust.combined, lost * rebuilt.confidence)
     places = rebuilt.tracks
     if not settings.causal:
         believed = recording.tracks.visible & (lost <= 0.0)
         places = places.with_positions(
-            bridged_losses(
+            blend_short_gaps(
                 recording.tracks.positions, believed, places.positions, recording.frame_rate
             )
         )
     corrected = correct_postures(
-        replace(recording, tracks=_blended(recording.tracks, places, lost)),
+        replace(recording, tracks=_blend_tracks(recording.tracks, places, lost)),
         prior or shipped_residual_prior(),
         reliability=replace(trust, combined=sure),
         twists=rebuilt.twists,
-        settings=_correction(settings, known),
+        settings=_correction_settings(settings, known),
         progress=within(progress, 0.7, 1.0),
     )
     confidence = np.minimum(corrected.confidence, np.maximum(1.0 - lost, rebuilt.confidence))
@@ -194,38 +203,42 @@ def reconstruct(
     )  # fmt: skip
 
 
-def _lost(seen: Tracks, trust: Array, rebuilt: Tracks, ahead: bool) -> Array:
+def _replacement_weights(seen: Tracks, trust: Array, rebuilt: Tracks, ahead: bool) -> Array:
     """Return how far postures are to replace what was seen, (n_frames, n_joints), 0 to 1.
 
     What was seen of a joint but is doubted says at least about where it is; a posture that has
     it elsewhere is not the one.
     """
-    lost = np.clip((DOUBTED - trust) / (DOUBTED - LOST), 0.0, 1.0)
+    lost = np.clip(
+        (OBSERVED_RELIABILITY - trust) / (OBSERVED_RELIABILITY - REPLACED_RELIABILITY), 0.0, 1.0
+    )
     known = seen.visible.any(axis=0)
     calm = bridged(seen.positions[:, known], ahead=ahead)
-    calm = steadied(calm, CALM * seen.frame_rate, ahead=ahead)
+    calm = steadied(calm, SMOOTHING_S * seen.frame_rate, ahead=ahead)
     away = np.zeros(trust.shape)
     away[:, known] = np.linalg.norm(rebuilt.positions[:, known] - calm, axis=-1)
-    near = 1.0 / (1.0 + (away / FAR) ** 4)
-    held = np.clip((trust - WRONG) / (DOUBTFUL - WRONG), 0.0, 1.0)
+    near = 1.0 / (1.0 + (away / HALF_WEIGHT_M) ** 4)
+    held = np.clip(
+        (trust - WRONG_RELIABILITY) / (UNCERTAIN_RELIABILITY - WRONG_RELIABILITY), 0.0, 1.0
+    )
     return np.where(seen.visible, lost * (1.0 - held + held * near), lost)
 
 
-def _blended(seen: Tracks, rebuilt: Tracks, lost: Array) -> Tracks:
+def _blend_tracks(seen: Tracks, rebuilt: Tracks, lost: Array) -> Tracks:
     """Return joints where they were seen, and where they were lost as postures have them."""
     share = np.where(seen.visible, lost, 1.0)[..., None]
     places = np.where(seen.visible[..., None], seen.positions, 0.0)
     return seen.with_positions(share * rebuilt.positions + (1.0 - share) * places)
 
 
-def _signs(settings: ReconstructSettings) -> ReliabilitySettings:
-    if settings.method in PUBLISHED:
+def _reliability_settings(settings: ReconstructSettings) -> ReliabilitySettings:
+    if settings.method in PUBLISHED_METHODS:
         return ReliabilitySettings(method=ReliabilityMethod.PUBLISHED, causal=settings.causal)
     return ReliabilitySettings(causal=settings.causal, inferred=settings.inferred)
 
 
-def _synthesis(settings: ReconstructSettings) -> PostureSettings:
-    published = settings.method in PUBLISHED
+def _posture_settings(settings: ReconstructSettings) -> PostureSettings:
+    published = settings.method in PUBLISHED_METHODS
     return PostureSettings(
         method=PostureMethod.PUBLISHED if published else PostureMethod.PROBABLE,
         causal=settings.causal,
@@ -233,10 +246,10 @@ def _synthesis(settings: ReconstructSettings) -> PostureSettings:
     )
 
 
-def _correction(settings: ReconstructSettings, known: bool) -> CorrectionSettings:
+def _correction_settings(settings: ReconstructSettings, known: bool) -> CorrectionSettings:
     """Return how to correct; what is not known of a sensor cannot be taken out."""
     method = CorrectionMethod.CAUSAL if settings.causal else CorrectionMethod.WHOLE_TAKE
-    if settings.method in PUBLISHED:
+    if settings.method in PUBLISHED_METHODS:
         method = CorrectionMethod.PUBLISHED
     usual = CorrectionSettings()
     return CorrectionSettings(
@@ -250,4 +263,4 @@ def _correction(settings: ReconstructSettings, known: bool) -> CorrectionSetting
 @cache
 def shipped_residual_prior() -> ResidualPrior:
     """Return the prior that is shipped: a Kinect v2 against markers (UI-PRMD, ODC-PDDL)."""
-    return load_residual_prior(SHIPPED)
+    return load_residual_prior(SHIPPED_PRIOR)

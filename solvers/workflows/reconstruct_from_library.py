@@ -17,7 +17,7 @@ from ..reconstruction import (
     measure_reliability,
     reconstruct,
 )
-from ..reconstruction.pose_library import build_posture_library, joined_postures
+from ..reconstruction.pose_library import build_posture_library, merge_posture_libraries
 from ..retrieval import ClipLibrary, FindSettings
 from .library_clips import FOUND, Fetch, library_clips, read_origin
 from .reconstruct_motion import postures_recording
@@ -129,4 +129,4 @@ def postures_from_library(
         )
     except InvalidMotionError as error:
         return LibraryPostures(shipped, (), f"{found.sentence()} That was of no use: {error}")
-    return LibraryPostures(joined_postures(theirs, shipped), names, found.sentence())
+    return LibraryPostures(merge_posture_libraries(theirs, shipped), names, found.sentence())

@@ -30,7 +30,7 @@ from ..reconstruction import (
     ResidualPrior,
     reconstruct,
 )
-from ..reconstruction.joint_rotations import follow_joints, turn_to_postures
+from ..reconstruction.joint_rotations import fit_motion_to_postures, motion_from_positions
 from .known_body import KINECT_V1, check_size, check_tracked, gap_remarks
 from .measured_joints import measured_joints
 from .rebuilt_joints import rebuilt_joints
@@ -94,8 +94,8 @@ def reconstruct_motion(
     """Rebuild the poses of a motion that a tracker's joints, or any capture, gave a skeleton.
 
     Where its joints are those of a known tracker, all of them are rebuilt and followed
-    (`follow_joints`). On any other skeleton those of a body are, and its motion is turned the
-    short way to where they come to be (`turn_to_postures`).
+    (`motion_from_positions`). On any other skeleton those of a body are, and its motion is
+    turned the short way to where they come to be (`fit_motion_to_postures`).
 
     Parameters
     ----------
@@ -132,7 +132,7 @@ def reconstruct_motion(
         recording, postures, prior, settings=settings, progress=within(progress, 0.0, 0.9)
     )
     if tracked:
-        turned = follow_joints(
+        turned = motion_from_positions(
             rebuilt.tracks,
             recording.parents,
             rebuilt.reliability.combined,
@@ -140,7 +140,7 @@ def reconstruct_motion(
             skeleton=motion.skeleton,
         )
     else:
-        turned = turn_to_postures(motion, posture_positions(rebuilt.tracks), humanoid_map)
+        turned = fit_motion_to_postures(motion, posture_positions(rebuilt.tracks), humanoid_map)
     trust, confidence, told = _of_skeleton(motion.n_joints, recording, rebuilt, columns)
     progress(1.0, "Done")
     remarks = tuple(gap_remarks(recording))

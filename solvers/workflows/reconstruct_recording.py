@@ -9,7 +9,7 @@ from ..denoising import Planted, PlantSettings
 from ..motion import JointRecording, Motion, Skeleton
 from ..progress import Progress, unwatched, within
 from ..reconstruction import PostureLibrary, ReconstructSettings, ResidualPrior, reconstruct
-from ..reconstruction.joint_rotations import Reconstruction, follow_joints
+from ..reconstruction.joint_rotations import Reconstruction, motion_from_positions
 from .known_body import check_size, gap_remarks, known_body
 from .rebuilt_joints import rebuilt_joints
 from .try_to_plant import try_to_plant
@@ -82,7 +82,7 @@ def reconstruct_recording(
     )
     motion = rebuilt.motion
     if skeleton is not None:
-        motion = follow_joints(
+        motion = motion_from_positions(
             rebuilt.tracks,
             known.parents,
             rebuilt.reliability.combined,

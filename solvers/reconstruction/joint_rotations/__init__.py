@@ -1,39 +1,39 @@
 """Joint rotations of a skeleton from the positions of its joints."""
 
-from .follow_joints import follow_joints
-from .library_body import BodyPostures, anatomy_turns, on_body
-from .limb_angles import Complex, angles_about
-from .limb_twist import bend_share
-from .other_joints import all_joints, anchors
+from .fit_to_postures import fit_motion_to_postures
+from .library_body import BodyPostures, bone_axis_corrections, build_body_postures
+from .limb_angles import Complex, axial_angles
+from .limb_twist import flexion_weights
+from .motion_from_positions import motion_from_positions
+from .other_joints import find_anchors, positions_from_postures
 from .result import Reconstruction
 from .trunk_twist import (
-    N_TWISTED,
-    TWISTED,
+    N_TWISTED_LIMBS,
+    TWISTED_LIMBS,
     LimbTwists,
-    bend_normals,
+    flexion_normals,
     mean_twists,
-    mirrored_twists,
-    plain_hinges,
+    mirror_twists,
+    untwisted_hinges,
 )
-from .turn_to_postures import turn_to_postures
 
 __all__ = [
-    "N_TWISTED",
-    "TWISTED",
+    "N_TWISTED_LIMBS",
+    "TWISTED_LIMBS",
     "BodyPostures",
     "Complex",
     "LimbTwists",
     "Reconstruction",
-    "all_joints",
-    "anatomy_turns",
-    "anchors",
-    "angles_about",
-    "bend_normals",
-    "bend_share",
-    "follow_joints",
+    "axial_angles",
+    "bone_axis_corrections",
+    "build_body_postures",
+    "find_anchors",
+    "fit_motion_to_postures",
+    "flexion_normals",
+    "flexion_weights",
     "mean_twists",
-    "mirrored_twists",
-    "on_body",
-    "plain_hinges",
-    "turn_to_postures",
+    "mirror_twists",
+    "motion_from_positions",
+    "positions_from_postures",
+    "untwisted_hinges",
 ]

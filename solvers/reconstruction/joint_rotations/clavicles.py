@@ -13,7 +13,7 @@ LOW_SPINE = "SpineLow"
 LEGS = ("leftUpperLeg", "rightUpperLeg")
 
 
-def with_girdles(skeleton: Skeleton) -> Skeleton:
+def add_clavicle_joints(skeleton: Skeleton) -> Skeleton:
     """Hang arms on clavicles, and the spine on a joint of its own, where there are none.
 
     Trackers hang shoulders, neck and spine right on the trunk, and then let them shift: an arm
@@ -23,12 +23,12 @@ def with_girdles(skeleton: Skeleton) -> Skeleton:
     roles = roles_by_name(skeleton.names)
     for role, name in CLAVICLES.items():
         if role in roles:
-            skeleton = _hung_on(skeleton, roles[role], name)
+            skeleton = _insert_parent(skeleton, roles[role], name)
     above = _parent(skeleton, roles.get("spine", ""))
     if above == roles.get("hips") and all(
         _parent(skeleton, roles.get(leg, "")) for leg in LEGS
     ):
-        skeleton = _hung_on(skeleton, roles["spine"], LOW_SPINE)
+        skeleton = _insert_parent(skeleton, roles["spine"], LOW_SPINE)
     return skeleton
 
 
@@ -39,7 +39,7 @@ def _parent(skeleton: Skeleton, name: str) -> str | None:
     return skeleton.names[above] if above >= 0 else None
 
 
-def _hung_on(skeleton: Skeleton, name: str, between: str) -> Skeleton:
+def _insert_parent(skeleton: Skeleton, name: str, between: str) -> Skeleton:
     """Put a joint of no length between a joint and the one above, if that has others too."""
     joint = skeleton.names.index(name)
     above = skeleton.parents[joint]

@@ -15,9 +15,9 @@ ARMS, LEGS, SHINS, TOES = (
     tuple(POSTURE_JOINTS.index(f"{side}{part}") for side in ("left", "right"))
     for part in ("UpperArm", "UpperLeg", "Foot", "Toes")
 )
-ANATOMY = (SPINE, CHEST, HEAD, *ARMS, *LEGS, *TOES)
+CORRECTED_BONES = (SPINE, CHEST, HEAD, *ARMS, *LEGS, *TOES)
 """Bones that lead elsewhere in each tracker's idea of a body, in the very same posture."""
-FEWEST = 20.0
+HALF_WEIGHT_COUNT = 20.0
 """Sightings of a bone at which half of what they tell is believed."""
 
 
@@ -41,7 +41,7 @@ class BodyPostures:
     twists: NDArray[np.complex64] | None = None
 
 
-def on_body(
+def build_body_postures(
     directions: Single, changes: Single, lengths: Array, turns: Array | None = None
 ) -> BodyPostures:
     """Give directions of bones the lengths and the anatomy of an actor.
@@ -56,7 +56,7 @@ def on_body(
     if turns is not None:
         directions, changes = directions.copy(), changes.copy()
         frames = bone_frames(along_bones(directions.astype(np.float64), lengths))
-        for bone in ANATOMY:
+        for bone in CORRECTED_BONES:
             frame = frames[bone].astype(np.float32)
             turn = frame @ turns[bone].astype(np.float32) @ frame.swapaxes(-1, -2)
             directions[:, bone] = np.einsum("nij,nj->ni", turn, directions[:, bone])
@@ -84,7 +84,9 @@ def bone_frames(postures: Array) -> dict[int, Array]:
     return frames
 
 
-def anatomy_turns(observed: Array, trust: Array, directions: Array, lengths: Array) -> Array:
+def bone_axis_corrections(
+    observed: Array, trust: Array, directions: Array, lengths: Array
+) -> Array:
     """Return how the bones of the tracker lie differently from those of the library.
 
     Parameters
@@ -104,7 +106,7 @@ def anatomy_turns(observed: Array, trust: Array, directions: Array, lengths: Arr
     turns = np.tile(np.eye(3), (N_JOINTS, 1, 1))
     seen = bone_frames(observed)
     known = bone_frames(along_bones(directions, lengths))
-    for bone in ANATOMY:
+    for bone in CORRECTED_BONES:
         above = ABOVE[bone]
         way = observed[:, bone] - observed[:, above]
         size = np.linalg.norm(way, axis=-1, keepdims=True)
@@ -114,7 +116,7 @@ def anatomy_turns(observed: Array, trust: Array, directions: Array, lengths: Arr
         good = np.isfinite(told).all(axis=-1) & np.isfinite(usual).all(axis=-1)
         weight = np.where(good, weight, 0.0)
         both = np.einsum("f,fi,fj->ij", weight[good], told[good], usual[good])
-        u, _, v = np.linalg.svd(both + FEWEST * np.eye(3))
+        u, _, v = np.linalg.svd(both + HALF_WEIGHT_COUNT * np.eye(3))
         flip = np.diag([1.0, 1.0, np.sign(np.linalg.det(u @ v))])
         turns[bone] = u @ flip @ v
     return turns

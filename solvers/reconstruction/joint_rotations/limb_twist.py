@@ -8,31 +8,31 @@ from scipy.linalg import solveh_banded
 
 from ...motion import Skeleton
 from ...rotations import inverse, multiply, quaternion_from_rotation_vector, rotate
-from .limb_angles import Complex, angles_about, bent, unit
+from .limb_angles import Complex, axial_angles, measure_flexion, unit_vectors
 
 Array = NDArray[np.float64]
 
 HINGES = {"Arm": (0.0, -1.0, 0.0), "Leg": (0.0, 1.0, 0.0)}
 """Where an elbow or a knee brings what is below it, in a T-pose that faces -Y."""
-DOUBTED_BEND, TRUSTED_BEND = np.radians([8.0, 30.0])
+MIN_FLEXION, FULL_FLEXION = np.radians([8.0, 30.0])
 """Bends at which the plane begins to be told, and is fully told."""
-STEADY = 0.1
+SMOOTHING_S = 0.1
 """Seconds over which the twist is steadied where bends tell it."""
-USUAL = 0.02
+REST_WEIGHT = 0.02
 """Weight of no twist against the trunk; a bend has 1."""
-ALIKE, SEEN_TOO = 0.2, 0.1
+LIBRARY_WEIGHT, OBSERVED_FRACTION = 0.2, 0.1
 """Weight of the twist that like postures agree upon where the limb is lost, and what part of it
 is left where the limb is seen: bends before and after tell more of a straight one."""
-OWN = 0.03
+ACTOR_BIAS_S = 0.03
 """Seconds of bends by which half of how the actor differs from like postures is known."""
 
-SURE, FAINT = 90.0, 1e-6
+AGREED_WEIGHT, MIN_WEIGHT = 90.0, 1e-6
 """Weights of an angle that all bends about it agree on, and of one of which nothing is told;
 that of a change by as much within `STEADY` is 1."""
-NEAR, FAR = 0.02, 0.05
+MIN_PALM_M, FULL_PALM_M = 0.02, 0.05
 """Metres. A palm that is seen nearer to its wrist tells no direction; beyond the second it
 does."""
-FOLDED, OPEN = np.radians([100.0, 70.0])
+MAX_PALM_FLEXION, FULL_PALM_FLEXION = np.radians([100.0, 70.0])
 """Bends of a palm against its forearm that are wrong, and up to which all are right."""
 
 
@@ -47,7 +47,7 @@ class Limb(NamedTuple):
     """Of the upper joint."""
 
 
-class Expected(NamedTuple):
+class ExpectedTwists(NamedTuple):
     """Twists of like postures, as complex numbers that are as long as they agree.
 
     Attributes
@@ -61,7 +61,7 @@ class Expected(NamedTuple):
     weights: Array
 
 
-class Hinges(NamedTuple):
+class HingeAxes(NamedTuple):
     """Where like postures have the axis of an elbow or a knee.
 
     Attributes
@@ -77,17 +77,17 @@ class Hinges(NamedTuple):
     alone: bool = False
 
 
-UNKNOWN = Hinges()
+UNKNOWN_HINGES = HingeAxes()
 
 
-def hinge_turns(
+def rotations_from_flexion(
     turns: Array,
     limb: Limb,
     skeleton: Skeleton,
     places: Array,
     trust: Array,
     frame_rate: float,
-    known: Hinges = UNKNOWN,
+    known: HingeAxes = UNKNOWN_HINGES,
 ) -> Array:
     """Twist an upper arm or thigh about itself until its hinge bends as it was seen to bend.
 
@@ -114,26 +114,30 @@ def hinge_turns(
     NDArray, shape (n_frames, 4)
         NaN where `turns` are.
     """
-    along = unit(skeleton.offsets[limb.lower])
+    along = unit_vectors(skeleton.offsets[limb.lower])
     axis = rotate(turns, along)
-    hinge = rotate(turns, unit(np.cross(along, limb.bends_towards)))
-    normal, bend = bent(axis, unit(places[:, limb.end] - places[:, limb.lower]))
+    hinge = rotate(turns, unit_vectors(np.cross(along, limb.bends_towards)))
+    normal, bend = measure_flexion(
+        axis, unit_vectors(places[:, limb.end] - places[:, limb.lower])
+    )
     sure = np.min(trust[:, [limb.upper, limb.lower, limb.end]], axis=1)
     like = np.zeros(len(turns), np.complex128)
     if known.ways is not None:
-        like = _known_angles(axis, hinge, known.ways) * np.linalg.norm(known.ways, axis=-1)
+        like = _angles_or_zero(axis, hinge, known.ways) * np.linalg.norm(known.ways, axis=-1)
     if known.alone:
-        return _turned_about(turns, axis, np.angle(like))
-    expected = Expected(like, ALIKE * (1.0 - (1.0 - SEEN_TOO) * sure))
-    return twisted(turns, axis, hinge, normal, bend_share(bend) * sure, frame_rate, expected)
+        return _rotate_about_axis(turns, axis, np.angle(like))
+    expected = ExpectedTwists(like, LIBRARY_WEIGHT * (1.0 - (1.0 - OBSERVED_FRACTION) * sure))
+    return twist_to_normal(
+        turns, axis, hinge, normal, flexion_weights(bend) * sure, frame_rate, expected
+    )
 
 
-def bend_share(bends: Array) -> Array:
+def flexion_weights(bends: Array) -> Array:
     """Return how far the plane of a bend, in radians, is told: 0 to 1."""
-    return np.asarray(np.clip((bends - DOUBTED_BEND) / (TRUSTED_BEND - DOUBTED_BEND), 0, 1))
+    return np.asarray(np.clip((bends - MIN_FLEXION) / (FULL_FLEXION - MIN_FLEXION), 0, 1))
 
 
-def thumb_turns(
+def rotations_from_thumb(
     turns: Array, along: Array, thumb: Array, seen: Array, trust: Array, frame_rate: float
 ) -> Array:
     """Twist a hand about itself until its thumb lies where it was seen to lie, steadily.
@@ -149,15 +153,15 @@ def thumb_turns(
     trust : shape (n_frames,), 0 to 1
     frame_rate : float, hertz
     """
-    axis = rotate(turns, unit(along))
-    usual = rotate(turns, unit(np.cross(along, thumb)))
-    normal = np.cross(axis, unit(seen))
-    return twisted(
+    axis = rotate(turns, unit_vectors(along))
+    usual = rotate(turns, unit_vectors(np.cross(along, thumb)))
+    normal = np.cross(axis, unit_vectors(seen))
+    return twist_to_normal(
         turns, axis, usual, normal, trust * np.linalg.norm(normal, axis=-1), frame_rate
     )
 
 
-def steady_way(
+def smooth_direction(
     seen: Array, above: Array, straight_on: Array, trust: Array, frame_rate: float
 ) -> Array:
     """Return a short way whose direction is steadied over a tenth of a second, as trusted.
@@ -176,78 +180,87 @@ def steady_way(
     trust : shape (n_frames,), 0 to 1
     frame_rate : float, hertz
     """
-    local = rotate(inverse(above), unit(seen))
+    local = rotate(inverse(above), unit_vectors(seen))
     told = np.isfinite(local).all(axis=-1)
-    weights = np.where(told, trust * _likely(seen, local, straight_on), 0.0)
-    mixed = weights[:, None] * np.where(told[:, None], local, 0.0) + USUAL * unit(straight_on)
-    steady = unit(smoothest(mixed, weights + USUAL, (STEADY * frame_rate) ** 2))
+    weights = np.where(told, trust * _palm_weights(seen, local, straight_on), 0.0)
+    mixed = weights[:, None] * np.where(told[:, None], local, 0.0) + REST_WEIGHT * unit_vectors(
+        straight_on
+    )
+    steady = unit_vectors(
+        solve_smooth_paths(mixed, weights + REST_WEIGHT, (SMOOTHING_S * frame_rate) ** 2)
+    )
     lengths = np.linalg.norm(seen, axis=-1, keepdims=True)
     return np.asarray(rotate(above, steady) * lengths)
 
 
-def _likely(seen: Array, local: Array, straight_on: Array) -> Array:
+def _palm_weights(seen: Array, local: Array, straight_on: Array) -> Array:
     """Return 0 for ways that are too short or too far folded to be a palm's, 1 for others."""
     length = np.linalg.norm(seen, axis=-1)
-    bend = np.arccos(np.clip(local @ unit(straight_on), -1.0, 1.0))
-    long = np.clip((length - NEAR) / (FAR - NEAR), 0.0, 1.0)
-    return np.asarray(long * np.clip((FOLDED - bend) / (FOLDED - OPEN), 0.0, 1.0))
+    bend = np.arccos(np.clip(local @ unit_vectors(straight_on), -1.0, 1.0))
+    long = np.clip((length - MIN_PALM_M) / (FULL_PALM_M - MIN_PALM_M), 0.0, 1.0)
+    return np.asarray(
+        long
+        * np.clip((MAX_PALM_FLEXION - bend) / (MAX_PALM_FLEXION - FULL_PALM_FLEXION), 0.0, 1.0)
+    )
 
 
-def twisted(
+def twist_to_normal(
     turns: Array,
     axis: Array,
     usual: Array,
     normal: Array,
     weights: Array,
     frame_rate: float,
-    expected: Expected | None = None,
+    expected: ExpectedTwists | None = None,
 ) -> Array:
     """Twist frames about their `axis` so far that `usual` comes to `normal`, where it counts.
 
     Arrays of shape (n_frames, 3) are in the world; `weights` has shape (n_frames,). What is not
     known of the twist that is `expected` is none at all.
     """
-    seen = _known_angles(axis, usual, normal)
+    seen = _angles_or_zero(axis, usual, normal)
     weights = np.where(seen != 0.0, weights * (0.5 + 0.5 * seen.real), 0.0)
-    stiffness = (STEADY * frame_rate) ** 2
-    told, sure = weights * seen + USUAL, weights + USUAL
+    stiffness = (SMOOTHING_S * frame_rate) ** 2
+    told, sure = weights * seen + REST_WEIGHT, weights + REST_WEIGHT
     if expected is not None:
-        like = _of_actor(expected.twists, seen, weights, frame_rate)
+        like = _remove_actor_bias(expected.twists, seen, weights, frame_rate)
         known = np.abs(like)
-        told += expected.weights * like - USUAL * known
-        sure += (expected.weights - USUAL) * known
-    parts = smoothest(np.stack([told.real, told.imag], -1), sure, stiffness)
+        told += expected.weights * like - REST_WEIGHT * known
+        sure += (expected.weights - REST_WEIGHT) * known
+    parts = solve_smooth_paths(np.stack([told.real, told.imag], -1), sure, stiffness)
     path = np.asarray(parts[:, 0] + 1j * parts[:, 1])
-    return _turned_about(turns, axis, _without_turns(path, stiffness))
+    return _rotate_about_axis(turns, axis, _smooth_angles(path, stiffness))
 
 
-def _of_actor(like: Complex, seen: Complex, weights: Array, frame_rate: float) -> Complex:
+def _remove_actor_bias(
+    like: Complex, seen: Complex, weights: Array, frame_rate: float
+) -> Complex:
     """Turn the twist of like postures by how the actor mostly differs where limbs bend."""
-    off = OWN * frame_rate + np.sum(weights * seen * np.conj(like))
-    return np.asarray(like * off / max(abs(off), FAINT))
+    off = ACTOR_BIAS_S * frame_rate + np.sum(weights * seen * np.conj(like))
+    return np.asarray(like * off / max(abs(off), MIN_WEIGHT))
 
 
-def _known_angles(directions: Array, plain: Array, hinges: Array) -> Complex:
+def _angles_or_zero(directions: Array, plain: Array, hinges: Array) -> Complex:
     """Return `angles_about`; 0: unknown."""
-    return np.nan_to_num(angles_about(directions, plain, hinges))
+    return np.nan_to_num(axial_angles(directions, plain, hinges))
 
 
-def _turned_about(turns: Array, axis: Array, angles: Array) -> Array:
+def _rotate_about_axis(turns: Array, axis: Array, angles: Array) -> Array:
     return multiply(quaternion_from_rotation_vector(angles[:, None] * axis), turns)
 
 
-def _without_turns(path: Complex, stiffness: float) -> Array:
+def _smooth_angles(path: Complex, stiffness: float) -> Array:
     """Return the angles of a path in the plane, radians, shape (n_frames,).
 
     Where the path passes near 0 an angle may change by half a turn in a frame. There it tells
     little, and is led over steadily.
     """
-    weights = SURE * np.abs(path) ** 4 + FAINT
+    weights = AGREED_WEIGHT * np.abs(path) ** 4 + MIN_WEIGHT
     told = weights * np.unwrap(np.angle(path))
-    return smoothest(told[:, None], weights, stiffness)[:, 0]
+    return solve_smooth_paths(told[:, None], weights, stiffness)[:, 0]
 
 
-def smoothest(told: Array, weights: Array, stiffness: float) -> Array:
+def solve_smooth_paths(told: Array, weights: Array, stiffness: float) -> Array:
     """Solve (W + s D'D) z = told for paths z, shape (n_frames, n)."""
     n_frames = len(told)
     if n_frames == 1:

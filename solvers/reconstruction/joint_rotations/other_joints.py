@@ -21,7 +21,7 @@ TRUNK = {
 """Where these are about the hips of a body that stands and faces -Y; only ways count."""
 
 
-def anchors(names: Sequence[str]) -> NDArray[np.intp]:
+def find_anchors(names: Sequence[str]) -> NDArray[np.intp]:
     """Return which posture joint each tracked joint moves with, shape (n_joints,).
 
     Its own, or that of the nearest joint in the tree, those above first.
@@ -44,7 +44,7 @@ def anchors(names: Sequence[str]) -> NDArray[np.intp]:
     return np.array(found, dtype=np.intp)
 
 
-def all_joints(
+def positions_from_postures(
     names: Sequence[str], seen: Array, trust: Array, before: Array, after: Array
 ) -> Array:
     """Return where all tracked joints are when those of postures were moved.
@@ -66,15 +66,15 @@ def all_joints(
     own = {place: POSTURE_JOINTS.index(role) for role, place in joints_of_names(names).items()}
     result = np.empty_like(seen)
     bones_before, bones_after = _bones(before), _bones(after)
-    trunk = _trunk_turns(after)
-    for joint, anchor in enumerate(anchors(names)):
+    trunk = _trunk_rotations(after)
+    for joint, anchor in enumerate(find_anchors(names)):
         if joint in own:
             result[:, joint] = after[:, own[joint]]
             continue
         bones = bones_before[:, anchor], bones_after[:, anchor]
-        axes_before, axes_after = (_carried(trunk, bone, bones[1]) for bone in bones)
+        axes_before, axes_after = (_bone_axes(trunk, bone, bones[1]) for bone in bones)
         way = seen[:, joint] - before[:, anchor]
-        turned = rotate(_turn(*bones), way)
+        turned = rotate(_swings(*bones), way)
         told = np.isfinite(turned).all(axis=-1)
         weight = np.where(told, trust[:, joint], 0.0)
         sure = told & (weight >= 0.5 * weight.max(initial=0.0))
@@ -92,22 +92,22 @@ def _bones(postures: Array) -> Array:
     return np.asarray(postures[:, ends] - postures[:, [PARENTS[end] for end in ends]])
 
 
-def _trunk_turns(postures: Array) -> Array:
+def _trunk_rotations(postures: Array) -> Array:
     """Return how the trunk is turned against one that stands and faces -Y, (n_frames, 4)."""
     seen = postures[:, [POSTURE_JOINTS.index(role) for role in TRUNK]] - postures[:, :1]
     turns = best_turns(np.array(list(TRUNK.values())), seen)
     return np.where(np.isfinite(turns), turns, IDENTITY)
 
 
-def _carried(trunk: Array, bones: Array, all_bones: Array) -> Array:
+def _bone_axes(trunk: Array, bones: Array, all_bones: Array) -> Array:
     """Return the trunk's axes, turned the short way to a bone from its usual direction."""
     known = np.isfinite(all_bones).all(axis=-1)
     local = rotate(inverse(trunk[known]), all_bones[known])
     usual = local.mean(axis=0) if known.any() else np.zeros(3)
-    return multiply(_turn(rotate(trunk, usual), bones), trunk)
+    return multiply(_swings(rotate(trunk, usual), bones), trunk)
 
 
-def _turn(start: Array, stop: Array) -> Array:
+def _swings(start: Array, stop: Array) -> Array:
     """Return the short turns between ways, shape (n_frames, 4); NaN where one is not known."""
     told = (np.isfinite(start) & np.isfinite(stop)).all(axis=-1, keepdims=True)
     turns = rotation_between(np.where(told, start, 1.0), np.where(told, stop, 1.0))

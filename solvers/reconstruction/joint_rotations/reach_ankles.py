@@ -7,22 +7,22 @@ from numpy.typing import NDArray
 
 from ...motion import Motion, forward_kinematics
 from ...motion.skeletons import ReachSettings, reach
-from .limb_angles import unit
-from .limb_twist import Limb, smoothest
+from .limb_angles import unit_vectors
+from .limb_twist import Limb, solve_smooth_paths
 
 Array = NDArray[np.float64]
 
-STRAIGHT, BENT = np.radians([20.0, 60.0])
+STRAIGHT_FLEXION, BENT_FLEXION = np.radians([20.0, 60.0])
 """Flexions of a knee up to which the pelvis gives way, and from which on the knee does."""
-YIELDING = 0.1
+REST_WEIGHT = 0.1
 """Weight of a pelvis that stays; a straight and trusted leg has 1."""
-STEADY = 0.1
+SMOOTHING_S = 0.1
 """Seconds over which the pelvis gives way."""
-SLACK = 0.008
+SLACK_M = 0.008
 """Metres by which the ankle of a straight leg may be missed so that its knee does not shake."""
 
 
-def pelvis_shift(
+def pelvis_offsets(
     places: Array, reached: Array, trust: Array, legs: Sequence[Limb], frame_rate: float
 ) -> Array:
     """Return how far the pelvis must give way for stretched legs to fit, shape (n_frames, 3).
@@ -48,15 +48,19 @@ def pelvis_shift(
         weight = np.where(known, weight, 0.0)
         told += weight[:, None] * np.where(known[:, None], missed, 0.0)
         weights += weight
-    return smoothest(told, weights + YIELDING, (STEADY * frame_rate) ** 2 * YIELDING)
+    return solve_smooth_paths(
+        told, weights + REST_WEIGHT, (SMOOTHING_S * frame_rate) ** 2 * REST_WEIGHT
+    )
 
 
 def straightness(places: Array, limb: Limb) -> Array:
     """Return 1 where a limb is straight, 0 where it is bent, shape (n_frames,)."""
-    first = unit(places[:, limb.lower] - places[:, limb.upper])
-    second = unit(places[:, limb.end] - places[:, limb.lower])
+    first = unit_vectors(places[:, limb.lower] - places[:, limb.upper])
+    second = unit_vectors(places[:, limb.end] - places[:, limb.lower])
     bend = np.arccos(np.clip(np.einsum("fi,fi->f", first, second), -1.0, 1.0))
-    return np.asarray(np.clip((BENT - bend) / (BENT - STRAIGHT), 0.0, 1.0))
+    return np.asarray(
+        np.clip((BENT_FLEXION - bend) / (BENT_FLEXION - STRAIGHT_FLEXION), 0.0, 1.0)
+    )
 
 
 def reach_ankles(motion: Motion, places: Array, legs: Mapping[int, Limb]) -> Motion:
@@ -74,7 +78,7 @@ def reach_ankles(motion: Motion, places: Array, legs: Mapping[int, Limb]) -> Mot
         start, end = reached[:, leg.upper], reached[:, leg.end]
         way = places[:, leg.end] - start
         length = np.linalg.norm(way, axis=-1)
-        slack = SLACK * straightness(reached, leg)
+        slack = SLACK_M * straightness(reached, leg)
         present = np.linalg.norm(end - start, axis=-1)
         wanted = length + np.clip(present - length, -slack, slack)
         target = start + way * (wanted / np.maximum(length, 1e-9))[:, None]

@@ -13,14 +13,14 @@ from numpy.typing import NDArray
 
 from ...motion.humanoid import POSTURE_JOINTS
 from .library_body import bone_frames
-from .limb_angles import SMALL, Complex, bent, unit
-from .limb_twist import HINGES, Hinges
+from .limb_angles import MIN_LENGTH, Complex, measure_flexion, unit_vectors
+from .limb_twist import HINGES, HingeAxes
 
 Array = NDArray[np.float64]
 
-LEAST = 1e-3
+MIN_RELIABILITY = 1e-3
 """What a joint counts for at least, lest no neighbour is nearer than another."""
-NEAR = 0.05
+HALF_WEIGHT_M = 0.05
 """Metres from the nearest posture, as a root mean square over joints, at which half of its
 twist counts."""
 
@@ -47,13 +47,13 @@ def _limb(side: str, sign: float, upper: str, lower: str, end: str) -> TwistedLi
     return TwistedLimb(places[0], places[1], places[2], along, HINGES[kind])
 
 
-TWISTED = tuple(
+TWISTED_LIMBS = tuple(
     _limb(side, sign, *parts)
     for parts in (("UpperArm", "LowerArm", "Hand"), ("UpperLeg", "LowerLeg", "Foot"))
     for side, sign in (("left", 1.0), ("right", -1.0))
 )
 """Left and right arm, left and right leg."""
-N_TWISTED = len(TWISTED)
+N_TWISTED_LIMBS = len(TWISTED_LIMBS)
 OTHER_SIDE = (1, 0, 3, 2)
 
 
@@ -76,7 +76,7 @@ class LimbTwists:
     alone: bool = False
 
 
-def plain_hinges(postures: Array) -> tuple[Array, Array]:
+def untwisted_hinges(postures: Array) -> tuple[Array, Array]:
     """Return directions of limbs, and where hinges point in limbs that are not twisted.
 
     Parameters
@@ -90,22 +90,22 @@ def plain_hinges(postures: Array) -> tuple[Array, Array]:
         Unit vectors; NaN where the limb or the trunk is not known.
     """
     frames = bone_frames(postures)
-    directions = np.empty((len(postures), N_TWISTED, 3))
+    directions = np.empty((len(postures), N_TWISTED_LIMBS, 3))
     hinges = np.empty_like(directions)
-    for place, limb in enumerate(TWISTED):
-        way = unit(postures[:, limb.lower] - postures[:, limb.upper], np.nan)
+    for place, limb in enumerate(TWISTED_LIMBS):
+        way = unit_vectors(postures[:, limb.lower] - postures[:, limb.upper], np.nan)
         frame = frames[limb.upper]
         local = np.einsum("fji,fj->fi", frame, way)
         along, hinge = np.array(limb.along), limb.hinge
         # The short turn from `along` to `local` takes what is square to `along` there.
-        share = (local @ hinge) / np.maximum(1.0 + local @ along, SMALL)
+        share = (local @ hinge) / np.maximum(1.0 + local @ along, MIN_LENGTH)
         turned = hinge - share[:, None] * (along + local)
         directions[:, place] = way
-        hinges[:, place] = unit(np.einsum("fij,fj->fi", frame, turned), np.nan)
+        hinges[:, place] = unit_vectors(np.einsum("fij,fj->fi", frame, turned), np.nan)
     return directions, hinges
 
 
-def bend_normals(postures: Array) -> tuple[Array, Array]:
+def flexion_normals(postures: Array) -> tuple[Array, Array]:
     """Return the axes about which elbows and knees are bent, and by how much.
 
     Returns
@@ -114,14 +114,14 @@ def bend_normals(postures: Array) -> tuple[Array, Array]:
     bends : shape (n_frames, 4), radians
     """
     ways = [
-        [unit(postures[:, one] - postures[:, above], np.nan) for above, one in pairs]
-        for pairs in (((x.upper, x.lower), (x.lower, x.end)) for x in TWISTED)
+        [unit_vectors(postures[:, one] - postures[:, above], np.nan) for above, one in pairs]
+        for pairs in (((x.upper, x.lower), (x.lower, x.end)) for x in TWISTED_LIMBS)
     ]
     first, second = (np.stack(each, axis=1) for each in zip(*ways, strict=True))
-    return bent(first, second)
+    return measure_flexion(first, second)
 
 
-def known_hinges(postures: Array, twists: LimbTwists) -> dict[str, Hinges]:
+def hinges_from_twists(postures: Array, twists: LimbTwists) -> dict[str, HingeAxes]:
     """Return where twisted limbs have their hinges, by the roles of their upper joints.
 
     Parameters
@@ -130,17 +130,17 @@ def known_hinges(postures: Array, twists: LimbTwists) -> dict[str, Hinges]:
         In the world.
     twists : LimbTwists
     """
-    directions, plain = plain_hinges(postures)
+    directions, plain = untwisted_hinges(postures)
     aside = np.cross(directions, plain)
     cos, sin = twists.vectors.real[..., None], twists.vectors.imag[..., None]
     ways = np.nan_to_num(cos * plain + sin * aside)
     return {
-        POSTURE_JOINTS[limb.upper]: Hinges(ways[:, place], twists.alone)
-        for place, limb in enumerate(TWISTED)
+        POSTURE_JOINTS[limb.upper]: HingeAxes(ways[:, place], twists.alone)
+        for place, limb in enumerate(TWISTED_LIMBS)
     }
 
 
-def mirrored_twists(twists: Complex) -> Complex:
+def mirror_twists(twists: Complex) -> Complex:
     """Return twists of limbs, (..., 4), as a mirror shows them."""
     return np.asarray(np.conj(twists[..., list(OTHER_SIDE)]))
 
@@ -164,10 +164,10 @@ def mean_twists(twists: Complex, postures: Array, neighbours: Array, trust: Arra
     shape (n_frames, 4)
     """
     off = neighbours - postures.reshape(len(postures), 1, -1)
-    counted = np.repeat(np.maximum(trust, LEAST), 3, axis=1)
+    counted = np.repeat(np.maximum(trust, MIN_RELIABILITY), 3, axis=1)
     squares = np.einsum("fni,fni,fi->fn", off, off, counted, optimize=False)
-    weights = 1.0 / np.maximum(squares, SMALL)
+    weights = 1.0 / np.maximum(squares, MIN_LENGTH)
     weights /= weights.sum(axis=1, keepdims=True)
     least_square = 3.0 * squares.min(axis=1) / counted.sum(axis=1)
-    near = 1.0 / (1.0 + least_square / NEAR**2)
+    near = 1.0 / (1.0 + least_square / HALF_WEIGHT_M**2)
     return np.asarray(near[:, None] * np.einsum("fn,fnl->fl", weights, twists))

@@ -6,13 +6,13 @@ from scipy.interpolate import CubicHermiteSpline
 
 Array = NDArray[np.float64]
 
-SHORT = 0.12
+HALF_WEIGHT_S = 0.12
 """Seconds to what is seen on both sides (half their harmonic mean) at which a joint's own path
 and the posture count alike. Movements that the library lacks want .25 (UI-PRMD), those that it
 has want none; this lies between."""
 
 
-def bridged_losses(
+def blend_short_gaps(
     seen: Array, sure: NDArray[np.bool_], rebuilt: Array, frame_rate: float
 ) -> Array:
     """Return rebuilt joints that near the borders of a loss follow the joint's own path.
@@ -44,13 +44,13 @@ def bridged_losses(
         after = known[place] - inside
         whole = np.maximum(before + after, 1)
         near = before * after / (whole * frame_rate)
-        share = (1.0 / (1.0 + (near / SHORT) ** 2))[:, None]
-        path = _path(known, seen[known, joint])(inside)
+        share = (1.0 / (1.0 + (near / HALF_WEIGHT_S) ** 2))[:, None]
+        path = _hermite_path(known, seen[known, joint])(inside)
         result[inside, joint] = share * path + (1.0 - share) * rebuilt[inside, joint]
     return result
 
 
-def _path(frames: NDArray[np.int64], places: Array) -> CubicHermiteSpline:
+def _hermite_path(frames: NDArray[np.int64], places: Array) -> CubicHermiteSpline:
     """Return a path through places that hardly swings out.
 
     Speeds are at most three times those of the straight lines beside (Fritsch and Carlson 1980;

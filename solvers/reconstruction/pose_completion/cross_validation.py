@@ -9,20 +9,20 @@ from numpy.typing import NDArray
 from ...motion.humanoid import N_JOINTS
 
 Array = NDArray[np.float64]
-Places = NDArray[np.intp]
-Synthesis = Callable[[Places, Array], Array]
+Indices = NDArray[np.intp]
+Synthesis = Callable[[Indices, Array], Array]
 """From the numbers of frames, and how far joints are trusted there, to postures."""
 
 LIMBS = ((4, 5, 6, 7), (8, 9, 10, 11), (12, 13, 14, 15), (16, 17, 18, 19), (3,))
 """Arms, legs and head, as places among `POSTURE_JOINTS`."""
-N_FRAMES = 60
-TRUSTED = 0.5
-FEWEST = 6.0
+MAX_FRAMES = 60
+MIN_RELIABILITY = 0.5
+HALF_WEIGHT_FRAMES = 6.0
 """Frames at which half of an offset is believed."""
-USUAL_SIZE, SMALLEST, LARGEST = 0.1, 0.03, 0.25
+DEFAULT_ERROR_M, MIN_ERROR_M, MAX_ERROR_M = 0.1, 0.03, 0.25
 
 
-class Errors(NamedTuple):
+class SynthesisErrors(NamedTuple):
     """What to expect of joints that are synthesised without being seen.
 
     Attributes
@@ -37,7 +37,9 @@ class Errors(NamedTuple):
     size: Array
 
 
-def leave_out(postures: Array, trust: Array, synthesise: Synthesis) -> Errors:
+def cross_validate_limbs(
+    postures: Array, trust: Array, synthesise: Synthesis
+) -> SynthesisErrors:
     """Synthesise frames without one limb after the other, and compare it with what was seen.
 
     Parameters
@@ -46,27 +48,27 @@ def leave_out(postures: Array, trust: Array, synthesise: Synthesis) -> Errors:
     trust : shape (n_frames, 20)
     synthesise : Synthesis
     """
-    offset, size = np.zeros((N_JOINTS, 3)), np.full(N_JOINTS, USUAL_SIZE)
-    size[:3] = SMALLEST
+    offset, size = np.zeros((N_JOINTS, 3)), np.full(N_JOINTS, DEFAULT_ERROR_M)
+    size[:3] = MIN_ERROR_M
     for limb in map(list, LIMBS):
         told = np.isfinite(postures[:, limb]).all(axis=-1)
         seen = np.where(told, trust[:, limb], 0.0)
-        sure = np.flatnonzero((seen > TRUSTED).sum(axis=1) > len(limb) / 2)
+        sure = np.flatnonzero((seen > MIN_RELIABILITY).sum(axis=1) > len(limb) / 2)
         if not len(sure):
             continue
-        frames = sure[np.unique(np.linspace(0, len(sure) - 1, N_FRAMES).astype(int))]
+        frames = sure[np.unique(np.linspace(0, len(sure) - 1, MAX_FRAMES).astype(int))]
         without = trust[frames].copy()
         without[:, limb] = 0.0
         off = (postures[frames] - synthesise(frames, without))[:, limb]
-        weight = np.where(seen[frames] > TRUSTED, seen[frames], 0.0)
+        weight = np.where(seen[frames] > MIN_RELIABILITY, seen[frames], 0.0)
         off = np.where(weight[..., None] > 0.0, off, 0.0)
         total = weight.sum(axis=0)
-        mean = np.einsum("fi,fik->ik", weight, off) / (total + FEWEST)[:, None]
+        mean = np.einsum("fi,fik->ik", weight, off) / (total + HALF_WEIGHT_FRAMES)[:, None]
         rest = np.einsum("fi,fik->i", weight, (off - mean) ** 2) / 3.0
-        rest = (rest + FEWEST * USUAL_SIZE**2) / (total + FEWEST)
+        rest = (rest + HALF_WEIGHT_FRAMES * DEFAULT_ERROR_M**2) / (total + HALF_WEIGHT_FRAMES)
         for place in range(1, len(limb)):
             if total[place] == 0.0:  # never seen: where the joint above goes, it goes
                 mean[place] = mean[place - 1]
         offset[limb] = mean
-        size[limb] = np.clip(np.sqrt(rest), SMALLEST, LARGEST)
-    return Errors(offset, size)
+        size[limb] = np.clip(np.sqrt(rest), MIN_ERROR_M, MAX_ERROR_M)
+    return SynthesisErrors(offset, size)

@@ -4,17 +4,17 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...motion.humanoid import N_JOINTS
-from ..pose_space import Demands, PostureSpaces
+from ..pose_space import EnergyTargets, PostureSpaces
 
 Array = NDArray[np.float64]
 
-ERROR = 0.1
+MODEL_ERROR_M = 0.1
 """Metres. How far a trusted joint may be from what its neighbours can say; chosen on
 development clips. It is large because neighbours are few: their spread is not all there is."""
-LEAST = 1e-8
+MIN_VARIANCE_M2 = 1e-8
 
 
-def probable_postures(spaces: PostureSpaces, demands: Demands) -> tuple[Array, Array]:
+def probable_postures(spaces: PostureSpaces, demands: EnergyTargets) -> tuple[Array, Array]:
     """Return postures, shape (n_frames, 20, 3), and each joint's deviation, (n_frames, 20).
 
     The neighbours are taken for a sample of a normal distribution in their space; the mean of
@@ -32,9 +32,9 @@ def probable_postures(spaces: PostureSpaces, demands: Demands) -> tuple[Array, A
     turned = spaces.axes.swapaxes(-1, -2)
     H = turned @ (spaces.axes * weights[..., None])
     diagonal = np.arange(H.shape[-1])
-    H[:, diagonal, diagonal] += ERROR**2 / np.maximum(spaces.spreads, LEAST)
+    H[:, diagonal, diagonal] += MODEL_ERROR_M**2 / np.maximum(spaces.spreads, MIN_VARIANCE_M2)
     inverse = np.linalg.inv(H)
     z = inverse @ (turned @ (weights * off)[..., None])
-    variances = ERROR**2 * np.einsum("fid,fid->fi", spaces.axes @ inverse, spaces.axes)
+    variances = MODEL_ERROR_M**2 * np.einsum("fid,fid->fi", spaces.axes @ inverse, spaces.axes)
     joints = variances.reshape(len(variances), N_JOINTS, 3).mean(axis=-1)
     return spaces.postures(z[..., 0]), np.sqrt(joints)

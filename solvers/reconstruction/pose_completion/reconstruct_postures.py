@@ -10,19 +10,25 @@ from ...motion import JointRecording, Tracks
 from ...motion.humanoid import body_lengths, joints_of_names, normalise, posture_positions
 from ...motion.skeletons import INFERRED
 from ...progress import Progress, unwatched, within
-from ..joint_rotations import LimbTwists, Reconstruction, all_joints, anchors, follow_joints
+from ..joint_rotations import (
+    LimbTwists,
+    Reconstruction,
+    find_anchors,
+    motion_from_positions,
+    positions_from_postures,
+)
 from ..pose_library import PostureLibrary, load_posture_library
 from ..reliability import Reliability, measure_reliability, posture_reliability
-from .follow_postures import follow_postures
-from .settings import USUAL, PostureMethod, PostureSettings
+from .complete_postures import complete_postures
+from .settings import DEFAULT_SETTINGS, PostureMethod, PostureSettings
 
 Array = NDArray[np.float64]
 
-FEWEST = 3
+MIN_JOINTS = 3
 """Joints of postures that must be seen together in some frame."""
 
 
-class RebuiltJoints(NamedTuple):
+class CompletedJoints(NamedTuple):
     """Joints, and what is known of them: see `Reconstruction`."""
 
     tracks: Tracks
@@ -35,7 +41,7 @@ def reconstruct_postures(
     recording: JointRecording,
     postures: PostureLibrary | None = None,
     *,
-    settings: PostureSettings = USUAL,
+    settings: PostureSettings = DEFAULT_SETTINGS,
     reliability: Reliability | None = None,
     progress: Progress = unwatched,
 ) -> Reconstruction:
@@ -79,10 +85,10 @@ def reconstruct_postures(
     """
     if reliability is None:
         reliability = measure_reliability(recording, progress=within(progress, 0.0, 0.1))
-    rebuilt = rebuilt_joints(
+    rebuilt = complete_joints(
         recording, postures, reliability.combined, settings, within(progress, 0.1, 0.9)
     )
-    motion = follow_joints(
+    motion = motion_from_positions(
         rebuilt.tracks, recording.parents, reliability.combined, twists=rebuilt.twists
     )
     progress(1.0, "Reconstructed")
@@ -91,13 +97,13 @@ def reconstruct_postures(
     )
 
 
-def rebuilt_joints(
+def complete_joints(
     recording: JointRecording,
     postures: PostureLibrary | None,
     combined: Array,
     settings: PostureSettings,
     progress: Progress,
-) -> RebuiltJoints:
+) -> CompletedJoints:
     """Rebuild what a depth camera lost: `reconstruct_postures` without a motion.
 
     `combined` is the reliability of the joints, shape (n_frames, n_joints).
@@ -106,52 +112,52 @@ def rebuilt_joints(
     positions = posture_positions(recording)
     seen = np.isfinite(positions).all(axis=-1)
     trust = np.where(seen, posture_reliability(recording, combined), 0.0)
-    _check_seen(recording, positions, trust)
+    _check_observed(recording, positions, trust)
     rate = recording.frame_rate
     body = normalise(positions, rate, trust, ahead=not settings.causal)
     lengths = body_lengths(body.postures, trust)
-    found = follow_postures(body, trust, rate, lengths, library, settings, progress)
+    found = complete_postures(body, trust, rate, lengths, library, settings, progress)
     tracks = recording.tracks
     after = body.put_back(found.postures)
-    joints = all_joints(tracks.names, tracks.positions, combined, positions, after)
-    confidence = found.confidence[:, anchors(tracks.names)]
-    words = _words(settings, library)
-    return RebuiltJoints(tracks.with_positions(joints), confidence, words, found.twists)
+    joints = positions_from_postures(tracks.names, tracks.positions, combined, positions, after)
+    confidence = found.confidence[:, find_anchors(tracks.names)]
+    words = _describe_method(settings, library)
+    return CompletedJoints(tracks.with_positions(joints), confidence, words, found.twists)
 
 
-def _check_seen(recording: JointRecording, positions: Array, trust: Array) -> None:
+def _check_observed(recording: JointRecording, positions: Array, trust: Array) -> None:
     """Raise InvalidMotionError where no frame has joints enough, and say why."""
-    if _most(trust > 0.0) >= FEWEST:
+    if _max_joints(trust > 0.0) >= MIN_JOINTS:
         return
     known = joints_of_names(recording.names)
-    if len(known) < FEWEST:
+    if len(known) < MIN_JOINTS:
         raise InvalidMotionError(
-            f"Only {len(known)} joints of a body are recognised in the names of the joints"
-            f" ({', '.join(known)}); postures need {FEWEST}, among them hips and limbs."
+            f"Only {len(known)} joints have recognized names ({', '.join(known)}). Use a"
+            f" recording with at least {MIN_JOINTS}, including the hips and limbs."
         )
     state = recording.tracking_state
-    if state is None or _most(np.isfinite(positions)[..., 0]) < FEWEST:
+    if state is None or _max_joints(np.isfinite(positions)[..., 0]) < MIN_JOINTS:
         raise InvalidMotionError(
-            f"No frame shows {FEWEST} joints of a body; choose a recording of an actor who was"
-            " tracked."
+            f"No frame shows {MIN_JOINTS} joints of a body. Choose a recording of a tracked"
+            " actor."
         )
     if (state == INFERRED).any():
         raise InvalidMotionError(
-            f"No frame has {FEWEST} joints that the tracker saw: it calls the others inferred."
-            " Raise the setting `inferred`, if its guesses are to count."
+            f"No frame has {MIN_JOINTS} tracked joints; the tracker infers the others. Raise"
+            " the setting `inferred` to use inferred joints."
         )
     raise InvalidMotionError(
-        f"No frame has {FEWEST} joints that the tracker calls seen, though their places are"
-        " there. Leave the states out of the recording, if the places are right."
+        f"No frame has {MIN_JOINTS} joints with the tracking state `tracked`, although"
+        " positions exist. If the positions are right, remove the tracking states from the recording."
     )
 
 
-def _most(seen: NDArray[np.bool_]) -> int:
+def _max_joints(seen: NDArray[np.bool_]) -> int:
     """Return how many joints are seen in the frame that has most, of (n_frames, n_joints)."""
     return int(seen.sum(axis=1).max(initial=0))
 
 
-def _words(settings: PostureSettings, library: PostureLibrary) -> str:
+def _describe_method(settings: PostureSettings, library: PostureLibrary) -> str:
     ways = {
         PostureMethod.PROBABLE: "most probable postures",
         PostureMethod.PUBLISHED: "postures by stochastic search",

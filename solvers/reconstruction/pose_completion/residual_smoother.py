@@ -7,11 +7,11 @@ from numpy.typing import NDArray
 
 Array = NDArray[np.float64]
 
-UNSEEN = 0.05
+MIN_RELIABILITY = 0.05
 """Joints trusted less than this tell nothing."""
 
 
-class Course(NamedTuple):
+class Estimates(NamedTuple):
     """Estimates of values, shape (n_frames, n_joints, 3), and their standard deviations.
 
     `spread` has shape (n_frames, n_joints); it is that of each coordinate, in metres.
@@ -29,15 +29,17 @@ class _Process(NamedTuple):
     start: Array
 
 
-def noise_of(trust: Array, noise: float) -> Array:
+def measurement_deviation(trust: Array, noise: float) -> Array:
     """Return the standard deviation of what is seen; infinite where it tells nothing."""
     with np.errstate(divide="ignore"):
-        return np.where(trust > UNSEEN, noise / np.maximum(trust, UNSEEN) ** 2, np.inf)
+        return np.where(
+            trust > MIN_RELIABILITY, noise / np.maximum(trust, MIN_RELIABILITY) ** 2, np.inf
+        )
 
 
-def fading_course(
+def smooth_residuals(
     seen: Array, deviation: Array, dt: float, size: Array, memory: float
-) -> Course:
+) -> Estimates:
     """Follow values that fade to nothing where they are not seen.
 
     A Gaussian process with Matérn covariance (smoothness 3/2), as a Kalman filter and a
@@ -66,12 +68,12 @@ def fading_course(
         [-(rate**2) * dt, 1.0 - rate * dt],
     ])  # fmt: skip
     start = size[:, None, None] ** 2 * np.diag([1.0, rate**2])
-    return _follow(seen, deviation, _Process(A, start - A @ start @ A.T, start))
+    return _filter_and_smooth(seen, deviation, _Process(A, start - A @ start @ A.T, start))
 
 
-def causal_course(
+def filter_residuals(
     synthesised: Array, seen: Array, deviation: Array, dt: float, size: Array, memory: float
-) -> Course:
+) -> Estimates:
     """Estimate, from the past alone, how far joints are from where they were synthesised.
 
     A joint that is lost goes on from where it was last, and from there to where it is
@@ -99,10 +101,10 @@ def causal_course(
         value = value + gain[:, None] * (off[frame] - value)
         variance = (1.0 - gain) * variance
         values[frame], spread[frame] = value, np.sqrt(variance)
-    return Course(values, spread)
+    return Estimates(values, spread)
 
 
-def _follow(seen: Array, deviation: Array, process: _Process) -> Course:
+def _filter_and_smooth(seen: Array, deviation: Array, process: _Process) -> Estimates:
     n_frames, n_joints = deviation.shape
     told = np.isfinite(seen).all(axis=-1)
     values = np.where(told[..., None], seen, 0.0)
@@ -118,11 +120,11 @@ def _follow(seen: Array, deviation: Array, process: _Process) -> Course:
         mean = mean + gain * (values[frame][:, None] - mean[:, :1])
         P = P - gain * P[:, :1]
         means[frame], spreads[frame] = mean, P
-    _backwards(means, spreads, A, Q)
-    return Course(means[:, :, 0], np.sqrt(np.maximum(spreads[:, :, 0, 0], 1e-12)))
+    _smooth_backward(means, spreads, A, Q)
+    return Estimates(means[:, :, 0], np.sqrt(np.maximum(spreads[:, :, 0, 0], 1e-12)))
 
 
-def _backwards(means: Array, spreads: Array, A: Array, Q: Array) -> None:
+def _smooth_backward(means: Array, spreads: Array, A: Array, Q: Array) -> None:
     """Rauch-Tung-Striebel smoothing, in place."""
     predicted = A @ spreads[:-1] @ A.T + Q
     gains = np.linalg.solve(predicted, A @ spreads[:-1]).swapaxes(-1, -2)

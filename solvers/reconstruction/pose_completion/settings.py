@@ -12,8 +12,8 @@ class PostureMethod(Enum):
     PROBABLE = "probable"
     """The most probable one, if the neighbours are a sample of a normal distribution."""
     PUBLISHED = "published"
-    """The one of least energy by the stochastic search of [SHJT13], frame by frame. Nothing else
-    is done: `smoothing`, `memory`, `pace` and `rounds` have no effect."""
+    """The one of least energy by the stochastic search of [SHJT13], frame by frame. Nothing
+    else is done: `smoothing`, `memory`, `pace` and `rounds` have no effect."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -60,4 +60,4 @@ class PostureSettings(Settings):
     )  # fmt: skip
 
 
-USUAL = PostureSettings()
+DEFAULT_SETTINGS = PostureSettings()

@@ -10,18 +10,18 @@ from ...motion import Motion, Skeleton, find_humanoid_map, forward_kinematics
 from ...motion.humanoid import POSTURE_JOINTS, t_pose_alignment
 from ...rotations import multiply, rotate
 from ..joint_rotations import (
-    N_TWISTED,
-    TWISTED,
+    N_TWISTED_LIMBS,
+    TWISTED_LIMBS,
     Complex,
-    angles_about,
-    bend_normals,
-    bend_share,
-    plain_hinges,
+    axial_angles,
+    flexion_normals,
+    flexion_weights,
+    untwisted_hinges,
 )
 
 Array = NDArray[np.float64]
 
-FEWEST = 20.0
+HALF_WEIGHT_COUNT = 20.0
 """Bent postures of a rig at which half of what its rotations say of straight limbs is
 believed."""
 
@@ -44,7 +44,7 @@ class ClipTwists(NamedTuple):
     shares: Array
 
 
-def clip_twists(motion: Motion, postures: Array) -> ClipTwists:
+def read_clip_twists(motion: Motion, postures: Array) -> ClipTwists:
     """Read the twist of limbs from a clip.
 
     Parameters
@@ -57,19 +57,21 @@ def clip_twists(motion: Motion, postures: Array) -> ClipTwists:
     joints = humanoid.indices(motion.skeleton)
     alignment = t_pose_alignment(motion.skeleton, humanoid)
     world = forward_kinematics(motion).rotations
-    hinges = np.empty((motion.n_frames, N_TWISTED, 3))
-    for place, limb in enumerate(TWISTED):
+    hinges = np.empty((motion.n_frames, N_TWISTED_LIMBS, 3))
+    for place, limb in enumerate(TWISTED_LIMBS):
         joint = joints[POSTURE_JOINTS[limb.upper]]
         hinges[:, place] = rotate(multiply(world[:, joint], alignment[joint]), limb.hinge)
-    directions, plain = plain_hinges(postures)
-    normals, bends = bend_normals(postures)
-    rotated, bent = (angles_about(directions, plain, each) for each in (hinges, normals))
+    directions, plain = untwisted_hinges(postures)
+    normals, bends = flexion_normals(postures)
+    rotated, bent = (axial_angles(directions, plain, each) for each in (hinges, normals))
     likely = 0.5 + 0.5 * np.nan_to_num(bent).real
-    shares = np.where(np.isfinite(bent), bend_share(bends) * likely, 0.0)
+    shares = np.where(np.isfinite(bent), flexion_weights(bends) * likely, 0.0)
     return ClipTwists(rotated, np.nan_to_num(bent), np.nan_to_num(shares))
 
 
-def agreed_twists(skeletons: Sequence[Skeleton], clips: Sequence[ClipTwists]) -> list[Complex]:
+def combine_clip_twists(
+    skeletons: Sequence[Skeleton], clips: Sequence[ClipTwists]
+) -> list[Complex]:
     """Return what clips tell of twist when each maker's constant offset is taken out.
 
     Where a limb bends, its plane tells the twist. By how much a maker's idea of the hinge is
@@ -83,19 +85,21 @@ def agreed_twists(skeletons: Sequence[Skeleton], clips: Sequence[ClipTwists]) ->
         Points in the unit circle; shorter where less is known.
     """
     sums: dict[object, tuple[Complex, Array]] = {}
-    keys = [_rig(skeleton) for skeleton in skeletons]
+    keys = [_rig_key(skeleton) for skeleton in skeletons]
     for key, clip in zip(keys, clips, strict=True):
         off = np.nan_to_num(clip.bent * np.conj(clip.rotated))
-        turns, weights = sums.get(key, (np.zeros(N_TWISTED, complex), np.zeros(N_TWISTED)))
+        turns, weights = sums.get(
+            key, (np.zeros(N_TWISTED_LIMBS, complex), np.zeros(N_TWISTED_LIMBS))
+        )
         sums[key] = turns + (clip.shares * off).sum(axis=0), weights + clip.shares.sum(axis=0)
     found = []
     for key, clip in zip(keys, clips, strict=True):
         turns, weights = sums[key]
-        straight = np.nan_to_num(clip.rotated) * (turns / (weights + FEWEST))
+        straight = np.nan_to_num(clip.rotated) * (turns / (weights + HALF_WEIGHT_COUNT))
         found.append(clip.shares * clip.bent + (1.0 - clip.shares) * straight)
     return found
 
 
-def _rig(skeleton: Skeleton) -> object:
+def _rig_key(skeleton: Skeleton) -> object:
     """Return what is the same for all clips of one rig; the sign of 0 is not."""
     return skeleton.names, (np.round(skeleton.offsets, 4) + 0.0).tobytes()

@@ -12,15 +12,15 @@ from ..residual_correction import squared_distances
 
 Array = NDArray[np.float64]
 Single = NDArray[np.float32]
-Places = NDArray[np.intp]
+Indices = NDArray[np.intp]
 
-BLOCK = 128
+BLOCK_FRAMES = 128
 """Frames that are looked for at once."""
-MORE = 1.3
+CANDIDATE_FACTOR = 1.3
 """How many times more are taken by the quick sum than are returned by the exact one."""
 
 
-class Query(NamedTuple):
+class PostureQuery(NamedTuple):
     """What is looked for.
 
     Attributes
@@ -39,10 +39,10 @@ class Query(NamedTuple):
     trust: Array
     pace: float
 
-    def slice(self, start: int, stop: int) -> "Query":
+    def slice(self, start: int, stop: int) -> "PostureQuery":
         """Return the frames `start` up to but without `stop`."""
         part = slice(start, stop)
-        return Query(self.postures[part], self.speeds[part], self.trust[part], self.pace)
+        return PostureQuery(self.postures[part], self.speeds[part], self.trust[part], self.pace)
 
 
 @dataclass(frozen=True, eq=False)
@@ -63,8 +63,8 @@ class PostureIndex:
         Usual way of a group's points from its centre.
     """
 
-    order: Places
-    starts: Places
+    order: Indices
+    starts: Indices
     points: Single
     squares: Single
     centres: Single
@@ -96,12 +96,12 @@ def index_postures(body: BodyPostures, groups: NDArray[np.int32]) -> PostureInde
 
 def nearest_postures(
     index: PostureIndex,
-    query: Query,
+    query: PostureQuery,
     n_neighbours: int = 30,
     *,
     n_looked_at: int = 8000,
     progress: Progress = unwatched,
-) -> tuple[Places, Array]:
+) -> tuple[Indices, Array]:
     """Find the nearest postures by the weighted distance of [SHJT13], eq. 9.
 
     Groups of postures are looked through, the most promising first, until enough postures were
@@ -129,19 +129,19 @@ def nearest_postures(
     places = np.empty((n_frames, n_neighbours), dtype=np.intp)
     distances = np.empty((n_frames, n_neighbours))
     whole = len(index.starts) == 2 or len(index.order) <= n_looked_at
-    for start in range(0, n_frames, BLOCK):
-        part = slice(start, min(start + BLOCK, n_frames))
+    for start in range(0, n_frames, BLOCK_FRAMES):
+        part = slice(start, min(start + BLOCK_FRAMES, n_frames))
         points, weights = _as_points(query.slice(part.start, part.stop))
         if whole:
-            places[part], distances[part] = _among_all(index, points, weights, n_neighbours)
+            places[part], distances[part] = _search_all(index, points, weights, n_neighbours)
         else:
-            found = _among_groups(index, points, weights, n_neighbours, n_looked_at)
+            found = _search_groups(index, points, weights, n_neighbours, n_looked_at)
             places[part], distances[part] = found
         progress(part.stop / n_frames, "Looking for like postures")
     return index.order[places], distances
 
 
-def _as_points(query: Query) -> tuple[Single, Single]:
+def _as_points(query: PostureQuery) -> tuple[Single, Single]:
     """Positions and speeds without NaN, and the weight of each."""
     points = np.concatenate([query.postures, query.speeds], axis=1)
     weights = np.concatenate([query.trust, query.pace**2 * query.trust], axis=1)
@@ -150,24 +150,26 @@ def _as_points(query: Query) -> tuple[Single, Single]:
     return points.astype(np.float32), np.where(told, weights, 0.0).astype(np.float32)
 
 
-def _quick(points: Single, weights: Single, known: Single, squares: Single) -> Single:
+def _relative_distances(
+    points: Single, weights: Single, known: Single, squares: Single
+) -> Single:
     """Weighted squared ways but for what does not depend on the known, (n_frames, n_known)."""
     weighted = (points * weights[..., None]).reshape(len(points), -1)
     return np.asarray(weights @ squares.T - 2.0 * (weighted @ known.reshape(len(known), -1).T))
 
 
-def _among_all(
+def _search_all(
     index: PostureIndex, points: Single, weights: Single, n_neighbours: int
-) -> tuple[Places, Array]:
-    quick = _quick(points, weights, index.points, index.squares)
-    n_taken = min(int(MORE * n_neighbours), len(index.order))
+) -> tuple[Indices, Array]:
+    quick = _relative_distances(points, weights, index.points, index.squares)
+    n_taken = min(int(CANDIDATE_FACTOR * n_neighbours), len(index.order))
     taken = np.argpartition(quick, n_taken - 1, axis=1)[:, :n_taken]
-    return _exact(index, points, weights, taken, n_neighbours)
+    return _sort_candidates(index, points, weights, taken, n_neighbours)
 
 
-def _exact(
-    index: PostureIndex, points: Single, weights: Single, taken: Places, n_neighbours: int
-) -> tuple[Places, Array]:
+def _sort_candidates(
+    index: PostureIndex, points: Single, weights: Single, taken: Indices, n_neighbours: int
+) -> tuple[Indices, Array]:
     """Order candidates by their true distance."""
     off = index.points[taken] - points[:, None]
     ways = np.einsum("fnik,fnik,fi->fn", off, off, weights, optimize=False)
@@ -175,29 +177,31 @@ def _exact(
     return np.take_along_axis(taken, best, axis=1), np.take_along_axis(ways, best, axis=1)
 
 
-def _among_groups(
+def _search_groups(
     index: PostureIndex, points: Single, weights: Single, n_neighbours: int, n_looked_at: int
-) -> tuple[Places, Array]:
+) -> tuple[Indices, Array]:
     sizes = np.diff(index.starts)
-    ranked = np.argsort(_promises(index, points, weights), axis=1, kind="stable")
+    ranked = np.argsort(_expected_distances(index, points, weights), axis=1, kind="stable")
     seen = np.cumsum(sizes[ranked], axis=1)
     n_groups = (seen < n_looked_at).sum(axis=1) + 1
     chosen = np.zeros((len(points), len(sizes)), dtype=bool)
     first = np.arange(len(sizes))[None] < n_groups[:, None]
     np.put_along_axis(chosen, ranked, first, axis=1)
-    n_taken = int(MORE * n_neighbours)
+    n_taken = int(CANDIDATE_FACTOR * n_neighbours)
     best = np.full((len(points), 2 * n_taken), np.inf, dtype=np.float32)
     taken = np.zeros(best.shape, dtype=np.intp)
     for group in np.flatnonzero(chosen.any(axis=0)):
         frames = np.flatnonzero(chosen[:, group])
         span = slice(index.starts[group], index.starts[group + 1])
-        quick = _quick(points[frames], weights[frames], index.points[span], index.squares[span])
-        _keep(best, taken, frames, quick, int(span.start), n_taken)
-    return _exact(index, points, weights, taken[:, :n_taken], n_neighbours)
+        quick = _relative_distances(
+            points[frames], weights[frames], index.points[span], index.squares[span]
+        )
+        _merge_best(best, taken, frames, quick, int(span.start), n_taken)
+    return _sort_candidates(index, points, weights, taken[:, :n_taken], n_neighbours)
 
 
-def _keep(
-    best: Single, taken: Places, frames: Places, quick: Single, start: int, n_taken: int
+def _merge_best(
+    best: Single, taken: Indices, frames: Indices, quick: Single, start: int, n_taken: int
 ) -> None:
     """Merge the best of one group into the best so far, which stand in the first half."""
     n_new = min(n_taken, quick.shape[1])
@@ -211,7 +215,7 @@ def _keep(
     taken[frames] = np.take_along_axis(places, kept, axis=1)
 
 
-def _promises(index: PostureIndex, points: Single, weights: Single) -> Single:
+def _expected_distances(index: PostureIndex, points: Single, weights: Single) -> Single:
     """Return the least distance to expect in each group, shape (n_frames, n_groups)."""
     result = np.zeros((len(points), len(index.centres)), dtype=np.float32)
     for one in np.flatnonzero(weights.any(axis=0)):

@@ -7,7 +7,7 @@ from ...motion.humanoid import USUAL_LENGTHS, along_bones
 
 Single = NDArray[np.float32]
 
-FEWEST = 5000
+MIN_POSTURES = 5000
 """Postures below which each is looked at."""
 PER_GROUP = 250
 N_ROUNDS = 6
@@ -25,22 +25,22 @@ def group_postures(directions: Single) -> NDArray[np.int32]:
     directions : shape (n_postures, 20, 3)
     """
     n_postures = len(directions)
-    if n_postures < FEWEST:
+    if n_postures < MIN_POSTURES:
         return np.zeros(n_postures, dtype=np.int32)
     single: Single = USUAL_LENGTHS.astype(np.float32)
     points: Single = along_bones(directions, single).reshape(n_postures, -1).astype(np.float32)
     n_groups = n_postures // PER_GROUP
     centres = points[np.linspace(0, n_postures - 1, n_groups).astype(int)]
-    groups = _nearest(points, centres)
+    groups = _nearest_centers(points, centres)
     for _ in range(N_ROUNDS):
         order = np.argsort(groups, kind="stable")
         kept, starts, sizes = np.unique(groups[order], return_index=True, return_counts=True)
         centres[kept] = np.add.reduceat(points[order], starts, axis=0) / sizes[:, None]
-        groups = _nearest(points, centres)
+        groups = _nearest_centers(points, centres)
     return groups
 
 
-def _nearest(points: Single, centres: Single) -> NDArray[np.int32]:
+def _nearest_centers(points: Single, centres: Single) -> NDArray[np.int32]:
     squares = np.einsum("ij,ij->i", centres, centres)
     found = [
         np.argmin(squares - 2.0 * (points[start : start + BLOCK] @ centres.T), axis=1)

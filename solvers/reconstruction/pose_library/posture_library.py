@@ -22,14 +22,14 @@ from ...motion.humanoid import (
 from ...npz_members import integers, words
 from ...progress import Progress, unwatched, within
 from ...settings import Settings, setting
-from ..joint_rotations import N_TWISTED, mirrored_twists
-from .clip_twists import ClipTwists, agreed_twists, clip_twists
+from ..joint_rotations import N_TWISTED_LIMBS, mirror_twists
+from .clip_twists import ClipTwists, combine_clip_twists, read_clip_twists
 from .posture_groups import group_postures
-from .subsample import thin_out
+from .subsample import subsample_postures
 
 Array = NDArray[np.float64]
 
-SHIPPED = Path(__file__).parent / "postures.npz"
+SHIPPED_LIBRARY = Path(__file__).parent / "postures.npz"
 DIRECTION_STEP = 1.0 / 500.0
 CHANGE_STEP = 1.0 / 8.0
 TWIST_STEP = 1.0 / 127.0
@@ -43,12 +43,14 @@ LAYOUT = ArchiveLayout(
         "groups": integers("postures", minimum=0),
         "n_seen": integers(minimum=0),
         "trained_on": words(),
-        "twists": integers("postures", N_TWISTED, 2, minimum=-128, maximum=127, optional=True),
+        "twists": integers(
+            "postures", N_TWISTED_LIMBS, 2, minimum=-128, maximum=127, optional=True
+        ),
     },
     holds="damaged postures",
     remedy="Build them again.",
 )
-PACE = 0.1
+PACE_S = 0.1
 """Seconds of movement that count as much as the same way between two postures."""
 
 
@@ -109,7 +111,7 @@ class PostureLibrary:
     def known_twists(self) -> NDArray[np.complex64]:
         """Twists, shape (n_postures, 4); 0 where nothing is known of them."""
         if self.twists is None:
-            return np.zeros((self.n_postures, N_TWISTED), np.complex64)
+            return np.zeros((self.n_postures, N_TWISTED_LIMBS), np.complex64)
         return self.twists
 
     def save(self, path: Path | str) -> None:
@@ -129,7 +131,7 @@ class PostureLibrary:
         LAYOUT.write(path, arrays)
 
 
-def load_posture_library(path: Path | str = SHIPPED) -> PostureLibrary:
+def load_posture_library(path: Path | str = SHIPPED_LIBRARY) -> PostureLibrary:
     """Read what `PostureLibrary.save` wrote; without a path, the library that is shipped.
 
     Files of before twists were kept are read too; limbs are then twisted by bends alone.
@@ -140,7 +142,7 @@ def load_posture_library(path: Path | str = SHIPPED) -> PostureLibrary:
         The file is missing, damaged, or holds something else.
     """
     arrays = LAYOUT.read(path)
-    if fault := _fault(arrays):
+    if fault := _find_fault(arrays):
         raise LAYOUT.damaged(path, fault)
     directions, changes = (
         np.pad(arrays[name] * np.float32(step), ((0, 0), (1, 0), (0, 0)))
@@ -158,7 +160,7 @@ def load_posture_library(path: Path | str = SHIPPED) -> PostureLibrary:
     )  # fmt: skip
 
 
-def joined_postures(
+def merge_posture_libraries(
     first: PostureLibrary, second: PostureLibrary, words: str = "{}, and {}"
 ) -> PostureLibrary:
     """Return a library of the postures of two; `words` says what both were trained on."""
@@ -174,7 +176,7 @@ def joined_postures(
     )
 
 
-def _fault(arrays: dict[str, NDArray[Any]]) -> str:
+def _find_fault(arrays: dict[str, NDArray[Any]]) -> str:
     """Return what keeps postures from a file from being used, or nothing."""
     if not len(arrays["directions"]):
         return "there are none"
@@ -229,17 +231,19 @@ def build_posture_library(
     found = []
     for place, motion in enumerate(motions):
         progress(0.5 * place / len(motions), "Reading postures")
-        found.append(_postures(motion, settings))
+        found.append(_read_clip(motion, settings))
     directions, changes = (np.concatenate([each[part] for each in found]) for part in (0, 1))
     told = [each[2] for each in found]
-    own = agreed_twists([motion.skeleton for motion in motions], told)
-    twists = np.concatenate([_both(each, mirrored_twists, settings) for each in own])
+    own = combine_clip_twists([motion.skeleton for motion in motions], told)
+    twists = np.concatenate([
+        _with_mirror_images(each, mirror_twists, settings) for each in own
+    ])
     whole = np.isfinite(directions).all(axis=(1, 2)) & np.isfinite(changes).all(axis=(1, 2))
     directions, changes, twists = directions[whole], changes[whole], twists[whole]
     if not len(directions):
         raise InvalidMotionError("No posture of the clips is complete; fill their gaps first.")
-    kept = thin_out(
-        np.concatenate([directions, PACE * changes], axis=1),
+    kept = subsample_postures(
+        np.concatenate([directions, PACE_S * changes], axis=1),
         settings.n_postures,
         settings.spacing,
         within(progress, 0.5, 1.0),
@@ -251,26 +255,26 @@ def build_posture_library(
     )  # fmt: skip
 
 
-def _postures(
+def _read_clip(
     motion: Motion, settings: PostureLibrarySettings
 ) -> tuple[Array, Array, ClipTwists]:
     """Directions and changes of a clip and of its mirror image, and its own twists."""
-    fine = max(settings.frame_rate, min(motion.frame_rate, 2.0 / PACE))
+    fine = max(settings.frame_rate, min(motion.frame_rate, 2.0 / PACE_S))
     if abs(motion.frame_rate - fine) > 1e-6:
         motion = resample(motion, fine)
     positions = motion_postures(motion)
     directions = bone_directions(normalise(positions, fine).postures)
     changes = bone_changes(directions, fine)
     step = max(round(fine / settings.frame_rate), 1)
-    twists = clip_twists(motion, positions)
+    twists = read_clip_twists(motion, positions)
     return (
-        _both(directions[::step], mirrored, settings),
-        _both(changes[::step], mirrored, settings),
+        _with_mirror_images(directions[::step], mirrored, settings),
+        _with_mirror_images(changes[::step], mirrored, settings),
         ClipTwists(twists.rotated[::step], twists.bent[::step], twists.shares[::step]),
     )
 
 
-def _both(
+def _with_mirror_images(
     values: NDArray[Any],
     mirror: Callable[[NDArray[Any]], NDArray[Any]],
     settings: PostureLibrarySettings,

@@ -12,7 +12,7 @@ N_COMPONENTS = 24
 """Principal components in which postures are compared; they hold all but millimetres."""
 
 
-def thin_out(
+def subsample_postures(
     vectors: Array, n_kept: int, spacing: float, progress: Progress = unwatched
 ) -> NDArray[np.intp]:
     """Return which postures to keep: each the farthest from all that were chosen before it.

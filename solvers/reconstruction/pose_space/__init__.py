@@ -1,11 +1,11 @@
 """The local linear space of poses near a measured one, and the energy of a pose in it."""
 
-from .posture_energy import N_BONES, Demands, posture_energy, style_distances
+from .posture_energy import N_BONES, EnergyTargets, posture_energy, style_distances
 from .posture_space import PostureSpaces, local_pca
 
 __all__ = [
     "N_BONES",
-    "Demands",
+    "EnergyTargets",
     "PostureSpaces",
     "local_pca",
     "posture_energy",

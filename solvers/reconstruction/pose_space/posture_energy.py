@@ -22,7 +22,7 @@ class EnergyWeights(NamedTuple):
 
 
 @dataclass(frozen=True, eq=False)
-class Demands:
+class EnergyTargets:
     """What is asked of the posture of each frame.
 
     Attributes
@@ -44,7 +44,7 @@ class Demands:
     expected: Array | None = None
     weights: EnergyWeights = EnergyWeights()
 
-    def at(self, frames: slice) -> "Demands":
+    def at(self, frames: slice) -> "EnergyTargets":
         """Return what is asked of some frames."""
         return replace(
             self,
@@ -55,7 +55,7 @@ class Demands:
         )
 
 
-def posture_energy(postures: Array, demands: Demands) -> Array:
+def posture_energy(postures: Array, demands: EnergyTargets) -> Array:
     """Return the energy of postures, square metres; less is better.
 
     Parameters
@@ -77,14 +77,14 @@ def posture_energy(postures: Array, demands: Demands) -> Array:
     return np.asarray(total[:, 0] if single else total)
 
 
-def control_term(x: Array, demands: Demands) -> Array:
+def control_term(x: Array, demands: EnergyTargets) -> Array:
     """Squared ways from where the joints were seen, as trusted (eq. 10)."""
     off = x - demands.observed[:, None]
     ways = np.nan_to_num(np.einsum("fsik,fsik->fsi", off, off))
     return np.asarray(np.einsum("fsi,fi->fs", ways, demands.trust))
 
 
-def style_distances(x: Array, demands: Demands) -> Array:
+def style_distances(x: Array, demands: EnergyTargets) -> Array:
     """Mean squared way to each neighbour; eq. 11 is the least of them."""
     flat = x.reshape(*x.shape[:2], -1)
     known = demands.neighbours
@@ -94,14 +94,14 @@ def style_distances(x: Array, demands: Demands) -> Array:
     return np.asarray(np.maximum(away, 0.0) / N_JOINTS)
 
 
-def kinematics_term(x: Array, demands: Demands) -> Array:
+def kinematics_term(x: Array, demands: EnergyTargets) -> Array:
     """Mean squared difference of the lengths of segments (eq. 12)."""
     sizes = np.linalg.norm(x - x[..., ABOVE, :], axis=-1)
     off = (sizes - demands.lengths)[..., 1:]
     return np.asarray(np.einsum("fsi,fsi->fs", off, off) / N_BONES)
 
 
-def continuity_term(x: Array, demands: Demands) -> Array:
+def continuity_term(x: Array, demands: EnergyTargets) -> Array:
     """Mean squared change of displacement (eq. 14)."""
     if demands.expected is None:
         return np.zeros(x.shape[:2])

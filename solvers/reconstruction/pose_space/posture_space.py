@@ -9,7 +9,7 @@ from ...motion.humanoid import N_JOINTS
 
 Array = NDArray[np.float64]
 
-LEAST = 1e-8
+MIN_VARIANCE_M2 = 1e-8
 """Square metres. Spread below which a component is none."""
 
 
@@ -69,7 +69,7 @@ def local_pca(neighbours: Array, n_dimensions: int = 20) -> PostureSpaces:
     off = flat - means[:, None]
     values, vectors = np.linalg.eigh(off @ off.swapaxes(-1, -2))
     values, vectors = values[:, : -n_kept - 1 : -1], vectors[:, :, : -n_kept - 1 : -1]
-    real = values > LEAST
+    real = values > MIN_VARIANCE_M2
     scale = np.where(real, 1.0 / np.sqrt(np.where(real, values, 1.0)), 0.0)
     axes = off.swapaxes(-1, -2) @ (vectors * scale[:, None])
     return PostureSpaces(means, axes, np.where(real, values, 0.0) / flat.shape[1], flat)

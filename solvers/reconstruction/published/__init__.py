@@ -1,7 +1,7 @@
 """The pose synthesis of the papers as published: frame by frame."""
 
-from .posture_search import search_in_turn
+from .posture_search import search_sequentially
 
 __all__ = [
-    "search_in_turn",
+    "search_sequentially",
 ]

@@ -3,21 +3,21 @@
 import numpy as np
 from numpy.typing import NDArray
 
-from ..pose_space import Demands, PostureSpaces, posture_energy
-from .sequential import in_turn
+from ..pose_space import EnergyTargets, PostureSpaces, posture_energy
+from .sequential import choose_sequentially
 
 Array = NDArray[np.float64]
 
 N_STEPS = 20
 N_SAMPLES = 100
-WIDTH = 0.5
+INITIAL_WIDTH = 0.5
 """Standard deviation of the first samples, in those of the neighbours."""
-NARROWER = 0.85
+WIDTH_DECAY = 0.85
 """Times that, after each step. The paper does not tell how its samples spread."""
 
 
 def search_postures(
-    spaces: PostureSpaces, demands: Demands, start: Array, seed: int = 0
+    spaces: PostureSpaces, demands: EnergyTargets, start: Array, seed: int = 0
 ) -> Array:
     """Return coordinates of good postures, shape (n_frames, n_dimensions).
 
@@ -34,7 +34,7 @@ def search_postures(
     random = np.random.default_rng(seed)
     best = start
     least = posture_energy(spaces.postures(best), demands)
-    width = WIDTH * np.sqrt(spaces.spreads)[:, None]
+    width = INITIAL_WIDTH * np.sqrt(spaces.spreads)[:, None]
     for _ in range(N_STEPS):
         drawn = random.normal(size=(len(best), N_SAMPLES, best.shape[1]))
         samples = best[:, None] + width * drawn
@@ -46,12 +46,12 @@ def search_postures(
         taken = np.take_along_axis(samples, place[:, None, None], axis=1)[:, 0]
         best = np.where(better[:, None], taken, best)
         least = np.where(better, found, least)
-        width = width * NARROWER
+        width = width * WIDTH_DECAY
     return best
 
 
-def search_in_turn(
-    spaces: PostureSpaces, demands: Demands, seed: int = 0, before: Array | None = None
+def search_sequentially(
+    spaces: PostureSpaces, demands: EnergyTargets, seed: int = 0, before: Array | None = None
 ) -> tuple[Array, Array]:
     """Search frame after frame; each goes on from the postures of the two before it.
 
@@ -61,8 +61,10 @@ def search_in_turn(
     energies : shape (n_frames,)
     """
 
-    def choose(space: PostureSpaces, asked: Demands, last: Array | None, frame: int) -> Array:
+    def choose(
+        space: PostureSpaces, asked: EnergyTargets, last: Array | None, frame: int
+    ) -> Array:
         start = space.coordinates(last) if last is not None else 0.0 * space.spreads
         return search_postures(space, asked, start, seed + frame)
 
-    return in_turn(spaces, demands, choose, before)
+    return choose_sequentially(spaces, demands, choose, before)

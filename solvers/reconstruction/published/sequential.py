@@ -6,15 +6,15 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
-from ..pose_space import Demands, PostureSpaces, posture_energy
+from ..pose_space import EnergyTargets, PostureSpaces, posture_energy
 
 Array = NDArray[np.float64]
-Chooser = Callable[[PostureSpaces, Demands, Array | None, int], Array]
+Chooser = Callable[[PostureSpaces, EnergyTargets, Array | None, int], Array]
 """Of one frame: its space, what is asked, the posture before it, its number; coordinates."""
 
 
-def in_turn(
-    spaces: PostureSpaces, demands: Demands, choose: Chooser, before: Array | None = None
+def choose_sequentially(
+    spaces: PostureSpaces, demands: EnergyTargets, choose: Chooser, before: Array | None = None
 ) -> tuple[Array, Array]:
     """Choose the postures of a take, with the continuity term of [SHJT13], eq. 14.
 

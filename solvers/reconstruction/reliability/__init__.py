@@ -1,6 +1,6 @@
 """How far each measured joint can be trusted, frame by frame."""
 
-from .left_right_swaps import undo_exchanges
+from .left_right_swaps import fix_left_right_swaps
 from .scores import Reliability, measure_reliability, posture_reliability
 from .settings import ReliabilityMethod, ReliabilitySettings
 
@@ -8,7 +8,7 @@ __all__ = [
     "Reliability",
     "ReliabilityMethod",
     "ReliabilitySettings",
+    "fix_left_right_swaps",
     "measure_reliability",
     "posture_reliability",
-    "undo_exchanges",
 ]

@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...motion.humanoid import joints_of_names
-from .terms import lengths_of
+from .terms import vector_lengths
 
 Array = NDArray[np.float64]
 Flags = NDArray[np.bool_]
@@ -14,16 +14,16 @@ Flags = NDArray[np.bool_]
 OUT, DOWN = (1.0, 0.0), (0.0, -1.0)
 ARMS = (("UpperArm", "LowerArm"), ("LowerArm", "Hand"))
 LEGS = (("UpperLeg", "LowerLeg"), ("LowerLeg", "Foot"))
-SIMILAR = 30.0
+MAX_ANGLE_DEG = 30.0
 """Degrees that each limb may be off a reference posture."""
-FEWEST = 5
+MIN_FRAMES = 5
 """Frames; fewer tell no length."""
-RELIABLE = 0.6
+MIN_RELIABILITY = 0.6
 
 
-def segments(positions: Array, parents: NDArray[np.intp]) -> Array:
+def parent_distances(positions: Array, parents: NDArray[np.intp]) -> Array:
     """Return how far each joint is from its parent, (n_frames, n_joints); NaN for roots."""
-    lengths = lengths_of(positions - positions[:, np.maximum(parents, 0)])
+    lengths = vector_lengths(positions - positions[:, np.maximum(parents, 0)])
     return np.where(parents >= 0, lengths, np.nan)
 
 
@@ -41,9 +41,9 @@ def reference_lengths(lengths: Array, postures: Flags, trust: Array) -> Array:
     trust : shape (n_frames, n_joints)
         How far each segment can be trusted without knowing its length.
     """
-    chosen = np.broadcast_to(postures[:, None], lengths.shape) & (trust > RELIABLE)
-    for wider in (trust > RELIABLE, np.ones_like(chosen)):
-        few = (chosen & np.isfinite(lengths)).sum(axis=0) < FEWEST
+    chosen = np.broadcast_to(postures[:, None], lengths.shape) & (trust > MIN_RELIABILITY)
+    for wider in (trust > MIN_RELIABILITY, np.ones_like(chosen)):
+        few = (chosen & np.isfinite(lengths)).sum(axis=0) < MIN_FRAMES
         chosen = np.where(few, wider, chosen)
     reference = np.full(lengths.shape[1], np.nan)
     given = np.where(chosen, lengths, np.nan)
@@ -52,7 +52,7 @@ def reference_lengths(lengths: Array, postures: Flags, trust: Array) -> Array:
     return reference
 
 
-def reference_postures(names: Sequence[str], positions: Array, tracked: Flags) -> Flags:
+def find_reference_postures(names: Sequence[str], positions: Array, tracked: Flags) -> Flags:
     """Tell in which frames a body stands with arms down, or in a T-pose [SHJT13, IV-B].
 
     Limbs are compared in the plane of the body, whose up is the way from the hips to between
@@ -74,15 +74,15 @@ def reference_postures(names: Sequence[str], positions: Array, tracked: Flags) -
     if not needed <= places.keys():
         return np.zeros(len(positions), bool)
     body = {role: positions[:, place] for role, place in places.items()}
-    up = _unit(body["chest"] - body["hips"])
+    up = _unit_vectors(body["chest"] - body["hips"])
     left = body["leftUpperArm"] - body["rightUpperArm"]
-    left = _unit(left - (left * up).sum(axis=-1, keepdims=True) * up)
-    standing = _as_they_are_at_rest(body, up, left, DOWN)
-    t_pose = _as_they_are_at_rest(body, up, left, OUT)
+    left = _unit_vectors(left - (left * up).sum(axis=-1, keepdims=True) * up)
+    standing = _matches_posture(body, up, left, DOWN)
+    t_pose = _matches_posture(body, up, left, OUT)
     return np.asarray((standing | t_pose) & tracked.all(axis=1))
 
 
-def _as_they_are_at_rest(
+def _matches_posture(
     body: dict[str, Array], up: Array, left: Array, arms: tuple[float, float]
 ) -> Flags:
     """Tell in which frames all limbs go the way they should: legs down, arms as told."""
@@ -91,11 +91,11 @@ def _as_they_are_at_rest(
         for bones, (out, rise) in ((ARMS, arms), (LEGS, DOWN)):
             way = sign * out * left + rise * up
             for start, stop in bones:
-                bone = _unit(body[side + stop] - body[side + start])
-                similar &= (bone * way).sum(axis=-1) > np.cos(np.radians(SIMILAR))
+                bone = _unit_vectors(body[side + stop] - body[side + start])
+                similar &= (bone * way).sum(axis=-1) > np.cos(np.radians(MAX_ANGLE_DEG))
     return similar
 
 
-def _unit(vectors: Array) -> Array:
-    lengths = lengths_of(vectors)[:, None]
+def _unit_vectors(vectors: Array) -> Array:
+    lengths = vector_lengths(vectors)[:, None]
     return np.asarray(vectors / np.where(lengths > 0.0, lengths, np.nan))

@@ -8,9 +8,9 @@ from numpy.typing import NDArray
 from ...motion import JointRecording
 from ...motion.humanoid import N_JOINTS, POSTURE_JOINTS, joints_of_names
 from ...progress import Progress, unwatched
-from .error_model import CAUSAL, CENTRED, signs_of_error
-from .reference import reference_lengths, reference_postures, segments
-from .settings import USUAL, ReliabilityMethod, ReliabilitySettings
+from .error_model import CAUSAL_MODEL, CENTERED_MODEL, measure_error_indicators
+from .reference import find_reference_postures, parent_distances, reference_lengths
+from .settings import DEFAULT_SETTINGS, ReliabilityMethod, ReliabilitySettings
 from .terms import behaviour_term, gaussian_mean, is_tracked, kinematics_term, tracking_term
 
 
@@ -34,7 +34,7 @@ class Reliability:
 def measure_reliability(
     recording: JointRecording,
     *,
-    settings: ReliabilitySettings = USUAL,
+    settings: ReliabilitySettings = DEFAULT_SETTINGS,
     progress: Progress = unwatched,
 ) -> Reliability:
     """Measure how far each joint of a depth camera's recording can be trusted.
@@ -66,9 +66,9 @@ def measure_reliability(
     behaviour = behaviour_term(positions, recording.frame_rate, settings)
     tracking = tracking_term(recording, settings)
     progress(0.4, "Measuring reliability")
-    lengths = segments(positions, parents)
+    lengths = parent_distances(positions, parents)
     tracked = is_tracked(recording)
-    postures = reference_postures(recording.names, positions, tracked)
+    postures = find_reference_postures(recording.names, positions, tracked)
     steady = np.minimum(behaviour, tracked)
     trust = np.minimum(steady, steady[:, np.maximum(parents, 0)])
     reference = reference_lengths(lengths, postures, trust)
@@ -81,8 +81,10 @@ def measure_reliability(
         worst = np.minimum(np.minimum(behaviour, kinematics), tracking)
         combined = gaussian_mean(worst, rate, settings)
     else:
-        signs = signs_of_error(positions, lengths - reference, parents, rate, settings.causal)
-        model = CAUSAL if settings.causal else CENTRED
+        signs = measure_error_indicators(
+            positions, lengths - reference, parents, rate, settings.causal
+        )
+        model = CAUSAL_MODEL if settings.causal else CENTERED_MODEL
         within = model.chance_within(signs, settings.tolerance)
         combined = np.minimum(within, gaussian_mean(tracking, rate, settings))
     combined = np.where(visible, combined, 0.0)

@@ -6,7 +6,7 @@ from enum import Enum
 from ...errors import InvalidSettingError
 from ...settings import Settings, setting
 
-SENSOR_RATE = 30.0
+SENSOR_RATE_HZ = 30.0
 """Hertz of the cameras that the published figures are for."""
 
 
@@ -68,4 +68,4 @@ class ReliabilitySettings(Settings):
             )
 
 
-USUAL = ReliabilitySettings()
+DEFAULT_SETTINGS = ReliabilitySettings()

@@ -9,11 +9,11 @@ from scipy.ndimage import convolve1d
 
 from ...motion import JointRecording
 from ...motion.skeletons import INFERRED, TRACKED
-from .settings import SENSOR_RATE, ReliabilitySettings
+from .settings import SENSOR_RATE_HZ, ReliabilitySettings
 
 Array = NDArray[np.float64]
 
-SURE = 0.5
+MIN_TRACKED_CONFIDENCE = 0.5
 """Confidence from which on a joint was seen and not guessed."""
 
 
@@ -29,24 +29,24 @@ def behaviour_term(positions: Array, frame_rate: float, settings: ReliabilitySet
     frame_rate : float, hertz
     settings : ReliabilitySettings
     """
-    step = frames_in(1.0 / SENSOR_RATE, frame_rate)
-    turns = turns_of_path(positions, step, settings.slowest * step / frame_rate)
-    n_averaged = frames_in(settings.vibration_window, frame_rate)
+    step = frame_count(1.0 / SENSOR_RATE_HZ, frame_rate)
+    turns = path_angles(positions, step, settings.slowest * step / frame_rate)
+    n_averaged = frame_count(settings.vibration_window, frame_rate)
     if settings.causal:
         turns = np.concatenate([np.zeros_like(turns[:step]), turns[:-step]])[: len(turns)]
     if not settings.causal:
         n_averaged = 2 * (n_averaged // 2) + 1
-    turns = _averaged(turns, np.ones(n_averaged), settings.causal)
+    turns = _weighted_mean(turns, np.ones(n_averaged), settings.causal)
     floor, roof = settings.vibration_floor, settings.vibration_roof
     return 1.0 - np.clip((turns - floor) / (roof - floor), 0.0, 1.0)  # eq. 4
 
 
-def turns_of_path(positions: Array, step: int, shortest: float) -> Array:
+def path_angles(positions: Array, step: int, shortest: float) -> Array:
     """Return by how many degrees the path turns at each frame; 0 where it hardly moves."""
     turns = np.zeros(positions.shape[:2])
     if len(positions) > 2 * step:
         moved = positions[step:] - positions[:-step]  # eq. 1 and 2
-        lengths = lengths_of(moved)
+        lengths = vector_lengths(moved)
         before, after = lengths[:-step], lengths[step:]
         far = (before > shortest) & (after > shortest)  # False for NaN
         along = np.einsum("nc,nc->n", moved[:-step][far], moved[step:][far])
@@ -105,7 +105,11 @@ def is_tracked(recording: JointRecording) -> NDArray[np.bool_]:
     state, confidence = recording.tracking_state, recording.tracks.confidence
     if state is not None:
         return np.asarray(visible & (state == TRACKED))
-    return visible if confidence is None else np.asarray(visible & (confidence >= SURE))
+    return (
+        visible
+        if confidence is None
+        else np.asarray(visible & (confidence >= MIN_TRACKED_CONFIDENCE))
+    )
 
 
 def gaussian_mean(values: Array, frame_rate: float, settings: ReliabilitySettings) -> Array:
@@ -114,21 +118,21 @@ def gaussian_mean(values: Array, frame_rate: float, settings: ReliabilitySetting
     The paper names neither the width of the Gaussian nor that weights add up to 1; here its
     standard deviation is a third of the window. Not causal: half the window on each side.
     """
-    span = frames_in(settings.window, frame_rate)
+    span = frame_count(settings.window, frame_rate)
     if settings.causal:
         weights = np.exp(-0.5 * (np.arange(span) / (span / 3.0)) ** 2)
     else:
         offsets = np.arange(-(span // 2), span // 2 + 1)
         weights = np.exp(-0.5 * (offsets / (span / 3.0)) ** 2)
-    return _averaged(values, weights, settings.causal)
+    return _weighted_mean(values, weights, settings.causal)
 
 
-def frames_in(seconds: float, frame_rate: float) -> int:
+def frame_count(seconds: float, frame_rate: float) -> int:
     """Return how many frames a time has, at least one."""
     return max(1, round(seconds * frame_rate))
 
 
-def _averaged(values: Array, weights: Array, causal: bool) -> Array:
+def _weighted_mean(values: Array, weights: Array, causal: bool) -> Array:
     """Average over the frames that there are; causal: the first weight is the present's."""
     inside = weighted_sum(np.ones(len(values)), weights, causal)
     total = weighted_sum(values, weights, causal)
@@ -142,6 +146,6 @@ def weighted_sum(values: Array, weights: Array, causal: bool) -> Array:
     return np.asarray(convolve1d(values, weights, axis=0, mode="constant"))
 
 
-def lengths_of(vectors: Array) -> Array:
+def vector_lengths(vectors: Array) -> Array:
     """Return the lengths of vectors along the last axis."""
     return np.asarray(np.sqrt(np.einsum("...c,...c->...", vectors, vectors)))

@@ -3,26 +3,26 @@
 import numpy as np
 from numpy.typing import NDArray
 
-from .terms import lengths_of
+from .terms import vector_lengths
 
 Array = NDArray[np.float64]
 Flags = NDArray[np.bool_]
 
-LONGEST = 0.2
+MAX_JUMP_S = 0.2
 """Seconds that a joint may be away."""
-SHORTEST = 0.05
+MIN_JUMP_M = 0.05
 """Metres that it must jump at least, however soon frames follow each other."""
-ACCELERATION = 100.0
+MIN_ACCELERATION = 100.0
 """Metres per second squared: a joint that reaches its speed in a frame that way is thrown."""
-SUDDEN = 3.0
+MIN_STEP_RATIO = 3.0
 """How often as far a jump is as the steps before and after it."""
-CALM = 0.1
+CONTEXT_S = 0.1
 """Seconds of steps before and after; what jumps more often is not only away, but unsteady."""
-NEAR = 0.5
+MAX_RETURN_RATIO = 0.5
 """It comes back at most this share of the jump away from where it was."""
 
 
-def short_jumps(positions: Array, frame_rate: float) -> Flags:
+def find_transient_jumps(positions: Array, frame_rate: float) -> Flags:
     """Tell in which frames joints are away from their path, shape (n_frames, n_joints).
 
     Away is what lies between two jumps that follow each other within a fifth of a second, of
@@ -37,26 +37,28 @@ def short_jumps(positions: Array, frame_rate: float) -> Flags:
     away = np.zeros(positions.shape[:2], bool)
     n_frames = len(positions)
     steps = np.zeros(positions.shape[:2])
-    steps[1:] = lengths_of(positions[1:] - positions[:-1])  # into each frame
+    steps[1:] = vector_lengths(positions[1:] - positions[:-1])  # into each frame
     outer = np.nan_to_num(steps)
-    far = max(SHORTEST, ACCELERATION / frame_rate**2)
-    calm = max(1, round(CALM * frame_rate))
-    leaves = (outer > far) & (outer > SUDDEN * _greatest_before(outer, calm))
-    returns = (outer > far) & (outer > SUDDEN * _greatest_before(outer[::-1], calm)[::-1])
-    for n_away in range(1, max(1, round(LONGEST * frame_rate)) + 1):
+    far = max(MIN_JUMP_M, MIN_ACCELERATION / frame_rate**2)
+    calm = max(1, round(CONTEXT_S * frame_rate))
+    leaves = (outer > far) & (outer > MIN_STEP_RATIO * _max_before(outer, calm))
+    returns = (outer > far) & (outer > MIN_STEP_RATIO * _max_before(outer[::-1], calm)[::-1])
+    for n_away in range(1, max(1, round(MAX_JUMP_S * frame_rate)) + 1):
         if n_away + 1 >= n_frames:
             break
         least = np.minimum(outer[1:-n_away], outer[n_away + 1 :])
-        apart = lengths_of(positions[n_away + 1 :] - positions[: -n_away - 1])
-        there = leaves[1:-n_away] & returns[n_away + 1 :] & (apart < NEAR * least)
+        apart = vector_lengths(positions[n_away + 1 :] - positions[: -n_away - 1])
+        there = leaves[1:-n_away] & returns[n_away + 1 :] & (apart < MAX_RETURN_RATIO * least)
         if n_away > 1:
-            there &= least > SUDDEN * np.maximum(outer[2 : 1 - n_away], outer[n_away:-1])
+            there &= least > MIN_STEP_RATIO * np.maximum(
+                outer[2 : 1 - n_away], outer[n_away:-1]
+            )
         for place in range(n_away):
             away[1 + place : n_frames - n_away + place] |= there
     return away
 
 
-def _greatest_before(steps: Array, n_steps: int) -> Array:
+def _max_before(steps: Array, n_steps: int) -> Array:
     """Return the greatest of the steps just before each, without it; 0 for the first."""
     padded = np.concatenate([np.zeros((n_steps, *steps.shape[1:])), steps[:-1]])
     windows = np.lib.stride_tricks.sliding_window_view(padded, n_steps, axis=0)

@@ -2,7 +2,7 @@
 
 from .correct_postures import CorrectionMethod, CorrectionSettings, correct_postures
 from .kernel import squared_distances
-from .learn_confidence import calibrated
+from .learn_confidence import calibrate_confidence
 from .learn_residual_prior import ResidualMethod, ResidualPriorSettings, learn_residual_prior
 from .prior import ResidualPrior, load_residual_prior
 
@@ -12,7 +12,7 @@ __all__ = [
     "ResidualMethod",
     "ResidualPrior",
     "ResidualPriorSettings",
-    "calibrated",
+    "calibrate_confidence",
     "correct_postures",
     "learn_residual_prior",
     "load_residual_prior",

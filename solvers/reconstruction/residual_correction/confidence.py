@@ -8,10 +8,10 @@ from scipy.special import gammainc, roots_hermitenorm
 
 Array = NDArray[np.float64]
 
-TINY = 1e-12
+MIN_VARIANCE_M2 = 1e-12
 """Square metres. Variances below this tell nothing more."""
 NODES, _WEIGHTS = roots_hermitenorm(7)
-SHARES = _WEIGHTS / _WEIGHTS.sum()
+NODE_WEIGHTS = _WEIGHTS / _WEIGHTS.sum()
 
 
 class Calibration(NamedTuple):
@@ -35,11 +35,11 @@ class Calibration(NamedTuple):
     spread: float = 0.0
 
 
-AS_TOLD = Calibration()
+IDENTITY_CALIBRATION = Calibration()
 
 
 def chance_within(
-    variances: Array, distance: float, calibration: Calibration = AS_TOLD
+    variances: Array, distance: float, calibration: Calibration = IDENTITY_CALIBRATION
 ) -> Array:
     """Return the chance of a point being within a distance of its mean (Maxwell's law).
 
@@ -55,10 +55,10 @@ def chance_within(
     """
     shift, slope, spread = calibration
     known = np.isfinite(variances)
-    told = np.log(np.maximum(np.where(known, variances, 1.0), TINY))
+    told = np.log(np.maximum(np.where(known, variances, 1.0), MIN_VARIANCE_M2))
     level = float(told[known].mean()) if known.any() else 0.0
     nearness = 0.5 * distance**2 * np.exp(-level - shift - slope * (told - level))
-    nodes = zip(NODES, SHARES, strict=True) if spread else [(0.0, 1.0)]
+    nodes = zip(NODES, NODE_WEIGHTS, strict=True) if spread else [(0.0, 1.0)]
     chance = sum(
         share * gammainc(1.5, nearness * np.exp(-spread * node)) for node, share in nodes
     )

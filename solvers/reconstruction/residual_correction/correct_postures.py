@@ -11,21 +11,27 @@ from ...motion.humanoid import posture_positions
 from ...progress import Progress, unwatched, within
 from ...settings import Settings, setting
 from ...signals import bridged
-from ..joint_rotations import LimbTwists, Reconstruction, all_joints, anchors, follow_joints
+from ..joint_rotations import (
+    LimbTwists,
+    Reconstruction,
+    find_anchors,
+    motion_from_positions,
+    positions_from_postures,
+)
 from ..reliability import Reliability, measure_reliability, posture_reliability
-from .inputs import calm_postures
-from .predicted import Foretold
+from .inputs import smooth_postures
+from .prediction import Prediction
 from .prior import ResidualPrior
-from .smooth_paths import followed, smoothed
+from .smooth_trajectories import filter_trajectories, smooth_trajectories
 
 Array = NDArray[np.float64]
 
-CENTIMETRES = 100.0
+CM_PER_M = 100.0
 """[ZH14] names no unit for its weights; with metres the temporal term would vanish."""
-LEAST = 0.02
+MIN_WEIGHT = 0.02
 """Weight of a joint that is not trusted at all, so that gaps are bridged smoothly."""
-REFERENCE_RATE = 30.0
-SURE_WITHIN = 0.05
+REFERENCE_RATE_HZ = 30.0
+CONFIDENCE_DISTANCE_M = 0.05
 """Metres. Confidence is the chance that a joint lies within this of where it was."""
 
 
@@ -121,20 +127,20 @@ def correct_postures(
     trust = reliability or measure_reliability(recording, progress=within(progress, 0.0, 0.3))
     weights = posture_reliability(recording, trust.combined)
     progress(0.4, "Correcting")
-    corrected, told, variances = foretell_places(recording, prior, weights, settings)
+    corrected, told, variances = predict_positions(recording, prior, weights, settings)
     progress(0.9, "Correcting")
     asked = settings.change > 0.0 or settings.shift
     heard = told.coverage if asked else 0.0
-    chance = prior.confidence(variances, SURE_WITHIN, constant=settings.shift)
+    chance = prior.confidence(variances, CONFIDENCE_DISTANCE_M, constant=settings.shift)
     confidence = heard * chance + (1.0 - heard) * weights
     tracks = recording.tracks
-    joints = all_joints(
+    joints = positions_from_postures(
         tracks.names, tracks.positions, trust.combined, posture_positions(recording), corrected
     )
     joints[:, ~tracks.visible.any(axis=0)] = np.nan
-    confidence = confidence[:, anchors(tracks.names)]
+    confidence = confidence[:, find_anchors(tracks.names)]
     rebuilt = tracks.with_positions(joints)
-    motion = follow_joints(rebuilt, recording.parents, trust.combined, twists=twists)
+    motion = motion_from_positions(rebuilt, recording.parents, trust.combined, twists=twists)
     progress(1.0, "Corrected")
     method = f"steadied ({settings.method.value})"
     if asked:
@@ -142,32 +148,32 @@ def correct_postures(
     return Reconstruction(rebuilt, motion, trust, confidence, method, twists)
 
 
-def foretell_places(
+def predict_positions(
     recording: JointRecording,
     prior: ResidualPrior,
     weights: Array,
     settings: CorrectionSettings,
-) -> tuple[Array, Foretold, Array]:
+) -> tuple[Array, Prediction, Array]:
     """Return the joints of postures where they were, what the prior told, and variances."""
     causal = settings.method is CorrectionMethod.CAUSAL
-    calm = calm_postures(recording, float(prior.calm), weights, ahead=not causal)
+    calm = smooth_postures(recording, float(prior.calm), weights, ahead=not causal)
     told = prior.predict(calm, ahead=settings.method is CorrectionMethod.WHOLE_TAKE)
     foretold = calm.positions + calm.turn_back(_offsets(told, weights, settings))
     variances = told.variances + prior.lasting_variances(constant=settings.shift)
     if settings.method is CorrectionMethod.PUBLISHED:
         places = _frame_by_frame(recording, foretold, variances, weights, settings)
         return places, told, variances
-    steady = followed if causal else smoothed
+    steady = filter_trajectories if causal else smooth_trajectories
     frames = settings.smoothing * recording.frame_rate
-    return steady(foretold, np.maximum(weights, LEAST), frames), told, variances
+    return steady(foretold, np.maximum(weights, MIN_WEIGHT), frames), told, variances
 
 
-def _offsets(told: Foretold, weights: Array, settings: CorrectionSettings) -> Array:
+def _offsets(told: Prediction, weights: Array, settings: CorrectionSettings) -> Array:
     """Return the offsets to apply: their mean over the take, and what changes with posture.
 
     Of the change a part is applied, and less of it in takes unlike those that were learned.
     """
-    weighed = np.maximum(weights, LEAST)[..., None]
+    weighed = np.maximum(weights, MIN_WEIGHT)[..., None]
     mean = (weighed * told.offsets).sum(axis=0) / weighed.sum(axis=0)
     constant = mean if settings.shift else np.zeros_like(mean)
     if settings.method is CorrectionMethod.PUBLISHED and settings.change > 0.0:
@@ -184,12 +190,12 @@ def _frame_by_frame(
     settings: CorrectionSettings,
 ) -> Array:
     """Minimise eq. 5.6 of [ZH14] in each frame, after those 1/30 and 1/15 s before."""
-    seen = bridged(posture_positions(recording)) * CENTIMETRES
-    offsets = foretold * CENTIMETRES - seen
-    spatial = settings.spatial / (2.0 * variances * CENTIMETRES**2)
+    seen = bridged(posture_positions(recording)) * CM_PER_M
+    offsets = foretold * CM_PER_M - seen
+    spatial = settings.spatial / (2.0 * variances * CM_PER_M**2)
     trust = settings.trust * weights**2
     result = seen.copy()
-    step = max(round(recording.frame_rate / REFERENCE_RATE), 1)
+    step = max(round(recording.frame_rate / REFERENCE_RATE_HZ), 1)
     for frame in range(len(seen)):
         temporal = settings.temporal if frame >= 2 * step else 0.0
         total = spatial[frame] + trust[frame] + temporal
@@ -198,4 +204,4 @@ def _frame_by_frame(
             steady = 2.0 * result[frame - step] - result[frame - 2 * step] - seen[frame]
             wanted = wanted + temporal * steady
         result[frame] = seen[frame] + wanted / np.maximum(total, 1e-12)[:, None]
-    return result / CENTIMETRES
+    return result / CM_PER_M

@@ -21,7 +21,7 @@ from ...signals import bridged, steadied
 
 Array = NDArray[np.float64]
 
-NEIGHBOURHOODS = tuple(
+NEIGHBORHOODS = tuple(
     tuple(
         [joint]
         + [child for child in range(N_JOINTS) if PARENTS[child] == joint]
@@ -30,11 +30,11 @@ NEIGHBOURHOODS = tuple(
     for joint in range(N_JOINTS)
 )
 """A joint and those that it shares a bone with [ZH14, section 5.2.1]."""
-LARGEST = 3 * max(len(joints) for joints in NEIGHBOURHOODS)
+N_NEIGHBORHOOD_FEATURES = 3 * max(len(joints) for joints in NEIGHBORHOODS)
 
 
 @dataclass(frozen=True, eq=False)
-class CalmPostures:
+class SmoothedPostures:
     """A recording as the residual prior sees it.
 
     Attributes
@@ -58,13 +58,13 @@ class CalmPostures:
         return turned(offsets, self.normalised.headings)
 
 
-def calm_postures(
+def smooth_postures(
     recording: JointRecording | Tracks,
     calm: float,
     weights: Array | None = None,
     *,
     ahead: bool = True,
-) -> CalmPostures:
+) -> SmoothedPostures:
     """Calm a recording with a Gaussian of `calm` seconds, bridge gaps, and normalise it.
 
     Without `ahead` a frame knows of no later one but the actor's size.
@@ -80,15 +80,15 @@ def calm_postures(
             "The joints are all in one place; choose a recording of an actor who was tracked."
         )
     usual = normal.postures * USUAL_LENGTHS.sum() / length
-    return CalmPostures(positions, normal, usual, rate)
+    return SmoothedPostures(positions, normal, usual, rate)
 
 
-def filled(features: Array, usual: Array) -> Array:
+def fill_missing(features: Array, usual: Array) -> Array:
     """Return features with the usual posture, shape (20, 3), where a joint is never seen."""
     return np.where(np.isfinite(features), features, usual)
 
 
-def neighbourhood(features: Array, joint: int) -> Array:
+def neighborhood_features(features: Array, joint: int) -> Array:
     """Return a joint's features and its neighbours', shape (n_frames, 15), filled up with 0."""
-    found = features[:, list(NEIGHBOURHOODS[joint])].reshape(len(features), -1)
-    return np.pad(found, ((0, 0), (0, LARGEST - found.shape[1])))
+    found = features[:, list(NEIGHBORHOODS[joint])].reshape(len(features), -1)
+    return np.pad(found, ((0, 0), (0, N_NEIGHBORHOOD_FEATURES - found.shape[1])))

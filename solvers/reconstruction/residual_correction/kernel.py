@@ -19,11 +19,11 @@ Array = NDArray[np.float64]
 Real = TypeVar("Real", NDArray[np.float64], NDArray[np.float32])
 
 LOCAL, WHOLE = 0, 1
-SMALLEST, LARGEST = 1e-4, 10.0
+MIN_VARIANCE_RATIO, MAX_VARIANCE_RATIO = 1e-4, 10.0
 """Bounds of each variance, as shares of the variance of the errors."""
-SHORTEST, LONGEST = 0.3, 10.0
+MIN_LENGTH_RATIO, MAX_LENGTH_RATIO = 0.3, 10.0
 """Bounds of each length, as multiples of the spread of the examples."""
-ROUNDS = 40
+MAX_ITERATIONS = 40
 
 
 @dataclass(frozen=True)
@@ -61,12 +61,12 @@ def squared_distances(one: Real, other: Real) -> Real:
     return np.maximum(result, 0.0, out=result)
 
 
-def alike(one: Array, other: Array, length: float) -> Array:
+def squared_exponential(one: Array, other: Array, length: float) -> Array:
     """Return the squared-exponential kernel, shape (n_one, n_other)."""
     return np.asarray(np.exp(-0.5 * squared_distances(one, other) / length**2))
 
 
-def nearness(features: Array, points: Array, far: tuple[float, float]) -> Array:
+def proximity(features: Array, points: Array, far: tuple[float, float]) -> Array:
     """Return 1 near the points, falling to 0 where the nearest is far, shape (n,)."""
     near, fall = far
     distance = np.sqrt(squared_distances(features, points).min(axis=1))
@@ -96,20 +96,22 @@ def learn_kernel(
     total = max(float(centred.var()), 1e-12)
     same = tuple((one[:, None] == one).astype(np.float64) for one in (takes, actors))
     start = np.log([*spread, *(total * np.array([0.2, 0.2, 0.1, 0.1, 0.1, 0.2, 0.1]))])
-    bounds = [(np.log(SHORTEST * one), np.log(LONGEST * one)) for one in spread]
-    bounds += [(np.log(SMALLEST * total), np.log(LARGEST * total))] * 7
+    bounds = [
+        (np.log(MIN_LENGTH_RATIO * one), np.log(MAX_LENGTH_RATIO * one)) for one in spread
+    ]
+    bounds += [(np.log(MIN_VARIANCE_RATIO * total), np.log(MAX_VARIANCE_RATIO * total))] * 7
     if simple:
         for place in (3, 4, 5, 6, 7):
-            start[place] = np.log(SMALLEST * total * 1e-3)
+            start[place] = np.log(MIN_VARIANCE_RATIO * total * 1e-3)
             bounds[place] = (start[place], start[place])
     found = minimize(
-        _unlikeliness, start, args=(far, same, centred), jac=True, method="L-BFGS-B",
-        bounds=bounds, options={"maxiter": ROUNDS},
+        _negative_log_likelihood, start, args=(far, same, centred), jac=True, method="L-BFGS-B",
+        bounds=bounds, options={"maxiter": MAX_ITERATIONS},
     )  # fmt: skip
     return Kernel.from_logs(found.x)
 
 
-def _unlikeliness(
+def _negative_log_likelihood(
     logs: Array, far: tuple[Array, ...], same: tuple[Array, ...], errors: Array
 ) -> tuple[float, Array]:
     """Return the negative log marginal likelihood and its gradient along the logarithms."""

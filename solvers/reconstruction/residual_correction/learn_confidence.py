@@ -11,30 +11,34 @@ from ...motion import JointRecording, Tracks
 from ...motion.humanoid import N_JOINTS, posture_positions
 from ...progress import Progress, unwatched, within
 from ..reliability import measure_reliability, posture_reliability
-from .confidence import AS_TOLD, Calibration
-from .correct_postures import CorrectionSettings, foretell_places
-from .learn_residual_prior import MEDIAN_OF_SQUARES, ResidualPriorSettings, learn_residual_prior
+from .confidence import IDENTITY_CALIBRATION, Calibration
+from .correct_postures import CorrectionSettings, predict_positions
+from .learn_residual_prior import (
+    MEDIAN_SQUARED_LENGTH,
+    ResidualPriorSettings,
+    learn_residual_prior,
+)
 from .prior import ResidualPrior
 
 Array = NDArray[np.float64]
 Pair = tuple[JointRecording, Tracks]
 
-LEARNING = ResidualPriorSettings()
-FEWEST_FRAMES = 20
+DEFAULT_SETTINGS = ResidualPriorSettings()
+MIN_FRAMES = 20
 """Frames in which a joint of an actor must be known to tell anything."""
-FEWEST_ACTORS = 3
-FEWEST_POINTS = 3
+MIN_ACTORS = 3
+MIN_POINTS = 3
 """Joints of actors, told and found, through which a line is laid."""
-CLOSEST = 1e-4
+MIN_ERROR_M = 1e-4
 """Metres. Medians of errors below this tell nothing more."""
 
 
-def calibrated(
+def calibrate_confidence(
     prior: ResidualPrior,
     pairs: Sequence[Pair],
     actors: Sequence[str],
     *,
-    settings: ResidualPriorSettings = LEARNING,
+    settings: ResidualPriorSettings = DEFAULT_SETTINGS,
     progress: Progress = unwatched,
 ) -> ResidualPrior:
     """Return the prior with a confidence that holds for new actors.
@@ -57,9 +61,9 @@ def calibrated(
         There are fewer than three actors.
     """
     people = sorted(set(actors))
-    if len(people) < FEWEST_ACTORS:
+    if len(people) < MIN_ACTORS:
         raise InvalidMotionError(
-            f"Confidence is measured by leaving actors out, and needs {FEWEST_ACTORS}; there"
+            f"Confidence is measured by leaving actors out, and needs {MIN_ACTORS}; there"
             f" are {len(people)}."
         )
     found = []
@@ -73,18 +77,18 @@ def calibrated(
             progress=part,
         )
         own = [pair for pair, name in zip(pairs, actors, strict=True) if name == actor]
-        found.append(told_and_found(taught, own))
+        found.append(predicted_and_measured(taught, own))
     return with_calibration(prior, found)
 
 
 def with_calibration(prior: ResidualPrior, found: Sequence[Array]) -> ResidualPrior:
     """Return the prior with what `told_and_found` says of actors who were left out."""
     whole, beside = np.concatenate(found, axis=1)
-    lines = fitted(whole, keep_level=True), fitted(beside, keep_level=False)
+    lines = fit_calibration(whole, keep_level=True), fit_calibration(beside, keep_level=False)
     return replace(prior, calibration=np.array(lines))
 
 
-def told_and_found(prior: ResidualPrior, pairs: Sequence[Pair]) -> Array:
+def predicted_and_measured(prior: ResidualPrior, pairs: Sequence[Pair]) -> Array:
     """Return what was told of one actor's errors, and what was found.
 
     Parameters
@@ -100,14 +104,17 @@ def told_and_found(prior: ResidualPrior, pairs: Sequence[Pair]) -> Array:
         Logarithms of variances, told and found (from the median, as errors have heavy tails);
         first with the constant offset, then beside it.
     """
-    takes = [_take(prior, recording, posture_positions(truth)) for recording, truth in pairs]
+    takes = [
+        _take_variances(prior, recording, posture_positions(truth))
+        for recording, truth in pairs
+    ]
     return np.array([
-        _levels(*(np.concatenate(each) for each in zip(*of_takes, strict=True)))
+        _log_variances(*(np.concatenate(each) for each in zip(*of_takes, strict=True)))
         for of_takes in zip(*takes, strict=True)
     ])
 
 
-def _take(
+def _take_variances(
     prior: ResidualPrior, recording: JointRecording, truth: Array
 ) -> list[tuple[Array, Array]]:
     """Return told variances and squared errors of a take, (n_frames, 20), twice.
@@ -118,7 +125,7 @@ def _take(
     found = []
     for shift in (True, False):
         settings = CorrectionSettings(shift=shift)
-        places, _, variances = foretell_places(recording, prior, weights, settings)
+        places, _, variances = predict_positions(recording, prior, weights, settings)
         off = truth - places
         if not shift:
             known = np.isfinite(off).any(axis=(0, 2))
@@ -127,19 +134,19 @@ def _take(
     return found
 
 
-def _levels(told: Array, squares: Array) -> Array:
+def _log_variances(told: Array, squares: Array) -> Array:
     """Return logarithms of what is told and found of each joint, (20, 2); NaN: nothing."""
     rows = np.full((N_JOINTS, 2), np.nan)
     for joint in range(N_JOINTS):
         known = np.isfinite(squares[:, joint]) & np.isfinite(told[:, joint])
-        if known.sum() >= FEWEST_FRAMES:
-            median = max(float(np.median(squares[known, joint])), CLOSEST**2)
+        if known.sum() >= MIN_FRAMES:
+            median = max(float(np.median(squares[known, joint])), MIN_ERROR_M**2)
             rows[joint] = np.median(np.log(told[known, joint])), np.log(median)
-    rows[:, 1] -= np.log(MEDIAN_OF_SQUARES)
+    rows[:, 1] -= np.log(MEDIAN_SQUARED_LENGTH)
     return rows
 
 
-def fitted(points: Array, *, keep_level: bool) -> Calibration:
+def fit_calibration(points: Array, *, keep_level: bool) -> Calibration:
     """Fit a line to what was told and found of actors who were left out, and the spread.
 
     Parameters
@@ -152,8 +159,8 @@ def fitted(points: Array, *, keep_level: bool) -> Calibration:
         most. Beside the offset nobody told it before.
     """
     known = points[np.isfinite(points).all(axis=1)]
-    if len(known) < FEWEST_POINTS:
-        return AS_TOLD
+    if len(known) < MIN_POINTS:
+        return IDENTITY_CALIBRATION
     level, mean = known.mean(axis=0)
     told, found = known[:, 0] - level, known[:, 1] - mean
     size = float(told @ told)

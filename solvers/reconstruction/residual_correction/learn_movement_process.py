@@ -9,25 +9,25 @@ from scipy.linalg import cho_factor, cho_solve
 
 from ...motion.humanoid import MIRROR_IMAGES, mirrored
 from .movement_process import (
-    PERSONAL,
-    SHARED,
+    PERSONAL_STRENGTHS,
+    SHARED_STRENGTHS,
     MovementProcess,
     Single,
-    components_of,
-    likeness,
+    movement_covariance,
+    movement_distances,
     movement_parts,
-    ways_between,
+    project_parts,
 )
 
 Array = NDArray[np.float64]
 Numbers = NDArray[np.int64]
 
 N_COMPONENTS = 40
-TAKE, ACTOR, MEAN = 0.2, 1.9, 70.0
+TAKE_VARIANCE, ACTOR_VARIANCE, MEAN_VARIANCE = 0.2, 1.9, 70.0
 """Variances, in those of the noise, of the constant errors of a take, an actor, and all."""
-KNOWN = 0.5
+MIN_KNOWN_FRACTION = 0.5
 """Share of the examples in which a joint must be known to be foretold."""
-FEWEST = 20
+MIN_EXAMPLES = 20
 """Examples without which nothing is learned."""
 
 
@@ -55,27 +55,32 @@ def learn_movement_process(
     covariance is then [[A, B], [B, A]], and errors that a mirror leaves as they are, and those
     that it turns about, are solved for with A + B and with A - B.
     """
-    parts, errors, take, actor = _gathered(takes, frame_rate)
-    joints = _foretold(errors, mirror)
+    parts, errors, take, actor = _gather_examples(takes, frame_rate)
+    joints = _predictable_joints(errors, mirror)
     known = np.isfinite(errors[:, joints]).all(axis=(1, 2))
     rows = np.flatnonzero(known)
-    if len(joints) < 2 or len(rows) < FEWEST:
+    if len(joints) < 2 or len(rows) < MIN_EXAMPLES:
         return None
     rows = rows[np.linspace(0, len(rows) - 1, min(n_points, len(rows))).round().astype(int)]
     parts, errors = parts[:, rows], np.nan_to_num(errors[rows])
     image = mirrored(parts) if mirror else parts
-    centre, axes = _space(np.concatenate([parts[0], image[0]])[:, joints])
-    points, others = (components_of(one, joints, centre, axes) for one in (parts, image))
+    centre, axes = _principal_axes(np.concatenate([parts[0], image[0]])[:, joints])
+    points, others = (project_parts(one, joints, centre, axes) for one in (parts, image))
     own = _covariance(points, take[rows], actor[rows])
     if mirror:
-        across = likeness(ways_between(points, others), SHARED).astype(np.float64) + MEAN
+        across = (
+            movement_covariance(movement_distances(points, others), SHARED_STRENGTHS).astype(
+                np.float64
+            )
+            + MEAN_VARIANCE
+        )
         even = 0.5 * (errors + mirrored(errors))
-        weights = _solved(own + across, even) + _solved(own - across, errors - even)
+        weights = _solve(own + across, even) + _solve(own - across, errors - even)
         total = weights.sum(axis=0)
-        mean = MEAN * (total + mirrored(total))
+        mean = MEAN_VARIANCE * (total + mirrored(total))
     else:
-        weights = _solved(own, errors)
-        mean = MEAN * weights.sum(axis=0)
+        weights = _solve(own, errors)
+        mean = MEAN_VARIANCE * weights.sum(axis=0)
     flat = weights[:, joints].reshape(len(rows), -1)
     return MovementProcess(
         joints, centre, axes, points, flat.astype(np.float32), mean[joints].reshape(-1),
@@ -83,7 +88,7 @@ def learn_movement_process(
     )  # fmt: skip
 
 
-def _gathered(
+def _gather_examples(
     takes: Sequence[Take], frame_rate: float
 ) -> tuple[Array, Array, Numbers, Numbers]:
     """Return parts and errors of some frames of all takes, and whose they are."""
@@ -104,15 +109,15 @@ def _gathered(
     )
 
 
-def _foretold(errors: Array, mirror: bool) -> Numbers:
+def _predictable_joints(errors: Array, mirror: bool) -> Numbers:
     """Return the joints that are known often enough, and their mirror images too."""
     share = np.isfinite(errors).all(axis=-1).mean(axis=0)
     if mirror:
         share = np.minimum(share, share[list(MIRROR_IMAGES)])
-    return np.flatnonzero(share >= KNOWN).astype(np.int64)
+    return np.flatnonzero(share >= MIN_KNOWN_FRACTION).astype(np.int64)
 
 
-def _space(postures: Array) -> tuple[Array, Array]:
+def _principal_axes(postures: Array) -> tuple[Array, Array]:
     """Return mean and principal axes of postures."""
     flat = postures.reshape(len(postures), -1)
     centre = flat.mean(axis=0)
@@ -121,16 +126,18 @@ def _space(postures: Array) -> tuple[Array, Array]:
 
 
 def _covariance(points: Single, take: Numbers, actor: Numbers) -> Array:
-    ways = ways_between(points, points)
-    result = likeness(ways, SHARED).astype(np.float64) + MEAN
+    ways = movement_distances(points, points)
+    result = movement_covariance(ways, SHARED_STRENGTHS).astype(np.float64) + MEAN_VARIANCE
     same = actor[:, None] == actor
-    result += same * (likeness(ways, PERSONAL).astype(np.float64) + ACTOR)
-    result += TAKE * (take[:, None] == take)
+    result += same * (
+        movement_covariance(ways, PERSONAL_STRENGTHS).astype(np.float64) + ACTOR_VARIANCE
+    )
+    result += TAKE_VARIANCE * (take[:, None] == take)
     result[np.diag_indices(len(points))] += 1.0
     return result
 
 
-def _solved(covariance: Array, errors: Array) -> Array:
+def _solve(covariance: Array, errors: Array) -> Array:
     factor = cho_factor(covariance, lower=True, check_finite=False)
     found = cho_solve(factor, errors.reshape(len(errors), -1), check_finite=False)
     return np.asarray(found.reshape(errors.shape))

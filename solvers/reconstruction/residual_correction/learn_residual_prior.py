@@ -19,21 +19,21 @@ from ...motion.humanoid import (
 )
 from ...progress import Progress, unwatched
 from ...settings import Settings, setting
-from .inputs import calm_postures, filled, neighbourhood
+from .inputs import fill_missing, neighborhood_features, smooth_postures
 from .kernel import Kernel, learn_kernel
 from .learn_movement_process import Take, learn_movement_process
-from .prior import ResidualPrior, whole_posture
-from .sparse_process import basis, inducing_points, posterior, shared_columns
+from .prior import ResidualPrior, posture_components
+from .sparse_process import basis_functions, inducing_points, posterior, shared_design
 
 Array = NDArray[np.float64]
 Numbers = NDArray[np.int64]
 
 N_COMPONENTS = 15
-ALONE = 2.5
+CORRELATION_TIME_S = 2.5
 """Seconds after which errors of one take tell something new; nearer frames repeat it."""
-MEDIAN_OF_SQUARES = 2.366
+MEDIAN_SQUARED_LENGTH = 2.366
 """Median of the squared length of a normal vector in space whose axes have variance 1."""
-FEWEST = 20
+MIN_FRAMES = 20
 """Frames in which a joint must be known to be learned."""
 
 
@@ -133,26 +133,28 @@ def learn_residual_prior(
     .. [ZH14] Zhou (2014). Modeling of single character motions with temporal sparse
        representation and Gaussian processes. PhD thesis, City University of Hong Kong, 5.2.1.
     """
-    people = _checked(pairs, actors)
-    takes = _read(pairs, people, settings.calm)
-    examples, usual = _gathered(takes, settings)
+    people = _check_pairs(pairs, actors)
+    takes = _read_takes(pairs, people, settings.calm)
+    examples, usual = _gather_examples(takes, settings)
     centred = (examples.features - usual)[:, 1:].reshape(len(examples.takes), -1)
     n_components = min(N_COMPONENTS, *centred.shape)
     components = np.linalg.svd(centred, full_matrices=False)[2][:n_components].T
-    whole = whole_posture(examples.features, usual, components)
+    whole = posture_components(examples.features, usual, components)
     whole_points = inducing_points(whole, settings.whole_points, settings.seed)
     learned: dict[int, tuple[Array, Kernel, Array, Array]] = {}
     for joint in range(N_JOINTS):
         progress(joint / N_JOINTS, "Learning how the sensor errs")
         known = np.isfinite(examples.errors[:, joint]).all(axis=-1)
         right = settings.mirror and MIRROR_IMAGES[joint] < joint
-        if known.sum() >= FEWEST and not right:
+        if known.sum() >= MIN_FRAMES and not right:
             learned[joint] = _learn_joint(examples, joint, known, whole, whole_points, settings)
     if not learned:
         raise InvalidMotionError("No joint is known in both recordings of any pair.")
     movement = None
     if settings.method is ResidualMethod.HIERARCHICAL:
-        whole_takes = [replace(one, features=filled(one.features, usual)) for one in takes]
+        whole_takes = [
+            replace(one, features=fill_missing(one.features, usual)) for one in takes
+        ]
         movement = learn_movement_process(
             whole_takes, settings.frame_rate, settings.movement_points, settings.mirror
         )
@@ -163,7 +165,7 @@ def learn_residual_prior(
         components,
         np.stack([points for points, *_ in learned.values()]),
         whole_points,
-        np.array([_row(kernel) for _, kernel, *_ in learned.values()]),
+        np.array([_kernel_row(kernel) for _, kernel, *_ in learned.values()]),
         np.stack([mean for *_, mean, _ in learned.values()]),
         np.stack([covariance for *_, covariance in learned.values()]),
         np.array(settings.calm),
@@ -173,7 +175,7 @@ def learn_residual_prior(
     )
 
 
-def _checked(
+def _check_pairs(
     pairs: Sequence[tuple[JointRecording, Tracks]], actors: Sequence[str] | None
 ) -> list[str]:
     """Return who is seen in each pair."""
@@ -191,20 +193,20 @@ def _checked(
     return people
 
 
-def _read(
+def _read_takes(
     pairs: Sequence[tuple[JointRecording, Tracks]], people: Sequence[str], calm: float
 ) -> list[Take]:
     """Calm all recordings; errors are told without heading."""
     takes = []
     for (seen, true), actor in zip(pairs, people, strict=True):
-        found = calm_postures(seen, calm)
+        found = smooth_postures(seen, calm)
         off = posture_positions(true) - found.positions
         errors = turned(off, -found.normalised.headings)
         takes.append(Take(found.features, errors, seen.frame_rate, actor))
     return takes
 
 
-def _gathered(
+def _gather_examples(
     all_takes: Sequence[Take], settings: ResidualPriorSettings
 ) -> tuple[_Examples, Array]:
     """Thin all takes out and put their frames together; also the mean posture."""
@@ -226,7 +228,7 @@ def _gathered(
     known = np.isfinite(together).all(axis=-1)
     usual = np.where(known[..., None], together, 0.0).sum(axis=0)
     usual /= np.maximum(known.sum(axis=0), 1)[:, None]
-    examples = filled(together, usual)
+    examples = fill_missing(together, usual)
     return _Examples(examples, np.concatenate(errors), np.array(takes), np.array(actors)), usual
 
 
@@ -239,7 +241,7 @@ def _learn_joint(
     settings: ResidualPriorSettings,
 ) -> tuple[Array, Kernel, Array, Array]:
     """Return inducing points, hyper-parameters, and mean and covariance of the weights."""
-    local = neighbourhood(examples.features, joint)[known]
+    local = neighborhood_features(examples.features, joint)[known]
     whole, errors = whole[known], examples.errors[known, joint]
     takes, actors = (
         np.unique(one[known], return_inverse=True)[1]
@@ -253,15 +255,15 @@ def _learn_joint(
     points = inducing_points(local, settings.local_points, settings.seed)
     points = np.pad(points, ((0, settings.local_points - len(points)), (0, 0)), mode="edge")
     bases = (
-        basis(local, points, kernel.lengths[0]),
-        basis(whole, whole_points, kernel.lengths[1]),
+        basis_functions(local, points, kernel.lengths[0]),
+        basis_functions(whole, whole_points, kernel.lengths[1]),
     )
-    repeats = 1.0 if published else max(ALONE * settings.frame_rate, 1.0)
+    repeats = 1.0 if published else max(CORRELATION_TIME_S * settings.frame_rate, 1.0)
     mean, covariance = posterior(bases, errors, takes, actors, kernel, repeats)
-    return points, honest(kernel, bases, errors, mean, covariance), mean, covariance
+    return points, match_median_error(kernel, bases, errors, mean, covariance), mean, covariance
 
 
-def honest(
+def match_median_error(
     kernel: Kernel, bases: tuple[Array, Array], errors: Array, mean: Array, covariance: Array
 ) -> Kernel:
     """Return the kernel with what no posture tells as large as the usual error calls for.
@@ -270,11 +272,11 @@ def honest(
     variances of actor, take, noise and personal functions are multiplied so that half of the
     examples lie within the median that the normal distribution has.
     """
-    columns = shared_columns(bases, kernel)
+    columns = shared_design(bases, kernel)
     known = np.einsum("ni,ni->n", columns @ covariance, columns)
     off = ((errors - columns @ mean) ** 2).sum(axis=1)
     lasting = sum(kernel.personal) + kernel.take + kernel.actor + kernel.noise
-    wanted = float(np.median(off)) / MEDIAN_OF_SQUARES - float(np.median(known))
+    wanted = float(np.median(off)) / MEDIAN_SQUARED_LENGTH - float(np.median(known))
     share = float(np.clip(wanted / lasting, 0.01, 10.0))
     return replace(
         kernel,
@@ -285,7 +287,7 @@ def honest(
     )
 
 
-def _row(kernel: Kernel) -> list[float]:
+def _kernel_row(kernel: Kernel) -> list[float]:
     """Return the hyper-parameters as `ResidualPrior.kernels` keeps them."""
     pairs = (*kernel.lengths, *kernel.shared, *kernel.personal)
     return [*pairs, kernel.take, kernel.actor, kernel.noise]

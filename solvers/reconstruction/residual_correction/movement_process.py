@@ -23,13 +23,13 @@ from .kernel import squared_distances
 Array = NDArray[np.float64]
 Single = NDArray[np.float32]
 
-AWAY = 0.5
+CONTEXT_S = 0.5
 """Seconds to the postures before and after that are looked at."""
-AROUND = 1.0
+MEAN_WINDOW_S = 1.0
 """Seconds to both sides whose mean a posture is compared with."""
-STEADY = 0.1
+SPEED_SMOOTHING_S = 0.1
 """Seconds of the Gaussian that steadies speeds."""
-PACE = 0.2
+PACE_S = 0.2
 """Seconds of movement that count as much as the same way between two postures."""
 N_PARTS = 5
 BLOCK = 512
@@ -57,20 +57,20 @@ class Strengths(NamedTuple):
     movement: float
 
 
-SHARED = Strengths(9.3, 56.0, 3.5, 2.3)
-PERSONAL = Strengths(2.6, 3.6, 3.0, 0.47)
-POSTURE, CONTEXT, MOVEMENT = 0.88, 1.63, 0.82
+SHARED_STRENGTHS = Strengths(9.3, 56.0, 3.5, 2.3)
+PERSONAL_STRENGTHS = Strengths(2.6, 3.6, 3.0, 0.47)
+POSTURE_SCALE_M, CONTEXT_SCALE_M, MOVEMENT_SCALE_M = 0.88, 1.63, 0.82
 """Metres of features that may differ. All these numbers were chosen on UI-PRMD by leaving out
 one of four actors; to choose for each fifth actor without him gives the same."""
 
 
-FAR = (1.0, 0.3)
+COVERAGE_RANGE_M = (1.0, 0.3)
 """Metres of posture, before and after up to which movements count as known, and how fast they
 become unknown beyond. Of actors who were left out 95 in 100 lie within, of exercises that were
 left out half."""
 
 
-class Ways(NamedTuple):
+class MovementDistances(NamedTuple):
     """Squared distances of each frame to each other one, square metres; products for slope."""
 
     posture: Single
@@ -137,7 +137,7 @@ class MovementProcess:
             image[:, self.joints], also = self._told(mirrored(parts))
             result += mirrored(image)
             away = np.minimum(away, also)
-        near, fall = FAR
+        near, fall = COVERAGE_RANGE_M
         return result, np.exp(-0.5 * (np.maximum(np.sqrt(away) - near, 0.0) / fall) ** 2)
 
     def _told(self, parts: Array) -> tuple[Array, Array]:
@@ -146,32 +146,32 @@ class MovementProcess:
         told, away = np.empty((len(seen), self.weights.shape[1])), np.empty(len(seen))
         for start in range(0, len(seen), BLOCK):
             rows = slice(start, start + BLOCK)
-            ways = ways_between(seen[rows], self.points)
-            told[rows] = likeness(ways, SHARED) @ self.weights
+            ways = movement_distances(seen[rows], self.points)
+            told[rows] = movement_covariance(ways, SHARED_STRENGTHS) @ self.weights
             away[rows] = ways.context.min(axis=1)
         return told.reshape(len(seen), -1, 3), away
 
     def seen_from(self, parts: Array) -> Single:
         """Return principal components of `movement_parts`, (n, 5, n_components)."""
-        return components_of(parts, self.joints, self.centre, self.axes)
+        return project_parts(parts, self.joints, self.centre, self.axes)
 
 
 def movement_parts(features: Array, frame_rate: float) -> Array:
     """Return postures now, before and after, how they differ, and speeds, (5, n, 20, 3)."""
     n = len(features)
-    away = max(round(AWAY * frame_rate), 1)
-    window = 2 * round(AROUND * frame_rate) + 1
+    away = max(round(CONTEXT_S * frame_rate), 1)
+    window = 2 * round(MEAN_WINDOW_S * frame_rate) + 1
     frames = np.arange(n)
     counts = uniform_filter1d(np.ones(n), window, mode="constant")[:, None, None]
     mean = uniform_filter1d(features, window, axis=0, mode="constant") / counts
-    steady = gaussian_filter1d(features, STEADY * frame_rate, axis=0, mode="nearest")
+    steady = gaussian_filter1d(features, SPEED_SMOOTHING_S * frame_rate, axis=0, mode="nearest")
     speed = np.gradient(steady, 1.0 / frame_rate, axis=0) if n > 1 else 0.0 * features
     before = features[np.maximum(frames - away, 0)]
     after = features[np.minimum(frames + away, n - 1)]
-    return np.stack([features, before, after, features - mean, PACE * speed])
+    return np.stack([features, before, after, features - mean, PACE_S * speed])
 
 
-def components_of(
+def project_parts(
     parts: Array, joints: NDArray[np.int64], centre: Array, axes: Array
 ) -> Single:
     """Return principal components of the parts, (n, 5, n_components); postures are centred."""
@@ -180,7 +180,7 @@ def components_of(
     return np.ascontiguousarray((flat @ axes).swapaxes(0, 1), dtype=np.float32)
 
 
-def ways_between(one: Single, other: Single) -> Ways:
+def movement_distances(one: Single, other: Single) -> MovementDistances:
     """Return how far two lots of frames are from each other, each (n_one, n_other)."""
 
     def parted(first: int, last: int) -> Single:
@@ -192,23 +192,23 @@ def ways_between(one: Single, other: Single) -> Ways:
 
     posture, beside, moved = parted(0, 1), parted(1, 3), parted(3, N_PARTS)
     slope: Single = one[:, 0] @ other[:, 0].T
-    return Ways(posture, slope, posture + beside, moved)
+    return MovementDistances(posture, slope, posture + beside, moved)
 
 
-def likeness(ways: Ways, strengths: Strengths) -> Single:
+def movement_covariance(ways: MovementDistances, strengths: Strengths) -> Single:
     """Return the covariance of two lots of frames, (n_one, n_other), in variances of noise."""
     result = np.float32(strengths.slope) * ways.slope
     for way, strength, size in zip(
         (ways.posture, ways.context, ways.movement),
         (strengths.posture, strengths.context, strengths.movement),
-        (POSTURE, CONTEXT, MOVEMENT),
+        (POSTURE_SCALE_M, CONTEXT_SCALE_M, MOVEMENT_SCALE_M),
         strict=True,
     ):
         result += np.float32(strength) * np.exp(way * np.float32(-0.5 / size**2))
     return result
 
 
-def movement_of(arrays: dict[str, NDArray[Any]]) -> tuple[str, MovementProcess | None]:
+def movement_from_arrays(arrays: dict[str, NDArray[Any]]) -> tuple[str, MovementProcess | None]:
     """Return what keeps `MEMBERS` from a file from being used, or nothing, and the process."""
     if set(arrays) != set(MEMBERS):
         return "parts of the movements are missing", None

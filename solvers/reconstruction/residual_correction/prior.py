@@ -11,16 +11,21 @@ from numpy.typing import NDArray
 from ...archives import ArchiveLayout
 from ...motion.humanoid import MIRROR_IMAGES, N_JOINTS, POSTURE_JOINTS, mirrored
 from ...npz_members import flags, numbers, words
-from .confidence import AS_TOLD, Calibration, chance_within
-from .inputs import LARGEST, CalmPostures, filled, neighbourhood
-from .kernel import Kernel, nearness
-from .movement_process import MEMBERS, MovementProcess, movement_of
-from .predicted import Foretold, between
-from .sparse_process import basis, shared_columns, triangle
+from .confidence import IDENTITY_CALIBRATION, Calibration, chance_within
+from .inputs import (
+    N_NEIGHBORHOOD_FEATURES,
+    SmoothedPostures,
+    fill_missing,
+    neighborhood_features,
+)
+from .kernel import Kernel, proximity
+from .movement_process import MEMBERS, MovementProcess, movement_from_arrays
+from .prediction import Prediction, interpolate_prediction
+from .sparse_process import basis_functions, cholesky_root, shared_design
 
 Array = NDArray[np.float64]
 
-MOVEMENT = "movement_"
+MOVEMENT_PREFIX = "movement_"
 """What the names of the movement process's arrays begin with in a file."""
 LAYOUT = ArchiveLayout(
     "residual prior",
@@ -29,7 +34,7 @@ LAYOUT = ArchiveLayout(
         "joints": words("joints"),
         "usual": numbers(N_JOINTS, 3),
         "components": numbers(3 * (N_JOINTS - 1), "components"),
-        "local_points": numbers("joints", "local", LARGEST),
+        "local_points": numbers("joints", "local", N_NEIGHBORHOOD_FEATURES),
         "whole_points": numbers("whole", "components"),
         "kernels": numbers("joints", 9),
         "means": numbers("joints", "weights", 3),
@@ -38,17 +43,17 @@ LAYOUT = ArchiveLayout(
         "mirrored": flags(),
         "source": words(),
         "calibration": numbers(2, 3, optional=True),
-        **{MOVEMENT + name: values for name, values in MEMBERS.items()},
+        **{MOVEMENT_PREFIX + name: values for name, values in MEMBERS.items()},
     },
     holds="a damaged prior",
     remedy="Learn it again.",
 )
-LED_BY = 0.6
+MOVEMENT_FRACTION = 0.6
 """Share of the movement process in what is foretold; the rest is of joints and postures."""
-FORETOLD = 15.0
+PREDICTION_RATE_HZ = 15.0
 """Hertz. Errors change slowly: what lies between is interpolated."""
 
-FAR_LOCAL, FAR_WHOLE = (0.15, 0.1), (0.35, 0.15)
+LOCAL_COVERAGE_M, POSTURE_COVERAGE_M = (0.15, 0.1), (0.35, 0.15)
 """Metres of features from the nearest inducing point up to which postures count as known, and
 how fast they become unknown beyond. Actors who were left out lie within nearly always."""
 
@@ -98,13 +103,17 @@ class ResidualPrior:
     mirrored: NDArray[np.bool_]
     source: NDArray[np.str_]
     movement: MovementProcess | None = None
-    calibration: Array = field(default_factory=lambda: np.array([AS_TOLD, AS_TOLD]))
+    calibration: Array = field(
+        default_factory=lambda: np.array([IDENTITY_CALIBRATION, IDENTITY_CALIBRATION])
+    )
 
     def save(self, path: Path | str) -> None:
         """Write the prior to a file; `load_residual_prior` reads it."""
-        arrays = {name: np.asarray(getattr(self, name)) for name in OWN}
+        arrays = {name: np.asarray(getattr(self, name)) for name in PRIOR_FIELDS}
         if self.movement is not None:
-            arrays |= {MOVEMENT + name: one for name, one in self.movement.arrays().items()}
+            arrays |= {
+                MOVEMENT_PREFIX + name: one for name, one in self.movement.arrays().items()
+            }
         LAYOUT.write(path, arrays)
 
     @cached_property
@@ -113,14 +122,14 @@ class ResidualPrior:
         found = []
         for place, points in enumerate(self.local_points):
             near, far = self.kernel(place).lengths
-            found.append((triangle(points, near), triangle(self.whole_points, far)))
+            found.append((cholesky_root(points, near), cholesky_root(self.whole_points, far)))
         return found
 
     def kernel(self, place: int) -> Kernel:
         """Return the hyper-parameters of one of the joints."""
         return Kernel.from_logs(np.log(self.kernels[place]))
 
-    def predict(self, calm: CalmPostures, ahead: bool = True) -> Foretold:
+    def predict(self, calm: SmoothedPostures, ahead: bool = True) -> Prediction:
         """Foretell true minus seen place of every joint.
 
         With `ahead` a few frames of each second are foretold, what lies between is
@@ -128,8 +137,8 @@ class ResidualPrior:
         itself. Joints that no teacher showed, as the ends of hands, are not looked at.
         """
         told_of = (self.usual != 0.0).any(axis=-1, keepdims=True)
-        features = np.where(told_of, filled(calm.features, self.usual), 0.0)
-        step = max(round(calm.frame_rate / FORETOLD), 1) if ahead else 1
+        features = np.where(told_of, fill_missing(calm.features, self.usual), 0.0)
+        step = max(round(calm.frame_rate / PREDICTION_RATE_HZ), 1) if ahead else 1
         last = len(features) - 1
         frames = np.unique(np.append(np.arange(0, last + 1, step), last))
         told = self._still(features[frames])
@@ -137,23 +146,23 @@ class ResidualPrior:
             told = self._moving(
                 told, *self.movement.foretell(features, calm.frame_rate, frames)
             )
-        return told if len(frames) == len(features) else between(told, frames)
+        return told if len(frames) == len(features) else interpolate_prediction(told, frames)
 
-    def _moving(self, still: Foretold, offsets: Array, nearness: Array) -> Foretold:
+    def _moving(self, still: Prediction, offsets: Array, nearness: Array) -> Prediction:
         """Bring together what postures tell, and what movements tell of the same frames."""
         assert self.movement is not None
         known = np.zeros(N_JOINTS, dtype=np.bool_)
         known[self.movement.joints] = True
         known &= np.isfinite(still.variances).all(axis=0)
-        share = np.where(known, LED_BY, 0.0)[:, None]
+        share = np.where(known, MOVEMENT_FRACTION, 0.0)[:, None]
         near = np.where(known, nearness[:, None], 1.0)
-        return Foretold(
+        return Prediction(
             share * offsets + (1.0 - share) * still.offsets,
             still.variances,
             near * still.coverage,
         )
 
-    def _still(self, features: Array) -> Foretold:
+    def _still(self, features: Array) -> Prediction:
         """Foretell from each posture alone."""
         told = self._foretell(features)
         if not self.mirrored:
@@ -163,34 +172,36 @@ class ResidualPrior:
         share = np.where(np.arange(N_JOINTS) == other, 0.5, np.arange(N_JOINTS) < other)
         own = np.where(np.isfinite(told.variances), share, 0.0)
         variances = np.where(own > 0.0, told.variances, image.variances[:, other])
-        return Foretold(
+        return Prediction(
             own[..., None] * told.offsets + (1.0 - own)[..., None] * mirrored(image.offsets),
             variances,
             own * told.coverage + (1.0 - own) * image.coverage[:, other],
         )
 
-    def _foretell(self, features: Array) -> Foretold:
+    def _foretell(self, features: Array) -> Prediction:
         """Foretell of those joints alone that were learned."""
         shape = features.shape
         offsets, variances = np.zeros(shape), np.full(shape[:2], np.inf)
         coverage = np.zeros(shape[:2])
-        whole = whole_posture(features, self.usual, self.components)
-        near = nearness(whole, self.whole_points, FAR_WHOLE)
+        whole = posture_components(features, self.usual, self.components)
+        near = proximity(whole, self.whole_points, POSTURE_COVERAGE_M)
         for place, name in enumerate(self.joints):
             joint, kernel = POSTURE_JOINTS.index(str(name)), self.kernel(place)
-            local, roots = neighbourhood(features, joint), self._triangles[place]
+            local, roots = neighborhood_features(features, joint), self._triangles[place]
             bases = (
-                basis(local, self.local_points[place], kernel.lengths[0], roots[0]),
-                basis(whole, self.whole_points, kernel.lengths[1], roots[1]),
+                basis_functions(local, self.local_points[place], kernel.lengths[0], roots[0]),
+                basis_functions(whole, self.whole_points, kernel.lengths[1], roots[1]),
             )
-            columns = shared_columns(bases, kernel)
+            columns = shared_design(bases, kernel)
             offsets[:, joint] = columns @ self.means[place]
             unknown = np.einsum("ni,ni->n", columns @ self.covariances[place], columns)
             for one, shared in zip(bases, kernel.shared, strict=True):
                 unknown += shared * np.maximum(1.0 - (one**2).sum(axis=1), 0.0)
             variances[:, joint] = unknown
-            coverage[:, joint] = near * nearness(local, self.local_points[place], FAR_LOCAL)
-        return Foretold(offsets, variances, coverage)
+            coverage[:, joint] = near * proximity(
+                local, self.local_points[place], LOCAL_COVERAGE_M
+            )
+        return Prediction(offsets, variances, coverage)
 
     def lasting_variances(self, constant: bool = True) -> Array:
         """Return variances that no posture tells of, shape (20,), square metres.
@@ -219,13 +230,13 @@ class ResidualPrior:
         return chance_within(variances, distance, calibration)
 
 
-def whole_posture(features: Array, usual: Array, components: Array) -> Array:
+def posture_components(features: Array, usual: Array, components: Array) -> Array:
     """Return principal components of postures, shape (n_frames, n_components)."""
     flat = (features - usual)[:, 1:].reshape(len(features), -1)
     return np.asarray(flat @ components)
 
 
-OWN = tuple(one.name for one in fields(ResidualPrior) if one.name != "movement")
+PRIOR_FIELDS = tuple(one.name for one in fields(ResidualPrior) if one.name != "movement")
 
 
 def load_residual_prior(path: Path | str) -> ResidualPrior:
@@ -238,13 +249,13 @@ def load_residual_prior(path: Path | str) -> ResidualPrior:
     """
     arrays = LAYOUT.read(path)
     moving = {
-        name.removeprefix(MOVEMENT): arrays.pop(name)
+        name.removeprefix(MOVEMENT_PREFIX): arrays.pop(name)
         for name in list(arrays)
-        if name.startswith(MOVEMENT)
+        if name.startswith(MOVEMENT_PREFIX)
     }
-    fault, movement = _fault(arrays), None
+    fault, movement = _find_fault(arrays), None
     if not fault and moving:
-        fault, movement = movement_of(moving)
+        fault, movement = movement_from_arrays(moving)
     if fault:
         raise LAYOUT.damaged(path, fault)
     joints, source = arrays.pop("joints"), arrays.pop("source")
@@ -253,7 +264,7 @@ def load_residual_prior(path: Path | str) -> ResidualPrior:
     return ResidualPrior(joints=joints, mirrored=alike, source=source, movement=movement, **own)
 
 
-def _fault(arrays: dict[str, NDArray[Any]]) -> str:
+def _find_fault(arrays: dict[str, NDArray[Any]]) -> str:
     """Return what keeps these arrays from being used, or nothing."""
     n_local, n_whole = arrays["local_points"].shape[1], len(arrays["whole_points"])
     if not (len(arrays["joints"]) and n_local and n_whole):

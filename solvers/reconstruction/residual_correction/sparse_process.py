@@ -13,12 +13,12 @@ from numpy.typing import NDArray
 from scipy.cluster.vq import kmeans2
 from scipy.linalg import solve_triangular
 
-from .kernel import Kernel, alike
+from .kernel import Kernel, squared_exponential
 
 Array = NDArray[np.float64]
 
 JITTER = 1e-6
-FREE_MEAN = 1e4
+MEAN_VARIANCE = 1e4
 """Variance of the mean error in square metres: nothing is known beforehand."""
 
 
@@ -31,19 +31,23 @@ def inducing_points(features: Array, count: int, seed: int) -> Array:
     return np.asarray(centres)
 
 
-def triangle(points: Array, length: float) -> Array:
+def cholesky_root(points: Array, length: float) -> Array:
     """Return the lower triangular root of the inducing points' covariance."""
-    return np.linalg.cholesky(alike(points, points, length) + JITTER * np.eye(len(points)))
+    return np.linalg.cholesky(
+        squared_exponential(points, points, length) + JITTER * np.eye(len(points))
+    )
 
 
-def basis(features: Array, points: Array, length: float, lower: Array | None = None) -> Array:
+def basis_functions(
+    features: Array, points: Array, length: float, lower: Array | None = None
+) -> Array:
     """Return functions of unit prior variance whose sum is the process, (n, n_points).
 
     `lower` is the `triangle` of the same points and length, if it is at hand.
     """
     if lower is None:
-        lower = triangle(points, length)
-    values = alike(features, points, length)
+        lower = cholesky_root(points, length)
+    values = squared_exponential(features, points, length)
     return np.asarray(solve_triangular(lower, values.T, lower=True, check_finite=False).T)
 
 
@@ -76,7 +80,7 @@ def posterior(
         for one, shared, personal in zip(bases, kernel.shared, kernel.personal, strict=True)
     )
     scale = 1.0 / np.sqrt(open_variance + repeats * kernel.noise)[:, None]
-    columns = shared_columns(bases, kernel)
+    columns = shared_design(bases, kernel)
     n_shared = columns.shape[1]
     parts = [columns]
     for actor in range(int(actors.max()) + 1):
@@ -94,8 +98,8 @@ def posterior(
     return mean[:n_shared], covariance[:n_shared, :n_shared]
 
 
-def shared_columns(bases: Sequence[Array], kernel: Kernel) -> Array:
+def shared_design(bases: Sequence[Array], kernel: Kernel) -> Array:
     """Return what the weights of `posterior` multiply, shape (n, n_weights)."""
-    ones = np.full((len(bases[0]), 1), np.sqrt(FREE_MEAN))
+    ones = np.full((len(bases[0]), 1), np.sqrt(MEAN_VARIANCE))
     scaled = [np.sqrt(shared) * one for one, shared in zip(bases, kernel.shared, strict=True)]
     return np.concatenate([*scaled, ones], axis=1)

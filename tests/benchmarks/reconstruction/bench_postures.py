@@ -19,9 +19,12 @@ from numpy.typing import NDArray
 from threadpoolctl import threadpool_limits
 
 from solvers.motion.humanoid.body_size import USUAL_LENGTHS
-from solvers.reconstruction.joint_rotations.library_body import BodyPostures, on_body
+from solvers.reconstruction.joint_rotations.library_body import (
+    BodyPostures,
+    build_body_postures,
+)
 from solvers.reconstruction.pose_library.neighbors import (
-    Query,
+    PostureQuery,
     index_postures,
     nearest_postures,
 )
@@ -72,8 +75,8 @@ def growth() -> str:
     for size in SIZES:
         directions, changes = _mixed(library, size, random)
         asked, speeds = _mixed(library, N_QUERIES, random)
-        body = on_body(directions, changes, USUAL_LENGTHS)
-        query = _query(on_body(asked, speeds, USUAL_LENGTHS), random)
+        body = build_body_postures(directions, changes, USUAL_LENGTHS)
+        query = _query(build_body_postures(asked, speeds, USUAL_LENGTHS), random)
         groups = group_postures(directions)
         index = index_postures(body, groups)
         started = perf_counter()
@@ -109,12 +112,12 @@ def _mixed(
     return directions.astype(np.float32), changes
 
 
-def _query(body: BodyPostures, random: np.random.Generator) -> Query:
+def _query(body: BodyPostures, random: np.random.Generator) -> PostureQuery:
     trust = random.uniform(0.5, 1.0, size=body.positions.shape[:2])
     for frame, limb in enumerate(random.integers(5, size=len(trust))):
         trust[frame, 4 + 4 * limb : 8 + 4 * limb] = 0.0
     wide = (each.astype(np.float64) for each in (body.positions, body.speeds))
-    return Query(*wide, trust, 0.2)
+    return PostureQuery(*wide, trust, 0.2)
 
 
 def _say(what: str) -> None:

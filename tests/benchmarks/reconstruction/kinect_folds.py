@@ -21,7 +21,7 @@ from solvers.reconstruction import (
     load_residual_prior,
 )
 from solvers.reconstruction.residual_correction.learn_confidence import (
-    told_and_found,
+    predicted_and_measured,
     with_calibration,
 )
 
@@ -80,7 +80,7 @@ def _tried(subject: str, other: str) -> Array:
     """What those who are neither of two teach, tried on the other one."""
     without = tuple(sorted((subject, other)))
     own = [pair for pair in pairs() if pair.subject == other and pair.matched]
-    return told_and_found(
+    return predicted_and_measured(
         _taught(ResidualMethod.HIERARCHICAL, without),
         [(pair.kinect, pair.truth) for pair in own],
     )

@@ -24,8 +24,8 @@ from solvers.reconstruction import (
     reconstruct,
     reconstruct_postures,
 )
-from solvers.reconstruction.residual_correction.correct_postures import smoothed
-from solvers.reconstruction.residual_correction.inputs import calm_postures
+from solvers.reconstruction.residual_correction.correct_postures import smooth_trajectories
+from solvers.reconstruction.residual_correction.inputs import smooth_postures
 
 from ..peers import posture_regression
 from ..peers.kalman import constant_velocity
@@ -74,7 +74,7 @@ def filtered(
 
 def regressed(learn: Callable[[Array, Array], Predict], pair: Pair, subject: str) -> Array:
     """Add the offsets that a regression foretells in the frame of the heading."""
-    calm = calm_postures(pair.kinect, CALM)
+    calm = smooth_postures(pair.kinect, CALM)
     columns = _tracked(calm.features)
     offsets = np.zeros_like(calm.features)
     predict = _regression(learn, subject)
@@ -85,7 +85,7 @@ def regressed(learn: Callable[[Array, Array], Predict], pair: Pair, subject: str
 
 def from_examples(learn: Callable[[Array], Predict], pair: Pair, subject: str) -> Array:
     """Take the whole posture from true postures of others, brought to the actor's size."""
-    calm = calm_postures(pair.kinect, CALM)
+    calm = smooth_postures(pair.kinect, CALM)
     columns = _tracked(calm.features)
     predict = _memory(learn, subject)
     made = np.full_like(calm.features, np.nan)
@@ -100,7 +100,7 @@ def from_examples(learn: Callable[[Array], Predict], pair: Pair, subject: str) -
 def _regression(learn: Callable[[Array, Array], Predict], subject: str) -> Predict:
     features, offsets = [], []
     for pair in others(subject):
-        calm = calm_postures(pair.kinect, CALM)
+        calm = smooth_postures(pair.kinect, CALM)
         columns = _tracked(calm.features)
         off = turned(truth_of(pair) - calm.positions, -calm.normalised.headings)
         features.append(calm.features[::THINNED, columns[1:]])
@@ -115,7 +115,7 @@ def _memory(learn: Callable[[Array], Predict], subject: str) -> Predict:
     examples = []
     for pair in others(subject):
         plain = normalise(truth_of(pair), pair.truth.frame_rate)
-        seen = calm_postures(pair.kinect, CALM)
+        seen = smooth_postures(pair.kinect, CALM)
         size = np.nanmax(np.abs(seen.features)) / np.nanmax(np.abs(seen.normalised.postures))
         columns = _tracked(seen.features)
         examples.append(size * plain.postures[::THINNED, columns])
@@ -135,7 +135,7 @@ def _flat(parts: list[Array]) -> Array:
 
 def _calmed(positions: Array, pair: Pair) -> Array:
     ones = np.ones((len(positions), N_JOINTS))
-    return smoothed(positions, ones, SMOOTHING * pair.kinect.frame_rate)
+    return smooth_trajectories(positions, ones, SMOOTHING * pair.kinect.frame_rate)
 
 
 def by_postures(

@@ -10,15 +10,15 @@ from solvers.motion.humanoid.body_size import body_lengths, segment_lengths
 from solvers.motion.humanoid.bone_directions import bone_changes
 from solvers.motion.humanoid.posture_heading import Normalised, normalise
 from solvers.reconstruction import PostureMethod, ReconstructMethod
-from solvers.reconstruction.joint_rotations.library_body import on_body
+from solvers.reconstruction.joint_rotations.library_body import build_body_postures
 from solvers.reconstruction.pose_library.neighbors import (
-    Query,
+    PostureQuery,
     index_postures,
     nearest_postures,
 )
-from solvers.reconstruction.pose_space.posture_energy import Demands, EnergyWeights
+from solvers.reconstruction.pose_space.posture_energy import EnergyTargets, EnergyWeights
 from solvers.reconstruction.pose_space.posture_space import PostureSpaces, local_pca
-from tests.benchmarks.reconstruction.posture_synthesis import solve_in_turn
+from tests.benchmarks.reconstruction.posture_synthesis import solve_sequentially
 
 from ..peers.gap_fillers import linear
 from ..shared.tables import number, table
@@ -60,7 +60,7 @@ class Asked(NamedTuple):
     damaged: Damaged
     plain: Normalised
     spaces: PostureSpaces
-    demands: Demands
+    demands: EnergyTargets
 
 
 def energy_weights() -> str:
@@ -92,23 +92,23 @@ def _all_asked() -> Iterator[Asked]:
                     trust = np.isfinite(seen).all(axis=-1).astype(np.float64)
                     plain = normalise(seen, rate, trust)
                     lengths = body_lengths(plain.postures, trust)
-                    body = on_body(library.directions, library.changes, lengths)
+                    body = build_body_postures(library.directions, library.changes, lengths)
                     index = index_postures(body, library.groups)
                     speeds = bone_changes(plain.postures, rate)
-                    query = Query(plain.postures, speeds, trust, 0.0)
+                    query = PostureQuery(plain.postures, speeds, trust, 0.0)
                     places, _ = nearest_postures(index, query)
                     spaces = local_pca(body.positions[places].astype(np.float64))
-                    demands = Demands(plain.postures, trust, spaces.neighbours, lengths)
+                    demands = EnergyTargets(plain.postures, trust, spaces.neighbours, lengths)
                     yield Asked(damaged, plain, spaces, demands)
 
 
 def _measured(asked: Asked, weights: EnergyWeights) -> tuple[Array, Array, Array, Array]:
     """Return errors of lost joints, of ways from the joint above, of lengths, and jerks."""
-    demands = Demands(
+    demands = EnergyTargets(
         asked.demands.observed, asked.demands.trust, asked.demands.neighbours,
         asked.demands.lengths, weights=weights,
     )  # fmt: skip
-    made = asked.plain.put_back(solve_in_turn(asked.spaces, demands)[0])
+    made = asked.plain.put_back(solve_sequentially(asked.spaces, demands)[0])
     pair = asked.damaged.pair
     _, apart, _ = compared(made, truth_of(pair))
     return (

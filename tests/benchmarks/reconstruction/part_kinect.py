@@ -16,7 +16,7 @@ from solvers.reconstruction import (
     reconstruct_postures,
 )
 from solvers.reconstruction.reliability.scores import posture_reliability
-from solvers.reconstruction.residual_correction.correct_postures import foretell_places
+from solvers.reconstruction.residual_correction.correct_postures import predict_positions
 
 from ..shared.tables import number, table
 from .kinect_errors import apart_free, compared, jerk
@@ -213,7 +213,7 @@ def _correction_alone(takes: list[Pair]) -> str:
         trust = measure_reliability(pair.kinect)
         weights = posture_reliability(pair.kinect, trust.combined)
         started = process_time()
-        foretell_places(pair.kinect, prior, weights, usual)
+        predict_positions(pair.kinect, prior, weights, usual)
         taken += process_time() - started
         n_frames += pair.kinect.n_frames
     each = 1e3 * taken / n_frames

@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 
 from solvers.motion.humanoid.posture_heading import normalise
 from solvers.reconstruction import PostureMethod, ReconstructMethod
-from solvers.reconstruction.residual_correction.inputs import CalmPostures, calm_postures
+from solvers.reconstruction.residual_correction.inputs import SmoothedPostures, smooth_postures
 
 from ..peers.gap_fillers import cubic, linear, pchip
 from ..peers.one_euro import one_euro
@@ -68,7 +68,7 @@ def by_example(complete: Callable[..., Array], pair: Pair, subject: str) -> Arra
     plain = normalise(
         seen, pair.kinect.frame_rate, np.isfinite(seen).all(axis=-1).astype(float)
     )
-    size = _size(calm_postures(pair.kinect, CALM))
+    size = _size(smooth_postures(pair.kinect, CALM))
     flat = size * plain.postures.reshape(len(seen), -1)
     told = np.isfinite(flat)
     examples = seen_examples(subject)
@@ -113,12 +113,12 @@ def _components(examples: Array) -> tuple[Array, Array]:
 @cache
 def seen_examples(subject: str) -> Array:
     """What the Kinect saw of the others, normalised and of usual size, (n, 60)."""
-    found = [calm_postures(pair.kinect, CALM).features[::THINNED] for pair in others(subject)]
+    found = [smooth_postures(pair.kinect, CALM).features[::THINNED] for pair in others(subject)]
     together = np.concatenate(found)
     return together.reshape(len(together), -1)
 
 
-def _size(calm: CalmPostures) -> float:
+def _size(calm: SmoothedPostures) -> float:
     sizes = [np.nanmax(np.abs(one)) for one in (calm.features, calm.normalised.postures)]
     return float(sizes[0] / sizes[1])
 

@@ -14,11 +14,11 @@ from solvers.motion.humanoid.body_size import body_lengths, segment_lengths
 from solvers.motion.humanoid.bone_directions import ABOVE, bone_changes
 from solvers.motion.humanoid.posture_heading import normalise
 from solvers.motion.humanoid.posture_joints import N_JOINTS, motion_postures, posture_positions
-from solvers.reconstruction.joint_rotations.library_body import on_body
+from solvers.reconstruction.joint_rotations.library_body import build_body_postures
 from solvers.reconstruction.pose_completion.reconstruct_postures import reconstruct_postures
-from solvers.reconstruction.pose_completion.settings import USUAL, PostureSettings
+from solvers.reconstruction.pose_completion.settings import DEFAULT_SETTINGS, PostureSettings
 from solvers.reconstruction.pose_library.neighbors import (
-    Query,
+    PostureQuery,
     index_postures,
     nearest_postures,
 )
@@ -26,12 +26,12 @@ from solvers.reconstruction.pose_library.posture_library import (
     PostureLibrary,
     build_posture_library,
 )
-from solvers.reconstruction.pose_space.posture_energy import Demands
+from solvers.reconstruction.pose_space.posture_energy import EnergyTargets
 from solvers.reconstruction.pose_space.posture_space import local_pca
-from solvers.reconstruction.published.posture_search import search_in_turn
+from solvers.reconstruction.published.posture_search import search_sequentially
 from solvers.reconstruction.reliability.scores import Reliability
 from solvers.recordings import read_recording
-from tests.benchmarks.reconstruction.posture_synthesis import solve_in_turn
+from tests.benchmarks.reconstruction.posture_synthesis import solve_sequentially
 
 from ..shared import clips
 from ..shared.tables import Scores
@@ -118,7 +118,7 @@ def ours(
     postures: Array,
     lost: Flags,
     library: PostureLibrary,
-    settings: PostureSettings = USUAL,
+    settings: PostureSettings = DEFAULT_SETTINGS,
 ) -> Array:
     """Reconstruct as the verb does, with all that is not lost trusted."""
     seen = np.where(lost[..., None], np.nan, postures)
@@ -163,13 +163,13 @@ def from_neighbours(
     """Take lost joints from the mean of 30 neighbours, or from 20 components of all."""
     seen = np.where(lost[..., None], np.nan, postures)
     plain = normalise(seen, RATE, 1.0 - lost)
-    body = on_body(library.directions, library.changes, body_lengths(seen))
+    body = build_body_postures(library.directions, library.changes, body_lengths(seen))
     if project:
         known = np.broadcast_to(body.positions, (1, *body.positions.shape))
         space = local_pca(known[:, :: max(library.n_postures // 800, 1)])
         made = _projected(space.means[0], space.axes[0], plain.postures)
     else:
-        query = Query(plain.postures, 0.0 * plain.postures, 1.0 - lost, 0.0)
+        query = PostureQuery(plain.postures, 0.0 * plain.postures, 1.0 - lost, 0.0)
         places, _ = nearest_postures(index_postures(body, 0 * library.groups), query)
         made = body.positions[places].mean(axis=1).astype(np.float64)
     return np.where(lost[..., None], plain.put_back(made), postures)
@@ -259,7 +259,7 @@ def energies(found: tuple[Clip, ...]) -> Scores:
     scores = Scores(
         "Least energy, frame after frame", "energy in cm², time in ms", "Gauss-Newton"
     )
-    solvers = {"Gauss-Newton": solve_in_turn, "published search": search_in_turn}
+    solvers = {"Gauss-Newton": solve_sequentially, "published search": search_sequentially}
     for number, clip in enumerate(found):
         lost = np.zeros(clip.postures.shape[:2], bool)
         limb = (ARM, LEG, OTHER_LEG)[number % 3]
@@ -267,11 +267,13 @@ def energies(found: tuple[Clip, ...]) -> Scores:
         plain = normalise(clip.postures, RATE, 1.0 - lost)
         lengths = np.nanmedian(segment_lengths(plain.postures), axis=0)
         library = clip.library
-        body = on_body(library.directions, library.changes, lengths)
-        query = Query(plain.postures, bone_changes(plain.postures, RATE), 1.0 - lost, 0.0)
+        body = build_body_postures(library.directions, library.changes, lengths)
+        query = PostureQuery(
+            plain.postures, bone_changes(plain.postures, RATE), 1.0 - lost, 0.0
+        )
         places, _ = nearest_postures(index_postures(body, library.groups), query)
         spaces = local_pca(body.positions[places].astype(np.float64))
-        asked = Demands(plain.postures, 1.0 - lost, spaces.neighbours, lengths)
+        asked = EnergyTargets(plain.postures, 1.0 - lost, spaces.neighbours, lengths)
         for name, solve in solvers.items():
             started = perf_counter()
             _, found_energies = solve(spaces, asked)

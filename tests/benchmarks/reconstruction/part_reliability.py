@@ -12,12 +12,12 @@ from scipy.stats import rankdata
 from solvers.motion import JointRecording
 from solvers.reconstruction import ReliabilityMethod, ReliabilitySettings, measure_reliability
 from solvers.reconstruction.reliability.error_model import (
-    CENTIMETRE,
+    ONE_CENTIMETER,
+    ErrorIndicators,
     ErrorModel,
-    Signs,
-    signs_of_error,
+    measure_error_indicators,
 )
-from solvers.reconstruction.reliability.reference import reference_lengths, segments
+from solvers.reconstruction.reliability.reference import parent_distances, reference_lengths
 
 from . import kinect_pairs
 
@@ -95,22 +95,24 @@ def doubts(pairs: list[Pair], causal: bool) -> Iterator[tuple[str, list[Array]]]
     )
 
 
-def signs_of(recording: JointRecording, causal: bool) -> Signs:
+def signs_of(recording: JointRecording, causal: bool) -> ErrorIndicators:
     """Return what betrays errors in a take without tracking states."""
     positions, parents = recording.tracks.positions, np.array(recording.parents)
-    lengths = segments(positions, parents)
+    lengths = parent_distances(positions, parents)
     trust = recording.tracks.visible.astype(float)
     reference = reference_lengths(lengths, np.zeros(len(positions), bool), trust)
-    return signs_of_error(positions, lengths - reference, parents, recording.frame_rate, causal)
+    return measure_error_indicators(
+        positions, lengths - reference, parents, recording.frame_rate, causal
+    )
 
 
-def fit_model(signs: Iterable[Signs], errors: Iterable[Array]) -> ErrorModel:
+def fit_model(signs: Iterable[ErrorIndicators], errors: Iterable[Array]) -> ErrorModel:
     """Fit a line to logarithms of errors, by least squares."""
     error = np.concatenate([each.ravel() for each in errors])
     known = np.isfinite(error)
-    aim = np.log(error[known] + CENTIMETRE)
+    aim = np.log(error[known] + ONE_CENTIMETER)
     both = list(signs)
-    every = Signs(
+    every = ErrorIndicators(
         np.concatenate([each.deviation.ravel() for each in both])[known],
         np.concatenate([each.stretch.ravel() for each in both])[known],
         np.concatenate([each.away.ravel() for each in both])[known],
@@ -124,7 +126,9 @@ def fit_model(signs: Iterable[Signs], errors: Iterable[Array]) -> ErrorModel:
     return min(fits, key=lambda fit: fit.spread)
 
 
-def doubts_left_out(pairs: list[Pair], signs: list[Signs], limit: float) -> list[Array]:
+def doubts_left_out(
+    pairs: list[Pair], signs: list[ErrorIndicators], limit: float
+) -> list[Array]:
     """Return 1 less the chance to be right, from models that know nothing of the subject."""
     found: dict[int, Array] = {}
     for subject in sorted({pair.subject for pair in pairs}):

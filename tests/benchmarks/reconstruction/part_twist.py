@@ -19,9 +19,9 @@ from solvers.reconstruction import (
     load_posture_library,
     reconstruct,
 )
-from solvers.reconstruction.joint_rotations.follow_joints import follow_joints
-from solvers.reconstruction.joint_rotations.trunk_twist import TWISTED, LimbTwists
-from solvers.reconstruction.pose_library.posture_library import joined_postures
+from solvers.reconstruction.joint_rotations.motion_from_positions import motion_from_positions
+from solvers.reconstruction.joint_rotations.trunk_twist import TWISTED_LIMBS, LimbTwists
+from solvers.reconstruction.pose_library.posture_library import merge_posture_libraries
 from solvers.rotations.representations import angle_between, rotate
 
 from ..shared import clips
@@ -49,7 +49,9 @@ COLUMNS = (
 
 def untwisted(result: Reconstruction) -> LimbTwists:
     """No twist against the trunk at all."""
-    return LimbTwists(np.zeros((result.tracks.n_frames, len(TWISTED)), complex), alone=True)
+    return LimbTwists(
+        np.zeros((result.tracks.n_frames, len(TWISTED_LIMBS)), complex), alone=True
+    )
 
 
 def neighbours(result: Reconstruction) -> LimbTwists:
@@ -76,7 +78,7 @@ def twist(n_repetitions: int) -> list[str]:
         _table("HDM05, actor dg, with the library that ships", [(actor, shipped)]),
         _table(
             "HDM05, actor dg, with that and the same movements by actors bd and bk",
-            [(actor, joined_postures(_same_movements(), shipped))],
+            [(actor, merge_posture_libraries(_same_movements(), shipped))],
         ),
         _table("CMU, six actors, each left out of CMU's library", subjects),
     ]
@@ -132,14 +134,14 @@ def _errors(
 
     Both of shape (n_frames, 4).
     """
-    motion = follow_joints(
+    motion = motion_from_positions(
         result.tracks, case.recording.parents, result.reliability.combined, twists=twists
     )
     world = forward_kinematics(motion)
     uppers = [motion.skeleton.index(name) for name in UPPER]
     off = angle_between(world.rotations[:, uppers], case.truth.rotations)
     aside = np.empty_like(off)
-    for place, (name, limb) in enumerate(zip(UPPER, TWISTED, strict=True)):
+    for place, (name, limb) in enumerate(zip(UPPER, TWISTED_LIMBS, strict=True)):
         lower = motion.skeleton.index(_below(name))
         end = motion.skeleton.index(_below(_below(name)))
         way = world.positions[:, end] - world.positions[:, lower]

@@ -13,7 +13,7 @@ import numpy as np
 
 from solvers.motion import Motion, joint_parents, motion_from_points
 from solvers.reconstruction import PostureLibrary, PostureLibrarySettings, build_posture_library
-from solvers.reconstruction.pose_library.posture_library import joined_postures
+from solvers.reconstruction.pose_library.posture_library import merge_posture_libraries
 from solvers.recordings import read_acclaim, read_bvh
 from solvers.signals.linear_gaps import bridged
 
@@ -68,7 +68,7 @@ def exercise_library(pairs: Iterable[Pair]) -> PostureLibrary:
 
 def joined(one: PostureLibrary, other: PostureLibrary) -> PostureLibrary:
     """Put two libraries together."""
-    return joined_postures(one, other, "{}; {}")
+    return merge_posture_libraries(one, other, "{}; {}")
 
 
 def _without_t_pose(motion: Motion) -> Motion:

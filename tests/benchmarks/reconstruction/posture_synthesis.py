@@ -6,22 +6,22 @@ from numpy.typing import NDArray
 from solvers.motion.humanoid import ABOVE, N_JOINTS
 from solvers.reconstruction.pose_space import (
     N_BONES,
-    Demands,
+    EnergyTargets,
     PostureSpaces,
     posture_energy,
     style_distances,
 )
-from solvers.reconstruction.published.sequential import in_turn
+from solvers.reconstruction.published.sequential import choose_sequentially
 
 Array = NDArray[np.float64]
 
 N_STEPS = 6
-ENOUGH = 1e-4
+MIN_GAIN = 1e-4
 """Share of the energy; a step that gains less is the last one."""
 RIDGE = 1e-9
 
 
-def solve_postures(spaces: PostureSpaces, demands: Demands, n_starts: int = 2) -> Array:
+def solve_postures(spaces: PostureSpaces, demands: EnergyTargets, n_starts: int = 2) -> Array:
     """Return the coordinates of the postures of least energy, shape (n_frames, n_dimensions).
 
     But for the lengths of segments and for which neighbour is the nearest, the energy is a
@@ -46,8 +46,11 @@ def solve_postures(spaces: PostureSpaces, demands: Demands, n_starts: int = 2) -
     return best
 
 
-def solve_in_turn(
-    spaces: PostureSpaces, demands: Demands, n_starts: int = 2, before: Array | None = None
+def solve_sequentially(
+    spaces: PostureSpaces,
+    demands: EnergyTargets,
+    n_starts: int = 2,
+    before: Array | None = None,
 ) -> tuple[Array, Array]:
     """Solve frame after frame; each goes on from the postures of the two before it.
 
@@ -57,16 +60,18 @@ def solve_in_turn(
     energies : shape (n_frames,)
     """
 
-    def choose(space: PostureSpaces, asked: Demands, last: Array | None, frame: int) -> Array:
+    def choose(
+        space: PostureSpaces, asked: EnergyTargets, last: Array | None, frame: int
+    ) -> Array:
         return solve_postures(space, asked, n_starts)
 
-    return in_turn(spaces, demands, choose, before)
+    return choose_sequentially(spaces, demands, choose, before)
 
 
 class _Quadratic:
     """The terms of the energy that are quadratic in the coordinates."""
 
-    def __init__(self, spaces: PostureSpaces, demands: Demands) -> None:
+    def __init__(self, spaces: PostureSpaces, demands: EnergyTargets) -> None:
         w, axes = demands.weights, spaces.axes
         told = np.isfinite(demands.observed).all(axis=-1)
         self.style = w.style / N_JOINTS
@@ -100,7 +105,7 @@ class _Quadratic:
 
 
 def _descend(
-    spaces: PostureSpaces, demands: Demands, quadratic: _Quadratic, z: Array
+    spaces: PostureSpaces, demands: EnergyTargets, quadratic: _Quadratic, z: Array
 ) -> tuple[Array, Array]:
     """Gauss-Newton from one start; returns coordinates and energies."""
     bones = spaces.axes.reshape(len(z), N_JOINTS, 3, -1)
@@ -121,13 +126,13 @@ def _descend(
         step = np.linalg.solve(H, slope[..., None])[..., 0]
         before = energy
         z, x, energy = _step(spaces, demands, (z, x, energy), step)
-        if (before - energy <= ENOUGH * before).all():
+        if (before - energy <= MIN_GAIN * before).all():
             break
     return z, energy
 
 
 def _step(
-    spaces: PostureSpaces, demands: Demands, at: tuple[Array, Array, Array], step: Array
+    spaces: PostureSpaces, demands: EnergyTargets, at: tuple[Array, Array, Array], step: Array
 ) -> tuple[Array, Array, Array]:
     """Go the step, or half of it, or a quarter, where that lessens the energy."""
     z, x, energy = at

@@ -16,7 +16,7 @@ from solvers.motion import JointRecording, Motion, find_humanoid_map, forward_ki
 from solvers.motion.humanoid.canonical import t_pose_alignment
 from solvers.motion.humanoid.posture_heading import normalise, turned
 from solvers.motion.humanoid.posture_joints import POSTURE_JOINTS, motion_postures
-from solvers.reconstruction.joint_rotations.trunk_twist import TWISTED, TwistedLimb
+from solvers.reconstruction.joint_rotations.trunk_twist import TWISTED_LIMBS, TwistedLimb
 from solvers.rotations.representations import multiply, quaternion_from_rotation_vector, rotate
 from solvers.workflows.known_body import KINECT_V1
 from solvers.workflows.reconstruct_motion import postures_recording
@@ -40,9 +40,9 @@ MARGIN = 4
 
 
 class Truth(NamedTuple):
-    """Bends in radians, (n_frames, 4), and world rotations of `TWISTED`, (n_frames, 4, 4).
+    """Bends in radians, (n_frames, 4), and rotations of `TWISTED_LIMBS`, (n_frames, 4, 4).
 
-    Rotations are from a T-pose whose elbows bend forward.
+    Rotations are in the world, from a T-pose whose elbows bend forward.
     """
 
     bends: Array
@@ -61,9 +61,9 @@ class Case:
 def true_rotations(motions: Sequence[Motion]) -> list[Truth]:
     """Return how limbs were turned in clips of one rig."""
     plain = [_as_made(motion) for motion in motions]
-    off = np.zeros(len(TWISTED), complex)
+    off = np.zeros(len(TWISTED_LIMBS), complex)
     for (bends, rotations), normals in plain:
-        for place, limb in enumerate(TWISTED):
+        for place, limb in enumerate(TWISTED_LIMBS):
             bent = bends[:, place] > BENT
             world, normal = rotations[bent, place], normals[bent, place]
             axis, hinge = rotate(world, np.array(limb.along)), rotate(world, limb.hinge)
@@ -71,7 +71,7 @@ def true_rotations(motions: Sequence[Motion]) -> list[Truth]:
             cos = np.einsum("fi,fi->f", hinge, normal)
             off[place] += ((cos + 1j * sin) / np.hypot(cos, sin)).sum()
     turns = quaternion_from_rotation_vector(
-        np.angle(off)[:, None] * np.array([limb.along for limb in TWISTED])
+        np.angle(off)[:, None] * np.array([limb.along for limb in TWISTED_LIMBS])
     )
     return [Truth(made.bends, multiply(made.rotations, turns)) for made, _ in plain]
 
@@ -83,11 +83,11 @@ def _as_made(motion: Motion) -> tuple[Truth, Array]:
     alignment = t_pose_alignment(motion.skeleton, humanoid)
     world = multiply(forward_kinematics(motion).rotations, alignment)
     postures = motion_postures(motion)
-    ways = [_ways(postures, limb) for limb in TWISTED]
+    ways = [_ways(postures, limb) for limb in TWISTED_LIMBS]
     normals = np.stack([np.cross(*each) for each in ways], axis=1)
     cos = np.stack([np.einsum("fi,fi->f", *each) for each in ways], axis=1)
     bends = np.arctan2(np.linalg.norm(normals, axis=-1), cos)
-    own = [joints[POSTURE_JOINTS[limb.upper]] for limb in TWISTED]
+    own = [joints[POSTURE_JOINTS[limb.upper]] for limb in TWISTED_LIMBS]
     return Truth(bends, world[:, own]), normals
 
 
@@ -141,12 +141,12 @@ def _lost(recording: JointRecording, places: Array, random: np.random.Generator)
     """Take out what is below one elbow and one knee, for a while; say which limbs and when."""
     n_frames = len(places)
     length = min(round(SECONDS * recording.frame_rate), n_frames - 2 * MARGIN)
-    lost = np.zeros((n_frames, len(TWISTED)), bool)
+    lost = np.zeros((n_frames, len(TWISTED_LIMBS)), bool)
     for pair in ((0, 1), (2, 3)):
         place = int(random.choice(pair))
         start = int(random.integers(MARGIN, n_frames - length - MARGIN + 1))
         lost[start : start + length, place] = True
-        limb = TWISTED[place]
+        limb = TWISTED_LIMBS[place]
         below = [limb.lower, limb.end, limb.end + 1]
         names = {KINECT_V1[POSTURE_JOINTS[joint]] for joint in below} & set(recording.names)
         for name in names:

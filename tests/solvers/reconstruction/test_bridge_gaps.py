@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from solvers.reconstruction.pose_completion.bridge_gaps import SHORT, bridged_losses
+from solvers.reconstruction.pose_completion.bridge_gaps import HALF_WEIGHT_S, blend_short_gaps
 
 RATE = 100.0
 
@@ -19,26 +19,28 @@ def lost(n: int, start: int, stop: int) -> np.ndarray:
 
 def test_a_loss_of_some_frames_is_bridged_whatever_postures_say():
     true = wave(300)
-    found = bridged_losses(true, lost(300, 100, 104), true + 1.0, RATE)
+    found = blend_short_gaps(true, lost(300, 100, 104), true + 1.0, RATE)
     assert np.abs(found - true).max() < 0.01
 
 
 def test_in_the_middle_of_a_long_loss_the_posture_counts():
     true = wave(1000)
-    found = bridged_losses(true * 0.0, lost(1000, 100, 900), true, RATE)
+    found = blend_short_gaps(true * 0.0, lost(1000, 100, 900), true, RATE)
     assert np.abs(found - true)[450:550].max() < 0.03
     assert np.abs(found - true)[:95].max() > 0.5
 
 
 def test_at_the_named_distance_both_count_alike():
-    n_lost = int(4 * SHORT * RATE)
+    n_lost = int(4 * HALF_WEIGHT_S * RATE)
     seen, rebuilt = np.zeros((n_lost + 200, 1, 3)), np.ones((n_lost + 200, 1, 3))
-    found = bridged_losses(seen, lost(n_lost + 200, 100, 100 + n_lost), rebuilt, RATE)
+    found = blend_short_gaps(seen, lost(n_lost + 200, 100, 100 + n_lost), rebuilt, RATE)
     np.testing.assert_allclose(found[100 + n_lost // 2], 0.5, atol=0.02)
 
 
 def test_what_is_seen_on_one_side_alone_is_left_to_postures():
     true = wave(200)
     for sure in (lost(200, 0, 50), lost(200, 150, 200), np.zeros((200, 1), bool)):
-        found = bridged_losses(np.where(sure[..., None], true, np.nan), sure, true + 1.0, RATE)
+        found = blend_short_gaps(
+            np.where(sure[..., None], true, np.nan), sure, true + 1.0, RATE
+        )
         np.testing.assert_array_equal(found[~sure], (true + 1.0)[~sure])

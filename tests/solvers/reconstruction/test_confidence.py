@@ -10,13 +10,13 @@ from numpy.testing import assert_allclose
 from solvers.errors import InvalidFileError, InvalidMotionError
 from solvers.reconstruction import correct_postures, learn_residual_prior, load_residual_prior
 from solvers.reconstruction.residual_correction.confidence import (
-    AS_TOLD,
+    IDENTITY_CALIBRATION,
     Calibration,
     chance_within,
 )
 from solvers.reconstruction.residual_correction.learn_confidence import (
-    calibrated,
-    fitted,
+    calibrate_confidence,
+    fit_calibration,
     with_calibration,
 )
 from solvers.reconstruction.residual_correction.prior import LAYOUT
@@ -67,7 +67,7 @@ def test_slope_and_spread_are_those_of_actors_who_were_left_out(rng):
     gaps = np.full((5, 2), np.nan)
 
     points = np.concatenate([np.stack([told, found], axis=-1), gaps])
-    shift, slope, spread = fitted(points, keep_level=True)
+    shift, slope, spread = fit_calibration(points, keep_level=True)
 
     assert shift == 0.0
     assert slope == pytest.approx(0.6, abs=0.04)
@@ -77,7 +77,7 @@ def test_slope_and_spread_are_those_of_actors_who_were_left_out(rng):
 def test_those_who_all_err_more_widen_the_spread_and_leave_the_level():
     told = np.linspace(-8.0, -6.0, 50)
 
-    kept = fitted(np.stack([told, told + 0.7], axis=-1), keep_level=True)
+    kept = fit_calibration(np.stack([told, told + 0.7], axis=-1), keep_level=True)
 
     assert kept == pytest.approx((0.0, 1.0, 0.7))
 
@@ -85,7 +85,7 @@ def test_those_who_all_err_more_widen_the_spread_and_leave_the_level():
 def test_beside_the_constant_offset_the_level_is_learned():
     told = np.linspace(-8.0, -6.0, 50)
 
-    learned = fitted(np.stack([told, told - 1.8], axis=-1), keep_level=False)
+    learned = fit_calibration(np.stack([told, told - 1.8], axis=-1), keep_level=False)
 
     assert learned == pytest.approx((-1.8, 1.0, 0.0), abs=1e-9)
 
@@ -105,7 +105,10 @@ def test_confidence_is_right_of_new_actors_whose_sensors_err_by_any_amount(rng):
 
     plain, told = (
         chance_within(variances, 0.05, each)
-        for each in (AS_TOLD, fitted(np.concatenate(points), keep_level=True))
+        for each in (
+            IDENTITY_CALIBRATION,
+            fit_calibration(np.concatenate(points), keep_level=True),
+        )
     )
 
     assert np.abs(told - right).max() < 0.06
@@ -115,7 +118,7 @@ def test_confidence_is_right_of_new_actors_whose_sensors_err_by_any_amount(rng):
 def test_a_calibration_is_learned_by_leaving_actors_out_and_kept_in_the_file(
     prior, pairs, tmp_path
 ):
-    told = calibrated(prior, pairs, ACTORS, settings=QUICK)
+    told = calibrate_confidence(prior, pairs, ACTORS, settings=QUICK)
     told.save(tmp_path / "prior.npz")
     again = load_residual_prior(tmp_path / "prior.npz")
 
@@ -135,7 +138,9 @@ def test_files_of_before_tell_variances_as_they_are(prior, tmp_path):
     del arrays["calibration"]
     LAYOUT.write(path, arrays)
 
-    assert_allclose(load_residual_prior(path).calibration, [AS_TOLD, AS_TOLD])
+    assert_allclose(
+        load_residual_prior(path).calibration, [IDENTITY_CALIBRATION, IDENTITY_CALIBRATION]
+    )
 
 
 def test_a_calibration_that_cannot_be_is_refused(prior, tmp_path):
@@ -147,10 +152,13 @@ def test_a_calibration_that_cannot_be_is_refused(prior, tmp_path):
 
 def test_two_actors_are_too_few(prior, pairs):
     with pytest.raises(InvalidMotionError, match="needs 3; there are 2"):
-        calibrated(prior, pairs, ("anna", "anna", "bob", "bob"), settings=QUICK)
+        calibrate_confidence(prior, pairs, ("anna", "anna", "bob", "bob"), settings=QUICK)
 
 
 def test_of_nothing_that_was_found_nothing_is_learned(prior):
     nothing = np.full((2, 20, 2), np.nan)
 
-    assert_allclose(with_calibration(prior, [nothing]).calibration, [AS_TOLD, AS_TOLD])
+    assert_allclose(
+        with_calibration(prior, [nothing]).calibration,
+        [IDENTITY_CALIBRATION, IDENTITY_CALIBRATION],
+    )

@@ -20,7 +20,10 @@ from solvers.reconstruction import (
 )
 from solvers.reconstruction.residual_correction.confidence import chance_within
 from solvers.reconstruction.residual_correction.correct_postures import _frame_by_frame
-from solvers.reconstruction.residual_correction.smooth_paths import followed, smoothed
+from solvers.reconstruction.residual_correction.smooth_trajectories import (
+    filter_trajectories,
+    smooth_trajectories,
+)
 
 
 @pytest.fixture(scope="module")
@@ -140,7 +143,7 @@ def test_short_takes(prior, n_frames):
 def test_smoothing_solves_the_least_squares_problem(rng):
     positions, weights = rng.normal(size=(12, 2, 3)), rng.uniform(0.1, 1.0, size=(12, 2))
     second = np.diff(np.eye(12), 2, axis=0)
-    found = smoothed(positions, weights, 1.7)
+    found = smooth_trajectories(positions, weights, 1.7)
     for joint in range(2):
         matrix = np.diag(weights[:, joint]) + 1.7**4 * second.T @ second
         expected = np.linalg.solve(matrix, weights[:, [joint]] * positions[:, joint])
@@ -150,7 +153,7 @@ def test_smoothing_solves_the_least_squares_problem(rng):
 def test_smoothing_halves_waves_of_its_length():
     frames = 20.0
     wave = np.sin(np.arange(2000) / frames)[:, None, None] * np.ones(3)
-    found = smoothed(wave, np.ones((2000, 1)), frames)
+    found = smooth_trajectories(wave, np.ones((2000, 1)), frames)
     assert np.ptp(found[800:1200]) / np.ptp(wave) == pytest.approx(0.5, abs=0.01)
 
 
@@ -158,9 +161,9 @@ def test_following_ends_where_smoothing_of_what_was_before_ends(rng):
     """The filter's last frame is the smoother's of the same frames, the start being far."""
     positions = np.cumsum(rng.normal(size=(60, 2, 3)), axis=0)
     weights = rng.uniform(0.2, 1.0, size=(60, 2))
-    found = followed(positions, weights, 2.0)
+    found = filter_trajectories(positions, weights, 2.0)
     for last in (40, 59):
-        expected = smoothed(positions[: last + 1], weights[: last + 1], 2.0)[last]
+        expected = smooth_trajectories(positions[: last + 1], weights[: last + 1], 2.0)[last]
         np.testing.assert_allclose(found[last], expected, atol=1e-3)
 
 

@@ -9,7 +9,7 @@ from solvers import motion, samples
 from solvers.motion import JointRecording, Tracks
 from solvers.motion.humanoid import posture_joints
 from solvers.reconstruction import reconstruct
-from solvers.reconstruction.reliability.left_right_swaps import undo_exchanges
+from solvers.reconstruction.reliability.left_right_swaps import fix_left_right_swaps
 from solvers.recordings import read_recording
 
 ARMS, LEGS = ("Elbow", "Wrist", "Hand"), ("Knee", "Ankle", "Foot")
@@ -57,7 +57,7 @@ def test_what_was_exchanged_comes_back_bit_by_bit(walk, parts, n_frames):
     spoilt = exchanged(walk, parts, slice(40, 40 + n_frames))
     assert np.abs(spoilt.tracks.positions - walk.tracks.positions).max() > 0.1
 
-    found = undo_exchanges(spoilt)
+    found = fix_left_right_swaps(spoilt)
 
     assert_array_equal(found.tracks.positions, walk.tracks.positions)
     assert_array_equal(found.tracks.confidence, walk.tracks.confidence)
@@ -66,7 +66,7 @@ def test_what_was_exchanged_comes_back_bit_by_bit(walk, parts, n_frames):
 
 @pytest.mark.parametrize("frames", [slice(0, 6), slice(80, 90)])
 def test_the_first_and_the_last_frames_come_back_too(walk, frames):
-    found = undo_exchanges(exchanged(walk, ALL, frames))
+    found = fix_left_right_swaps(exchanged(walk, ALL, frames))
 
     assert_array_equal(found.tracks.positions, walk.tracks.positions)
 
@@ -75,7 +75,7 @@ def test_several_exchanges_soon_after_each_other_come_back(walk):
     spoilt = exchanged(walk, ARMS, [20, 21, 25, 40, 41, 42, 43])
     spoilt = exchanged(spoilt, LEGS, [24, 25, 26])
 
-    assert_array_equal(undo_exchanges(spoilt).tracks.positions, walk.tracks.positions)
+    assert_array_equal(fix_left_right_swaps(spoilt).tracks.positions, walk.tracks.positions)
 
 
 def test_joints_that_are_lost_at_the_exchange_do_not_hide_it(walk):
@@ -84,17 +84,17 @@ def test_joints_that_are_lost_at_the_exchange_do_not_hide_it(walk):
     blank = JointRecording(walk.tracks.with_positions(gone), None, walk.sensor)
     spoilt = exchanged(blank, ARMS, slice(40, 46))
 
-    assert_array_equal(undo_exchanges(spoilt).tracks.positions, gone)
+    assert_array_equal(fix_left_right_swaps(spoilt).tracks.positions, gone)
 
 
 def test_a_sound_take_is_returned_as_it_is(walk):
-    assert undo_exchanges(walk) is walk
+    assert fix_left_right_swaps(walk) is walk
 
 
 def test_sides_that_stay_exchanged_are_left_alone(walk):
     spoilt = exchanged(walk, ALL, slice(45, None))
 
-    assert undo_exchanges(spoilt) is spoilt
+    assert fix_left_right_swaps(spoilt) is spoilt
 
 
 def test_hands_that_cross_in_one_frame_are_no_exchange(walk):
@@ -105,14 +105,14 @@ def test_hands_that_cross_in_one_frame_are_no_exchange(walk):
     crossing[40:45, hands[1]] = walk.tracks.positions[40:45, hands[0]]
     take = JointRecording(walk.tracks.with_positions(crossing), None, walk.sensor)
 
-    assert undo_exchanges(take) is take
+    assert fix_left_right_swaps(take) is take
 
 
 def test_the_input_is_not_modified(walk):
     spoilt = exchanged(walk, ALL, slice(40, 45))
     before = spoilt.tracks.positions.copy()
 
-    undo_exchanges(spoilt)
+    fix_left_right_swaps(spoilt)
 
     assert_array_equal(spoilt.tracks.positions, before)
 
@@ -122,7 +122,7 @@ def test_sound_takes_of_a_kinect_have_no_exchanges(recordings, folder):
     files = [path for path in (recordings / "kinect" / folder).iterdir() if path.is_file()]
     for path in sorted(files)[:12]:
         take = read_recording(path)
-        assert undo_exchanges(take) is take, path.name
+        assert fix_left_right_swaps(take) is take, path.name
 
 
 @pytest.mark.parametrize("parts", [("Elbow", "Wrist", "Hand", "HandTip", "Thumb"), ALL])

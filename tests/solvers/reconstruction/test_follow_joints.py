@@ -20,7 +20,7 @@ from solvers.motion import (
     motion_from_points,
 )
 from solvers.motion.humanoid import posture_joints
-from solvers.reconstruction.joint_rotations.follow_joints import follow_joints
+from solvers.reconstruction.joint_rotations.motion_from_positions import motion_from_positions
 from solvers.recordings import read_recording
 from solvers.rotations.representations import angle_between, rotate
 
@@ -58,7 +58,7 @@ def miss(motion: Motion, tracks: Tracks) -> np.ndarray:
 
 
 def test_joints_of_constant_lengths_keep_their_places(walk):
-    motion = follow_joints(as_tracks(walk), PARENTS)
+    motion = motion_from_positions(as_tracks(walk), PARENTS)
 
     assert miss(motion, as_tracks(walk)).mean() < 0.003
 
@@ -77,7 +77,7 @@ def test_so_do_those_of_real_cameras(recordings, file):
     steady[:, order] = fit_bone_lengths(tracks.positions[:, order], body)
     steady = tracks.with_positions(steady)
 
-    motion = follow_joints(steady, parents)
+    motion = motion_from_positions(steady, parents)
 
     firm = [not name.startswith(("Hand", "Thumb")) for name in shown(motion, steady)]
     assert np.nanmean(miss(motion, steady)[:, firm]) < 0.005
@@ -89,7 +89,7 @@ def test_bones_have_one_length_that_of_reliable_frames(walk):
     tracks.positions[40:, wrist] += (0.3, 0.0, 0.0)
     reliability[40:, wrist] = 0.1
 
-    motion = follow_joints(tracks, PARENTS, reliability)
+    motion = motion_from_positions(tracks, PARENTS, reliability)
 
     true = np.linalg.norm(walk[0, wrist] - walk[0, NAMES.index("ElbowLeft")])
     offset = motion.skeleton.offsets[motion.skeleton.index("WristLeft")]
@@ -122,7 +122,7 @@ def hinge_of(motion: Motion, joint: str, axis: tuple[float, float, float]) -> np
 
 @pytest.mark.parametrize("plane", np.radians([-30.0, 0.0, 60.0]))
 def test_an_upper_arm_is_twisted_so_that_its_elbow_bends_as_a_hinge(plane):
-    motion = follow_joints(bending_arm(np.full(60, np.radians(80)), plane), PARENTS)
+    motion = motion_from_positions(bending_arm(np.full(60, np.radians(80)), plane), PARENTS)
 
     elbow = motion.rotations[:, motion.skeleton.index("ElbowLeft")]
     axis = elbow[:, 1:] / np.linalg.norm(elbow[:, 1:], axis=-1, keepdims=True)
@@ -139,7 +139,7 @@ def test_a_straight_arm_keeps_the_twist_of_the_bends_about_it():
         scale=0.005, size=(6, 3)
     )
 
-    motion = follow_joints(tracks, PARENTS)
+    motion = motion_from_positions(tracks, PARENTS)
 
     hinge = hinge_of(motion, "ShoulderLeft", (0.0, 0.0, 1.0))
     turned = np.degrees(np.arccos(np.clip(hinge @ hinge[0], -1.0, 1.0)))
@@ -147,7 +147,7 @@ def test_a_straight_arm_keeps_the_twist_of_the_bends_about_it():
 
 
 def test_an_arm_that_never_bends_is_not_twisted_against_the_trunk():
-    motion = follow_joints(bending_arm(np.zeros(30), 0.0), PARENTS)
+    motion = motion_from_positions(bending_arm(np.zeros(30), 0.0), PARENTS)
 
     hinge = hinge_of(motion, "ShoulderLeft", (0.0, 0.0, 1.0))
     assert_allclose(hinge, np.tile((1.0, 0.0, 0.0), (30, 1)), atol=0.02)
@@ -159,7 +159,9 @@ def test_nothing_jumps_while_a_body_turns_round(walk):
     x, y, z = np.moveaxis(walk, -1, 0)
     turning = np.stack([cos * x - sin * y, sin * x + cos * y, z], axis=-1)
 
-    still, motion = (follow_joints(as_tracks(each), PARENTS) for each in (walk, turning))
+    still, motion = (
+        motion_from_positions(as_tracks(each), PARENTS) for each in (walk, turning)
+    )
 
     steps = angle_between(still.rotations[1:, 1:], still.rotations[:-1, 1:])
     assert np.degrees(steps.max()) < 20.0
@@ -179,7 +181,7 @@ def test_the_twist_of_the_trunk_is_shared_by_the_spine():
         places[:, NAMES.index(name), 0] = 0.5 * x - np.sqrt(0.75) * y
         places[:, NAMES.index(name), 1] = np.sqrt(0.75) * x + 0.5 * y
 
-    motion = follow_joints(tracks, PARENTS)
+    motion = motion_from_positions(tracks, PARENTS)
 
     spine = motion.rotations[:, motion.skeleton.index("Spine")]
     chest = motion.rotations[:, motion.skeleton.index("ShoulderCenter")]
@@ -188,7 +190,7 @@ def test_the_twist_of_the_trunk_is_shared_by_the_spine():
 
 
 def test_the_skeleton_is_still_that_of_a_human(walk):
-    motion = follow_joints(as_tracks(walk), PARENTS)
+    motion = motion_from_positions(as_tracks(walk), PARENTS)
 
     assert {"ClavicleLeft", "ClavicleRight", "SpineLow"} <= set(motion.skeleton.names)
     found = find_humanoid_map(motion.skeleton)
@@ -199,7 +201,7 @@ def test_the_skeleton_is_still_that_of_a_human(walk):
 def test_a_skeleton_that_is_given_is_moved(walk):
     body = motion_from_points(as_tracks(walk), PARENTS).skeleton
 
-    motion = follow_joints(as_tracks(walk), PARENTS, skeleton=body)
+    motion = motion_from_positions(as_tracks(walk), PARENTS, skeleton=body)
 
     assert motion.skeleton is body
     assert motion.observed.all()
@@ -212,7 +214,7 @@ def test_what_a_rigid_trunk_misses_is_not_handed_down_to_the_hand(walk):
     shrugging = walk.copy()
     shrugging[:, arm[0], 2] += 0.05
 
-    motion = follow_joints(as_tracks(shrugging), PARENTS, skeleton=body)
+    motion = motion_from_positions(as_tracks(shrugging), PARENTS, skeleton=body)
 
     order = [motion.skeleton.index(NAMES[joint]) for joint in arm]
     places = forward_kinematics(motion).positions[:, order]
@@ -227,7 +229,7 @@ def test_tips_of_hands_do_not_flutter(walk):
     noisy, tip = walk.copy(), NAMES.index("HandLeft")
     noisy[:, tip] += rng.normal(scale=0.03, size=(len(walk), 3))
 
-    motion = follow_joints(as_tracks(noisy), PARENTS)
+    motion = motion_from_positions(as_tracks(noisy), PARENTS)
 
     wrist = motion.rotations[:, motion.skeleton.index("WristLeft")]
     assert np.degrees(angle_between(wrist[1:], wrist[:-1])).mean() < 8.0
@@ -239,7 +241,7 @@ def test_joints_in_one_place_tell_no_direction_and_do_no_harm(walk):
     tracks = as_tracks(walk.copy())
     tracks.positions[20, NAMES.index("HandLeft")] = walk[20, NAMES.index("WristLeft")]
 
-    motion = follow_joints(tracks, PARENTS)
+    motion = motion_from_positions(tracks, PARENTS)
 
     assert motion.observed.all()
 
@@ -248,7 +250,7 @@ def test_gaps_stay_gaps(walk):
     tracks = as_tracks(walk.copy())
     tracks.positions[10:20, NAMES.index("KneeLeft")] = np.nan
 
-    motion = follow_joints(tracks, PARENTS)
+    motion = motion_from_positions(tracks, PARENTS)
 
     assert not motion.observed[10:20, motion.skeleton.index("HipLeft")].any()
     assert motion.observed[:, motion.skeleton.index("HipRight")].all()
@@ -259,7 +261,7 @@ def test_the_input_stays_as_it_is(walk):
     tracks = as_tracks(walk)
     before = tracks.positions.copy()
 
-    follow_joints(tracks, PARENTS, np.full((90, 20), 0.4))
+    motion_from_positions(tracks, PARENTS, np.full((90, 20), 0.4))
 
     assert_allclose(tracks.positions, before, rtol=0, atol=0)
 
@@ -269,6 +271,6 @@ def test_refuses_what_does_not_fit(walk):
     fewer = Tracks(NAMES[:-1], walk[:, :-1], 30.0)
 
     with pytest.raises(InvalidMotionError, match="not tracked: FootRight"):
-        follow_joints(fewer, PARENTS[:-1], skeleton=body)
+        motion_from_positions(fewer, PARENTS[:-1], skeleton=body)
     with pytest.raises(InvalidMotionError, match="Reliability needs shape"):
-        follow_joints(as_tracks(walk), PARENTS, np.ones((3, 20)))
+        motion_from_positions(as_tracks(walk), PARENTS, np.ones((3, 20)))

@@ -10,8 +10,8 @@ from upright_places import PLACES
 from solvers.motion import JOINTS, Motion, Sensor, Tracks, forward_kinematics, joint_parents
 from solvers.motion.humanoid.posture_joints import motion_postures
 from solvers.reconstruction import ReconstructMethod, ReconstructSettings, reconstruct
-from solvers.reconstruction.joint_rotations.follow_joints import follow_joints
-from solvers.reconstruction.joint_rotations.limb_twist import twisted
+from solvers.reconstruction.joint_rotations.limb_twist import twist_to_normal
+from solvers.reconstruction.joint_rotations.motion_from_positions import motion_from_positions
 from solvers.reconstruction.joint_rotations.trunk_twist import LimbTwists
 from solvers.reconstruction.pose_library.posture_library import build_posture_library
 from solvers.rotations.representations import rotate
@@ -53,7 +53,9 @@ def twist(motion: Motion) -> np.ndarray:
 def test_a_straight_arm_is_twisted_as_in_like_postures():
     tracks = hanging(np.zeros(30))
 
-    plain, motion = (follow_joints(tracks, PARENTS, twists=x) for x in (None, alike(30)))
+    plain, motion = (
+        motion_from_positions(tracks, PARENTS, twists=x) for x in (None, alike(30))
+    )
 
     assert_allclose(twist(plain), 0.0, atol=1.0)
     assert_allclose(twist(motion), np.degrees(AT), atol=10.0)
@@ -62,7 +64,7 @@ def test_a_straight_arm_is_twisted_as_in_like_postures():
 def test_less_so_where_these_are_not_of_one_mind():
     tracks = hanging(np.zeros(30))
 
-    motion = follow_joints(tracks, PARENTS, twists=alike(30, length=0.1))
+    motion = motion_from_positions(tracks, PARENTS, twists=alike(30, length=0.1))
 
     mean = 0.1 * np.exp(1j * AT) + 0.9  # what they leave open is no twist
     assert_allclose(twist(motion), np.degrees(np.angle(mean)), atol=0.5)
@@ -71,7 +73,7 @@ def test_less_so_where_these_are_not_of_one_mind():
 def test_where_the_elbow_bends_its_plane_tells_the_twist():
     tracks = hanging(np.full(30, np.radians(80.0)))
 
-    motion = follow_joints(tracks, PARENTS, twists=alike(30))
+    motion = motion_from_positions(tracks, PARENTS, twists=alike(30))
 
     assert_allclose(twist(motion), 0.0, atol=3.0)
 
@@ -79,7 +81,7 @@ def test_where_the_elbow_bends_its_plane_tells_the_twist():
 def test_how_the_actor_differs_where_he_bends_holds_where_he_is_straight():
     bends = np.where(np.arange(300) < 100, np.radians(80.0), 0.0)
 
-    motion = follow_joints(hanging(bends), PARENTS, twists=alike(300))
+    motion = motion_from_positions(hanging(bends), PARENTS, twists=alike(300))
 
     assert_allclose(twist(motion), 0.0, atol=10.0)
 
@@ -87,7 +89,7 @@ def test_how_the_actor_differs_where_he_bends_holds_where_he_is_straight():
 def test_as_published_nothing_else_counts():
     tracks = hanging(np.full(30, np.radians(80.0)))
 
-    motion = follow_joints(tracks, PARENTS, twists=alike(30, length=0.3, alone=True))
+    motion = motion_from_positions(tracks, PARENTS, twists=alike(30, length=0.3, alone=True))
 
     assert_allclose(twist(motion), np.degrees(AT), atol=0.5)
 
@@ -96,7 +98,9 @@ def test_as_published_there_is_no_twist_where_none_is_known():
     known, unknown = alike(30, alone=True), np.arange(30) >= 20
     known.vectors[unknown] = 0.0
 
-    motion = follow_joints(hanging(np.full(30, np.radians(80.0))), PARENTS, twists=known)
+    motion = motion_from_positions(
+        hanging(np.full(30, np.radians(80.0))), PARENTS, twists=known
+    )
 
     assert_allclose(twist(motion), np.where(unknown, 0.0, np.degrees(AT)), atol=0.5)
 
@@ -112,7 +116,7 @@ def test_a_turn_that_nothing_tells_is_as_fast_at_all_frame_rates(dip):
         along, plain = (np.tile(each, (len(times), 1)) for each in np.eye(3)[[2, 0]])
         normals = np.stack([np.cos(angles), np.sin(angles), 0.0 * angles], axis=-1)
         told = np.where(np.abs(times) < dip / 2, 0.0, 1.0)
-        turned = twisted(still, along, plain, normals, told, rate)
+        turned = twist_to_normal(still, along, plain, normals, told, rate)
         course = np.unwrap(2.0 * np.arctan2(turned[:, 3], turned[:, 0]))
         speeds.append(np.abs(np.diff(course)).max() * rate)
 
@@ -123,7 +127,8 @@ def test_a_single_frame_is_twisted_as_one_of_many():
     tracks = hanging(np.full(2, np.radians(20.0)))
 
     one, two = (
-        follow_joints(tracks.slice(0, n), PARENTS, twists=alike(n)).rotations for n in (1, 2)
+        motion_from_positions(tracks.slice(0, n), PARENTS, twists=alike(n)).rotations
+        for n in (1, 2)
     )
 
     assert_allclose(one[0], two[0], atol=0.01)
@@ -170,6 +175,6 @@ def test_with_a_library_of_before_bends_alone_tell_the_twist(gait, method):
     )
 
     assert old.twists is None
-    plain = follow_joints(old.tracks, recording.parents, old.reliability.combined)
+    plain = motion_from_positions(old.tracks, recording.parents, old.reliability.combined)
     assert_allclose(old.motion.rotations, plain.rotations)
     assert np.abs(new.motion.rotations - plain.rotations).max() > 1e-3

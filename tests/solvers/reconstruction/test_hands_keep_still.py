@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
-from solvers.reconstruction.joint_rotations.follow_joints import follow_joints
-from solvers.reconstruction.joint_rotations.limb_twist import steady_way, twisted
+from solvers.reconstruction.joint_rotations.limb_twist import smooth_direction, twist_to_normal
+from solvers.reconstruction.joint_rotations.motion_from_positions import motion_from_positions
 from solvers.recordings import read_recording
 from solvers.rotations.representations import IDENTITY, angle_between, rotate
 
@@ -24,7 +24,7 @@ def seen_at(degrees: np.ndarray) -> np.ndarray:
 def test_a_twist_that_jumps_by_almost_a_turn_is_led_over(rate):
     degrees = np.where(np.arange(60) < 30, -87.0, 87.0)
 
-    turns = twisted(STILL, UP, ACROSS, seen_at(degrees), np.ones(60), rate)
+    turns = twist_to_normal(STILL, UP, ACROSS, seen_at(degrees), np.ones(60), rate)
 
     steps = np.degrees(angle_between(turns[1:], turns[:-1]))
     assert steps.max() < 60.0
@@ -36,7 +36,7 @@ def test_a_twist_that_jumps_by_almost_a_turn_is_led_over(rate):
 def test_a_twist_that_goes_steadily_is_followed():
     degrees = np.linspace(-60.0, 60.0, 60)
 
-    turns = twisted(STILL, UP, ACROSS, seen_at(degrees), np.ones(60), RATE)
+    turns = twist_to_normal(STILL, UP, ACROSS, seen_at(degrees), np.ones(60), RATE)
 
     shown = rotate(turns, ACROSS)
     off = np.einsum("fi,fi->f", shown, seen_at(degrees))
@@ -50,7 +50,7 @@ def test_a_palm_that_cannot_be_is_not_followed(wrong):
     seen = np.tile((0.0, 0.0, 0.08), (60, 1))
     seen[30:34] = wrong
 
-    ways = steady_way(seen, STILL, np.array([0.0, 0.0, 0.25]), np.ones(60), RATE)
+    ways = smooth_direction(seen, STILL, np.array([0.0, 0.0, 0.25]), np.ones(60), RATE)
 
     assert (
         np.degrees(np.arccos(ways[30:34, 2] / np.linalg.norm(ways[30:34], axis=-1))).max() < 5
@@ -64,7 +64,7 @@ def test_wrists_of_real_takes_never_flip(recordings, file):
     """Palms are seen 2 cm long there, folded onto the forearm; they turned by 140 degrees."""
     recording = read_recording(recordings / "kinect" / file)
 
-    motion = follow_joints(recording.tracks, recording.parents)
+    motion = motion_from_positions(recording.tracks, recording.parents)
 
     for name in ("WristLeft", "WristRight"):
         turns = motion.rotations[:, motion.skeleton.index(name)]

@@ -10,20 +10,20 @@ from numpy.testing import assert_allclose
 from solvers.errors import InvalidFileError
 from solvers.motion.humanoid.posture_heading import mirrored
 from solvers.reconstruction import learn_residual_prior, load_residual_prior
-from solvers.reconstruction.residual_correction.inputs import calm_postures
+from solvers.reconstruction.residual_correction.inputs import smooth_postures
 from solvers.reconstruction.residual_correction.learn_movement_process import (
-    ACTOR,
-    MEAN,
-    TAKE,
+    ACTOR_VARIANCE,
+    MEAN_VARIANCE,
+    TAKE_VARIANCE,
     Take,
     learn_movement_process,
 )
 from solvers.reconstruction.residual_correction.movement_process import (
-    CONTEXT,
-    MOVEMENT,
-    PERSONAL,
-    POSTURE,
-    SHARED,
+    CONTEXT_SCALE_M,
+    MOVEMENT_SCALE_M,
+    PERSONAL_STRENGTHS,
+    POSTURE_SCALE_M,
+    SHARED_STRENGTHS,
     movement_parts,
 )
 
@@ -61,10 +61,12 @@ def test_equals_the_whole_process_written_down_naively(process):
         movement_parts(take(1.4, "c").features, RATE),
     )
     same_take, same_actor = (np.equal.outer(one, one) for one in (takes, np.array(actors)))
-    covariance = naive(examples, examples, SHARED) + MEAN + TAKE * same_take
-    covariance += same_actor * (naive(examples, examples, PERSONAL) + ACTOR)
+    covariance = (
+        naive(examples, examples, SHARED_STRENGTHS) + MEAN_VARIANCE + TAKE_VARIANCE * same_take
+    )
+    covariance += same_actor * (naive(examples, examples, PERSONAL_STRENGTHS) + ACTOR_VARIANCE)
     covariance += np.eye(len(covariance))
-    expected = (naive(asked, examples, SHARED) + MEAN) @ np.linalg.solve(
+    expected = (naive(asked, examples, SHARED_STRENGTHS) + MEAN_VARIANCE) @ np.linalg.solve(
         covariance, np.concatenate(errors).reshape(len(covariance), -1)
     )
 
@@ -82,10 +84,10 @@ def naive(one: np.ndarray, other: np.ndarray, strengths: tuple) -> np.ndarray:
     slope = np.einsum("ijk,mjk->im", one[0] - centre, other[0] - centre)
     a, b, c, d = strengths
     return (
-        a * np.exp(-0.5 * far[0] / POSTURE**2)
+        a * np.exp(-0.5 * far[0] / POSTURE_SCALE_M**2)
         + b * slope
-        + c * np.exp(-0.5 * far[:3].sum(axis=0) / CONTEXT**2)
-        + d * np.exp(-0.5 * far[3:].sum(axis=0) / MOVEMENT**2)
+        + c * np.exp(-0.5 * far[:3].sum(axis=0) / CONTEXT_SCALE_M**2)
+        + d * np.exp(-0.5 * far[3:].sum(axis=0) / MOVEMENT_SCALE_M**2)
     )
 
 
@@ -152,7 +154,7 @@ def prior():
 
 def test_between_the_frames_that_are_foretold_hardly_anything_is_lost(prior):
     """Every second frame and straight lines; the error of the knee has cusps."""
-    calm = calm_postures(recording(seen_by_a_bad_sensor(truth(1.3))), 1 / 30)
+    calm = smooth_postures(recording(seen_by_a_bad_sensor(truth(1.3))), 1 / 30)
     few = prior.predict(calm)
     all_frames = prior.predict(replace(calm, frame_rate=10.0))
     still = replace(prior, movement=None)
@@ -168,7 +170,7 @@ def test_between_the_frames_that_are_foretold_hardly_anything_is_lost(prior):
 
 def test_what_goes_on_ahead_is_not_looked_at_where_it_must_not_be(prior):
     """The first second is foretold alike whatever comes after."""
-    calm = calm_postures(recording(seen_by_a_bad_sensor(truth(1.3))), 0.0)
+    calm = smooth_postures(recording(seen_by_a_bad_sensor(truth(1.3))), 0.0)
     cut = replace(calm, features=calm.features[:30])
 
     whole, begun = (prior.predict(one, ahead=False).offsets for one in (calm, cut))

@@ -6,7 +6,7 @@ from numpy.testing import assert_allclose
 
 from solvers.motion import JOINTS, Sensor
 from solvers.motion.humanoid.posture_joints import POSTURE_JOINTS, joints_of_names
-from solvers.reconstruction.joint_rotations.other_joints import all_joints
+from solvers.reconstruction.joint_rotations.other_joints import positions_from_postures
 from solvers.recordings import read_recording
 
 NAMES = JOINTS[Sensor.KINECT_V2]
@@ -39,7 +39,7 @@ def test_a_thumb_of_a_raised_arm_does_not_flip(take, trust):
     weights = np.ones(seen.shape[:2])
     weights[30:, THUMB] = trust
 
-    found = all_joints(NAMES, seen, weights, before, after)
+    found = positions_from_postures(NAMES, seen, weights, before, after)
 
     assert np.linalg.norm(found[:, THUMB] - after[:, WRIST] - way, axis=-1).max() < 0.01
 
@@ -51,7 +51,7 @@ def test_joints_go_with_a_bone_that_turns(take):
     after[:, WRIST] = after[:, ELBOW] + (0.25, 0.0, 0.0)
     seen[:, THUMB] = before[:, WRIST] + (0.0, 0.03, 0.05)
 
-    found = all_joints(NAMES, seen, np.ones(seen.shape[:2]), before, after)
+    found = positions_from_postures(NAMES, seen, np.ones(seen.shape[:2]), before, after)
 
     assert_allclose(found[:, THUMB] - after[:, WRIST], np.tile((0.05, 0.03, 0.0), (60, 1)),
                     atol=1e-9)  # fmt: skip
@@ -64,7 +64,7 @@ def test_a_body_that_is_turned_is_rebuilt_turned(take):
     cos, sin = np.cos(2.1), np.sin(2.1)
     turn = np.array([[cos, -sin, 0.0], [sin, cos, 0.0], [0.0, 0.0, 1.0]]).T
 
-    first = all_joints(NAMES, seen, weights, before, after) @ turn
-    second = all_joints(NAMES, seen @ turn, weights, before @ turn, after @ turn)
+    first = positions_from_postures(NAMES, seen, weights, before, after) @ turn
+    second = positions_from_postures(NAMES, seen @ turn, weights, before @ turn, after @ turn)
 
     assert_allclose(second, first, atol=1e-9)

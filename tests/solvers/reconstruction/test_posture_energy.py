@@ -6,27 +6,30 @@ import pytest
 from solvers.motion.humanoid.body_size import USUAL_LENGTHS, resize, segment_lengths
 from solvers.motion.humanoid.posture_joints import PARENTS
 from solvers.reconstruction.joint_rotations.library_body import BodyPostures
-from solvers.reconstruction.pose_completion.keep_lengths import keep_lengths
-from solvers.reconstruction.pose_completion.probable_posture import ERROR, probable_postures
+from solvers.reconstruction.pose_completion.constrain_lengths import constrain_lengths
+from solvers.reconstruction.pose_completion.probable_posture import (
+    MODEL_ERROR_M,
+    probable_postures,
+)
 from solvers.reconstruction.pose_completion.residual_smoother import (
-    causal_course,
-    fading_course,
-    noise_of,
+    filter_residuals,
+    measurement_deviation,
+    smooth_residuals,
 )
 from solvers.reconstruction.pose_library.neighbors import (
-    Query,
+    PostureQuery,
     index_postures,
     nearest_postures,
 )
 from solvers.reconstruction.pose_library.posture_groups import group_postures
 from solvers.reconstruction.pose_space.posture_energy import (
-    Demands,
+    EnergyTargets,
     EnergyWeights,
     posture_energy,
 )
 from solvers.reconstruction.pose_space.posture_space import local_pca
-from solvers.reconstruction.published.posture_search import search_in_turn, search_postures
-from tests.benchmarks.reconstruction.posture_synthesis import solve_in_turn, solve_postures
+from solvers.reconstruction.published.posture_search import search_postures, search_sequentially
+from tests.benchmarks.reconstruction.posture_synthesis import solve_postures, solve_sequentially
 
 N_FRAMES = 6
 UP = np.array([0.0, 0.0, 2.0])
@@ -52,9 +55,9 @@ def problem(bodies, random):
     trust = random.uniform(size=(N_FRAMES, 20))
     trust[:, 4:8] = 0.0
     index = index_postures(_body(bodies[N_FRAMES:]), np.zeros(894, np.int32))
-    places, _ = nearest_postures(index, Query(observed, 0 * observed, trust, 0.0), 30)
+    places, _ = nearest_postures(index, PostureQuery(observed, 0 * observed, trust, 0.0), 30)
     spaces = local_pca(bodies[N_FRAMES:][places])
-    return spaces, Demands(observed, trust, spaces.neighbours, USUAL_LENGTHS)
+    return spaces, EnergyTargets(observed, trust, spaces.neighbours, USUAL_LENGTHS)
 
 
 def _body(positions):
@@ -67,7 +70,9 @@ def test_neighbours_are_those_of_equation_9(bodies, random):
     observed = bodies[:5] + 0.01
     observed[1, 3] = np.nan
     index = index_postures(_body(bodies), np.zeros(900, np.int32))
-    places, distances = nearest_postures(index, Query(observed, 0 * observed, trust, 0.0), 12)
+    places, distances = nearest_postures(
+        index, PostureQuery(observed, 0 * observed, trust, 0.0), 12
+    )
     for frame in range(5):
         ways = [
             sum(
@@ -93,7 +98,7 @@ def test_grouped_search_finds_nearly_all_true_neighbours(random):
     trust = random.uniform(size=(40, 20))
     trust[:, 12:16] = 0.0
     observed = positions[:40] + random.normal(scale=0.01, size=(40, 20, 3))
-    query = Query(observed, 0 * observed, trust, 0.0)
+    query = PostureQuery(observed, 0 * observed, trust, 0.0)
     body = _body(positions)
     all_of_them, _ = nearest_postures(index_postures(body, 0 * groups), query, 30)
     found, _ = nearest_postures(index_postures(body, groups), query, 30, n_looked_at=3000)
@@ -115,7 +120,7 @@ def test_spaces_are_principal_components(problem):
 def test_energy_is_that_of_equations_10_to_15(problem):
     spaces, asked = problem
     expected = asked.neighbours[:, 0].reshape(-1, 20, 3) + 0.01
-    asked = Demands(
+    asked = EnergyTargets(
         asked.observed, asked.trust, asked.neighbours, asked.lengths, expected,
         EnergyWeights(1.0, 0.5, 1.5, 0.25),
     )  # fmt: skip
@@ -152,10 +157,10 @@ def test_gauss_newton_finds_a_minimum_and_less_than_the_search(problem):
 
 def test_both_solvers_in_turn_tell_their_energies_and_search_repeats(problem):
     spaces, asked = problem
-    one, energies = search_in_turn(spaces, asked, seed=4)
-    again, _ = search_in_turn(spaces, asked, seed=4)
+    one, energies = search_sequentially(spaces, asked, seed=4)
+    again, _ = search_sequentially(spaces, asked, seed=4)
     np.testing.assert_array_equal(one, again)
-    _, less = solve_in_turn(spaces, asked)
+    _, less = solve_sequentially(spaces, asked)
     assert less[0] <= energies[0]
     assert less.mean() < energies.mean()
 
@@ -169,7 +174,7 @@ def test_the_probable_posture_is_the_conditional_mean(problem):
         C = (axes[:, real] * spaces.spreads[frame][real]) @ axes[:, real].T
         trust = np.where(np.isfinite(asked.observed[frame]).all(-1), asked.trust[frame], 0.0)
         rows = np.flatnonzero(np.repeat(trust > 0.0, 3))
-        noise = np.diag(ERROR**2 / np.repeat(trust, 3)[rows])
+        noise = np.diag(MODEL_ERROR_M**2 / np.repeat(trust, 3)[rows])
         gain = C[:, rows] @ np.linalg.inv(C[np.ix_(rows, rows)] + noise)
         off = asked.observed[frame].reshape(-1)[rows] - spaces.means[frame][rows]
         np.testing.assert_allclose(
@@ -184,8 +189,8 @@ def test_a_course_is_the_posterior_of_its_gaussian_process(random):
     seen = random.normal(scale=0.1, size=(n, 1, 3))
     trust = np.ones((n, 1))
     trust[12:30] = 0.0
-    deviation = noise_of(trust, 0.02)
-    course = fading_course(seen, deviation, dt, np.array([size]), memory)
+    deviation = measurement_deviation(trust, 0.02)
+    course = smooth_residuals(seen, deviation, dt, np.array([size]), memory)
     way = np.abs(np.subtract.outer(np.arange(n), np.arange(n))) * dt * np.sqrt(3) / memory
     K = size**2 * (1 + way) * np.exp(-way)
     told = trust[:, 0] > 0
@@ -198,11 +203,11 @@ def test_a_course_is_the_posterior_of_its_gaussian_process(random):
 def test_a_causal_course_knows_no_future_and_does_not_jump(random):
     made = random.normal(scale=0.01, size=(30, 2, 3)).cumsum(axis=0)
     seen = made + 0.05
-    deviation = noise_of(np.ones((30, 2)), 1e-4)
+    deviation = measurement_deviation(np.ones((30, 2)), 1e-4)
     deviation[12:20] = np.inf
     size = np.full(2, 0.1)
-    course = causal_course(made, seen, deviation, 1 / 30, size, 0.5)
-    cut = causal_course(made[:15], seen[:15], deviation[:15], 1 / 30, size, 0.5)
+    course = filter_residuals(made, seen, deviation, 1 / 30, size, 0.5)
+    cut = filter_residuals(made[:15], seen[:15], deviation[:15], 1 / 30, size, 0.5)
     np.testing.assert_array_equal(course.values[:15], cut.values)
     out = made + course.values
     np.testing.assert_allclose(out[12], out[11], atol=1e-5)
@@ -215,7 +220,7 @@ def test_lengths_are_kept_and_trusted_joints_hardly_move(bodies, random):
     spoilt[:, 13] += random.normal(scale=0.1, size=(20, 3))
     sure = np.ones((20, 20))
     sure[:, 13] = 0.0
-    kept = keep_lengths(spoilt, USUAL_LENGTHS, sure, sure)
+    kept = constrain_lengths(spoilt, USUAL_LENGTHS, sure, sure)
     np.testing.assert_allclose(
         segment_lengths(kept), np.tile(USUAL_LENGTHS, (20, 1)), atol=0.01
     )
@@ -225,5 +230,5 @@ def test_lengths_are_kept_and_trusted_joints_hardly_move(bodies, random):
 
 def test_bones_that_were_seen_stay_as_they_were_seen(bodies):
     longer = resize(bodies[:20], 1.1 * USUAL_LENGTHS)
-    kept = keep_lengths(longer, USUAL_LENGTHS, np.ones((20, 20)), np.ones((20, 20)))
+    kept = constrain_lengths(longer, USUAL_LENGTHS, np.ones((20, 20)), np.ones((20, 20)))
     np.testing.assert_allclose(kept, longer)

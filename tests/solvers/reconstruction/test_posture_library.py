@@ -8,15 +8,19 @@ from solvers.motion.humanoid.body_size import USUAL_LENGTHS, body_lengths
 from solvers.motion.humanoid.bone_directions import along_bones, bone_changes, bone_directions
 from solvers.motion.humanoid.posture_heading import mirrored, normalise
 from solvers.motion.humanoid.posture_joints import POSTURE_JOINTS, motion_postures
-from solvers.reconstruction.joint_rotations.library_body import ANATOMY, anatomy_turns, on_body
+from solvers.reconstruction.joint_rotations.library_body import (
+    CORRECTED_BONES,
+    bone_axis_corrections,
+    build_body_postures,
+)
 from solvers.reconstruction.pose_library.posture_library import (
     LAYOUT,
-    SHIPPED,
+    SHIPPED_LIBRARY,
     PostureLibrarySettings,
     build_posture_library,
     load_posture_library,
 )
-from solvers.reconstruction.pose_library.subsample import thin_out
+from solvers.reconstruction.pose_library.subsample import subsample_postures
 from solvers.samples import GaitSettings, walking_gait
 
 
@@ -59,7 +63,7 @@ def test_kept_postures_are_apart_and_no_other_is_far_from_them():
     ways = random.normal(size=(3, 60)) * 0.1
     directions = (random.normal(size=(400, 3)) @ ways).reshape(400, 20, 3)
     spacing = 0.03
-    kept = thin_out(directions, 400, spacing)
+    kept = subsample_postures(directions, 400, spacing)
     points = along_bones(directions, USUAL_LENGTHS).reshape(400, -1)
     ways = np.linalg.norm(points[:, None] - points[kept], axis=-1) / np.sqrt(20.0)
     among = ways[kept] + np.eye(len(kept))
@@ -69,7 +73,7 @@ def test_kept_postures_are_apart_and_no_other_is_far_from_them():
 
 
 def test_a_library_has_the_postures_of_its_clip(gait, library, walk):
-    body = on_body(library.directions, library.changes, body_lengths(walk))
+    body = build_body_postures(library.directions, library.changes, body_lengths(walk))
     postures = np.concatenate([walk, mirrored(walk)]).reshape(-1, 60)
     ways = np.linalg.norm(postures[:, None] - body.positions.reshape(-1, 60), axis=-1)
     assert ways.min(axis=1).max() / np.sqrt(20.0) < 0.05
@@ -99,7 +103,7 @@ def test_the_shipped_library_is_small_and_says_what_it_knows():
     assert 1000 <= library.n_postures <= 5000
     assert "CMU" in library.trained_on
     assert "UI-PRMD" in library.trained_on
-    assert SHIPPED.stat().st_size < 600_000
+    assert SHIPPED_LIBRARY.stat().st_size < 600_000
 
 
 def test_the_shipped_library_knows_twists_of_clips_that_have_rotations():
@@ -139,14 +143,17 @@ def test_the_tracker_s_idea_of_a_body_is_found(walk, library):
     cos, sin = np.cos(0.3), np.sin(0.3)
     for bone, name in enumerate(POSTURE_JOINTS):
         side = 1.0 if "left" in name else -1.0
-        if bone in ANATOMY and name not in {"spine", "chest", "head"}:
+        if bone in CORRECTED_BONES and name not in {"spine", "chest", "head"}:
             known[bone] = [[cos, 0, side * sin], [0, 1, 0], [-side * sin, 0, cos]]
     directions = bone_directions(walk)
-    seen = on_body(directions, np.zeros_like(directions), lengths, known).positions
+    seen = build_body_postures(directions, np.zeros_like(directions), lengths, known).positions
     plain = along_bones(directions, lengths)
     trust = np.full(walk.shape[:2], 100.0)
-    found = on_body(
-        directions, 0 * directions, lengths, anatomy_turns(seen, trust, directions, lengths)
+    found = build_body_postures(
+        directions,
+        0 * directions,
+        lengths,
+        bone_axis_corrections(seen, trust, directions, lengths),
     ).positions
     before, after = (np.linalg.norm(each - seen, axis=-1).mean() for each in (plain, found))
     assert before > 0.02

@@ -11,7 +11,10 @@ from solvers.motion.humanoid.posture_joints import (
     joints_of_names,
     motion_postures,
 )
-from solvers.reconstruction.joint_rotations.other_joints import all_joints, anchors
+from solvers.reconstruction.joint_rotations.other_joints import (
+    find_anchors,
+    positions_from_postures,
+)
 from solvers.reconstruction.pose_completion.reconstruct_postures import reconstruct_postures
 from solvers.reconstruction.pose_completion.settings import PostureMethod, PostureSettings
 from solvers.reconstruction.pose_library.posture_library import build_posture_library
@@ -159,12 +162,12 @@ def test_the_motion_has_bones_of_constant_length_and_follows(lame, library):
 
 def test_joints_beyond_the_twenty_move_with_their_neighbours():
     names = JOINTS[Sensor.KINECT_V2]
-    found = dict(zip(names, anchors(names), strict=True))
+    found = dict(zip(names, find_anchors(names), strict=True))
     assert POSTURE_JOINTS[found["HandTipLeft"]] == "leftHandEnd"
     assert POSTURE_JOINTS[found["ThumbRight"]] == "rightHand"
     assert POSTURE_JOINTS[found["Neck"]] in {"chest", "head"}
     azure = JOINTS[Sensor.AZURE_KINECT]
-    found = dict(zip(azure, anchors(azure), strict=True))
+    found = dict(zip(azure, find_anchors(azure), strict=True))
     assert POSTURE_JOINTS[found["Nose"]] == "head"
 
 
@@ -182,10 +185,10 @@ def test_joints_of_their_own_keep_their_place_about_their_anchor(walk):
     seen = np.concatenate([walk, tip[:, None]], axis=1)
     trust = np.ones((len(walk), 21))
     moved = walk + np.array([0.1, 0.2, 0.3])
-    found = all_joints(names, seen, trust, walk, moved)
+    found = positions_from_postures(names, seen, trust, walk, moved)
     np.testing.assert_allclose(found[:, 20], tip + np.array([0.1, 0.2, 0.3]), atol=1e-9)
     seen[20:40, 20] = np.nan
-    found = all_joints(names, seen, trust, walk, walk)
+    found = positions_from_postures(names, seen, trust, walk, walk)
     assert np.linalg.norm(found[20:40, 20] - tip[20:40], axis=-1).max() < 0.06
 
 

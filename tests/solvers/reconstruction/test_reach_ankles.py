@@ -7,7 +7,7 @@ from kinect_walks import true_positions
 from solvers import samples
 from solvers.motion import JOINTS, Motion, Sensor, Tracks, forward_kinematics, joint_parents
 from solvers.motion.humanoid import posture_joints
-from solvers.reconstruction.joint_rotations.follow_joints import follow_joints
+from solvers.reconstruction.joint_rotations.motion_from_positions import motion_from_positions
 from solvers.recordings import read_recording
 
 NAMES = JOINTS[Sensor.KINECT_V1]
@@ -32,7 +32,7 @@ def places_of(motion: Motion, names: tuple[str, ...]) -> np.ndarray:
 
 
 def followed(positions: np.ndarray, names=NAMES) -> Motion:
-    return follow_joints(Tracks(names, positions, 30.0), joint_parents(names))
+    return motion_from_positions(Tracks(names, positions, 30.0), joint_parents(names))
 
 
 @pytest.mark.parametrize("file", REAL)
@@ -42,7 +42,7 @@ def test_ankles_of_real_takes_are_where_they_were_seen(recordings, file):
     order = [recording.names.index(name) for name in ANKLES]
     seen = recording.tracks.positions[:, order]
 
-    reached = places_of(follow_joints(recording.tracks, recording.parents), ANKLES)
+    reached = places_of(motion_from_positions(recording.tracks, recording.parents), ANKLES)
 
     missed = np.linalg.norm(reached - seen, axis=-1)
     assert np.nanmean(missed) < 0.01

@@ -24,7 +24,7 @@ from solvers.reconstruction import (
     reconstruct,
     reconstruct_postures,
 )
-from solvers.reconstruction.pose_completion import follow_postures
+from solvers.reconstruction.pose_completion import complete_postures
 from solvers.reconstruction.reconstruct import shipped_residual_prior
 
 LOST, HIDDEN = kinect_walks.LOST, [5, 6, 7]
@@ -154,8 +154,8 @@ def frames_of(walk, order):
 @pytest.fixture
 def one_body(monkeypatch):
     """The first take tells bodies and usual errors once and for all, as calibration would."""
-    for name in ("_body_of", "_errors"):
-        monkeypatch.setattr(follow_postures, name, held(getattr(follow_postures, name)))
+    for name in ("_fit_library_to_actor", "_measure_errors"):
+        monkeypatch.setattr(complete_postures, name, held(getattr(complete_postures, name)))
 
 
 def held(measure):

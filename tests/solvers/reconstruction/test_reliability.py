@@ -9,9 +9,9 @@ from solvers.motion.humanoid.posture_heading import turned
 from solvers.motion.humanoid.posture_joints import POSTURE_JOINTS, motion_postures
 from solvers.reconstruction import ReliabilityMethod, ReliabilitySettings, measure_reliability
 from solvers.reconstruction.reliability.reference import (
+    find_reference_postures,
+    parent_distances,
     reference_lengths,
-    reference_postures,
-    segments,
 )
 from solvers.samples import GaitSettings, walking_gait
 
@@ -205,16 +205,20 @@ def test_reference_postures_are_standing_and_t_pose_and_no_other():
     frames = np.stack([body(limbs["down"]), body(limbs["out"]), body(limbs["ahead"])])
     tracked = np.ones(frames.shape[:2], bool)
 
-    assert reference_postures(NAMES, frames, tracked).tolist() == [True, True, False]
+    assert find_reference_postures(NAMES, frames, tracked).tolist() == [True, True, False]
     tilt = np.radians(35.0)
     turn = np.array([
         [1, 0, 0],
         [0, np.cos(tilt), -np.sin(tilt)],
         [0, np.sin(tilt), np.cos(tilt)],
     ])
-    assert reference_postures(NAMES, frames @ turn.T, tracked).tolist() == [True, True, False]
+    assert find_reference_postures(NAMES, frames @ turn.T, tracked).tolist() == [
+        True,
+        True,
+        False,
+    ]
     tracked[1, 7] = False
-    assert reference_postures(NAMES, frames, tracked).tolist() == [True, False, False]
+    assert find_reference_postures(NAMES, frames, tracked).tolist() == [True, False, False]
 
 
 def body(arm: tuple[float, float, float]) -> np.ndarray:
@@ -274,7 +278,7 @@ def test_doubt_lasts_as_long_at_any_frame_rate():
 
 
 def test_segments_of_roots_have_no_length():
-    lengths = segments(np.array([[[0.0, 0, 0], [0, 3.0, 4.0]]]), np.array([-1, 0]))
+    lengths = parent_distances(np.array([[[0.0, 0, 0], [0, 3.0, 4.0]]]), np.array([-1, 0]))
 
     assert np.isnan(lengths[0, 0])
     assert lengths[0, 1] == 5.0

@@ -8,8 +8,8 @@ from scipy.stats import norm
 from solvers.errors import InvalidSettingError
 from solvers.motion import JointRecording, Sensor, Tracks
 from solvers.reconstruction import ReliabilityMethod, ReliabilitySettings, measure_reliability
-from solvers.reconstruction.reliability.error_model import CAUSAL as AS_IT_COMES
-from solvers.reconstruction.reliability.error_model import CENTRED
+from solvers.reconstruction.reliability.error_model import CAUSAL_MODEL as AS_IT_COMES
+from solvers.reconstruction.reliability.error_model import CENTERED_MODEL
 from solvers.reconstruction.reliability.terms import (
     behaviour_term,
     gaussian_mean,
@@ -154,7 +154,7 @@ def still(n_frames: int = 40, state: np.ndarray | None = None) -> JointRecording
     return JointRecording(Tracks(names, places, 30.0), state, Sensor.KINECT_V2)
 
 
-@pytest.mark.parametrize(("causal", "model"), [(False, CENTRED), (True, AS_IT_COMES)])
+@pytest.mark.parametrize(("causal", "model"), [(False, CENTERED_MODEL), (True, AS_IT_COMES)])
 def test_the_default_is_the_chance_of_a_normal_distribution(causal, model):
     """Of a still body all signs are 0, and the line over them is at its floor."""
     settings = ReliabilitySettings(causal=causal, tolerance=0.02)
@@ -164,7 +164,7 @@ def test_the_default_is_the_chance_of_a_normal_distribution(causal, model):
     line = model.level + model.slope * np.log(model.floor)
     chance = norm.cdf(np.log(0.03), loc=line, scale=model.spread)  # 2 cm and the 1 cm added
     assert_allclose(found, chance, atol=1e-6)
-    assert CENTRED != AS_IT_COMES
+    assert CENTERED_MODEL != AS_IT_COMES
 
 
 def test_tracking_states_count_as_told():

@@ -5,17 +5,17 @@ import pytest
 
 from solvers.reconstruction.residual_correction.kernel import (
     Kernel,
-    _unlikeliness,
-    alike,
+    _negative_log_likelihood,
     learn_kernel,
     squared_distances,
+    squared_exponential,
 )
 from solvers.reconstruction.residual_correction.sparse_process import (
-    FREE_MEAN,
-    basis,
+    MEAN_VARIANCE,
+    basis_functions,
     inducing_points,
     posterior,
-    shared_columns,
+    shared_design,
 )
 
 KERNEL = Kernel((0.5, 1.5), (0.8, 0.3), (0.2, 0.1), 0.05, 0.1, 0.02)
@@ -50,7 +50,7 @@ def dense_covariance(local, whole, takes, actors, kernel):
 def test_distances_are_those_of_pairs():
     one = np.array([[0.0, 0.0], [3.0, 4.0]])
     np.testing.assert_allclose(squared_distances(one, one), [[0.0, 25.0], [25.0, 0.0]])
-    np.testing.assert_allclose(alike(one, one, 5.0)[0, 1], np.exp(-0.5))
+    np.testing.assert_allclose(squared_exponential(one, one, 5.0)[0, 1], np.exp(-0.5))
 
 
 def test_likelihood_is_that_of_a_normal_distribution(examples):
@@ -92,40 +92,46 @@ def test_noise_is_found():
 
 def test_with_an_inducing_point_at_each_example_it_is_the_exact_process(examples):
     local, whole, errors, takes, actors = examples
-    bases = basis(local, local, KERNEL.lengths[0]), basis(whole, whole, KERNEL.lengths[1])
+    bases = (
+        basis_functions(local, local, KERNEL.lengths[0]),
+        basis_functions(whole, whole, KERNEL.lengths[1]),
+    )
     mean, covariance = posterior(bases, errors, takes, actors, KERNEL, 1.0)
     new_local, new_whole = local[:5] + 0.3, whole[:5] - 0.2
-    columns = shared_columns(
+    columns = shared_design(
         (
-            basis(new_local, local, KERNEL.lengths[0]),
-            basis(new_whole, whole, KERNEL.lengths[1]),
+            basis_functions(new_local, local, KERNEL.lengths[0]),
+            basis_functions(new_whole, whole, KERNEL.lengths[1]),
         ),
         KERNEL,
     )
-    between = FREE_MEAN + sum(
-        shared * alike(new, old, size)
+    between = MEAN_VARIANCE + sum(
+        shared * squared_exponential(new, old, size)
         for shared, new, old, size in zip(
             KERNEL.shared, (new_local, new_whole), (local, whole), KERNEL.lengths, strict=True
         )
     )
-    dense = dense_covariance(local, whole, takes, actors, KERNEL) + FREE_MEAN
+    dense = dense_covariance(local, whole, takes, actors, KERNEL) + MEAN_VARIANCE
     solved = np.linalg.solve(dense, np.c_[errors, between.T])
     np.testing.assert_allclose(columns @ mean, between @ solved[:, :3], atol=2e-3)
-    own = FREE_MEAN + sum(KERNEL.shared)
+    own = MEAN_VARIANCE + sum(KERNEL.shared)
     expected = own - np.einsum("ij,ji->i", between, solved[:, 3:])
     known = np.einsum("ni,ij,nj->n", columns, covariance, columns)
-    open_variance = sum(KERNEL.shared) + FREE_MEAN - (columns**2).sum(axis=1)
+    open_variance = sum(KERNEL.shared) + MEAN_VARIANCE - (columns**2).sum(axis=1)
     np.testing.assert_allclose(known + open_variance, expected, atol=5e-3)
 
 
 def test_what_one_actor_always_does_is_no_rule(examples):
     local, whole, _, takes, actors = examples
     errors = np.where(actors[:, None] == 0, 1.0, -1.0) * np.ones((24, 3))
-    bases = basis(local, local, KERNEL.lengths[0]), basis(whole, whole, KERNEL.lengths[1])
+    bases = (
+        basis_functions(local, local, KERNEL.lengths[0]),
+        basis_functions(whole, whole, KERNEL.lengths[1]),
+    )
     mean, _ = posterior(bases, errors, takes, actors, KERNEL, 1.0)
-    told = np.abs(shared_columns(bases, KERNEL) @ mean).mean()
+    told = np.abs(shared_design(bases, KERNEL) @ mean).mean()
     unaware, _ = posterior(bases, errors, takes, np.zeros(24, int), KERNEL, 1.0)
-    assert told < 0.6 * np.abs(shared_columns(bases, KERNEL) @ unaware).mean()
+    assert told < 0.6 * np.abs(shared_design(bases, KERNEL) @ unaware).mean()
 
 
 def test_few_different_features_are_their_own_inducing_points():
@@ -148,4 +154,4 @@ def unlikeliness(logs, examples, centred=False):
     local, whole, errors, takes, actors = examples
     far = tuple(squared_distances(one, one) for one in (local, whole))
     same = tuple((one[:, None] == one).astype(float) for one in (takes, actors))
-    return _unlikeliness(logs, far, same, errors - errors.mean(axis=0) * centred)
+    return _negative_log_likelihood(logs, far, same, errors - errors.mean(axis=0) * centred)

@@ -9,7 +9,7 @@ from solvers import motion, samples
 from solvers.motion import JointRecording
 from solvers.motion.humanoid import posture_joints
 from solvers.reconstruction import ReliabilitySettings, measure_reliability, reconstruct
-from solvers.reconstruction.reliability.transient_jumps import short_jumps
+from solvers.reconstruction.reliability.transient_jumps import find_transient_jumps
 from solvers.recordings import read_recording
 
 CAUSAL = ReliabilitySettings(causal=True)
@@ -27,7 +27,7 @@ def test_a_joint_that_jumps_away_is_found_in_those_frames_only(n_away):
     path = path_along(*np.linspace(0.0, 0.3, 40))
     path[20 : 20 + n_away, 0, 2] += 0.2
 
-    found = short_jumps(path, 30.0)
+    found = find_transient_jumps(path, 30.0)
 
     assert np.flatnonzero(found[:, 0]).tolist() == list(range(20, 20 + n_away))
 
@@ -44,26 +44,26 @@ def test_a_joint_that_jumps_away_is_found_in_those_frames_only(n_away):
     ],
 )
 def test_what_is_no_short_jump(places):
-    assert not short_jumps(path_along(*places), 30.0).any()
+    assert not find_transient_jumps(path_along(*places), 30.0).any()
 
 
 def test_two_jumps_at_twice_the_rate_are_the_same_frames():
     slow = path_along(*[0.0] * 10, *[0.3] * 3, *[0.0] * 10)
     fast = np.repeat(slow, 2, axis=0)
 
-    assert_array_equal(short_jumps(fast, 60.0)[::2], short_jumps(slow, 30.0))
+    assert_array_equal(find_transient_jumps(fast, 60.0)[::2], find_transient_jumps(slow, 30.0))
 
 
 @pytest.mark.parametrize("n_frames", [1, 2, 3])
 def test_the_shortest_takes_have_no_jumps(n_frames):
-    assert not short_jumps(path_along(*np.zeros(n_frames)), 30.0).any()
+    assert not find_transient_jumps(path_along(*np.zeros(n_frames)), 30.0).any()
 
 
 def test_frames_that_are_not_seen_are_no_jumps():
     path = path_along(*np.zeros(20))
     path[8:10] = np.nan
 
-    assert not short_jumps(path, 30.0).any()
+    assert not find_transient_jumps(path, 30.0).any()
 
 
 @pytest.fixture(scope="module")

@@ -12,22 +12,25 @@ from solvers.motion import Motion, Skeleton, find_humanoid_map
 from solvers.motion.humanoid.canonical import canonical_rotations, from_canonical
 from solvers.motion.humanoid.posture_heading import mirrored, turned
 from solvers.motion.humanoid.posture_joints import POSTURE_JOINTS, motion_postures
-from solvers.reconstruction.joint_rotations.limb_angles import angles_about
+from solvers.reconstruction.joint_rotations.limb_angles import axial_angles
 from solvers.reconstruction.joint_rotations.trunk_twist import (
-    TWISTED,
+    TWISTED_LIMBS,
     LimbTwists,
-    bend_normals,
-    known_hinges,
+    flexion_normals,
+    hinges_from_twists,
     mean_twists,
-    mirrored_twists,
-    plain_hinges,
+    mirror_twists,
+    untwisted_hinges,
 )
-from solvers.reconstruction.pose_library.clip_twists import agreed_twists, clip_twists
+from solvers.reconstruction.pose_library.clip_twists import (
+    combine_clip_twists,
+    read_clip_twists,
+)
 from solvers.reconstruction.pose_library.posture_library import (
     LAYOUT,
     build_posture_library,
-    joined_postures,
     load_posture_library,
+    merge_posture_libraries,
 )
 from solvers.rotations.representations import multiply, quaternion_from_rotation_vector
 from solvers.samples import GaitSettings, walking_gait
@@ -50,7 +53,7 @@ def standing(rng, n_frames=40) -> np.ndarray:
     }  # fmt: skip
     for name, place in usual.items():
         postures[:, POSTURE_JOINTS.index(name)] = place
-    for limb in TWISTED:
+    for limb in TWISTED_LIMBS:
         upper, lower = (
             Rotation.from_rotvec(rng.normal(scale=0.8, size=(n_frames, 3))).apply(limb.along)
             for _ in range(2)
@@ -65,10 +68,10 @@ def test_plain_hinges_are_turned_the_short_way_out_of_the_trunk():
     """Second way: the least rotation by its axis and angle, in the trunk's axes."""
     postures = standing(np.random.default_rng(1))
 
-    directions, hinges = plain_hinges(postures)
+    directions, hinges = untwisted_hinges(postures)
 
     places = {name: postures[:, place] for place, name in enumerate(POSTURE_JOINTS)}
-    for row, limb in enumerate(TWISTED):
+    for row, limb in enumerate(TWISTED_LIMBS):
         part = POSTURE_JOINTS[limb.upper].removeprefix("left").removeprefix("right")
         across = places[f"left{part}"] - places[f"right{part}"]
         for frame, up in enumerate(places["chest"] - places["hips"]):
@@ -85,22 +88,22 @@ def test_plain_hinges_are_turned_the_short_way_out_of_the_trunk():
 
 def test_heading_and_place_change_nothing():
     postures = standing(np.random.default_rng(2))
-    normals, _ = bend_normals(postures)
+    normals, _ = flexion_normals(postures)
     moved = turned(postures, np.full(len(postures), 2.0)) + np.array([3.0, 1.0, 0.5])
 
-    there = angles_about(*plain_hinges(moved), bend_normals(moved)[0])
+    there = axial_angles(*untwisted_hinges(moved), flexion_normals(moved)[0])
 
-    assert_allclose(there, angles_about(*plain_hinges(postures), normals), atol=1e-9)
+    assert_allclose(there, axial_angles(*untwisted_hinges(postures), normals), atol=1e-9)
 
 
 def test_a_mirror_exchanges_sides_and_turns_twists_round():
     postures = standing(np.random.default_rng(3))
     image = mirrored(postures)
 
-    seen = angles_about(*plain_hinges(image), bend_normals(image)[0])
+    seen = axial_angles(*untwisted_hinges(image), flexion_normals(image)[0])
 
-    own = angles_about(*plain_hinges(postures), bend_normals(postures)[0])
-    assert_allclose(seen, mirrored_twists(own), atol=1e-9)
+    own = axial_angles(*untwisted_hinges(postures), flexion_normals(postures)[0])
+    assert_allclose(seen, mirror_twists(own), atol=1e-9)
 
 
 def test_hinges_are_put_where_twists_have_them():
@@ -108,11 +111,11 @@ def test_hinges_are_put_where_twists_have_them():
     postures = standing(rng)
     twists = 0.7 * np.exp(1j * rng.uniform(-2.0, 2.0, (len(postures), 4)))
 
-    known = known_hinges(postures, LimbTwists(twists))
+    known = hinges_from_twists(postures, LimbTwists(twists))
 
-    ways = np.stack([known[POSTURE_JOINTS[limb.upper]].ways for limb in TWISTED], axis=1)
+    ways = np.stack([known[POSTURE_JOINTS[limb.upper]].ways for limb in TWISTED_LIMBS], axis=1)
     assert_allclose(np.linalg.norm(ways, axis=-1), 0.7)
-    assert_allclose(angles_about(*plain_hinges(postures), ways), twists / 0.7, atol=1e-9)
+    assert_allclose(axial_angles(*untwisted_hinges(postures), ways), twists / 0.7, atol=1e-9)
 
 
 def twisting(gait: Motion, angles: np.ndarray, maker: float = 0.0) -> Motion:
@@ -134,7 +137,9 @@ def twisting(gait: Motion, angles: np.ndarray, maker: float = 0.0) -> Motion:
 
 
 def twists_of(motion: Motion) -> np.ndarray:
-    return agreed_twists([motion.skeleton], [clip_twists(motion, motion_postures(motion))])[0]
+    return combine_clip_twists(
+        [motion.skeleton], [read_clip_twists(motion, motion_postures(motion))]
+    )[0]
 
 
 def test_the_twist_of_a_bone_is_what_its_clip_says(gait):
@@ -162,11 +167,12 @@ def test_a_rig_is_known_again_though_its_offsets_were_rounded(gait):
     """A walk that tells how the maker turns arms, and one of this rig that tells nothing."""
     skeleton = gait.skeleton
     rounded = replace(skeleton, offsets=skeleton.offsets - 1e-6)
-    clip = clip_twists(gait, motion_postures(gait))
+    clip = read_clip_twists(gait, motion_postures(gait))
     straight = clip._replace(shares=np.zeros_like(clip.shares))
 
     same, again = (
-        agreed_twists([skeleton, each], [clip, straight])[1] for each in (skeleton, rounded)
+        combine_clip_twists([skeleton, each], [clip, straight])[1]
+        for each in (skeleton, rounded)
     )
 
     assert np.abs(same[:, LEFT_ARM]).max() > 0.5
@@ -192,11 +198,11 @@ def test_so_do_makers_of_other_rest_poses(gait):
 def test_rotations_that_contradict_bends_are_hardly_believed(gait):
     """Points have no twist: an upper arm that is turned at random says nothing."""
     rng = np.random.default_rng(5)
-    clip = clip_twists(gait, motion_postures(gait))
+    clip = read_clip_twists(gait, motion_postures(gait))
     wild = clip._replace(rotated=np.exp(1j * rng.uniform(-np.pi, np.pi, clip.rotated.shape)))
     straight = wild._replace(shares=np.where(np.arange(len(wild.shares))[:, None] < 60, 1.0, 0))
 
-    told = agreed_twists([gait.skeleton], [straight])[0]
+    told = combine_clip_twists([gait.skeleton], [straight])[0]
 
     assert np.abs(told[:60]).min() > 0.99
     assert np.abs(told[60:]).max() < 0.35
@@ -243,7 +249,7 @@ def test_a_library_keeps_twists_and_their_mirror_images(gait, tmp_path):
     read = load_posture_library(tmp_path / "kept.npz")
 
     assert_allclose(read.known_twists, library.known_twists, atol=0.006)
-    both = joined_postures(library, replace(library, twists=None))
+    both = merge_posture_libraries(library, replace(library, twists=None))
     assert_allclose(both.known_twists[: library.n_postures], library.known_twists)
     assert not both.known_twists[library.n_postures :].any()
 
@@ -251,7 +257,7 @@ def test_a_library_keeps_twists_and_their_mirror_images(gait, tmp_path):
 def test_two_libraries_that_tell_no_twist_join_to_one_that_tells_none(gait):
     old = replace(build_posture_library([gait]), twists=None)
 
-    assert joined_postures(old, old).twists is None
+    assert merge_posture_libraries(old, old).twists is None
 
 
 def test_files_of_before_are_read_and_damaged_ones_refused(gait, tmp_path):

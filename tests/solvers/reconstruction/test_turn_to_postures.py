@@ -10,9 +10,9 @@ from solvers.errors import InvalidMotionError
 from solvers.motion import Motion, forward_kinematics
 from solvers.motion.humanoid.posture_heading import turned
 from solvers.motion.humanoid.posture_joints import POSTURE_JOINTS, motion_postures
-from solvers.reconstruction.joint_rotations.turn_to_postures import (
-    turn_to_postures,
-    without_gaps,
+from solvers.reconstruction.joint_rotations.fit_to_postures import (
+    fill_gaps,
+    fit_motion_to_postures,
 )
 from solvers.recordings import read_bvh
 from solvers.rotations.representations import multiply, quaternion_from_rotation_vector
@@ -31,7 +31,7 @@ def place(role: str) -> int:
 
 
 def test_postures_that_are_there_already_change_nothing(walk):
-    result = turn_to_postures(walk, motion_postures(walk))
+    result = fit_motion_to_postures(walk, motion_postures(walk))
 
     assert_allclose(result.rotations, walk.rotations, atol=1e-9)
     assert_allclose(result.root_positions, walk.root_positions, atol=1e-12)
@@ -40,7 +40,7 @@ def test_postures_that_are_there_already_change_nothing(walk):
 def test_nan_means_anywhere(walk):
     postures = np.full((walk.n_frames, 20, 3), np.nan)
 
-    assert_allclose(turn_to_postures(walk, postures).rotations, walk.rotations, atol=1e-9)
+    assert_allclose(fit_motion_to_postures(walk, postures).rotations, walk.rotations, atol=1e-9)
 
 
 @given(st.floats(-3.0, 3.0), st.tuples(*[st.floats(-2.0, 2.0)] * 3))
@@ -48,7 +48,7 @@ def test_a_body_that_is_turned_and_moved_is_turned_and_moved(angle, shift):
     walk = walking_gait(GaitSettings(duration=0.5, frame_rate=20.0))
     wanted = turned(motion_postures(walk), np.full(walk.n_frames, angle)) + np.array(shift)
 
-    result = turn_to_postures(walk, wanted)
+    result = fit_motion_to_postures(walk, wanted)
 
     assert_allclose(motion_postures(result), wanted, atol=1e-6)
 
@@ -61,7 +61,7 @@ def test_an_arm_that_is_raised_is_raised(walk):
         wanted[:, place(role)] = shoulder + reach * (0.6, 0.0, 0.8)
     arm = [place(role) for role in ("leftUpperArm", "leftLowerArm", "leftHand")]
 
-    result = turn_to_postures(walk, wanted)
+    result = fit_motion_to_postures(walk, wanted)
 
     got = motion_postures(result)
     assert np.linalg.norm(got - wanted, axis=-1)[:, arm].max() < 0.03
@@ -80,7 +80,7 @@ def test_twist_stays(walk):
     wrung = walk.with_poses(rotations)
     wanted = motion_postures(wrung) + RAISED
 
-    result = turn_to_postures(wrung, wanted)
+    result = fit_motion_to_postures(wrung, wanted)
 
     assert_allclose(result.rotations, wrung.rotations, atol=1e-9)
     assert_allclose(result.root_positions, wrung.root_positions + RAISED, atol=1e-9)
@@ -92,7 +92,7 @@ def test_real_motion_with_constant_lengths_is_followed_closely(recordings):
     first, later = walk.slice(1, 121), walk.slice(121, 241)
     wanted = motion_postures(later)
 
-    result = turn_to_postures(first, wanted)
+    result = fit_motion_to_postures(first, wanted)
 
     miss = np.linalg.norm(motion_postures(result) - wanted, axis=-1)
     ends = [place(f"{side}{part}") for side in ("left", "right")
@@ -105,7 +105,7 @@ def test_gaps_are_bridged_the_short_way(walk):
     rotations, places = walk.rotations.copy(), walk.root_positions.copy()
     rotations[10:13, 2], rotations[:2, 3], places[5:8] = np.nan, np.nan, np.nan
 
-    result = without_gaps(walk.with_poses(rotations, places))
+    result = fill_gaps(walk.with_poses(rotations, places))
 
     assert result.observed.all()
     assert_allclose(result.rotations[:2, 3], np.tile(walk.rotations[2, 3], (2, 1)))
@@ -117,4 +117,4 @@ def test_gaps_are_bridged_the_short_way(walk):
 
 def test_refuses_postures_of_other_frames(walk):
     with pytest.raises(InvalidMotionError, match=r"shape \(30, 20, 3\)"):
-        turn_to_postures(walk, np.zeros((3, 20, 3)))
+        fit_motion_to_postures(walk, np.zeros((3, 20, 3)))

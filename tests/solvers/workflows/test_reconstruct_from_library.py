@@ -7,7 +7,7 @@ import pytest
 
 from solvers.motion import Motion, resample
 from solvers.reconstruction import load_posture_library, reconstruct
-from solvers.reconstruction.pose_library.posture_library import joined_postures
+from solvers.reconstruction.pose_library.posture_library import merge_posture_libraries
 from solvers.recordings import read_acclaim
 from solvers.retrieval import Clip, build_clip_library
 from solvers.workflows import postures_from_library, reconstruct_from_library
@@ -90,7 +90,7 @@ def test_joined_postures_are_those_of_both():
         shipped, directions=shipped.directions[:50], changes=shipped.changes[:50],
         groups=shipped.groups[:50], n_seen=60, trained_on="a few",
     )  # fmt: skip
-    joined = joined_postures(part, shipped)
+    joined = merge_posture_libraries(part, shipped)
     assert joined.n_postures == shipped.n_postures + 50
     assert joined.n_seen == shipped.n_seen + 60
     assert joined.trained_on == f"a few, and {shipped.trained_on}"

@@ -125,8 +125,8 @@ def test_what_cannot_be_is_told_in_one_sentence(truth, spoil, said):
 @pytest.mark.parametrize(
     ("state", "settings", "said"),
     [
-        (0, ReconstructSettings(), "tracker calls seen, though their places are there"),
-        (1, ReconstructSettings(inferred=0.0), "calls the others inferred. Raise the setting"),
+        (0, ReconstructSettings(), "the tracking state `tracked`, although positions"),
+        (1, ReconstructSettings(inferred=0.0), "infers the others. Raise the setting"),
     ],
 )
 def test_places_for_which_the_tracker_does_not_answer(truth, state, settings, said):
@@ -223,5 +223,5 @@ def test_a_tracker_that_vouches_for_nothing_is_told_so(truth):
     tracks = Tracks(JOINTS[Sensor.KINECT_V1], truth, 30.0)
     blind = JointRecording(tracks, np.zeros(truth.shape[:2], np.int8), Sensor.KINECT_V1)
 
-    with pytest.raises(InvalidMotionError, match="that the tracker calls seen"):
+    with pytest.raises(InvalidMotionError, match="the tracking state `tracked`"):
         reconstruct_recording(blind)

@@ -8,7 +8,7 @@ from solvers import samples
 from solvers.denoising import PlantSettings
 from solvers.motion import JOINTS, Motion, Sensor, Tracks, forward_kinematics, joint_parents
 from solvers.motion.humanoid import posture_joints
-from solvers.reconstruction.joint_rotations.follow_joints import follow_joints
+from solvers.reconstruction.joint_rotations.motion_from_positions import motion_from_positions
 from solvers.recordings import read_recording
 from solvers.workflows import reconstruct_recording, try_to_plant
 
@@ -37,7 +37,7 @@ def standing(toe: np.ndarray) -> Motion:
         still[:, NAMES.index(f"Foot{side}")] = (across, -0.14, 0.02)
     still[:, NAMES.index("HipCenter")] = (0.0, 0.0, 0.95)
     still[:, NAMES.index("FootLeft")] = still[:, NAMES.index("AnkleLeft")] + toe
-    return follow_joints(Tracks(NAMES, still, 30.0), joint_parents(NAMES))
+    return motion_from_positions(Tracks(NAMES, still, 30.0), joint_parents(NAMES))
 
 
 def wandering() -> Motion:

@@ -29,11 +29,11 @@ PELVIS = tuple(
     POSTURE_JOINTS.index(role) for role in ("leftUpperLeg", "rightUpperLeg", "spine")
 )
 TRUNK = tuple(POSTURE_JOINTS.index(role) for role in ("leftUpperArm", "rightUpperArm", "head"))
-SHORT = 1e-3
+MIN_LENGTH_M = 1e-3
 """Metres. Ways that are shorter tell no direction."""
 
 
-def turn_to_postures(
+def fit_motion_to_postures(
     motion: Motion, postures: Array, humanoid_map: HumanoidMap | None = None
 ) -> Motion:
     """Turn a motion the short way until its body is where postures say.
@@ -66,17 +66,17 @@ def turn_to_postures(
             f" {postures.shape}."
         )
     humanoid_map = humanoid_map or find_humanoid_map(motion.skeleton)
-    whole = without_gaps(motion)
-    return _Follower(whole, postures, humanoid_map).followed()
+    whole = fill_gaps(motion)
+    return _PostureFit(whole, postures, humanoid_map).followed()
 
 
-def without_gaps(motion: Motion) -> Motion:
+def fill_gaps(motion: Motion) -> Motion:
     """Bridge gaps the short way, joint by joint; before and after all that is known, hold."""
     places = np.nan_to_num(bridged(motion.root_positions))
     return motion.with_poses(bridged_rotations(motion.rotations), places)
 
 
-class _Follower:
+class _PostureFit:
     """A motion whose joints are turned anew, parents first."""
 
     def __init__(self, motion: Motion, postures: Array, humanoid_map: HumanoidMap) -> None:
@@ -139,6 +139,8 @@ class _Follower:
         rest = rotate(above, self.old.positions[:, goal] - self.old.positions[:, joint])
         way = self.wanted[:, place] + astray - self.at[:, joint]
         sizes = [np.linalg.norm(each, axis=-1, keepdims=True) for each in (rest, way)]
-        told = np.isfinite(way).all(axis=-1, keepdims=True) & (np.minimum(*sizes) > SHORT)
+        told = np.isfinite(way).all(axis=-1, keepdims=True) & (
+            np.minimum(*sizes) > MIN_LENGTH_M
+        )
         swing = rotation_between(np.where(told, rest, 1.0), np.where(told, way, 1.0))
         return np.where(told, multiply(swing, above), above)

@@ -10,41 +10,52 @@ from scipy.ndimage import gaussian_filter1d
 from ...motion.humanoid import HIPS, Normalised, bone_changes
 from ...progress import Progress, within
 from ..joint_rotations import (
-    N_TWISTED,
+    N_TWISTED_LIMBS,
     BodyPostures,
     LimbTwists,
-    anatomy_turns,
+    bone_axis_corrections,
+    build_body_postures,
     mean_twists,
-    on_body,
 )
-from ..pose_library import PostureIndex, PostureLibrary, Query, index_postures, nearest_postures
-from ..pose_space import Demands, PostureSpaces, local_pca
-from ..published import search_in_turn
-from .cross_validation import Errors, leave_out
-from .keep_lengths import keep_lengths
+from ..pose_library import (
+    PostureIndex,
+    PostureLibrary,
+    PostureQuery,
+    index_postures,
+    nearest_postures,
+)
+from ..pose_space import EnergyTargets, PostureSpaces, local_pca
+from ..published import search_sequentially
+from .constrain_lengths import constrain_lengths
+from .cross_validation import SynthesisErrors, cross_validate_limbs
 from .probable_posture import probable_postures
-from .residual_smoother import Course, causal_course, fading_course, noise_of
+from .residual_smoother import (
+    Estimates,
+    filter_residuals,
+    measurement_deviation,
+    smooth_residuals,
+)
 from .settings import PostureMethod, PostureSettings
 
 Array = NDArray[np.float64]
 
-LED_UP_TO = 0.2
+RAMP_S = 0.2
 """Seconds before and after a joint is lost in which it is already trusted less, so that it is
 synthesised on both sides of the loss alike."""
-AGAIN = 0.3
+REUSED_RELIABILITY = 0.3
 """Trust in what one round synthesised and is sure of, in the next."""
-SURE = 0.05
+HALF_CONFIDENCE_M = 0.05
 """Metres. Deviation at which that trust, or confidence, is half of what it can be."""
-MODEL = 0.03
+MODEL_ERROR_M = 0.03
 """Metres. Error of a posture that its neighbours agree upon."""
-BLOCK = 256
+BLOCK_FRAMES = 256
 """Frames whose spaces are in memory at once."""
-ANATOMY_FRAMES = 150
-ANATOMY_NEIGHBOURS = 3
-ANATOMY_ROUNDS = 2
+CORRECTION_FRAMES = 150
+CORRECTION_NEIGHBORS = 3
+CORRECTION_ROUNDS = 2
 
 
-class Followed(NamedTuple):
+class CompletedPostures(NamedTuple):
     """Postures, shape (n_frames, 20, 3), how sure each joint is, and how limbs are twisted."""
 
     postures: Array
@@ -54,7 +65,7 @@ class Followed(NamedTuple):
 
 
 @dataclass(frozen=True, eq=False)
-class _Seen:
+class _ObservedTake:
     """What is known of a take: joints relative to where the hips seem to be, and trust."""
 
     postures: Array
@@ -63,7 +74,7 @@ class _Seen:
     lengths: Array
 
 
-def follow_postures(
+def complete_postures(
     seen: Normalised,
     trust: Array,
     frame_rate: float,
@@ -71,7 +82,7 @@ def follow_postures(
     library: PostureLibrary,
     settings: PostureSettings,
     progress: Progress,
-) -> Followed:
+) -> CompletedPostures:
     """Reconstruct the postures of a take.
 
     Parameters
@@ -85,99 +96,102 @@ def follow_postures(
     settings : PostureSettings
     progress : Progress
     """
-    take = _Seen(seen.postures, trust, frame_rate, lengths)
+    take = _ObservedTake(seen.postures, trust, frame_rate, lengths)
     if settings.method is PostureMethod.PUBLISHED:
-        return _as_published(take, library, settings, progress)
-    body = _body_of(take, library, settings)
+        return _search_as_published(take, library, settings, progress)
+    body = _fit_library_to_actor(take, library, settings)
     index = index_postures(body, library.groups)
-    errors = _errors(take, body, index, settings)
+    errors = _measure_errors(take, body, index, settings)
     take = replace(take, postures=take.postures - errors.offset)
     rounds = 1 if settings.causal else settings.rounds
     shift = np.zeros((len(trust), 1, 3))
-    asked, given = take.postures, _led_up(take, settings)
+    asked, given = take.postures, _ramp_reliability(take, settings)
     for number in range(rounds):
         part = within(progress, number / rounds, (number + 1) / rounds)
-        made, twists = _synthesise(
+        made, twists = _synthesize(
             replace(take, postures=asked, trust=given), body, index, settings, part
         )
-        more = _shift(take.postures - shift - made.values, trust, frame_rate, settings)
+        more = _hips_offset(take.postures - shift - made.values, trust, frame_rate, settings)
         shift = shift + more
-        course = _corrected(made, take.postures - shift, take, errors.size, settings)
+        course = _add_residuals(made, take.postures - shift, take, errors.size, settings)
         if number + 1 < rounds:
-            lost = (trust < AGAIN)[..., None]
+            lost = (trust < REUSED_RELIABILITY)[..., None]
             asked = np.where(lost, course.values, take.postures - shift)
-            again = AGAIN / (1.0 + (course.spread / SURE) ** 2)
+            again = REUSED_RELIABILITY / (1.0 + (course.spread / HALF_CONFIDENCE_M) ** 2)
             given = np.maximum(given, again)
     share = course.spread / errors.size
-    unsure = np.hypot(settings.noise, share * np.hypot(made.spread, MODEL))
-    sure = 1.0 / (1.0 + (unsure / SURE) ** 2)
-    postures = keep_lengths(course.values + errors.offset, lengths, trust, sure)
-    return Followed(postures + shift, sure, twists)
+    unsure = np.hypot(settings.noise, share * np.hypot(made.spread, MODEL_ERROR_M))
+    sure = 1.0 / (1.0 + (unsure / HALF_CONFIDENCE_M) ** 2)
+    postures = constrain_lengths(course.values + errors.offset, lengths, trust, sure)
+    return CompletedPostures(postures + shift, sure, twists)
 
 
-def _as_published(
-    take: _Seen, library: PostureLibrary, settings: PostureSettings, progress: Progress
-) -> Followed:
+def _search_as_published(
+    take: _ObservedTake, library: PostureLibrary, settings: PostureSettings, progress: Progress
+) -> CompletedPostures:
     """Search each frame's posture after that of the frame before, and do nothing else."""
     body = replace(
-        on_body(library.directions, library.changes, take.lengths), twists=library.twists
+        build_body_postures(library.directions, library.changes, take.lengths),
+        twists=library.twists,
     )
     plain = replace(settings, causal=True, pace=0.0, smoothing=0.0)
     index = index_postures(body, library.groups)
-    made, twists = _synthesise(take, body, index, plain, progress)
-    unsure = np.hypot(made.spread, MODEL)
-    sure = 1.0 / (1.0 + (unsure / SURE) ** 2)
-    return Followed(made.values, sure, twists and replace(twists, alone=True))
+    made, twists = _synthesize(take, body, index, plain, progress)
+    unsure = np.hypot(made.spread, MODEL_ERROR_M)
+    sure = 1.0 / (1.0 + (unsure / HALF_CONFIDENCE_M) ** 2)
+    return CompletedPostures(made.values, sure, twists and replace(twists, alone=True))
 
 
-def _body_of(take: _Seen, library: PostureLibrary, settings: PostureSettings) -> BodyPostures:
+def _fit_library_to_actor(
+    take: _ObservedTake, library: PostureLibrary, settings: PostureSettings
+) -> BodyPostures:
     """Bring the library to the actor's size, and to the tracker's idea of a body."""
     directions, changes, lengths = library.directions, library.changes, take.lengths
-    body = on_body(directions, changes, lengths)
-    frames = np.linspace(0, len(take.trust) - 1, ANATOMY_FRAMES).astype(int)
+    body = build_body_postures(directions, changes, lengths)
+    frames = np.linspace(0, len(take.trust) - 1, CORRECTION_FRAMES).astype(int)
     frames = np.unique(frames)
     speeds = _speeds(take, settings)[frames]
-    some = Query(take.postures[frames], speeds, take.trust[frames], settings.pace)
-    for _ in range(ANATOMY_ROUNDS):
+    some = PostureQuery(take.postures[frames], speeds, take.trust[frames], settings.pace)
+    for _ in range(CORRECTION_ROUNDS):
         index = index_postures(body, library.groups)
-        places, _ = nearest_postures(index, some, ANATOMY_NEIGHBOURS)
+        places, _ = nearest_postures(index, some, CORRECTION_NEIGHBORS)
         each = places.shape[1]
-        turns = anatomy_turns(
+        turns = bone_axis_corrections(
             np.repeat(some.postures, each, axis=0),
             np.repeat(some.trust, each, axis=0) / each,
             directions[places.reshape(-1)].astype(np.float64),
             lengths,
         )
-        body = on_body(directions, changes, lengths, turns)
+        body = build_body_postures(directions, changes, lengths, turns)
     return replace(body, twists=library.twists)
 
 
-def _speeds(take: _Seen, settings: PostureSettings) -> Array:
+def _speeds(take: _ObservedTake, settings: PostureSettings) -> Array:
     """Return how bones turn, which takes the frames to both sides to know: NaN if causal."""
     speeds = bone_changes(take.postures, take.frame_rate)
     return np.full_like(speeds, np.nan) if settings.causal else speeds
 
 
-def _errors(
-    take: _Seen, body: BodyPostures, index: PostureIndex, settings: PostureSettings
-) -> Errors:
+def _measure_errors(
+    take: _ObservedTake, body: BodyPostures, index: PostureIndex, settings: PostureSettings
+) -> SynthesisErrors:
     """Return what to expect of limbs that are not seen, by leaving them out."""
     speeds = _speeds(take, settings)
 
     def synthesise(frames: NDArray[np.intp], trust: Array) -> Array:
-        query = Query(take.postures[frames], speeds[frames], trust, settings.pace)
+        query = PostureQuery(take.postures[frames], speeds[frames], trust, settings.pace)
         places, _ = nearest_postures(index, query, settings.n_neighbours)
         spaces = local_pca(body.positions[places].astype(np.float64), settings.n_dimensions)
-        asked = Demands(take.postures[frames], trust, spaces.neighbours, take.lengths)
+        asked = EnergyTargets(take.postures[frames], trust, spaces.neighbours, take.lengths)
         return probable_postures(spaces, asked)[0]
 
-    return leave_out(take.postures, take.trust, synthesise)
+    return cross_validate_limbs(take.postures, take.trust, synthesise)
 
 
-def _led_up(take: _Seen, settings: PostureSettings) -> Array:
+def _ramp_reliability(take: _ObservedTake, settings: PostureSettings) -> Array:
     """Let trust fall and rise gradually about a loss; not before it in causal mode."""
     trust = take.trust
-    reach = round(LED_UP_TO * take.frame_rate)
+    reach = round(RAMP_S * take.frame_rate)
     least = trust
     for way in range(1, min(reach, len(trust) - 1) + 1):
         share = way / (reach + 1)
@@ -189,31 +203,33 @@ def _led_up(take: _Seen, settings: PostureSettings) -> Array:
     return least
 
 
-def _synthesise(
-    take: _Seen,
+def _synthesize(
+    take: _ObservedTake,
     body: BodyPostures,
     index: PostureIndex,
     settings: PostureSettings,
     progress: Progress,
-) -> tuple[Course, LimbTwists | None]:
+) -> tuple[Estimates, LimbTwists | None]:
     """Choose a posture for each frame, and the twist of its limbs.
 
     The spread of the course is the deviation of each joint by its space.
     """
     speeds = _speeds(take, settings)
-    query = Query(take.postures, speeds, take.trust, settings.pace)
+    query = PostureQuery(take.postures, speeds, take.trust, settings.pace)
     places, _ = nearest_postures(
         index, query, settings.n_neighbours, progress=within(progress, 0.0, 0.4)
     )
     values, spread = np.empty_like(take.postures), np.empty_like(take.trust)
-    twists = np.zeros((len(values), N_TWISTED), np.complex128)
+    twists = np.zeros((len(values), N_TWISTED_LIMBS), np.complex128)
     last = None
-    for start in range(0, len(values), BLOCK):
-        part = slice(start, min(start + BLOCK, len(values)))
+    for start in range(0, len(values), BLOCK_FRAMES):
+        part = slice(start, min(start + BLOCK_FRAMES, len(values)))
         spaces = local_pca(body.positions[places[part]], settings.n_dimensions)
-        asked = Demands(take.postures[part], take.trust[part], spaces.neighbours, take.lengths)
+        asked = EnergyTargets(
+            take.postures[part], take.trust[part], spaces.neighbours, take.lengths
+        )
         probable, spread[part] = probable_postures(spaces, asked)
-        values[part] = _chosen(spaces, asked, probable, settings, last)
+        values[part] = _choose_postures(spaces, asked, probable, settings, last)
         if body.twists is not None:
             twists[part] = mean_twists(
                 body.twists[places[part]], values[part], spaces.neighbours, take.trust[part]
@@ -223,22 +239,24 @@ def _synthesise(
     if settings.smoothing and not settings.causal:
         width = settings.smoothing * take.frame_rate
         values = gaussian_filter1d(values, width, axis=0, mode="nearest")
-    return Course(values, spread), None if body.twists is None else LimbTwists(twists)
+    return Estimates(values, spread), None if body.twists is None else LimbTwists(twists)
 
 
-def _chosen(
+def _choose_postures(
     spaces: PostureSpaces,
-    asked: Demands,
+    asked: EnergyTargets,
     probable: Array,
     settings: PostureSettings,
     last: Array | None,
 ) -> Array:
     if settings.method is PostureMethod.PUBLISHED:
-        return search_in_turn(spaces, asked, settings.seed, last)[0]
+        return search_sequentially(spaces, asked, settings.seed, last)[0]
     return probable
 
 
-def _shift(off: Array, trust: Array, frame_rate: float, settings: PostureSettings) -> Array:
+def _hips_offset(
+    off: Array, trust: Array, frame_rate: float, settings: PostureSettings
+) -> Array:
     """Return where the hips are instead of where they seem to be, shape (n_frames, 1, 3).
 
     They are where joints that are trusted ask for, as far as the hips themselves are not.
@@ -253,13 +271,13 @@ def _shift(off: Array, trust: Array, frame_rate: float, settings: PostureSetting
     return np.asarray(move[:, None])
 
 
-def _corrected(
-    made: Course, seen: Array, take: _Seen, size: Array, settings: PostureSettings
-) -> Course:
+def _add_residuals(
+    made: Estimates, seen: Array, take: _ObservedTake, size: Array, settings: PostureSettings
+) -> Estimates:
     """Lead synthesised postures through what was seen."""
-    dt, deviation = 1.0 / take.frame_rate, noise_of(take.trust, settings.noise)
+    dt, deviation = 1.0 / take.frame_rate, measurement_deviation(take.trust, settings.noise)
     if settings.causal:
-        course = causal_course(made.values, seen, deviation, dt, size, settings.memory)
+        course = filter_residuals(made.values, seen, deviation, dt, size, settings.memory)
     else:
-        course = fading_course(seen - made.values, deviation, dt, size, settings.memory)
-    return Course(made.values + course.values, course.spread)
+        course = smooth_residuals(seen - made.values, deviation, dt, size, settings.memory)
+    return Estimates(made.values + course.values, course.spread)

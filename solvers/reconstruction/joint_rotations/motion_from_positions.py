@@ -17,17 +17,25 @@ from ...motion import (
 )
 from ...motion.humanoid import FEWEST, RELIABLE, posture_positions
 from ...rotations import IDENTITY, best_turns, multiply, rotate, rotation_between, slerp
-from .clavicles import with_girdles
-from .limb_twist import HINGES, UNKNOWN, Hinges, Limb, hinge_turns, steady_way, thumb_turns
-from .reach_ankles import pelvis_shift, reach_ankles
-from .trunk_twist import LimbTwists, known_hinges
+from .clavicles import add_clavicle_joints
+from .limb_twist import (
+    HINGES,
+    UNKNOWN_HINGES,
+    HingeAxes,
+    Limb,
+    rotations_from_flexion,
+    rotations_from_thumb,
+    smooth_direction,
+)
+from .reach_ankles import pelvis_offsets, reach_ankles
+from .trunk_twist import LimbTwists, hinges_from_twists
 
 Array = NDArray[np.float64]
-SHORT = 1e-3
+MIN_LENGTH_M = 1e-3
 """Metres. Bones and ways that are shorter tell no direction."""
-FREE, AIMED = 0.1, 0.2
+FREE_LENGTH_M, AIMED_LENGTH_M = 0.1, 0.2
 """Metres. Shorter bones keep the direction that was seen, longer ones make for the place."""
-SOFT = 0.3
+GRANDCHILD_WEIGHT = 0.3
 """How much a child that has a joint of its own to point with tells of the one above."""
 LIMBS = {
     f"{side}{upper}": (f"{side}{lower}", f"{side}{end}")
@@ -40,7 +48,7 @@ LIMBS = {
 HANDS = ("leftHand", "rightHand")
 
 
-class _Ways(NamedTuple):
+class _ChildDirections(NamedTuple):
     """Where the children of a joint are, as it is in the rest pose and as it was seen."""
 
     rest: Array
@@ -53,7 +61,7 @@ class _Ways(NamedTuple):
     """Whether both ends were seen, shape (n_frames, n)."""
 
 
-class _Body:
+class _RotationSolver:
     """A skeleton that is turned joint by joint, from the root on."""
 
     def __init__(self, skeleton: Skeleton, places: Array, trust: Array, frame_rate: float):
@@ -66,7 +74,7 @@ class _Body:
         self.world = np.empty((*places.shape[:2], 4))
         self.at = np.array(places)
         """Where the joints come to be."""
-        self.hinges: dict[str, Hinges] = {}
+        self.hinges: dict[str, HingeAxes] = {}
         """Where like postures have the hinges of limbs, by the roles of their upper joints."""
 
     def _limbs(self) -> dict[int, Limb]:
@@ -86,7 +94,7 @@ class _Body:
     def give_way(self) -> None:
         """Move the pelvis to where straight legs reach the ankles."""
         legs = list(self.legs().values())
-        self.at[:, 0] += pelvis_shift(self.places, self.at, self.trust, legs, self.frame_rate)
+        self.at[:, 0] += pelvis_offsets(self.places, self.at, self.trust, legs, self.frame_rate)
 
     def turn_all(self) -> None:
         """Turn every joint and put its children in place."""
@@ -106,15 +114,17 @@ class _Body:
         turns = self.world[:, joint]
         if joint in self.limbs:
             limb, body = self.limbs[joint], self.skeleton
-            known = self.hinges.get(limb.role, UNKNOWN)
-            return hinge_turns(
+            known = self.hinges.get(limb.role, UNKNOWN_HINGES)
+            return rotations_from_flexion(
                 turns, limb, body, self.places, self.trust, self.frame_rate, known
             )
         if joint in self.hands and len(self.skeleton.children[joint]) > 1:
             hand, thumb = self.skeleton.children[joint][:2]
             along, aside = (self.skeleton.offsets[each] for each in (hand, thumb))
             seen = self.places[:, thumb] - self.places[:, joint]
-            return thumb_turns(turns, along, aside, seen, self.trust[:, thumb], self.frame_rate)
+            return rotations_from_thumb(
+                turns, along, aside, seen, self.trust[:, thumb], self.frame_rate
+            )
         return turns
 
     def _above(self, joint: int, parent: int, trunk: dict[int, float]) -> Array:
@@ -142,27 +152,31 @@ class _Body:
         between = shared[1:-1][::-1]
         return {joint: 1.0 / (len(between) + 1 - at) for at, joint in enumerate(between)}
 
-    def _ways(self, joint: int) -> _Ways:
+    def _ways(self, joint: int) -> _ChildDirections:
         rest, seen, hard = [], [], []
         children = self.skeleton.children[joint]
         if joint in self.hands:  # a thumb tells less of a hand than it shakes
             children = children[:1]
         for child in children:
-            if np.linalg.norm(self.skeleton.offsets[child]) > SHORT:
+            if np.linalg.norm(self.skeleton.offsets[child]) > MIN_LENGTH_M:
                 rest.append(self.skeleton.offsets[child])
                 seen.append(self._way(joint, child))
                 hard.append(True)
                 continue
             for beyond in self.skeleton.children[child]:
-                rest.append(SOFT * self.skeleton.offsets[beyond])
-                seen.append(SOFT * (self.places[:, beyond] - self.places[:, joint]))
+                rest.append(GRANDCHILD_WEIGHT * self.skeleton.offsets[beyond])
+                seen.append(
+                    GRANDCHILD_WEIGHT * (self.places[:, beyond] - self.places[:, joint])
+                )
                 hard.append(False)
         shape = (len(self.places), len(rest), 3)
         ways = np.stack(seen, axis=1) if seen else np.zeros(shape)
         known = np.isfinite(ways).all(axis=-1)
         lengths = np.linalg.norm(np.nan_to_num(ways), axis=-1, keepdims=True)
-        ways = np.where(lengths > SHORT, ways, np.nan)
-        return _Ways(np.array(rest).reshape(-1, 3), ways, np.array(hard, bool), known)
+        ways = np.where(lengths > MIN_LENGTH_M, ways, np.nan)
+        return _ChildDirections(
+            np.array(rest).reshape(-1, 3), ways, np.array(hard, bool), known
+        )
 
     def _way(self, joint: int, child: int) -> Array:
         """Return the way to a child: to its very place where the bone is long."""
@@ -170,11 +184,11 @@ class _Body:
         above = self.skeleton.parents[joint]
         if self.hands & {joint, above}:
             seen = self.places[:, child] - self.places[:, joint]
-            return steady_way(
+            return smooth_direction(
                 seen, self.world[:, above], self.skeleton.offsets[joint],
                 self.trust[:, child], self.frame_rate,
             )  # fmt: skip
-        share = np.clip((length - FREE) / (AIMED - FREE), 0.0, 1.0)
+        share = np.clip((length - FREE_LENGTH_M) / (AIMED_LENGTH_M - FREE_LENGTH_M), 0.0, 1.0)
         astray = self.places[:, joint] - self.at[:, joint]
         return np.asarray(
             self.places[:, child] - self.places[:, joint] + share * np.nan_to_num(astray)
@@ -190,25 +204,25 @@ class _Body:
             return above
         turns = above
         if len(ways.rest) > 1:
-            turns = _first_known(best_turns(ways.rest, ways.seen), above, ways.known)
+            turns = _fill_undefined(best_turns(ways.rest, ways.seen), above, ways.known)
         aims = np.flatnonzero(ways.hard) if ways.hard.any() else np.arange(len(ways.rest))
         if len(aims) > 1:
             return turns
         way, rest = ways.seen[:, aims[0]], rotate(turns, ways.rest[aims[0]])
         told = (np.isfinite(way) & np.isfinite(rest)).all(axis=-1)[:, None]
         swing = rotation_between(np.where(told, rest, 1.0), np.where(told, way, 1.0))
-        return _first_known(
+        return _fill_undefined(
             np.where(told, multiply(swing, turns), np.nan), turns, ways.known[:, aims]
         )
 
 
-def _first_known(turns: Array, otherwise: Array, known: NDArray[np.bool_]) -> Array:
+def _fill_undefined(turns: Array, otherwise: Array, known: NDArray[np.bool_]) -> Array:
     """Fill what is not told, in frames in which all children were seen."""
     lost = np.isnan(turns).any(axis=-1) & known.all(axis=-1)
     return np.where(lost[:, None], otherwise, turns)
 
 
-def follow_joints(
+def motion_from_positions(
     tracks: Tracks,
     parents: Sequence[int],
     reliability: Array | None = None,
@@ -258,11 +272,15 @@ def follow_joints(
         raise InvalidMotionError(
             f"Reliability needs shape {tracks.positions.shape[:2]}, not {trust.shape}."
         )
-    made = skeleton or with_girdles(skeleton_from_points(_reliable(tracks, trust), parents))
-    points = _points_of(made, tracks.names)
-    body = _Body(made, tracks.positions[:, points], trust[:, points], tracks.frame_rate)
+    made = skeleton or add_clavicle_joints(
+        skeleton_from_points(_without_unreliable(tracks, trust), parents)
+    )
+    points = _points_of_joints(made, tracks.names)
+    body = _RotationSolver(
+        made, tracks.positions[:, points], trust[:, points], tracks.frame_rate
+    )
     if twists is not None:
-        body.hinges = known_hinges(posture_positions(tracks), twists)
+        body.hinges = hinges_from_twists(posture_positions(tracks), twists)
     body.turn_all()
     if body.legs():
         body.give_way()
@@ -273,13 +291,13 @@ def follow_joints(
     return reach_ankles(motion, body.places, body.legs())
 
 
-def _points_of(skeleton: Skeleton, names: Sequence[str]) -> list[int]:
+def _points_of_joints(skeleton: Skeleton, names: Sequence[str]) -> list[int]:
     """Return the point of each joint; one of no length is where the one above it is."""
     points: list[int] = []
     for joint, name in enumerate(skeleton.names):
         if name in names:
             points.append(list(names).index(name))
-        elif np.linalg.norm(skeleton.offsets[joint]) <= SHORT and joint > 0:
+        elif np.linalg.norm(skeleton.offsets[joint]) <= MIN_LENGTH_M and joint > 0:
             points.append(points[skeleton.parents[joint]])
         else:
             raise InvalidMotionError(
@@ -289,7 +307,7 @@ def _points_of(skeleton: Skeleton, names: Sequence[str]) -> list[int]:
     return points
 
 
-def _reliable(tracks: Tracks, trust: Array) -> Tracks:
+def _without_unreliable(tracks: Tracks, trust: Array) -> Tracks:
     """Leave out what is not reliable, of joints that have enough that is."""
     sure = (trust > RELIABLE) & tracks.visible
     kept = sure | (sure.sum(axis=0) < FEWEST)

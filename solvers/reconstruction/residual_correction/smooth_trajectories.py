@@ -7,7 +7,7 @@ from scipy.linalg import solveh_banded
 Array = NDArray[np.float64]
 
 
-def smoothed(positions: Array, weights: Array, frames: float) -> Array:
+def smooth_trajectories(positions: Array, weights: Array, frames: float) -> Array:
     """Return the paths nearest to the given ones whose accelerations are small.
 
     Minimises sum_t w_t |m_t - z_t|^2 + c sum_t |m_t-1 - 2 m_t + m_t+1|^2 (Whittaker 1923);
@@ -35,7 +35,7 @@ def smoothed(positions: Array, weights: Array, frames: float) -> Array:
     return result
 
 
-def followed(positions: Array, weights: Array, frames: float) -> Array:
+def filter_trajectories(positions: Array, weights: Array, frames: float) -> Array:
     """Return the same as it comes: each frame knows what was before it, and nothing else.
 
     The Kalman filter of the model whose smoother `smoothed` is: velocities change by white

@@ -9,7 +9,7 @@ Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True, eq=False)
-class Foretold:
+class Prediction:
     """What a prior says of postures.
 
     Attributes
@@ -27,7 +27,7 @@ class Foretold:
     coverage: Array
 
 
-def between(told: Foretold, frames: NDArray[np.intp]) -> Foretold:
+def interpolate_prediction(told: Prediction, frames: NDArray[np.intp]) -> Prediction:
     """Return what is told of all frames, along straight lines between those that are told."""
     every = np.arange(frames[-1] + 1)
     after = np.searchsorted(frames, every)
@@ -41,4 +41,4 @@ def between(told: Foretold, frames: NDArray[np.intp]) -> Foretold:
     known = np.isfinite(told.variances)
     variances = led(np.where(known, told.variances, 0.0))
     variances[:, ~known.all(axis=0)] = np.inf
-    return Foretold(led(told.offsets), variances, led(told.coverage))
+    return Prediction(led(told.offsets), variances, led(told.coverage))

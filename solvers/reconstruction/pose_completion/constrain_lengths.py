@@ -8,11 +8,11 @@ from ...motion.humanoid import N_JOINTS, PARENTS, segment_lengths
 Array = NDArray[np.float64]
 
 N_ROUNDS = 30
-STIFFEST = 50.0
+MAX_STIFFNESS_RATIO = 50.0
 """How many times easier a joint gives way that is not trusted than one that is."""
 
 
-def keep_lengths(postures: Array, lengths: Array, trust: Array, sure: Array) -> Array:
+def constrain_lengths(postures: Array, lengths: Array, trust: Array, sure: Array) -> Array:
     """Return postures in which bones are as long as they should be.
 
     A bone of which both ends are trusted stays as it was seen, though trackers see its length
@@ -34,7 +34,7 @@ def keep_lengths(postures: Array, lengths: Array, trust: Array, sure: Array) -> 
        Visual Communication and Image Representation 18(2). doi:10.1016/j.jvcir.2007.01.005
     """
     x = np.array(postures)
-    gives = 1.0 / (1.0 / STIFFEST + np.maximum(trust, sure**2))
+    gives = 1.0 / (1.0 / MAX_STIFFNESS_RATIO + np.maximum(trust, sure**2))
     both = np.minimum(trust, trust[:, np.maximum(PARENTS, 0)])
     wanted = (1.0 - both) * lengths + both * segment_lengths(x)
     for _ in range(N_ROUNDS):
