@@ -1,4 +1,4 @@
-"""Both ways together: postures of clean clips for what was lost, residuals for what is off."""
+"""Reconstruct clean poses: a pose library for missing joints, then residual correction."""
 
 from dataclasses import dataclass, replace
 from enum import Enum
@@ -40,61 +40,60 @@ Array = NDArray[np.float64]
 SHIPPED_PRIOR = Path(__file__).parent / "residual_correction" / "residuals.npz"
 
 OBSERVED_RELIABILITY, REPLACED_RELIABILITY = 0.5, 0.2
-"""Joints that are trusted more than the first stay where they were seen; those trusted less
-than the second are where the postures say."""
+"""Joints more reliable than the first keep their observed positions. Joints less reliable than
+the second take the positions of the library poses; in between, both are blended."""
 HALF_WEIGHT_M = 0.15
-"""Metres from its calmed path beyond which postures count for less than what was seen of a
-joint: sensors that err by more are hardly trusted at all."""
+"""Distance (m) from the smoothed path at which the weight of the library pose is halved.
+Sensors that err by more have a reliability near 0."""
 WRONG_RELIABILITY, UNCERTAIN_RELIABILITY = 0.02, 0.07
-"""Trust up to which that is so, and from which on it is not. On intact takes of UI-PRMD joints
-that are trusted by 0.1 to 0.5 are 10 cm off, those below 0.05 by 40 cm."""
+"""Reliabilities between which `HALF_WEIGHT_M` fades in: below the first it has no effect, above
+the second it applies in full. On intact takes of UI-PRMD, joints of reliability 0.1 to 0.5 are
+10 cm off, joints below 0.05 are 40 cm off."""
 SMOOTHING_S = 0.1
-"""Seconds of the Gaussian that calms what was seen."""
+"""Standard deviation (s) of the Gaussian that smooths observed positions."""
 
 
 class ReconstructMethod(Enum):
-    """What poses are rebuilt with."""
+    """Method that reconstructs poses."""
 
     BOTH = "both"
-    """Lost joints by postures of clean clips, then all by the residual prior."""
+    """Library poses for missing joints, then the residual prior for all joints."""
     POSTURES = "postures"
-    """Postures of clean clips alone."""
+    """Library poses only."""
     RESIDUALS = "residuals"
-    """The residual prior alone; gaps are bridged smoothly."""
+    """The residual prior only; gaps are interpolated smoothly."""
     PUBLISHED_POSTURES = "shum"
-    """[SHJT13]: its reliability, and its stochastic search frame after frame."""
+    """[SHJT13]: its reliability and its stochastic search, frame by frame."""
     PUBLISHED_RESIDUALS = "zhou"
-    """[ZH14]: the same reliability, and its three terms frame after frame."""
+    """[ZH14]: the same reliability and its three energy terms, frame by frame."""
 
 
 @dataclass(frozen=True, kw_only=True)
 class ReconstructSettings(Settings):
-    """How poses are rebuilt from a depth camera's joints."""
+    """Settings of `reconstruct`."""
 
     method: ReconstructMethod = setting(
         ReconstructMethod.BOTH,
-        "Both rebuilds lost joints from clean postures and then takes out how the sensor errs;"
-        " the others do one of these alone; Shum and Zhou do so as their papers have it",
+        "Both completes missing joints from library poses, then subtracts the sensor's typical"
+        " errors. The others do one of the two; Shum and Zhou follow the published methods",
     )
     smoothing: float = setting(
-        0.05, "Movements shorter than about this are jitter; higher is smoother and blunter",
+        0.05, "Movements shorter than about this count as jitter; higher values smooth more",
         unit="s", minimum=0.0, maximum=1.0,
     )  # fmt: skip
     n_neighbours: int = setting(
-        30, "Clean postures that each lost pose is made of; more vary more",
+        30, "Library poses that each pose is computed from; more allow more variation",
         minimum=2, maximum=200,
     )  # fmt: skip
     inferred: float = setting(
-        0.5, "What a joint counts for that the sensor itself only guessed; 0 rebuilds all of"
-        " them, as published; 0.5 those that also look wrong",
+        0.5, "Reliability of joints that the sensor only inferred; 0 reconstructs all of them,"
+        " as published, 0.5 only those that also look wrong",
         minimum=0.0, maximum=1.0,
     )  # fmt: skip
-    causal: bool = setting(
-        False, "Use only what came before each frame, as a live system must; less smooth"
-    )
+    causal: bool = setting(False, "Use only earlier frames, as a live system must; less smooth")
     shift: bool = setting(
-        False, "Also move each joint by the offset that the prior's sensor always has, as from"
-        " the skin to the joint; for recordings of the very sensor that the prior learned",
+        False, "Also subtract the sensor's constant offset of each joint, such as from the skin"
+        " to the joint center; only for the sensor that the prior was learned from",
     )  # fmt: skip
 
 
@@ -114,23 +113,24 @@ def reconstruct(
     settings: ReconstructSettings = DEFAULT_SETTINGS,
     progress: Progress = unwatched,
 ) -> Reconstruction:
-    """Rebuild clean poses from what a depth camera's tracker saw.
+    """Reconstruct clean poses from the joints of a depth camera's tracker.
 
-    Left and right are given back where the tracker exchanged them for a moment. Each joint's
-    reliability is measured. What is not reliable is rebuilt from postures of clean clips that
-    are like the rest (`reconstruct_postures`); how the sensor errs in such postures is taken
-    out (`correct_postures`); and a skeleton of constant bone lengths follows. Causal joints
-    know the actor and what came before, and so keep exchanges, which take the future to tell.
+    The function corrects short left-right swaps (`fix_left_right_swaps`) and measures the
+    reliability of each joint. It completes unreliable joints from library poses that match the
+    reliable ones (`reconstruct_postures`). It subtracts the sensor's typical errors in such
+    poses (`correct_postures`), and fits a skeleton of constant bone lengths. In causal mode
+    each frame depends on the actor's body and on earlier frames only. Left-right swaps then
+    stay, since only later frames reveal them.
 
     Parameters
     ----------
     recording : JointRecording
         15 to 32 joints of a body, among them the hips; NaN where not tracked.
     postures : PostureLibrary, optional
-        The one that is shipped by default.
+        The shipped library by default.
     prior : ResidualPrior, optional
-        The one that is shipped by default, for recordings of the sensor that it learned, a
-        Kinect v2; those of others are steadied only.
+        The shipped prior by default, which was learned from a Kinect v2. Recordings of other
+        sensors are then only smoothed.
     settings : ReconstructSettings
     progress : Progress
 
@@ -141,24 +141,24 @@ def reconstruct(
     Raises
     ------
     InvalidMotionError
-        No body is recognised in the names, or hardly a joint was ever seen.
+        The joint names do not describe a body, or almost no joint was observed.
     SolveCancelled
         Raised by `progress`.
     """
     if not (settings.causal or settings.method in PUBLISHED_METHODS):
         recording = fix_left_right_swaps(recording)
-    trust = measure_reliability(
+    reliability = measure_reliability(
         recording,
         settings=_reliability_settings(settings),
         progress=within(progress, 0.0, 0.1),
     )
-    known = prior is not None or recording.sensor is Sensor.KINECT_V2
+    is_known_sensor = prior is not None or recording.sensor is Sensor.KINECT_V2
     if settings.method in RESIDUAL_METHODS:
         return correct_postures(
             recording,
             prior or shipped_residual_prior(),
-            reliability=trust,
-            settings=_correction_settings(settings, known),
+            reliability=reliability,
+            settings=_correction_settings(settings, is_known_sensor),
             progress=within(progress, 0.1, 1.0),
         )
     if settings.method is not ReconstructMethod.BOTH:
@@ -166,69 +166,79 @@ def reconstruct(
             recording,
             postures,
             settings=_posture_settings(settings),
-            reliability=trust,
+            reliability=reliability,
             progress=within(progress, 0.1, 1.0),
         )
     rebuilt = complete_joints(
         recording,
         postures,
-        trust.combined,
+        reliability.combined,
         _posture_settings(settings),
         within(progress, 0.1, 0.7),
     )
-    lost = _replacement_weights(
-        recording.tracks, trust.combined, rebuilt.tracks, not settings.causal
+    replacement = _replacement_weights(
+        recording.tracks, reliability.combined, rebuilt.tracks, not settings.causal
     )
-    sure = np.maximum(trust.combined, lost * rebuilt.confidence)
-    places = rebuilt.tracks
+    combined = np.maximum(reliability.combined, replacement * rebuilt.confidence)
+    completed = rebuilt.tracks
     if not settings.causal:
-        believed = recording.tracks.visible & (lost <= 0.0)
-        places = places.with_positions(
+        observed = recording.tracks.visible & (replacement <= 0.0)
+        completed = completed.with_positions(
             blend_short_gaps(
-                recording.tracks.positions, believed, places.positions, recording.frame_rate
+                recording.tracks.positions, observed, completed.positions, recording.frame_rate
             )
         )
     corrected = correct_postures(
-        replace(recording, tracks=_blend_tracks(recording.tracks, places, lost)),
+        replace(recording, tracks=_blend_tracks(recording.tracks, completed, replacement)),
         prior or shipped_residual_prior(),
-        reliability=replace(trust, combined=sure),
+        reliability=replace(reliability, combined=combined),
         twists=rebuilt.twists,
-        settings=_correction_settings(settings, known),
+        settings=_correction_settings(settings, is_known_sensor),
         progress=within(progress, 0.7, 1.0),
     )
-    confidence = np.minimum(corrected.confidence, np.maximum(1.0 - lost, rebuilt.confidence))
+    confidence = np.minimum(
+        corrected.confidence, np.maximum(1.0 - replacement, rebuilt.confidence)
+    )
     return Reconstruction(
-        corrected.tracks, corrected.motion, trust, confidence,
+        corrected.tracks, corrected.motion, reliability, confidence,
         f"{rebuilt.method}; {corrected.method}", rebuilt.twists,
     )  # fmt: skip
 
 
-def _replacement_weights(seen: Tracks, trust: Array, rebuilt: Tracks, ahead: bool) -> Array:
-    """Return how far postures are to replace what was seen, (n_frames, n_joints), 0 to 1.
+def _replacement_weights(
+    tracks: Tracks, reliability: Array, rebuilt: Tracks, ahead: bool
+) -> Array:
+    """Return the weight of library poses, shape (n_frames, n_joints), 0 to 1.
 
-    What was seen of a joint but is doubted says at least about where it is; a posture that has
-    it elsewhere is not the one.
+    An observed joint of low reliability still indicates roughly where the joint is. A library
+    pose far from that position gets a low weight.
     """
-    lost = np.clip(
-        (OBSERVED_RELIABILITY - trust) / (OBSERVED_RELIABILITY - REPLACED_RELIABILITY), 0.0, 1.0
+    replacement = np.clip(
+        (OBSERVED_RELIABILITY - reliability) / (OBSERVED_RELIABILITY - REPLACED_RELIABILITY),
+        0.0,
+        1.0,
     )
-    known = seen.visible.any(axis=0)
-    calm = bridged(seen.positions[:, known], ahead=ahead)
-    calm = steadied(calm, SMOOTHING_S * seen.frame_rate, ahead=ahead)
-    away = np.zeros(trust.shape)
-    away[:, known] = np.linalg.norm(rebuilt.positions[:, known] - calm, axis=-1)
-    near = 1.0 / (1.0 + (away / HALF_WEIGHT_M) ** 4)
-    held = np.clip(
-        (trust - WRONG_RELIABILITY) / (UNCERTAIN_RELIABILITY - WRONG_RELIABILITY), 0.0, 1.0
+    observed = tracks.visible.any(axis=0)
+    smooth = bridged(tracks.positions[:, observed], ahead=ahead)
+    smooth = steadied(smooth, SMOOTHING_S * tracks.frame_rate, ahead=ahead)
+    distance = np.zeros(reliability.shape)
+    distance[:, observed] = np.linalg.norm(rebuilt.positions[:, observed] - smooth, axis=-1)
+    closeness = 1.0 / (1.0 + (distance / HALF_WEIGHT_M) ** 4)
+    certainty = np.clip(
+        (reliability - WRONG_RELIABILITY) / (UNCERTAIN_RELIABILITY - WRONG_RELIABILITY),
+        0.0,
+        1.0,
     )
-    return np.where(seen.visible, lost * (1.0 - held + held * near), lost)
+    return np.where(
+        tracks.visible, replacement * (1.0 - certainty + certainty * closeness), replacement
+    )
 
 
-def _blend_tracks(seen: Tracks, rebuilt: Tracks, lost: Array) -> Tracks:
-    """Return joints where they were seen, and where they were lost as postures have them."""
-    share = np.where(seen.visible, lost, 1.0)[..., None]
-    places = np.where(seen.visible[..., None], seen.positions, 0.0)
-    return seen.with_positions(share * rebuilt.positions + (1.0 - share) * places)
+def _blend_tracks(tracks: Tracks, rebuilt: Tracks, replacement: Array) -> Tracks:
+    """Blend observed and library positions; missing joints are taken from the library."""
+    weight = np.where(tracks.visible, replacement, 1.0)[..., None]
+    completed = np.where(tracks.visible[..., None], tracks.positions, 0.0)
+    return tracks.with_positions(weight * rebuilt.positions + (1.0 - weight) * completed)
 
 
 def _reliability_settings(settings: ReconstructSettings) -> ReliabilitySettings:
@@ -246,21 +256,23 @@ def _posture_settings(settings: ReconstructSettings) -> PostureSettings:
     )
 
 
-def _correction_settings(settings: ReconstructSettings, known: bool) -> CorrectionSettings:
-    """Return how to correct; what is not known of a sensor cannot be taken out."""
+def _correction_settings(
+    settings: ReconstructSettings, is_known_sensor: bool
+) -> CorrectionSettings:
+    """Return the settings of the correction; errors of an unknown sensor are not subtracted."""
     method = CorrectionMethod.CAUSAL if settings.causal else CorrectionMethod.WHOLE_TAKE
     if settings.method in PUBLISHED_METHODS:
         method = CorrectionMethod.PUBLISHED
-    usual = CorrectionSettings()
+    defaults = CorrectionSettings()
     return CorrectionSettings(
         method=method,
         smoothing=settings.smoothing,
-        shift=settings.shift and known,
-        change=usual.change if known else 0.0,
+        shift=settings.shift and is_known_sensor,
+        change=defaults.change if is_known_sensor else 0.0,
     )
 
 
 @cache
 def shipped_residual_prior() -> ResidualPrior:
-    """Return the prior that is shipped: a Kinect v2 against markers (UI-PRMD, ODC-PDDL)."""
+    """Return the shipped prior: Kinect v2 against optical markers (UI-PRMD, ODC-PDDL)."""
     return load_residual_prior(SHIPPED_PRIOR)

@@ -1,4 +1,4 @@
-"""Short losses are bridged along the joint's own path, long ones by postures."""
+"""Blend short gaps toward the joint's own interpolated path."""
 
 import numpy as np
 from numpy.typing import NDArray
@@ -7,59 +7,65 @@ from scipy.interpolate import CubicHermiteSpline
 Array = NDArray[np.float64]
 
 HALF_WEIGHT_S = 0.12
-"""Seconds to what is seen on both sides (half their harmonic mean) at which a joint's own path
-and the posture count alike. Movements that the library lacks want .25 (UI-PRMD), those that it
-has want none; this lies between."""
+"""Gap time (s) at which the joint's own path and the library pose have equal weight. The gap
+time is half the harmonic mean of the times to the nearest reliable frames. Movements outside
+the library are best with 0.25 s (UI-PRMD), movements inside it with 0; this value is a
+compromise."""
 
 
 def blend_short_gaps(
-    seen: Array, sure: NDArray[np.bool_], rebuilt: Array, frame_rate: float
+    tracked: Array, reliable: NDArray[np.bool_], rebuilt: Array, frame_rate: float
 ) -> Array:
-    """Return rebuilt joints that near the borders of a loss follow the joint's own path.
+    """Blend completed joints toward the joint's own path near the ends of a gap.
 
     Parameters
     ----------
-    seen : shape (n_frames, n_joints, 3), metres
-        As tracked.
-    sure : shape (n_frames, n_joints)
-        Where what was seen is believed; false where it is NaN.
+    tracked : shape (n_frames, n_joints, 3), metres
+        Tracked positions.
+    reliable : shape (n_frames, n_joints)
+        Reliable observations; false where a position is NaN.
     rebuilt : shape (n_frames, n_joints, 3), metres
-        As postures have them.
+        Positions from library poses.
     frame_rate : float, hertz
 
     Returns
     -------
     NDArray, shape (n_frames, n_joints, 3)
-        Beside and beyond what is believed on one side alone, that is `rebuilt`.
+        Equal to `rebuilt` without reliable frames on both sides.
     """
     result = rebuilt.copy()
-    frames = np.arange(len(seen))
-    for joint in range(seen.shape[1]):
-        known = frames[sure[:, joint]]
-        if len(known) < 2:
+    frames = np.arange(len(tracked))
+    for joint in range(tracked.shape[1]):
+        reliable_frames = frames[reliable[:, joint]]
+        if len(reliable_frames) < 2:
             continue
-        inside = frames[known[0] : known[-1] + 1]
-        place = np.searchsorted(known, inside)
-        before = inside - known[np.where(known[place] == inside, place, place - 1)]
-        after = known[place] - inside
-        whole = np.maximum(before + after, 1)
-        near = before * after / (whole * frame_rate)
-        share = (1.0 / (1.0 + (near / HALF_WEIGHT_S) ** 2))[:, None]
-        path = _hermite_path(known, seen[known, joint])(inside)
-        result[inside, joint] = share * path + (1.0 - share) * rebuilt[inside, joint]
+        inside = frames[reliable_frames[0] : reliable_frames[-1] + 1]
+        following = np.searchsorted(reliable_frames, inside)
+        before = (
+            inside
+            - reliable_frames[
+                np.where(reliable_frames[following] == inside, following, following - 1)
+            ]
+        )
+        after = reliable_frames[following] - inside
+        gap = np.maximum(before + after, 1)
+        gap_time = before * after / (gap * frame_rate)
+        weight = (1.0 / (1.0 + (gap_time / HALF_WEIGHT_S) ** 2))[:, None]
+        path = _hermite_path(reliable_frames, tracked[reliable_frames, joint])(inside)
+        result[inside, joint] = weight * path + (1.0 - weight) * rebuilt[inside, joint]
     return result
 
 
-def _hermite_path(frames: NDArray[np.int64], places: Array) -> CubicHermiteSpline:
-    """Return a path through places that hardly swings out.
+def _hermite_path(frames: NDArray[np.int64], positions: Array) -> CubicHermiteSpline:
+    """Return a smooth path through positions with limited overshoot.
 
-    Speeds are at most three times those of the straight lines beside (Fritsch and Carlson 1980;
-    of vectors here, so that axes do not matter).
+    Slopes are at most three times those of the adjacent straight segments (Fritsch and Carlson
+    1980). The limit applies to vectors here, so that it does not depend on the axes.
     """
-    steps = np.diff(places, axis=0) / np.diff(frames)[:, None]
+    steps = np.diff(positions, axis=0) / np.diff(frames)[:, None]
     speeds = np.linalg.norm(steps, axis=-1)
-    slopes = np.gradient(places, frames.astype(np.float64), axis=0)
-    least = np.minimum(np.append(speeds, speeds[-1]), np.insert(speeds, 0, speeds[0]))
-    size = np.linalg.norm(slopes, axis=-1)
-    limit = np.minimum(1.0, 3.0 * least / np.maximum(size, 1e-12))
-    return CubicHermiteSpline(frames, places, slopes * limit[:, None])
+    slopes = np.gradient(positions, frames.astype(np.float64), axis=0)
+    slower = np.minimum(np.append(speeds, speeds[-1]), np.insert(speeds, 0, speeds[0]))
+    slope_sizes = np.linalg.norm(slopes, axis=-1)
+    scale = np.minimum(1.0, 3.0 * slower / np.maximum(slope_sizes, 1e-12))
+    return CubicHermiteSpline(frames, positions, slopes * scale[:, None])

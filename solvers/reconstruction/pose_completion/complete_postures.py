@@ -1,4 +1,4 @@
-"""Postures of a library that follow what was seen, through whatever was not."""
+"""Complete poses from a pose library where joints are missing."""
 
 from dataclasses import dataclass, replace
 from typing import NamedTuple
@@ -40,33 +40,32 @@ from .settings import PostureMethod, PostureSettings
 Array = NDArray[np.float64]
 
 RAMP_S = 0.2
-"""Seconds before and after a joint is lost in which it is already trusted less, so that it is
-synthesised on both sides of the loss alike."""
+"""Ramp (s) over which a joint's weight falls before and rises after a dropout."""
 REUSED_RELIABILITY = 0.3
-"""Trust in what one round synthesised and is sure of, in the next."""
+"""Reliability of confident joints of one round in the search of the next."""
 HALF_CONFIDENCE_M = 0.05
-"""Metres. Deviation at which that trust, or confidence, is half of what it can be."""
+"""Standard deviation (m) at which that reliability, or the confidence, is halved."""
 MODEL_ERROR_M = 0.03
-"""Metres. Error of a posture that its neighbours agree upon."""
+"""Standard deviation (m) of a pose on which all neighbors agree."""
 BLOCK_FRAMES = 256
-"""Frames whose spaces are in memory at once."""
+"""Number of frames whose pose spaces are in memory at once."""
 CORRECTION_FRAMES = 150
 CORRECTION_NEIGHBORS = 3
 CORRECTION_ROUNDS = 2
 
 
 class CompletedPostures(NamedTuple):
-    """Postures, shape (n_frames, 20, 3), how sure each joint is, and how limbs are twisted."""
+    """Poses, shape (n_frames, 20, 3), the confidence of each joint, and limb twists."""
 
     postures: Array
     confidence: Array
     twists: LimbTwists | None
-    """None where the library tells none."""
+    """None if the library has no twists."""
 
 
 @dataclass(frozen=True, eq=False)
 class _ObservedTake:
-    """What is known of a take: joints relative to where the hips seem to be, and trust."""
+    """Observations of a take: joints relative to the observed hips, and their reliability."""
 
     postures: Array
     trust: Array
@@ -75,7 +74,7 @@ class _ObservedTake:
 
 
 def complete_postures(
-    seen: Normalised,
+    observed: Normalised,
     trust: Array,
     frame_rate: float,
     lengths: Array,
@@ -83,20 +82,20 @@ def complete_postures(
     settings: PostureSettings,
     progress: Progress,
 ) -> CompletedPostures:
-    """Reconstruct the postures of a take.
+    """Complete the poses of a take from a library.
 
     Parameters
     ----------
-    seen : Normalised
+    observed : Normalised
     trust : shape (n_frames, 20)
-        0 where a joint was not seen.
+        0 where a joint is missing.
     frame_rate : float, hertz
     lengths : shape (20,), metres
     library : PostureLibrary
     settings : PostureSettings
     progress : Progress
     """
-    take = _ObservedTake(seen.postures, trust, frame_rate, lengths)
+    take = _ObservedTake(observed.postures, trust, frame_rate, lengths)
     if settings.method is PostureMethod.PUBLISHED:
         return _search_as_published(take, library, settings, progress)
     body = _fit_library_to_actor(take, library, settings)
@@ -104,70 +103,82 @@ def complete_postures(
     errors = _measure_errors(take, body, index, settings)
     take = replace(take, postures=take.postures - errors.offset)
     rounds = 1 if settings.causal else settings.rounds
-    shift = np.zeros((len(trust), 1, 3))
-    asked, given = take.postures, _ramp_reliability(take, settings)
+    offset = np.zeros((len(trust), 1, 3))
+    targets, given = take.postures, _ramp_reliability(take, settings)
     for number in range(rounds):
         part = within(progress, number / rounds, (number + 1) / rounds)
-        made, twists = _synthesize(
-            replace(take, postures=asked, trust=given), body, index, settings, part
+        synthesized, twists = _synthesize(
+            replace(take, postures=targets, trust=given), body, index, settings, part
         )
-        more = _hips_offset(take.postures - shift - made.values, trust, frame_rate, settings)
-        shift = shift + more
-        course = _add_residuals(made, take.postures - shift, take, errors.size, settings)
+        offset_step = _hips_offset(
+            take.postures - offset - synthesized.values, trust, frame_rate, settings
+        )
+        offset = offset + offset_step
+        corrected = _add_residuals(
+            synthesized, take.postures - offset, take, errors.size, settings
+        )
         if number + 1 < rounds:
-            lost = (trust < REUSED_RELIABILITY)[..., None]
-            asked = np.where(lost, course.values, take.postures - shift)
-            again = REUSED_RELIABILITY / (1.0 + (course.spread / HALF_CONFIDENCE_M) ** 2)
-            given = np.maximum(given, again)
-    share = course.spread / errors.size
-    unsure = np.hypot(settings.noise, share * np.hypot(made.spread, MODEL_ERROR_M))
-    sure = 1.0 / (1.0 + (unsure / HALF_CONFIDENCE_M) ** 2)
-    postures = constrain_lengths(course.values + errors.offset, lengths, trust, sure)
-    return CompletedPostures(postures + shift, sure, twists)
+            is_unreliable = (trust < REUSED_RELIABILITY)[..., None]
+            targets = np.where(is_unreliable, corrected.values, take.postures - offset)
+            reused_reliability = REUSED_RELIABILITY / (
+                1.0 + (corrected.spread / HALF_CONFIDENCE_M) ** 2
+            )
+            given = np.maximum(given, reused_reliability)
+    spread_ratio = corrected.spread / errors.size
+    uncertainty = np.hypot(
+        settings.noise, spread_ratio * np.hypot(synthesized.spread, MODEL_ERROR_M)
+    )
+    confidence = 1.0 / (1.0 + (uncertainty / HALF_CONFIDENCE_M) ** 2)
+    postures = constrain_lengths(corrected.values + errors.offset, lengths, trust, confidence)
+    return CompletedPostures(postures + offset, confidence, twists)
 
 
 def _search_as_published(
     take: _ObservedTake, library: PostureLibrary, settings: PostureSettings, progress: Progress
 ) -> CompletedPostures:
-    """Search each frame's posture after that of the frame before, and do nothing else."""
+    """Search each frame's pose starting from the frame before, without further steps."""
     body = replace(
         build_body_postures(library.directions, library.changes, take.lengths),
         twists=library.twists,
     )
-    plain = replace(settings, causal=True, pace=0.0, smoothing=0.0)
+    causal_settings = replace(settings, causal=True, pace=0.0, smoothing=0.0)
     index = index_postures(body, library.groups)
-    made, twists = _synthesize(take, body, index, plain, progress)
-    unsure = np.hypot(made.spread, MODEL_ERROR_M)
-    sure = 1.0 / (1.0 + (unsure / HALF_CONFIDENCE_M) ** 2)
-    return CompletedPostures(made.values, sure, twists and replace(twists, alone=True))
+    synthesized, twists = _synthesize(take, body, index, causal_settings, progress)
+    uncertainty = np.hypot(synthesized.spread, MODEL_ERROR_M)
+    confidence = 1.0 / (1.0 + (uncertainty / HALF_CONFIDENCE_M) ** 2)
+    return CompletedPostures(
+        synthesized.values, confidence, twists and replace(twists, alone=True)
+    )
 
 
 def _fit_library_to_actor(
     take: _ObservedTake, library: PostureLibrary, settings: PostureSettings
 ) -> BodyPostures:
-    """Bring the library to the actor's size, and to the tracker's idea of a body."""
+    """Fit the library to the actor's size and to the tracker's definition of joints."""
     directions, changes, lengths = library.directions, library.changes, take.lengths
     body = build_body_postures(directions, changes, lengths)
     frames = np.linspace(0, len(take.trust) - 1, CORRECTION_FRAMES).astype(int)
     frames = np.unique(frames)
     speeds = _speeds(take, settings)[frames]
-    some = PostureQuery(take.postures[frames], speeds, take.trust[frames], settings.pace)
+    query_sample = PostureQuery(
+        take.postures[frames], speeds, take.trust[frames], settings.pace
+    )
     for _ in range(CORRECTION_ROUNDS):
         index = index_postures(body, library.groups)
-        places, _ = nearest_postures(index, some, CORRECTION_NEIGHBORS)
-        each = places.shape[1]
-        turns = bone_axis_corrections(
-            np.repeat(some.postures, each, axis=0),
-            np.repeat(some.trust, each, axis=0) / each,
-            directions[places.reshape(-1)].astype(np.float64),
+        indices, _ = nearest_postures(index, query_sample, CORRECTION_NEIGHBORS)
+        each = indices.shape[1]
+        corrections = bone_axis_corrections(
+            np.repeat(query_sample.postures, each, axis=0),
+            np.repeat(query_sample.trust, each, axis=0) / each,
+            directions[indices.reshape(-1)].astype(np.float64),
             lengths,
         )
-        body = build_body_postures(directions, changes, lengths, turns)
+        body = build_body_postures(directions, changes, lengths, corrections)
     return replace(body, twists=library.twists)
 
 
 def _speeds(take: _ObservedTake, settings: PostureSettings) -> Array:
-    """Return how bones turn, which takes the frames to both sides to know: NaN if causal."""
+    """Return the velocities of bones; NaN if causal, since they need later frames."""
     speeds = bone_changes(take.postures, take.frame_rate)
     return np.full_like(speeds, np.nan) if settings.causal else speeds
 
@@ -175,32 +186,34 @@ def _speeds(take: _ObservedTake, settings: PostureSettings) -> Array:
 def _measure_errors(
     take: _ObservedTake, body: BodyPostures, index: PostureIndex, settings: PostureSettings
 ) -> SynthesisErrors:
-    """Return what to expect of limbs that are not seen, by leaving them out."""
+    """Estimate the errors of unobserved limbs by cross-validation."""
     speeds = _speeds(take, settings)
 
-    def synthesise(frames: NDArray[np.intp], trust: Array) -> Array:
+    def synthesize(frames: NDArray[np.intp], trust: Array) -> Array:
         query = PostureQuery(take.postures[frames], speeds[frames], trust, settings.pace)
-        places, _ = nearest_postures(index, query, settings.n_neighbours)
-        spaces = local_pca(body.positions[places].astype(np.float64), settings.n_dimensions)
-        asked = EnergyTargets(take.postures[frames], trust, spaces.neighbours, take.lengths)
-        return probable_postures(spaces, asked)[0]
+        indices, _ = nearest_postures(index, query, settings.n_neighbours)
+        spaces = local_pca(body.positions[indices].astype(np.float64), settings.n_dimensions)
+        targets = EnergyTargets(take.postures[frames], trust, spaces.neighbours, take.lengths)
+        return probable_postures(spaces, targets)[0]
 
-    return cross_validate_limbs(take.postures, take.trust, synthesise)
+    return cross_validate_limbs(take.postures, take.trust, synthesize)
 
 
 def _ramp_reliability(take: _ObservedTake, settings: PostureSettings) -> Array:
-    """Let trust fall and rise gradually about a loss; not before it in causal mode."""
+    """Ramp reliability down before and up after a dropout; only up in causal mode."""
     trust = take.trust
-    reach = round(RAMP_S * take.frame_rate)
-    least = trust
-    for way in range(1, min(reach, len(trust) - 1) + 1):
-        share = way / (reach + 1)
-        near = np.ones_like(trust)
-        near[way:] = trust[:-way]
+    n_ramp = round(RAMP_S * take.frame_rate)
+    ramped = trust
+    for distance in range(1, min(n_ramp, len(trust) - 1) + 1):
+        weight = distance / (n_ramp + 1)
+        nearby_reliability = np.ones_like(trust)
+        nearby_reliability[distance:] = trust[:-distance]
         if not settings.causal:
-            near[:-way] = np.minimum(near[:-way], trust[way:])
-        least = np.minimum(least, near + (1.0 - near) * share)
-    return least
+            nearby_reliability[:-distance] = np.minimum(
+                nearby_reliability[:-distance], trust[distance:]
+            )
+        ramped = np.minimum(ramped, nearby_reliability + (1.0 - nearby_reliability) * weight)
+    return ramped
 
 
 def _synthesize(
@@ -210,13 +223,13 @@ def _synthesize(
     settings: PostureSettings,
     progress: Progress,
 ) -> tuple[Estimates, LimbTwists | None]:
-    """Choose a posture for each frame, and the twist of its limbs.
+    """Choose a pose for each frame, and the twist of its limbs.
 
-    The spread of the course is the deviation of each joint by its space.
+    The spread of the result is the standard deviation of each joint in its pose space.
     """
     speeds = _speeds(take, settings)
     query = PostureQuery(take.postures, speeds, take.trust, settings.pace)
-    places, _ = nearest_postures(
+    indices, _ = nearest_postures(
         index, query, settings.n_neighbours, progress=within(progress, 0.0, 0.4)
     )
     values, spread = np.empty_like(take.postures), np.empty_like(take.trust)
@@ -224,18 +237,18 @@ def _synthesize(
     last = None
     for start in range(0, len(values), BLOCK_FRAMES):
         part = slice(start, min(start + BLOCK_FRAMES, len(values)))
-        spaces = local_pca(body.positions[places[part]], settings.n_dimensions)
-        asked = EnergyTargets(
+        spaces = local_pca(body.positions[indices[part]], settings.n_dimensions)
+        targets = EnergyTargets(
             take.postures[part], take.trust[part], spaces.neighbours, take.lengths
         )
-        probable, spread[part] = probable_postures(spaces, asked)
-        values[part] = _choose_postures(spaces, asked, probable, settings, last)
+        probable, spread[part] = probable_postures(spaces, targets)
+        values[part] = _choose_postures(spaces, targets, probable, settings, last)
         if body.twists is not None:
             twists[part] = mean_twists(
-                body.twists[places[part]], values[part], spaces.neighbours, take.trust[part]
+                body.twists[indices[part]], values[part], spaces.neighbours, take.trust[part]
             )
         last = values[max(part.stop - 2, 0) : part.stop]
-        progress(0.4 + 0.6 * part.stop / len(values), "Synthesising postures")
+        progress(0.4 + 0.6 * part.stop / len(values), "Synthesizing poses")
     if settings.smoothing and not settings.causal:
         width = settings.smoothing * take.frame_rate
         values = gaussian_filter1d(values, width, axis=0, mode="nearest")
@@ -244,40 +257,50 @@ def _synthesize(
 
 def _choose_postures(
     spaces: PostureSpaces,
-    asked: EnergyTargets,
+    targets: EnergyTargets,
     probable: Array,
     settings: PostureSettings,
     last: Array | None,
 ) -> Array:
     if settings.method is PostureMethod.PUBLISHED:
-        return search_sequentially(spaces, asked, settings.seed, last)[0]
+        return search_sequentially(spaces, targets, settings.seed, last)[0]
     return probable
 
 
 def _hips_offset(
-    off: Array, trust: Array, frame_rate: float, settings: PostureSettings
+    residuals: Array, trust: Array, frame_rate: float, settings: PostureSettings
 ) -> Array:
-    """Return where the hips are instead of where they seem to be, shape (n_frames, 1, 3).
+    """Return the offset of the hips from their observed position, shape (n_frames, 1, 3).
 
-    They are where joints that are trusted ask for, as far as the hips themselves are not.
+    Reliable joints determine the offset, as far as the hips themselves are unreliable.
     """
-    weight = np.where(np.isfinite(off).all(axis=-1), trust, 0.0)
+    weight = np.where(np.isfinite(residuals).all(axis=-1), trust, 0.0)
     weight[:, HIPS] = 0.0
     total = weight.sum(axis=1)[:, None]
-    move = np.einsum("fi,fik->fk", weight, np.nan_to_num(off)) / (1.0 + total)
-    move *= 1.0 - np.where(np.isfinite(off[:, HIPS, :1]), trust[:, [HIPS]], 0.0)
+    displacement = np.einsum("fi,fik->fk", weight, np.nan_to_num(residuals)) / (1.0 + total)
+    displacement *= 1.0 - np.where(np.isfinite(residuals[:, HIPS, :1]), trust[:, [HIPS]], 0.0)
     if settings.smoothing and not settings.causal:
-        move = gaussian_filter1d(move, settings.smoothing * frame_rate, axis=0, mode="nearest")
-    return np.asarray(move[:, None])
+        displacement = gaussian_filter1d(
+            displacement, settings.smoothing * frame_rate, axis=0, mode="nearest"
+        )
+    return np.asarray(displacement[:, None])
 
 
 def _add_residuals(
-    made: Estimates, seen: Array, take: _ObservedTake, size: Array, settings: PostureSettings
+    synthesized: Estimates,
+    observed: Array,
+    take: _ObservedTake,
+    size: Array,
+    settings: PostureSettings,
 ) -> Estimates:
-    """Lead synthesised postures through what was seen."""
+    """Add smoothed residuals of the observations to synthesized poses."""
     dt, deviation = 1.0 / take.frame_rate, measurement_deviation(take.trust, settings.noise)
     if settings.causal:
-        course = filter_residuals(made.values, seen, deviation, dt, size, settings.memory)
+        corrected = filter_residuals(
+            synthesized.values, observed, deviation, dt, size, settings.memory
+        )
     else:
-        course = smooth_residuals(seen - made.values, deviation, dt, size, settings.memory)
-    return Estimates(made.values + course.values, course.spread)
+        corrected = smooth_residuals(
+            observed - synthesized.values, deviation, dt, size, settings.memory
+        )
+    return Estimates(synthesized.values + corrected.values, corrected.spread)

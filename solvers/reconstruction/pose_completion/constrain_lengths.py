@@ -1,4 +1,4 @@
-"""Bones of lost joints keep their lengths, and joints that are trusted their places."""
+"""Constrain bone lengths of missing joints, and retain the positions of reliable joints."""
 
 import numpy as np
 from numpy.typing import NDArray
@@ -9,24 +9,26 @@ Array = NDArray[np.float64]
 
 N_ROUNDS = 30
 MAX_STIFFNESS_RATIO = 50.0
-"""How many times easier a joint gives way that is not trusted than one that is."""
+"""Largest ratio of the mobilities of an unreliable and a reliable joint."""
 
 
-def constrain_lengths(postures: Array, lengths: Array, trust: Array, sure: Array) -> Array:
-    """Return postures in which bones are as long as they should be.
+def constrain_lengths(
+    postures: Array, lengths: Array, reliability: Array, confidence: Array
+) -> Array:
+    """Return poses with corrected bone lengths.
 
-    A bone of which both ends are trusted stays as it was seen, though trackers see its length
-    change; one with an end that is not is as long as the actor's. Position-based dynamics
-    [1]_: bone after bone, both ends give way, the less sure one more.
+    A bone with two reliable ends keeps its observed length, although trackers let lengths vary.
+    Other bones get the actor's length. Position-based dynamics [1]_ moves both ends of one bone
+    after another, the end of lower confidence more.
 
     Parameters
     ----------
     postures : shape (n_frames, 20, 3), metres
     lengths : shape (20,), metres
-    trust : shape (n_frames, 20), 0 to 1
-        How far what was seen of each joint is trusted.
-    sure : shape (n_frames, 20), 0 to 1
-        How sure each joint is, seen or not.
+    reliability : shape (n_frames, 20), 0 to 1
+        Reliability of the observation of each joint.
+    confidence : shape (n_frames, 20), 0 to 1
+        Confidence of each joint, observed or not.
 
     References
     ----------
@@ -34,16 +36,18 @@ def constrain_lengths(postures: Array, lengths: Array, trust: Array, sure: Array
        Visual Communication and Image Representation 18(2). doi:10.1016/j.jvcir.2007.01.005
     """
     x = np.array(postures)
-    gives = 1.0 / (1.0 / MAX_STIFFNESS_RATIO + np.maximum(trust, sure**2))
-    both = np.minimum(trust, trust[:, np.maximum(PARENTS, 0)])
-    wanted = (1.0 - both) * lengths + both * segment_lengths(x)
+    mobility = 1.0 / (1.0 / MAX_STIFFNESS_RATIO + np.maximum(reliability, confidence**2))
+    bone_reliability = np.minimum(reliability, reliability[:, np.maximum(PARENTS, 0)])
+    target_lengths = (1.0 - bone_reliability) * lengths + bone_reliability * segment_lengths(x)
     for _ in range(N_ROUNDS):
         for joint in range(1, N_JOINTS):
             above = PARENTS[joint]
-            way = x[:, joint] - x[:, above]
-            size = np.maximum(np.linalg.norm(way, axis=-1), 1e-6)
-            share = gives[:, joint] + gives[:, above]
-            move = ((wanted[:, joint] - size) / size / share)[:, None] * way
-            x[:, joint] += gives[:, [joint]] * move
-            x[:, above] -= gives[:, [above]] * move
+            bone = x[:, joint] - x[:, above]
+            length = np.maximum(np.linalg.norm(bone, axis=-1), 1e-6)
+            total_mobility = mobility[:, joint] + mobility[:, above]
+            move = ((target_lengths[:, joint] - length) / length / total_mobility)[
+                :, None
+            ] * bone
+            x[:, joint] += mobility[:, [joint]] * move
+            x[:, above] -= mobility[:, [above]] * move
     return x

@@ -1,4 +1,4 @@
-"""Rebuild the postures of a recording from those of clean clips."""
+"""Reconstruct the poses of a recording from a library of clean poses."""
 
 from typing import NamedTuple
 
@@ -25,11 +25,11 @@ from .settings import DEFAULT_SETTINGS, PostureMethod, PostureSettings
 Array = NDArray[np.float64]
 
 MIN_JOINTS = 3
-"""Joints of postures that must be seen together in some frame."""
+"""Minimum number of posture joints observed in one frame."""
 
 
 class CompletedJoints(NamedTuple):
-    """Joints, and what is known of them: see `Reconstruction`."""
+    """Completed joints and their confidence; see `Reconstruction`."""
 
     tracks: Tracks
     confidence: Array
@@ -45,36 +45,36 @@ def reconstruct_postures(
     reliability: Reliability | None = None,
     progress: Progress = unwatched,
 ) -> Reconstruction:
-    """Rebuild what a depth camera lost, with postures of clean clips [1]_.
+    """Reconstruct unreliable and missing joints from a library of clean poses [1]_.
 
-    For each frame the postures of the library that are like what was seen, joint by joint as
-    trusted, span a space of principal components (local PCA), in which the posture is chosen.
-    Joints that were trusted then stay where they were seen; how the others differ from what
-    was chosen leads over from before to after their loss. The library is brought to the actor's
-    bone lengths and to the tracker's idea of a body, so that joints need not be.
+    For each frame, the library poses nearest to the reliable joints span a space of principal
+    components (local PCA), from which the pose is chosen. Reliable joints keep their observed
+    positions. The residual between observed and chosen positions is interpolated across gaps.
+    The library is first fitted to the actor's bone lengths and to the tracker's definition of
+    joints.
 
     Parameters
     ----------
     recording : JointRecording
         15 to 32 joints, among them the hips.
     postures : PostureLibrary, optional
-        The one that is shipped by default.
+        The shipped library by default.
     settings : PostureSettings
     reliability : Reliability, optional
-        That of `measure_reliability` by default.
+        Computed by `measure_reliability` by default.
     progress : Progress
 
     Returns
     -------
     Reconstruction
-        Every joint in every frame; those that are never seen where the library has them, with
-        the usual share of the body's size. Bones of lost joints have the actor's lengths as
-        nearly as trusted joints allow; those of the motion have them exactly.
+        Every joint in every frame; joints that are never observed follow the library at
+        typical body proportions. Bones of missing joints have the actor's lengths as far as
+        reliable joints allow; bones of the motion have them exactly.
 
     Raises
     ------
     InvalidMotionError
-        No body is recognised in the names, or hardly a joint was ever seen.
+        The joint names do not describe a body, or almost no joint was observed.
     SolveCancelled
         Raised by `progress`.
 
@@ -104,36 +104,40 @@ def complete_joints(
     settings: PostureSettings,
     progress: Progress,
 ) -> CompletedJoints:
-    """Rebuild what a depth camera lost: `reconstruct_postures` without a motion.
+    """Complete unreliable and missing joints: `reconstruct_postures` without a motion.
 
     `combined` is the reliability of the joints, shape (n_frames, n_joints).
     """
     library = load_posture_library() if postures is None else postures
     positions = posture_positions(recording)
-    seen = np.isfinite(positions).all(axis=-1)
-    trust = np.where(seen, posture_reliability(recording, combined), 0.0)
+    observed = np.isfinite(positions).all(axis=-1)
+    trust = np.where(observed, posture_reliability(recording, combined), 0.0)
     _check_observed(recording, positions, trust)
     rate = recording.frame_rate
     body = normalise(positions, rate, trust, ahead=not settings.causal)
     lengths = body_lengths(body.postures, trust)
-    found = complete_postures(body, trust, rate, lengths, library, settings, progress)
+    completed = complete_postures(body, trust, rate, lengths, library, settings, progress)
     tracks = recording.tracks
-    after = body.put_back(found.postures)
-    joints = positions_from_postures(tracks.names, tracks.positions, combined, positions, after)
-    confidence = found.confidence[:, find_anchors(tracks.names)]
-    words = _describe_method(settings, library)
-    return CompletedJoints(tracks.with_positions(joints), confidence, words, found.twists)
+    world_positions = body.put_back(completed.postures)
+    joints = positions_from_postures(
+        tracks.names, tracks.positions, combined, positions, world_positions
+    )
+    confidence = completed.confidence[:, find_anchors(tracks.names)]
+    description = _describe_method(settings, library)
+    return CompletedJoints(
+        tracks.with_positions(joints), confidence, description, completed.twists
+    )
 
 
 def _check_observed(recording: JointRecording, positions: Array, trust: Array) -> None:
-    """Raise InvalidMotionError where no frame has joints enough, and say why."""
+    """Raise InvalidMotionError with the reason if no frame has enough reliable joints."""
     if _max_joints(trust > 0.0) >= MIN_JOINTS:
         return
-    known = joints_of_names(recording.names)
-    if len(known) < MIN_JOINTS:
+    recognized = joints_of_names(recording.names)
+    if len(recognized) < MIN_JOINTS:
         raise InvalidMotionError(
-            f"Only {len(known)} joints have recognized names ({', '.join(known)}). Use a"
-            f" recording with at least {MIN_JOINTS}, including the hips and limbs."
+            f"Only {len(recognized)} joints have recognized names ({', '.join(recognized)}). Use"
+            f" a recording with at least {MIN_JOINTS}, including the hips and limbs."
         )
     state = recording.tracking_state
     if state is None or _max_joints(np.isfinite(positions)[..., 0]) < MIN_JOINTS:
@@ -148,23 +152,24 @@ def _check_observed(recording: JointRecording, positions: Array, trust: Array) -
         )
     raise InvalidMotionError(
         f"No frame has {MIN_JOINTS} joints with the tracking state `tracked`, although"
-        " positions exist. If the positions are right, remove the tracking states from the recording."
+        " positions exist. If the positions are right, remove the tracking states from the"
+        " recording."
     )
 
 
-def _max_joints(seen: NDArray[np.bool_]) -> int:
-    """Return how many joints are seen in the frame that has most, of (n_frames, n_joints)."""
-    return int(seen.sum(axis=1).max(initial=0))
+def _max_joints(observed: NDArray[np.bool_]) -> int:
+    """Return the largest number of observed joints of a frame, from (n_frames, n_joints)."""
+    return int(observed.sum(axis=1).max(initial=0))
 
 
 def _describe_method(settings: PostureSettings, library: PostureLibrary) -> str:
-    ways = {
+    methods = {
         PostureMethod.PROBABLE: "most probable postures",
         PostureMethod.PUBLISHED: "postures by stochastic search",
     }
-    when = ", causal" if settings.causal else ""
-    of = f" ({library.trained_on})" if library.trained_on else ""
+    causality = ", causal" if settings.causal else ""
+    source = f" ({library.trained_on})" if library.trained_on else ""
     return (
-        f"{ways[settings.method]} among {settings.n_neighbours} neighbours of"
-        f" {library.n_postures}{of}{when}"
+        f"{methods[settings.method]} among {settings.n_neighbours} neighbours of"
+        f" {library.n_postures}{source}{causality}"
     )

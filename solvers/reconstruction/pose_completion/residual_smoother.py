@@ -1,4 +1,4 @@
-"""How what was seen differs from what was synthesised, as a course through gaps."""
+"""Smooth the residual between observed and synthesized positions across gaps."""
 
 from typing import NamedTuple
 
@@ -8,13 +8,13 @@ from numpy.typing import NDArray
 Array = NDArray[np.float64]
 
 MIN_RELIABILITY = 0.05
-"""Joints trusted less than this tell nothing."""
+"""Joints below this reliability count as missing."""
 
 
 class Estimates(NamedTuple):
-    """Estimates of values, shape (n_frames, n_joints, 3), and their standard deviations.
+    """Estimated values, shape (n_frames, n_joints, 3), and their standard deviations.
 
-    `spread` has shape (n_frames, n_joints); it is that of each coordinate, in metres.
+    `spread` has shape (n_frames, n_joints); it is the standard deviation of each coordinate, m.
     """
 
     values: Array
@@ -22,7 +22,7 @@ class Estimates(NamedTuple):
 
 
 class _Process(NamedTuple):
-    """How a value and its slope go on by themselves: transition, noise, start; (..., 2, 2)."""
+    """Dynamics of a value and its slope: transition, noise, start; (..., 2, 2)."""
 
     A: Array
     Q: Array
@@ -30,7 +30,7 @@ class _Process(NamedTuple):
 
 
 def measurement_deviation(trust: Array, noise: float) -> Array:
-    """Return the standard deviation of what is seen; infinite where it tells nothing."""
+    """Return the standard deviation of observations; infinite for unreliable joints."""
     with np.errstate(divide="ignore"):
         return np.where(
             trust > MIN_RELIABILITY, noise / np.maximum(trust, MIN_RELIABILITY) ** 2, np.inf
@@ -38,24 +38,24 @@ def measurement_deviation(trust: Array, noise: float) -> Array:
 
 
 def smooth_residuals(
-    seen: Array, deviation: Array, dt: float, size: Array, memory: float
+    observed: Array, deviation: Array, dt: float, size: Array, memory: float
 ) -> Estimates:
-    """Follow values that fade to nothing where they are not seen.
+    """Smooth residuals that decay to zero across gaps.
 
-    A Gaussian process with Matérn covariance (smoothness 3/2), as a Kalman filter and a
-    Rauch-Tung-Striebel smoother [1]_.
+    A Gaussian process with Matérn covariance (smoothness 3/2), computed by a Kalman filter and
+    a Rauch-Tung-Striebel smoother [1]_.
 
     Parameters
     ----------
-    seen : shape (n_frames, n_joints, 3), metres
-        NaN: not seen.
+    observed : shape (n_frames, n_joints, 3), metres
+        NaN: missing.
     deviation : shape (n_frames, n_joints), metres
-        Standard deviation of what was seen; infinite where it tells nothing.
+        Standard deviation of the observations; infinite for missing joints.
     dt : float, seconds
     size : shape (n_joints,), metres
-        Usual size of a value.
+        Standard deviation of the process.
     memory : float, seconds
-        How long it lasts.
+        Time constant of the decay.
 
     References
     ----------
@@ -68,47 +68,49 @@ def smooth_residuals(
         [-(rate**2) * dt, 1.0 - rate * dt],
     ])  # fmt: skip
     start = size[:, None, None] ** 2 * np.diag([1.0, rate**2])
-    return _filter_and_smooth(seen, deviation, _Process(A, start - A @ start @ A.T, start))
+    return _filter_and_smooth(observed, deviation, _Process(A, start - A @ start @ A.T, start))
 
 
 def filter_residuals(
-    synthesised: Array, seen: Array, deviation: Array, dt: float, size: Array, memory: float
+    synthesised: Array, observed: Array, deviation: Array, dt: float, size: Array, memory: float
 ) -> Estimates:
-    """Estimate, from the past alone, how far joints are from where they were synthesised.
+    """Estimate the residuals of joints from past frames only.
 
-    A joint that is lost goes on from where it was last, and from there to where it is
-    synthesised, in the time of its memory.
+    After a dropout, a joint moves from its last position to its synthesized position within the
+    time constant `memory`.
 
     Parameters
     ----------
     synthesised : shape (n_frames, n_joints, 3), metres
     seen, deviation, dt, size, memory
-        As in `fading_course`; what was seen are joints, not differences.
+        As in `smooth_residuals`; `observed` holds positions, not differences.
     """
-    told = np.isfinite(seen).all(axis=-1) & (deviation < np.inf)
-    off = np.where(told[..., None], seen - synthesised, 0.0)
-    fade = np.exp(-dt / memory)
-    values, spread = np.empty_like(off), np.empty(told.shape)
-    value, variance = np.zeros_like(off[0]), size**2
-    for frame in range(len(off)):
+    is_observed = np.isfinite(observed).all(axis=-1) & (deviation < np.inf)
+    residuals = np.where(is_observed[..., None], observed - synthesised, 0.0)
+    decay = np.exp(-dt / memory)
+    values, spread = np.empty_like(residuals), np.empty(is_observed.shape)
+    value, variance = np.zeros_like(residuals[0]), size**2
+    for frame in range(len(residuals)):
         if frame:
-            lost = told[frame - 1] & ~told[frame]
-            jump = synthesised[frame - 1] - synthesised[frame]
-            value = fade * value + lost[:, None] * (jump + (1.0 - fade) * value)
-            variance = fade**2 * variance + (1.0 - fade**2) * size**2
-        noise = np.where(told[frame], deviation[frame], np.inf) ** 2
+            dropped_out = is_observed[frame - 1] & ~is_observed[frame]
+            displacement = synthesised[frame - 1] - synthesised[frame]
+            value = decay * value + dropped_out[:, None] * (
+                displacement + (1.0 - decay) * value
+            )
+            variance = decay**2 * variance + (1.0 - decay**2) * size**2
+        noise = np.where(is_observed[frame], deviation[frame], np.inf) ** 2
         gain = variance / (variance + noise)
-        value = value + gain[:, None] * (off[frame] - value)
+        value = value + gain[:, None] * (residuals[frame] - value)
         variance = (1.0 - gain) * variance
         values[frame], spread[frame] = value, np.sqrt(variance)
     return Estimates(values, spread)
 
 
-def _filter_and_smooth(seen: Array, deviation: Array, process: _Process) -> Estimates:
+def _filter_and_smooth(observed: Array, deviation: Array, process: _Process) -> Estimates:
     n_frames, n_joints = deviation.shape
-    told = np.isfinite(seen).all(axis=-1)
-    values = np.where(told[..., None], seen, 0.0)
-    variances = np.where(told, deviation, np.inf)[..., None, None] ** 2
+    is_observed = np.isfinite(observed).all(axis=-1)
+    values = np.where(is_observed[..., None], observed, 0.0)
+    variances = np.where(is_observed, deviation, np.inf)[..., None, None] ** 2
     A, Q, start = process
     mean, P = np.zeros((n_joints, 2, 3)), np.broadcast_to(start, (n_joints, 2, 2))
     means = np.empty((n_frames, n_joints, 2, 3))
@@ -131,5 +133,5 @@ def _smooth_backward(means: Array, spreads: Array, A: Array, Q: Array) -> None:
     for frame in range(len(means) - 2, -1, -1):
         gain = gains[frame]
         means[frame] += gain @ (means[frame + 1] - A @ means[frame])
-        change = spreads[frame + 1] - predicted[frame]
-        spreads[frame] += gain @ change @ gain.swapaxes(-1, -2)
+        correction = spreads[frame + 1] - predicted[frame]
+        spreads[frame] += gain @ correction @ gain.swapaxes(-1, -2)

@@ -1,4 +1,4 @@
-"""How postures are reconstructed from a library."""
+"""Settings of pose completion from a library."""
 
 from dataclasses import dataclass
 from enum import Enum
@@ -7,55 +7,53 @@ from ...settings import Settings, setting
 
 
 class PostureMethod(Enum):
-    """How a posture is chosen among those that its neighbours span."""
+    """Method that chooses a pose in the space of its neighbors."""
 
     PROBABLE = "probable"
-    """The most probable one, if the neighbours are a sample of a normal distribution."""
+    """The most probable pose, if the neighbors are samples of a normal distribution."""
     PUBLISHED = "published"
-    """The one of least energy by the stochastic search of [SHJT13], frame by frame. Nothing
+    """The pose of least energy by the stochastic search of [SHJT13], frame by frame. Nothing
     else is done: `smoothing`, `memory`, `pace` and `rounds` have no effect."""
 
 
 @dataclass(frozen=True, kw_only=True)
 class PostureSettings(Settings):
-    """How postures are reconstructed."""
+    """Settings of `reconstruct_postures`."""
 
     method: PostureMethod = setting(
-        PostureMethod.PROBABLE, "What is taken for the best posture among those that are alike"
+        PostureMethod.PROBABLE, "Criterion for the best pose among the neighbors"
     )
-    causal: bool = setting(
-        False, "Use only what came before each frame, as a live system must; less smooth"
-    )
+    causal: bool = setting(False, "Use only earlier frames, as a live system must; less smooth")
     n_neighbours: int = setting(
-        30, "Postures of the library that each posture is made of; more vary more",
+        30, "Library poses that each pose is computed from; more allow more variation",
         minimum=2, maximum=200,
     )  # fmt: skip
     n_dimensions: int = setting(
-        20, "Ways in which a posture may differ from its neighbours' mean",
+        20, "Principal components in which a pose may differ from its neighbors' mean",
         minimum=1, maximum=60, advanced=True,
     )  # fmt: skip
     noise: float = setting(
-        0.005, "Error of joints that are trusted; more makes them steadier", unit="m",
+        0.005, "Standard deviation of reliable joints; higher values smooth more", unit="m",
         minimum=1e-4, maximum=0.1,
     )  # fmt: skip
     smoothing: float = setting(
-        0.1, "Over how long synthesised postures are smoothed", unit="s",
+        0.1, "Time over which synthesized poses are smoothed", unit="s",
         minimum=0.0, maximum=2.0,
     )  # fmt: skip
     memory: float = setting(
-        0.5, "How long a lost joint remembers where it was seen", unit="s",
-        minimum=0.02, maximum=10.0, advanced=True,
+        0.5, "Time over which a missing joint moves from its last position to the library's",
+        unit="s", minimum=0.02, maximum=10.0, advanced=True,
     )  # fmt: skip
     pace: float = setting(
-        0.2, "How much movement counts against the posture when looking for like ones; 0 as"
-        " published", unit="s", minimum=0.0, maximum=2.0, advanced=True,
+        0.2, "Time that turns velocity into distance in the search for neighbors; higher weighs"
+        " movement more, 0 as published", unit="s", minimum=0.0, maximum=2.0, advanced=True,
     )  # fmt: skip
     rounds: int = setting(
-        2, "How often like postures are looked for, each time with what was found before",
+        2, "Searches for neighbors; each uses the result of the one before",
         minimum=1, maximum=10, advanced=True,
     )  # fmt: skip
     seed: int = setting(
-        0, "Start of the random numbers of the published method", minimum=0, maximum=2**31 - 1,
+        0, "Seed of the random numbers of the published method", minimum=0, maximum=2**31 - 1,
         advanced=True,
     )  # fmt: skip
 

@@ -1,4 +1,4 @@
-"""Clean poses to learn from, and the nearest of them to a measured one."""
+"""Clean poses to learn from, and the search for the nearest ones."""
 
 from .neighbors import PostureIndex, PostureQuery, index_postures, nearest_postures
 from .posture_library import (

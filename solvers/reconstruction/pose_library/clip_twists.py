@@ -1,4 +1,4 @@
-"""The twist of limbs in clean clips, whatever the makers' rest poses and axes."""
+"""Axial rotations of limbs in clean clips, independent of rest poses and bone axes."""
 
 from collections.abc import Sequence
 from typing import NamedTuple
@@ -22,30 +22,29 @@ from ..joint_rotations import (
 Array = NDArray[np.float64]
 
 HALF_WEIGHT_COUNT = 20.0
-"""Bent postures of a rig at which half of what its rotations say of straight limbs is
-believed."""
+"""Number of flexed poses of a rig at which its rotations of straight limbs get half weight."""
 
 
 class ClipTwists(NamedTuple):
-    """What a clip tells of twist, each of shape (n_frames, 4).
+    """Axial rotations of limbs in a clip, each of shape (n_frames, 4).
 
     Attributes
     ----------
-    rotated : complex
-        Of length 1: by the rotations of upper arms and thighs, from the T-pose.
-    bent : complex
-        Of length 1: by the planes in which elbows and knees bend.
-    shares : 0 to 1
-        How far these planes are told.
+    from_rotations : complex
+        Of length 1: from the rotations of upper arms and thighs relative to the T-pose.
+    from_flexion : complex
+        Of length 1: from the flexion planes of elbows and knees.
+    flexion_fractions : 0 to 1
+        Weight of the flexion planes.
     """
 
-    rotated: Complex
-    bent: Complex
-    shares: Array
+    from_rotations: Complex
+    from_flexion: Complex
+    flexion_fractions: Array
 
 
 def read_clip_twists(motion: Motion, postures: Array) -> ClipTwists:
-    """Read the twist of limbs from a clip.
+    """Read the axial rotations of limbs from a clip.
 
     Parameters
     ----------
@@ -58,48 +57,62 @@ def read_clip_twists(motion: Motion, postures: Array) -> ClipTwists:
     alignment = t_pose_alignment(motion.skeleton, humanoid)
     world = forward_kinematics(motion).rotations
     hinges = np.empty((motion.n_frames, N_TWISTED_LIMBS, 3))
-    for place, limb in enumerate(TWISTED_LIMBS):
+    for index, limb in enumerate(TWISTED_LIMBS):
         joint = joints[POSTURE_JOINTS[limb.upper]]
-        hinges[:, place] = rotate(multiply(world[:, joint], alignment[joint]), limb.hinge)
-    directions, plain = untwisted_hinges(postures)
-    normals, bends = flexion_normals(postures)
-    rotated, bent = (axial_angles(directions, plain, each) for each in (hinges, normals))
-    likely = 0.5 + 0.5 * np.nan_to_num(bent).real
-    shares = np.where(np.isfinite(bent), flexion_weights(bends) * likely, 0.0)
-    return ClipTwists(rotated, np.nan_to_num(bent), np.nan_to_num(shares))
+        hinges[:, index] = rotate(multiply(world[:, joint], alignment[joint]), limb.hinge)
+    directions, untwisted = untwisted_hinges(postures)
+    normals, angles = flexion_normals(postures)
+    from_rotations, from_flexion = (
+        axial_angles(directions, untwisted, each) for each in (hinges, normals)
+    )
+    consistency = 0.5 + 0.5 * np.nan_to_num(from_flexion).real
+    flexion_fractions = np.where(
+        np.isfinite(from_flexion), flexion_weights(angles) * consistency, 0.0
+    )
+    return ClipTwists(
+        from_rotations, np.nan_to_num(from_flexion), np.nan_to_num(flexion_fractions)
+    )
 
 
 def combine_clip_twists(
     skeletons: Sequence[Skeleton], clips: Sequence[ClipTwists]
 ) -> list[Complex]:
-    """Return what clips tell of twist when each maker's constant offset is taken out.
+    """Combine the two estimates of axial rotation after removing each rig's constant offset.
 
-    Where a limb bends, its plane tells the twist. By how much a maker's idea of the hinge is
-    turned from that plane is the same in all postures of a rig, and is measured on all its
-    clips; where a limb is straight, rotations without this offset tell the twist, as far as
-    they agree with bends elsewhere.
+    Where a limb is flexed, its flexion plane determines the axial rotation. A rig's hinge axes
+    deviate from that plane by a constant angle, which is averaged over all its clips. Where a
+    limb is straight, the rotations without this offset determine the axial rotation, weighted
+    by their agreement with flexed frames.
 
     Returns
     -------
     list of complex arrays, shape (n_frames, 4)
-        Points in the unit circle; shorter where less is known.
+        Points in the unit circle; shorter where less certain.
     """
     sums: dict[object, tuple[Complex, Array]] = {}
     keys = [_rig_key(skeleton) for skeleton in skeletons]
     for key, clip in zip(keys, clips, strict=True):
-        off = np.nan_to_num(clip.bent * np.conj(clip.rotated))
-        turns, weights = sums.get(
+        offsets = np.nan_to_num(clip.from_flexion * np.conj(clip.from_rotations))
+        offset_sum, weights = sums.get(
             key, (np.zeros(N_TWISTED_LIMBS, complex), np.zeros(N_TWISTED_LIMBS))
         )
-        sums[key] = turns + (clip.shares * off).sum(axis=0), weights + clip.shares.sum(axis=0)
-    found = []
+        sums[key] = (
+            offset_sum + (clip.flexion_fractions * offsets).sum(axis=0),
+            weights + clip.flexion_fractions.sum(axis=0),
+        )
+    combined = []
     for key, clip in zip(keys, clips, strict=True):
-        turns, weights = sums[key]
-        straight = np.nan_to_num(clip.rotated) * (turns / (weights + HALF_WEIGHT_COUNT))
-        found.append(clip.shares * clip.bent + (1.0 - clip.shares) * straight)
-    return found
+        offset_sum, weights = sums[key]
+        straight = np.nan_to_num(clip.from_rotations) * (
+            offset_sum / (weights + HALF_WEIGHT_COUNT)
+        )
+        combined.append(
+            clip.flexion_fractions * clip.from_flexion
+            + (1.0 - clip.flexion_fractions) * straight
+        )
+    return combined
 
 
 def _rig_key(skeleton: Skeleton) -> object:
-    """Return what is the same for all clips of one rig; the sign of 0 is not."""
+    """Return a key common to all clips of one rig; it ignores the sign of zero."""
     return skeleton.names, (np.round(skeleton.offsets, 4) + 0.0).tobytes()

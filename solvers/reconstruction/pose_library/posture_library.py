@@ -1,4 +1,4 @@
-"""Postures of clean clips, thinned out to an even density: what natural bodies do."""
+"""A library of distinct clean poses that shows how natural bodies stand and move."""
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
@@ -31,6 +31,7 @@ Array = NDArray[np.float64]
 
 SHIPPED_LIBRARY = Path(__file__).parent / "postures.npz"
 DIRECTION_STEP = 1.0 / 500.0
+"""Quantization steps of stored directions, of their changes per second, and of twists."""
 CHANGE_STEP = 1.0 / 8.0
 TWIST_STEP = 1.0 / 127.0
 """Steps in which directions, their changes per second, and twists are stored."""
@@ -51,31 +52,31 @@ LAYOUT = ArchiveLayout(
     remedy="Build them again.",
 )
 PACE_S = 0.1
-"""Seconds of movement that count as much as the same way between two postures."""
+"""Time (s) that converts the velocity difference of two poses to a distance."""
 
 
 @dataclass(frozen=True, kw_only=True)
 class PostureLibrarySettings(Settings):
-    """How postures are taken from clips."""
+    """Settings of `build_posture_library`."""
 
     frame_rate: float = setting(
-        15.0, "Postures looked at per second of a clip; more catches faster movements",
+        15.0, "Poses sampled per second of a clip; more captures faster movements",
         unit="Hz", minimum=1.0, maximum=120.0,
     )  # fmt: skip
     spacing: float = setting(
-        0.01, "Least difference between two postures kept, as a mean over joints; more keeps"
+        0.01, "Minimum distance between two kept poses, as a mean over joints; higher keeps"
         " fewer", unit="m", minimum=0.0, maximum=1.0,
     )  # fmt: skip
     n_postures: int = setting(
-        2500, "Most postures kept, the most different ones; more knows more and is slower",
+        2500, "Maximum number of poses, the most distinct ones; more covers more and is slower",
         minimum=1, maximum=1_000_000,
     )  # fmt: skip
-    mirror: bool = setting(True, "Also learn each posture with left and right exchanged")
+    mirror: bool = setting(True, "Also learn the mirror image of each pose")
 
 
 @dataclass(frozen=True, eq=False)
 class PostureLibrary:
-    """Postures without heading, place and size.
+    """Poses without heading, position and body size.
 
     Attributes
     ----------
@@ -85,14 +86,14 @@ class PostureLibrary:
     changes : float32, shape (n_postures, 20, 3)
         How the directions change, per second.
     groups : int32, shape (n_postures,)
-        Number of the group of alike postures that each belongs to.
+        Index of the group of similar poses that each belongs to.
     n_seen : int
-        Postures of the clips before they were thinned out.
+        Number of poses of the clips before subsampling.
     trained_on : str
-        Which clips they are of, in words.
+        Description of the source clips.
     twists : complex64, shape (n_postures, 4), optional
-        How upper arms and thighs are twisted against the trunk (`LimbTwists.vectors`). None in
-        files of Mocap Assist before it kept them.
+        Axial rotations of upper arms and thighs relative to the trunk (`LimbTwists.vectors`).
+        None in files that were written before twists were stored.
     """
 
     directions: NDArray[np.float32]
@@ -104,12 +105,12 @@ class PostureLibrary:
 
     @property
     def n_postures(self) -> int:
-        """Number of postures."""
+        """Number of poses."""
         return len(self.directions)
 
     @property
     def known_twists(self) -> NDArray[np.complex64]:
-        """Twists, shape (n_postures, 4); 0 where nothing is known of them."""
+        """Twists, shape (n_postures, 4); 0 where they are unknown."""
         if self.twists is None:
             return np.zeros((self.n_postures, N_TWISTED_LIMBS), np.complex64)
         return self.twists
@@ -132,9 +133,10 @@ class PostureLibrary:
 
 
 def load_posture_library(path: Path | str = SHIPPED_LIBRARY) -> PostureLibrary:
-    """Read what `PostureLibrary.save` wrote; without a path, the library that is shipped.
+    """Read an archive that `PostureLibrary.save` wrote; by default the shipped library.
 
-    Files of before twists were kept are read too; limbs are then twisted by bends alone.
+    Older files without twists are read too. Limbs then get their axial rotation from flexion
+    only.
 
     Raises
     ------
@@ -163,25 +165,25 @@ def load_posture_library(path: Path | str = SHIPPED_LIBRARY) -> PostureLibrary:
 def merge_posture_libraries(
     first: PostureLibrary, second: PostureLibrary, words: str = "{}, and {}"
 ) -> PostureLibrary:
-    """Return a library of the postures of two; `words` says what both were trained on."""
+    """Return a library of the poses of two; `words` formats the description of both sources."""
     directions = np.concatenate([first.directions, second.directions])
-    told = first.twists is not None or second.twists is not None
+    has_twists = first.twists is not None or second.twists is not None
     return PostureLibrary(
         directions,
         np.concatenate([first.changes, second.changes]),
         group_postures(directions),
         first.n_seen + second.n_seen,
         words.format(first.trained_on, second.trained_on),
-        np.concatenate([first.known_twists, second.known_twists]) if told else None,
+        np.concatenate([first.known_twists, second.known_twists]) if has_twists else None,
     )
 
 
 def _find_fault(arrays: dict[str, NDArray[Any]]) -> str:
-    """Return what keeps postures from a file from being used, or nothing."""
+    """Return why the arrays of a file cannot be used, or an empty string."""
     if not len(arrays["directions"]):
-        return "there are none"
+        return "it holds no poses"
     if (arrays["groups"] >= len(arrays["groups"])).any():
-        return "groups has numbers out of range"
+        return "groups has indices out of range"
     sizes = np.linalg.norm(arrays["directions"] * DIRECTION_STEP, axis=-1)
     return "" if (np.abs(sizes - 1.0) < 0.05).all() else "directions are not of length 1"
 
@@ -193,12 +195,13 @@ def build_posture_library(
     trained_on: str = "",
     progress: Progress = unwatched,
 ) -> PostureLibrary:
-    """Collect the postures of clean clips, and keep the most different ones.
+    """Collect the poses of clean clips, and keep the most distinct ones.
 
-    As the motion database of [SHJT13]_: heading and place are removed, and postures that are
-    too similar are left out, so that the neighbours of a posture show how it may vary. What is
-    kept are directions of bones, so that the body is that of whoever is recorded later. Here
-    two postures also differ by where they are going (a tenth of a second of movement).
+    As in the motion database of [SHJT13]_, heading and position are removed, and poses too
+    similar to a kept one are dropped. The neighbors of a pose then show how it may vary. The
+    library stores bone directions, so that the recorded actor's bone lengths can be applied
+    later. Unlike the paper, the distance between two poses includes their velocities
+    (`PACE_S`).
 
     Parameters
     ----------
@@ -206,13 +209,13 @@ def build_posture_library(
         Clean clips. Skeletons may differ; each needs hips, arms and legs.
     settings : PostureLibrarySettings
     trained_on : str
-        Kept with the library: which clips these are.
+        Description of the clips, stored with the library.
     progress : Progress
 
     Returns
     -------
     PostureLibrary
-        The most different postures first.
+        The most distinct poses first.
 
     Raises
     ------
@@ -227,21 +230,23 @@ def build_posture_library(
        Kinect. IEEE Transactions on Cybernetics 43(5), section V-A.
     """
     if not motions:
-        raise InvalidMotionError("There is no clip to learn postures from; choose clean clips.")
-    found = []
-    for place, motion in enumerate(motions):
-        progress(0.5 * place / len(motions), "Reading postures")
-        found.append(_read_clip(motion, settings))
-    directions, changes = (np.concatenate([each[part] for each in found]) for part in (0, 1))
-    told = [each[2] for each in found]
-    own = combine_clip_twists([motion.skeleton for motion in motions], told)
+        raise InvalidMotionError("There are no clips to learn poses from. Choose clean clips.")
+    clips = []
+    for index, motion in enumerate(motions):
+        progress(0.5 * index / len(motions), "Reading poses")
+        clips.append(_read_clip(motion, settings))
+    directions, changes = (np.concatenate([each[part] for each in clips]) for part in (0, 1))
+    twists_of_clips = [each[2] for each in clips]
+    clip_twist_vectors = combine_clip_twists(
+        [motion.skeleton for motion in motions], twists_of_clips
+    )
     twists = np.concatenate([
-        _with_mirror_images(each, mirror_twists, settings) for each in own
+        _with_mirror_images(each, mirror_twists, settings) for each in clip_twist_vectors
     ])
-    whole = np.isfinite(directions).all(axis=(1, 2)) & np.isfinite(changes).all(axis=(1, 2))
-    directions, changes, twists = directions[whole], changes[whole], twists[whole]
+    complete = np.isfinite(directions).all(axis=(1, 2)) & np.isfinite(changes).all(axis=(1, 2))
+    directions, changes, twists = directions[complete], changes[complete], twists[complete]
     if not len(directions):
-        raise InvalidMotionError("No posture of the clips is complete; fill their gaps first.")
+        raise InvalidMotionError("No pose of the clips is complete. Fill their gaps first.")
     kept = subsample_postures(
         np.concatenate([directions, PACE_S * changes], axis=1),
         settings.n_postures,
@@ -258,7 +263,7 @@ def build_posture_library(
 def _read_clip(
     motion: Motion, settings: PostureLibrarySettings
 ) -> tuple[Array, Array, ClipTwists]:
-    """Directions and changes of a clip and of its mirror image, and its own twists."""
+    """Return directions and changes, also mirrored, and the twists of a clip."""
     fine = max(settings.frame_rate, min(motion.frame_rate, 2.0 / PACE_S))
     if abs(motion.frame_rate - fine) > 1e-6:
         motion = resample(motion, fine)
@@ -270,7 +275,11 @@ def _read_clip(
     return (
         _with_mirror_images(directions[::step], mirrored, settings),
         _with_mirror_images(changes[::step], mirrored, settings),
-        ClipTwists(twists.rotated[::step], twists.bent[::step], twists.shares[::step]),
+        ClipTwists(
+            twists.from_rotations[::step],
+            twists.from_flexion[::step],
+            twists.flexion_fractions[::step],
+        ),
     )
 
 
@@ -279,5 +288,5 @@ def _with_mirror_images(
     mirror: Callable[[NDArray[Any]], NDArray[Any]],
     settings: PostureLibrarySettings,
 ) -> NDArray[Any]:
-    """Return values of postures, and of their mirror images if these are learned too."""
+    """Append the mirror images of values if the settings ask for them."""
     return np.concatenate([values, mirror(values)]) if settings.mirror else values

@@ -1,4 +1,4 @@
-"""Choose postures of an even density: those that differ most from each other."""
+"""Subsample poses to an even density: keep the most distinct ones."""
 
 import numpy as np
 from numpy.typing import NDArray
@@ -9,47 +9,49 @@ from ...progress import Progress, unwatched
 Array = NDArray[np.float64]
 
 N_COMPONENTS = 24
-"""Principal components in which postures are compared; they hold all but millimetres."""
+"""Number of principal components for distances; they retain all but millimeters."""
 
 
 def subsample_postures(
     vectors: Array, n_kept: int, spacing: float, progress: Progress = unwatched
 ) -> NDArray[np.intp]:
-    """Return which postures to keep: each the farthest from all that were chosen before it.
+    """Return the indices of poses to keep, each farthest from all poses chosen before it.
 
-    Ends when enough are chosen, or when the next one is nearer than `spacing` to one of them.
-    The first is the one nearest to the mean. (Farthest-point clustering, Gonzalez 1985,
+    Stops at `n_kept` poses, or when the next pose is within `spacing` of a kept one. The first
+    pose is the one nearest to the mean. (Farthest-point sampling, Gonzalez 1985,
     doi:10.1016/0304-3975(85)90224-5.)
 
     Parameters
     ----------
     vectors : shape (n_postures, n * 20, 3)
-        Directions of bones, and their changes in the time that counts as much.
+        Directions of bones, and their changes times `PACE_S`.
     n_kept : int
     spacing : float, metres
-        Root of the mean square way between the joints of two postures of an adult, and between
-        how far they get.
+        Root mean square distance between the joints of two poses of an adult, with velocities
+        as further coordinates.
     progress : Progress
     """
-    parts = np.split(vectors, vectors.shape[1] // N_JOINTS, axis=1)
-    points = np.concatenate([along_bones(part, USUAL_LENGTHS) for part in parts], axis=1)
+    blocks = np.split(vectors, vectors.shape[1] // N_JOINTS, axis=1)
+    points = np.concatenate([along_bones(part, USUAL_LENGTHS) for part in blocks], axis=1)
     flat = points.reshape(len(points), -1)
     flat = flat - flat.mean(axis=0)
     _, axes = np.linalg.eigh(flat.T @ flat)
-    low = np.ascontiguousarray(flat @ axes[:, -N_COMPONENTS:], dtype=np.float32)
-    squares = np.einsum("ij,ij->i", low, low)
-    least = N_JOINTS * spacing**2
-    next_one = int(np.argmin(squares))
+    projected = np.ascontiguousarray(flat @ axes[:, -N_COMPONENTS:], dtype=np.float32)
+    squares = np.einsum("ij,ij->i", projected, projected)
+    min_square = N_JOINTS * spacing**2
+    next_index = int(np.argmin(squares))
     kept: list[int] = []
-    nearest = np.full(len(low), np.inf, dtype=np.float32)
-    for place in range(min(n_kept, len(low))):
-        kept.append(next_one)
-        away = squares + squares[next_one] - 2.0 * (low @ low[next_one])
-        np.minimum(nearest, away, out=nearest)
-        nearest[next_one] = 0.0
-        next_one = int(np.argmax(nearest))
-        if nearest[next_one] <= least:
+    distances = np.full(len(projected), np.inf, dtype=np.float32)
+    for count in range(min(n_kept, len(projected))):
+        kept.append(next_index)
+        squared_distances = (
+            squares + squares[next_index] - 2.0 * (projected @ projected[next_index])
+        )
+        np.minimum(distances, squared_distances, out=distances)
+        distances[next_index] = 0.0
+        next_index = int(np.argmax(distances))
+        if distances[next_index] <= min_square:
             break
-        if place % 64 == 0:
-            progress(place / n_kept, "Thinning out postures")
+        if count % 64 == 0:
+            progress(count / n_kept, "Subsampling poses")
     return np.array(kept, dtype=np.intp)

@@ -1,4 +1,4 @@
-"""How good a posture is: the energy of [SHJT13], eq. 10 to 15."""
+"""The energy of a pose, [SHJT13], eq. 10 to 15."""
 
 from dataclasses import dataclass, replace
 from typing import NamedTuple
@@ -13,7 +13,7 @@ N_BONES = N_JOINTS - 1
 
 
 class EnergyWeights(NamedTuple):
-    """How much each term counts; the values of [SHJT13]."""
+    """Weights of the energy terms; defaults from [SHJT13]."""
 
     control: float = 1.0
     style: float = 0.5
@@ -23,7 +23,7 @@ class EnergyWeights(NamedTuple):
 
 @dataclass(frozen=True, eq=False)
 class EnergyTargets:
-    """What is asked of the posture of each frame.
+    """Targets of the energy terms for each frame.
 
     Attributes
     ----------
@@ -33,7 +33,7 @@ class EnergyTargets:
     neighbours : shape (n_frames, n_neighbours, 60), metres
     lengths : shape (20,), metres
     expected : shape (n_frames, 20, 3), metres, or None
-        Where the joints come to if they go on as they did; NaN: not known.
+        Positions by linear extrapolation; NaN where unknown.
     weights : EnergyWeights
     """
 
@@ -45,7 +45,7 @@ class EnergyTargets:
     weights: EnergyWeights = EnergyWeights()
 
     def at(self, frames: slice) -> "EnergyTargets":
-        """Return what is asked of some frames."""
+        """Return the targets of some frames."""
         return replace(
             self,
             observed=self.observed[frames],
@@ -55,13 +55,13 @@ class EnergyTargets:
         )
 
 
-def posture_energy(postures: Array, demands: EnergyTargets) -> Array:
-    """Return the energy of postures, square metres; less is better.
+def posture_energy(postures: Array, targets: EnergyTargets) -> Array:
+    """Return the energy of poses, square meters; lower is better.
 
     Parameters
     ----------
     postures : shape (n_frames, 20, 3) or (n_frames, n_samples, 20, 3), metres
-    demands : Demands
+    targets : EnergyTargets
 
     Returns
     -------
@@ -69,41 +69,43 @@ def posture_energy(postures: Array, demands: EnergyTargets) -> Array:
     """
     single = postures.ndim == 3
     x = postures[:, None] if single else postures
-    w = demands.weights
-    total = w.control * control_term(x, demands) + w.kinematics * kinematics_term(x, demands)
-    total += w.style * style_distances(x, demands).min(axis=-1)
-    if demands.expected is not None:
-        total += w.continuity * continuity_term(x, demands)
+    w = targets.weights
+    total = w.control * control_term(x, targets) + w.kinematics * kinematics_term(x, targets)
+    total += w.style * style_distances(x, targets).min(axis=-1)
+    if targets.expected is not None:
+        total += w.continuity * continuity_term(x, targets)
     return np.asarray(total[:, 0] if single else total)
 
 
-def control_term(x: Array, demands: EnergyTargets) -> Array:
-    """Squared ways from where the joints were seen, as trusted (eq. 10)."""
-    off = x - demands.observed[:, None]
-    ways = np.nan_to_num(np.einsum("fsik,fsik->fsi", off, off))
-    return np.asarray(np.einsum("fsi,fi->fs", ways, demands.trust))
+def control_term(x: Array, targets: EnergyTargets) -> Array:
+    """Squared distances from observed joints, weighted by reliability (eq. 10)."""
+    differences = x - targets.observed[:, None]
+    squares = np.nan_to_num(np.einsum("fsik,fsik->fsi", differences, differences))
+    return np.asarray(np.einsum("fsi,fi->fs", squares, targets.trust))
 
 
-def style_distances(x: Array, demands: EnergyTargets) -> Array:
-    """Mean squared way to each neighbour; eq. 11 is the least of them."""
+def style_distances(x: Array, targets: EnergyTargets) -> Array:
+    """Mean squared distance to each neighbor; eq. 11 is their minimum."""
     flat = x.reshape(*x.shape[:2], -1)
-    known = demands.neighbours
+    neighbors = targets.neighbours
     squares = np.einsum("fsi,fsi->fs", flat, flat)[..., None]
-    cross = flat @ known.swapaxes(-1, -2)
-    away = squares - 2.0 * cross + np.einsum("fni,fni->fn", known, known)[:, None]
-    return np.asarray(np.maximum(away, 0.0) / N_JOINTS)
+    cross = flat @ neighbors.swapaxes(-1, -2)
+    distances = squares - 2.0 * cross + np.einsum("fni,fni->fn", neighbors, neighbors)[:, None]
+    return np.asarray(np.maximum(distances, 0.0) / N_JOINTS)
 
 
-def kinematics_term(x: Array, demands: EnergyTargets) -> Array:
+def kinematics_term(x: Array, targets: EnergyTargets) -> Array:
     """Mean squared difference of the lengths of segments (eq. 12)."""
-    sizes = np.linalg.norm(x - x[..., ABOVE, :], axis=-1)
-    off = (sizes - demands.lengths)[..., 1:]
-    return np.asarray(np.einsum("fsi,fsi->fs", off, off) / N_BONES)
+    lengths = np.linalg.norm(x - x[..., ABOVE, :], axis=-1)
+    differences = (lengths - targets.lengths)[..., 1:]
+    return np.asarray(np.einsum("fsi,fsi->fs", differences, differences) / N_BONES)
 
 
-def continuity_term(x: Array, demands: EnergyTargets) -> Array:
+def continuity_term(x: Array, targets: EnergyTargets) -> Array:
     """Mean squared change of displacement (eq. 14)."""
-    if demands.expected is None:
+    if targets.expected is None:
         return np.zeros(x.shape[:2])
-    off = x - demands.expected[:, None]
-    return np.asarray(np.nan_to_num(np.einsum("fsik,fsik->fsi", off, off)).mean(axis=-1))
+    differences = x - targets.expected[:, None]
+    return np.asarray(
+        np.nan_to_num(np.einsum("fsik,fsik->fsi", differences, differences)).mean(axis=-1)
+    )

@@ -1,4 +1,4 @@
-"""The natural posture space: principal components of the neighbours of each posture."""
+"""The natural posture space: principal components of the neighbors of each pose."""
 
 from dataclasses import dataclass, fields
 
@@ -10,20 +10,20 @@ from ...motion.humanoid import N_JOINTS
 Array = NDArray[np.float64]
 
 MIN_VARIANCE_M2 = 1e-8
-"""Square metres. Spread below which a component is none."""
+"""Minimum variance (m²) of a component; weaker components are zero."""
 
 
 @dataclass(frozen=True, eq=False)
 class PostureSpaces:
-    """One space for each frame: x = means + axes z.
+    """One linear space per frame: x = means + axes z.
 
     Attributes
     ----------
     means : shape (n_frames, 60), metres
     axes : shape (n_frames, 60, n_dimensions)
-        Orthonormal, the strongest first; zero where the neighbours span no more.
+        Orthonormal, the strongest first; zero beyond the rank of the neighbors.
     spreads : shape (n_frames, n_dimensions), square metres
-        Variance of the neighbours along each axis.
+        Variance of the neighbors along each axis.
     neighbours : shape (n_frames, n_neighbours, 60), metres
     """
 
@@ -37,20 +37,20 @@ class PostureSpaces:
         return PostureSpaces(*(getattr(self, each.name)[frames] for each in fields(self)))
 
     def postures(self, z: Array) -> Array:
-        """Return where the joints are, shape (n_frames, 20, 3)."""
+        """Return joint positions at coordinates z, shape (n_frames, 20, 3)."""
         flat = self.means + np.einsum("fij,fj->fi", self.axes, z)
         return np.asarray(flat.reshape(len(flat), N_JOINTS, 3))
 
     def coordinates(self, postures: Array) -> Array:
-        """Return the nearest point of the space, shape (n_frames, n_dimensions)."""
+        """Return coordinates of the nearest point of the space, (n_frames, n_dimensions)."""
         flat = postures.reshape(len(postures), -1) - self.means
         return np.asarray(np.einsum("fij,fi->fj", self.axes, flat))
 
 
 def local_pca(neighbours: Array, n_dimensions: int = 20) -> PostureSpaces:
-    """Span a space by the neighbours of each frame [1]_, [2]_.
+    """Span a space by the neighbors of each frame [1]_, [2]_.
 
-    Eigenvectors of the Gram matrix of the neighbours, of which there are fewer than there are
+    The eigenvectors of the Gram matrix are used, since there are fewer neighbors than
     coordinates.
 
     Parameters
@@ -66,10 +66,10 @@ def local_pca(neighbours: Array, n_dimensions: int = 20) -> PostureSpaces:
     flat = np.asarray(neighbours, dtype=np.float64).reshape(*neighbours.shape[:2], -1)
     n_kept = min(n_dimensions, flat.shape[1], flat.shape[2])
     means = flat.mean(axis=1)
-    off = flat - means[:, None]
-    values, vectors = np.linalg.eigh(off @ off.swapaxes(-1, -2))
+    deviations = flat - means[:, None]
+    values, vectors = np.linalg.eigh(deviations @ deviations.swapaxes(-1, -2))
     values, vectors = values[:, : -n_kept - 1 : -1], vectors[:, :, : -n_kept - 1 : -1]
-    real = values > MIN_VARIANCE_M2
-    scale = np.where(real, 1.0 / np.sqrt(np.where(real, values, 1.0)), 0.0)
-    axes = off.swapaxes(-1, -2) @ (vectors * scale[:, None])
-    return PostureSpaces(means, axes, np.where(real, values, 0.0) / flat.shape[1], flat)
+    is_nonzero = values > MIN_VARIANCE_M2
+    scale = np.where(is_nonzero, 1.0 / np.sqrt(np.where(is_nonzero, values, 1.0)), 0.0)
+    axes = deviations.swapaxes(-1, -2) @ (vectors * scale[:, None])
+    return PostureSpaces(means, axes, np.where(is_nonzero, values, 0.0) / flat.shape[1], flat)

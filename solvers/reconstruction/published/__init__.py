@@ -1,4 +1,4 @@
-"""The pose synthesis of the papers as published: frame by frame."""
+"""Pose synthesis as published: a stochastic search, frame by frame."""
 
 from .posture_search import search_sequentially
 

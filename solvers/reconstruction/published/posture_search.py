@@ -1,4 +1,4 @@
-"""The posture of least energy by local stochastic search [SHJT13, section VI-E]."""
+"""The pose of least energy by local stochastic search [SHJT13, section VI-E]."""
 
 import numpy as np
 from numpy.typing import NDArray
@@ -11,49 +11,49 @@ Array = NDArray[np.float64]
 N_STEPS = 20
 N_SAMPLES = 100
 INITIAL_WIDTH = 0.5
-"""Standard deviation of the first samples, in those of the neighbours."""
+"""Standard deviation of the first samples, relative to that of the neighbors."""
 WIDTH_DECAY = 0.85
-"""Times that, after each step. The paper does not tell how its samples spread."""
+"""Factor of the width after each step. The paper does not specify the sample spread."""
 
 
 def search_postures(
-    spaces: PostureSpaces, demands: EnergyTargets, start: Array, seed: int = 0
+    spaces: PostureSpaces, targets: EnergyTargets, start: Array, seed: int = 0
 ) -> Array:
-    """Return coordinates of good postures, shape (n_frames, n_dimensions).
+    """Return the coordinates of low-energy poses, shape (n_frames, n_dimensions).
 
-    At each step, samples are drawn about the best one so far, which is kept if none is better.
+    Each step draws samples around the best one so far, and keeps it if no sample is better.
 
     Parameters
     ----------
     spaces : PostureSpaces
-    demands : Demands
+    targets : EnergyTargets
     start : shape (n_frames, n_dimensions)
-        Where the search begins.
+        Start of the search.
     seed : int
     """
     random = np.random.default_rng(seed)
     best = start
-    least = posture_energy(spaces.postures(best), demands)
+    min_energy = posture_energy(spaces.postures(best), targets)
     width = INITIAL_WIDTH * np.sqrt(spaces.spreads)[:, None]
     for _ in range(N_STEPS):
-        drawn = random.normal(size=(len(best), N_SAMPLES, best.shape[1]))
-        samples = best[:, None] + width * drawn
-        flat = spaces.means[:, None] + samples @ spaces.axes.swapaxes(-1, -2)
-        energies = posture_energy(flat.reshape(*flat.shape[:2], -1, 3), demands)
-        place = energies.argmin(axis=1)
-        found = np.take_along_axis(energies, place[:, None], axis=1)[:, 0]
-        better = found < least
-        taken = np.take_along_axis(samples, place[:, None, None], axis=1)[:, 0]
-        best = np.where(better[:, None], taken, best)
-        least = np.where(better, found, least)
+        noise = random.normal(size=(len(best), N_SAMPLES, best.shape[1]))
+        samples = best[:, None] + width * noise
+        positions = spaces.means[:, None] + samples @ spaces.axes.swapaxes(-1, -2)
+        energies = posture_energy(positions.reshape(*positions.shape[:2], -1, 3), targets)
+        indices = energies.argmin(axis=1)
+        energies_found = np.take_along_axis(energies, indices[:, None], axis=1)[:, 0]
+        better = energies_found < min_energy
+        candidates = np.take_along_axis(samples, indices[:, None, None], axis=1)[:, 0]
+        best = np.where(better[:, None], candidates, best)
+        min_energy = np.where(better, energies_found, min_energy)
         width = width * WIDTH_DECAY
     return best
 
 
 def search_sequentially(
-    spaces: PostureSpaces, demands: EnergyTargets, seed: int = 0, before: Array | None = None
+    spaces: PostureSpaces, targets: EnergyTargets, seed: int = 0, before: Array | None = None
 ) -> tuple[Array, Array]:
-    """Search frame after frame; each goes on from the postures of the two before it.
+    """Search frame by frame; each frame continues from the two poses before it.
 
     Returns
     -------
@@ -62,9 +62,9 @@ def search_sequentially(
     """
 
     def choose(
-        space: PostureSpaces, asked: EnergyTargets, last: Array | None, frame: int
+        space: PostureSpaces, frame_targets: EnergyTargets, last: Array | None, frame: int
     ) -> Array:
         start = space.coordinates(last) if last is not None else 0.0 * space.spreads
-        return search_postures(space, asked, start, seed + frame)
+        return search_postures(space, frame_targets, start, seed + frame)
 
-    return choose_sequentially(spaces, demands, choose, before)
+    return choose_sequentially(spaces, targets, choose, before)

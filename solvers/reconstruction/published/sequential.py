@@ -1,4 +1,4 @@
-"""Postures one after the other: each goes on from those of the frames before it."""
+"""Choose poses sequentially with a continuity term."""
 
 from collections.abc import Callable
 from dataclasses import replace
@@ -10,37 +10,37 @@ from ..pose_space import EnergyTargets, PostureSpaces, posture_energy
 
 Array = NDArray[np.float64]
 Chooser = Callable[[PostureSpaces, EnergyTargets, Array | None, int], Array]
-"""Of one frame: its space, what is asked, the posture before it, its number; coordinates."""
+"""Function from the space, targets, previous pose and index of a frame to coordinates."""
 
 
 def choose_sequentially(
-    spaces: PostureSpaces, demands: EnergyTargets, choose: Chooser, before: Array | None = None
+    spaces: PostureSpaces, targets: EnergyTargets, choose: Chooser, before: Array | None = None
 ) -> tuple[Array, Array]:
-    """Choose the postures of a take, with the continuity term of [SHJT13], eq. 14.
+    """Choose the poses of a take with the continuity term of [SHJT13], eq. 14.
 
     Parameters
     ----------
     spaces : PostureSpaces
-    demands : Demands
+    targets : EnergyTargets
     choose : Chooser
     before : shape (0 to 2, 20, 3), metres
-        The last postures before these frames.
+        The last poses before these frames.
 
     Returns
     -------
     postures : shape (n_frames, 20, 3), metres
     energies : shape (n_frames,)
     """
-    past = list(np.zeros((0, *demands.observed.shape[1:])) if before is None else before)
+    past = list(np.zeros((0, *targets.observed.shape[1:])) if before is None else before)
     energies = np.empty(len(spaces.means))
     n_before = len(past)
     for frame in range(len(energies)):
-        one = slice(frame, frame + 1)
-        space, asked = spaces.at(one), demands.at(one)
+        single = slice(frame, frame + 1)
+        space, frame_targets = spaces.at(single), targets.at(single)
         if len(past) > 1:
-            asked = replace(asked, expected=(2.0 * past[-1] - past[-2])[None])
+            frame_targets = replace(frame_targets, expected=(2.0 * past[-1] - past[-2])[None])
         last = past[-1][None] if past else None
-        posture = space.postures(choose(space, asked, last, frame))
-        energies[frame] = posture_energy(posture, asked)[0]
+        posture = space.postures(choose(space, frame_targets, last, frame))
+        energies[frame] = posture_energy(posture, frame_targets)[0]
         past.append(posture[0])
     return np.array(past[n_before:]), energies

@@ -1,4 +1,4 @@
-"""How far each measured joint can be trusted, frame by frame."""
+"""Reliability of each tracked joint, frame by frame."""
 
 from .left_right_swaps import fix_left_right_swaps
 from .scores import Reliability, measure_reliability, posture_reliability

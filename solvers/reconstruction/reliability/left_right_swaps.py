@@ -1,4 +1,4 @@
-"""Undo exchanges of left and right, which trackers make for some frames."""
+"""Correct left-right swaps, which trackers make for some frames."""
 
 from collections.abc import Iterator, Sequence
 from dataclasses import replace
@@ -15,23 +15,23 @@ Flags = NDArray[np.bool_]
 Pairs = NDArray[np.intp]
 
 MAX_SWAP_S = 1.0
-"""Seconds. What lasts longer is left alone: nobody knows which of both is right."""
+"""Maximum duration (s) of a swap; for longer ones the correct side is unknown."""
 MAX_GAP_S = 0.25
-"""Seconds: beyond, nothing is known of where a joint comes back."""
+"""Maximum gap (s) across which a step of a joint is measured."""
 MAX_STEP_RATIO = 0.5
-"""Steps into the other's place are at most this share of those that joints seem to make."""
+"""Maximum ratio of the steps with sides swapped to the steps as tracked."""
 MIN_GAIN_M = 0.08
-"""Metres that the joints of a pair must seem to step farther, on the mean."""
+"""Minimum reduction (m) of the mean step by swapping sides."""
 LIMBS = ("UpperArm", "LowerArm", "UpperLeg", "LowerLeg")
 SIDE_WORDS = (("Left", "Right"), ("left", "right"), ("LEFT", "RIGHT"))
 
 
 def fix_left_right_swaps(recording: JointRecording) -> JointRecording:
-    """Give left and right joints back that a tracker exchanged for up to a second.
+    """Correct left and right joints that a tracker swapped for up to a second.
 
-    The whole body, both arms or both legs, or what is below elbows or knees. All of it jumps
-    into the other side's place, and back, though it would else have gone on smoothly. Where
-    left and right stay exchanged to the end, or longer than a second, nothing is changed.
+    Swaps of the complete body, of both arms or legs, and of the parts below elbows or knees are
+    corrected. All joints of the group must jump to the other side's position and back. Swaps
+    longer than one second or up to the end of the take are left unchanged.
 
     Parameters
     ----------
@@ -40,7 +40,7 @@ def fix_left_right_swaps(recording: JointRecording) -> JointRecording:
     Returns
     -------
     JointRecording
-        With the tracker's word and confidence exchanged along; the same where nothing is.
+        With tracking states and confidences swapped too; the same object without swaps.
     """
     order = np.tile(np.arange(recording.n_joints), (recording.n_frames, 1))
     positions = recording.tracks.positions.copy()
@@ -64,10 +64,10 @@ def fix_left_right_swaps(recording: JointRecording) -> JointRecording:
 
 
 def _swap_groups(recording: JointRecording) -> Iterator[tuple[Pairs, Pairs]]:
-    """Yield what is exchanged together, the largest first: all pairs, and those at its root.
+    """Yield joints that swap together, largest group first: all pairs, and pairs at the root.
 
-    Pairs are columns, shape (n_pairs, 2). Those at the root hardly ever meet: all of them must
-    be seen to jump.
+    Pairs are columns, shape (n_pairs, 2). Pairs at the root of a group are far apart, so all of
+    them must jump.
     """
     names, parents = recording.names, recording.parents
     roles = joints_of_names(names)
@@ -87,18 +87,18 @@ def _swap_groups(recording: JointRecording) -> Iterator[tuple[Pairs, Pairs]]:
 
 def _pairs(names: Sequence[str], roles: dict[str, int]) -> list[tuple[int, int]]:
     """Return the columns of left joints and their counterparts, by roles and by names."""
-    found = {
-        place: roles[SIDES[1] + role.removeprefix(SIDES[0])]
-        for role, place in roles.items()
+    counterparts = {
+        column: roles[SIDES[1] + role.removeprefix(SIDES[0])]
+        for role, column in roles.items()
         if role.startswith(SIDES[0]) and SIDES[1] + role.removeprefix(SIDES[0]) in roles
     }
-    places = {name: place for place, name in enumerate(names)}
-    for name, place in places.items():
+    columns = {name: column for column, name in enumerate(names)}
+    for name, column in columns.items():
         for left, right in SIDE_WORDS:
-            other = places.get(name.replace(left, right)) if left in name else None
+            other = columns.get(name.replace(left, right)) if left in name else None
             if other is not None:
-                found.setdefault(place, other)
-    return sorted(found.items())
+                counterparts.setdefault(column, other)
+    return sorted(counterparts.items())
 
 
 def _is_below(joint: int, root: int, parents: Sequence[int]) -> bool:
@@ -108,25 +108,25 @@ def _is_below(joint: int, root: int, parents: Sequence[int]) -> bool:
 
 
 def _swap_edges(positions: Array, pairs: Pairs, first: Pairs, frame_rate: float) -> Array:
-    """Return how much farther than needed joints seem to step into each frame, (n_frames,).
+    """Return the excess step length into each frame of a swap, shape (n_frames,), meters.
 
-    The mean over pairs, in metres; 0 where they do not all step into each other's place.
+    The mean over pairs; 0 where not all of them step to the other side's position.
     """
-    kept, turned = _step_lengths(positions, pairs, max(1.0, MAX_GAP_S * frame_rate))
-    total, least = np.nansum(kept, axis=1), np.nansum(turned, axis=1)
-    n_known = np.isfinite(kept).sum(axis=1)
-    gain = (total - least) / np.maximum(2 * n_known, 1)
+    unswapped, swapped = _step_lengths(positions, pairs, max(1.0, MAX_GAP_S * frame_rate))
+    unswapped_total, swapped_total = np.nansum(unswapped, axis=1), np.nansum(swapped, axis=1)
+    n_known = np.isfinite(unswapped).sum(axis=1)
+    gain = (unswapped_total - swapped_total) / np.maximum(2 * n_known, 1)
     at_root = [int(np.flatnonzero((pairs == pair).all(axis=1))[0]) for pair in first]
-    jumps = (turned[:, at_root] < MAX_STEP_RATIO * kept[:, at_root]).all(axis=1)
-    jumps &= (least < MAX_STEP_RATIO * total) & (gain > MIN_GAIN_M)
+    jumps = (swapped[:, at_root] < MAX_STEP_RATIO * unswapped[:, at_root]).all(axis=1)
+    jumps &= (swapped_total < MAX_STEP_RATIO * unswapped_total) & (gain > MIN_GAIN_M)
     jumps &= 2 * n_known > len(pairs)
     return np.where(jumps, gain, 0.0)
 
 
 def _step_lengths(positions: Array, pairs: Pairs, longest: float) -> tuple[Array, Array]:
-    """Return how far pairs step if they stay, and if they change sides, (n_frames, n_pairs).
+    """Return step lengths with sides unswapped and swapped, each (n_frames, n_pairs).
 
-    From the last frame in which both were seen; NaN where that is none, or too long ago.
+    Steps start at the last frame with both joints observed; NaN without one within `longest`.
     """
     known = np.isfinite(positions[:, pairs]).all(axis=(2, 3))
     frames = np.arange(len(positions))[:, None]
@@ -135,20 +135,20 @@ def _step_lengths(positions: Array, pairs: Pairs, longest: float) -> tuple[Array
     reached = known & (last >= 0) & (frames - last <= longest)
     now = positions[:, pairs]
     before = now[np.maximum(last, 0), np.arange(len(pairs))]
-    kept = vector_lengths(now - before).sum(axis=-1)
-    turned = vector_lengths(now - before[:, :, ::-1]).sum(axis=-1)
-    return np.where(reached, kept, np.nan), np.where(reached, turned, np.nan)
+    unswapped = vector_lengths(now - before).sum(axis=-1)
+    swapped = vector_lengths(now - before[:, :, ::-1]).sum(axis=-1)
+    return np.where(reached, unswapped, np.nan), np.where(reached, swapped, np.nan)
 
 
 def _swapped_frames(edges: Array, longest: float) -> Flags:
-    """Tell in which frames sides are exchanged: between one edge and the next, if soon after.
+    """Return the frames between one edge and the next, if these are close enough in time.
 
-    Edges that follow each other soon belong together; of an odd number the least is no edge,
-    or the first or last frames are exchanged.
+    Nearby edges belong together. In an odd number of edges, the weakest one is dropped, or the
+    swap reaches the first or last frame.
     """
     frames = np.zeros(len(edges), bool)
-    found = np.flatnonzero(edges)
-    for run in np.split(found, np.flatnonzero(np.diff(found) > longest) + 1):
+    edge_frames = np.flatnonzero(edges)
+    for run in np.split(edge_frames, np.flatnonzero(np.diff(edge_frames) > longest) + 1):
         ends = [int(edge) for edge in run]
         if len(ends) % 2:
             to_start, to_end = ends[0], len(edges) - ends[-1]
@@ -164,7 +164,7 @@ def _swapped_frames(edges: Array, longest: float) -> Flags:
 
 
 def _swap_columns(values: NDArray[np.generic], frames: Flags, pairs: Pairs) -> None:
-    """Exchange the columns of pairs in some frames, in place."""
+    """Swap the columns of pairs in some frames, in place."""
     rows = np.flatnonzero(frames)[:, None]
     left, right = values[rows, pairs[:, 0]], values[rows, pairs[:, 1]]
     values[rows, pairs[:, 0]], values[rows, pairs[:, 1]] = right, left

@@ -1,4 +1,4 @@
-"""How long the segments of a body are, from frames that can be trusted."""
+"""Segment lengths of a body, from reliable frames."""
 
 from collections.abc import Sequence
 
@@ -15,48 +15,49 @@ OUT, DOWN = (1.0, 0.0), (0.0, -1.0)
 ARMS = (("UpperArm", "LowerArm"), ("LowerArm", "Hand"))
 LEGS = (("UpperLeg", "LowerLeg"), ("LowerLeg", "Foot"))
 MAX_ANGLE_DEG = 30.0
-"""Degrees that each limb may be off a reference posture."""
+"""Largest angle (degrees) between a limb and its direction in a reference pose."""
 MIN_FRAMES = 5
-"""Frames; fewer tell no length."""
+"""Minimum number of frames for a length."""
 MIN_RELIABILITY = 0.6
 
 
 def parent_distances(positions: Array, parents: NDArray[np.intp]) -> Array:
-    """Return how far each joint is from its parent, (n_frames, n_joints); NaN for roots."""
+    """Return the distance of each joint to its parent, (n_frames, n_joints); NaN for roots."""
     lengths = vector_lengths(positions - positions[:, np.maximum(parents, 0)])
     return np.where(parents >= 0, lengths, np.nan)
 
 
-def reference_lengths(lengths: Array, postures: Flags, trust: Array) -> Array:
-    """Return the length that each segment should have, shape (n_joints,), metres.
+def reference_lengths(lengths: Array, postures: Flags, reliability: Array) -> Array:
+    """Return the expected length of each segment, shape (n_joints,), meters.
 
-    The median over reference postures; where these are few, over frames in which the segment is
-    reliable; where these are few too, over all.
+    The median over reference poses. Where these are rare, over frames in which the segment is
+    reliable; where these are rare too, over all frames.
 
     Parameters
     ----------
     lengths : shape (n_frames, n_joints), metres
     postures : shape (n_frames,)
-        Frames in which the body is in a reference posture.
-    trust : shape (n_frames, n_joints)
-        How far each segment can be trusted without knowing its length.
+        Frames with a reference pose.
+    reliability : shape (n_frames, n_joints)
+        Reliability of each segment without the kinematics term.
     """
-    chosen = np.broadcast_to(postures[:, None], lengths.shape) & (trust > MIN_RELIABILITY)
-    for wider in (trust > MIN_RELIABILITY, np.ones_like(chosen)):
-        few = (chosen & np.isfinite(lengths)).sum(axis=0) < MIN_FRAMES
-        chosen = np.where(few, wider, chosen)
+    chosen = np.broadcast_to(postures[:, None], lengths.shape) & (reliability > MIN_RELIABILITY)
+    for wider in (reliability > MIN_RELIABILITY, np.ones_like(chosen)):
+        is_rare = (chosen & np.isfinite(lengths)).sum(axis=0) < MIN_FRAMES
+        chosen = np.where(is_rare, wider, chosen)
     reference = np.full(lengths.shape[1], np.nan)
-    given = np.where(chosen, lengths, np.nan)
-    seen = np.isfinite(given).any(axis=0)
-    reference[seen] = np.nanmedian(given[:, seen], axis=0)
+    chosen_lengths = np.where(chosen, lengths, np.nan)
+    has_length = np.isfinite(chosen_lengths).any(axis=0)
+    reference[has_length] = np.nanmedian(chosen_lengths[:, has_length], axis=0)
     return reference
 
 
 def find_reference_postures(names: Sequence[str], positions: Array, tracked: Flags) -> Flags:
-    """Tell in which frames a body stands with arms down, or in a T-pose [SHJT13, IV-B].
+    """Return the frames with arms down or in a T-pose [SHJT13, IV-B].
 
-    Limbs are compared in the plane of the body, whose up is the way from the hips to between
-    the shoulders: neither heading nor a tilted camera counts. All joints must be tracked.
+    Limbs are compared in the plane of the body, whose up direction is from the hips to the
+    point between the shoulders. The result depends neither on heading nor on camera tilt. All
+    joints must be tracked.
 
     Parameters
     ----------
@@ -64,16 +65,16 @@ def find_reference_postures(names: Sequence[str], positions: Array, tracked: Fla
     positions : shape (n_frames, n_joints, 3), metres
     tracked : shape (n_frames, n_joints)
     """
-    places = joints_of_names(names)
+    roles = joints_of_names(names)
     needed = {"hips", "chest"} | {
         f"{side}{part}"
         for side in ("left", "right")
         for bone in (*ARMS, *LEGS)
         for part in bone
     }
-    if not needed <= places.keys():
+    if not needed <= roles.keys():
         return np.zeros(len(positions), bool)
-    body = {role: positions[:, place] for role, place in places.items()}
+    body = {role: positions[:, index] for role, index in roles.items()}
     up = _unit_vectors(body["chest"] - body["hips"])
     left = body["leftUpperArm"] - body["rightUpperArm"]
     left = _unit_vectors(left - (left * up).sum(axis=-1, keepdims=True) * up)
@@ -85,15 +86,15 @@ def find_reference_postures(names: Sequence[str], positions: Array, tracked: Fla
 def _matches_posture(
     body: dict[str, Array], up: Array, left: Array, arms: tuple[float, float]
 ) -> Flags:
-    """Tell in which frames all limbs go the way they should: legs down, arms as told."""
-    similar = np.ones(len(up), bool)
+    """Return the frames in which legs point down and arms in the given direction."""
+    matches = np.ones(len(up), bool)
     for side, sign in (("left", 1.0), ("right", -1.0)):
         for bones, (out, rise) in ((ARMS, arms), (LEGS, DOWN)):
-            way = sign * out * left + rise * up
+            expected = sign * out * left + rise * up
             for start, stop in bones:
                 bone = _unit_vectors(body[side + stop] - body[side + start])
-                similar &= (bone * way).sum(axis=-1) > np.cos(np.radians(MAX_ANGLE_DEG))
-    return similar
+                matches &= (bone * expected).sum(axis=-1) > np.cos(np.radians(MAX_ANGLE_DEG))
+    return matches
 
 
 def _unit_vectors(vectors: Array) -> Array:

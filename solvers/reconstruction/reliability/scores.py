@@ -1,4 +1,4 @@
-"""How far each tracked joint can be trusted [SHJT13, section IV]."""
+"""Reliability of each tracked joint [SHJT13, section IV]."""
 
 from dataclasses import dataclass
 
@@ -16,13 +16,13 @@ from .terms import behaviour_term, gaussian_mean, is_tracked, kinematics_term, t
 
 @dataclass(frozen=True, eq=False)
 class Reliability:
-    """How far each joint can be trusted at each frame, 0 to 1, and why.
+    """Reliability of each joint at each frame, 0 to 1, and its terms.
 
     Attributes
     ----------
     combined, behaviour, kinematics, tracking : shape (n_frames, n_joints)
-        The last three are the terms of [SHJT13], eq. 4, 6 and 7; a term that the recording
-        tells nothing of is 1.
+        The last three are the terms of [SHJT13], eq. 4, 6 and 7; a term without data in
+        the recording is 1.
     """
 
     combined: NDArray[np.float64]
@@ -37,7 +37,7 @@ def measure_reliability(
     settings: ReliabilitySettings = DEFAULT_SETTINGS,
     progress: Progress = unwatched,
 ) -> Reliability:
-    """Measure how far each joint of a depth camera's recording can be trusted.
+    """Measure the reliability of each joint of a depth camera's recording.
 
     Parameters
     ----------
@@ -69,9 +69,11 @@ def measure_reliability(
     lengths = parent_distances(positions, parents)
     tracked = is_tracked(recording)
     postures = find_reference_postures(recording.names, positions, tracked)
-    steady = np.minimum(behaviour, tracked)
-    trust = np.minimum(steady, steady[:, np.maximum(parents, 0)])
-    reference = reference_lengths(lengths, postures, trust)
+    steady_and_tracked = np.minimum(behaviour, tracked)
+    segment_reliability = np.minimum(
+        steady_and_tracked, steady_and_tracked[:, np.maximum(parents, 0)]
+    )
+    reference = reference_lengths(lengths, postures, segment_reliability)
     kinematics = kinematics_term(lengths, reference, parents)
     behaviour, kinematics, tracking = (
         np.where(visible, term, 0.0) for term in (behaviour, kinematics, tracking)
@@ -95,8 +97,8 @@ def measure_reliability(
 def posture_reliability(
     recording: JointRecording, combined: NDArray[np.float64]
 ) -> NDArray[np.float64]:
-    """Return the reliability of the joints of postures, (n_frames, 20); 0 where not seen."""
+    """Return the reliability of the posture joints, (n_frames, 20); 0 where missing."""
     result = np.zeros((recording.n_frames, N_JOINTS))
-    for role, place in joints_of_names(recording.names).items():
-        result[:, POSTURE_JOINTS.index(role)] = combined[:, place]
+    for role, index in joints_of_names(recording.names).items():
+        result[:, POSTURE_JOINTS.index(role)] = combined[:, index]
     return result

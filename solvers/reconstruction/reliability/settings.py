@@ -1,4 +1,4 @@
-"""How the reliability of joints is measured."""
+"""Settings of the reliability measure."""
 
 from dataclasses import dataclass
 from enum import Enum
@@ -7,11 +7,11 @@ from ...errors import InvalidSettingError
 from ...settings import Settings, setting
 
 SENSOR_RATE_HZ = 30.0
-"""Hertz of the cameras that the published figures are for."""
+"""Frame rate (Hz) of the cameras for which [SHJT13] gives its thresholds."""
 
 
 class ReliabilityMethod(Enum):
-    """Ways to combine what tells of a joint's reliability."""
+    """Ways to combine the terms of reliability."""
 
     DEFAULT = "default"
     PUBLISHED = "published"
@@ -19,43 +19,44 @@ class ReliabilityMethod(Enum):
 
 @dataclass(frozen=True, kw_only=True)
 class ReliabilitySettings(Settings):
-    """What is held against a joint."""
+    """Settings of `measure_reliability`."""
 
     method: ReliabilityMethod = setting(
         ReliabilityMethod.DEFAULT,
-        "Default tells the chance that a joint is right, as measured errors teach it; published"
-        " is the least of the three terms of Shum and others (2013)",
+        "Default is the probability that a joint is right, learned from measured errors."
+        " Published is the minimum of the three terms of Shum and others (2013)",
         advanced=True,
     )
     causal: bool = setting(
-        False, "Ask past frames only, as a live system must; else those on both sides count"
+        False,
+        "Use only earlier frames, as a live system must; otherwise use frames on both sides",
     )
     inferred: float = setting(
-        0.0, "What a joint counts for that the tracker inferred; higher trusts more",
+        0.0, "Reliability of joints that the tracker inferred; higher keeps more of them",
         minimum=0.0, maximum=1.0,
     )  # fmt: skip
     tolerance: float = setting(
-        0.05, "Distance from the truth that is still right; higher trusts more",
+        0.05, "Error up to which a joint counts as right; higher rates joints as more reliable",
         unit="m", minimum=0.005, maximum=0.5,
     )  # fmt: skip
     slowest: float = setting(
-        0.9, "Speed below which a joint is never said to vibrate; higher forgives more",
+        0.9, "Speed below which a joint never counts as vibrating; higher tolerates more",
         unit="m/s", minimum=0.0, maximum=100.0, advanced=True,
     )  # fmt: skip
     vibration_window: float = setting(
-        0.1, "Time over which turns of the path are averaged; longer forgives single jumps",
+        0.1, "Time over which changes of direction are averaged; longer tolerates single jumps",
         unit="s", minimum=0.01, maximum=1.0, advanced=True,
     )  # fmt: skip
     vibration_floor: float = setting(
-        90.0, "Mean turn of the path that is still normal; higher forgives more",
+        90.0, "Mean change of direction up to which the path is normal; higher tolerates more",
         unit="degrees", minimum=0.0, maximum=179.0, advanced=True,
     )  # fmt: skip
     vibration_roof: float = setting(
-        135.0, "Mean turn of the path at which nothing is believed; above the floor",
+        135.0, "Mean change of direction from which on reliability is 0; must exceed the floor",
         unit="degrees", minimum=1.0, maximum=180.0, advanced=True,
     )  # fmt: skip
     window: float = setting(
-        0.2, "Time over which reliability is averaged; longer recovers later",
+        0.2, "Time over which reliability is averaged; longer recovers more slowly",
         unit="s", minimum=0.01, maximum=2.0, advanced=True,
     )  # fmt: skip
 

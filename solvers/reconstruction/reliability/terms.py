@@ -1,4 +1,4 @@
-"""The terms of reliability: vibration, segment lengths, the tracker's own word, and their mean.
+"""Terms of reliability: vibration, segment lengths, the tracking state, and their mean.
 
 Each has shape (n_frames, n_joints), 0 to 1.
 """
@@ -14,14 +14,14 @@ from .settings import SENSOR_RATE_HZ, ReliabilitySettings
 Array = NDArray[np.float64]
 
 MIN_TRACKED_CONFIDENCE = 0.5
-"""Confidence from which on a joint was seen and not guessed."""
+"""Confidence from which on a joint counts as tracked, not inferred."""
 
 
 def behaviour_term(positions: Array, frame_rate: float, settings: ReliabilitySettings) -> Array:
-    """Return 1 for a steady path, 0 for one that turns to and fro [SHJT13, eq. 1 to 4].
+    """Return 1 for a smooth path, 0 for one that vibrates [SHJT13, eq. 1 to 4].
 
-    Displacements are those within 1/30 s, or a frame where that is longer. Eq. 3 gives the
-    cosine, which eq. 4 takes for an angle in degrees; here it is the angle.
+    Displacements are those within 1/30 s, or within one frame where that is longer. Eq. 3 gives
+    a cosine, which eq. 4 uses as an angle in degrees; here it is the angle.
 
     Parameters
     ----------
@@ -30,29 +30,29 @@ def behaviour_term(positions: Array, frame_rate: float, settings: ReliabilitySet
     settings : ReliabilitySettings
     """
     step = frame_count(1.0 / SENSOR_RATE_HZ, frame_rate)
-    turns = path_angles(positions, step, settings.slowest * step / frame_rate)
+    angles = path_angles(positions, step, settings.slowest * step / frame_rate)
     n_averaged = frame_count(settings.vibration_window, frame_rate)
     if settings.causal:
-        turns = np.concatenate([np.zeros_like(turns[:step]), turns[:-step]])[: len(turns)]
+        angles = np.concatenate([np.zeros_like(angles[:step]), angles[:-step]])[: len(angles)]
     if not settings.causal:
         n_averaged = 2 * (n_averaged // 2) + 1
-    turns = _weighted_mean(turns, np.ones(n_averaged), settings.causal)
+    angles = _weighted_mean(angles, np.ones(n_averaged), settings.causal)
     floor, roof = settings.vibration_floor, settings.vibration_roof
-    return 1.0 - np.clip((turns - floor) / (roof - floor), 0.0, 1.0)  # eq. 4
+    return 1.0 - np.clip((angles - floor) / (roof - floor), 0.0, 1.0)  # eq. 4
 
 
 def path_angles(positions: Array, step: int, shortest: float) -> Array:
-    """Return by how many degrees the path turns at each frame; 0 where it hardly moves."""
-    turns = np.zeros(positions.shape[:2])
+    """Return the change of direction at each frame, degrees; 0 where the path hardly moves."""
+    angles = np.zeros(positions.shape[:2])
     if len(positions) > 2 * step:
         moved = positions[step:] - positions[:-step]  # eq. 1 and 2
         lengths = vector_lengths(moved)
         before, after = lengths[:-step], lengths[step:]
-        far = (before > shortest) & (after > shortest)  # False for NaN
-        along = np.einsum("nc,nc->n", moved[:-step][far], moved[step:][far])
-        cosine = np.clip(along / (before[far] * after[far]), -1.0, 1.0)
-        turns[step:-step][far] = np.degrees(np.arccos(cosine))  # eq. 3
-    return turns
+        is_moving = (before > shortest) & (after > shortest)  # False for NaN
+        products = np.einsum("nc,nc->n", moved[:-step][is_moving], moved[step:][is_moving])
+        cosine = np.clip(products / (before[is_moving] * after[is_moving]), -1.0, 1.0)
+        angles[step:-step][is_moving] = np.degrees(np.arccos(cosine))  # eq. 3
+    return angles
 
 
 def kinematics_term(lengths: Array, reference: Array, parents: NDArray[np.intp]) -> Array:
@@ -61,34 +61,34 @@ def kinematics_term(lengths: Array, reference: Array, parents: NDArray[np.intp])
     Parameters
     ----------
     lengths : shape (n_frames, n_joints), metres
-        Of the segment from its parent to each joint; NaN where there is none, or not seen.
+        Of the segment from its parent to each joint; NaN where there is none or it is missing.
     reference : shape (n_joints,), metres
-        What those lengths should be; NaN where that is not known.
+        Expected lengths; NaN where unknown.
     parents : shape (n_joints,)
         -1 for roots.
     """
-    usable = np.where(reference > 0.0, reference, np.nan)
-    wrong = np.minimum(np.abs(lengths - usable) / usable, 1.0)  # eq. 5
-    return 1.0 - mean_at_joints(wrong, parents)  # eq. 6
+    valid_reference = np.where(reference > 0.0, reference, np.nan)
+    errors = np.minimum(np.abs(lengths - valid_reference) / valid_reference, 1.0)  # eq. 5
+    return 1.0 - mean_at_joints(errors, parents)  # eq. 6
 
 
 def mean_at_joints(values: Array, parents: NDArray[np.intp]) -> Array:
-    """Return the means over the segments that meet at each joint; 0 where none is known."""
-    known = np.isfinite(values)
-    values = np.where(known, values, 0.0)
+    """Return the mean over the segments that meet at each joint; 0 where none is known."""
+    is_known = np.isfinite(values)
+    values = np.where(is_known, values, 0.0)
     n_joints = len(parents)
-    meets = np.eye(n_joints)  # segment (by its lower joint) to joint
-    child = np.flatnonzero(parents >= 0)
-    meets[child, parents[child]] = 1.0
-    count = known.astype(np.float64) @ meets
-    return np.asarray(values @ meets / np.maximum(count, 1.0))
+    incidence = np.eye(n_joints)  # segment (by its lower joint) to joint
+    children = np.flatnonzero(parents >= 0)
+    incidence[children, parents[children]] = 1.0
+    count = is_known.astype(np.float64) @ incidence
+    return np.asarray(values @ incidence / np.maximum(count, 1.0))
 
 
 def tracking_term(recording: JointRecording, settings: ReliabilitySettings) -> Array:
-    """Return what the tracker says of each joint [SHJT13, eq. 7]; 1 where it says nothing.
+    """Return the tracking state as a reliability [SHJT13, eq. 7]; 1 without a state.
 
-    One that tells a confidence in the place of a state is taken at its word: from what an
-    inferred joint counts for, where it has none, to 1.
+    A confidence, where the device reports one instead of a state, is mapped linearly to the
+    range from `settings.inferred` to 1.
     """
     state, confidence = recording.tracking_state, recording.tracks.confidence
     if state is not None:
@@ -100,7 +100,7 @@ def tracking_term(recording: JointRecording, settings: ReliabilitySettings) -> A
 
 
 def is_tracked(recording: JointRecording) -> NDArray[np.bool_]:
-    """Tell which joints the tracker saw, and did not only guess."""
+    """Return which joints the device tracked, and did not only infer."""
     visible = recording.tracks.visible
     state, confidence = recording.tracking_state, recording.tracks.confidence
     if state is not None:
@@ -113,34 +113,35 @@ def is_tracked(recording: JointRecording) -> NDArray[np.bool_]:
 
 
 def gaussian_mean(values: Array, frame_rate: float, settings: ReliabilitySettings) -> Array:
-    """Average over the window, the frame itself counting most [SHJT13, eq. 8].
+    """Average over the window with Gaussian weights centered on the frame [SHJT13, eq. 8].
 
-    The paper names neither the width of the Gaussian nor that weights add up to 1; here its
-    standard deviation is a third of the window. Not causal: half the window on each side.
+    The paper specifies neither the width of the Gaussian nor a normalization. Here the standard
+    deviation is a third of the window, and the weights add up to 1. If not causal, half the
+    window is on each side.
     """
-    span = frame_count(settings.window, frame_rate)
+    n_window = frame_count(settings.window, frame_rate)
     if settings.causal:
-        weights = np.exp(-0.5 * (np.arange(span) / (span / 3.0)) ** 2)
+        weights = np.exp(-0.5 * (np.arange(n_window) / (n_window / 3.0)) ** 2)
     else:
-        offsets = np.arange(-(span // 2), span // 2 + 1)
-        weights = np.exp(-0.5 * (offsets / (span / 3.0)) ** 2)
+        offsets = np.arange(-(n_window // 2), n_window // 2 + 1)
+        weights = np.exp(-0.5 * (offsets / (n_window / 3.0)) ** 2)
     return _weighted_mean(values, weights, settings.causal)
 
 
 def frame_count(seconds: float, frame_rate: float) -> int:
-    """Return how many frames a time has, at least one."""
+    """Return the number of frames in a time, at least 1."""
     return max(1, round(seconds * frame_rate))
 
 
 def _weighted_mean(values: Array, weights: Array, causal: bool) -> Array:
-    """Average over the frames that there are; causal: the first weight is the present's."""
-    inside = weighted_sum(np.ones(len(values)), weights, causal)
-    total = weighted_sum(values, weights, causal)
-    return np.asarray(np.minimum(total / inside[:, None], values.max(initial=0.0)))
+    """Average over existing frames; if causal, the first weight is for the current frame."""
+    weight_sums = weighted_sum(np.ones(len(values)), weights, causal)
+    sums = weighted_sum(values, weights, causal)
+    return np.asarray(np.minimum(sums / weight_sums[:, None], values.max(initial=0.0)))
 
 
 def weighted_sum(values: Array, weights: Array, causal: bool) -> Array:
-    """Add up neighbouring frames; causal: the first weight is for the present, others past."""
+    """Sum neighboring frames; if causal, the first weight is for the current frame."""
     if causal:
         weights = np.concatenate([np.zeros(len(weights) - 1), weights])
     return np.asarray(convolve1d(values, weights, axis=0, mode="constant"))

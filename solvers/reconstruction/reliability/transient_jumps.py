@@ -1,4 +1,4 @@
-"""Joints that jump away for some frames and come back: that tells nothing of other frames."""
+"""Detect transient jumps: joints that leave their path for some frames and return."""
 
 import numpy as np
 from numpy.typing import NDArray
@@ -9,25 +9,25 @@ Array = NDArray[np.float64]
 Flags = NDArray[np.bool_]
 
 MAX_JUMP_S = 0.2
-"""Seconds that a joint may be away."""
+"""Maximum duration (s) of a transient jump."""
 MIN_JUMP_M = 0.05
-"""Metres that it must jump at least, however soon frames follow each other."""
+"""Minimum step (m) of a jump at any frame rate."""
 MIN_ACCELERATION = 100.0
-"""Metres per second squared: a joint that reaches its speed in a frame that way is thrown."""
+"""Minimum acceleration (m/s²) of a jump, to reach its speed within one frame."""
 MIN_STEP_RATIO = 3.0
-"""How often as far a jump is as the steps before and after it."""
+"""Minimum ratio of a jump to the steps before and after it."""
 CONTEXT_S = 0.1
-"""Seconds of steps before and after; what jumps more often is not only away, but unsteady."""
+"""Duration (s) of the steps before and after. A joint that jumps more often vibrates."""
 MAX_RETURN_RATIO = 0.5
-"""It comes back at most this share of the jump away from where it was."""
+"""Maximum distance between start and return position, as a fraction of the jump."""
 
 
 def find_transient_jumps(positions: Array, frame_rate: float) -> Flags:
-    """Tell in which frames joints are away from their path, shape (n_frames, n_joints).
+    """Return the frames in which joints are away from their path, (n_frames, n_joints).
 
-    Away is what lies between two jumps that follow each other within a fifth of a second, of
-    which the second leads back. A jump is a step that no limb can make: far longer than those
-    before and after it, and with more than 100 m/s^2. Fast movement has neither.
+    A transient jump lies between two jumps within a fifth of a second; the second leads back. A
+    jump is a step that no limb can make: far longer than the steps before and after it, and
+    with more than 100 m/s². Fast movement meets neither condition.
 
     Parameters
     ----------
@@ -38,28 +38,36 @@ def find_transient_jumps(positions: Array, frame_rate: float) -> Flags:
     n_frames = len(positions)
     steps = np.zeros(positions.shape[:2])
     steps[1:] = vector_lengths(positions[1:] - positions[:-1])  # into each frame
-    outer = np.nan_to_num(steps)
-    far = max(MIN_JUMP_M, MIN_ACCELERATION / frame_rate**2)
-    calm = max(1, round(CONTEXT_S * frame_rate))
-    leaves = (outer > far) & (outer > MIN_STEP_RATIO * _max_before(outer, calm))
-    returns = (outer > far) & (outer > MIN_STEP_RATIO * _max_before(outer[::-1], calm)[::-1])
+    step_sizes = np.nan_to_num(steps)
+    min_step = max(MIN_JUMP_M, MIN_ACCELERATION / frame_rate**2)
+    n_context = max(1, round(CONTEXT_S * frame_rate))
+    jumps_away = (step_sizes > min_step) & (
+        step_sizes > MIN_STEP_RATIO * _max_before(step_sizes, n_context)
+    )
+    jumps_back = (step_sizes > min_step) & (
+        step_sizes > MIN_STEP_RATIO * _max_before(step_sizes[::-1], n_context)[::-1]
+    )
     for n_away in range(1, max(1, round(MAX_JUMP_S * frame_rate)) + 1):
         if n_away + 1 >= n_frames:
             break
-        least = np.minimum(outer[1:-n_away], outer[n_away + 1 :])
-        apart = vector_lengths(positions[n_away + 1 :] - positions[: -n_away - 1])
-        there = leaves[1:-n_away] & returns[n_away + 1 :] & (apart < MAX_RETURN_RATIO * least)
+        smaller = np.minimum(step_sizes[1:-n_away], step_sizes[n_away + 1 :])
+        return_distance = vector_lengths(positions[n_away + 1 :] - positions[: -n_away - 1])
+        is_transient = (
+            jumps_away[1:-n_away]
+            & jumps_back[n_away + 1 :]
+            & (return_distance < MAX_RETURN_RATIO * smaller)
+        )
         if n_away > 1:
-            there &= least > MIN_STEP_RATIO * np.maximum(
-                outer[2 : 1 - n_away], outer[n_away:-1]
+            is_transient &= smaller > MIN_STEP_RATIO * np.maximum(
+                step_sizes[2 : 1 - n_away], step_sizes[n_away:-1]
             )
-        for place in range(n_away):
-            away[1 + place : n_frames - n_away + place] |= there
+        for offset in range(n_away):
+            away[1 + offset : n_frames - n_away + offset] |= is_transient
     return away
 
 
 def _max_before(steps: Array, n_steps: int) -> Array:
-    """Return the greatest of the steps just before each, without it; 0 for the first."""
+    """Return the maximum of the steps before each, excluding it; 0 for the first."""
     padded = np.concatenate([np.zeros((n_steps, *steps.shape[1:])), steps[:-1]])
     windows = np.lib.stride_tricks.sliding_window_view(padded, n_steps, axis=0)
     return np.asarray(windows.max(axis=-1))

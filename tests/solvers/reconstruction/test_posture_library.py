@@ -132,7 +132,7 @@ def test_damaged_libraries_are_refused(library, tmp_path, fault):
 
 
 def test_nothing_to_learn_from_is_refused():
-    with pytest.raises(InvalidMotionError, match="choose clean clips"):
+    with pytest.raises(InvalidMotionError, match="Choose clean clips"):
         build_posture_library([])
 
 

@@ -168,7 +168,7 @@ def test_a_rig_is_known_again_though_its_offsets_were_rounded(gait):
     skeleton = gait.skeleton
     rounded = replace(skeleton, offsets=skeleton.offsets - 1e-6)
     clip = read_clip_twists(gait, motion_postures(gait))
-    straight = clip._replace(shares=np.zeros_like(clip.shares))
+    straight = clip._replace(flexion_fractions=np.zeros_like(clip.flexion_fractions))
 
     same, again = (
         combine_clip_twists([skeleton, each], [clip, straight])[1]
@@ -199,8 +199,8 @@ def test_rotations_that_contradict_bends_are_hardly_believed(gait):
     """Points have no twist: an upper arm that is turned at random says nothing."""
     rng = np.random.default_rng(5)
     clip = read_clip_twists(gait, motion_postures(gait))
-    wild = clip._replace(rotated=np.exp(1j * rng.uniform(-np.pi, np.pi, clip.rotated.shape)))
-    straight = wild._replace(shares=np.where(np.arange(len(wild.shares))[:, None] < 60, 1.0, 0))
+    wild = clip._replace(from_rotations=np.exp(1j * rng.uniform(-np.pi, np.pi, clip.from_rotations.shape)))
+    straight = wild._replace(flexion_fractions=np.where(np.arange(len(wild.flexion_fractions))[:, None] < 60, 1.0, 0))
 
     told = combine_clip_twists([gait.skeleton], [straight])[0]
 
