@@ -1,4 +1,4 @@
-"""Shoulders and spine that move on the trunk, as those of people do."""
+"""Insert clavicle and lower-spine joints."""
 
 from collections.abc import Sequence
 
@@ -7,18 +7,18 @@ import numpy as np
 from ...motion import Skeleton, roles_by_name
 
 CLAVICLES = {"leftUpperArm": "ClavicleLeft", "rightUpperArm": "ClavicleRight"}
-"""What is put between the trunk and an upper arm."""
+"""Joints inserted between the trunk and the upper arms."""
 LOW_SPINE = "SpineLow"
-"""What is put between the hips and the spine, so that neither bends the other."""
+"""Joint inserted between hips and spine, so that neither rotates the other."""
 LEGS = ("leftUpperLeg", "rightUpperLeg")
 
 
 def add_clavicle_joints(skeleton: Skeleton) -> Skeleton:
-    """Hang arms on clavicles, and the spine on a joint of its own, where there are none.
+    """Insert clavicles above the arms, and a joint below the spine, where they are missing.
 
-    Trackers hang shoulders, neck and spine right on the trunk, and then let them shift: an arm
-    that is raised takes its shoulder along. A joint without length, in the same place, lets
-    each of them point where it was seen. Rest pose and all other joints stay as they are.
+    Trackers attach shoulders, neck and spine directly to the trunk but let them shift, such as
+    the shoulder of a raised arm. A joint of zero length at the same position lets each of them
+    point to its observed position. The rest pose and all other joints stay unchanged.
     """
     roles = roles_by_name(skeleton.names)
     for role, name in CLAVICLES.items():

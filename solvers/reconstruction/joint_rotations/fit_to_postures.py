@@ -1,4 +1,4 @@
-"""A motion of any rig, turned so that its body goes where postures say."""
+"""Fit the motion of any rig to target poses."""
 
 import numpy as np
 from numpy.typing import NDArray
@@ -24,29 +24,29 @@ AIMS = {
         ("UpperLeg", "LowerLeg"), ("LowerLeg", "Foot"), ("Foot", "Toes"),
     )
 } | {"neck": "head"}  # fmt: skip
-"""Roles that point at another one."""
+"""Roles of joints that point at another joint."""
 PELVIS = tuple(
     POSTURE_JOINTS.index(role) for role in ("leftUpperLeg", "rightUpperLeg", "spine")
 )
 TRUNK = tuple(POSTURE_JOINTS.index(role) for role in ("leftUpperArm", "rightUpperArm", "head"))
 MIN_LENGTH_M = 1e-3
-"""Metres. Ways that are shorter tell no direction."""
+"""Minimum length (m) that defines a direction."""
 
 
 def fit_motion_to_postures(
     motion: Motion, postures: Array, humanoid_map: HumanoidMap | None = None
 ) -> Motion:
-    """Turn a motion the short way until its body is where postures say.
+    """Rotate the joints of a motion by the shortest rotations that match target poses.
 
-    Pelvis and chest turn as hips and shoulders do, the spine between them by shares; limbs
-    point at the place of their child. All else, twist too, stays as it was: hands and fingers
-    go along with the forearm. Gaps are bridged first.
+    Pelvis and chest rotate with hips and shoulders, and the spine between them is interpolated.
+    Limbs point at the target position of their child. Everything else, including axial
+    rotation, stays unchanged: hands and fingers follow the forearm. Gaps are filled first.
 
     Parameters
     ----------
     motion : Motion
     postures : shape (n_frames, 20, 3), metres
-        Where `POSTURE_JOINTS` are to be; NaN: anywhere.
+        Target positions of `POSTURE_JOINTS`; NaN: no target.
     humanoid_map : HumanoidMap, optional
         Found by `find_humanoid_map` where it is not given.
 
@@ -66,81 +66,88 @@ def fit_motion_to_postures(
             f" {postures.shape}."
         )
     humanoid_map = humanoid_map or find_humanoid_map(motion.skeleton)
-    whole = fill_gaps(motion)
-    return _PostureFit(whole, postures, humanoid_map).followed()
+    gap_free = fill_gaps(motion)
+    return _PostureFit(gap_free, postures, humanoid_map).fit()
 
 
 def fill_gaps(motion: Motion) -> Motion:
-    """Bridge gaps the short way, joint by joint; before and after all that is known, hold."""
-    places = np.nan_to_num(bridged(motion.root_positions))
-    return motion.with_poses(bridged_rotations(motion.rotations), places)
+    """Fill gaps by interpolation, joint by joint; hold the first and last known frames."""
+    joints = np.nan_to_num(bridged(motion.root_positions))
+    return motion.with_poses(bridged_rotations(motion.rotations), joints)
 
 
 class _PostureFit:
-    """A motion whose joints are turned anew, parents first."""
+    """A motion whose joints are rotated to their targets, parents first."""
 
     def __init__(self, motion: Motion, postures: Array, humanoid_map: HumanoidMap) -> None:
         self.motion, self.skeleton = motion, motion.skeleton
-        self.old = forward_kinematics(motion)
+        self.original = forward_kinematics(motion)
         self.before = motion_postures(motion, humanoid_map)
-        self.wanted = np.where(np.isfinite(postures), postures, self.before)
-        places = humanoid_map.indices(self.skeleton)
-        self.roles = {joint: role for role, joint in places.items()}
-        self.places = places
+        self.targets = np.where(np.isfinite(postures), postures, self.before)
+        joints = humanoid_map.indices(self.skeleton)
+        self.roles = {joint: role for role, joint in joints.items()}
+        self.joints = joints
         arms = [
-            self.skeleton.ancestors(places[f"{side}UpperArm"]) for side in ("left", "right")
+            self.skeleton.ancestors(joints[f"{side}UpperArm"]) for side in ("left", "right")
         ]
         self.chest = next(joint for joint in arms[0] if joint in arms[1])
         chain = [self.chest, *self.skeleton.ancestors(self.chest)]
-        self.hips = places["hips"]
+        self.hips = joints["hips"]
         self.trunk = chain[: chain.index(self.hips) + 1][::-1]
-        self.turns = np.tile((1.0, 0.0, 0.0, 0.0), (motion.n_frames, motion.n_joints, 1))
-        """How each joint turns in the world, on top of how it was turned."""
-        self.at = np.array(self.old.positions)
+        self.swings = np.tile((1.0, 0.0, 0.0, 0.0), (motion.n_frames, motion.n_joints, 1))
+        """World rotation of each joint in addition to its original one."""
+        self.positions = np.array(self.original.positions)
 
-    def followed(self) -> Motion:
-        pelvis, chest = self._laid(HIPS, PELVIS), self._laid(CHEST, TRUNK)
-        moved = self.wanted[:, HIPS] - self.before[:, HIPS]
+    def fit(self) -> Motion:
+        pelvis, chest = self._fit_trunk(HIPS, PELVIS), self._fit_trunk(CHEST, TRUNK)
+        displacement = self.targets[:, HIPS] - self.before[:, HIPS]
         for joint, parent in enumerate(self.skeleton.parents):
             if parent < 0:
-                self.at[:, joint] += moved
+                self.positions[:, joint] += displacement
             else:
-                way = self.old.positions[:, joint] - self.old.positions[:, parent]
-                self.at[:, joint] = self.at[:, parent] + rotate(self.turns[:, parent], way)
-                self.turns[:, joint] = self.turns[:, parent]
+                offset = self.original.positions[:, joint] - self.original.positions[:, parent]
+                self.positions[:, joint] = self.positions[:, parent] + rotate(
+                    self.swings[:, parent], offset
+                )
+                self.swings[:, joint] = self.swings[:, parent]
             if joint in self.trunk:
-                share = self.trunk.index(joint) / max(len(self.trunk) - 1, 1)
-                self.turns[:, joint] = slerp(pelvis, chest, share)
-                if 0.0 < share < 1.0:
-                    self.turns[:, joint] = self._aimed(joint, self.chest, CHEST)
-            elif (role := AIMS.get(self.roles.get(joint, ""), "")) in self.places:
-                child = self.places[role]
-                self.turns[:, joint] = self._aimed(joint, child, POSTURE_JOINTS.index(role))
-        world = multiply(self.turns, self.old.rotations)
+                fraction = self.trunk.index(joint) / max(len(self.trunk) - 1, 1)
+                self.swings[:, joint] = slerp(pelvis, chest, fraction)
+                if 0.0 < fraction < 1.0:
+                    self.swings[:, joint] = self._aim(joint, self.chest, CHEST)
+            elif (role := AIMS.get(self.roles.get(joint, ""), "")) in self.joints:
+                child = self.joints[role]
+                self.swings[:, joint] = self._aim(joint, child, POSTURE_JOINTS.index(role))
+        world = multiply(self.swings, self.original.rotations)
         rotations = local_rotations(self.skeleton, world)
-        root = self.motion.root_positions + moved
+        root = self.motion.root_positions + displacement
         return self.motion.with_poses(rotations, root)
 
-    def _laid(self, middle: int, around: tuple[int, ...]) -> Array:
-        """Return the turn that lays joints about one of the trunk where they are to be."""
-        old = self.before[:, around] - self.before[:, [middle]]
-        new = self.wanted[:, around] - self.wanted[:, [middle]]
-        told = np.isfinite(old).all(axis=(0, 2)) & np.isfinite(new).all(axis=(0, 2))
-        rest = np.median(old[:, told], axis=0)
-        turns = multiply(
-            best_turns(rest, new[:, told]), inverse(best_turns(rest, old[:, told]))
+    def _fit_trunk(self, middle: int, around: tuple[int, ...]) -> Array:
+        """Return the best-fit rotation from joints around `middle` to their targets."""
+        original = self.before[:, around] - self.before[:, [middle]]
+        new = self.targets[:, around] - self.targets[:, [middle]]
+        is_known = np.isfinite(original).all(axis=(0, 2)) & np.isfinite(new).all(axis=(0, 2))
+        median_offsets = np.median(original[:, is_known], axis=0)
+        swings = multiply(
+            best_turns(median_offsets, new[:, is_known]),
+            inverse(best_turns(median_offsets, original[:, is_known])),
         )
-        return np.where(np.isfinite(turns), turns, (1.0, 0.0, 0.0, 0.0))
+        return np.where(np.isfinite(swings), swings, (1.0, 0.0, 0.0, 0.0))
 
-    def _aimed(self, joint: int, goal: int, place: int) -> Array:
-        """Turn a joint so much farther that one below it comes into line with its place."""
-        above = self.turns[:, joint]
-        astray = self.old.positions[:, goal] - self.before[:, place]
-        rest = rotate(above, self.old.positions[:, goal] - self.old.positions[:, joint])
-        way = self.wanted[:, place] + astray - self.at[:, joint]
-        sizes = [np.linalg.norm(each, axis=-1, keepdims=True) for each in (rest, way)]
-        told = np.isfinite(way).all(axis=-1, keepdims=True) & (
-            np.minimum(*sizes) > MIN_LENGTH_M
+    def _aim(self, joint: int, goal: int, posture_joint: int) -> Array:
+        """Rotate a joint further so that a joint below it points at its target."""
+        above = self.swings[:, joint]
+        correction = self.original.positions[:, goal] - self.before[:, posture_joint]
+        current = rotate(
+            above, self.original.positions[:, goal] - self.original.positions[:, joint]
         )
-        swing = rotation_between(np.where(told, rest, 1.0), np.where(told, way, 1.0))
-        return np.where(told, multiply(swing, above), above)
+        offset = self.targets[:, posture_joint] + correction - self.positions[:, joint]
+        lengths = [np.linalg.norm(each, axis=-1, keepdims=True) for each in (current, offset)]
+        is_known = np.isfinite(offset).all(axis=-1, keepdims=True) & (
+            np.minimum(*lengths) > MIN_LENGTH_M
+        )
+        swing = rotation_between(
+            np.where(is_known, current, 1.0), np.where(is_known, offset, 1.0)
+        )
+        return np.where(is_known, multiply(swing, above), above)

@@ -1,4 +1,4 @@
-"""A library's postures on the body of whoever was recorded."""
+"""Fit the poses of a library to the body of the recorded actor."""
 
 from dataclasses import dataclass
 
@@ -16,14 +16,14 @@ ARMS, LEGS, SHINS, TOES = (
     for part in ("UpperArm", "UpperLeg", "Foot", "Toes")
 )
 CORRECTED_BONES = (SPINE, CHEST, HEAD, *ARMS, *LEGS, *TOES)
-"""Bones that lead elsewhere in each tracker's idea of a body, in the very same posture."""
+"""Bones whose directions differ between trackers in the same pose."""
 HALF_WEIGHT_COUNT = 20.0
-"""Sightings of a bone at which half of what they tell is believed."""
+"""Number of observations at which a measured correction gets half its weight."""
 
 
 @dataclass(frozen=True, eq=False)
 class BodyPostures:
-    """The postures of a library, as the recorded actor would take them.
+    """The poses of a library with the recorded actor's bone lengths.
 
     Attributes
     ----------
@@ -42,34 +42,34 @@ class BodyPostures:
 
 
 def build_body_postures(
-    directions: Single, changes: Single, lengths: Array, turns: Array | None = None
+    directions: Single, changes: Single, lengths: Array, corrections: Array | None = None
 ) -> BodyPostures:
-    """Give directions of bones the lengths and the anatomy of an actor.
+    """Apply an actor's bone lengths and bone axis corrections to bone directions.
 
     Parameters
     ----------
     directions, changes : shape (n_postures, 20, 3)
     lengths : shape (20,), metres
-    turns : shape (20, 3, 3), optional
-        How each bone's direction is turned in the frame that it is told in (`bone_frames`).
+    corrections : shape (20, 3, 3), optional
+        Correction of each bone's direction, expressed in its frame (`bone_frames`).
     """
-    if turns is not None:
+    if corrections is not None:
         directions, changes = directions.copy(), changes.copy()
         frames = bone_frames(along_bones(directions.astype(np.float64), lengths))
         for bone in CORRECTED_BONES:
             frame = frames[bone].astype(np.float32)
-            turn = frame @ turns[bone].astype(np.float32) @ frame.swapaxes(-1, -2)
-            directions[:, bone] = np.einsum("nij,nj->ni", turn, directions[:, bone])
-            changes[:, bone] = np.einsum("nij,nj->ni", turn, changes[:, bone])
+            rotation = frame @ corrections[bone].astype(np.float32) @ frame.swapaxes(-1, -2)
+            directions[:, bone] = np.einsum("nij,nj->ni", rotation, directions[:, bone])
+            changes[:, bone] = np.einsum("nij,nj->ni", rotation, changes[:, bone])
     single = lengths.astype(np.float32)
     return BodyPostures(along_bones(directions, single), along_bones(changes, single), lengths)
 
 
 def bone_frames(postures: Array) -> dict[int, Array]:
-    """Return the axes (columns) that the direction of each bone of `ANATOMY` is told in.
+    """Return the axes (columns) in which the direction of each corrected bone is expressed.
 
-    Those of the trunk: up from hips to chest, and left along the shoulders or the hips; those
-    of the shin for a foot. NaN where a joint is.
+    For bones of the trunk: up from hips to chest, and left along the shoulders or the hips. For
+    a foot: the axes of its shin. NaN where a joint is NaN.
     """
     up = postures[:, CHEST] - postures[:, HIPS]
     across = {
@@ -87,39 +87,45 @@ def bone_frames(postures: Array) -> dict[int, Array]:
 def bone_axis_corrections(
     observed: Array, trust: Array, directions: Array, lengths: Array
 ) -> Array:
-    """Return how the bones of the tracker lie differently from those of the library.
+    """Return the rotations of the tracker's bone directions relative to the library's.
 
     Parameters
     ----------
     observed : shape (n_frames, 20, 3), metres
     trust : shape (n_frames, 20)
     directions : shape (n_frames, 20, 3)
-        Of a posture of the library that is like each observed one.
+        Directions of the library pose that matches each observed pose.
     lengths : shape (20,), metres
 
     Returns
     -------
     shape (20, 3, 3)
-        The rotation that lays one onto the other best, all frames together (Kabsch), drawn to
-        none where little was seen.
+        The best-fit rotations over all frames (Kabsch), regularized toward identity where
+        observations are rare.
     """
-    turns = np.tile(np.eye(3), (N_JOINTS, 1, 1))
-    seen = bone_frames(observed)
-    known = bone_frames(along_bones(directions, lengths))
+    corrections = np.tile(np.eye(3), (N_JOINTS, 1, 1))
+    observed_frames = bone_frames(observed)
+    library_frames = bone_frames(along_bones(directions, lengths))
     for bone in CORRECTED_BONES:
         above = ABOVE[bone]
-        way = observed[:, bone] - observed[:, above]
-        size = np.linalg.norm(way, axis=-1, keepdims=True)
-        told = np.einsum("fji,fj->fi", seen[bone], way / np.maximum(size, 1e-6))
-        usual = np.einsum("fji,fj->fi", known[bone], directions[:, bone])
+        direction = observed[:, bone] - observed[:, above]
+        size = np.linalg.norm(direction, axis=-1, keepdims=True)
+        observed_local = np.einsum(
+            "fji,fj->fi", observed_frames[bone], direction / np.maximum(size, 1e-6)
+        )
+        library_local = np.einsum("fji,fj->fi", library_frames[bone], directions[:, bone])
         weight = np.minimum(trust[:, bone], trust[:, above])
-        good = np.isfinite(told).all(axis=-1) & np.isfinite(usual).all(axis=-1)
-        weight = np.where(good, weight, 0.0)
-        both = np.einsum("f,fi,fj->ij", weight[good], told[good], usual[good])
-        u, _, v = np.linalg.svd(both + HALF_WEIGHT_COUNT * np.eye(3))
+        is_known = np.isfinite(observed_local).all(axis=-1) & np.isfinite(library_local).all(
+            axis=-1
+        )
+        weight = np.where(is_known, weight, 0.0)
+        covariance = np.einsum(
+            "f,fi,fj->ij", weight[is_known], observed_local[is_known], library_local[is_known]
+        )
+        u, _, v = np.linalg.svd(covariance + HALF_WEIGHT_COUNT * np.eye(3))
         flip = np.diag([1.0, 1.0, np.sign(np.linalg.det(u @ v))])
-        turns[bone] = u @ flip @ v
-    return turns
+        corrections[bone] = u @ flip @ v
+    return corrections
 
 
 def _axes(up: Array, left: Array) -> Array:

@@ -1,4 +1,4 @@
-"""Directions of limbs, how far these bend, and how far they are turned about themselves."""
+"""Directions, flexion and axial rotation of limbs."""
 
 import numpy as np
 from numpy.typing import NDArray
@@ -9,30 +9,32 @@ Complex = NDArray[np.complex128]
 MIN_LENGTH = 1e-9
 
 
-def unit_vectors(vectors: Array, of_none: float = 0.0) -> Array:
-    """Return vectors of length 1; those of no length become `of_none`, and NaN stays NaN."""
+def unit_vectors(vectors: Array, fill: float = 0.0) -> Array:
+    """Return vectors of length 1; zero vectors become `fill`, and NaN stays NaN."""
     lengths = np.linalg.norm(vectors, axis=-1, keepdims=True)
-    none = lengths <= MIN_LENGTH
-    return np.asarray(np.where(none, of_none, vectors / np.where(none, 1.0, lengths)))
+    is_zero = lengths <= MIN_LENGTH
+    return np.asarray(np.where(is_zero, fill, vectors / np.where(is_zero, 1.0, lengths)))
 
 
 def measure_flexion(upper: Array, lower: Array) -> tuple[Array, Array]:
-    """Return the axes about which limbs are bent, and by how much, in radians.
+    """Return flexion axes of limbs and their flexion angles, in radians.
 
-    From the unit vectors, (..., 3), of what is above and below the hinge.
+    From the unit vectors, (..., 3), of the segments above and below the hinge.
     """
     normals = np.cross(upper, lower)
     along = np.einsum("...i,...i->...", upper, lower)
     return normals, np.arctan2(np.linalg.norm(normals, axis=-1), along)
 
 
-def axial_angles(directions: Array, plain: Array, hinges: Array) -> Complex:
-    """Return by how much hinges are turned from the plain ones, as numbers of length 1.
+def axial_angles(directions: Array, untwisted: Array, hinges: Array) -> Complex:
+    """Return rotations from untwisted to actual hinges, as complex numbers of length 1.
 
-    All of shape (..., 3), `hinges` of any length; NaN where one is NaN or has no angle.
+    All of shape (..., 3), `hinges` of any length; NaN where one is NaN or no angle exists.
     """
-    cos = np.einsum("...i,...i->...", plain, hinges)
-    sin = np.einsum("...i,...i->...", np.cross(plain, hinges), directions)
+    cos = np.einsum("...i,...i->...", untwisted, hinges)
+    sin = np.einsum("...i,...i->...", np.cross(untwisted, hinges), directions)
     size = np.hypot(cos, sin)
-    told = size > MIN_LENGTH
-    return np.asarray(np.where(told, cos + 1j * sin, np.nan) / np.where(told, size, 1.0))
+    is_defined = size > MIN_LENGTH
+    return np.asarray(
+        np.where(is_defined, cos + 1j * sin, np.nan) / np.where(is_defined, size, 1.0)
+    )

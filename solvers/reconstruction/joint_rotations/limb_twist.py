@@ -1,4 +1,4 @@
-"""How far upper arms and thighs are twisted about themselves: elbows and knees tell it."""
+"""Axial rotation of upper arms and thighs from the flexion plane of elbow and knee."""
 
 from typing import NamedTuple
 
@@ -13,27 +13,29 @@ from .limb_angles import Complex, axial_angles, measure_flexion, unit_vectors
 Array = NDArray[np.float64]
 
 HINGES = {"Arm": (0.0, -1.0, 0.0), "Leg": (0.0, 1.0, 0.0)}
-"""Where an elbow or a knee brings what is below it, in a T-pose that faces -Y."""
+"""Direction in which an elbow or a knee flexes, in a T-pose that faces -Y."""
 MIN_FLEXION, FULL_FLEXION = np.radians([8.0, 30.0])
-"""Bends at which the plane begins to be told, and is fully told."""
+"""Flexion angles (radians) between which the weight of the flexion plane rises from 0 to 1."""
 SMOOTHING_S = 0.1
-"""Seconds over which the twist is steadied where bends tell it."""
+"""Time (s) over which the axial rotation is smoothed where the limb is flexed."""
 REST_WEIGHT = 0.02
-"""Weight of no twist against the trunk; a bend has 1."""
+"""Weight of zero axial rotation relative to the trunk; a flexed limb has weight 1."""
 LIBRARY_WEIGHT, OBSERVED_FRACTION = 0.2, 0.1
-"""Weight of the twist that like postures agree upon where the limb is lost, and what part of it
-is left where the limb is seen: bends before and after tell more of a straight one."""
+"""Weight of the library's axial rotation for missing limbs, and the fraction of it used for
+observed limbs. Flexion before and after determines more of an observed straight limb."""
 ACTOR_BIAS_S = 0.03
-"""Seconds of bends by which half of how the actor differs from like postures is known."""
+"""Time (s) of flexed frames at which the actor's deviation from the library gets half weight.
+"""
 
 AGREED_WEIGHT, MIN_WEIGHT = 90.0, 1e-6
-"""Weights of an angle that all bends about it agree on, and of one of which nothing is told;
-that of a change by as much within `STEADY` is 1."""
+"""Weights of a certain and of an undefined angle; an equal change within `SMOOTHING_S` has
+weight 1."""
 MIN_PALM_M, FULL_PALM_M = 0.02, 0.05
-"""Metres. A palm that is seen nearer to its wrist tells no direction; beyond the second it
-does."""
+"""Distances (m) from wrist to palm between which the weight of the direction rises from 0 to 1.
+"""
 MAX_PALM_FLEXION, FULL_PALM_FLEXION = np.radians([100.0, 70.0])
-"""Bends of a palm against its forearm that are wrong, and up to which all are right."""
+"""Palm flexions (radians) at which an observation is rejected, and up to which it is accepted.
+"""
 
 
 class Limb(NamedTuple):
@@ -44,17 +46,18 @@ class Limb(NamedTuple):
     end: int
     bends_towards: tuple[float, float, float]
     role: str = ""
-    """Of the upper joint."""
+    """Role of the upper joint."""
 
 
 class ExpectedTwists(NamedTuple):
-    """Twists of like postures, as complex numbers that are as long as they agree.
+    """Axial rotations of similar library poses, as complex numbers; the length is their
+    certainty.
 
     Attributes
     ----------
     twists : complex, shape (n_frames,)
     weights : shape (n_frames,)
-        What they count for against a bend.
+        Weights relative to a flexed limb.
     """
 
     twists: Complex
@@ -62,18 +65,18 @@ class ExpectedTwists(NamedTuple):
 
 
 class HingeAxes(NamedTuple):
-    """Where like postures have the axis of an elbow or a knee.
+    """Hinge axes of elbow or knee from similar library poses.
 
     Attributes
     ----------
-    ways : shape (n_frames, 3), optional
-        In the world, as long as they agree; none where no postures were asked.
+    vectors : shape (n_frames, 3), optional
+        In the world; the length is their certainty. None without a library.
     alone : bool
-        Whether nothing else is to tell the twist, frame by frame. Where they tell none, there
-        is none.
+        Whether to use only these, frame by frame; unknown hinges then mean zero axial
+        rotation.
     """
 
-    ways: Array | None = None
+    vectors: Array | None = None
     alone: bool = False
 
 
@@ -81,194 +84,216 @@ UNKNOWN_HINGES = HingeAxes()
 
 
 def rotations_from_flexion(
-    turns: Array,
+    rotations: Array,
     limb: Limb,
     skeleton: Skeleton,
-    places: Array,
-    trust: Array,
+    positions: Array,
+    reliability: Array,
     frame_rate: float,
-    known: HingeAxes = UNKNOWN_HINGES,
+    hinges: HingeAxes = UNKNOWN_HINGES,
 ) -> Array:
-    """Twist an upper arm or thigh about itself until its hinge bends as it was seen to bend.
+    """Set the axial rotation of an upper arm or thigh from the flexion of its hinge.
 
-    The twist of each frame is a point on a circle. What bends tell of it is weighed by how far
-    they bend and are trusted, and by how near they are to what a joint can do; the path is the
-    one that fits them best while it is steady and near to the twist of like postures, or else
-    to no twist at all (least squares in the plane of the circle; where that path passes near
-    the circle's middle it is led over).
+    The axial rotation of a frame is a point on the unit circle. Observations are weighted by
+    flexion, reliability and joint range. Least squares in the plane fits a smooth path to them
+    and to the library's rotation, or to zero rotation without a library. Where the path passes
+    near the center of the circle, its angle is interpolated.
 
     Parameters
     ----------
-    turns : shape (n_frames, 4)
-        World rotations of the upper joint that point it the right way.
+    rotations : shape (n_frames, 4)
+        World rotations that aim the upper joint.
     limb : Limb
     skeleton : Skeleton
         In a T-pose.
-    places : shape (n_frames, n_joints, 3), metres
-    trust : shape (n_frames, n_joints), 0 to 1
+    positions : shape (n_frames, n_joints, 3), metres
+    reliability : shape (n_frames, n_joints), 0 to 1
     frame_rate : float, hertz
-    known : Hinges
+    hinges : HingeAxes
 
     Returns
     -------
     NDArray, shape (n_frames, 4)
-        NaN where `turns` are.
+        NaN where `rotations` are.
     """
     along = unit_vectors(skeleton.offsets[limb.lower])
-    axis = rotate(turns, along)
-    hinge = rotate(turns, unit_vectors(np.cross(along, limb.bends_towards)))
+    axis = rotate(rotations, along)
+    hinge = rotate(rotations, unit_vectors(np.cross(along, limb.bends_towards)))
     normal, bend = measure_flexion(
-        axis, unit_vectors(places[:, limb.end] - places[:, limb.lower])
+        axis, unit_vectors(positions[:, limb.end] - positions[:, limb.lower])
     )
-    sure = np.min(trust[:, [limb.upper, limb.lower, limb.end]], axis=1)
-    like = np.zeros(len(turns), np.complex128)
-    if known.ways is not None:
-        like = _angles_or_zero(axis, hinge, known.ways) * np.linalg.norm(known.ways, axis=-1)
-    if known.alone:
-        return _rotate_about_axis(turns, axis, np.angle(like))
-    expected = ExpectedTwists(like, LIBRARY_WEIGHT * (1.0 - (1.0 - OBSERVED_FRACTION) * sure))
+    limb_reliability = np.min(reliability[:, [limb.upper, limb.lower, limb.end]], axis=1)
+    library_twists = np.zeros(len(rotations), np.complex128)
+    if hinges.vectors is not None:
+        library_twists = _angles_or_zero(axis, hinge, hinges.vectors) * np.linalg.norm(
+            hinges.vectors, axis=-1
+        )
+    if hinges.alone:
+        return _rotate_about_axis(rotations, axis, np.angle(library_twists))
+    expected = ExpectedTwists(
+        library_twists, LIBRARY_WEIGHT * (1.0 - (1.0 - OBSERVED_FRACTION) * limb_reliability)
+    )
     return twist_to_normal(
-        turns, axis, hinge, normal, flexion_weights(bend) * sure, frame_rate, expected
+        rotations,
+        axis,
+        hinge,
+        normal,
+        flexion_weights(bend) * limb_reliability,
+        frame_rate,
+        expected,
     )
 
 
 def flexion_weights(bends: Array) -> Array:
-    """Return how far the plane of a bend, in radians, is told: 0 to 1."""
+    """Return the weight of the plane of a flexion angle in radians: 0 to 1."""
     return np.asarray(np.clip((bends - MIN_FLEXION) / (FULL_FLEXION - MIN_FLEXION), 0, 1))
 
 
 def rotations_from_thumb(
-    turns: Array, along: Array, thumb: Array, seen: Array, trust: Array, frame_rate: float
+    rotations: Array,
+    along: Array,
+    thumb: Array,
+    observed: Array,
+    reliability: Array,
+    frame_rate: float,
 ) -> Array:
-    """Twist a hand about itself until its thumb lies where it was seen to lie, steadily.
+    """Set the axial rotation of a hand from the observed thumb, smoothed over time.
 
     Parameters
     ----------
-    turns : shape (n_frames, 4)
-        World rotations of the wrist that point the hand the right way.
+    rotations : shape (n_frames, 4)
+        World rotations that aim the hand.
     along, thumb : shape (3,)
-        Ways to hand and thumb in the rest pose.
-    seen : shape (n_frames, 3)
-        The way to the thumb.
-    trust : shape (n_frames,), 0 to 1
+        Offsets of hand and thumb in the rest pose.
+    observed : shape (n_frames, 3)
+        Observed offset of the thumb.
+    reliability : shape (n_frames,), 0 to 1
     frame_rate : float, hertz
     """
-    axis = rotate(turns, unit_vectors(along))
-    usual = rotate(turns, unit_vectors(np.cross(along, thumb)))
-    normal = np.cross(axis, unit_vectors(seen))
+    axis = rotate(rotations, unit_vectors(along))
+    reference = rotate(rotations, unit_vectors(np.cross(along, thumb)))
+    normal = np.cross(axis, unit_vectors(observed))
     return twist_to_normal(
-        turns, axis, usual, normal, trust * np.linalg.norm(normal, axis=-1), frame_rate
+        rotations,
+        axis,
+        reference,
+        normal,
+        reliability * np.linalg.norm(normal, axis=-1),
+        frame_rate,
     )
 
 
 def smooth_direction(
-    seen: Array, above: Array, straight_on: Array, trust: Array, frame_rate: float
+    observed: Array, above: Array, forward: Array, reliability: Array, frame_rate: float
 ) -> Array:
-    """Return a short way whose direction is steadied over a tenth of a second, as trusted.
+    """Return an offset with its direction smoothed over 0.1 s, weighted by reliability.
 
-    A camera sees the tips of hands to a few centimetres: on so short a bone that is half a
-    right angle. The bone above is what the way is steady against; where it is not trusted at
-    all, it goes straight on.
+    A camera observes fingertips to a few centimeters, which on so short a bone is up to half a
+    right angle. Smoothing is relative to the bone above; unreliable offsets continue its
+    direction.
 
     Parameters
     ----------
-    seen : shape (n_frames, 3)
+    observed : shape (n_frames, 3)
     above : shape (n_frames, 4)
         World rotations of the joint above.
-    straight_on : shape (3,)
+    forward : shape (3,)
         The bone above in the rest pose.
-    trust : shape (n_frames,), 0 to 1
+    reliability : shape (n_frames,), 0 to 1
     frame_rate : float, hertz
     """
-    local = rotate(inverse(above), unit_vectors(seen))
-    told = np.isfinite(local).all(axis=-1)
-    weights = np.where(told, trust * _palm_weights(seen, local, straight_on), 0.0)
-    mixed = weights[:, None] * np.where(told[:, None], local, 0.0) + REST_WEIGHT * unit_vectors(
-        straight_on
+    local = rotate(inverse(above), unit_vectors(observed))
+    is_known = np.isfinite(local).all(axis=-1)
+    weights = np.where(is_known, reliability * _palm_weights(observed, local, forward), 0.0)
+    weighted = weights[:, None] * np.where(
+        is_known[:, None], local, 0.0
+    ) + REST_WEIGHT * unit_vectors(forward)
+    smooth = unit_vectors(
+        solve_smooth_paths(weighted, weights + REST_WEIGHT, (SMOOTHING_S * frame_rate) ** 2)
     )
-    steady = unit_vectors(
-        solve_smooth_paths(mixed, weights + REST_WEIGHT, (SMOOTHING_S * frame_rate) ** 2)
-    )
-    lengths = np.linalg.norm(seen, axis=-1, keepdims=True)
-    return np.asarray(rotate(above, steady) * lengths)
+    lengths = np.linalg.norm(observed, axis=-1, keepdims=True)
+    return np.asarray(rotate(above, smooth) * lengths)
 
 
-def _palm_weights(seen: Array, local: Array, straight_on: Array) -> Array:
-    """Return 0 for ways that are too short or too far folded to be a palm's, 1 for others."""
-    length = np.linalg.norm(seen, axis=-1)
-    bend = np.arccos(np.clip(local @ unit_vectors(straight_on), -1.0, 1.0))
-    long = np.clip((length - MIN_PALM_M) / (FULL_PALM_M - MIN_PALM_M), 0.0, 1.0)
+def _palm_weights(observed: Array, local: Array, forward: Array) -> Array:
+    """Return 0 for offsets too short or too strongly flexed for a palm, up to 1 for others."""
+    length = np.linalg.norm(observed, axis=-1)
+    bend = np.arccos(np.clip(local @ unit_vectors(forward), -1.0, 1.0))
+    length_weights = np.clip((length - MIN_PALM_M) / (FULL_PALM_M - MIN_PALM_M), 0.0, 1.0)
     return np.asarray(
-        long
+        length_weights
         * np.clip((MAX_PALM_FLEXION - bend) / (MAX_PALM_FLEXION - FULL_PALM_FLEXION), 0.0, 1.0)
     )
 
 
 def twist_to_normal(
-    turns: Array,
+    rotations: Array,
     axis: Array,
-    usual: Array,
+    reference: Array,
     normal: Array,
     weights: Array,
     frame_rate: float,
     expected: ExpectedTwists | None = None,
 ) -> Array:
-    """Twist frames about their `axis` so far that `usual` comes to `normal`, where it counts.
+    """Rotate frames about `axis` until `reference` reaches `normal`, with weights and
+    smoothing.
 
-    Arrays of shape (n_frames, 3) are in the world; `weights` has shape (n_frames,). What is not
-    known of the twist that is `expected` is none at all.
+    Arrays of shape (n_frames, 3) are in the world; `weights` has shape (n_frames,). Where
+    `expected` is uncertain, the expected rotation is zero.
     """
-    seen = _angles_or_zero(axis, usual, normal)
-    weights = np.where(seen != 0.0, weights * (0.5 + 0.5 * seen.real), 0.0)
+    observed = _angles_or_zero(axis, reference, normal)
+    weights = np.where(observed != 0.0, weights * (0.5 + 0.5 * observed.real), 0.0)
     stiffness = (SMOOTHING_S * frame_rate) ** 2
-    told, sure = weights * seen + REST_WEIGHT, weights + REST_WEIGHT
+    weighted, totals = weights * observed + REST_WEIGHT, weights + REST_WEIGHT
     if expected is not None:
-        like = _remove_actor_bias(expected.twists, seen, weights, frame_rate)
-        known = np.abs(like)
-        told += expected.weights * like - REST_WEIGHT * known
-        sure += (expected.weights - REST_WEIGHT) * known
-    parts = solve_smooth_paths(np.stack([told.real, told.imag], -1), sure, stiffness)
-    path = np.asarray(parts[:, 0] + 1j * parts[:, 1])
-    return _rotate_about_axis(turns, axis, _smooth_angles(path, stiffness))
+        library_twists = _remove_actor_bias(expected.twists, observed, weights, frame_rate)
+        certainty = np.abs(library_twists)
+        weighted += expected.weights * library_twists - REST_WEIGHT * certainty
+        totals += (expected.weights - REST_WEIGHT) * certainty
+    solution = solve_smooth_paths(
+        np.stack([weighted.real, weighted.imag], -1), totals, stiffness
+    )
+    path = np.asarray(solution[:, 0] + 1j * solution[:, 1])
+    return _rotate_about_axis(rotations, axis, _smooth_angles(path, stiffness))
 
 
 def _remove_actor_bias(
-    like: Complex, seen: Complex, weights: Array, frame_rate: float
+    library_twists: Complex, observed: Complex, weights: Array, frame_rate: float
 ) -> Complex:
-    """Turn the twist of like postures by how the actor mostly differs where limbs bend."""
-    off = ACTOR_BIAS_S * frame_rate + np.sum(weights * seen * np.conj(like))
-    return np.asarray(like * off / max(abs(off), MIN_WEIGHT))
+    """Rotate the library's twist by the actor's mean deviation in flexed frames."""
+    bias = ACTOR_BIAS_S * frame_rate + np.sum(weights * observed * np.conj(library_twists))
+    return np.asarray(library_twists * bias / max(abs(bias), MIN_WEIGHT))
 
 
 def _angles_or_zero(directions: Array, plain: Array, hinges: Array) -> Complex:
-    """Return `angles_about`; 0: unknown."""
+    """Return `axial_angles`; 0 where unknown."""
     return np.nan_to_num(axial_angles(directions, plain, hinges))
 
 
-def _rotate_about_axis(turns: Array, axis: Array, angles: Array) -> Array:
-    return multiply(quaternion_from_rotation_vector(angles[:, None] * axis), turns)
+def _rotate_about_axis(rotations: Array, axis: Array, angles: Array) -> Array:
+    return multiply(quaternion_from_rotation_vector(angles[:, None] * axis), rotations)
 
 
 def _smooth_angles(path: Complex, stiffness: float) -> Array:
     """Return the angles of a path in the plane, radians, shape (n_frames,).
 
-    Where the path passes near 0 an angle may change by half a turn in a frame. There it tells
-    little, and is led over steadily.
+    Where the path passes near 0, an angle may change by half a turn within a frame. Such angles
+    get a low weight, and the path is smoothed across them.
     """
     weights = AGREED_WEIGHT * np.abs(path) ** 4 + MIN_WEIGHT
-    told = weights * np.unwrap(np.angle(path))
-    return solve_smooth_paths(told[:, None], weights, stiffness)[:, 0]
+    weighted = weights * np.unwrap(np.angle(path))
+    return solve_smooth_paths(weighted[:, None], weights, stiffness)[:, 0]
 
 
-def solve_smooth_paths(told: Array, weights: Array, stiffness: float) -> Array:
-    """Solve (W + s D'D) z = told for paths z, shape (n_frames, n)."""
-    n_frames = len(told)
+def solve_smooth_paths(weighted: Array, weights: Array, stiffness: float) -> Array:
+    """Solve (W + s D'D) z = weighted for paths z, shape (n_frames, n)."""
+    n_frames = len(weighted)
     if n_frames == 1:
-        return np.asarray(told / weights[:, None])
+        return np.asarray(weighted / weights[:, None])
     ends = np.full(n_frames, 2.0)
     ends[0] -= 1.0
     ends[-1] -= 1.0
     bands = np.zeros((2, n_frames))
     bands[0, 1:] = -stiffness
     bands[1] = weights + stiffness * ends
-    return np.asarray(solveh_banded(bands, told))
+    return np.asarray(solveh_banded(bands, weighted))

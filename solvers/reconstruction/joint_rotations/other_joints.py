@@ -1,4 +1,4 @@
-"""Joints that postures are not made of move with the nearest one that they are made of."""
+"""Move the tracked joints that are not posture joints along with the nearest posture joint."""
 
 from collections.abc import Sequence
 
@@ -18,97 +18,104 @@ TRUNK = {
     "leftUpperLeg": (0.5, 0.0, 0.0),
     "rightUpperLeg": (-0.5, 0.0, 0.0),
 }
-"""Where these are about the hips of a body that stands and faces -Y; only ways count."""
+"""Positions relative to the hips of a body that stands and faces -Y; only directions matter."""
 
 
 def find_anchors(names: Sequence[str]) -> NDArray[np.intp]:
-    """Return which posture joint each tracked joint moves with, shape (n_joints,).
+    """Return the posture joint that each tracked joint moves with, shape (n_joints,).
 
-    Its own, or that of the nearest joint in the tree, those above first.
+    A posture joint is its own anchor. Others use the nearest one in the tree, ancestors first.
     """
-    own = {place: POSTURE_JOINTS.index(role) for role, place in joints_of_names(names).items()}
+    posture_joints = {
+        place: POSTURE_JOINTS.index(role) for role, place in joints_of_names(names).items()
+    }
     parents = joint_parents(names)
-    ways = [
+    connected = [
         {joint} | {child for child, above in enumerate(parents) if above == joint}
         for joint in range(len(names))
     ]
-    found = []
+    anchors = []
     for joint in range(len(names)):
-        reached, front = {joint}, [joint]
-        while front and not any(each in own for each in front):
-            above = [parents[each] for each in front if parents[each] >= 0]
-            below = [child for each in front for child in sorted(ways[each])]
-            front = [each for each in dict.fromkeys(above + below) if each not in reached]
-            reached.update(front)
-        found.append(next((own[each] for each in front if each in own), 0))
-    return np.array(found, dtype=np.intp)
+        reached, frontier = {joint}, [joint]
+        while frontier and not any(each in posture_joints for each in frontier):
+            above = [parents[each] for each in frontier if parents[each] >= 0]
+            below = [child for each in frontier for child in sorted(connected[each])]
+            frontier = [each for each in dict.fromkeys(above + below) if each not in reached]
+            reached.update(frontier)
+        anchors.append(
+            next((posture_joints[each] for each in frontier if each in posture_joints), 0)
+        )
+    return np.array(anchors, dtype=np.intp)
 
 
 def positions_from_postures(
-    names: Sequence[str], seen: Array, trust: Array, before: Array, after: Array
+    names: Sequence[str], tracked: Array, reliability: Array, before: Array, after: Array
 ) -> Array:
-    """Return where all tracked joints are when those of postures were moved.
+    """Return the positions of all tracked joints after posture joints were moved.
 
-    A joint of its own keeps its place about its anchor, which turns the short way as the bone
-    that leads to the anchor does; where it was not trusted, that is its usual place. The usual
-    place is told in axes that the bone carries along from where it mostly points on the body,
-    so that they turn round quickly only where it points the very other way.
+    A joint keeps its offset from its anchor, rotated with the bone that leads to the anchor.
+    Where its reliability is low, its median offset is used. That offset is expressed in axes
+    that the bone carries along from its mean direction, so that they rotate fast only near the
+    opposite direction.
 
     Parameters
     ----------
     names : sequence of str
-    seen : shape (n_frames, n_joints, 3), metres
-        NaN: not seen.
-    trust : shape (n_frames, n_joints)
+    tracked : shape (n_frames, n_joints, 3), metres
+        NaN: missing.
+    reliability : shape (n_frames, n_joints)
     before, after : shape (n_frames, 20, 3), metres
-        Joints of postures as they were seen, and as they are now.
+        Posture joints as observed, and after they were moved.
     """
-    own = {place: POSTURE_JOINTS.index(role) for role, place in joints_of_names(names).items()}
-    result = np.empty_like(seen)
+    posture_joints = {
+        place: POSTURE_JOINTS.index(role) for role, place in joints_of_names(names).items()
+    }
+    result = np.empty_like(tracked)
     bones_before, bones_after = _bones(before), _bones(after)
     trunk = _trunk_rotations(after)
     for joint, anchor in enumerate(find_anchors(names)):
-        if joint in own:
-            result[:, joint] = after[:, own[joint]]
+        if joint in posture_joints:
+            result[:, joint] = after[:, posture_joints[joint]]
             continue
         bones = bones_before[:, anchor], bones_after[:, anchor]
         axes_before, axes_after = (_bone_axes(trunk, bone, bones[1]) for bone in bones)
-        way = seen[:, joint] - before[:, anchor]
-        turned = rotate(_swings(*bones), way)
-        told = np.isfinite(turned).all(axis=-1)
-        weight = np.where(told, trust[:, joint], 0.0)
-        sure = told & (weight >= 0.5 * weight.max(initial=0.0))
-        local = rotate(inverse(axes_before[sure]), way[sure])
-        usual = np.median(local, axis=0) if sure.any() else np.zeros(3)
-        blend = weight[:, None] * np.where(told[:, None], turned, 0.0)
-        blend += (1.0 - weight)[:, None] * rotate(axes_after, usual)
-        result[:, joint] = after[:, anchor] + blend
+        tracked_offset = tracked[:, joint] - before[:, anchor]
+        rotated_offset = rotate(_swings(*bones), tracked_offset)
+        is_known = np.isfinite(rotated_offset).all(axis=-1)
+        weight = np.where(is_known, reliability[:, joint], 0.0)
+        is_reliable = is_known & (weight >= 0.5 * weight.max(initial=0.0))
+        local = rotate(inverse(axes_before[is_reliable]), tracked_offset[is_reliable])
+        mean_offset = np.median(local, axis=0) if is_reliable.any() else np.zeros(3)
+        offset = weight[:, None] * np.where(is_known[:, None], rotated_offset, 0.0)
+        offset += (1.0 - weight)[:, None] * rotate(axes_after, mean_offset)
+        result[:, joint] = after[:, anchor] + offset
     return result
 
 
 def _bones(postures: Array) -> Array:
-    """Return the bone that leads to each joint, shape (n_frames, 20, 3); to hips the spine."""
+    """Return the bone that leads to each joint, (n_frames, 20, 3); for the hips the spine."""
     ends = [joint or 1 for joint in range(N_JOINTS)]
     return np.asarray(postures[:, ends] - postures[:, [PARENTS[end] for end in ends]])
 
 
 def _trunk_rotations(postures: Array) -> Array:
-    """Return how the trunk is turned against one that stands and faces -Y, (n_frames, 4)."""
-    seen = postures[:, [POSTURE_JOINTS.index(role) for role in TRUNK]] - postures[:, :1]
-    turns = best_turns(np.array(list(TRUNK.values())), seen)
+    """Return the rotation of the trunk from a body that faces -Y, (n_frames, 4)."""
+    tracked = postures[:, [POSTURE_JOINTS.index(role) for role in TRUNK]] - postures[:, :1]
+    turns = best_turns(np.array(list(TRUNK.values())), tracked)
     return np.where(np.isfinite(turns), turns, IDENTITY)
 
 
 def _bone_axes(trunk: Array, bones: Array, all_bones: Array) -> Array:
-    """Return the trunk's axes, turned the short way to a bone from its usual direction."""
+    """Return the trunk's axes, rotated from a bone's mean direction to its current one."""
     known = np.isfinite(all_bones).all(axis=-1)
     local = rotate(inverse(trunk[known]), all_bones[known])
-    usual = local.mean(axis=0) if known.any() else np.zeros(3)
-    return multiply(_swings(rotate(trunk, usual), bones), trunk)
+    mean_offset = local.mean(axis=0) if known.any() else np.zeros(3)
+    return multiply(_swings(rotate(trunk, mean_offset), bones), trunk)
 
 
 def _swings(start: Array, stop: Array) -> Array:
-    """Return the short turns between ways, shape (n_frames, 4); NaN where one is not known."""
-    told = (np.isfinite(start) & np.isfinite(stop)).all(axis=-1, keepdims=True)
-    turns = rotation_between(np.where(told, start, 1.0), np.where(told, stop, 1.0))
-    return np.where(told, turns, np.nan)
+    """Return the shortest rotations between directions, (n_frames, 4); NaN where one is
+    unknown."""
+    is_known = (np.isfinite(start) & np.isfinite(stop)).all(axis=-1, keepdims=True)
+    turns = rotation_between(np.where(is_known, start, 1.0), np.where(is_known, stop, 1.0))
+    return np.where(is_known, turns, np.nan)

@@ -1,4 +1,4 @@
-"""What every way of reconstruction returns."""
+"""Result class of all reconstruction methods."""
 
 from dataclasses import dataclass
 
@@ -17,17 +17,17 @@ class Reconstruction:
     Attributes
     ----------
     tracks : Tracks
-        All joints of the recording under their names; every one in every frame.
+        All joints of the recording under their names, without missing frames.
     motion : Motion
-        A skeleton of these joints with constant bone lengths that follows them.
+        Motion of a skeleton with constant bone lengths, fitted to these joints.
     reliability : Reliability
-        How far each joint of the recording was trusted, and why.
+        Reliability of each joint of the recording, and its terms.
     confidence : shape (n_frames, n_joints), 0 to 1
-        How sure each joint of the result is.
+        Confidence of each joint of the result.
     method : str
-        What was done, in words: methods used, neighbours, training.
+        Description of the methods, neighbors and training data.
     twists : LimbTwists, optional
-        How like postures have upper arms and thighs twisted, where a library was asked.
+        Axial rotations of upper arms and thighs from a library, if one was used.
     """
 
     tracks: Tracks

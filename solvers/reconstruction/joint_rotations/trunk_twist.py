@@ -1,8 +1,8 @@
-"""How far upper arms and thighs are twisted about themselves against the trunk.
+"""Axial rotation of upper arms and thighs relative to the trunk.
 
-Told without any rig: by the axis that elbow or knee turns about, against where it would be if
-the limb had come the short way from the T-pose of the trunk. So it is the same number for all
-makers and sizes, and needs no more than joints to be laid on another body.
+The angle is measured from the hinge axis of elbow or knee to the axis after the shortest
+rotation of the limb from the trunk's T-pose. It depends only on joint positions, not on the rig
+or body size, so it transfers to other bodies.
 """
 
 from dataclasses import dataclass
@@ -19,14 +19,13 @@ from .limb_twist import HINGES, HingeAxes
 Array = NDArray[np.float64]
 
 MIN_RELIABILITY = 1e-3
-"""What a joint counts for at least, lest no neighbour is nearer than another."""
+"""Minimum weight of a joint, so that distances to neighbors stay distinct."""
 HALF_WEIGHT_M = 0.05
-"""Metres from the nearest posture, as a root mean square over joints, at which half of its
-twist counts."""
+"""Root mean square distance (m) to the nearest pose at which its twist gets half weight."""
 
 
 class TwistedLimb(NamedTuple):
-    """A limb whose twist is told; places in `POSTURE_JOINTS`, directions of a T-pose."""
+    """A limb with an axial rotation; indices into `POSTURE_JOINTS`, directions of a T-pose."""
 
     upper: int
     lower: int
@@ -41,10 +40,10 @@ class TwistedLimb(NamedTuple):
 
 
 def _limb(side: str, sign: float, upper: str, lower: str, end: str) -> TwistedLimb:
-    places = [POSTURE_JOINTS.index(f"{side}{part}") for part in (upper, lower, end)]
+    indices = [POSTURE_JOINTS.index(f"{side}{part}") for part in (upper, lower, end)]
     kind = upper[-3:]
     along = (sign, 0.0, 0.0) if kind == "Arm" else (0.0, 0.0, -1.0)
-    return TwistedLimb(places[0], places[1], places[2], along, HINGES[kind])
+    return TwistedLimb(indices[0], indices[1], indices[2], along, HINGES[kind])
 
 
 TWISTED_LIMBS = tuple(
@@ -59,17 +58,17 @@ OTHER_SIDE = (1, 0, 3, 2)
 
 @dataclass(frozen=True, eq=False)
 class LimbTwists:
-    """How limbs are twisted, as like postures have it.
+    """Axial rotations of limbs from similar library poses.
 
     Attributes
     ----------
     vectors : complex, shape (n_frames, 4)
-        Points in the unit circle, one for each of `TWISTED`: the angle is the twist, the length
-        how far all agree; 0: nothing is known.
+        Points in the unit circle, one for each of `TWISTED_LIMBS`: the angle is the twist,
+        the length its certainty; 0: unknown.
     alone : bool
-        Whether these alone tell the twist [SHJT13, section VII-B], whatever elbows and knees
-        show. Where nothing is known, limbs are then not twisted at all; to hold the twist that
-        was known last measured worse.
+        Whether to use these alone [SHJT13, section VII-B] and ignore the flexion of elbows
+        and knees. Unknown twists are then zero; holding the last known twist measured
+        worse.
     """
 
     vectors: Complex
@@ -77,52 +76,52 @@ class LimbTwists:
 
 
 def untwisted_hinges(postures: Array) -> tuple[Array, Array]:
-    """Return directions of limbs, and where hinges point in limbs that are not twisted.
+    """Return directions of limbs, and hinge axes of limbs without axial rotation.
 
     Parameters
     ----------
     postures : shape (n_frames, 20, 3), metres
-        In any place and heading; NaN: not known.
+        At any position and heading; NaN: unknown.
 
     Returns
     -------
     directions, hinges : shape (n_frames, 4, 3)
-        Unit vectors; NaN where the limb or the trunk is not known.
+        Unit vectors; NaN where the limb or the trunk is unknown.
     """
     frames = bone_frames(postures)
     directions = np.empty((len(postures), N_TWISTED_LIMBS, 3))
     hinges = np.empty_like(directions)
-    for place, limb in enumerate(TWISTED_LIMBS):
-        way = unit_vectors(postures[:, limb.lower] - postures[:, limb.upper], np.nan)
+    for index, limb in enumerate(TWISTED_LIMBS):
+        direction = unit_vectors(postures[:, limb.lower] - postures[:, limb.upper], np.nan)
         frame = frames[limb.upper]
-        local = np.einsum("fji,fj->fi", frame, way)
+        local = np.einsum("fji,fj->fi", frame, direction)
         along, hinge = np.array(limb.along), limb.hinge
-        # The short turn from `along` to `local` takes what is square to `along` there.
-        share = (local @ hinge) / np.maximum(1.0 + local @ along, MIN_LENGTH)
-        turned = hinge - share[:, None] * (along + local)
-        directions[:, place] = way
-        hinges[:, place] = unit_vectors(np.einsum("fij,fj->fi", frame, turned), np.nan)
+        # The shortest rotation from `along` to `local`, applied to the perpendicular hinge.
+        fraction = (local @ hinge) / np.maximum(1.0 + local @ along, MIN_LENGTH)
+        swung = hinge - fraction[:, None] * (along + local)
+        directions[:, index] = direction
+        hinges[:, index] = unit_vectors(np.einsum("fij,fj->fi", frame, swung), np.nan)
     return directions, hinges
 
 
 def flexion_normals(postures: Array) -> tuple[Array, Array]:
-    """Return the axes about which elbows and knees are bent, and by how much.
+    """Return flexion axes and flexion angles of elbows and knees.
 
     Returns
     -------
     normals : shape (n_frames, 4, 3)
     bends : shape (n_frames, 4), radians
     """
-    ways = [
+    axes = [
         [unit_vectors(postures[:, one] - postures[:, above], np.nan) for above, one in pairs]
         for pairs in (((x.upper, x.lower), (x.lower, x.end)) for x in TWISTED_LIMBS)
     ]
-    first, second = (np.stack(each, axis=1) for each in zip(*ways, strict=True))
+    first, second = (np.stack(each, axis=1) for each in zip(*axes, strict=True))
     return measure_flexion(first, second)
 
 
 def hinges_from_twists(postures: Array, twists: LimbTwists) -> dict[str, HingeAxes]:
-    """Return where twisted limbs have their hinges, by the roles of their upper joints.
+    """Return the hinge axes of twisted limbs, by the roles of their upper joints.
 
     Parameters
     ----------
@@ -130,44 +129,48 @@ def hinges_from_twists(postures: Array, twists: LimbTwists) -> dict[str, HingeAx
         In the world.
     twists : LimbTwists
     """
-    directions, plain = untwisted_hinges(postures)
-    aside = np.cross(directions, plain)
+    directions, untwisted = untwisted_hinges(postures)
+    perpendicular = np.cross(directions, untwisted)
     cos, sin = twists.vectors.real[..., None], twists.vectors.imag[..., None]
-    ways = np.nan_to_num(cos * plain + sin * aside)
+    axes = np.nan_to_num(cos * untwisted + sin * perpendicular)
     return {
-        POSTURE_JOINTS[limb.upper]: HingeAxes(ways[:, place], twists.alone)
-        for place, limb in enumerate(TWISTED_LIMBS)
+        POSTURE_JOINTS[limb.upper]: HingeAxes(axes[:, index], twists.alone)
+        for index, limb in enumerate(TWISTED_LIMBS)
     }
 
 
 def mirror_twists(twists: Complex) -> Complex:
-    """Return twists of limbs, (..., 4), as a mirror shows them."""
+    """Return the mirror image of axial rotations of limbs, (..., 4)."""
     return np.asarray(np.conj(twists[..., list(OTHER_SIDE)]))
 
 
-def mean_twists(twists: Complex, postures: Array, neighbours: Array, trust: Array) -> Complex:
-    """Return the mean of neighbours' twists, weighted by their nearness [SHJT13, VII-B].
+def mean_twists(
+    twists: Complex, postures: Array, neighbours: Array, reliability: Array
+) -> Complex:
+    """Return the mean twist of the neighbors, weighted by similarity [SHJT13, VII-B].
 
-    The weight is the inverse of eq. 9, squared. The farther the nearest is, the shorter the
-    mean.
+    The weight is the inverse of eq. 9, squared. The mean is shorter the farther the nearest
+    neighbor is.
 
     Parameters
     ----------
     twists : shape (n_frames, n_neighbours, 4)
     postures : shape (n_frames, 20, 3), metres
-        As they were synthesised.
+        Synthesized poses.
     neighbours : shape (n_frames, n_neighbours, 60), metres
-    trust : shape (n_frames, 20)
+    reliability : shape (n_frames, 20)
 
     Returns
     -------
     shape (n_frames, 4)
     """
-    off = neighbours - postures.reshape(len(postures), 1, -1)
-    counted = np.repeat(np.maximum(trust, MIN_RELIABILITY), 3, axis=1)
-    squares = np.einsum("fni,fni,fi->fn", off, off, counted, optimize=False)
+    differences = neighbours - postures.reshape(len(postures), 1, -1)
+    joint_weights = np.repeat(np.maximum(reliability, MIN_RELIABILITY), 3, axis=1)
+    squares = np.einsum(
+        "fni,fni,fi->fn", differences, differences, joint_weights, optimize=False
+    )
     weights = 1.0 / np.maximum(squares, MIN_LENGTH)
     weights /= weights.sum(axis=1, keepdims=True)
-    least_square = 3.0 * squares.min(axis=1) / counted.sum(axis=1)
-    near = 1.0 / (1.0 + least_square / HALF_WEIGHT_M**2)
-    return np.asarray(near[:, None] * np.einsum("fn,fnl->fl", weights, twists))
+    least_square = 3.0 * squares.min(axis=1) / joint_weights.sum(axis=1)
+    proximity = 1.0 / (1.0 + least_square / HALF_WEIGHT_M**2)
+    return np.asarray(proximity[:, None] * np.einsum("fn,fnl->fl", weights, twists))

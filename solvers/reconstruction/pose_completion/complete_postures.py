@@ -107,26 +107,20 @@ def complete_postures(
     targets, given = take.postures, _ramp_reliability(take, settings)
     for number in range(rounds):
         part = within(progress, number / rounds, (number + 1) / rounds)
-        synthesized, twists = _synthesize(
+        chosen, twists = _synthesize(
             replace(take, postures=targets, trust=given), body, index, settings, part
         )
-        offset_step = _hips_offset(
-            take.postures - offset - synthesized.values, trust, frame_rate, settings
-        )
-        offset = offset + offset_step
-        corrected = _add_residuals(
-            synthesized, take.postures - offset, take, errors.size, settings
-        )
+        residuals = take.postures - offset - chosen.values
+        offset = offset + _hips_offset(residuals, trust, frame_rate, settings)
+        corrected = _add_residuals(chosen, take.postures - offset, take, errors.size, settings)
         if number + 1 < rounds:
-            is_unreliable = (trust < REUSED_RELIABILITY)[..., None]
-            targets = np.where(is_unreliable, corrected.values, take.postures - offset)
-            reused_reliability = REUSED_RELIABILITY / (
-                1.0 + (corrected.spread / HALF_CONFIDENCE_M) ** 2
-            )
-            given = np.maximum(given, reused_reliability)
+            missing = (trust < REUSED_RELIABILITY)[..., None]
+            targets = np.where(missing, corrected.values, take.postures - offset)
+            reused = REUSED_RELIABILITY / (1.0 + (corrected.spread / HALF_CONFIDENCE_M) ** 2)
+            given = np.maximum(given, reused)
     spread_ratio = corrected.spread / errors.size
     uncertainty = np.hypot(
-        settings.noise, spread_ratio * np.hypot(synthesized.spread, MODEL_ERROR_M)
+        settings.noise, spread_ratio * np.hypot(chosen.spread, MODEL_ERROR_M)
     )
     confidence = 1.0 / (1.0 + (uncertainty / HALF_CONFIDENCE_M) ** 2)
     postures = constrain_lengths(corrected.values + errors.offset, lengths, trust, confidence)
@@ -143,12 +137,10 @@ def _search_as_published(
     )
     causal_settings = replace(settings, causal=True, pace=0.0, smoothing=0.0)
     index = index_postures(body, library.groups)
-    synthesized, twists = _synthesize(take, body, index, causal_settings, progress)
-    uncertainty = np.hypot(synthesized.spread, MODEL_ERROR_M)
+    chosen, twists = _synthesize(take, body, index, causal_settings, progress)
+    uncertainty = np.hypot(chosen.spread, MODEL_ERROR_M)
     confidence = 1.0 / (1.0 + (uncertainty / HALF_CONFIDENCE_M) ** 2)
-    return CompletedPostures(
-        synthesized.values, confidence, twists and replace(twists, alone=True)
-    )
+    return CompletedPostures(chosen.values, confidence, twists and replace(twists, alone=True))
 
 
 def _fit_library_to_actor(
@@ -287,7 +279,7 @@ def _hips_offset(
 
 
 def _add_residuals(
-    synthesized: Estimates,
+    chosen: Estimates,
     observed: Array,
     take: _ObservedTake,
     size: Array,
@@ -297,10 +289,10 @@ def _add_residuals(
     dt, deviation = 1.0 / take.frame_rate, measurement_deviation(take.trust, settings.noise)
     if settings.causal:
         corrected = filter_residuals(
-            synthesized.values, observed, deviation, dt, size, settings.memory
+            chosen.values, observed, deviation, dt, size, settings.memory
         )
     else:
         corrected = smooth_residuals(
-            observed - synthesized.values, deviation, dt, size, settings.memory
+            observed - chosen.values, deviation, dt, size, settings.memory
         )
-    return Estimates(synthesized.values + corrected.values, corrected.spread)
+    return Estimates(chosen.values + corrected.values, corrected.spread)

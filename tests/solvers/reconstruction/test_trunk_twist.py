@@ -113,7 +113,7 @@ def test_hinges_are_put_where_twists_have_them():
 
     known = hinges_from_twists(postures, LimbTwists(twists))
 
-    ways = np.stack([known[POSTURE_JOINTS[limb.upper]].ways for limb in TWISTED_LIMBS], axis=1)
+    ways = np.stack([known[POSTURE_JOINTS[limb.upper]].vectors for limb in TWISTED_LIMBS], axis=1)
     assert_allclose(np.linalg.norm(ways, axis=-1), 0.7)
     assert_allclose(axial_angles(*untwisted_hinges(postures), ways), twists / 0.7, atol=1e-9)
 
@@ -199,8 +199,12 @@ def test_rotations_that_contradict_bends_are_hardly_believed(gait):
     """Points have no twist: an upper arm that is turned at random says nothing."""
     rng = np.random.default_rng(5)
     clip = read_clip_twists(gait, motion_postures(gait))
-    wild = clip._replace(from_rotations=np.exp(1j * rng.uniform(-np.pi, np.pi, clip.from_rotations.shape)))
-    straight = wild._replace(flexion_fractions=np.where(np.arange(len(wild.flexion_fractions))[:, None] < 60, 1.0, 0))
+    wild = clip._replace(
+        from_rotations=np.exp(1j * rng.uniform(-np.pi, np.pi, clip.from_rotations.shape))
+    )
+    straight = wild._replace(
+        flexion_fractions=np.where(np.arange(len(wild.flexion_fractions))[:, None] < 60, 1.0, 0)
+    )
 
     told = combine_clip_twists([gait.skeleton], [straight])[0]
 
