@@ -136,8 +136,9 @@ def _check_observed(recording: JointRecording, positions: Array, trust: Array) -
     recognized = joints_of_names(recording.names)
     if len(recognized) < MIN_JOINTS:
         raise InvalidMotionError(
-            f"Only {len(recognized)} joints have recognized names ({', '.join(recognized)}). Use"
-            f" a recording with at least {MIN_JOINTS}, including the hips and limbs."
+            f"Only {len(recognized)} joints have recognized names"
+            f" ({', '.join(recognized)}). Use a recording with at least {MIN_JOINTS},"
+            " including the hips and limbs."
         )
     state = recording.tracking_state
     if state is None or _max_joints(np.isfinite(positions)[..., 0]) < MIN_JOINTS:

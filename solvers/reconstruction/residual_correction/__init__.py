@@ -1,4 +1,4 @@
-"""Gaussian processes that predict how a sensor errs, and the correction of its poses."""
+"""Gaussian processes that predict a sensor's errors, and the correction of its poses."""
 
 from .correct_postures import CorrectionMethod, CorrectionSettings, correct_postures
 from .kernel import squared_distances

@@ -1,4 +1,4 @@
-"""The chance that a joint lies near where a residual prior puts it, for somebody new."""
+"""Probability that a joint is near the position that a residual prior predicts."""
 
 from typing import NamedTuple
 
@@ -9,23 +9,23 @@ from scipy.special import gammainc, roots_hermitenorm
 Array = NDArray[np.float64]
 
 MIN_VARIANCE_M2 = 1e-12
-"""Square metres. Variances below this tell nothing more."""
+"""Minimum variance (m²); smaller ones carry no information."""
 NODES, _WEIGHTS = roots_hermitenorm(7)
 NODE_WEIGHTS = _WEIGHTS / _WEIGHTS.sum()
 
 
 class Calibration(NamedTuple):
-    """How the variances of new actors follow from those that a prior foretells.
+    """Mapping from predicted variances to those of actors outside the training set.
 
-    The logarithm of a new actor's variance of a joint is normal about
-    `level + shift + slope (told - level)`, where `level` is the mean of what is told of a take.
+    The log variance of a new actor's joint is normal about `level + shift + slope (predicted -
+    level)`, where `level` is the mean predicted log variance of a take.
 
     Attributes
     ----------
     shift : float
-        By how much variances are larger on the whole, as a logarithm.
+        Mean difference of log variances.
     slope : float
-        What part of told differences is found again: 1 all, 0 none.
+        Fraction of predicted differences that is found: 1 all, 0 none.
     spread : float
         Standard deviation of the logarithm, between actors and joints.
     """
@@ -41,10 +41,10 @@ IDENTITY_CALIBRATION = Calibration()
 def chance_within(
     variances: Array, distance: float, calibration: Calibration = IDENTITY_CALIBRATION
 ) -> Array:
-    """Return the chance of a point being within a distance of its mean (Maxwell's law).
+    """Return the probability of a point within a distance of its mean (Maxwell distribution).
 
-    The variance of a new actor is not known either; chances are averaged over what it may be,
-    by Gauss-Hermite quadrature.
+    The variance of a new actor is itself uncertain; probabilities are averaged over its
+    distribution by Gauss-Hermite quadrature.
 
     Parameters
     ----------
@@ -55,11 +55,13 @@ def chance_within(
     """
     shift, slope, spread = calibration
     known = np.isfinite(variances)
-    told = np.log(np.maximum(np.where(known, variances, 1.0), MIN_VARIANCE_M2))
-    level = float(told[known].mean()) if known.any() else 0.0
-    nearness = 0.5 * distance**2 * np.exp(-level - shift - slope * (told - level))
+    log_variances = np.log(np.maximum(np.where(known, variances, 1.0), MIN_VARIANCE_M2))
+    level = float(log_variances[known].mean()) if known.any() else 0.0
+    scaled_distance = (
+        0.5 * distance**2 * np.exp(-level - shift - slope * (log_variances - level))
+    )
     nodes = zip(NODES, NODE_WEIGHTS, strict=True) if spread else [(0.0, 1.0)]
     chance = sum(
-        share * gammainc(1.5, nearness * np.exp(-spread * node)) for node, share in nodes
+        share * gammainc(1.5, scaled_distance * np.exp(-spread * node)) for node, share in nodes
     )
     return np.where(known, chance, 0.0)

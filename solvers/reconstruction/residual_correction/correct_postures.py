@@ -1,4 +1,4 @@
-"""Take a sensor's errors out of a recording with a residual prior [ZH14, chapter 5]."""
+"""Subtract a sensor's errors from a recording with a residual prior [ZH14, chapter 5]."""
 
 from dataclasses import dataclass
 from enum import Enum
@@ -27,16 +27,17 @@ from .smooth_trajectories import filter_trajectories, smooth_trajectories
 Array = NDArray[np.float64]
 
 CM_PER_M = 100.0
-"""[ZH14] names no unit for its weights; with metres the temporal term would vanish."""
+"""[ZH14] gives no unit for its weights; with meters the temporal term would vanish."""
 MIN_WEIGHT = 0.02
-"""Weight of a joint that is not trusted at all, so that gaps are bridged smoothly."""
+"""Weight of an unreliable joint, so that gaps are interpolated smoothly."""
 REFERENCE_RATE_HZ = 30.0
 CONFIDENCE_DISTANCE_M = 0.05
-"""Metres. Confidence is the chance that a joint lies within this of where it was."""
+"""Confidence is the probability that a joint is within this distance (m) of its true position.
+"""
 
 
 class CorrectionMethod(Enum):
-    """How offsets, smoothness and trust are brought together."""
+    """Method that combines offsets, smoothness and reliability."""
 
     WHOLE_TAKE = "whole take"
     CAUSAL = "causal"
@@ -45,36 +46,36 @@ class CorrectionMethod(Enum):
 
 @dataclass(frozen=True, kw_only=True)
 class CorrectionSettings(Settings):
-    """How a residual prior is applied."""
+    """Settings of `correct_postures`."""
 
     method: CorrectionMethod = setting(
         CorrectionMethod.WHOLE_TAKE,
-        "Whole take smooths over what was before and after each frame, causal over what was"
-        " before; published weighs three terms frame by frame as Zhou 2014",
+        "Whole take smooths over frames before and after each frame, causal over earlier"
+        " frames; published weighs three terms frame by frame as Zhou 2014",
     )
     smoothing: float = setting(
-        0.05, "Movements shorter than about this are jitter; higher is smoother and blunter",
+        0.05, "Movements shorter than about this count as jitter; higher values smooth more",
         unit="s", minimum=0.0, maximum=1.0,
     )  # fmt: skip
     shift: bool = setting(
-        True, "Also move each joint by the offset that the sensor always has, as from the skin"
-        " to the joint; false leaves joints on average where they were seen",
+        True, "Also subtract the sensor's constant offset of each joint, such as from the skin"
+        " to the joint center; false keeps the mean observed position",
     )  # fmt: skip
     change: float = setting(
-        0.9, "How much is applied of the offsets' change with posture; 1 takes the prior at"
-        " its word, also in movements that it has never seen (published: all, unless 0)",
+        0.9, "Fraction of the offsets' change with pose to apply; 1 applies the prior in full,"
+        " also to movements outside its training data (published: all, unless 0)",
         minimum=0.0, maximum=1.0, advanced=True,
     )  # fmt: skip
     spatial: float = setting(
-        0.6, "Weight of the foretold offsets; published method only",
+        0.6, "Weight of the predicted offsets; published method only",
         minimum=0.0, maximum=10.0, advanced=True,
     )  # fmt: skip
     temporal: float = setting(
-        0.2, "Weight of steady velocities; published method only",
+        0.2, "Weight of constant velocities; published method only",
         minimum=0.0, maximum=10.0, advanced=True,
     )  # fmt: skip
     trust: float = setting(
-        0.2, "Weight of staying where reliable joints were seen; published method only",
+        0.2, "Weight of the observed positions of reliable joints; published method only",
         minimum=0.0, maximum=10.0, advanced=True,
     )  # fmt: skip
 
@@ -88,34 +89,36 @@ def correct_postures(
     settings: CorrectionSettings = CorrectionSettings(),
     progress: Progress = unwatched,
 ) -> Reconstruction:
-    """Move joints from where a sensor saw them to where they were, as far as is known.
+    """Correct the sensor's errors in joint positions with a residual prior.
 
-    Published: minimise E = w_S E_S + w_T E_T + w_R E_R (eq. 5.1, 5.4, 5.5, 5.6), frame by frame
-    in closed form, since all three are quadratic and diagonal. The default takes the mean
-    offset of the take and a part of its change, and minimises over the whole take the distance
-    to that, weighted by reliability, and the accelerations.
+    The published method minimizes E = w_S E_S + w_T E_T + w_R E_R (eq. 5.1, 5.4, 5.5, 5.6)
+    frame by frame in closed form, since all terms are quadratic and diagonal. The default takes
+    the mean offset of the take and a fraction of its change. Over the complete take, it
+    minimizes the distance to the corrected positions, weighted by reliability, and the
+    accelerations.
 
     Parameters
     ----------
     recording : JointRecording
     prior : ResidualPrior
     reliability : Reliability, optional
-        Measured by `measure_reliability` where it is not given.
+        Computed by `measure_reliability` by default.
     twists : LimbTwists, optional
-        How like postures have limbs twisted; by default bends alone tell it.
+        Axial rotations from similar library poses; by default flexion alone determines them.
     settings : CorrectionSettings
     progress : Progress
 
     Returns
     -------
     Reconstruction
-        Its confidence is the chance that a joint lies within 5 cm of where it was (without
-        `shift`: beside a constant offset); where the prior knows nothing, the reliability.
+        Its confidence is the probability that a joint is within 5 cm of its true position
+        (without `shift`: apart from a constant offset); outside the prior's training data,
+        the reliability.
 
     Raises
     ------
     InvalidMotionError
-        No body is recognised in the names of the joints.
+        The joint names do not describe a body.
     SolveCancelled
         Raised by `progress`.
 
@@ -127,12 +130,12 @@ def correct_postures(
     trust = reliability or measure_reliability(recording, progress=within(progress, 0.0, 0.3))
     weights = posture_reliability(recording, trust.combined)
     progress(0.4, "Correcting")
-    corrected, told, variances = predict_positions(recording, prior, weights, settings)
+    corrected, prediction, variances = predict_positions(recording, prior, weights, settings)
     progress(0.9, "Correcting")
-    asked = settings.change > 0.0 or settings.shift
-    heard = told.coverage if asked else 0.0
-    chance = prior.confidence(variances, CONFIDENCE_DISTANCE_M, constant=settings.shift)
-    confidence = heard * chance + (1.0 - heard) * weights
+    uses_prior = settings.change > 0.0 or settings.shift
+    coverage = prediction.coverage if uses_prior else 0.0
+    probability = prior.confidence(variances, CONFIDENCE_DISTANCE_M, constant=settings.shift)
+    confidence = coverage * probability + (1.0 - coverage) * weights
     tracks = recording.tracks
     joints = positions_from_postures(
         tracks.names, tracks.positions, trust.combined, posture_positions(recording), corrected
@@ -142,8 +145,8 @@ def correct_postures(
     rebuilt = tracks.with_positions(joints)
     motion = motion_from_positions(rebuilt, recording.parents, trust.combined, twists=twists)
     progress(1.0, "Corrected")
-    method = f"steadied ({settings.method.value})"
-    if asked:
+    method = f"smoothed ({settings.method.value})"
+    if uses_prior:
         method += f" with a residual prior of {prior.source}"
     return Reconstruction(rebuilt, motion, trust, confidence, method, twists)
 
@@ -154,54 +157,54 @@ def predict_positions(
     weights: Array,
     settings: CorrectionSettings,
 ) -> tuple[Array, Prediction, Array]:
-    """Return the joints of postures where they were, what the prior told, and variances."""
+    """Return corrected posture joints, the prediction of the prior, and its variances."""
     causal = settings.method is CorrectionMethod.CAUSAL
-    calm = smooth_postures(recording, float(prior.calm), weights, ahead=not causal)
-    told = prior.predict(calm, ahead=settings.method is CorrectionMethod.WHOLE_TAKE)
-    foretold = calm.positions + calm.turn_back(_offsets(told, weights, settings))
-    variances = told.variances + prior.lasting_variances(constant=settings.shift)
+    smooth = smooth_postures(recording, float(prior.calm), weights, ahead=not causal)
+    prediction = prior.predict(smooth, ahead=settings.method is CorrectionMethod.WHOLE_TAKE)
+    predicted = smooth.positions + smooth.turn_back(_offsets(prediction, weights, settings))
+    variances = prediction.variances + prior.constant_variances(constant=settings.shift)
     if settings.method is CorrectionMethod.PUBLISHED:
-        places = _frame_by_frame(recording, foretold, variances, weights, settings)
-        return places, told, variances
+        positions = _frame_by_frame(recording, predicted, variances, weights, settings)
+        return positions, prediction, variances
     steady = filter_trajectories if causal else smooth_trajectories
     frames = settings.smoothing * recording.frame_rate
-    return steady(foretold, np.maximum(weights, MIN_WEIGHT), frames), told, variances
+    return steady(predicted, np.maximum(weights, MIN_WEIGHT), frames), prediction, variances
 
 
-def _offsets(told: Prediction, weights: Array, settings: CorrectionSettings) -> Array:
-    """Return the offsets to apply: their mean over the take, and what changes with posture.
+def _offsets(prediction: Prediction, weights: Array, settings: CorrectionSettings) -> Array:
+    """Return the offsets to apply: their mean over the take, and their change with pose.
 
-    Of the change a part is applied, and less of it in takes unlike those that were learned.
+    Only a fraction of the change is applied, less in takes unlike the training data.
     """
-    weighed = np.maximum(weights, MIN_WEIGHT)[..., None]
-    mean = (weighed * told.offsets).sum(axis=0) / weighed.sum(axis=0)
+    joint_weights = np.maximum(weights, MIN_WEIGHT)[..., None]
+    mean = (joint_weights * prediction.offsets).sum(axis=0) / joint_weights.sum(axis=0)
     constant = mean if settings.shift else np.zeros_like(mean)
     if settings.method is CorrectionMethod.PUBLISHED and settings.change > 0.0:
-        return np.asarray(told.offsets + (constant - mean))
-    share = settings.change * told.coverage.mean(axis=0)
-    return np.asarray(constant + share[:, None] * (told.offsets - mean))
+        return np.asarray(prediction.offsets + (constant - mean))
+    fraction = settings.change * prediction.coverage.mean(axis=0)
+    return np.asarray(constant + fraction[:, None] * (prediction.offsets - mean))
 
 
 def _frame_by_frame(
     recording: JointRecording,
-    foretold: Array,
+    predicted: Array,
     variances: Array,
     weights: Array,
     settings: CorrectionSettings,
 ) -> Array:
-    """Minimise eq. 5.6 of [ZH14] in each frame, after those 1/30 and 1/15 s before."""
-    seen = bridged(posture_positions(recording)) * CM_PER_M
-    offsets = foretold * CM_PER_M - seen
+    """Minimize eq. 5.6 of [ZH14] in each frame, given the frames 1/30 and 1/15 s before."""
+    observed = bridged(posture_positions(recording)) * CM_PER_M
+    offsets = predicted * CM_PER_M - observed
     spatial = settings.spatial / (2.0 * variances * CM_PER_M**2)
     trust = settings.trust * weights**2
-    result = seen.copy()
+    result = observed.copy()
     step = max(round(recording.frame_rate / REFERENCE_RATE_HZ), 1)
-    for frame in range(len(seen)):
+    for frame in range(len(observed)):
         temporal = settings.temporal if frame >= 2 * step else 0.0
         total = spatial[frame] + trust[frame] + temporal
-        wanted = spatial[frame][:, None] * offsets[frame]
+        weighted_sum = spatial[frame][:, None] * offsets[frame]
         if frame >= 2 * step:
-            steady = 2.0 * result[frame - step] - result[frame - 2 * step] - seen[frame]
-            wanted = wanted + temporal * steady
-        result[frame] = seen[frame] + wanted / np.maximum(total, 1e-12)[:, None]
+            steady = 2.0 * result[frame - step] - result[frame - 2 * step] - observed[frame]
+            weighted_sum = weighted_sum + temporal * steady
+        result[frame] = observed[frame] + weighted_sum / np.maximum(total, 1e-12)[:, None]
     return result / CM_PER_M

@@ -1,4 +1,4 @@
-"""What the residual prior looks at: calm postures of a usual size, normalised."""
+"""Inputs of the residual prior: smoothed, normalized poses of mean body size."""
 
 from dataclasses import dataclass
 
@@ -29,22 +29,22 @@ NEIGHBORHOODS = tuple(
     )
     for joint in range(N_JOINTS)
 )
-"""A joint and those that it shares a bone with [ZH14, section 5.2.1]."""
+"""Each joint with its parent and children [ZH14, section 5.2.1]."""
 N_NEIGHBORHOOD_FEATURES = 3 * max(len(joints) for joints in NEIGHBORHOODS)
 
 
 @dataclass(frozen=True, eq=False)
 class SmoothedPostures:
-    """A recording as the residual prior sees it.
+    """A recording as input of the residual prior.
 
     Attributes
     ----------
     positions : shape (n_frames, 20, 3), metres, world
-        Calmed and without gaps, except joints that are never seen, which are NaN.
+        Smoothed and without gaps; joints that are never observed are NaN.
     normalised : Normalised
-        The same without heading and place.
+        The same without heading and position.
     features : shape (n_frames, 20, 3)
-        The same for a body of usual size; NaN where `normalised` is.
+        The same for a body of mean size; NaN where `normalised` is.
     frame_rate : float, hertz
     """
 
@@ -54,41 +54,41 @@ class SmoothedPostures:
     frame_rate: float
 
     def turn_back(self, offsets: Array) -> Array:
-        """Return offsets of these frames as the world sees them, (n_frames, n, 3)."""
+        """Rotate offsets of these frames from body to world axes, (n_frames, n, 3)."""
         return turned(offsets, self.normalised.headings)
 
 
 def smooth_postures(
     recording: JointRecording | Tracks,
-    calm: float,
+    seconds: float,
     weights: Array | None = None,
     *,
     ahead: bool = True,
 ) -> SmoothedPostures:
-    """Calm a recording with a Gaussian of `calm` seconds, bridge gaps, and normalise it.
+    """Smooth a recording with a Gaussian of `seconds`, fill gaps, and normalize it.
 
-    Without `ahead` a frame knows of no later one but the actor's size.
+    Without `ahead` a frame depends on no later one, except for the actor's size.
     """
     positions = bridged(posture_positions(recording), ahead=ahead)
-    seen = np.isfinite(positions).all(axis=(0, 2))
+    observed = np.isfinite(positions).all(axis=(0, 2))
     rate = recording.frame_rate
-    positions[:, seen] = steadied(positions[:, seen], calm * rate, ahead=ahead)
-    normal = normalise(positions, rate, weights, ahead=ahead)
+    positions[:, observed] = steadied(positions[:, observed], seconds * rate, ahead=ahead)
+    normalized = normalise(positions, rate, weights, ahead=ahead)
     length = body_lengths(positions).sum()
     if length == 0.0:
         raise InvalidMotionError(
-            "The joints are all in one place; choose a recording of an actor who was tracked."
+            "All joints are at one position. Choose a recording of a tracked actor."
         )
-    usual = normal.postures * USUAL_LENGTHS.sum() / length
-    return SmoothedPostures(positions, normal, usual, rate)
+    features = normalized.postures * USUAL_LENGTHS.sum() / length
+    return SmoothedPostures(positions, normalized, features, rate)
 
 
 def fill_missing(features: Array, usual: Array) -> Array:
-    """Return features with the usual posture, shape (20, 3), where a joint is never seen."""
+    """Replace joints that are never observed by the mean posture, shape (20, 3)."""
     return np.where(np.isfinite(features), features, usual)
 
 
 def neighborhood_features(features: Array, joint: int) -> Array:
-    """Return a joint's features and its neighbours', shape (n_frames, 15), filled up with 0."""
-    found = features[:, list(NEIGHBORHOODS[joint])].reshape(len(features), -1)
-    return np.pad(found, ((0, 0), (0, N_NEIGHBORHOOD_FEATURES - found.shape[1])))
+    """Return features of a joint's neighborhood, shape (n_frames, 15), padded with 0."""
+    selected = features[:, list(NEIGHBORHOODS[joint])].reshape(len(features), -1)
+    return np.pad(selected, ((0, 0), (0, N_NEIGHBORHOOD_FEATURES - selected.shape[1])))

@@ -1,10 +1,10 @@
-"""How alike the errors of two frames are: the covariance of the residual prior.
+"""Covariance of the residual prior: how strongly the errors of two frames correlate.
 
 The error y of a joint is y = f(x) + f_actor(x) + b_actor + b_take + noise. f is common to all
-actors and has covariance a1 k1 + a2 k2: k1 sees the joint and its neighbours as in [ZH14], k2
-the whole posture. f_actor has the same form with its own strengths, the b are constant offsets.
-Only f is used for an actor who is not among the examples; without the other terms it would
-take how one actor differs from others for something that postures tell, and be too sure.
+actors and has covariance a1 k1 + a2 k2: k1 depends on the joint and its neighbors as in [ZH14],
+k2 on the complete pose. f_actor has the same form with its own strengths; the b are constant
+offsets. Only f is used for a new actor. Without the other terms, f would attribute differences
+between actors to the pose, and its variance would be too small.
 """
 
 from dataclasses import dataclass
@@ -20,9 +20,9 @@ Real = TypeVar("Real", NDArray[np.float64], NDArray[np.float32])
 
 LOCAL, WHOLE = 0, 1
 MIN_VARIANCE_RATIO, MAX_VARIANCE_RATIO = 1e-4, 10.0
-"""Bounds of each variance, as shares of the variance of the errors."""
+"""Bounds of each variance, relative to the variance of the errors."""
 MIN_LENGTH_RATIO, MAX_LENGTH_RATIO = 0.3, 10.0
-"""Bounds of each length, as multiples of the spread of the examples."""
+"""Bounds of each length, relative to the spread of the examples."""
 MAX_ITERATIONS = 40
 
 
@@ -33,9 +33,9 @@ class Kernel:
     Attributes
     ----------
     lengths, shared, personal : (local, whole)
-        How far two features may differ and still be alike; strengths of f and of f_actor.
+        Length scales of the features; strengths of f and of f_actor.
     take, actor, noise : float
-        Variances of the constant offsets and of what is left.
+        Variances of the constant offsets and of the residual.
     """
 
     lengths: tuple[float, float]
@@ -47,7 +47,7 @@ class Kernel:
 
     @classmethod
     def from_logs(cls, logs: Array) -> "Kernel":
-        """Read the logarithms that are optimised."""
+        """Create a kernel from the optimized logarithms."""
         l1, l2, a1, a2, p1, p2, take, actor, noise = (float(value) for value in np.exp(logs))
         return cls((l1, l2), (a1, a2), (p1, p2), take, actor, noise)
 
@@ -67,10 +67,10 @@ def squared_exponential(one: Array, other: Array, length: float) -> Array:
 
 
 def proximity(features: Array, points: Array, far: tuple[float, float]) -> Array:
-    """Return 1 near the points, falling to 0 where the nearest is far, shape (n,)."""
-    near, fall = far
+    """Return 1 near the points, falling to 0 with distance from the nearest, shape (n,)."""
+    near, fall_off = far
     distance = np.sqrt(squared_distances(features, points).min(axis=1))
-    return np.asarray(np.exp(-0.5 * (np.maximum(distance - near, 0.0) / fall) ** 2))
+    return np.asarray(np.exp(-0.5 * (np.maximum(distance - near, 0.0) / fall_off) ** 2))
 
 
 def learn_kernel(
@@ -80,7 +80,7 @@ def learn_kernel(
     actors: NDArray[np.int64],
     simple: bool,
 ) -> Kernel:
-    """Find the hyper-parameters under which the examples are likeliest (L-BFGS).
+    """Find the hyper-parameters of maximum marginal likelihood (L-BFGS).
 
     Parameters
     ----------
@@ -88,12 +88,12 @@ def learn_kernel(
     errors : shape (n, 3), metres; axes share the hyper-parameters
     takes, actors : shape (n,), int
     simple : bool
-        As published: k1 and noise alone.
+        As published: only k1 and noise.
     """
     far = tuple(squared_distances(one, one) for one in features)
     spread = np.sqrt([max(float(one.mean()) / 2.0, 1e-12) for one in far])
-    centred = errors - errors.mean(axis=0)
-    total = max(float(centred.var()), 1e-12)
+    centered = errors - errors.mean(axis=0)
+    total = max(float(centered.var()), 1e-12)
     same = tuple((one[:, None] == one).astype(np.float64) for one in (takes, actors))
     start = np.log([*spread, *(total * np.array([0.2, 0.2, 0.1, 0.1, 0.1, 0.2, 0.1]))])
     bounds = [
@@ -101,20 +101,20 @@ def learn_kernel(
     ]
     bounds += [(np.log(MIN_VARIANCE_RATIO * total), np.log(MAX_VARIANCE_RATIO * total))] * 7
     if simple:
-        for place in (3, 4, 5, 6, 7):
-            start[place] = np.log(MIN_VARIANCE_RATIO * total * 1e-3)
-            bounds[place] = (start[place], start[place])
-    found = minimize(
-        _negative_log_likelihood, start, args=(far, same, centred), jac=True, method="L-BFGS-B",
-        bounds=bounds, options={"maxiter": MAX_ITERATIONS},
+        for index in (3, 4, 5, 6, 7):
+            start[index] = np.log(MIN_VARIANCE_RATIO * total * 1e-3)
+            bounds[index] = (start[index], start[index])
+    optimum = minimize(
+        _negative_log_likelihood, start, args=(far, same, centered), jac=True,
+        method="L-BFGS-B", bounds=bounds, options={"maxiter": MAX_ITERATIONS},
     )  # fmt: skip
-    return Kernel.from_logs(found.x)
+    return Kernel.from_logs(optimum.x)
 
 
 def _negative_log_likelihood(
     logs: Array, far: tuple[Array, ...], same: tuple[Array, ...], errors: Array
 ) -> tuple[float, Array]:
-    """Return the negative log marginal likelihood and its gradient along the logarithms."""
+    """Return the negative log marginal likelihood and its gradient by the logarithms."""
     kernel = Kernel.from_logs(logs)
     n, n_axes = errors.shape
     shapes = [np.exp(-0.5 * d / size**2) for d, size in zip(far, kernel.lengths, strict=True)]

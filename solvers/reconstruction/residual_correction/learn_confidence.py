@@ -1,4 +1,4 @@
-"""How far a residual prior may be believed of people whom it has never seen."""
+"""Calibrate the confidence of a residual prior for actors outside its training set."""
 
 from collections.abc import Sequence
 from dataclasses import replace
@@ -25,12 +25,12 @@ Pair = tuple[JointRecording, Tracks]
 
 DEFAULT_SETTINGS = ResidualPriorSettings()
 MIN_FRAMES = 20
-"""Frames in which a joint of an actor must be known to tell anything."""
+"""Minimum number of frames with a known joint of an actor."""
 MIN_ACTORS = 3
 MIN_POINTS = 3
-"""Joints of actors, told and found, through which a line is laid."""
+"""Minimum number of joints of actors for the fit of a line."""
 MIN_ERROR_M = 1e-4
-"""Metres. Medians of errors below this tell nothing more."""
+"""Minimum median error (m); smaller ones carry no information."""
 
 
 def calibrate_confidence(
@@ -41,18 +41,18 @@ def calibrate_confidence(
     settings: ResidualPriorSettings = DEFAULT_SETTINGS,
     progress: Progress = unwatched,
 ) -> ResidualPrior:
-    """Return the prior with a confidence that holds for new actors.
+    """Return the prior with a confidence calibrated for new actors.
 
-    Each actor is left out in turn: what the others teach is tried on him. By how much he errs
-    more or less than was told, joint by joint, is the uncertainty of somebody new. The prior
-    itself stays.
+    Each actor is left out in turn, and a prior learned from the others predicts his errors. The
+    ratio of measured to predicted errors, joint by joint, gives the uncertainty for a new
+    actor. The prior itself stays unchanged.
 
     Parameters
     ----------
     prior : ResidualPrior
-        Learned from all of these.
+        Learned from all pairs.
     pairs, actors, settings
-        As `learn_residual_prior` has them; actors must be told.
+        As in `learn_residual_prior`; actors are required.
     progress : Progress
 
     Raises
@@ -60,49 +60,52 @@ def calibrate_confidence(
     InvalidMotionError
         There are fewer than three actors.
     """
-    people = sorted(set(actors))
-    if len(people) < MIN_ACTORS:
+    actor_names = sorted(set(actors))
+    if len(actor_names) < MIN_ACTORS:
         raise InvalidMotionError(
-            f"Confidence is measured by leaving actors out, and needs {MIN_ACTORS}; there"
-            f" are {len(people)}."
+            f"Confidence is measured by leaving actors out and needs {MIN_ACTORS}; there are"
+            f" {len(actor_names)}."
         )
-    found = []
-    for place, actor in enumerate(people):
-        part = within(progress, place / len(people), (place + 1) / len(people))
+    measured = []
+    for index, actor in enumerate(actor_names):
+        part = within(progress, index / len(actor_names), (index + 1) / len(actor_names))
         others = [row for row, name in enumerate(actors) if name != actor]
-        taught = learn_residual_prior(
+        learned = learn_residual_prior(
             [pairs[row] for row in others],
             actors=[actors[row] for row in others],
             settings=settings,
             progress=part,
         )
         own = [pair for pair, name in zip(pairs, actors, strict=True) if name == actor]
-        found.append(predicted_and_measured(taught, own))
-    return with_calibration(prior, found)
+        measured.append(predicted_and_measured(learned, own))
+    return with_calibration(prior, measured)
 
 
-def with_calibration(prior: ResidualPrior, found: Sequence[Array]) -> ResidualPrior:
-    """Return the prior with what `told_and_found` says of actors who were left out."""
-    whole, beside = np.concatenate(found, axis=1)
-    lines = fit_calibration(whole, keep_level=True), fit_calibration(beside, keep_level=False)
+def with_calibration(prior: ResidualPrior, measured: Sequence[Array]) -> ResidualPrior:
+    """Return the prior, calibrated from `predicted_and_measured` of left-out actors."""
+    with_offset, without_offset = np.concatenate(measured, axis=1)
+    lines = (
+        fit_calibration(with_offset, keep_level=True),
+        fit_calibration(without_offset, keep_level=False),
+    )
     return replace(prior, calibration=np.array(lines))
 
 
 def predicted_and_measured(prior: ResidualPrior, pairs: Sequence[Pair]) -> Array:
-    """Return what was told of one actor's errors, and what was found.
+    """Return the predicted and the measured errors of one actor.
 
     Parameters
     ----------
     prior : ResidualPrior
-        That never saw him.
+        Learned without this actor.
     pairs : sequence of (JointRecording, Tracks)
-        All of his takes.
+        All takes of this actor.
 
     Returns
     -------
     shape (2, 20, 2)
-        Logarithms of variances, told and found (from the median, as errors have heavy tails);
-        first with the constant offset, then beside it.
+        Log variances, predicted and measured (from the median, as errors have heavy tails);
+        first with the constant offset, then without it.
     """
     takes = [
         _take_variances(prior, recording, posture_positions(truth))
@@ -117,54 +120,54 @@ def predicted_and_measured(prior: ResidualPrior, pairs: Sequence[Pair]) -> Array
 def _take_variances(
     prior: ResidualPrior, recording: JointRecording, truth: Array
 ) -> list[tuple[Array, Array]]:
-    """Return told variances and squared errors of a take, (n_frames, 20), twice.
+    """Return predicted variances and squared errors of a take, (n_frames, 20), twice.
 
-    First with the constant offset, then beside it. NaN: not known.
+    First with the constant offset, then without it. NaN: unknown.
     """
     weights = posture_reliability(recording, measure_reliability(recording).combined)
-    found = []
+    measured = []
     for shift in (True, False):
         settings = CorrectionSettings(shift=shift)
-        places, _, variances = predict_positions(recording, prior, weights, settings)
-        off = truth - places
+        positions, _, variances = predict_positions(recording, prior, weights, settings)
+        off = truth - positions
         if not shift:
             known = np.isfinite(off).any(axis=(0, 2))
             off[:, known] -= np.nanmean(off[:, known], axis=0)
-        found.append((variances, (off**2).sum(axis=-1)))
-    return found
+        measured.append((variances, (off**2).sum(axis=-1)))
+    return measured
 
 
-def _log_variances(told: Array, squares: Array) -> Array:
-    """Return logarithms of what is told and found of each joint, (20, 2); NaN: nothing."""
+def _log_variances(predicted: Array, squares: Array) -> Array:
+    """Return log variances, predicted and measured, per joint, (20, 2); NaN: unknown."""
     rows = np.full((N_JOINTS, 2), np.nan)
     for joint in range(N_JOINTS):
-        known = np.isfinite(squares[:, joint]) & np.isfinite(told[:, joint])
+        known = np.isfinite(squares[:, joint]) & np.isfinite(predicted[:, joint])
         if known.sum() >= MIN_FRAMES:
             median = max(float(np.median(squares[known, joint])), MIN_ERROR_M**2)
-            rows[joint] = np.median(np.log(told[known, joint])), np.log(median)
+            rows[joint] = np.median(np.log(predicted[known, joint])), np.log(median)
     rows[:, 1] -= np.log(MEDIAN_SQUARED_LENGTH)
     return rows
 
 
 def fit_calibration(points: Array, *, keep_level: bool) -> Calibration:
-    """Fit a line to what was told and found of actors who were left out, and the spread.
+    """Fit a line to predicted and measured variances of left-out actors, and its spread.
 
     Parameters
     ----------
     points : shape (n_points, 2)
     keep_level : bool
-        Whether the mean stays as told. With the constant offset it was told honestly
-        (`honest`), and actors differ so much in it that with a handful of them one who is left
-        out moves the mean of the others to the other side: most would be told of those who err
-        most. Beside the offset nobody told it before.
+        Whether to keep the predicted mean. With the constant offset the mean is already
+        unbiased (`match_median_error`). Actors differ so much in the offset that, with few of
+        them, leaving one out shifts the mean of the others to the opposite side. Without the
+        offset no earlier estimate exists.
     """
     known = points[np.isfinite(points).all(axis=1)]
     if len(known) < MIN_POINTS:
         return IDENTITY_CALIBRATION
     level, mean = known.mean(axis=0)
-    told, found = known[:, 0] - level, known[:, 1] - mean
-    size = float(told @ told)
-    slope = float(np.clip(told @ found / size, 0.0, 1.0)) if size > 0.0 else 1.0
+    predicted, measured = known[:, 0] - level, known[:, 1] - mean
+    size = float(predicted @ predicted)
+    slope = float(np.clip(predicted @ measured / size, 0.0, 1.0)) if size > 0.0 else 1.0
     shift = 0.0 if keep_level else float(mean - level)
-    rest = known[:, 1] - level - shift - slope * told
+    rest = known[:, 1] - level - shift - slope * predicted
     return Calibration(shift, slope, float(np.sqrt((rest**2).mean())))

@@ -1,4 +1,4 @@
-"""Learn the Gaussian process of movements from takes that another system saw as well."""
+"""Learn the Gaussian process of movements from simultaneous takes of a better system."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -24,18 +24,18 @@ Numbers = NDArray[np.int64]
 
 N_COMPONENTS = 40
 TAKE_VARIANCE, ACTOR_VARIANCE, MEAN_VARIANCE = 0.2, 1.9, 70.0
-"""Variances, in those of the noise, of the constant errors of a take, an actor, and all."""
+"""Variances of the constant errors of a take, an actor, and all, relative to the noise."""
 MIN_KNOWN_FRACTION = 0.5
-"""Share of the examples in which a joint must be known to be foretold."""
+"""Minimum fraction of examples with a known joint for its prediction."""
 MIN_EXAMPLES = 20
-"""Examples without which nothing is learned."""
+"""Minimum number of examples for a movement process."""
 
 
 @dataclass(frozen=True, eq=False)
 class Take:
-    """One take: calm postures of usual size without gaps, and true minus seen places.
+    """One take: smoothed poses of mean size without gaps, and true minus observed positions.
 
-    Both have shape (n_frames, 20, 3) and no heading; errors are NaN where not known.
+    Both have shape (n_frames, 20, 3) and no heading; errors are NaN where unknown.
     """
 
     features: Array
@@ -47,13 +47,12 @@ class Take:
 def learn_movement_process(
     takes: Sequence[Take], frame_rate: float, n_points: int, mirror: bool
 ) -> MovementProcess | None:
-    """Return the process, or nothing where too little is known.
+    """Return the movement process, or None with too few examples.
 
-    At most `n_points` examples are taken, evenly from all takes, and `frame_rate` of a second.
-
-    With `mirror` each example is there as its mirror image too, by another actor. The
-    covariance is then [[A, B], [B, A]], and errors that a mirror leaves as they are, and those
-    that it turns about, are solved for with A + B and with A - B.
+    At most `n_points` examples are used, evenly distributed over all takes sampled at
+    `frame_rate`. With `mirror`, each example also counts as its mirror image by another actor.
+    The covariance is then [[A, B], [B, A]]; symmetric and antisymmetric errors are solved for
+    with A + B and A - B.
     """
     parts, errors, take, actor = _gather_examples(takes, frame_rate)
     joints = _predictable_joints(errors, mirror)
@@ -63,23 +62,27 @@ def learn_movement_process(
         return None
     rows = rows[np.linspace(0, len(rows) - 1, min(n_points, len(rows))).round().astype(int)]
     parts, errors = parts[:, rows], np.nan_to_num(errors[rows])
-    image = mirrored(parts) if mirror else parts
-    centre, axes = _principal_axes(np.concatenate([parts[0], image[0]])[:, joints])
-    points, others = (project_parts(one, joints, centre, axes) for one in (parts, image))
-    own = _covariance(points, take[rows], actor[rows])
+    mirror_images = mirrored(parts) if mirror else parts
+    centre, axes = _principal_axes(np.concatenate([parts[0], mirror_images[0]])[:, joints])
+    points, mirrored_points = (
+        project_parts(one, joints, centre, axes) for one in (parts, mirror_images)
+    )
+    covariance = _covariance(points, take[rows], actor[rows])
     if mirror:
-        across = (
-            movement_covariance(movement_distances(points, others), SHARED_STRENGTHS).astype(
-                np.float64
-            )
+        mirror_covariance = (
+            movement_covariance(
+                movement_distances(points, mirrored_points), SHARED_STRENGTHS
+            ).astype(np.float64)
             + MEAN_VARIANCE
         )
-        even = 0.5 * (errors + mirrored(errors))
-        weights = _solve(own + across, even) + _solve(own - across, errors - even)
-        total = weights.sum(axis=0)
-        mean = MEAN_VARIANCE * (total + mirrored(total))
+        symmetric = 0.5 * (errors + mirrored(errors))
+        weights = _solve(covariance + mirror_covariance, symmetric) + _solve(
+            covariance - mirror_covariance, errors - symmetric
+        )
+        weight_sum = weights.sum(axis=0)
+        mean = MEAN_VARIANCE * (weight_sum + mirrored(weight_sum))
     else:
-        weights = _solve(own, errors)
+        weights = _solve(covariance, errors)
         mean = MEAN_VARIANCE * weights.sum(axis=0)
     flat = weights[:, joints].reshape(len(rows), -1)
     return MovementProcess(
@@ -91,14 +94,14 @@ def learn_movement_process(
 def _gather_examples(
     takes: Sequence[Take], frame_rate: float
 ) -> tuple[Array, Array, Numbers, Numbers]:
-    """Return parts and errors of some frames of all takes, and whose they are."""
+    """Return parts and errors of sampled frames, with their take and actor indices."""
     names = sorted({one.actor for one in takes})
     parts, errors, take, actor = [], [], [], []
     for number, one in enumerate(takes):
         step = max(round(one.frame_rate / frame_rate), 1)
-        some = slice(min(step // 2, len(one.features) - 1), None, step)
-        parts.append(movement_parts(one.features, one.frame_rate)[:, some])
-        errors.append(one.errors[some])
+        selection = slice(min(step // 2, len(one.features) - 1), None, step)
+        parts.append(movement_parts(one.features, one.frame_rate)[:, selection])
+        errors.append(one.errors[selection])
         take += [number] * len(errors[-1])
         actor += [names.index(one.actor)] * len(errors[-1])
     return (
@@ -110,15 +113,15 @@ def _gather_examples(
 
 
 def _predictable_joints(errors: Array, mirror: bool) -> Numbers:
-    """Return the joints that are known often enough, and their mirror images too."""
-    share = np.isfinite(errors).all(axis=-1).mean(axis=0)
+    """Return the joints that are known often enough, as are their mirror images."""
+    fraction = np.isfinite(errors).all(axis=-1).mean(axis=0)
     if mirror:
-        share = np.minimum(share, share[list(MIRROR_IMAGES)])
-    return np.flatnonzero(share >= MIN_KNOWN_FRACTION).astype(np.int64)
+        fraction = np.minimum(fraction, fraction[list(MIRROR_IMAGES)])
+    return np.flatnonzero(fraction >= MIN_KNOWN_FRACTION).astype(np.int64)
 
 
 def _principal_axes(postures: Array) -> tuple[Array, Array]:
-    """Return mean and principal axes of postures."""
+    """Return mean and principal axes of poses."""
     flat = postures.reshape(len(postures), -1)
     centre = flat.mean(axis=0)
     axes = np.linalg.svd(flat - centre, full_matrices=False)[2][:N_COMPONENTS].T
@@ -126,11 +129,11 @@ def _principal_axes(postures: Array) -> tuple[Array, Array]:
 
 
 def _covariance(points: Single, take: Numbers, actor: Numbers) -> Array:
-    ways = movement_distances(points, points)
-    result = movement_covariance(ways, SHARED_STRENGTHS).astype(np.float64) + MEAN_VARIANCE
+    distances = movement_distances(points, points)
+    result = movement_covariance(distances, SHARED_STRENGTHS).astype(np.float64) + MEAN_VARIANCE
     same = actor[:, None] == actor
     result += same * (
-        movement_covariance(ways, PERSONAL_STRENGTHS).astype(np.float64) + ACTOR_VARIANCE
+        movement_covariance(distances, PERSONAL_STRENGTHS).astype(np.float64) + ACTOR_VARIANCE
     )
     result += TAKE_VARIANCE * (take[:, None] == take)
     result[np.diag_indices(len(points))] += 1.0
@@ -139,5 +142,5 @@ def _covariance(points: Single, take: Numbers, actor: Numbers) -> Array:
 
 def _solve(covariance: Array, errors: Array) -> Array:
     factor = cho_factor(covariance, lower=True, check_finite=False)
-    found = cho_solve(factor, errors.reshape(len(errors), -1), check_finite=False)
-    return np.asarray(found.reshape(errors.shape))
+    solution = cho_solve(factor, errors.reshape(len(errors), -1), check_finite=False)
+    return np.asarray(solution.reshape(errors.shape))

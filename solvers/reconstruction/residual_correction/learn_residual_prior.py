@@ -1,4 +1,4 @@
-"""Learn how a sensor errs from takes that another system saw as well."""
+"""Learn a sensor's errors from simultaneous takes of a better system."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
@@ -30,15 +30,15 @@ Numbers = NDArray[np.int64]
 
 N_COMPONENTS = 15
 CORRELATION_TIME_S = 2.5
-"""Seconds after which errors of one take tell something new; nearer frames repeat it."""
+"""Time (s) after which errors of one take are independent; nearer frames are correlated."""
 MEDIAN_SQUARED_LENGTH = 2.366
-"""Median of the squared length of a normal vector in space whose axes have variance 1."""
+"""Median of the squared length of a normal 3D vector with unit variance per axis."""
 MIN_FRAMES = 20
-"""Frames in which a joint must be known to be learned."""
+"""Minimum number of frames with a known joint to learn it."""
 
 
 class ResidualMethod(Enum):
-    """How errors are learned."""
+    """Method that learns errors."""
 
     HIERARCHICAL = "hierarchical"
     PUBLISHED = "published"
@@ -46,50 +46,49 @@ class ResidualMethod(Enum):
 
 @dataclass(frozen=True, kw_only=True)
 class ResidualPriorSettings(Settings):
-    """How the prior is learned."""
+    """Settings of `learn_residual_prior`."""
 
     method: ResidualMethod = setting(
         ResidualMethod.HIERARCHICAL,
-        "Hierarchical looks at neighbours and at the whole posture, and tells apart what is"
-        " common to all actors; published looks at the joint's neighbours alone, as Zhou 2014",
+        "Hierarchical uses neighbors and the complete pose, and separates errors common to"
+        " all actors; published uses only the joint's neighbors, as Zhou 2014",
     )
     local_points: int = setting(
-        60, "Inducing points of each joint and its neighbours; more is finer and slower",
+        60, "Inducing points of each joint and its neighbors; more is finer and slower",
         minimum=5, maximum=500, advanced=True,
     )  # fmt: skip
     whole_points: int = setting(
-        100, "Inducing points of whole postures; more is finer and slower",
+        100, "Inducing points of complete poses; more is finer and slower",
         minimum=5, maximum=500, advanced=True,
     )  # fmt: skip
     movement_points: int = setting(
-        1500, "Movements that errors are compared with, where the method is hierarchical; more"
-        " is finer, slower and larger",
+        1500, "Example movements of the hierarchical method; more is finer, slower and larger",
         minimum=20, maximum=5000, advanced=True,
     )  # fmt: skip
     sample: int = setting(
-        500, "Frames that the hyper-parameters are learned from; more is surer and slower",
+        500, "Frames for learning the hyper-parameters; more is more accurate and slower",
         minimum=50, maximum=3000, advanced=True,
     )  # fmt: skip
     frame_rate: float = setting(
-        6.0, "Frames of a second that examples are thinned to",
+        6.0, "Examples per second of a take",
         unit="Hz", minimum=0.5, maximum=120.0, advanced=True,
     )  # fmt: skip
     mirror: bool = setting(
-        True, "Whether right limbs err as left ones do in a mirror; no, where the sensor stood"
-        " aside and always will",
+        True, "Assume that right limbs err as mirrored left ones; switch off for a sensor that"
+        " always stands to one side",
     )  # fmt: skip
     calm: float = setting(
-        1 / 30, "Gaussian that recordings are calmed with first; 0 as published",
+        1 / 30, "Gaussian that smooths recordings first; 0 as published",
         unit="s", minimum=0.0, maximum=0.5, advanced=True,
     )  # fmt: skip
     seed: int = setting(
-        0, "Chooses frames and first clusters", minimum=0, maximum=2**31 - 1, advanced=True
+        0, "Seed for frames and first clusters", minimum=0, maximum=2**31 - 1, advanced=True
     )  # fmt: skip
 
 
 @dataclass(frozen=True, eq=False)
 class _Examples:
-    """All frames that are learned from: features, errors, and whose they are."""
+    """Training frames: features, errors, take and actor indices."""
 
     features: Array
     errors: Array
@@ -104,16 +103,16 @@ def learn_residual_prior(
     settings: ResidualPriorSettings = ResidualPriorSettings(),
     progress: Progress = unwatched,
 ) -> ResidualPrior:
-    """Learn the offset from where a sensor saw each joint to where it was.
+    """Learn the offset from the observed to the true position of each joint.
 
     Parameters
     ----------
     pairs : sequence of (JointRecording, Tracks)
-        What the sensor saw, and the true joints under the same names or under humanoid roles,
-        frame by frame at the same time, in the same world, Z up.
+        Recording of the sensor, and the true joints under the same names or under humanoid
+        roles, synchronous frame by frame, in the same world, Z up.
     actors : sequence of str, length n_pairs, optional
-        Who was recorded. Takes of one actor err alike; told so, the prior takes less of one
-        actor's build for a rule. One actor for each take where it is not given.
+        The actor of each pair. With actor labels, the prior separates actor-specific from
+        sensor-specific errors. By default each take is another actor.
     settings : ResidualPriorSettings
     progress : Progress
 
@@ -124,7 +123,7 @@ def learn_residual_prior(
     Raises
     ------
     InvalidMotionError
-        There is no pair, a pair's lengths differ, or no joint is known in both.
+        There is no pair, the lengths of a pair differ, or no joint is known in both.
     SolveCancelled
         Raised by `progress`.
 
@@ -133,35 +132,37 @@ def learn_residual_prior(
     .. [ZH14] Zhou (2014). Modeling of single character motions with temporal sparse
        representation and Gaussian processes. PhD thesis, City University of Hong Kong, 5.2.1.
     """
-    people = _check_pairs(pairs, actors)
-    takes = _read_takes(pairs, people, settings.calm)
-    examples, usual = _gather_examples(takes, settings)
-    centred = (examples.features - usual)[:, 1:].reshape(len(examples.takes), -1)
-    n_components = min(N_COMPONENTS, *centred.shape)
-    components = np.linalg.svd(centred, full_matrices=False)[2][:n_components].T
-    whole = posture_components(examples.features, usual, components)
-    whole_points = inducing_points(whole, settings.whole_points, settings.seed)
+    actor_names = _check_pairs(pairs, actors)
+    takes = _read_takes(pairs, actor_names, settings.calm)
+    examples, mean_pose = _gather_examples(takes, settings)
+    centered = (examples.features - mean_pose)[:, 1:].reshape(len(examples.takes), -1)
+    n_components = min(N_COMPONENTS, *centered.shape)
+    components = np.linalg.svd(centered, full_matrices=False)[2][:n_components].T
+    pose_features = posture_components(examples.features, mean_pose, components)
+    whole_points = inducing_points(pose_features, settings.whole_points, settings.seed)
     learned: dict[int, tuple[Array, Kernel, Array, Array]] = {}
     for joint in range(N_JOINTS):
-        progress(joint / N_JOINTS, "Learning how the sensor errs")
+        progress(joint / N_JOINTS, "Learning sensor errors")
         known = np.isfinite(examples.errors[:, joint]).all(axis=-1)
-        right = settings.mirror and MIRROR_IMAGES[joint] < joint
-        if known.sum() >= MIN_FRAMES and not right:
-            learned[joint] = _learn_joint(examples, joint, known, whole, whole_points, settings)
+        is_mirror_image = settings.mirror and MIRROR_IMAGES[joint] < joint
+        if known.sum() >= MIN_FRAMES and not is_mirror_image:
+            learned[joint] = _learn_joint(
+                examples, joint, known, pose_features, whole_points, settings
+            )
     if not learned:
-        raise InvalidMotionError("No joint is known in both recordings of any pair.")
+        raise InvalidMotionError(
+            "No joint is known in both recordings of any pair. Check the joint names."
+        )
     movement = None
     if settings.method is ResidualMethod.HIERARCHICAL:
-        whole_takes = [
-            replace(one, features=fill_missing(one.features, usual)) for one in takes
-        ]
+        filled = [replace(one, features=fill_missing(one.features, mean_pose)) for one in takes]
         movement = learn_movement_process(
-            whole_takes, settings.frame_rate, settings.movement_points, settings.mirror
+            filled, settings.frame_rate, settings.movement_points, settings.mirror
         )
     progress(1.0, "Learned")
     return ResidualPrior(
         np.array([POSTURE_JOINTS[joint] for joint in learned]),
-        usual,
+        mean_pose,
         components,
         np.stack([points for points, *_ in learned.values()]),
         whole_points,
@@ -170,7 +171,7 @@ def learn_residual_prior(
         np.stack([covariance for *_, covariance in learned.values()]),
         np.array(settings.calm),
         np.array(settings.mirror),
-        np.array(f"{len(pairs)} takes of {len(set(people))} actors"),
+        np.array(f"{len(pairs)} takes of {len(set(actor_names))} actors"),
         movement,
     )
 
@@ -178,71 +179,73 @@ def learn_residual_prior(
 def _check_pairs(
     pairs: Sequence[tuple[JointRecording, Tracks]], actors: Sequence[str] | None
 ) -> list[str]:
-    """Return who is seen in each pair."""
+    """Return the actor of each pair, after checking the pairs."""
     if not pairs:
-        raise InvalidMotionError("There is no pair of recordings to learn from; give some.")
-    people = [str(take) for take in range(len(pairs))] if actors is None else list(actors)
-    if len(people) != len(pairs):
-        raise InvalidMotionError(f"There are {len(pairs)} pairs but {len(people)} actors.")
-    for take, (seen, true) in enumerate(pairs):
-        if (seen.n_frames, seen.frame_rate) != (true.n_frames, true.frame_rate):
+        raise InvalidMotionError("There are no pairs of recordings to learn from. Add one.")
+    actor_names = [str(take) for take in range(len(pairs))] if actors is None else list(actors)
+    if len(actor_names) != len(pairs):
+        raise InvalidMotionError(f"There are {len(pairs)} pairs but {len(actor_names)} actors.")
+    for take, (observed, true) in enumerate(pairs):
+        if (observed.n_frames, observed.frame_rate) != (true.n_frames, true.frame_rate):
             raise InvalidMotionError(
-                f"Pair {take}: {seen.n_frames} frames at {seen.frame_rate:g} Hz do not fit"
-                f" {true.n_frames} at {true.frame_rate:g} Hz; resample one of them."
+                f"Pair {take}: {observed.n_frames} frames at {observed.frame_rate:g} Hz do not"
+                f" fit {true.n_frames} at {true.frame_rate:g} Hz. Resample one of them."
             )
-    return people
+    return actor_names
 
 
 def _read_takes(
-    pairs: Sequence[tuple[JointRecording, Tracks]], people: Sequence[str], calm: float
+    pairs: Sequence[tuple[JointRecording, Tracks]], actor_names: Sequence[str], calm: float
 ) -> list[Take]:
-    """Calm all recordings; errors are told without heading."""
+    """Smooth all recordings; errors are relative to the heading."""
     takes = []
-    for (seen, true), actor in zip(pairs, people, strict=True):
-        found = smooth_postures(seen, calm)
-        off = posture_positions(true) - found.positions
-        errors = turned(off, -found.normalised.headings)
-        takes.append(Take(found.features, errors, seen.frame_rate, actor))
+    for (observed, true), actor in zip(pairs, actor_names, strict=True):
+        smoothed = smooth_postures(observed, calm)
+        off = posture_positions(true) - smoothed.positions
+        errors = turned(off, -smoothed.normalised.headings)
+        takes.append(Take(smoothed.features, errors, observed.frame_rate, actor))
     return takes
 
 
 def _gather_examples(
     all_takes: Sequence[Take], settings: ResidualPriorSettings
 ) -> tuple[_Examples, Array]:
-    """Thin all takes out and put their frames together; also the mean posture."""
+    """Subsample and concatenate all takes; also return the mean pose."""
     features, errors, takes = [], [], []
     for number, one in enumerate(all_takes):
         step = max(round(one.frame_rate / settings.frame_rate), 1)
         features.append(one.features[step // 2 :: step])
         errors.append(one.errors[step // 2 :: step])
         takes += [number] * len(features[-1])
-    people = [one.actor for one in all_takes]
-    names = sorted(set(people))
-    actors = [names.index(people[take]) for take in takes]
+    actor_names = [one.actor for one in all_takes]
+    names = sorted(set(actor_names))
+    actors = [names.index(actor_names[take]) for take in takes]
     if settings.mirror:
         features += [mirrored(one) for one in features]
         errors += [mirrored(one) for one in errors]
-        takes += [len(people) + take for take in takes]
+        takes += [len(actor_names) + take for take in takes]
         actors += [len(names) + actor for actor in actors]
-    together = np.concatenate(features)
-    known = np.isfinite(together).all(axis=-1)
-    usual = np.where(known[..., None], together, 0.0).sum(axis=0)
-    usual /= np.maximum(known.sum(axis=0), 1)[:, None]
-    examples = fill_missing(together, usual)
-    return _Examples(examples, np.concatenate(errors), np.array(takes), np.array(actors)), usual
+    all_features = np.concatenate(features)
+    known = np.isfinite(all_features).all(axis=-1)
+    mean_pose = np.where(known[..., None], all_features, 0.0).sum(axis=0)
+    mean_pose /= np.maximum(known.sum(axis=0), 1)[:, None]
+    examples = fill_missing(all_features, mean_pose)
+    return _Examples(
+        examples, np.concatenate(errors), np.array(takes), np.array(actors)
+    ), mean_pose
 
 
 def _learn_joint(
     examples: _Examples,
     joint: int,
     known: NDArray[np.bool_],
-    whole: Array,
+    pose_features: Array,
     whole_points: Array,
     settings: ResidualPriorSettings,
 ) -> tuple[Array, Kernel, Array, Array]:
     """Return inducing points, hyper-parameters, and mean and covariance of the weights."""
     local = neighborhood_features(examples.features, joint)[known]
-    whole, errors = whole[known], examples.errors[known, joint]
+    pose_features, errors = pose_features[known], examples.errors[known, joint]
     takes, actors = (
         np.unique(one[known], return_inverse=True)[1]
         for one in (examples.takes, examples.actors)
@@ -250,13 +253,17 @@ def _learn_joint(
     chosen = np.random.default_rng(settings.seed).permutation(len(errors))[: settings.sample]
     published = settings.method is ResidualMethod.PUBLISHED
     kernel = learn_kernel(
-        (local[chosen], whole[chosen]), errors[chosen], takes[chosen], actors[chosen], published
+        (local[chosen], pose_features[chosen]),
+        errors[chosen],
+        takes[chosen],
+        actors[chosen],
+        published,
     )
     points = inducing_points(local, settings.local_points, settings.seed)
     points = np.pad(points, ((0, settings.local_points - len(points)), (0, 0)), mode="edge")
     bases = (
         basis_functions(local, points, kernel.lengths[0]),
-        basis_functions(whole, whole_points, kernel.lengths[1]),
+        basis_functions(pose_features, whole_points, kernel.lengths[1]),
     )
     repeats = 1.0 if published else max(CORRELATION_TIME_S * settings.frame_rate, 1.0)
     mean, covariance = posterior(bases, errors, takes, actors, kernel, repeats)
@@ -266,28 +273,27 @@ def _learn_joint(
 def match_median_error(
     kernel: Kernel, bases: tuple[Array, Array], errors: Array, mean: Array, covariance: Array
 ) -> Kernel:
-    """Return the kernel with what no posture tells as large as the usual error calls for.
+    """Scale the pose-independent variances of a kernel to match the median error.
 
-    Errors of sensors have heavy tails: their variance says more than half of them are. The
-    variances of actor, take, noise and personal functions are multiplied so that half of the
-    examples lie within the median that the normal distribution has.
+    Sensor errors have heavy tails, so their variance overstates most of them. The variances of
+    actor, take, noise and personal functions are scaled to match the median error.
     """
     columns = shared_design(bases, kernel)
     known = np.einsum("ni,ni->n", columns @ covariance, columns)
     off = ((errors - columns @ mean) ** 2).sum(axis=1)
-    lasting = sum(kernel.personal) + kernel.take + kernel.actor + kernel.noise
-    wanted = float(np.median(off)) / MEDIAN_SQUARED_LENGTH - float(np.median(known))
-    share = float(np.clip(wanted / lasting, 0.01, 10.0))
+    constant_variance = sum(kernel.personal) + kernel.take + kernel.actor + kernel.noise
+    target_variance = float(np.median(off)) / MEDIAN_SQUARED_LENGTH - float(np.median(known))
+    scale = float(np.clip(target_variance / constant_variance, 0.01, 10.0))
     return replace(
         kernel,
-        personal=(share * kernel.personal[0], share * kernel.personal[1]),
-        take=share * kernel.take,
-        actor=share * kernel.actor,
-        noise=share * kernel.noise,
+        personal=(scale * kernel.personal[0], scale * kernel.personal[1]),
+        take=scale * kernel.take,
+        actor=scale * kernel.actor,
+        noise=scale * kernel.noise,
     )
 
 
 def _kernel_row(kernel: Kernel) -> list[float]:
-    """Return the hyper-parameters as `ResidualPrior.kernels` keeps them."""
+    """Return the hyper-parameters in the layout of `ResidualPrior.kernels`."""
     pairs = (*kernel.lengths, *kernel.shared, *kernel.personal)
     return [*pairs, kernel.take, kernel.actor, kernel.noise]

@@ -1,12 +1,12 @@
-"""A Gaussian process that sees a posture, where it came from, and where it goes.
+"""Gaussian process over a pose and the poses before and after it.
 
-Errors depend on movement too: a hand that is drawn to the body on its way down, a knee that is
-seen too late. All joints share one covariance, so one solution serves them all:
+Errors depend on movement too: a hand is drawn to the body on its way down, a knee is observed
+late. All joints share one covariance, so one solution serves them all:
 
-k = a1 k(posture) + a2 linear(posture) + a3 k(posture, before, after) + a4 k(movement)
+k = a1 k(pose) + a2 linear(pose) + a3 k(pose, before, after) + a4 k(movement)
 
-where before and after are half a second away, and movement is how the posture differs from the
-mean of the seconds around, and its speed.
+Before and after are half a second away. Movement is the difference of the pose from the mean of
+the surrounding seconds, and its velocity.
 """
 
 from dataclasses import dataclass, fields
@@ -24,13 +24,13 @@ Array = NDArray[np.float64]
 Single = NDArray[np.float32]
 
 CONTEXT_S = 0.5
-"""Seconds to the postures before and after that are looked at."""
+"""Time (s) to the poses before and after."""
 MEAN_WINDOW_S = 1.0
-"""Seconds to both sides whose mean a posture is compared with."""
+"""Time (s) on both sides of the mean that a pose is compared with."""
 SPEED_SMOOTHING_S = 0.1
-"""Seconds of the Gaussian that steadies speeds."""
+"""Standard deviation (s) of the Gaussian that smooths velocities."""
 PACE_S = 0.2
-"""Seconds of movement that count as much as the same way between two postures."""
+"""Time (s) that converts velocity to distance."""
 N_PARTS = 5
 BLOCK = 512
 
@@ -44,15 +44,15 @@ MEMBERS = {
     "mean": numbers("3*moving", optional=True),
     "mirrored": flags(optional=True),
 }
-"""What a file keeps of a movement process: all, or nothing of it."""
+"""Arrays of a movement process in a file: all or none of them."""
 
 
 class Strengths(NamedTuple):
-    """What each part of the covariance counts, in variances of the noise."""
+    """Strengths of the covariance terms, relative to the noise variance."""
 
     posture: float
     slope: float
-    """For each square metre."""
+    """Per square meter."""
     context: float
     movement: float
 
@@ -60,18 +60,17 @@ class Strengths(NamedTuple):
 SHARED_STRENGTHS = Strengths(9.3, 56.0, 3.5, 2.3)
 PERSONAL_STRENGTHS = Strengths(2.6, 3.6, 3.0, 0.47)
 POSTURE_SCALE_M, CONTEXT_SCALE_M, MOVEMENT_SCALE_M = 0.88, 1.63, 0.82
-"""Metres of features that may differ. All these numbers were chosen on UI-PRMD by leaving out
-one of four actors; to choose for each fifth actor without him gives the same."""
+"""Length scales (m) of features. All these values were chosen on UI-PRMD by leaving out one of
+four actors; each choice without a fifth actor gives the same values."""
 
 
 COVERAGE_RANGE_M = (1.0, 0.3)
-"""Metres of posture, before and after up to which movements count as known, and how fast they
-become unknown beyond. Of actors who were left out 95 in 100 lie within, of exercises that were
-left out half."""
+"""Context distance (m) up to which movements count as covered, and the fall-off beyond. Of
+actors outside the training set, 95 in 100 are covered; of exercises outside it, half are."""
 
 
 class MovementDistances(NamedTuple):
-    """Squared distances of each frame to each other one, square metres; products for slope."""
+    """Squared distances between frames, square meters; dot products for `slope`."""
 
     posture: Single
     slope: Single
@@ -81,22 +80,22 @@ class MovementDistances(NamedTuple):
 
 @dataclass(frozen=True, eq=False)
 class MovementProcess:
-    """What was learned: a posture's errors are like those of the points that it is like.
+    """Learned process: errors correlate with those of similar points.
 
     Attributes
     ----------
     joints : shape (n,), int
-        Which of the 20 joints are looked at and foretold.
+        Which of the 20 joints are used and predicted.
     centre : shape (3 n,), metres
-        The mean posture.
+        The mean pose.
     axes : shape (3 n, n_components)
-        Principal components of postures.
+        Principal components of poses.
     points : float32, shape (n_points, 5, n_components)
-        Examples as `seen_from` gives them.
+        Examples as `project` gives them.
     weights : float32, shape (n_points, 3 n)
     mean : shape (3 n,), metres
     mirrored : shape (), bool
-        Whether each point stands for its mirror image too.
+        Whether each point also represents its mirror image.
     """
 
     joints: NDArray[np.int64]
@@ -108,64 +107,70 @@ class MovementProcess:
     mirrored: NDArray[np.bool_]
 
     def arrays(self) -> dict[str, NDArray[np.generic]]:
-        """Return what is kept in a file."""
+        """Return the arrays to store in a file."""
         return {one.name: getattr(self, one.name) for one in fields(self)}
 
-    def foretell(
+    def predict(
         self, features: Array, frame_rate: float, frames: NDArray[np.intp]
     ) -> tuple[Array, Array]:
-        """Return true minus seen place in some frames, and how near they are to the points.
+        """Predict true minus observed position in some frames, and their proximity to the
+        points.
 
         Parameters
         ----------
         features : shape (n_frames, 20, 3), metres
-            Calm postures of usual size, without gaps.
+            Smoothed poses of mean body size, without gaps.
         frame_rate : float, hertz
         frames : shape (n,), int
 
         Returns
         -------
-        offsets : shape (n, 20, 3), metres; 0 for joints that are not foretold
+        offsets : shape (n, 20, 3), metres; 0 for joints without prediction
         nearness : shape (n,), 0 to 1
         """
         parts = movement_parts(features, frame_rate)[:, frames]
         result = np.zeros((len(frames), N_JOINTS, 3))
-        told, away = self._told(parts)
-        result[:, self.joints] = self.mean.reshape(-1, 3) + told
+        predicted, squares = self._predict_offsets(parts)
+        result[:, self.joints] = self.mean.reshape(-1, 3) + predicted
         if self.mirrored:
             image = np.zeros_like(result)
-            image[:, self.joints], also = self._told(mirrored(parts))
+            image[:, self.joints], mirrored_squares = self._predict_offsets(mirrored(parts))
             result += mirrored(image)
-            away = np.minimum(away, also)
-        near, fall = COVERAGE_RANGE_M
-        return result, np.exp(-0.5 * (np.maximum(np.sqrt(away) - near, 0.0) / fall) ** 2)
+            squares = np.minimum(squares, mirrored_squares)
+        full_coverage, fall_off = COVERAGE_RANGE_M
+        return result, np.exp(
+            -0.5 * (np.maximum(np.sqrt(squares) - full_coverage, 0.0) / fall_off) ** 2
+        )
 
-    def _told(self, parts: Array) -> tuple[Array, Array]:
-        """Return the weighted likeness to all points, and the squared way to the nearest."""
-        seen = self.seen_from(parts)
-        told, away = np.empty((len(seen), self.weights.shape[1])), np.empty(len(seen))
-        for start in range(0, len(seen), BLOCK):
+    def _predict_offsets(self, parts: Array) -> tuple[Array, Array]:
+        """Return predicted offsets, and the squared distance to the nearest point."""
+        projected = self.project(parts)
+        predicted, squares = (
+            np.empty((len(projected), self.weights.shape[1])),
+            np.empty(len(projected)),
+        )
+        for start in range(0, len(projected), BLOCK):
             rows = slice(start, start + BLOCK)
-            ways = movement_distances(seen[rows], self.points)
-            told[rows] = movement_covariance(ways, SHARED_STRENGTHS) @ self.weights
-            away[rows] = ways.context.min(axis=1)
-        return told.reshape(len(seen), -1, 3), away
+            distances = movement_distances(projected[rows], self.points)
+            predicted[rows] = movement_covariance(distances, SHARED_STRENGTHS) @ self.weights
+            squares[rows] = distances.context.min(axis=1)
+        return predicted.reshape(len(projected), -1, 3), squares
 
-    def seen_from(self, parts: Array) -> Single:
+    def project(self, parts: Array) -> Single:
         """Return principal components of `movement_parts`, (n, 5, n_components)."""
         return project_parts(parts, self.joints, self.centre, self.axes)
 
 
 def movement_parts(features: Array, frame_rate: float) -> Array:
-    """Return postures now, before and after, how they differ, and speeds, (5, n, 20, 3)."""
+    """Return poses now, before, after, offsets from the mean, velocities; (5, n, 20, 3)."""
     n = len(features)
     away = max(round(CONTEXT_S * frame_rate), 1)
     window = 2 * round(MEAN_WINDOW_S * frame_rate) + 1
     frames = np.arange(n)
     counts = uniform_filter1d(np.ones(n), window, mode="constant")[:, None, None]
     mean = uniform_filter1d(features, window, axis=0, mode="constant") / counts
-    steady = gaussian_filter1d(features, SPEED_SMOOTHING_S * frame_rate, axis=0, mode="nearest")
-    speed = np.gradient(steady, 1.0 / frame_rate, axis=0) if n > 1 else 0.0 * features
+    smooth = gaussian_filter1d(features, SPEED_SMOOTHING_S * frame_rate, axis=0, mode="nearest")
+    speed = np.gradient(smooth, 1.0 / frame_rate, axis=0) if n > 1 else 0.0 * features
     before = features[np.maximum(frames - away, 0)]
     after = features[np.minimum(frames + away, n - 1)]
     return np.stack([features, before, after, features - mean, PACE_S * speed])
@@ -174,50 +179,54 @@ def movement_parts(features: Array, frame_rate: float) -> Array:
 def project_parts(
     parts: Array, joints: NDArray[np.int64], centre: Array, axes: Array
 ) -> Single:
-    """Return principal components of the parts, (n, 5, n_components); postures are centred."""
+    """Return principal components of the parts, (n, 5, n_components); poses are centered."""
     flat = parts[:, :, joints].reshape(*parts.shape[:2], -1)
     flat[:3] -= centre
     return np.ascontiguousarray((flat @ axes).swapaxes(0, 1), dtype=np.float32)
 
 
 def movement_distances(one: Single, other: Single) -> MovementDistances:
-    """Return how far two lots of frames are from each other, each (n_one, n_other)."""
+    """Return the distances between two sets of frames, each (n_one, n_other)."""
 
-    def parted(first: int, last: int) -> Single:
+    def part_distances(first: int, last: int) -> Single:
         rows, columns = (
             np.ascontiguousarray(side[:, first:last]).reshape(len(side), -1)
             for side in (one, other)
         )
         return squared_distances(rows, columns)
 
-    posture, beside, moved = parted(0, 1), parted(1, 3), parted(3, N_PARTS)
+    posture, context, movement = (
+        part_distances(0, 1),
+        part_distances(1, 3),
+        part_distances(3, N_PARTS),
+    )
     slope: Single = one[:, 0] @ other[:, 0].T
-    return MovementDistances(posture, slope, posture + beside, moved)
+    return MovementDistances(posture, slope, posture + context, movement)
 
 
-def movement_covariance(ways: MovementDistances, strengths: Strengths) -> Single:
-    """Return the covariance of two lots of frames, (n_one, n_other), in variances of noise."""
-    result = np.float32(strengths.slope) * ways.slope
-    for way, strength, size in zip(
-        (ways.posture, ways.context, ways.movement),
+def movement_covariance(distances: MovementDistances, strengths: Strengths) -> Single:
+    """Return the covariance of two sets of frames, (n_one, n_other), relative to the noise."""
+    result = np.float32(strengths.slope) * distances.slope
+    for square, strength, size in zip(
+        (distances.posture, distances.context, distances.movement),
         (strengths.posture, strengths.context, strengths.movement),
         (POSTURE_SCALE_M, CONTEXT_SCALE_M, MOVEMENT_SCALE_M),
         strict=True,
     ):
-        result += np.float32(strength) * np.exp(way * np.float32(-0.5 / size**2))
+        result += np.float32(strength) * np.exp(square * np.float32(-0.5 / size**2))
     return result
 
 
 def movement_from_arrays(arrays: dict[str, NDArray[Any]]) -> tuple[str, MovementProcess | None]:
-    """Return what keeps `MEMBERS` from a file from being used, or nothing, and the process."""
+    """Return why `MEMBERS` of a file cannot be used, or an empty string, and the process."""
     if set(arrays) != set(MEMBERS):
-        return "parts of the movements are missing", None
+        return "arrays of the movement process are missing", None
     joints = arrays["joints"].astype(np.int64)
     if not len(joints) or not arrays["axes"].size or not len(arrays["points"]):
-        return "the movements hold nothing", None
+        return "the movement process is empty", None
     centre, axes, mean = (
         arrays[name].astype(np.float64) for name in ("centre", "axes", "mean")
     )
     points, weights = (arrays[name].astype(np.float32) for name in ("points", "weights"))
-    alike = arrays["mirrored"].astype(np.bool_)
-    return "", MovementProcess(joints, centre, axes, points, weights, mean, alike)
+    is_mirrored = arrays["mirrored"].astype(np.bool_)
+    return "", MovementProcess(joints, centre, axes, points, weights, mean, is_mirrored)

@@ -1,4 +1,4 @@
-"""What a residual prior says of postures, and between them."""
+"""Predictions of a residual prior, and their interpolation in time."""
 
 from dataclasses import dataclass
 
@@ -10,16 +10,16 @@ Array = NDArray[np.float64]
 
 @dataclass(frozen=True, eq=False)
 class Prediction:
-    """What a prior says of postures.
+    """Predicted errors of a sensor in given poses.
 
     Attributes
     ----------
     offsets : shape (n_frames, 20, 3), metres
-        True minus seen place, in the frame of the heading; 0 for joints that were not learned.
+        True minus observed position, relative to the heading; 0 for joints without a model.
     variances : shape (n_frames, 20), square metres for each axis
-        Of what the shared functions do not know; infinite for joints that were not learned.
+        Uncertainty of the shared functions; infinite for joints without a model.
     coverage : shape (n_frames, 20), 0 to 1
-        How near the posture is to those that were learned.
+        Similarity of the pose to the training data.
     """
 
     offsets: Array
@@ -27,18 +27,20 @@ class Prediction:
     coverage: Array
 
 
-def interpolate_prediction(told: Prediction, frames: NDArray[np.intp]) -> Prediction:
-    """Return what is told of all frames, along straight lines between those that are told."""
-    every = np.arange(frames[-1] + 1)
-    after = np.searchsorted(frames, every)
+def interpolate_prediction(prediction: Prediction, frames: NDArray[np.intp]) -> Prediction:
+    """Interpolate predictions of some frames linearly to all frames."""
+    all_frames = np.arange(frames[-1] + 1)
+    after = np.searchsorted(frames, all_frames)
     before = np.maximum(after - 1, 0)
-    share = (frames[after] - every) / np.maximum(frames[after] - frames[before], 1)
+    fraction = (frames[after] - all_frames) / np.maximum(frames[after] - frames[before], 1)
 
-    def led(values: Array) -> Array:
-        part = share.reshape(-1, *[1] * (values.ndim - 1))
-        return np.asarray(part * values[before] + (1.0 - part) * values[after])
+    def interpolate(values: Array) -> Array:
+        weight = fraction.reshape(-1, *[1] * (values.ndim - 1))
+        return np.asarray(weight * values[before] + (1.0 - weight) * values[after])
 
-    known = np.isfinite(told.variances)
-    variances = led(np.where(known, told.variances, 0.0))
-    variances[:, ~known.all(axis=0)] = np.inf
-    return Prediction(led(told.offsets), variances, led(told.coverage))
+    is_known = np.isfinite(prediction.variances)
+    variances = interpolate(np.where(is_known, prediction.variances, 0.0))
+    variances[:, ~is_known.all(axis=0)] = np.inf
+    return Prediction(
+        interpolate(prediction.offsets), variances, interpolate(prediction.coverage)
+    )

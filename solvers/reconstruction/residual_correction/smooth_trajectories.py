@@ -1,4 +1,4 @@
-"""Paths near given places whose accelerations are small: over a whole take, or as it comes."""
+"""Smooth trajectories by penalizing acceleration: over a complete take, or causally."""
 
 import numpy as np
 from numpy.typing import NDArray
@@ -8,10 +8,10 @@ Array = NDArray[np.float64]
 
 
 def smooth_trajectories(positions: Array, weights: Array, frames: float) -> Array:
-    """Return the paths nearest to the given ones whose accelerations are small.
+    """Return the trajectories nearest to the given ones with small accelerations.
 
-    Minimises sum_t w_t |m_t - z_t|^2 + c sum_t |m_t-1 - 2 m_t + m_t+1|^2 (Whittaker 1923);
-    c is chosen so that waves of 2 pi `frames` frames lose half their size where w is 1.
+    Minimizes sum_t w_t |m_t - z_t|^2 + c sum_t |m_t-1 - 2 m_t + m_t+1|^2 (Whittaker 1923). The
+    constant c halves the amplitude of waves of 2 pi `frames` frames where w is 1.
 
     Parameters
     ----------
@@ -36,43 +36,49 @@ def smooth_trajectories(positions: Array, weights: Array, frames: float) -> Arra
 
 
 def filter_trajectories(positions: Array, weights: Array, frames: float) -> Array:
-    """Return the same as it comes: each frame knows what was before it, and nothing else.
+    """Return causally smoothed trajectories: each frame depends on earlier frames only.
 
-    The Kalman filter of the model whose smoother `smoothed` is: velocities change by white
-    noise of variance 1 / c, places are seen with variance 1 / w.
+    The Kalman filter of the model whose smoother is `smooth_trajectories`: velocities change by
+    white noise of variance 1 / c, positions are observed with variance 1 / w.
 
     Parameters
     ----------
-    positions, weights, frames : as of `smoothed`
+    positions, weights, frames : as in `smooth_trajectories`
     """
     if frames <= 0.0:
         return positions.copy()
     result = positions.copy()
-    place, speed = positions[0].copy(), np.zeros_like(positions[0])
-    own = 1.0 / weights[0]  # variances of place and speed, and their covariance
-    both, rate = np.zeros_like(own), np.ones_like(own)
+    position, speed = positions[0].copy(), np.zeros_like(positions[0])
+    position_variance = 1.0 / weights[0]  # variances of place and speed, and their covariance
+    covariance, speed_variance = (
+        np.zeros_like(position_variance),
+        np.ones_like(position_variance),
+    )
     for frame in range(1, len(positions)):
-        place = place + speed
-        own = own + 2.0 * both + rate
-        both = both + rate
-        rate = rate + frames**-4
-        gain = 1.0 / (own + 1.0 / weights[frame])
-        new = (positions[frame] - place) * gain[:, None]
-        place, speed = place + own[:, None] * new, speed + both[:, None] * new
-        rate = rate - gain * both**2
-        both = both - gain * own * both
-        own = own - gain * own**2
-        result[frame] = place
+        position = position + speed
+        position_variance = position_variance + 2.0 * covariance + speed_variance
+        covariance = covariance + speed_variance
+        speed_variance = speed_variance + frames**-4
+        gain = 1.0 / (position_variance + 1.0 / weights[frame])
+        innovation = (positions[frame] - position) * gain[:, None]
+        position, speed = (
+            position + position_variance[:, None] * innovation,
+            speed + covariance[:, None] * innovation,
+        )
+        speed_variance = speed_variance - gain * covariance**2
+        covariance = covariance - gain * position_variance * covariance
+        position_variance = position_variance - gain * position_variance**2
+        result[frame] = position
     return result
 
 
 def _second_differences(n: int) -> Array:
-    """Return the bands of D'D, D the second differences of n frames, as LAPACK wants them."""
+    """Return the bands of D'D in LAPACK's layout; D takes second differences of n frames."""
     bands = np.zeros((3, n))
     if n <= 5:
-        rough = np.diff(np.eye(n), 2, axis=0)
+        differences = np.diff(np.eye(n), 2, axis=0)
         for lag in range(3):
-            bands[2 - lag, lag:] = np.diagonal(rough.T @ rough, lag)
+            bands[2 - lag, lag:] = np.diagonal(differences.T @ differences, lag)
         return bands
     bands[0, 2:] = 1.0
     bands[1, 1:] = [-2.0, *[-4.0] * (n - 3), -2.0]

@@ -1,7 +1,7 @@
-"""The sparse Gaussian process of one joint: inducing points, and all examples through them.
+"""Sparse Gaussian process of one joint, by inducing points.
 
-FITC [1]_: the process is told by its values at inducing points; what they leave open at an
-example counts as independent noise of that example.
+FITC [1]_: values at inducing points define the process. The remaining variance at an example
+counts as independent noise of that example.
 
 .. [1] Snelson, Ghahramani (2006). Sparse Gaussian processes using pseudo-inputs. NIPS 18.
 """
@@ -19,16 +19,16 @@ Array = NDArray[np.float64]
 
 JITTER = 1e-6
 MEAN_VARIANCE = 1e4
-"""Variance of the mean error in square metres: nothing is known beforehand."""
+"""Prior variance (m²) of the mean error; so large that it is uninformative."""
 
 
 def inducing_points(features: Array, count: int, seed: int) -> Array:
-    """Return at most `count` points amid the features: centres of clusters (k-means)."""
-    different = np.unique(features, axis=0)
-    if len(different) <= count:
-        return different
-    centres, _ = kmeans2(features, count, iter=5, minit="++", seed=np.random.default_rng(seed))
-    return np.asarray(centres)
+    """Return at most `count` points among the features: cluster centers (k-means)."""
+    distinct = np.unique(features, axis=0)
+    if len(distinct) <= count:
+        return distinct
+    centers, _ = kmeans2(features, count, iter=5, minit="++", seed=np.random.default_rng(seed))
+    return np.asarray(centers)
 
 
 def cholesky_root(points: Array, length: float) -> Array:
@@ -39,16 +39,16 @@ def cholesky_root(points: Array, length: float) -> Array:
 
 
 def basis_functions(
-    features: Array, points: Array, length: float, lower: Array | None = None
+    features: Array, points: Array, length: float, root: Array | None = None
 ) -> Array:
     """Return functions of unit prior variance whose sum is the process, (n, n_points).
 
-    `lower` is the `triangle` of the same points and length, if it is at hand.
+    `root` is the `cholesky_root` of the same points and length, if already computed.
     """
-    if lower is None:
-        lower = cholesky_root(points, length)
+    if root is None:
+        root = cholesky_root(points, length)
     values = squared_exponential(features, points, length)
-    return np.asarray(solve_triangular(lower, values.T, lower=True, check_finite=False).T)
+    return np.asarray(solve_triangular(root, values.T, lower=True, check_finite=False).T)
 
 
 def posterior(
@@ -59,16 +59,16 @@ def posterior(
     kernel: Kernel,
     repeats: float,
 ) -> tuple[Array, Array]:
-    """Return mean and covariance of the weights of the shared functions and of the mean error.
+    """Return posterior mean and covariance of the weights of shared functions and mean error.
 
     Parameters
     ----------
-    bases : local and whole, as `basis` gives them
+    bases : local and complete-pose bases from `basis_functions`
     errors : shape (n, 3), metres
     takes, actors : shape (n,), int, counted from 0
     kernel : Kernel
     repeats : float
-        Examples that tell as much as one would alone, since neighbouring frames err alike.
+        Number of examples that carry the information of one, since adjacent frames correlate.
 
     Returns
     -------
@@ -82,16 +82,16 @@ def posterior(
     scale = 1.0 / np.sqrt(open_variance + repeats * kernel.noise)[:, None]
     columns = shared_design(bases, kernel)
     n_shared = columns.shape[1]
-    parts = [columns]
+    blocks = [columns]
     for actor in range(int(actors.max()) + 1):
-        here = (actors == actor)[:, None]
-        parts += [
-            np.sqrt(personal) * one * here
+        is_actor = (actors == actor)[:, None]
+        blocks += [
+            np.sqrt(personal) * one * is_actor
             for one, personal in zip(bases, kernel.personal, strict=True)
         ]
-    parts.append(np.sqrt(kernel.take) * np.eye(int(takes.max()) + 1)[takes])
-    parts.append(np.sqrt(kernel.actor) * np.eye(int(actors.max()) + 1)[actors])
-    design = np.concatenate(parts, axis=1) * scale
+    blocks.append(np.sqrt(kernel.take) * np.eye(int(takes.max()) + 1)[takes])
+    blocks.append(np.sqrt(kernel.actor) * np.eye(int(actors.max()) + 1)[actors])
+    design = np.concatenate(blocks, axis=1) * scale
     precision = design.T @ design + np.eye(design.shape[1])
     covariance = np.linalg.inv(precision)
     mean = covariance @ (design.T @ (errors * scale))
@@ -99,7 +99,7 @@ def posterior(
 
 
 def shared_design(bases: Sequence[Array], kernel: Kernel) -> Array:
-    """Return what the weights of `posterior` multiply, shape (n, n_weights)."""
+    """Return the design matrix of the weights of `posterior`, shape (n, n_weights)."""
     ones = np.full((len(bases[0]), 1), np.sqrt(MEAN_VARIANCE))
     scaled = [np.sqrt(shared) * one for one, shared in zip(bases, kernel.shared, strict=True)]
     return np.concatenate([*scaled, ones], axis=1)

@@ -70,7 +70,7 @@ def test_equals_the_whole_process_written_down_naively(process):
         covariance, np.concatenate(errors).reshape(len(covariance), -1)
     )
 
-    offsets, _ = process.foretell(take(1.4, "c").features, RATE, np.arange(90))
+    offsets, _ = process.predict(take(1.4, "c").features, RATE, np.arange(90))
 
     assert_allclose(offsets.reshape(90, -1), expected, atol=2e-4)
     assert np.abs(expected).max() > 0.05
@@ -94,7 +94,7 @@ def naive(one: np.ndarray, other: np.ndarray, strengths: tuple) -> np.ndarray:
 def test_it_foretells_errors_of_a_speed_that_it_has_not_seen(process):
     new = take(1.4, "c")
 
-    offsets, nearness = process.foretell(new.features, RATE, np.arange(90))
+    offsets, nearness = process.predict(new.features, RATE, np.arange(90))
 
     left = np.linalg.norm(offsets - new.errors, axis=-1).mean()
     assert left < 0.3 * np.linalg.norm(new.errors, axis=-1).mean()
@@ -103,8 +103,8 @@ def test_it_foretells_errors_of_a_speed_that_it_has_not_seen(process):
 
 def test_in_a_mirror_errors_are_mirrored(process):
     new = take(1.4, "c").features
-    here, near = process.foretell(new, RATE, np.arange(90))
-    there, also_near = process.foretell(mirrored(new), RATE, np.arange(90))
+    here, near = process.predict(new, RATE, np.arange(90))
+    there, also_near = process.predict(mirrored(new), RATE, np.arange(90))
 
     assert_allclose(mirrored(here), there, atol=1e-5)
     assert_allclose(near, also_near, atol=1e-5)
@@ -113,7 +113,7 @@ def test_in_a_mirror_errors_are_mirrored(process):
 def test_far_away_it_knows_that_it_does_not_know(process):
     upside_down = take(1.4, "c").features * (1.0, 1.0, -1.0)
 
-    _, nearness = process.foretell(upside_down, RATE, np.arange(90))
+    _, nearness = process.predict(upside_down, RATE, np.arange(90))
 
     assert nearness.max() < 0.01
 
@@ -141,7 +141,7 @@ def test_too_few_examples_teach_nothing():
 def test_short_takes_and_blocks_of_frames(process, n_frames):
     features = take(1.4, "c").features[:n_frames]
 
-    offsets, nearness = process.foretell(features, RATE, np.arange(n_frames))
+    offsets, nearness = process.predict(features, RATE, np.arange(n_frames))
 
     assert np.isfinite(offsets).all()
     assert nearness.shape == (n_frames,)

@@ -113,7 +113,9 @@ def test_hinges_are_put_where_twists_have_them():
 
     known = hinges_from_twists(postures, LimbTwists(twists))
 
-    ways = np.stack([known[POSTURE_JOINTS[limb.upper]].vectors for limb in TWISTED_LIMBS], axis=1)
+    ways = np.stack(
+        [known[POSTURE_JOINTS[limb.upper]].vectors for limb in TWISTED_LIMBS], axis=1
+    )
     assert_allclose(np.linalg.norm(ways, axis=-1), 0.7)
     assert_allclose(axial_angles(*untwisted_hinges(postures), ways), twists / 0.7, atol=1e-9)
 
