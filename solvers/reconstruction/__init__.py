@@ -1,4 +1,24 @@
-"""Clean poses from the joints that a depth camera's tracker got wrong or lost."""
+"""Clean poses from the joints of a depth camera, where its tracker erred or lost them.
+
+>>> import numpy as np
+>>> from solvers.motion import JOINTS, JointRecording, Sensor, Tracks
+>>> from solvers.motion.humanoid import POSTURE_JOINTS, joints_of_names, motion_postures
+>>> from solvers.reconstruction import build_posture_library, reconstruct_postures
+>>> from solvers.samples import GaitSettings, walking_gait
+>>> walk = walking_gait(GaitSettings(duration=1.0, frame_rate=30.0))
+>>> names = JOINTS[Sensor.KINECT_V1]
+>>> roles = {column: role for role, column in joints_of_names(names).items()}
+>>> order = [POSTURE_JOINTS.index(roles[column]) for column in range(len(names))]
+>>> true = motion_postures(walk)[:, order]
+>>> hand = joints_of_names(names)["leftHand"]
+>>> tracked = true.copy()
+>>> tracked[10:20, hand] = np.nan
+>>> recording = JointRecording(Tracks(names, tracked, 30.0), None, Sensor.KINECT_V1)
+>>> result = reconstruct_postures(recording, build_posture_library([walk]))
+>>> errors = np.linalg.norm(result.tracks.positions - true, axis=-1)
+>>> bool(errors[10:20, hand].max() < 0.05)
+True
+"""
 
 from .joint_rotations import Reconstruction
 from .pose_completion import PostureMethod, PostureSettings, reconstruct_postures
