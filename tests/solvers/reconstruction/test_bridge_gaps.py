@@ -17,27 +17,27 @@ def lost(n: int, start: int, stop: int) -> np.ndarray:
     return sure
 
 
-def test_a_loss_of_some_frames_is_bridged_whatever_postures_say():
+def test_short_gap_follows_its_own_path_whatever_the_library_has():
     true = wave(300)
     found = blend_short_gaps(true, lost(300, 100, 104), true + 1.0, RATE)
     assert np.abs(found - true).max() < 0.01
 
 
-def test_in_the_middle_of_a_long_loss_the_posture_counts():
+def test_library_pose_dominates_inside_a_long_gap():
     true = wave(1000)
     found = blend_short_gaps(true * 0.0, lost(1000, 100, 900), true, RATE)
     assert np.abs(found - true)[450:550].max() < 0.03
     assert np.abs(found - true)[:95].max() > 0.5
 
 
-def test_at_the_named_distance_both_count_alike():
+def test_path_and_posture_have_equal_weight_at_the_half_weight_time():
     n_lost = int(4 * HALF_WEIGHT_S * RATE)
     seen, rebuilt = np.zeros((n_lost + 200, 1, 3)), np.ones((n_lost + 200, 1, 3))
     found = blend_short_gaps(seen, lost(n_lost + 200, 100, 100 + n_lost), rebuilt, RATE)
     np.testing.assert_allclose(found[100 + n_lost // 2], 0.5, atol=0.02)
 
 
-def test_what_is_seen_on_one_side_alone_is_left_to_postures():
+def test_one_sided_gap_is_left_to_the_library():
     true = wave(200)
     for sure in (lost(200, 0, 50), lost(200, 150, 200), np.zeros((200, 1), bool)):
         found = blend_short_gaps(

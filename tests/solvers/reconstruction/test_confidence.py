@@ -47,7 +47,7 @@ def test_an_unknown_variance_is_averaged_over(rng):
     assert told == pytest.approx((drawn < 0.05).mean(), abs=0.005)
 
 
-def test_differences_between_joints_shrink_towards_their_level():
+def test_differences_between_joints_shrink_toward_their_level():
     level = np.log(0.03**2)
     variances = np.exp(level + np.array([-1.0, 0.0, 1.0]))
 
@@ -57,7 +57,7 @@ def test_differences_between_joints_shrink_towards_their_level():
 
 
 @pytest.mark.parametrize("slope", [0.0, 0.5, 1.0])
-def test_of_what_is_not_known_no_calibration_is_sure(slope):
+def test_calibration_of_unknown_variances_has_no_confidence(slope):
     assert chance_within(np.array(np.inf), 0.05, Calibration(0.0, slope, 1.0)) == 0.0
 
 
@@ -82,7 +82,7 @@ def test_those_who_all_err_more_widen_the_spread_and_leave_the_level():
     assert kept == pytest.approx((0.0, 1.0, 0.7))
 
 
-def test_beside_the_constant_offset_the_level_is_learned():
+def test_without_constant_offset_the_level_is_learned():
     told = np.linspace(-8.0, -6.0, 50)
 
     learned = fit_calibration(np.stack([told, told - 1.8], axis=-1), keep_level=False)
@@ -131,7 +131,7 @@ def test_a_calibration_is_learned_by_leaving_actors_out_and_kept_in_the_file(
     assert knee[1] < knee[0] - 0.02
 
 
-def test_files_of_before_tell_variances_as_they_are(prior, tmp_path):
+def test_older_files_have_an_identity_calibration(prior, tmp_path):
     path = tmp_path / "prior.npz"
     prior.save(path)
     arrays = LAYOUT.read(path)
@@ -155,7 +155,7 @@ def test_two_actors_are_too_few(prior, pairs):
         calibrate_confidence(prior, pairs, ("anna", "anna", "bob", "bob"), settings=QUICK)
 
 
-def test_of_nothing_that_was_found_nothing_is_learned(prior):
+def test_calibration_of_no_measurement_is_the_identity(prior):
     nothing = np.full((2, 20, 2), np.nan)
 
     assert_allclose(

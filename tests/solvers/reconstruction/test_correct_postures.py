@@ -37,7 +37,7 @@ def error(positions: np.ndarray, true: np.ndarray, joint: int = KNEE) -> float:
     return float(np.linalg.norm((positions - true)[:, joint], axis=-1).mean())
 
 
-def test_a_sensors_error_is_taken_out_of_a_walk_it_has_not_seen(prior):
+def test_sensor_error_is_subtracted_from_a_new_walk(prior):
     true = truth(1.3)
     given_ = recording(seen_by_a_bad_sensor(true))
     before = error(given_.tracks.positions, true)
@@ -46,7 +46,7 @@ def test_a_sensors_error_is_taken_out_of_a_walk_it_has_not_seen(prior):
     assert after < 0.25 * before
 
 
-def test_without_shift_joints_stay_on_average_where_they_were_seen(prior):
+def test_without_shift_joints_keep_their_mean_position(prior):
     given_ = recording(seen_by_a_bad_sensor(truth(1.3)))
     moved = correct_postures(given_, prior, settings=CorrectionSettings(shift=False))
     mean = (moved.tracks.positions - given_.tracks.positions)[:, KNEE].mean(axis=0)
@@ -55,7 +55,7 @@ def test_without_shift_joints_stay_on_average_where_they_were_seen(prior):
     assert np.abs(shifted[:, KNEE].mean(axis=0)).max() > 0.03
 
 
-def test_the_prior_does_not_see_heading_and_place(prior):
+def test_prior_ignores_heading_and_position(prior):
     given_ = recording(seen_by_a_bad_sensor(truth(1.3)))
     angles = np.full(given_.n_frames, 2.0)
     turned_ = recording(turned(given_.tracks.positions, angles) + np.array([4.0, 1.0, 0.0]))
@@ -66,7 +66,7 @@ def test_the_prior_does_not_see_heading_and_place(prior):
     )
 
 
-def test_far_from_what_was_learned_the_prior_is_silent(prior):
+def test_prior_predicts_nothing_far_from_its_training_data(prior):
     given_ = recording(seen_by_a_bad_sensor(truth(1.3)))
     upside_down = given_.tracks.positions.copy()
     upside_down[:, 1:] = upside_down[:, :1] + (upside_down[:, 1:] - upside_down[:, :1]) * (
@@ -101,7 +101,7 @@ def test_a_joint_that_was_never_tracked_hurts_no_other(prior):
     assert np.isfinite(np.delete(result.tracks.positions, HAND, axis=1)).all()
 
 
-def test_a_joint_that_no_teacher_showed_makes_nothing_strange():
+def test_joint_without_training_data_changes_nothing():
     """Sensors that tell the ends of hands, and a prior of one that does not."""
     ends = [NAMES.index("HandRight"), NAMES.index("HandLeft")]
 
@@ -157,7 +157,7 @@ def test_smoothing_halves_waves_of_its_length():
     assert np.ptp(found[800:1200]) / np.ptp(wave) == pytest.approx(0.5, abs=0.01)
 
 
-def test_following_ends_where_smoothing_of_what_was_before_ends(rng):
+def test_filter_ends_where_the_smoother_of_past_frames_ends(rng):
     """The filter's last frame is the smoother's of the same frames, the start being far."""
     positions = np.cumsum(rng.normal(size=(60, 2, 3)), axis=0)
     weights = rng.uniform(0.2, 1.0, size=(60, 2))
@@ -200,7 +200,7 @@ def test_chance_within_is_that_of_drawing(rng):
     assert chance_within(np.array(np.inf), 0.05) == 0.0
 
 
-def test_a_prior_that_is_told_the_actors_takes_less_of_one_for_a_rule():
+def test_actor_labels_separate_actor_specific_errors():
     """Four of five takes are of one actor, whose knee the sensor sees 10 cm aside."""
     takes = [pair(truth(speed), 0.10) for speed in (1.0, 1.2, 1.4, 1.6)] + [
         pair(truth(1.3), 0.0)
@@ -222,7 +222,7 @@ def test_same_pairs_same_prior(prior):
     np.testing.assert_array_equal(prior.means, again.means)
 
 
-def test_the_published_prior_sees_neighbours_only():
+def test_published_prior_uses_neighbors_only():
     published = learn_residual_prior(
         [pair(truth(speed)) for speed in (0.9, 1.6)],
         settings=replace(QUICK, method=ResidualMethod.PUBLISHED, calm=0.0),
@@ -237,7 +237,7 @@ def test_the_published_prior_sees_neighbours_only():
     )
 
 
-def test_in_a_mirror_right_limbs_err_as_left_ones_do():
+def test_mirror_setting_shares_errors_of_left_and_right_limbs():
     """Learned from a left knee alone, whose right one was never tracked."""
     takes = []
     for speed in (0.9, 1.1, 1.45, 1.6):

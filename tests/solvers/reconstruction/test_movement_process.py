@@ -46,7 +46,7 @@ def process():
     return learn_movement_process(TAKES, 3.0, 500, mirror=True)
 
 
-def test_equals_the_whole_process_written_down_naively(process):
+def test_movement_process_equals_the_naive_full_process(process):
     """Each example and its mirror image in one dense system, joint after joint."""
     parts, errors, takes, actors = [], [], [], []
     for image in (False, True):
@@ -91,7 +91,7 @@ def naive(one: np.ndarray, other: np.ndarray, strengths: tuple) -> np.ndarray:
     )
 
 
-def test_it_foretells_errors_of_a_speed_that_it_has_not_seen(process):
+def test_movement_process_predicts_errors_at_a_new_speed(process):
     new = take(1.4, "c")
 
     offsets, nearness = process.predict(new.features, RATE, np.arange(90))
@@ -110,7 +110,7 @@ def test_in_a_mirror_errors_are_mirrored(process):
     assert_allclose(near, also_near, atol=1e-5)
 
 
-def test_far_away_it_knows_that_it_does_not_know(process):
+def test_proximity_is_zero_far_from_the_points(process):
     upside_down = take(1.4, "c").features * (1.0, 1.0, -1.0)
 
     _, nearness = process.predict(upside_down, RATE, np.arange(90))
@@ -118,7 +118,7 @@ def test_far_away_it_knows_that_it_does_not_know(process):
     assert nearness.max() < 0.01
 
 
-def test_joints_that_are_hardly_known_are_left_to_others():
+def test_rarely_known_joints_are_not_predicted():
     blind = replace(TAKES[0], errors=TAKES[0].errors.copy())
     blind.errors[:, KNEE] = np.nan
     blind.errors[::2, 3] = np.nan
@@ -131,7 +131,7 @@ def test_joints_that_are_hardly_known_are_left_to_others():
     assert KNEE not in learn_movement_process((blind, both), 30.0, 500, mirror=False).joints
 
 
-def test_too_few_examples_teach_nothing():
+def test_too_few_examples_return_no_process():
     short = replace(TAKES[0], features=TAKES[0].features[:9], errors=TAKES[0].errors[:9])
 
     assert learn_movement_process((short,), 30.0, 500, mirror=True) is None
@@ -152,7 +152,7 @@ def prior():
     return learn_residual_prior([pair(truth(speed)) for speed in (0.9, 1.6)], settings=QUICK)
 
 
-def test_between_the_frames_that_are_foretold_hardly_anything_is_lost(prior):
+def test_interpolation_between_predictions_is_accurate(prior):
     """Every second frame and straight lines; the error of the knee has cusps."""
     calm = smooth_postures(recording(seen_by_a_bad_sensor(truth(1.3))), 1 / 30)
     few = prior.predict(calm)
@@ -168,7 +168,7 @@ def test_between_the_frames_that_are_foretold_hardly_anything_is_lost(prior):
     assert np.abs(some.offsets - each.offsets).max() < 0.15 * np.abs(each.offsets).max()
 
 
-def test_what_goes_on_ahead_is_not_looked_at_where_it_must_not_be(prior):
+def test_causal_prediction_ignores_later_frames(prior):
     """The first second is foretold alike whatever comes after."""
     calm = smooth_postures(recording(seen_by_a_bad_sensor(truth(1.3))), 0.0)
     cut = replace(calm, features=calm.features[:30])

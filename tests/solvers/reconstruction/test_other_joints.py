@@ -44,7 +44,7 @@ def test_a_thumb_of_a_raised_arm_does_not_flip(take, trust):
     assert np.linalg.norm(found[:, THUMB] - after[:, WRIST] - way, axis=-1).max() < 0.01
 
 
-def test_joints_go_with_a_bone_that_turns(take):
+def test_joints_follow_a_rotating_bone(take):
     """A forearm that is turned by 90 degrees takes the thumb along."""
     seen, postures = take
     before, after = raised(postures, (0.0, 0.0)), raised(postures, (0.0, 0.0))
@@ -57,7 +57,7 @@ def test_joints_go_with_a_bone_that_turns(take):
                     atol=1e-9)  # fmt: skip
 
 
-def test_a_body_that_is_turned_is_rebuilt_turned(take):
+def test_reconstruction_rotates_with_the_body(take):
     seen, before = take
     after = before + np.random.default_rng(3).normal(scale=0.02, size=before.shape)
     weights = np.random.default_rng(4).uniform(size=seen.shape[:2])

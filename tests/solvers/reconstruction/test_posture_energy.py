@@ -65,7 +65,7 @@ def _body(positions):
     return BodyPostures(single, 0 * single, USUAL_LENGTHS)
 
 
-def test_neighbours_are_those_of_equation_9(bodies, random):
+def test_neighbors_minimize_equation_9(bodies, random):
     trust = random.uniform(size=(5, 20))
     observed = bodies[:5] + 0.01
     observed[1, 3] = np.nan
@@ -155,7 +155,7 @@ def test_gauss_newton_finds_a_minimum_and_less_than_the_search(problem):
             assert (posture_energy(spaces.postures(moved), asked) >= energy - 2e-6).all()
 
 
-def test_both_solvers_in_turn_tell_their_energies_and_search_repeats(problem):
+def test_sequential_solvers_return_energies_and_search_repeats(problem):
     spaces, asked = problem
     one, energies = search_sequentially(spaces, asked, seed=4)
     again, _ = search_sequentially(spaces, asked, seed=4)
@@ -184,7 +184,7 @@ def test_the_probable_posture_is_the_conditional_mean(problem):
         np.testing.assert_allclose(spread[frame], np.sqrt(np.maximum(after, 0)), atol=1e-4)
 
 
-def test_a_course_is_the_posterior_of_its_gaussian_process(random):
+def test_smoothed_residuals_equal_the_gaussian_process_posterior(random):
     n, dt, size, memory = 40, 1 / 30, 0.1, 0.4
     seen = random.normal(scale=0.1, size=(n, 1, 3))
     trust = np.ones((n, 1))
@@ -200,7 +200,7 @@ def test_a_course_is_the_posterior_of_its_gaussian_process(random):
     np.testing.assert_allclose(course.spread[:, 0], spread, atol=1e-8)
 
 
-def test_a_causal_course_knows_no_future_and_does_not_jump(random):
+def test_causal_filter_ignores_the_future_and_does_not_jump(random):
     made = random.normal(scale=0.01, size=(30, 2, 3)).cumsum(axis=0)
     seen = made + 0.05
     deviation = measurement_deviation(np.ones((30, 2)), 1e-4)
@@ -215,7 +215,7 @@ def test_a_causal_course_knows_no_future_and_does_not_jump(random):
     assert (np.diff(course.spread[12:20], axis=0) > 0.0).all()
 
 
-def test_lengths_are_kept_and_trusted_joints_hardly_move(bodies, random):
+def test_lengths_are_constrained_and_reliable_joints_hardly_move(bodies, random):
     spoilt = bodies[:20].copy()
     spoilt[:, 13] += random.normal(scale=0.1, size=(20, 3))
     sure = np.ones((20, 20))
@@ -228,7 +228,7 @@ def test_lengths_are_kept_and_trusted_joints_hardly_move(bodies, random):
     assert np.linalg.norm(kept - spoilt, axis=-1)[:, others].mean() < 2e-3
 
 
-def test_bones_that_were_seen_stay_as_they_were_seen(bodies):
+def test_observed_bones_stay_unchanged(bodies):
     longer = resize(bodies[:20], 1.1 * USUAL_LENGTHS)
     kept = constrain_lengths(longer, USUAL_LENGTHS, np.ones((20, 20)), np.ones((20, 20)))
     np.testing.assert_allclose(kept, longer)

@@ -52,13 +52,13 @@ def test_changes_of_a_steady_turn_are_its_speed():
     np.testing.assert_allclose(bone_changes(steady, 30.0), np.tile([2.0, 1.0, -2.0], (30, 1)))
 
 
-def test_a_mirrored_posture_has_left_and_right_exchanged(walk):
+def test_mirrored_posture_has_left_and_right_swapped(walk):
     left, right = (POSTURE_JOINTS.index(f"{side}Hand") for side in ("left", "right"))
     np.testing.assert_array_equal(mirrored(walk)[:, left], walk[:, right] * (-1, 1, 1))
     np.testing.assert_array_equal(mirrored(mirrored(walk)), walk)
 
 
-def test_kept_postures_are_apart_and_no_other_is_far_from_them():
+def test_kept_postures_are_distinct_and_cover_the_others():
     random = np.random.default_rng(0)
     ways = random.normal(size=(3, 60)) * 0.1
     directions = (random.normal(size=(400, 3)) @ ways).reshape(400, 20, 3)
@@ -98,7 +98,7 @@ def test_a_library_comes_back_from_its_file(library, tmp_path):
     assert (read.n_seen, read.trained_on) == (library.n_seen, "a made walk")
 
 
-def test_the_shipped_library_is_small_and_says_what_it_knows():
+def test_shipped_library_is_small_and_names_its_sources():
     library = load_posture_library()
     assert 1000 <= library.n_postures <= 5000
     assert "CMU" in library.trained_on
@@ -106,7 +106,7 @@ def test_the_shipped_library_is_small_and_says_what_it_knows():
     assert SHIPPED_LIBRARY.stat().st_size < 600_000
 
 
-def test_the_shipped_library_knows_twists_of_clips_that_have_rotations():
+def test_shipped_library_has_twists_of_clips_with_rotations():
     twists = np.abs(load_posture_library().known_twists)
 
     knowing = (twists > 0.0).all(axis=1)
@@ -136,7 +136,7 @@ def test_nothing_to_learn_from_is_refused():
         build_posture_library([])
 
 
-def test_the_tracker_s_idea_of_a_body_is_found(walk, library):
+def test_bone_axis_corrections_of_a_tracker_are_found(walk, library):
     """Bones of the observed body are turned by known angles; the same turns are found."""
     lengths = body_lengths(walk)
     known = np.tile(np.eye(3), (20, 1, 1))

@@ -65,7 +65,7 @@ def lame(walk):
     return seen
 
 
-def test_what_was_seen_stays_and_a_lost_leg_walks_on(walk, lame, library):
+def test_observed_joints_stay_and_a_missing_leg_continues_to_walk(walk, lame, library):
     result = rebuilt(lame, library)
     away = np.linalg.norm(result.tracks.positions - walk, axis=-1)
     kept = np.isfinite(lame).all(axis=-1)
@@ -84,7 +84,7 @@ def test_what_was_seen_stays_and_a_lost_leg_walks_on(walk, lame, library):
 @pytest.mark.parametrize(
     "settings", [{"method": method} for method in PostureMethod] + [{"causal": True}], ids=str
 )
-def test_every_way_fills_every_frame_plausibly(walk, lame, library, settings):
+def test_every_method_fills_every_frame_plausibly(walk, lame, library, settings):
     result = rebuilt(lame, library, **settings)
     away = np.linalg.norm(result.tracks.positions - walk, axis=-1)
     assert np.isfinite(away).all()
@@ -93,7 +93,7 @@ def test_every_way_fills_every_frame_plausibly(walk, lame, library, settings):
     assert np.isfinite(result.motion.rotations).all()
 
 
-def test_causal_frames_do_not_know_the_future(lame, library):
+def test_causal_frames_ignore_the_future(lame, library):
     """But for lengths of bones and usual errors of limbs, which the whole take tells."""
     whole = rebuilt(lame, library, causal=True).tracks.positions
     changed = lame.copy()
@@ -102,14 +102,14 @@ def test_causal_frames_do_not_know_the_future(lame, library):
     np.testing.assert_allclose(other[:60], whole[:60], atol=0.03)
 
 
-def test_confidence_is_high_where_seen_and_low_in_the_middle_of_a_loss(lame, library):
+def test_confidence_is_high_where_observed_and_low_inside_a_gap(lame, library):
     found = rebuilt(lame, library).confidence
     assert found[:20].min() > 0.9
     assert found[45, LEG[1]] < 0.8 < found[10, LEG[1]]
     assert found[45, LEG[1]] < found[31, LEG[1]]
 
 
-def test_place_and_heading_do_not_matter(lame, library):
+def test_position_and_heading_do_not_matter(lame, library):
     moved = turned(lame, np.full(len(lame), 1.9)) + np.array([2.0, 3.0, 0.0])
     one, other = rebuilt(lame, library), rebuilt(moved, library)
     back = turned(other.tracks.positions - np.array([2.0, 3.0, 0.0]), np.full(len(lame), -1.9))
@@ -133,7 +133,7 @@ def test_the_take_is_not_changed_and_the_same_comes_out_twice(lame, library):
     np.testing.assert_array_equal(one.tracks.positions, other.tracks.positions)
 
 
-def test_lost_hips_are_found_by_the_joints_about_them(walk, library):
+def test_missing_hips_follow_the_joints_around_them(walk, library):
     """The body bobs, so that a straight line through the loss would be far off."""
     bob = 0.15 * np.sin(2.0 * np.pi * np.arange(len(walk)) / 30.0)
     truth = walk + bob[:, None, None] * (0.0, 0.0, 1.0)
@@ -143,7 +143,7 @@ def test_lost_hips_are_found_by_the_joints_about_them(walk, library):
     assert away[GONE, 0].max() < 0.06
 
 
-def test_a_constant_difference_of_a_limb_is_learned_where_it_is_seen(walk, library):
+def test_constant_offset_of_a_limb_is_learned_where_observed(walk, library):
     """A tracker that sees this leg ten centimetres to the side, lost for long."""
     truth = walk.copy()
     truth[:, LEG] += (0.1, 0.0, 0.0)
@@ -176,7 +176,7 @@ def _places(names):
     return [found[role] for role in POSTURE_JOINTS]
 
 
-def test_joints_of_their_own_keep_their_place_about_their_anchor(walk):
+def test_attached_joints_keep_their_offset_from_the_anchor(walk):
     order = JOINTS[Sensor.KINECT_V2]
     names = tuple(order[place] for place in _places(order))
     names = (*names, "HandTipLeft")

@@ -38,7 +38,7 @@ def test_names_that_are_no_body_are_refused():
         posture_positions(tracks)
 
 
-def test_missing_joints_are_nan_and_others_keep_their_place():
+def test_missing_joints_are_nan_and_others_keep_their_position():
     names = JOINTS[Sensor.KINECT_V1][:12]
     positions = np.random.default_rng(0).normal(size=(4, 12, 3))
     found = posture_positions(Tracks(names, positions, 30.0))
@@ -48,7 +48,7 @@ def test_missing_joints_are_nan_and_others_keep_their_place():
     )
 
 
-def test_normal_postures_do_not_depend_on_place_and_heading(walk):
+def test_normal_postures_do_not_depend_on_position_and_heading(walk):
     moved = turned(walk, np.full(len(walk), 2.5)) + np.array([3.0, -1.0, 0.2])
     one, other = normalise(walk, 30.0), normalise(moved, 30.0)
     np.testing.assert_allclose(one.postures, other.postures, atol=1e-9)
@@ -64,7 +64,7 @@ def test_a_normal_posture_faces_forward_with_its_left_at_plus_x(walk):
     )
 
 
-def test_joints_without_trust_do_not_turn_the_heading(walk):
+def test_unreliable_joints_do_not_change_the_heading(walk):
     wrong = walk.copy()
     arm = POSTURE_JOINTS.index("leftUpperArm")
     wrong[:, arm] += (0.0, 1.0, 0.0)
@@ -89,7 +89,7 @@ def test_a_resized_body_has_the_lengths_and_keeps_directions(walk):
     np.testing.assert_allclose(resize(resized, body_lengths(walk)), walk, atol=1e-3)
 
 
-def test_lengths_ignore_frames_that_are_not_trusted(walk):
+def test_lengths_ignore_unreliable_frames(walk):
     shin = POSTURE_JOINTS.index("leftFoot")
     wrong = walk.copy()
     wrong[:40, shin] += (0.0, 0.0, 0.4)
@@ -99,7 +99,7 @@ def test_lengths_ignore_frames_that_are_not_trusted(walk):
     assert abs(body_lengths(wrong)[shin] - body_lengths(walk)[shin]) > 0.1
 
 
-def test_a_bone_that_is_never_seen_has_its_usual_share(walk):
+def test_bone_never_observed_gets_the_typical_fraction(walk):
     unseen = walk.copy()
     unseen[:, POSTURE_JOINTS.index("leftHandEnd")] = np.nan
     assert 0.05 < body_lengths(unseen)[POSTURE_JOINTS.index("leftHandEnd")] < 0.15

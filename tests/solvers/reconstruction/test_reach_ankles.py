@@ -36,7 +36,7 @@ def followed(positions: np.ndarray, names=NAMES) -> Motion:
 
 
 @pytest.mark.parametrize("file", REAL)
-def test_ankles_of_real_takes_are_where_they_were_seen(recordings, file):
+def test_ankles_of_real_takes_reach_observed_positions(recordings, file):
     """Bones alone miss them by up to 12 cm, and the feet sink."""
     recording = read_recording(recordings / "kinect" / file).slice(0, 300)
     order = [recording.names.index(name) for name in ANKLES]
@@ -49,7 +49,7 @@ def test_ankles_of_real_takes_are_where_they_were_seen(recordings, file):
     assert np.nanpercentile(missed, 95) < 0.02
 
 
-def test_hips_that_are_seen_low_for_a_while_do_not_push_the_feet_through_the_floor(walk):
+def test_hips_observed_low_do_not_push_feet_through_the_floor(walk):
     low = walk.copy()
     above = [place for place, name in enumerate(NAMES) if not name.startswith(("Ank", "Foot"))]
     low[40:60, above, 2] -= 0.06
@@ -60,7 +60,7 @@ def test_hips_that_are_seen_low_for_a_while_do_not_push_the_feet_through_the_flo
     assert np.linalg.norm(reached - low[:, order], axis=-1)[40:60].max() < 0.02
 
 
-def test_the_pelvis_gives_way_for_straight_legs_and_knees_stay(walk):
+def test_pelvis_is_offset_for_straight_legs_and_knees_stay(walk):
     """Legs seen 6 cm too short: bent knees would come 16 cm forward."""
     standing = np.repeat(walk[:1], 40, axis=0)
     for side, across in (("Left", 0.1), ("Right", -0.1)):
@@ -79,7 +79,7 @@ def test_the_pelvis_gives_way_for_straight_legs_and_knees_stay(walk):
     assert np.abs((knees - short[:, order])[..., 1])[18:22].max() < 0.1
 
 
-def test_what_fits_already_is_left(walk):
+def test_matching_ankles_stay_unchanged(walk):
     once = followed(walk)
     names = tuple(name for name in once.skeleton.names if name in NAMES)
     again = np.array(walk)

@@ -94,14 +94,14 @@ def test_postures_help_where_the_residuals_alone_can_only_smooth(walk, true):
     assert error[ReconstructMethod.BOTH] < 0.7 * error[ReconstructMethod.RESIDUALS]
 
 
-def test_joints_that_were_seen_stay_where_they_were(walk, true):
+def test_observed_joints_keep_their_positions(walk, true):
     found = reconstruct(walk)
     assert off(found.tracks.positions, walk.tracks.positions, SEEN) < 0.015
     assert found.confidence[:, SEEN].mean() > 0.7
     assert found.confidence[LOST][:, HIDDEN].mean() < found.confidence[:, SEEN].mean() - 0.1
 
 
-def test_bones_have_one_length(walk):
+def test_bones_have_constant_lengths(walk):
     result = reconstruct(walk).motion
     joints = forward_kinematics(result).positions
     bones = np.linalg.norm(
@@ -110,7 +110,7 @@ def test_bones_have_one_length(walk):
     assert bones.std(axis=0).max() < 1e-9
 
 
-def test_heading_and_place_do_not_matter(walk):
+def test_heading_and_position_do_not_matter(walk):
     angles, shift = np.full(walk.n_frames, 1.2), np.array([2.0, -3.0, 0.0])
     moved = walk.with_tracks(
         walk.tracks.with_positions(turned(walk.tracks.positions, angles) + shift)
@@ -119,14 +119,14 @@ def test_heading_and_place_do_not_matter(walk):
     np.testing.assert_allclose(turned(here, angles) + shift, there, atol=1e-3)
 
 
-def test_the_same_again_and_the_input_as_it_was(walk):
+def test_reconstruction_repeats_and_leaves_the_input_unchanged(walk):
     given = walk.tracks.positions.copy()
     one, other = reconstruct(walk), reconstruct(walk)
     np.testing.assert_array_equal(one.tracks.positions, other.tracks.positions)
     np.testing.assert_array_equal(walk.tracks.positions, given)
 
 
-def test_what_the_sensor_guessed_is_rebuilt_more_the_less_it_counts(walk, true):
+def test_inferred_joints_are_reconstructed_more_at_lower_weight(walk, true):
     calm = walk.with_tracks(walk.tracks.with_positions(true))
     moved = [
         off(
@@ -170,7 +170,7 @@ def held(measure):
 
 
 @pytest.mark.parametrize("method", OURS)
-def test_causal_joints_know_nothing_of_what_comes_but_the_body(walk, method, one_body):
+def test_causal_joints_ignore_later_frames_except_for_the_body(walk, method, one_body):
     short = frames_of(walk, np.arange(15, 75))
     far = {}
     for causal in (True, False):

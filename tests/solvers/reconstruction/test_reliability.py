@@ -70,13 +70,13 @@ def shaken(walk: np.ndarray, name: str, size: float = 0.06) -> np.ndarray:
 
 
 @every_way
-def test_a_still_body_is_believed(walk, settings):
+def test_still_body_is_reliable(walk, settings):
     still = np.tile(walk[:1], (60, 1, 1))
 
     assert measure_reliability(recorded(still), settings=settings).combined.min() > 0.99
 
 
-def test_a_clean_walk_is_believed(walk):
+def test_clean_walk_is_reliable(walk):
     combined = measure_reliability(recorded(walk)).combined
 
     assert combined.mean() > 0.98
@@ -84,7 +84,7 @@ def test_a_clean_walk_is_believed(walk):
 
 
 @every_way
-def test_a_vibrating_joint_is_doubted_and_others_hardly(walk, settings):
+def test_vibrating_joint_is_unreliable_and_others_hardly(walk, settings):
     before = measure_reliability(recorded(walk), settings=settings).combined
     after = measure_reliability(recorded(shaken(walk, "HandLeft")), settings=settings).combined
 
@@ -98,7 +98,7 @@ def test_a_vibrating_joint_is_doubted_and_others_hardly(walk, settings):
 
 
 @every_way
-def test_a_leg_that_is_too_long_for_a_while_is_doubted(walk, settings):
+def test_leg_too_long_for_a_while_is_unreliable(walk, settings):
     wrong = walk.copy()
     knee, ankle, foot = (place(f"{part}Left") for part in ("Knee", "Ankle", "Foot"))
     longer = 0.3 * (walk[20:40, ankle] - walk[20:40, knee])
@@ -118,7 +118,7 @@ def test_a_leg_that_is_too_long_for_a_while_is_doubted(walk, settings):
 
 
 @every_way
-def test_neither_place_nor_heading_counts(walk, settings):
+def test_posture_ignores_position_and_heading(walk, settings):
     wrong = shaken(walk, "AnkleRight")
     moved = turned(wrong, np.full(len(walk), 2.1)) + np.array([3.0, -4.0, 0.5])
 
@@ -128,7 +128,7 @@ def test_neither_place_nor_heading_counts(walk, settings):
     assert_allclose(one.combined, other.combined, atol=1e-6)
 
 
-def test_a_steady_walk_past_the_camera_is_no_deviation(walk):
+def test_constant_velocity_walk_has_no_deviation(walk):
     """The ends of a path go on as they came: nothing falls there because of speed."""
     gone = walk + np.arange(len(walk))[:, None, None] * np.array([0.06, 0.0, 0.0])
 
@@ -158,7 +158,7 @@ def test_frame_rates_agree(frame_rate):
 
 
 @every_way
-def test_what_is_not_seen_has_no_reliability_and_others_keep_theirs(walk, settings):
+def test_missing_joints_have_no_reliability_and_others_keep_theirs(walk, settings):
     gone = walk.copy()
     gone[20:30, place("HandRight")] = np.nan
     gone[:, place("FootLeft")] = np.nan
@@ -174,7 +174,7 @@ def test_what_is_not_seen_has_no_reliability_and_others_keep_theirs(walk, settin
     assert found.combined[45:, place("HandRight")].min() > 0.7
 
 
-def test_nothing_is_modified_and_progress_is_told(walk):
+def test_input_stays_unchanged_and_progress_is_reported(walk):
     recording = recorded(shaken(walk, "HandLeft"))
     before = recording.tracks.positions.copy()
     told = []
@@ -250,7 +250,7 @@ def test_lengths_are_those_of_reference_postures_where_there_are_any():
     assert_allclose(reference_lengths(lengths, postures, trust), [0.5, 0.4])
 
 
-def test_reference_postures_with_a_guessed_joint_tell_no_lengths():
+def test_reference_postures_with_an_inferred_joint_are_ignored():
     frames = np.tile(body((0.0, 0.0, -1.0)), (30, 1, 1))
     frames[:20, place("HandLeft"), 2] -= 0.1
     state = np.full(frames.shape[:2], 2)
@@ -263,7 +263,7 @@ def test_reference_postures_with_a_guessed_joint_tell_no_lengths():
     assert_allclose(kinematics[:20, place("HandLeft")], 1.0 - 0.1 / 0.28)
 
 
-def test_doubt_lasts_as_long_at_any_frame_rate():
+def test_low_reliability_lasts_equally_long_at_any_frame_rate():
     lasting = []
     for frame_rate in (30.0, 120.0):
         still = np.tile(walk_at(30.0)[:1], (round(4.0 * frame_rate), 1, 1))

@@ -22,7 +22,7 @@ def area_under_curve(reliability: np.ndarray, wrong: np.ndarray) -> float:
     return float(ranks / (n_wrong * n_right))
 
 
-def test_wrong_joints_of_a_kinect_are_doubted_more_than_as_published(recordings):
+def test_wrong_kinect_joints_are_less_reliable_than_as_published(recordings):
     ours, published, wrong = [], [], []
     for path in sorted((recordings / "kinect" / "ui_prmd").glob("m0[268]_s02_e0[1-4].npz")):
         recording, markers = read_ui_prmd_pair(path)
@@ -42,7 +42,7 @@ def test_wrong_joints_of_a_kinect_are_doubted_more_than_as_published(recordings)
 
 
 @pytest.mark.parametrize("folder", ["irds", "kimore", "azure"])
-def test_what_the_device_doubts_is_doubted_without_its_word(recordings, folder):
+def test_inferred_joints_are_less_reliable_without_states(recordings, folder):
     found, doubted = [], []
     files = [path for path in (recordings / "kinect" / folder).iterdir() if path.is_file()]
     for path in sorted(files)[:12]:
@@ -59,7 +59,7 @@ def test_what_the_device_doubts_is_doubted_without_its_word(recordings, folder):
     [("irds", 0.8), ("kimore", 0.8), ("laban", 0.8), ("msr_action3d", 0.7), ("azure", 0.8),
      ("ui_prmd", 0.8)],
 )  # fmt: skip
-def test_every_sensor_is_believed_until_its_joints_shake(recordings, folder, least):
+def test_every_sensor_is_reliable_until_joints_vibrate(recordings, folder, least):
     """By the signs of errors alone, without the tracker's word."""
     files = [path for path in (recordings / "kinect" / folder).iterdir() if path.is_file()]
     given = read_recording(min(files))
@@ -82,7 +82,7 @@ def test_every_sensor_is_believed_until_its_joints_shake(recordings, folder, lea
 
 
 @pytest.mark.parametrize("folder", ["irds", "kimore", "azure"])
-def test_a_joint_that_is_not_tracked_for_long_has_no_trust(recordings, folder):
+def test_joint_missing_for_long_has_no_reliability(recordings, folder):
     """The mean over the window leaves none where all of it was guessed."""
     for path in sorted((recordings / "kinect" / folder).iterdir())[:12]:
         take = read_recording(path)
@@ -94,7 +94,7 @@ def test_a_joint_that_is_not_tracked_for_long_has_no_trust(recordings, folder):
         assert found.max(initial=0.0) < 1e-9
 
 
-def test_ankles_of_a_slow_camera_at_24_metres_per_second_are_not_believed(recordings):
+def test_ankles_at_24_meters_per_second_are_unreliable(recordings):
     path = recordings / "kinect" / "msr_action3d" / "a13_s01_e02_skeleton3D.txt"
     take = read_recording(path)
     steps = np.diff(take.tracks.positions, axis=0)

@@ -46,7 +46,7 @@ def test_the_behaviour_term_is_that_of_the_mean_turn(turns, expected):
 
 
 @pytest.mark.parametrize(("length", "expected"), [(0.0299, 1.0), (0.0301, 0.0)])
-def test_what_moves_less_than_three_centimetres_does_not_vibrate(length, expected):
+def test_steps_below_three_centimeters_are_no_vibration(length, expected):
     path = path_that_turns(180.0, 180.0, 180.0, length=length)
 
     assert behaviour_term(path, 30.0, CAUSAL)[-1, 0] == pytest.approx(expected, abs=1e-6)
@@ -66,7 +66,7 @@ def test_the_floor_is_a_speed_at_any_frame_rate():
     assert behaviour_term(3.0 * path, 120.0, PUBLISHED).min() < 0.5
 
 
-def test_vibration_is_asked_of_the_past_only_if_so_told():
+def test_causal_vibration_uses_past_frames_only():
     path = path_that_turns(*[0.0] * 9, *[180.0] * 10)
     changed = path.copy()
     changed[12:] = 5.0
@@ -79,7 +79,7 @@ def test_vibration_is_asked_of_the_past_only_if_so_told():
     assert behaviour_term(path, 30.0, PUBLISHED)[11, 0] == pytest.approx(0.0)
 
 
-def test_the_same_vibration_is_seen_at_any_frame_rate():
+def test_same_vibration_is_detected_at_any_frame_rate():
     time = np.arange(240) / 120.0
     path = np.zeros((240, 1, 3))
     path[:, 0, 0] = 0.08 * np.sin(2.0 * np.pi * 12.0 * time + 0.3)
@@ -115,7 +115,7 @@ def test_the_kinematics_term_is_the_mean_over_segments_that_meet():
     )
 
 
-def test_segments_that_are_not_seen_do_not_count():
+def test_missing_segments_do_not_count():
     parents = np.array([-1, 0, 0])
     lengths = np.array([[np.nan, 0.6, np.nan]])
 
@@ -167,7 +167,7 @@ def test_the_default_is_the_chance_of_a_normal_distribution(causal, model):
     assert CENTERED_MODEL != AS_IT_COMES
 
 
-def test_tracking_states_count_as_told():
+def test_tracking_states_have_their_configured_values():
     state = np.full((40, 3), 2)
     state[:, 1], state[:, 2] = 1, 0
 
@@ -179,7 +179,7 @@ def test_tracking_states_count_as_told():
     assert_allclose(mild.combined[:, 1], 0.4)
 
 
-def test_published_is_the_least_term_seen_through_the_window():
+def test_published_is_the_windowed_minimum_of_the_terms():
     recording = still()
     rng = np.random.default_rng(2)
     places = recording.tracks.positions + rng.normal(scale=0.06, size=(40, 3, 3))
@@ -199,7 +199,7 @@ def test_published_is_the_least_term_seen_through_the_window():
 
 
 @pytest.mark.parametrize("inferred", [0.0, 0.5])
-def test_a_confidence_in_the_place_of_a_state_counts_from_inferred_to_one(inferred):
+def test_confidence_without_states_maps_from_inferred_to_one(inferred):
     told = np.array([[0.0, 0.5, 1.0]])
     tracks = Tracks(("a", "b", "c"), np.zeros((1, 3, 3)), 30.0, told)
     settings = ReliabilitySettings(inferred=inferred)

@@ -57,6 +57,6 @@ def test_a_broken_file_is_refused(prior, tmp_path_factory, data):
         assert str(path) in str(refused)
 
 
-def test_joints_that_are_all_in_one_place_are_refused(prior):
+def test_coincident_joints_are_refused(prior):
     with pytest.raises(InvalidMotionError, match="at one position"):
         correct_postures(recording(np.zeros((40, 20, 3))), prior)

@@ -72,7 +72,7 @@ def test_gradient_is_that_of_finite_differences(examples):
         assert slope == pytest.approx((ahead - behind) / 2e-5, rel=1e-4, abs=1e-5)
 
 
-def test_learning_makes_the_examples_likelier(examples):
+def test_learning_increases_the_likelihood_of_the_examples(examples):
     local, whole, errors, takes, actors = examples
     learned = learn_kernel((local, whole), errors, takes, actors, simple=False)
     assert (
@@ -121,7 +121,7 @@ def test_with_an_inducing_point_at_each_example_it_is_the_exact_process(examples
     np.testing.assert_allclose(known + open_variance, expected, atol=5e-3)
 
 
-def test_what_one_actor_always_does_is_no_rule(examples):
+def test_constant_error_of_one_actor_is_not_generalized(examples):
     local, whole, _, takes, actors = examples
     errors = np.where(actors[:, None] == 0, 1.0, -1.0) * np.ones((24, 3))
     bases = (

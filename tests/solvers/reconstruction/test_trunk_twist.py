@@ -64,7 +64,7 @@ def standing(rng, n_frames=40) -> np.ndarray:
     return np.stack([lean.apply(postures[:, joint]) for joint in range(20)], axis=1)
 
 
-def test_plain_hinges_are_turned_the_short_way_out_of_the_trunk():
+def test_untwisted_hinges_take_the_shortest_rotation_from_the_trunk():
     """Second way: the least rotation by its axis and angle, in the trunk's axes."""
     postures = standing(np.random.default_rng(1))
 
@@ -86,7 +86,7 @@ def test_plain_hinges_are_turned_the_short_way_out_of_the_trunk():
             assert_allclose(hinges[frame, row], trunk @ turn.apply(limb.hinge), atol=1e-9)
 
 
-def test_heading_and_place_change_nothing():
+def test_heading_and_position_change_nothing():
     postures = standing(np.random.default_rng(2))
     normals, _ = flexion_normals(postures)
     moved = turned(postures, np.full(len(postures), 2.0)) + np.array([3.0, 1.0, 0.5])
@@ -96,7 +96,7 @@ def test_heading_and_place_change_nothing():
     assert_allclose(there, axial_angles(*untwisted_hinges(postures), normals), atol=1e-9)
 
 
-def test_a_mirror_exchanges_sides_and_turns_twists_round():
+def test_mirror_swaps_sides_and_negates_twists():
     postures = standing(np.random.default_rng(3))
     image = mirrored(postures)
 
@@ -106,7 +106,7 @@ def test_a_mirror_exchanges_sides_and_turns_twists_round():
     assert_allclose(seen, mirror_twists(own), atol=1e-9)
 
 
-def test_hinges_are_put_where_twists_have_them():
+def test_hinges_match_the_twists():
     rng = np.random.default_rng(4)
     postures = standing(rng)
     twists = 0.7 * np.exp(1j * rng.uniform(-2.0, 2.0, (len(postures), 4)))
@@ -144,7 +144,7 @@ def twists_of(motion: Motion) -> np.ndarray:
     )[0]
 
 
-def test_the_twist_of_a_bone_is_what_its_clip_says(gait):
+def test_twist_of_a_bone_matches_its_clip(gait):
     angles = np.linspace(-0.8, 0.8, gait.n_frames)
 
     before, after = twists_of(gait), twists_of(twisting(gait, angles))
@@ -155,7 +155,7 @@ def test_the_twist_of_a_bone_is_what_its_clip_says(gait):
 
 
 @pytest.mark.parametrize("maker", [-0.5, 0.6])
-def test_makers_who_turn_the_bone_otherwise_agree(gait, maker):
+def test_rigs_with_other_bone_axes_agree(gait, maker):
     """30 degrees in the arms of CMU and HDM05: elbows bend about another axis of the bone."""
     angles = np.linspace(-0.5, 0.5, gait.n_frames)
 
@@ -165,7 +165,7 @@ def test_makers_who_turn_the_bone_otherwise_agree(gait, maker):
     assert np.abs(theirs).min() > 0.5
 
 
-def test_a_rig_is_known_again_though_its_offsets_were_rounded(gait):
+def test_rig_is_recognized_with_rounded_offsets(gait):
     """A walk that tells how the maker turns arms, and one of this rig that tells nothing."""
     skeleton = gait.skeleton
     rounded = replace(skeleton, offsets=skeleton.offsets - 1e-6)
@@ -181,7 +181,7 @@ def test_a_rig_is_known_again_though_its_offsets_were_rounded(gait):
     assert_allclose(again, same)
 
 
-def test_so_do_makers_of_other_rest_poses(gait):
+def test_rigs_with_other_rest_poses_agree(gait):
     """The same walk of a rig that rests with its arms lowered."""
     skeleton = gait.skeleton
     humanoid = find_humanoid_map(skeleton)
@@ -197,7 +197,7 @@ def test_so_do_makers_of_other_rest_poses(gait):
     assert_allclose(twists_of(moved), twists_of(gait), atol=1e-6)
 
 
-def test_rotations_that_contradict_bends_are_hardly_believed(gait):
+def test_rotations_that_contradict_flexion_get_a_low_weight(gait):
     """Points have no twist: an upper arm that is turned at random says nothing."""
     rng = np.random.default_rng(5)
     clip = read_clip_twists(gait, motion_postures(gait))
@@ -214,7 +214,7 @@ def test_rotations_that_contradict_bends_are_hardly_believed(gait):
     assert np.abs(told[60:]).max() < 0.35
 
 
-def test_the_mean_is_weighted_by_nearness():
+def test_mean_twist_is_weighted_by_similarity():
     """Neighbours at 1 and 2 cm of one joint: weights 4 to 1."""
     neighbours = np.zeros((1, 2, 60))
     neighbours[0, :, 9] = (0.01, 0.02)
@@ -227,7 +227,7 @@ def test_the_mean_is_weighted_by_nearness():
     assert np.abs(far).max() < 0.02 < 0.8 < np.abs(mean).min()
 
 
-def test_joints_that_are_not_trusted_choose_no_neighbour():
+def test_unreliable_joints_select_no_neighbor():
     neighbours = np.zeros((1, 2, 60))
     neighbours[0, 0, 9] = 0.3
     neighbours[0, 1, 12] = 0.1
@@ -260,13 +260,13 @@ def test_a_library_keeps_twists_and_their_mirror_images(gait, tmp_path):
     assert not both.known_twists[library.n_postures :].any()
 
 
-def test_two_libraries_that_tell_no_twist_join_to_one_that_tells_none(gait):
+def test_libraries_without_twists_merge_to_one_without(gait):
     old = replace(build_posture_library([gait]), twists=None)
 
     assert merge_posture_libraries(old, old).twists is None
 
 
-def test_files_of_before_are_read_and_damaged_ones_refused(gait, tmp_path):
+def test_older_files_are_read_and_damaged_ones_refused(gait, tmp_path):
     path = tmp_path / "postures.npz"
     library = build_posture_library([gait])
     library.save(path)

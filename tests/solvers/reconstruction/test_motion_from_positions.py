@@ -57,14 +57,14 @@ def miss(motion: Motion, tracks: Tracks) -> np.ndarray:
     return np.linalg.norm(places - tracks.positions[:, theirs], axis=-1)
 
 
-def test_joints_of_constant_lengths_keep_their_places(walk):
+def test_joints_of_constant_lengths_keep_their_positions(walk):
     motion = motion_from_positions(as_tracks(walk), PARENTS)
 
     assert miss(motion, as_tracks(walk)).mean() < 0.003
 
 
 @pytest.mark.parametrize("file", REAL)
-def test_so_do_those_of_real_cameras(recordings, file):
+def test_real_cameras_have_no_swaps(recordings, file):
     """Their shoulders and hips shift on the trunk; a rigid one misses by up to 45 mm.
 
     Palms, tips and thumbs shake, and are steadied.
@@ -121,7 +121,7 @@ def hinge_of(motion: Motion, joint: str, axis: tuple[float, float, float]) -> np
 
 
 @pytest.mark.parametrize("plane", np.radians([-30.0, 0.0, 60.0]))
-def test_an_upper_arm_is_twisted_so_that_its_elbow_bends_as_a_hinge(plane):
+def test_upper_arm_twist_follows_the_flexion_plane_of_the_elbow(plane):
     motion = motion_from_positions(bending_arm(np.full(60, np.radians(80)), plane), PARENTS)
 
     elbow = motion.rotations[:, motion.skeleton.index("ElbowLeft")]
@@ -130,7 +130,7 @@ def test_an_upper_arm_is_twisted_so_that_its_elbow_bends_as_a_hinge(plane):
     assert_allclose(np.degrees(angle_between(elbow, [1.0, 0, 0, 0])), 80.0, atol=1.0)
 
 
-def test_a_straight_arm_keeps_the_twist_of_the_bends_about_it():
+def test_straight_arm_keeps_the_twist_of_adjacent_flexion():
     """It is stretched for a fifth of a second; noise there must not turn it."""
     angles = np.full(60, np.radians(60.0))
     angles[27:33] = 0.0
@@ -207,7 +207,7 @@ def test_a_skeleton_that_is_given_is_moved(walk):
     assert motion.observed.all()
 
 
-def test_what_a_rigid_trunk_misses_is_not_handed_down_to_the_hand(walk):
+def test_error_of_a_rigid_trunk_does_not_reach_the_hand(walk):
     """The shoulder is pulled up by 5 cm; the bones of the arm make for elbow and wrist."""
     body = motion_from_points(as_tracks(walk), PARENTS).skeleton
     arm = [NAMES.index(f"{part}Left") for part in ("Shoulder", "Elbow", "Wrist")]
@@ -223,7 +223,7 @@ def test_what_a_rigid_trunk_misses_is_not_handed_down_to_the_hand(walk):
     assert wrist < 0.4 * shoulder
 
 
-def test_tips_of_hands_do_not_flutter(walk):
+def test_fingertips_do_not_flutter(walk):
     """They shake by 3 cm on a bone of 9 cm; fingers that really bend, bend."""
     rng = np.random.default_rng(5)
     noisy, tip = walk.copy(), NAMES.index("HandLeft")
@@ -237,7 +237,7 @@ def test_tips_of_hands_do_not_flutter(walk):
     assert np.linalg.norm(tips - walk[:, tip], axis=-1).mean() < 0.03
 
 
-def test_joints_in_one_place_tell_no_direction_and_do_no_harm(walk):
+def test_coincident_joints_define_no_direction_and_do_no_harm(walk):
     tracks = as_tracks(walk.copy())
     tracks.positions[20, NAMES.index("HandLeft")] = walk[20, NAMES.index("WristLeft")]
 

@@ -50,7 +50,7 @@ def twist(motion: Motion) -> np.ndarray:
     return np.degrees(np.arctan2(hinge[:, 1], -hinge[:, 0]))
 
 
-def test_a_straight_arm_is_twisted_as_in_like_postures():
+def test_straight_arm_gets_the_twist_of_similar_postures():
     tracks = hanging(np.zeros(30))
 
     plain, motion = (
@@ -61,7 +61,7 @@ def test_a_straight_arm_is_twisted_as_in_like_postures():
     assert_allclose(twist(motion), np.degrees(AT), atol=10.0)
 
 
-def test_less_so_where_these_are_not_of_one_mind():
+def test_library_twist_weighs_less_where_neighbors_disagree():
     tracks = hanging(np.zeros(30))
 
     motion = motion_from_positions(tracks, PARENTS, twists=alike(30, length=0.1))
@@ -70,7 +70,7 @@ def test_less_so_where_these_are_not_of_one_mind():
     assert_allclose(twist(motion), np.degrees(np.angle(mean)), atol=0.5)
 
 
-def test_where_the_elbow_bends_its_plane_tells_the_twist():
+def test_flexion_plane_determines_the_twist_where_the_elbow_flexes():
     tracks = hanging(np.full(30, np.radians(80.0)))
 
     motion = motion_from_positions(tracks, PARENTS, twists=alike(30))
@@ -78,7 +78,7 @@ def test_where_the_elbow_bends_its_plane_tells_the_twist():
     assert_allclose(twist(motion), 0.0, atol=3.0)
 
 
-def test_how_the_actor_differs_where_he_bends_holds_where_he_is_straight():
+def test_actor_bias_of_flexed_frames_applies_to_straight_ones():
     bends = np.where(np.arange(300) < 100, np.radians(80.0), 0.0)
 
     motion = motion_from_positions(hanging(bends), PARENTS, twists=alike(300))
@@ -106,7 +106,7 @@ def test_as_published_there_is_no_twist_where_none_is_known():
 
 
 @pytest.mark.parametrize("dip", [0.5, 1.9])
-def test_a_turn_that_nothing_tells_is_as_fast_at_all_frame_rates(dip):
+def test_unobserved_twist_changes_equally_fast_at_all_frame_rates(dip):
     """From -85 to 85 degrees, while for so many seconds no bend shows it."""
     speeds = []
     for rate in (30.0, 120.0, 240.0):
@@ -139,7 +139,7 @@ def gait() -> Motion:
     return walking_gait(GaitSettings(duration=2.0, frame_rate=30.0))
 
 
-def test_a_reconstruction_tells_the_twist_of_its_library(gait):
+def test_reconstruction_returns_the_twist_of_its_library(gait):
     library = build_posture_library([gait])
     recording = postures_recording(gait)
 
@@ -165,7 +165,7 @@ def test_a_reconstruction_tells_the_twist_of_its_library(gait):
 @pytest.mark.parametrize(
     "method", [ReconstructMethod.BOTH, ReconstructMethod.PUBLISHED_POSTURES]
 )
-def test_with_a_library_of_before_bends_alone_tell_the_twist(gait, method):
+def test_older_library_leaves_the_twist_to_flexion(gait, method):
     library = build_posture_library([gait])
     recording, settings = postures_recording(gait), ReconstructSettings(method=method)
 

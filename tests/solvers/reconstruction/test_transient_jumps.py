@@ -23,7 +23,7 @@ def path_along(*places):
 
 
 @pytest.mark.parametrize("n_away", [1, 2, 6])
-def test_a_joint_that_jumps_away_is_found_in_those_frames_only(n_away):
+def test_transient_jump_is_detected_in_its_frames_only(n_away):
     path = path_along(*np.linspace(0.0, 0.3, 40))
     path[20 : 20 + n_away, 0, 2] += 0.2
 
@@ -43,7 +43,7 @@ def test_a_joint_that_jumps_away_is_found_in_those_frames_only(n_away):
         [0.0] * 10 + [0.1] * 2 + [0.0] * 10,  # 0.1 m in 1/30 s: 90 m/s^2
     ],
 )
-def test_what_is_no_short_jump(places):
+def test_short_jumps_exclude_other_movements(places):
     assert not find_transient_jumps(path_along(*places), 30.0).any()
 
 
@@ -59,7 +59,7 @@ def test_the_shortest_takes_have_no_jumps(n_frames):
     assert not find_transient_jumps(path_along(*np.zeros(n_frames)), 30.0).any()
 
 
-def test_frames_that_are_not_seen_are_no_jumps():
+def test_missing_frames_are_no_jumps():
     path = path_along(*np.zeros(20))
     path[8:10] = np.nan
 
@@ -80,7 +80,7 @@ def thrown(take, name, frames, by=(0.4, 0.0, 0.0)):
     return take.with_tracks(take.tracks.with_positions(positions))
 
 
-def test_one_bad_frame_costs_others_little_trust(walk):
+def test_wrong_frame_hardly_lowers_reliability_of_others(walk):
     before = measure_reliability(walk).combined
     after = measure_reliability(thrown(walk, "WristLeft", 45)).combined
 
@@ -92,14 +92,14 @@ def test_one_bad_frame_costs_others_little_trust(walk):
     assert np.abs(after - before)[:, np.arange(walk.n_joints) != wrist].max() < 0.1
 
 
-def test_a_live_system_doubts_it_whether_or_not_it_will_come_back(walk):
+def test_causal_reliability_is_low_whether_or_not_the_joint_returns(walk):
     wrist = walk.names.index("WristLeft")
     for frames in (slice(45, 46), slice(45, 55)):
         found = measure_reliability(thrown(walk, "WristLeft", frames), settings=CAUSAL)
         assert 0.0 < found.combined[45, wrist] < 0.5
 
 
-def test_frames_beside_a_bad_one_stay_where_they_were(walk):
+def test_frames_next_to_a_wrong_one_stay_unchanged(walk):
     wrist = walk.names.index("WristLeft")
     before = reconstruct(walk).tracks.positions[:, wrist]
     after = reconstruct(thrown(walk, "WristLeft", 45)).tracks.positions[:, wrist]
@@ -110,7 +110,7 @@ def test_frames_beside_a_bad_one_stay_where_they_were(walk):
 
 
 @pytest.mark.parametrize("frame_rate", [30.0, 20.0, 15.0, 12.0, 10.0])
-def test_a_thrown_wrist_is_doubted_and_a_sound_one_is_not_at_any_rate(recordings, frame_rate):
+def test_transient_wrist_jump_is_unreliable_at_any_rate(recordings, frame_rate):
     take = read_recording(recordings / "kinect" / "kimore" / "JointPositionExercise1.csv")
     frames = np.round(np.arange(0.0, 199.0, 30.0 / frame_rate)).astype(int)
     tracks = motion.Tracks(take.names, take.tracks.positions[frames], frame_rate)

@@ -53,7 +53,7 @@ def exchanged(take, parts, frames):
 
 @pytest.mark.parametrize("n_frames", [1, 5, 10])
 @pytest.mark.parametrize("parts", [ARMS, ("Shoulder", *ARMS), LEGS, ALL])
-def test_what_was_exchanged_comes_back_bit_by_bit(walk, parts, n_frames):
+def test_swapped_joints_are_restored_bit_for_bit(walk, parts, n_frames):
     spoilt = exchanged(walk, parts, slice(40, 40 + n_frames))
     assert np.abs(spoilt.tracks.positions - walk.tracks.positions).max() > 0.1
 
@@ -71,14 +71,14 @@ def test_the_first_and_the_last_frames_come_back_too(walk, frames):
     assert_array_equal(found.tracks.positions, walk.tracks.positions)
 
 
-def test_several_exchanges_soon_after_each_other_come_back(walk):
+def test_several_adjacent_swaps_are_corrected(walk):
     spoilt = exchanged(walk, ARMS, [20, 21, 25, 40, 41, 42, 43])
     spoilt = exchanged(spoilt, LEGS, [24, 25, 26])
 
     assert_array_equal(fix_left_right_swaps(spoilt).tracks.positions, walk.tracks.positions)
 
 
-def test_joints_that_are_lost_at_the_exchange_do_not_hide_it(walk):
+def test_joints_missing_at_the_swap_do_not_hide_it(walk):
     gone = walk.tracks.positions.copy()
     gone[38:42, walk.names.index("WristLeft")] = np.nan
     blank = JointRecording(walk.tracks.with_positions(gone), None, walk.sensor)
@@ -87,17 +87,17 @@ def test_joints_that_are_lost_at_the_exchange_do_not_hide_it(walk):
     assert_array_equal(fix_left_right_swaps(spoilt).tracks.positions, gone)
 
 
-def test_a_sound_take_is_returned_as_it_is(walk):
+def test_take_without_swaps_is_returned_unchanged(walk):
     assert fix_left_right_swaps(walk) is walk
 
 
-def test_sides_that_stay_exchanged_are_left_alone(walk):
+def test_permanently_swapped_sides_stay_unchanged(walk):
     spoilt = exchanged(walk, ALL, slice(45, None))
 
     assert fix_left_right_swaps(spoilt) is spoilt
 
 
-def test_hands_that_cross_in_one_frame_are_no_exchange(walk):
+def test_hands_crossing_in_one_frame_are_no_swap(walk):
     crossing = walk.tracks.positions.copy()
     hands = [[walk.names.index(f"{part}{side}") for part in ("Wrist", "Hand")]
              for side in ("Left", "Right")]  # fmt: skip
@@ -118,7 +118,7 @@ def test_the_input_is_not_modified(walk):
 
 
 @pytest.mark.parametrize("folder", ["irds", "kimore", "laban"])
-def test_sound_takes_of_a_kinect_have_no_exchanges(recordings, folder):
+def test_intact_kinect_takes_have_no_swaps(recordings, folder):
     files = [path for path in (recordings / "kinect" / folder).iterdir() if path.is_file()]
     for path in sorted(files)[:12]:
         take = read_recording(path)
@@ -127,7 +127,7 @@ def test_sound_takes_of_a_kinect_have_no_exchanges(recordings, folder):
 
 @pytest.mark.parametrize("parts", [("Elbow", "Wrist", "Hand", "HandTip", "Thumb"), ALL])
 @pytest.mark.parametrize("n_frames", [1, 5, 10])
-def test_exchanged_sides_of_a_real_take_cost_nothing(recordings, parts, n_frames):
+def test_swapped_sides_of_a_real_take_are_corrected(recordings, parts, n_frames):
     take = read_recording(recordings / "kinect" / "irds" / "215_18_5_3_1_stand.txt")
     if parts is ALL:
         parts = (*ALL, "HandTip", "Thumb")

@@ -30,21 +30,21 @@ def place(role: str) -> int:
     return POSTURE_JOINTS.index(role)
 
 
-def test_postures_that_are_there_already_change_nothing(walk):
+def test_matching_postures_change_nothing(walk):
     result = fit_motion_to_postures(walk, motion_postures(walk))
 
     assert_allclose(result.rotations, walk.rotations, atol=1e-9)
     assert_allclose(result.root_positions, walk.root_positions, atol=1e-12)
 
 
-def test_nan_means_anywhere(walk):
+def test_nan_means_no_target(walk):
     postures = np.full((walk.n_frames, 20, 3), np.nan)
 
     assert_allclose(fit_motion_to_postures(walk, postures).rotations, walk.rotations, atol=1e-9)
 
 
 @given(st.floats(-3.0, 3.0), st.tuples(*[st.floats(-2.0, 2.0)] * 3))
-def test_a_body_that_is_turned_and_moved_is_turned_and_moved(angle, shift):
+def test_rotation_and_displacement_of_the_target_are_followed(angle, shift):
     walk = walking_gait(GaitSettings(duration=0.5, frame_rate=20.0))
     wanted = turned(motion_postures(walk), np.full(walk.n_frames, angle)) + np.array(shift)
 

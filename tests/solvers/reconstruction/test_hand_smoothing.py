@@ -21,7 +21,7 @@ def seen_at(degrees: np.ndarray) -> np.ndarray:
 
 
 @pytest.mark.parametrize("rate", [15.0, 30.0, 120.0])
-def test_a_twist_that_jumps_by_almost_a_turn_is_led_over(rate):
+def test_twist_jump_of_almost_a_turn_is_interpolated(rate):
     degrees = np.where(np.arange(60) < 30, -87.0, 87.0)
 
     turns = twist_to_normal(STILL, UP, ACROSS, seen_at(degrees), np.ones(60), rate)
@@ -33,7 +33,7 @@ def test_a_twist_that_jumps_by_almost_a_turn_is_led_over(rate):
     assert np.degrees(np.arccos(shown[-1] @ seen_at(degrees)[-1])) < 10.0
 
 
-def test_a_twist_that_goes_steadily_is_followed():
+def test_constant_twist_rate_is_followed():
     degrees = np.linspace(-60.0, 60.0, 60)
 
     turns = twist_to_normal(STILL, UP, ACROSS, seen_at(degrees), np.ones(60), RATE)
@@ -46,7 +46,7 @@ def test_a_twist_that_goes_steadily_is_followed():
 @pytest.mark.parametrize(
     "wrong", [(0.0, 0.015, 0.0), (0.02, 0.0, -0.07)], ids=["too short", "folded back"]
 )
-def test_a_palm_that_cannot_be_is_not_followed(wrong):
+def test_impossible_palm_is_ignored(wrong):
     seen = np.tile((0.0, 0.0, 0.08), (60, 1))
     seen[30:34] = wrong
 
