@@ -45,7 +45,7 @@ def fit_motion_to_postures(
     Parameters
     ----------
     motion : Motion
-    postures : shape (n_frames, 20, 3), metres
+    postures : shape (n_frames, 20, 3), meters
         Target positions of `POSTURE_JOINTS`; NaN: no target.
     humanoid_map : HumanoidMap, optional
         Found by `find_humanoid_map` where it is not given.

@@ -27,10 +27,10 @@ class BodyPostures:
 
     Attributes
     ----------
-    positions : float32, shape (n_postures, 20, 3), metres
+    positions : float32, shape (n_postures, 20, 3), meters
         Relative to the hips.
-    speeds : float32, shape (n_postures, 20, 3), metres per second
-    lengths : shape (20,), metres
+    speeds : float32, shape (n_postures, 20, 3), meters per second
+    lengths : shape (20,), meters
     twists : complex64, shape (n_postures, 4), optional
         Of upper arms and thighs (`LimbTwists.vectors`).
     """
@@ -49,7 +49,7 @@ def build_body_postures(
     Parameters
     ----------
     directions, changes : shape (n_postures, 20, 3)
-    lengths : shape (20,), metres
+    lengths : shape (20,), meters
     corrections : shape (20, 3, 3), optional
         Correction of each bone's direction, expressed in its frame (`bone_frames`).
     """
@@ -91,11 +91,11 @@ def bone_axis_corrections(
 
     Parameters
     ----------
-    observed : shape (n_frames, 20, 3), metres
+    observed : shape (n_frames, 20, 3), meters
     trust : shape (n_frames, 20)
     directions : shape (n_frames, 20, 3)
         Directions of the library pose that matches each observed pose.
-    lengths : shape (20,), metres
+    lengths : shape (20,), meters
 
     Returns
     -------

@@ -106,7 +106,7 @@ def rotations_from_flexion(
     limb : Limb
     skeleton : Skeleton
         In a T-pose.
-    positions : shape (n_frames, n_joints, 3), metres
+    positions : shape (n_frames, n_joints, 3), meters
     reliability : shape (n_frames, n_joints), 0 to 1
     frame_rate : float, hertz
     hinges : HingeAxes

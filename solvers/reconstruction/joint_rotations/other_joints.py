@@ -61,10 +61,10 @@ def positions_from_postures(
     Parameters
     ----------
     names : sequence of str
-    tracked : shape (n_frames, n_joints, 3), metres
+    tracked : shape (n_frames, n_joints, 3), meters
         NaN: missing.
     reliability : shape (n_frames, n_joints)
-    before, after : shape (n_frames, 20, 3), metres
+    before, after : shape (n_frames, 20, 3), meters
         Posture joints as observed, and after they were moved.
     """
     posture_joints = {

@@ -39,7 +39,7 @@ def pelvis_offsets(
 
     Parameters
     ----------
-    positions, reached : shape (n_frames, n_joints, 3), metres
+    positions, reached : shape (n_frames, n_joints, 3), meters
         Observed joints, and joints of the aimed bones.
     reliability : shape (n_frames, n_joints), 0 to 1
     legs : sequence of Limb
@@ -75,7 +75,7 @@ def reach_ankles(motion: Motion, positions: Array, legs: Mapping[int, Limb]) -> 
     ----------
     motion : Motion
         NaN where unknown; such frames stay unchanged.
-    positions : shape (n_frames, n_joints, 3), metres
+    positions : shape (n_frames, n_joints, 3), meters
     legs : mapping of the upper joint to its limb
     """
     for leg in legs.values():

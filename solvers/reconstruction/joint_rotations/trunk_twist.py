@@ -80,7 +80,7 @@ def untwisted_hinges(postures: Array) -> tuple[Array, Array]:
 
     Parameters
     ----------
-    postures : shape (n_frames, 20, 3), metres
+    postures : shape (n_frames, 20, 3), meters
         At any position and heading; NaN: unknown.
 
     Returns
@@ -125,7 +125,7 @@ def hinges_from_twists(postures: Array, twists: LimbTwists) -> dict[str, HingeAx
 
     Parameters
     ----------
-    postures : shape (n_frames, 20, 3), metres
+    postures : shape (n_frames, 20, 3), meters
         In the world.
     twists : LimbTwists
     """
@@ -155,9 +155,9 @@ def mean_twists(
     Parameters
     ----------
     twists : shape (n_frames, n_neighbours, 4)
-    postures : shape (n_frames, 20, 3), metres
+    postures : shape (n_frames, 20, 3), meters
         Synthesized poses.
-    neighbours : shape (n_frames, n_neighbours, 60), metres
+    neighbours : shape (n_frames, n_neighbours, 60), meters
     reliability : shape (n_frames, 20)
 
     Returns

@@ -20,11 +20,11 @@ def blend_short_gaps(
 
     Parameters
     ----------
-    tracked : shape (n_frames, n_joints, 3), metres
+    tracked : shape (n_frames, n_joints, 3), meters
         Tracked positions.
     reliable : shape (n_frames, n_joints)
         Reliable observations; false where a position is NaN.
-    rebuilt : shape (n_frames, n_joints, 3), metres
+    rebuilt : shape (n_frames, n_joints, 3), meters
         Positions from library poses.
     frame_rate : float, hertz
 

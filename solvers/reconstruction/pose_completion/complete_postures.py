@@ -90,7 +90,7 @@ def complete_postures(
     trust : shape (n_frames, 20)
         0 where a joint is missing.
     frame_rate : float, hertz
-    lengths : shape (20,), metres
+    lengths : shape (20,), meters
     library : PostureLibrary
     settings : PostureSettings
     progress : Progress

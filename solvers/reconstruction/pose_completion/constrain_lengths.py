@@ -23,8 +23,8 @@ def constrain_lengths(
 
     Parameters
     ----------
-    postures : shape (n_frames, 20, 3), metres
-    lengths : shape (20,), metres
+    postures : shape (n_frames, 20, 3), meters
+    lengths : shape (20,), meters
     reliability : shape (n_frames, 20), 0 to 1
         Reliability of the observation of each joint.
     confidence : shape (n_frames, 20), 0 to 1

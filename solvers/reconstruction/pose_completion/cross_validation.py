@@ -27,9 +27,9 @@ class SynthesisErrors(NamedTuple):
 
     Attributes
     ----------
-    offset : shape (20, 3), metres
+    offset : shape (20, 3), meters
         Constant part of observed minus synthesized positions.
-    size : shape (20,), metres
+    size : shape (20,), meters
         Root mean square of the remainder, per coordinate.
     """
 
@@ -44,7 +44,7 @@ def cross_validate_limbs(
 
     Parameters
     ----------
-    postures : shape (n_frames, 20, 3), metres
+    postures : shape (n_frames, 20, 3), meters
     reliability : shape (n_frames, 20)
     synthesize : Synthesis
     """

@@ -47,12 +47,12 @@ def smooth_residuals(
 
     Parameters
     ----------
-    observed : shape (n_frames, n_joints, 3), metres
+    observed : shape (n_frames, n_joints, 3), meters
         NaN: missing.
-    deviation : shape (n_frames, n_joints), metres
+    deviation : shape (n_frames, n_joints), meters
         Standard deviation of the observations; infinite for missing joints.
     dt : float, seconds
-    size : shape (n_joints,), metres
+    size : shape (n_joints,), meters
         Standard deviation of the process.
     memory : float, seconds
         Time constant of the decay.
@@ -81,7 +81,7 @@ def filter_residuals(
 
     Parameters
     ----------
-    synthesised : shape (n_frames, n_joints, 3), metres
+    synthesised : shape (n_frames, n_joints, 3), meters
     seen, deviation, dt, size, memory
         As in `smooth_residuals`; `observed` holds positions, not differences.
     """

@@ -49,7 +49,7 @@ def read_clip_twists(motion: Motion, postures: Array) -> ClipTwists:
     Parameters
     ----------
     motion : Motion
-    postures : shape (n_frames, 20, 3), metres
+    postures : shape (n_frames, 20, 3), meters
         Its `motion_postures`.
     """
     humanoid = find_humanoid_map(motion.skeleton)

@@ -25,9 +25,9 @@ class PostureQuery(NamedTuple):
 
     Attributes
     ----------
-    postures : shape (n_frames, 20, 3), metres
+    postures : shape (n_frames, 20, 3), meters
         NaN: missing.
-    speeds : shape (n_frames, 20, 3), metres per second
+    speeds : shape (n_frames, 20, 3), meters per second
     trust : shape (n_frames, 20)
     pace : float, seconds
         Time that converts velocities to distances; 0: only the pose counts, as in
@@ -122,7 +122,7 @@ def nearest_postures(
     -------
     indices : shape (n_frames, n_neighbours)
         Into the library, the nearest first; fewer where the library has fewer.
-    distances : shape (n_frames, n_neighbours), square metres
+    distances : shape (n_frames, n_neighbours), square meters
     """
     n_neighbours = min(n_neighbours, len(index.order))
     n_frames = len(query.postures)

@@ -26,7 +26,7 @@ def subsample_postures(
     vectors : shape (n_postures, n * 20, 3)
         Directions of bones, and their changes times `PACE_S`.
     n_kept : int
-    spacing : float, metres
+    spacing : float, meters
         Root mean square distance between the joints of two poses of an adult, with velocities
         as further coordinates.
     progress : Progress

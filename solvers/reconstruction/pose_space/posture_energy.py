@@ -27,12 +27,12 @@ class EnergyTargets:
 
     Attributes
     ----------
-    observed : shape (n_frames, 20, 3), metres
+    observed : shape (n_frames, 20, 3), meters
         NaN: not tracked.
     trust : shape (n_frames, 20)
-    neighbours : shape (n_frames, n_neighbours, 60), metres
-    lengths : shape (20,), metres
-    expected : shape (n_frames, 20, 3), metres, or None
+    neighbours : shape (n_frames, n_neighbours, 60), meters
+    lengths : shape (20,), meters
+    expected : shape (n_frames, 20, 3), meters, or None
         Positions by linear extrapolation; NaN where unknown.
     weights : EnergyWeights
     """
@@ -60,7 +60,7 @@ def posture_energy(postures: Array, targets: EnergyTargets) -> Array:
 
     Parameters
     ----------
-    postures : shape (n_frames, 20, 3) or (n_frames, n_samples, 20, 3), metres
+    postures : shape (n_frames, 20, 3) or (n_frames, n_samples, 20, 3), meters
     targets : EnergyTargets
 
     Returns

@@ -19,12 +19,12 @@ class PostureSpaces:
 
     Attributes
     ----------
-    means : shape (n_frames, 60), metres
+    means : shape (n_frames, 60), meters
     axes : shape (n_frames, 60, n_dimensions)
         Orthonormal, the strongest first; zero beyond the rank of the neighbors.
-    spreads : shape (n_frames, n_dimensions), square metres
+    spreads : shape (n_frames, n_dimensions), square meters
         Variance of the neighbors along each axis.
-    neighbours : shape (n_frames, n_neighbours, 60), metres
+    neighbours : shape (n_frames, n_neighbours, 60), meters
     """
 
     means: Array
@@ -55,7 +55,7 @@ def local_pca(neighbours: Array, n_dimensions: int = 20) -> PostureSpaces:
 
     Parameters
     ----------
-    neighbours : shape (n_frames, n_neighbours, 20, 3), metres
+    neighbours : shape (n_frames, n_neighbours, 20, 3), meters
     n_dimensions : int
 
     References

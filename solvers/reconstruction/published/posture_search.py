@@ -57,7 +57,7 @@ def search_sequentially(
 
     Returns
     -------
-    postures : shape (n_frames, 20, 3), metres
+    postures : shape (n_frames, 20, 3), meters
     energies : shape (n_frames,)
     """
 

@@ -23,12 +23,12 @@ def choose_sequentially(
     spaces : PostureSpaces
     targets : EnergyTargets
     choose : Chooser
-    before : shape (0 to 2, 20, 3), metres
+    before : shape (0 to 2, 20, 3), meters
         The last poses before these frames.
 
     Returns
     -------
-    postures : shape (n_frames, 20, 3), metres
+    postures : shape (n_frames, 20, 3), meters
     energies : shape (n_frames,)
     """
     past = list(np.zeros((0, *targets.observed.shape[1:])) if before is None else before)

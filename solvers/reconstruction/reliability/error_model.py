@@ -90,8 +90,8 @@ def measure_error_indicators(
 
     Parameters
     ----------
-    positions : shape (n_frames, n_joints, 3), metres
-    length_errors : shape (n_frames, n_joints), metres
+    positions : shape (n_frames, n_joints, 3), meters
+    length_errors : shape (n_frames, n_joints), meters
         Length error of the segment above each joint; NaN where unknown.
     parents : shape (n_joints,)
     frame_rate : float, hertz

@@ -35,7 +35,7 @@ def reference_lengths(lengths: Array, postures: Flags, reliability: Array) -> Ar
 
     Parameters
     ----------
-    lengths : shape (n_frames, n_joints), metres
+    lengths : shape (n_frames, n_joints), meters
     postures : shape (n_frames,)
         Frames with a reference pose.
     reliability : shape (n_frames, n_joints)
@@ -62,7 +62,7 @@ def find_reference_postures(names: Sequence[str], positions: Array, tracked: Fla
     Parameters
     ----------
     names : of the joints
-    positions : shape (n_frames, n_joints, 3), metres
+    positions : shape (n_frames, n_joints, 3), meters
     tracked : shape (n_frames, n_joints)
     """
     roles = joints_of_names(names)

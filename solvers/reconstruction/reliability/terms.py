@@ -25,7 +25,7 @@ def behaviour_term(positions: Array, frame_rate: float, settings: ReliabilitySet
 
     Parameters
     ----------
-    positions : shape (n_frames, n_joints, 3), metres
+    positions : shape (n_frames, n_joints, 3), meters
     frame_rate : float, hertz
     settings : ReliabilitySettings
     """
@@ -60,9 +60,9 @@ def kinematics_term(lengths: Array, reference: Array, parents: NDArray[np.intp])
 
     Parameters
     ----------
-    lengths : shape (n_frames, n_joints), metres
+    lengths : shape (n_frames, n_joints), meters
         Of the segment from its parent to each joint; NaN where there is none or it is missing.
-    reference : shape (n_joints,), metres
+    reference : shape (n_joints,), meters
         Expected lengths; NaN where unknown.
     parents : shape (n_joints,)
         -1 for roots.

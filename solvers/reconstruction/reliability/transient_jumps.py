@@ -31,7 +31,7 @@ def find_transient_jumps(positions: Array, frame_rate: float) -> Flags:
 
     Parameters
     ----------
-    positions : shape (n_frames, n_joints, 3), metres
+    positions : shape (n_frames, n_joints, 3), meters
     frame_rate : float, hertz
     """
     away = np.zeros(positions.shape[:2], bool)

@@ -48,9 +48,9 @@ def chance_within(
 
     Parameters
     ----------
-    variances : any shape, square metres for each of three axes; infinite: chance 0
+    variances : any shape, square meters for each of three axes; infinite: chance 0
         Of one take.
-    distance : float, metres
+    distance : float, meters
     calibration : Calibration
     """
     shift, slope, spread = calibration

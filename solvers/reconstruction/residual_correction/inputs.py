@@ -39,7 +39,7 @@ class SmoothedPostures:
 
     Attributes
     ----------
-    positions : shape (n_frames, 20, 3), metres, world
+    positions : shape (n_frames, 20, 3), meters, world
         Smoothed and without gaps; joints that are never observed are NaN.
     normalised : Normalised
         The same without heading and position.

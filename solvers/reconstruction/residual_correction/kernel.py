@@ -28,7 +28,7 @@ MAX_ITERATIONS = 40
 
 @dataclass(frozen=True)
 class Kernel:
-    """Hyper-parameters of one joint: lengths in metres of features, variances in square metres.
+    """Hyper-parameters of one joint: lengths in meters of features, variances in square meters.
 
     Attributes
     ----------
@@ -85,7 +85,7 @@ def learn_kernel(
     Parameters
     ----------
     features : local and whole, each of shape (n, n_features)
-    errors : shape (n, 3), metres; axes share the hyper-parameters
+    errors : shape (n, 3), meters; axes share the hyper-parameters
     takes, actors : shape (n,), int
     simple : bool
         As published: only k1 and noise.

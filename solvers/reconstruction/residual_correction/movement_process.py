@@ -86,14 +86,14 @@ class MovementProcess:
     ----------
     joints : shape (n,), int
         Which of the 20 joints are used and predicted.
-    centre : shape (3 n,), metres
+    centre : shape (3 n,), meters
         The mean pose.
     axes : shape (3 n, n_components)
         Principal components of poses.
     points : float32, shape (n_points, 5, n_components)
         Examples as `project` gives them.
     weights : float32, shape (n_points, 3 n)
-    mean : shape (3 n,), metres
+    mean : shape (3 n,), meters
     mirrored : shape (), bool
         Whether each point also represents its mirror image.
     """
@@ -118,14 +118,14 @@ class MovementProcess:
 
         Parameters
         ----------
-        features : shape (n_frames, 20, 3), metres
+        features : shape (n_frames, 20, 3), meters
             Smoothed poses of mean body size, without gaps.
         frame_rate : float, hertz
         frames : shape (n,), int
 
         Returns
         -------
-        offsets : shape (n, 20, 3), metres; 0 for joints without prediction
+        offsets : shape (n, 20, 3), meters; 0 for joints without prediction
         nearness : shape (n,), 0 to 1
         """
         parts = movement_parts(features, frame_rate)[:, frames]

@@ -14,9 +14,9 @@ class Prediction:
 
     Attributes
     ----------
-    offsets : shape (n_frames, 20, 3), metres
+    offsets : shape (n_frames, 20, 3), meters
         True minus observed position, relative to the heading; 0 for joints without a model.
-    variances : shape (n_frames, 20), square metres for each axis
+    variances : shape (n_frames, 20), square meters for each axis
         Uncertainty of the shared functions; infinite for joints without a model.
     coverage : shape (n_frames, 20), 0 to 1
         Similarity of the pose to the training data.

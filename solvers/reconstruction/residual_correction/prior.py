@@ -66,7 +66,7 @@ class ResidualPrior:
     ----------
     joints : shape (n,), str
         Which of `POSTURE_JOINTS` were learned.
-    usual : shape (20, 3), metres
+    usual : shape (20, 3), meters
         The mean pose, for joints that a recording lacks.
     components : shape (57, n_components)
         Principal components of the complete pose without the hips.

@@ -64,7 +64,7 @@ def posterior(
     Parameters
     ----------
     bases : local and complete-pose bases from `basis_functions`
-    errors : shape (n, 3), metres
+    errors : shape (n, 3), meters
     takes, actors : shape (n,), int, counted from 0
     kernel : Kernel
     repeats : float

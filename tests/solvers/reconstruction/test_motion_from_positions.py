@@ -50,7 +50,7 @@ def shown(motion: Motion, tracks: Tracks) -> list[str]:
 
 
 def miss(motion: Motion, tracks: Tracks) -> np.ndarray:
-    """How far each tracked joint is from where it was, shape (n_frames, n_joints), metres."""
+    """How far each tracked joint is from where it was, shape (n_frames, n_joints), meters."""
     own = [motion.skeleton.index(name) for name in shown(motion, tracks)]
     theirs = [tracks.names.index(name) for name in shown(motion, tracks)]
     places = forward_kinematics(motion).positions[:, own]

@@ -23,7 +23,7 @@ def take(recordings):
 
 
 def raised(postures: np.ndarray, aside: tuple[float, float]) -> np.ndarray:
-    """The forearm points straight up, but for so many metres."""
+    """The forearm points straight up, but for so many meters."""
     up = postures.copy()
     up[:, WRIST] = up[:, ELBOW] + (*aside, 0.25)
     return up
