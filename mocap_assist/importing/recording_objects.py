@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 
 from ...solvers.errors import InvalidMotionError
 from ...solvers.motion import JointRecording, Motion, Tracks
-from ...solvers.motion.humanoid import with_hips
+from ...solvers.motion.humanoid import fill_missing_hips
 from ...solvers.progress import Progress, unwatched
 from ..actions.armature_build import build_armature
 from ..actions.empties_build import build_empties, write_tracks
@@ -100,7 +100,7 @@ def _never_seen(recording: Recording, in_armature: bool) -> str:
     if isinstance(recording, Motion):
         return ""
     if in_armature and isinstance(recording, JointRecording):
-        whole = with_hips(recording)
+        whole = fill_missing_hips(recording)
         if whole is not recording:
             return f", with hips, never seen, between the legs{_never_seen(whole, True)}"
     tracks = recording.tracks if isinstance(recording, JointRecording) else recording

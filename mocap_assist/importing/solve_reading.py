@@ -17,7 +17,7 @@ from ...solvers.motion import (
     motion_from_points,
     resample,
 )
-from ...solvers.motion.humanoid import with_hips
+from ...solvers.motion.humanoid import fill_missing_hips
 from ...solvers.progress import Progress, unwatched
 from ...solvers.recordings import DepthSettings, is_depth, read_depth, read_tracked
 from ...solvers.recordings.depth_files import USUAL
@@ -150,7 +150,7 @@ def _joined(recording: Recording, armature: bool) -> Motion | Tracks:
     if not isinstance(recording, JointRecording):
         return recording
     if armature and in_one_tree(recording):
-        kept, tracks = hanging(recording), with_hips(recording).tracks
+        kept, tracks = hanging(recording), fill_missing_hips(recording).tracks
         names = tuple(tracks.names[joint] for joint in kept)
         body = Tracks(names, tracks.positions[:, kept], tracks.frame_rate)
         return motion_from_points(body, joint_parents(names))

@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from ...solvers.errors import InvalidMotionError
 from ...solvers.motion import HumanoidMap, Motion, Skeleton, forward_kinematics
-from ...solvers.motion.humanoid import motion_postures, normalise
+from ...solvers.motion.humanoid import normalize_postures, postures_from_motion
 from ...solvers.progress import Progress, unwatched, within
 from ...solvers.retargeting import RetargetSettings, RootMotion, ground_path, retarget
 from ...solvers.rotations import IDENTITY, inverse, multiply, rotate
@@ -112,7 +112,7 @@ def _retarget(
 
 def _started(motion: Motion, roles: HumanoidMap, start: Start) -> Motion:
     """Return the motion turned and shifted as a whole, so that it begins at `start`."""
-    body = normalise(motion_postures(motion, roles), motion.frame_rate)
+    body = normalize_postures(postures_from_motion(motion, roles), motion.frame_rate)
     half = 0.5 * (start.heading - body.headings[0])
     turn = np.array([np.cos(half), 0.0, 0.0, np.sin(half)])
     first = body.places[0] * (1.0, 1.0, 0.0)

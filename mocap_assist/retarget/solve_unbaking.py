@@ -13,7 +13,7 @@ from ...solvers.retargeting import (
     KeyCurve,
     RotationChannels,
     UnbakeSettings,
-    find_judged_points,
+    find_error_points,
     fit_curve,
     reduce_keys,
 )
@@ -204,7 +204,7 @@ def _error(tree: Tree, curves: Sequence[KeyCurve | None], root: KeyCurve) -> flo
         if shape is not None and curve is not None:
             basis = quaternions_from_channels(curve.at(frames), shape.mode)
             rotations[:, joint] = multiply(multiply(shape.axes, basis), inverse(shape.axes))
-    points = find_judged_points(motion.skeleton)
+    points = find_error_points(motion.skeleton)
     played = points.positions(world_poses(motion.skeleton, rotations, root.at(frames)))
     truth = world_poses(motion.skeleton, motion.rotations, motion.root_positions)
     return float(np.linalg.norm(played - points.positions(truth), axis=-1).max())

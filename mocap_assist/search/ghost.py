@@ -3,7 +3,7 @@
 import numpy as np
 from numpy.typing import NDArray
 
-from ...solvers.motion.humanoid import PARENTS, resize, turned
+from ...solvers.motion.humanoid import PARENTS, resize_postures, rotate_about_vertical
 from .solve_finding import Found, Stage
 
 Array = NDArray[np.float64]
@@ -28,8 +28,8 @@ def ghost_lines(stage: Stage, found: Found, query_frame: float) -> Array:
     posture = _posture_at(found, clip_frame(found, query_frame))
     row = int(np.clip(round(query_frame), 0, len(stage.places) - 1))
     heading = np.array([stage.headings[row]])
-    body = resize(posture[None], stage.lengths)
-    joints = turned(body, heading)[0] + stage.places[row]
+    body = resize_postures(posture[None], stage.lengths)
+    joints = rotate_about_vertical(body, heading)[0] + stage.places[row]
     lines = joints[BONES]
     return lines[np.isfinite(lines).all(axis=(1, 2))]
 

@@ -7,7 +7,7 @@ import bpy
 import numpy as np
 
 from ...solvers.errors import InvalidFileError, InvalidMotionError
-from ...solvers.motion.humanoid import motion_postures, normalise
+from ...solvers.motion.humanoid import normalize_postures, postures_from_motion
 from ..actions.armature_read import read_take
 from ..blender.stored_json import stored
 from ..library.catalogs import catalog_file, ensure_catalog
@@ -88,7 +88,7 @@ def _picture(
     """Give the action a preview of its body, if it has one."""
     motion = read_take(armature, scene, source=(action, slot)).parts[0].motion
     try:
-        body = normalise(motion_postures(motion), motion.frame_rate)
+        body = normalize_postures(postures_from_motion(motion), motion.frame_rate)
     except InvalidMotionError:
         return False
     reach = np.nanmax(np.linalg.norm(body.postures, axis=-1))

@@ -8,10 +8,10 @@ from numpy.typing import NDArray
 
 from ...solvers.motion import JointRecording, Motion, Tracks
 from ...solvers.motion.humanoid import (
-    body_lengths,
-    motion_postures,
-    normalise,
+    estimate_bone_lengths,
+    normalize_postures,
     posture_positions,
+    postures_from_motion,
 )
 from ...solvers.progress import Progress, unwatched, within
 from ...solvers.retrieval import (
@@ -134,9 +134,9 @@ def stage_of(query: Recording) -> Stage:
     """
     tracks = query.tracks if isinstance(query, JointRecording) else query
     if isinstance(tracks, Motion):
-        positions = motion_postures(tracks)
+        positions = postures_from_motion(tracks)
     else:
         positions = posture_positions(tracks)
-    body = normalise(positions, tracks.frame_rate)
-    lengths = body_lengths(body.postures)
+    body = normalize_postures(positions, tracks.frame_rate)
+    lengths = estimate_bone_lengths(body.postures)
     return Stage(body.places, np.unwrap(body.headings), lengths, tracks.frame_rate)

@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from ...solvers.denoising import PlantSettings
 from ...solvers.motion import HUMANOID_ROLES, HumanoidMap, Motion, resample
-from ...solvers.motion.humanoid import motion_postures, normalise
+from ...solvers.motion.humanoid import normalize_postures, postures_from_motion
 from ...solvers.pictures import StickFigureSettings, draw_stick_figures, stack_pictures
 from ...solvers.progress import Progress, unwatched, within
 from ...solvers.retargeting import RetargetSettings
@@ -71,11 +71,13 @@ def vary(problem: VaryProblem, *, progress: Progress = unwatched) -> Varied:
         planting=problem.planting,
         progress=within(progress, 0.0, 0.8),
     )
-    first = normalise(motion_postures(problem.examples[0]), problem.examples[0].frame_rate)
+    first = normalize_postures(
+        postures_from_motion(problem.examples[0]), problem.examples[0].frame_rate
+    )
     motions, pictures = [], []
     for place, (motion, is_loop) in enumerate(zip(made.motions, made.loops, strict=True)):
         progress(0.8 + 0.1 * place / len(made.motions), "Drawing")
-        seen = normalise(motion_postures(motion), motion.frame_rate)
+        seen = normalize_postures(postures_from_motion(motion), motion.frame_rate)
         turn = float(first.headings[0] - seen.headings[0])
         there = moved(motion, seen.places[0], turn, first.places[0])
         seen_as = resample_loop if is_loop else resample

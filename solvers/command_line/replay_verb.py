@@ -8,8 +8,8 @@ from collections.abc import Callable, Iterator
 from dataclasses import replace
 
 from ..errors import InvalidMotionError, InvalidSettingError
-from ..motion import JOINTS, JointRecording, Motion, Sensor, Tracks
-from ..motion.humanoid import motion_postures
+from ..motion import SENSOR_JOINTS, JointRecording, Motion, Sensor, Tracks
+from ..motion.humanoid import postures_from_motion
 from ..progress import Progress, within
 from ..recordings import read_tracked
 from ..recordings.live import MOST_JOINTS, PORT, LiveFrame, encode_frame, frames_of
@@ -105,6 +105,6 @@ def _joints(recording: Motion | Tracks | JointRecording) -> JointRecording:
         return recording
     if isinstance(recording, Tracks):
         return JointRecording(recording, None, Sensor.OTHER)
-    names = JOINTS[Sensor.KINECT_V1]
-    tracks = Tracks(names, motion_postures(recording), recording.frame_rate)
+    names = SENSOR_JOINTS[Sensor.KINECT_V1]
+    tracks = Tracks(names, postures_from_motion(recording), recording.frame_rate)
     return JointRecording(tracks, None, Sensor.KINECT_V1)

@@ -7,7 +7,7 @@ from typing import Any
 
 from ..errors import InvalidFileError, InvalidMotionError, InvalidSettingError
 from ..motion import JointRecording, Motion, Tracks, resample
-from ..motion.humanoid import POSTURE_JOINTS, motion_postures
+from ..motion.humanoid import POSTURE_JOINTS, postures_from_motion
 from ..progress import Progress, within
 from ..reconstruction import ResidualPriorSettings, learn_residual_prior
 from ..reconstruction.residual_correction import calibrate_confidence
@@ -93,7 +93,7 @@ def _pairs(
 def _joints(true: Any, path: Path) -> Tracks:
     """Return the joints of a take of the other system."""
     if isinstance(true, Motion):
-        return Tracks(POSTURE_JOINTS, motion_postures(true), true.frame_rate)
+        return Tracks(POSTURE_JOINTS, postures_from_motion(true), true.frame_rate)
     if isinstance(true, JointRecording):
         return true.tracks
     raise InvalidMotionError(

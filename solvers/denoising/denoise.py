@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from ..errors import InvalidMotionError
 from ..motion import JointLimits, Motion, Tracks
-from ..motion.skeletons import find_cuts, is_short, pieces, tell_of_cuts
+from ..motion.skeletons import describe_shots, find_shot_boundaries, is_short_shot, shot_ranges
 from ..progress import Progress, unwatched, within
 from ..settings import Settings, setting
 from .channels import CENTIMETERS, Channels, decode, encode
@@ -128,12 +128,12 @@ def denoise(
         raise InvalidMotionError(
             "Nothing was observed in this take; there is nothing to clean."
         )
-    cuts = find_cuts(recording)
+    cuts = find_shot_boundaries(recording)
     results = []
-    for start, stop in pieces(recording, cuts):
+    for start, stop in shot_ranges(recording, cuts):
         segment = recording.slice(start, stop) if cuts else recording
         step = within(progress, start / recording.n_frames, stop / recording.n_frames)
-        if cuts and is_short(stop - start, recording.frame_rate):
+        if cuts and is_short_shot(stop - start, recording.frame_rate):
             unchanged_settings = replace(settings, strength=0.0)
             results.append(
                 _unchanged(segment)
@@ -269,6 +269,6 @@ def _join_segments(
         np.concatenate([part.confidence for part in results]),
         max(part.iterations for part in results),
         all(part.converged for part in results),
-        f"{longest_segment.prior_used} {tell_of_cuts(recording, cuts)}".strip(),
+        f"{longest_segment.prior_used} {describe_shots(recording, cuts)}".strip(),
         cuts,
     )

@@ -4,7 +4,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..progress import Progress
-from ..signals import hampel, interpolated
+from ..signals import fill_channel_gaps, remove_outliers
 from .channels import Channels
 from .posterior import Estimate
 from .prior import FilterBases, FilterBasesSettings, LagProducts, find_leading_eigenpairs
@@ -72,7 +72,7 @@ def alternate(noisy: Array, patterns: Array) -> tuple[Array, Array, int, bool]:
     """
     observed_mask = np.isfinite(noisy)
     observed = np.where(observed_mask, noisy, 0.0)
-    motion = interpolated(noisy)
+    motion = fill_channel_gaps(noisy)
     weight, cost, converged, iteration = observed_mask.astype(float), np.inf, False, 0
     while iteration < MAX_ITERATIONS and not converged:
         iteration += 1
@@ -148,7 +148,7 @@ def _select_patterns(
         n_clips = int(bases.n_clips)
         message = f"Patterns of {n_clips} example clip{'s' * (n_clips != 1)}."
         return bases.vectors[:, :, columns], bases.mean[columns], message
-    despiked = [interpolated(hampel(take, 4, 3.5)) for take in takes]
+    despiked = [fill_channel_gaps(remove_outliers(take, 4, 3.5)) for take in takes]
     mean = np.concatenate(despiked).mean(axis=0)
     window = min(FilterBasesSettings().n_frames, len(takes[-1]))
     products = LagProducts(len(mean), window)

@@ -6,25 +6,25 @@
 ('CMU 41', 'Anna:', 'Anna:LFWT')
 """
 
-from .keep_rigid import KeptRigid, keep_rigid
+from .keep_rigid import ConstrainedMarkers, constrain_clusters
 from .marker_sets import MarkerSet, find_marker_set
-from .rigid_clusters import Cluster, ClusterSettings, rigid_clusters
+from .rigid_clusters import Cluster, ClusterSettings, find_rigid_clusters
 from .solve_skeleton import SolvedSkeleton, SolveSettings, solve_skeleton
 from .unswap import Swap, Unswapped, UnswapSettings, unswap_markers
 
 __all__ = [
     "Cluster",
     "ClusterSettings",
-    "KeptRigid",
+    "ConstrainedMarkers",
     "MarkerSet",
     "SolveSettings",
     "SolvedSkeleton",
     "Swap",
     "UnswapSettings",
     "Unswapped",
+    "constrain_clusters",
     "find_marker_set",
-    "keep_rigid",
-    "rigid_clusters",
+    "find_rigid_clusters",
     "solve_skeleton",
     "unswap_markers",
 ]

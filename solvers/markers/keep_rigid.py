@@ -18,7 +18,7 @@ OFF_LINE = 0.004
 
 
 @dataclass(frozen=True, eq=False)
-class KeptRigid:
+class ConstrainedMarkers:
     """A take whose clusters are rigid."""
 
     tracks: Tracks
@@ -28,12 +28,12 @@ class KeptRigid:
     """How far each marker was moved, same shape, metres; 0 where it was not."""
 
 
-def keep_rigid(
+def constrain_clusters(
     tracks: Tracks,
     clusters: Sequence[Cluster],
     *,
     progress: Progress = unwatched,
-) -> KeptRigid:
+) -> ConstrainedMarkers:
     """Move the markers of each cluster onto the rigid shape that fits them best.
 
     Where three or more of a cluster are seen, all of them lie on the shape afterwards, the lost
@@ -70,7 +70,7 @@ def keep_rigid(
         progress(1.0, "Keeping clusters rigid")
     filled = tracks.with_positions(positions).visible & ~tracks.visible
     step = np.nan_to_num(np.linalg.norm(positions - tracks.positions, axis=-1))
-    return KeptRigid(tracks.with_positions(positions), filled, step)
+    return ConstrainedMarkers(tracks.with_positions(positions), filled, step)
 
 
 def _held(template: Array, places: Array) -> Array:

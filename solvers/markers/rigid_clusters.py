@@ -54,7 +54,7 @@ class Cluster:
     """Largest robust standard deviation of a distance between two of them, metres."""
 
 
-def rigid_clusters(
+def find_rigid_clusters(
     tracks: Tracks,
     *,
     settings: ClusterSettings = ClusterSettings(),

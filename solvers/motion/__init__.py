@@ -29,7 +29,7 @@ from .humanoid import (
     write_humanoid_map,
 )
 from .skeletons import (
-    JOINTS,
+    SENSOR_JOINTS,
     Alignment,
     JointLimits,
     JointRecording,
@@ -53,7 +53,7 @@ from .skeletons import (
 
 __all__ = [
     "HUMANOID_ROLES",
-    "JOINTS",
+    "SENSOR_JOINTS",
     "Alignment",
     "ContactSettings",
     "HumanoidMap",

@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from ..errors import InvalidMotionError
 from ..motion import HumanoidMap, Motion, Skeleton, leg_length, t_pose_alignment
-from ..motion.humanoid import HUMAN_LEG
+from ..motion.humanoid import HUMAN_LEG_LENGTH_M
 from ..rotations import IDENTITY, angle_between, multiply, rotate
 from .tables import (
     DEFAULT_STRENGTH_NM,
@@ -119,7 +119,7 @@ def build_physics_body(motion: Motion, humanoid: HumanoidMap) -> PhysicsBody:
     joints = {role: j for role, j in humanoid.indices(skeleton).items() if role in ROLES}
     if not set(joints) >= LEG_ROLES:
         return _body_from_bones(motion)
-    size = leg_length(skeleton, humanoid) / HUMAN_LEG
+    size = leg_length(skeleton, humanoid) / HUMAN_LEG_LENGTH_M
     moving, frames = _find_moving_joints(motion, set(joints.values()))
     roles = {joint: role for role, joint in joints.items()}
     masses = dict.fromkeys(moving, 0.0)
@@ -142,7 +142,7 @@ def check_size(body: PhysicsBody, frame_rate: float) -> None:
     InvalidMotionError
         The body is implausibly large or small, or the frame rate is too low.
     """
-    leg = HUMAN_LEG * body.size
+    leg = HUMAN_LEG_LENGTH_M * body.size
     if not MIN_SIZE <= body.size <= MAX_SIZE:
         raise InvalidMotionError(
             f"A leg of {leg:.3g} m is no plausible size; set the scale of the recording."
@@ -167,7 +167,7 @@ def _body_from_bones(motion: Motion) -> PhysicsBody:
         for joint in moving
     ]
     extent = np.ptp(skeleton.rest_positions, axis=0).max() if skeleton.n_joints > 1 else 0.0
-    size = float(extent) / (2 * HUMAN_LEG) or 1.0
+    size = float(extent) / (2 * HUMAN_LEG_LENGTH_M) or 1.0
     lengths = np.linalg.norm(ends, axis=1) + 0.1 * size
     masses = HUMAN_MASS_KG * size**3 * lengths / lengths.sum()
     capsules = [

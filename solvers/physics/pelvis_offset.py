@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 from scipy.linalg import solveh_banded
 
 from ..motion import WorldPoses
-from ..signals import FADES
+from ..signals import FADE_TIME_CONSTANTS
 
 Array = NDArray[np.float64]
 PELVIS_WEIGHT = 10.0
@@ -58,7 +58,9 @@ def solve_pelvis_offset(
     n_frames = len(poses.positions)
     bands = np.zeros((N_BANDS + 1, 3 * n_frames))
     right_side = np.zeros((n_frames, 3))
-    _add_curvature_penalty(bands, PELVIS_WEIGHT * (SMOOTHING_S / FADES * frame_rate) ** 4)
+    _add_curvature_penalty(
+        bands, PELVIS_WEIGHT * (SMOOTHING_S / FADE_TIME_CONSTANTS * frame_rate) ** 4
+    )
     bands[N_BANDS] += PELVIS_WEIGHT
     for leg in legs:
         hip, knee, ankle = (poses.positions[:, joint] for joint in leg.chain)

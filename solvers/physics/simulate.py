@@ -21,7 +21,7 @@ from .simulate_segment import (
     find_segments,
     simulate_segment,
 )
-from .target import blend_motions, fade_around, fill_gaps
+from .target import blend_motions, fade_around, fill_motion_gaps
 
 Array = NDArray[np.float64]
 Flags = NDArray[np.bool_]
@@ -143,7 +143,7 @@ def simulate(
     """
     engine = load_engine()
     humanoid = humanoid_map or find_humanoid_map(motion.skeleton)
-    complete = fill_gaps(motion)
+    complete = fill_motion_gaps(motion)
     bare = build_physics_body(complete, humanoid)
     check_size(bare, motion.frame_rate)
     foot_height = find_ground(complete, humanoid, bare.size)
@@ -198,9 +198,8 @@ def apply_strength(motion: Motion, simulated: Simulated, strength: float) -> Mot
     if strength in {0.0, 1.0}:
         return (simulated.motion if strength else motion).with_poses()
     weights = np.full(motion.n_frames, strength)
-    return blend_motions(
-        fill_gaps(motion), fill_gaps(simulated.motion), range(motion.n_joints), weights
-    )
+    target = fill_motion_gaps(simulated.motion)
+    return blend_motions(fill_motion_gaps(motion), target, range(motion.n_joints), weights)
 
 
 def _assemble_result(
@@ -238,11 +237,11 @@ def _assemble_result(
         support=np.concatenate([segment.support for segment in segments]),
         ground=ground,
         penetration_before=measure_penetration(body, complete, ground),
-        penetration_after=measure_penetration(body, fill_gaps(result), ground),
+        penetration_after=measure_penetration(body, fill_motion_gaps(result), ground),
         slide_before=measure_foot_slide(body, complete, contacts),
-        slide_after=measure_foot_slide(body, fill_gaps(result), contacts),
+        slide_after=measure_foot_slide(body, fill_motion_gaps(result), contacts),
         smoothing=smoothing,
-        distance=mean_distance(complete, fill_gaps(result), body.joints),
+        distance=mean_distance(complete, fill_motion_gaps(result), body.joints),
         message=describe_result(
             followed, given_up, smoothing if smoothing > settings.smoothing else 0.0
         )

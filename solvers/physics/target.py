@@ -11,7 +11,7 @@ from scipy.ndimage import distance_transform_edt, gaussian_filter1d
 from ..errors import InvalidMotionError
 from ..motion import Motion
 from ..rotations import inverse, multiply, normalize, slerp, unroll
-from ..signals import bridged, bridged_rotations
+from ..signals import fill_gaps, fill_rotation_gaps
 
 Array = NDArray[np.float64]
 SPLINE_VARIANCE = 1.0 / 3.0
@@ -156,7 +156,7 @@ def fade_around(frames: NDArray[np.bool_], ease: float) -> Array:
     return np.asarray(np.minimum(1.0, distances / ease))
 
 
-def fill_gaps(motion: Motion) -> Motion:
+def fill_motion_gaps(motion: Motion) -> Motion:
     """Return the motion without gaps: interpolated across them, constant at the take's ends.
 
     A joint that is never observed stays in its rest pose.
@@ -172,5 +172,5 @@ def fill_gaps(motion: Motion) -> Motion:
         raise InvalidMotionError(
             "The position of the root is never observed, so there is nothing to simulate."
         )
-    rotations = bridged_rotations(motion.rotations)
-    return motion.with_poses(rotations, bridged(motion.root_positions))
+    rotations = fill_rotation_gaps(motion.rotations)
+    return motion.with_poses(rotations, fill_gaps(motion.root_positions))

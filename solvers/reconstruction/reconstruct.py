@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from ..motion import JointRecording, Sensor, Tracks
 from ..progress import Progress, unwatched, within
 from ..settings import Settings, setting
-from ..signals import bridged, steadied
+from ..signals import fill_gaps, smooth_gaussian
 from .joint_rotations import Reconstruction
 from .pose_completion import (
     PostureMethod,
@@ -219,8 +219,8 @@ def _replacement_weights(
         1.0,
     )
     observed = tracks.visible.any(axis=0)
-    smooth = bridged(tracks.positions[:, observed], ahead=ahead)
-    smooth = steadied(smooth, SMOOTHING_S * tracks.frame_rate, ahead=ahead)
+    smooth = fill_gaps(tracks.positions[:, observed], ahead=ahead)
+    smooth = smooth_gaussian(smooth, SMOOTHING_S * tracks.frame_rate, ahead=ahead)
     distance = np.zeros(reliability.shape)
     distance[:, observed] = np.linalg.norm(rebuilt.positions[:, observed] - smooth, axis=-1)
     closeness = 1.0 / (1.0 + (distance / HALF_WEIGHT_M) ** 4)

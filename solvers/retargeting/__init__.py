@@ -11,7 +11,7 @@
 60
 """
 
-from .judged_points import find_judged_points
+from .judged_points import find_error_points
 from .key_curves import KeyCurve, fit_curve
 from .reduce_keys import SparseMotion, UnbakeSettings, load_sparse_motion, reduce_keys
 from .retarget import RetargetSettings, RootMotion, retarget
@@ -26,7 +26,7 @@ __all__ = [
     "RotationChannels",
     "SparseMotion",
     "UnbakeSettings",
-    "find_judged_points",
+    "find_error_points",
     "fit_curve",
     "ground_path",
     "load_sparse_motion",

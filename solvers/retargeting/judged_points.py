@@ -16,7 +16,7 @@ SHORTEST = 0.05
 
 
 @dataclass(frozen=True, eq=False)
-class JudgedPoints:
+class ErrorPoints:
     """Points fixed to joints, which together show every error of every joint.
 
     Attributes
@@ -39,7 +39,7 @@ class JudgedPoints:
         return np.asarray(poses.positions[:, self.carriers] + turned)
 
 
-def find_judged_points(skeleton: Skeleton) -> JudgedPoints:
+def find_error_points(skeleton: Skeleton) -> ErrorPoints:
     """Return all joints, and two points more for each that turns but has no children.
 
     A hand without fingers turns without moving any joint. Two points, ahead of it and aside by
@@ -59,4 +59,4 @@ def find_judged_points(skeleton: Skeleton) -> JudgedPoints:
     chains = tuple(
         np.array([joint, *skeleton.ancestors(joint)][::-1], dtype=np.intp) for joint in carriers
     )
-    return JudgedPoints(carriers, np.array([offset for _, offset in rows]), chains)
+    return ErrorPoints(carriers, np.array([offset for _, offset in rows]), chains)

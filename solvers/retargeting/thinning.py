@@ -9,7 +9,7 @@ from ..motion import Motion, forward_kinematics
 from ..motion.skeletons import world_poses
 from ..progress import Progress
 from ..rotations import IDENTITY
-from .judged_points import find_judged_points
+from .judged_points import find_error_points
 from .key_curves import KeyCurve, fit_curve
 from .rotation_channels import RotationChannels
 
@@ -48,7 +48,7 @@ class Thinning:
         self.channels = channels
         self.tolerance = tolerance
         self.together = together
-        self.points = find_judged_points(motion.skeleton)
+        self.points = find_error_points(motion.skeleton)
         poses = forward_kinematics(motion)
         self.truth = self.points.positions(poses)
         self.joints = poses.positions

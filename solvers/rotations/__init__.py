@@ -1,6 +1,6 @@
 """Unit quaternions (w x y z): conversions, algebra, interpolation and rigid fits."""
 
-from .quaternion_algebra import product, turned
+from .quaternion_algebra import multiply_components, rotate_components
 from .representations import (
     IDENTITY,
     angle_between,
@@ -21,27 +21,27 @@ from .representations import (
     unroll,
     unwrap_euler,
 )
-from .rigid_fit import best_turns
+from .rigid_fit import fit_rotations
 
 __all__ = [
     "IDENTITY",
     "angle_between",
-    "best_turns",
     "euler_from_quaternion",
+    "fit_rotations",
     "inverse",
     "matrix_from_quaternion",
     "mean_rotation",
     "multiply",
+    "multiply_components",
     "normalize",
-    "product",
     "quaternion_from_euler",
     "quaternion_from_matrix",
     "quaternion_from_rotation_vector",
     "rotate",
+    "rotate_components",
     "rotation_between",
     "rotation_vector_from_quaternion",
     "slerp",
-    "turned",
     "twist_about",
     "unroll",
     "unwrap_euler",

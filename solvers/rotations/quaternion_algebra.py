@@ -14,7 +14,7 @@ Array = NDArray[np.float64]
 Components: TypeAlias = Iterable[Array]
 
 
-def product(a: Components, b: Components) -> tuple[Array, Array, Array, Array]:
+def multiply_components(a: Components, b: Components) -> tuple[Array, Array, Array, Array]:
     """Return the rotation that applies `b` first, then `a`."""
     aw, ax, ay, az = a
     bw, bx, by, bz = b
@@ -26,17 +26,17 @@ def product(a: Components, b: Components) -> tuple[Array, Array, Array, Array]:
     )
 
 
-def cross(a: Components, b: Components) -> tuple[Array, Array, Array]:
+def cross_components(a: Components, b: Components) -> tuple[Array, Array, Array]:
     """Return the cross product."""
     ax, ay, az = a
     bx, by, bz = b
     return ay * bz - az * by, az * bx - ax * bz, ax * by - ay * bx
 
 
-def turned(rotation: Components, vector: Components) -> tuple[Array, Array, Array]:
+def rotate_components(rotation: Components, vector: Components) -> tuple[Array, Array, Array]:
     """Return the vector turned by the rotation: v + 2 w (u x v) + 2 u x (u x v)."""
     w, *axis = rotation
-    x, y, z = (2.0 * component for component in cross(axis, vector))
+    x, y, z = (2.0 * component for component in cross_components(axis, vector))
     vx, vy, vz = vector
-    ux, uy, uz = cross(axis, (x, y, z))
+    ux, uy, uz = cross_components(axis, (x, y, z))
     return vx + w * x + ux, vy + w * y + uy, vz + w * z + uz

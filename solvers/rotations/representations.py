@@ -8,7 +8,12 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 from scipy.spatial.transform import Rotation
 
-from .quaternion_algebra import Components, cross, product, turned
+from .quaternion_algebra import (
+    Components,
+    cross_components,
+    multiply_components,
+    rotate_components,
+)
 
 Array = NDArray[np.float64]
 IDENTITY: Array = np.array([1.0, 0.0, 0.0, 0.0])
@@ -27,7 +32,7 @@ def multiply(a: Array, b: Array) -> Array:
     for start in range(0, len(flat), BLOCK):
         block = slice(start, start + BLOCK)
         first, second = (np.ascontiguousarray(x[block].T) for x in (flat_a, flat_b))
-        flat[block] = np.stack(product(first, second), axis=-1)
+        flat[block] = np.stack(multiply_components(first, second), axis=-1)
     return result
 
 
@@ -40,7 +45,7 @@ def rotate(rotations: Array, vectors: ArrayLike) -> Array:
     """Turn vectors, shape (..., 3), by rotations, shape (..., 4)."""
     rotations, vectors = np.asarray(rotations), np.asarray(vectors, dtype=np.float64)
     components = np.moveaxis(rotations, -1, 0), np.moveaxis(vectors, -1, 0)
-    return np.stack(turned(*components), axis=-1)
+    return np.stack(rotate_components(*components), axis=-1)
 
 
 def normalize(rotations: Array) -> Array:
@@ -77,7 +82,7 @@ def rotation_vector_from_quaternion(rotations: Array) -> Array:
 def matrix_from_quaternion(rotations: Array) -> Array:
     """Return rotation matrices, shape (..., 3, 3), whose columns are the turned axes."""
     components = np.ascontiguousarray(np.moveaxis(np.asarray(rotations), -1, 0))
-    columns = [np.stack(turned(components, axis), axis=-1) for axis in np.eye(3)]
+    columns = [np.stack(rotate_components(components, axis), axis=-1) for axis in np.eye(3)]
     return np.stack(columns, axis=-1)
 
 
@@ -112,7 +117,7 @@ def quaternion_from_euler(angles: ArrayLike, order: str) -> Array:
     for axis, half in zip(order, halves, strict=True):
         turn = np.zeros((4, *half.shape))
         turn[0], turn[1 + "XYZ".index(axis)] = np.cos(half), np.sin(half)
-        result = product(result, turn)
+        result = multiply_components(result, turn)
     return np.stack(tuple(result), axis=-1)
 
 
@@ -250,7 +255,7 @@ def twist_about(rotations: Array, axis: ArrayLike) -> Array:
 
 def _cross(a: Array, b: Array) -> Array:
     """`np.cross` of (..., 3) arrays without its overhead: three times faster."""
-    return np.stack(cross(np.moveaxis(a, -1, 0), np.moveaxis(b, -1, 0)), axis=-1)
+    return np.stack(cross_components(np.moveaxis(a, -1, 0), np.moveaxis(b, -1, 0)), axis=-1)
 
 
 def _within_half_turn(angles: Array) -> Array:

@@ -6,11 +6,11 @@ from numpy.typing import NDArray
 from .representations import quaternion_from_matrix
 
 Array = NDArray[np.float64]
-FLAT = 1e-4
+MIN_SINGULAR_RATIO = 1e-4
 """Where all but one singular value are smaller than this part of it, the turn is not told."""
 
 
-def best_turns(shape: Array, seen: Array) -> Array:
+def fit_rotations(shape: Array, seen: Array) -> Array:
     """Return the turns R for which R `shape` is nearest to what was `seen`, frame by frame.
 
     The solution in least squares by singular values (Kabsch 1976,
@@ -34,5 +34,5 @@ def best_turns(shape: Array, seen: Array) -> Array:
     mirrored = np.sign(np.linalg.det(left) * np.linalg.det(right))
     right[:, 2] *= mirrored[:, None]
     turns = quaternion_from_matrix(np.swapaxes(left @ right, 1, 2))
-    told = sizes[:, 1] > FLAT * np.maximum(sizes[:, 0], np.finfo(float).tiny)
+    told = sizes[:, 1] > MIN_SINGULAR_RATIO * np.maximum(sizes[:, 0], np.finfo(float).tiny)
     return np.where(told[:, None], turns, np.nan)

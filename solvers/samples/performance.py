@@ -7,7 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..errors import InvalidSettingError
-from ..motion import JOINTS, JointRecording, Sensor, Tracks
+from ..motion import SENSOR_JOINTS, JointRecording, Sensor, Tracks
 from ..settings import Settings, setting
 
 Array = NDArray[np.float64]
@@ -121,7 +121,7 @@ class Performance:
     def recording(self) -> JointRecording:
         """Return the frames as an evenly sampled recording."""
         rate = (len(self.times) - 1) / (self.times[-1] - self.times[0])
-        names = JOINTS[Sensor.KINECT_V1]
+        names = SENSOR_JOINTS[Sensor.KINECT_V1]
         tracks = Tracks(names, self.positions, rate, self.confidence)
         return JointRecording(tracks, None, Sensor.KINECT_V1)
 
@@ -177,7 +177,7 @@ def perform_gestures(
 
 def _body(keys: Sequence[tuple[float, Position, Position]], times: Array) -> Array:
     """Return joints relative to the hips, shape (n_frames, 20, 3), facing -Y."""
-    names = JOINTS[Sensor.KINECT_V1]
+    names = SENSOR_JOINTS[Sensor.KINECT_V1]
     positions = np.zeros((len(times), len(names), 3))
     for name, position in BODY_POSITIONS.items():
         positions[:, names.index(name)] = position
@@ -230,7 +230,7 @@ def _arm(wrists: Array) -> tuple[Array, Array, Array]:
 
 def _confidence(times: Array, settings: PerformanceSettings, rng: np.random.Generator) -> Array:
     """Simulate short occlusions of joints."""
-    n_joints = len(JOINTS[Sensor.KINECT_V1])
+    n_joints = len(SENSOR_JOINTS[Sensor.KINECT_V1])
     confidence = np.ones((len(times), n_joints))
     for joint in range(n_joints):
         for start in rng.uniform(0.0, times[-1], rng.poisson(settings.hidden * times[-1])):

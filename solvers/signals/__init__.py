@@ -1,23 +1,30 @@
 """Plain arrays over time: noise, spikes, gaps, smoothing and smooth corrections."""
 
-from .gaussian_smoothing import steadied
-from .linear_gaps import bridged, bridged_rotations
-from .noise import DIFFERENCE_GAIN, DIFFERENCE_ORDER, alike, hampel, interpolated, rough_noise
-from .smooth_correction import FADES, smooth_correction
-from .spikes import disturbance, runs
+from .gaussian_smoothing import smooth_gaussian
+from .linear_gaps import fill_gaps, fill_rotation_gaps
+from .noise import (
+    DIFFERENCE_GAIN,
+    DIFFERENCE_ORDER,
+    estimate_noise,
+    fill_channel_gaps,
+    remove_outliers,
+    shrink_noise,
+)
+from .smooth_correction import FADE_TIME_CONSTANTS, smooth_correction
+from .spikes import find_runs, fit_lowess
 
 __all__ = [
     "DIFFERENCE_GAIN",
     "DIFFERENCE_ORDER",
-    "FADES",
-    "alike",
-    "bridged",
-    "bridged_rotations",
-    "disturbance",
-    "hampel",
-    "interpolated",
-    "rough_noise",
-    "runs",
+    "FADE_TIME_CONSTANTS",
+    "estimate_noise",
+    "fill_channel_gaps",
+    "fill_gaps",
+    "fill_rotation_gaps",
+    "find_runs",
+    "fit_lowess",
+    "remove_outliers",
+    "shrink_noise",
     "smooth_correction",
-    "steadied",
+    "smooth_gaussian",
 ]

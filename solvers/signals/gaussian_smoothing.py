@@ -6,11 +6,11 @@ from scipy.ndimage import convolve1d, gaussian_filter1d
 
 Array = NDArray[np.float64]
 
-REACH = 4.0
+TRUNCATION_SIGMAS = 4.0
 """Widths of the Gaussian after which nothing counts."""
 
 
-def steadied(values: Array, frames: float, *, ahead: bool = True) -> Array:
+def smooth_gaussian(values: Array, frames: float, *, ahead: bool = True) -> Array:
     """Return the Gaussian mean of the frames around each, or of those up to it.
 
     Parameters
@@ -28,7 +28,7 @@ def steadied(values: Array, frames: float, *, ahead: bool = True) -> Array:
         return values
     if ahead:
         return np.asarray(gaussian_filter1d(values, frames, axis=0, mode="nearest"))
-    reach = round(REACH * frames)
+    reach = round(TRUNCATION_SIGMAS * frames)
     weights = np.exp(-0.5 * (np.arange(reach + 1) / frames) ** 2)
     before = {"mode": "nearest", "origin": -((reach + 1) // 2)}
     return np.asarray(convolve1d(values, weights / weights.sum(), axis=0, **before))

@@ -9,7 +9,7 @@ Array = NDArray[np.float64]
 Flags = NDArray[np.bool_]
 
 
-def bridged(values: Array, known: Flags | None = None, *, ahead: bool = True) -> Array:
+def fill_gaps(values: Array, known: Flags | None = None, *, ahead: bool = True) -> Array:
     """Bridge the gaps of each point along straight lines; before and after all known, hold.
 
     Parameters
@@ -52,7 +52,7 @@ def bridged(values: Array, known: Flags | None = None, *, ahead: bool = True) ->
     return result
 
 
-def bridged_rotations(rotations: Array) -> Array:
+def fill_rotation_gaps(rotations: Array) -> Array:
     """Turn each joint evenly from the last known rotation to the next; hold at the ends.
 
     Parameters

@@ -14,11 +14,11 @@ MAD_TO_SIGMA = 1.4826
 # variance 1 + 9 + 9 + 1 times that of one sample.
 DIFFERENCE_ORDER = 3
 DIFFERENCE_GAIN = np.sqrt(20.0)
-FAR_OFF = 3.0
+SHRINKAGE_LIMIT_SIGMAS = 3.0
 """Standard deviations by which chance alone hardly ever moves an estimate."""
 
 
-def rough_noise(values: Array) -> Array:
+def estimate_noise(values: Array) -> Array:
     """Return the standard deviation of the fast jitter of each channel, shape (n_channels,).
 
     The robust spread of third differences: spikes and smooth motion count for little.
@@ -34,7 +34,7 @@ def rough_noise(values: Array) -> Array:
     return np.asarray(MAD_TO_SIGMA * _nan_median(differences) / DIFFERENCE_GAIN)
 
 
-def alike(noise: Array, n_samples: NDArray[Any], efficiency: float = 1.0) -> Array:
+def shrink_noise(noise: Array, n_samples: NDArray[Any], efficiency: float = 1.0) -> Array:
     """Draw the noise of all channels together, as far as their spread is mere chance.
 
     The logarithm of a standard deviation from n samples is uncertain by 1 / (2 n); what spread
@@ -58,12 +58,12 @@ def alike(noise: Array, n_samples: NDArray[Any], efficiency: float = 1.0) -> Arr
     chance = 0.5 / np.maximum(efficiency * n_samples, 1.0)
     spread = (MAD_TO_SIGMA * np.median(np.abs(logs[seen] - middle))) ** 2
     real = max(float(spread - np.median(chance[seen])), 0.0)
-    real = real + np.maximum((logs - middle) ** 2 - FAR_OFF**2 * chance, 0.0)
+    real = real + np.maximum((logs - middle) ** 2 - SHRINKAGE_LIMIT_SIGMAS**2 * chance, 0.0)
     trust = np.where(seen, real / (real + chance), 0.0)
     return np.asarray(np.exp(middle + trust * (logs - middle)))
 
 
-def hampel(values: Array, half_width: int, tolerance: float) -> Array:
+def remove_outliers(values: Array, half_width: int, tolerance: float) -> Array:
     """Return the channels with every sample that stands out from its neighbours made NaN.
 
     Parameters
@@ -74,7 +74,7 @@ def hampel(values: Array, half_width: int, tolerance: float) -> Array:
     tolerance : float
         In robust standard deviations of the neighbourhood.
     """
-    filled = interpolated(values)
+    filled = fill_channel_gaps(values)
     size = (2 * half_width + 1, 1)
     middle = median_filter(filled, size, mode="nearest")
     departure = np.abs(filled - middle)
@@ -83,7 +83,7 @@ def hampel(values: Array, half_width: int, tolerance: float) -> Array:
     return np.where(departure > tolerance * np.maximum(spread, floor), np.nan, values)
 
 
-def interpolated(values: Array) -> Array:
+def fill_channel_gaps(values: Array) -> Array:
     """Return the channels with NaN replaced on straight lines between what is observed.
 
     Before the first and after the last observation its value is held; channels that are never

@@ -6,7 +6,7 @@ from scipy.linalg import solveh_banded
 
 Array = NDArray[np.float64]
 
-FADES = np.pi * np.sqrt(2.0)
+FADE_TIME_CONSTANTS = np.pi * np.sqrt(2.0)
 """A free correction has faded to 4 % after this many of its time constants."""
 PULL_WEIGHT = 100.0
 """So large that a goal is met to a hundredth."""
@@ -57,7 +57,7 @@ def smooth_correction(
     held = np.broadcast_to(held if held.ndim == 2 else held[:, None], speed.shape)
     goal = np.zeros((n_frames, n_components)) if goal is None else goal
     pulled = np.zeros((n_frames, n_components)) if pulled is None else pulled
-    bending = (blend / FADES * frame_rate) ** 4
+    bending = (blend / FADE_TIME_CONSTANTS * frame_rate) ** 4
     found = np.empty((n_frames, n_components))
     for component in range(n_components):
         stiffness = (hold * frame_rate) ** 2 * held[:, component]

@@ -6,19 +6,19 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.ndimage import correlate1d
 
-from .noise import MAD_TO_SIGMA, rough_noise
+from .noise import MAD_TO_SIGMA, estimate_noise
 
 Array = NDArray[np.float64]
 
 N_REFITS = 8
-SETTLED = 0.02
+MAX_WEIGHT_CHANGE = 0.02
 """Weights that change by less than this are final."""
-TUKEY = 4.685
+TUKEY_SIGMAS = 4.685
 """Residuals beyond this many standard deviations lose all weight (95 % efficiency)."""
 
 
 @dataclass(frozen=True, eq=False)
-class Disturbance:
+class LowessFit:
     """How far a signal is from its own smooth course.
 
     Attributes
@@ -47,19 +47,19 @@ class Disturbance:
         steps = np.linalg.norm(np.diff(self.residual, axis=0), axis=1)
         steps = np.concatenate([[np.inf], np.where(np.isnan(steps), np.inf, steps), [np.inf]])
         height = np.nan_to_num(self.deviation)
-        for start, stop in runs(height > threshold):
+        for start, stop in find_runs(height > threshold):
             half = 0.5 * height[start:stop].max()
             found[start:stop] = steps[start] > half and steps[stop] > half
         return found
 
 
-def runs(flags: NDArray[np.bool_]) -> list[tuple[int, int]]:
+def find_runs(flags: NDArray[np.bool_]) -> list[tuple[int, int]]:
     """Return (start, stop) of every stretch of True."""
     edges = np.flatnonzero(np.diff(np.concatenate([[False], flags, [False]])))
     return [(int(a), int(b)) for a, b in zip(edges[::2], edges[1::2], strict=True)]
 
 
-def disturbance(signal: Array, half_window: int, smallest: float) -> Disturbance:
+def fit_lowess(signal: Array, half_window: int, smallest: float) -> LowessFit:
     """Compare a signal with a robust local quadratic through its neighbourhood.
 
     Around each frame a parabola is fitted by iteratively reweighted least squares (Cleveland
@@ -83,13 +83,13 @@ def disturbance(signal: Array, half_window: int, smallest: float) -> Disturbance
     for _ in range(N_REFITS):
         residual = signal - _local_fit(signal, weights, offsets, window)
         distance = np.linalg.norm(residual, axis=1)
-        cut = TUKEY * MAD_TO_SIGMA * _median(distance[known])
+        cut = TUKEY_SIGMAS * MAD_TO_SIGMA * _median(distance[known])
         before, weights = weights, known * _bisquare(distance / max(cut, smallest))
-        if np.abs(weights - before).max() < SETTLED:
+        if np.abs(weights - before).max() < MAX_WEIGHT_CHANGE:
             break
     residual = np.where(known[:, None], residual, np.nan)
-    noise = rough_noise(np.where(weights[:, None] > 0.0, signal, np.nan))
-    return Disturbance(residual, float(np.sqrt(np.mean(noise**2))))
+    noise = estimate_noise(np.where(weights[:, None] > 0.0, signal, np.nan))
+    return LowessFit(residual, float(np.sqrt(np.mean(noise**2))))
 
 
 def _bisquare(distance: Array) -> Array:

@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..motion import Motion, Skeleton
-from ..motion.humanoid import motion_postures, normalise
+from ..motion.humanoid import normalize_postures, postures_from_motion
 from ..rotations import (
     inverse,
     multiply,
@@ -54,7 +54,7 @@ class MotionCurves:
 
 def headings_from_motion(motion: Motion) -> Array:
     """Return the heading of each frame: radians about Z from -Y, shape (n_frames,)."""
-    normalized = normalise(motion_postures(motion), motion.frame_rate)
+    normalized = normalize_postures(postures_from_motion(motion), motion.frame_rate)
     return np.asarray(np.unwrap(normalized.headings))
 
 

@@ -6,23 +6,23 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..errors import InvalidMotionError
-from ..motion import JOINTS, JointRecording, Sensor, Tracks
+from ..motion import SENSOR_JOINTS, JointRecording, Sensor, Tracks
 from ..motion.humanoid import (
-    LARGEST,
-    LEGS,
+    ADULT_STATURE_M,
+    MAX_BODY_SCALE,
+    MIN_BODY_SCALE,
     POSTURE_JOINTS,
-    SMALLEST,
-    STATURE,
-    joints_of_names,
+    UPPER_LEG_ROLES,
+    estimate_body_scale,
+    fill_missing_hips,
+    posture_joint_indices,
     posture_positions,
-    size_of_body,
-    with_hips,
 )
 
 LONG_GAP = 1.0
 """Seconds without any joint, from which on the result is a guess that is worth a word."""
 UNITS = {0.001: "millimetres", 0.01: "centimetres", 0.0254: "inches", 1000.0: "kilometres"}
-KINECT_V1 = dict(zip(POSTURE_JOINTS, JOINTS[Sensor.KINECT_V1], strict=True))
+KINECT_V1 = dict(zip(POSTURE_JOINTS, SENSOR_JOINTS[Sensor.KINECT_V1], strict=True))
 """What the first Kinect calls the joints of postures."""
 Word = TypeVar("Word", np.int8, np.float64)
 
@@ -40,9 +40,9 @@ def known_body(recording: JointRecording) -> JointRecording:
     """
     check_tracked(recording)
     parents = recording.parents
-    if parents.count(-1) == 1 and "hips" in joints_of_names(recording.names):
-        return with_hips(recording)
-    return with_hips(_by_roles(recording))
+    if parents.count(-1) == 1 and "hips" in posture_joint_indices(recording.names):
+        return fill_missing_hips(recording)
+    return fill_missing_hips(_by_roles(recording))
 
 
 def check_tracked(recording: JointRecording) -> None:
@@ -63,10 +63,10 @@ def check_tracked(recording: JointRecording) -> None:
 
 def _by_roles(recording: JointRecording) -> JointRecording:
     tracks, state = recording.tracks, recording.tracking_state
-    places = joints_of_names(tracks.names)
+    places = posture_joint_indices(tracks.names)
     joints = {role: [place] for role, place in places.items()}
-    legs = [places[leg] for leg in LEGS if leg in places]
-    if "hips" not in places and len(legs) == len(LEGS):
+    legs = [places[leg] for leg in UPPER_LEG_ROLES if leg in places]
+    if "hips" not in places and len(legs) == len(UPPER_LEG_ROLES):
         joints["hips"] = legs
     if "hips" not in joints or len(joints) < 2:
         raise InvalidMotionError(
@@ -91,7 +91,7 @@ def _least(told: NDArray[Word], chosen: list[list[int]]) -> NDArray[Word]:
 
 def check_size(recording: JointRecording) -> None:
     """Raise InvalidMotionError, and guess the unit, where the body is not of human size."""
-    size = size_of_body(posture_positions(recording))
+    size = estimate_body_scale(posture_positions(recording))
     if np.isnan(size):
         return
     if size == 0.0:
@@ -99,15 +99,15 @@ def check_size(recording: JointRecording) -> None:
             "The joints are all in one place, as some exporters write them where no body is"
             " tracked; choose a recording of an actor who was tracked."
         )
-    if SMALLEST <= size <= LARGEST:
+    if MIN_BODY_SCALE <= size <= MAX_BODY_SCALE:
         return
     unit = min(UNITS, key=lambda factor: abs(np.log(size * factor)))
-    human = SMALLEST <= size * unit <= LARGEST
+    human = MIN_BODY_SCALE <= size * unit <= MAX_BODY_SCALE
     guess = f", as if {UNITS[unit]} were taken for metres" if human else ""
     scale = f"{unit:g}" if human else f"{1.0 / size:.3g}"
     raise InvalidMotionError(
-        f"The body is {STATURE * size:.3g} m tall{guess}. Read the recording with a scale of"
-        f" {scale}."
+        f"The body is {ADULT_STATURE_M * size:.3g} m tall{guess}. Read the recording with a"
+        f" scale of {scale}."
     )
 
 

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from ..errors import InvalidFileError
 from ..gestures import Gesture, GestureEvent, GestureRecognizer, GestureSettings, Mode
 from ..motion import JointRecording
-from ..motion.humanoid import POSTURE_JOINTS, joints_of_names
+from ..motion.humanoid import POSTURE_JOINTS, posture_joint_indices
 from ..recordings.live import Heard, LiveFrame, StreamReader, recording_of
 
 Array = NDArray[np.float64]
@@ -129,5 +129,5 @@ def posture_of(frame: LiveFrame) -> tuple[Array, Array]:
 @lru_cache(maxsize=64)
 def _places(names: tuple[str, ...]) -> tuple[tuple[int, int], ...]:
     """Return which joint of postures each named joint is."""
-    found = joints_of_names(names)
+    found = posture_joint_indices(names)
     return tuple((POSTURE_JOINTS.index(role), joint) for role, joint in found.items())

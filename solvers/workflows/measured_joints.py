@@ -4,7 +4,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..motion import JointRecording, Motion, Tracks, forward_kinematics, motion_from_points
-from ..motion.humanoid import with_hips
+from ..motion.humanoid import fill_missing_hips
 
 Array = NDArray[np.float64]
 SAME = 0.002
@@ -27,7 +27,7 @@ def measured_joints(motion: Motion, recording: JointRecording) -> JointRecording
     """
     if recording.parents.count(-1) != 1 or recording.n_frames < motion.n_frames:
         return None
-    recording = with_hips(recording)
+    recording = fill_missing_hips(recording)
     made = motion_from_points(recording.tracks, recording.parents)
     names = motion.skeleton.names
     if set(made.skeleton.names) != set(names):

@@ -12,9 +12,9 @@ from ..markers import (
     SolveSettings,
     Swap,
     UnswapSettings,
+    constrain_clusters,
     find_marker_set,
-    keep_rigid,
-    rigid_clusters,
+    find_rigid_clusters,
     solve_skeleton,
     unswap_markers,
 )
@@ -116,8 +116,8 @@ def _of_the_set(tracks: Tracks, subject: str) -> Tracks:
 
 def _filled(tracks: Tracks, progress: Progress) -> Tracks:
     """Fill gaps from rigid clusters, then from all companions."""
-    clusters = rigid_clusters(tracks, progress=within(progress, 0.0, 0.1))
-    kept = keep_rigid(tracks, clusters, progress=within(progress, 0.1, 0.2))
+    clusters = find_rigid_clusters(tracks, progress=within(progress, 0.0, 0.1))
+    kept = constrain_clusters(tracks, clusters, progress=within(progress, 0.1, 0.2))
     found = np.where(kept.filled[..., None], kept.tracks.positions, tracks.positions)
     return fill_markers(tracks.with_positions(found), within(progress, 0.2, 1.0)).tracks
 

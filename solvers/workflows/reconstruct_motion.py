@@ -17,9 +17,9 @@ from ..motion import (
 )
 from ..motion.humanoid import (
     POSTURE_JOINTS,
-    joints_of_names,
-    motion_postures,
+    posture_joint_indices,
     posture_positions,
+    postures_from_motion,
 )
 from ..progress import Progress, unwatched, within
 from ..reconstruction import (
@@ -190,7 +190,7 @@ def postures_recording(motion: Motion) -> JointRecording:
 
 def _is_tracked(names: tuple[str, ...]) -> bool:
     """Whether all joints are a known tracker's, and so hang together as is known."""
-    return joint_parents(names).count(-1) == 1 and "hips" in joints_of_names(names)
+    return joint_parents(names).count(-1) == 1 and "hips" in posture_joint_indices(names)
 
 
 def _all_joints(
@@ -210,7 +210,7 @@ def _postures_of(
     motion: Motion, humanoid_map: HumanoidMap
 ) -> tuple[JointRecording, dict[int, int]]:
     """Return where the joints of postures are, under the names of a tracker."""
-    positions = motion_postures(motion, humanoid_map)
+    positions = postures_from_motion(motion, humanoid_map)
     seen = np.isfinite(positions).all(axis=-1).any(axis=0)
     there = np.flatnonzero(seen | ~seen.any())  # all, to be refused, where none is seen
     names = tuple(KINECT_V1[POSTURE_JOINTS[joint]] for joint in there)

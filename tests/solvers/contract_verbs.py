@@ -23,7 +23,12 @@ from solvers.denoising import (
     measure_quality,
     plant_feet,
 )
-from solvers.markers import keep_rigid, rigid_clusters, solve_skeleton, unswap_markers
+from solvers.markers import (
+    constrain_clusters,
+    find_rigid_clusters,
+    solve_skeleton,
+    unswap_markers,
+)
 from solvers.motion import (
     HumanoidMap,
     JointLimits,
@@ -150,12 +155,12 @@ VERBS = {
         figures=lambda result: [(swap.names, swap.frames) for swap in result.swaps],
     ),
     "rigid_clusters": Verb(
-        lambda motion, progress: rigid_clusters(marked(motion), progress=progress),
+        lambda motion, progress: find_rigid_clusters(marked(motion), progress=progress),
         figures=lambda result: [(cluster.names, cluster.slack) for cluster in result],
     ),
     "keep_rigid": Verb(
-        lambda motion, progress: keep_rigid(
-            marked(motion), rigid_clusters(marked(motion)), progress=progress
+        lambda motion, progress: constrain_clusters(
+            marked(motion), find_rigid_clusters(marked(motion)), progress=progress
         ),
         recording=lambda result: result.tracks,
         figures=lambda result: (result.filled, result.moved),

@@ -8,9 +8,9 @@ from numpy.typing import NDArray
 from scipy.interpolate import CubicSpline
 
 from ...motion import Motion, Tracks
-from ...motion.skeletons import find_cuts, is_short, pieces
+from ...motion.skeletons import find_shot_boundaries, is_short_shot, shot_ranges
 from ...progress import Progress
-from ...signals import interpolated
+from ...signals import fill_channel_gaps
 from .encode import encode
 
 Array = NDArray[np.float64]
@@ -66,7 +66,7 @@ class ExampleChannels:
                     columns[:, part] = channels.values[:, index_of_key[key]]
             flat = columns.reshape(len(columns), -1)
             observed = np.isfinite(flat).any(axis=0)
-            clips = _resample(interpolated(flat), take.frame_rate, self._frame_rate)
+            clips = _resample(fill_channel_gaps(flat), take.frame_rate, self._frame_rate)
             if long_clips := [clip for clip in clips if len(clip) >= self._window]:
                 yield weight, [np.where(observed, clip, np.nan) for clip in long_clips]
             progress((index + 1) / len(self._takes), "Reading examples")
@@ -123,8 +123,8 @@ def _usable_segments(example: Motion | Tracks) -> list[tuple[int, int]]:
     """
     segments = [
         (start, stop)
-        for start, stop in pieces(example, find_cuts(example))
-        if not is_short(stop - start, example.frame_rate)
+        for start, stop in shot_ranges(example, find_shot_boundaries(example))
+        if not is_short_shot(stop - start, example.frame_rate)
     ]
     return [
         part

@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...motion import Tracks
-from ...signals import interpolated
+from ...signals import fill_channel_gaps
 from .channels import CENTIMETERS, Channels
 from .travel_path import TravelPath, fit_travel_path, rotate_on_ground
 
@@ -59,7 +59,7 @@ def _fit_shape_and_path(
 ) -> tuple[TravelPath, Array]:
     """Fit mean shape (n_points, 3) and path to each other, starting without a rotation."""
     positions = tracks.positions
-    filled = interpolated(positions.reshape(len(positions), -1)).reshape(positions.shape)
+    filled = fill_channel_gaps(positions.reshape(len(positions), -1)).reshape(positions.shape)
     has_reference = np.array([name in references for name in tracks.names])
     given_means = np.array([references.get(name, np.zeros(3))[:3] for name in tracks.names])
     ever_observed = tracks.visible.any(axis=0)

@@ -7,7 +7,7 @@ from numpy.typing import NDArray
 from scipy.ndimage import correlate1d
 
 from ...rotations import quaternion_from_rotation_vector
-from ...signals import hampel, interpolated
+from ...signals import fill_channel_gaps, remove_outliers
 
 Array = NDArray[np.float64]
 
@@ -48,7 +48,7 @@ def fit_travel_path(ground_positions: Array, headings: Array, frame_rate: float)
     aligned = rotate_on_ground(ground_positions, -mean)
     coordinates = np.column_stack([aligned, unwrap_angles(headings) - mean])
     half_width = max(round(SPIKE_HALF_WIDTH_S * frame_rate), 2)
-    clean = hampel(coordinates, half_width, SPIKE_TOLERANCE)
+    clean = remove_outliers(coordinates, half_width, SPIKE_TOLERANCE)
     fitted = fit_local_lines(clean, SMOOTHING_S * frame_rate)
     return TravelPath(rotate_on_ground(fitted[:, :2], mean), fitted[:, 2] + mean)
 
@@ -86,7 +86,7 @@ def fit_local_lines(values: Array, width: float) -> Array:
     steps = np.arange(-reach, reach + 1.0)
     kernel = np.exp(-0.5 * (steps / width) ** 2)
     # Gaps have a small weight, so that a line bridges even those wider than the kernel.
-    interpolated_values = interpolated(values)
+    interpolated_values = fill_channel_gaps(values)
     weight = np.where(np.isfinite(values), 1.0, GAP_WEIGHT)
     s0, s1, s2 = (_weighted_sum(weight, kernel * steps**power) for power in (0, 1, 2))
     t0, t1 = (

@@ -14,7 +14,7 @@ from ...rotations import (
     rotate,
     rotation_vector_from_quaternion,
 )
-from ...signals import runs, smooth_correction
+from ...signals import find_runs, smooth_correction
 from .legs import Leg
 from .sole import SMOOTHING_S, estimate_loads, measure_standing_heights, sole_points
 
@@ -175,7 +175,7 @@ def _loaded_displacements(points: Array, load: Array) -> Array:
 def _median_contact_heights(height: Array, contact: Flags) -> Array:
     """Return the median height of each contact; the height itself elsewhere."""
     contact_height = height.copy()
-    for start, stop in runs(contact):
+    for start, stop in find_runs(contact):
         contact_height[start:stop] = np.median(height[start:stop])
     return contact_height
 

@@ -9,7 +9,13 @@ from numpy.typing import NDArray
 from ...errors import InvalidMotionError
 from ...motion import Motion, WorldPoses, forward_kinematics
 from ...motion.humanoid import HumanoidMap, detect_contacts, find_humanoid_map
-from ...motion.skeletons import ReachSettings, find_cuts, is_short, pieces, reach
+from ...motion.skeletons import (
+    ReachSettings,
+    find_shot_boundaries,
+    is_short_shot,
+    reach,
+    shot_ranges,
+)
 from ...progress import Progress, unwatched, within
 from ...rotations import inverse, multiply
 from ...settings import Settings, setting
@@ -133,10 +139,10 @@ def plant_feet(
     humanoid_map = humanoid_map or find_humanoid_map(motion.skeleton)
     legs = _require_legs(motion, humanoid_map)
     contacts = None if contacts is None else _check_contacts(contacts, motion)
-    cuts, results = find_cuts(motion), []
-    for start, stop in pieces(motion, cuts):
+    cuts, results = find_shot_boundaries(motion), []
+    for start, stop in shot_ranges(motion, cuts):
         segment = motion.slice(start, stop) if cuts else motion
-        too_short = bool(cuts) and is_short(stop - start, motion.frame_rate)
+        too_short = bool(cuts) and is_short_shot(stop - start, motion.frame_rate)
         if contacts is not None:
             standing = contacts[start:stop]
         elif too_short:

@@ -4,7 +4,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...motion import JointLimits, Motion
-from ...signals import runs
+from ...signals import find_runs
 from .clamp_to_limits import limit_excess
 
 MIN_IMPOSSIBLE_EXCESS = np.radians(10.0)
@@ -38,6 +38,6 @@ def find_impossible_rotations(
     followed = limit_excess(estimate, limits) > MIN_FOLLOWED_EXCESS
     result = np.zeros(impossible.shape, dtype=np.bool_)
     for joint in np.flatnonzero(impossible.any(axis=0) & ~foreign):
-        for start, stop in runs(impossible[:, joint]):
+        for start, stop in find_runs(impossible[:, joint]):
             result[start:stop, joint] = followed[start:stop, joint].any()
     return result

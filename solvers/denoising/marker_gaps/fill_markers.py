@@ -7,7 +7,7 @@ from numpy.typing import NDArray
 
 from ...motion import Tracks
 from ...progress import Progress, unwatched
-from ...signals import interpolated, runs
+from ...signals import fill_channel_gaps, find_runs
 from .gap_boundaries import (
     estimate_gap_error,
     estimate_jitter,
@@ -104,10 +104,10 @@ def _prepare_take(tracks: Tracks) -> _Take:
     positions = np.where(visible[..., None], tracks.positions, np.nan)
     gap_length = np.zeros(visible.shape, dtype=np.intp)
     for point in np.flatnonzero(~visible.all(axis=0)):
-        for start, stop in runs(~visible[:, point]):
+        for start, stop in find_runs(~visible[:, point]):
             gap_length[start:stop, point] = stop - start
     return _Take(
-        interpolated(positions.reshape(len(positions), -1)).reshape(positions.shape),
+        fill_channel_gaps(positions.reshape(len(positions), -1)).reshape(positions.shape),
         gap_length,
         (gap_length <= MAX_BRIEF_FRAMES) & visible.any(axis=0),
         np.zeros(visible.shape),
@@ -121,7 +121,7 @@ def _list_open_gaps(take: _Take) -> list[Gap]:
     return sorted(
         (stop - start, int(point), start, stop)
         for point in points
-        for start, stop in runs(~take.usable[:, point])
+        for start, stop in find_runs(~take.usable[:, point])
     )
 
 

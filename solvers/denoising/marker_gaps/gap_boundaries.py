@@ -3,7 +3,7 @@
 import numpy as np
 from numpy.typing import NDArray
 
-from ...signals import DIFFERENCE_GAIN, DIFFERENCE_ORDER, runs
+from ...signals import DIFFERENCE_GAIN, DIFFERENCE_ORDER, find_runs
 from .predict_marker import Prediction
 
 Array = NDArray[np.float64]
@@ -40,7 +40,7 @@ def select_training_frames(
     step = max(round(frame_rate / MAX_TRAINING_RATE_HZ), -(-len(training_frames) // n_rows), 1)
     selected = np.zeros(len(observed), dtype=bool)
     selected[training_frames[::step]] = True
-    for start, stop in runs(gap):
+    for start, stop in find_runs(gap):
         near_boundary = np.array(
             [start - distance for distance in BOUNDARY_FRAMES]
             + [stop - 1 + distance for distance in BOUNDARY_FRAMES]

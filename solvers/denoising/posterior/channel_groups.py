@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...progress import Progress, within
-from ...signals import alike, hampel, interpolated, rough_noise
+from ...signals import estimate_noise, fill_channel_gaps, remove_outliers, shrink_noise
 from ..channels import Channels
 from ..prior import FilterBases, FilterBasesSettings, WindowPrior
 from .estimate import Estimate
@@ -64,7 +64,7 @@ def estimate_in_groups(
     iterations, converged, smooth_fractions = 0, True, []
     for index, columns in enumerate(groups):
         step = within(progress, index / len(groups), (index + 1) / len(groups))
-        first_noise = alike(
+        first_noise = shrink_noise(
             take.noise[columns], take.n_observed[columns], FIRST_GUESS_EFFICIENCY
         )
         part = take._replace(
@@ -132,11 +132,11 @@ def _estimate_roughly(
     length = max(round(window * frame_rate / pattern_rate), 2)
     padded = np.full((max(len(noisy), length), noisy.shape[1]), np.nan)
     padded[: len(noisy)] = noisy
-    despiked = hampel(padded, SPIKE_HALF_WIDTH, SPIKE_TOLERANCE)
-    noise = np.maximum(rough_noise(despiked), MIN_NOISE)
+    despiked = remove_outliers(padded, SPIKE_HALF_WIDTH, SPIKE_TOLERANCE)
+    noise = np.maximum(estimate_noise(despiked), MIN_NOISE)
     windows = Windows(len(padded), length, length / window)
     return RoughTake(
-        padded, interpolated(despiked), noise, np.isfinite(despiked).sum(axis=0), windows
+        padded, fill_channel_gaps(despiked), noise, np.isfinite(despiked).sum(axis=0), windows
     )
 
 

@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...progress import Progress, unwatched
-from ...signals import alike
+from ...signals import shrink_noise
 from ..prior import WindowPrior
 from .covariance import adapt_covariance, covariance_from_prior
 from .estimate import Estimate
@@ -253,4 +253,4 @@ def _estimate_noise(error: Array, weight: Array, variance: Array, first_noise: A
         first_noise
         * np.clip(noise, NOISE_BOUNDS[0] * first_noise, NOISE_BOUNDS[1] * first_noise)
     )
-    return alike(noise, total)
+    return shrink_noise(noise, total)

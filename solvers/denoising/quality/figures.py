@@ -4,7 +4,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from ...signals import runs
+from ...signals import find_runs
 from .joint_signals import Signal
 
 if TYPE_CHECKING:
@@ -17,7 +17,7 @@ def quality_figures(quality: "Quality") -> dict[str, Any]:
         "n_frames": quality.n_frames,
         "frame_rate_hz": quality.frame_rate,
         "mean_jitter_m_per_s3": _json_number(quality.mean_jitter),
-        "spikes": sum(len(runs(signal.spikes)) for signal in quality.signals),
+        "spikes": sum(len(find_runs(signal.spikes)) for signal in quality.signals),
         "missing_share": float(np.mean([signal.gaps for signal in quality.signals])),
         "foot_slide_cm_per_s": _json_number(100.0 * quality.foot_slide),
         "joints": {
@@ -54,7 +54,7 @@ def quality_figures(quality: "Quality") -> dict[str, Any]:
 
 def _signal_figures(signal: Signal) -> dict[str, Any]:
     """Return the figures of one signal; the root has both a rotation and a position."""
-    spikes = runs(signal.spikes)
+    spikes = find_runs(signal.spikes)
     kind, noise, factor = (
         ("turn", "deg", 180.0 / np.pi) if signal.turns else ("move", "mm", 1e3)
     )
@@ -62,7 +62,7 @@ def _signal_figures(signal: Signal) -> dict[str, Any]:
         f"{kind}_noise_{noise}": factor * signal.noise,
         f"{kind}_spikes": len(spikes),
         f"{kind}_spike_frames": [start for start, _ in spikes],
-        f"{kind}_gaps": [list(gap) for gap in runs(signal.gaps)],
+        f"{kind}_gaps": [list(gap) for gap in find_runs(signal.gaps)],
     }
 
 

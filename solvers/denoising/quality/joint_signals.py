@@ -10,7 +10,7 @@ from scipy.ndimage import uniform_filter1d
 from ...motion import Motion, Tracks
 from ...progress import Progress
 from ...rotations import unroll
-from ...signals import disturbance
+from ...signals import fit_lowess
 
 Array = NDArray[np.float64]
 
@@ -84,7 +84,7 @@ def extract_signals(
         padded = np.full((padded_frames[-1] + 1, trajectory.shape[1]), np.nan)
         padded[padded_frames] = trajectory
         min_spike = rule.min_rotation if turns else rule.min_displacement
-        disturbed = disturbance(padded, half_window, min_spike)
+        disturbed = fit_lowess(padded, half_window, min_spike)
         threshold = max(min_spike, rule.noise_factor * disturbed.scale)
         spikes = disturbed.spikes(threshold)
         deviation = _angle_from_chord(disturbed.deviation) if turns else disturbed.deviation

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from ...errors import InvalidMotionError
 from ...motion import JointLimits, Motion, Tracks, forward_kinematics
 from ...motion.humanoid import HumanoidMap, contacts_of_points, detect_contacts
-from ...motion.skeletons import find_cuts
+from ...motion.skeletons import find_shot_boundaries
 from ...progress import Progress, unwatched, within
 from ...settings import Settings, setting
 from ..feet import SIDES, find_foot_joints
@@ -172,7 +172,7 @@ def measure_quality(
     else:
         names, positions = recording.names, recording.positions
         bones = measure_bone_drifts(recording)
-    cuts = find_cuts(recording)
+    cuts = find_shot_boundaries(recording)
     quality = Quality(
         names=names,
         n_frames=recording.n_frames,

@@ -4,7 +4,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ...signals import runs
+from ...signals import find_runs
 from .joint_signals import Signal
 
 if TYPE_CHECKING:
@@ -62,7 +62,7 @@ def compare_quality(before: "Quality", after: "Quality") -> str:
             rows.append((label, *(_number(float(np.mean(noise))) for noise in noises)))
     for label, name in (("spikes", "spikes"), ("gaps", "gaps")):
         counts = [
-            sum(len(runs(getattr(signal, name))) for signal in quality.signals)
+            sum(len(find_runs(getattr(signal, name))) for signal in quality.signals)
             for quality in (before, after)
         ]
         rows.append((label, *(str(count) for count in counts)))
@@ -81,8 +81,8 @@ def _row(signal: Signal, quality: "Quality", jitter: float) -> tuple[str, ...]:
         f"{signal.joint} (position)" if root_moves else signal.joint,
         _number(jitter),
         noise,
-        str(len(runs(signal.spikes)) or UNKNOWN),
-        str(len(runs(signal.gaps)) or UNKNOWN),
+        str(len(find_runs(signal.spikes)) or UNKNOWN),
+        str(len(find_runs(signal.gaps)) or UNKNOWN),
         f"{missing:.0%}" if missing else UNKNOWN,
     )
 

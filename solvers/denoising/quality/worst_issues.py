@@ -9,7 +9,7 @@ import numpy as np
 from ...motion import Motion, Tracks
 from ...progress import Progress, unwatched
 from ...settings import Settings, setting
-from ...signals import runs
+from ...signals import find_runs
 from .joint_signals import Signal
 from .measure import Quality, measure_quality
 
@@ -130,11 +130,11 @@ def find_worst_issues(
 
 def _spikes(quality: Quality, pause: int) -> Iterator[Issue]:
     for signal in quality.signals:
-        for start, stop in _merged(runs(signal.spikes), pause):
+        for start, stop in _merged(find_runs(signal.spikes), pause):
             height = float(
                 np.nanmax(np.where(signal.spikes, signal.deviation, 0.0)[start:stop])
             )
-            n_spikes = len(runs(signal.spikes[start:stop]))
+            n_spikes = len(find_runs(signal.spikes[start:stop]))
             count = f" {n_spikes} times, by up to" if n_spikes > 1 else " by"
             yield Issue(
                 signal.joint,
@@ -148,7 +148,7 @@ def _spikes(quality: Quality, pause: int) -> Iterator[Issue]:
 
 def _gaps(quality: Quality) -> Iterator[Issue]:
     for signal in quality.signals:
-        for start, stop in runs(signal.gaps):
+        for start, stop in find_runs(signal.gaps):
             seconds = (stop - start) / quality.frame_rate
             all_missing = stop - start == quality.n_frames
             sentence = (
@@ -170,7 +170,7 @@ def _jitter(quality: Quality, settings: IssueSettings, pause: int) -> Iterator[I
         typical_noise = float(np.median([signal.local_noise for signal in signals]))
         threshold = max(settings.shake_ratio * typical_noise, min_noise)
         for signal in signals:
-            for start, stop in _merged(runs(signal.local_noise > threshold), pause):
+            for start, stop in _merged(find_runs(signal.local_noise > threshold), pause):
                 level = float(signal.local_noise[start:stop].max())
                 amount = _amount(signal, level) + _compared(level, typical_noise)
                 yield Issue(
@@ -185,7 +185,7 @@ def _jitter(quality: Quality, settings: IssueSettings, pause: int) -> Iterator[I
 
 def _slides(quality: Quality, settings: IssueSettings) -> Iterator[Issue]:
     for foot in quality.feet:
-        for start, stop in runs(foot.contact):
+        for start, stop in find_runs(foot.contact):
             slide = float(np.linalg.norm(np.nansum(foot.steps[start:stop], axis=0)))
             if slide >= settings.smallest_slide:
                 yield Issue(
@@ -202,7 +202,7 @@ def _beyond_limits(quality: Quality, pause: int) -> Iterator[Issue]:
     if quality.limit_excess is None:
         return
     for name, excess in zip(quality.names, quality.limit_excess.T, strict=True):
-        for start, stop in _merged(runs(excess > SEVERE_EXCESS / 5), pause):
+        for start, stop in _merged(find_runs(excess > SEVERE_EXCESS / 5), pause):
             angle = float(excess[start:stop].max())
             sentence = f"{name} turns {np.degrees(angle):.0f}° beyond its limits."
             yield Issue(name, start, stop, "limit", angle / SEVERE_EXCESS, sentence)

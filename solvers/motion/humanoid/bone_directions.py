@@ -14,7 +14,7 @@ SHORT = 5e-3
 """Metres. A bone that is shorter tells no direction."""
 REACH = 0.1
 """Seconds to both sides over which a change is measured."""
-ABOVE = np.maximum(PARENTS, 0)
+PARENT_INDICES = np.maximum(PARENTS, 0)
 STANDS_FOR = {"spine": "chest", "chest": "spine", "leftToes": "", "rightToes": ""}
 """Whose direction a bone without one has, where it is not that of the joint above."""
 FORWARD = (0.0, -1.0, 0.0)
@@ -26,7 +26,7 @@ def bone_directions(postures: Array) -> Array:
     The hips' is zero. A bone that is never told, as in a body without hands, goes on as the one
     above it, and a foot forward. NaN where a joint is not told in one frame only.
     """
-    bones = postures - postures[:, ABOVE]
+    bones = postures - postures[:, PARENT_INDICES]
     sizes = np.linalg.norm(bones, axis=-1, keepdims=True)
     long = sizes > SHORT
     directions = np.where(long, bones, np.nan) / np.where(long, sizes, 1.0)
@@ -42,7 +42,7 @@ def bone_directions(postures: Array) -> Array:
     return np.asarray(directions)
 
 
-def bone_changes(directions: Array, frame_rate: float) -> Array:
+def rates_from_directions(directions: Array, frame_rate: float) -> Array:
     """Return how directions, or whatever else goes on in time, change per second.
 
     The slope between the values a tenth of a second before and after; at the ends, between
@@ -57,7 +57,7 @@ def bone_changes(directions: Array, frame_rate: float) -> Array:
     return np.asarray(ways / time.reshape(-1, *(1,) * (directions.ndim - 1)))
 
 
-def along_bones(vectors: NDArray[Real], lengths: NDArray[Real]) -> NDArray[Real]:
+def positions_from_directions(vectors: NDArray[Real], lengths: NDArray[Real]) -> NDArray[Real]:
     """Return joints relative to the hips from directions, or speeds from changes.
 
     Parameters

@@ -11,7 +11,7 @@ from ...settings import Settings, setting
 from ..skeletons import Motion, Skeleton, forward_kinematics, linear_velocities
 from .roles import HumanoidMap, find_humanoid_map
 
-HUMAN_LEG = 0.9
+HUMAN_LEG_LENGTH_M = 0.9
 """Metres from hip to ankle for which the settings are meant; they grow with the leg."""
 
 GROUND_PERCENTILE = 5.0
@@ -87,7 +87,7 @@ def detect_contacts(
     humanoid = humanoid_map or find_humanoid_map(motion.skeleton)
     feet = foot_points(motion.skeleton, humanoid)
     positions = forward_kinematics(motion).positions[:, feet]
-    size = leg_length(motion.skeleton, humanoid) / HUMAN_LEG
+    size = leg_length(motion.skeleton, humanoid) / HUMAN_LEG_LENGTH_M
     return contacts_of_points(positions, motion.frame_rate, size, settings)
 
 
@@ -165,7 +165,7 @@ def leg_length(skeleton: Skeleton, humanoid: HumanoidMap) -> float:
         if all(role in joints for role in roles):
             leg = skeleton.rest_positions[[joints[role] for role in roles]]
             lengths.append(np.linalg.norm(np.diff(leg, axis=0), axis=-1).sum())
-    return float(np.mean(lengths)) if lengths and min(lengths) > 0.0 else HUMAN_LEG
+    return float(np.mean(lengths)) if lengths and min(lengths) > 0.0 else HUMAN_LEG_LENGTH_M
 
 
 def _smoothed(positions: NDArray[np.float64], sigma: float) -> NDArray[np.float64]:

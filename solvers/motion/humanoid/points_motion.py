@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...errors import InvalidMotionError
-from ...rotations import IDENTITY, best_turns, multiply, rotate, rotation_between
+from ...rotations import IDENTITY, fit_rotations, multiply, rotate, rotation_between
 from ..skeletons import Motion, Skeleton, Tracks, local_rotations
 from .points_skeleton import skeleton_from_points
 
@@ -77,7 +77,7 @@ def _turned(body: Skeleton, joint: int, positions: Array, above: Array) -> Array
     short = np.linalg.norm(np.nan_to_num(ways), axis=-1, keepdims=True) < SHORT
     ways = np.where(short, np.nan, ways)
     if len(children) > 1:
-        return best_turns(body.offsets[children], ways)
+        return fit_rotations(body.offsets[children], ways)
     way, rest = ways[:, 0], rotate(above, body.offsets[children[0]])
     told = np.isfinite(way).all(axis=-1) & np.isfinite(rest).all(axis=-1)
     swing = rotation_between(

@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...errors import InvalidMotionError
-from ...rotations import best_turns, matrix_from_quaternion
+from ...rotations import fit_rotations, matrix_from_quaternion
 from ..skeletons import Skeleton, Tracks, rest_direction
 
 Array = NDArray[np.float64]
@@ -106,7 +106,7 @@ def _mean_shape(ways: Array, lengths: Array, usual: Array) -> Array:
     whole = ways[np.isfinite(ways).all(axis=(1, 2))]
     shape = usual
     for _ in range(ROUNDS if len(whole) else 0):
-        turns = matrix_from_quaternion(best_turns(shape, whole))
+        turns = matrix_from_quaternion(fit_rotations(shape, whole))
         laid = np.einsum("fij,fpi->fpj", turns, whole)  # turned back
         laid = laid[np.isfinite(laid).all(axis=(1, 2))]
         if not len(laid):

@@ -6,12 +6,12 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.ndimage import uniform_filter1d
 
-from ...signals import bridged, steadied
-from .posture_joints import HIPS, MIRROR_IMAGES, POSTURE_JOINTS
+from ...signals import fill_gaps, smooth_gaussian
+from .posture_joints import HIPS, MIRROR_JOINTS, POSTURE_JOINTS
 
 Array = NDArray[np.float64]
 
-ACROSS = tuple(
+LATERAL_JOINTS = tuple(
     tuple(POSTURE_JOINTS.index(name) for name in (f"left{part}", f"right{part}", middle))
     for part, middle in (("UpperLeg", "hips"), ("UpperArm", "chest"))
 )
@@ -28,7 +28,7 @@ AGREED = 0.3
 
 
 @dataclass(frozen=True, eq=False)
-class Normalised:
+class NormalizedPostures:
     """Postures without heading and place.
 
     Attributes
@@ -47,12 +47,12 @@ class Normalised:
 
     def put_back(self, postures: Array) -> Array:
         """Return postures of these frames in the world, same shape."""
-        return turned(postures, self.headings) + self.places[:, None]
+        return rotate_about_vertical(postures, self.headings) + self.places[:, None]
 
 
-def normalise(
+def normalize_postures(
     positions: Array, frame_rate: float, weights: Array | None = None, *, ahead: bool = True
-) -> Normalised:
+) -> NormalizedPostures:
     """Take heading and place out.
 
     The heading follows the level lines from the right to the left hip and shoulder, and is
@@ -68,9 +68,9 @@ def normalise(
         Whether later frames tell of a heading, and of hips that are lost.
     """
     trust = np.ones(positions.shape[:2]) if weights is None else weights
-    places = np.nan_to_num(bridged(positions[:, HIPS], trust[:, HIPS] > 0.0, ahead=ahead))
+    places = np.nan_to_num(fill_gaps(positions[:, HIPS], trust[:, HIPS] > 0.0, ahead=ahead))
     left = np.zeros((len(positions), 2))
-    for one, other, middle in ACROSS:
+    for one, other, middle in LATERAL_JOINTS:
         line, sure = _to_the_left(positions, trust, one, other)
         for half in ((one, middle), (middle, other)):
             part, known = _to_the_left(positions, trust, *half)
@@ -81,12 +81,14 @@ def normalise(
     if not told.any():
         left[:], told = (1.0, 0.0), np.ones(len(left), bool)
     unit = left / np.maximum(np.linalg.norm(left, axis=-1, keepdims=True), 1e-9)
-    unit = bridged(unit, told, ahead=ahead)
+    unit = fill_gaps(unit, told, ahead=ahead)
     if ahead:
-        unit = bridged(unit, ~_reversed(unit, frame_rate))
-    unit = steadied(np.nan_to_num(unit), STEADY * frame_rate, ahead=ahead)
+        unit = fill_gaps(unit, ~_reversed(unit, frame_rate))
+    unit = smooth_gaussian(np.nan_to_num(unit), STEADY * frame_rate, ahead=ahead)
     headings = np.arctan2(unit[:, 1], unit[:, 0])
-    return Normalised(turned(positions - places[:, None], -headings), places, headings)
+    return NormalizedPostures(
+        rotate_about_vertical(positions - places[:, None], -headings), places, headings
+    )
 
 
 def _to_the_left(positions: Array, trust: Array, left: int, right: int) -> tuple[Array, Array]:
@@ -105,13 +107,13 @@ def _reversed(unit: Array, frame_rate: float) -> NDArray[np.bool_]:
     return np.asarray(agreed & ((unit * most).sum(axis=-1) < 0.0))
 
 
-def turned(postures: Array, angles: Array) -> Array:
+def rotate_about_vertical(postures: Array, angles: Array) -> Array:
     """Turn each frame about Z by its angle, in radians."""
     cos, sin = np.cos(angles)[:, None], np.sin(angles)[:, None]
     x, y, z = np.moveaxis(postures, -1, 0)
     return np.stack([cos * x - sin * y, sin * x + cos * y, z], axis=-1)
 
 
-def mirrored(vectors: Array) -> Array:
+def mirror_postures(vectors: Array) -> Array:
     """Return vectors of joints without heading, (..., 20, 3), as a mirror shows them."""
-    return np.asarray(vectors[..., list(MIRROR_IMAGES), :] * (-1.0, 1.0, 1.0))
+    return np.asarray(vectors[..., list(MIRROR_JOINTS), :] * (-1.0, 1.0, 1.0))

@@ -29,7 +29,7 @@ between the shoulders, and a "HandEnd" the middle of the hand or what comes afte
 
 PARENTS = (-1, 0, 1, 2, 2, 4, 5, 6, 2, 8, 9, 10, 0, 12, 13, 14, 0, 16, 17, 18)
 N_JOINTS = len(POSTURE_JOINTS)
-MIRROR_IMAGES = (0, 1, 2, 3, 8, 9, 10, 11, 4, 5, 6, 7, 16, 17, 18, 19, 12, 13, 14, 15)
+MIRROR_JOINTS = (0, 1, 2, 3, 8, 9, 10, 11, 4, 5, 6, 7, 16, 17, 18, 19, 12, 13, 14, 15)
 """The joint of the other side; joints of the middle are their own."""
 HIPS, SPINE, CHEST = 0, 1, 2
 
@@ -41,7 +41,7 @@ PALM = 0.13
 """Metres from the wrist within which the end of a hand is looked for."""
 
 
-def joints_of_names(names: Sequence[str]) -> dict[str, int]:
+def posture_joint_indices(names: Sequence[str]) -> dict[str, int]:
     """Return which of these tracked joints plays which of `POSTURE_JOINTS`."""
     return dict(_found(tuple(names)))
 
@@ -71,7 +71,7 @@ def posture_positions(recording: JointRecording | Tracks) -> Array:
         The recording has no hips, or no joint besides them.
     """
     tracks = recording.tracks if isinstance(recording, JointRecording) else recording
-    places = joints_of_names(tracks.names)
+    places = posture_joint_indices(tracks.names)
     if "hips" not in places or len(places) < 2:
         raise InvalidMotionError(
             "No body was recognised in the names of the joints"
@@ -84,7 +84,7 @@ def posture_positions(recording: JointRecording | Tracks) -> Array:
     return positions
 
 
-def motion_postures(motion: Motion, humanoid_map: HumanoidMap | None = None) -> Array:
+def postures_from_motion(motion: Motion, humanoid_map: HumanoidMap | None = None) -> Array:
     """Return where the joints of postures are in a motion, shape (n_frames, 20, 3), metres.
 
     "chest" is the joint that both arms hang on, "spine" that half way to it from the hips, and

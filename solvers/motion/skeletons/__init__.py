@@ -1,27 +1,27 @@
 """Skeletons, motions and tracks: what all families pass to each other, and its kinematics."""
 
-from .depth_sensors import JOINTS, UI_PRMD, Sensor, joint_parents, rest_direction
+from .depth_sensors import SENSOR_JOINTS, UI_PRMD, Sensor, joint_parents, rest_direction
 from .frame_rate import check_frame_rate
 from .joint_limits import ROTATION_VECTOR, JointLimits, load_joint_limits
 from .joint_recording import INFERRED, TRACKED, JointRecording
 from .kinematics import WorldPoses, forward_kinematics, local_rotations, world_poses
 from .limb_ik import ReachSettings, reach
-from .mediapipe import BODY, CENTRES, HAND
+from .mediapipe import BODY_POINTS, COMPUTED_JOINTS, HAND_POINTS
 from .motion import Motion
 from .resampling import resample
-from .shot_boundaries import find_cuts, is_short, pieces, tell_of_cuts
+from .shot_boundaries import describe_shots, find_shot_boundaries, is_short_shot, shot_ranges
 from .skeleton import Skeleton
 from .tracks import Tracks
 from .velocities import angular_velocities, linear_velocities
 from .warping import Alignment, warp
 
 __all__ = [
-    "BODY",
-    "CENTRES",
-    "HAND",
+    "BODY_POINTS",
+    "COMPUTED_JOINTS",
+    "HAND_POINTS",
     "INFERRED",
-    "JOINTS",
     "ROTATION_VECTOR",
+    "SENSOR_JOINTS",
     "TRACKED",
     "UI_PRMD",
     "Alignment",
@@ -35,18 +35,18 @@ __all__ = [
     "WorldPoses",
     "angular_velocities",
     "check_frame_rate",
-    "find_cuts",
+    "describe_shots",
+    "find_shot_boundaries",
     "forward_kinematics",
-    "is_short",
+    "is_short_shot",
     "joint_parents",
     "linear_velocities",
     "load_joint_limits",
     "local_rotations",
-    "pieces",
     "reach",
     "resample",
     "rest_direction",
-    "tell_of_cuts",
+    "shot_ranges",
     "warp",
     "world_poses",
 ]

@@ -72,7 +72,7 @@ UI_PRMD = {  # Kinect v2, as that data set keeps it
     "RUpLeg": "Waist", "RLowLeg": "RUpLeg", "RFoot": "RLowLeg", "RToes": "RFoot",
 }  # fmt: skip
 
-JOINTS = {
+SENSOR_JOINTS = {
     Sensor.KINECT_V1: tuple(KINECT_V1),
     Sensor.KINECT_V2: tuple(KINECT_V2),
     Sensor.AZURE_KINECT: tuple(AZURE_KINECT),

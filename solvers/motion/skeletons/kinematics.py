@@ -5,7 +5,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from ...rotations import inverse, multiply, product, turned
+from ...rotations import inverse, multiply, multiply_components, rotate_components
 from .motion import Motion
 from .skeleton import Skeleton
 
@@ -52,8 +52,8 @@ def world_poses(
     world[0] = local[0]
     positions[0] = root_positions.reshape(-1, 3).T
     for joint, parent in enumerate(skeleton.parents[1:], start=1):
-        world[joint] = product(world[parent], local[joint])
-        positions[joint] = turned(world[parent], skeleton.offsets[joint])
+        world[joint] = multiply_components(world[parent], local[joint])
+        positions[joint] = rotate_components(world[parent], skeleton.offsets[joint])
         positions[joint] += positions[parent]
     return WorldPoses(
         np.moveaxis(world, -1, 0).reshape(rotations.shape),

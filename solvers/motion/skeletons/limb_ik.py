@@ -18,7 +18,7 @@ from .kinematics import WorldPoses, forward_kinematics
 from .motion import Motion
 from .skeleton import Skeleton
 
-DOUBTED_BEND, TRUSTED_BEND = np.radians([5.0, 25.0])
+MIN_PLANE_FLEXION_RAD, RELIABLE_PLANE_FLEXION_RAD = np.radians([5.0, 25.0])
 """Flexions at which the pose itself begins to tell, and fully tells, the plane of bending."""
 
 Array = NDArray[np.float64]
@@ -146,7 +146,11 @@ def _hinge_turn(first: Array, second: Array, wanted: Array, axis: Array, soft: f
         np.einsum("fi,fi->f", np.cross(level, normal), along),
         np.einsum("fi,fi->f", level, normal),
     )
-    trust = np.clip((before - DOUBTED_BEND) / (TRUSTED_BEND - DOUBTED_BEND), 0.0, 1.0)
+    trust = np.clip(
+        (before - MIN_PLANE_FLEXION_RAD) / (RELIABLE_PLANE_FLEXION_RAD - MIN_PLANE_FLEXION_RAD),
+        0.0,
+        1.0,
+    )
     trust = trust * trust * (3.0 - 2.0 * trust)
     share = np.minimum(before / np.maximum(after, 1e-12), 1.0) ** 2
     kept = (trust + (1.0 - trust) * share) * aside

@@ -5,7 +5,7 @@ joint on the middle of the body; four are computed as freemocap does ("virtual m
 skeletons): means of the points at their sides.
 """
 
-BODY = (
+BODY_POINTS = (
     "nose", "left_eye_inner", "left_eye", "left_eye_outer", "right_eye_inner", "right_eye",
     "right_eye_outer", "left_ear", "right_ear", "mouth_left", "mouth_right", "left_shoulder",
     "right_shoulder", "left_elbow", "right_elbow", "left_wrist", "right_wrist", "left_pinky",
@@ -15,12 +15,12 @@ BODY = (
 )  # fmt: skip
 """Points of the body in MediaPipe's order."""
 FINGERS = ("thumb", "index", "middle", "ring", "pinky")
-HAND = ("wrist", *(f"{finger}_{part}" for finger in FINGERS for part in (1, 2, 3, 4)))
+HAND_POINTS = ("wrist", *(f"{finger}_{part}" for finger in FINGERS for part in (1, 2, 3, 4)))
 """Points of one hand in MediaPipe's order; to be called left_hand_… or right_hand_…"""
 
 HIPS = ("left_hip", "right_hip")
 SHOULDERS = ("left_shoulder", "right_shoulder")
-CENTRES = {
+COMPUTED_JOINTS = {
     "hips_center": HIPS,
     "trunk_center": (*HIPS, *SHOULDERS),
     "neck_center": SHOULDERS,
@@ -28,7 +28,7 @@ CENTRES = {
 }
 """Computed joints, and the points that each is the mean of."""
 
-_FACE = (*BODY[:9], "mouth_left", "mouth_right")
+_FACE = (*BODY_POINTS[:9], "mouth_left", "mouth_right")
 _LIMBS = {
     "shoulder": "neck_center", "elbow": "shoulder", "wrist": "elbow",
     "pinky": "wrist", "index": "wrist", "thumb": "wrist",
@@ -45,7 +45,9 @@ def _parents() -> dict[str, str]:
     }  # fmt: skip
     for side in ("left", "right"):
         for joint, above in _LIMBS.items():
-            parents[f"{side}_{joint}"] = above if above in CENTRES else f"{side}_{above}"
+            parents[f"{side}_{joint}"] = (
+                above if above in COMPUTED_JOINTS else f"{side}_{above}"
+            )
         for finger in FINGERS:
             chain = [f"{side}_hand_{finger}_{part}" for part in (1, 2, 3, 4)]
             parents |= zip(chain, [f"{side}_wrist", *chain], strict=False)
@@ -60,7 +62,7 @@ _OUT, _DOWN, _THUMB = (1.0, 0.0, 0.0), (0.0, 0.0, -1.0), (0.6, -0.8, 0.0)
 MEDIAPIPE_T_POSE = {
     **dict.fromkeys(("left_hip", "left_shoulder", "left_elbow", "left_wrist"), _OUT),
     **dict.fromkeys(("left_knee", "left_ankle"), _DOWN),
-    **{f"left_hand_{part}": _OUT for part in HAND},
+    **{f"left_hand_{part}": _OUT for part in HAND_POINTS},
     **{f"left_hand_thumb_{part}": _THUMB for part in (1, 2, 3, 4)},
     "left_thumb": _THUMB, "left_index": (1.0, -0.3, 0.0), "left_pinky": (1.0, 0.3, 0.0),
     "left_heel": (0.0, 0.5, -1.0), "left_foot_index": (0.0, -1.0, -0.5),

@@ -7,7 +7,7 @@ from numpy.typing import NDArray
 
 from ...errors import InvalidMotionError
 from .frame_rate import check_frame_rate
-from .skeleton import FARTHEST, Skeleton
+from .skeleton import MAX_DISTANCE_M, Skeleton
 
 UNIT_TOLERANCE = 1e-3
 ROUNDING = 1e-14
@@ -53,7 +53,7 @@ class Motion:
         check_frame_rate(self.frame_rate)
         if np.isinf(root_positions).any():
             raise InvalidMotionError("The root has infinite positions; NaN marks missing ones.")
-        if (farthest := np.nanmax(np.abs(root_positions), initial=0.0)) > FARTHEST:
+        if (farthest := np.nanmax(np.abs(root_positions), initial=0.0)) > MAX_DISTANCE_M:
             raise InvalidMotionError(
                 f"The root goes as far as {farthest:.3g} m; give the scale of the recording, or"
                 " take those frames out."

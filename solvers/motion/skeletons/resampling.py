@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...rotations import normalize, unroll
-from ...signals import bridged
+from ...signals import fill_gaps
 from .frame_rate import check_frame_rate
 from .motion import Motion
 from .tracks import Tracks
@@ -98,7 +98,7 @@ def _sampled(
 ) -> NDArray[np.float64]:
     """Return `values`, shape (n_frames, ..., n), at fractional frames; gaps stay NaN."""
     observed = np.isfinite(values).all(axis=-1)
-    filled = np.nan_to_num(bridged(values))
+    filled = np.nan_to_num(fill_gaps(values))
     step = round(1.0 / slowdown)
     if slowdown >= 1.0 or len(values) < 2:
         result = _interpolated(filled, times)

@@ -33,7 +33,7 @@ BLOCK = 512
 """Steps looked at at a time: this bounds the memory, however long the take."""
 
 
-def find_cuts(recording: Motion | Tracks) -> tuple[int, ...]:
+def find_shot_boundaries(recording: Motion | Tracks) -> tuple[int, ...]:
     """Return the first frame of every piece of a take but the first; none is the rule.
 
     Many recordings begin with a T-pose of one frame; others were joined, or their sensor was
@@ -53,7 +53,7 @@ def find_cuts(recording: Motion | Tracks) -> tuple[int, ...]:
     place = 0
     while place + 1 < len(cuts):
         start, stop = cuts[place : place + 2]
-        brief = is_short(stop - start, recording.frame_rate)
+        brief = is_short_shot(stop - start, recording.frame_rate)
         before, after = max(start - 2 * AROUND, 0), stop + 2 * AROUND
         if brief and _comes_back(
             _course(recording, slice(before, after))[:, moving],
@@ -66,23 +66,23 @@ def find_cuts(recording: Motion | Tracks) -> tuple[int, ...]:
     return tuple(cuts)
 
 
-def pieces(recording: Motion | Tracks, cuts: tuple[int, ...]) -> Iterator[tuple[int, int]]:
+def shot_ranges(recording: Motion | Tracks, cuts: tuple[int, ...]) -> Iterator[tuple[int, int]]:
     """Yield the first frame of every piece and the first after it."""
     yield from pairwise((0, *cuts, recording.n_frames))
 
 
-def is_short(n_frames: int, frame_rate: float) -> bool:
+def is_short_shot(n_frames: int, frame_rate: float) -> bool:
     """Tell whether a piece of a take is too short to be cleaned."""
     return n_frames < SHORTEST * frame_rate
 
 
-def tell_of_cuts(recording: Motion | Tracks, cuts: tuple[int, ...]) -> str:
+def describe_shots(recording: Motion | Tracks, cuts: tuple[int, ...]) -> str:
     """Return a sentence for the animator, with frames counted from 1; empty without cuts."""
     if not cuts:
         return ""
     kept, cleaned_from = [], []
-    for start, stop in pieces(recording, cuts):
-        if not is_short(stop - start, recording.frame_rate):
+    for start, stop in shot_ranges(recording, cuts):
+        if not is_short_shot(stop - start, recording.frame_rate):
             cleaned_from.append(str(start + 1))
         elif stop - start == 1:
             kept.append(f"frame {start + 1}")

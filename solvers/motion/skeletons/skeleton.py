@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from ...errors import InvalidMotionError
 
-FARTHEST = 1e9
+MAX_DISTANCE_M = 1e9
 """Metres. Nobody is captured beyond; a unit was misread there, and squares may overflow."""
 
 
@@ -58,7 +58,7 @@ class Skeleton:
             )
         elif not np.isfinite(self.offsets).all():
             faults.append("The rest pose has offsets that are not finite numbers.")
-        elif np.abs(self.offsets).max() > FARTHEST:
+        elif np.abs(self.offsets).max() > MAX_DISTANCE_M:
             faults.append(
                 f"The rest pose has a bone of {np.abs(self.offsets).max():.3g} m; give the"
                 " scale of the file, or mend that bone."

@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 
 from ...errors import InvalidMotionError
 from .frame_rate import check_frame_rate
-from .skeleton import FARTHEST
+from .skeleton import MAX_DISTANCE_M
 
 
 @dataclass(frozen=True, eq=False)
@@ -43,7 +43,7 @@ class Tracks:
         farthest = max(np.nanmax(positions, initial=0.0), -np.nanmin(positions, initial=0.0))
         if np.isinf(farthest):
             raise InvalidMotionError("There are infinite positions; NaN marks missing ones.")
-        if farthest > FARTHEST:
+        if farthest > MAX_DISTANCE_M:
             raise InvalidMotionError(
                 f"A point is as far as {farthest:.3g} m; give the scale of the recording, or"
                 " take those frames out."

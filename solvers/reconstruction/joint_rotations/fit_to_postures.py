@@ -11,9 +11,9 @@ from ...motion import (
     forward_kinematics,
     local_rotations,
 )
-from ...motion.humanoid import CHEST, HIPS, N_JOINTS, POSTURE_JOINTS, motion_postures
-from ...rotations import best_turns, inverse, multiply, rotate, rotation_between, slerp
-from ...signals import bridged, bridged_rotations
+from ...motion.humanoid import CHEST, HIPS, N_JOINTS, POSTURE_JOINTS, postures_from_motion
+from ...rotations import fit_rotations, inverse, multiply, rotate, rotation_between, slerp
+from ...signals import fill_gaps, fill_rotation_gaps
 
 Array = NDArray[np.float64]
 AIMS = {
@@ -66,14 +66,14 @@ def fit_motion_to_postures(
             f" {postures.shape}."
         )
     humanoid_map = humanoid_map or find_humanoid_map(motion.skeleton)
-    gap_free = fill_gaps(motion)
+    gap_free = fill_motion_gaps(motion)
     return _PostureFit(gap_free, postures, humanoid_map).fit()
 
 
-def fill_gaps(motion: Motion) -> Motion:
+def fill_motion_gaps(motion: Motion) -> Motion:
     """Fill gaps by interpolation, joint by joint; hold the first and last known frames."""
-    joints = np.nan_to_num(bridged(motion.root_positions))
-    return motion.with_poses(bridged_rotations(motion.rotations), joints)
+    joints = np.nan_to_num(fill_gaps(motion.root_positions))
+    return motion.with_poses(fill_rotation_gaps(motion.rotations), joints)
 
 
 class _PostureFit:
@@ -82,7 +82,7 @@ class _PostureFit:
     def __init__(self, motion: Motion, postures: Array, humanoid_map: HumanoidMap) -> None:
         self.motion, self.skeleton = motion, motion.skeleton
         self.original = forward_kinematics(motion)
-        self.before = motion_postures(motion, humanoid_map)
+        self.before = postures_from_motion(motion, humanoid_map)
         self.targets = np.where(np.isfinite(postures), postures, self.before)
         joints = humanoid_map.indices(self.skeleton)
         self.roles = {joint: role for role, joint in joints.items()}
@@ -130,8 +130,8 @@ class _PostureFit:
         is_known = np.isfinite(original).all(axis=(0, 2)) & np.isfinite(new).all(axis=(0, 2))
         median_offsets = np.median(original[:, is_known], axis=0)
         swings = multiply(
-            best_turns(median_offsets, new[:, is_known]),
-            inverse(best_turns(median_offsets, original[:, is_known])),
+            fit_rotations(median_offsets, new[:, is_known]),
+            inverse(fit_rotations(median_offsets, original[:, is_known])),
         )
         return np.where(np.isfinite(swings), swings, (1.0, 0.0, 0.0, 0.0))
 

@@ -5,7 +5,15 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from ...motion.humanoid import ABOVE, CHEST, HIPS, N_JOINTS, POSTURE_JOINTS, SPINE, along_bones
+from ...motion.humanoid import (
+    CHEST,
+    HIPS,
+    N_JOINTS,
+    PARENT_INDICES,
+    POSTURE_JOINTS,
+    SPINE,
+    positions_from_directions,
+)
 
 Array = NDArray[np.float64]
 Single = NDArray[np.float32]
@@ -55,14 +63,18 @@ def build_body_postures(
     """
     if corrections is not None:
         directions, changes = directions.copy(), changes.copy()
-        frames = bone_frames(along_bones(directions.astype(np.float64), lengths))
+        frames = bone_frames(positions_from_directions(directions.astype(np.float64), lengths))
         for bone in CORRECTED_BONES:
             frame = frames[bone].astype(np.float32)
             rotation = frame @ corrections[bone].astype(np.float32) @ frame.swapaxes(-1, -2)
             directions[:, bone] = np.einsum("nij,nj->ni", rotation, directions[:, bone])
             changes[:, bone] = np.einsum("nij,nj->ni", rotation, changes[:, bone])
     single = lengths.astype(np.float32)
-    return BodyPostures(along_bones(directions, single), along_bones(changes, single), lengths)
+    return BodyPostures(
+        positions_from_directions(directions, single),
+        positions_from_directions(changes, single),
+        lengths,
+    )
 
 
 def bone_frames(postures: Array) -> dict[int, Array]:
@@ -79,7 +91,7 @@ def bone_frames(postures: Array) -> dict[int, Array]:
     frames = dict.fromkeys((CHEST, HEAD, *ARMS), upper)
     frames |= dict.fromkeys((SPINE, *LEGS), lower)
     for ankle, toes in zip(SHINS, TOES, strict=True):
-        shin = postures[:, ABOVE[ankle]] - postures[:, ankle]
+        shin = postures[:, PARENT_INDICES[ankle]] - postures[:, ankle]
         frames[toes] = _axes(shin, across[LEGS])
     return frames
 
@@ -105,9 +117,9 @@ def bone_axis_corrections(
     """
     corrections = np.tile(np.eye(3), (N_JOINTS, 1, 1))
     observed_frames = bone_frames(observed)
-    library_frames = bone_frames(along_bones(directions, lengths))
+    library_frames = bone_frames(positions_from_directions(directions, lengths))
     for bone in CORRECTED_BONES:
-        above = ABOVE[bone]
+        above = PARENT_INDICES[bone]
         direction = observed[:, bone] - observed[:, above]
         size = np.linalg.norm(direction, axis=-1, keepdims=True)
         observed_local = np.einsum(

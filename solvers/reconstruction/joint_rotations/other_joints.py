@@ -6,8 +6,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...motion import joint_parents
-from ...motion.humanoid import N_JOINTS, PARENTS, POSTURE_JOINTS, joints_of_names
-from ...rotations import IDENTITY, best_turns, inverse, multiply, rotate, rotation_between
+from ...motion.humanoid import N_JOINTS, PARENTS, POSTURE_JOINTS, posture_joint_indices
+from ...rotations import IDENTITY, fit_rotations, inverse, multiply, rotate, rotation_between
 
 Array = NDArray[np.float64]
 
@@ -27,7 +27,8 @@ def find_anchors(names: Sequence[str]) -> NDArray[np.intp]:
     A posture joint is its own anchor. Others use the nearest one in the tree, ancestors first.
     """
     posture_joints = {
-        place: POSTURE_JOINTS.index(role) for role, place in joints_of_names(names).items()
+        place: POSTURE_JOINTS.index(role)
+        for role, place in posture_joint_indices(names).items()
     }
     parents = joint_parents(names)
     connected = [
@@ -68,7 +69,8 @@ def positions_from_postures(
         Posture joints as observed, and after they were moved.
     """
     posture_joints = {
-        place: POSTURE_JOINTS.index(role) for role, place in joints_of_names(names).items()
+        place: POSTURE_JOINTS.index(role)
+        for role, place in posture_joint_indices(names).items()
     }
     result = np.empty_like(tracked)
     bones_before, bones_after = _bones(before), _bones(after)
@@ -101,7 +103,7 @@ def _bones(postures: Array) -> Array:
 def _trunk_rotations(postures: Array) -> Array:
     """Return the rotation of the trunk from a body that faces -Y, (n_frames, 4)."""
     tracked = postures[:, [POSTURE_JOINTS.index(role) for role in TRUNK]] - postures[:, :1]
-    turns = best_turns(np.array(list(TRUNK.values())), tracked)
+    turns = fit_rotations(np.array(list(TRUNK.values())), tracked)
     return np.where(np.isfinite(turns), turns, IDENTITY)
 
 

@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...motion import Skeleton, roles_by_name
-from ...rotations import IDENTITY, best_turns, multiply, rotate, rotation_between, slerp
+from ...rotations import IDENTITY, fit_rotations, multiply, rotate, rotation_between, slerp
 from .limb_twist import (
     HINGES,
     UNKNOWN_HINGES,
@@ -133,7 +133,7 @@ class RotationSolver:
             return np.broadcast_to(IDENTITY, self.world[:, 0].shape)
         if joint not in trunk:
             return self.world[:, parent]
-        chest = best_turns(*self._child_directions(self.chest)[:2])
+        chest = fit_rotations(*self._child_directions(self.chest)[:2])
         interpolated = slerp(self.world[:, parent], chest, trunk[joint])
         return np.where(np.isfinite(interpolated), interpolated, self.world[:, parent])
 
@@ -209,7 +209,7 @@ class RotationSolver:
         rotations = above
         if len(directions.rest) > 1:
             rotations = _fill_undefined(
-                best_turns(directions.rest, directions.tracked),
+                fit_rotations(directions.rest, directions.tracked),
                 above,
                 directions.known,
             )

@@ -7,7 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.ndimage import gaussian_filter1d
 
-from ...motion.humanoid import HIPS, Normalised, bone_changes
+from ...motion.humanoid import HIPS, NormalizedPostures, rates_from_directions
 from ...progress import Progress, within
 from ..joint_rotations import (
     N_TWISTED_LIMBS,
@@ -74,7 +74,7 @@ class _ObservedTake:
 
 
 def complete_postures(
-    observed: Normalised,
+    observed: NormalizedPostures,
     trust: Array,
     frame_rate: float,
     lengths: Array,
@@ -171,7 +171,7 @@ def _fit_library_to_actor(
 
 def _speeds(take: _ObservedTake, settings: PostureSettings) -> Array:
     """Return the velocities of bones; NaN if causal, since they need later frames."""
-    speeds = bone_changes(take.postures, take.frame_rate)
+    speeds = rates_from_directions(take.postures, take.frame_rate)
     return np.full_like(speeds, np.nan) if settings.causal else speeds
 
 

@@ -7,7 +7,12 @@ from numpy.typing import NDArray
 
 from ...errors import InvalidMotionError
 from ...motion import JointRecording, Tracks
-from ...motion.humanoid import body_lengths, joints_of_names, normalise, posture_positions
+from ...motion.humanoid import (
+    estimate_bone_lengths,
+    normalize_postures,
+    posture_joint_indices,
+    posture_positions,
+)
 from ...motion.skeletons import INFERRED
 from ...progress import Progress, unwatched, within
 from ..joint_rotations import (
@@ -114,8 +119,8 @@ def complete_joints(
     trust = np.where(observed, posture_reliability(recording, combined), 0.0)
     _check_observed(recording, positions, trust)
     rate = recording.frame_rate
-    body = normalise(positions, rate, trust, ahead=not settings.causal)
-    lengths = body_lengths(body.postures, trust)
+    body = normalize_postures(positions, rate, trust, ahead=not settings.causal)
+    lengths = estimate_bone_lengths(body.postures, trust)
     completed = complete_postures(body, trust, rate, lengths, library, settings, progress)
     tracks = recording.tracks
     world_positions = body.put_back(completed.postures)
@@ -133,7 +138,7 @@ def _check_observed(recording: JointRecording, positions: Array, trust: Array) -
     """Raise InvalidMotionError with the reason if no frame has enough reliable joints."""
     if _max_joints(trust > 0.0) >= MIN_JOINTS:
         return
-    recognized = joints_of_names(recording.names)
+    recognized = posture_joint_indices(recording.names)
     if len(recognized) < MIN_JOINTS:
         raise InvalidMotionError(
             f"Only {len(recognized)} joints have recognized names"

@@ -3,7 +3,7 @@
 import numpy as np
 from numpy.typing import NDArray
 
-from ...motion.humanoid import USUAL_LENGTHS, along_bones
+from ...motion.humanoid import ADULT_BONE_LENGTHS_M, positions_from_directions
 
 Single = NDArray[np.float32]
 
@@ -27,8 +27,12 @@ def group_postures(directions: Single) -> NDArray[np.int32]:
     n_postures = len(directions)
     if n_postures < MIN_POSTURES:
         return np.zeros(n_postures, dtype=np.int32)
-    lengths: Single = USUAL_LENGTHS.astype(np.float32)
-    points: Single = along_bones(directions, lengths).reshape(n_postures, -1).astype(np.float32)
+    lengths: Single = ADULT_BONE_LENGTHS_M.astype(np.float32)
+    points: Single = (
+        positions_from_directions(directions, lengths)
+        .reshape(n_postures, -1)
+        .astype(np.float32)
+    )
     n_groups = n_postures // PER_GROUP
     centers = points[np.linspace(0, n_postures - 1, n_groups).astype(int)]
     groups = _nearest_centers(points, centers)

@@ -13,11 +13,11 @@ from ...errors import InvalidMotionError
 from ...motion import Motion, resample
 from ...motion.humanoid import (
     N_JOINTS,
-    bone_changes,
     bone_directions,
-    mirrored,
-    motion_postures,
-    normalise,
+    mirror_postures,
+    normalize_postures,
+    postures_from_motion,
+    rates_from_directions,
 )
 from ...npz_members import integers, words
 from ...progress import Progress, unwatched, within
@@ -267,14 +267,14 @@ def _read_clip(
     fine = max(settings.frame_rate, min(motion.frame_rate, 2.0 / PACE_S))
     if abs(motion.frame_rate - fine) > 1e-6:
         motion = resample(motion, fine)
-    positions = motion_postures(motion)
-    directions = bone_directions(normalise(positions, fine).postures)
-    changes = bone_changes(directions, fine)
+    positions = postures_from_motion(motion)
+    directions = bone_directions(normalize_postures(positions, fine).postures)
+    changes = rates_from_directions(directions, fine)
     step = max(round(fine / settings.frame_rate), 1)
     twists = read_clip_twists(motion, positions)
     return (
-        _with_mirror_images(directions[::step], mirrored, settings),
-        _with_mirror_images(changes[::step], mirrored, settings),
+        _with_mirror_images(directions[::step], mirror_postures, settings),
+        _with_mirror_images(changes[::step], mirror_postures, settings),
         ClipTwists(
             twists.from_rotations[::step],
             twists.from_flexion[::step],

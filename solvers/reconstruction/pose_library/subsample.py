@@ -3,7 +3,7 @@
 import numpy as np
 from numpy.typing import NDArray
 
-from ...motion.humanoid import N_JOINTS, USUAL_LENGTHS, along_bones
+from ...motion.humanoid import ADULT_BONE_LENGTHS_M, N_JOINTS, positions_from_directions
 from ...progress import Progress, unwatched
 
 Array = NDArray[np.float64]
@@ -32,7 +32,9 @@ def subsample_postures(
     progress : Progress
     """
     blocks = np.split(vectors, vectors.shape[1] // N_JOINTS, axis=1)
-    points = np.concatenate([along_bones(part, USUAL_LENGTHS) for part in blocks], axis=1)
+    points = np.concatenate(
+        [positions_from_directions(part, ADULT_BONE_LENGTHS_M) for part in blocks], axis=1
+    )
     flat = points.reshape(len(points), -1)
     flat = flat - flat.mean(axis=0)
     _, axes = np.linalg.eigh(flat.T @ flat)

@@ -6,7 +6,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from ...motion.humanoid import ABOVE, N_JOINTS
+from ...motion.humanoid import N_JOINTS, PARENT_INDICES
 
 Array = NDArray[np.float64]
 N_BONES = N_JOINTS - 1
@@ -96,7 +96,7 @@ def style_distances(x: Array, targets: EnergyTargets) -> Array:
 
 def kinematics_term(x: Array, targets: EnergyTargets) -> Array:
     """Mean squared difference of the lengths of segments (eq. 12)."""
-    lengths = np.linalg.norm(x - x[..., ABOVE, :], axis=-1)
+    lengths = np.linalg.norm(x - x[..., PARENT_INDICES, :], axis=-1)
     differences = (lengths - targets.lengths)[..., 1:]
     return np.asarray(np.einsum("fsi,fsi->fs", differences, differences) / N_BONES)
 

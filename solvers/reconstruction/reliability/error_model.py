@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from scipy.ndimage import uniform_filter1d
 from scipy.special import ndtr
 
-from ...signals import bridged
+from ...signals import fill_gaps
 from .settings import SENSOR_RATE_HZ
 from .terms import frame_count, vector_lengths, weighted_sum
 from .transient_jumps import find_transient_jumps
@@ -129,7 +129,7 @@ def _smoothing_residuals(positions: Array, frame_rate: float) -> Array:
     longest = len(positions) - 1 + len(positions) % 2
     n_frames = min(2 * round(0.5 * SMOOTHING_WINDOW_S * frame_rate) + 1, longest)
     degree = min(DEGREE, n_frames // 2)
-    smooth = savgol_filter(np.nan_to_num(bridged(positions)), n_frames, degree, axis=0)
+    smooth = savgol_filter(np.nan_to_num(fill_gaps(positions)), n_frames, degree, axis=0)
     return vector_lengths(positions - smooth)
 
 

@@ -7,7 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...motion import JointRecording
-from ...motion.humanoid import SIDES, joints_of_names
+from ...motion.humanoid import SIDES, posture_joint_indices
 from .terms import vector_lengths
 
 Array = NDArray[np.float64]
@@ -70,7 +70,7 @@ def _swap_groups(recording: JointRecording) -> Iterator[tuple[Pairs, Pairs]]:
     them must jump.
     """
     names, parents = recording.names, recording.parents
-    roles = joints_of_names(names)
+    roles = posture_joint_indices(names)
     pairs = _pairs(names, roles)
     ends = {
         limb: (roles[SIDES[0] + limb], roles[SIDES[1] + limb])

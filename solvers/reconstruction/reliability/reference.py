@@ -5,7 +5,7 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from ...motion.humanoid import joints_of_names
+from ...motion.humanoid import posture_joint_indices
 from .terms import vector_lengths
 
 Array = NDArray[np.float64]
@@ -65,7 +65,7 @@ def find_reference_postures(names: Sequence[str], positions: Array, tracked: Fla
     positions : shape (n_frames, n_joints, 3), meters
     tracked : shape (n_frames, n_joints)
     """
-    roles = joints_of_names(names)
+    roles = posture_joint_indices(names)
     needed = {"hips", "chest"} | {
         f"{side}{part}"
         for side in ("left", "right")

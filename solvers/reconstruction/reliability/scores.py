@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...motion import JointRecording
-from ...motion.humanoid import N_JOINTS, POSTURE_JOINTS, joints_of_names
+from ...motion.humanoid import N_JOINTS, POSTURE_JOINTS, posture_joint_indices
 from ...progress import Progress, unwatched
 from .error_model import CAUSAL_MODEL, CENTERED_MODEL, measure_error_indicators
 from .reference import find_reference_postures, parent_distances, reference_lengths
@@ -99,6 +99,6 @@ def posture_reliability(
 ) -> NDArray[np.float64]:
     """Return the reliability of the posture joints, (n_frames, 20); 0 where missing."""
     result = np.zeros((recording.n_frames, N_JOINTS))
-    for role, index in joints_of_names(recording.names).items():
+    for role, index in posture_joint_indices(recording.names).items():
         result[:, POSTURE_JOINTS.index(role)] = combined[:, index]
     return result

@@ -10,7 +10,7 @@ from ...motion import JointRecording
 from ...motion.humanoid import posture_positions
 from ...progress import Progress, unwatched, within
 from ...settings import Settings, setting
-from ...signals import bridged
+from ...signals import fill_gaps
 from ..joint_rotations import (
     LimbTwists,
     Reconstruction,
@@ -193,7 +193,7 @@ def _frame_by_frame(
     settings: CorrectionSettings,
 ) -> Array:
     """Minimize eq. 5.6 of [ZH14] in each frame, given the frames 1/30 and 1/15 s before."""
-    observed = bridged(posture_positions(recording)) * CM_PER_M
+    observed = fill_gaps(posture_positions(recording)) * CM_PER_M
     offsets = predicted * CM_PER_M - observed
     spatial = settings.spatial / (2.0 * variances * CM_PER_M**2)
     trust = settings.trust * weights**2

@@ -8,16 +8,16 @@ from numpy.typing import NDArray
 from ...errors import InvalidMotionError
 from ...motion import JointRecording, Tracks
 from ...motion.humanoid import (
+    ADULT_BONE_LENGTHS_M,
     N_JOINTS,
     PARENTS,
-    USUAL_LENGTHS,
-    Normalised,
-    body_lengths,
-    normalise,
+    NormalizedPostures,
+    estimate_bone_lengths,
+    normalize_postures,
     posture_positions,
-    turned,
+    rotate_about_vertical,
 )
-from ...signals import bridged, steadied
+from ...signals import fill_gaps, smooth_gaussian
 
 Array = NDArray[np.float64]
 
@@ -49,13 +49,13 @@ class SmoothedPostures:
     """
 
     positions: Array
-    normalised: Normalised
+    normalised: NormalizedPostures
     features: Array
     frame_rate: float
 
     def turn_back(self, offsets: Array) -> Array:
         """Rotate offsets of these frames from body to world axes, (n_frames, n, 3)."""
-        return turned(offsets, self.normalised.headings)
+        return rotate_about_vertical(offsets, self.normalised.headings)
 
 
 def smooth_postures(
@@ -69,17 +69,19 @@ def smooth_postures(
 
     Without `ahead` a frame depends on no later one, except for the actor's size.
     """
-    positions = bridged(posture_positions(recording), ahead=ahead)
+    positions = fill_gaps(posture_positions(recording), ahead=ahead)
     observed = np.isfinite(positions).all(axis=(0, 2))
     rate = recording.frame_rate
-    positions[:, observed] = steadied(positions[:, observed], seconds * rate, ahead=ahead)
-    normalized = normalise(positions, rate, weights, ahead=ahead)
-    length = body_lengths(positions).sum()
+    positions[:, observed] = smooth_gaussian(
+        positions[:, observed], seconds * rate, ahead=ahead
+    )
+    normalized = normalize_postures(positions, rate, weights, ahead=ahead)
+    length = estimate_bone_lengths(positions).sum()
     if length == 0.0:
         raise InvalidMotionError(
             "All joints are at one position. Choose a recording of a tracked actor."
         )
-    features = normalized.postures * USUAL_LENGTHS.sum() / length
+    features = normalized.postures * ADULT_BONE_LENGTHS_M.sum() / length
     return SmoothedPostures(positions, normalized, features, rate)
 
 

@@ -7,7 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.linalg import cho_factor, cho_solve
 
-from ...motion.humanoid import MIRROR_IMAGES, mirrored
+from ...motion.humanoid import MIRROR_JOINTS, mirror_postures
 from .movement_process import (
     PERSONAL_STRENGTHS,
     SHARED_STRENGTHS,
@@ -62,7 +62,7 @@ def learn_movement_process(
         return None
     rows = rows[np.linspace(0, len(rows) - 1, min(n_points, len(rows))).round().astype(int)]
     parts, errors = parts[:, rows], np.nan_to_num(errors[rows])
-    mirror_images = mirrored(parts) if mirror else parts
+    mirror_images = mirror_postures(parts) if mirror else parts
     centre, axes = _principal_axes(np.concatenate([parts[0], mirror_images[0]])[:, joints])
     points, mirrored_points = (
         project_parts(one, joints, centre, axes) for one in (parts, mirror_images)
@@ -75,12 +75,12 @@ def learn_movement_process(
             ).astype(np.float64)
             + MEAN_VARIANCE
         )
-        symmetric = 0.5 * (errors + mirrored(errors))
+        symmetric = 0.5 * (errors + mirror_postures(errors))
         weights = _solve(covariance + mirror_covariance, symmetric) + _solve(
             covariance - mirror_covariance, errors - symmetric
         )
         weight_sum = weights.sum(axis=0)
-        mean = MEAN_VARIANCE * (weight_sum + mirrored(weight_sum))
+        mean = MEAN_VARIANCE * (weight_sum + mirror_postures(weight_sum))
     else:
         weights = _solve(covariance, errors)
         mean = MEAN_VARIANCE * weights.sum(axis=0)
@@ -116,7 +116,7 @@ def _predictable_joints(errors: Array, mirror: bool) -> Numbers:
     """Return the joints that are known often enough, as are their mirror images."""
     fraction = np.isfinite(errors).all(axis=-1).mean(axis=0)
     if mirror:
-        fraction = np.minimum(fraction, fraction[list(MIRROR_IMAGES)])
+        fraction = np.minimum(fraction, fraction[list(MIRROR_JOINTS)])
     return np.flatnonzero(fraction >= MIN_KNOWN_FRACTION).astype(np.int64)
 
 

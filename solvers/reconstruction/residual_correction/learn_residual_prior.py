@@ -10,12 +10,12 @@ from numpy.typing import NDArray
 from ...errors import InvalidMotionError
 from ...motion import JointRecording, Tracks
 from ...motion.humanoid import (
-    MIRROR_IMAGES,
+    MIRROR_JOINTS,
     N_JOINTS,
     POSTURE_JOINTS,
-    mirrored,
+    mirror_postures,
     posture_positions,
-    turned,
+    rotate_about_vertical,
 )
 from ...progress import Progress, unwatched
 from ...settings import Settings, setting
@@ -144,7 +144,7 @@ def learn_residual_prior(
     for joint in range(N_JOINTS):
         progress(joint / N_JOINTS, "Learning sensor errors")
         known = np.isfinite(examples.errors[:, joint]).all(axis=-1)
-        is_mirror_image = settings.mirror and MIRROR_IMAGES[joint] < joint
+        is_mirror_image = settings.mirror and MIRROR_JOINTS[joint] < joint
         if known.sum() >= MIN_FRAMES and not is_mirror_image:
             learned[joint] = _learn_joint(
                 examples, joint, known, pose_features, whole_points, settings
@@ -202,7 +202,7 @@ def _read_takes(
     for (observed, true), actor in zip(pairs, actor_names, strict=True):
         smoothed = smooth_postures(observed, calm)
         off = posture_positions(true) - smoothed.positions
-        errors = turned(off, -smoothed.normalised.headings)
+        errors = rotate_about_vertical(off, -smoothed.normalised.headings)
         takes.append(Take(smoothed.features, errors, observed.frame_rate, actor))
     return takes
 
@@ -221,8 +221,8 @@ def _gather_examples(
     names = sorted(set(actor_names))
     actors = [names.index(actor_names[take]) for take in takes]
     if settings.mirror:
-        features += [mirrored(one) for one in features]
-        errors += [mirrored(one) for one in errors]
+        features += [mirror_postures(one) for one in features]
+        errors += [mirror_postures(one) for one in errors]
         takes += [len(actor_names) + take for take in takes]
         actors += [len(names) + actor for actor in actors]
     all_features = np.concatenate(features)

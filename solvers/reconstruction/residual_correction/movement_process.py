@@ -16,7 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.ndimage import gaussian_filter1d, uniform_filter1d
 
-from ...motion.humanoid import N_JOINTS, mirrored
+from ...motion.humanoid import N_JOINTS, mirror_postures
 from ...npz_members import flags, integers, numbers
 from .kernel import squared_distances
 
@@ -134,8 +134,10 @@ class MovementProcess:
         result[:, self.joints] = self.mean.reshape(-1, 3) + predicted
         if self.mirrored:
             image = np.zeros_like(result)
-            image[:, self.joints], mirrored_squares = self._predict_offsets(mirrored(parts))
-            result += mirrored(image)
+            image[:, self.joints], mirrored_squares = self._predict_offsets(
+                mirror_postures(parts)
+            )
+            result += mirror_postures(image)
             squares = np.minimum(squares, mirrored_squares)
         full_coverage, fall_off = COVERAGE_RANGE_M
         return result, np.exp(

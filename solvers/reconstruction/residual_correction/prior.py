@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...archives import ArchiveLayout
-from ...motion.humanoid import MIRROR_IMAGES, N_JOINTS, POSTURE_JOINTS, mirrored
+from ...motion.humanoid import MIRROR_JOINTS, N_JOINTS, POSTURE_JOINTS, mirror_postures
 from ...npz_members import flags, numbers, words
 from .confidence import IDENTITY_CALIBRATION, Calibration, chance_within
 from .inputs import (
@@ -173,8 +173,8 @@ class ResidualPrior:
         prediction = self._predict_learned(features)
         if not self.mirrored:
             return prediction
-        mirror_image = self._predict_learned(mirrored(features))
-        counterparts = list(MIRROR_IMAGES)
+        mirror_image = self._predict_learned(mirror_postures(features))
+        counterparts = list(MIRROR_JOINTS)
         share = np.where(
             np.arange(N_JOINTS) == counterparts, 0.5, np.arange(N_JOINTS) < counterparts
         )
@@ -184,7 +184,7 @@ class ResidualPrior:
         )
         return Prediction(
             own[..., None] * prediction.offsets
-            + (1.0 - own)[..., None] * mirrored(mirror_image.offsets),
+            + (1.0 - own)[..., None] * mirror_postures(mirror_image.offsets),
             variances,
             own * prediction.coverage + (1.0 - own) * mirror_image.coverage[:, counterparts],
         )
@@ -224,7 +224,7 @@ class ResidualPrior:
         for place, name in enumerate(self.joints):
             kernel = self.kernel(place)
             joint = POSTURE_JOINTS.index(str(name))
-            mirrored_joints = [joint, MIRROR_IMAGES[joint]] if self.mirrored else [joint]
+            mirrored_joints = [joint, MIRROR_JOINTS[joint]] if self.mirrored else [joint]
             result[mirrored_joints] = (
                 sum(kernel.personal)
                 + kernel.noise

@@ -6,7 +6,12 @@ import numpy as np
 
 from ...errors import InvalidMotionError
 from ...motion import JointRecording
-from ...motion.humanoid import LARGEST, SMALLEST, posture_positions, size_of_body
+from ...motion.humanoid import (
+    MAX_BODY_SCALE,
+    MIN_BODY_SCALE,
+    estimate_body_scale,
+    posture_positions,
+)
 from ...progress import Progress
 
 UNITS = {1.0: "metres", 0.01: "centimetres", 0.001: "millimetres"}
@@ -27,14 +32,14 @@ def in_unit_of_body(
         Told of another unit.
     """
     try:
-        size = size_of_body(posture_positions(recording))
+        size = estimate_body_scale(posture_positions(recording))
     except InvalidMotionError:  # no hips
         return recording
-    if SMALLEST <= size <= LARGEST or not size > 0.0:
+    if MIN_BODY_SCALE <= size <= MAX_BODY_SCALE or not size > 0.0:
         return recording
     likely = min(UNITS, key=lambda other: abs(np.log(size * other / unit)))
     factor = likely / unit
-    if not SMALLEST <= size * factor <= LARGEST:
+    if not MIN_BODY_SCALE <= size * factor <= MAX_BODY_SCALE:
         return recording
     progress(1.0, guessed_unit(likely))
     tracks = recording.tracks

@@ -7,12 +7,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...errors import InvalidFileError
-from ...motion import JOINTS, JointRecording, Sensor
+from ...motion import SENSOR_JOINTS, JointRecording, Sensor
 from ...progress import Progress, unwatched, within
 from ..containers import GrowingTable, LineReader, parted_by_blanks, read_number, stream_rows
 from ..conventions import USUAL_RATE, check_scale, from_azure_space, joint_recording
 
-NAMES = JOINTS[Sensor.AZURE_KINECT]
+NAMES = SENSOR_JOINTS[Sensor.AZURE_KINECT]
 MILLIMETRE = 0.001
 PER_JOINT = re.compile(rb"(?i)[^\n]*\n?[ \t]*body id\s*,\s*joint #\s*,\s*x\s*,\s*y\s*,\s*z")
 PER_FRAME = re.compile(rb"(?i)[^\n]*\bpelvis\.x\s*,")

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...errors import InvalidFileError
-from ...motion import JOINTS, JointRecording, Sensor
+from ...motion import SENSOR_JOINTS, JointRecording, Sensor
 from ...progress import Progress, unwatched
 from ..containers import DifferentNames, json_members, numbers_of, printable
 from ..conventions import (
@@ -84,7 +84,7 @@ def read_azure_json(
             names.append(given.give(printable(azure_joint(str(member.value)))))
     if not any(frames):
         raise InvalidFileError(f"{path} has {len(frames)} frames but no body in any of them.")
-    joints = names or list(JOINTS[Sensor.AZURE_KINECT])
+    joints = names or list(SENSOR_JOINTS[Sensor.AZURE_KINECT])
     if {len(places) for frame in frames for places in frame.values()} != {len(joints)}:
         raise InvalidFileError(
             f"{path}: not every body has a place for each of the {len(joints)} joints. The file"

@@ -7,12 +7,12 @@ from numpy.typing import NDArray
 
 from ...errors import InvalidFileError
 from ...motion import JointRecording, Sensor, Tracks
-from ...motion.skeletons import BODY, CENTRES, HAND
+from ...motion.skeletons import BODY_POINTS, COMPUTED_JOINTS, HAND_POINTS
 from ...progress import Progress, unwatched
 from ..containers import NPY_MAGIC, read_array
 from ..conventions import USUAL_RATE, check_scale, guessed_unit, z_up_from_y_up
 
-WITH_HANDS = len(BODY) + 2 * len(HAND)
+WITH_HANDS = len(BODY_POINTS) + 2 * len(HAND_POINTS)
 FACES = (0, 468, 478)
 MILLIMETRE = 0.001
 LARGEST_IN_METRES = 20.0
@@ -73,7 +73,7 @@ def read_freemocap(
         raise InvalidFileError(f"{path} has no points that are seen in any frame.")
     progress(0.5, "Reading")
     names = _names(points)
-    is_body = names[0] == BODY[0]
+    is_body = names[0] == BODY_POINTS[0]
     if is_body:
         names, points = _with_centres(names, _z_up(points))
     unit = _unit(points) if scale is None else scale
@@ -87,21 +87,21 @@ def _with_centres(
 ) -> tuple[tuple[str, ...], NDArray[np.float64]]:
     """Add the joints on the middle of the body; unseen where any of their points is."""
     centres = [
-        points[:, [BODY.index(side) for side in sides]].mean(axis=1)
-        for sides in CENTRES.values()
+        points[:, [BODY_POINTS.index(side) for side in sides]].mean(axis=1)
+        for sides in COMPUTED_JOINTS.values()
     ]
     together = np.concatenate([points, np.stack(centres, axis=1)], axis=1)
-    return (*names, *CENTRES), together
+    return (*names, *COMPUTED_JOINTS), together
 
 
 def _names(points: NDArray[np.float64]) -> tuple[str, ...]:
     n_points = points.shape[1]
-    if n_points == len(BODY):
-        return BODY
+    if n_points == len(BODY_POINTS):
+        return BODY_POINTS
     if n_points - WITH_HANDS not in FACES:
         return tuple(f"point_{number}" for number in range(1, n_points + 1))
-    hands = [points[:, len(BODY)], points[:, len(BODY) + len(HAND)]]
-    wrists = [points[:, BODY.index(f"{side}_wrist")] for side in ("left", "right")]
+    hands = [points[:, len(BODY_POINTS)], points[:, len(BODY_POINTS) + len(HAND_POINTS)]]
+    wrists = [points[:, BODY_POINTS.index(f"{side}_wrist")] for side in ("left", "right")]
     (first_left, first_right), (second_left, second_right) = (
         [_apart(hand, wrist) for wrist in wrists] for hand in hands
     )
@@ -110,9 +110,9 @@ def _names(points: NDArray[np.float64]) -> tuple[str, ...]:
         second_right - second_left, second_right - first_right,
     )  # fmt: skip
     sides = ("left", "right") if np.nansum(nearer_crossed) < 0.0 else ("right", "left")
-    named = (f"{side}_hand_{part}" for side in sides for part in HAND)
+    named = (f"{side}_hand_{part}" for side in sides for part in HAND_POINTS)
     face = (f"face_{number}" for number in range(1, n_points - WITH_HANDS + 1))
-    return (*BODY, *named, *face)
+    return (*BODY_POINTS, *named, *face)
 
 
 def _apart(one: NDArray[np.float64], other: NDArray[np.float64]) -> float:
@@ -125,7 +125,7 @@ def _apart(one: NDArray[np.float64], other: NDArray[np.float64]) -> float:
 
 def _z_up(points: NDArray[np.float64]) -> NDArray[np.float64]:
     """Turn a known body so that its nose is above its ankles, if they are seen."""
-    ankles = [BODY.index("left_ankle"), BODY.index("right_ankle")]
+    ankles = [BODY_POINTS.index("left_ankle"), BODY_POINTS.index("right_ankle")]
     way = points[:, :1] - points[:, ankles]
     known = way[np.isfinite(way).all(axis=-1)]
     if not len(known):

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...errors import InvalidFileError
-from ...motion import JOINTS, JointRecording, Sensor
+from ...motion import SENSOR_JOINTS, JointRecording, Sensor
 from ...progress import Progress, unwatched
 from ..containers import read_bytes, read_number, shown
 from ..conventions import check_scale, from_kinect_space, joint_recording
@@ -19,7 +19,7 @@ HEAD = re.compile(
     rb"\s*(?:Version[\d.]+\s+)?\d+\s*,\s*\d+\s*,\s*\d+\s*,\s*\(\s*\w+\s*,\s*(Not|Inf|Track)"
 )
 MILLISECOND = 0.001
-NAMES = JOINTS[Sensor.KINECT_V2]
+NAMES = SENSOR_JOINTS[Sensor.KINECT_V2]
 PLACES = {name.encode(): place for place, name in enumerate(NAMES)}
 
 

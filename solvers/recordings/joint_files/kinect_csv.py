@@ -6,12 +6,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...errors import InvalidFileError
-from ...motion import JOINTS, JointRecording, Sensor
+from ...motion import SENSOR_JOINTS, JointRecording, Sensor
 from ...progress import Progress, unwatched, within
 from ..containers import LineReader, parted_by_blanks, stream_rows
 from ..conventions import USUAL_RATE, check_scale, from_kinect_space, joint_recording
 
-NAMES = JOINTS[Sensor.KINECT_V2]
+NAMES = SENSOR_JOINTS[Sensor.KINECT_V2]
 WITHOUT_TIME = 4 * len(NAMES)
 TICK = 1e-7
 """Seconds in a unit of the sensor's clock."""

@@ -6,7 +6,7 @@ from pathlib import Path
 import numpy as np
 
 from ...errors import InvalidFileError
-from ...motion import JOINTS, JointRecording, Sensor
+from ...motion import SENSOR_JOINTS, JointRecording, Sensor
 from ...progress import Progress, unwatched, within
 from ..containers import read_bytes, read_rows
 from ..conventions import (
@@ -18,7 +18,7 @@ from ..conventions import (
 )
 from .kinect_csv import checked_states
 
-NAMES = JOINTS[Sensor.KINECT_V2]
+NAMES = SENSOR_JOINTS[Sensor.KINECT_V2]
 HEAD = re.compile(
     rb"\s*\d+\s*\n\s*\d{1,2}[ \t]*\r?\n"
     rb"(?:\s*\d{1,2}[ \t]*\r?\n)*(?:\s*\d+(?:[ \t]+[-+.\de]+){9}\s|\s*\Z)",

@@ -8,15 +8,15 @@ from numpy.typing import NDArray
 from ...errors import InvalidMotionError
 from ...motion import JointRecording, Motion, Tracks, resample
 from ...motion.humanoid import (
+    ADULT_BONE_LENGTHS_M,
     POSTURE_JOINTS,
-    USUAL_LENGTHS,
-    body_lengths,
-    motion_postures,
-    normalise,
+    estimate_bone_lengths,
+    normalize_postures,
     posture_positions,
-    resize,
+    postures_from_motion,
+    resize_postures,
 )
-from ...signals import bridged
+from ...signals import fill_gaps
 
 Array = NDArray[np.float64]
 Recording = Motion | Tracks | JointRecording
@@ -74,17 +74,17 @@ def clip_postures(recording: Recording, frame_rate: float | None = None) -> Clip
     rate = frame_rate or tracks.frame_rate
     if isinstance(tracks, Motion):
         motion = tracks if rate == tracks.frame_rate else resample(tracks, rate)
-        joints = Tracks(POSTURE_JOINTS, motion_postures(motion), rate)
+        joints = Tracks(POSTURE_JOINTS, postures_from_motion(motion), rate)
         positions = _short_gaps_bridged(joints).positions
     else:
         positions = posture_positions(resample(_short_gaps_bridged(tracks), rate))
     if not np.isfinite(positions).any():
         raise InvalidMotionError("No joint was tracked in any frame.")
-    body = normalise(positions, rate)
-    scale = USUAL_LENGTHS.sum() / max(body_lengths(body.postures).sum(), 1e-6)
+    body = normalize_postures(positions, rate)
+    scale = ADULT_BONE_LENGTHS_M.sum() / max(estimate_bone_lengths(body.postures).sum(), 1e-6)
     turns = np.unwrap(body.headings)
     return ClipPostures(
-        resize(body.postures, USUAL_LENGTHS, scale),
+        resize_postures(body.postures, ADULT_BONE_LENGTHS_M, scale),
         np.column_stack([
             _level(_per_second(scale * body.places, rate), body.headings),
             _per_second(turns, rate),
@@ -108,7 +108,9 @@ def _short_gaps_bridged(tracks: Tracks) -> Tracks:
     before = np.maximum.accumulate(np.where(seen, frames, -np.inf))
     after = np.minimum.accumulate(np.where(seen, frames, np.inf)[::-1])[::-1]
     known = after - before <= BRIDGED * tracks.frame_rate + 1.0
-    return tracks.with_positions(np.where(known[..., None], bridged(tracks.positions), np.nan))
+    return tracks.with_positions(
+        np.where(known[..., None], fill_gaps(tracks.positions), np.nan)
+    )
 
 
 def _per_second(values: Array, frame_rate: float) -> Array:

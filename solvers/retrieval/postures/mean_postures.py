@@ -6,7 +6,14 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from ...motion.humanoid import ACROSS, N_JOINTS, PARENTS, USUAL_LENGTHS, segment_lengths, turned
+from ...motion.humanoid import (
+    ADULT_BONE_LENGTHS_M,
+    LATERAL_JOINTS,
+    N_JOINTS,
+    PARENTS,
+    rotate_about_vertical,
+    segment_lengths,
+)
 from .clip_postures import ClipPostures
 
 Array = NDArray[np.float64]
@@ -97,12 +104,12 @@ class UsualPostures:
         angles, unlikely = ANGLES, 0.5 * (ANGLES / TURNED) ** 2
         if not _tells_heading(postures):
             angles, unlikely = CIRCLE, np.zeros(len(CIRCLE))
-        tried = [turned(some, np.full(len(some), angle)) for angle in angles]
+        tried = [rotate_about_vertical(some, np.full(len(some), angle)) for angle in angles]
         beside = np.reshape(tried, (len(angles), len(some), -1)) - self.mean[columns]
         costs = 0.5 * ((beside @ way) ** 2).sum(axis=-1).mean(axis=-1)
         angle = _lowest(angles, costs + unlikely)
         return ClipPostures(
-            turned(postures.positions, np.full(postures.n_frames, angle)),
+            rotate_about_vertical(postures.positions, np.full(postures.n_frames, angle)),
             _turned_course(postures.course, angle),
             postures.frame_rate,
         )
@@ -111,7 +118,7 @@ class UsualPostures:
 def _tells_heading(postures: ClipPostures) -> bool:
     """Tell whether hips or shoulders showed, at any time, which way the body faces."""
     seen = np.isfinite(postures.positions).all(axis=-1)
-    return any((seen[:, list(joints)].sum(axis=1) >= 2).any() for joints in ACROSS)
+    return any((seen[:, list(joints)].sum(axis=1) >= 2).any() for joints in LATERAL_JOINTS)
 
 
 def _in_proportion(positions: Array, seen: NDArray[np.bool_]) -> Array:
@@ -129,7 +136,7 @@ def _in_proportion(positions: Array, seen: NDArray[np.bool_]) -> Array:
     way, usual = np.zeros(seen.shape), np.zeros(seen.shape)
     for joint in range(1, N_JOINTS):
         above = PARENTS[joint]
-        since = way[:, above] + lengths[:, joint], usual[:, above] + USUAL_LENGTHS[joint]
+        since = way[:, above] + lengths[:, joint], usual[:, above] + ADULT_BONE_LENGTHS_M[joint]
         scale = np.clip(since[1] / np.maximum(since[0], SHORTEST), 1.0 / STRETCHED, STRETCHED)
         place = now[:, above] + scale[:, None] * (positions[:, joint] - was[:, above])
         here = seen[:, joint]

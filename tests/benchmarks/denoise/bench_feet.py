@@ -26,7 +26,7 @@ from solvers.denoising.feet.legs import Leg, find_legs
 from solvers.motion import Motion, ReachSettings, detect_contacts, forward_kinematics, reach
 from solvers.rotations.representations import IDENTITY, angle_between
 from solvers.samples import CorruptionSettings, corrupt
-from solvers.signals.spikes import runs
+from solvers.signals.spikes import find_runs
 
 from ..shared import clips
 from ..shared.report import Report
@@ -116,7 +116,7 @@ def _pinned(
         ankle = forward_kinematics(motion).positions[:, leg.ankle]
         shift = np.zeros_like(ankle)
         frames = np.arange(motion.n_frames)
-        for start, stop in runs(contacts[:, side]):
+        for start, stop in find_runs(contacts[:, side]):
             outside = (
                 np.maximum(start - frames, frames - stop + 1).clip(min=0) / motion.frame_rate
             )

@@ -13,7 +13,7 @@ import numpy as np
 from solvers.depth_tracking.forest_training.skinned_body import SkinnedBody, load_skinned_body
 from solvers.motion import Motion, joint_parents, motion_from_points, resample
 from solvers.recordings import read_acclaim, read_bvh
-from solvers.signals.linear_gaps import bridged
+from solvers.signals.linear_gaps import fill_gaps
 
 from ..reconstruction.kinect_pairs import read_pairs
 
@@ -88,7 +88,7 @@ def exercises(folder: Path = DATA, which: tuple[str, ...] = TAUGHT) -> Iterator[
     for pair in read_pairs(folder / "kinect" / "ui_prmd"):
         positions = pair.truth.positions
         if pair.name.endswith(which) and np.isfinite(positions).any(axis=(0, 2)).all():
-            whole = pair.truth.with_positions(bridged(positions))
+            whole = pair.truth.with_positions(fill_gaps(positions))
             yield motion_from_points(whole, joint_parents(whole.names))
 
 

@@ -3,7 +3,7 @@
 import numpy as np
 from numpy.typing import NDArray
 
-from solvers.markers import keep_rigid, rigid_clusters
+from solvers.markers import constrain_clusters, find_rigid_clusters
 from solvers.recordings import read_c3d
 
 from ..shared import clips
@@ -25,13 +25,13 @@ def compare_rigid() -> str:
             rng = seeded(take, noise)
             noisy = tracks.positions + noise * rng.normal(size=tracks.positions.shape)
             given = tracks.with_positions(noisy)
-            clusters = [one for one in rigid_clusters(given) if len(one.names) > 2]
+            clusters = [one for one in find_rigid_clusters(given) if len(one.names) > 2]
             members = [tracks.names.index(name) for one in clusters for name in one.names]
-            kept = keep_rigid(given, clusters).tracks.positions
+            kept = constrain_clusters(given, clusters).tracks.positions
             gapped, lost = noisy.copy(), _head(tracks.names)
             length = round(LOST * tracks.frame_rate)
             gapped[100 : 100 + length, lost] = np.nan
-            found = keep_rigid(tracks.with_positions(gapped), clusters).tracks.positions
+            found = constrain_clusters(tracks.with_positions(gapped), clusters).tracks.positions
             rows[f"{take}, {1000 * noise:g} mm noise"] = [
                 str(len(clusters)),
                 _rms(noisy - tracks.positions, members),

@@ -22,7 +22,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from solvers.motion import Motion, forward_kinematics
-from solvers.retargeting.judged_points import find_judged_points
+from solvers.retargeting.judged_points import find_error_points
 from solvers.rotations.representations import IDENTITY, normalize, unroll
 
 from .blender_graph import _graph_editor, _write
@@ -98,7 +98,7 @@ class Search:
         self._moving = np.flatnonzero(off > 1e-9)
         quaternions = unroll(motion.rotations[:, self._moving])
         self._turns = quaternions.reshape(motion.n_frames, -1)
-        self._points = find_judged_points(motion.skeleton)
+        self._points = find_error_points(motion.skeleton)
         self._seen = self._points.positions(forward_kinematics(motion))
 
     def found(self, tolerances: Sequence[float]) -> list[dict[str, float]]:

@@ -37,7 +37,7 @@ from solvers.physics import Ground, Simulated, SimulateSettings, apply_strength,
 from solvers.physics.body import build_physics_body
 from solvers.physics.body_surface import measure_clearance, measure_foot_slide
 from solvers.physics.feet import add_soles
-from solvers.physics.target import fill_gaps
+from solvers.physics.target import fill_motion_gaps
 from solvers.recordings import read_recording
 from solvers.samples import CorruptionSettings, corrupt
 
@@ -115,7 +115,9 @@ def motion_of(path: Path) -> Motion:
     recording = read_recording(path)
     if isinstance(recording, Motion):
         return recording
-    return fill_gaps(motion_from_points(recording.tracks, joint_parents(recording.names)))
+    return fill_motion_gaps(
+        motion_from_points(recording.tracks, joint_parents(recording.names))
+    )
 
 
 def means(title: str, motions: list[Motion]) -> str:

@@ -18,7 +18,7 @@ import numpy as np
 from numpy.typing import NDArray
 from threadpoolctl import threadpool_limits
 
-from solvers.motion.humanoid.body_size import USUAL_LENGTHS
+from solvers.motion.humanoid.body_size import ADULT_BONE_LENGTHS_M
 from solvers.reconstruction.joint_rotations.library_body import (
     BodyPostures,
     build_body_postures,
@@ -75,8 +75,8 @@ def growth() -> str:
     for size in SIZES:
         directions, changes = _mixed(library, size, random)
         asked, speeds = _mixed(library, N_QUERIES, random)
-        body = build_body_postures(directions, changes, USUAL_LENGTHS)
-        query = _query(build_body_postures(asked, speeds, USUAL_LENGTHS), random)
+        body = build_body_postures(directions, changes, ADULT_BONE_LENGTHS_M)
+        query = _query(build_body_postures(asked, speeds, ADULT_BONE_LENGTHS_M), random)
         groups = group_postures(directions)
         index = index_postures(body, groups)
         started = perf_counter()

@@ -6,12 +6,12 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from solvers.motion.humanoid.posture_heading import normalise, turned
+from solvers.motion.humanoid.posture_heading import normalize_postures, rotate_about_vertical
 from solvers.motion.humanoid.posture_joints import (
     N_JOINTS,
     PARENTS,
     POSTURE_JOINTS,
-    joints_of_names,
+    posture_joint_indices,
 )
 
 from .kinect_folds import seen_of
@@ -104,11 +104,11 @@ def swapped(pair: Pair, random: np.random.Generator) -> Iterator[Damaged]:
 
 def occluded(positions: Array, frame_rate: float, angle: float) -> Flags:
     """Tell which joints lie behind a part of the body that they do not belong to."""
-    plain = normalise(positions, frame_rate)
-    ahead = turned(np.array([[[0.0, -DISTANCE, 0.0]]]), np.array([angle]))[0, 0]
+    plain = normalize_postures(positions, frame_rate)
+    ahead = rotate_about_vertical(np.array([[[0.0, -DISTANCE, 0.0]]]), np.array([angle]))[0, 0]
     middle = np.median(plain.places, axis=0)
     facing = np.angle(np.exp(1j * plain.headings).mean())
-    sensor = middle + turned(ahead[None, None], np.array([facing]))[0, 0]
+    sensor = middle + rotate_about_vertical(ahead[None, None], np.array([facing]))[0, 0]
     sensor[2] = np.nanmin(positions[..., 2]) + HEIGHT
     result = np.zeros(positions.shape[:2], bool)
     for (one, other), radius in CAPSULES:
@@ -145,7 +145,7 @@ def without(pair: Pair, where: Flags) -> Pair:
 
 def _with(pair: Pair, moved: Array) -> Pair:
     positions = pair.kinect.tracks.positions.copy()
-    for role, place in joints_of_names(pair.kinect.names).items():
+    for role, place in posture_joint_indices(pair.kinect.names).items():
         positions[:, place] = moved[:, POSTURE_JOINTS.index(role)]
     tracks = pair.kinect.tracks.with_positions(positions)
     return replace(pair, kinect=pair.kinect.with_tracks(tracks))

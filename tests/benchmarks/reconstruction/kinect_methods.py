@@ -6,7 +6,7 @@ from functools import cache, partial
 import numpy as np
 from numpy.typing import NDArray
 
-from solvers.motion.humanoid.posture_heading import normalise, turned
+from solvers.motion.humanoid.posture_heading import normalize_postures, rotate_about_vertical
 from solvers.motion.humanoid.posture_joints import N_JOINTS, posture_positions
 from solvers.reconstruction import (
     CorrectionMethod,
@@ -102,7 +102,7 @@ def _regression(learn: Callable[[Array, Array], Predict], subject: str) -> Predi
     for pair in others(subject):
         calm = smooth_postures(pair.kinect, CALM)
         columns = _tracked(calm.features)
-        off = turned(truth_of(pair) - calm.positions, -calm.normalised.headings)
+        off = rotate_about_vertical(truth_of(pair) - calm.positions, -calm.normalised.headings)
         features.append(calm.features[::THINNED, columns[1:]])
         offsets.append(off[::THINNED, columns])
     X, Y = (_flat(parts) for parts in (features, offsets))
@@ -114,7 +114,7 @@ def _regression(learn: Callable[[Array, Array], Predict], subject: str) -> Predi
 def _memory(learn: Callable[[Array], Predict], subject: str) -> Predict:
     examples = []
     for pair in others(subject):
-        plain = normalise(truth_of(pair), pair.truth.frame_rate)
+        plain = normalize_postures(truth_of(pair), pair.truth.frame_rate)
         seen = smooth_postures(pair.kinect, CALM)
         size = np.nanmax(np.abs(seen.features)) / np.nanmax(np.abs(seen.normalised.postures))
         columns = _tracked(seen.features)

@@ -6,9 +6,9 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from solvers.motion.humanoid.body_size import body_lengths, segment_lengths
-from solvers.motion.humanoid.bone_directions import bone_changes
-from solvers.motion.humanoid.posture_heading import Normalised, normalise
+from solvers.motion.humanoid.body_size import estimate_bone_lengths, segment_lengths
+from solvers.motion.humanoid.bone_directions import rates_from_directions
+from solvers.motion.humanoid.posture_heading import NormalizedPostures, normalize_postures
 from solvers.reconstruction import PostureMethod, ReconstructMethod
 from solvers.reconstruction.joint_rotations.library_body import build_body_postures
 from solvers.reconstruction.pose_library.neighbors import (
@@ -58,7 +58,7 @@ class Asked(NamedTuple):
     """A damaged take, and what any weights of the energy are to solve."""
 
     damaged: Damaged
-    plain: Normalised
+    plain: NormalizedPostures
     spaces: PostureSpaces
     demands: EnergyTargets
 
@@ -90,11 +90,11 @@ def _all_asked() -> Iterator[Asked]:
                 if damaged.seconds == SECONDS and damaged.what in {"4", "arm", "leg"}:
                     seen, rate = seen_of(damaged.pair), pair.kinect.frame_rate
                     trust = np.isfinite(seen).all(axis=-1).astype(np.float64)
-                    plain = normalise(seen, rate, trust)
-                    lengths = body_lengths(plain.postures, trust)
+                    plain = normalize_postures(seen, rate, trust)
+                    lengths = estimate_bone_lengths(plain.postures, trust)
                     body = build_body_postures(library.directions, library.changes, lengths)
                     index = index_postures(body, library.groups)
-                    speeds = bone_changes(plain.postures, rate)
+                    speeds = rates_from_directions(plain.postures, rate)
                     query = PostureQuery(plain.postures, speeds, trust, 0.0)
                     places, _ = nearest_postures(index, query)
                     spaces = local_pca(body.positions[places].astype(np.float64))

@@ -11,7 +11,7 @@ from functools import cache, partial
 import numpy as np
 from numpy.typing import NDArray
 
-from solvers.motion.humanoid.posture_heading import normalise
+from solvers.motion.humanoid.posture_heading import normalize_postures
 from solvers.reconstruction import PostureMethod, ReconstructMethod
 from solvers.reconstruction.residual_correction.inputs import SmoothedPostures, smooth_postures
 
@@ -57,7 +57,7 @@ def bridged_by(
     seen, rate = seen_of(pair), pair.kinect.frame_rate
     if not in_body:
         return fill(seen.reshape(len(seen), -1), rate).reshape(seen.shape)
-    plain = normalise(seen, rate, np.isfinite(seen).all(axis=-1).astype(float))
+    plain = normalize_postures(seen, rate, np.isfinite(seen).all(axis=-1).astype(float))
     flat = plain.postures.reshape(len(seen), -1)
     return plain.put_back(fill(flat, rate).reshape(seen.shape))
 
@@ -65,7 +65,7 @@ def bridged_by(
 def by_example(complete: Callable[..., Array], pair: Pair, subject: str) -> Array:
     """Complete postures frame by frame from what the Kinect saw of other subjects."""
     seen = seen_of(pair)
-    plain = normalise(
+    plain = normalize_postures(
         seen, pair.kinect.frame_rate, np.isfinite(seen).all(axis=-1).astype(float)
     )
     size = _size(smooth_postures(pair.kinect, CALM))

@@ -9,11 +9,15 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.interpolate import CubicSpline, PchipInterpolator
 
-from solvers.motion import JOINTS, JointRecording, Motion, Sensor, Tracks
-from solvers.motion.humanoid.body_size import body_lengths, segment_lengths
-from solvers.motion.humanoid.bone_directions import ABOVE, bone_changes
-from solvers.motion.humanoid.posture_heading import normalise
-from solvers.motion.humanoid.posture_joints import N_JOINTS, motion_postures, posture_positions
+from solvers.motion import SENSOR_JOINTS, JointRecording, Motion, Sensor, Tracks
+from solvers.motion.humanoid.body_size import estimate_bone_lengths, segment_lengths
+from solvers.motion.humanoid.bone_directions import PARENT_INDICES, rates_from_directions
+from solvers.motion.humanoid.posture_heading import normalize_postures
+from solvers.motion.humanoid.posture_joints import (
+    N_JOINTS,
+    posture_positions,
+    postures_from_motion,
+)
 from solvers.reconstruction.joint_rotations.library_body import build_body_postures
 from solvers.reconstruction.pose_completion.reconstruct_postures import reconstruct_postures
 from solvers.reconstruction.pose_completion.settings import DEFAULT_SETTINGS, PostureSettings
@@ -84,12 +88,14 @@ def optical_clips(dev: bool) -> tuple[Clip, ...]:
     for name in chosen:
         others = [walk for key, walk in walks.items() if key[:2] != name[:2]]
         library = _library(tuple(others + examples))
-        result.append(Clip(name, motion_postures(clips.walks()[name]), library))
+        result.append(Clip(name, postures_from_motion(clips.walks()[name]), library))
     library = _library((*walks.values(), *examples))
     for motion_class, found in acted:
         for actor in ("bd",) if dev else ("bk", "dg"):
             motion = _of(found, (actor,))[0]
-            result.append(Clip(f"{motion_class} {actor}", motion_postures(motion), library))
+            result.append(
+                Clip(f"{motion_class} {actor}", postures_from_motion(motion), library)
+            )
     return tuple(result)
 
 
@@ -124,7 +130,7 @@ def ours(
     seen = np.where(lost[..., None], np.nan, postures)
     trust = np.isfinite(seen).all(axis=-1).astype(float)
     recording = JointRecording(
-        Tracks(JOINTS[Sensor.KINECT_V1], seen, RATE), None, Sensor.KINECT_V1
+        Tracks(SENSOR_JOINTS[Sensor.KINECT_V1], seen, RATE), None, Sensor.KINECT_V1
     )
     return reconstruct_postures(
         recording,
@@ -140,7 +146,7 @@ def interpolated(
     """Bridge each loss by a curve, in the world or relative to hips and heading."""
     if in_body:
         seen = np.where(lost[..., None], np.nan, postures)
-        plain = normalise(seen, RATE, 1.0 - lost)
+        plain = normalize_postures(seen, RATE, 1.0 - lost)
         return plain.put_back(interpolated(kind, False, plain.postures, lost, library))
     result, frames = postures.copy(), np.arange(len(postures))
     for joint in np.flatnonzero(lost.any(axis=0)):
@@ -162,8 +168,8 @@ def from_neighbours(
 ) -> Array:
     """Take lost joints from the mean of 30 neighbours, or from 20 components of all."""
     seen = np.where(lost[..., None], np.nan, postures)
-    plain = normalise(seen, RATE, 1.0 - lost)
-    body = build_body_postures(library.directions, library.changes, body_lengths(seen))
+    plain = normalize_postures(seen, RATE, 1.0 - lost)
+    body = build_body_postures(library.directions, library.changes, estimate_bone_lengths(seen))
     if project:
         known = np.broadcast_to(body.positions, (1, *body.positions.shape))
         space = local_pca(known[:, :: max(library.n_postures // 800, 1)])
@@ -248,7 +254,9 @@ def parts_used(title: str, found: tuple[Clip, ...]) -> Scores:
             ways = {"ours": ours, "kNN mean": partial(from_neighbours, False)}
             for name, method in ways.items():
                 made = method(clip.postures, lost, clip.library)
-                off = (made - made[:, ABOVE]) - (clip.postures - clip.postures[:, ABOVE])
+                off = (made - made[:, PARENT_INDICES]) - (
+                    clip.postures - clip.postures[:, PARENT_INDICES]
+                )
                 figure = 100.0 * np.nanmean(np.linalg.norm(off, axis=-1)[:, 1:])
                 scores.add(name, column, clip.name, float(figure))
     return scores
@@ -264,12 +272,12 @@ def energies(found: tuple[Clip, ...]) -> Scores:
         lost = np.zeros(clip.postures.shape[:2], bool)
         limb = (ARM, LEG, OTHER_LEG)[number % 3]
         lost[len(lost) // 3 : 2 * len(lost) // 3, limb] = True
-        plain = normalise(clip.postures, RATE, 1.0 - lost)
+        plain = normalize_postures(clip.postures, RATE, 1.0 - lost)
         lengths = np.nanmedian(segment_lengths(plain.postures), axis=0)
         library = clip.library
         body = build_body_postures(library.directions, library.changes, lengths)
         query = PostureQuery(
-            plain.postures, bone_changes(plain.postures, RATE), 1.0 - lost, 0.0
+            plain.postures, rates_from_directions(plain.postures, RATE), 1.0 - lost, 0.0
         )
         places, _ = nearest_postures(index_postures(body, library.groups), query)
         spaces = local_pca(body.positions[places].astype(np.float64))

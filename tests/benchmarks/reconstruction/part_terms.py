@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from solvers.motion.humanoid.posture_joints import (
     N_JOINTS,
     POSTURE_JOINTS,
-    joints_of_names,
+    posture_joint_indices,
     posture_positions,
 )
 from solvers.reconstruction import (
@@ -196,7 +196,7 @@ def _told(
             off = np.linalg.norm(ways, axis=-1)
             known = np.isfinite(off)
             said = np.zeros((len(off), N_JOINTS))
-            for role, place in joints_of_names(pair.kinect.names).items():
+            for role, place in posture_joint_indices(pair.kinect.names).items():
                 said[:, POSTURE_JOINTS.index(role)] = result.confidence[:, place]
             told.append(said[known])
             right.append(off[known] < WITHIN)

@@ -15,7 +15,7 @@ from solvers.motion import Motion, joint_parents, motion_from_points
 from solvers.reconstruction import PostureLibrary, PostureLibrarySettings, build_posture_library
 from solvers.reconstruction.pose_library.posture_library import merge_posture_libraries
 from solvers.recordings import read_acclaim, read_bvh
-from solvers.signals.linear_gaps import bridged
+from solvers.signals.linear_gaps import fill_gaps
 
 from .kinect_pairs import Pair
 
@@ -60,7 +60,7 @@ def exercise_library(pairs: Iterable[Pair]) -> PostureLibrary:
     for pair in pairs:
         seen = np.isfinite(pair.truth.positions).any(axis=(0, 2)).all()
         if pair.name[-3:] in TAUGHT and seen:
-            whole = pair.truth.with_positions(bridged(pair.truth.positions))
+            whole = pair.truth.with_positions(fill_gaps(pair.truth.positions))
             motions.append(motion_from_points(whole, joint_parents(whole.names)))
     library = build_posture_library(motions, settings=UI_PRMD, trained_on=UI_PRMD_WORDS)
     return replace(library, twists=None)

@@ -3,7 +3,7 @@
 import numpy as np
 from numpy.typing import NDArray
 
-from solvers.motion.humanoid import ABOVE, N_JOINTS
+from solvers.motion.humanoid import N_JOINTS, PARENT_INDICES
 from solvers.reconstruction.pose_space import (
     N_BONES,
     EnergyTargets,
@@ -109,14 +109,14 @@ def _descend(
 ) -> tuple[Array, Array]:
     """Gauss-Newton from one start; returns coordinates and energies."""
     bones = spaces.axes.reshape(len(z), N_JOINTS, 3, -1)
-    bones = (bones - bones[:, ABOVE])[:, 1:]
+    bones = (bones - bones[:, PARENT_INDICES])[:, 1:]
     w = demands.weights.kinematics / N_BONES
     x = spaces.postures(z)
     energy = posture_energy(x, demands)
     for _ in range(N_STEPS):
         nearest = style_distances(x[:, None], demands)[:, 0].argmin(axis=-1)
         place = np.take_along_axis(quadratic.places, nearest[:, None, None], axis=1)[:, 0]
-        ways = (x - x[:, ABOVE])[:, 1:]
+        ways = (x - x[:, PARENT_INDICES])[:, 1:]
         sizes = np.maximum(np.linalg.norm(ways, axis=-1), 1e-9)
         J = np.einsum("fsk,fskd->fsd", ways / sizes[..., None], bones)
         long = sizes - demands.lengths[1:]

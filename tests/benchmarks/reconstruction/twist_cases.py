@@ -14,8 +14,8 @@ from numpy.typing import NDArray
 
 from solvers.motion import JointRecording, Motion, find_humanoid_map, forward_kinematics
 from solvers.motion.humanoid.canonical import t_pose_alignment
-from solvers.motion.humanoid.posture_heading import normalise, turned
-from solvers.motion.humanoid.posture_joints import POSTURE_JOINTS, motion_postures
+from solvers.motion.humanoid.posture_heading import normalize_postures, rotate_about_vertical
+from solvers.motion.humanoid.posture_joints import POSTURE_JOINTS, postures_from_motion
 from solvers.reconstruction.joint_rotations.trunk_twist import TWISTED_LIMBS, TwistedLimb
 from solvers.rotations.representations import multiply, quaternion_from_rotation_vector, rotate
 from solvers.workflows.known_body import KINECT_V1
@@ -82,7 +82,7 @@ def _as_made(motion: Motion) -> tuple[Truth, Array]:
     joints = humanoid.indices(motion.skeleton)
     alignment = t_pose_alignment(motion.skeleton, humanoid)
     world = multiply(forward_kinematics(motion).rotations, alignment)
-    postures = motion_postures(motion)
+    postures = postures_from_motion(motion)
     ways = [_ways(postures, limb) for limb in TWISTED_LIMBS]
     normals = np.stack([np.cross(*each) for each in ways], axis=1)
     cos = np.stack([np.einsum("fi,fi->f", *each) for each in ways], axis=1)
@@ -103,8 +103,8 @@ def kinect_errors() -> tuple[Array, ...]:
     """Errors of whole takes beside their means, in the actor's heading, (n_frames, 20, 3)."""
     found = []
     for pair in pairs()[::EVERY]:
-        heading = normalise(truth_of(pair), pair.truth.frame_rate).headings
-        off = turned(seen_of(pair) - truth_of(pair), -heading)
+        heading = normalize_postures(truth_of(pair), pair.truth.frame_rate).headings
+        off = rotate_about_vertical(seen_of(pair) - truth_of(pair), -heading)
         off[:, HAND_ENDS] = off[:, HANDS]
         if pair.matched and np.isfinite(off).all():
             found.append(off - off.mean(axis=0))
@@ -113,13 +113,13 @@ def kinect_errors() -> tuple[Array, ...]:
 
 def as_a_kinect_errs(motion: Motion, random: np.random.Generator) -> Array:
     """Add the errors of a take that is drawn, to and fro, to the joints of postures."""
-    postures = motion_postures(motion)
-    heading = normalise(postures, motion.frame_rate).headings
+    postures = postures_from_motion(motion)
+    heading = normalize_postures(postures, motion.frame_rate).headings
     errors = kinect_errors()
     off = errors[random.integers(len(errors))]
     there_and_back = np.concatenate([off, off[::-1]])
     places = (random.integers(len(off)) + np.arange(len(postures))) % len(there_and_back)
-    return postures + turned(there_and_back[places], heading)
+    return postures + rotate_about_vertical(there_and_back[places], heading)
 
 
 def cases(motions: Sequence[Motion], seen: str) -> Iterator[Case]:
@@ -129,7 +129,7 @@ def cases(motions: Sequence[Motion], seen: str) -> Iterator[Case]:
         recording = postures_recording(motion)
         scored = np.ones(truth.bends.shape, bool)
         if seen != TRUE:
-            known = np.isfinite(motion_postures(motion)).all(axis=-1).any(axis=0)
+            known = np.isfinite(postures_from_motion(motion)).all(axis=-1).any(axis=0)
             places = as_a_kinect_errs(motion, random)[:, known]
             if seen == LOST:
                 scored = _lost(recording, places, random)

@@ -30,7 +30,7 @@ from scipy.interpolate import interp1d
 
 from solvers.motion import Tracks
 from solvers.motion.humanoid.posture_joints import (
-    MIRROR_IMAGES,
+    MIRROR_JOINTS,
     N_JOINTS,
     PARENTS,
     POSTURE_JOINTS,
@@ -146,7 +146,7 @@ def varied(number: int) -> ClipPostures:
     turned = turned_bones(positions, TURNED * rng.normal(size=(N_JOINTS, 3)))
     turned += SHAKEN * rng.normal(size=turned.shape)
     if rng.integers(2):
-        turned = turned[:, MIRROR_IMAGES] * (-1.0, 1.0, 1.0)
+        turned = turned[:, MIRROR_JOINTS] * (-1.0, 1.0, 1.0)
         course = course * (-1.0, 1.0, 1.0, -1.0)
     return ClipPostures(turned, speed * course, RATE)
 

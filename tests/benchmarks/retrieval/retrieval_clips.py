@@ -14,8 +14,8 @@ from numpy.typing import NDArray
 from solvers.motion import JointRecording, Motion, Tracks
 from solvers.motion.humanoid.posture_joints import (
     POSTURE_JOINTS,
-    motion_postures,
     posture_positions,
+    postures_from_motion,
 )
 from solvers.recordings import read_acclaim, read_recording
 
@@ -130,7 +130,7 @@ def _cut(motion: Motion, start: float, seconds: float) -> Motion:
 
 
 def _clip(name: str, label: str, actor: str, motion: Motion) -> LabelledClip:
-    tracks = Tracks(POSTURE_JOINTS, motion_postures(motion), motion.frame_rate)
+    tracks = Tracks(POSTURE_JOINTS, postures_from_motion(motion), motion.frame_rate)
     return LabelledClip(name, label, actor, tracks)
 
 

@@ -9,7 +9,7 @@ from scipy.io import loadmat
 from scipy.ndimage import gaussian_filter1d
 
 from solvers.motion import Tracks
-from solvers.motion.humanoid.posture_heading import mirrored
+from solvers.motion.humanoid.posture_heading import mirror_postures
 from solvers.motion.humanoid.posture_joints import POSTURE_JOINTS
 from solvers.retrieval.published.observed_signals import seen_signals
 
@@ -62,7 +62,7 @@ def kinect_queries() -> tuple[LabelledClip, ...]:
         for path in sorted(clips.DATA.glob(each.files)):
             tracks = moving(_of_utd(path) if path.suffix == ".mat" else sensor_tracks(path))
             if each.mirror:
-                tracks = replace(tracks, positions=mirrored(tracks.positions))
+                tracks = replace(tracks, positions=mirror_postures(tracks.positions))
             tracks = replace(tracks, confidence=np.ones(tracks.positions.shape[:2]))
             found.append(LabelledClip(path.stem, each.label, each.name, tracks))
     return tuple(found)

@@ -102,7 +102,7 @@ def test_the_file_and_the_sensor_are_noted(target, lossy, bring, load):
 def kinect(load, rng):
     """A short recording of all joints of a Kinect v2 that wander about."""
     motion = load("solvers.motion")
-    names = motion.JOINTS[motion.Sensor.KINECT_V2]
+    names = motion.SENSOR_JOINTS[motion.Sensor.KINECT_V2]
     places = rng.normal(size=(1, 25, 3)) + np.cumsum(
         rng.normal(scale=0.01, size=(40, 25, 3)), 0
     )
@@ -147,7 +147,7 @@ def test_a_body_of_freemocap_becomes_an_armature(
     n_points, n_loose, bring, rng, load, tmp_path, capfd
 ):
     path = tmp_path / "skeleton_3d.npy"
-    body = load("solvers.motion.skeletons.mediapipe").BODY
+    body = load("solvers.motion.skeletons.mediapipe").BODY_POINTS
     points = rng.normal(scale=20.0, size=(50, n_points, 3))
     points[:, body.index("nose"), 2] += 1600.0
     for height, joint in enumerate(("ankle", "knee", "hip", "shoulder", "ear")):

@@ -164,7 +164,7 @@ def test_the_figure_stands_on_the_ground_at_the_origin(listen, act, load):
 def test_bones_that_are_not_seen_are_not_drawn(load):
     figure = load("mocap_assist.drawing.live_figure").LiveFigure((1, 1, 1, 1), 2.0)
     frames, motion = load("solvers.recordings.live.frames"), load("solvers.motion")
-    names = motion.JOINTS[motion.Sensor.KINECT_V1]
+    names = motion.SENSOR_JOINTS[motion.Sensor.KINECT_V1]
     places, sure = np.ones((20, 3)), np.ones(20)
     places[7], sure[11] = np.nan, 0.1
 

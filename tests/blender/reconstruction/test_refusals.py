@@ -36,7 +36,7 @@ def refused(blank):
 
 def test_an_armature_in_millimetres_is_understood(load, truth, import_joints, blank):
     """Blender has no unit of its own: the size of the body tells it."""
-    names = load("solvers.motion").JOINTS[load("solvers.motion").Sensor.KINECT_V1]
+    names = load("solvers.motion").SENSOR_JOINTS[load("solvers.motion").Sensor.KINECT_V1]
     armature = import_joints(names, truth, global_scale=1000.0)
     hips = armature.pose.bones["HipCenter"]
 
@@ -47,7 +47,7 @@ def test_an_armature_in_millimetres_is_understood(load, truth, import_joints, bl
 
 
 def test_no_unit_makes_a_man_of_this(load, truth, import_joints, refused):
-    names = load("solvers.motion").JOINTS[load("solvers.motion").Sensor.KINECT_V1]
+    names = load("solvers.motion").SENSOR_JOINTS[load("solvers.motion").Sensor.KINECT_V1]
     import_joints(names, truth, global_scale=1e-4)
 
     assert "Read the recording with a scale of" in refused()
@@ -81,7 +81,7 @@ def test_a_take_with_a_long_gap_says_where_it_is_a_guess(
 ):
     positions = np.array(tracked_walk(load("solvers.motion"), truth).tracks.positions)
     positions[20:60] = np.nan
-    names = load("solvers.motion").JOINTS[load("solvers.motion").Sensor.KINECT_V1]
+    names = load("solvers.motion").SENSOR_JOINTS[load("solvers.motion").Sensor.KINECT_V1]
     armature = import_joints(names, positions)
 
     assert blank.ops.mocap_assist.reconstruct() == {"FINISHED"}

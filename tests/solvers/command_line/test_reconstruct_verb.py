@@ -9,7 +9,7 @@ from kinect_walks import tracked_walk, true_positions
 
 from solvers import motion as vocabulary
 from solvers import samples
-from solvers.motion import JOINTS, Sensor, Tracks
+from solvers.motion import SENSOR_JOINTS, Sensor, Tracks
 from solvers.motion.humanoid import posture_joints
 from solvers.reconstruction import load_posture_library
 from solvers.recordings import read_bvh, read_joint_csv, write_bvh, write_joint_csv, write_trc
@@ -147,7 +147,7 @@ def test_a_skeleton_has_no_joints_to_write(call, tmp_path):
 
 
 def test_a_recording_of_which_nothing_was_tracked(call, tmp_path):
-    names = JOINTS[Sensor.KINECT_V1]
+    names = SENSOR_JOINTS[Sensor.KINECT_V1]
     path = tmp_path / "empty.csv"
     columns = ",".join(f"{name}.{axis}" for name in names for axis in "xyz")
     rows = [f"{frame / 30.0}" + "," * 60 for frame in range(5)]

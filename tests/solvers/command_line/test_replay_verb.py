@@ -9,7 +9,7 @@ from numpy.testing import assert_allclose
 
 from solvers.command_line.replay_verb import looped, paced
 from solvers.motion import Tracks
-from solvers.motion.humanoid.posture_joints import motion_postures
+from solvers.motion.humanoid.posture_joints import postures_from_motion
 from solvers.recordings import write_bvh, write_joints, write_trc
 from solvers.recordings.live.frames import decode_frame, frames_of
 from solvers.samples import GaitSettings, PerformanceSettings, perform_gestures, walking_gait
@@ -88,7 +88,7 @@ def test_a_motion_is_sent_as_the_joints_of_a_kinect(call, tmp_path, listener):
     frames = came(listener)
     assert len(frames) == walk.n_frames and "WristRight" in frames[0].names
     places = np.stack([frame.positions for frame in frames])
-    assert_allclose(places, motion_postures(walk), atol=1e-3)
+    assert_allclose(places, postures_from_motion(walk), atol=1e-3)
 
 
 def test_nobody_needs_to_listen(call, wave):

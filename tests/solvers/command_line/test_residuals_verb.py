@@ -3,13 +3,13 @@
 import numpy as np
 import pytest
 
-from solvers.motion import JOINTS, JointRecording, Sensor, Tracks
-from solvers.motion.humanoid.posture_joints import motion_postures
+from solvers.motion import SENSOR_JOINTS, JointRecording, Sensor, Tracks
+from solvers.motion.humanoid.posture_joints import postures_from_motion
 from solvers.reconstruction import load_residual_prior
 from solvers.recordings import read_recording, write_bvh, write_joint_csv
 from solvers.samples import GaitSettings, walking_gait
 
-NAMES = JOINTS[Sensor.KINECT_V1]
+NAMES = SENSOR_JOINTS[Sensor.KINECT_V1]
 KNEE = NAMES.index("KneeLeft")
 QUICK = ["--local-points", "10", "--whole-points", "10", "--sample", "50"]
 
@@ -22,7 +22,7 @@ def stage(tmp_path):
     for name, speed in (("anna_1", 0.9), ("anna_2", 1.2), ("bob_1", 1.5)):
         walk = walking_gait(GaitSettings(duration=3.0, frame_rate=30.0, speed=speed))
         write_bvh(walk, tmp_path / "truth" / f"{name}.bvh")
-        seen = motion_postures(walk)
+        seen = postures_from_motion(walk)
         seen[:, KNEE, 0] += 0.08
         seen[:, NAMES.index("KneeRight"), 0] -= 0.08
         joints = JointRecording(Tracks(NAMES, seen, 30.0), None, Sensor.KINECT_V1)

@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 from solvers.gestures.events import Gesture
 from solvers.gestures.recognition import GestureRecognizer, Mode, recognize_gestures
 from solvers.gestures.settings import GestureSettings
-from solvers.motion.humanoid.posture_joints import MIRROR_IMAGES
+from solvers.motion.humanoid.posture_joints import MIRROR_JOINTS
 from solvers.samples import PerformanceSettings, perform_gestures
 from solvers.samples.performance import GESTURES
 
@@ -156,7 +156,7 @@ def test_waves_count_only_while_the_library_is_shown():
 
 def test_left_hand_gives_no_gesture():
     performance = perform_gestures([*BROWSING, "turn"])
-    mirrored = performance.positions[:, list(MIRROR_IMAGES)] * (-1.0, 1.0, 1.0)
+    mirrored = performance.positions[:, list(MIRROR_JOINTS)] * (-1.0, 1.0, 1.0)
 
     assert recognize_gestures(performance.times, mirrored) == ()
 

@@ -6,7 +6,7 @@ from numpy.testing import assert_allclose
 from scipy.spatial.transform import Rotation
 
 from solvers.errors import InvalidMotionError
-from solvers.markers import Cluster, ClusterSettings, keep_rigid, rigid_clusters
+from solvers.markers import Cluster, ClusterSettings, constrain_clusters, find_rigid_clusters
 from solvers.markers.rigid_fit import fit_rigidly
 from solvers.motion import Tracks
 from solvers.recordings import read_c3d
@@ -42,7 +42,7 @@ def lengths(positions: np.ndarray, members: list[int]) -> np.ndarray:
 
 
 def test_finds_the_head_and_the_stick_and_nothing_else(take):
-    found = rigid_clusters(take)
+    found = find_rigid_clusters(take)
 
     assert [cluster.names for cluster in found] == [NAMES[:4], NAMES[5:]]
     assert found[0].slack < 1e-6
@@ -57,14 +57,14 @@ def test_finds_the_head_and_the_stick_and_nothing_else(take):
 def test_finds_them_through_noise_too(take, rng):
     noisy = take.with_positions(take.positions + 0.003 * rng.normal(size=take.positions.shape))
 
-    assert [cluster.names for cluster in rigid_clusters(noisy)] == [NAMES[:4], NAMES[5:]]
+    assert [cluster.names for cluster in find_rigid_clusters(noisy)] == [NAMES[:4], NAMES[5:]]
 
 
 @pytest.mark.parametrize("noise", [0.001, 0.003])
 def test_distances_are_constant_afterwards_and_noise_is_less(take, rng, noise):
     noisy = take.with_positions(take.positions + noise * rng.normal(size=take.positions.shape))
 
-    kept = keep_rigid(noisy, rigid_clusters(noisy)).tracks.positions
+    kept = constrain_clusters(noisy, find_rigid_clusters(noisy)).tracks.positions
 
     for members in ([0, 1, 2, 3], [5, 6]):
         assert np.ptp(lengths(kept, members), axis=0).max() < 1e-9
@@ -82,7 +82,7 @@ def test_finds_a_lost_marker_from_three_others_and_not_from_two(take):
     positions[50:100, 0] = np.nan
     positions[200:250, :2] = np.nan
 
-    kept = keep_rigid(take.with_positions(positions), rigid_clusters(take))
+    kept = constrain_clusters(take.with_positions(positions), find_rigid_clusters(take))
 
     assert_allclose(kept.tracks.positions[50:100, 0], take.positions[50:100, 0], atol=1e-6)
     assert np.isnan(kept.tracks.positions[200:250, :2]).all()
@@ -96,7 +96,9 @@ def test_three_on_a_line_do_not_place_a_fourth():
     places[5:, 3] = np.nan
     take = Tracks(tuple("abcd"), places, 60.0)
 
-    kept = keep_rigid(take, [Cluster(tuple("abcd"), rod - rod.mean(axis=0), 0.0)]).tracks
+    kept = constrain_clusters(
+        take, [Cluster(tuple("abcd"), rod - rod.mean(axis=0), 0.0)]
+    ).tracks
 
     assert np.isnan(kept.positions[5:, 3]).all()
     assert_allclose(kept.positions[:5], rod + np.zeros((5, 1, 1)), atol=1e-9)
@@ -106,7 +108,9 @@ def test_a_marker_that_strays_is_brought_back_and_moves_the_others_little(take):
     positions = take.positions.copy()
     positions[100:110, 2] += [0.0, 0.0, 0.08]
 
-    kept = keep_rigid(take.with_positions(positions), rigid_clusters(take)).tracks.positions
+    kept = constrain_clusters(
+        take.with_positions(positions), find_rigid_clusters(take)
+    ).tracks.positions
 
     off = np.linalg.norm(kept - take.positions, axis=-1)[:, :4]
     assert off.max() < 0.004
@@ -126,7 +130,7 @@ def test_kabsch_gives_the_turn_back(rng):
 def test_a_take_in_which_nothing_moves_has_no_clusters(rng):
     still = np.tile(rng.normal(size=(1, 8, 3)), (100, 1, 1))
 
-    assert rigid_clusters(Tracks(tuple("abcdefgh"), still, 60.0)) == ()
+    assert find_rigid_clusters(Tracks(tuple("abcdefgh"), still, 60.0)) == ()
 
 
 @pytest.mark.parametrize("n_points", [1, 2])
@@ -134,21 +138,21 @@ def test_few_points_and_frames_are_no_trouble(n_points):
     names = tuple("ab"[:n_points])
     tracks = Tracks(names, np.full((1, n_points, 3), np.nan), 60.0)
 
-    assert rigid_clusters(tracks) == ()
-    assert keep_rigid(tracks, ()).tracks.n_points == n_points
+    assert find_rigid_clusters(tracks) == ()
+    assert constrain_clusters(tracks, ()).tracks.n_points == n_points
 
 
 def test_says_which_marker_a_cluster_has_and_the_take_has_not(take):
     with pytest.raises(InvalidMotionError, match="hat"):
-        keep_rigid(take, [Cluster(("hat", "head1"), np.zeros((2, 3)), 0.0)])
+        constrain_clusters(take, [Cluster(("hat", "head1"), np.zeros((2, 3)), 0.0)])
 
 
 def test_the_head_of_a_real_take_is_a_cluster_and_moves_by_millimetres(recordings):
     take = read_c3d(recordings / "markers" / "85_02.c3d")
 
-    clusters = rigid_clusters(take)
-    kept = keep_rigid(take, clusters)
+    clusters = find_rigid_clusters(take)
+    kept = constrain_clusters(take, clusters)
 
     assert ("LFHD", "RFHD", "LBHD", "RBHD") in [cluster.names for cluster in clusters]
     assert kept.moved.mean() < 0.002
-    assert len(rigid_clusters(take, settings=ClusterSettings(slack=0.001))) < len(clusters)
+    assert len(find_rigid_clusters(take, settings=ClusterSettings(slack=0.001))) < len(clusters)

@@ -12,7 +12,7 @@ from solvers.denoising import (
     plant_feet,
 )
 from solvers.motion import Motion, Tracks, forward_kinematics
-from solvers.motion.skeletons.shot_boundaries import find_cuts, tell_of_cuts
+from solvers.motion.skeletons.shot_boundaries import describe_shots, find_shot_boundaries
 from solvers.recordings import read_acclaim, read_bvh
 from solvers.rotations.representations import (
     IDENTITY,
@@ -51,8 +51,8 @@ def pose_apart(motion, n_frames=1, turn=0.5):
 def test_a_pose_apart_is_found_at_either_end(walk, n_frames):
     apart = pose_apart(walk, n_frames)
 
-    assert find_cuts(joined(apart, walk)) == (n_frames,)
-    assert find_cuts(joined(walk, apart)) == (walk.n_frames,)
+    assert find_shot_boundaries(joined(apart, walk)) == (n_frames,)
+    assert find_shot_boundaries(joined(walk, apart)) == (walk.n_frames,)
 
 
 def test_a_join_is_found_in_tracks_too(walk):
@@ -60,14 +60,16 @@ def test_a_join_is_found_in_tracks_too(walk):
     places = forward_kinematics(joined(walk, other)).positions
     tracks = Tracks(walk.skeleton.names, places, walk.frame_rate)
 
-    assert find_cuts(tracks) == (walk.n_frames,)
+    assert find_shot_boundaries(tracks) == (walk.n_frames,)
 
 
 @pytest.mark.parametrize("n_frames", [1, 3, 8])
 def test_a_body_that_jumps_away_and_comes_back_is_not_cut(walk, n_frames):
     glitch = pose_apart(walk.slice(60, 61), n_frames)
 
-    assert not find_cuts(joined(walk.slice(0, 60), glitch, walk.slice(60 + n_frames, 180)))
+    assert not find_shot_boundaries(
+        joined(walk.slice(0, 60), glitch, walk.slice(60 + n_frames, 180))
+    )
 
 
 def test_one_joint_lost_and_found_is_no_cut(walk):
@@ -77,12 +79,12 @@ def test_one_joint_lost_and_found_is_no_cut(walk):
         rotations[90:, 5], quaternion_from_rotation_vector([0, 0, 1.0])
     )
 
-    assert not find_cuts(walk.with_poses(rotations))
+    assert not find_shot_boundaries(walk.with_poses(rotations))
 
 
 @pytest.mark.parametrize("held", [2, 4])
 def test_frames_that_are_repeated_are_no_cuts(walk, held):
-    assert not find_cuts(
+    assert not find_shot_boundaries(
         walk.with_poses(
             np.repeat(walk.rotations[::held], held, axis=0),
             np.repeat(walk.root_positions[::held], held, axis=0),
@@ -101,7 +103,7 @@ def test_frames_that_are_repeated_are_no_cuts(walk, held):
     ids=["noise", "noise and outliers", "outliers", "many outliers"],
 )
 def test_no_noise_makes_a_cut(walk, spoilt):
-    assert not find_cuts(corrupt(walk, spoilt))
+    assert not find_shot_boundaries(corrupt(walk, spoilt))
 
 
 def test_t_poses_of_real_recordings_are_found_and_hops_are_not_cut(recordings):
@@ -110,9 +112,9 @@ def test_t_poses_of_real_recordings_are_found_and_hops_are_not_cut(recordings):
         thinned = Motion(
             motion.skeleton, motion.rotations[::4], motion.root_positions[::4], 30.0
         )
-        assert find_cuts(motion) == find_cuts(thinned) == (1,), path.name
+        assert find_shot_boundaries(motion) == find_shot_boundaries(thinned) == (1,), path.name
     for path in sorted((recordings / "mocap" / "hdm05").glob("*_001_120.amc")):
-        assert not find_cuts(read_acclaim(path)), path.name
+        assert not find_shot_boundaries(read_acclaim(path)), path.name
 
 
 def test_a_pose_apart_stays_and_does_not_touch_what_follows(walk):
@@ -192,8 +194,8 @@ def test_feet_are_not_planted_across_a_cut(walk):
 def test_the_sentence_names_frames_from_one(walk):
     take = joined(pose_apart(walk, 2), walk, pose_apart(walk, 60))
 
-    assert tell_of_cuts(take, ()) == ""
-    assert tell_of_cuts(take, (2, 182)) == (
+    assert describe_shots(take, ()) == ""
+    assert describe_shots(take, (2, 182)) == (
         "The take is cut before frame 183; its pieces were cleaned apart."
         " Frames 1 to 2 are poses apart and were kept as recorded."
     )

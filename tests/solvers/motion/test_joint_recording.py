@@ -7,12 +7,12 @@ import pytest
 from numpy.testing import assert_array_equal
 
 from solvers.errors import InvalidMotionError
-from solvers.motion import JOINTS, JointRecording, Sensor, Tracks, joint_parents
+from solvers.motion import SENSOR_JOINTS, JointRecording, Sensor, Tracks, joint_parents
 
 
 @pytest.fixture
 def recording() -> JointRecording:
-    names = JOINTS[Sensor.KINECT_V1]
+    names = SENSOR_JOINTS[Sensor.KINECT_V1]
     positions = np.arange(5 * 20 * 3.0).reshape(5, 20, 3)
     state = np.arange(100).reshape(5, 20) % 3
     return JointRecording(Tracks(names, positions, 30.0), state, Sensor.KINECT_V1)
@@ -23,7 +23,7 @@ def recording() -> JointRecording:
     [(Sensor.KINECT_V1, 20), (Sensor.KINECT_V2, 25), (Sensor.AZURE_KINECT, 32)],
 )
 def test_each_sensor_has_its_joints_in_one_tree(sensor, n_joints):
-    names = JOINTS[sensor]
+    names = SENSOR_JOINTS[sensor]
     parents = joint_parents(names)
 
     assert len(set(names)) == n_joints
@@ -38,9 +38,9 @@ def up_to_the_root(joint: int, parents: tuple[int, ...]) -> int:
     return joint
 
 
-@pytest.mark.parametrize("sensor", list(JOINTS))
+@pytest.mark.parametrize("sensor", list(SENSOR_JOINTS))
 def test_left_and_right_hang_alike(sensor):
-    names = JOINTS[sensor]
+    names = SENSOR_JOINTS[sensor]
     tree = {
         name: names[parent] for name, parent in zip(names, joint_parents(names), strict=True)
     }
@@ -64,7 +64,7 @@ def test_left_and_right_hang_alike(sensor):
     ],
 )
 def test_numbers_and_parents_are_the_makers(sensor, number, name, parent):
-    names = JOINTS[sensor]
+    names = SENSOR_JOINTS[sensor]
 
     assert names[number] == name
     assert names[joint_parents(names)[number]] == parent

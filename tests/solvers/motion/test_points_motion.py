@@ -7,7 +7,7 @@ from scipy.spatial.transform import Rotation
 
 from solvers.errors import InvalidMotionError
 from solvers.motion import (
-    JOINTS,
+    SENSOR_JOINTS,
     Motion,
     Sensor,
     Tracks,
@@ -18,7 +18,7 @@ from solvers.motion import (
 )
 from solvers.recordings import read_recording
 from solvers.rotations.representations import angle_between, quaternion_from_rotation_vector
-from solvers.rotations.rigid_fit import best_turns
+from solvers.rotations.rigid_fit import fit_rotations
 
 SENSORS = [Sensor.KINECT_V1, Sensor.KINECT_V2, Sensor.AZURE_KINECT]
 
@@ -26,7 +26,7 @@ SENSORS = [Sensor.KINECT_V1, Sensor.KINECT_V2, Sensor.AZURE_KINECT]
 @pytest.fixture(params=SENSORS, ids=lambda sensor: sensor.value)
 def body(request, rng):
     """A skeleton with the joints of a sensor and bones of 5 to 50 cm in any direction."""
-    names = JOINTS[request.param]
+    names = SENSOR_JOINTS[request.param]
     parents = joint_parents(names)
     lengths = rng.uniform(0.05, 0.5, size=(1, len(names), 1))
     ways = rng.normal(size=(1, len(names), 3))
@@ -106,7 +106,7 @@ def test_turning_the_recording_turns_the_root_alone(body, dance):
     ],
 )
 def test_a_lost_joint_leaves_its_bones_unknown_and_the_rest_as_it_was(lost_joint, expected):
-    names = JOINTS[Sensor.KINECT_V2]
+    names = SENSOR_JOINTS[Sensor.KINECT_V2]
     parents = joint_parents(names)
     rng = np.random.default_rng(1)
     points = Tracks(names, rng.normal(size=(20, 25, 3)), 30.0)
@@ -239,7 +239,7 @@ def test_best_turns_are_scipys(rng):
     shape = rng.normal(size=(4, 3))
     seen = rng.normal(size=(30, 4, 3))
 
-    found = best_turns(shape, seen)
+    found = fit_rotations(shape, seen)
 
     for frame, turn in enumerate(found):
         expected, _ = Rotation.align_vectors(seen[frame], shape)
@@ -252,6 +252,6 @@ def test_one_direction_tells_no_turn(rng):
     seen[0, 0] = np.nan
     seen[1, 1] = 2.0 * seen[1, 0]
 
-    found = best_turns(np.array([[1.0, 0, 0], [0, 1.0, 0]]), seen)
+    found = fit_rotations(np.array([[1.0, 0, 0], [0, 1.0, 0]]), seen)
 
     assert np.isnan(found).all(axis=1).tolist() == [True, True, False]

@@ -7,8 +7,8 @@ from numpy.testing import assert_allclose
 
 from solvers import samples
 from solvers.motion.humanoid import posture_joints
-from solvers.motion.humanoid.posture_heading import normalise, turned
-from solvers.motion.humanoid.posture_joints import MIRROR_IMAGES
+from solvers.motion.humanoid.posture_heading import normalize_postures, rotate_about_vertical
+from solvers.motion.humanoid.posture_joints import MIRROR_JOINTS
 
 
 @pytest.fixture(scope="module")
@@ -17,13 +17,13 @@ def walk():
 
 
 def headings(postures):
-    return np.unwrap(normalise(postures, 30.0).headings)
+    return np.unwrap(normalize_postures(postures, 30.0).headings)
 
 
 @pytest.mark.parametrize("n_frames", [1, 5, 10])
 def test_exchanged_sides_do_not_turn_the_body(walk, n_frames):
     spoilt = walk.copy()
-    spoilt[40 : 40 + n_frames] = spoilt[40 : 40 + n_frames][:, list(MIRROR_IMAGES)]
+    spoilt[40 : 40 + n_frames] = spoilt[40 : 40 + n_frames][:, list(MIRROR_JOINTS)]
 
     assert_allclose(headings(spoilt), headings(walk), atol=np.radians(3.0))
 
@@ -33,7 +33,7 @@ def test_who_turns_and_spins_is_followed(walk, turns_per_second):
     angles = 2.0 * np.pi * turns_per_second * np.arange(len(walk)) / 30.0
     middle = slice(10, -10)  # the ends are steadied towards themselves
 
-    found = headings(turned(walk, angles)) - headings(walk)
+    found = headings(rotate_about_vertical(walk, angles)) - headings(walk)
 
     off = found - angles
     assert_allclose(off[middle], off[middle].mean(), atol=np.radians(4.0))
@@ -43,7 +43,7 @@ def test_who_turns_and_spins_is_followed(walk, turns_per_second):
 def test_half_a_turn_in_a_third_of_a_second_is_followed(walk):
     angles = np.pi * np.clip((np.arange(len(walk)) - 40.0) / 10.0, 0.0, 1.0)
 
-    found = headings(turned(walk, angles)) - headings(walk)
+    found = headings(rotate_about_vertical(walk, angles)) - headings(walk)
 
     assert np.abs(found - angles).max() < np.radians(25.0)  # steadied over a tenth of a second
     assert np.abs(found - angles)[[30, 60]].max() < np.radians(2.0)

@@ -21,7 +21,7 @@ from solvers.physics.body_surface import (
 from solvers.physics.control import _project_to_cones
 from solvers.physics.engine import load_engine
 from solvers.physics.tables import MASS_FRACTIONS, ROLES, role_without_side
-from solvers.physics.target import blend_motions, fill_gaps, smooth_target
+from solvers.physics.target import blend_motions, fill_motion_gaps, smooth_target
 from solvers.physics.world import build_world
 from solvers.rotations.representations import quaternion_from_rotation_vector, rotate
 from solvers.samples import GaitSettings, walking_gait
@@ -212,7 +212,7 @@ def test_fill_gaps_interpolates_and_holds_the_ends():
     rotations[[0, 2, 3, 5, 6], 0] = np.nan
     coordinates[2] = np.nan
 
-    filled = fill_gaps(Motion(skeleton, rotations, coordinates, 30.0))
+    filled = fill_motion_gaps(Motion(skeleton, rotations, coordinates, 30.0))
 
     angles = [0.0, 0.0, 0.3, 0.6, 0.9, 0.9, 0.9]
     turns[:, 0, 2] = angles

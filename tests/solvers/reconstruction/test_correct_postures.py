@@ -9,8 +9,8 @@ from scipy.optimize import minimize
 
 from solvers.errors import InvalidMotionError
 from solvers.motion import Tracks
-from solvers.motion.humanoid.posture_heading import mirrored, turned
-from solvers.motion.humanoid.posture_joints import MIRROR_IMAGES
+from solvers.motion.humanoid.posture_heading import mirror_postures, rotate_about_vertical
+from solvers.motion.humanoid.posture_joints import MIRROR_JOINTS
 from solvers.reconstruction import (
     CorrectionMethod,
     CorrectionSettings,
@@ -58,11 +58,13 @@ def test_without_shift_joints_keep_their_mean_position(prior):
 def test_prior_ignores_heading_and_position(prior):
     given_ = recording(seen_by_a_bad_sensor(truth(1.3)))
     angles = np.full(given_.n_frames, 2.0)
-    turned_ = recording(turned(given_.tracks.positions, angles) + np.array([4.0, 1.0, 0.0]))
+    turned_ = recording(
+        rotate_about_vertical(given_.tracks.positions, angles) + np.array([4.0, 1.0, 0.0])
+    )
     here = correct_postures(given_, prior).tracks.positions
     there = correct_postures(turned_, prior).tracks.positions
     np.testing.assert_allclose(
-        turned(here, angles) + np.array([4.0, 1.0, 0.0]), there, atol=1e-4
+        rotate_about_vertical(here, angles) + np.array([4.0, 1.0, 0.0]), there, atol=1e-4
     )
 
 
@@ -243,16 +245,16 @@ def test_mirror_setting_shares_errors_of_left_and_right_limbs():
     for speed in (0.9, 1.1, 1.45, 1.6):
         seen, true = pair(truth(speed))
         blind = true.positions.copy()
-        blind[:, [MIRROR_IMAGES[joint] for joint in (KNEE, KNEE + 1, KNEE + 2)]] = np.nan
+        blind[:, [MIRROR_JOINTS[joint] for joint in (KNEE, KNEE + 1, KNEE + 2)]] = np.nan
         takes.append((seen, true.with_positions(blind)))
     both_sides = learn_residual_prior(takes, settings=replace(QUICK, mirror=True))
     assert "rightLowerLeg" not in both_sides.joints
     given_ = recording(seen_by_a_bad_sensor(truth(1.3)))
-    image = recording(mirrored(given_.tracks.positions))
+    image = recording(mirror_postures(given_.tracks.positions))
     here = correct_postures(given_, both_sides).tracks.positions
     there = correct_postures(image, both_sides).tracks.positions
-    np.testing.assert_allclose(mirrored(here), there, atol=1e-6)
-    moved = (there - image.tracks.positions)[:, MIRROR_IMAGES[KNEE]]
+    np.testing.assert_allclose(mirror_postures(here), there, atol=1e-6)
+    moved = (there - image.tracks.positions)[:, MIRROR_JOINTS[KNEE]]
     assert np.linalg.norm(moved, axis=-1).mean() > 0.03
 
 

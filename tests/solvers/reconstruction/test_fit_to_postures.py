@@ -8,10 +8,10 @@ from numpy.testing import assert_allclose
 
 from solvers.errors import InvalidMotionError
 from solvers.motion import Motion, forward_kinematics
-from solvers.motion.humanoid.posture_heading import turned
-from solvers.motion.humanoid.posture_joints import POSTURE_JOINTS, motion_postures
+from solvers.motion.humanoid.posture_heading import rotate_about_vertical
+from solvers.motion.humanoid.posture_joints import POSTURE_JOINTS, postures_from_motion
 from solvers.reconstruction.joint_rotations.fit_to_postures import (
-    fill_gaps,
+    fill_motion_gaps,
     fit_motion_to_postures,
 )
 from solvers.recordings import read_bvh
@@ -31,7 +31,7 @@ def place(role: str) -> int:
 
 
 def test_matching_postures_change_nothing(walk):
-    result = fit_motion_to_postures(walk, motion_postures(walk))
+    result = fit_motion_to_postures(walk, postures_from_motion(walk))
 
     assert_allclose(result.rotations, walk.rotations, atol=1e-9)
     assert_allclose(result.root_positions, walk.root_positions, atol=1e-12)
@@ -46,15 +46,17 @@ def test_nan_means_no_target(walk):
 @given(st.floats(-3.0, 3.0), st.tuples(*[st.floats(-2.0, 2.0)] * 3))
 def test_rotation_and_displacement_of_the_target_are_followed(angle, shift):
     walk = walking_gait(GaitSettings(duration=0.5, frame_rate=20.0))
-    wanted = turned(motion_postures(walk), np.full(walk.n_frames, angle)) + np.array(shift)
+    wanted = rotate_about_vertical(
+        postures_from_motion(walk), np.full(walk.n_frames, angle)
+    ) + np.array(shift)
 
     result = fit_motion_to_postures(walk, wanted)
 
-    assert_allclose(motion_postures(result), wanted, atol=1e-6)
+    assert_allclose(postures_from_motion(result), wanted, atol=1e-6)
 
 
 def test_an_arm_that_is_raised_is_raised(walk):
-    wanted = motion_postures(walk)
+    wanted = postures_from_motion(walk)
     shoulder = wanted[:, place("leftUpperArm")]
     for role in ("leftLowerArm", "leftHand"):
         reach = np.linalg.norm(wanted[:, place(role)] - shoulder, axis=-1, keepdims=True)
@@ -63,7 +65,7 @@ def test_an_arm_that_is_raised_is_raised(walk):
 
     result = fit_motion_to_postures(walk, wanted)
 
-    got = motion_postures(result)
+    got = postures_from_motion(result)
     assert np.linalg.norm(got - wanted, axis=-1)[:, arm].max() < 0.03
     others = [joint for joint in range(20) if not POSTURE_JOINTS[joint].startswith("left")]
     assert_allclose(got[:, others], wanted[:, others], atol=1e-9)
@@ -78,7 +80,7 @@ def test_twist_stays(walk):
     rotations = walk.rotations.copy()
     rotations[:, joint] = multiply(rotations[:, joint], twist)
     wrung = walk.with_poses(rotations)
-    wanted = motion_postures(wrung) + RAISED
+    wanted = postures_from_motion(wrung) + RAISED
 
     result = fit_motion_to_postures(wrung, wanted)
 
@@ -90,11 +92,11 @@ def test_real_motion_with_constant_lengths_is_followed_closely(recordings):
     """Take over the poses of one stretch of a walk in another, a second later."""
     walk = read_bvh(sorted((recordings / "mocap" / "cmu_walk").glob("*.bvh"))[0])
     first, later = walk.slice(1, 121), walk.slice(121, 241)
-    wanted = motion_postures(later)
+    wanted = postures_from_motion(later)
 
     result = fit_motion_to_postures(first, wanted)
 
-    miss = np.linalg.norm(motion_postures(result) - wanted, axis=-1)
+    miss = np.linalg.norm(postures_from_motion(result) - wanted, axis=-1)
     ends = [place(f"{side}{part}") for side in ("left", "right")
             for part in ("LowerArm", "Hand", "LowerLeg", "Foot")]  # fmt: skip
     assert miss[:, ends].mean() < 0.01
@@ -105,7 +107,7 @@ def test_gaps_are_bridged_the_short_way(walk):
     rotations, places = walk.rotations.copy(), walk.root_positions.copy()
     rotations[10:13, 2], rotations[:2, 3], places[5:8] = np.nan, np.nan, np.nan
 
-    result = fill_gaps(walk.with_poses(rotations, places))
+    result = fill_motion_gaps(walk.with_poses(rotations, places))
 
     assert result.observed.all()
     assert_allclose(result.rotations[:2, 3], np.tile(walk.rotations[2, 3], (2, 1)))

@@ -7,8 +7,15 @@ import pytest
 from numpy.testing import assert_allclose
 from upright_places import PLACES
 
-from solvers.motion import JOINTS, Motion, Sensor, Tracks, forward_kinematics, joint_parents
-from solvers.motion.humanoid.posture_joints import motion_postures
+from solvers.motion import (
+    SENSOR_JOINTS,
+    Motion,
+    Sensor,
+    Tracks,
+    forward_kinematics,
+    joint_parents,
+)
+from solvers.motion.humanoid.posture_joints import postures_from_motion
 from solvers.reconstruction import ReconstructMethod, ReconstructSettings, reconstruct
 from solvers.reconstruction.joint_rotations.limb_twist import twist_to_normal
 from solvers.reconstruction.joint_rotations.motion_from_positions import motion_from_positions
@@ -18,7 +25,7 @@ from solvers.rotations.representations import rotate
 from solvers.samples import GaitSettings, walking_gait
 from solvers.workflows.reconstruct_motion import postures_recording
 
-NAMES = JOINTS[Sensor.KINECT_V1]
+NAMES = SENSOR_JOINTS[Sensor.KINECT_V1]
 PARENTS = joint_parents(NAMES)
 AT = np.radians(50.0)
 """By so much the left upper arm is twisted in like postures."""
@@ -159,7 +166,7 @@ def test_reconstruction_returns_the_twist_of_its_library(gait):
         assert one.twists.vectors.shape == (gait.n_frames, 4)
         assert np.abs(one.twists.vectors).min() > 0.5
     assert both.motion.observed.all()
-    assert len(motion_postures(both.motion)) == gait.n_frames
+    assert len(postures_from_motion(both.motion)) == gait.n_frames
 
 
 @pytest.mark.parametrize(

@@ -9,7 +9,7 @@ from upright_places import PLACES
 from solvers import samples
 from solvers.errors import InvalidMotionError
 from solvers.motion import (
-    JOINTS,
+    SENSOR_JOINTS,
     Motion,
     Sensor,
     Tracks,
@@ -24,7 +24,7 @@ from solvers.reconstruction.joint_rotations.motion_from_positions import motion_
 from solvers.recordings import read_recording
 from solvers.rotations.representations import angle_between, rotate
 
-NAMES = JOINTS[Sensor.KINECT_V1]
+NAMES = SENSOR_JOINTS[Sensor.KINECT_V1]
 PARENTS = joint_parents(NAMES)
 REAL = (
     "irds/215_18_0_5_1_stand.txt",

@@ -8,7 +8,7 @@ from bad_sensor import KNEE, QUICK, pair, recording, seen_by_a_bad_sensor, truth
 from numpy.testing import assert_allclose
 
 from solvers.errors import InvalidFileError
-from solvers.motion.humanoid.posture_heading import mirrored
+from solvers.motion.humanoid.posture_heading import mirror_postures
 from solvers.reconstruction import learn_residual_prior, load_residual_prior
 from solvers.reconstruction.residual_correction.inputs import smooth_postures
 from solvers.reconstruction.residual_correction.learn_movement_process import (
@@ -52,8 +52,8 @@ def test_movement_process_equals_the_naive_full_process(process):
     for image in (False, True):
         for number, one in enumerate(TAKES):
             seen, off = movement_parts(one.features, RATE)[:, 5::10], one.errors[5::10]
-            parts.append(mirrored(seen) if image else seen)
-            errors.append(mirrored(off) if image else off)
+            parts.append(mirror_postures(seen) if image else seen)
+            errors.append(mirror_postures(off) if image else off)
             takes += [number + 10 * image] * len(off)
             actors += [one.actor + "m" * image] * len(off)
     examples, asked = (
@@ -80,7 +80,7 @@ def naive(one: np.ndarray, other: np.ndarray, strengths: tuple) -> np.ndarray:
     """The covariance by its definition, from (5, n, 20, 3) parts."""
     far = ((one[:, :, None] - other[:, None]) ** 2).sum(axis=(-2, -1))
     centre = np.concatenate([movement_parts(t.features, RATE)[0, 5::10] for t in TAKES])
-    centre = 0.5 * (centre + mirrored(centre)).mean(axis=0)
+    centre = 0.5 * (centre + mirror_postures(centre)).mean(axis=0)
     slope = np.einsum("ijk,mjk->im", one[0] - centre, other[0] - centre)
     a, b, c, d = strengths
     return (
@@ -104,9 +104,9 @@ def test_movement_process_predicts_errors_at_a_new_speed(process):
 def test_in_a_mirror_errors_are_mirrored(process):
     new = take(1.4, "c").features
     here, near = process.predict(new, RATE, np.arange(90))
-    there, also_near = process.predict(mirrored(new), RATE, np.arange(90))
+    there, also_near = process.predict(mirror_postures(new), RATE, np.arange(90))
 
-    assert_allclose(mirrored(here), there, atol=1e-5)
+    assert_allclose(mirror_postures(here), there, atol=1e-5)
     assert_allclose(near, also_near, atol=1e-5)
 
 

@@ -4,12 +4,12 @@ import numpy as np
 import pytest
 from numpy.testing import assert_allclose
 
-from solvers.motion import JOINTS, Sensor
-from solvers.motion.humanoid.posture_joints import POSTURE_JOINTS, joints_of_names
+from solvers.motion import SENSOR_JOINTS, Sensor
+from solvers.motion.humanoid.posture_joints import POSTURE_JOINTS, posture_joint_indices
 from solvers.reconstruction.joint_rotations.other_joints import positions_from_postures
 from solvers.recordings import read_recording
 
-NAMES = JOINTS[Sensor.KINECT_V2]
+NAMES = SENSOR_JOINTS[Sensor.KINECT_V2]
 WRIST, ELBOW = (POSTURE_JOINTS.index(role) for role in ("leftHand", "leftLowerArm"))
 THUMB = NAMES.index("ThumbLeft")
 
@@ -18,7 +18,7 @@ THUMB = NAMES.index("ThumbLeft")
 def take(recordings):
     recording = read_recording(recordings / "kinect" / "kimore" / "JointPositionExercise1.csv")
     seen = recording.tracks.positions[:60].copy()
-    places = joints_of_names(recording.names)
+    places = posture_joint_indices(recording.names)
     return seen, seen[:, [places[role] for role in POSTURE_JOINTS]]
 
 

@@ -3,7 +3,11 @@
 import numpy as np
 import pytest
 
-from solvers.motion.humanoid.body_size import USUAL_LENGTHS, resize, segment_lengths
+from solvers.motion.humanoid.body_size import (
+    ADULT_BONE_LENGTHS_M,
+    resize_postures,
+    segment_lengths,
+)
 from solvers.motion.humanoid.posture_joints import PARENTS
 from solvers.reconstruction.joint_rotations.library_body import BodyPostures
 from solvers.reconstruction.pose_completion.constrain_lengths import constrain_lengths
@@ -45,7 +49,7 @@ def bodies(random):
     """Postures along a few smooth ways, of a usual adult."""
     ways = random.normal(size=(4, 20, 3))
     mixed = np.tensordot(random.normal(size=(900, 4)), ways, axes=1) + UP
-    return resize(mixed.cumsum(axis=1) - mixed[:, :1], USUAL_LENGTHS)
+    return resize_postures(mixed.cumsum(axis=1) - mixed[:, :1], ADULT_BONE_LENGTHS_M)
 
 
 @pytest.fixture
@@ -57,12 +61,12 @@ def problem(bodies, random):
     index = index_postures(_body(bodies[N_FRAMES:]), np.zeros(894, np.int32))
     places, _ = nearest_postures(index, PostureQuery(observed, 0 * observed, trust, 0.0), 30)
     spaces = local_pca(bodies[N_FRAMES:][places])
-    return spaces, EnergyTargets(observed, trust, spaces.neighbours, USUAL_LENGTHS)
+    return spaces, EnergyTargets(observed, trust, spaces.neighbours, ADULT_BONE_LENGTHS_M)
 
 
 def _body(positions):
     single = positions.astype(np.float32)
-    return BodyPostures(single, 0 * single, USUAL_LENGTHS)
+    return BodyPostures(single, 0 * single, ADULT_BONE_LENGTHS_M)
 
 
 def test_neighbors_minimize_equation_9(bodies, random):
@@ -92,7 +96,7 @@ def test_grouped_search_finds_nearly_all_true_neighbours(random):
     shapes = (np.sin(latent) @ ways.reshape(6, -1)).reshape(-1, 20, 3) + UP
     directions = shapes / np.linalg.norm(shapes, axis=-1, keepdims=True)
     directions[:, 0] = 0.0
-    positions = resize(np.cumsum(directions, axis=1), USUAL_LENGTHS)
+    positions = resize_postures(np.cumsum(directions, axis=1), ADULT_BONE_LENGTHS_M)
     groups = group_postures(directions.astype(np.float32))
     assert len(np.unique(groups)) > 20
     trust = random.uniform(size=(40, 20))
@@ -135,7 +139,7 @@ def test_energy_is_that_of_equations_10_to_15(problem):
             continuity += off @ off / 20
             if joint:
                 length = np.linalg.norm(posture[joint] - posture[PARENTS[joint]])
-                kinematics += (length - USUAL_LENGTHS[joint]) ** 2 / 19
+                kinematics += (length - ADULT_BONE_LENGTHS_M[joint]) ** 2 / 19
         others = asked.neighbours[frame].reshape(-1, 20, 3)
         style = min(np.sum((posture - one) ** 2) / 20 for one in others)
         total = control + 0.5 * style + 1.5 * kinematics + 0.25 * continuity
@@ -220,15 +224,15 @@ def test_lengths_are_constrained_and_reliable_joints_hardly_move(bodies, random)
     spoilt[:, 13] += random.normal(scale=0.1, size=(20, 3))
     sure = np.ones((20, 20))
     sure[:, 13] = 0.0
-    kept = constrain_lengths(spoilt, USUAL_LENGTHS, sure, sure)
+    kept = constrain_lengths(spoilt, ADULT_BONE_LENGTHS_M, sure, sure)
     np.testing.assert_allclose(
-        segment_lengths(kept), np.tile(USUAL_LENGTHS, (20, 1)), atol=0.01
+        segment_lengths(kept), np.tile(ADULT_BONE_LENGTHS_M, (20, 1)), atol=0.01
     )
     others = np.arange(20) != 13
     assert np.linalg.norm(kept - spoilt, axis=-1)[:, others].mean() < 2e-3
 
 
 def test_observed_bones_stay_unchanged(bodies):
-    longer = resize(bodies[:20], 1.1 * USUAL_LENGTHS)
-    kept = constrain_lengths(longer, USUAL_LENGTHS, np.ones((20, 20)), np.ones((20, 20)))
+    longer = resize_postures(bodies[:20], 1.1 * ADULT_BONE_LENGTHS_M)
+    kept = constrain_lengths(longer, ADULT_BONE_LENGTHS_M, np.ones((20, 20)), np.ones((20, 20)))
     np.testing.assert_allclose(kept, longer)

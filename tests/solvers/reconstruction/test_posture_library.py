@@ -4,10 +4,14 @@ import numpy as np
 import pytest
 
 from solvers.errors import InvalidFileError, InvalidMotionError
-from solvers.motion.humanoid.body_size import USUAL_LENGTHS, body_lengths
-from solvers.motion.humanoid.bone_directions import along_bones, bone_changes, bone_directions
-from solvers.motion.humanoid.posture_heading import mirrored, normalise
-from solvers.motion.humanoid.posture_joints import POSTURE_JOINTS, motion_postures
+from solvers.motion.humanoid.body_size import ADULT_BONE_LENGTHS_M, estimate_bone_lengths
+from solvers.motion.humanoid.bone_directions import (
+    bone_directions,
+    positions_from_directions,
+    rates_from_directions,
+)
+from solvers.motion.humanoid.posture_heading import mirror_postures, normalize_postures
+from solvers.motion.humanoid.posture_joints import POSTURE_JOINTS, postures_from_motion
 from solvers.reconstruction.joint_rotations.library_body import (
     CORRECTED_BONES,
     bone_axis_corrections,
@@ -37,25 +41,27 @@ def library(gait):
 
 @pytest.fixture(scope="module")
 def walk(gait):
-    return normalise(motion_postures(gait), 30.0).postures
+    return normalize_postures(postures_from_motion(gait), 30.0).postures
 
 
 def test_directions_and_lengths_give_the_posture_back(walk):
     for one in walk[::20, None]:
-        postures = along_bones(bone_directions(one), body_lengths(one))
+        postures = positions_from_directions(bone_directions(one), estimate_bone_lengths(one))
         np.testing.assert_allclose(postures, one, atol=1e-9)
 
 
 def test_changes_of_a_steady_turn_are_its_speed():
     angle = 2.0 * np.arange(30) / 30.0
     steady = np.stack([angle, 0.5 * angle, -angle], axis=-1)
-    np.testing.assert_allclose(bone_changes(steady, 30.0), np.tile([2.0, 1.0, -2.0], (30, 1)))
+    np.testing.assert_allclose(
+        rates_from_directions(steady, 30.0), np.tile([2.0, 1.0, -2.0], (30, 1))
+    )
 
 
 def test_mirrored_posture_has_left_and_right_swapped(walk):
     left, right = (POSTURE_JOINTS.index(f"{side}Hand") for side in ("left", "right"))
-    np.testing.assert_array_equal(mirrored(walk)[:, left], walk[:, right] * (-1, 1, 1))
-    np.testing.assert_array_equal(mirrored(mirrored(walk)), walk)
+    np.testing.assert_array_equal(mirror_postures(walk)[:, left], walk[:, right] * (-1, 1, 1))
+    np.testing.assert_array_equal(mirror_postures(mirror_postures(walk)), walk)
 
 
 def test_kept_postures_are_distinct_and_cover_the_others():
@@ -64,7 +70,7 @@ def test_kept_postures_are_distinct_and_cover_the_others():
     directions = (random.normal(size=(400, 3)) @ ways).reshape(400, 20, 3)
     spacing = 0.03
     kept = subsample_postures(directions, 400, spacing)
-    points = along_bones(directions, USUAL_LENGTHS).reshape(400, -1)
+    points = positions_from_directions(directions, ADULT_BONE_LENGTHS_M).reshape(400, -1)
     ways = np.linalg.norm(points[:, None] - points[kept], axis=-1) / np.sqrt(20.0)
     among = ways[kept] + np.eye(len(kept))
     assert 1 < len(kept) < 400
@@ -73,8 +79,8 @@ def test_kept_postures_are_distinct_and_cover_the_others():
 
 
 def test_a_library_has_the_postures_of_its_clip(gait, library, walk):
-    body = build_body_postures(library.directions, library.changes, body_lengths(walk))
-    postures = np.concatenate([walk, mirrored(walk)]).reshape(-1, 60)
+    body = build_body_postures(library.directions, library.changes, estimate_bone_lengths(walk))
+    postures = np.concatenate([walk, mirror_postures(walk)]).reshape(-1, 60)
     ways = np.linalg.norm(postures[:, None] - body.positions.reshape(-1, 60), axis=-1)
     assert ways.min(axis=1).max() / np.sqrt(20.0) < 0.05
     assert library.n_postures < library.n_seen
@@ -138,7 +144,7 @@ def test_nothing_to_learn_from_is_refused():
 
 def test_bone_axis_corrections_of_a_tracker_are_found(walk, library):
     """Bones of the observed body are turned by known angles; the same turns are found."""
-    lengths = body_lengths(walk)
+    lengths = estimate_bone_lengths(walk)
     known = np.tile(np.eye(3), (20, 1, 1))
     cos, sin = np.cos(0.3), np.sin(0.3)
     for bone, name in enumerate(POSTURE_JOINTS):
@@ -147,7 +153,7 @@ def test_bone_axis_corrections_of_a_tracker_are_found(walk, library):
             known[bone] = [[cos, 0, side * sin], [0, 1, 0], [-side * sin, 0, cos]]
     directions = bone_directions(walk)
     seen = build_body_postures(directions, np.zeros_like(directions), lengths, known).positions
-    plain = along_bones(directions, lengths)
+    plain = positions_from_directions(directions, lengths)
     trust = np.full(walk.shape[:2], 100.0)
     found = build_body_postures(
         directions,

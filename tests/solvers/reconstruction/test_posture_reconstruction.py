@@ -4,12 +4,12 @@ import numpy as np
 import pytest
 
 from solvers.errors import InvalidMotionError, SolveCancelled
-from solvers.motion import JOINTS, JointRecording, Sensor, Tracks, forward_kinematics
-from solvers.motion.humanoid.posture_heading import turned
+from solvers.motion import SENSOR_JOINTS, JointRecording, Sensor, Tracks, forward_kinematics
+from solvers.motion.humanoid.posture_heading import rotate_about_vertical
 from solvers.motion.humanoid.posture_joints import (
     POSTURE_JOINTS,
-    joints_of_names,
-    motion_postures,
+    posture_joint_indices,
+    postures_from_motion,
 )
 from solvers.reconstruction.joint_rotations.other_joints import (
     find_anchors,
@@ -24,7 +24,7 @@ from solvers.samples import GaitSettings, walking_gait
 
 LEG = [POSTURE_JOINTS.index(f"left{part}") for part in ("LowerLeg", "Foot", "Toes")]
 GONE = slice(30, 60)
-KINECT = JOINTS[Sensor.KINECT_V1]
+KINECT = SENSOR_JOINTS[Sensor.KINECT_V1]
 
 
 def recorded(positions, names=KINECT):
@@ -55,7 +55,9 @@ def library():
 
 @pytest.fixture(scope="module")
 def walk():
-    return motion_postures(walking_gait(GaitSettings(duration=3.0, frame_rate=30.0, speed=1.1)))
+    return postures_from_motion(
+        walking_gait(GaitSettings(duration=3.0, frame_rate=30.0, speed=1.1))
+    )
 
 
 @pytest.fixture
@@ -110,9 +112,11 @@ def test_confidence_is_high_where_observed_and_low_inside_a_gap(lame, library):
 
 
 def test_position_and_heading_do_not_matter(lame, library):
-    moved = turned(lame, np.full(len(lame), 1.9)) + np.array([2.0, 3.0, 0.0])
+    moved = rotate_about_vertical(lame, np.full(len(lame), 1.9)) + np.array([2.0, 3.0, 0.0])
     one, other = rebuilt(lame, library), rebuilt(moved, library)
-    back = turned(other.tracks.positions - np.array([2.0, 3.0, 0.0]), np.full(len(lame), -1.9))
+    back = rotate_about_vertical(
+        other.tracks.positions - np.array([2.0, 3.0, 0.0]), np.full(len(lame), -1.9)
+    )
     np.testing.assert_allclose(back, one.tracks.positions, atol=1e-3)
 
 
@@ -161,23 +165,23 @@ def test_the_motion_has_bones_of_constant_length_and_follows(lame, library):
 
 
 def test_joints_beyond_the_twenty_move_with_their_neighbours():
-    names = JOINTS[Sensor.KINECT_V2]
+    names = SENSOR_JOINTS[Sensor.KINECT_V2]
     found = dict(zip(names, find_anchors(names), strict=True))
     assert POSTURE_JOINTS[found["HandTipLeft"]] == "leftHandEnd"
     assert POSTURE_JOINTS[found["ThumbRight"]] == "rightHand"
     assert POSTURE_JOINTS[found["Neck"]] in {"chest", "head"}
-    azure = JOINTS[Sensor.AZURE_KINECT]
+    azure = SENSOR_JOINTS[Sensor.AZURE_KINECT]
     found = dict(zip(azure, find_anchors(azure), strict=True))
     assert POSTURE_JOINTS[found["Nose"]] == "head"
 
 
 def _places(names):
-    found = joints_of_names(names)
+    found = posture_joint_indices(names)
     return [found[role] for role in POSTURE_JOINTS]
 
 
 def test_attached_joints_keep_their_offset_from_the_anchor(walk):
-    order = JOINTS[Sensor.KINECT_V2]
+    order = SENSOR_JOINTS[Sensor.KINECT_V2]
     names = tuple(order[place] for place in _places(order))
     names = (*names, "HandTipLeft")
     hand = POSTURE_JOINTS.index("leftHandEnd")
@@ -218,7 +222,7 @@ def test_real_walks_of_another_person(recordings, library):
     clips = [read_bvh(path, scale=0.0254 / 0.45) for path in sorted(folder.glob("3[25]*.bvh"))]
     learned = build_posture_library([clip.slice(1, clip.n_frames) for clip in clips[:12]])
     clip = read_bvh(folder / "07_03.bvh", scale=0.0254 / 0.45)
-    walk = motion_postures(clip.slice(1, clip.n_frames))[::4]
+    walk = postures_from_motion(clip.slice(1, clip.n_frames))[::4]
     seen = walk.copy()
     seen[20:50, LEG] = np.nan
     away = np.linalg.norm(rebuilt(seen, learned).tracks.positions - walk, axis=-1)

@@ -4,28 +4,32 @@ import numpy as np
 import pytest
 
 from solvers.errors import InvalidMotionError
-from solvers.motion import JOINTS, Sensor, Tracks
-from solvers.motion.humanoid.body_size import body_lengths, resize, segment_lengths
-from solvers.motion.humanoid.posture_heading import normalise, turned
+from solvers.motion import SENSOR_JOINTS, Sensor, Tracks
+from solvers.motion.humanoid.body_size import (
+    estimate_bone_lengths,
+    resize_postures,
+    segment_lengths,
+)
+from solvers.motion.humanoid.posture_heading import normalize_postures, rotate_about_vertical
 from solvers.motion.humanoid.posture_joints import (
     PARENTS,
     POSTURE_JOINTS,
-    joints_of_names,
-    motion_postures,
+    posture_joint_indices,
     posture_positions,
+    postures_from_motion,
 )
 from solvers.samples import GaitSettings, walking_gait
 
 
 @pytest.fixture
 def walk():
-    return motion_postures(walking_gait(GaitSettings(duration=2.0, frame_rate=30.0)))
+    return postures_from_motion(walking_gait(GaitSettings(duration=2.0, frame_rate=30.0)))
 
 
-@pytest.mark.parametrize("sensor", list(JOINTS))
+@pytest.mark.parametrize("sensor", list(SENSOR_JOINTS))
 def test_every_kinect_tracks_all_joints_of_postures(sensor):
-    names = JOINTS[sensor]
-    found = {role: names[place] for role, place in joints_of_names(names).items()}
+    names = SENSOR_JOINTS[sensor]
+    found = {role: names[place] for role, place in posture_joint_indices(names).items()}
     assert set(found) == set(POSTURE_JOINTS)
     assert found["leftLowerArm"] == "ElbowLeft"
     assert found["rightHandEnd"] == "HandRight"
@@ -39,7 +43,7 @@ def test_names_that_are_no_body_are_refused():
 
 
 def test_missing_joints_are_nan_and_others_keep_their_position():
-    names = JOINTS[Sensor.KINECT_V1][:12]
+    names = SENSOR_JOINTS[Sensor.KINECT_V1][:12]
     positions = np.random.default_rng(0).normal(size=(4, 12, 3))
     found = posture_positions(Tracks(names, positions, 30.0))
     assert np.isnan(found[:, POSTURE_JOINTS.index("leftFoot")]).all()
@@ -49,14 +53,14 @@ def test_missing_joints_are_nan_and_others_keep_their_position():
 
 
 def test_normal_postures_do_not_depend_on_position_and_heading(walk):
-    moved = turned(walk, np.full(len(walk), 2.5)) + np.array([3.0, -1.0, 0.2])
-    one, other = normalise(walk, 30.0), normalise(moved, 30.0)
+    moved = rotate_about_vertical(walk, np.full(len(walk), 2.5)) + np.array([3.0, -1.0, 0.2])
+    one, other = normalize_postures(walk, 30.0), normalize_postures(moved, 30.0)
     np.testing.assert_allclose(one.postures, other.postures, atol=1e-9)
     np.testing.assert_allclose(other.put_back(other.postures), moved, atol=1e-12)
 
 
 def test_a_normal_posture_faces_forward_with_its_left_at_plus_x(walk):
-    posture = normalise(walk, 30.0).postures.mean(axis=0)
+    posture = normalize_postures(walk, 30.0).postures.mean(axis=0)
     assert posture[POSTURE_JOINTS.index("leftUpperArm"), 0] > 0.1
     assert (
         posture[POSTURE_JOINTS.index("leftToes"), 1]
@@ -70,9 +74,12 @@ def test_unreliable_joints_do_not_change_the_heading(walk):
     wrong[:, arm] += (0.0, 1.0, 0.0)
     trust = np.ones(walk.shape[:2])
     trust[:, arm] = 0.0
-    believed = np.abs(normalise(wrong, 30.0).headings - normalise(walk, 30.0).headings).max()
+    believed = np.abs(
+        normalize_postures(wrong, 30.0).headings - normalize_postures(walk, 30.0).headings
+    ).max()
     doubted = np.abs(
-        normalise(wrong, 30.0, trust).headings - normalise(walk, 30.0, trust).headings
+        normalize_postures(wrong, 30.0, trust).headings
+        - normalize_postures(walk, 30.0, trust).headings
     ).max()
     assert believed > 0.3
     assert doubted < 0.01
@@ -80,13 +87,15 @@ def test_unreliable_joints_do_not_change_the_heading(walk):
 
 def test_a_resized_body_has_the_lengths_and_keeps_directions(walk):
     lengths = np.linspace(0.1, 0.5, len(PARENTS))
-    resized = resize(walk, lengths)
-    bones = body_lengths(walk) > 0.0
+    resized = resize_postures(walk, lengths)
+    bones = estimate_bone_lengths(walk) > 0.0
     np.testing.assert_allclose(
         segment_lengths(resized)[:, bones], np.tile(lengths[bones], (len(walk), 1))
     )
     assert bones.sum() >= 16
-    np.testing.assert_allclose(resize(resized, body_lengths(walk)), walk, atol=1e-3)
+    np.testing.assert_allclose(
+        resize_postures(resized, estimate_bone_lengths(walk)), walk, atol=1e-3
+    )
 
 
 def test_lengths_ignore_unreliable_frames(walk):
@@ -95,11 +104,13 @@ def test_lengths_ignore_unreliable_frames(walk):
     wrong[:40, shin] += (0.0, 0.0, 0.4)
     trust = np.ones(walk.shape[:2])
     trust[:40, shin] = 0.1
-    assert body_lengths(wrong, trust)[shin] == pytest.approx(body_lengths(walk)[shin], abs=1e-6)
-    assert abs(body_lengths(wrong)[shin] - body_lengths(walk)[shin]) > 0.1
+    assert estimate_bone_lengths(wrong, trust)[shin] == pytest.approx(
+        estimate_bone_lengths(walk)[shin], abs=1e-6
+    )
+    assert abs(estimate_bone_lengths(wrong)[shin] - estimate_bone_lengths(walk)[shin]) > 0.1
 
 
 def test_bone_never_observed_gets_the_typical_fraction(walk):
     unseen = walk.copy()
     unseen[:, POSTURE_JOINTS.index("leftHandEnd")] = np.nan
-    assert 0.05 < body_lengths(unseen)[POSTURE_JOINTS.index("leftHandEnd")] < 0.15
+    assert 0.05 < estimate_bone_lengths(unseen)[POSTURE_JOINTS.index("leftHandEnd")] < 0.15

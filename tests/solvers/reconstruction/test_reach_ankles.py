@@ -5,12 +5,19 @@ import pytest
 from kinect_walks import true_positions
 
 from solvers import samples
-from solvers.motion import JOINTS, Motion, Sensor, Tracks, forward_kinematics, joint_parents
+from solvers.motion import (
+    SENSOR_JOINTS,
+    Motion,
+    Sensor,
+    Tracks,
+    forward_kinematics,
+    joint_parents,
+)
 from solvers.motion.humanoid import posture_joints
 from solvers.reconstruction.joint_rotations.motion_from_positions import motion_from_positions
 from solvers.recordings import read_recording
 
-NAMES = JOINTS[Sensor.KINECT_V1]
+NAMES = SENSOR_JOINTS[Sensor.KINECT_V1]
 ANKLES = ("AnkleLeft", "AnkleRight")
 REAL = (
     "irds/215_18_6_4_1_stand.txt",

@@ -9,7 +9,7 @@ import pytest
 from solvers import motion, samples
 from solvers.motion import JointRecording, Sensor, forward_kinematics
 from solvers.motion.humanoid import posture_joints
-from solvers.motion.humanoid.posture_heading import turned
+from solvers.motion.humanoid.posture_heading import rotate_about_vertical
 from solvers.reconstruction import (
     CorrectionMethod,
     CorrectionSettings,
@@ -113,10 +113,10 @@ def test_bones_have_constant_lengths(walk):
 def test_heading_and_position_do_not_matter(walk):
     angles, shift = np.full(walk.n_frames, 1.2), np.array([2.0, -3.0, 0.0])
     moved = walk.with_tracks(
-        walk.tracks.with_positions(turned(walk.tracks.positions, angles) + shift)
+        walk.tracks.with_positions(rotate_about_vertical(walk.tracks.positions, angles) + shift)
     )
     here, there = reconstruct(walk).tracks.positions, reconstruct(moved).tracks.positions
-    np.testing.assert_allclose(turned(here, angles) + shift, there, atol=1e-3)
+    np.testing.assert_allclose(rotate_about_vertical(here, angles) + shift, there, atol=1e-3)
 
 
 def test_reconstruction_repeats_and_leaves_the_input_unchanged(walk):

@@ -4,9 +4,9 @@ import numpy as np
 import pytest
 from numpy.testing import assert_allclose, assert_array_equal
 
-from solvers.motion import JOINTS, JointRecording, Sensor, Tracks
-from solvers.motion.humanoid.posture_heading import turned
-from solvers.motion.humanoid.posture_joints import POSTURE_JOINTS, motion_postures
+from solvers.motion import SENSOR_JOINTS, JointRecording, Sensor, Tracks
+from solvers.motion.humanoid.posture_heading import rotate_about_vertical
+from solvers.motion.humanoid.posture_joints import POSTURE_JOINTS, postures_from_motion
 from solvers.reconstruction import ReliabilityMethod, ReliabilitySettings, measure_reliability
 from solvers.reconstruction.reliability.reference import (
     find_reference_postures,
@@ -15,7 +15,7 @@ from solvers.reconstruction.reliability.reference import (
 )
 from solvers.samples import GaitSettings, walking_gait
 
-NAMES = JOINTS[Sensor.KINECT_V1]
+NAMES = SENSOR_JOINTS[Sensor.KINECT_V1]
 ROLES = dict(
     zip(
         POSTURE_JOINTS,
@@ -47,7 +47,9 @@ def recorded(positions: np.ndarray, frame_rate: float = 30.0) -> JointRecording:
 
 
 def walk_at(frame_rate: float) -> np.ndarray:
-    postures = motion_postures(walking_gait(GaitSettings(duration=3.0, frame_rate=frame_rate)))
+    postures = postures_from_motion(
+        walking_gait(GaitSettings(duration=3.0, frame_rate=frame_rate))
+    )
     order = [list(ROLES.values()).index(name) for name in NAMES]
     return postures[:, order]
 
@@ -120,7 +122,7 @@ def test_leg_too_long_for_a_while_is_unreliable(walk, settings):
 @every_way
 def test_posture_ignores_position_and_heading(walk, settings):
     wrong = shaken(walk, "AnkleRight")
-    moved = turned(wrong, np.full(len(walk), 2.1)) + np.array([3.0, -4.0, 0.5])
+    moved = rotate_about_vertical(wrong, np.full(len(walk), 2.1)) + np.array([3.0, -4.0, 0.5])
 
     one = measure_reliability(recorded(wrong), settings=settings)
     other = measure_reliability(recorded(moved), settings=settings)

@@ -10,8 +10,8 @@ from scipy.spatial.transform import Rotation
 from solvers.errors import InvalidFileError
 from solvers.motion import Motion, Skeleton, find_humanoid_map
 from solvers.motion.humanoid.canonical import canonical_rotations, from_canonical
-from solvers.motion.humanoid.posture_heading import mirrored, turned
-from solvers.motion.humanoid.posture_joints import POSTURE_JOINTS, motion_postures
+from solvers.motion.humanoid.posture_heading import mirror_postures, rotate_about_vertical
+from solvers.motion.humanoid.posture_joints import POSTURE_JOINTS, postures_from_motion
 from solvers.reconstruction.joint_rotations.limb_angles import axial_angles
 from solvers.reconstruction.joint_rotations.trunk_twist import (
     TWISTED_LIMBS,
@@ -89,7 +89,11 @@ def test_untwisted_hinges_take_the_shortest_rotation_from_the_trunk():
 def test_heading_and_position_change_nothing():
     postures = standing(np.random.default_rng(2))
     normals, _ = flexion_normals(postures)
-    moved = turned(postures, np.full(len(postures), 2.0)) + np.array([3.0, 1.0, 0.5])
+    moved = rotate_about_vertical(postures, np.full(len(postures), 2.0)) + np.array([
+        3.0,
+        1.0,
+        0.5,
+    ])
 
     there = axial_angles(*untwisted_hinges(moved), flexion_normals(moved)[0])
 
@@ -98,7 +102,7 @@ def test_heading_and_position_change_nothing():
 
 def test_mirror_swaps_sides_and_negates_twists():
     postures = standing(np.random.default_rng(3))
-    image = mirrored(postures)
+    image = mirror_postures(postures)
 
     seen = axial_angles(*untwisted_hinges(image), flexion_normals(image)[0])
 
@@ -140,7 +144,7 @@ def twisting(gait: Motion, angles: np.ndarray, maker: float = 0.0) -> Motion:
 
 def twists_of(motion: Motion) -> np.ndarray:
     return combine_clip_twists(
-        [motion.skeleton], [read_clip_twists(motion, motion_postures(motion))]
+        [motion.skeleton], [read_clip_twists(motion, postures_from_motion(motion))]
     )[0]
 
 
@@ -169,7 +173,7 @@ def test_rig_is_recognized_with_rounded_offsets(gait):
     """A walk that tells how the maker turns arms, and one of this rig that tells nothing."""
     skeleton = gait.skeleton
     rounded = replace(skeleton, offsets=skeleton.offsets - 1e-6)
-    clip = read_clip_twists(gait, motion_postures(gait))
+    clip = read_clip_twists(gait, postures_from_motion(gait))
     straight = clip._replace(flexion_fractions=np.zeros_like(clip.flexion_fractions))
 
     same, again = (
@@ -200,7 +204,7 @@ def test_rigs_with_other_rest_poses_agree(gait):
 def test_rotations_that_contradict_flexion_get_a_low_weight(gait):
     """Points have no twist: an upper arm that is turned at random says nothing."""
     rng = np.random.default_rng(5)
-    clip = read_clip_twists(gait, motion_postures(gait))
+    clip = read_clip_twists(gait, postures_from_motion(gait))
     wild = clip._replace(
         from_rotations=np.exp(1j * rng.uniform(-np.pi, np.pi, clip.from_rotations.shape))
     )

@@ -8,7 +8,7 @@ from numpy.testing import assert_allclose, assert_array_equal
 from solvers.errors import InvalidFileError
 from solvers.motion import JointRecording, Sensor
 from solvers.motion.humanoid.names import roles_by_name
-from solvers.motion.skeletons.mediapipe import BODY
+from solvers.motion.skeletons.mediapipe import BODY_POINTS
 from solvers.recordings import read_freemocap, read_recording, read_ui_prmd, read_ui_prmd_pair
 
 NOSE, LEFT_WRIST, RIGHT_WRIST, ANKLES = 0, 15, 16, (27, 28)
@@ -140,7 +140,7 @@ def test_freemocap_hands_are_told_by_the_wrists(write, person):
     right_first = read_freemocap(write(npy(person)))
     left_first = read_freemocap(write(npy(swapped)))
 
-    assert right_first.names[:33] == BODY
+    assert right_first.names[:33] == BODY_POINTS
     assert (right_first.names[33], right_first.names[54]) == (
         "right_hand_wrist",
         "left_hand_wrist",

@@ -9,8 +9,8 @@ from numpy.testing import assert_allclose
 
 from solvers.errors import InvalidMotionError
 from solvers.motion import Tracks, find_humanoid_map
-from solvers.motion.humanoid.body_size import USUAL_LENGTHS, segment_lengths
-from solvers.motion.humanoid.posture_joints import POSTURE_JOINTS, motion_postures
+from solvers.motion.humanoid.body_size import ADULT_BONE_LENGTHS_M, segment_lengths
+from solvers.motion.humanoid.posture_joints import POSTURE_JOINTS, postures_from_motion
 from solvers.recordings import read_recording
 from solvers.retrieval.postures.clip_postures import clip_postures
 from solvers.samples import GaitSettings, walking_gait
@@ -27,7 +27,7 @@ def test_turned_moved_and_larger_is_the_same(name):
 
 def test_bones_have_the_usual_lengths():
     found = segment_lengths(clip_postures(act("kick", size=0.8)).positions)
-    assert_allclose(found, np.tile(USUAL_LENGTHS, (60, 1)), atol=1e-9)
+    assert_allclose(found, np.tile(ADULT_BONE_LENGTHS_M, (60, 1)), atol=1e-9)
 
 
 def test_the_course_is_told_as_the_actor_sees_it():
@@ -63,7 +63,7 @@ def test_short_gaps_of_motions_and_of_points_are_bridged_alike():
     rotations[30:34, joints["leftLowerArm"]] = np.nan
     rotations[50:86, joints["rightLowerArm"]] = np.nan
     motion = walk.with_poses(rotations)
-    points = Tracks(POSTURE_JOINTS, motion_postures(motion), 60.0)
+    points = Tracks(POSTURE_JOINTS, postures_from_motion(motion), 60.0)
     left, right = (POSTURE_JOINTS.index(f"{side}Hand") for side in ("left", "right"))
     assert np.isnan(points.positions[30:34, left]).all()
 

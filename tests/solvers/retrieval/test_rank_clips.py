@@ -9,7 +9,7 @@ from numpy.testing import assert_allclose, assert_array_equal
 from plain_warping import plain_cost
 from scipy.spatial.distance import cdist
 
-from solvers.motion.humanoid.posture_heading import turned
+from solvers.motion.humanoid.posture_heading import rotate_about_vertical
 from solvers.motion.humanoid.posture_joints import POSTURE_JOINTS
 from solvers.retrieval import Clip, FindSettings, build_clip_library, find_similar
 from solvers.retrieval.index import reranking as likes
@@ -142,7 +142,7 @@ def test_a_body_without_some_joints_is_turned_where_it_usually_faces(angle):
     clips = [clip_postures(act(name, 2.5), 20.0) for name in ACTS]
     usual, true = usual_postures(clips), clips[0]
     lost = [POSTURE_JOINTS.index(name) for name in ("leftUpperLeg", "rightUpperArm", "head")]
-    positions = turned(true.positions, np.full(true.n_frames, angle))
+    positions = rotate_about_vertical(true.positions, np.full(true.n_frames, angle))
     positions[:, lost] = np.nan
     cos, sin = np.cos(angle), np.sin(angle)
     course = true.course.copy()

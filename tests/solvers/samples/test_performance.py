@@ -7,10 +7,10 @@ import pytest
 from numpy.testing import assert_allclose
 
 from solvers.errors import InvalidSettingError
-from solvers.motion import JOINTS, Sensor
+from solvers.motion import SENSOR_JOINTS, Sensor
 from solvers.samples import PerformanceSettings, perform_gestures
 
-NAMES = JOINTS[Sensor.KINECT_V1]
+NAMES = SENSOR_JOINTS[Sensor.KINECT_V1]
 
 
 def joint(performance, name):

@@ -6,14 +6,14 @@ from numpy.testing import assert_allclose
 
 from solvers.denoising import denoise
 from solvers.samples import CorruptionSettings, GaitSettings, corrupt, walking_gait
-from solvers.signals.noise import alike, rough_noise
+from solvers.signals.noise import estimate_noise, shrink_noise
 
 
 def test_rough_noise_sees_the_noise_and_not_the_motion(rng):
     time = np.arange(2000) / 60.0
     smooth = 30.0 * np.sin(2 * np.pi * time)[:, None]
 
-    found = rough_noise(smooth + rng.normal(scale=[0.5, 3.0], size=(2000, 2)))
+    found = estimate_noise(smooth + rng.normal(scale=[0.5, 3.0], size=(2000, 2)))
 
     assert_allclose(found, [0.5, 3.0], rtol=0.1)
 
@@ -22,8 +22,8 @@ def test_channels_that_differ_by_chance_are_drawn_together(rng):
     n_samples = np.full(60, 50)
     found = np.exp(np.log(2.0) + rng.normal(scale=np.sqrt(0.5 / 50), size=60))
 
-    assert_allclose(alike(found, n_samples), 2.0, rtol=0.08)
-    assert alike(found, n_samples).std() < 0.5 * found.std()
+    assert_allclose(shrink_noise(found, n_samples), 2.0, rtol=0.08)
+    assert shrink_noise(found, n_samples).std() < 0.5 * found.std()
 
 
 @pytest.mark.parametrize("own", [0.3, 20.0])
@@ -31,7 +31,7 @@ def test_a_channel_of_another_kind_keeps_its_own_noise(own, rng):
     """The root's place in centimetres, among rotations in degrees."""
     found = np.append(np.exp(np.log(3.0) + rng.normal(scale=0.05, size=60)), own)
 
-    assert_allclose(alike(found, np.full(61, 200))[-1], own, rtol=0.05)
+    assert_allclose(shrink_noise(found, np.full(61, 200))[-1], own, rtol=0.05)
 
 
 @pytest.mark.parametrize("jitter", [0.0, 3.0])

@@ -4,7 +4,11 @@ import numpy as np
 import pytest
 from numpy.testing import assert_allclose
 
-from solvers.signals.smooth_correction import FADES, PULL_WEIGHT, smooth_correction
+from solvers.signals.smooth_correction import (
+    FADE_TIME_CONSTANTS,
+    PULL_WEIGHT,
+    smooth_correction,
+)
 
 
 def test_equals_the_dense_least_squares_solution(rng):
@@ -15,7 +19,7 @@ def test_equals_the_dense_least_squares_solution(rng):
 
     found = smooth_correction(speed, held, rate, blend, hold=hold, goal=goal, pulled=pulled)
 
-    bending = (blend / FADES * rate) ** 2 * np.diff(np.eye(20), n=2, axis=0)
+    bending = (blend / FADE_TIME_CONSTANTS * rate) ** 2 * np.diff(np.eye(20), n=2, axis=0)
     stepping = hold * np.sqrt(held) * np.diff(np.eye(20), axis=0) * rate
     pulling = np.sqrt(PULL_WEIGHT * pulled) * np.eye(20)
     system = np.concatenate([np.eye(20), bending, stepping, pulling])
@@ -39,7 +43,7 @@ def test_a_free_correction_fades_as_announced(rate):
     )[:, 0]
 
     time = np.arange(n_frames - int(2 * rate) + 1) / rate
-    x = time * FADES / 0.5 / np.sqrt(2.0)
+    x = time * FADE_TIME_CONSTANTS / 0.5 / np.sqrt(2.0)
     expected = np.exp(-x) * (np.cos(x) + np.sin(x))
     # The last frame that is pulled ends half a frame late, and gives way by a hundredth.
     assert_allclose(found[int(2 * rate) - 1 :], expected, atol=0.015 + 1.5 / rate)

@@ -9,7 +9,7 @@ from numpy.testing import assert_allclose
 from solvers.gestures.events import Gesture
 from solvers.gestures.recognition import Mode
 from solvers.gestures.settings import GestureSettings
-from solvers.motion import JOINTS, JointRecording, Sensor
+from solvers.motion import SENSOR_JOINTS, JointRecording, Sensor
 from solvers.motion.humanoid.posture_joints import POSTURE_JOINTS
 from solvers.recordings.live.frames import LiveFrame, encode_frame, frames_of
 from solvers.samples import PerformanceSettings, perform_gestures
@@ -42,7 +42,7 @@ def test_what_is_performed_between_claps_is_the_query():
     assert events == [Gesture.CAPTURE_START, Gesture.CAPTURE_END] and not messages
     (query,) = queries
     assert isinstance(query, JointRecording) and query.sensor is Sensor.KINECT_V1
-    assert query.names == JOINTS[Sensor.KINECT_V1] and query.frame_rate == 30.0
+    assert query.names == SENSOR_JOINTS[Sensor.KINECT_V1] and query.frame_rate == 30.0
     began, ended = (done for name, done in performance.made if name == "clap")
     assert query.n_frames / 30.0 == pytest.approx(ended - began - 0.65, abs=0.3)
     start = int(
@@ -127,7 +127,7 @@ def test_joints_that_are_no_arms_say_nothing(names):
 
 def test_the_joints_of_every_sensor_are_found():
     for sensor in (Sensor.KINECT_V1, Sensor.KINECT_V2, Sensor.AZURE_KINECT):
-        names = JOINTS[sensor]
+        names = SENSOR_JOINTS[sensor]
         places = np.arange(3.0 * len(names)).reshape(-1, 3)
 
         positions, confidence = posture_of(

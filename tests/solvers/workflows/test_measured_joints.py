@@ -9,7 +9,7 @@ from solvers import motion as vocabulary
 from solvers import samples
 from solvers.motion import Motion, Skeleton, motion_from_points
 from solvers.motion.humanoid import posture_joints
-from solvers.motion.humanoid.missing_hips import with_hips
+from solvers.motion.humanoid.missing_hips import fill_missing_hips
 from solvers.rotations.representations import multiply, quaternion_from_rotation_vector, rotate
 from solvers.workflows.measured_joints import measured_joints
 
@@ -125,7 +125,7 @@ def test_a_motion_whose_hips_were_put_between_the_legs_is_of_it(walk):
     positions = walk.tracks.positions.copy()
     positions[:, walk.names.index("HipCenter")] = np.nan
     blind = walk.with_tracks(walk.tracks.with_positions(positions))
-    whole = with_hips(blind)
+    whole = fill_missing_hips(blind)
 
     found = measured_joints(motion_from_points(whole.tracks, whole.parents), blind)
 

@@ -9,7 +9,7 @@ from solvers import samples
 from solvers.denoising import PlantSettings
 from solvers.errors import InvalidMotionError
 from solvers.motion import (
-    JOINTS,
+    SENSOR_JOINTS,
     JointRecording,
     Sensor,
     Tracks,
@@ -63,9 +63,9 @@ def test_feet_are_left_alone_on_request(walk):
 
 
 def test_a_body_without_legs_says_that_its_feet_stay(truth):
-    upper = [name for name in JOINTS[Sensor.KINECT_V1]
+    upper = [name for name in SENSOR_JOINTS[Sensor.KINECT_V1]
              if not name.startswith(("Knee", "Ankle", "Foot"))]  # fmt: skip
-    places = [JOINTS[Sensor.KINECT_V1].index(name) for name in upper]
+    places = [SENSOR_JOINTS[Sensor.KINECT_V1].index(name) for name in upper]
     recording = JointRecording(Tracks(tuple(upper), truth[:, places], 30.0), None, Sensor.OTHER)
 
     result = reconstruct_recording(recording, planting=PlantSettings())
@@ -74,14 +74,14 @@ def test_a_body_without_legs_says_that_its_feet_stay(truth):
 
 
 def test_fifteen_joints_of_another_tracker_make_a_body(truth):
-    places = [JOINTS[Sensor.KINECT_V1].index(name) for name in NITE.values()]
+    places = [SENSOR_JOINTS[Sensor.KINECT_V1].index(name) for name in NITE.values()]
     recording = JointRecording(Tracks(tuple(NITE), truth[:, places], 30.0), None, Sensor.OTHER)
 
     result = reconstruct_recording(recording, planting=None)
 
     shown = result.motion.skeleton
     wrist = forward_kinematics(result.motion).positions[:, shown.index("WristLeft")]
-    true = truth[:, JOINTS[Sensor.KINECT_V1].index("WristLeft")]
+    true = truth[:, SENSOR_JOINTS[Sensor.KINECT_V1].index("WristLeft")]
     assert np.linalg.norm(wrist - true, axis=-1).mean() < 0.05
 
 
@@ -98,7 +98,9 @@ def test_trackers_of_25_and_32_joints(recordings, file):
     assert set(recording.names) <= set(result.motion.skeleton.names)
 
 
-def as_recording(positions: np.ndarray, names=JOINTS[Sensor.KINECT_V1]) -> JointRecording:
+def as_recording(
+    positions: np.ndarray, names=SENSOR_JOINTS[Sensor.KINECT_V1]
+) -> JointRecording:
     return JointRecording(Tracks(names, positions, 30.0), None, Sensor.OTHER)
 
 
@@ -138,7 +140,7 @@ def test_places_for_which_the_tracker_does_not_answer(truth, state, settings, sa
 
 
 def test_a_spine_alone_is_no_body(truth):
-    columns = [JOINTS[Sensor.KINECT_V1].index(name) for name in ("HipCenter", "Spine")]
+    columns = [SENSOR_JOINTS[Sensor.KINECT_V1].index(name) for name in ("HipCenter", "Spine")]
     recording = as_recording(truth[:, columns], ("SpineBase", "SpineMid"))
 
     with pytest.raises(InvalidMotionError, match=r"Only 2 joints .* \(hips, spine\)"):
@@ -220,7 +222,7 @@ def test_hips_that_are_never_tracked_are_between_the_legs(recordings):
 
 
 def test_a_tracker_that_vouches_for_nothing_is_told_so(truth):
-    tracks = Tracks(JOINTS[Sensor.KINECT_V1], truth, 30.0)
+    tracks = Tracks(SENSOR_JOINTS[Sensor.KINECT_V1], truth, 30.0)
     blind = JointRecording(tracks, np.zeros(truth.shape[:2], np.int8), Sensor.KINECT_V1)
 
     with pytest.raises(InvalidMotionError, match="the tracking state `tracked`"):

@@ -6,13 +6,20 @@ from kinect_walks import true_positions
 
 from solvers import samples
 from solvers.denoising import PlantSettings
-from solvers.motion import JOINTS, Motion, Sensor, Tracks, forward_kinematics, joint_parents
+from solvers.motion import (
+    SENSOR_JOINTS,
+    Motion,
+    Sensor,
+    Tracks,
+    forward_kinematics,
+    joint_parents,
+)
 from solvers.motion.humanoid import posture_joints
 from solvers.reconstruction.joint_rotations.motion_from_positions import motion_from_positions
 from solvers.recordings import read_recording
 from solvers.workflows import reconstruct_recording, try_to_plant
 
-NAMES = JOINTS[Sensor.KINECT_V1]
+NAMES = SENSOR_JOINTS[Sensor.KINECT_V1]
 PLANTING = PlantSettings()
 STANDING = np.ones((60, 2), bool)
 

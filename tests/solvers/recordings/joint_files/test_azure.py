@@ -8,10 +8,10 @@ from joint_files import azure_columns, azure_json, azure_lines, moving
 from numpy.testing import assert_allclose
 
 from solvers.errors import InvalidFileError
-from solvers.motion import JOINTS, Sensor
+from solvers.motion import SENSOR_JOINTS, Sensor
 from solvers.recordings import read_azure_csv, read_azure_json, read_recording
 
-NAMES = JOINTS[Sensor.AZURE_KINECT]
+NAMES = SENSOR_JOINTS[Sensor.AZURE_KINECT]
 
 
 def upright(values):

@@ -6,7 +6,7 @@ from joint_files import npy
 from numpy.testing import assert_allclose
 
 from solvers.motion import forward_kinematics, motion_from_points
-from solvers.motion.skeletons.mediapipe import BODY, HAND
+from solvers.motion.skeletons.mediapipe import BODY_POINTS, HAND_POINTS
 from solvers.recordings import read_bvh, read_freemocap
 
 CMU = {
@@ -40,7 +40,7 @@ def walk(recordings):
         places[f"{side}_heel"] = joints[f"{side.title()}Foot"] - (0.0, 0.0, 0.05)
         places[f"{side}_ear"] = joints["Head"] + beside
     rest = joints["Head"] - (0.0, 0.1, 0.0)
-    return np.stack([places.get(name, rest) for name in BODY], axis=1)
+    return np.stack([places.get(name, rest) for name in BODY_POINTS], axis=1)
 
 
 def test_the_motion_goes_through_the_tracked_joints(walk, tmp_path):
@@ -75,10 +75,10 @@ def test_the_rest_pose_is_a_t_pose(walk, tmp_path):
 
 
 def test_fingers_hang_on_the_wrist(walk, tmp_path):
-    hand = np.zeros((len(walk), len(HAND), 3))
+    hand = np.zeros((len(walk), len(HAND_POINTS), 3))
     hand[:, 1:, 0] = np.tile(0.03 * np.arange(1, 5), 5)
     hand[:, 1:, 1] = np.repeat(0.02 * np.arange(-2, 3), 4)
-    sides = [hand + walk[:, [BODY.index(f"{side}_wrist")]] for side in ("right", "left")]
+    sides = [hand + walk[:, [BODY_POINTS.index(f"{side}_wrist")]] for side in ("right", "left")]
     path = tmp_path / "body.npy"
     path.write_bytes(npy(1000.0 * np.concatenate([walk, *sides], axis=1)))
     recording = read_freemocap(path)

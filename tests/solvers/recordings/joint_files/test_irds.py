@@ -7,10 +7,10 @@ import pytest
 from numpy.testing import assert_allclose
 
 from solvers.errors import InvalidFileError
-from solvers.motion import JOINTS, JointRecording, Sensor
+from solvers.motion import SENSOR_JOINTS, JointRecording, Sensor
 from solvers.recordings import read_irds, read_recording
 
-NAMES = JOINTS[Sensor.KINECT_V2]
+NAMES = SENSOR_JOINTS[Sensor.KINECT_V2]
 
 
 def irds(frames: list[tuple[int, int, dict[str, tuple[str, float, float, float]]]]) -> str:

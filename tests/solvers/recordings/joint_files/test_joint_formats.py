@@ -5,7 +5,7 @@ import pytest
 from numpy.testing import assert_allclose, assert_array_equal
 
 from solvers.errors import InvalidFileError, InvalidMotionError
-from solvers.motion import JOINTS, JointRecording, Sensor, Tracks
+from solvers.motion import SENSOR_JOINTS, JointRecording, Sensor, Tracks
 from solvers.recordings import (
     read_joint_csv,
     read_joint_json,
@@ -43,7 +43,7 @@ def write(tmp_path):
 
 @pytest.fixture(params=["all", "no state", "no confidence", "no more than places"])
 def recording(request, rng) -> JointRecording:
-    names = ('left "hand", upper', "head.x", "Fuß", *JOINTS[Sensor.KINECT_V2])
+    names = ('left "hand", upper', "head.x", "Fuß", *SENSOR_JOINTS[Sensor.KINECT_V2])
     positions = rng.normal(size=(40, len(names), 3)) / 3
     state = rng.integers(0, 3, (40, len(names)))
     positions[20, 1] = 0.0

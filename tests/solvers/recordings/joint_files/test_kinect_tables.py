@@ -6,7 +6,7 @@ from joint_files import kinect_csv, moving, msr, ntu
 from numpy.testing import assert_allclose, assert_array_equal
 
 from solvers.errors import InvalidFileError
-from solvers.motion import JOINTS, JointRecording, Sensor
+from solvers.motion import SENSOR_JOINTS, JointRecording, Sensor
 from solvers.recordings import (
     read_kinect_csv,
     read_msr_action3d,
@@ -14,7 +14,7 @@ from solvers.recordings import (
     read_recording,
 )
 
-V2 = JOINTS[Sensor.KINECT_V2]
+V2 = SENSOR_JOINTS[Sensor.KINECT_V2]
 ONE, TWO = "72057594037931101", "72057594037931691"
 
 
